@@ -1,0 +1,2 @@
+//! hysteron: from a self-affine rough surface to the energy that its adhesive contact loses.
+pub mod model;

@@ -1,0 +1,128 @@
+//! What a case is made of: the material, and every choice that the model leaves open, by name.
+//!
+//! These types belong to no room: the spec fills them, the physics reads them, the keys hash them. They compute nothing.
+
+use serde::{Deserialize, Serialize};
+
+/// The elastic half-space and its adhesion.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Material {
+    /// Contact modulus E* \[Pa\]: `1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂`.
+    pub contact_modulus_pa: f64,
+    /// Work of adhesion Δγ \[J/m²\].
+    pub work_of_adhesion_j_m2: f64,
+    /// Range of attraction ε \[m\]; it enters the Tabor parameter and Wu's jump-in distance only.
+    pub interaction_range_m: f64,
+}
+
+/// A choice that a spec makes by a word.
+pub trait Choice: Copy + PartialEq + Sized + 'static {
+    /// Every value with its word, in the order in which they are shown.
+    const WORDS: &'static [(&'static str, Self)];
+
+    /// The word of this value.
+    fn word(self) -> &'static str {
+        Self::WORDS.iter().find(|(_, value)| *value == self).map_or("", |(word, _)| word)
+    }
+
+    /// The value of a word, or nothing if no value has it.
+    fn from_word(word: &str) -> Option<Self> {
+        Self::WORDS.iter().find(|(known, _)| *known == word).map(|(_, value)| *value)
+    }
+}
+
+macro_rules! choice {
+    ($(#[$doc:meta])* $name:ident { $($(#[$variant_doc:meta])* $variant:ident = $word:literal),+ $(,)? }) => {
+        $(#[$doc])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+        pub enum $name { $($(#[$variant_doc])* #[serde(rename = $word)] $variant),+ }
+
+        impl Choice for $name {
+            const WORDS: &'static [(&'static str, Self)] = &[$(($word, Self::$variant)),+];
+        }
+    };
+}
+
+choice! {
+    /// How a surface gets its rms height.
+    Normalization {
+        /// The realised surface is scaled to the rms height exactly.
+        Sample = "sample",
+        /// The spectrum's integral is the mean square height; what a realisation has differs.
+        Spectrum = "spectrum",
+    }
+}
+choice! {
+    /// The moduli of the Fourier modes.
+    Amplitudes {
+        /// `sqrt(C)`: only the phases are random, as in the paper.
+        Fixed = "fixed",
+        /// Rayleigh-distributed moduli: a Gaussian surface.
+        Gaussian = "gaussian",
+    }
+}
+choice! {
+    /// How contact spots act on one another.
+    Interaction {
+        /// The displacement field of a JKR spot outside its contact (Eqs 6 and 7).
+        Spots = "spots",
+        /// Each spot acts as its load at its centre: the model has an exact potential.
+        Point = "point",
+        /// No interaction: Greenwood and Williamson with JKR.
+        None = "none",
+    }
+}
+choice! {
+    /// What surrounds the square.
+    Boundary {
+        /// Its own periodic images, with a self-balanced load.
+        Periodic = "periodic",
+        /// Nothing: a single patch on a half-space.
+        Isolated = "isolated",
+    }
+}
+choice! {
+    /// What happens when a spot grows over the centre of another asperity.
+    Coalescence {
+        /// The smaller one is covered: it rides with the greater spot and carries nothing.
+        Cover = "cover",
+        /// Touching spots become one of the same area.
+        Merge = "merge",
+        /// Nothing happens, as the paper's text has it.
+        None = "none",
+    }
+}
+choice! {
+    /// When a free asperity jumps into contact.
+    JumpIn {
+        /// Wu's critical gap (Eq 3).
+        Wu = "wu",
+        /// At zero penetration, the rule of plain JKR.
+        Jkr = "jkr",
+    }
+}
+choice! {
+    /// Which steps of the table of contact spots are kept.
+    KeptContacts {
+        /// Every step.
+        All = "all",
+        /// The turning points.
+        Turning = "turning",
+        /// None.
+        None = "none",
+    }
+}
+choice! {
+    /// A slip of the paper that can be put back, to see what it changes.
+    Slip {
+        /// Eq 8 without the `r²/(2R)` inside a spot.
+        Eq8 = "eq8",
+        /// Eq 9 with `sqrt(πΔγ/(E*a))` for `sqrt(πΔγ/(2E*a))`.
+        Eq9 = "eq9",
+        /// Eq A2 with the exponent as printed.
+        A2 = "a2",
+        /// `sqrt(m4/3t)` for `sqrt(m4/3)·t` below Eq A3.
+        A3 = "a3",
+    }
+}
