@@ -1,0 +1,186 @@
+//! One JKR asperity: a rigid paraboloid of radius R on a soft half-space, one function per equation.
+//!
+//! Source: Violano & Afferrante, Lubricants 9(1):7 (2021), Eqs 1–4 and A1; Johnson, Kendall & Roberts, Proc. R. Soc. A 324:301 (1971).
+//! Symbols: contact radius `a` \[m\], penetration `δ` \[m\] (positive inwards), load `F` \[N\] (positive in compression), radius of
+//! curvature `R` \[m\], contact modulus `E*` \[Pa\], work of adhesion `Δγ` \[J/m²\].
+//!
+//! In units `a: (R²Δγ/E*)^⅓`, `δ: (RΔγ²/E*²)^⅓`, `F: RΔγ` every asperity is the same one.
+
+use super::PhysicsError;
+use crate::model::Material;
+use std::f64::consts::PI;
+
+/// One asperity with its material.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Asperity {
+    radius: f64,
+    modulus: f64,
+    adhesion: f64,
+    /// `sqrt(2πΔγ/E*)` \[m^½\].
+    pull: f64,
+    jump_off_radius: f64,
+}
+
+impl Asperity {
+    /// An asperity of radius of curvature `radius_m` \[m\] on `material`.
+    ///
+    /// # Errors
+    /// Radius, modulus and work of adhesion must be positive and finite.
+    pub fn new(radius_m: f64, material: &Material) -> Result<Self, PhysicsError> {
+        let (modulus, adhesion) = (material.contact_modulus_pa, material.work_of_adhesion_j_m2);
+        for (quantity, value) in
+            [("the radius of curvature [m]", radius_m), ("the contact modulus [Pa]", modulus), ("the work of adhesion [J/m2]", adhesion)]
+        {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(PhysicsError::Domain { action: "a JKR asperity", quantity, value, allowed: "a positive, finite number" });
+            }
+        }
+        let pull_squared = 2.0 * PI * adhesion / modulus;
+        Ok(Self {
+            radius: radius_m,
+            modulus,
+            adhesion,
+            pull: pull_squared.sqrt(),
+            jump_off_radius: (pull_squared * radius_m * radius_m / 16.0).cbrt(),
+        })
+    }
+
+    /// Radius of curvature R \[m\].
+    #[must_use]
+    pub fn radius_m(&self) -> f64 {
+        self.radius
+    }
+
+    /// `sqrt(2πΔγ/E*)` \[m^½\]: what adhesion takes from the penetration is this times `sqrt(a)`.
+    #[must_use]
+    pub fn pull_sqrt_m(&self) -> f64 {
+        self.pull
+    }
+
+    /// Load `F = 4E*a³/(3R) − sqrt(8πE*Δγa³)` \[N\], at contact radius `a ≥ 0` \[m\]. Eq 1.
+    #[must_use]
+    pub fn load(&self, a: f64) -> f64 {
+        self.modulus * a * (4.0 * a * a / (3.0 * self.radius) - 2.0 * self.pull * a.sqrt())
+    }
+
+    /// `dF/da = 4E*a²/R − (3/2) sqrt(8πE*Δγa)` \[N/m\], at contact radius `a ≥ 0` \[m\]. Derivative of Eq 1.
+    #[must_use]
+    pub fn load_slope(&self, a: f64) -> f64 {
+        self.modulus * (4.0 * a * a / self.radius - 3.0 * self.pull * a.sqrt())
+    }
+
+    /// Penetration `δ = a²/R − sqrt(2πaΔγ/E*)` \[m\], at contact radius `a ≥ 0` \[m\]. Eq 2.
+    #[must_use]
+    pub fn penetration(&self, a: f64) -> f64 {
+        a * a / self.radius - self.pull * a.sqrt()
+    }
+
+    /// `dδ/da = 2a/R − sqrt(πΔγ/(2E*a))` (dimensionless), at contact radius `a > 0` \[m\]. Derivative of Eq 2.
+    ///
+    /// # Deviations
+    /// The denominator of the paper's Eq 9 has `sqrt(πΔγ/(E*a))`, which is not the derivative of Eq 2: it vanishes before the true jump-off.
+    #[must_use]
+    pub fn penetration_slope(&self, a: f64) -> f64 {
+        2.0 * a / self.radius - self.pull / (2.0 * a.sqrt())
+    }
+
+    /// Contact radius at jump-off under displacement control `(πR²Δγ/(8E*))^⅓` \[m\], where `dδ/da = 0`.
+    #[must_use]
+    pub fn jump_off_radius(&self) -> f64 {
+        self.jump_off_radius
+    }
+
+    /// Penetration at jump-off `δ_off = −(27π²Δγ²R/(64E*²))^⅓` \[m\]. Eq 4.
+    #[must_use]
+    pub fn jump_off_penetration(&self) -> f64 {
+        -3.0 * self.jump_off_radius * self.jump_off_radius / self.radius
+    }
+
+    /// Contact radius `(9πR²Δγ/(8E*))^⅓` \[m\] at the greatest tension.
+    #[must_use]
+    pub fn pull_off_radius(&self) -> f64 {
+        self.jump_off_radius * 9f64.cbrt()
+    }
+
+    /// Greatest tension `−(3/2)πRΔγ` \[N\], as a load.
+    #[must_use]
+    pub fn pull_off_load(&self) -> f64 {
+        -1.5 * PI * self.radius * self.adhesion
+    }
+
+    /// Contact radius \[m\] on the stable branch (`a ≥ a_off`) at penetration `δ` \[m\]: the inverse of Eq 2; nothing below `δ_off`.
+    ///
+    /// With `a = a_off(1 + e)²` Eq 2 reads `6e² + 4e³ + e⁴ = (δ − δ_off)/(a_off²/R)`, whose left side is convex: Newton from above
+    /// converges from any start, and the root keeps its digits down to the jump-off itself.
+    #[must_use]
+    pub fn radius_at_penetration(&self, penetration: f64) -> Option<f64> {
+        let off = self.jump_off_radius;
+        let excess = (penetration - self.jump_off_penetration()) * self.radius / (off * off);
+        if !(excess >= 0.0 && excess.is_finite()) {
+            return None;
+        }
+        let mut e = (excess / 6.0).sqrt().min(excess.sqrt().sqrt() + 0.6);
+        for _ in 0..60 {
+            let value = e * e * (6.0 + e * (4.0 + e)) - excess;
+            let slope = e * (12.0 + e * (12.0 + 4.0 * e));
+            if slope <= 0.0 {
+                break;
+            }
+            let next = e - value / slope;
+            if (next - e).abs() <= 4e-16 * e {
+                e = next;
+                break;
+            }
+            e = next;
+        }
+        Some(off * (1.0 + e) * (1.0 + e))
+    }
+
+    /// Stored elastic energy at fixed contact radius `U(δ, a) = E*(aδ² − 2a³δ/(3R) + a⁵/(5R²))` \[J\]. On the equilibrium path
+    /// `∂U/∂δ = F` and `∂U/∂(πa²) = Δγ`.
+    #[must_use]
+    pub fn stored_energy(&self, penetration: f64, a: f64) -> f64 {
+        let flat = a * a / self.radius;
+        self.modulus * a * (penetration * penetration - 2.0 * flat * penetration / 3.0 + flat * flat / 5.0)
+    }
+
+    /// Tabor number `μ = (RΔγ²/E*²)^⅓ / ε`, of the range of attraction `ε > 0` \[m\]. Below Eq 3.
+    #[must_use]
+    pub fn tabor(&self, range: f64) -> f64 {
+        (self.radius * (self.adhesion / self.modulus).powi(2)).cbrt() / range
+    }
+
+    /// Wu's jump-in penetration `δ_in = (1 − 2.641 μ^(3/7)) ε` \[m\], valid for `μ ≥ 2`. Eq 3.
+    ///
+    /// # Deviations
+    /// It is a negative penetration: contact forms where the gap falls below `|δ_in|`, not below `δ_in` as §2.2 says.
+    #[must_use]
+    pub fn wu_jump_in_penetration(&self, range: f64) -> f64 {
+        (1.0 - 2.641 * self.tabor(range).powf(3.0 / 7.0)) * range
+    }
+
+    /// Loss of one loading–unloading loop whose jump-in is at `δ = 0`: `θ = 2E*R³ (πΔγ/(E*R))^(5/3) × 0.5262…` \[J\]. Eq A1.
+    ///
+    /// # Deviations
+    /// The constant is exact here, `2^⅔ (3/10 + (1/5) 16^(−⅔))`; the paper prints 0.5262.
+    #[must_use]
+    pub fn loop_loss(&self) -> f64 {
+        let ratio = PI * self.adhesion / (self.modulus * self.radius);
+        2.0 * self.modulus * self.radius.powi(3) * ratio.powf(5.0 / 3.0) * loop_loss_constant()
+    }
+
+    /// Loss of one loading–unloading loop whose jump-in is at `jump_in` \[m\], `δ_off ≤ jump_in ≤ 0` \[J\]: the release of
+    /// `U − Δγπa²` in the two jumps. Nothing if the jump-in lies outside the branch.
+    #[must_use]
+    pub fn loop_loss_from(&self, jump_in: f64) -> Option<f64> {
+        let energy = |penetration: f64, a: f64| self.stored_energy(penetration, a) - PI * self.adhesion * a * a;
+        let landed = self.radius_at_penetration(jump_in)?;
+        Some(energy(self.jump_off_penetration(), self.jump_off_radius) - energy(jump_in, landed))
+    }
+}
+
+/// The exact constant of Deng and Kesari's loop loss, `2^⅔ (3/10 + (1/5)·16^(−⅔)) = 0.5262203…`.
+#[must_use]
+pub fn loop_loss_constant() -> f64 {
+    4f64.cbrt() * (0.3 + 0.2 / 256f64.cbrt())
+}

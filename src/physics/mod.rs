@@ -1,0 +1,87 @@
+//! The physics: surfaces, one JKR asperity, the field of many, their equilibrium and its path.
+//!
+//! This room opens no file and knows no stage. SI units inside, everywhere; compression and approach are positive.
+
+pub mod bandlimited;
+pub mod cycle;
+pub mod equilibrium;
+pub mod events;
+pub mod interaction;
+pub mod jkr;
+pub mod krylov;
+pub mod spectrum;
+pub mod state;
+pub mod summits;
+pub mod synthesis;
+pub mod theory;
+
+use thiserror::Error;
+
+/// What can go wrong in the physics: each names the quantity, its value and what is allowed.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum PhysicsError {
+    /// A quantity lies outside the domain of the equation that reads it.
+    #[error("cannot evaluate {action}: {quantity} is {value:e}; allowed: {allowed}")]
+    Domain {
+        /// What was to be evaluated.
+        action: &'static str,
+        /// The quantity, with its unit.
+        quantity: &'static str,
+        /// Its value.
+        value: f64,
+        /// What the equation allows.
+        allowed: &'static str,
+    },
+    /// A surface without a summit carries nothing.
+    #[error("cannot cycle the contact: the surface has no summit")]
+    NoSummit,
+    /// Some asperities lie below the Tabor number at which Wu's jump-in distance holds.
+    #[error(
+        "cannot use Wu's jump-in distance (Eq 3): the smallest Tabor number is {smallest:.3}, {below} of {all} asperities lie below 2; \
+         allowed: a shorter interaction range, jump_in = \"jkr\", or model.allow_low_tabor = true to go on with a caution"
+    )]
+    LowTabor {
+        /// The smallest Tabor number.
+        smallest: f64,
+        /// How many asperities lie below 2.
+        below: usize,
+        /// How many asperities there are.
+        all: usize,
+    },
+    /// No equilibrium was found near the last one, not even by relaxation.
+    #[error(
+        "cannot find an equilibrium at the approach {approach_m:e} m: after {iterations} iterations the worst residual is {residual_m:e} m, \
+         at asperity {asperity}; the contact may have none here (coalescing spots), or the step may be too long: try a smaller approach_step"
+    )]
+    NoEquilibrium {
+        /// Approach δ \[m\].
+        approach_m: f64,
+        /// The worst residual \[m\].
+        residual_m: f64,
+        /// The asperity that has it.
+        asperity: usize,
+        /// Iterations spent.
+        iterations: u64,
+    },
+    /// An avalanche did not end.
+    #[error("cannot end the avalanche at the approach {approach_m:e} m: {events} changes of state and still not at rest (asperity {asperity} last)")]
+    EndlessAvalanche {
+        /// Approach δ \[m\].
+        approach_m: f64,
+        /// Changes of state so far.
+        events: usize,
+        /// The asperity that changed last.
+        asperity: usize,
+    },
+    /// The greatest load is not reached.
+    #[error("cannot reach the load F/(E* A0) = {wanted}: at the approach {approach_m:e} m it is {reached}; allowed: a smaller max_load")]
+    LoadNotReached {
+        /// The load asked for.
+        wanted: f64,
+        /// The load reached.
+        reached: f64,
+        /// The approach at which the search ended \[m\].
+        approach_m: f64,
+    },
+}

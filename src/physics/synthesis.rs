@@ -1,0 +1,146 @@
+//! Heights from phases: an inverse real Fourier transform of the modes of Eq 10.
+//!
+//! **A phase belongs to its wavevector**: it is a function of (seed, kx, ky) and of nothing else, through a counter-based generator. So a
+//! finer grid samples the same continuous surface, and another magnification or Hurst exponent keeps the phases of all modes it shares.
+
+use super::spectrum::{MomentSums, Moments, Spectrum};
+use crate::model::Amplitudes;
+use ndarray::Array2;
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+use realfft::RealFftPlanner;
+use rustfft::{FftPlanner, num_complex::Complex64};
+use std::f64::consts::TAU;
+
+/// A realised surface: heights over its mean plane, and the moments of its own modes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Surface {
+    /// Side of the periodic square L \[m\].
+    pub length_m: f64,
+    /// Heights \[m\], N × N; the row is x.
+    pub heights_m: Array2<f64>,
+    /// Moments of the realised modes.
+    pub moments: Moments,
+}
+
+/// The seed of a realisation: a hash of the campaign's seed and the realisation's number, never of a position in a list.
+#[must_use]
+pub fn realization_seed(campaign_seed: u64, realization: u64) -> [u8; 32] {
+    let mut bytes = [0u8; 16];
+    bytes[..8].copy_from_slice(&campaign_seed.to_le_bytes());
+    bytes[8..].copy_from_slice(&realization.to_le_bytes());
+    blake3::derive_key("hysteron 2026 surface phases", &bytes)
+}
+
+/// The random numbers of one row of wavevectors (fixed kx), addressed by ky.
+struct Phases(ChaCha8Rng);
+
+impl Phases {
+    fn of_row(seed: &[u8; 32], kx: i64) -> Self {
+        let mut generator = ChaCha8Rng::from_seed(*seed);
+        // 0, −1, 1, −2, 2 … in 0, 1, 2, 3, 4 …: each row of wavevectors has its own stream.
+        generator.set_stream(((kx << 1) ^ (kx >> 63)).unsigned_abs());
+        Self(generator)
+    }
+
+    /// Phase in `[0, 2π)` and the mean-one exponential variate of the mode's power. Each mode owns four words of its stream.
+    fn draw(&mut self, ky: u64) -> (f64, f64) {
+        self.0.set_word_pos(u128::from(ky) * 4);
+        let unit = |word: u64| (word >> 11) as f64 / (1u64 << 53) as f64;
+        let phase = TAU * unit(self.0.next_u64());
+        (phase, -(-unit(self.0.next_u64())).ln_1p())
+    }
+}
+
+/// The complex amplitude of mode (kx, ky) before normalisation, of the half plane `ky > 0`, or `ky = 0` and `kx > 0`.
+fn mode(spectrum: &Spectrum, phases: &mut Phases, kx: i64, ky: u64) -> (Complex64, u64, f64) {
+    let mode_squared = kx.unsigned_abs().pow(2) + ky * ky;
+    let mut power = spectrum.density(mode_squared);
+    if power > 0.0 {
+        let (phase, exponential) = phases.draw(ky);
+        if spectrum.amplitudes == Amplitudes::Gaussian {
+            power *= exponential;
+        }
+        return (Complex64::from_polar(power.sqrt() * spectrum.lowest_wavenumber(), phase), mode_squared, power);
+    }
+    (Complex64::ZERO, mode_squared, 0.0)
+}
+
+/// The surface of a spectrum and a seed on a grid of `n × n` points: `h(x) = Σ_k c_k exp(i k·x)`, `|c_k|² = C(k) qL²`.
+///
+/// Hermitian symmetry is exact by construction: only the half plane of wavevectors is drawn, and on the line `ky = 0` the mode `−kx` is
+/// the conjugate of `kx`. All modes lie below the grid's Nyquist wavenumber (`2ζ ≤ n`), so the Nyquist lines are empty.
+///
+/// Peak memory is the field and a quarter of it, at 8 points per shortest wavelength.
+#[must_use]
+pub fn synthesize(spectrum: &Spectrum, seed: &[u8; 32], n: usize) -> Surface {
+    let zeta = (spectrum.magnification as usize).min(n.div_ceil(2));
+    let (mut columns, sums) = draw_columns(spectrum, seed, n, zeta);
+    let scale = sums.scale(spectrum);
+    let along_x = FftPlanner::<f64>::new().plan_fft_inverse(n);
+    columns.par_chunks_mut(n).for_each_init(
+        || vec![Complex64::ZERO; along_x.get_inplace_scratch_len()],
+        |scratch, column| {
+            column.iter_mut().for_each(|c| *c *= scale);
+            along_x.process_with_scratch(column, scratch);
+        },
+    );
+    let along_y = RealFftPlanner::<f64>::new().plan_fft_inverse(n);
+    let mut heights = Array2::<f64>::zeros((n, n));
+    if let Some(field) = heights.as_slice_mut() {
+        field.par_chunks_mut(n).enumerate().for_each_init(
+            || (along_y.make_input_vec(), along_y.make_scratch_vec()),
+            |(half, scratch), (x, row)| {
+                half.fill(Complex64::ZERO);
+                for (ky, value) in half.iter_mut().enumerate().take(zeta) {
+                    *value = columns[ky * n + x];
+                }
+                // The mean and the Nyquist line of a real transform are real; the first is so up to rounding, the second is 0.
+                half[0].im = 0.0;
+                let outcome = along_y.process_with_scratch(half, row, scratch);
+                debug_assert!(outcome.is_ok(), "lengths and the real lines are set above");
+            },
+        );
+    }
+    Surface { length_m: spectrum.length_m, heights_m: heights, moments: sums.moments(spectrum) }
+}
+
+/// The modes by columns of fixed ky, kx running fastest in transform order, and the sums of their powers.
+fn draw_columns(spectrum: &Spectrum, seed: &[u8; 32], n: usize, zeta: usize) -> (Vec<Complex64>, MomentSums) {
+    let mut columns = vec![Complex64::ZERO; n * zeta];
+    let reach = zeta as i64 - 1;
+    // Rows of wavevectors in parallel, added up in their order, so that the sums do not depend on the threads.
+    let rows: Vec<(Vec<Complex64>, MomentSums)> = (-reach..=reach)
+        .into_par_iter()
+        .map(|kx| {
+            let mut phases = Phases::of_row(seed, kx);
+            let mut sums = MomentSums::default();
+            let first = u64::from(kx <= 0);
+            let mut row = vec![Complex64::ZERO; zeta];
+            for ky in first..zeta as u64 {
+                let (amplitude, mode_squared, power) = mode(spectrum, &mut phases, kx, ky);
+                row[ky as usize] = amplitude;
+                // The mode and its conjugate at −k.
+                sums.add(mode_squared, 2.0 * power);
+            }
+            (row, sums)
+        })
+        .collect();
+    let mut sums = MomentSums::default();
+    for (kx, (row, row_sums)) in (-reach..=reach).zip(rows) {
+        sums = sums.merge(row_sums);
+        let place = kx.rem_euclid(n as i64) as usize;
+        for (ky, amplitude) in row.into_iter().enumerate() {
+            if ky == 0 {
+                if kx > 0 {
+                    columns[place] = amplitude;
+                    columns[n - place] = amplitude.conj();
+                }
+            } else {
+                columns[ky * n + place] = amplitude;
+            }
+        }
+    }
+    (columns, sums)
+}
