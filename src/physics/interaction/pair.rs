@@ -1,0 +1,241 @@
+//! The displacement field of one JKR spot (Eqs 6–8), without cancellation.
+//!
+//! Outside the spot (`r > a`), with `x = a/r` and `w = sqrt(1 − x²)`,
+//! `ŵ = a²/(πR)·[sqrt(r²/a² − 1) + (2 − r²/a²) asin x] − (2/π) sqrt(2πaΔγ/E*) asin x`.
+//! As printed the bracket cancels: its relative error grows as `(r/a)²` and is 1e-4 at `r/a` = 1e6. But `[…]/x` and `asin(x)/x` are
+//! analytic in `w` on `[0, 1]` (the nearest singularity is `w = −1`), so one polynomial in `w` each is right for every `r ≥ a`.
+
+use multiversion::multiversion;
+use std::f64::consts::FRAC_1_PI;
+
+/// `[sqrt(1/x² − 1) + (2 − 1/x²) asin x]/x` in powers of `s = w − ½`, highest first: a Chebyshev series in w, 4e-16.
+const INDENTATION: [f64; 21] = [
+    -0.0016226100416930904,
+    0.002292076056782722,
+    -0.001202989059438465,
+    0.0018230201600689178,
+    -0.0038181440307219444,
+    0.005449290108642454,
+    -0.007439076538129282,
+    0.010628444201341519,
+    -0.01515855084217858,
+    0.021377476685018854,
+    -0.029898944043876836,
+    0.041394704936016394,
+    -0.056518073623954265,
+    0.07568259618540024,
+    -0.09847681893221252,
+    0.12233823658883371,
+    -0.1395239139242859,
+    0.1298222235691211,
+    -0.0408870051383374,
+    -0.27893276820821483,
+    1.47279971743743,
+];
+
+/// `asin(x)/x` in powers of `s = w − ½`, highest first: a Chebyshev series in w, 1.4e-16.
+const ADHESION: [f64; 21] = [
+    0.00012467727454018308,
+    -0.000186238014363442,
+    0.00012270991844640165,
+    -0.0001960809086052784,
+    0.0003953891744008263,
+    -0.0006080922207170668,
+    0.0009135290520188169,
+    -0.001420721203056198,
+    0.002219451181354072,
+    -0.0034690297960733737,
+    0.005441830080606127,
+    -0.008575526442314739,
+    0.013586868027024595,
+    -0.021671674868564018,
+    0.03486553524033159,
+    -0.056733710715068525,
+    0.09378606359932144,
+    -0.15869717538029837,
+    0.2789327682081877,
+    -0.5272002825625683,
+    1.2091995761561452,
+];
+
+#[inline(always)]
+fn polynomial<const N: usize>(coefficients: &[f64; N], s: f64) -> f64 {
+    let mut value = coefficients[0];
+    for &coefficient in &coefficients[1..] {
+        value = value.mul_add(s, coefficient);
+    }
+    value
+}
+
+/// One spot as a source: its radius, its sphere, its load and how that changes with the radius.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Spot {
+    /// Position x \[m\].
+    pub x: f64,
+    /// Position y \[m\].
+    pub y: f64,
+    /// Contact radius a \[m\].
+    pub a: f64,
+    /// Radius of curvature R \[m\].
+    pub radius: f64,
+    /// Load F \[N\].
+    pub load: f64,
+    /// dF/da \[N/m\].
+    pub load_slope: f64,
+}
+
+/// Displacement ŵ \[m\] of the half-space at distance `r > 0` \[m\] from the centre of a spot, and its derivative to the spot's radius.
+/// `pull` is `sqrt(2πΔγ/E*)` \[m^½\]. Eqs 6 and 7 outside; inside, `ŵ = a²/R − r²/(2R) − sqrt(2πaΔγ/E*)`.
+///
+/// # Deviations
+/// The paper's Eq 8 lacks `r²/(2R)` inside, without which the field jumps by `a²/(2R)` at the edge.
+#[must_use]
+pub fn spot_field(r: f64, a: f64, radius: f64, pull: f64) -> (f64, f64) {
+    field(r * r, a, a.sqrt(), 1.0 / radius, pull)
+}
+
+/// Both formulae are taken and one is chosen, so that several spots go through at once.
+#[inline(always)]
+fn field(r2: f64, a: f64, root_a: f64, curvature: f64, pull: f64) -> (f64, f64) {
+    let r = r2.sqrt().max(a);
+    let inverse_r = 1.0 / r;
+    let x = a * inverse_r;
+    // (r − a)(r + a) keeps the digits that 1 − x² would lose near the edge.
+    let w = ((r - a) * (r + a)).sqrt() * inverse_r;
+    let s = w - 0.5;
+    let arc = x * polynomial(&ADHESION, s);
+    let indentation = x * polynomial(&INDENTATION, s);
+    let flat = a * curvature;
+    let inside = r2 <= a * a;
+    let outer = FRAC_1_PI * (a * flat).mul_add(indentation, -2.0 * pull * root_a * arc);
+    let inner = a.mul_add(flat, -0.5 * r2 * curvature) - pull * root_a;
+    let outer_slope = FRAC_1_PI * (4.0 * flat).mul_add(arc, -2.0 * pull * (0.5 * arc / root_a + root_a / (r * w)));
+    let inner_slope = 2.0f64.mul_add(flat, -0.5 * pull / root_a);
+    (if inside { inner } else { outer }, if inside { inner_slope } else { outer_slope })
+}
+
+/// The `[…]` of Eq 6 and `asin(a/r)`, both functions of `u = r/a ≥ 1` alone: what the tests compare with many digits.
+#[must_use]
+pub fn dimensionless_field(u: f64) -> (f64, f64) {
+    let x = 1.0 / u;
+    let s = ((u - 1.0) * (u + 1.0)).sqrt() * x - 0.5;
+    (x * polynomial(&INDENTATION, s), x * polynomial(&ADHESION, s))
+}
+
+/// Sources of a displacement field as columns, so that one instruction takes several.
+#[derive(Debug, Clone, Default)]
+pub struct SpotColumns {
+    pub(crate) x: Vec<f64>,
+    pub(crate) y: Vec<f64>,
+    pub(crate) a: Vec<f64>,
+    pub(crate) root_a: Vec<f64>,
+    pub(crate) inverse_radius: Vec<f64>,
+    pub(crate) load: Vec<f64>,
+    pub(crate) load_slope: Vec<f64>,
+}
+
+impl SpotColumns {
+    /// Columns of the given spots.
+    pub fn set(&mut self, spots: impl Iterator<Item = Spot>) {
+        for column in
+            [&mut self.x, &mut self.y, &mut self.a, &mut self.root_a, &mut self.inverse_radius, &mut self.load, &mut self.load_slope]
+        {
+            column.clear();
+        }
+        for spot in spots {
+            self.x.push(spot.x);
+            self.y.push(spot.y);
+            self.a.push(spot.a);
+            self.root_a.push(spot.a.sqrt());
+            self.inverse_radius.push(1.0 / spot.radius);
+            self.load.push(spot.load);
+            self.load_slope.push(spot.load_slope);
+        }
+    }
+
+    /// How many spots there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.x.len()
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.x.is_empty()
+    }
+}
+
+/// Sources that one pass takes together; the order of a sum depends on it, and on nothing of the machine.
+const LANES: usize = 8;
+
+/// Where a field is wanted, and how distances are measured.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Place {
+    pub(crate) x: f64,
+    pub(crate) y: f64,
+    /// Side of the periodic square, and its inverse (0 when isolated, so that no image is nearer).
+    pub(crate) length: f64,
+    pub(crate) inverse_length: f64,
+    pub(crate) pull: f64,
+}
+
+/// The fields of all sources at one place, each written on its own: `values[j]` and, if wanted, `slopes[j]`.
+///
+/// The caller sums, leaving out the source at the place itself; a source at distance 0 gives the field at its own centre.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
+pub(crate) fn spot_fields(place: Place, spots: &SpotColumns, values: &mut [f64], slopes: &mut [f64]) {
+    let n = spots.len();
+    let mut start = 0;
+    while start < n {
+        let count = LANES.min(n - start);
+        let mut lane = Lane::default();
+        lane.load(spots, start, count);
+        for k in 0..LANES {
+            let mut dx = place.x - lane.x[k];
+            let mut dy = place.y - lane.y[k];
+            dx -= place.length * (dx * place.inverse_length).round_ties_even();
+            dy -= place.length * (dy * place.inverse_length).round_ties_even();
+            let r2 = dx.mul_add(dx, dy * dy);
+            let (value, slope) = field(r2, lane.a[k], lane.root_a[k], lane.inverse_radius[k], place.pull);
+            lane.value[k] = value;
+            lane.slope[k] = slope;
+        }
+        values[start..start + count].copy_from_slice(&lane.value[..count]);
+        slopes[start..start + count].copy_from_slice(&lane.slope[..count]);
+        start += count;
+    }
+}
+
+struct Lane {
+    x: [f64; LANES],
+    y: [f64; LANES],
+    a: [f64; LANES],
+    root_a: [f64; LANES],
+    inverse_radius: [f64; LANES],
+    value: [f64; LANES],
+    slope: [f64; LANES],
+}
+
+impl Default for Lane {
+    fn default() -> Self {
+        // Lanes beyond the end compute a harmless spot.
+        let ones = [1.0; LANES];
+        Self { x: ones, y: ones, a: ones, root_a: ones, inverse_radius: ones, value: ones, slope: ones }
+    }
+}
+
+impl Lane {
+    #[inline(always)]
+    fn load(&mut self, spots: &SpotColumns, start: usize, count: usize) {
+        for (to, from) in [
+            (&mut self.x, &spots.x),
+            (&mut self.y, &spots.y),
+            (&mut self.a, &spots.a),
+            (&mut self.root_a, &spots.root_a),
+            (&mut self.inverse_radius, &spots.inverse_radius),
+        ] {
+            to[..count].copy_from_slice(&from[start..start + count]);
+        }
+    }
+}
