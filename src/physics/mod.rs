@@ -8,12 +8,14 @@ pub mod equilibrium;
 pub mod events;
 pub mod interaction;
 pub mod jkr;
-pub mod krylov;
+mod krylov;
+pub mod path;
 pub mod spectrum;
 pub mod state;
 pub mod summits;
 pub mod synthesis;
 pub mod theory;
+pub mod union;
 
 use thiserror::Error;
 

@@ -1,0 +1,208 @@
+//! The equilibrium of the spots in contact at one approach.
+//!
+//! Unknowns are the contact radii; the residual of each is `D_i − ŵ_i − δ_JKR(a_i)`, with `D_i = δ + z_i`. The paper's Eq 9 is one
+//! diagonal-Newton update of this system, all spots at once; it diverges. Here:
+//! - [`Solver::newton`]: Newton's method with GMRES, steps limited to 20 % of each radius, accepted only where they descend;
+//! - [`Solver::relax`]: where Newton finds nothing (a fold, or after a jump), overdamped relaxation `da_i/dt = residual_i` by implicit
+//!   Euler steps that grow as the state comes to rest. On the way a spot whose own branch has ended leaves, and one that a greater spot
+//!   has reached is covered: the flow decides who, without reference to the step of the approach.
+
+use super::events::{Change, Kind};
+use super::interaction::{Effort, Spots, Tangent};
+use super::krylov::{dot, gmres};
+use super::state::{Problem, State, Status};
+
+/// Greatest relative change of a radius in one iteration.
+const STRIDE: f64 = 0.2;
+
+/// Products at most in one linear solve.
+const PRODUCTS: usize = 120;
+
+/// Why an iteration ended without an equilibrium: the worst residual and its asperity.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Unsettled {
+    pub(crate) residual_m: f64,
+    pub(crate) asperity: usize,
+}
+
+/// Solves for the radii of a state; keeps its work space from one solve to the next.
+pub(crate) struct Solver<'p> {
+    pub(crate) problem: &'p Problem,
+    pub(crate) effort: Effort,
+    spots: Spots,
+    tangent: Tangent,
+    residual: Vec<f64>,
+    diagonal: Vec<f64>,
+}
+
+impl<'p> Solver<'p> {
+    pub(crate) fn new(problem: &'p Problem) -> Self {
+        Self {
+            problem,
+            effort: Effort::default(),
+            spots: Spots::default(),
+            tangent: Tangent::default(),
+            residual: Vec::new(),
+            diagonal: Vec::new(),
+        }
+    }
+
+    /// Displacements, residuals and tangent of a state; its worst residual and whose it is.
+    fn evaluate(&mut self, state: &mut State) -> Unsettled {
+        let problem = self.problem;
+        problem.spots(state, &mut self.spots);
+        problem.field.linearise(&self.spots, &mut state.displacement, &mut self.tangent, &mut self.effort);
+        self.residual.clear();
+        self.diagonal.clear();
+        let mut worst = Unsettled { residual_m: 0.0, asperity: state.contacts.first().copied().unwrap_or(0) };
+        for (&i, w) in state.contacts.iter().zip(&state.displacement) {
+            let (asperity, a) = (&problem.asperities[i], state.radius[i]);
+            let residual = state.approach_m + problem.heights[i] - w - asperity.penetration(a);
+            self.residual.push(residual);
+            self.diagonal.push(asperity.penetration_slope(a));
+            // A residual that is not a number must not pass as a small one.
+            if residual.is_nan() || residual.abs() > worst.residual_m {
+                worst = Unsettled { residual_m: residual.abs(), asperity: i };
+            }
+        }
+        state.residual_m = worst.residual_m;
+        worst
+    }
+
+    /// Newton's method on the radii, from those of `state`, at its approach, with its spots.
+    pub(crate) fn newton(&mut self, state: &mut State) -> Result<(), Unsettled> {
+        let tolerance = self.problem.tolerance_m();
+        let mut start: Vec<f64> = Vec::new();
+        let mut step: Vec<f64> = Vec::new();
+        let mut before = f64::INFINITY;
+        let mut share = 1.0;
+        for _ in 0..40 {
+            self.effort.iterations += 1;
+            let worst = self.evaluate(state);
+            if worst.residual_m <= tolerance {
+                return Ok(());
+            }
+            if worst.residual_m < before {
+                before = worst.residual_m;
+                share = 1.0;
+                step = gmres(&self.tangent, &self.diagonal, &self.residual, 1e-4, PRODUCTS, &mut self.effort);
+                limit(&mut step, state, STRIDE);
+                start = state.contacts.iter().map(|&i| state.radius[i]).collect();
+            } else {
+                // No descent, or not a number: half as far from where the step began.
+                share *= 0.5;
+                if share < 0.1 || start.is_empty() {
+                    return Err(worst);
+                }
+            }
+            for ((&i, s), from) in state.contacts.iter().zip(&step).zip(&start) {
+                state.radius[i] = from + share * s;
+            }
+        }
+        Err(self.evaluate(state))
+    }
+
+    /// Overdamped relaxation from the radii of `state`, at its approach. Spots that leave or are covered on the way are returned.
+    pub(crate) fn relax(&mut self, state: &mut State) -> Result<Vec<Change>, Unsettled> {
+        let tolerance = self.problem.tolerance_m();
+        let mut changes = Vec::new();
+        let mut time = 1.0;
+        for _ in 0..600 {
+            self.effort.iterations += 1;
+            let worst = self.evaluate(state);
+            if worst.residual_m <= tolerance {
+                return Ok(changes);
+            }
+            if worst.residual_m.is_nan() {
+                return Err(worst);
+            }
+            if let Some(change) = self.overtaken(state) {
+                state.set(change.asperity, change.status(self.problem), 0.0);
+                changes.push(change);
+                time = 1.0;
+                continue;
+            }
+            let mut step = Vec::new();
+            for _ in 0..24 {
+                let damped: Vec<f64> = self.diagonal.iter().map(|d| d + 1.0 / time).collect();
+                step = gmres(&self.tangent, &damped, &self.residual, 1e-3, PRODUCTS, &mut self.effort);
+                let stride = stride(&step, state);
+                // With too long a step a saddle attracts: the step must go along the flow.
+                if stride <= STRIDE && dot(&step, &self.residual) > 0.0 {
+                    break;
+                }
+                time *= 0.25;
+            }
+            limit(&mut step, state, STRIDE);
+            for (&i, s) in state.contacts.iter().zip(&step) {
+                state.radius[i] += s;
+            }
+            time = (time * 3.0).min(1e9);
+        }
+        Err(self.evaluate(state))
+    }
+
+    /// Who leaves or is covered at this point of a relaxation: the spot furthest below the end of its branch and still shrinking, else
+    /// the spot furthest under a greater one.
+    fn overtaken(&self, state: &State) -> Option<Change> {
+        let problem = self.problem;
+        let leaving = state
+            .contacts
+            .iter()
+            .zip(&self.residual)
+            .filter(|(i, residual)| **residual < 0.0 && state.radius[**i] < problem.asperities[**i].jump_off_radius())
+            .min_by(|(i, _), (j, _)| {
+                let share = |k: usize| state.radius[k] / problem.asperities[k].jump_off_radius();
+                share(**i).total_cmp(&share(**j)).then(i.cmp(j))
+            })
+            .map(|(i, _)| Change { kind: Kind::JumpOff, asperity: *i, by: None });
+        leaving.or_else(|| {
+            problem
+                .triggers(state, &[])
+                .into_iter()
+                .filter(|t| t.change.kind == Kind::Cover && state.status[t.change.asperity] == Status::Contact)
+                .max_by(|s, t| s.overshoot.total_cmp(&t.overshoot).then(t.change.asperity.cmp(&s.change.asperity)))
+                .map(|t| t.change)
+        })
+    }
+
+    /// `da_i/dδ` of the spots at the equilibrium that was evaluated last.
+    pub(crate) fn rates(&mut self, state: &State) -> Vec<f64> {
+        let ones = vec![1.0; state.contacts.len()];
+        gmres(&self.tangent, &self.diagonal, &ones, 1e-8, PRODUCTS, &mut self.effort)
+    }
+
+    /// Penetrations `D_i − ŵ_i` \[m\] of the free asperities, one to each asperity; not a number for the others.
+    pub(crate) fn free_penetrations(&mut self, state: &State) -> Vec<f64> {
+        let problem = self.problem;
+        problem.spots(state, &mut self.spots);
+        let free: Vec<usize> = (0..problem.len()).filter(|i| state.status[*i] == Status::Free).collect();
+        let mut displacement = Vec::new();
+        problem.field.displacements(&self.spots, &free, &mut displacement, &mut self.effort);
+        let mut penetrations = vec![f64::NAN; problem.len()];
+        for (i, w) in free.into_iter().zip(displacement) {
+            penetrations[i] = state.approach_m + problem.heights[i] - w;
+        }
+        penetrations
+    }
+
+    /// Penetration of one asperity that is not in contact \[m\].
+    pub(crate) fn penetration_of(&mut self, state: &State, asperity: usize) -> f64 {
+        self.problem.spots(state, &mut self.spots);
+        let mut displacement = Vec::new();
+        self.problem.field.displacements(&self.spots, &[asperity], &mut displacement, &mut self.effort);
+        state.approach_m + self.problem.heights[asperity] - displacement.first().copied().unwrap_or(0.0)
+    }
+}
+
+/// Greatest relative change of a radius by a step.
+fn stride(step: &[f64], state: &State) -> f64 {
+    state.contacts.iter().zip(step).map(|(&i, s)| s.abs() / state.radius[i]).fold(0.0, f64::max)
+}
+
+fn limit(step: &mut [f64], state: &State, most: f64) {
+    let stride = stride(step, state);
+    if stride > most {
+        step.iter_mut().for_each(|s| *s *= most / stride);
+    }
+}

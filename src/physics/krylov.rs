@@ -1,0 +1,102 @@
+//! GMRES with a diagonal preconditioner: the linear solves of the equilibrium.
+//!
+//! Saad & Schultz, SIAM J. Sci. Stat. Comput. 7:856 (1986), right-preconditioned, modified Gram–Schmidt, no restart: the tangent of a
+//! contact is a diagonal and a long-range coupling of low rank, and some ten products are enough.
+
+use super::interaction::{Effort, Tangent};
+
+/// `(diag(diagonal) + tangent)·x`.
+fn apply(tangent: &Tangent, diagonal: &[f64], x: &[f64], y: &mut [f64]) {
+    let n = tangent.size;
+    for ((line, yi), (di, xi)) in tangent.matrix.chunks(n.max(1)).zip(y.iter_mut()).zip(diagonal.iter().zip(x)) {
+        *yi = di * xi + dot(line, x);
+    }
+}
+
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut strands = [0.0; 8];
+    let (a_whole, a_rest) = a.as_chunks::<8>();
+    let (b_whole, b_rest) = b.as_chunks::<8>();
+    for (ca, cb) in a_whole.iter().zip(b_whole) {
+        for k in 0..8 {
+            strands[k] += ca[k] * cb[k];
+        }
+    }
+    for (k, (x, y)) in a_rest.iter().zip(b_rest).enumerate() {
+        strands[k] += x * y;
+    }
+    strands.iter().sum()
+}
+
+/// Solves `(diag(diagonal) + tangent)·x = rhs` to the relative residual `tolerance`; what is reached within `most` products is returned.
+pub(crate) fn gmres(tangent: &Tangent, diagonal: &[f64], rhs: &[f64], tolerance: f64, most: usize, effort: &mut Effort) -> Vec<f64> {
+    let n = rhs.len();
+    let beta = dot(rhs, rhs).sqrt();
+    let mut x = vec![0.0; n];
+    if beta == 0.0 || !beta.is_finite() {
+        return x;
+    }
+    let scale: Vec<f64> = diagonal
+        .iter()
+        .enumerate()
+        .map(|(i, d)| {
+            let whole = d + tangent.matrix[i * n + i];
+            // A diagonal near zero belongs to a spot near the end of its branch: keep its sign, bound its inverse.
+            if whole.abs() > 1e-3 { 1.0 / whole } else { 1e3f64.copysign(whole) }
+        })
+        .collect();
+    let mut basis: Vec<Vec<f64>> = vec![rhs.iter().map(|v| v / beta).collect()];
+    let mut hessenberg: Vec<Vec<f64>> = Vec::new();
+    let (mut cosines, mut sines): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
+    let mut g = vec![beta];
+    let mut scaled = vec![0.0; n];
+    for k in 0..most.min(n) {
+        for ((s, v), d) in scaled.iter_mut().zip(&basis[k]).zip(&scale) {
+            *s = v * d;
+        }
+        let mut w = vec![0.0; n];
+        apply(tangent, diagonal, &scaled, &mut w);
+        effort.products += 1;
+        let mut column = Vec::with_capacity(k + 2);
+        for v in &basis {
+            let h = dot(v, &w);
+            for (wi, vi) in w.iter_mut().zip(v) {
+                *wi -= h * vi;
+            }
+            column.push(h);
+        }
+        let length = dot(&w, &w).sqrt();
+        for i in 0..k {
+            let (upper, lower) = (column[i], column[i + 1]);
+            column[i] = cosines[i] * upper + sines[i] * lower;
+            column[i + 1] = cosines[i] * lower - sines[i] * upper;
+        }
+        let radius = column[k].hypot(length);
+        if radius == 0.0 {
+            break;
+        }
+        let (c, s) = (column[k] / radius, length / radius);
+        column[k] = radius;
+        hessenberg.push(column);
+        cosines.push(c);
+        sines.push(s);
+        g.push(-s * g[k]);
+        g[k] *= c;
+        if g[k + 1].abs() <= tolerance * beta || length <= 1e-300 {
+            break;
+        }
+        basis.push(w.iter().map(|wi| wi / length).collect());
+    }
+    let m = hessenberg.len();
+    let mut y = vec![0.0; m];
+    for i in (0..m).rev() {
+        let tail: f64 = (i + 1..m).map(|j| hessenberg[j][i] * y[j]).sum();
+        y[i] = (g[i] - tail) / hessenberg[i][i];
+    }
+    for (v, yk) in basis.iter().zip(&y) {
+        for ((xi, vi), d) in x.iter_mut().zip(v).zip(&scale) {
+            *xi += yk * vi * d;
+        }
+    }
+    x
+}

@@ -1,0 +1,313 @@
+//! The contact as a problem (what is given) and as a state (what is found).
+
+use super::PhysicsError;
+use super::interaction::pair::Spot;
+use super::interaction::{DirectSum, Interaction, Spots};
+use super::jkr::Asperity;
+use super::summits::Summit;
+use crate::model::{Boundary, Coalescence, Interaction as Kind, JumpIn, Material};
+use std::f64::consts::PI;
+
+/// The choices of the contact model that a cycle reads.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rules {
+    /// How spots act on one another.
+    pub interaction: Kind,
+    /// What surrounds the square.
+    pub boundary: Boundary,
+    /// What happens to an asperity under a greater spot.
+    pub coalescence: Coalescence,
+    /// When a free asperity jumps in.
+    pub jump_in: JumpIn,
+    /// Go on below Tabor number 2 with Wu's rule.
+    pub allow_low_tabor: bool,
+}
+
+/// A set of asperities over a half-space: everything that does not change along the path.
+pub struct Problem {
+    pub(crate) asperities: Vec<Asperity>,
+    /// Heights over the highest summit \[m\]: zero or negative.
+    pub(crate) heights: Vec<f64>,
+    pub(crate) positions: Vec<[f64; 2]>,
+    /// Jump-in penetrations \[m\]: zero or negative, never below the end of the branch.
+    pub(crate) jump_in: Vec<f64>,
+    pub(crate) tabor: Vec<f64>,
+    pub(crate) material: Material,
+    pub(crate) rules: Rules,
+    pub(crate) field: Box<dyn Interaction>,
+    pub(crate) neighbours: Neighbours,
+    /// Side of the square L \[m\].
+    pub length_m: f64,
+    /// Rms height, the unit of penetration \[m\].
+    pub rms_height_m: f64,
+}
+
+impl Problem {
+    /// Asperities from summits, in their order.
+    ///
+    /// # Errors
+    /// There must be a summit; radii and material must be positive; with Wu's rule all Tabor numbers must be at least 2 unless allowed.
+    pub fn new(summits: &[Summit], length_m: f64, rms_height_m: f64, material: Material, rules: Rules) -> Result<Self, PhysicsError> {
+        let highest = summits.iter().map(|s| s.height_m).max_by(f64::total_cmp).ok_or(PhysicsError::NoSummit)?;
+        let asperities: Vec<Asperity> = summits.iter().map(|s| Asperity::new(s.radius_m(), &material)).collect::<Result<_, _>>()?;
+        let range = material.interaction_range_m;
+        let tabor: Vec<f64> = asperities.iter().map(|a| a.tabor(range)).collect();
+        let below = tabor.iter().filter(|mu| **mu < 2.0).count();
+        if rules.jump_in == JumpIn::Wu && below > 0 && !rules.allow_low_tabor {
+            let smallest = tabor.iter().copied().fold(f64::INFINITY, f64::min);
+            return Err(PhysicsError::LowTabor { smallest, below, all: tabor.len() });
+        }
+        let jump_in = asperities
+            .iter()
+            .map(|a| match rules.jump_in {
+                JumpIn::Jkr => 0.0,
+                JumpIn::Wu => a.wu_jump_in_penetration(range).min(0.0).max(a.jump_off_penetration()),
+            })
+            .collect();
+        let positions: Vec<[f64; 2]> = summits.iter().map(|s| [s.x_m, s.y_m]).collect();
+        let periodic = rules.boundary == Boundary::Periodic;
+        Ok(Self {
+            heights: summits.iter().map(|s| s.height_m - highest).collect(),
+            jump_in,
+            tabor,
+            field: Box::new(DirectSum::new(positions.clone(), length_m, &material, rules.interaction, rules.boundary)),
+            neighbours: Neighbours::new(&positions, length_m, periodic),
+            asperities,
+            positions,
+            material,
+            rules,
+            length_m,
+            rms_height_m,
+        })
+    }
+
+    /// Residual at which a state counts as an equilibrium \[m\].
+    #[must_use]
+    pub fn tolerance_m(&self) -> f64 {
+        1e-10 * self.rms_height_m
+    }
+
+    /// The approach at which the first asperity jumps into contact \[m\]: below zero with Wu's rule.
+    #[must_use]
+    pub fn first_contact_m(&self) -> f64 {
+        self.jump_in.iter().zip(&self.heights).map(|(jump, z)| jump - z).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Number of asperities.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.heights.len()
+    }
+
+    /// Whether there is no asperity (never: [`Self::new`] refuses it).
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.heights.is_empty()
+    }
+
+    /// Tabor numbers of the asperities.
+    #[must_use]
+    pub fn tabor(&self) -> &[f64] {
+        &self.tabor
+    }
+
+    /// `E* A0` \[N\], the unit of load.
+    #[must_use]
+    pub fn load_unit_n(&self) -> f64 {
+        self.material.contact_modulus_pa * self.length_m * self.length_m
+    }
+
+    /// The spots of a state as sources.
+    pub(crate) fn spots(&self, state: &State, spots: &mut Spots) {
+        spots.index.clear();
+        spots.index.extend_from_slice(&state.contacts);
+        spots.columns.set(state.contacts.iter().map(|&i| {
+            let (asperity, a) = (&self.asperities[i], state.radius[i]);
+            let [x, y] = self.positions[i];
+            Spot { x, y, a, radius: asperity.radius_m(), load: asperity.load(a), load_slope: asperity.load_slope(a) }
+        }));
+    }
+
+    /// Load, area and potential of an equilibrium whose displacements at the spots are known.
+    ///
+    /// The potential is `Π = Σ[U(d_i, a_i) − Δγπa_i²] + ½ΣF_iŵ_i`: exact for point interaction.
+    pub(crate) fn totals(&self, state: &State) -> Totals {
+        let mut totals = Totals::default();
+        for (&i, &w) in state.contacts.iter().zip(&state.displacement) {
+            let (asperity, a) = (&self.asperities[i], state.radius[i]);
+            let load = asperity.load(a);
+            let spot = PI * a * a;
+            totals.load_n += load;
+            totals.area_m2 += spot;
+            let energy = asperity.stored_energy(asperity.penetration(a), a) - self.material.work_of_adhesion_j_m2 * spot;
+            totals.potential_j += energy + 0.5 * load * w;
+        }
+        totals
+    }
+}
+
+/// Sums over the spots of a state.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Totals {
+    /// Load F \[N\].
+    pub load_n: f64,
+    /// Area Σπa² \[m²\].
+    pub area_m2: f64,
+    /// Potential Π \[J\].
+    pub potential_j: f64,
+}
+
+/// What an asperity is doing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Status {
+    /// Out of contact.
+    Free,
+    /// In contact, on its own JKR branch.
+    Contact,
+    /// Under a greater spot: it carries no load and no area.
+    Covered {
+        /// The asperity whose spot covers it.
+        by: usize,
+        /// The radius of that spot below which it is released \[m\]: the distance, or less where covering it made the spot shrink.
+        release_m: f64,
+    },
+}
+
+/// A state along the path. It is all that is needed to go on from there.
+#[derive(Debug, Clone, PartialEq)]
+pub struct State {
+    /// Approach δ \[m\], 0 at the highest summit.
+    pub approach_m: f64,
+    /// What each asperity is doing.
+    pub status: Vec<Status>,
+    /// Contact radius of each asperity \[m\], 0 out of contact.
+    pub radius: Vec<f64>,
+    /// The radius of the covering spot that an uncovered asperity must exceed to be covered again \[m\]; 0 usually. It is set where
+    /// uncovering made the spot grow beyond the asperity's centre, and forgotten when the spot has withdrawn from there.
+    pub recover_m: Vec<f64>,
+    /// Asperities that left while others still invited them back: they stay free until their penetration falls below the jump-in.
+    pub barred: Vec<bool>,
+    /// Asperities in contact, ascending.
+    pub contacts: Vec<usize>,
+    /// Displacement ŵ at the asperities in contact \[m\], in their order.
+    pub displacement: Vec<f64>,
+    /// Worst residual of the equilibrium \[m\].
+    pub residual_m: f64,
+}
+
+impl State {
+    /// All asperities free.
+    #[must_use]
+    pub fn free(problem: &Problem, approach_m: f64) -> Self {
+        let n = problem.len();
+        Self {
+            approach_m,
+            status: vec![Status::Free; n],
+            radius: vec![0.0; n],
+            recover_m: vec![0.0; n],
+            barred: vec![false; n],
+            contacts: Vec::new(),
+            displacement: Vec::new(),
+            residual_m: 0.0,
+        }
+    }
+
+    pub(crate) fn set(&mut self, i: usize, status: Status, radius: f64) {
+        match (self.contacts.binary_search(&i), status) {
+            (Ok(at), Status::Free | Status::Covered { .. }) => {
+                self.contacts.remove(at);
+                if at < self.displacement.len() {
+                    self.displacement.remove(at);
+                }
+            }
+            (Err(at), Status::Contact) => {
+                self.contacts.insert(at, i);
+                self.displacement.insert(at.min(self.displacement.len()), 0.0);
+            }
+            _ => {}
+        }
+        self.status[i] = status;
+        self.radius[i] = radius;
+    }
+
+    /// How many asperities are covered.
+    #[must_use]
+    pub fn covered_count(&self) -> usize {
+        self.status.iter().filter(|s| matches!(s, Status::Covered { .. })).count()
+    }
+}
+
+/// Which asperities lie near which, by a grid of cells.
+pub(crate) struct Neighbours {
+    /// For each asperity, the others within the reach, nearest first.
+    near: Vec<Vec<(f64, usize)>>,
+    reach: f64,
+    length: f64,
+    periodic: bool,
+}
+
+impl Neighbours {
+    fn new(positions: &[[f64; 2]], length: f64, periodic: bool) -> Self {
+        // Spots rarely outgrow twice the mean spacing; those that do are looked up among all.
+        let reach = (2.0 * length / (positions.len() as f64).sqrt()).min(0.5 * length);
+        let mut found = Self { near: Vec::new(), reach, length, periodic };
+        let cells = ((length / reach) as usize).max(1);
+        let cell_of = |p: &[f64; 2]| p.map(|c| ((c / length * cells as f64) as usize).min(cells - 1));
+        let mut buckets = vec![Vec::new(); cells * cells];
+        for (i, p) in positions.iter().enumerate() {
+            let [cx, cy] = cell_of(p);
+            buckets[cx * cells + cy].push(i);
+        }
+        found.near = positions
+            .iter()
+            .enumerate()
+            .map(|(i, p)| {
+                let [cx, cy] = cell_of(p);
+                let around = |c: usize| -> Vec<usize> {
+                    let mut list = vec![(c + cells - 1) % cells, c, (c + 1) % cells];
+                    list.sort_unstable();
+                    list.dedup();
+                    list
+                };
+                let mut list = Vec::new();
+                for bx in around(cx) {
+                    for by in around(cy) {
+                        for &j in &buckets[bx * cells + by] {
+                            let r = found.distance(p, &positions[j]);
+                            if j != i && r <= reach {
+                                list.push((r, j));
+                            }
+                        }
+                    }
+                }
+                list.sort_by(|u, v| u.0.total_cmp(&v.0).then(u.1.cmp(&v.1)));
+                list
+            })
+            .collect();
+        found
+    }
+
+    pub(crate) fn distance(&self, p: &[f64; 2], q: &[f64; 2]) -> f64 {
+        let [dx, dy] = [0, 1].map(|k| {
+            let d = p[k] - q[k];
+            if self.periodic { d - self.length * (d / self.length).round_ties_even() } else { d }
+        });
+        (dx * dx + dy * dy).sqrt()
+    }
+
+    /// Calls `visit(distance, asperity)` for every asperity within `radius` of asperity `j`.
+    pub(crate) fn within(&self, positions: &[[f64; 2]], j: usize, radius: f64, mut visit: impl FnMut(f64, usize)) {
+        if radius <= self.reach {
+            for &(r, i) in self.near[j].iter().take_while(|(r, _)| *r <= radius) {
+                visit(r, i);
+            }
+        } else {
+            for (i, p) in positions.iter().enumerate() {
+                let r = self.distance(&positions[j], p);
+                if i != j && r <= radius {
+                    visit(r, i);
+                }
+            }
+        }
+    }
+}
