@@ -1,2 +1,3 @@
 //! hysteron: from a self-affine rough surface to the energy that its adhesive contact loses.
 pub mod model;
+pub mod spec;
