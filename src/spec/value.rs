@@ -274,7 +274,7 @@ fn integer(path: &str, value: &Written<'_>, faults: &mut Faults<'_>) -> Option<i
     let DeValue::Integer(found) = value.get_ref() else {
         let help = match value.get_ref() {
             DeValue::Float(float) if real(float).fract() == 0.0 && real(float).abs() < 1e15 => {
-                Some(format!("write {}, without a point", short(real(float))))
+                Some(format!("write {:.0}, without a point", real(float)))
             }
             other => unquoted(other),
         };
@@ -387,8 +387,11 @@ fn whole(integer: &DeInteger<'_>) -> Option<i128> {
         .map(i128::from)
 }
 
-/// A number as one would write it: 1e-9, 0.2, 64.
+/// A number as one would write it: 1e-9, 0.2, 64, 1e13.
 pub(super) fn short(value: f64) -> String {
+    if value.abs() >= 1e6 {
+        return format!("{value:e}");
+    }
     let text = format!("{value:?}");
     text.strip_suffix(".0").map(str::to_owned).unwrap_or(text)
 }
