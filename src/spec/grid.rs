@@ -7,9 +7,10 @@ use toml::Spanned;
 
 use super::fault::Faults;
 use super::keys::{KEYS, find};
-use super::value::short;
-use super::walk::{AxisDraft, Draft, Origin, SweepDraft};
-use super::{Axis, Case, CaseParams, MAX_CASES, MAX_GRID, Spec, Sweep};
+use super::number::short;
+use super::sweep::{AxisDraft, SweepDraft};
+use super::walk::{Draft, Origin};
+use super::{Axis, Case, CaseParams, MAX_CASES, MAX_GRID, Spec, Sweep, Value};
 
 /// The sweep that a case without sweeps belongs to.
 const BASE: &str = "base";
@@ -79,7 +80,7 @@ fn too_many(sweeps: &[&SweepDraft], faults: &mut Faults<'_>) -> bool {
 }
 
 /// Every point of the grid of some axes, the last one running fastest; one empty point if there is no axis.
-fn points(axes: &[AxisDraft]) -> impl Iterator<Item = Vec<&Spanned<super::Value>>> {
+fn points(axes: &[AxisDraft]) -> impl Iterator<Item = Vec<&Spanned<Value>>> {
     let count: usize = axes.iter().map(|axis| axis.values.len()).product();
     (0..count).map(|number| {
         let mut rest = number;

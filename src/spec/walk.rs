@@ -6,9 +6,10 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::fault::Faults;
-use super::keys::{KEYS, Key, MEASURED, TABLES, find, names};
+use super::keys::{KEYS, MEASURED, TABLES, find, names};
 use super::nearest::nearest;
-use super::{CaseParams, Value, value};
+use super::sweep::{SweepDraft, sweeps};
+use super::{CaseParams, top, value};
 
 /// A spec whose values are read and not yet combined.
 pub(super) struct Draft {
@@ -33,24 +34,10 @@ pub(super) enum Origin {
     Faulty,
 }
 
-/// A sweep whose values are read.
-pub(super) struct SweepDraft {
-    pub(super) name: String,
-    /// Where it begins.
-    pub(super) span: Range<usize>,
-    pub(super) axes: Vec<AxisDraft>,
-}
-
-/// An axis whose values are read.
-pub(super) struct AxisDraft {
-    /// The key's place in [`KEYS`].
-    pub(super) key: usize,
-    pub(super) values: Vec<Spanned<Value>>,
-}
-
+/// A key, where it stands, and its value.
 type Entry<'a, 't> = (&'a str, Range<usize>, &'a Spanned<DeValue<'t>>);
 
-/// What was to be chosen from, and how to say it.
+/// What the top of a spec takes.
 const TOP: [&str; 8] = [
     "name",
     "seed",
@@ -61,10 +48,9 @@ const TOP: [&str; 8] = [
     "cycle",
     "sweep",
 ];
-const IN_SWEEP: [&str; 5] = ["name", "surface", "material", "model", "cycle"];
 
 /// The entries of a table in the order written.
-fn entries<'a, 't>(table: &'a DeTable<'t>) -> Vec<Entry<'a, 't>> {
+pub(super) fn entries<'a, 't>(table: &'a DeTable<'t>) -> Vec<Entry<'a, 't>> {
     let mut entries: Vec<Entry<'a, 't>> = table
         .iter()
         .map(|(key, value)| (key.get_ref().as_ref(), key.span(), value))
@@ -116,11 +102,11 @@ pub(super) fn document(text: &str, faults: &mut Faults<'_>) -> Option<Draft> {
     }
     for (key, span, written) in entries {
         match key {
-            "name" => draft.name = value::name("name", written, faults),
-            "seed" => draft.seed = value::seed(written, faults).unwrap_or(draft.seed),
+            "name" => draft.name = top::name("name", written, faults),
+            "seed" => draft.seed = top::seed(written, faults).unwrap_or(draft.seed),
             "realizations" => {
                 draft.realizations =
-                    value::realizations(written, faults).unwrap_or(draft.realizations)
+                    top::realizations(written, faults).unwrap_or(draft.realizations);
             }
             "sweep" => sweeps(written, &span, &mut draft.sweeps, faults),
             table if TABLES.contains(&table) => base(table, written, &span, &mut draft, faults),
@@ -174,7 +160,7 @@ fn base(
 }
 
 /// The known keys of a table, each with its place in [`KEYS`], where it stands, and its value.
-fn keys<'a, 't>(
+pub(super) fn keys<'a, 't>(
     table: &str,
     written: &'a Spanned<DeValue<'t>>,
     span: &Range<usize>,
@@ -224,144 +210,13 @@ fn keys<'a, 't>(
     known
 }
 
-/// Reads the sweeps.
-fn sweeps(
-    written: &Spanned<DeValue<'_>>,
-    span: &Range<usize>,
-    read: &mut Vec<Option<SweepDraft>>,
-    faults: &mut Faults<'_>,
-) {
-    let DeValue::Array(tables) = written.get_ref() else {
-        let help = "a sweep begins with [[sweep]], in double brackets".to_owned();
-        faults.add(span, "`sweep` must be an array of tables".to_owned(), help);
-        return;
-    };
-    let mut names: Vec<String> = Vec::new();
-    for table in tables.iter() {
-        let DeValue::Table(found) = table.get_ref() else {
-            let help = "a sweep begins with [[sweep]], in double brackets".to_owned();
-            value::wrong_type(
-                "sweep",
-                "an array of tables",
-                table.get_ref(),
-                &table.span(),
-                help,
-                faults,
-            );
-            continue;
-        };
-        read.push(sweep(found, table.span(), &mut names, faults));
-    }
-}
-
-/// Reads one sweep.
-fn sweep(
-    found: &DeTable<'_>,
-    at: Range<usize>,
-    known: &mut Vec<String>,
-    faults: &mut Faults<'_>,
-) -> Option<SweepDraft> {
-    let before = faults.count();
-    let mut name = None;
-    let mut overrides = Vec::new();
-    let entries = entries(found);
-    if !entries.iter().any(|(key, ..)| *key == "name") {
-        faults.add(
-            &at,
-            "the sweep has no `name`".to_owned(),
-            "add a line such as name = \"loads\"".to_owned(),
-        );
-    }
-    for (key, span, written) in entries {
-        match key {
-            "name" => {
-                name = value::name("sweep.name", written, faults);
-                if let Some(name) = &name {
-                    if known.contains(name) {
-                        let message = format!("two sweeps have the name \"{name}\"");
-                        faults.add(
-                            &written.span(),
-                            message,
-                            "each sweep needs a name of its own".to_owned(),
-                        );
-                    }
-                    known.push(name.clone());
-                }
-            }
-            table if TABLES.contains(&table) => {
-                overrides.extend(keys(table, written, &span, faults))
-            }
-            unknown => {
-                let help = if unknown == "seed" || unknown == "realizations" {
-                    format!(
-                        "`{unknown}` is the same for all sweeps: it stands at the top of the spec"
-                    )
-                } else {
-                    lost(
-                        unknown,
-                        &IN_SWEEP,
-                        |table| format!("write {table}.{unknown}"),
-                        "[[sweep]] takes",
-                    )
-                };
-                faults.add(
-                    &span,
-                    format!("unknown key `{}` in [[sweep]]", shown(unknown)),
-                    help,
-                );
-            }
-        }
-    }
-    // Keys of different tables may alternate; the grid follows the order written.
-    overrides.sort_by_key(|(_, span, _)| span.start);
-    let axes: Vec<_> = overrides
-        .into_iter()
-        .filter_map(|(place, _, written)| axis(place, written, faults))
-        .collect();
-    let name = name.filter(|_| faults.count() == before)?;
-    Some(SweepDraft {
-        name,
-        span: at,
-        axes,
-    })
-}
-
-/// Reads one axis: an array of values, or a single one. An array is one value for a key that takes an array.
-fn axis(
-    place: usize,
-    written: &Spanned<DeValue<'_>>,
-    faults: &mut Faults<'_>,
-) -> Option<AxisDraft> {
-    let key: &Key = &KEYS[place];
-    let one = |value: &Spanned<DeValue<'_>>, faults: &mut Faults<'_>| {
-        value::read(key, value, faults).map(|read| Spanned::new(value.span(), read))
-    };
-    let values = match written.get_ref() {
-        DeValue::Array(many)
-            if !key.kind.is_list()
-                || many.first().is_some_and(|first| first.get_ref().is_array()) =>
-        {
-            if many.is_empty() {
-                let message = format!("the axis `{}` has no value", key.path);
-                faults.add(
-                    &written.span(),
-                    message,
-                    "give at least one value, or leave the key out".to_owned(),
-                );
-                return None;
-            }
-            many.iter()
-                .map(|value| one(value, faults))
-                .collect::<Vec<_>>()
-        }
-        _ => vec![one(written, faults)],
-    };
-    let values = values.into_iter().collect::<Option<_>>()?;
-    Some(AxisDraft { key: place, values })
-}
-
 /// Where an unknown key belongs, what it was meant to be, and what there is.
-fn lost(unknown: &str, here: &[&str], elsewhere: impl Fn(&str) -> String, takes: &str) -> String {
+pub(super) fn lost(
+    unknown: &str,
+    here: &[&str],
+    elsewhere: impl Fn(&str) -> String,
+    takes: &str,
+) -> String {
     let listed = format!("{takes}: {}", here.join(", "));
     if let Some(table) = TABLES.iter().find(|table| find(table, unknown).is_some()) {
         return elsewhere(table);
@@ -373,7 +228,7 @@ fn lost(unknown: &str, here: &[&str], elsewhere: impl Fn(&str) -> String, takes:
 }
 
 /// A key as it can stand in a sentence: a quoted key may hold anything.
-fn shown(key: &str) -> String {
+pub(super) fn shown(key: &str) -> String {
     let plain: String = key
         .chars()
         .map(|c| if c.is_control() { '\u{fffd}' } else { c })
