@@ -1,3 +1,4 @@
 //! hysteron: from a self-affine rough surface to the energy that its adhesive contact loses.
 pub mod model;
 pub mod physics;
+pub mod spec;

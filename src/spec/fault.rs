@@ -1,0 +1,289 @@
+//! What is wrong with a spec, and where.
+
+use std::fmt;
+use std::ops::Range;
+
+use serde::Serialize;
+
+/// Everything that is wrong with one spec.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SpecErrors {
+    file: String,
+    faults: Vec<Fault>,
+    more: usize,
+}
+
+/// One thing that is wrong with a spec.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Fault {
+    /// What is wrong, as a sentence without its full stop.
+    pub message: String,
+    /// What to do about it.
+    pub help: Option<String>,
+    /// Where; nothing, if the file could not be read.
+    pub place: Option<Place>,
+}
+
+/// A place in the text of a spec.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Place {
+    /// Line, from 1.
+    pub line: usize,
+    /// Column, from 1, in characters.
+    pub column: usize,
+    /// The line, or the part of a long one around the place.
+    pub excerpt: String,
+    /// Carets below the excerpt.
+    pub carets: String,
+}
+
+impl SpecErrors {
+    /// The file, as it was named to the reader.
+    #[must_use]
+    pub fn file(&self) -> &str {
+        &self.file
+    }
+
+    /// The faults in the order of their places; at least one.
+    #[must_use]
+    pub fn faults(&self) -> &[Fault] {
+        &self.faults
+    }
+
+    /// The file could not be read at all.
+    pub(super) fn unreadable(file: &str, cause: &str) -> Self {
+        let message = format!("the spec cannot be read: {cause}");
+        Self {
+            file: file.to_owned(),
+            faults: vec![Fault {
+                message,
+                help: None,
+                place: None,
+            }],
+            more: 0,
+        }
+    }
+
+    /// The file is no text: `valid` bytes of it are.
+    pub(super) fn not_utf8(bytes: &[u8], valid: usize, file: &str) -> Self {
+        let message = "the spec cannot be read: this is not UTF-8 text".to_owned();
+        let help = Some("save the file as UTF-8".to_owned());
+        let text = String::from_utf8_lossy(bytes);
+        let place = Some(Place::new(
+            &text,
+            &(valid..valid + char::REPLACEMENT_CHARACTER.len_utf8()),
+        ));
+        Self {
+            file: file.to_owned(),
+            faults: vec![Fault {
+                message,
+                help,
+                place,
+            }],
+            more: 0,
+        }
+    }
+}
+
+impl std::error::Error for SpecErrors {}
+
+impl fmt::Display for SpecErrors {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (number, fault) in self.faults.iter().enumerate() {
+            if number > 0 {
+                writeln!(out)?;
+            }
+            writeln!(out, "error: {}", fault.message)?;
+            let line = fault
+                .place
+                .as_ref()
+                .map_or_else(String::new, |place| place.line.to_string());
+            let pad = " ".repeat(line.len().max(1) + 1);
+            match &fault.place {
+                None => writeln!(out, "{pad}--> {}", self.file)?,
+                Some(place) => {
+                    writeln!(
+                        out,
+                        "{pad}--> {}:{}:{}",
+                        self.file, place.line, place.column
+                    )?;
+                    writeln!(out, "{pad} |")?;
+                    writeln!(out, " {line} | {}", place.excerpt)?;
+                    writeln!(out, "{pad} | {}", place.carets)?;
+                }
+            }
+            if let Some(help) = &fault.help {
+                writeln!(out, "{pad} = {help}")?;
+            }
+        }
+        if self.more > 0 {
+            writeln!(out, "\n… and {} more", self.more)?;
+        }
+        Ok(())
+    }
+}
+
+/// Faults that are kept; a file with more is no spec, and nobody reads on.
+const MOST: usize = 200;
+
+/// Characters of a line that are shown, and how many of them before the place.
+const WINDOW: usize = 100;
+const BEFORE: usize = 40;
+
+impl Place {
+    /// The place of a range of bytes, which need not lie within the text nor on the bounds of characters.
+    fn new(text: &str, span: &Range<usize>) -> Self {
+        let start = boundary(text, span.start);
+        let end = boundary(text, span.end).max(start);
+        let head = text.get(..start).unwrap_or_default();
+        let line_start = head.rfind('\n').map_or(0, |newline| newline + 1);
+        let source = text
+            .get(line_start..)
+            .and_then(|rest| rest.split('\n').next())
+            .unwrap_or_default();
+        let line_text = source.strip_suffix('\r').unwrap_or(source);
+        let before = head.get(line_start..).unwrap_or_default();
+        // A byte order mark is no character that an editor shows or counts.
+        let hidden = usize::from(line_text.starts_with('\u{feff}'));
+        let column = before.chars().count().saturating_sub(hidden);
+        let marked = text
+            .get(start..end)
+            .and_then(|part| part.split(['\n', '\r']).next())
+            .unwrap_or_default();
+
+        let from = if column > WINDOW - 10 {
+            column - BEFORE
+        } else {
+            0
+        };
+        let shown: Vec<char> = line_text.chars().skip(hidden + from).take(WINDOW).collect();
+        let more = line_text.chars().count() > hidden + from + shown.len();
+        let lead = if from > 0 { "…" } else { "" };
+        let tail = if more { "…" } else { "" };
+        // Control characters could move the cursor of a terminal; tabs stay, and the carets repeat them to stay below.
+        let excerpt: String = shown
+            .iter()
+            .map(|&c| {
+                if c != '\t' && c.is_control() {
+                    '\u{fffd}'
+                } else {
+                    c
+                }
+            })
+            .collect();
+        let offset = column - from;
+        let pad: String = shown
+            .iter()
+            .take(offset)
+            .map(|&c| if c == '\t' { '\t' } else { ' ' })
+            .collect();
+        let width = marked
+            .chars()
+            .count()
+            .min(shown.len().saturating_sub(offset))
+            .max(1);
+        Self {
+            line: head.matches('\n').count() + 1,
+            column: column + 1,
+            excerpt: format!("{lead}{excerpt}{tail}"),
+            carets: format!(
+                "{}{pad}{}",
+                if from > 0 { " " } else { "" },
+                "^".repeat(width)
+            ),
+        }
+    }
+}
+
+/// The last bound of a character that is not beyond `at`.
+fn boundary(text: &str, at: usize) -> usize {
+    let mut at = at.min(text.len());
+    while !text.is_char_boundary(at) {
+        at -= 1;
+    }
+    at
+}
+
+/// Collects the faults of one text.
+pub(super) struct Faults<'t> {
+    text: &'t str,
+    file: String,
+    found: Vec<(Range<usize>, Fault)>,
+    more: usize,
+}
+
+impl<'t> Faults<'t> {
+    /// No fault yet.
+    pub(super) fn new(text: &'t str, file: &str) -> Self {
+        Self {
+            text,
+            file: file.to_owned(),
+            found: Vec::new(),
+            more: 0,
+        }
+    }
+
+    /// Adds a fault; a second one with the same words at the same place says nothing new.
+    pub(super) fn add(
+        &mut self,
+        span: &Range<usize>,
+        message: String,
+        help: impl Into<Option<String>>,
+    ) {
+        let help = help.into();
+        if self.found.len() >= MOST {
+            self.more += 1;
+        } else if !self
+            .found
+            .iter()
+            .any(|(known, fault)| known == span && fault.message == message)
+        {
+            let place = Some(Place::new(self.text, span));
+            self.found.push((
+                span.clone(),
+                Fault {
+                    message,
+                    help,
+                    place,
+                },
+            ));
+        }
+    }
+
+    /// How many faults there are.
+    pub(super) fn count(&self) -> usize {
+        self.found.len() + self.more
+    }
+
+    /// Line of a place, from 1.
+    pub(super) fn line(&self, span: &Range<usize>) -> usize {
+        Place::new(self.text, span).line
+    }
+
+    /// What is written at a place, on one line and not too long.
+    pub(super) fn written(&self, span: &Range<usize>) -> String {
+        let text = self.text.get(span.clone()).unwrap_or_default();
+        let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        if line.chars().count() > 40 {
+            line.chars().take(39).chain(['…']).collect()
+        } else {
+            line
+        }
+    }
+
+    /// What was read, if nothing is wrong with it.
+    pub(super) fn finish<T>(mut self, read: Option<T>) -> Result<T, SpecErrors> {
+        match read {
+            Some(read) if self.found.is_empty() => Ok(read),
+            _ => {
+                self.found.sort_by_key(|(span, _)| span.start);
+                let faults = self.found.into_iter().map(|(_, fault)| fault).collect();
+                Err(SpecErrors {
+                    file: self.file,
+                    faults,
+                    more: self.more,
+                })
+            }
+        }
+    }
+}

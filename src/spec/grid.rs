@@ -1,0 +1,195 @@
+//! From a draft to the cases: sweeps multiplied out, equal cases joined, and what no single value shows checked.
+
+use std::collections::HashMap;
+use std::ops::Range;
+
+use toml::Spanned;
+
+use super::fault::Faults;
+use super::keys::{KEYS, find};
+use super::number::short;
+use super::sweep::{AxisDraft, SweepDraft};
+use super::walk::{Draft, Origin};
+use super::{Axis, Case, CaseParams, MAX_CASES, MAX_GRID, Spec, Sweep, Value};
+
+/// The sweep that a case without sweeps belongs to.
+const BASE: &str = "base";
+
+/// Multiplies the sweeps out. Nothing, with the faults added, if there are too many cases or the draft has no name.
+pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
+    let Draft {
+        name,
+        seed,
+        realizations,
+        base,
+        origins,
+        sweeps,
+    } = draft;
+    let read: Vec<&SweepDraft> = sweeps.iter().flatten().collect();
+    if too_many(&read, faults) {
+        return None;
+    }
+    let mut cases = Cases::default();
+    if sweeps.is_empty() {
+        check(&base, &origins, faults);
+        cases.add(BASE, base.clone());
+    }
+    for sweep in &read {
+        for point in points(&sweep.axes) {
+            let mut params = base.clone();
+            let mut origins = origins.clone();
+            for (axis, value) in sweep.axes.iter().zip(point) {
+                (KEYS[axis.key].set)(&mut params, value.get_ref());
+                origins[axis.key] = Origin::Written(value.span());
+            }
+            check(&params, &origins, faults);
+            cases.add(&sweep.name, params);
+        }
+    }
+    let sweeps = read.into_iter().map(sweep).collect();
+    Some(Spec {
+        name: name?,
+        seed,
+        realizations,
+        cases: cases.list,
+        base,
+        sweeps,
+    })
+}
+
+/// Whether the sweeps make more cases than allowed, found without making them.
+fn too_many(sweeps: &[&SweepDraft], faults: &mut Faults<'_>) -> bool {
+    let mut total: u128 = 0;
+    let mut first_beyond: Option<&Range<usize>> = None;
+    for sweep in sweeps {
+        let count = sweep.axes.iter().fold(1_u128, |count, axis| {
+            count.saturating_mul(axis.values.len() as u128)
+        });
+        total = total.saturating_add(count);
+        if total > u128::from(MAX_CASES) {
+            first_beyond = first_beyond.or(Some(&sweep.span));
+        }
+    }
+    if let Some(span) = first_beyond {
+        let message = format!("the sweeps make {total} cases: at most {MAX_CASES} are allowed");
+        let help = "arrays in one sweep multiply; sweep fewer keys at once, or take several sweeps"
+            .to_owned();
+        faults.add(span, message, help);
+    }
+    first_beyond.is_some()
+}
+
+/// Every point of the grid of some axes, the last one running fastest; one empty point if there is no axis.
+fn points(axes: &[AxisDraft]) -> impl Iterator<Item = Vec<&Spanned<Value>>> {
+    let count: usize = axes.iter().map(|axis| axis.values.len()).product();
+    (0..count).map(|number| {
+        let mut rest = number;
+        let mut point: Vec<_> = axes
+            .iter()
+            .rev()
+            .map(|axis| {
+                let value = &axis.values[rest % axis.values.len()];
+                rest /= axis.values.len();
+                value
+            })
+            .collect();
+        point.reverse();
+        point
+    })
+}
+
+/// The different cases, in the order of their first appearance.
+#[derive(Default)]
+struct Cases {
+    list: Vec<Case>,
+    places: HashMap<String, usize>,
+}
+
+impl Cases {
+    /// Adds a case, or the sweep's name to an equal one.
+    fn add(&mut self, sweep: &str, params: CaseParams) {
+        // Every value is finite and none is a zero with a sign, so that equal cases are written alike, and only they.
+        let place = *self
+            .places
+            .entry(format!("{params:?}"))
+            .or_insert(self.list.len());
+        match self.list.get_mut(place) {
+            Some(case) if case.sweeps.iter().any(|known| known == sweep) => {}
+            Some(case) => case.sweeps.push(sweep.to_owned()),
+            None => self.list.push(Case {
+                sweeps: vec![sweep.to_owned()],
+                params,
+            }),
+        }
+    }
+}
+
+/// Checks what depends on two values of a case.
+fn check(case: &CaseParams, origins: &[Origin], faults: &mut Faults<'_>) {
+    let surface = &case.surface;
+    if surface.rms_height_m >= surface.length_m
+        && let Some(span) = blamed(["rms_height_m", "length_m"], origins)
+    {
+        let (height, length) = (short(surface.rms_height_m), short(surface.length_m));
+        let message = format!(
+            "`surface.rms_height_m`, {height} m, must be less than `surface.length_m`, {length} m"
+        );
+        faults.add(&span, message, "both are in metres".to_owned());
+    }
+    let grid = surface.grid();
+    let (zeta, points) = (
+        surface.magnification,
+        surface.points_per_shortest_wavelength,
+    );
+    let made = || format!("{zeta} times {points} points make a grid of {grid} x {grid} points");
+    let keys = ["magnification", "points_per_shortest_wavelength"];
+    if grid > u64::from(MAX_GRID)
+        && let Some(span) = blamed(keys, origins)
+    {
+        let message = format!("{}: at most {MAX_GRID} x {MAX_GRID} are allowed", made());
+        let help = "lower `magnification` or `points_per_shortest_wavelength`".to_owned();
+        faults.add(&span, message, help);
+    } else if !grid.is_multiple_of(2)
+        && let Some(span) = blamed(keys, origins)
+    {
+        let message = format!("{}: their number along a side must be even", made());
+        let help =
+            "only an even grid has a Nyquist line, which the transforms of a real surface build on"
+                .to_owned();
+        faults.add(&span, message, help);
+    }
+}
+
+/// The later written of two values of the surface; nothing, if one of them is not known.
+fn blamed(keys: [&str; 2], origins: &[Origin]) -> Option<Range<usize>> {
+    let mut later: Option<Range<usize>> = None;
+    for name in keys {
+        match &origins[find("surface", name)?] {
+            Origin::Default => {}
+            Origin::Faulty => return None,
+            Origin::Written(span)
+                if later.as_ref().is_none_or(|known| known.start < span.start) =>
+            {
+                later = Some(span.clone());
+            }
+            Origin::Written(_) => {}
+        }
+    }
+    later
+}
+
+/// A sweep as it is told.
+fn sweep(draft: &SweepDraft) -> Sweep {
+    let axis = |axis: &AxisDraft| Axis {
+        key: KEYS[axis.key].path,
+        values: axis
+            .values
+            .iter()
+            .map(|value| value.get_ref().clone())
+            .collect(),
+    };
+    Sweep {
+        name: draft.name.clone(),
+        axes: draft.axes.iter().map(axis).collect(),
+    }
+}

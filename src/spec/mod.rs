@@ -1,0 +1,278 @@
+//! From the text of a spec to the cases that it asks for, checked.
+//!
+//! The text is TOML. Every key has its row in one table (`keys.rs`): its type, its bounds, and where its value goes. The walker
+//! refuses what no row names, and collects every fault with its place, so that one reading of the answer mends the whole file.
+
+mod fault;
+mod grid;
+mod keys;
+mod nearest;
+mod number;
+mod sweep;
+mod top;
+mod value;
+mod walk;
+mod write;
+
+use std::io::Read as _;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use crate::model::{
+    Amplitudes, Boundary, Coalescence, Interaction, JumpIn, KeptContacts, Material, Normalization,
+    Slip,
+};
+
+pub use fault::{Fault, Place, SpecErrors};
+pub use keys::UNAVAILABLE;
+
+/// The greatest number of cases that one spec may make.
+pub const MAX_CASES: u32 = 10_000;
+
+/// The greatest number of realisations of each surface.
+pub const MAX_REALIZATIONS: u32 = 10_000;
+
+/// The greatest number of grid points along one side of a surface: 8 GiB of heights.
+pub const MAX_GRID: u32 = 32_768;
+
+/// The greatest size of a spec's text \[bytes\].
+pub const MAX_BYTES: u64 = 4 << 20;
+
+/// A campaign: what is computed, and how often.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Spec {
+    /// Name of the campaign, and of its folder.
+    pub name: String,
+    /// Seed of the whole campaign.
+    pub seed: u64,
+    /// Realisations of each surface.
+    pub realizations: u32,
+    /// The cases: every different one once, in the order in which the sweeps first ask for it.
+    pub cases: Vec<Case>,
+    /// What the sweeps override; itself a case only if there is no sweep.
+    pub base: CaseParams,
+    /// The sweeps as written, each value checked.
+    pub sweeps: Vec<Sweep>,
+}
+
+/// One point of the campaign.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Case {
+    /// Names of all sweeps in which this case occurs, in their order; `base` alone when the spec has no sweep.
+    pub sweeps: Vec<String>,
+    /// What is computed.
+    pub params: CaseParams,
+}
+
+/// Everything that a case is made of but its seed.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CaseParams {
+    /// The rough surface.
+    pub surface: SurfaceParams,
+    /// The half-space and its adhesion.
+    pub material: Material,
+    /// The choices that the model leaves open.
+    pub model: ModelParams,
+    /// The loading and unloading path.
+    pub cycle: CycleParams,
+}
+
+/// A self-affine surface on a square.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SurfaceParams {
+    /// Side L of the square \[m\].
+    pub length_m: f64,
+    /// Root mean square height \[m\].
+    pub rms_height_m: f64,
+    /// Hurst exponent H.
+    pub hurst: f64,
+    /// Magnification ζ: the longest over the shortest wavelength.
+    pub magnification: u32,
+    /// Grid points per shortest wavelength.
+    pub points_per_shortest_wavelength: u32,
+    /// How the surface gets its rms height.
+    pub normalization: Normalization,
+    /// The moduli of the Fourier modes.
+    pub amplitudes: Amplitudes,
+}
+
+impl SurfaceParams {
+    /// Grid points along one side: ζ times the points per shortest wavelength. A validated spec has it at most [`MAX_GRID`].
+    #[must_use]
+    pub fn grid(&self) -> u64 {
+        u64::from(self.magnification) * u64::from(self.points_per_shortest_wavelength)
+    }
+}
+
+/// The choices that the model leaves open.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ModelParams {
+    /// How contact spots act on one another.
+    pub interaction: Interaction,
+    /// What surrounds the square.
+    pub boundary: Boundary,
+    /// What happens when a spot grows over the centre of another asperity.
+    pub coalescence: Coalescence,
+    /// When a free asperity jumps into contact.
+    pub jump_in: JumpIn,
+    /// Slips of the paper that are put back, sorted, each once.
+    pub as_printed: Vec<Slip>,
+    /// Go on where an asperity's Tabor parameter is below 2 and JKR no longer holds.
+    pub allow_low_tabor: bool,
+}
+
+/// The loading and unloading path.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CycleParams {
+    /// Turning points `F/(E* A0)` of the one loading path, ascending, each once.
+    pub max_load: Vec<f64>,
+    /// Step of the approach, as a part of the rms height.
+    pub approach_step: f64,
+    /// Which steps of the table of contact spots are kept.
+    pub contacts: KeptContacts,
+}
+
+/// One `[[sweep]]`: its axes multiply, the last one runs fastest.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Sweep {
+    /// Its name, unique in the spec.
+    pub name: String,
+    /// What it overrides, in the order written.
+    pub axes: Vec<Axis>,
+}
+
+/// One key that a sweep overrides.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Axis {
+    /// Table and key, such as `surface.magnification`.
+    pub key: &'static str,
+    /// The values that it takes; one, if it is overridden and not swept.
+    pub values: Vec<Value>,
+}
+
+/// The value of a key.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Value {
+    /// A real number.
+    Number(f64),
+    /// A whole number.
+    Count(u32),
+    /// True or false.
+    Flag(bool),
+    /// One of the words of a choice.
+    Word(&'static str),
+    /// Real numbers, ascending, each once.
+    Numbers(Vec<f64>),
+    /// Words of a choice, in the order of the choice, each once.
+    Words(Vec<&'static str>),
+}
+
+// The defaults are the paper's: its surface, its material, one of its loads.
+impl Default for SurfaceParams {
+    fn default() -> Self {
+        Self {
+            length_m: 1e-3,
+            rms_height_m: 5e-6,
+            hurst: 0.8,
+            magnification: 128,
+            points_per_shortest_wavelength: 8,
+            normalization: Normalization::Sample,
+            amplitudes: Amplitudes::Fixed,
+        }
+    }
+}
+
+impl Default for Material {
+    fn default() -> Self {
+        Self {
+            contact_modulus_pa: 1e6,
+            work_of_adhesion_j_m2: 0.07,
+            interaction_range_m: 1e-9,
+        }
+    }
+}
+
+impl Default for ModelParams {
+    fn default() -> Self {
+        Self {
+            interaction: Interaction::Spots,
+            boundary: Boundary::Periodic,
+            coalescence: Coalescence::Cover,
+            jump_in: JumpIn::Wu,
+            as_printed: Vec::new(),
+            allow_low_tabor: false,
+        }
+    }
+}
+
+impl Default for CycleParams {
+    fn default() -> Self {
+        Self {
+            max_load: vec![0.0071],
+            approach_step: 0.01,
+            contacts: KeptContacts::Turning,
+        }
+    }
+}
+
+impl Spec {
+    /// Reads a spec from its text; `file` is what the faults are said to stand in.
+    ///
+    /// # Errors
+    /// Every fault of the text, each with its place.
+    pub fn parse(text: &str, file: &str) -> Result<Self, SpecErrors> {
+        let mut faults = fault::Faults::new(text, file);
+        let spec =
+            walk::document(text, &mut faults).and_then(|draft| grid::expand(draft, &mut faults));
+        faults.finish(spec)
+    }
+
+    /// Reads a spec from a file.
+    ///
+    /// # Errors
+    /// Why the file cannot be read, or every fault of its text.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, SpecErrors> {
+        let path = path.as_ref();
+        let file = path.display().to_string();
+        // Windows answers "access denied" for a folder; the question is cheap and the answer is the same everywhere.
+        if path.is_dir() {
+            return Err(SpecErrors::unreadable(
+                &file,
+                "it is a folder; a spec is a TOML file",
+            ));
+        }
+        let mut bytes = Vec::new();
+        // One byte more than allowed tells a full file from one that is too long, also where a pipe has no length.
+        let read = std::fs::File::open(path)
+            .and_then(|opened| opened.take(MAX_BYTES + 1).read_to_end(&mut bytes));
+        match read {
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+                return Err(SpecErrors::unreadable(&file, "there is no such file"));
+            }
+            Err(error) => return Err(SpecErrors::unreadable(&file, &error.to_string())),
+            Ok(length) if length as u64 > MAX_BYTES => {
+                return Err(SpecErrors::unreadable(
+                    &file,
+                    &format!("it is longer than {} MiB", MAX_BYTES >> 20),
+                ));
+            }
+            Ok(_) => {}
+        }
+        match std::str::from_utf8(&bytes) {
+            Ok(text) => Self::parse(text, &file),
+            Err(error) => Err(SpecErrors::not_utf8(&bytes, error.valid_up_to(), &file)),
+        }
+    }
+
+    /// The spec with every default written out: reading it again gives an equal spec.
+    #[must_use]
+    pub fn to_toml(&self) -> String {
+        write::toml(self)
+    }
+}

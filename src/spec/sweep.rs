@@ -1,0 +1,165 @@
+//! The `[[sweep]]`s: what each overrides, every value checked by itself.
+
+use std::ops::Range;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::fault::Faults;
+use super::keys::{KEYS, TABLES};
+use super::walk::{entries, keys, lost, shown};
+use super::{Value, top, value};
+
+/// A sweep whose values are read.
+pub(super) struct SweepDraft {
+    pub(super) name: String,
+    /// Where it begins.
+    pub(super) span: Range<usize>,
+    pub(super) axes: Vec<AxisDraft>,
+}
+
+/// An axis whose values are read.
+pub(super) struct AxisDraft {
+    /// The key's place in [`KEYS`].
+    pub(super) key: usize,
+    pub(super) values: Vec<Spanned<Value>>,
+}
+
+/// What a sweep takes.
+const IN_SWEEP: [&str; 5] = ["name", "surface", "material", "model", "cycle"];
+
+/// Reads the sweeps.
+pub(super) fn sweeps(
+    written: &Spanned<DeValue<'_>>,
+    span: &Range<usize>,
+    read: &mut Vec<Option<SweepDraft>>,
+    faults: &mut Faults<'_>,
+) {
+    let DeValue::Array(tables) = written.get_ref() else {
+        let help = "a sweep begins with [[sweep]], in double brackets".to_owned();
+        faults.add(span, "`sweep` must be an array of tables".to_owned(), help);
+        return;
+    };
+    let mut names: Vec<String> = Vec::new();
+    for table in tables.iter() {
+        let DeValue::Table(found) = table.get_ref() else {
+            let help = "a sweep begins with [[sweep]], in double brackets".to_owned();
+            value::wrong_type(
+                "sweep",
+                "an array of tables",
+                table.get_ref(),
+                &table.span(),
+                help,
+                faults,
+            );
+            continue;
+        };
+        read.push(sweep(found, table.span(), &mut names, faults));
+    }
+}
+
+/// Reads one sweep.
+fn sweep(
+    found: &DeTable<'_>,
+    at: Range<usize>,
+    known: &mut Vec<String>,
+    faults: &mut Faults<'_>,
+) -> Option<SweepDraft> {
+    let before = faults.count();
+    let mut name = None;
+    let mut overrides = Vec::new();
+    let entries = entries(found);
+    if !entries.iter().any(|(key, ..)| *key == "name") {
+        faults.add(
+            &at,
+            "the sweep has no `name`".to_owned(),
+            "add a line such as name = \"loads\"".to_owned(),
+        );
+    }
+    for (key, span, written) in entries {
+        match key {
+            "name" => {
+                name = top::name("sweep.name", written, faults);
+                if let Some(name) = &name {
+                    if known.contains(name) {
+                        let message = format!("two sweeps have the name \"{name}\"");
+                        faults.add(
+                            &written.span(),
+                            message,
+                            "each sweep needs a name of its own".to_owned(),
+                        );
+                    }
+                    known.push(name.clone());
+                }
+            }
+            table if TABLES.contains(&table) => {
+                overrides.extend(keys(table, written, &span, faults));
+            }
+            unknown => {
+                let help = if unknown == "seed" || unknown == "realizations" {
+                    format!(
+                        "`{unknown}` is the same for all sweeps: it stands at the top of the spec"
+                    )
+                } else {
+                    lost(
+                        unknown,
+                        &IN_SWEEP,
+                        |table| format!("write {table}.{unknown}"),
+                        "[[sweep]] takes",
+                    )
+                };
+                faults.add(
+                    &span,
+                    format!("unknown key `{}` in [[sweep]]", shown(unknown)),
+                    help,
+                );
+            }
+        }
+    }
+    // Keys of different tables may alternate; the grid follows the order written.
+    overrides.sort_by_key(|(_, span, _)| span.start);
+    let axes: Vec<_> = overrides
+        .into_iter()
+        .filter_map(|(place, _, written)| axis(place, written, faults))
+        .collect();
+    let name = name.filter(|_| faults.count() == before)?;
+    Some(SweepDraft {
+        name,
+        span: at,
+        axes,
+    })
+}
+
+/// Reads one axis: an array of values, or a single one. An array is one value for a key that takes an array.
+fn axis(
+    place: usize,
+    written: &Spanned<DeValue<'_>>,
+    faults: &mut Faults<'_>,
+) -> Option<AxisDraft> {
+    let key = &KEYS[place];
+    let one = |value: &Spanned<DeValue<'_>>, faults: &mut Faults<'_>| {
+        value::read(key, value, faults).map(|read| Spanned::new(value.span(), read))
+    };
+    let values = match written.get_ref() {
+        DeValue::Array(many)
+            if !key.kind.is_list()
+                || many.first().is_some_and(|first| first.get_ref().is_array()) =>
+        {
+            if many.is_empty() {
+                let message = format!("the axis `{}` has no value", key.path);
+                faults.add(
+                    &written.span(),
+                    message,
+                    "give at least one value, or leave the key out".to_owned(),
+                );
+                return None;
+            }
+            many.iter()
+                .map(|value| one(value, faults))
+                .collect::<Vec<_>>()
+        }
+        _ => vec![one(written, faults)],
+    };
+    let values = values.into_iter().collect::<Option<_>>()?;
+    Some(AxisDraft { key: place, values })
+}

@@ -1,0 +1,60 @@
+//! The values at the top of a spec: its name, its seed, how often.
+
+use toml::de::DeValue;
+
+use super::MAX_REALIZATIONS;
+use super::fault::Faults;
+use super::number::integer;
+use super::value::{Written, wrong_type};
+
+/// The seed of the campaign.
+pub(super) fn seed(value: &Written<'_>, faults: &mut Faults<'_>) -> Option<u64> {
+    let found = integer("seed", value, faults)?;
+    let seed = u64::try_from(found).ok();
+    if seed.is_none() {
+        let message = format!(
+            "`seed` cannot be {found}: it must be from 0 to {}",
+            i64::MAX
+        );
+        faults.add(&value.span(), message, None);
+    }
+    seed
+}
+
+/// The number of realisations.
+pub(super) fn realizations(value: &Written<'_>, faults: &mut Faults<'_>) -> Option<u32> {
+    let found = integer("realizations", value, faults)?;
+    let count = u32::try_from(found)
+        .ok()
+        .filter(|count| (1..=MAX_REALIZATIONS).contains(count));
+    if count.is_none() {
+        let message =
+            format!("`realizations` cannot be {found}: it must be from 1 to {MAX_REALIZATIONS}");
+        faults.add(&value.span(), message, None);
+    }
+    count
+}
+
+/// A name that can name a folder on every system.
+pub(super) fn name(of: &str, value: &Written<'_>, faults: &mut Faults<'_>) -> Option<String> {
+    let span = value.span();
+    let DeValue::String(found) = value.get_ref() else {
+        let help = "write it in quotes".to_owned();
+        wrong_type(of, "a name in quotes", value.get_ref(), &span, help, faults);
+        return None;
+    };
+    let allowed = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+    if (1..=64).contains(&found.len()) && found.chars().all(allowed) {
+        return Some(found.to_string());
+    }
+    let message = format!(
+        "`{of}` cannot be {}: it names a folder or a table row",
+        faults.written(&span)
+    );
+    faults.add(
+        &span,
+        message,
+        "1 to 64 of the letters A-Z and a-z, digits, - and _ are allowed".to_owned(),
+    );
+    None
+}

@@ -1,0 +1,242 @@
+//! From the text to a draft: every key looked up, every value checked by itself.
+
+use std::ops::Range;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::fault::Faults;
+use super::keys::{KEYS, MEASURED, TABLES, find, names};
+use super::nearest::nearest;
+use super::sweep::{SweepDraft, sweeps};
+use super::{CaseParams, top, value};
+
+/// A spec whose values are read and not yet combined.
+pub(super) struct Draft {
+    pub(super) name: Option<String>,
+    pub(super) seed: u64,
+    pub(super) realizations: u32,
+    pub(super) base: CaseParams,
+    /// Where the base's value of each key comes from, in the order of [`KEYS`].
+    pub(super) origins: Vec<Origin>,
+    /// The sweeps; nothing for one that has a fault, of which the cases are unknown.
+    pub(super) sweeps: Vec<Option<SweepDraft>>,
+}
+
+/// Where a value of the base comes from.
+#[derive(Clone)]
+pub(super) enum Origin {
+    /// The spec does not say it.
+    Default,
+    /// It is written here.
+    Written(Range<usize>),
+    /// What is written has a fault of its own, so that nothing follows from it.
+    Faulty,
+}
+
+/// A key, where it stands, and its value.
+type Entry<'a, 't> = (&'a str, Range<usize>, &'a Spanned<DeValue<'t>>);
+
+/// What the top of a spec takes.
+const TOP: [&str; 8] = [
+    "name",
+    "seed",
+    "realizations",
+    "surface",
+    "material",
+    "model",
+    "cycle",
+    "sweep",
+];
+
+/// The entries of a table in the order written.
+pub(super) fn entries<'a, 't>(table: &'a DeTable<'t>) -> Vec<Entry<'a, 't>> {
+    let mut entries: Vec<Entry<'a, 't>> = table
+        .iter()
+        .map(|(key, value)| (key.get_ref().as_ref(), key.span(), value))
+        .collect();
+    entries.sort_by_key(|(_, span, _)| span.start);
+    entries
+}
+
+/// Reads a whole spec. Nothing, with the faults added, if it is no TOML.
+pub(super) fn document(text: &str, faults: &mut Faults<'_>) -> Option<Draft> {
+    let (root, broken) = DeTable::parse_recoverable(text);
+    if !broken.is_empty() {
+        let mut lines = Vec::new();
+        for error in broken {
+            let span = error.span().unwrap_or(text.len()..text.len());
+            let line = faults.line(&span);
+            // A parser that recovers stumbles over the rest of the same line.
+            if !lines.contains(&line) {
+                lines.push(line);
+                faults.add(
+                    &span,
+                    format!("the spec is not valid TOML: {}", error.message()),
+                    None,
+                );
+            }
+        }
+        return None;
+    }
+    let mut draft = Draft {
+        name: None,
+        seed: 2021,
+        realizations: 6,
+        base: CaseParams::default(),
+        origins: vec![Origin::Default; KEYS.len()],
+        sweeps: Vec::new(),
+    };
+    let entries = entries(root.get_ref());
+    if !entries.iter().any(|(key, ..)| *key == "name") {
+        let what = if entries.is_empty() {
+            "the spec is empty: it needs a `name`"
+        } else {
+            "the spec has no `name`"
+        };
+        faults.add(
+            &(0..0),
+            what.to_owned(),
+            "begin with a line such as name = \"first\"".to_owned(),
+        );
+    }
+    for (key, span, written) in entries {
+        match key {
+            "name" => draft.name = top::name("name", written, faults),
+            "seed" => draft.seed = top::seed(written, faults).unwrap_or(draft.seed),
+            "realizations" => {
+                draft.realizations =
+                    top::realizations(written, faults).unwrap_or(draft.realizations);
+            }
+            "sweep" => sweeps(written, &span, &mut draft.sweeps, faults),
+            table if TABLES.contains(&table) => base(table, written, &span, &mut draft, faults),
+            unknown => {
+                let help = lost(
+                    unknown,
+                    &TOP,
+                    |table| format!("`{unknown}` belongs in [{table}]"),
+                    "a spec takes",
+                );
+                faults.add(
+                    &span,
+                    format!("unknown key `{}` at the top of the spec", shown(unknown)),
+                    help,
+                );
+            }
+        }
+    }
+    Some(draft)
+}
+
+/// Reads a table of the base.
+fn base(
+    table: &str,
+    written: &Spanned<DeValue<'_>>,
+    span: &Range<usize>,
+    draft: &mut Draft,
+    faults: &mut Faults<'_>,
+) {
+    for (place, _, written) in keys(table, written, span, faults) {
+        let key = &KEYS[place];
+        let read = if !key.kind.is_list() && written.get_ref().is_array() {
+            let message = format!("`{}` has one value here, not an array", key.path);
+            faults.add(
+                &written.span(),
+                message,
+                "an array makes a grid, and only in a [[sweep]]".to_owned(),
+            );
+            None
+        } else {
+            value::read(key, written, faults)
+        };
+        draft.origins[place] = match read {
+            Some(value) => {
+                (key.set)(&mut draft.base, &value);
+                Origin::Written(written.span())
+            }
+            None => Origin::Faulty,
+        };
+    }
+}
+
+/// The known keys of a table, each with its place in [`KEYS`], where it stands, and its value.
+pub(super) fn keys<'a, 't>(
+    table: &str,
+    written: &'a Spanned<DeValue<'t>>,
+    span: &Range<usize>,
+    faults: &mut Faults<'_>,
+) -> Vec<(usize, Range<usize>, &'a Spanned<DeValue<'t>>)> {
+    let DeValue::Table(found) = written.get_ref() else {
+        let help = format!("write [{table}] on a line of its own, and the keys below it");
+        let of_value = written.span();
+        let at = if of_value.is_empty() { span } else { &of_value };
+        value::wrong_type(table, "a table", written.get_ref(), at, help, faults);
+        return Vec::new();
+    };
+    let mut known = Vec::new();
+    let mut measured = false;
+    for (name, span, written) in entries(found) {
+        if let Some(place) = find(table, name) {
+            known.push((place, span, written));
+        } else if table == "surface" && MEASURED.contains(&name) {
+            // `file`, `dataset` and `periodic` go together: one answer is enough.
+            if !measured {
+                let message = format!(
+                    "`surface.{name}` describes a measured surface, which this version cannot run"
+                );
+                faults.add(
+                    &span,
+                    message,
+                    "give the parameters of a self-affine surface instead".to_owned(),
+                );
+            }
+            measured = true;
+        } else {
+            let own: Vec<_> = names(table).collect();
+            let takes = format!("[{table}] takes");
+            let help = lost(
+                name,
+                &own,
+                |other| format!("`{name}` belongs in [{other}]"),
+                &takes,
+            );
+            faults.add(
+                &span,
+                format!("unknown key `{}` in [{table}]", shown(name)),
+                help,
+            );
+        }
+    }
+    known
+}
+
+/// Where an unknown key belongs, what it was meant to be, and what there is.
+pub(super) fn lost(
+    unknown: &str,
+    here: &[&str],
+    elsewhere: impl Fn(&str) -> String,
+    takes: &str,
+) -> String {
+    let listed = format!("{takes}: {}", here.join(", "));
+    if let Some(table) = TABLES.iter().find(|table| find(table, unknown).is_some()) {
+        return elsewhere(table);
+    }
+    match nearest(unknown, here.iter().copied()) {
+        Some(near) => format!("did you mean `{near}`? {listed}"),
+        None => listed,
+    }
+}
+
+/// A key as it can stand in a sentence: a quoted key may hold anything.
+pub(super) fn shown(key: &str) -> String {
+    let plain: String = key
+        .chars()
+        .map(|c| if c.is_control() { '\u{fffd}' } else { c })
+        .take(41)
+        .collect();
+    if plain.chars().count() > 40 {
+        plain.chars().take(39).chain(['…']).collect()
+    } else {
+        plain
+    }
+}
