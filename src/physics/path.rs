@@ -18,7 +18,7 @@ pub const EVENT_TOLERANCE: f64 = 1e-6;
 const END_TOLERANCE: f64 = 2e-5;
 
 /// Tolerance of the load at a turning point, relative.
-const LOAD_TOLERANCE: f64 = 1e-10;
+const LOAD_TOLERANCE: f64 = 1e-9;
 
 /// An event as it happened.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,6 +66,8 @@ struct Obstacle {
     approach: f64,
     due: Vec<Trigger>,
     load: f64,
+    /// Halved each time that the event was sought before its place (the Illinois rule), since some events come on as a square root.
+    weight: f64,
 }
 
 impl<'p> Path<'p> {
@@ -118,21 +120,23 @@ impl<'p> Path<'p> {
                     self.collapse(trial)?;
                     (obstacle, tries) = (None, 0);
                 }
-                Err(_) => obstacle = Some(Obstacle { approach: trial, due: Vec::new(), load: f64::NAN }),
+                Err(_) => obstacle = Some(Obstacle { approach: trial, due: Vec::new(), load: f64::NAN, weight: 1.0 }),
                 Ok(mut next) => {
                     next.free = self.solver.free_penetrations(&next.state);
                     let due = self.solver.problem.triggers(&next.state, &next.free);
                     let over = stop.is_some_and(|stop| next.totals.load_n > stop * (1.0 + LOAD_TOLERANCE));
                     if due.is_empty() && !over {
                         self.accept(next, reach);
-                        if obstacle.as_ref().is_some_and(|known| (known.approach - trial) * sign <= 0.0) {
-                            (obstacle, tries) = (None, 0);
+                        match &mut obstacle {
+                            Some(known) if (known.approach - trial) * sign > 0.0 => known.weight *= 0.5,
+                            _ => (obstacle, tries) = (None, 0),
                         }
                         continue;
                     }
-                    let known = Obstacle { approach: trial, due, load: next.totals.load_n };
+                    let known = Obstacle { approach: trial, due, load: next.totals.load_n, weight: 1.0 };
                     let first = self.first_due(&known, stop);
-                    let close = (trial - first.map_or(here, |(approach, _)| approach)).abs() <= tolerance || (trial - here).abs() <= tolerance;
+                    if std::env::var("DBG").is_ok() { eprintln!("   due {:?} first {:?} d {:e}", known.due, first, trial-here); }
+                            let close = (trial - first.map_or(here, |(approach, _)| approach)).abs() <= tolerance || (trial - here).abs() <= tolerance;
                     match first {
                         Some((_, Some(change))) if close => {
                             self.accept(next, reach);
@@ -150,7 +154,7 @@ impl<'p> Path<'p> {
     fn first_due(&self, known: &Obstacle, stop: Option<f64>) -> Option<(f64, Option<Change>)> {
         let here = self.node.state.approach_m;
         let across = |before: f64, beyond: f64| {
-            let share = if before < 0.0 && beyond > before { -before / (beyond - before) } else { 0.0 };
+            let share = if before < 0.0 && beyond > 0.0 { -before / (known.weight * beyond - before) } else { 0.0 };
             here + share * (known.approach - here)
         };
         let changes = known.due.iter().map(|trigger| {
@@ -164,6 +168,9 @@ impl<'p> Path<'p> {
     /// Where to look next before an obstacle.
     fn aim(&self, known: &Obstacle, stop: Option<f64>, tolerance: f64, tries: u32) -> f64 {
         let here = self.node.state.approach_m;
+        if (known.approach - here).abs() <= tolerance {
+            return known.approach;
+        }
         let middle = 0.5 * (here + known.approach);
         match self.first_due(known, stop) {
             // A little beyond a change, so that it is found due; at a load itself.
