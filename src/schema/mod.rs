@@ -7,7 +7,10 @@ mod render;
 mod run;
 mod statistics;
 
-pub use render::{DIRECTORY, SchemaFile, files, readme_markdown, schema_file_name, schema_json};
+pub use render::{
+    DIRECTORY, OWN_KEYS, SchemaFile, files, metadata_json, readme_markdown, schema_file_name,
+    schema_json,
+};
 pub use run::{ASPERITIES, CONTACTS, EVENTS, STEPS};
 pub use statistics::{CASES, CURVES, REALIZATIONS};
 

@@ -1,5 +1,7 @@
 //! The schemas for readers: JSON for machines, Markdown for people.
 
+use std::collections::BTreeMap;
+
 use serde::Serialize;
 
 use super::{TABLES, Table};
@@ -26,6 +28,14 @@ struct TableJson {
 }
 
 #[derive(Serialize)]
+struct WithKeys<'a> {
+    #[serde(flatten)]
+    table: TableJson,
+    #[serde(flatten)]
+    keys: &'a BTreeMap<&'a str, &'a str>,
+}
+
+#[derive(Serialize)]
 struct ColumnJson {
     name: &'static str,
     kind: &'static str,
@@ -35,8 +45,7 @@ struct ColumnJson {
     source: &'static str,
 }
 
-/// The table as a JSON value: what the schema file holds, and what each data file carries with it.
-pub(crate) fn schema_value(table: &Table) -> impl Serialize + use<> {
+fn table_json(table: &Table) -> TableJson {
     TableJson {
         table: table.name,
         version: table.version,
@@ -57,11 +66,28 @@ pub(crate) fn schema_value(table: &Table) -> impl Serialize + use<> {
     }
 }
 
+/// The names in [`metadata_json`] that are the schema's own.
+pub const OWN_KEYS: [&str; 5] = ["table", "version", "file", "description", "columns"];
+
+/// The schema of a table as one line of JSON with further keys beside it: what each data file carries with it.
+///
+/// The order of everything in it is fixed by the types, not by the JSON library, whose maps sort or do not sort
+/// depending on what else is built with it.
+#[must_use]
+pub fn metadata_json(table: &Table, keys: &BTreeMap<&str, &str>) -> String {
+    let all = WithKeys {
+        table: table_json(table),
+        keys,
+    };
+    // Strings, integers and truth values always serialize, so nothing is lost by the default.
+    serde_json::to_string(&all).unwrap_or_default()
+}
+
 /// The schema of a table as indented JSON with a final newline, the same at every call.
 #[must_use]
 pub fn schema_json(table: &Table) -> String {
     // Strings, integers and truth values always serialize, so nothing is lost by the default.
-    let mut json = serde_json::to_string_pretty(&schema_value(table)).unwrap_or_default();
+    let mut json = serde_json::to_string_pretty(&table_json(table)).unwrap_or_default();
     json.push('\n');
     json
 }

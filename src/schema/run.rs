@@ -20,11 +20,10 @@ pub static ASPERITIES: Table = Table {
     doc: "One row per summit of a surface that can come into contact.",
     columns: &[
         index("asperity_id", "Number of the asperity on its surface, from 0"),
-        real("x_m", "m", "Position of the apex along the rows of the height field"),
-        real("y_m", "m", "Position of the apex along the columns of the height field"),
+        real("x_m", "m", "x of the apex; the rows of the height field count along x"),
+        real("y_m", "m", "y of the apex; the columns of the height field count along y"),
         real("height_m", "m", "Height of the apex above the mean plane of the surface"),
-        real("radius_m", "m", "Radius of the sphere that stands for the summit, the inverse of its mean curvature")
-            .from("Eq 1"),
+        real("radius_m", "m", "Radius of the sphere that stands for the summit, the inverse of its mean curvature"),
         real("curvature_1_m", "1/m", "Mean curvature at the apex, half the negative Laplacian of the height; positive at a summit")
             .from("Nayak 1971"),
         real("curvature_min_1_m", "1/m", "Smaller principal curvature at the apex; positive at a summit"),
@@ -45,8 +44,7 @@ pub static STEPS: Table = Table {
         STEP,
         BRANCH,
         MAX_LOAD,
-        real("approach_m", "m", "Approach of the rigid rough surface, which is its mean penetration; 0 where the highest summit meets the undeformed half-space")
-            .from("Eq 5"),
+        real("approach_m", "m", "Approach of the rigid rough surface, which is its mean penetration; 0 where the highest summit meets the undeformed half-space"),
         real("load_n", "N", "Normal load, the sum over all contact spots; negative in tension").from("Eq 1"),
         real("area_m2", "m^2", "Contact area, the sum of the discs of all contact spots"),
         real("area_union_m2", "m^2", "Contact area, the union of the discs, overlaps counted once; null where it was not computed").or_null(),

@@ -51,17 +51,17 @@ const RESULTS: &[Column] = &[
     real("loss_j", "J", "Energy lost in the loop, the integral of load over approach around it"),
     real("loss_dk", "1", "Loss after Deng and Kesari over E* A0 h_rms, at this area, from the moments of the continuous spectrum; null for a measured surface")
         .or_null()
-        .from("Eqs A1-A3"),
+        .from("Eqs A1-A4"),
     real("loss_dk_realised", "1", "Loss after Deng and Kesari over E* A0 h_rms, at this area, from the moments that this surface has; null where they do not define one")
         .or_null()
-        .from("Eqs A1-A3"),
+        .from("Eqs A1-A4"),
     real("loss_ratio_dk", "1", "Loss over loss_dk; null where either is missing or the latter is 0").or_null(),
     real("dissipated_j", "J", "Energy lost in the loop, the sum over its events"),
     real("audit_gap", "1", "|loss_j - dissipated_j| / loss_j; null where nothing was lost").or_null(),
     count("summit_count", "Asperities of the surface"),
     real("summit_density_1_m2", "1/m^2", "Asperities per area"),
     real("nayak_density_1_m2", "1/m^2", "Density of summits of a Gaussian surface with the moments that this surface has")
-        .from("Nayak 1971"),
+        .from("Eq A4, Nayak 1971"),
     count("contact_count_at_max_load", "Asperities in contact at the end of loading"),
     count("step_count", "Steps of loading and of this unloading"),
     count("unconverged_count", "Those of them whose residual stayed above the tolerance"),
@@ -135,12 +135,12 @@ const SPREADS: [&[Column]; 7] = [
     over_realizations!(
         "loss_dk",
         "loss after Deng and Kesari, continuous moments",
-        "Eqs A1-A3"
+        "Eqs A1-A4"
     ),
     over_realizations!(
         "loss_dk_realised",
         "loss after Deng and Kesari, realised moments",
-        "Eqs A1-A3"
+        "Eqs A1-A4"
     ),
     over_realizations!("loss_ratio_dk", "loss over loss after Deng and Kesari", ""),
 ];

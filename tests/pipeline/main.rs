@@ -1,1 +1,6 @@
-fn main(){}
+//! The pipeline: files, verbs, tables.
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+
+mod schema;
+#[cfg(feature = "store")]
+mod store;
