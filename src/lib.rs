@@ -1,5 +1,7 @@
 //! hysteron: from a self-affine rough surface to the energy that its adhesive contact loses.
 pub mod model;
 pub mod schema;
+#[cfg(feature = "stats")]
+pub mod stats;
 #[cfg(feature = "store")]
 pub mod store;

@@ -2,5 +2,9 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 mod schema;
+#[cfg(feature = "stats")]
+mod stats;
+#[cfg(feature = "stats")]
+mod steps;
 #[cfg(feature = "store")]
 mod store;
