@@ -1,4 +1,6 @@
 //! hysteron: from a self-affine rough surface to the energy that its adhesive contact loses.
+#[cfg(feature = "stats")]
+pub mod figures;
 pub mod model;
 pub mod schema;
 #[cfg(feature = "stats")]

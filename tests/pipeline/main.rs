@@ -1,6 +1,8 @@
 //! The pipeline: files, verbs, tables.
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
+#[cfg(feature = "stats")]
+mod figures;
 mod schema;
 #[cfg(feature = "stats")]
 mod stats;
