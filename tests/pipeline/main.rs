@@ -2,3 +2,12 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 mod spec;
+#[cfg(feature = "stats")]
+mod figures;
+mod schema;
+#[cfg(feature = "stats")]
+mod stats;
+#[cfg(feature = "stats")]
+mod steps;
+#[cfg(feature = "store")]
+mod store;

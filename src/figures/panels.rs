@@ -1,0 +1,113 @@
+//! The four panels of a sweep.
+
+use super::FigureError;
+use super::paths::paths;
+use super::plot::{Stroke, XyPlot, plot_xy};
+use super::results::results;
+use super::sweep::Sweep;
+use crate::store::Frame;
+
+/// Draws the panels of one sweep, each as the stem of a file name and an SVG document: `<sweep>_A` area over load, `<sweep>_B` pull-off load,
+/// `<sweep>_C` penetration over load, `<sweep>_D` energy lost, with the prediction of Deng and Kesari.
+///
+/// B and D stand over the parameter that varies; over the area at the end of loading if only the turning point varies. If several
+/// parameters vary, the first one is the axis, the title names the others, and only cases that differ in nothing else are joined. A case without
+/// finished realizations has no curve and no point. Error bars are one standard deviation.
+///
+/// # Errors
+/// If no case belongs to the sweep, or a table lacks a column.
+pub fn panels(
+    cases: &Frame,
+    curves: &Frame,
+    sweep: &str,
+) -> Result<Vec<(String, String)>, FigureError> {
+    let found = Sweep::find(cases, sweep)?;
+    let heading = heading(cases, &found, sweep)?;
+    let stem: String = if sweep.is_empty() { "run" } else { sweep }
+        .chars()
+        .map(|letter| {
+            if letter.is_ascii_alphanumeric() || letter == '-' {
+                letter
+            } else {
+                '_'
+            }
+        })
+        .collect();
+    let panel = |letter: char, plot: XyPlot| {
+        let stem = format!("{stem}_{letter}");
+        let svg = plot_xy(&XyPlot {
+            letter,
+            title: heading.clone(),
+            stem: stem.clone(),
+            ..plot
+        });
+        (stem, svg)
+    };
+    Ok(vec![
+        panel('A', paths(curves, &found, "area_mean", "A/A_{0}")?),
+        panel(
+            'B',
+            results(cases, &found, "F_{po}/(E^{*}A_{0})", "pull_off_load", &[])?,
+        ),
+        panel('C', paths(curves, &found, "penetration_mean", "Δ/h_{rms}")?),
+        panel(
+            'D',
+            results(
+                cases,
+                &found,
+                "Θ/(E^{*}A_{0}h_{rms})",
+                "loss",
+                &[
+                    ("loss_dk", Stroke::Dashed, "Deng–Kesari"),
+                    (
+                        "loss_dk_realised",
+                        Stroke::Dotted,
+                        "Deng–Kesari, realised moments",
+                    ),
+                ],
+            )?,
+        ),
+    ])
+}
+
+fn heading(cases: &Frame, sweep: &Sweep, name: &str) -> Result<String, FigureError> {
+    let done = cases.i64("done_count")?;
+    let counts = || {
+        sweep
+            .members
+            .iter()
+            .filter_map(|member| done.get(member.row))
+    };
+    let (least, most) = (
+        counts().min().copied().unwrap_or_default(),
+        counts().max().copied().unwrap_or_default(),
+    );
+    let surfaces = match (least, most) {
+        (_, 0) => "no surface finished".to_owned(),
+        (1, 1) => "one surface".to_owned(),
+        _ if least == most => format!("mean of {most} surfaces"),
+        _ => format!("mean of {least} to {most} surfaces"),
+    };
+    let mut others: Vec<&str> = sweep
+        .differing
+        .iter()
+        .skip(1)
+        .map(|parameter| parameter.symbol)
+        .collect();
+    if sweep.many_loads && !sweep.differing.is_empty() {
+        others.push("F_{max}");
+    }
+    let name = if name.is_empty() {
+        String::new()
+    } else {
+        format!("{name}: ")
+    };
+    Ok(match (sweep.differing.first(), others.is_empty()) {
+        (Some(first), false) => format!(
+            "{name}{surfaces}, over {}; {} varies too",
+            first.symbol,
+            others.join(", ")
+        ),
+        _ => format!("{name}{surfaces}"),
+    })
+}

@@ -1,0 +1,274 @@
+//! Line plots in one style. The only place that knows the plotting library: it is young, and may be replaced here alone.
+
+use kuva::backend::svg::SvgBackend;
+use kuva::plot::line::LinePlot;
+use kuva::plot::scatter::{MarkerShape, ScatterPlot};
+use kuva::render::layout::{ComputedLayout, Layout, TickFormat};
+use kuva::render::plots::Plot;
+use kuva::render::render::{Primitive, Scene, TextAnchor, render_multiple};
+use std::sync::Arc;
+
+use super::axis::Axis;
+use super::{key, markup};
+
+/// Size of a panel in pixels; at one column of a journal, 88 mm, a pixel is 0.18 mm and the smallest text 6.8 points.
+const SIZE: (f64, f64) = (480.0, 380.0);
+const LABEL: u32 = 16;
+const TICK: u32 = 14;
+pub(super) const NOTE: u32 = 13;
+/// Least distance of two notes beside the plot, in pixels.
+pub(super) const NOTE_PITCH: f64 = 17.0;
+
+/// How a curve is stroked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stroke {
+    /// One unbroken line.
+    Solid,
+    /// Long dashes.
+    Dashed,
+    /// Dots.
+    Dotted,
+}
+
+impl Stroke {
+    pub(super) fn dashes(self) -> Option<&'static str> {
+        match self {
+            Self::Solid => None,
+            Self::Dashed => Some("7 4"),
+            Self::Dotted => Some("1.5 3.5"),
+        }
+    }
+}
+
+/// One curve, in units of the data.
+#[derive(Debug, Clone)]
+pub struct Curve {
+    /// Its points, in the order in which they are joined.
+    pub points: Vec<(f64, f64)>,
+    /// Half the length of each point's error bar; empty for a curve without bars.
+    pub errors: Vec<Option<f64>>,
+    /// A CSS colour.
+    pub colour: String,
+    /// Its stroke.
+    pub stroke: Stroke,
+    /// Whether each point has a marker.
+    pub marked: bool,
+}
+
+/// A line of the key: what a colour and a stroke mean.
+#[derive(Debug, Clone)]
+pub struct KeyEntry {
+    /// The text, with markup.
+    pub text: String,
+    /// A CSS colour.
+    pub colour: String,
+    /// The stroke, or nothing for a line of text alone.
+    pub stroke: Option<Stroke>,
+    /// Whether the sample has a marker.
+    pub marked: bool,
+}
+
+/// A text at the end of a curve.
+#[derive(Debug, Clone)]
+pub struct Note {
+    /// The curve's end, in units of the data.
+    pub at: (f64, f64),
+    /// The text, with markup.
+    pub text: String,
+    /// Whether it stands in the right margin, at the height of the end, or else just below the end and to its right.
+    pub beside: bool,
+}
+
+/// Everything that one panel shows.
+#[derive(Debug, Clone)]
+pub struct XyPlot {
+    /// Prefix of all identifiers inside the picture, so that many can stand in one page.
+    pub stem: String,
+    /// The panel's letter, in bold at its upper left corner.
+    pub letter: char,
+    /// Heading, with markup; may be empty.
+    pub title: String,
+    /// Horizontal axis.
+    pub x: Axis,
+    /// Vertical axis.
+    pub y: Axis,
+    /// The curves, in the order in which they are painted.
+    pub curves: Vec<Curve>,
+    /// The key.
+    pub key: Vec<KeyEntry>,
+    /// Texts at the ends of curves.
+    pub notes: Vec<Note>,
+}
+
+/// Draws a panel as a complete SVG document.
+pub fn plot_xy(plot: &XyPlot) -> String {
+    let plots = plot
+        .curves
+        .iter()
+        .flat_map(|curve| drawn(curve, plot))
+        .collect();
+    let layout = layout(plot);
+    let frame = ComputedLayout::from_layout(&layout);
+    let mut scene = render_multiple(plots, layout);
+    let letter = Primitive::Text {
+        x: 10.0,
+        y: 24.0,
+        content: plot.letter.to_string(),
+        size: LABEL + 2,
+        anchor: TextAnchor::Start,
+        rotate: None,
+        bold: true,
+        color: None,
+    };
+    scene.add(letter);
+    add_notes(&mut scene, &frame, plot);
+    key::add(&mut scene, &frame, plot);
+    let svg = SvgBackend.render_scene(&scene);
+    // The library numbers its clip paths from zero in every picture: two pictures in one page would cut each other.
+    markup::render(&svg.replace("kuva-clip-", &format!("{}-clip-", plot.stem)))
+}
+
+fn layout(plot: &XyPlot) -> Layout {
+    let beside = plot
+        .notes
+        .iter()
+        .filter(|note| note.beside)
+        .map(|note| markup::width(&note.text, NOTE))
+        .fold(0.0, f64::max);
+    let (x, y) = (&plot.x, &plot.y);
+    let labels = |axis: &Axis| {
+        let axis = axis.clone();
+        TickFormat::Custom(Arc::new(move |value| axis.tick_label(value)))
+    };
+    let left = 48.0
+        + y.ticks()
+            .iter()
+            .map(|tick| markup::width(&y.tick_label(*tick), TICK))
+            .fold(2.0 * f64::from(TICK), f64::max);
+    Layout::new(x.drawn_range(), y.drawn_range())
+        .with_width(SIZE.0 + beside)
+        .with_height(SIZE.1)
+        .with_title(plot.title.clone())
+        .with_title_size(LABEL - 2)
+        .with_x_label(x.full_label())
+        .with_y_label(y.full_label())
+        .with_label_size(LABEL)
+        .with_tick_size(TICK)
+        .with_x_axis_min(x.drawn_range().0)
+        .with_x_axis_max(x.drawn_range().1)
+        .with_y_axis_min(y.drawn_range().0)
+        .with_y_axis_max(y.drawn_range().1)
+        .with_x_tick_step(x.drawn_step())
+        .with_y_tick_step(y.drawn_step())
+        .with_x_tick_format(labels(x))
+        .with_y_tick_format(labels(y))
+        .with_show_grid(false)
+        .with_box_axes()
+        .with_force_margins(left, 18.0 + if beside > 0.0 { beside + 6.0 } else { 0.0 })
+}
+
+fn drawn(curve: &Curve, plot: &XyPlot) -> Vec<Plot> {
+    let points: Vec<(f64, f64)> = curve
+        .points
+        .iter()
+        .map(|(x, y)| (plot.x.drawn(*x), plot.y.drawn(*y)))
+        .collect();
+    let style = match curve.stroke.dashes() {
+        None => kuva::plot::line::LineStyle::Solid,
+        Some(dashes) => kuva::plot::line::LineStyle::Custom(dashes.to_owned()),
+    };
+    let line = LinePlot::new()
+        .with_data(points.clone())
+        .with_color(curve.colour.clone())
+        .with_stroke_width(2.0)
+        .with_line_style(style);
+    let mut plots = vec![Plot::Line(line)];
+    for (point, error) in points.iter().zip(&curve.errors) {
+        if let Some(error) = error {
+            let bar = LinePlot::new()
+                .with_data([*point])
+                .with_color(curve.colour.clone());
+            plots.push(Plot::Line(bar.with_y_err([plot.y.drawn_length(*error)])));
+        }
+    }
+    if curve.marked {
+        let marks = ScatterPlot::new()
+            .with_data(points)
+            .with_color(curve.colour.clone())
+            .with_size(4.5);
+        plots.push(Plot::Scatter(marks.with_marker(MarkerShape::Circle)));
+    }
+    plots
+}
+
+pub(super) fn text(scene: &mut Scene, at: (f64, f64), content: &str, anchor: TextAnchor) {
+    scene.add(Primitive::Text {
+        x: at.0,
+        y: at.1,
+        content: content.to_owned(),
+        size: NOTE,
+        anchor,
+        rotate: None,
+        bold: false,
+        color: None,
+    });
+}
+
+fn add_notes(scene: &mut Scene, frame: &ComputedLayout, plot: &XyPlot) {
+    let pixel = |at: (f64, f64)| {
+        (
+            frame.map_x(plot.x.drawn(at.0)),
+            frame.map_y(plot.y.drawn(at.1)),
+        )
+    };
+    for note in plot.notes.iter().filter(|note| !note.beside) {
+        let (x, y) = pixel(note.at);
+        text(scene, (x + 4.0, y + 15.0), &note.text, TextAnchor::Start);
+    }
+    let mut beside: Vec<((f64, f64), &str)> = plot
+        .notes
+        .iter()
+        .filter(|note| note.beside)
+        .map(|note| (pixel(note.at), note.text.as_str()))
+        .collect();
+    beside.sort_by(|a, b| a.0.1.total_cmp(&b.0.1));
+    let heights = apart(
+        &beside.iter().map(|note| note.0.1).collect::<Vec<_>>(),
+        (frame.margin_top, frame.height - frame.margin_bottom),
+    );
+    let edge = frame.width - frame.margin_right;
+    for ((end, content), height) in beside.iter().zip(heights) {
+        scene.add(Primitive::Line {
+            x1: end.0 + 2.0,
+            y1: end.1,
+            x2: edge + 4.0,
+            y2: height,
+            stroke: "#888888".into(),
+            stroke_width: 0.7,
+            stroke_dasharray: None,
+        });
+        text(
+            scene,
+            (edge + 7.0, height + 4.5),
+            content,
+            TextAnchor::Start,
+        );
+    }
+}
+
+/// Heights as near as may be to the wanted ones, in the same order, no two closer than a line of text, and inside the limits.
+fn apart(wanted: &[f64], limits: (f64, f64)) -> Vec<f64> {
+    let mut heights: Vec<f64> = Vec::with_capacity(wanted.len());
+    for want in wanted {
+        let least = heights
+            .last()
+            .map_or(limits.0 + 6.0, |last| last + NOTE_PITCH);
+        heights.push(want.max(least));
+    }
+    let mut most = limits.1 - 4.0;
+    for height in heights.iter_mut().rev() {
+        *height = height.min(most);
+        most = *height - NOTE_PITCH;
+    }
+    heights
+}

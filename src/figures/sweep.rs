@@ -1,0 +1,167 @@
+//! The cases of one sweep, ordered by what varies.
+
+use super::FigureError;
+use super::axis::Axis;
+use crate::stats::{Values, Varying, varying};
+use crate::store::Frame;
+
+/// A row of the table `cases` that belongs to the sweep.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Member {
+    pub(super) row: usize,
+    pub(super) case_id: String,
+    pub(super) max_load: f64,
+    /// Its place along the horizontal axis of the panels of results.
+    pub(super) x: f64,
+    /// What its curves are called.
+    pub(super) label: String,
+    /// What it has besides `x`: members that share it are joined by a line.
+    pub(super) series: String,
+}
+
+/// A sweep.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Sweep {
+    pub(super) members: Vec<Member>,
+    /// What varies, the horizontal axis first; nothing if only the turning point does.
+    pub(super) differing: Vec<Varying>,
+    /// Whether there are several turning points.
+    pub(super) many_loads: bool,
+    pub(super) axis: Axis,
+}
+
+impl Sweep {
+    /// Finds the members of a sweep.
+    pub(super) fn find(cases: &Frame, name: &str) -> Result<Self, FigureError> {
+        let sweeps = cases.text("sweep")?;
+        let belongs = |joined: &&str| joined.split('+').any(|one| one == name);
+        let rows: Vec<usize> = sweeps
+            .iter()
+            .enumerate()
+            .filter(|(_, joined)| belongs(joined))
+            .map(|(row, _)| row)
+            .collect();
+        if rows.is_empty() {
+            let mut known: Vec<&str> = sweeps.iter().flat_map(|joined| joined.split('+')).collect();
+            known.sort_unstable();
+            known.dedup();
+            return Err(FigureError::UnknownSweep {
+                sweep: name.to_owned(),
+                known: known.join(", "),
+            });
+        }
+        let (ids, loads) = (cases.text("case_id")?, cases.f64("max_load")?);
+        let area = cases.f64_or_null("area_at_max_load_mean")?;
+        let differing = varying(cases, &rows)?;
+        let load_of = |row: usize| loads.get(row).copied().unwrap_or_default();
+        let many_loads = rows.windows(2).any(|pair| {
+            pair.first().map(|row| load_of(*row)) != pair.last().map(|row| load_of(*row))
+        });
+        let words = words(&differing);
+        let mut members = Vec::new();
+        for (place, row) in rows.iter().enumerate() {
+            let load = load_of(*row);
+            let x = match differing.first().map(|first| &first.values) {
+                Some(Values::Numbers(numbers)) => numbers.get(place).copied().flatten(),
+                Some(Values::Words(all)) => all
+                    .get(place)
+                    .and_then(|word| words.iter().position(|known| known == word))
+                    .map(|at| at as f64),
+                None => area.get(*row).copied().flatten(),
+            };
+            let mut parts: Vec<String> = differing
+                .iter()
+                .map(|parameter| named(parameter, place))
+                .collect();
+            if many_loads {
+                parts.push(if differing.is_empty() {
+                    format!("{load}")
+                } else {
+                    format!("F = {load}")
+                });
+            }
+            let case_id = ids.get(*row).copied().unwrap_or_default().to_owned();
+            let series = parts.get(1..).unwrap_or_default().join(", ");
+            // Without a place, a member has curves but no point; NaN is left out of every axis.
+            members.push(Member {
+                row: *row,
+                case_id,
+                max_load: load,
+                x: x.unwrap_or(f64::NAN),
+                label: parts.join(", "),
+                series,
+            });
+        }
+        let order = |member: &Member| {
+            if differing.is_empty() {
+                member.max_load
+            } else {
+                member.x
+            }
+        };
+        members.sort_by(|a, b| {
+            order(a)
+                .total_cmp(&order(b))
+                .then(a.max_load.total_cmp(&b.max_load))
+                .then(a.case_id.cmp(&b.case_id))
+        });
+        let axis = axis(&differing, words, &members);
+        Ok(Self {
+            members,
+            differing,
+            many_loads,
+            axis,
+        })
+    }
+}
+
+fn named(parameter: &Varying, place: usize) -> String {
+    match parameter.values {
+        Values::Numbers(_) => format!("{} = {}", parameter.symbol, parameter.text(place)),
+        Values::Words(_) => parameter.text(place),
+    }
+}
+
+/// The words of the horizontal axis, if it has words, each once.
+fn words(differing: &[Varying]) -> Vec<String> {
+    let Some(Values::Words(all)) = differing.first().map(|first| &first.values) else {
+        return Vec::new();
+    };
+    let mut words = all.clone();
+    words.sort_unstable();
+    words.dedup();
+    words
+}
+
+fn axis(differing: &[Varying], words: Vec<String>, members: &[Member]) -> Axis {
+    let values: Vec<f64> = members
+        .iter()
+        .map(|member| member.x)
+        .filter(|x| x.is_finite())
+        .collect();
+    let (least, most) = (
+        values.iter().copied().fold(f64::INFINITY, f64::min),
+        values.iter().copied().fold(0.0, f64::max),
+    );
+    match differing.first() {
+        None => Axis::holding("A/A_{0}", values, true).with_headroom(0.05),
+        Some(first) if matches!(first.values, Values::Words(_)) => Axis::of_words(
+            first.label,
+            words
+                .into_iter()
+                .map(|word| {
+                    if word.is_empty() {
+                        "none".to_owned()
+                    } else {
+                        word
+                    }
+                })
+                .collect(),
+        ),
+        // A magnification counts doublings of resolution: equal steps of it are equal ratios.
+        Some(first) if first.name == "magnification" && most >= 2.0 * least => {
+            Axis::of_doublings(first.label, values)
+        }
+        Some(first) => Axis::holding(first.label, values, false),
+    }
+}

@@ -1,0 +1,161 @@
+//! Every table and every column, once: name, kind, unit, null, meaning, source.
+//!
+//! The writer, the reader's checks, `schemas/*.json` and the tables in the README all come from here. Nothing in this
+//! room knows a file format.
+
+mod render;
+mod run;
+mod statistics;
+
+pub use render::{
+    DIRECTORY, OWN_KEYS, SchemaFile, files, metadata_json, readme_markdown, schema_file_name,
+    schema_json,
+};
+pub use run::{ASPERITIES, CONTACTS, EVENTS, STEPS};
+pub use statistics::{CASES, CURVES, REALIZATIONS};
+
+/// What a column holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// A finite real number in double precision.
+    F64,
+    /// A whole number: an identity, a position or a count.
+    I64,
+    /// True or false.
+    Bool,
+    /// A word, from few different ones.
+    Text,
+}
+
+impl Kind {
+    /// The word of this kind in the schema files.
+    #[must_use]
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::F64 => "f64",
+            Self::I64 => "i64",
+            Self::Bool => "bool",
+            Self::Text => "text",
+        }
+    }
+}
+
+/// One column of a table.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Column {
+    /// Its name, ending in its SI unit if it has one.
+    pub name: &'static str,
+    /// What it holds.
+    pub kind: Kind,
+    /// SI unit, as UDUNITS, pint and astropy read it: "m", "J/m^2"; "1" if dimensionless or counted; empty for
+    /// identities, words and truth values, which have none.
+    pub unit: &'static str,
+    /// Whether a value may be missing. Missing is null, never 0.
+    pub nullable: bool,
+    /// What it means, in one sentence.
+    pub doc: &'static str,
+    /// The equation or publication that it comes from; empty if it needs none.
+    pub source: &'static str,
+}
+
+/// One kind of table.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Table {
+    /// Its name.
+    pub name: &'static str,
+    /// Raised whenever a column is renamed, removed, or changes its meaning.
+    pub version: u32,
+    /// Where it lies below the directory of a run; `<id>` stands for a unit's identity.
+    pub file: &'static str,
+    /// What a row is.
+    pub doc: &'static str,
+    /// Its columns, in order.
+    pub columns: &'static [Column],
+}
+
+impl Table {
+    /// The column of this name.
+    #[must_use]
+    pub fn column(&self, name: &str) -> Option<&'static Column> {
+        self.columns.iter().find(|column| column.name == name)
+    }
+}
+
+/// Every table that the program writes.
+pub static TABLES: &[&Table] = &[
+    &ASPERITIES,
+    &STEPS,
+    &CONTACTS,
+    &EVENTS,
+    &REALIZATIONS,
+    &CASES,
+    &CURVES,
+];
+
+impl Column {
+    /// The same column, whose values may be missing.
+    const fn or_null(self) -> Self {
+        Self {
+            nullable: true,
+            ..self
+        }
+    }
+
+    /// The same column, with the equation or publication behind it.
+    const fn from(self, source: &'static str) -> Self {
+        Self { source, ..self }
+    }
+}
+
+const fn column(name: &'static str, kind: Kind, unit: &'static str, doc: &'static str) -> Column {
+    Column {
+        name,
+        kind,
+        unit,
+        nullable: false,
+        doc,
+        source: "",
+    }
+}
+
+/// A real number with a unit.
+const fn real(name: &'static str, unit: &'static str, doc: &'static str) -> Column {
+    column(name, Kind::F64, unit, doc)
+}
+
+/// How many of something there are.
+const fn count(name: &'static str, doc: &'static str) -> Column {
+    column(name, Kind::I64, "1", doc)
+}
+
+/// A whole number that names or orders something.
+const fn index(name: &'static str, doc: &'static str) -> Column {
+    column(name, Kind::I64, "", doc)
+}
+
+/// True or false.
+const fn flag(name: &'static str, doc: &'static str) -> Column {
+    column(name, Kind::Bool, "", doc)
+}
+
+/// A word.
+const fn text(name: &'static str, doc: &'static str) -> Column {
+    column(name, Kind::Text, "", doc)
+}
+
+/// Several lists of columns as one, so that columns which tables share are written once.
+const fn join<const N: usize>(parts: &[&[Column]]) -> [Column; N] {
+    let mut all = [text("", ""); N];
+    let mut filled = 0;
+    let mut part = 0;
+    while part < parts.len() {
+        let mut at = 0;
+        while at < parts[part].len() {
+            all[filled] = parts[part][at];
+            filled += 1;
+            at += 1;
+        }
+        part += 1;
+    }
+    all
+}

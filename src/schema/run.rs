@@ -1,0 +1,150 @@
+//! The tables of one surface and of one of its cycles.
+
+use super::{Column, Table, count, flag, index, real, text};
+
+const BRANCH: Column = text("branch", "\"loading\" or \"unloading\"");
+const MAX_LOAD: Column = real(
+    "max_load",
+    "1",
+    "F/(E* A0) from which this unloading began; null while loading, since one loading path serves every turning point",
+)
+.or_null();
+const STEP: Column = index("step", "Number of the step along the whole path, from 0");
+const ASPERITY: Column = index("asperity_id", "The asperity, as in the table asperities");
+
+/// The summits of one surface.
+pub static ASPERITIES: Table = Table {
+    name: "asperities",
+    version: 1,
+    file: "asperities/<id>.parquet",
+    doc: "One row per summit of a surface that can come into contact.",
+    columns: &[
+        index("asperity_id", "Number of the asperity on its surface, from 0"),
+        real("x_m", "m", "x of the apex; the rows of the height field count along x"),
+        real("y_m", "m", "y of the apex; the columns of the height field count along y"),
+        real("height_m", "m", "Height of the apex above the mean plane of the surface"),
+        real("radius_m", "m", "Radius of the sphere that stands for the summit, the inverse of its mean curvature"),
+        real("curvature_1_m", "1/m", "Mean curvature at the apex, half the negative Laplacian of the height; positive at a summit")
+            .from("Nayak 1971"),
+        real("curvature_min_1_m", "1/m", "Smaller principal curvature at the apex; positive at a summit"),
+        real("curvature_max_1_m", "1/m", "Greater principal curvature at the apex; positive at a summit"),
+        index("grid_row", "Row of the grid point that is the local maximum"),
+        index("grid_col", "Column of the grid point that is the local maximum"),
+        flag("refined", "Whether height and position were refined to the apex between grid points"),
+    ],
+};
+
+/// The path of one cycle, step by step.
+pub static STEPS: Table = Table {
+    name: "steps",
+    version: 1,
+    file: "cycles/<id>/steps.parquet",
+    doc: "One row per step of loading, and of unloading from each turning point.",
+    columns: &[
+        STEP,
+        BRANCH,
+        MAX_LOAD,
+        real("approach_m", "m", "Approach of the rigid rough surface, which is its mean penetration; 0 where the highest summit meets the undeformed half-space"),
+        real("load_n", "N", "Normal load, the sum over all contact spots; negative in tension").from("Eq 1"),
+        real("area_m2", "m^2", "Contact area, the sum of the discs of all contact spots"),
+        real("area_union_m2", "m^2", "Contact area, the union of the discs, overlaps counted once; null where it was not computed").or_null(),
+        count("contact_count", "Asperities in contact"),
+        count("covered_count", "Asperities covered by a greater spot: they carry nothing"),
+        count("jump_in_count", "Asperities that jumped into contact in this step"),
+        count("jump_off_count", "Asperities that jumped out of contact in this step"),
+        count("cover_count", "Asperities that were covered in this step"),
+        count("uncover_count", "Asperities that were uncovered in this step"),
+        real("dissipated_j", "J", "Energy lost in the events of this step"),
+        real("work_j", "J", "Work done on the contact since this branch began, the integral of load over approach"),
+        real("residual_m", "m", "Greatest difference left between local penetration and JKR penetration, over all spots")
+            .from("Eqs 2, 5"),
+        flag("converged", "Whether the residual came below the tolerance"),
+        count("iteration_count", "Newton iterations of this step"),
+        count("pair_evaluation_count", "Evaluations of the displacement field of one spot at another in this step"),
+        real("load", "1", "F/(E* A0)"),
+        real("area", "1", "A/A0"),
+        real("penetration", "1", "Approach over rms height"),
+    ],
+};
+
+/// The contact spots at the steps that are kept.
+pub static CONTACTS: Table = Table {
+    name: "contacts",
+    version: 1,
+    file: "cycles/<id>/contacts.parquet",
+    doc: "One row per asperity in contact or covered, at each step that the spec keeps.",
+    columns: &[
+        STEP,
+        BRANCH,
+        MAX_LOAD,
+        ASPERITY,
+        text(
+            "state",
+            "\"contact\" or \"covered\"; free asperities have no row",
+        ),
+        real(
+            "contact_radius_m",
+            "m",
+            "Radius of the contact spot; 0 if covered",
+        )
+        .from("Eq 2"),
+        real("load_n", "N", "Load of the contact spot; 0 if covered").from("Eq 1"),
+        real(
+            "penetration_m",
+            "m",
+            "Local penetration, after the displacement by all other spots",
+        )
+        .from("Eq 5"),
+        real(
+            "interaction_m",
+            "m",
+            "Displacement of the half-space by all other spots",
+        )
+        .from("Eqs 6-8"),
+    ],
+};
+
+/// What happened to single asperities.
+pub static EVENTS: Table = Table {
+    name: "events",
+    version: 1,
+    file: "cycles/<id>/events.parquet",
+    doc: "One row per asperity that changed its state.",
+    columns: &[
+        STEP,
+        BRANCH,
+        MAX_LOAD,
+        text(
+            "kind",
+            "What happened: \"jump_in\", \"jump_off\", \"cover\", \"uncover\", and \"merge\", \"unmerge\" where spots merge",
+        ),
+        ASPERITY,
+        real(
+            "approach_m",
+            "m",
+            "Approach of the surface at the event, zero as in the table steps",
+        )
+        .from("Eqs 3, 4"),
+        index(
+            "avalanche_id",
+            "Events that one instability brought about have the same number, from 0 along the path",
+        ),
+        real(
+            "load_before_n",
+            "N",
+            "Load of the asperity before the event",
+        ),
+        real("load_after_n", "N", "Load of the asperity after the event"),
+        real(
+            "area_before_m2",
+            "m^2",
+            "Contact area of the asperity before the event",
+        ),
+        real(
+            "area_after_m2",
+            "m^2",
+            "Contact area of the asperity after the event",
+        ),
+        real("energy_lost_j", "J", "Energy lost in the event"),
+    ],
+};

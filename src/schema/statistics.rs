@@ -1,0 +1,193 @@
+//! The tables over realizations.
+
+use super::{Column, Table, count, index, join, real, text};
+
+const CASE: &[Column] = &[
+    text(
+        "case_id",
+        "Identity of the case: a hash of everything that defines it",
+    ),
+    text(
+        "sweep",
+        "The sweeps of the spec that the case belongs to, joined by +; empty for a spec without sweeps",
+    ),
+];
+
+/// What defines a case, a column each.
+const PARAMETERS: &[Column] = &[
+    real("hurst", "1", "Hurst exponent H; null for a measured surface").or_null().from("Eq 10"),
+    real("magnification", "1", "Magnification, longest over shortest wavelength; null for a measured surface").or_null().from("Eq 10"),
+    real("length_m", "m", "Side of the square, L").from("Eq 10"),
+    real("rms_height_m", "m", "Rms height: the one asked for, or that of the measured surface"),
+    real("points_per_shortest_wavelength", "1", "Grid points per shortest wavelength; null for a measured surface").or_null(),
+    text("normalization", "How the surface got its rms height: \"sample\" or \"spectrum\"; null for a measured surface").or_null(),
+    text("amplitudes", "The moduli of the Fourier modes: \"fixed\" or \"gaussian\"; null for a measured surface").or_null(),
+    real("contact_modulus_pa", "Pa", "Contact modulus E*").from("Eq 1"),
+    real("work_of_adhesion_j_m2", "J/m^2", "Work of adhesion").from("Eq 1"),
+    real("interaction_range_m", "m", "Range of attraction").from("Eq 3"),
+    text("interaction", "How contact spots act on one another: \"spots\", \"point\" or \"none\"").from("Eqs 6-8"),
+    text("boundary", "What surrounds the square: \"periodic\" or \"isolated\""),
+    text("coalescence", "What happens when a spot grows over another asperity: \"cover\", \"merge\" or \"none\"").from("Eq 8"),
+    text("jump_in", "When a free asperity jumps into contact: \"wu\" or \"jkr\"").from("Eq 3"),
+    text("as_printed", "Slips of the paper that were put back, joined by +; empty if none"),
+    real("approach_step", "1", "Greatest step of the approach, in rms heights"),
+];
+
+const MAX_LOAD: &[Column] = &[real(
+    "max_load",
+    "1",
+    "F/(E* A0) at which loading turned to unloading",
+)];
+
+const RESULTS: &[Column] = &[
+    index("realization", "Number of the surface among those that share its spectrum, from 0"),
+    MAX_LOAD[0],
+    real("pull_off_load", "1", "Pull-off load over E* A0: the greatest tension while unloading"),
+    real("pull_off_load_n", "N", "Pull-off load: the greatest tension while unloading"),
+    real("area_at_max_load", "1", "A/A0 at the end of loading, the sum of the discs"),
+    real("area_union_at_max_load", "1", "A/A0 at the end of loading, the union of the discs; null where it was not computed").or_null(),
+    real("penetration_at_max_load", "1", "Approach over rms height at the end of loading"),
+    real("loss", "1", "Energy lost in the loop over E* A0 h_rms"),
+    real("loss_j", "J", "Energy lost in the loop, the integral of load over approach around it"),
+    real("loss_dk", "1", "Loss after Deng and Kesari over E* A0 h_rms, at this area, from the moments of the continuous spectrum; null for a measured surface")
+        .or_null()
+        .from("Eqs A1-A4"),
+    real("loss_dk_realised", "1", "Loss after Deng and Kesari over E* A0 h_rms, at this area, from the moments that this surface has; null where they do not define one")
+        .or_null()
+        .from("Eqs A1-A4"),
+    real("loss_ratio_dk", "1", "Loss over loss_dk; null where either is missing or the latter is 0").or_null(),
+    real("dissipated_j", "J", "Energy lost in the loop, the sum over its events"),
+    real("audit_gap", "1", "|loss_j - dissipated_j| / loss_j; null where nothing was lost").or_null(),
+    count("summit_count", "Asperities of the surface"),
+    real("summit_density_1_m2", "1/m^2", "Asperities per area"),
+    real("nayak_density_1_m2", "1/m^2", "Density of summits of a Gaussian surface with the moments that this surface has")
+        .from("Eq A4, Nayak 1971"),
+    count("contact_count_at_max_load", "Asperities in contact at the end of loading"),
+    count("step_count", "Steps of loading and of this unloading"),
+    count("unconverged_count", "Those of them whose residual stayed above the tolerance"),
+    real("tabor_min", "1", "Smallest Tabor number of the asperities").from("Eq 3"),
+    real("tabor_median", "1", "Median Tabor number of the asperities").from("Eq 3"),
+    real("tabor_max", "1", "Greatest Tabor number of the asperities; Wu's jump-in holds from 2 on").from("Eq 3"),
+    real("rms_slope", "1", "Rms of the gradient that this surface has"),
+    real("rms_curvature_1_m", "1/m", "Rms of the Laplacian that this surface has"),
+    real("nayak_parameter", "1", "m0 m4 / m2^2 that this surface has").from("Nayak 1971"),
+    real("touching_share", "1", "Share of contact spots that touch another one at the end of loading; null without contact").or_null(),
+    real("covered_share", "1", "Share of asperities in contact or covered that are covered, at the end of loading; null without contact").or_null(),
+];
+
+const REALIZATION_COLUMNS: [Column; CASE.len() + PARAMETERS.len() + RESULTS.len()] =
+    join(&[CASE, PARAMETERS, RESULTS]);
+
+/// One cycle, in numbers.
+pub static REALIZATIONS: Table = Table {
+    name: "realizations",
+    version: 1,
+    file: "statistics/realizations.parquet",
+    doc: "One row per case, realization and turning point.",
+    columns: &REALIZATION_COLUMNS,
+};
+
+/// Mean, spread and interval of one result. All are null where no realization has it; spread and interval need two.
+macro_rules! over_realizations {
+    ($name:literal, $what:literal, $source:literal) => {
+        &[
+            real(
+                concat!($name, "_mean"),
+                "1",
+                concat!("Mean over realizations: ", $what),
+            )
+            .or_null()
+            .from($source),
+            real(
+                concat!($name, "_sd"),
+                "1",
+                concat!("Standard deviation over realizations (n - 1): ", $what),
+            )
+            .or_null()
+            .from($source),
+            real(
+                concat!($name, "_ci95_low"),
+                "1",
+                concat!("Lower end of the 95 % interval of the mean: ", $what),
+            )
+            .or_null()
+            .from($source),
+            real(
+                concat!($name, "_ci95_high"),
+                "1",
+                concat!("Upper end of the 95 % interval of the mean: ", $what),
+            )
+            .or_null()
+            .from($source),
+        ]
+    };
+}
+
+const SPREADS: [&[Column]; 7] = [
+    over_realizations!("pull_off_load", "pull-off load over E* A0", ""),
+    over_realizations!("area_at_max_load", "A/A0 at the end of loading", ""),
+    over_realizations!(
+        "penetration_at_max_load",
+        "approach over rms height at the end of loading",
+        ""
+    ),
+    over_realizations!("loss", "energy lost in the loop over E* A0 h_rms", ""),
+    over_realizations!(
+        "loss_dk",
+        "loss after Deng and Kesari, continuous moments",
+        "Eqs A1-A4"
+    ),
+    over_realizations!(
+        "loss_dk_realised",
+        "loss after Deng and Kesari, realised moments",
+        "Eqs A1-A4"
+    ),
+    over_realizations!("loss_ratio_dk", "loss over loss after Deng and Kesari", ""),
+];
+
+const COUNTS: &[Column] = &[
+    count("planned_count", "Realizations that the spec asks for"),
+    count("done_count", "Realizations that are in the means"),
+    count("failed_count", "Realizations that failed"),
+    text(
+        "caution",
+        "What speaks against trusting the row, words joined by +; empty if nothing does",
+    ),
+];
+
+const CASE_COLUMNS: [Column;
+    CASE.len() + PARAMETERS.len() + MAX_LOAD.len() + 4 * SPREADS.len() + COUNTS.len()] = join(&[
+    CASE, PARAMETERS, MAX_LOAD, SPREADS[0], SPREADS[1], SPREADS[2], SPREADS[3], SPREADS[4],
+    SPREADS[5], SPREADS[6], COUNTS,
+]);
+
+/// Means over realizations.
+pub static CASES: Table = Table {
+    name: "cases",
+    version: 1,
+    file: "statistics/cases.parquet",
+    doc: "One row per case and turning point, averaged over realizations.",
+    columns: &CASE_COLUMNS,
+};
+
+/// Averaged loading and unloading paths.
+pub static CURVES: Table = Table {
+    name: "curves",
+    version: 1,
+    file: "statistics/curves.parquet",
+    doc: "One row per case, branch and point of a common grid of loads, averaged over realizations.",
+    columns: &[
+        CASE[0],
+        CASE[1],
+        real("max_load", "1", "F/(E* A0) from which this unloading began; null while loading, since one loading path serves every turning point")
+            .or_null(),
+        text("branch", "\"loading\" or \"unloading\""),
+        index("grid_index", "Number of the point on the common grid, from 0"),
+        real("load", "1", "F/(E* A0) of the point"),
+        real("area_mean", "1", "Mean of A/A0 over the realizations that reach this load"),
+        real("area_sd", "1", "Standard deviation of A/A0 (n - 1); null for fewer than two").or_null(),
+        real("penetration_mean", "1", "Mean of approach over rms height over the realizations that reach this load"),
+        real("penetration_sd", "1", "Standard deviation of approach over rms height (n - 1); null for fewer than two").or_null(),
+        count("realization_count", "Realizations that reach this load on this branch"),
+    ],
+};

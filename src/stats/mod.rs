@@ -1,0 +1,109 @@
+//! Tables in, tables out: from the steps of many cycles to means, spreads and averaged paths.
+//!
+//! Polars reads, filters, sorts and groups; every sum is taken here, in the order of the realizations, so that the tables
+//! have the same bytes with any number of threads. This room knows no physics: what is not in the steps, it is given as numbers.
+
+mod cases;
+mod curves;
+mod cycle;
+mod realizations;
+mod rows;
+mod student;
+mod summary;
+mod varying;
+mod walk;
+
+use std::path::PathBuf;
+
+pub use cases::{CAUTIONS, cases};
+pub use curves::curves;
+pub use realizations::realizations;
+pub use rows::Value;
+pub use student::{Sample, t_quantile};
+pub use summary::summary;
+pub use varying::{Values, Varying, varying};
+pub use walk::{COMPRESSION_STATIONS, Point, STATIONS, TENSION_STATIONS, Walk};
+
+use crate::store::FrameError;
+
+/// Columns by name, given from outside and copied through.
+pub type Given = Vec<(String, Value)>;
+
+/// One case: what all its realizations share.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CaseInput {
+    /// Identity of the case.
+    pub case_id: String,
+    /// The sweeps that it belongs to, joined by `+`.
+    pub sweep: String,
+    /// What defines the case: the columns that the tables `realizations` and `cases` have in common.
+    pub parameters: Given,
+    /// Its turning points, as `F/(E* A0)`.
+    pub max_loads: Vec<f64>,
+    /// How many realizations the spec asks for.
+    pub planned_count: usize,
+    /// How many of them failed.
+    pub failed_count: usize,
+}
+
+/// One finished cycle of a case.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CycleInput {
+    /// Its case.
+    pub case_id: String,
+    /// Number of the surface.
+    pub realization: i64,
+    /// The table of its steps.
+    pub steps: PathBuf,
+    /// The steps at which loading turned, by `max_load`. For a turning point that is not here, the loading step of the nearest load is taken.
+    pub turning_steps: Vec<(f64, i64)>,
+    /// `E* A0 h_rms` \[J\], by which energies are made dimensionless.
+    pub energy_scale_j: f64,
+    /// Θ after Deng and Kesari per unit of `A/A0` \[J\], from the moments of the continuous spectrum.
+    pub loss_dk_per_area_j: Option<f64>,
+    /// The same, from the moments of this surface.
+    pub loss_dk_realised_per_area_j: Option<f64>,
+    /// Every column of the table `realizations` that neither the steps nor the case can tell: numbers of summits, moments, Tabor numbers.
+    /// One that is absent is null, and refused where the table allows no null.
+    pub surface: Given,
+}
+
+/// Why a table could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum StatsError {
+    /// Polars could not read or group a table.
+    #[error("cannot aggregate {}: {source}", path.display())]
+    Steps {
+        /// The table.
+        path: PathBuf,
+        /// What Polars says.
+        source: polars::error::PolarsError,
+    },
+    /// Polars could not group rows that were in memory.
+    #[error("cannot group the rows of the table {table}: {source}")]
+    Group {
+        /// The table.
+        table: &'static str,
+        /// What Polars says.
+        source: polars::error::PolarsError,
+    },
+    /// The steps hold what no cycle can hold.
+    #[error("the steps in {} {problem}", path.display())]
+    Cycle {
+        /// The table.
+        path: PathBuf,
+        /// What is wrong, as in "have no loading branch".
+        problem: String,
+    },
+    /// A cycle names a case that was not given.
+    #[error("realization {realization} belongs to the case {case_id:?}, which was not given")]
+    UnknownCase {
+        /// The case.
+        case_id: String,
+        /// The realization.
+        realization: i64,
+    },
+    /// The rows do not fit their table.
+    #[error(transparent)]
+    Frame(#[from] FrameError),
+}

@@ -1,0 +1,113 @@
+//! Which parameters tell the cases of a table apart.
+
+use super::StatsError;
+use crate::store::{ColumnData, Frame};
+
+/// Columns that may define a case, with the symbol and the axis label of each; labels have the markup of the figures.
+const PARAMETERS: [(&str, &str, &str); 16] = [
+    ("magnification", "ζ", "magnification ζ"),
+    ("hurst", "H", "Hurst exponent H"),
+    ("rms_height_m", "h", "h_{rms} [m]"),
+    ("length_m", "L", "L [m]"),
+    (
+        "points_per_shortest_wavelength",
+        "n",
+        "points per shortest wavelength",
+    ),
+    ("contact_modulus_pa", "E*", "E^{*} [Pa]"),
+    ("work_of_adhesion_j_m2", "Δγ", "Δγ [J/m^{2}]"),
+    ("interaction_range_m", "ε", "ε [m]"),
+    ("approach_step", "step", "approach step / h_{rms}"),
+    ("interaction", "interaction", "interaction"),
+    ("boundary", "boundary", "boundary"),
+    ("coalescence", "coalescence", "coalescence"),
+    ("jump_in", "jump_in", "jump-in"),
+    ("normalization", "normalization", "normalization"),
+    ("amplitudes", "amplitudes", "amplitudes"),
+    ("as_printed", "as_printed", "as printed"),
+];
+
+/// The values of a parameter, one per row.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Values {
+    /// Numbers; those of measured surfaces may be missing.
+    Numbers(Vec<Option<f64>>),
+    /// Words.
+    Words(Vec<String>),
+}
+
+/// A parameter that differs between rows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Varying {
+    /// Name of its column.
+    pub name: &'static str,
+    /// Its symbol, a word if it has none.
+    pub symbol: &'static str,
+    /// Its name on an axis.
+    pub label: &'static str,
+    /// Its values, in the order of the rows that were asked for.
+    pub values: Values,
+}
+
+impl Varying {
+    /// The value of a row as text: `64`, `0.45`, `spots`, or `?` where it is missing.
+    pub fn text(&self, row: usize) -> String {
+        match &self.values {
+            Values::Numbers(numbers) => numbers
+                .get(row)
+                .copied()
+                .flatten()
+                .map_or_else(|| "?".to_owned(), |number| format!("{number}")),
+            Values::Words(words) => words.get(row).map_or_else(
+                || "?".to_owned(),
+                |word| {
+                    if word.is_empty() {
+                        "none".to_owned()
+                    } else {
+                        word.clone()
+                    }
+                },
+            ),
+        }
+    }
+}
+
+/// The parameters that differ between the given rows of the table `cases`, those of the surface first.
+///
+/// # Errors
+/// If the table lacks one of the columns.
+pub fn varying(cases: &Frame, rows: &[usize]) -> Result<Vec<Varying>, StatsError> {
+    let mut found = Vec::new();
+    for (name, symbol, label) in PARAMETERS {
+        let values = match cases.column(name)? {
+            ColumnData::F64(all) => {
+                let picked: Vec<Option<f64>> = rows
+                    .iter()
+                    .map(|row| all.get(*row).copied().flatten())
+                    .collect();
+                picked
+                    .windows(2)
+                    .any(|pair| pair.first() != pair.last())
+                    .then_some(Values::Numbers(picked))
+            }
+            ColumnData::Text(all) => {
+                let picked: Vec<String> = rows
+                    .iter()
+                    .map(|row| all.get(*row).cloned().flatten().unwrap_or_default())
+                    .collect();
+                picked
+                    .windows(2)
+                    .any(|pair| pair.first() != pair.last())
+                    .then_some(Values::Words(picked))
+            }
+            ColumnData::I64(_) | ColumnData::Bool(_) => None,
+        };
+        found.extend(values.map(|values| Varying {
+            name,
+            symbol,
+            label,
+            values,
+        }));
+    }
+    Ok(found)
+}

@@ -1,0 +1,209 @@
+//! Surfaces in HDF5.
+
+use std::fs;
+use std::path::Path;
+
+use hdf5_metno::file::LibraryVersion;
+use hdf5_metno::{Dataset, File, FileBuilder};
+use ndarray::{Array2, ArrayView2, s};
+
+use super::commit::commit;
+use super::error::{Cause, StoreError, fenced};
+use super::surface_header;
+pub use super::surface_header::{Generated, SURFACE_VERSION, SurfaceHeader};
+
+/// Name of the height field in a surface file.
+pub const HEIGHT: &str = "height_m";
+/// Rows and columns of a chunk.
+const CHUNK: usize = 256;
+/// A file cannot hold more than this many times its size: what deflate reaches on zeros. Own files are not packed.
+const MOST_PACKED: u64 = 1100;
+
+/// Writes a surface in place of `path`: heights from the mean plane \[m\], rows along x.
+///
+/// # Errors
+/// If the field is not square, empty or not finite, or the file cannot be written whole; what was at `path` is then
+/// still there.
+pub fn write_surface(
+    path: &Path,
+    header: &SurfaceHeader,
+    heights: ArrayView2<'_, f64>,
+) -> Result<(), StoreError> {
+    commit(
+        "write the surface to",
+        path,
+        |temporary| library(|| write_all(temporary, header, heights)),
+        |temporary| library(|| check_all(temporary, header, heights)),
+    )
+}
+
+/// Reads a surface that [`write_surface`] wrote.
+///
+/// # Errors
+/// If the file cannot be read, is damaged, or is no surface of this program.
+pub fn read_surface(path: &Path) -> Result<(SurfaceHeader, Array2<f64>), StoreError> {
+    library(|| {
+        let file = open(path)?;
+        let header = surface_header::read(&file)?;
+        Ok((header, field(&heights_of(path, &file)?, HEIGHT)?))
+    })
+    .map_err(|cause| StoreError::new("read the surface from", path, cause))
+}
+
+/// Reads what a surface file says of its surface, without the heights.
+///
+/// # Errors
+/// As [`read_surface`].
+pub fn read_header(path: &Path) -> Result<SurfaceHeader, StoreError> {
+    library(|| {
+        let file = open(path)?;
+        heights_of(path, &file)?;
+        surface_header::read(&file)
+    })
+    .map_err(|cause| StoreError::new("read the header of the surface", path, cause))
+}
+
+/// Reads a height field from any HDF5 file, a measured one for instance.
+///
+/// # Errors
+/// If the file cannot be read, or has no two-dimensional dataset of finite numbers by that name.
+pub fn read_heights(path: &Path, dataset: &str) -> Result<Array2<f64>, StoreError> {
+    library(|| {
+        let data = open(path)?.dataset(dataset)?;
+        check_extent(path, &data, dataset, MOST_PACKED)?;
+        field(&data, dataset)
+    })
+    .map_err(|cause| StoreError::new(&format!("read the dataset {dataset:?} from"), path, cause))
+}
+
+/// Runs code of the HDF5 library and puts its error into words at once, while its error stack still exists.
+fn library<T>(work: impl FnOnce() -> Result<T, Cause>) -> Result<T, Cause> {
+    fenced(work).map_err(|cause| cause.to_string().into())
+}
+
+fn options() -> FileBuilder {
+    let mut options = File::with_options();
+    // Format 1.10: its metadata have checksums, so that damage is an error and not another surface. It is also the
+    // upper bound, so that the file does not change with the library.
+    options.with_fapl(|access| {
+        access
+            .libver_bounds(LibraryVersion::V110, LibraryVersion::V110)
+            // A file is never written under its own name, so there is nothing to lock; and some file systems cannot.
+            .file_locking(false)
+    });
+    // Neither times nor the second form that attributes take beyond eight, so that equal surfaces are equal bytes.
+    options.with_fcpl(|create| create.obj_track_times(false).attr_phase_change(64, 0));
+    options
+}
+
+fn open(path: &Path) -> Result<File, Cause> {
+    // HDF5 says "unable to open file" of whatever is wrong; the operating system knows better.
+    if fs::metadata(path)?.is_dir() {
+        return Err("it is a directory".into());
+    }
+    fs::File::open(path)?;
+    Ok(options().open(path)?)
+}
+
+fn write_all(
+    path: &Path,
+    header: &SurfaceHeader,
+    heights: ArrayView2<'_, f64>,
+) -> Result<(), Cause> {
+    let (rows, columns) = heights.dim();
+    if rows != columns || rows == 0 {
+        return Err(
+            format!("its field has {rows} by {columns} heights, and must be square").into(),
+        );
+    }
+    if let Some(((row, column), height)) = heights
+        .indexed_iter()
+        .find(|(_, height)| !height.is_finite())
+    {
+        return Err(format!(
+            "its height in row {row}, column {column} is {height}, and must be finite"
+        )
+        .into());
+    }
+    let file = options().create(path)?;
+    surface_header::write(&file, header)?;
+    let chunk = CHUNK.min(rows);
+    let data = file
+        .new_dataset::<f64>()
+        .shape((rows, rows))
+        .chunk((chunk, chunk))
+        .create(HEIGHT)?;
+    surface_header::write_word(&data, "unit", "m")?;
+    for first in (0..rows).step_by(chunk) {
+        let band = first..rows.min(first + chunk);
+        // HDF5 wants a contiguous band; where the field is not, this copy is the one extra chunk row.
+        let values = heights.slice(s![band.clone(), ..]);
+        data.write_slice(values.as_standard_layout().view(), s![band, ..])?;
+    }
+    drop(data);
+    file.close()?;
+    Ok(())
+}
+
+fn check_all(
+    path: &Path,
+    header: &SurfaceHeader,
+    heights: ArrayView2<'_, f64>,
+) -> Result<(), Cause> {
+    let file = open(path)?;
+    let data = heights_of(path, &file)?;
+    let mut same = surface_header::read(&file)? == *header && data.get_shape()? == heights.shape();
+    for first in (0..heights.nrows()).step_by(CHUNK) {
+        let band = first..heights.nrows().min(first + CHUNK);
+        same = same
+            && data.read_slice_2d::<f64, _>(s![band.clone(), ..])? == heights.slice(s![band, ..]);
+    }
+    if same {
+        Ok(())
+    } else {
+        Err("what was read back is not what was written".into())
+    }
+}
+
+/// The height field of a surface file, square and no larger than the file.
+fn heights_of(path: &Path, file: &File) -> Result<Dataset, Cause> {
+    let data = file.dataset(HEIGHT)?;
+    let (rows, columns) = check_extent(path, &data, HEIGHT, 1)?;
+    if rows == columns {
+        Ok(data)
+    } else {
+        Err(format!("its field has {rows} by {columns} heights, and must be square").into())
+    }
+}
+
+/// Rows and columns of a dataset that the file can really hold, before memory is asked for.
+fn check_extent(
+    path: &Path,
+    data: &Dataset,
+    name: &str,
+    packed: u64,
+) -> Result<(usize, usize), Cause> {
+    let [rows, columns] = data.get_shape()?[..] else {
+        return Err(format!("its dataset {name:?} is not two-dimensional").into());
+    };
+    let most = fs::metadata(path)?.len().saturating_mul(packed);
+    let width = data.dtype()?.size() as u64;
+    let bytes = (rows as u64)
+        .checked_mul(columns as u64)
+        .and_then(|count| count.checked_mul(width));
+    match bytes {
+        Some(bytes) if bytes > 0 && bytes <= most => Ok((rows, columns)),
+        _ => Err(format!("its dataset {name:?} claims {rows} by {columns} values, which a file of its size cannot hold").into()),
+    }
+}
+
+/// A whole two-dimensional dataset, every value of which must be finite.
+fn field(data: &Dataset, name: &str) -> Result<Array2<f64>, Cause> {
+    let values = data.read_2d::<f64>()?;
+    match values.indexed_iter().find(|(_, value)| !value.is_finite()) {
+        None => Ok(values),
+        Some(((row, column), value)) => {
+            Err(format!("its dataset {name:?} has {value} in row {row}, column {column}").into())
+        }
+    }
+}

@@ -1,0 +1,17 @@
+//! Files: surfaces in HDF5, tables in Parquet, every one of them committed whole or not at all.
+//!
+//! This room computes nothing. What it writes depends on nothing but its arguments: no clock, host or path is stored,
+//! and equal arguments give equal bytes. What it reads it does not trust: whatever the bytes of a file are, the answer
+//! is its content or a sentence.
+
+mod builder;
+pub mod commit;
+mod error;
+mod frame;
+pub mod hdf5;
+pub mod parquet;
+mod surface_header;
+
+pub use builder::FrameBuilder;
+pub use error::{FrameError, StoreError};
+pub use frame::{ColumnData, Frame};

@@ -1,0 +1,72 @@
+//! Tables in Parquet.
+
+mod read;
+mod write;
+
+use std::path::Path;
+
+use arrow::datatypes::DataType;
+
+use crate::schema::{Kind, Table};
+
+use super::commit::commit;
+use super::error::StoreError;
+use super::frame::Frame;
+
+/// The file-level key under which a table carries its own schema, since Polars, pandas and DuckDB drop that of columns.
+pub const METADATA_KEY: &str = "hysteron";
+/// Writes a table in place of `path`. `keys` go into its file-level metadata beside the schema, `key` for one.
+///
+/// # Errors
+/// If the file cannot be written whole; what was at `path` is then still there.
+pub fn write_table(path: &Path, frame: &Frame, keys: &[(&str, String)]) -> Result<(), StoreError> {
+    let action = format!("write the table {} to", frame.table().name);
+    commit(
+        &action,
+        path,
+        |temporary| write::rows(temporary, frame, keys),
+        |temporary| {
+            if &read::rows(temporary, frame.table())? == frame {
+                Ok(())
+            } else {
+                Err("what was read back is not what was written".into())
+            }
+        },
+    )
+}
+
+/// Reads a table whose file must fit the schema in name, version, columns, kinds and nulls.
+///
+/// # Errors
+/// If the file cannot be read, is damaged, or is another table.
+pub fn read_table(path: &Path, table: &'static Table) -> Result<Frame, StoreError> {
+    read::rows(path, table).map_err(|cause| {
+        StoreError::new(&format!("read the table {} from", table.name), path, cause)
+    })
+}
+
+/// Reads one of the keys that were given to [`write_table`], if the file has it.
+///
+/// # Errors
+/// If the file cannot be read, is damaged, or is no table of this program.
+pub fn read_metadata(path: &Path, name: &str) -> Result<Option<String>, StoreError> {
+    read::metadata(path, name)
+        .map_err(|cause| StoreError::new("read the metadata of the table", path, cause))
+}
+
+/// Reads the key of the unit that wrote the table, if the file has one.
+///
+/// # Errors
+/// As [`read_metadata`].
+pub fn read_key(path: &Path) -> Result<Option<String>, StoreError> {
+    read_metadata(path, "key")
+}
+
+fn data_type(kind: Kind) -> DataType {
+    match kind {
+        Kind::F64 => DataType::Float64,
+        Kind::I64 => DataType::Int64,
+        Kind::Bool => DataType::Boolean,
+        Kind::Text => DataType::Utf8,
+    }
+}

@@ -1,0 +1,103 @@
+//! From a frame to the bytes of a file.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::path::Path;
+use std::sync::Arc;
+
+use ::parquet::arrow::ArrowWriter;
+use ::parquet::basic::{Compression, ZstdLevel};
+use ::parquet::file::metadata::KeyValue;
+use ::parquet::file::properties::{EnabledStatistics, WriterProperties};
+use ::parquet::schema::types::ColumnPath;
+use arrow::array::{ArrayRef, BooleanArray, Float64Array, Int64Array, RecordBatch, StringArray};
+use arrow::datatypes::{Field, Schema};
+
+use crate::schema::{Kind, OWN_KEYS, Table, metadata_json};
+
+use super::super::error::Cause;
+use super::super::frame::{ColumnData, Frame};
+use super::{METADATA_KEY, data_type};
+
+/// Rows of a row group: some megabytes, so that a reader can skip and a writer stays small.
+const ROW_GROUP: usize = 1 << 17;
+
+/// The Arrow schema of a table, with unit, description and source at every field.
+fn arrow_schema(table: &Table) -> Arc<Schema> {
+    let fields: Vec<Field> = table
+        .columns
+        .iter()
+        .map(|column| {
+            let known = [
+                ("unit", column.unit),
+                ("description", column.doc),
+                ("source", column.source),
+            ];
+            let known: BTreeMap<String, String> = known
+                .into_iter()
+                .filter(|(_, value)| !value.is_empty())
+                .map(|(key, value)| (key.to_owned(), value.to_owned()))
+                .collect();
+            Field::new(column.name, data_type(column.kind), column.nullable).with_metadata(known)
+        })
+        .collect();
+    Arc::new(Schema::new(fields))
+}
+
+fn own_json(table: &Table, keys: &[(&str, String)]) -> Result<String, Cause> {
+    let mut given = BTreeMap::new();
+    for (name, value) in keys {
+        if OWN_KEYS.contains(name) || given.insert(*name, value.as_str()).is_some() {
+            return Err(format!(
+                "the metadata key {name:?} was given twice or belongs to the schema"
+            )
+            .into());
+        }
+    }
+    Ok(metadata_json(table, &given))
+}
+
+fn writer_properties(table: &Table, keys: &[(&str, String)]) -> Result<WriterProperties, Cause> {
+    let mut properties = WriterProperties::builder()
+        // The same words whatever version wrote the file: versions are recorded beside the data, not in it.
+        .set_created_by("hysteron".to_owned())
+        .set_compression(Compression::ZSTD(ZstdLevel::try_new(3)?))
+        .set_max_row_group_row_count(Some(ROW_GROUP))
+        .set_statistics_enabled(EnabledStatistics::Chunk)
+        .set_key_value_metadata(Some(vec![KeyValue::new(
+            METADATA_KEY.to_owned(),
+            own_json(table, keys)?,
+        )]));
+    for column in table
+        .columns
+        .iter()
+        .filter(|column| column.kind == Kind::F64)
+    {
+        // Real numbers hardly repeat: a dictionary of them is larger than they are.
+        properties = properties.set_column_dictionary_enabled(ColumnPath::from(column.name), false);
+    }
+    Ok(properties.build())
+}
+
+/// Writes a frame into the file at `path`, which is there already.
+pub(super) fn rows(path: &Path, frame: &Frame, keys: &[(&str, String)]) -> Result<(), Cause> {
+    let schema = arrow_schema(frame.table());
+    let properties = writer_properties(frame.table(), keys)?;
+    let file = File::options().write(true).open(path)?;
+    let mut writer = ArrowWriter::try_new(file, Arc::clone(&schema), Some(properties))?;
+    let arrays = frame.columns().map(|(_, data)| array(data)).collect();
+    writer.write(&RecordBatch::try_new(schema, arrays)?)?;
+    writer.close()?;
+    Ok(())
+}
+
+fn array(data: &ColumnData) -> ArrayRef {
+    match data {
+        ColumnData::F64(values) => Arc::new(Float64Array::from(values.clone())),
+        ColumnData::I64(values) => Arc::new(Int64Array::from(values.clone())),
+        ColumnData::Bool(values) => Arc::new(BooleanArray::from(values.clone())),
+        ColumnData::Text(values) => {
+            Arc::new(values.iter().map(Option::as_deref).collect::<StringArray>())
+        }
+    }
+}

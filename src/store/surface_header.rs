@@ -1,0 +1,182 @@
+//! What a surface file says of its surface: the attributes of its root.
+
+use hdf5_metno::types::VarLenUnicode;
+use hdf5_metno::{File, H5Type, Location};
+
+use crate::model::{Amplitudes, Choice, Normalization};
+
+use super::error::Cause;
+
+/// Version of the layout of a surface file, raised whenever an attribute is renamed, removed, or changes its meaning.
+pub const SURFACE_VERSION: u32 = 1;
+/// What a surface file says of its surface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SurfaceHeader {
+    /// Side of the square \[m\].
+    pub length_m: f64,
+    /// Number of the surface among those that share its spectrum; 0 for a measured one.
+    pub realization: u64,
+    /// Whether the surface continues periodically.
+    pub periodic: bool,
+    /// Key of the unit that wrote it.
+    pub key: String,
+    /// Rms height that the surface has \[m\].
+    pub rms_height_m: f64,
+    /// Rms of the gradient that it has.
+    pub rms_slope: f64,
+    /// Rms of the Laplacian that it has \[1/m\].
+    pub rms_curvature_1_m: f64,
+    /// `m0 m4 / m2²` that it has (Nayak 1971).
+    pub nayak_parameter: f64,
+    /// How it was made; nothing for a measured surface, whose file then lacks these attributes.
+    pub generated: Option<Generated>,
+}
+
+/// How a surface was made.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Generated {
+    /// Rms height that was asked for \[m\].
+    pub target_rms_height_m: f64,
+    /// Hurst exponent (Eq 10).
+    pub hurst: f64,
+    /// Longest over shortest wavelength (Eq 10).
+    pub magnification: f64,
+    /// Seed of its phases.
+    pub seed: u64,
+    /// Grid points per shortest wavelength.
+    pub points_per_shortest_wavelength: f64,
+    /// How it got its rms height.
+    pub normalization: Normalization,
+    /// The moduli of its Fourier modes.
+    pub amplitudes: Amplitudes,
+}
+
+/// Writes a header as attributes of the root.
+pub(super) fn write(file: &File, header: &SurfaceHeader) -> Result<(), Cause> {
+    write_number(file, "schema_version", SURFACE_VERSION)?;
+    write_word(file, "key", &header.key)?;
+    write_finite(file, "length_m", header.length_m)?;
+    write_number(file, "realization", header.realization)?;
+    write_number(file, "periodic", header.periodic)?;
+    write_finite(file, "rms_height_m", header.rms_height_m)?;
+    write_finite(file, "rms_slope", header.rms_slope)?;
+    write_finite(file, "rms_curvature_1_m", header.rms_curvature_1_m)?;
+    write_finite(file, "nayak_parameter", header.nayak_parameter)?;
+    let Some(generated) = &header.generated else {
+        return Ok(());
+    };
+    write_finite(file, "target_rms_height_m", generated.target_rms_height_m)?;
+    write_finite(file, "hurst", generated.hurst)?;
+    write_finite(file, "magnification", generated.magnification)?;
+    write_number(file, "seed", generated.seed)?;
+    write_finite(
+        file,
+        "points_per_shortest_wavelength",
+        generated.points_per_shortest_wavelength,
+    )?;
+    write_word(file, "normalization", generated.normalization.word())?;
+    write_word(file, "amplitudes", generated.amplitudes.word())
+}
+
+/// Reads the header from the attributes of the root.
+pub(super) fn read(file: &File) -> Result<SurfaceHeader, Cause> {
+    let names = file.attr_names()?;
+    if !names.iter().any(|name| name == "schema_version") {
+        return Err(
+            "it is no surface of this program: it has no attribute \"schema_version\"".into(),
+        );
+    }
+    let version: u32 = number(file, "schema_version")?;
+    if version != SURFACE_VERSION {
+        return Err(format!("it has version {version} of this layout, and this program reads version {SURFACE_VERSION}").into());
+    }
+    let generated = if names.iter().any(|name| name == "hurst") {
+        Some(Generated {
+            target_rms_height_m: finite(file, "target_rms_height_m")?,
+            hurst: finite(file, "hurst")?,
+            magnification: finite(file, "magnification")?,
+            seed: number(file, "seed")?,
+            points_per_shortest_wavelength: finite(file, "points_per_shortest_wavelength")?,
+            normalization: choice(file, "normalization")?,
+            amplitudes: choice(file, "amplitudes")?,
+        })
+    } else {
+        None
+    };
+    Ok(SurfaceHeader {
+        length_m: finite(file, "length_m")?,
+        realization: number(file, "realization")?,
+        periodic: truth(file, "periodic")?,
+        key: word(file, "key")?,
+        rms_height_m: finite(file, "rms_height_m")?,
+        rms_slope: finite(file, "rms_slope")?,
+        rms_curvature_1_m: finite(file, "rms_curvature_1_m")?,
+        nayak_parameter: finite(file, "nayak_parameter")?,
+        generated,
+    })
+}
+
+fn write_number<T: H5Type>(place: &Location, name: &str, value: T) -> Result<(), Cause> {
+    Ok(place.new_attr::<T>().create(name)?.write_scalar(&value)?)
+}
+
+fn write_finite(place: &Location, name: &str, value: f64) -> Result<(), Cause> {
+    if value.is_finite() {
+        write_number(place, name, value)
+    } else {
+        Err(format!("its {name} is {value}, and must be finite").into())
+    }
+}
+
+/// Writes a word as an attribute, in the form of string that h5py gives back as `str`.
+pub(super) fn write_word(place: &Location, name: &str, value: &str) -> Result<(), Cause> {
+    let value: VarLenUnicode = value.parse()?;
+    write_number(place, name, value)
+}
+
+fn number<T: H5Type>(place: &Location, name: &str) -> Result<T, Cause> {
+    let read = || place.attr(name)?.read_scalar::<T>();
+    read().map_err(|error| bad_attribute(name, &error))
+}
+
+fn bad_attribute(name: &str, why: &dyn std::fmt::Display) -> Cause {
+    format!("its attribute {name:?} cannot be read: {why}").into()
+}
+
+fn finite(place: &Location, name: &str) -> Result<f64, Cause> {
+    let value: f64 = number(place, name)?;
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(bad_attribute(name, &format!("it is {value}")))
+    }
+}
+
+/// A truth value, read as a number first: any other byte than 0 and 1 would be no `bool` at all.
+fn truth(place: &Location, name: &str) -> Result<bool, Cause> {
+    match number::<i8>(place, name)? {
+        0 => Ok(false),
+        1 => Ok(true),
+        other => Err(bad_attribute(
+            name,
+            &format!("it is {other}, neither true nor false"),
+        )),
+    }
+}
+
+fn word(place: &Location, name: &str) -> Result<String, Cause> {
+    let value: VarLenUnicode = number(place, name)?;
+    // The library does not look whether the bytes are text.
+    String::from_utf8(value.as_bytes().to_vec()).map_err(|error| bad_attribute(name, &error))
+}
+
+fn choice<T: Choice>(place: &Location, name: &str) -> Result<T, Cause> {
+    let value = word(place, name)?;
+    T::from_word(&value).ok_or_else(|| {
+        let allowed: Vec<_> = T::WORDS.iter().map(|(word, _)| *word).collect();
+        bad_attribute(
+            name,
+            &format!("it is {value:?}; allowed: {}", allowed.join(", ")),
+        )
+    })
+}

@@ -1,0 +1,194 @@
+//! The schemas: consistent in themselves, and the files made from them up to date.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::Path;
+
+use hysteron::schema::{
+    ASPERITIES, CASES, CONTACTS, CURVES, DIRECTORY, EVENTS, Kind, REALIZATIONS, STEPS, TABLES,
+    files, metadata_json, readme_markdown, schema_json,
+};
+
+/// The unit that a column's name promises: suffixes from the longest, as the contract has them.
+fn promised(name: &str) -> &'static str {
+    let stem = ["_mean", "_sd", "_ci95_low", "_ci95_high"]
+        .iter()
+        .find_map(|end| name.strip_suffix(end))
+        .unwrap_or(name);
+    [
+        ("_j_m2", "J/m^2"),
+        ("_1_m2", "1/m^2"),
+        ("_1_m", "1/m"),
+        ("_m2", "m^2"),
+        ("_pa", "Pa"),
+        ("_m", "m"),
+        ("_n", "N"),
+        ("_j", "J"),
+    ]
+    .iter()
+    .find(|(end, _)| stem.ends_with(end))
+    .map_or("1", |(_, unit)| unit)
+}
+
+#[test]
+fn law_names_and_units_agree() {
+    for table in TABLES {
+        for column in table.columns {
+            let place = format!("{}.{}", table.name, column.name);
+            match column.kind {
+                Kind::F64 => assert_eq!(column.unit, promised(column.name), "{place}"),
+                Kind::I64 if column.name.contains("_count") => {
+                    assert_eq!(column.unit, "1", "{place}")
+                }
+                Kind::I64 | Kind::Bool | Kind::Text => assert_eq!(column.unit, "", "{place}"),
+            }
+        }
+    }
+}
+
+#[test]
+fn law_names_are_unique_plain_words_and_documented() {
+    let names: BTreeSet<_> = TABLES.iter().map(|table| table.name).collect();
+    assert_eq!(names.len(), TABLES.len());
+    for table in TABLES {
+        assert!(
+            table.version >= 1 && table.doc.ends_with('.'),
+            "{}",
+            table.name
+        );
+        let mut seen = BTreeSet::new();
+        for column in table.columns {
+            let place = format!("{}.{}", table.name, column.name);
+            assert!(seen.insert(column.name), "{place} is there twice");
+            let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
+            assert!(
+                !column.name.is_empty() && column.name.chars().all(plain),
+                "{place}"
+            );
+            assert!(
+                column.doc.len() > 5 && !column.doc.ends_with('.'),
+                "{place}: {}",
+                column.doc
+            );
+            assert_eq!(table.column(column.name), Some(column));
+        }
+        assert_eq!(table.column("no such column"), None);
+    }
+}
+
+/// The contract: these names stand in published files and are never changed.
+#[test]
+fn val_columns_are_those_of_the_contract() {
+    let contract: [(_, &str); 7] = [
+        (
+            &ASPERITIES,
+            "asperity_id x_m y_m height_m radius_m curvature_1_m curvature_min_1_m curvature_max_1_m grid_row grid_col refined",
+        ),
+        (
+            &STEPS,
+            "step branch max_load approach_m load_n area_m2 area_union_m2 contact_count covered_count jump_in_count jump_off_count cover_count uncover_count dissipated_j work_j residual_m converged iteration_count pair_evaluation_count load area penetration",
+        ),
+        (
+            &CONTACTS,
+            "step branch max_load asperity_id state contact_radius_m load_n penetration_m interaction_m",
+        ),
+        (
+            &EVENTS,
+            "step branch max_load kind asperity_id approach_m avalanche_id load_before_n load_after_n area_before_m2 area_after_m2 energy_lost_j",
+        ),
+        (
+            &REALIZATIONS,
+            "case_id sweep hurst magnification length_m rms_height_m points_per_shortest_wavelength normalization amplitudes contact_modulus_pa work_of_adhesion_j_m2 interaction_range_m interaction boundary coalescence jump_in as_printed approach_step realization max_load pull_off_load pull_off_load_n area_at_max_load area_union_at_max_load penetration_at_max_load loss loss_j loss_dk loss_dk_realised loss_ratio_dk dissipated_j audit_gap summit_count summit_density_1_m2 nayak_density_1_m2 contact_count_at_max_load step_count unconverged_count tabor_min tabor_median tabor_max rms_slope rms_curvature_1_m nayak_parameter touching_share covered_share",
+        ),
+        (
+            &CASES,
+            "case_id sweep hurst jump_in max_load pull_off_load_mean pull_off_load_sd pull_off_load_ci95_low pull_off_load_ci95_high area_at_max_load_mean penetration_at_max_load_sd loss_mean loss_dk_mean loss_dk_realised_ci95_low loss_ratio_dk_ci95_high planned_count done_count failed_count caution",
+        ),
+        (
+            &CURVES,
+            "case_id sweep max_load branch grid_index load area_mean area_sd penetration_mean penetration_sd realization_count",
+        ),
+    ];
+    for (table, names) in contract {
+        for name in names.split(' ') {
+            assert!(
+                table.column(name).is_some(),
+                "{} lost its column {name}",
+                table.name
+            );
+        }
+    }
+    assert_eq!(CASES.columns.len(), 2 + 16 + 1 + 7 * 4 + 4);
+}
+
+#[test]
+fn law_json_says_all_that_the_schema_says() {
+    for table in TABLES {
+        let text = schema_json(table);
+        assert_eq!(text, schema_json(table));
+        let json: serde_json::Value = serde_json::from_str(&text).unwrap();
+        assert_eq!(json["table"], table.name);
+        assert_eq!(json["version"], table.version);
+        let columns = json["columns"].as_array().unwrap();
+        assert_eq!(columns.len(), table.columns.len());
+        for (found, column) in columns.iter().zip(table.columns) {
+            assert_eq!(found["name"], column.name);
+            assert_eq!(found["kind"], column.kind.word());
+            assert_eq!(found["unit"], column.unit);
+            assert_eq!(found["nullable"], column.nullable);
+            assert_eq!(found["description"], column.doc);
+            assert_eq!(found["source"], column.source);
+        }
+        let keys = BTreeMap::from([("key", "0a\"1"), ("program", "hysteron")]);
+        let carried: serde_json::Value =
+            serde_json::from_str(&metadata_json(table, &keys)).unwrap();
+        assert_eq!(carried["columns"], json["columns"]);
+        assert_eq!(carried["key"], "0a\"1");
+    }
+}
+
+#[test]
+fn law_markdown_has_a_row_for_every_column() {
+    for table in TABLES {
+        let page = readme_markdown(table);
+        let rows: Vec<_> = page
+            .lines()
+            .filter(|line| line.starts_with("| `"))
+            .collect();
+        assert_eq!(rows.len(), table.columns.len());
+        for (row, column) in rows.iter().zip(table.columns) {
+            assert!(row.starts_with(&format!("| `{}` | ", column.name)));
+            assert_eq!(row.replace("\\|", "").matches('|').count(), 7, "{row}");
+        }
+    }
+}
+
+#[test]
+fn e2e_schema_files_are_up_to_date() {
+    let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join(DIRECTORY);
+    let expected: BTreeMap<_, _> = files()
+        .into_iter()
+        .map(|file| (file.name, file.content))
+        .collect();
+    let mut wrong = Vec::new();
+    for (name, content) in &expected {
+        if fs::read_to_string(directory.join(name)).ok().as_ref() != Some(content) {
+            wrong.push(name.clone());
+        }
+    }
+    for entry in fs::read_dir(&directory).into_iter().flatten() {
+        let name = entry.unwrap().file_name().into_string().unwrap();
+        // Schemas of earlier versions stay, for the files that were written with them.
+        let earlier = TABLES.iter().any(|table| {
+            (1..table.version).any(|version| name == format!("{}.v{version}.json", table.name))
+        });
+        if !expected.contains_key(&name) && !earlier {
+            wrong.push(name);
+        }
+    }
+    assert!(
+        wrong.is_empty(),
+        "schemas/ differs from src/schema/ in {}; to renew it: cargo run --release -- schema --write",
+        wrong.join(", ")
+    );
+}

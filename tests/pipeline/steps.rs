@@ -1,0 +1,163 @@
+//! Tables of steps made by hand, and cases around them, for the tests of statistics and figures.
+
+use std::path::Path;
+
+use hysteron::schema::STEPS;
+use hysteron::stats::{CaseInput, CycleInput, Given, Value};
+use hysteron::store::Frame;
+use hysteron::store::parquet::write_table;
+
+/// One step: branch, max_load, load, area, penetration, work_j.
+pub type Step = (&'static str, Option<f64>, f64, f64, f64, f64);
+
+/// E* A0 of every synthetic case \[N\].
+pub const FORCE_N: f64 = 1.0;
+/// E* A0 h_rms of every synthetic case \[J\].
+pub const ENERGY_J: f64 = 5e-6;
+
+/// Writes a table of steps.
+pub fn write(path: &Path, steps: &[Step]) {
+    let reals = |value: fn(&Step) -> f64| steps.iter().map(value).collect::<Vec<f64>>();
+    let zeros = || vec![0_usize; steps.len()];
+    let frame = Frame::of(&STEPS)
+        .count("step", 0..steps.len())
+        .text("branch", steps.iter().map(|step| step.0))
+        .f64("max_load", steps.iter().map(|step| step.1))
+        .f64("approach_m", reals(|step| step.4 * 5e-6))
+        .f64("load_n", reals(|step| step.2 * FORCE_N))
+        .f64("area_m2", reals(|step| step.3 * 1e-6))
+        .f64("area_union_m2", reals(|step| step.3 * 0.9e-6))
+        .count("contact_count", vec![19; steps.len()])
+        .count("covered_count", vec![1; steps.len()])
+        .count("jump_in_count", zeros())
+        .count("jump_off_count", zeros())
+        .count("cover_count", zeros())
+        .count("uncover_count", zeros())
+        .f64(
+            "dissipated_j",
+            reals(|step| if step.0 == "loading" { 1e-10 } else { 2e-10 }),
+        )
+        .f64("work_j", reals(|step| step.5))
+        .f64("residual_m", vec![1e-15; steps.len()])
+        .bool("converged", (0..steps.len()).map(|row| row != 3))
+        .count("iteration_count", zeros())
+        .count("pair_evaluation_count", zeros())
+        .f64("load", reals(|step| step.2))
+        .f64("area", reals(|step| step.3))
+        .f64("penetration", reals(|step| step.4))
+        .build()
+        .unwrap();
+    write_table(path, &frame, &[]).unwrap();
+}
+
+fn given(columns: &[(&str, Value)]) -> Given {
+    columns
+        .iter()
+        .map(|(name, value)| ((*name).to_owned(), value.clone()))
+        .collect()
+}
+
+/// A case with the paper's material.
+pub fn case(id: &str, sweep: &str, hurst: f64, magnification: f64, max_loads: &[f64]) -> CaseInput {
+    CaseInput {
+        case_id: id.to_owned(),
+        sweep: sweep.to_owned(),
+        parameters: given(&[
+            ("hurst", hurst.into()),
+            ("magnification", magnification.into()),
+            ("length_m", 1e-3.into()),
+            ("rms_height_m", 5e-6.into()),
+            ("points_per_shortest_wavelength", 8.0.into()),
+            ("normalization", "sample".into()),
+            ("amplitudes", "fixed".into()),
+            ("contact_modulus_pa", 1e6.into()),
+            ("work_of_adhesion_j_m2", 0.07.into()),
+            ("interaction_range_m", 1e-9.into()),
+            ("interaction", "spots".into()),
+            ("boundary", "periodic".into()),
+            ("coalescence", "cover".into()),
+            ("jump_in", "wu".into()),
+            ("as_printed", "".into()),
+            ("approach_step", 0.01.into()),
+        ]),
+        max_loads: max_loads.to_vec(),
+        planned_count: 6,
+        failed_count: 0,
+    }
+}
+
+/// A finished cycle of a case.
+pub fn cycle(case_id: &str, realization: i64, steps: &Path, dk_per_area_j: f64) -> CycleInput {
+    CycleInput {
+        case_id: case_id.to_owned(),
+        realization,
+        steps: steps.to_owned(),
+        turning_steps: Vec::new(),
+        energy_scale_j: ENERGY_J,
+        loss_dk_per_area_j: Some(dk_per_area_j),
+        loss_dk_realised_per_area_j: Some(0.93 * dk_per_area_j),
+        surface: given(&[
+            ("summit_count", Value::Whole(4000)),
+            ("summit_density_1_m2", 4e9.into()),
+            ("nayak_density_1_m2", 4.1e9.into()),
+            ("tabor_min", 20.0.into()),
+            ("tabor_median", 60.0.into()),
+            ("tabor_max", 400.0.into()),
+            ("rms_slope", 0.3.into()),
+            ("rms_curvature_1_m", 1e5.into()),
+            ("nayak_parameter", 10.0.into()),
+        ]),
+    }
+}
+
+/// A cycle that looks like one of the paper's: a rising, sawtoothed loading branch, and from each turning point an unloading branch with
+/// the given pull-off and loss.
+pub fn realistic(path: &Path, max_loads: &[f64], area: f64, pull_off: f64, loss: f64, depth: f64) {
+    let greatest = max_loads.iter().copied().fold(0.0, f64::max);
+    let mut steps: Vec<Step> = vec![("loading", None, 0.0, 0.0, 0.0, 0.0)];
+    let at = |load: f64| {
+        let share = load / greatest;
+        (area * share.powf(0.92), depth * share.powf(0.42))
+    };
+    for row in 1..=200 {
+        let wanted = greatest * (f64::from(row) / 200.0).powf(1.6);
+        let previous = greatest * (f64::from(row - 1) / 200.0).powf(1.6);
+        for turning in max_loads
+            .iter()
+            .filter(|load| previous < **load && **load <= wanted)
+        {
+            let (area, depth) = at(*turning);
+            steps.push((
+                "loading",
+                None,
+                *turning,
+                area,
+                depth,
+                loss * 3.0 * ENERGY_J * (turning / greatest),
+            ));
+        }
+        let (area, depth) = at(wanted);
+        let tooth =
+            0.03 * pull_off * f64::from(row % 7) - if row < 12 { 0.25 * pull_off } else { 0.0 };
+        steps.push(("loading", None, wanted - tooth, area, depth, 0.0));
+    }
+    for turning in max_loads {
+        let (area, depth) = at(*turning);
+        let share = turning / greatest;
+        for row in (0..160).rev() {
+            let rest = f64::from(row) / 160.0;
+            let load = (turning + pull_off) * rest.powf(1.7) - pull_off * (rest / 0.02).min(1.0);
+            let spread = area * (0.04 + 0.96 * rest.powf(1.05)) * (rest / 0.02).min(1.0);
+            let work = -loss * 2.0 * ENERGY_J * share;
+            steps.push((
+                "unloading",
+                Some(*turning),
+                load,
+                spread,
+                depth * (rest.powf(0.45) * 1.2 - 0.2),
+                work,
+            ));
+        }
+    }
+    write(path, &steps);
+}

@@ -1,0 +1,290 @@
+//! Tables in Parquet.
+
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use arrow::array::{ArrayRef, Float64Array, Int64Array, RecordBatch};
+use hysteron::schema::{ASPERITIES, CONTACTS, CURVES, EVENTS, STEPS, TABLES, Table};
+use hysteron::store::Frame;
+use hysteron::store::parquet::{METADATA_KEY, read_key, read_metadata, read_table, write_table};
+use parquet::arrow::ArrowWriter;
+use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
+use parquet::file::metadata::KeyValue;
+use parquet::file::properties::WriterProperties;
+use tempfile::{TempDir, tempdir};
+
+use super::{names, sample, says};
+
+fn written(frame: &Frame) -> (TempDir, PathBuf) {
+    let directory = tempdir().unwrap();
+    let path = directory
+        .path()
+        .join(format!("{}.parquet", frame.table().name));
+    write_table(&path, frame, &[("key", "0123abcd".to_owned())]).unwrap();
+    (directory, path)
+}
+
+#[test]
+fn e2e_every_table_comes_back_bit_by_bit() {
+    for table in TABLES {
+        for rows in [0, 1, 37] {
+            let frame = sample(table, rows);
+            let (directory, path) = written(&frame);
+            let back = read_table(&path, table).unwrap();
+            assert_eq!(back, frame, "{}", table.name);
+            for column in table
+                .columns
+                .iter()
+                .filter(|column| frame.f64_or_null(column.name).is_ok())
+            {
+                let bits = |frame: &Frame| -> Vec<_> {
+                    let values = frame.f64_or_null(column.name).unwrap();
+                    values.iter().map(|value| value.map(f64::to_bits)).collect()
+                };
+                assert_eq!(bits(&back), bits(&frame), "{}.{}", table.name, column.name);
+            }
+            assert_eq!(names(directory.path()).len(), 1);
+        }
+    }
+}
+
+#[test]
+fn e2e_a_table_of_several_row_groups_comes_back() {
+    let rows = 300_000;
+    let at = |row: usize| row as f64 * 1e-9;
+    let frame = Frame::of(&CONTACTS)
+        .count("step", (0..rows).map(|row| row / 700))
+        .text(
+            "branch",
+            (0..rows).map(|row| if row < 9 { "loading" } else { "unloading" }),
+        )
+        .f64(
+            "max_load",
+            (0..rows).map(|row| (row % 2 == 0).then_some(0.0071)),
+        )
+        .count("asperity_id", (0..rows).map(|row| row % 700))
+        .text("state", (0..rows).map(|_| "contact"))
+        .f64("contact_radius_m", (0..rows).map(at))
+        .f64("load_n", (0..rows).map(at))
+        .f64("penetration_m", (0..rows).map(at))
+        .f64("interaction_m", (0..rows).map(at))
+        .build()
+        .unwrap();
+    let (_directory, path) = written(&frame);
+    assert_eq!(read_table(&path, &CONTACTS).unwrap(), frame);
+    let reader = ParquetRecordBatchReaderBuilder::try_new(File::open(&path).unwrap()).unwrap();
+    assert_eq!(reader.metadata().num_row_groups(), 3);
+}
+
+#[test]
+fn e2e_equal_tables_are_equal_bytes() {
+    for table in TABLES {
+        let (_one, first) = written(&sample(table, 50));
+        let (_other, second) = written(&sample(table, 50));
+        assert_eq!(
+            fs::read(first).unwrap(),
+            fs::read(second).unwrap(),
+            "{}",
+            table.name
+        );
+    }
+}
+
+#[test]
+fn e2e_units_meanings_and_sources_travel_with_the_file() {
+    for table in TABLES {
+        let (_directory, path) = written(&sample(table, 4));
+        let reader = ParquetRecordBatchReaderBuilder::try_new(File::open(&path).unwrap()).unwrap();
+        for (field, column) in reader.schema().fields().iter().zip(table.columns) {
+            let note = |name| field.metadata().get(name).map_or("", |text| text.as_str());
+            assert_eq!(field.name(), column.name);
+            assert_eq!(field.is_nullable(), column.nullable);
+            assert_eq!(note("unit"), column.unit);
+            assert_eq!(note("description"), column.doc);
+            assert_eq!(note("source"), column.source);
+        }
+        let file = reader.metadata().file_metadata();
+        assert_eq!(file.created_by(), Some("hysteron"));
+        let own = file
+            .key_value_metadata()
+            .unwrap()
+            .iter()
+            .find(|entry| entry.key == METADATA_KEY);
+        let own: serde_json::Value =
+            serde_json::from_str(own.unwrap().value.as_deref().unwrap()).unwrap();
+        assert_eq!(own["table"], table.name);
+        assert_eq!(own["key"], "0123abcd");
+        assert_eq!(own["columns"][0]["description"], table.columns[0].doc);
+        assert_eq!(read_key(&path).unwrap().as_deref(), Some("0123abcd"));
+        assert_eq!(read_metadata(&path, "seed").unwrap(), None);
+    }
+}
+
+#[test]
+fn law_a_metadata_key_is_given_once_and_is_not_the_schemas_own() {
+    let directory = tempdir().unwrap();
+    let path = directory.path().join("steps.parquet");
+    let frame = sample(&STEPS, 2);
+    for keys in [vec!["columns"], vec!["key", "key"], vec!["version"]] {
+        let keys: Vec<_> = keys
+            .into_iter()
+            .map(|name| (name, "x".to_owned()))
+            .collect();
+        let message = write_table(&path, &frame, &keys).unwrap_err().to_string();
+        says(
+            &message,
+            &path,
+            &["the metadata key", "given twice or belongs to the schema"],
+        );
+    }
+    assert!(names(directory.path()).is_empty());
+}
+
+#[test]
+fn e2e_every_truncation_is_refused() {
+    let (directory, path) = written(&sample(&EVENTS, 5));
+    let whole = fs::read(&path).unwrap();
+    let short = directory.path().join("short.parquet");
+    for length in 0..whole.len() {
+        fs::write(&short, &whole[..length]).unwrap();
+        let message = read_table(&short, &EVENTS).unwrap_err().to_string();
+        says(&message, &short, &["cannot read the table events from"]);
+        assert!(read_key(&short).is_err(), "{length} of {}", whole.len());
+    }
+}
+
+/// A changed byte gives an error or a table, never a panic; what a table then holds only a content hash can tell.
+#[test]
+fn e2e_no_changed_byte_ends_the_program() {
+    let (directory, path) = written(&sample(&EVENTS, 5));
+    let whole = fs::read(&path).unwrap();
+    let other = directory.path().join("other.parquet");
+    for at in 0..whole.len() {
+        for change in [0x01, 0x80, 0xff] {
+            let mut bytes = whole.clone();
+            bytes[at] ^= change;
+            fs::write(&other, &bytes).unwrap();
+            let _ = read_table(&other, &EVENTS);
+            let _ = read_key(&other);
+        }
+    }
+}
+
+/// A file with these columns that says it is this table.
+fn foreign(path: &Path, own: Option<String>, columns: Vec<(&str, ArrayRef)>) {
+    let batch = RecordBatch::try_from_iter(columns).unwrap();
+    let notes = own.map(|text| vec![KeyValue::new(METADATA_KEY.to_owned(), text)]);
+    let properties = WriterProperties::builder()
+        .set_key_value_metadata(notes)
+        .build();
+    let mut writer = ArrowWriter::try_new(
+        File::create(path).unwrap(),
+        batch.schema(),
+        Some(properties),
+    )
+    .unwrap();
+    writer.write(&batch).unwrap();
+    writer.close().unwrap();
+}
+
+fn identity(table: &Table, version: u32) -> String {
+    format!("{{\"table\":\"{}\",\"version\":{version}}}", table.name)
+}
+
+#[test]
+fn e2e_another_table_is_told_from_this_one() {
+    let (directory, path) = written(&sample(&STEPS, 3));
+    says(
+        &read_table(&path, &CURVES).unwrap_err().to_string(),
+        &path,
+        &[
+            "cannot read the table curves from",
+            "it holds the table \"steps\"",
+        ],
+    );
+    let reals = || Arc::new(Float64Array::from(vec![1.0])) as ArrayRef;
+    let whole = || Arc::new(Int64Array::from(vec![1])) as ArrayRef;
+    let message = |own: Option<String>, columns: Vec<(&str, ArrayRef)>| {
+        let path = directory.path().join("foreign.parquet");
+        foreign(&path, own, columns);
+        let error = read_table(&path, &ASPERITIES).unwrap_err().to_string();
+        says(&error, &path, &["cannot read the table asperities from"]);
+        error
+    };
+    let good = || Some(identity(&ASPERITIES, 1));
+    assert!(
+        message(None, vec![("x_m", reals())])
+            .contains("it is no table of this program: it has no metadata key \"hysteron\"")
+    );
+    assert!(message(Some("{".to_owned()), vec![("x_m", reals())]).contains("EOF"));
+    assert!(
+        message(Some("[]".to_owned()), vec![("x_m", reals())]).contains("it holds the table \"\"")
+    );
+    assert!(
+        message(Some(identity(&ASPERITIES, 2)), vec![("x_m", reals())])
+            .contains("it has version 2 of this table, and this program reads version 1")
+    );
+    assert!(
+        message(good(), vec![("x_m", reals())]).contains("it lacks the column \"asperity_id\"")
+    );
+    assert!(
+        message(good(), vec![("asperity_id", reals())])
+            .contains("its column \"asperity_id\" holds Float64, not i64")
+    );
+    let all = |last: Option<&'static str>| {
+        let mut columns: Vec<(&str, ArrayRef)> = ASPERITIES
+            .columns
+            .iter()
+            .filter(|column| column.name != "refined")
+            .map(|column| {
+                (
+                    column.name,
+                    if column.name.ends_with("_m") {
+                        reals()
+                    } else {
+                        whole()
+                    },
+                )
+            })
+            .collect();
+        columns.push((
+            "refined",
+            Arc::new(arrow::array::BooleanArray::from(vec![true])),
+        ));
+        columns.extend(last.map(|name| (name, reals())));
+        columns
+    };
+    assert!(
+        message(good(), all(Some("mood")))
+            .contains("it has a column \"mood\" that version 1 does not know")
+    );
+    let mut swapped = all(None);
+    swapped.swap(0, 1);
+    assert!(message(good(), swapped).contains("its columns are repeated or in another order"));
+    let mut holed = all(None);
+    holed[1].1 = Arc::new(Float64Array::from(vec![None]));
+    assert!(message(good(), holed).contains("lacks a value in the column \"x_m\", row 0"));
+    let mut endless = all(None);
+    endless[1].1 = Arc::new(Float64Array::from(vec![f64::NAN]));
+    assert!(message(good(), endless).contains("was given NaN in the column \"x_m\", row 0"));
+}
+
+#[test]
+fn e2e_what_is_no_parquet_file_is_refused() {
+    let directory = tempdir().unwrap();
+    let path = directory.path().join("a.parquet");
+    says(
+        &read_table(&path, &STEPS).unwrap_err().to_string(),
+        &path,
+        &["No such file"],
+    );
+    fs::write(&path, "not a table, whatever its name says").unwrap();
+    says(
+        &read_table(&path, &STEPS).unwrap_err().to_string(),
+        &path,
+        &["cannot read the table steps from"],
+    );
+    let error = read_table(directory.path(), &STEPS).unwrap_err();
+    says(&error.to_string(), directory.path(), &["directory"]);
+}
