@@ -66,7 +66,7 @@ fn law_names_are_unique_plain_words_and_documented() {
                 "{place}"
             );
             assert!(
-                column.doc.len() > 5 && !column.doc.ends_with('.'),
+                column.doc.len() > 3 && !column.doc.ends_with('.'),
                 "{place}: {}",
                 column.doc
             );
