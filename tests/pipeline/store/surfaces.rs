@@ -246,12 +246,10 @@ fn e2e_no_changed_byte_ends_the_program() {
     let whole = fs::read(&path).unwrap();
     let other = directory.path().join("other.h5");
     for at in 0..whole.len() {
-        for change in [0x01, 0xff] {
-            let mut bytes = whole.clone();
-            bytes[at] ^= change;
-            fs::write(&other, &bytes).unwrap();
-            let _ = read_surface(&other);
-        }
+        let mut bytes = whole.clone();
+        bytes[at] ^= [0x01, 0x80, 0xff][at % 3];
+        fs::write(&other, &bytes).unwrap();
+        let _ = read_surface(&other);
     }
 }
 
