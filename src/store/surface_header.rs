@@ -1,6 +1,6 @@
 //! What a surface file says of its surface: the attributes of its root.
 
-use hdf5_metno::types::VarLenUnicode;
+use hdf5_metno::types::{FixedUnicode, TypeDescriptor};
 use hdf5_metno::{File, H5Type, Location};
 
 use crate::model::{Amplitudes, Choice, Normalization};
@@ -9,6 +9,9 @@ use super::error::Cause;
 
 /// Version of the layout of a surface file, raised whenever an attribute is renamed, removed, or changes its meaning.
 pub const SURFACE_VERSION: u32 = 1;
+/// Bytes that a word may have: a key is the longest.
+const LONGEST_WORD: usize = 256;
+
 /// What a surface file says of its surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SurfaceHeader {
@@ -128,10 +131,22 @@ fn write_finite(place: &Location, name: &str, value: f64) -> Result<(), Cause> {
     }
 }
 
-/// Writes a word as an attribute, in the form of string that h5py gives back as `str`.
+/// Writes a word as an attribute, as a string of fixed length.
+///
+/// Strings of variable length would be nicer to read for h5py, but HDF5 keeps them in a heap that has no checksum, and
+/// a single changed byte there was seen to keep the library busy for ever.
 pub(super) fn write_word(place: &Location, name: &str, value: &str) -> Result<(), Cause> {
-    let value: VarLenUnicode = value.parse()?;
-    write_number(place, name, value)
+    if value.len() > LONGEST_WORD || value.contains('\0') {
+        return Err(format!(
+            "its {name} {value:?} cannot be stored: it may have {LONGEST_WORD} bytes, none of them 0"
+        )
+        .into());
+    }
+    let word: FixedUnicode<LONGEST_WORD> = value.parse()?;
+    // HDF5 knows no string of length 0; an empty word is one zero byte.
+    let stored = TypeDescriptor::FixedUnicode(value.len().max(1));
+    let attribute = place.new_attr_builder().empty_as(&stored).create(name)?;
+    Ok(attribute.write_scalar(&word)?)
 }
 
 fn number<T: H5Type>(place: &Location, name: &str) -> Result<T, Cause> {
@@ -165,7 +180,7 @@ fn truth(place: &Location, name: &str) -> Result<bool, Cause> {
 }
 
 fn word(place: &Location, name: &str) -> Result<String, Cause> {
-    let value: VarLenUnicode = number(place, name)?;
+    let value: FixedUnicode<LONGEST_WORD> = number(place, name)?;
     // The library does not look whether the bytes are text.
     String::from_utf8(value.as_bytes().to_vec()).map_err(|error| bad_attribute(name, &error))
 }

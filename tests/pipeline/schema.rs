@@ -38,7 +38,7 @@ fn law_names_and_units_agree() {
             match column.kind {
                 Kind::F64 => assert_eq!(column.unit, promised(column.name), "{place}"),
                 Kind::I64 if column.name.contains("_count") => {
-                    assert_eq!(column.unit, "1", "{place}")
+                    assert_eq!(column.unit, "1", "{place}");
                 }
                 Kind::I64 | Kind::Bool | Kind::Text => assert_eq!(column.unit, "", "{place}"),
             }
@@ -66,7 +66,7 @@ fn law_names_are_unique_plain_words_and_documented() {
                 "{place}"
             );
             assert!(
-                column.doc.len() > 5 && !column.doc.ends_with('.'),
+                column.doc.len() > 3 && !column.doc.ends_with('.'),
                 "{place}: {}",
                 column.doc
             );
