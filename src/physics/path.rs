@@ -17,6 +17,9 @@ pub const EVENT_TOLERANCE: f64 = 1e-6;
 /// A spot counts as at the end of its branch when its penetration is this close to it, of the jump-off penetration.
 const END_TOLERANCE: f64 = 2e-5;
 
+/// Changes other than leaving that one asperity takes between two grid points of the approach.
+const FLIPS: u8 = 3;
+
 /// Tolerance of the load at a turning point, relative.
 const LOAD_TOLERANCE: f64 = 1e-9;
 
@@ -59,6 +62,10 @@ pub(crate) struct Path<'p> {
     /// `∫F dΔ` since the branch began \[J\].
     pub(crate) work_j: f64,
     avalanches: u64,
+    /// How often each asperity has been covered, uncovered or has jumped in since the last grid point of the approach.
+    flips: Vec<u8>,
+    /// Changes that were not taken since then because the asperity had flipped too often.
+    pub(crate) held: Vec<usize>,
 }
 
 /// The nearest approach on the way that is known not to be free of events: what is due there, or nothing where no equilibrium was found.
@@ -77,7 +84,7 @@ impl<'p> Path<'p> {
         let mut state = state;
         solver.newton(&mut state).map_err(|unsettled| stuck(&state, unsettled, solver.effort))?;
         let node = settled_node(&mut solver, state);
-        Ok(Self { solver, node, events: Vec::new(), work_j: 0.0, avalanches: 0 })
+        Ok(Self { solver, node, events: Vec::new(), work_j: 0.0, avalanches: 0, flips: vec![0; problem.len()], held: Vec::new() })
     }
 
     pub(crate) fn effort(&self) -> Effort {
@@ -90,6 +97,8 @@ impl<'p> Path<'p> {
         let tolerance = EVENT_TOLERANCE * unit;
         let mut obstacle: Option<Obstacle> = None;
         let mut tries = 0;
+        self.flips.fill(0);
+        self.held.clear();
         loop {
             let here = self.node.state.approach_m;
             if stop.is_some_and(|stop| self.node.totals.load_n >= stop * (1.0 - LOAD_TOLERANCE)) {
@@ -123,7 +132,7 @@ impl<'p> Path<'p> {
                 Err(_) => obstacle = Some(Obstacle { approach: trial, due: Vec::new(), load: f64::NAN, weight: 1.0 }),
                 Ok(mut next) => {
                     next.free = self.solver.free_penetrations(&next.state);
-                    let due = self.solver.problem.triggers(&next.state, &next.free);
+                    let due = self.due(&next.state, &next.free);
                     let over = stop.is_some_and(|stop| next.totals.load_n > stop * (1.0 + LOAD_TOLERANCE));
                     if due.is_empty() && !over {
                         self.accept(next, reach);
@@ -138,6 +147,8 @@ impl<'p> Path<'p> {
                     if std::env::var("DBG").is_ok() { eprintln!("   due {:?} first {:?} d {:e}", known.due, first, trial-here); }
                             let close = (trial - first.map_or(here, |(approach, _)| approach)).abs() <= tolerance || (trial - here).abs() <= tolerance;
                     match first {
+                        // A load that jumps at an event is met by the event; one that cannot be met more closely is met.
+                        Some((_, None)) if tries >= 60 => self.accept(next, reach),
                         Some((_, Some(change))) if close => {
                             self.accept(next, reach);
                             self.avalanche(change)?;
@@ -148,6 +159,22 @@ impl<'p> Path<'p> {
                 }
             }
         }
+    }
+
+    /// The changes that are due, but for those of asperities that flip to and fro: such an asperity is held as it is up to the next grid
+    /// point, and counted. Two spots that each grow when the other is there, and withdraw when it is not, have no rest otherwise.
+    fn due(&mut self, state: &State, free: &[f64]) -> Vec<Trigger> {
+        let mut due = self.solver.problem.triggers(state, free);
+        due.retain(|trigger| {
+            let i = trigger.change.asperity;
+            let orphan = matches!(state.status[i], Status::Covered { by, .. } if state.radius[by] == 0.0);
+            let taken = trigger.change.kind == Kind::JumpOff || orphan || self.flips[i] < FLIPS;
+            if !taken && !self.held.contains(&i) {
+                self.held.push(i);
+            }
+            taken
+        });
+        due
     }
 
     /// The first obstacle's approach by linear interpolation from here: of a change, or (nothing) of the load at which to stop.
@@ -168,16 +195,16 @@ impl<'p> Path<'p> {
     /// Where to look next before an obstacle.
     fn aim(&self, known: &Obstacle, stop: Option<f64>, tolerance: f64, tries: u32) -> f64 {
         let here = self.node.state.approach_m;
-        if (known.approach - here).abs() <= tolerance {
-            return known.approach;
-        }
+        let gap = (known.approach - here).abs();
         let middle = 0.5 * (here + known.approach);
         match self.first_due(known, stop) {
-            // A little beyond a change, so that it is found due; at a load itself.
-            Some((approach, change)) if tries < 12 || tries % 2 == 0 => {
-                let beyond = if change.is_some() { 0.3 * tolerance } else { 0.0 };
-                let aimed = approach + beyond.copysign(known.approach - here);
-                if (aimed - here).abs() < (known.approach - here).abs() && aimed != here { aimed } else { middle }
+            // At a load itself.
+            Some((approach, None)) if tries < 60 => approach,
+            _ if gap <= tolerance => known.approach,
+            // A little beyond a change, so that it is found due.
+            Some((approach, Some(_))) if tries < 12 || tries % 2 == 0 => {
+                let aimed = approach + (0.3 * tolerance).copysign(known.approach - here);
+                if (aimed - here).abs() < gap { aimed } else { middle }
             }
             _ => middle,
         }
@@ -293,9 +320,7 @@ impl<'p> Path<'p> {
         loop {
             let free = self.solver.free_penetrations(&state);
             let next = self
-                .solver
-                .problem
-                .triggers(&state, &free)
+                .due(&state, &free)
                 .into_iter()
                 .filter(|trigger| !returns(&trigger.change, &moved, &state))
                 .max_by(|u, v| u.overshoot.total_cmp(&v.overshoot).then(v.change.asperity.cmp(&u.change.asperity)));
@@ -350,6 +375,9 @@ impl<'p> Path<'p> {
     fn record(&mut self, moved: &[Change], before: Totals, state: &State) -> Totals {
         let after = self.solver.problem.totals(state);
         for (k, change) in moved.iter().enumerate() {
+            if change.kind != Kind::JumpOff {
+                self.flips[change.asperity] = self.flips[change.asperity].saturating_add(1);
+            }
             let from = if k == 0 { before } else { after };
             self.events.push(Event {
                 kind: change.kind,
@@ -374,11 +402,15 @@ impl<'p> Path<'p> {
                     let radius = state.radius[by];
                     state.status[i] = Status::Covered { by, release_m: release_m.min(radius) };
                 }
-                Status::Contact => {
-                    if let Some((by, _)) = problem.covering(state, i).filter(|_| change.kind == Kind::Uncover) {
-                        state.recover_m[i] = state.radius[by] * (1.0 + 1e-9);
+                Status::Contact if change.kind == Kind::Uncover => {
+                    let pair = change.by.filter(|by| state.status[*by] == Status::Contact).into_iter().chain([i]);
+                    for k in pair {
+                        if let Some((by, _)) = problem.covering(state, k).filter(|(by, _)| state.radius[*by] > state.radius[k]) {
+                            state.recover_m[k] = state.radius[by] * (1.0 + 1e-9);
+                        }
                     }
                 }
+                Status::Contact => {}
                 Status::Free => state.barred[i] = free[i] >= problem.jump_in[i],
             }
         }
@@ -387,17 +419,17 @@ impl<'p> Path<'p> {
 
 /// Whether a change would undo another of the same avalanche.
 fn returns(change: &Change, moved: &[Change], state: &State) -> bool {
-    let undone: &[Kind] = match change.kind {
-        Kind::JumpIn => &[Kind::JumpOff, Kind::Uncover],
-        Kind::Cover => &[Kind::Uncover],
+    let i = change.asperity;
+    moved.iter().any(|earlier| match (change.kind, earlier.kind) {
+        (Kind::JumpIn, Kind::JumpOff | Kind::Uncover) => earlier.asperity == i,
+        // Neither by the same spot, nor with the parts exchanged: of two near asperities either may be the greater alone.
+        (Kind::Cover, Kind::Uncover) => earlier.asperity == i || (earlier.by == Some(i) && change.by == Some(earlier.asperity)),
         // Where the covering spot has gone altogether, nothing is left to ride with.
-        Kind::Uncover => match state.status[change.asperity] {
-            Status::Covered { by, .. } if state.radius[by] > 0.0 => &[Kind::Cover],
-            _ => &[],
-        },
-        Kind::JumpOff | Kind::Snap => &[],
-    };
-    moved.iter().any(|earlier| earlier.asperity == change.asperity && undone.contains(&earlier.kind))
+        (Kind::Uncover, Kind::Cover) => {
+            earlier.asperity == i && matches!(state.status[i], Status::Covered { by, .. } if state.radius[by] > 0.0)
+        }
+        _ => false,
+    })
 }
 
 fn settled_node(solver: &mut Solver<'_>, state: State) -> Node {
