@@ -71,12 +71,17 @@ impl<'p> Solver<'p> {
 
     /// Newton's method on the radii, from those of `state`, at its approach, with its spots.
     pub(crate) fn newton(&mut self, state: &mut State) -> Result<(), Unsettled> {
+        self.descend(state, 0.1)
+    }
+
+    /// Newton's method, each step shortened down to the share `least` of itself until it descends.
+    fn descend(&mut self, state: &mut State, least: f64) -> Result<(), Unsettled> {
         let tolerance = self.problem.tolerance_m();
         let mut start: Vec<f64> = Vec::new();
         let mut step: Vec<f64> = Vec::new();
         let mut before = f64::INFINITY;
         let mut share = 1.0;
-        for _ in 0..40 {
+        for _ in 0..80 {
             self.effort.iterations += 1;
             let worst = self.evaluate(state);
             if worst.residual_m <= tolerance {
@@ -91,7 +96,7 @@ impl<'p> Solver<'p> {
             } else {
                 // No descent, or not a number: half as far from where the step began.
                 share *= 0.5;
-                if share < 0.1 || start.is_empty() {
+                if share < least || start.is_empty() {
                     return Err(worst);
                 }
             }
@@ -105,8 +110,9 @@ impl<'p> Solver<'p> {
     /// Overdamped relaxation from the radii of `state`, at its approach. Spots that leave or are covered on the way are returned.
     pub(crate) fn relax(&mut self, state: &mut State) -> Result<Vec<Change>, Unsettled> {
         let tolerance = self.problem.tolerance_m();
-        let mut changes = Vec::new();
+        let mut changes: Vec<Change> = Vec::new();
         let mut time = 1.0;
+        let mut finish = 100.0;
         for _ in 0..600 {
             self.effort.iterations += 1;
             let worst = self.evaluate(state);
@@ -119,8 +125,19 @@ impl<'p> Solver<'p> {
             if let Some(change) = self.overtaken(state) {
                 state.set(change.asperity, change.status(self.problem), 0.0);
                 changes.push(change);
-                time = 1.0;
+                (time, finish) = (1.0, 100.0);
                 continue;
+            }
+            if time > finish {
+                // Nearly at rest: Newton's method finishes. At the edge of a spot, where the slope of its field jumps, implicit steps would go
+                // to and fro for ever, while short steps that descend arrive.
+                let mut end = state.clone();
+                if self.descend(&mut end, 1e-6).is_ok() {
+                    *state = end;
+                    continue;
+                }
+                self.evaluate(state);
+                finish *= 1e3;
             }
             let mut step = Vec::new();
             for _ in 0..24 {

@@ -3,10 +3,10 @@
 //! An asperity jumps in where its penetration reaches its jump-in distance; it jumps off where its own branch ends; it is covered where
 //! a greater spot reaches its centre, and uncovered where that spot has withdrawn from it.
 //!
-//! Covering takes a load away, so it moves the covering spot: if the load was tensile, the spot shrinks and would release the asperity
-//! at once, which would draw the spot out again, for ever. So the radius that the spot has after covering is the one at which it
-//! releases, and the radius that it has after uncovering is the one that it must exceed to cover again. Both make the change exactly
-//! reversible in the approach, and neither depends on its step.
+//! Covering takes a load away, so it moves the covering spot: if the load was tensile, the spot shrinks and would release the asperity at
+//! once, which would draw the spot out again, for ever. So the radius that the spot has after covering is the one below which it
+//! releases; and where uncovering would only end in being covered again, or in the two changing parts, it is not done, and tried
+//! again when the spot has shrunk by another hundredth. Neither depends on the step of the approach.
 
 use super::state::{Problem, State, Status};
 use crate::model::Coalescence;
@@ -50,6 +50,20 @@ pub(crate) struct Change {
 }
 
 impl Change {
+    /// Whether this would undo one of the changes that have `moved` in the same avalanche.
+    pub(crate) fn returns(&self, moved: &[Self], state: &State) -> bool {
+        let i = self.asperity;
+        moved.iter().any(|earlier| match (self.kind, earlier.kind) {
+            (Kind::JumpIn, Kind::JumpOff | Kind::Uncover) => earlier.asperity == i,
+            (Kind::Cover, Kind::Uncover) => earlier.asperity == i,
+            // Where the covering spot has gone altogether, nothing is left to ride with.
+            (Kind::Uncover, Kind::Cover) => {
+                earlier.asperity == i && matches!(state.status[i], Status::Covered { by, .. } if state.radius[by] > 0.0)
+            }
+            _ => false,
+        })
+    }
+
     /// The status of an asperity that this change takes out of contact.
     pub(crate) fn status(&self, problem: &Problem) -> Status {
         match (self.kind, self.by) {
@@ -118,7 +132,7 @@ impl Problem {
             }
             (Kind::Cover, Some(by)) => {
                 let distance = self.neighbours.distance(&self.positions[i], &self.positions[by]);
-                state.radius[by] / distance.max(state.recover_m[i]) - 1.0
+                state.radius[by] / distance - 1.0
             }
             (Kind::Uncover, _) => match state.status[i] {
                 // A covering asperity that is itself no spot any more covers nothing.

@@ -17,6 +17,9 @@ pub const EVENT_TOLERANCE: f64 = 1e-6;
 /// A spot counts as at the end of its branch when its penetration is this close to it, of the jump-off penetration.
 const END_TOLERANCE: f64 = 2e-5;
 
+/// Where uncovering an asperity is in vain, it is tried again when the covering spot has shrunk to this share of its radius.
+const RETRY: f64 = 0.99;
+
 /// Changes other than leaving that one asperity takes between two grid points of the approach.
 const FLIPS: u8 = 3;
 
@@ -81,9 +84,7 @@ impl<'p> Path<'p> {
     /// A path from a state in equilibrium.
     pub(crate) fn new(problem: &'p Problem, state: State) -> Result<Self, PhysicsError> {
         let mut solver = Solver::new(problem);
-        let mut state = state;
-        solver.newton(&mut state).map_err(|unsettled| stuck(&state, unsettled, solver.effort))?;
-        let node = settled_node(&mut solver, state);
+        let node = settled_node(&mut solver, state)?;
         Ok(Self { solver, node, events: Vec::new(), work_j: 0.0, avalanches: 0, flips: vec![0; problem.len()], held: Vec::new() })
     }
 
@@ -276,11 +277,6 @@ impl<'p> Path<'p> {
                 next.state.barred[i] &= next.free[i] >= self.solver.problem.jump_in[i];
             }
         }
-        for i in 0..next.state.recover_m.len() {
-            if next.state.recover_m[i] > 0.0 && self.solver.problem.covering(&next.state, i).is_none() {
-                next.state.recover_m[i] = 0.0;
-            }
-        }
         self.node = next;
     }
 
@@ -308,7 +304,8 @@ impl<'p> Path<'p> {
         self.avalanches += 1;
         let mut state = self.node.state.clone();
         let free = std::mem::take(&mut self.node.free);
-        let (after, moved) = self.take(&mut state, first, &free, self.node.totals)?;
+        let mut moved = Vec::new();
+        let after = self.take(&mut state, first, &free, self.node.totals, &mut moved)?;
         self.follow(state, after, moved)
     }
 
@@ -320,27 +317,33 @@ impl<'p> Path<'p> {
             let next = self
                 .due(&state, &free)
                 .into_iter()
-                .filter(|trigger| !returns(&trigger.change, &moved, &state))
+                .filter(|trigger| !trigger.change.returns(&moved, &state))
                 .max_by(|u, v| u.overshoot.total_cmp(&v.overshoot).then(v.change.asperity.cmp(&u.change.asperity)));
             let Some(next) = next else {
                 self.latch(&mut state, &free, &moved);
-                self.node = settled_node(&mut self.solver, state);
+                self.node = settled_node(&mut self.solver, state)?;
                 return Ok(());
             };
             if moved.len() > bound {
                 let asperity = next.change.asperity;
                 return Err(PhysicsError::EndlessAvalanche { approach_m: state.approach_m, events: moved.len(), asperity });
             }
-            let (after, more) = self.take(&mut state, next.change, &free, totals)?;
-            totals = after;
-            moved.extend(more);
+            totals = self.take(&mut state, next.change, &free, totals, &mut moved)?;
         }
     }
 
-    /// Applies one change, lets the rest relax and writes both down.
-    fn take(&mut self, state: &mut State, change: Change, free: &[f64], before: Totals) -> Result<(Totals, Vec<Change>), PhysicsError> {
+    /// Applies one change, lets the rest relax and writes both down, and adds them to what has `moved` in this avalanche.
+    fn take(
+        &mut self,
+        state: &mut State,
+        change: Change,
+        free: &[f64],
+        before: Totals,
+        moved: &mut Vec<Change>,
+    ) -> Result<Totals, PhysicsError> {
         let i = change.asperity;
         let asperity = self.solver.problem.asperities[i];
+        let covered = state.clone();
         match change.kind {
             Kind::JumpIn => {
                 let landed = free.get(i).and_then(|d| asperity.radius_at_penetration(*d)).unwrap_or(asperity.jump_off_radius());
@@ -350,7 +353,7 @@ impl<'p> Path<'p> {
                 if let Some((by, release_m)) = self.solver.problem.covering(state, i) {
                     // Another spot covers it as well: nothing moves.
                     state.set(i, Status::Covered { by, release_m }, 0.0);
-                    return Ok((before, Vec::new()));
+                    return Ok(before);
                 }
                 match asperity.radius_at_penetration(self.solver.penetration_of(state, i)) {
                     Some(radius) => state.set(i, Status::Contact, radius),
@@ -360,13 +363,32 @@ impl<'p> Path<'p> {
             Kind::JumpOff | Kind::Cover | Kind::Snap => state.set(i, change.status(self.solver.problem), 0.0),
         }
         let start = state.clone();
-        let mut moved = vec![change];
+        let mut taken = vec![change];
         if self.solver.newton(state).is_err() {
             *state = start;
-            moved.extend(self.solver.relax(state).map_err(|unsettled| stuck(state, unsettled, self.solver.effort))?);
+            taken.extend(self.solver.relax(state).map_err(|unsettled| stuck(state, unsettled, self.solver.effort))?);
         }
-        let after = self.record(&moved, before, state);
-        Ok((after, moved))
+        if change.kind == Kind::Uncover && self.vain(&change, state) {
+            *state = covered;
+            if let Status::Covered { by, .. } = state.status[i] {
+                state.status[i] = Status::Covered { by, release_m: RETRY * state.radius[by] };
+            }
+            return Ok(before);
+        }
+        let after = self.record(&taken, before, state);
+        moved.extend(taken);
+        Ok(after)
+    }
+
+    /// Whether an uncovering was in vain: the asperity is to be covered again at once, or its own spot covers the one that covered it.
+    fn vain(&self, change: &Change, state: &State) -> bool {
+        let i = change.asperity;
+        let exchanged = |k: usize, by: Option<usize>| k == i || (Some(k) == change.by && by == Some(i));
+        let covered = |k: usize| matches!(state.status[k], Status::Covered { by, .. } if exchanged(k, Some(by)));
+        let due = self.solver.problem.triggers(state, &[]);
+        covered(i)
+            || change.by.is_some_and(covered)
+            || due.iter().any(|t| t.change.kind == Kind::Cover && exchanged(t.change.asperity, t.change.by))
     }
 
     /// Writes changes down that led from `before` to `state`; the energy of changes within one relaxation is the first one's.
@@ -400,14 +422,6 @@ impl<'p> Path<'p> {
                     let radius = state.radius[by];
                     state.status[i] = Status::Covered { by, release_m: release_m.min(radius) };
                 }
-                Status::Contact if change.kind == Kind::Uncover => {
-                    let pair = change.by.filter(|by| state.status[*by] == Status::Contact).into_iter().chain([i]);
-                    for k in pair {
-                        if let Some((by, _)) = problem.covering(state, k).filter(|(by, _)| state.radius[*by] > state.radius[k]) {
-                            state.recover_m[k] = state.radius[by] * (1.0 + 1e-9);
-                        }
-                    }
-                }
                 Status::Contact => {}
                 Status::Free => state.barred[i] = free[i] >= problem.jump_in[i],
             }
@@ -415,27 +429,14 @@ impl<'p> Path<'p> {
     }
 }
 
-/// Whether a change would undo another of the same avalanche.
-fn returns(change: &Change, moved: &[Change], state: &State) -> bool {
-    let i = change.asperity;
-    moved.iter().any(|earlier| match (change.kind, earlier.kind) {
-        (Kind::JumpIn, Kind::JumpOff | Kind::Uncover) => earlier.asperity == i,
-        // Neither by the same spot, nor with the parts exchanged: of two near asperities either may be the greater alone.
-        (Kind::Cover, Kind::Uncover) => earlier.asperity == i || (earlier.by == Some(i) && change.by == Some(earlier.asperity)),
-        // Where the covering spot has gone altogether, nothing is left to ride with.
-        (Kind::Uncover, Kind::Cover) => {
-            earlier.asperity == i && matches!(state.status[i], Status::Covered { by, .. } if state.radius[by] > 0.0)
-        }
-        _ => false,
-    })
-}
-
-fn settled_node(solver: &mut Solver<'_>, state: State) -> Node {
+/// A node from an equilibrium: the solve only confirms it, and has its tangent.
+fn settled_node(solver: &mut Solver<'_>, mut state: State) -> Result<Node, PhysicsError> {
+    solver.newton(&mut state).map_err(|unsettled| stuck(&state, unsettled, solver.effort))?;
     let free = solver.free_penetrations(&state);
     let totals = solver.problem.totals(&state);
     let rates = solver.rates(&state);
     let load_slope = load_slope(solver.problem, &state, &rates);
-    Node { state, totals, free, rates, load_slope }
+    Ok(Node { state, totals, free, rates, load_slope })
 }
 
 fn load_slope(problem: &Problem, state: &State, rates: &[f64]) -> f64 {

@@ -182,9 +182,6 @@ pub struct State {
     pub status: Vec<Status>,
     /// Contact radius of each asperity \[m\], 0 out of contact.
     pub radius: Vec<f64>,
-    /// The radius of the covering spot that an uncovered asperity must exceed to be covered again \[m\]; 0 usually. It is set where
-    /// uncovering made the spot grow beyond the asperity's centre, and forgotten when the spot has withdrawn from there.
-    pub recover_m: Vec<f64>,
     /// Asperities that left while others still invited them back: they stay free until their penetration falls below the jump-in.
     pub barred: Vec<bool>,
     /// Asperities in contact, ascending.
@@ -204,7 +201,6 @@ impl State {
             approach_m,
             status: vec![Status::Free; n],
             radius: vec![0.0; n],
-            recover_m: vec![0.0; n],
             barred: vec![false; n],
             contacts: Vec::new(),
             displacement: Vec::new(),
