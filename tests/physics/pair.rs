@@ -70,8 +70,9 @@ fn law_the_field_is_continuous_at_the_edge() {
         }
     }
     let (indentation, adhesion) = dimensionless_field(1.0);
-    close("indentation", indentation, FRAC_PI_2, 1e-15);
-    close("adhesion", adhesion, FRAC_PI_2, 1e-15);
+    // As good as against the many digits.
+    close("indentation", indentation, FRAC_PI_2, 1e-14);
+    close("adhesion", adhesion, FRAC_PI_2, 1e-14);
 }
 
 #[test]
