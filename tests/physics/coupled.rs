@@ -64,9 +64,8 @@ fn law_a_lattice_is_its_own_cell() {
     // the one act as points.
     let (n, radius) = (3, 3e-5);
     let side = LENGTH / f64::from(n);
-    let summits: Vec<Summit> = (0..n * n)
-        .map(|k| asperity((f64::from(k / n) + 0.3) * side, (f64::from(k % n) + 0.8) * side, 0.0, radius))
-        .collect();
+    let summits: Vec<Summit> =
+        (0..n * n).map(|k| asperity((f64::from(k / n) + 0.3) * side, (f64::from(k % n) + 0.8) * side, 0.0, radius)).collect();
     let load = 2e-5;
     let many = cycle(&summits, LENGTH, rules(Interaction::Point), load * f64::from(n * n));
     let one = cycle(&[asperity(0.3 * side, 0.8 * side, 0.0, radius)], side, rules(Interaction::Point), load);
@@ -95,7 +94,8 @@ fn law_copies_of_a_patch_are_the_patch() {
     let patch = [(0.1, 0.2, 0.0, 3e-5), (0.2, 0.26, -2e-7, 2e-5), (0.7, 0.9, -1e-7, 4e-5)];
     let place = |ox: f64, oy: f64| patch.map(|(x, y, z, r)| asperity((x + ox) * side, (y + oy) * side, z, r));
     let four: Vec<Summit> = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)].iter().flat_map(|(x, y)| place(*x, *y)).collect();
-    let (small, big) = (cycle(&place(0.0, 0.0), side, rules(Interaction::Spots), 6e-5), cycle(&four, LENGTH, rules(Interaction::Spots), 2.4e-4));
+    let (small, big) =
+        (cycle(&place(0.0, 0.0), side, rules(Interaction::Spots), 6e-5), cycle(&four, LENGTH, rules(Interaction::Spots), 2.4e-4));
     for approach in [1.5e-6, -1e-7] {
         let ((_, spots), (_, copies)) = (at(&small, approach), at(&big, approach));
         for (k, copy) in copies.iter().enumerate() {
@@ -109,7 +109,8 @@ fn law_copies_of_a_patch_are_the_patch() {
 #[test]
 fn law_no_event_no_loss() {
     // Two turning points with all asperities in contact before the first: from one to the other and back nothing happens.
-    let summits = [(0.2, 0.2, -1e-7, 5e-5), (0.235, 0.21, 0.0, 1e-5), (0.73, 0.89, -2.5e-7, 3.3e-5)].map(|(x, y, z, r)| asperity(x * LENGTH, y * LENGTH, z, r));
+    let summits = [(0.2, 0.2, -1e-7, 5e-5), (0.235, 0.21, 0.0, 1e-5), (0.73, 0.89, -2.5e-7, 3.3e-5)]
+        .map(|(x, y, z, r)| asperity(x * LENGTH, y * LENGTH, z, r));
     for interaction in [Interaction::Spots, Interaction::Point, Interaction::None] {
         let problem = Problem::new(&summits, LENGTH, GRID, PAPER, rules(interaction)).unwrap();
         let cycle = run(&problem, &[1e-5, 1e-4], 1.0, KeptContacts::None);

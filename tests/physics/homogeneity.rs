@@ -10,6 +10,9 @@ use hysteron::physics::summits::{Summit, find_summits};
 use hysteron::physics::synthesis::{realization_seed, synthesize};
 use hysteron::physics::theory::{deng_kesari_loss, mean_loop_loss};
 
+/// Something that moments have.
+type Moment = fn(&Moments) -> f64;
+
 /// How many times greater the numbers of lengths and forces become.
 #[derive(Debug, Clone, Copy)]
 struct Units {
@@ -119,7 +122,7 @@ fn law_spectrum_and_theory_scale() {
             scaled("C0", q.prefactor(), p.prefactor(), 4.0, 0.0);
             scaled("C", q.density(123), p.density(123), 4.0, 0.0);
             for (m, n) in [(p.moments(), q.moments()), (p.lattice_moments(), q.lattice_moments())] {
-                let pairs: [(fn(&Moments) -> f64, f64); 8] = [
+                let pairs: [(Moment, f64); 8] = [
                     (|m| m.m0_m2, 2.0),
                     (|m| m.m2, 0.0),
                     (|m| m.m4_1_m2, -2.0),
@@ -194,7 +197,10 @@ fn law_a_whole_cycle_scales() {
             let got = run(&problem, &[1e-4, 2e-4], 0.05, KeptContacts::None);
             assert_eq!(got.steps.len(), want.steps.len(), "{units:?}");
             for (s, t) in got.steps.iter().zip(&want.steps) {
-                assert_eq!((s.branch, s.contact_count, s.covered_count, s.event_counts), (t.branch, t.contact_count, t.covered_count, t.event_counts));
+                assert_eq!(
+                    (s.branch, s.contact_count, s.covered_count, s.event_counts),
+                    (t.branch, t.contact_count, t.covered_count, t.event_counts)
+                );
                 // Equilibria are met to 1e-10 of the rms height, the turning load to 1e-9 of itself; approaches there follow.
                 let load = base.load_unit_n() * 2e-4;
                 near("approach", s.approach_m, t.approach_m * units.length, 1e-8 * RMS * units.length);

@@ -34,7 +34,8 @@ fn val_the_table_of_states_holds_in_its_units() {
             (jkr.radius_at_penetration(0.0).unwrap(), (2.0 * PI).powf(third), 0.0, -4.0 * PI / 3.0),
             (jkr.radius_at_penetration(ud * (4.5 * PI).powf(2.0 * third) / 3.0).unwrap(), (4.5 * PI).powf(third), 1.9488890, 0.0),
         ];
-        let printed = [(0.732296, -1.608772, -2.617994), (1.523237, -0.773417, -4.712389), (1.845270, 0.0, -4.188790), (2.417988, 1.948889, 0.0)];
+        let printed =
+            [(0.732296, -1.608772, -2.617994), (1.523237, -0.773417, -4.712389), (1.845270, 0.0, -4.188790), (2.417988, 1.948889, 0.0)];
         for ((a, wa, wd, wf), (pa, pd, pf)) in states.into_iter().zip(printed) {
             // Double rounding through a few operations; near zeros the terms that cancel are of order one in these units.
             near("a", a / ua, wa, 1e-12);
@@ -147,7 +148,12 @@ fn law_slopes_are_derivatives() {
             let a = jkr.jump_off_radius() * along;
             // Fourth order: h⁴/30 of a fifth derivative of sqrt(a), (105/32) a^(−9/2), is 1e-13 of the value; rounding over h is 1e-13.
             let (scale, h) = (a / jkr.radius_m(), 1e-3 * a);
-            near("d(delta)/da", five_point(|b| jkr.penetration(b), a, h), jkr.penetration_slope(a), 1e-11 * scale.max(jkr.pull_sqrt_m() / a.sqrt()));
+            near(
+                "d(delta)/da",
+                five_point(|b| jkr.penetration(b), a, h),
+                jkr.penetration_slope(a),
+                1e-11 * scale.max(jkr.pull_sqrt_m() / a.sqrt()),
+            );
             let load_scale = 4.0 * (jkr.load(a) / a).abs() + jkr.load_slope(a).abs();
             near("dF/da", five_point(|b| jkr.load(b), a, h), jkr.load_slope(a), 1e-11 * load_scale);
         }
@@ -163,7 +169,13 @@ fn work(jkr: &Asperity, from: f64, to: f64) -> f64 {
         .map(|k| {
             let y = y0 + h * f64::from(k);
             let a = y * y;
-            let weight = if k == 0 || k == n { 1.0 } else if k % 2 == 1 { 4.0 } else { 2.0 };
+            let weight = if k == 0 || k == n {
+                1.0
+            } else if k % 2 == 1 {
+                4.0
+            } else {
+                2.0
+            };
             weight * jkr.load(a) * jkr.penetration_slope(a) * 2.0 * y
         })
         .sum::<f64>()

@@ -145,17 +145,7 @@ mod support {
     /// A hand-made asperity.
     pub fn asperity(x_m: f64, y_m: f64, height_m: f64, radius_m: f64) -> Summit {
         let k = 1.0 / radius_m;
-        Summit {
-            x_m,
-            y_m,
-            height_m,
-            curvature_1_m: k,
-            curvature_min_1_m: k,
-            curvature_max_1_m: k,
-            grid_row: 0,
-            grid_col: 0,
-            refined: true,
-        }
+        Summit { x_m, y_m, height_m, curvature_1_m: k, curvature_min_1_m: k, curvature_max_1_m: k, grid_row: 0, grid_col: 0, refined: true }
     }
 
     /// A whole cycle of the paper's material to the given loads.
@@ -184,7 +174,8 @@ mod support {
 
     /// The steps of the unloading from the k-th turning point.
     pub fn unloading(cycle: &Cycle, k: usize) -> Vec<&Step> {
-        let first = cycle.steps.iter().enumerate().filter(|(_, s)| s.branch == Branch::Unloading && s.approach_m == turning(cycle, k).approach_m);
+        let first =
+            cycle.steps.iter().enumerate().filter(|(_, s)| s.branch == Branch::Unloading && s.approach_m == turning(cycle, k).approach_m);
         let start = first.map(|(i, _)| i).next().unwrap();
         let max_load = cycle.steps[start].max_load;
         cycle.steps[start..].iter().take_while(|s| s.max_load == max_load).collect()

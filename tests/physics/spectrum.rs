@@ -69,7 +69,13 @@ fn law_the_prefactor_makes_the_integral_the_mean_square() {
         let h = f64::from(zeta).ln() / f64::from(n);
         let sum: f64 = (0..=n)
             .map(|k| {
-                let weight = if k == 0 || k == n { 1.0 } else if k % 2 == 1 { 4.0 } else { 2.0 };
+                let weight = if k == 0 || k == n {
+                    1.0
+                } else if k % 2 == 1 {
+                    4.0
+                } else {
+                    2.0
+                };
                 weight * (-2.0 * hurst * h * f64::from(k)).exp()
             })
             .sum();
@@ -79,9 +85,12 @@ fn law_the_prefactor_makes_the_integral_the_mean_square() {
 
 #[test]
 fn law_lattice_moments_are_sums_over_the_modes() {
-    for (hurst, zeta, normalization) in
-        [(0.8, 64, Normalization::Spectrum), (0.8, 64, Normalization::Sample), (0.45, 17, Normalization::Spectrum), (1.0, 9, Normalization::Sample)]
-    {
+    for (hurst, zeta, normalization) in [
+        (0.8, 64, Normalization::Spectrum),
+        (0.8, 64, Normalization::Sample),
+        (0.45, 17, Normalization::Spectrum),
+        (1.0, 9, Normalization::Sample),
+    ] {
         let spectrum = Spectrum { normalization, ..paper_spectrum(hurst, zeta) };
         let ql = 2.0 * PI / LENGTH;
         let edge = f64::from(zeta);

@@ -168,12 +168,16 @@ fn law_phases_are_uniform_and_independent() {
     incoherent("twice the phases", &over(&|x, y| unit(&a, x, y).powi(2)));
     incoherent("two realisations", &over(&|x, y| unit(&a, x, y) * unit(&b, x, y).conj()));
     // Two rows of wavevectors with one stream would show here; and ±kx, whose streams lie next to each other.
-    let inner = |f: &dyn Fn(i64, i64) -> Complex64| half_plane(31).filter(|(x, y)| x * x + (y + 1) * (y + 1) < 900 && *y > 0).map(|(x, y)| f(x, y)).collect::<Vec<_>>();
+    let inner = |f: &dyn Fn(i64, i64) -> Complex64| {
+        half_plane(31).filter(|(x, y)| x * x + (y + 1) * (y + 1) < 900 && *y > 0).map(|(x, y)| f(x, y)).collect::<Vec<_>>()
+    };
     incoherent("neighbours along ky", &inner(&|x, y| unit(&a, x, y) * unit(&a, x, y + 1).conj()));
     incoherent("neighbours along kx", &inner(&|x, y| unit(&a, x, y) * unit(&a, if x > 0 { x - 1 } else { x + 1 }, y).conj()));
-    let mirrored: Vec<Complex64> = half_plane(31).filter(|(x, y)| *x > 0 && *y > 0).map(|(x, y)| unit(&a, x, y) * unit(&a, -x, y).conj()).collect();
+    let mirrored: Vec<Complex64> =
+        half_plane(31).filter(|(x, y)| *x > 0 && *y > 0).map(|(x, y)| unit(&a, x, y) * unit(&a, -x, y).conj()).collect();
     incoherent("mirrored wavevectors", &mirrored);
-    let swapped: Vec<Complex64> = half_plane(31).filter(|(x, y)| x > y && *y > 0).map(|(x, y)| unit(&a, x, y) * unit(&a, y, x).conj()).collect();
+    let swapped: Vec<Complex64> =
+        half_plane(31).filter(|(x, y)| x > y && *y > 0).map(|(x, y)| unit(&a, x, y) * unit(&a, y, x).conj()).collect();
     incoherent("kx and ky exchanged", &swapped);
 }
 
@@ -184,9 +188,9 @@ fn law_gaussian_amplitudes_are_rayleigh() {
     let mut ratios = Vec::new();
     for realization in 0..3 {
         let modes = Modes::of(&surface(&spectrum, realization, 2));
-        ratios.extend(half_plane(32).map(|(kx, ky)| {
-            modes.at(kx, ky).norm_sqr() / (cell * spectrum.density((kx * kx + ky * ky).unsigned_abs()))
-        }));
+        ratios.extend(
+            half_plane(32).map(|(kx, ky)| modes.at(kx, ky).norm_sqr() / (cell * spectrum.density((kx * kx + ky * ky).unsigned_abs()))),
+        );
     }
     let n = ratios.len() as f64;
     let mean = |f: &dyn Fn(f64) -> f64| ratios.iter().map(|r| f(*r)).sum::<f64>() / n;

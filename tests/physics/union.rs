@@ -37,7 +37,10 @@ fn lens(r: f64, s: f64, d: f64) -> f64 {
 
 /// Every disc moved by the same amount, wrapped into the square.
 fn moved(discs: &[Disc], dx: f64, dy: f64) -> Vec<Disc> {
-    discs.iter().map(|d| Disc { centre: [(d.centre[0] + dx * SIDE).rem_euclid(SIDE), (d.centre[1] + dy * SIDE).rem_euclid(SIDE)], ..*d }).collect()
+    discs
+        .iter()
+        .map(|d| Disc { centre: [(d.centre[0] + dx * SIDE).rem_euclid(SIDE), (d.centre[1] + dy * SIDE).rem_euclid(SIDE)], ..*d })
+        .collect()
 }
 
 #[test]
@@ -112,7 +115,9 @@ fn lim_full_coverage_is_the_square() {
         let radius = 1.02 * 0.5f64.sqrt() / f64::from(n);
         for offset in [0.0, 0.013, 0.5] {
             let discs: Vec<Disc> = (0..n * n)
-                .map(|k| disc(((f64::from(k / n) + offset) / f64::from(n)).fract(), ((f64::from(k % n) + offset) / f64::from(n)).fract(), radius))
+                .map(|k| {
+                    disc(((f64::from(k / n) + offset) / f64::from(n)).fract(), ((f64::from(k % n) + offset) / f64::from(n)).fract(), radius)
+                })
                 .collect();
             close("covered", area(&discs, true), SIDE * SIDE, 1e-12);
             // One disc less opens the square again, by a hole that is bounded by its neighbours.
