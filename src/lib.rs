@@ -1,10 +1,21 @@
 //! hysteron: from a self-affine rough surface to the energy that its adhesive contact loses.
+//!
+//! One direction, no way back: `model` and `schema` know nothing; `physics` opens no file; `store` computes nothing; `stages` alone joins them;
+//! `stats` and `figures` read only tables.
+
+#[cfg(feature = "stats")]
+pub mod campaign;
+#[cfg(feature = "stats")]
+pub mod cli;
 #[cfg(feature = "stats")]
 pub mod figures;
+pub mod keys;
 pub mod model;
 pub mod physics;
-pub mod spec;
 pub mod schema;
+pub mod spec;
+#[cfg(feature = "stats")]
+pub mod stages;
 #[cfg(feature = "stats")]
 pub mod stats;
 #[cfg(feature = "store")]

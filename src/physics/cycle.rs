@@ -58,6 +58,10 @@ pub struct Step {
     pub contact_count: usize,
     /// Asperities under a greater spot.
     pub covered_count: usize,
+    /// Spots that touch another one.
+    pub touching_count: usize,
+    /// Asperities held as they are, since they flipped between states.
+    pub held_count: usize,
     /// Events since the step before, by kind: jump-in, jump-off, cover, uncover, snap.
     pub event_counts: [usize; 5],
     /// Energy lost in them \[J\].
@@ -206,6 +210,8 @@ impl Recorder {
             area_union_m2: super::union::area(problem, &node.state),
             contact_count: node.state.contacts.len(),
             covered_count: node.state.covered_count(),
+            touching_count: touching(problem, &node.state),
+            held_count: path.held.len(),
             event_counts: [Kind::JumpIn, Kind::JumpOff, Kind::Cover, Kind::Uncover, Kind::Snap].map(count),
             dissipated_j: recent.iter().map(|event| event.energy_lost_j).sum(),
             work_j: path.work_j,
@@ -226,6 +232,18 @@ impl Recorder {
             cycle.contacts.extend(spots_of(problem, &node.state, number));
         }
     }
+}
+
+/// How many spots touch another one.
+fn touching(problem: &Problem, state: &State) -> usize {
+    let greatest = state.contacts.iter().map(|&i| state.radius[i]).fold(0.0, f64::max);
+    let touches = |i: usize| {
+        let a = state.radius[i];
+        let mut found = false;
+        problem.neighbours.within(&problem.positions, i, a + greatest, |r, j| found |= state.radius[j] > 0.0 && r < a + state.radius[j]);
+        found
+    };
+    state.contacts.iter().filter(|i| touches(**i)).count()
 }
 
 fn spots_of(problem: &Problem, state: &State, step: usize) -> Vec<Contact> {

@@ -123,7 +123,6 @@ impl<'p> Path<'p> {
                 trial = here + sign * 0.98 * reach;
             }
             tries += 1;
-            if std::env::var("DBG").is_ok() { eprintln!("here {:.9} trial {:.9} target {:.9} reach {:.3e} n {} tries {} F {:.6e}", here/unit, trial/unit, target/unit, reach/unit, self.node.state.contacts.len(), tries, self.node.totals.load_n); }
             match self.attempt(trial) {
                 Err(_) if (trial - here).abs() <= tolerance => {
                     self.collapse(trial)?;
@@ -144,7 +143,6 @@ impl<'p> Path<'p> {
                     }
                     let known = Obstacle { approach: trial, due, load: next.totals.load_n, weight: 1.0 };
                     let first = self.first_due(&known, stop);
-                    if std::env::var("DBG").is_ok() { eprintln!("   due {:?} first {:?} d {:e}", known.due, first, trial-here); }
                             let close = (trial - first.map_or(here, |(approach, _)| approach)).abs() <= tolerance || (trial - here).abs() <= tolerance;
                     match first {
                         // A load that jumps at an event is met by the event; one that cannot be met more closely is met.

@@ -54,6 +54,9 @@ pub static STEPS: Table = Table {
         count("jump_off_count", "Asperities that jumped out of contact in this step"),
         count("cover_count", "Asperities that were covered in this step"),
         count("uncover_count", "Asperities that were uncovered in this step"),
+        count("snap_count", "Moves of the contact to another equilibrium with the same spots in this step"),
+        count("held_count", "Asperities held as they are since they flipped between covered and uncovered in this step"),
+        count("touching_count", "Contact spots that touch another one"),
         real("dissipated_j", "J", "Energy lost in the events of this step"),
         real("work_j", "J", "Work done on the contact since this branch began, the integral of load over approach"),
         real("residual_m", "m", "Greatest difference left between local penetration and JKR penetration, over all spots")
@@ -92,14 +95,16 @@ pub static CONTACTS: Table = Table {
         real(
             "penetration_m",
             "m",
-            "Local penetration, after the displacement by all other spots",
+            "Local penetration, after the displacement by all other spots; null if covered",
         )
+        .or_null()
         .from("Eq 5"),
         real(
             "interaction_m",
             "m",
-            "Displacement of the half-space by all other spots",
+            "Displacement of the half-space by all other spots; null if covered",
         )
+        .or_null()
         .from("Eqs 6-8"),
     ],
 };
@@ -116,7 +121,7 @@ pub static EVENTS: Table = Table {
         MAX_LOAD,
         text(
             "kind",
-            "What happened: \"jump_in\", \"jump_off\", \"cover\", \"uncover\", and \"merge\", \"unmerge\" where spots merge",
+            "What happened: \"jump_in\", \"jump_off\", \"cover\", \"uncover\", and \"snap\" where the contact moves to another equilibrium with the same spots",
         ),
         ASPERITY,
         real(
@@ -132,19 +137,19 @@ pub static EVENTS: Table = Table {
         real(
             "load_before_n",
             "N",
-            "Load of the asperity before the event",
+            "Load of the whole contact before the event",
         ),
-        real("load_after_n", "N", "Load of the asperity after the event"),
+        real("load_after_n", "N", "Load of the whole contact when the rest has relaxed"),
         real(
             "area_before_m2",
             "m^2",
-            "Contact area of the asperity before the event",
+            "Area of the whole contact before the event",
         ),
         real(
             "area_after_m2",
             "m^2",
-            "Contact area of the asperity after the event",
+            "Area of the whole contact when the rest has relaxed",
         ),
-        real("energy_lost_j", "J", "Energy lost in the event"),
+        real("energy_lost_j", "J", "Energy lost in the event and in the relaxation that followed it; 0 for further events of the same relaxation"),
     ],
 };

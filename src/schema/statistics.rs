@@ -65,6 +65,7 @@ const RESULTS: &[Column] = &[
     count("contact_count_at_max_load", "Asperities in contact at the end of loading"),
     count("step_count", "Steps of loading and of this unloading"),
     count("unconverged_count", "Those of them whose residual stayed above the tolerance"),
+    count("held_count", "Asperities held as they are since they flipped between covered and uncovered, summed over the steps"),
     real("tabor_min", "1", "Smallest Tabor number of the asperities").from("Eq 3"),
     real("tabor_median", "1", "Median Tabor number of the asperities").from("Eq 3"),
     real("tabor_max", "1", "Greatest Tabor number of the asperities; Wu's jump-in holds from 2 on").from("Eq 3"),

@@ -27,6 +27,8 @@ pub(super) struct Branch {
     pub(super) dissipated_j: Vec<f64>,
     pub(super) contact_count: Vec<i64>,
     pub(super) covered_count: Vec<i64>,
+    pub(super) touching_count: Vec<i64>,
+    pub(super) held_count: Vec<i64>,
     pub(super) converged: Vec<bool>,
 }
 
@@ -130,7 +132,7 @@ impl Branch {
     }
 }
 
-const COLUMNS: [&str; 12] = [
+const COLUMNS: [&str; 14] = [
     "step",
     "load",
     "load_n",
@@ -142,6 +144,8 @@ const COLUMNS: [&str; 12] = [
     "dissipated_j",
     "contact_count",
     "covered_count",
+    "touching_count",
+    "held_count",
     "converged",
 ];
 
@@ -215,6 +219,8 @@ fn branch(frame: &DataFrame, row: usize) -> PolarsResult<Branch> {
         dissipated_j: reals("dissipated_j")?,
         contact_count: wholes("contact_count")?,
         covered_count: wholes("covered_count")?,
+        touching_count: wholes("touching_count")?,
+        held_count: wholes("held_count")?,
         converged: list("converged")?
             .bool()?
             .iter()

@@ -115,7 +115,9 @@ fn reduce(
     let tension = |loads: &[f64]| -loads.iter().copied().fold(0.0, f64::min);
     // `0 − 0` keeps a minus sign that no reader of the table wants.
     let pull_off = |loads: &[f64]| tension(loads) + 0.0;
-    let columns: [(&str, Value); 18] = [
+    let touching = count_at(&loading.touching_count);
+    let held: i64 = loading.held_count.iter().take(turning + 1).chain(&unloading.held_count).sum();
+    let columns: [(&str, Value); 20] = [
         ("realization", input.realization.into()),
         ("max_load", max_load.into()),
         ("pull_off_load", pull_off(&unloading.load).into()),
@@ -159,6 +161,8 @@ fn reduce(
             "unconverged_count",
             converged.filter(|converged| !**converged).count().into(),
         ),
+        ("held_count", held.into()),
+        ("touching_share", (contacts > 0).then(|| touching as f64 / contacts as f64).into()),
         (
             "covered_share",
             (contacts + covered > 0)

@@ -86,7 +86,7 @@ fn val_columns_are_those_of_the_contract() {
         ),
         (
             &STEPS,
-            "step branch max_load approach_m load_n area_m2 area_union_m2 contact_count covered_count jump_in_count jump_off_count cover_count uncover_count dissipated_j work_j residual_m converged iteration_count pair_evaluation_count load area penetration",
+            "step branch max_load approach_m load_n area_m2 area_union_m2 contact_count covered_count jump_in_count jump_off_count cover_count uncover_count snap_count held_count touching_count dissipated_j work_j residual_m converged iteration_count pair_evaluation_count load area penetration",
         ),
         (
             &CONTACTS,
@@ -98,7 +98,7 @@ fn val_columns_are_those_of_the_contract() {
         ),
         (
             &REALIZATIONS,
-            "case_id sweep hurst magnification length_m rms_height_m points_per_shortest_wavelength normalization amplitudes contact_modulus_pa work_of_adhesion_j_m2 interaction_range_m interaction boundary coalescence jump_in as_printed approach_step realization max_load pull_off_load pull_off_load_n area_at_max_load area_union_at_max_load penetration_at_max_load loss loss_j loss_dk loss_dk_realised loss_ratio_dk dissipated_j audit_gap summit_count summit_density_1_m2 nayak_density_1_m2 contact_count_at_max_load step_count unconverged_count tabor_min tabor_median tabor_max rms_slope rms_curvature_1_m nayak_parameter touching_share covered_share",
+            "case_id sweep hurst magnification length_m rms_height_m points_per_shortest_wavelength normalization amplitudes contact_modulus_pa work_of_adhesion_j_m2 interaction_range_m interaction boundary coalescence jump_in as_printed approach_step realization max_load pull_off_load pull_off_load_n area_at_max_load area_union_at_max_load penetration_at_max_load loss loss_j loss_dk loss_dk_realised loss_ratio_dk dissipated_j audit_gap summit_count summit_density_1_m2 nayak_density_1_m2 contact_count_at_max_load step_count unconverged_count held_count tabor_min tabor_median tabor_max rms_slope rms_curvature_1_m nayak_parameter touching_share covered_share",
         ),
         (
             &CASES,

@@ -203,7 +203,8 @@ fn val_realization_from_work_and_loads() {
     );
     close(row(&frame, "audit_gap", 0).unwrap(), 0.5, 1e-12);
     close(row(&frame, "covered_share", 0).unwrap(), 0.05, 1e-12);
-    assert_eq!(row(&frame, "touching_share", 0), None);
+    close(row(&frame, "touching_share", 0).unwrap(), 5.0 / 19.0, 1e-12);
+    assert_eq!(frame.i64("held_count").unwrap()[0], 1);
     assert_eq!(frame.i64("step_count").unwrap(), [10, 9]);
     assert_eq!(frame.i64("unconverged_count").unwrap(), [1, 1]);
     assert_eq!(frame.text("sweep").unwrap(), ["fig3", "fig3"]);

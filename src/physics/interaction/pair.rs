@@ -58,11 +58,14 @@ const ADHESION: [f64; 20] = [
     1.209199576156145,
 ];
 
+/// The polynomial at several places at once: each step takes all lanes, which is what a compiler turns into vector instructions.
 #[inline(always)]
-fn polynomial<const N: usize>(coefficients: &[f64; N], s: f64) -> f64 {
-    let mut value = coefficients[0];
+fn polynomial<const N: usize, const L: usize>(coefficients: &[f64; N], s: &[f64; L]) -> [f64; L] {
+    let mut value = [coefficients[0]; L];
     for &coefficient in &coefficients[1..] {
-        value = value.mul_add(s, coefficient);
+        for k in 0..L {
+            value[k] = value[k].mul_add(s[k], coefficient);
+        }
     }
     value
 }
@@ -91,35 +94,47 @@ pub struct Spot {
 /// The paper's Eq 8 lacks `r²/(2R)` inside, without which the field jumps by `a²/(2R)` at the edge.
 #[must_use]
 pub fn spot_field(r: f64, a: f64, radius: f64, pull: f64) -> (f64, f64) {
-    field(r * r, a, a.sqrt(), 1.0 / radius, pull)
+    let ([value], [slope]) = field(&[r * r], &[a], &[a.sqrt()], &[1.0 / radius], pull);
+    (value, slope)
 }
 
 /// Both formulae are taken and one is chosen, so that several spots go through at once.
 #[inline(always)]
-fn field(r2: f64, a: f64, root_a: f64, curvature: f64, pull: f64) -> (f64, f64) {
-    let r = r2.sqrt().max(a);
-    let inverse_r = 1.0 / r;
-    let x = a * inverse_r;
-    // (r − a)(r + a) keeps the digits that 1 − x² would lose near the edge.
-    let w = ((r - a) * (r + a)).sqrt() * inverse_r;
-    let s = w - 0.5;
-    let arc = x * polynomial(&ADHESION, s);
-    let indentation = x * polynomial(&INDENTATION, s);
-    let flat = a * curvature;
-    let inside = r2 <= a * a;
-    let outer = FRAC_1_PI * (a * flat).mul_add(indentation, -2.0 * pull * root_a * arc);
-    let inner = a.mul_add(flat, -0.5 * r2 * curvature) - pull * root_a;
-    let outer_slope = FRAC_1_PI * (4.0 * flat).mul_add(arc, -2.0 * pull * (0.5 * arc / root_a + root_a / (r * w)));
-    let inner_slope = 2.0f64.mul_add(flat, -0.5 * pull / root_a);
-    (if inside { inner } else { outer }, if inside { inner_slope } else { outer_slope })
+fn field<const L: usize>(r2: &[f64; L], a: &[f64; L], root_a: &[f64; L], curvature: &[f64; L], pull: f64) -> ([f64; L], [f64; L]) {
+    let (mut inverse_r, mut w, mut s) = ([0.0; L], [0.0; L], [0.0; L]);
+    for k in 0..L {
+        let r = r2[k].sqrt().max(a[k]);
+        inverse_r[k] = 1.0 / r;
+        // (r − a)(r + a) keeps the digits that 1 − x² would lose near the edge.
+        w[k] = ((r - a[k]) * (r + a[k])).sqrt() * inverse_r[k];
+        s[k] = w[k] - 0.5;
+    }
+    let arc = polynomial(&ADHESION, &s);
+    let indentation = polynomial(&INDENTATION, &s);
+    let (mut value, mut slope) = ([0.0; L], [0.0; L]);
+    for k in 0..L {
+        let x = a[k] * inverse_r[k];
+        let (arc, indentation) = (x * arc[k], x * indentation[k]);
+        let flat = a[k] * curvature[k];
+        let inside = r2[k] <= a[k] * a[k];
+        let outer = FRAC_1_PI * (a[k] * flat).mul_add(indentation, -2.0 * pull * root_a[k] * arc);
+        let inner = a[k].mul_add(flat, -0.5 * r2[k] * curvature[k]) - pull * root_a[k];
+        value[k] = if inside { inner } else { outer };
+        let crack = 0.5 * arc / root_a[k] + root_a[k] * inverse_r[k] / w[k];
+        let outer_slope = FRAC_1_PI * (4.0 * flat).mul_add(arc, -2.0 * pull * crack);
+        let inner_slope = 2.0f64.mul_add(flat, -0.5 * pull / root_a[k]);
+        slope[k] = if inside { inner_slope } else { outer_slope };
+    }
+    (value, slope)
 }
 
 /// The `[…]` of Eq 6 and `asin(a/r)`, both functions of `u = r/a ≥ 1` alone: what the tests compare with many digits.
 #[must_use]
 pub fn dimensionless_field(u: f64) -> (f64, f64) {
     let x = 1.0 / u;
-    let s = ((u - 1.0) * (u + 1.0)).sqrt() * x - 0.5;
-    (x * polynomial(&INDENTATION, s), x * polynomial(&ADHESION, s))
+    let s = [((u - 1.0) * (u + 1.0)).sqrt() * x - 0.5];
+    let ([indentation], [arc]) = (polynomial(&INDENTATION, &s), polynomial(&ADHESION, &s));
+    (x * indentation, x * arc)
 }
 
 /// Sources of a displacement field as columns, so that one instruction takes several.
@@ -191,18 +206,17 @@ pub(crate) fn spot_fields(place: Place, spots: &SpotColumns, values: &mut [f64],
         let count = LANES.min(n - start);
         let mut lane = Lane::default();
         lane.load(spots, start, count);
-        for k in 0..LANES {
-            let mut dx = place.x - lane.x[k];
-            let mut dy = place.y - lane.y[k];
-            dx -= place.length * (dx * place.inverse_length).round_ties_even();
-            dy -= place.length * (dy * place.inverse_length).round_ties_even();
-            let r2 = dx.mul_add(dx, dy * dy);
-            let (value, slope) = field(r2, lane.a[k], lane.root_a[k], lane.inverse_radius[k], place.pull);
-            lane.value[k] = value;
-            lane.slope[k] = slope;
+        let mut r2 = [0.0; LANES];
+        for (k, r2) in r2.iter_mut().enumerate() {
+            let dx = place.x - lane.x[k];
+            let dy = place.y - lane.y[k];
+            let dx = dx - place.length * (dx * place.inverse_length).round_ties_even();
+            let dy = dy - place.length * (dy * place.inverse_length).round_ties_even();
+            *r2 = dx.mul_add(dx, dy * dy);
         }
-        values[start..start + count].copy_from_slice(&lane.value[..count]);
-        slopes[start..start + count].copy_from_slice(&lane.slope[..count]);
+        let (value, slope) = field(&r2, &lane.a, &lane.root_a, &lane.inverse_radius, place.pull);
+        values[start..start + count].copy_from_slice(&value[..count]);
+        slopes[start..start + count].copy_from_slice(&slope[..count]);
         start += count;
     }
 }
@@ -213,15 +227,13 @@ struct Lane {
     a: [f64; LANES],
     root_a: [f64; LANES],
     inverse_radius: [f64; LANES],
-    value: [f64; LANES],
-    slope: [f64; LANES],
 }
 
 impl Default for Lane {
     fn default() -> Self {
         // Lanes beyond the end compute a harmless spot.
         let ones = [1.0; LANES];
-        Self { x: ones, y: ones, a: ones, root_a: ones, inverse_radius: ones, value: ones, slope: ones }
+        Self { x: ones, y: ones, a: ones, root_a: ones, inverse_radius: ones }
     }
 }
 

@@ -1,0 +1,101 @@
+//! The command line: verbs, progress, and what is said at the end.
+
+mod progress;
+mod verbs;
+
+use clap::{Args, Parser, Subcommand};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Adhesive hysteresis of rough surfaces: from a self-affine surface to the energy that its contact loses, a table at every step.
+#[derive(Debug, Parser)]
+#[command(version, about, max_term_width = 100, after_help = "Exit codes: 0 done, 1 failed, 2 bad spec or usage, 3 finished with failed cases.")]
+pub struct Arguments {
+    #[command(subcommand)]
+    verb: Verb,
+}
+
+#[derive(Debug, Subcommand)]
+enum Verb {
+    /// Do all of a spec that is not done yet; the same command again goes on where it stopped
+    Run {
+        #[command(flatten)]
+        campaign: CampaignArguments,
+        /// Stop after this stage
+        #[arg(long, value_enum, value_name = "STAGE", default_value = "report")]
+        until: StageArgument,
+    },
+    /// Say what `run` would do, and why; writes nothing
+    Plan {
+        /// The spec, a TOML file
+        spec: PathBuf,
+        #[command(flatten)]
+        output: OutputArguments,
+    },
+    /// Say what of a run is done
+    Status {
+        /// The output folder of a run
+        dir: PathBuf,
+        /// Answer in JSON
+        #[arg(long)]
+        json: bool,
+    },
+    /// Make the surfaces
+    Generate(CampaignArguments),
+    /// Find the summits of the surfaces
+    Extract(CampaignArguments),
+    /// Load and unload every case
+    Cycle(CampaignArguments),
+    /// Average over realizations
+    Aggregate {
+        #[command(flatten)]
+        campaign: CampaignArguments,
+        /// Aggregate what is there, although cases are missing
+        #[arg(long)]
+        partial: bool,
+    },
+    /// Draw the figures and write the page
+    Report(CampaignArguments),
+    /// Print the tables and columns that the program writes
+    Schema {
+        /// Write schemas/*.json into the present folder instead
+        #[arg(long)]
+        write: bool,
+    },
+}
+
+#[derive(Debug, Args)]
+struct CampaignArguments {
+    /// The spec, a TOML file
+    spec: PathBuf,
+    #[command(flatten)]
+    output: OutputArguments,
+    /// Threads [default: as many as there are cores]
+    #[arg(long, short = 'j', value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: Option<u16>,
+}
+
+#[derive(Debug, Args)]
+struct OutputArguments {
+    /// The output folder [default: data/runs/<name of the spec>]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Answer in JSON
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+enum StageArgument {
+    Generate,
+    Extract,
+    Cycle,
+    Aggregate,
+    Report,
+}
+
+/// Does what was asked for, and says how it went.
+#[must_use]
+pub fn perform(arguments: &Arguments) -> ExitCode {
+    verbs::perform(&arguments.verb)
+}

@@ -1,0 +1,56 @@
+//! The key of a unit of work: a hash of exactly what the unit reads.
+//!
+//! It is the hash of a canonical JSON of: the version of this scheme, the stage, a number of the stage's meaning (raised by hand when the stage's
+//! results change), the parameters that the stage reads with every default written out, and the keys of what it reads. Program version,
+//! host, threads and clock are no part of it, so a new release does not make finished data stale in silence.
+
+use serde_json::{Value, json};
+
+/// Version of this scheme.
+const SCHEME: u32 = 1;
+
+/// The key of a unit: 64 hexadecimal digits.
+#[must_use]
+pub fn key(stage: &str, meaning: u32, reads: &Value) -> String {
+    let preimage = json!({ "scheme": SCHEME, "stage": stage, "meaning": meaning, "reads": reads });
+    let mut text = String::new();
+    canonical(&preimage, &mut text);
+    blake3::hash(text.as_bytes()).to_hex().to_string()
+}
+
+/// The first digits of a key, as they stand in ids.
+#[must_use]
+pub fn short(key: &str) -> &str {
+    key.get(..8).unwrap_or(key)
+}
+
+/// JSON with sorted names and without white space.
+fn canonical(value: &Value, text: &mut String) {
+    match value {
+        Value::Array(items) => {
+            text.push('[');
+            for (k, item) in items.iter().enumerate() {
+                if k > 0 {
+                    text.push(',');
+                }
+                canonical(item, text);
+            }
+            text.push(']');
+        }
+        Value::Object(members) => {
+            let mut names: Vec<&String> = members.keys().collect();
+            names.sort();
+            text.push('{');
+            for (k, name) in names.into_iter().enumerate() {
+                if k > 0 {
+                    text.push(',');
+                }
+                text.push_str(&Value::from(name.as_str()).to_string());
+                text.push(':');
+                canonical(&members[name], text);
+            }
+            text.push('}');
+        }
+        plain => text.push_str(&plain.to_string()),
+    }
+}

@@ -1,0 +1,134 @@
+//! cycle: load and unload one case on one surface, and write every step.
+
+use super::StageError;
+use super::surface::read_summits;
+use crate::campaign::{Campaign, CycleUnit};
+use crate::physics::cycle::{self, Cycle, Settings, Step};
+use crate::physics::state::{Problem, Rules};
+use crate::schema;
+use crate::spec::CaseParams;
+use crate::store::{Frame, parquet};
+
+/// A state counts as converged below this residual, of the rms height.
+const CONVERGED: f64 = 1e-8;
+
+/// The contact problem of a case on the asperities of a table.
+pub(super) fn problem(params: &CaseParams, summits: &[crate::physics::summits::Summit]) -> Result<Problem, StageError> {
+    let rules = Rules {
+        interaction: params.model.interaction,
+        boundary: params.model.boundary,
+        coalescence: params.model.coalescence,
+        jump_in: params.model.jump_in,
+        allow_low_tabor: params.model.allow_low_tabor,
+    };
+    Ok(Problem::new(summits, params.surface.length_m, params.surface.rms_height_m, params.material, rules)?)
+}
+
+pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, progress: &(dyn Fn(f64) + Sync)) -> Result<(), StageError> {
+    let params = &campaign.cases[unit.case].case.params;
+    let summits = read_summits(&campaign.asperities_path(&campaign.surfaces[unit.surface]))?;
+    let dir = campaign.cycle_dir(unit);
+    std::fs::create_dir_all(&dir).map_err(|source| StageError::Folder { path: dir.clone(), source })?;
+    let problem = problem(params, &summits)?;
+    let settings =
+        Settings { max_loads: params.cycle.max_load.clone(), approach_step: params.cycle.approach_step, contacts: params.cycle.contacts };
+    // The physics tells how far it is; the watch wants what was added.
+    let reached = std::cell::Cell::new(0.0);
+    let report = |done: f64| {
+        let done = done.max(reached.get());
+        progress(done - reached.replace(done));
+    };
+    let outcome = cycle::run(&problem, &settings, &report);
+    // A failed case leaves the bar as a finished one does.
+    progress(1.0 - reached.get());
+    let cycle = outcome?;
+    let keys = [("key", unit.key.clone())];
+    // The steps come last: where they are, the cycle is done.
+    parquet::write_table(&dir.join("contacts.parquet"), &contacts(&cycle)?, &keys)?;
+    parquet::write_table(&dir.join("events.parquet"), &events(&cycle)?, &keys)?;
+    parquet::write_table(&dir.join("steps.parquet"), &steps(&cycle, &problem)?, &keys)?;
+    Ok(())
+}
+
+fn steps(cycle: &Cycle, problem: &Problem) -> Result<Frame, StageError> {
+    let steps = &cycle.steps;
+    let each = |value: fn(&Step) -> f64| steps.iter().map(value);
+    let count = |value: fn(&Step) -> usize| steps.iter().map(value);
+    let area_unit = problem.length_m * problem.length_m;
+    let tolerance = CONVERGED * problem.rms_height_m;
+    Ok(Frame::of(&schema::STEPS)
+        .i64("step", (0..steps.len()).map(|k| k as i64))
+        .text("branch", steps.iter().map(|s| s.branch.word()))
+        .f64("max_load", steps.iter().map(|s| s.max_load))
+        .f64("approach_m", each(|s| s.approach_m))
+        .f64("load_n", each(|s| s.load_n))
+        .f64("area_m2", each(|s| s.area_m2))
+        .f64("area_union_m2", each(|s| s.area_union_m2))
+        .count("contact_count", count(|s| s.contact_count))
+        .count("covered_count", count(|s| s.covered_count))
+        .count("jump_in_count", count(|s| s.event_counts[0]))
+        .count("jump_off_count", count(|s| s.event_counts[1]))
+        .count("cover_count", count(|s| s.event_counts[2]))
+        .count("uncover_count", count(|s| s.event_counts[3]))
+        .count("snap_count", count(|s| s.event_counts[4]))
+        .count("held_count", count(|s| s.held_count))
+        .count("touching_count", count(|s| s.touching_count))
+        .f64("dissipated_j", each(|s| s.dissipated_j))
+        .f64("work_j", each(|s| s.work_j))
+        .f64("residual_m", each(|s| s.residual_m))
+        .bool("converged", steps.iter().map(|s| s.residual_m <= tolerance))
+        .count("iteration_count", count(|s| s.iterations as usize))
+        .count("pair_evaluation_count", count(|s| s.pairs as usize))
+        .f64("load", steps.iter().map(|s| s.load_n / problem.load_unit_n()))
+        .f64("area", steps.iter().map(|s| s.area_m2 / area_unit))
+        .f64("penetration", steps.iter().map(|s| s.approach_m / problem.rms_height_m))
+        .build()?)
+}
+
+fn contacts(cycle: &Cycle) -> Result<Frame, StageError> {
+    let spots = &cycle.contacts;
+    let step = |k: usize| &cycle.steps[k];
+    Ok(Frame::of(&schema::CONTACTS)
+        .i64("step", spots.iter().map(|s| s.step as i64))
+        .text("branch", spots.iter().map(|s| step(s.step).branch.word()))
+        .f64("max_load", spots.iter().map(|s| step(s.step).max_load))
+        .i64("asperity_id", spots.iter().map(|s| s.asperity as i64))
+        .text("state", spots.iter().map(|s| if s.covered { "covered" } else { "contact" }))
+        .f64("contact_radius_m", spots.iter().map(|s| s.contact_radius_m))
+        .f64("load_n", spots.iter().map(|s| s.load_n))
+        .f64("penetration_m", spots.iter().map(|s| s.penetration_m))
+        .f64("interaction_m", spots.iter().map(|s| s.interaction_m))
+        .build()?)
+}
+
+fn events(cycle: &Cycle) -> Result<Frame, StageError> {
+    let events = &cycle.events;
+    let step = |k: usize| &cycle.steps[k];
+    // Avalanches are counted along each branch; in the table their numbers go on along the whole path.
+    let mut numbers = Vec::with_capacity(events.len());
+    let mut number: i64 = -1;
+    let mut last = None;
+    for (at, event) in events {
+        let branch = step(*at);
+        let identity = (branch.branch, branch.max_load.map(f64::to_bits), event.avalanche);
+        if last != Some(identity) {
+            number += 1;
+            last = Some(identity);
+        }
+        numbers.push(number);
+    }
+    Ok(Frame::of(&schema::EVENTS)
+        .i64("step", events.iter().map(|(at, _)| *at as i64))
+        .text("branch", events.iter().map(|(at, _)| step(*at).branch.word()))
+        .f64("max_load", events.iter().map(|(at, _)| step(*at).max_load))
+        .text("kind", events.iter().map(|(_, e)| e.kind.word()))
+        .i64("asperity_id", events.iter().map(|(_, e)| e.asperity as i64))
+        .f64("approach_m", events.iter().map(|(_, e)| e.approach_m))
+        .i64("avalanche_id", numbers)
+        .f64("load_before_n", events.iter().map(|(_, e)| e.before.load_n))
+        .f64("load_after_n", events.iter().map(|(_, e)| e.after.load_n))
+        .f64("area_before_m2", events.iter().map(|(_, e)| e.before.area_m2))
+        .f64("area_after_m2", events.iter().map(|(_, e)| e.after.area_m2))
+        .f64("energy_lost_j", events.iter().map(|(_, e)| e.energy_lost_j))
+        .build()?)
+}

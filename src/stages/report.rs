@@ -1,0 +1,116 @@
+//! report: figures of every sweep, and one page that holds them.
+
+use super::statistics::{done, finished};
+use super::{StageError, Tally, Watch};
+use crate::campaign::{Campaign, Stage, Standing};
+use crate::figures::panels;
+use crate::schema;
+use crate::stats::{CAUTIONS, summary};
+use crate::store::{Frame, commit, parquet};
+use std::fmt::Write as _;
+
+pub(super) fn run(campaign: &Campaign, watch: &dyn Watch) -> Result<Tally, StageError> {
+    let statistics = campaign.statistics_key(&done(&finished(campaign)));
+    let key = campaign.report_key(&statistics);
+    let mut tally = Tally { planned: 1, ..Tally::default() };
+    if campaign.report_standing(&key) == Standing::Done {
+        tally.before = 1;
+        watch.begin(Stage::Report, 1, 1);
+        watch.end(Stage::Report);
+        return Ok(tally);
+    }
+    if let standing @ (Standing::Missing | Standing::Stale | Standing::Damaged(_)) = campaign.statistics_standing(&statistics) {
+        let example = match standing {
+            Standing::Damaged(why) => why,
+            _ => campaign.statistics_path("cases").display().to_string(),
+        };
+        return Err(StageError::Incomplete { stage: Stage::Report.word(), missing: 1, all: 1, example });
+    }
+    watch.begin(Stage::Report, 0, 1);
+    let cases = parquet::read_table(&campaign.statistics_path("cases"), &schema::CASES)?;
+    let curves = parquet::read_table(&campaign.statistics_path("curves"), &schema::CURVES)?;
+    let mut drawings = Vec::new();
+    for sweep in sweeps(campaign) {
+        for (stem, svg) in panels(&cases, &curves, &sweep)? {
+            let path = campaign.dir.join("figures").join(format!("{stem}.svg"));
+            commit::commit_bytes("write a figure", &path, svg.as_bytes())?;
+            drawings.push((sweep.clone(), svg));
+        }
+    }
+    let page = page(campaign, &key, &cases, &drawings)?;
+    commit::commit_bytes("write the report", &campaign.dir.join("report.html"), page.as_bytes())?;
+    watch.progress(Stage::Report, 1.0);
+    watch.finished(Stage::Report, "report.html");
+    watch.end(Stage::Report);
+    tally.computed = 1;
+    Ok(tally)
+}
+
+fn sweeps(campaign: &Campaign) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for name in campaign.cases.iter().flat_map(|unit| &unit.case.sweeps) {
+        if !names.contains(name) {
+            names.push(name.clone());
+        }
+    }
+    names
+}
+
+const STYLE: &str = "body{font:16px/1.5 system-ui,sans-serif;max-width:60rem;margin:2rem auto;padding:0 1rem;color:#1a1a1a;background:#fff}\
+h1,h2{line-height:1.2}pre{overflow-x:auto;background:#f4f4f2;padding:1rem;font-size:.85rem}\
+.panels{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(24rem,100%),1fr));gap:1rem}\
+.panels svg{width:100%;height:auto;background:#fff}table{border-collapse:collapse;font-size:.9rem}\
+td,th{padding:.2rem .7rem;border-bottom:1px solid #ccc;text-align:left}\
+@media(prefers-color-scheme:dark){body{color:#e6e6e6;background:#161616}pre{background:#242424}}\
+@media print{body{max-width:none}}";
+
+fn page(campaign: &Campaign, key: &str, cases: &Frame, drawings: &[(String, String)]) -> Result<String, StageError> {
+    let name = escape(&campaign.spec.name);
+    let mut html = String::new();
+    // Writing to a string cannot fail.
+    let _ = write!(
+        html,
+        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width\">\n\
+         <meta name=\"hysteron-key\" content=\"{key}\">\n<title>{name}: adhesive hysteresis</title>\n<style>{STYLE}</style>\n</head>\n<body>\n\
+         <h1>{name}</h1>\n<p>Adhesive hysteresis of rough surfaces: {} cases, {} realizations each. Interacting JKR asperities after Violano and \
+         Afferrante, Lubricants 9(1):7 (2021), with its slips corrected. Mean ± one standard deviation.</p>\n<pre>{}</pre>\n",
+        campaign.cases.len(),
+        campaign.spec.realizations,
+        escape(&summary(cases)?)
+    );
+    for sweep in sweeps(campaign) {
+        let _ = write!(html, "<h2>Sweep {}</h2>\n<div class=\"panels\">\n", escape(&sweep));
+        for (_, svg) in drawings.iter().filter(|(of, _)| *of == sweep) {
+            // Inline SVG stands without its XML declaration.
+            let start = svg.find("<svg").unwrap_or(0);
+            let _ = writeln!(html, "<div>{}</div>", &svg[start..]);
+        }
+        html.push_str("</div>\n");
+    }
+    cautions(&mut html, cases)?;
+    let spec = escape(&campaign.spec.to_toml());
+    let _ = write!(
+        html,
+        "<h2>How far to trust it</h2>\n<p>A summit model at these parameters is outside its range where spots coalesce: a third of the contact area of a \
+         boundary-element solution is missing even without adhesion. It reproduces the model of the paper; see the limits in the README.</p>\n\
+         <h2>The spec, with every default</h2>\n<pre>{spec}</pre>\n</body>\n</html>\n"
+    );
+    Ok(html)
+}
+
+/// Every caution that a case carries, with what it says.
+fn cautions(html: &mut String, cases: &Frame) -> Result<(), StageError> {
+    html.push_str("<h2>Cautions</h2>\n<table>\n<tr><th>case</th><th>max load</th><th>caution</th></tr>\n");
+    let (ids, loads, words) = (cases.text("case_id")?, cases.f64("max_load")?, cases.text("caution")?);
+    for ((id, load), said) in ids.iter().zip(&loads).zip(&words) {
+        for (_, meaning) in CAUTIONS.iter().filter(|(word, _)| said.split([' ', '+', ',']).any(|part| part == *word)) {
+            let _ = writeln!(html, "<tr><td>{}</td><td>{load}</td><td>{meaning}</td></tr>", escape(id));
+        }
+    }
+    html.push_str("</table>\n");
+    Ok(())
+}
+
+fn escape(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}

@@ -1,0 +1,151 @@
+//! aggregate: from the steps of all cycles to the tables over realisations.
+
+use super::surface::{read_summits, spectrum};
+use super::{StageError, Tally, Watch};
+use crate::campaign::{Campaign, CaseUnit, CycleUnit, Stage, Standing};
+use crate::model::Choice;
+use crate::physics::jkr::Asperity;
+use crate::physics::spectrum::Moments;
+use crate::physics::theory::deng_kesari_loss;
+use crate::stats::{self, CaseInput, CycleInput, Given, Value};
+use crate::store::hdf5::{SurfaceHeader, read_header};
+use crate::store::parquet;
+use rayon::prelude::*;
+
+/// Which cycles are finished, in the order of the campaign.
+pub(super) fn finished(campaign: &Campaign) -> Vec<Standing> {
+    campaign.cycles.par_iter().map(|unit| campaign.cycle_standing(unit)).collect()
+}
+
+pub(super) fn done(standings: &[Standing]) -> Vec<bool> {
+    standings.iter().map(|standing| *standing == Standing::Done).collect()
+}
+
+/// The moments that a surface's header tells.
+pub(super) fn moments(header: &SurfaceHeader) -> Moments {
+    Moments {
+        m0_m2: header.rms_height_m.powi(2),
+        m2: 0.5 * header.rms_slope.powi(2),
+        m4_1_m2: 0.375 * header.rms_curvature_1_m.powi(2),
+    }
+}
+
+pub(super) fn run(campaign: &Campaign, partial: bool, watch: &dyn Watch) -> Result<Tally, StageError> {
+    let standings = finished(campaign);
+    let lacking: Vec<&CycleUnit> = campaign
+        .cycles
+        .iter()
+        .zip(&standings)
+        .filter(|(_, standing)| !matches!(standing, Standing::Done | Standing::Failed(_)))
+        .map(|(unit, _)| unit)
+        .collect();
+    if let (false, Some(first)) = (partial, lacking.first()) {
+        return Err(StageError::Incomplete {
+            stage: Stage::Aggregate.word(),
+            missing: lacking.len(),
+            all: standings.len(),
+            example: format!("{}; --partial aggregates what is there", first.id),
+        });
+    }
+    let key = campaign.statistics_key(&done(&standings));
+    let mut tally = Tally { planned: 1, ..Tally::default() };
+    if campaign.statistics_standing(&key) == Standing::Done {
+        tally.before = 1;
+        watch.begin(Stage::Aggregate, 1, 1);
+        watch.end(Stage::Aggregate);
+        return Ok(tally);
+    }
+    watch.begin(Stage::Aggregate, 0, 1);
+    let cases: Vec<CaseInput> = campaign.cases.iter().enumerate().map(|(k, unit)| case_input(campaign, k, unit, &standings)).collect();
+    let cycles: Vec<CycleInput> = campaign
+        .cycles
+        .par_iter()
+        .zip(&standings)
+        .filter(|(_, standing)| **standing == Standing::Done)
+        .map(|(unit, _)| cycle_input(campaign, unit))
+        .collect::<Result<_, _>>()?;
+    let realizations = stats::realizations(&cases, &cycles)?;
+    let averaged = stats::cases(&realizations, &cases)?;
+    let curves = stats::curves(&cases, &cycles)?;
+    for (name, frame) in [("realizations", &realizations), ("curves", &curves), ("cases", &averaged)] {
+        parquet::write_table(&campaign.statistics_path(name), frame, &[("key", key.clone())])?;
+    }
+    watch.progress(Stage::Aggregate, 1.0);
+    watch.finished(Stage::Aggregate, "statistics");
+    watch.end(Stage::Aggregate);
+    tally.computed = 1;
+    Ok(tally)
+}
+
+fn case_input(campaign: &Campaign, number: usize, unit: &CaseUnit, standings: &[Standing]) -> CaseInput {
+    let params = &unit.case.params;
+    let (surface, material, model) = (&params.surface, &params.material, &params.model);
+    let slips: Vec<&str> = model.as_printed.iter().map(|slip| slip.word()).collect();
+    let parameters: [(&str, Value); 16] = [
+        ("hurst", surface.hurst.into()),
+        ("magnification", f64::from(surface.magnification).into()),
+        ("length_m", surface.length_m.into()),
+        ("rms_height_m", surface.rms_height_m.into()),
+        ("points_per_shortest_wavelength", f64::from(surface.points_per_shortest_wavelength).into()),
+        ("normalization", surface.normalization.word().into()),
+        ("amplitudes", surface.amplitudes.word().into()),
+        ("contact_modulus_pa", material.contact_modulus_pa.into()),
+        ("work_of_adhesion_j_m2", material.work_of_adhesion_j_m2.into()),
+        ("interaction_range_m", material.interaction_range_m.into()),
+        ("interaction", model.interaction.word().into()),
+        ("boundary", model.boundary.word().into()),
+        ("coalescence", model.coalescence.word().into()),
+        ("jump_in", model.jump_in.word().into()),
+        ("as_printed", slips.join("+").as_str().into()),
+        ("approach_step", params.cycle.approach_step.into()),
+    ];
+    let failed = |(cycle, standing): (&CycleUnit, &Standing)| cycle.case == number && matches!(standing, Standing::Failed(_));
+    CaseInput {
+        case_id: unit.id.clone(),
+        sweep: unit.case.sweeps.join("+"),
+        parameters: named(parameters),
+        max_loads: params.cycle.max_load.clone(),
+        planned_count: campaign.spec.realizations as usize,
+        failed_count: campaign.cycles.iter().zip(standings).filter(|pair| failed(*pair)).count(),
+    }
+}
+
+fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<CycleInput, StageError> {
+    let case = &campaign.cases[unit.case];
+    let params = &case.case.params;
+    let surface = &campaign.surfaces[unit.surface];
+    let header = read_header(&campaign.surface_path(surface))?;
+    let summits = read_summits(&campaign.asperities_path(surface))?;
+    let realised = moments(&header);
+    let area = header.length_m * header.length_m;
+    let mut tabor = summits
+        .iter()
+        .map(|s| Ok(Asperity::new(s.radius_m(), &params.material)?.tabor(params.material.interaction_range_m)))
+        .collect::<Result<Vec<f64>, StageError>>()?;
+    tabor.sort_by(f64::total_cmp);
+    let numbers: [(&str, Value); 9] = [
+        ("summit_count", summits.len().into()),
+        ("summit_density_1_m2", (summits.len() as f64 / area).into()),
+        ("nayak_density_1_m2", realised.summit_density_1_m2().into()),
+        ("tabor_min", tabor.first().copied().into()),
+        ("tabor_median", tabor.get(tabor.len() / 2).copied().into()),
+        ("tabor_max", tabor.last().copied().into()),
+        ("rms_slope", header.rms_slope.into()),
+        ("rms_curvature_1_m", header.rms_curvature_1_m.into()),
+        ("nayak_parameter", header.nayak_parameter.into()),
+    ];
+    Ok(CycleInput {
+        case_id: case.id.clone(),
+        realization: i64::from(surface.realization),
+        steps: campaign.cycle_dir(unit).join("steps.parquet"),
+        turning_steps: Vec::new(),
+        energy_scale_j: params.material.contact_modulus_pa * area * params.surface.rms_height_m,
+        loss_dk_per_area_j: Some(deng_kesari_loss(&spectrum(&params.surface).moments(), &params.material, area)?),
+        loss_dk_realised_per_area_j: Some(deng_kesari_loss(&realised, &params.material, area)?),
+        surface: named(numbers),
+    })
+}
+
+fn named<const N: usize>(values: [(&str, Value); N]) -> Given {
+    values.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+}

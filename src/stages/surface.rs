@@ -1,0 +1,103 @@
+//! generate and extract: a surface from its spec, its asperities from the surface.
+
+use super::StageError;
+use crate::campaign::{Campaign, SurfaceUnit};
+use crate::physics::spectrum::Spectrum;
+use crate::physics::summits::{Summit, find_summits};
+use crate::physics::synthesis::{realization_seed, synthesize};
+use crate::schema;
+use crate::spec::SurfaceParams;
+use crate::store::hdf5::{read_surface, write_surface};
+use crate::store::{Frame, parquet};
+use std::path::Path;
+
+/// The spectrum that a spec asks for.
+pub(super) fn spectrum(params: &SurfaceParams) -> Spectrum {
+    Spectrum {
+        length_m: params.length_m,
+        rms_height_m: params.rms_height_m,
+        hurst: params.hurst,
+        magnification: params.magnification,
+        normalization: params.normalization,
+        amplitudes: params.amplitudes,
+    }
+}
+
+pub(super) fn generate(campaign: &Campaign, unit: &SurfaceUnit) -> Result<(), StageError> {
+    use crate::store::hdf5::{Generated, SurfaceHeader};
+    let params = &unit.params;
+    let seed = realization_seed(campaign.spec.seed, u64::from(unit.realization));
+    let surface = synthesize(&spectrum(params), &seed, params.grid() as usize);
+    let header = SurfaceHeader {
+        length_m: params.length_m,
+        realization: u64::from(unit.realization),
+        periodic: true,
+        key: unit.key.clone(),
+        rms_height_m: surface.moments.rms_height_m(),
+        rms_slope: surface.moments.rms_slope(),
+        rms_curvature_1_m: surface.moments.rms_curvature_1_m(),
+        nayak_parameter: surface.moments.nayak_parameter(),
+        generated: Some(Generated {
+            target_rms_height_m: params.rms_height_m,
+            hurst: params.hurst,
+            magnification: f64::from(params.magnification),
+            seed: campaign.spec.seed,
+            points_per_shortest_wavelength: f64::from(params.points_per_shortest_wavelength),
+            normalization: params.normalization,
+            amplitudes: params.amplitudes,
+        }),
+    };
+    Ok(write_surface(&campaign.surface_path(unit), &header, surface.heights_m.view())?)
+}
+
+pub(super) fn extract(campaign: &Campaign, unit: &SurfaceUnit) -> Result<(), StageError> {
+    let (header, heights) = read_surface(&campaign.surface_path(unit))?;
+    let found = find_summits(heights.view(), header.length_m, f64::from(unit.params.points_per_shortest_wavelength))?;
+    let list = &found.list;
+    let frame = Frame::of(&schema::ASPERITIES)
+        .i64("asperity_id", (0..list.len()).map(|k| k as i64))
+        .f64("x_m", list.iter().map(|s| s.x_m))
+        .f64("y_m", list.iter().map(|s| s.y_m))
+        .f64("height_m", list.iter().map(|s| s.height_m))
+        .f64("radius_m", list.iter().map(Summit::radius_m))
+        .f64("curvature_1_m", list.iter().map(|s| s.curvature_1_m))
+        .f64("curvature_min_1_m", list.iter().map(|s| s.curvature_min_1_m))
+        .f64("curvature_max_1_m", list.iter().map(|s| s.curvature_max_1_m))
+        .i64("grid_row", list.iter().map(|s| s.grid_row as i64))
+        .i64("grid_col", list.iter().map(|s| s.grid_col as i64))
+        .bool("refined", list.iter().map(|s| s.refined))
+        .build()?;
+    let area = header.length_m * header.length_m;
+    let moments = super::statistics::moments(&header);
+    let keys = [
+        ("key", unit.asperities_key.clone()),
+        // Nayak's density of the realised moments beside the one that was found.
+        ("nayak_density_1_m2", moments.summit_density_1_m2().to_string()),
+        ("summit_density_1_m2", (list.len() as f64 / area).to_string()),
+        ("rejected_count", found.rejected.to_string()),
+        ("unrefined_count", found.unrefined.to_string()),
+    ];
+    Ok(parquet::write_table(&campaign.asperities_path(unit), &frame, &keys)?)
+}
+
+/// The asperities of a table, as the physics takes them.
+pub(super) fn read_summits(path: &Path) -> Result<Vec<Summit>, StageError> {
+    let frame = parquet::read_table(path, &schema::ASPERITIES)?;
+    let [x, y, height, curvature, least, most] =
+        ["x_m", "y_m", "height_m", "curvature_1_m", "curvature_min_1_m", "curvature_max_1_m"].map(|name| frame.f64(name));
+    let (x, y, height, curvature, least, most) = (x?, y?, height?, curvature?, least?, most?);
+    let (rows, columns, refined) = (frame.i64("grid_row")?, frame.i64("grid_col")?, frame.bool("refined")?);
+    Ok((0..frame.row_count())
+        .map(|k| Summit {
+            x_m: x[k],
+            y_m: y[k],
+            height_m: height[k],
+            curvature_1_m: curvature[k],
+            curvature_min_1_m: least[k],
+            curvature_max_1_m: most[k],
+            grid_row: rows[k] as usize,
+            grid_col: columns[k] as usize,
+            refined: refined[k],
+        })
+        .collect())
+}
