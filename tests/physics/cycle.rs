@@ -1,0 +1,246 @@
+//! Whole cycles: where the loss has a closed form, where energy must balance, and what must not depend on the step.
+
+use crate::support::{
+    ALONE, DEFAULT, LENGTH, Loop, PAPER, RMS, asperity, close, loop_of, near, paper_cycle, paper_summits, run, turning, unloading,
+};
+use hysteron::model::{Coalescence, Interaction, JumpIn, KeptContacts, Material};
+use hysteron::physics::PhysicsError;
+use hysteron::physics::cycle::Cycle;
+use hysteron::physics::events::Kind;
+use hysteron::physics::jkr::Asperity;
+use hysteron::physics::state::{Problem, Rules};
+use hysteron::physics::summits::Summit;
+use std::f64::consts::PI;
+
+/// Σθ over every asperity that touched, with the given jump-in.
+fn closed_form(cycle: &Cycle, summits: &[Summit], jump_in: JumpIn) -> f64 {
+    let mut touched: Vec<usize> = cycle.events.iter().filter(|(_, e)| e.kind == Kind::JumpIn).map(|(_, e)| e.asperity).collect();
+    touched.sort_unstable();
+    touched.dedup();
+    assert!(touched.len() > 20 && touched.len() < summits.len(), "some touch, some do not: {}", touched.len());
+    let theta = |i: &usize| {
+        let asperity = Asperity::new(summits[*i].radius_m(), &PAPER).unwrap();
+        match jump_in {
+            JumpIn::Jkr => asperity.loop_loss(),
+            JumpIn::Wu => asperity.loop_loss_from(asperity.wu_jump_in_penetration(PAPER.interaction_range_m)).unwrap(),
+        }
+    };
+    touched.iter().map(theta).sum()
+}
+
+#[test]
+fn law_without_interaction_the_loss_is_the_sum_over_those_that_touched() {
+    let summits = paper_summits(16, 0);
+    for jump_in in [JumpIn::Jkr, JumpIn::Wu] {
+        let rules = Rules { jump_in, ..ALONE };
+        let mut off = Vec::new();
+        for (step, tolerance) in [(0.08, 2e-4), (0.04, 5e-5), (0.02, 1.5e-5), (0.01, 1.5e-5)] {
+            let cycle = paper_cycle(&summits, rules, &[0.0071], step);
+            let (sums, want) = (loop_of(&cycle, 0), closed_form(&cycle, &summits, jump_in));
+            // Between events the work is integrated to fourth order in the step. What is left at small steps is where the events are
+            // taken: a jump-off within 2e-5 of δ_off before the end, which is 2e-5 × (5π/6)(1.609)/7.09 = 1.2e-5 of θ (hardly
+            // more of Wu's: μ is several hundred here); a jump-in within 1e-6 of the rms height, less than that.
+            close("Theta", sums.loss, want, tolerance);
+            close("events", sums.events, want, 1.5e-5);
+            off.push((sums.loss / want - 1.0).abs());
+        }
+        assert!(off[2] < off[1] && off[1] < off[0], "{off:?}");
+    }
+}
+
+/// Without interaction the load at an approach is a sum over the asperities in contact, and all of them are known.
+#[test]
+fn law_without_interaction_the_load_is_a_sum() {
+    let summits = paper_summits(16, 1);
+    let cycle = paper_cycle(&summits, ALONE, &[0.0071], 0.04);
+    let highest = summits.iter().map(|s| s.height_m).fold(f64::NEG_INFINITY, f64::max);
+    for step in &cycle.steps[..=cycle.turning[0].0] {
+        let (mut load, mut area, mut count) = (0.0, 0.0, 0);
+        for summit in &summits {
+            let penetration = step.approach_m + summit.height_m - highest;
+            if penetration >= 0.0 {
+                let jkr = Asperity::new(summit.radius_m(), &PAPER).unwrap();
+                let a = jkr.radius_at_penetration(penetration).unwrap();
+                load += jkr.load(a);
+                area += PI * a * a;
+                count += 1;
+            }
+        }
+        assert_eq!(step.contact_count, count);
+        // Each spot is met to 1e-10 of the rms height, 5e-16 m, with stiffnesses of some 100 N/m.
+        near("load", step.load_n, load, 1e-11);
+        near("area", step.area_m2, area, 1e-8 * area);
+    }
+}
+
+#[test]
+fn law_point_interaction_loses_what_its_events_lose() {
+    let summits = paper_summits(16, 0);
+    for coalescence in [Coalescence::None, Coalescence::Cover] {
+        let rules = Rules { interaction: Interaction::Point, coalescence, ..DEFAULT };
+        // Found: 4.8e-5 and 2.8e-5 of the loss. Quadrature of the load between events, in places with the root singularity of a spot that
+        // nears its end; and each of some 80 events within 1e-6 of the rms height and 2e-5 of its own end.
+        for (step, bound) in [(0.04, 1e-4), (0.02, 6e-5)] {
+            let cycle = paper_cycle(&summits, rules, &[0.004, 0.0071], step);
+            for k in 0..2 {
+                let Loop { loss, events, .. } = loop_of(&cycle, k);
+                assert!(loss > 0.0);
+                near("audit", loss / events - 1.0, 0.0, bound);
+            }
+        }
+    }
+}
+
+#[test]
+fn law_every_event_loses_energy_with_point_interaction() {
+    let summits = paper_summits(16, 2);
+    let rules = Rules { interaction: Interaction::Point, coalescence: Coalescence::None, ..DEFAULT };
+    let cycle = paper_cycle(&summits, rules, &[0.0071], 0.04);
+    let loss = loop_of(&cycle, 0).events;
+    assert!(cycle.events.len() > 40);
+    for (_, event) in &cycle.events {
+        // Relaxation goes down the potential. A hundredth of a thousandth of the whole is its evaluation's rounding, far above.
+        assert!(event.energy_lost_j > -1e-5 * loss, "{event:?}");
+        close("energy", event.energy_lost_j, event.before.potential_j - event.after.potential_j, 1e-12);
+    }
+    // As many leave as come: the loop ends free.
+    let count = |kind| cycle.events.iter().filter(|(_, e)| e.kind == kind).count();
+    assert_eq!(count(Kind::JumpIn), count(Kind::JumpOff));
+}
+
+#[test]
+fn law_the_turning_point_is_at_the_load_itself() {
+    let summits = paper_summits(16, 1);
+    let loads = [0.002, 0.004, 0.0071, 0.012];
+    for rules in [DEFAULT, ALONE, Rules { interaction: Interaction::Point, ..DEFAULT }] {
+        let cycle = paper_cycle(&summits, rules, &loads, 0.04);
+        assert_eq!(cycle.turning.len(), loads.len());
+        for (k, load) in loads.iter().enumerate() {
+            // The program's own tolerance of the load is 1e-9.
+            close("F_max", turning(&cycle, k).load_n, load * PAPER.contact_modulus_pa * LENGTH * LENGTH, 1e-8);
+            let back = unloading(&cycle, k);
+            close("area where unloading begins", back[0].area_m2, turning(&cycle, k).area_m2, 1e-9);
+            assert_eq!(back.last().unwrap().contact_count, 0, "unloading ends free");
+            near("and unloaded", back.last().unwrap().load_n, 0.0, 0.0);
+        }
+        // Every equilibrium met.
+        assert!(cycle.steps.iter().all(|s| s.residual_m <= 1e-8 * RMS));
+        // The loop begins free, before the first jump-in.
+        assert_eq!(cycle.steps[0].contact_count, 0);
+        assert!(cycle.steps[0].approach_m < 0.0);
+    }
+}
+
+#[test]
+fn law_unloading_does_not_depend_on_the_other_turning_points() {
+    let summits = paper_summits(16, 0);
+    let many = paper_cycle(&summits, DEFAULT, &[0.002, 0.004, 0.0071], 0.04);
+    let one = paper_cycle(&summits, DEFAULT, &[0.004], 0.04);
+    let (p, q) = (loop_of(&many, 1), loop_of(&one, 0));
+    // The stop at 0.002 divides one step of the work's quadrature, and events are then met from another side: within 1e-6 of the rms height.
+    close("area", p.area, q.area, 1e-7);
+    close("loss", p.loss, q.loss, 1e-4);
+    close("pull-off", p.pull_off, q.pull_off, 1e-6);
+}
+
+#[test]
+fn law_the_step_does_not_matter() {
+    let summits = paper_summits(32, 0);
+    let [coarse, fine] = [0.04, 0.02].map(|step| loop_of(&paper_cycle(&summits, DEFAULT, &[0.0071], step), 0));
+    // The sheet's own bound is 1 %. Area and loss hold far better (found: 1e-9 and 5e-5), since no decision depends on the step;
+    // the pull-off load is that of the recorded steps.
+    close("area", coarse.area, fine.area, 1e-6);
+    close("loss", coarse.loss, fine.loss, 1e-3);
+    close("pull-off", coarse.pull_off, fine.pull_off, 1e-2);
+}
+
+#[test]
+fn law_the_pull_off_load_does_not_depend_on_the_step() {
+    // The same without interaction, whose load falls in saw teeth: its least value lies at a jump-off, between two steps.
+    let summits = paper_summits(16, 0);
+    let [coarse, fine] = [0.04, 0.02].map(|step| loop_of(&paper_cycle(&summits, ALONE, &[0.0071], step), 0));
+    close("pull-off", coarse.pull_off, fine.pull_off, 1e-2);
+}
+
+#[test]
+fn law_without_interaction_nothing_snaps() {
+    // A snap is a fold of the coupled state. Alone, a spot has no fold but the end of its branch, however weak the adhesion.
+    let summits = paper_summits(16, 0);
+    for adhesion in [0.07, 1e-6, 1e-9, 1e-12] {
+        let material = Material { work_of_adhesion_j_m2: adhesion, ..PAPER };
+        let cycle = run(&Problem::new(&summits, LENGTH, RMS, material, ALONE).unwrap(), &[0.0071], 0.04, KeptContacts::None);
+        let kinds: Vec<Kind> = cycle.events.iter().map(|(_, e)| e.kind).collect();
+        let other = kinds.iter().filter(|k| !matches!(k, Kind::JumpIn | Kind::JumpOff)).count();
+        assert_eq!((other, kinds.is_empty()), (0, false), "events that are no jump at a work of adhesion of {adhesion:e}");
+    }
+}
+
+#[test]
+fn lim_hardly_any_adhesion_retraces_and_is_hertz() {
+    let summits = paper_summits(16, 0);
+    let material = Material { work_of_adhesion_j_m2: 1e-9, ..PAPER };
+    for interaction in [Interaction::None, Interaction::Point, Interaction::Spots] {
+        let problem = Problem::new(&summits, LENGTH, RMS, material, Rules { interaction, jump_in: JumpIn::Jkr, ..DEFAULT }).unwrap();
+        let cycle = run(&problem, &[0.0071], 0.04, KeptContacts::None);
+        let (top, sums) = (turning(&cycle, 0), loop_of(&cycle, 0));
+        let mut compared = 0;
+        for down in unloading(&cycle, 0) {
+            if let Some(up) = cycle.steps[..cycle.turning[0].0].iter().find(|up| up.approach_m == down.approach_m) {
+                // One equilibrium, met twice to 1e-10 of the rms height.
+                near("load", down.load_n, up.load_n, 1e-9 * top.load_n);
+                near("area", down.area_m2, up.area_m2, 1e-9 * top.area_m2);
+                compared += 1;
+            }
+        }
+        assert!(compared > 20, "{compared}");
+        // Σθ goes as Δγ^(5/3): 1e-13 of the work at this one. What is left is the quadrature's, at the (3/2)-power onsets of Hertz.
+        near("loss", sums.loss, 0.0, 1e-5 * top.work_j);
+        // Greatest tension: at most (3/2)πRΔγ for each of the summits, whose radii are below 2 mm.
+        assert!(sums.pull_off < 1e-9 * 1.5 * PI * 2e-3 * summits.len() as f64);
+        if interaction == Interaction::None {
+            let highest = summits.iter().map(|s| s.height_m).fold(f64::NEG_INFINITY, f64::max);
+            let hertz: f64 = summits
+                .iter()
+                .map(|s| (top.approach_m + s.height_m - highest, s.radius_m()))
+                .filter(|(d, _)| *d > 0.0)
+                .map(|(d, r)| 4.0 / 3.0 * PAPER.contact_modulus_pa * r.sqrt() * d.powf(1.5))
+                .sum();
+            // The correction is −πRΔγ for each (hertz.csv): 1e-11 N of 7e-3 N.
+            close("Hertz", top.load_n, hertz, 1e-7);
+        }
+    }
+}
+
+#[test]
+fn e2e_the_paper_without_interaction() {
+    // Means and standard deviations over six realisations of an independent program: H = 0.8, ζ = 64, Wu, F_max = 0.0071.
+    let independent = [(0.186, 0.038), (6.9e-4, 1.9e-4), (6.7e-4, 3.3e-4)];
+    let unit = PAPER.contact_modulus_pa * LENGTH * LENGTH;
+    let rules = Rules { jump_in: JumpIn::Wu, ..ALONE };
+    let mut found = [[0.0; 3]; 6];
+    for (r, values) in found.iter_mut().enumerate() {
+        let sums = loop_of(&paper_cycle(&paper_summits(64, r as u64), rules, &[0.0071], 0.04), 0);
+        *values = [sums.area / (LENGTH * LENGTH), sums.loss / (unit * RMS), sums.pull_off / unit];
+    }
+    for (k, (mean, deviation)) in independent.into_iter().enumerate() {
+        let ours = found.iter().map(|v| v[k]).sum::<f64>() / 6.0;
+        // Two means of six with that deviation each: three standard errors of their difference, other phases being drawn.
+        near(["area", "loss", "pull-off"][k], ours, mean, 3.0 * deviation * (2.0f64 / 6.0).sqrt());
+    }
+}
+
+#[test]
+fn reg_a_problem_names_what_it_cannot_use() {
+    let one = [asperity(0.5 * LENGTH, 0.5 * LENGTH, 0.0, 1e-5)];
+    assert!(matches!(Problem::new(&[], LENGTH, RMS, PAPER, DEFAULT), Err(PhysicsError::NoSummit)));
+    // μ = (RΔγ²/E*²)^⅓/ε = 0.37 at ε = 1e-6 m.
+    let wide = Material { interaction_range_m: 1e-6, ..PAPER };
+    assert!(matches!(Problem::new(&one, LENGTH, RMS, wide, DEFAULT), Err(PhysicsError::LowTabor { below: 1, all: 1, .. })));
+    assert!(Problem::new(&one, LENGTH, RMS, wide, Rules { allow_low_tabor: true, ..DEFAULT }).is_ok());
+    assert!(Problem::new(&one, LENGTH, RMS, wide, Rules { jump_in: JumpIn::Jkr, ..DEFAULT }).is_ok());
+    let problem = Problem::new(&one, LENGTH, RMS, PAPER, DEFAULT).unwrap();
+    let jkr = Asperity::new(1e-5, &PAPER).unwrap();
+    close("first contact", problem.first_contact_m(), jkr.wu_jump_in_penetration(1e-9), 1e-14);
+    close("Tabor", problem.tabor()[0], jkr.tabor(1e-9), 1e-14);
+    assert_eq!((problem.len(), problem.is_empty()), (1, false));
+}

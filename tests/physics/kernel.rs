@@ -1,0 +1,99 @@
+//! The periodic point-load kernel.
+
+use crate::reference::table;
+use crate::support::{Dice, close, near};
+use hysteron::physics::interaction::ewald::{RemainderSeries, kernel, remainder};
+use std::f64::consts::PI;
+
+/// `4 ζ(½) β(½)`: own images and background.
+const SELF_TERM: f64 = -3.900_264_920_001_956;
+
+#[test]
+fn val_kernel_agrees_with_many_digits() {
+    for row in table("kernel").rows() {
+        let (x, y) = (row.number("x"), row.number("y"));
+        let rest = row.number("G_minus_1_over_r");
+        // Sums of some hundred terms below 4, cancelling to values below 4.
+        near("G - 1/r", remainder(x, y, 2.5), rest, 1e-13);
+        if x.hypot(y) > 0.0 {
+            close("G", kernel(x, y, 2.5), row.number("G"), 1e-12 * (4.0 / row.number("G").abs()).max(1.0));
+        }
+    }
+}
+
+#[test]
+fn law_the_splitting_parameter_is_arbitrary() {
+    let mut dice = Dice(1);
+    for _ in 0..40 {
+        let (x, y) = (dice.roll() - 0.5, dice.roll() - 0.5);
+        let want = kernel(x, y, PI.sqrt());
+        for alpha in [1.1, 2.5, 4.0] {
+            // The terms are below 2√π/α and 1/r: rounding only.
+            near("G", kernel(x, y, alpha), want, 1e-12 * (1.0 / x.hypot(y)).max(1.0));
+            near("G - 1/r", remainder(x, y, alpha), want - 1.0 / x.hypot(y), 1e-12 * (1.0 / x.hypot(y)).max(1.0));
+        }
+    }
+}
+
+#[test]
+fn val_the_self_term_is_a_madelung_constant() {
+    for alpha in [1.1, PI.sqrt(), 2.5, 4.0] {
+        near("self term", remainder(0.0, 0.0, alpha), SELF_TERM, 1e-13);
+    }
+    near("series", RemainderSeries::default().at(0.0, 0.0), SELF_TERM, 1e-13);
+}
+
+#[test]
+fn law_the_series_is_the_remainder() {
+    let series = RemainderSeries::new();
+    let mut dice = Dice(2);
+    let mut places: Vec<(f64, f64)> = (0..200).map(|_| (dice.roll() - 0.5, dice.roll() - 0.5)).collect();
+    places.extend([(0.5, 0.5), (0.5, 0.0), (0.0, 0.5), (-0.5, 0.5), (1e-9, -1e-9)]);
+    for (x, y) in places {
+        // Truncated where it falls below rounding of the values, which are below 4.
+        near("series", series.at(x, y), remainder(x, y, 2.5), 1e-13);
+    }
+}
+
+#[test]
+fn law_the_kernel_has_the_symmetry_of_the_square() {
+    let series = RemainderSeries::new();
+    let mut dice = Dice(3);
+    for _ in 0..20 {
+        let (x, y) = (0.5 * dice.roll(), 0.5 * dice.roll());
+        for (u, v) in [(-x, y), (x, -y), (-x, -y), (y, x), (-y, x)] {
+            near("remainder", remainder(u, v, 2.0), remainder(x, y, 2.0), 1e-13);
+            near("series", series.at(u, v), series.at(x, y), 1e-13);
+        }
+        // The same place in the next cell: the kernel is periodic, the remainder is not.
+        near("period", kernel(x - 1.0, y, 2.0), kernel(x, y, 2.0), 1e-12 / x.hypot(y));
+    }
+}
+
+#[test]
+fn law_the_kernel_has_no_mean() {
+    // Three-point Gauss on 16 × 16 panels of the quadrant: error (1/32)⁶ of derivatives below 1e3.
+    let offset = 0.5 * 0.6f64.sqrt();
+    let nodes = [(0.5 - offset, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.5 + offset, 5.0 / 18.0)];
+    let points: Vec<(f64, f64)> = (0..16).flat_map(|k| nodes.map(|(t, w)| ((f64::from(k) + t) / 32.0, w / 16.0))).collect();
+    let mean: f64 = points.iter().flat_map(|(x, wx)| points.iter().map(move |(y, wy)| wx * wy * remainder(*x, *y, 2.5))).sum();
+    // The mean of 1/r over the square is 4 ln(1 + √2).
+    near("mean of G", mean + 4.0 * (1.0 + 2f64.sqrt()).ln(), 0.0, 1e-8);
+}
+
+#[test]
+fn law_a_finer_lattice_of_loads_is_a_smaller_cell() {
+    // n² equal loads on the cell are the lattice of side 1/n, whose kernel is n G(n r).
+    for n in [2, 3] {
+        let side = f64::from(n);
+        let (x, y) = (0.11 / side, -0.37 / side);
+        let mut sum = 0.0;
+        for i in 0..n {
+            for j in 0..n {
+                let wrap = |d: f64| d - d.round();
+                sum += kernel(wrap(x + f64::from(i) / side), wrap(y + f64::from(j) / side), 2.0);
+            }
+        }
+        close("lattice", sum, side * kernel(side * x, side * y, 2.0), 1e-11);
+    }
+}
