@@ -50,6 +50,8 @@ pub struct Step {
     pub approach_m: f64,
     /// Load \[N\].
     pub load_n: f64,
+    /// Least load since the step before, events included \[N\].
+    pub least_load_n: f64,
     /// Area Σπa² \[m²\].
     pub area_m2: f64,
     /// Area of the union of the discs \[m²\].
@@ -133,19 +135,19 @@ fn load(problem: &Problem, settings: &Settings, cycle: &mut Cycle, progress: &dy
     let mut number = (problem.first_contact_m() / spacing).floor() - 1.0;
     let mut path = Path::new(problem, State::free(problem, number * spacing))?;
     let mut recorder = Recorder::new(Branch::Loading, None);
-    recorder.record(problem, settings, &path, cycle, false);
+    recorder.record(problem, settings, &mut path, cycle, false);
     let last = settings.max_loads.last().copied().unwrap_or(0.0);
     let mut turns = settings.max_loads.iter();
     let mut turn = turns.next();
     while let Some(max_load) = turn {
         let target = (number + 1.0) * spacing;
         if path.advance(target, Some(max_load * problem.load_unit_n()))? {
-            recorder.record(problem, settings, &path, cycle, true);
+            recorder.record(problem, settings, &mut path, cycle, true);
             cycle.turning.push((cycle.steps.len() - 1, path.node.state.clone()));
             turn = turns.next();
         } else {
             number += 1.0;
-            recorder.record(problem, settings, &path, cycle, false);
+            recorder.record(problem, settings, &mut path, cycle, false);
         }
         let reached = path.node.totals.load_n / problem.load_unit_n();
         if target > 100.0 * problem.rms_height_m {
@@ -169,13 +171,13 @@ fn unload(
     let start = state.approach_m;
     let mut path = Path::new(problem, state)?;
     let mut recorder = Recorder::new(Branch::Unloading, Some(max_load));
-    recorder.record(problem, settings, &path, cycle, false);
+    recorder.record(problem, settings, &mut path, cycle, false);
     let mut number = (start / spacing).ceil();
     let full = path.node.totals.area_m2;
     while !path.node.state.contacts.is_empty() {
         number -= 1.0;
         path.advance(number * spacing, None)?;
-        recorder.record(problem, settings, &path, cycle, false);
+        recorder.record(problem, settings, &mut path, cycle, false);
         progress(1.0 - path.node.totals.area_m2 / full);
     }
     Ok(())
@@ -195,8 +197,9 @@ impl Recorder {
         Self { branch, max_load, events_before: 0, iterations_before: 0, pairs_before: 0 }
     }
 
-    fn record(&mut self, problem: &Problem, settings: &Settings, path: &Path<'_>, cycle: &mut Cycle, turning: bool) {
+    fn record(&mut self, problem: &Problem, settings: &Settings, path: &mut Path<'_>, cycle: &mut Cycle, turning: bool) {
         let number = cycle.steps.len();
+        let least_load_n = path.take_least_load();
         let recent = &path.events[self.events_before..];
         let count = |kind: Kind| recent.iter().filter(|event| event.kind == kind).count();
         let node = &path.node;
@@ -206,6 +209,7 @@ impl Recorder {
             max_load: self.max_load,
             approach_m: node.state.approach_m,
             load_n: node.totals.load_n,
+            least_load_n,
             area_m2: node.totals.area_m2,
             area_union_m2: super::union::area(problem, &node.state),
             contact_count: node.state.contacts.len(),

@@ -71,17 +71,17 @@ impl<'p> Solver<'p> {
 
     /// Newton's method on the radii, from those of `state`, at its approach, with its spots.
     pub(crate) fn newton(&mut self, state: &mut State) -> Result<(), Unsettled> {
-        self.descend(state, 0.1)
+        self.descend(state, 0.2, 20)
     }
 
-    /// Newton's method, each step shortened down to the share `least` of itself until it descends.
-    fn descend(&mut self, state: &mut State, least: f64) -> Result<(), Unsettled> {
+    /// Newton's method, at most so many iterations, each step shortened down to the share `least` of itself until it descends.
+    fn descend(&mut self, state: &mut State, least: f64, most: usize) -> Result<(), Unsettled> {
         let tolerance = self.problem.tolerance_m();
         let mut start: Vec<f64> = Vec::new();
         let mut step: Vec<f64> = Vec::new();
         let mut before = f64::INFINITY;
         let mut share = 1.0;
-        for _ in 0..80 {
+        for _ in 0..most {
             self.effort.iterations += 1;
             let worst = self.evaluate(state);
             if worst.residual_m <= tolerance {
@@ -108,7 +108,10 @@ impl<'p> Solver<'p> {
     }
 
     /// Overdamped relaxation from the radii of `state`, at its approach. Spots that leave or are covered on the way are returned.
-    pub(crate) fn relax(&mut self, state: &mut State) -> Result<Vec<Change>, Unsettled> {
+    ///
+    /// Where an asperity has just been uncovered (`uncovered`) and is covered again on the way, or exchanges parts with the spot that covered
+    /// it, the rest of the way is of no interest: the state is left as it is then.
+    pub(crate) fn relax(&mut self, state: &mut State, uncovered: Option<&Change>) -> Result<Vec<Change>, Unsettled> {
         let tolerance = self.problem.tolerance_m();
         let mut changes: Vec<Change> = Vec::new();
         let mut time = 1.0;
@@ -125,6 +128,9 @@ impl<'p> Solver<'p> {
             if let Some(change) = self.overtaken(state) {
                 state.set(change.asperity, change.status(self.problem), 0.0);
                 changes.push(change);
+                if uncovered.is_some_and(|earlier| change.undoes(earlier)) {
+                    return Ok(changes);
+                }
                 (time, finish) = (1.0, 100.0);
                 continue;
             }
@@ -132,7 +138,7 @@ impl<'p> Solver<'p> {
                 // Nearly at rest: Newton's method finishes. At the edge of a spot, where the slope of its field jumps, implicit steps would go
                 // to and fro for ever, while short steps that descend arrive.
                 let mut end = state.clone();
-                if self.descend(&mut end, 1e-6).is_ok() {
+                if self.descend(&mut end, 1e-4, 40).is_ok() {
                     *state = end;
                     continue;
                 }
@@ -191,16 +197,31 @@ impl<'p> Solver<'p> {
 
     /// Penetrations `D_i − ŵ_i` \[m\] of the free asperities, one to each asperity; not a number for the others.
     pub(crate) fn free_penetrations(&mut self, state: &State) -> Vec<f64> {
+        let mut penetrations = vec![f64::NAN; self.problem.len()];
+        self.renew(state, &mut penetrations, |_| true);
+        penetrations
+    }
+
+    /// The same, anew only for the asperities that may have come to their jump-in since `known` was taken at the approach `from` \[m\].
+    /// Between events the half-space follows the surface, so no penetration grows by more than three times the way; the tenth of an rms
+    /// height is for the smaller displacements of a relaxation.
+    pub(crate) fn near_penetrations(&mut self, state: &State, known: &[f64], from: f64) -> Vec<f64> {
+        let margin = 3.0 * (state.approach_m - from).abs() + 0.1 * self.problem.rms_height_m;
+        let mut penetrations = known.to_vec();
+        let jump_in = &self.problem.jump_in;
+        self.renew(state, &mut penetrations, |i| known[i].is_nan() || known[i] > jump_in[i] - margin);
+        penetrations
+    }
+
+    fn renew(&mut self, state: &State, penetrations: &mut [f64], wanted: impl Fn(usize) -> bool) {
         let problem = self.problem;
         problem.spots(state, &mut self.spots);
-        let free: Vec<usize> = (0..problem.len()).filter(|i| state.status[*i] == Status::Free).collect();
+        let free: Vec<usize> = (0..problem.len()).filter(|i| state.status[*i] == Status::Free && wanted(*i)).collect();
         let mut displacement = Vec::new();
         problem.field.displacements(&self.spots, &free, &mut displacement, &mut self.effort);
-        let mut penetrations = vec![f64::NAN; problem.len()];
         for (i, w) in free.into_iter().zip(displacement) {
             penetrations[i] = state.approach_m + problem.heights[i] - w;
         }
-        penetrations
     }
 
     /// Penetration of one asperity that is not in contact \[m\].

@@ -6,7 +6,7 @@
 //! Covering takes a load away, so it moves the covering spot: if the load was tensile, the spot shrinks and would release the asperity at
 //! once, which would draw the spot out again, for ever. So the radius that the spot has after covering is the one below which it
 //! releases; and where uncovering would only end in being covered again, or in the two changing parts, it is not done, and tried
-//! again when the spot has shrunk by another hundredth. Neither depends on the step of the approach.
+//! again when the spot has shrunk by another 3 %. Neither depends on the step of the approach.
 
 use super::state::{Problem, State, Status};
 use crate::model::Coalescence;
@@ -62,6 +62,12 @@ impl Change {
             }
             _ => false,
         })
+    }
+
+    /// Whether this covers an asperity that was uncovered, or covers the spot that it was uncovered from by its own.
+    pub(crate) fn undoes(&self, uncovering: &Self) -> bool {
+        let i = uncovering.asperity;
+        self.kind == Kind::Cover && (self.asperity == i || (Some(self.asperity) == uncovering.by && self.by == Some(i)))
     }
 
     /// The status of an asperity that this change takes out of contact.

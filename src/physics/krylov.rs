@@ -13,6 +13,7 @@ fn apply(tangent: &Tangent, diagonal: &[f64], x: &[f64], y: &mut [f64]) {
     }
 }
 
+#[multiversion::multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut strands = [0.0; 8];
     let (a_whole, a_rest) = a.as_chunks::<8>();

@@ -18,7 +18,7 @@ pub const EVENT_TOLERANCE: f64 = 1e-6;
 const END_TOLERANCE: f64 = 2e-5;
 
 /// Where uncovering an asperity is in vain, it is tried again when the covering spot has shrunk to this share of its radius.
-const RETRY: f64 = 0.99;
+const RETRY: f64 = 0.97;
 
 /// Changes other than leaving that one asperity takes between two grid points of the approach.
 const FLIPS: u8 = 3;
@@ -65,6 +65,10 @@ pub(crate) struct Path<'p> {
     /// `∫F dΔ` since the branch began \[J\].
     pub(crate) work_j: f64,
     avalanches: u64,
+    /// Penetrations of all free asperities as they were taken last, and the approach of that.
+    known: (Vec<f64>, f64),
+    /// Least load since this was asked last, events included \[N\].
+    least_load_n: f64,
     /// How often each asperity has been covered, uncovered or has jumped in since the last grid point of the approach.
     flips: Vec<u8>,
     /// Changes that were not taken since then because the asperity had flipped too often.
@@ -85,7 +89,8 @@ impl<'p> Path<'p> {
     pub(crate) fn new(problem: &'p Problem, state: State) -> Result<Self, PhysicsError> {
         let mut solver = Solver::new(problem);
         let node = settled_node(&mut solver, state)?;
-        Ok(Self { solver, node, events: Vec::new(), work_j: 0.0, avalanches: 0, flips: vec![0; problem.len()], held: Vec::new() })
+        let known = (node.free.clone(), node.state.approach_m);
+        Ok(Self { solver, least_load_n: node.totals.load_n, node, known, events: Vec::new(), work_j: 0.0, avalanches: 0, flips: vec![0; problem.len()], held: Vec::new() })
     }
 
     pub(crate) fn effort(&self) -> Effort {
@@ -131,10 +136,17 @@ impl<'p> Path<'p> {
                 }
                 Err(_) => obstacle = Some(Obstacle { approach: trial, due: Vec::new(), load: f64::NAN, weight: 1.0 }),
                 Ok(mut next) => {
-                    next.free = self.solver.free_penetrations(&next.state);
+                    next.free = if trial == target {
+                        self.solver.free_penetrations(&next.state)
+                    } else {
+                        self.solver.near_penetrations(&next.state, &self.known.0, self.known.1)
+                    };
                     let due = self.due(&next.state, &next.free);
                     let over = stop.is_some_and(|stop| next.totals.load_n > stop * (1.0 + LOAD_TOLERANCE));
                     if due.is_empty() && !over {
+                        if trial == target {
+                            self.known = (next.free.clone(), trial);
+                        }
                         self.accept(next, reach);
                         match &mut obstacle {
                             Some(known) if (known.approach - trial) * sign > 0.0 => known.weight *= 0.5,
@@ -201,7 +213,7 @@ impl<'p> Path<'p> {
             Some((approach, None)) if tries < 60 => approach,
             _ if gap <= tolerance => known.approach,
             // A little beyond a change, so that it is found due.
-            Some((approach, Some(_))) if tries < 12 || tries % 2 == 0 => {
+            Some((approach, Some(_))) if tries < 12 || tries.is_multiple_of(2) => {
                 let aimed = approach + (0.3 * tolerance).copysign(known.approach - here);
                 if (aimed - here).abs() < gap { aimed } else { middle }
             }
@@ -239,7 +251,7 @@ impl<'p> Path<'p> {
             // Penetration is nearly linear in the approach, up to the end of the branch; the radius is not.
             let ahead = asperity.penetration(a) + asperity.penetration_slope(a) * rate * change;
             let end = asperity.jump_off_radius() * (1.0 + 1e-4);
-            guess.push(asperity.radius_at_penetration(ahead).unwrap_or(end).clamp(0.6 * a, 1.6 * a));
+            guess.push(asperity.radius_at_penetration(ahead).unwrap_or(end).clamp(0.6 * a, 4.0 * a));
         }
         for (&i, radius) in self.node.state.contacts.iter().zip(&guess) {
             state.radius[i] = *radius;
@@ -277,7 +289,13 @@ impl<'p> Path<'p> {
                 next.state.barred[i] &= next.free[i] >= self.solver.problem.jump_in[i];
             }
         }
+        self.least_load_n = self.least_load_n.min(f1);
         self.node = next;
+    }
+
+    /// The least load since this was asked last, events included \[N\]: the load is a saw-tooth whose teeth stand at the events.
+    pub(crate) fn take_least_load(&mut self) -> f64 {
+        std::mem::replace(&mut self.least_load_n, self.node.totals.load_n)
     }
 
     /// Beyond a fold: the spots relax to the next equilibrium at `approach`.
@@ -286,7 +304,7 @@ impl<'p> Path<'p> {
         self.work_j += self.node.totals.load_n * (approach - state.approach_m);
         state.approach_m = approach;
         let before = self.node.totals;
-        let changes = self.solver.relax(&mut state).map_err(|unsettled| stuck(&state, unsettled, self.solver.effort))?;
+        let changes = self.solver.relax(&mut state, None).map_err(|unsettled| stuck(&state, unsettled, self.solver.effort))?;
         self.avalanches += 1;
         let moved = if changes.is_empty() {
             let most = |i: &usize| (state.radius[*i] / self.node.state.radius[*i] - 1.0).abs();
@@ -322,6 +340,7 @@ impl<'p> Path<'p> {
             let Some(next) = next else {
                 self.latch(&mut state, &free, &moved);
                 self.node = settled_node(&mut self.solver, state)?;
+                self.known = (self.node.free.clone(), self.node.state.approach_m);
                 return Ok(());
             };
             if moved.len() > bound {
@@ -366,9 +385,10 @@ impl<'p> Path<'p> {
         let mut taken = vec![change];
         if self.solver.newton(state).is_err() {
             *state = start;
-            taken.extend(self.solver.relax(state).map_err(|unsettled| stuck(state, unsettled, self.solver.effort))?);
+            let uncovered = (change.kind == Kind::Uncover).then_some(&change);
+            taken.extend(self.solver.relax(state, uncovered).map_err(|unsettled| stuck(state, unsettled, self.solver.effort))?);
         }
-        if change.kind == Kind::Uncover && self.vain(&change, state) {
+        if change.kind == Kind::Uncover && self.vain(&change, &taken, state) {
             *state = covered;
             if let Status::Covered { by, .. } = state.status[i] {
                 state.status[i] = Status::Covered { by, release_m: RETRY * state.radius[by] };
@@ -380,20 +400,16 @@ impl<'p> Path<'p> {
         Ok(after)
     }
 
-    /// Whether an uncovering was in vain: the asperity is to be covered again at once, or its own spot covers the one that covered it.
-    fn vain(&self, change: &Change, state: &State) -> bool {
-        let i = change.asperity;
-        let exchanged = |k: usize, by: Option<usize>| k == i || (Some(k) == change.by && by == Some(i));
-        let covered = |k: usize| matches!(state.status[k], Status::Covered { by, .. } if exchanged(k, Some(by)));
-        let due = self.solver.problem.triggers(state, &[]);
-        covered(i)
-            || change.by.is_some_and(covered)
-            || due.iter().any(|t| t.change.kind == Kind::Cover && exchanged(t.change.asperity, t.change.by))
+    /// Whether an uncovering was in vain: it was undone on the way, or is to be undone at once.
+    fn vain(&self, uncovering: &Change, taken: &[Change], state: &State) -> bool {
+        taken.iter().any(|change| change.undoes(uncovering))
+            || self.solver.problem.triggers(state, &[]).iter().any(|trigger| trigger.change.undoes(uncovering))
     }
 
     /// Writes changes down that led from `before` to `state`; the energy of changes within one relaxation is the first one's.
     fn record(&mut self, moved: &[Change], before: Totals, state: &State) -> Totals {
         let after = self.solver.problem.totals(state);
+        self.least_load_n = self.least_load_n.min(after.load_n);
         for (k, change) in moved.iter().enumerate() {
             if change.kind != Kind::JumpOff {
                 self.flips[change.asperity] = self.flips[change.asperity].saturating_add(1);

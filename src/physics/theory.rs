@@ -18,7 +18,7 @@ pub fn curvature_density(t: f64) -> f64 {
     }
     let half = 0.5 * t * t;
     // t² − 2 + 2e^(−t²/2) = 2(h + expm1(−h)), h = t²/2: as printed it cancels near 0.
-    let bracket = if half < 1e-2 { half * half * (1.0 - half / 3.0 + half * half / 12.0 - half.powi(3) / 60.0) } else { 2.0 * (half + (-half).exp_m1()) };
+    let bracket = if half < 1e-2 { half * half * (1.0 - half / 3.0 + half * half / 12.0 - half.powi(3) / 60.0 + half.powi(4) / 360.0 - half.powi(5) / 2520.0) } else { 2.0 * (half + (-half).exp_m1()) };
     (3.0 / (4.0 * PI)).sqrt() * bracket * (-0.5 * half).exp()
 }
 

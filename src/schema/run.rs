@@ -46,6 +46,7 @@ pub static STEPS: Table = Table {
         MAX_LOAD,
         real("approach_m", "m", "Approach of the rigid rough surface, which is its mean penetration; 0 where the highest summit meets the undeformed half-space"),
         real("load_n", "N", "Normal load, the sum over all contact spots; negative in tension").from("Eq 1"),
+        real("least_load_n", "N", "Least load since the step before, events included: the load is a saw-tooth whose teeth stand at the events"),
         real("area_m2", "m^2", "Contact area, the sum of the discs of all contact spots"),
         real("area_union_m2", "m^2", "Contact area, the union of the discs, overlaps counted once; null where it was not computed").or_null(),
         count("contact_count", "Asperities in contact"),

@@ -62,6 +62,7 @@ fn steps(cycle: &Cycle, problem: &Problem) -> Result<Frame, StageError> {
         .f64("max_load", steps.iter().map(|s| s.max_load))
         .f64("approach_m", each(|s| s.approach_m))
         .f64("load_n", each(|s| s.load_n))
+        .f64("least_load_n", each(|s| s.least_load_n))
         .f64("area_m2", each(|s| s.area_m2))
         .f64("area_union_m2", each(|s| s.area_union_m2))
         .count("contact_count", count(|s| s.contact_count))

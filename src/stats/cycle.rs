@@ -19,6 +19,7 @@ pub(super) struct Branch {
     pub(super) step: Vec<i64>,
     pub(super) load: Vec<f64>,
     pub(super) load_n: Vec<f64>,
+    pub(super) least_load_n: Vec<f64>,
     pub(super) area: Vec<f64>,
     pub(super) penetration: Vec<f64>,
     pub(super) area_m2: Vec<f64>,
@@ -132,10 +133,11 @@ impl Branch {
     }
 }
 
-const COLUMNS: [&str; 14] = [
+const COLUMNS: [&str; 15] = [
     "step",
     "load",
     "load_n",
+    "least_load_n",
     "area",
     "penetration",
     "area_m2",
@@ -211,6 +213,7 @@ fn branch(frame: &DataFrame, row: usize) -> PolarsResult<Branch> {
         step: wholes("step")?,
         load: reals("load")?,
         load_n: reals("load_n")?,
+        least_load_n: reals("least_load_n")?,
         area: reals("area")?,
         penetration: reals("penetration")?,
         area_m2: reals("area_m2")?,

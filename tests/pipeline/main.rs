@@ -3,6 +3,8 @@
 
 mod spec;
 #[cfg(feature = "stats")]
+mod e2e;
+#[cfg(feature = "stats")]
 mod figures;
 mod schema;
 #[cfg(feature = "stats")]

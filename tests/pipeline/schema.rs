@@ -86,7 +86,7 @@ fn val_columns_are_those_of_the_contract() {
         ),
         (
             &STEPS,
-            "step branch max_load approach_m load_n area_m2 area_union_m2 contact_count covered_count jump_in_count jump_off_count cover_count uncover_count snap_count held_count touching_count dissipated_j work_j residual_m converged iteration_count pair_evaluation_count load area penetration",
+            "step branch max_load approach_m load_n least_load_n area_m2 area_union_m2 contact_count covered_count jump_in_count jump_off_count cover_count uncover_count snap_count held_count touching_count dissipated_j work_j residual_m converged iteration_count pair_evaluation_count load area penetration",
         ),
         (
             &CONTACTS,

@@ -25,6 +25,7 @@ pub fn write(path: &Path, steps: &[Step]) {
         .f64("max_load", steps.iter().map(|step| step.1))
         .f64("approach_m", reals(|step| step.4 * 5e-6))
         .f64("load_n", reals(|step| step.2 * FORCE_N))
+        .f64("least_load_n", reals(|step| step.2 * FORCE_N))
         .f64("area_m2", reals(|step| step.3 * 1e-6))
         .f64("area_union_m2", reals(|step| step.3 * 0.9e-6))
         .count("contact_count", vec![19; steps.len()])

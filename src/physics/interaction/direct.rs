@@ -129,10 +129,10 @@ impl Interaction for DirectSum {
             return;
         }
         let n = spots.index.len();
-        let (mut values, mut slopes) = (vec![0.0; n], vec![0.0; n]);
+        let (mut values, mut slopes) = (vec![0.0; spots.columns.padded()], vec![0.0; spots.columns.padded()]);
         for (target, displacement) in targets.iter().zip(displacements.iter_mut()) {
             self.row(spots, *target, &mut values, &mut slopes);
-            *displacement = strand_sum(&values);
+            *displacement = strand_sum(&values[..n]);
         }
         effort.pairs += (n * targets.len()) as u64;
     }
@@ -147,10 +147,11 @@ impl Interaction for DirectSum {
         if n == 0 || self.kind == Kind::None {
             return;
         }
-        let mut values = vec![0.0; n];
-        for ((target, displacement), slopes) in spots.index.iter().zip(displacements.iter_mut()).zip(tangent.matrix.chunks_mut(n)) {
-            self.row(spots, *target, &mut values, slopes);
-            *displacement = strand_sum(&values);
+        let (mut values, mut slopes) = (vec![0.0; spots.columns.padded()], vec![0.0; spots.columns.padded()]);
+        for ((target, displacement), line) in spots.index.iter().zip(displacements.iter_mut()).zip(tangent.matrix.chunks_mut(n)) {
+            self.row(spots, *target, &mut values, &mut slopes);
+            line.copy_from_slice(&slopes[..n]);
+            *displacement = strand_sum(&values[..n]);
         }
         effort.pairs += (n * n) as u64;
     }

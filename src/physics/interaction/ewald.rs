@@ -55,7 +55,7 @@ fn far_waves(x: f64, y: f64, alpha: f64) -> f64 {
 }
 
 /// Degree in `(2x)²` and `(2y)²` at which the series has fallen below rounding: the nearest image is a whole side away.
-const DEGREE: usize = 18;
+const DEGREE: usize = 22;
 
 /// [`remainder`] as a Chebyshev series, fast enough to be taken for every pair.
 #[derive(Debug, Clone)]

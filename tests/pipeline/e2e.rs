@@ -1,0 +1,226 @@
+//! The program itself, from a spec to the tables and figures, on a surface small enough for a test.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use hysteron::schema;
+use hysteron::store::parquet::read_table;
+use tempfile::TempDir;
+
+const SPEC: &str = r#"
+name = "tiny"
+seed = 7
+realizations = 2
+[cycle]
+max_load = [0.001, 0.002]
+approach_step = 0.05
+[[sweep]]
+name = "zeta"
+surface.magnification = [6, 8]
+"#;
+
+/// A folder with a spec in it.
+struct Bench {
+    folder: TempDir,
+}
+
+impl Bench {
+    fn new(spec: &str) -> Self {
+        let folder = TempDir::new().unwrap();
+        fs::write(folder.path().join("spec.toml"), spec).unwrap();
+        Self { folder }
+    }
+
+    fn out(&self) -> PathBuf {
+        self.folder.path().join("out")
+    }
+
+    /// Runs a verb on the spec, with more arguments.
+    fn verb(&self, verb: &str, more: &[&str]) -> Output {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_hysteron"));
+        command.arg(verb).arg(self.folder.path().join("spec.toml")).arg("--out").arg(self.out()).args(more);
+        command.output().unwrap()
+    }
+}
+
+fn code(output: &Output) -> i32 {
+    output.status.code().unwrap()
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+/// All files below a folder, by path, with their bytes.
+fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    let mut open = vec![folder.to_owned()];
+    while let Some(next) = open.pop() {
+        for entry in fs::read_dir(next).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                open.push(path);
+            } else {
+                found.insert(path.strip_prefix(folder).unwrap().to_owned(), fs::read(&path).unwrap());
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn e2e_a_spec_becomes_tables_figures_and_a_page() {
+    let bench = Bench::new(SPEC);
+    let first = bench.verb("run", &[]);
+    assert_eq!(code(&first), 0, "{}", stderr(&first));
+    let said = stdout(&first);
+    assert!(said.lines().all(|line| line.chars().count() <= 100 || line.contains('/')), "{said}");
+    let written = files(&bench.out());
+    for name in ["campaign.toml", "report.html", "statistics/realizations.parquet", "statistics/cases.parquet", "statistics/curves.parquet"] {
+        assert!(written.contains_key(Path::new(name)), "{name} is missing");
+    }
+    for panel in ["A", "B", "C", "D"] {
+        assert!(written.contains_key(Path::new(&format!("figures/zeta_{panel}.svg"))), "panel {panel}");
+    }
+    let count = |folder: &str, ending: &str| {
+        written.keys().filter(|path| path.starts_with(folder) && path.to_string_lossy().ends_with(ending)).count()
+    };
+    assert_eq!((count("surfaces", ".h5"), count("asperities", ".parquet")), (4, 4));
+    assert_eq!((count("cycles", "steps.parquet"), count("cycles", "events.parquet"), count("cycles", "contacts.parquet")), (4, 4, 4));
+    assert!(!written.keys().any(|path| path.to_string_lossy().contains(".tmp")), "a temporary file was left");
+
+    let cases = read_table(&bench.out().join("statistics/cases.parquet"), &schema::CASES).unwrap();
+    assert_eq!(cases.row_count(), 4, "two cases at two loads");
+    assert_eq!(cases.i64("done_count").unwrap(), [2, 2, 2, 2]);
+    assert!(cases.f64("loss_mean").unwrap().iter().all(|loss| *loss > 0.0));
+
+    // The same command again does nothing, and says so.
+    let again = bench.verb("run", &[]);
+    assert_eq!(code(&again), 0);
+    assert!(stdout(&again).contains("Nothing to do"), "{}", stdout(&again));
+    assert_eq!(files(&bench.out()), written);
+}
+
+#[test]
+fn e2e_steps_hold_the_loads_and_the_losses_of_the_statistics() {
+    let bench = Bench::new(SPEC);
+    assert_eq!(code(&bench.verb("run", &["--until", "aggregate"])), 0);
+    let realizations = read_table(&bench.out().join("statistics/realizations.parquet"), &schema::REALIZATIONS).unwrap();
+    let (loads, losses) = (realizations.f64("max_load").unwrap(), realizations.f64("loss_j").unwrap());
+    let mut checked = 0;
+    for (path, _) in files(&bench.out()).into_iter().filter(|(path, _)| path.ends_with("steps.parquet")) {
+        let steps = read_table(&bench.out().join(path), &schema::STEPS).unwrap();
+        let (load, approach) = (steps.f64("load_n").unwrap(), steps.f64("approach_m").unwrap());
+        let (branch, of) = (steps.text("branch").unwrap(), steps.f64_or_null("max_load").unwrap());
+        assert!(steps.bool("converged").unwrap().iter().all(|converged| *converged));
+        let relative = steps.f64("load").unwrap();
+        for max_load in [0.001, 0.002] {
+            let turning = (0..steps.row_count()).find(|k| branch[*k] == "loading" && (relative[*k] / max_load - 1.0).abs() < 1e-8);
+            let turning = turning.expect("a loading step at the load itself");
+            // The loop's area by trapezoids over the steps: good to a few per cent, since the load jumps within steps.
+            let path: Vec<usize> = (0..=turning).chain((0..steps.row_count()).filter(|k| of[*k] == Some(max_load))).collect();
+            let area: f64 = path.windows(2).map(|k| 0.5 * (load[k[0]] + load[k[1]]) * (approach[k[1]] - approach[k[0]])).sum();
+            let nearest = (0..losses.len()).filter(|k| loads[*k] == max_load).map(|k| (losses[k] / area - 1.0).abs()).fold(1.0, f64::min);
+            assert!(nearest < 0.1, "the trapezoids give {area} J at {max_load}; the table has {losses:?}");
+            checked += 1;
+        }
+    }
+    assert_eq!(checked, 8);
+}
+
+#[test]
+fn e2e_threads_do_not_change_a_byte() {
+    let (one, three) = (Bench::new(SPEC), Bench::new(SPEC));
+    assert_eq!(code(&one.verb("run", &["--jobs", "1"])), 0);
+    assert_eq!(code(&three.verb("run", &["--jobs", "3"])), 0);
+    assert_eq!(files(&one.out()), files(&three.out()));
+}
+
+#[test]
+fn e2e_damaged_files_are_named_and_made_again() {
+    let bench = Bench::new(SPEC);
+    assert_eq!(code(&bench.verb("run", &[])), 0);
+    let whole = files(&bench.out());
+    for ending in [".h5", "steps.parquet"] {
+        let victim = whole.keys().find(|path| path.to_string_lossy().ends_with(ending)).unwrap();
+        fs::write(bench.out().join(victim), &whole[victim][..whole[victim].len() / 2]).unwrap();
+        let status = Command::new(env!("CARGO_BIN_EXE_hysteron")).arg("status").arg(bench.out()).output().unwrap();
+        assert!(stdout(&status).contains("corrupt"), "{}", stdout(&status));
+        let again = bench.verb("run", &[]);
+        assert_eq!(code(&again), 0, "{}", stderr(&again));
+        assert!(stderr(&again).contains("it is computed again"), "{}", stderr(&again));
+        assert_eq!(files(&bench.out()), whole, "{ending}");
+    }
+}
+
+#[test]
+fn e2e_a_stage_alone_refuses_what_it_cannot_read() {
+    let bench = Bench::new(SPEC);
+    assert_eq!(code(&bench.verb("generate", &[])), 0);
+    let surface = files(&bench.out()).into_keys().find(|path| path.extension().is_some_and(|e| e == "h5")).unwrap();
+    let path = bench.out().join(surface);
+    let bytes = fs::read(&path).unwrap();
+    fs::write(&path, &bytes[..bytes.len() / 3]).unwrap();
+    let extract = bench.verb("extract", &[]);
+    assert_eq!(code(&extract), 1);
+    assert!(stderr(&extract).contains("1 of 4 units"), "{}", stderr(&extract));
+    let aggregate = bench.verb("aggregate", &[]);
+    assert_eq!(code(&aggregate), 1);
+    assert!(stderr(&aggregate).contains("--partial"), "{}", stderr(&aggregate));
+}
+
+#[test]
+fn e2e_a_failed_case_is_counted_and_the_others_go_on() {
+    // At a range of 1 µm the Tabor numbers lie below 2, where Wu's rule does not hold.
+    let spec = SPEC.replace("surface.magnification = [6, 8]", "material.interaction_range_m = [1e-9, 1e-6]\nsurface.magnification = 8");
+    let bench = Bench::new(&spec);
+    let run = bench.verb("run", &[]);
+    assert_eq!(code(&run), 3, "{}", stderr(&run));
+    assert!(stderr(&run).contains("Tabor"), "{}", stderr(&run));
+    let cases = read_table(&bench.out().join("statistics/cases.parquet"), &schema::CASES).unwrap();
+    let mut counts: Vec<(i64, i64)> = cases.i64("done_count").unwrap().into_iter().zip(cases.i64("failed_count").unwrap()).collect();
+    counts.sort_unstable();
+    assert_eq!(counts, [(0, 2), (0, 2), (2, 0), (2, 0)]);
+    assert!(bench.out().join("report.html").is_file());
+}
+
+#[test]
+fn e2e_plan_and_bad_specs_write_nothing() {
+    let bench = Bench::new(SPEC);
+    let plan = bench.verb("plan", &[]);
+    assert_eq!(code(&plan), 0);
+    assert!(stdout(&plan).contains("14 units"), "{}", stdout(&plan));
+    assert!(!bench.out().exists());
+    let bad = Bench::new(&SPEC.replace("seed", "sed"));
+    let run = bad.verb("run", &[]);
+    assert_eq!(code(&run), 2);
+    assert!(stderr(&run).contains("did you mean `seed`"), "{}", stderr(&run));
+    assert!(!bad.out().exists());
+}
+
+#[test]
+fn e2e_an_output_folder_that_cannot_be_is_a_sentence() {
+    let bench = Bench::new(SPEC);
+    fs::write(bench.out(), "in the way").unwrap();
+    let run = bench.verb("run", &[]);
+    assert_eq!(code(&run), 1);
+    assert!(stderr(&run).contains("cannot make the folder"), "{}", stderr(&run));
+    assert_eq!(fs::read_to_string(bench.out()).unwrap(), "in the way");
+}
+
+#[test]
+fn e2e_json_is_json() {
+    let bench = Bench::new(SPEC);
+    let run = bench.verb("run", &["--json", "--until", "extract"]);
+    let answer: serde_json::Value = serde_json::from_str(&stdout(&run)).unwrap();
+    assert_eq!(answer["stages"][1]["computed_count"], 4);
+    let plan: serde_json::Value = serde_json::from_str(&stdout(&bench.verb("plan", &["--json"]))).unwrap();
+    assert_eq!(plan["stages"][0]["units"][0]["state"], "done");
+    assert_eq!(plan["stages"][2]["units"][0]["state"], "planned");
+}
