@@ -9,7 +9,12 @@ use std::process::ExitCode;
 
 /// Adhesive hysteresis of rough surfaces: from a self-affine surface to the energy that its contact loses, a table at every step.
 #[derive(Debug, Parser)]
-#[command(version, about, max_term_width = 100, after_help = "Exit codes: 0 done, 1 failed, 2 bad spec or usage, 3 finished with failed cases.")]
+#[command(
+    version,
+    about,
+    max_term_width = 100,
+    after_help = "Exit codes: 0 done, 1 failed, 2 bad spec or usage, 3 finished with failed cases."
+)]
 pub struct Arguments {
     #[command(subcommand)]
     verb: Verb,

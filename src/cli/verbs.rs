@@ -167,7 +167,8 @@ fn describe(campaign: &Campaign, json: bool, verb: &str) -> String {
         let stages: Vec<_> = survey
             .iter()
             .map(|(stage, units)| {
-                let units: Vec<_> = units.iter().map(|(id, s)| json!({ "id": id, "state": word(s), "why": why(s).trim_start_matches(": ") })).collect();
+                let units: Vec<_> =
+                    units.iter().map(|(id, s)| json!({ "id": id, "state": word(s), "why": why(s).trim_start_matches(": ") })).collect();
                 json!({ "stage": stage.word(), "units": units })
             })
             .collect();
@@ -196,7 +197,11 @@ fn describe(campaign: &Campaign, json: bool, verb: &str) -> String {
     text += &match (verb, open) {
         (_, 0) => "Nothing is left to do.\n".to_owned(),
         ("plan", _) => format!("`run` would compute {open} units.\n"),
-        _ => format!("{open} units are left; `hysteron run {}/campaign.toml --out {}` does them.\n", campaign.dir.display(), campaign.dir.display()),
+        _ => format!(
+            "{open} units are left; `hysteron run {}/campaign.toml --out {}` does them.\n",
+            campaign.dir.display(),
+            campaign.dir.display()
+        ),
     };
     text
 }

@@ -40,49 +40,24 @@ impl Axis {
         let unit = 10f64.powi(exponent);
         // A little air, so that no curve ends in the frame.
         let air = if from_zero { 0.03 } else { 0.08 } * (high - low);
-        let below = if from_zero && least > 2.0 * air {
-            0.0
-        } else {
-            air
-        };
+        let below = if from_zero && least > 2.0 * air { 0.0 } else { air };
         let (low, high) = ((low - below) / unit, (high + air) / unit);
         let step = round_step((high - low) / 6.5);
-        Self {
-            label: label.to_owned(),
-            range: (low, high),
-            step,
-            exponent,
-            scale: Scale::Linear,
-        }
+        Self { label: label.to_owned(), range: (low, high), step, exponent, scale: Scale::Linear }
     }
 
     /// An axis on which a doubling is always the same distance, with a tick at each.
     pub fn of_doublings(label: &str, values: impl IntoIterator<Item = f64>) -> Self {
         let (low, high) = extent(values);
-        let (low, high) = (
-            low.max(f64::MIN_POSITIVE).log2(),
-            high.max(f64::MIN_POSITIVE).log2(),
-        );
+        let (low, high) = (low.max(f64::MIN_POSITIVE).log2(), high.max(f64::MIN_POSITIVE).log2());
         let step = ((high - low) / 6.0).ceil().max(1.0);
-        Self {
-            label: label.to_owned(),
-            range: (low - 0.5, high + 0.5),
-            step,
-            exponent: 0,
-            scale: Scale::Doublings,
-        }
+        Self { label: label.to_owned(), range: (low - 0.5, high + 0.5), step, exponent: 0, scale: Scale::Doublings }
     }
 
     /// An axis of places with names instead of numbers; values on it are places.
     pub fn of_words(label: &str, words: Vec<String>) -> Self {
         let last = words.len().saturating_sub(1) as f64;
-        Self {
-            label: label.to_owned(),
-            range: (-0.5, last + 0.5),
-            step: 1.0,
-            exponent: 0,
-            scale: Scale::Words(words),
-        }
+        Self { label: label.to_owned(), range: (-0.5, last + 0.5), step: 1.0, exponent: 0, scale: Scale::Words(words) }
     }
 
     /// The same axis with room for the key: a share of its length, added at its upper end.
@@ -93,11 +68,7 @@ impl Axis {
 
     /// Where a value is drawn.
     pub fn drawn(&self, value: f64) -> f64 {
-        if self.scale == Scale::Doublings {
-            value.max(f64::MIN_POSITIVE).log2()
-        } else {
-            self.drawn_length(value)
-        }
+        if self.scale == Scale::Doublings { value.max(f64::MIN_POSITIVE).log2() } else { self.drawn_length(value) }
     }
 
     /// How long a difference is drawn.
@@ -117,14 +88,9 @@ impl Axis {
 
     /// The ticks of what is drawn.
     pub fn ticks(&self) -> Vec<f64> {
-        let (first, last) = (
-            (self.range.0 / self.step).ceil(),
-            (self.range.1 / self.step).floor(),
-        );
+        let (first, last) = ((self.range.0 / self.step).ceil(), (self.range.1 / self.step).floor());
         let count = (last - first).clamp(0.0, 100.0) as usize;
-        (0..=count)
-            .map(|index| (first + index as f64) * self.step)
-            .collect()
+        (0..=count).map(|index| (first + index as f64) * self.step).collect()
     }
 
     /// The number at a tick, with no more digits than the ticks need.
@@ -133,10 +99,7 @@ impl Axis {
             Scale::Linear => {}
             Scale::Doublings => return format!("{:.0}", drawn.exp2()),
             Scale::Words(words) => {
-                return words
-                    .get(drawn.round().max(0.0) as usize)
-                    .cloned()
-                    .unwrap_or_default();
+                return words.get(drawn.round().max(0.0) as usize).cloned().unwrap_or_default();
             }
         }
         let whole = |digits: &usize| {
@@ -146,20 +109,12 @@ impl Axis {
         let digits = (0..9).find(whole).unwrap_or(9);
         let text = format!("{drawn:.digits$}");
         let zero = text.chars().all(|letter| matches!(letter, '-' | '0' | '.'));
-        if zero {
-            "0".to_owned()
-        } else {
-            text.replace('-', "−")
-        }
+        if zero { "0".to_owned() } else { text.replace('-', "−") }
     }
 
     /// The label with the power of ten that the ticks leave out.
     pub fn full_label(&self) -> String {
-        if self.exponent == 0 {
-            self.label.clone()
-        } else {
-            format!("{}  [10^{{{}}}]", self.label, self.exponent).replace("{-", "{−")
-        }
+        if self.exponent == 0 { self.label.clone() } else { format!("{}  [10^{{{}}}]", self.label, self.exponent).replace("{-", "{−") }
     }
 }
 
@@ -167,11 +122,7 @@ impl Axis {
 fn extent(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
     let finite = values.into_iter().filter(|value| value.is_finite());
     finite
-        .fold(None, |seen: Option<(f64, f64)>, value| {
-            Some(seen.map_or((value, value), |(low, high)| {
-                (low.min(value), high.max(value))
-            }))
-        })
+        .fold(None, |seen: Option<(f64, f64)>, value| Some(seen.map_or((value, value), |(low, high)| (low.min(value), high.max(value)))))
         .unwrap_or((0.0, 1.0))
 }
 
@@ -189,9 +140,5 @@ fn exponent_of(greatest: f64) -> i32 {
 /// The least of 1, 2, 2.5, 5 times a power of ten that is not below a length.
 fn round_step(length: f64) -> f64 {
     let power = 10f64.powf(length.log10().floor());
-    [1.0, 2.0, 2.5, 5.0, 10.0]
-        .into_iter()
-        .map(|factor| factor * power)
-        .find(|step| *step >= length * (1.0 - 1e-9))
-        .unwrap_or(power)
+    [1.0, 2.0, 2.5, 5.0, 10.0].into_iter().map(|factor| factor * power).find(|step| *step >= length * (1.0 - 1e-9)).unwrap_or(power)
 }

@@ -41,47 +41,24 @@ pub(super) fn add(scene: &mut Scene, frame: &ComputedLayout, plot: &XyPlot) {
                 stroke_width: None,
             });
         }
-        text(
-            scene,
-            (left + SAMPLE + 8.0, y + 4.5),
-            &entry.text,
-            TextAnchor::Start,
-        );
+        text(scene, (left + SAMPLE + 8.0, y + 4.5), &entry.text, TextAnchor::Start);
     }
 }
 
 fn place(frame: &ComputedLayout, plot: &XyPlot) -> Place {
     let indent = |sampled: bool| if sampled { SAMPLE + 8.0 } else { 0.0 };
-    let width = plot
-        .key
-        .iter()
-        .map(|entry| markup::width(&entry.text, NOTE) + indent(entry.stroke.is_some()))
-        .fold(0.0, f64::max);
+    let width = plot.key.iter().map(|entry| markup::width(&entry.text, NOTE) + indent(entry.stroke.is_some())).fold(0.0, f64::max);
     let height = plot.key.len() as f64 * NOTE_PITCH;
     let (left, top) = (frame.margin_left + 10.0, frame.margin_top + 6.0);
-    let (right, bottom) = (
-        frame.width - frame.margin_right - 6.0 - width,
-        frame.height - frame.margin_bottom - 8.0 - height,
-    );
+    let (right, bottom) = (frame.width - frame.margin_right - 6.0 - width, frame.height - frame.margin_bottom - 8.0 - height);
     let points = inked(frame, plot);
     let covered = |place: &Place| {
         let (left, top, width, height) = *place;
-        let inside = |(x, y): &&(f64, f64)| {
-            (left - 6.0..left + width + 6.0).contains(x)
-                && (top - 4.0..top + height + 4.0).contains(y)
-        };
+        let inside = |(x, y): &&(f64, f64)| (left - 6.0..left + width + 6.0).contains(x) && (top - 4.0..top + height + 4.0).contains(y);
         points.iter().filter(inside).count()
     };
-    let corners = [
-        (left, top, width, height),
-        (right, top, width, height),
-        (right, bottom, width, height),
-        (left, bottom, width, height),
-    ];
-    corners
-        .into_iter()
-        .min_by_key(covered)
-        .unwrap_or((left, top, width, height))
+    let corners = [(left, top, width, height), (right, top, width, height), (right, bottom, width, height), (left, bottom, width, height)];
+    corners.into_iter().min_by_key(covered).unwrap_or((left, top, width, height))
 }
 
 /// Pixels that hold ink: points along every curve, close enough that none can pass through a key unseen, its bars, and the notes.
@@ -92,18 +69,11 @@ fn inked(frame: &ComputedLayout, plot: &XyPlot) -> Vec<(f64, f64)> {
         for pair in curve.points.windows(2) {
             if let [from, to] = pair {
                 let (from, to) = (pixel(from.0, from.1), pixel(to.0, to.1));
-                let steps = ((to.0 - from.0).hypot(to.1 - from.1) / 4.0)
-                    .ceil()
-                    .clamp(1.0, 1000.0);
+                let steps = ((to.0 - from.0).hypot(to.1 - from.1) / 4.0).ceil().clamp(1.0, 1000.0);
                 points.extend(
                     (0..=steps as usize)
                         .map(|step| step as f64 / steps)
-                        .map(|share| {
-                            (
-                                from.0 + share * (to.0 - from.0),
-                                from.1 + share * (to.1 - from.1),
-                            )
-                        }),
+                        .map(|share| (from.0 + share * (to.0 - from.0), from.1 + share * (to.1 - from.1))),
                 );
             }
         }

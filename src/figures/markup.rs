@@ -23,12 +23,8 @@ pub fn render(svg: &str) -> String {
 
 /// The size that a text's tag states. Spans need it: shares of a size mean different things to different viewers.
 fn font_size(tag: &str) -> f64 {
-    let stated = tag
-        .split_once("font-size=\"")
-        .and_then(|(_, after)| after.split_once('"'));
-    stated
-        .and_then(|(size, _)| size.parse().ok())
-        .unwrap_or(14.0)
+    let stated = tag.split_once("font-size=\"").and_then(|(_, after)| after.split_once('"'));
+    stated.and_then(|(size, _)| size.parse().ok()).unwrap_or(14.0)
 }
 
 fn push_text(out: &mut String, text: &str, size: f64) {
@@ -37,16 +33,8 @@ fn push_text(out: &mut String, text: &str, size: f64) {
     let mut shifted = 0.0;
     while let Some((before, mark, inside, after)) = next_mark(rest) {
         shifted = push_plain(out, before, shifted);
-        let wanted = if mark == '_' {
-            0.22 * size
-        } else {
-            -0.32 * size
-        };
-        out.push_str(&format!(
-            "<tspan dy=\"{:.2}\" font-size=\"{:.2}\">{inside}</tspan>",
-            wanted - shifted,
-            SMALL * size
-        ));
+        let wanted = if mark == '_' { 0.22 * size } else { -0.32 * size };
+        out.push_str(&format!("<tspan dy=\"{:.2}\" font-size=\"{:.2}\">{inside}</tspan>", wanted - shifted, SMALL * size));
         shifted = wanted;
         rest = after;
     }
@@ -79,10 +67,7 @@ pub fn width(text: &str, size: u32) -> f64 {
 
 /// The text before the first mark, its sign, what it shifts, and the text after it.
 fn next_mark(text: &str) -> Option<(&str, char, &str, &str)> {
-    let start = [text.find("_{"), text.find("^{")]
-        .into_iter()
-        .flatten()
-        .min()?;
+    let start = [text.find("_{"), text.find("^{")].into_iter().flatten().min()?;
     let (before, marked) = text.split_at(start);
     let end = marked.find('}')?;
     let mark = marked.chars().next()?;

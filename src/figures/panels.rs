@@ -16,39 +16,21 @@ use crate::store::Frame;
 ///
 /// # Errors
 /// If no case belongs to the sweep, or a table lacks a column.
-pub fn panels(
-    cases: &Frame,
-    curves: &Frame,
-    sweep: &str,
-) -> Result<Vec<(String, String)>, FigureError> {
+pub fn panels(cases: &Frame, curves: &Frame, sweep: &str) -> Result<Vec<(String, String)>, FigureError> {
     let found = Sweep::find(cases, sweep)?;
     let heading = heading(cases, &found, sweep)?;
     let stem: String = if sweep.is_empty() { "run" } else { sweep }
         .chars()
-        .map(|letter| {
-            if letter.is_ascii_alphanumeric() || letter == '-' {
-                letter
-            } else {
-                '_'
-            }
-        })
+        .map(|letter| if letter.is_ascii_alphanumeric() || letter == '-' { letter } else { '_' })
         .collect();
     let panel = |letter: char, plot: XyPlot| {
         let stem = format!("{stem}_{letter}");
-        let svg = plot_xy(&XyPlot {
-            letter,
-            title: heading.clone(),
-            stem: stem.clone(),
-            ..plot
-        });
+        let svg = plot_xy(&XyPlot { letter, title: heading.clone(), stem: stem.clone(), ..plot });
         (stem, svg)
     };
     Ok(vec![
         panel('A', paths(curves, &found, "area_mean", "A/A_{0}")?),
-        panel(
-            'B',
-            results(cases, &found, "F_{po}/(E^{*}A_{0})", "pull_off_load", &[])?,
-        ),
+        panel('B', results(cases, &found, "F_{po}/(E^{*}A_{0})", "pull_off_load", &[])?),
         panel('C', paths(curves, &found, "penetration_mean", "Δ/h_{rms}")?),
         panel(
             'D',
@@ -57,14 +39,7 @@ pub fn panels(
                 &found,
                 "Θ/(E^{*}A_{0}h_{rms})",
                 "loss",
-                &[
-                    ("loss_dk", Stroke::Dashed, "Deng–Kesari"),
-                    (
-                        "loss_dk_realised",
-                        Stroke::Dotted,
-                        "Deng–Kesari, realised moments",
-                    ),
-                ],
+                &[("loss_dk", Stroke::Dashed, "Deng–Kesari"), ("loss_dk_realised", Stroke::Dotted, "Deng–Kesari, realised moments")],
             )?,
         ),
     ])
@@ -72,42 +47,21 @@ pub fn panels(
 
 fn heading(cases: &Frame, sweep: &Sweep, name: &str) -> Result<String, FigureError> {
     let done = cases.i64("done_count")?;
-    let counts = || {
-        sweep
-            .members
-            .iter()
-            .filter_map(|member| done.get(member.row))
-    };
-    let (least, most) = (
-        counts().min().copied().unwrap_or_default(),
-        counts().max().copied().unwrap_or_default(),
-    );
+    let counts = || sweep.members.iter().filter_map(|member| done.get(member.row));
+    let (least, most) = (counts().min().copied().unwrap_or_default(), counts().max().copied().unwrap_or_default());
     let surfaces = match (least, most) {
         (_, 0) => "no surface finished".to_owned(),
         (1, 1) => "one surface".to_owned(),
         _ if least == most => format!("mean of {most} surfaces"),
         _ => format!("mean of {least} to {most} surfaces"),
     };
-    let mut others: Vec<&str> = sweep
-        .differing
-        .iter()
-        .skip(1)
-        .map(|parameter| parameter.symbol)
-        .collect();
+    let mut others: Vec<&str> = sweep.differing.iter().skip(1).map(|parameter| parameter.symbol).collect();
     if sweep.many_loads && !sweep.differing.is_empty() {
         others.push("F_{max}");
     }
-    let name = if name.is_empty() {
-        String::new()
-    } else {
-        format!("{name}: ")
-    };
+    let name = if name.is_empty() { String::new() } else { format!("{name}: ") };
     Ok(match (sweep.differing.first(), others.is_empty()) {
-        (Some(first), false) => format!(
-            "{name}{surfaces}, over {}; {} varies too",
-            first.symbol,
-            others.join(", ")
-        ),
+        (Some(first), false) => format!("{name}{surfaces}, over {}; {} varies too", first.symbol, others.join(", ")),
         _ => format!("{name}{surfaces}"),
     })
 }

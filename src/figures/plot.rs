@@ -102,11 +102,7 @@ pub struct XyPlot {
 
 /// Draws a panel as a complete SVG document.
 pub fn plot_xy(plot: &XyPlot) -> String {
-    let plots = plot
-        .curves
-        .iter()
-        .flat_map(|curve| drawn(curve, plot))
-        .collect();
+    let plots = plot.curves.iter().flat_map(|curve| drawn(curve, plot)).collect();
     let layout = layout(plot);
     let frame = ComputedLayout::from_layout(&layout);
     let mut scene = render_multiple(plots, layout);
@@ -129,22 +125,13 @@ pub fn plot_xy(plot: &XyPlot) -> String {
 }
 
 fn layout(plot: &XyPlot) -> Layout {
-    let beside = plot
-        .notes
-        .iter()
-        .filter(|note| note.beside)
-        .map(|note| markup::width(&note.text, NOTE))
-        .fold(0.0, f64::max);
+    let beside = plot.notes.iter().filter(|note| note.beside).map(|note| markup::width(&note.text, NOTE)).fold(0.0, f64::max);
     let (x, y) = (&plot.x, &plot.y);
     let labels = |axis: &Axis| {
         let axis = axis.clone();
         TickFormat::Custom(Arc::new(move |value| axis.tick_label(value)))
     };
-    let left = 48.0
-        + y.ticks()
-            .iter()
-            .map(|tick| markup::width(&y.tick_label(*tick), TICK))
-            .fold(2.0 * f64::from(TICK), f64::max);
+    let left = 48.0 + y.ticks().iter().map(|tick| markup::width(&y.tick_label(*tick), TICK)).fold(2.0 * f64::from(TICK), f64::max);
     Layout::new(x.drawn_range(), y.drawn_range())
         .with_width(SIZE.0 + beside)
         .with_height(SIZE.1)
@@ -168,34 +155,21 @@ fn layout(plot: &XyPlot) -> Layout {
 }
 
 fn drawn(curve: &Curve, plot: &XyPlot) -> Vec<Plot> {
-    let points: Vec<(f64, f64)> = curve
-        .points
-        .iter()
-        .map(|(x, y)| (plot.x.drawn(*x), plot.y.drawn(*y)))
-        .collect();
+    let points: Vec<(f64, f64)> = curve.points.iter().map(|(x, y)| (plot.x.drawn(*x), plot.y.drawn(*y))).collect();
     let style = match curve.stroke.dashes() {
         None => kuva::plot::line::LineStyle::Solid,
         Some(dashes) => kuva::plot::line::LineStyle::Custom(dashes.to_owned()),
     };
-    let line = LinePlot::new()
-        .with_data(points.clone())
-        .with_color(curve.colour.clone())
-        .with_stroke_width(2.0)
-        .with_line_style(style);
+    let line = LinePlot::new().with_data(points.clone()).with_color(curve.colour.clone()).with_stroke_width(2.0).with_line_style(style);
     let mut plots = vec![Plot::Line(line)];
     for (point, error) in points.iter().zip(&curve.errors) {
         if let Some(error) = error {
-            let bar = LinePlot::new()
-                .with_data([*point])
-                .with_color(curve.colour.clone());
+            let bar = LinePlot::new().with_data([*point]).with_color(curve.colour.clone());
             plots.push(Plot::Line(bar.with_y_err([plot.y.drawn_length(*error)])));
         }
     }
     if curve.marked {
-        let marks = ScatterPlot::new()
-            .with_data(points)
-            .with_color(curve.colour.clone())
-            .with_size(4.5);
+        let marks = ScatterPlot::new().with_data(points).with_color(curve.colour.clone()).with_size(4.5);
         plots.push(Plot::Scatter(marks.with_marker(MarkerShape::Circle)));
     }
     plots
@@ -215,27 +189,15 @@ pub(super) fn text(scene: &mut Scene, at: (f64, f64), content: &str, anchor: Tex
 }
 
 fn add_notes(scene: &mut Scene, frame: &ComputedLayout, plot: &XyPlot) {
-    let pixel = |at: (f64, f64)| {
-        (
-            frame.map_x(plot.x.drawn(at.0)),
-            frame.map_y(plot.y.drawn(at.1)),
-        )
-    };
+    let pixel = |at: (f64, f64)| (frame.map_x(plot.x.drawn(at.0)), frame.map_y(plot.y.drawn(at.1)));
     for note in plot.notes.iter().filter(|note| !note.beside) {
         let (x, y) = pixel(note.at);
         text(scene, (x + 4.0, y + 15.0), &note.text, TextAnchor::Start);
     }
-    let mut beside: Vec<((f64, f64), &str)> = plot
-        .notes
-        .iter()
-        .filter(|note| note.beside)
-        .map(|note| (pixel(note.at), note.text.as_str()))
-        .collect();
+    let mut beside: Vec<((f64, f64), &str)> =
+        plot.notes.iter().filter(|note| note.beside).map(|note| (pixel(note.at), note.text.as_str())).collect();
     beside.sort_by(|a, b| a.0.1.total_cmp(&b.0.1));
-    let heights = apart(
-        &beside.iter().map(|note| note.0.1).collect::<Vec<_>>(),
-        (frame.margin_top, frame.height - frame.margin_bottom),
-    );
+    let heights = apart(&beside.iter().map(|note| note.0.1).collect::<Vec<_>>(), (frame.margin_top, frame.height - frame.margin_bottom));
     let edge = frame.width - frame.margin_right;
     for ((end, content), height) in beside.iter().zip(heights) {
         scene.add(Primitive::Line {
@@ -247,12 +209,7 @@ fn add_notes(scene: &mut Scene, frame: &ComputedLayout, plot: &XyPlot) {
             stroke_width: 0.7,
             stroke_dasharray: None,
         });
-        text(
-            scene,
-            (edge + 7.0, height + 4.5),
-            content,
-            TextAnchor::Start,
-        );
+        text(scene, (edge + 7.0, height + 4.5), content, TextAnchor::Start);
     }
 }
 
@@ -260,9 +217,7 @@ fn add_notes(scene: &mut Scene, frame: &ComputedLayout, plot: &XyPlot) {
 fn apart(wanted: &[f64], limits: (f64, f64)) -> Vec<f64> {
     let mut heights: Vec<f64> = Vec::with_capacity(wanted.len());
     for want in wanted {
-        let least = heights
-            .last()
-            .map_or(limits.0 + 6.0, |last| last + NOTE_PITCH);
+        let least = heights.last().map_or(limits.0 + 6.0, |last| last + NOTE_PITCH);
         heights.push(want.max(least));
     }
     let mut most = limits.1 - 4.0;

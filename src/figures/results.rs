@@ -15,11 +15,7 @@ pub(super) fn results(
     name: &str,
     theories: &[(&str, Stroke, &str)],
 ) -> Result<XyPlot, FigureError> {
-    let mut series: Vec<&str> = sweep
-        .members
-        .iter()
-        .map(|member| member.series.as_str())
-        .collect();
+    let mut series: Vec<&str> = sweep.members.iter().map(|member| member.series.as_str()).collect();
     series.sort_unstable();
     series.dedup();
     // If only the turning point varies, it is what is joined, and no other line.
@@ -31,12 +27,8 @@ pub(super) fn results(
     for (theory, stroke, text) in theories {
         let (means, mut any) = (table.f64_or_null(&format!("{theory}_mean"))?, false);
         for (at, name) in series.iter().enumerate() {
-            let points: Vec<(f64, f64)> = sweep
-                .members
-                .iter()
-                .filter(|member| joined(member, name))
-                .filter_map(|member| point(means, member))
-                .collect();
+            let points: Vec<(f64, f64)> =
+                sweep.members.iter().filter(|member| joined(member, name)).filter_map(|member| point(means, member)).collect();
             any |= !points.is_empty();
             curves.push(curve(points, shade(THEORY, at, series.len()), *stroke));
         }
@@ -44,79 +36,33 @@ pub(super) fn results(
             key.push(entry(text, THEORY, Some(*stroke), false));
         }
     }
-    let (means, sds) = (
-        table.f64_or_null(&format!("{name}_mean"))?,
-        table.f64_or_null(&format!("{name}_sd"))?,
-    );
+    let (means, sds) = (table.f64_or_null(&format!("{name}_mean"))?, table.f64_or_null(&format!("{name}_sd"))?);
     for (at, name) in series.iter().enumerate() {
-        let members: Vec<&Member> = sweep
-            .members
-            .iter()
-            .filter(|member| joined(member, name) && point(means, member).is_some())
-            .collect();
-        let points: Vec<(f64, f64)> = members
-            .iter()
-            .filter_map(|member| point(means, member))
-            .collect();
+        let members: Vec<&Member> = sweep.members.iter().filter(|member| joined(member, name) && point(means, member).is_some()).collect();
+        let points: Vec<(f64, f64)> = members.iter().filter_map(|member| point(means, member)).collect();
         if let Some(end) = points.last()
             && series.len() > 1
             && at % series.len().div_ceil(MOST_NOTES) == 0
         {
-            notes.push(Note {
-                at: *end,
-                text: (*name).to_owned(),
-                beside: true,
-            });
+            notes.push(Note { at: *end, text: (*name).to_owned(), beside: true });
         }
         curves.push(Curve {
             points,
-            errors: members
-                .iter()
-                .map(|member| sds.get(member.row).copied().flatten())
-                .collect(),
+            errors: members.iter().map(|member| sds.get(member.row).copied().flatten()).collect(),
             colour: shade(UNLOADING, at, series.len()),
             stroke: Stroke::Solid,
             marked: true,
         });
     }
-    let spread = curves
-        .iter()
-        .any(|curve| curve.errors.iter().any(Option::is_some));
-    key.insert(
-        0,
-        entry(
-            if spread {
-                "computed, ± one standard deviation"
-            } else {
-                "computed"
-            },
-            UNLOADING,
-            Some(Stroke::Solid),
-            true,
-        ),
-    );
+    let spread = curves.iter().any(|curve| curve.errors.iter().any(Option::is_some));
+    key.insert(0, entry(if spread { "computed, ± one standard deviation" } else { "computed" }, UNLOADING, Some(Stroke::Solid), true));
     let ends = |curve: &Curve| -> Vec<f64> {
-        let bars = curve
-            .points
-            .iter()
-            .zip(curve.errors.iter().copied().chain(std::iter::repeat(None)));
-        bars.flat_map(|((_, y), error)| {
-            [y - error.unwrap_or_default(), y + error.unwrap_or_default()]
-        })
-        .collect()
+        let bars = curve.points.iter().zip(curve.errors.iter().copied().chain(std::iter::repeat(None)));
+        bars.flat_map(|((_, y), error)| [y - error.unwrap_or_default(), y + error.unwrap_or_default()]).collect()
     };
     let room = 0.07 * key.len() as f64 + 0.04;
     let y = Axis::holding(label, curves.iter().flat_map(ends), true).with_headroom(room);
-    Ok(XyPlot {
-        stem: String::new(),
-        letter: ' ',
-        title: String::new(),
-        x: sweep.axis.clone(),
-        y,
-        curves,
-        key,
-        notes,
-    })
+    Ok(XyPlot { stem: String::new(), letter: ' ', title: String::new(), x: sweep.axis.clone(), y, curves, key, notes })
 }
 
 fn point(means: &[Option<f64>], member: &Member) -> Option<(f64, f64)> {

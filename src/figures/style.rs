@@ -10,31 +10,15 @@ pub(super) const MOST_NOTES: usize = 14;
 
 /// A hue, the lighter the earlier of several.
 pub(super) fn shade(hue: [u8; 3], at: usize, of: usize) -> String {
-    let white = if of < 2 {
-        0.0
-    } else {
-        0.55 * (of - 1 - at) as f64 / (of - 1) as f64
-    };
-    let [red, green, blue] =
-        hue.map(|part| (f64::from(part) + white * (255.0 - f64::from(part))).round() as u8);
+    let white = if of < 2 { 0.0 } else { 0.55 * (of - 1 - at) as f64 / (of - 1) as f64 };
+    let [red, green, blue] = hue.map(|part| (f64::from(part) + white * (255.0 - f64::from(part))).round() as u8);
     format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
 pub(super) fn curve(points: Vec<(f64, f64)>, colour: String, stroke: Stroke) -> Curve {
-    Curve {
-        points,
-        errors: Vec::new(),
-        colour,
-        stroke,
-        marked: false,
-    }
+    Curve { points, errors: Vec::new(), colour, stroke, marked: false }
 }
 
 pub(super) fn entry(text: &str, hue: [u8; 3], stroke: Option<Stroke>, marked: bool) -> KeyEntry {
-    KeyEntry {
-        text: text.to_owned(),
-        colour: shade(hue, 0, 1),
-        stroke,
-        marked,
-    }
+    KeyEntry { text: text.to_owned(), colour: shade(hue, 0, 1), stroke, marked }
 }

@@ -35,83 +35,44 @@ impl Sweep {
     pub(super) fn find(cases: &Frame, name: &str) -> Result<Self, FigureError> {
         let sweeps = cases.text("sweep")?;
         let belongs = |joined: &&str| joined.split('+').any(|one| one == name);
-        let rows: Vec<usize> = sweeps
-            .iter()
-            .enumerate()
-            .filter(|(_, joined)| belongs(joined))
-            .map(|(row, _)| row)
-            .collect();
+        let rows: Vec<usize> = sweeps.iter().enumerate().filter(|(_, joined)| belongs(joined)).map(|(row, _)| row).collect();
         if rows.is_empty() {
             let mut known: Vec<&str> = sweeps.iter().flat_map(|joined| joined.split('+')).collect();
             known.sort_unstable();
             known.dedup();
-            return Err(FigureError::UnknownSweep {
-                sweep: name.to_owned(),
-                known: known.join(", "),
-            });
+            return Err(FigureError::UnknownSweep { sweep: name.to_owned(), known: known.join(", ") });
         }
         let (ids, loads) = (cases.text("case_id")?, cases.f64("max_load")?);
         let area = cases.f64_or_null("area_at_max_load_mean")?;
         let differing = varying(cases, &rows)?;
         let load_of = |row: usize| loads.get(row).copied().unwrap_or_default();
-        let many_loads = rows.windows(2).any(|pair| {
-            pair.first().map(|row| load_of(*row)) != pair.last().map(|row| load_of(*row))
-        });
+        let many_loads = rows.windows(2).any(|pair| pair.first().map(|row| load_of(*row)) != pair.last().map(|row| load_of(*row)));
         let words = words(&differing);
         let mut members = Vec::new();
         for (place, row) in rows.iter().enumerate() {
             let load = load_of(*row);
             let x = match differing.first().map(|first| &first.values) {
                 Some(Values::Numbers(numbers)) => numbers.get(place).copied().flatten(),
-                Some(Values::Words(all)) => all
-                    .get(place)
-                    .and_then(|word| words.iter().position(|known| known == word))
-                    .map(|at| at as f64),
+                Some(Values::Words(all)) => {
+                    all.get(place).and_then(|word| words.iter().position(|known| known == word)).map(|at| at as f64)
+                }
                 None => area.get(*row).copied().flatten(),
             };
-            let mut parts: Vec<String> = differing
-                .iter()
-                .map(|parameter| named(parameter, place))
-                .collect();
+            let mut parts: Vec<String> = differing.iter().map(|parameter| named(parameter, place)).collect();
             if many_loads {
-                parts.push(if differing.is_empty() {
-                    format!("{load}")
-                } else {
-                    format!("F = {load}")
-                });
+                parts.push(if differing.is_empty() { format!("{load}") } else { format!("F = {load}") });
             }
             let case_id = ids.get(*row).copied().unwrap_or_default().to_owned();
             let series = parts.get(1..).unwrap_or_default().join(", ");
             // Without a place, a member has curves but no point; NaN is left out of every axis.
-            members.push(Member {
-                row: *row,
-                case_id,
-                max_load: load,
-                x: x.unwrap_or(f64::NAN),
-                label: parts.join(", "),
-                series,
-            });
+            members.push(Member { row: *row, case_id, max_load: load, x: x.unwrap_or(f64::NAN), label: parts.join(", "), series });
         }
         let order = |member: &Member| {
-            if differing.is_empty() {
-                member.max_load
-            } else {
-                member.x
-            }
+            if differing.is_empty() { member.max_load } else { member.x }
         };
-        members.sort_by(|a, b| {
-            order(a)
-                .total_cmp(&order(b))
-                .then(a.max_load.total_cmp(&b.max_load))
-                .then(a.case_id.cmp(&b.case_id))
-        });
+        members.sort_by(|a, b| order(a).total_cmp(&order(b)).then(a.max_load.total_cmp(&b.max_load)).then(a.case_id.cmp(&b.case_id)));
         let axis = axis(&differing, words, &members);
-        Ok(Self {
-            members,
-            differing,
-            many_loads,
-            axis,
-        })
+        Ok(Self { members, differing, many_loads, axis })
     }
 }
 
@@ -134,34 +95,15 @@ fn words(differing: &[Varying]) -> Vec<String> {
 }
 
 fn axis(differing: &[Varying], words: Vec<String>, members: &[Member]) -> Axis {
-    let values: Vec<f64> = members
-        .iter()
-        .map(|member| member.x)
-        .filter(|x| x.is_finite())
-        .collect();
-    let (least, most) = (
-        values.iter().copied().fold(f64::INFINITY, f64::min),
-        values.iter().copied().fold(0.0, f64::max),
-    );
+    let values: Vec<f64> = members.iter().map(|member| member.x).filter(|x| x.is_finite()).collect();
+    let (least, most) = (values.iter().copied().fold(f64::INFINITY, f64::min), values.iter().copied().fold(0.0, f64::max));
     match differing.first() {
         None => Axis::holding("A/A_{0}", values, true).with_headroom(0.05),
-        Some(first) if matches!(first.values, Values::Words(_)) => Axis::of_words(
-            first.label,
-            words
-                .into_iter()
-                .map(|word| {
-                    if word.is_empty() {
-                        "none".to_owned()
-                    } else {
-                        word
-                    }
-                })
-                .collect(),
-        ),
-        // A magnification counts doublings of resolution: equal steps of it are equal ratios.
-        Some(first) if first.name == "magnification" && most >= 2.0 * least => {
-            Axis::of_doublings(first.label, values)
+        Some(first) if matches!(first.values, Values::Words(_)) => {
+            Axis::of_words(first.label, words.into_iter().map(|word| if word.is_empty() { "none".to_owned() } else { word }).collect())
         }
+        // A magnification counts doublings of resolution: equal steps of it are equal ratios.
+        Some(first) if first.name == "magnification" && most >= 2.0 * least => Axis::of_doublings(first.label, values),
         Some(first) => Axis::holding(first.label, values, false),
     }
 }

@@ -67,7 +67,9 @@ pub enum PhysicsError {
         iterations: u64,
     },
     /// An avalanche did not end.
-    #[error("cannot end the avalanche at the approach {approach_m:e} m: {events} changes of state and still not at rest (asperity {asperity} last)")]
+    #[error(
+        "cannot end the avalanche at the approach {approach_m:e} m: {events} changes of state and still not at rest (asperity {asperity} last)"
+    )]
     EndlessAvalanche {
         /// Approach δ \[m\].
         approach_m: f64,

@@ -90,7 +90,17 @@ impl<'p> Path<'p> {
         let mut solver = Solver::new(problem);
         let node = settled_node(&mut solver, state)?;
         let known = (node.free.clone(), node.state.approach_m);
-        Ok(Self { solver, least_load_n: node.totals.load_n, node, known, events: Vec::new(), work_j: 0.0, avalanches: 0, flips: vec![0; problem.len()], held: Vec::new() })
+        Ok(Self {
+            solver,
+            least_load_n: node.totals.load_n,
+            node,
+            known,
+            events: Vec::new(),
+            work_j: 0.0,
+            avalanches: 0,
+            flips: vec![0; problem.len()],
+            held: Vec::new(),
+        })
     }
 
     pub(crate) fn effort(&self) -> Effort {
@@ -156,7 +166,8 @@ impl<'p> Path<'p> {
                     }
                     let known = Obstacle { approach: trial, due, load: next.totals.load_n, weight: 1.0 };
                     let first = self.first_due(&known, stop);
-                            let close = (trial - first.map_or(here, |(approach, _)| approach)).abs() <= tolerance || (trial - here).abs() <= tolerance;
+                    let close =
+                        (trial - first.map_or(here, |(approach, _)| approach)).abs() <= tolerance || (trial - here).abs() <= tolerance;
                     match first {
                         // A load that jumps at an event is met by the event; one that cannot be met more closely is met.
                         Some((_, None)) if tries >= 60 => self.accept(next, reach),
@@ -233,7 +244,8 @@ impl<'p> Path<'p> {
                 let a = node.state.radius[i];
                 let sinking = -sign * asperity.penetration_slope(a) * rate;
                 let left = asperity.penetration(a) - asperity.jump_off_penetration();
-                let there = left <= END_TOLERANCE * asperity.jump_off_penetration().abs();
+                // Nor can it be told closer than equilibria are solved for.
+                let there = left <= END_TOLERANCE * asperity.jump_off_penetration().abs() + 4.0 * self.solver.problem.tolerance_m();
                 (sinking > 0.0).then(|| (i, left / sinking, there))
             })
             .min_by(|u, v| v.2.cmp(&u.2).then(u.1.total_cmp(&v.1)).then(u.0.cmp(&v.0)))
@@ -251,7 +263,7 @@ impl<'p> Path<'p> {
             // Penetration is nearly linear in the approach, up to the end of the branch; the radius is not.
             let ahead = asperity.penetration(a) + asperity.penetration_slope(a) * rate * change;
             let end = asperity.jump_off_radius() * (1.0 + 1e-4);
-            guess.push(asperity.radius_at_penetration(ahead).unwrap_or(end).clamp(0.6 * a, 4.0 * a));
+            guess.push(asperity.radius_at_penetration(ahead).unwrap_or(end).clamp(0.05 * a, 4.0 * a));
         }
         for (&i, radius) in self.node.state.contacts.iter().zip(&guess) {
             state.radius[i] = *radius;

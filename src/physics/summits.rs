@@ -127,25 +127,39 @@ fn wrapped(coordinate: f64, length: f64) -> f64 {
 }
 
 fn refine(surface: &BandLimited<'_>, start: [f64; 2], spacing: f64) -> Option<([f64; 2], Jet)> {
-    let [mut x, mut y] = start;
-    for _ in 0..30 {
-        let jet = surface.jet(x, y);
+    let mut here = start;
+    let mut jet = surface.jet(here[0], here[1]);
+    for _ in 0..60 {
+        let [gx, gy] = jet.gradient;
         let [xx, xy, yy] = jet.hessian_1_m;
         let determinant = xx * yy - xy * xy;
-        // Not a concave neighbourhood: Newton would run to a saddle.
-        if !(determinant > 0.0 && xx < 0.0) {
+        let concave = determinant > 0.0 && xx < 0.0;
+        // Newton's step; uphill along the gradient where the neighbourhood is not concave, since Newton would run to a saddle there.
+        let slope = gx.hypot(gy);
+        let mut step = if concave {
+            [(xy * gy - yy * gx) / determinant, (xy * gx - xx * gy) / determinant]
+        } else if slope > 0.0 {
+            [0.5 * spacing * gx / slope, 0.5 * spacing * gy / slope]
+        } else {
             return None;
+        };
+        if concave && step[0].abs().max(step[1].abs()) < 1e-10 * spacing {
+            return Some((here, jet));
         }
-        let [gx, gy] = jet.gradient;
-        let (dx, dy) = ((xy * gy - yy * gx) / determinant, (xy * gx - xx * gy) / determinant);
-        if dx.abs().max(dy.abs()) < 1e-10 * spacing {
-            return Some(([x, y], jet));
+        // The height must grow and the neighbourhood not be left: long ridges overshoot.
+        let mut moved = None;
+        for _ in 0..12 {
+            let there = [here[0] + step[0], here[1] + step[1]];
+            let inside = (0..2).all(|k| (there[k] - start[k]).abs() <= spacing);
+            let next = surface.jet(there[0], there[1]);
+            // Within a thousandth of a spacing rounding decides over heights, and Newton's step can be trusted.
+            if inside && (next.height_m > jet.height_m || step[0].abs().max(step[1].abs()) < 1e-3 * spacing) {
+                moved = Some((there, next));
+                break;
+            }
+            step = step.map(|component| 0.5 * component);
         }
-        x += dx;
-        y += dy;
-        if (x - start[0]).abs().max((y - start[1]).abs()) > spacing {
-            return None;
-        }
+        (here, jet) = moved?;
     }
     None
 }

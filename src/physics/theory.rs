@@ -18,7 +18,11 @@ pub fn curvature_density(t: f64) -> f64 {
     }
     let half = 0.5 * t * t;
     // t² − 2 + 2e^(−t²/2) = 2(h + expm1(−h)), h = t²/2: as printed it cancels near 0.
-    let bracket = if half < 1e-2 { half * half * (1.0 - half / 3.0 + half * half / 12.0 - half.powi(3) / 60.0 + half.powi(4) / 360.0 - half.powi(5) / 2520.0) } else { 2.0 * (half + (-half).exp_m1()) };
+    let bracket = if half < 1e-2 {
+        half * half * (1.0 - half / 3.0 + half * half / 12.0 - half.powi(3) / 60.0 + half.powi(4) / 360.0 - half.powi(5) / 2520.0)
+    } else {
+        2.0 * (half + (-half).exp_m1())
+    };
     (3.0 / (4.0 * PI)).sqrt() * bracket * (-0.5 * half).exp()
 }
 
@@ -32,7 +36,12 @@ pub fn curvature_density(t: f64) -> f64 {
 /// # Errors
 /// m4 must be positive and finite, and so must the tip's radius.
 pub fn mean_loop_loss(moments: &Moments, material: &Material, tip_radius_m: Option<f64>) -> Result<f64, PhysicsError> {
-    let domain = |quantity, value| PhysicsError::Domain { action: "Deng and Kesari's mean loss (Eq A3)", quantity, value, allowed: "a positive, finite number" };
+    let domain = |quantity, value| PhysicsError::Domain {
+        action: "Deng and Kesari's mean loss (Eq A3)",
+        quantity,
+        value,
+        allowed: "a positive, finite number",
+    };
     if !(moments.m4_1_m2 > 0.0 && moments.m4_1_m2.is_finite()) {
         return Err(domain("m4 [1/m2]", moments.m4_1_m2));
     }
@@ -62,8 +71,7 @@ fn gauss_panels(f: impl Fn(f64) -> f64, from: f64, to: f64, panels: usize) -> f6
     (0..panels)
         .map(|k| {
             let middle = from + (2 * k + 1) as f64 * half;
-            let pairs: f64 =
-                nodes.iter().zip(&weights).skip(1).map(|(x, w)| w * (f(middle - half * x) + f(middle + half * x))).sum();
+            let pairs: f64 = nodes.iter().zip(&weights).skip(1).map(|(x, w)| w * (f(middle - half * x) + f(middle + half * x))).sum();
             half * (weights[0] * f(middle) + pairs)
         })
         .sum()

@@ -7,10 +7,7 @@ mod render;
 mod run;
 mod statistics;
 
-pub use render::{
-    DIRECTORY, OWN_KEYS, SchemaFile, files, metadata_json, readme_markdown, schema_file_name,
-    schema_json,
-};
+pub use render::{DIRECTORY, OWN_KEYS, SchemaFile, files, metadata_json, readme_markdown, schema_file_name, schema_json};
 pub use run::{ASPERITIES, CONTACTS, EVENTS, STEPS};
 pub use statistics::{CASES, CURVES, REALIZATIONS};
 
@@ -82,23 +79,12 @@ impl Table {
 }
 
 /// Every table that the program writes.
-pub static TABLES: &[&Table] = &[
-    &ASPERITIES,
-    &STEPS,
-    &CONTACTS,
-    &EVENTS,
-    &REALIZATIONS,
-    &CASES,
-    &CURVES,
-];
+pub static TABLES: &[&Table] = &[&ASPERITIES, &STEPS, &CONTACTS, &EVENTS, &REALIZATIONS, &CASES, &CURVES];
 
 impl Column {
     /// The same column, whose values may be missing.
     const fn or_null(self) -> Self {
-        Self {
-            nullable: true,
-            ..self
-        }
+        Self { nullable: true, ..self }
     }
 
     /// The same column, with the equation or publication behind it.
@@ -108,14 +94,7 @@ impl Column {
 }
 
 const fn column(name: &'static str, kind: Kind, unit: &'static str, doc: &'static str) -> Column {
-    Column {
-        name,
-        kind,
-        unit,
-        nullable: false,
-        doc,
-        source: "",
-    }
+    Column { name, kind, unit, nullable: false, doc, source: "" }
 }
 
 /// A real number with a unit.

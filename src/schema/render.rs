@@ -75,10 +75,7 @@ pub const OWN_KEYS: [&str; 5] = ["table", "version", "file", "description", "col
 /// depending on what else is built with it.
 #[must_use]
 pub fn metadata_json(table: &Table, keys: &BTreeMap<&str, &str>) -> String {
-    let all = WithKeys {
-        table: table_json(table),
-        keys,
-    };
+    let all = WithKeys { table: table_json(table), keys };
     // Strings, integers and truth values always serialize, so nothing is lost by the default.
     serde_json::to_string(&all).unwrap_or_default()
 }
@@ -110,11 +107,7 @@ pub fn readme_markdown(table: &Table) -> String {
             format!("`{}`", column.name),
             column.kind.word().to_owned(),
             column.unit.to_owned(),
-            if column.nullable {
-                "yes".to_owned()
-            } else {
-                String::new()
-            },
+            if column.nullable { "yes".to_owned() } else { String::new() },
             column.doc.replace('|', "\\|"),
             column.source.to_owned(),
         ];
@@ -128,13 +121,8 @@ pub fn readme_markdown(table: &Table) -> String {
 /// Every file that belongs below [`DIRECTORY`].
 #[must_use]
 pub fn files() -> Vec<SchemaFile> {
-    let mut all: Vec<SchemaFile> = TABLES
-        .iter()
-        .map(|table| SchemaFile {
-            name: schema_file_name(table),
-            content: schema_json(table),
-        })
-        .collect();
+    let mut all: Vec<SchemaFile> =
+        TABLES.iter().map(|table| SchemaFile { name: schema_file_name(table), content: schema_json(table) }).collect();
     let pages: Vec<String> = TABLES.iter().map(|table| readme_markdown(table)).collect();
     all.push(SchemaFile {
         name: "README.md".to_owned(),

@@ -44,11 +44,20 @@ pub static STEPS: Table = Table {
         STEP,
         BRANCH,
         MAX_LOAD,
-        real("approach_m", "m", "Approach of the rigid rough surface, which is its mean penetration; 0 where the highest summit meets the undeformed half-space"),
+        real(
+            "approach_m",
+            "m",
+            "Approach of the rigid rough surface, which is its mean penetration; 0 where the highest summit meets the undeformed half-space",
+        ),
         real("load_n", "N", "Normal load, the sum over all contact spots; negative in tension").from("Eq 1"),
-        real("least_load_n", "N", "Least load since the step before, events included: the load is a saw-tooth whose teeth stand at the events"),
+        real(
+            "least_load_n",
+            "N",
+            "Least load since the step before, events included: the load is a saw-tooth whose teeth stand at the events",
+        ),
         real("area_m2", "m^2", "Contact area, the sum of the discs of all contact spots"),
-        real("area_union_m2", "m^2", "Contact area, the union of the discs, overlaps counted once; null where it was not computed").or_null(),
+        real("area_union_m2", "m^2", "Contact area, the union of the discs, overlaps counted once; null where it was not computed")
+            .or_null(),
         count("contact_count", "Asperities in contact"),
         count("covered_count", "Asperities covered by a greater spot: they carry nothing"),
         count("jump_in_count", "Asperities that jumped into contact in this step"),
@@ -60,8 +69,7 @@ pub static STEPS: Table = Table {
         count("touching_count", "Contact spots that touch another one"),
         real("dissipated_j", "J", "Energy lost in the events of this step"),
         real("work_j", "J", "Work done on the contact since this branch began, the integral of load over approach"),
-        real("residual_m", "m", "Greatest difference left between local penetration and JKR penetration, over all spots")
-            .from("Eqs 2, 5"),
+        real("residual_m", "m", "Greatest difference left between local penetration and JKR penetration, over all spots").from("Eqs 2, 5"),
         flag("converged", "Whether the residual came below the tolerance"),
         count("iteration_count", "Newton iterations of this step"),
         count("pair_evaluation_count", "Evaluations of the displacement field of one spot at another in this step"),
@@ -82,31 +90,11 @@ pub static CONTACTS: Table = Table {
         BRANCH,
         MAX_LOAD,
         ASPERITY,
-        text(
-            "state",
-            "\"contact\" or \"covered\"; free asperities have no row",
-        ),
-        real(
-            "contact_radius_m",
-            "m",
-            "Radius of the contact spot; 0 if covered",
-        )
-        .from("Eq 2"),
+        text("state", "\"contact\" or \"covered\"; free asperities have no row"),
+        real("contact_radius_m", "m", "Radius of the contact spot; 0 if covered").from("Eq 2"),
         real("load_n", "N", "Load of the contact spot; 0 if covered").from("Eq 1"),
-        real(
-            "penetration_m",
-            "m",
-            "Local penetration, after the displacement by all other spots; null if covered",
-        )
-        .or_null()
-        .from("Eq 5"),
-        real(
-            "interaction_m",
-            "m",
-            "Displacement of the half-space by all other spots; null if covered",
-        )
-        .or_null()
-        .from("Eqs 6-8"),
+        real("penetration_m", "m", "Local penetration, after the displacement by all other spots; null if covered").or_null().from("Eq 5"),
+        real("interaction_m", "m", "Displacement of the half-space by all other spots; null if covered").or_null().from("Eqs 6-8"),
     ],
 };
 
@@ -125,32 +113,16 @@ pub static EVENTS: Table = Table {
             "What happened: \"jump_in\", \"jump_off\", \"cover\", \"uncover\", and \"snap\" where the contact moves to another equilibrium with the same spots",
         ),
         ASPERITY,
-        real(
-            "approach_m",
-            "m",
-            "Approach of the surface at the event, zero as in the table steps",
-        )
-        .from("Eqs 3, 4"),
-        index(
-            "avalanche_id",
-            "Events that one instability brought about have the same number, from 0 along the path",
-        ),
-        real(
-            "load_before_n",
-            "N",
-            "Load of the whole contact before the event",
-        ),
+        real("approach_m", "m", "Approach of the surface at the event, zero as in the table steps").from("Eqs 3, 4"),
+        index("avalanche_id", "Events that one instability brought about have the same number, from 0 along the path"),
+        real("load_before_n", "N", "Load of the whole contact before the event"),
         real("load_after_n", "N", "Load of the whole contact when the rest has relaxed"),
+        real("area_before_m2", "m^2", "Area of the whole contact before the event"),
+        real("area_after_m2", "m^2", "Area of the whole contact when the rest has relaxed"),
         real(
-            "area_before_m2",
-            "m^2",
-            "Area of the whole contact before the event",
+            "energy_lost_j",
+            "J",
+            "Energy lost in the event and in the relaxation that followed it; 0 for further events of the same relaxation",
         ),
-        real(
-            "area_after_m2",
-            "m^2",
-            "Area of the whole contact when the rest has relaxed",
-        ),
-        real("energy_lost_j", "J", "Energy lost in the event and in the relaxation that followed it; 0 for further events of the same relaxation"),
     ],
 };

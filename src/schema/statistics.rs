@@ -3,14 +3,8 @@
 use super::{Column, Table, count, index, join, real, text};
 
 const CASE: &[Column] = &[
-    text(
-        "case_id",
-        "Identity of the case: a hash of everything that defines it",
-    ),
-    text(
-        "sweep",
-        "The sweeps of the spec that the case belongs to, joined by +; empty for a spec without sweeps",
-    ),
+    text("case_id", "Identity of the case: a hash of everything that defines it"),
+    text("sweep", "The sweeps of the spec that the case belongs to, joined by +; empty for a spec without sweeps"),
 ];
 
 /// What defines a case, a column each.
@@ -33,11 +27,7 @@ const PARAMETERS: &[Column] = &[
     real("approach_step", "1", "Greatest step of the approach, in rms heights"),
 ];
 
-const MAX_LOAD: &[Column] = &[real(
-    "max_load",
-    "1",
-    "F/(E* A0) at which loading turned to unloading",
-)];
+const MAX_LOAD: &[Column] = &[real("max_load", "1", "F/(E* A0) at which loading turned to unloading")];
 
 const RESULTS: &[Column] = &[
     index("realization", "Number of the surface among those that share its spectrum, from 0"),
@@ -76,8 +66,7 @@ const RESULTS: &[Column] = &[
     real("covered_share", "1", "Share of asperities in contact or covered that are covered, at the end of loading; null without contact").or_null(),
 ];
 
-const REALIZATION_COLUMNS: [Column; CASE.len() + PARAMETERS.len() + RESULTS.len()] =
-    join(&[CASE, PARAMETERS, RESULTS]);
+const REALIZATION_COLUMNS: [Column; CASE.len() + PARAMETERS.len() + RESULTS.len()] = join(&[CASE, PARAMETERS, RESULTS]);
 
 /// One cycle, in numbers.
 pub static REALIZATIONS: Table = Table {
@@ -92,34 +81,10 @@ pub static REALIZATIONS: Table = Table {
 macro_rules! over_realizations {
     ($name:literal, $what:literal, $source:literal) => {
         &[
-            real(
-                concat!($name, "_mean"),
-                "1",
-                concat!("Mean over realizations: ", $what),
-            )
-            .or_null()
-            .from($source),
-            real(
-                concat!($name, "_sd"),
-                "1",
-                concat!("Standard deviation over realizations (n - 1): ", $what),
-            )
-            .or_null()
-            .from($source),
-            real(
-                concat!($name, "_ci95_low"),
-                "1",
-                concat!("Lower end of the 95 % interval of the mean: ", $what),
-            )
-            .or_null()
-            .from($source),
-            real(
-                concat!($name, "_ci95_high"),
-                "1",
-                concat!("Upper end of the 95 % interval of the mean: ", $what),
-            )
-            .or_null()
-            .from($source),
+            real(concat!($name, "_mean"), "1", concat!("Mean over realizations: ", $what)).or_null().from($source),
+            real(concat!($name, "_sd"), "1", concat!("Standard deviation over realizations (n - 1): ", $what)).or_null().from($source),
+            real(concat!($name, "_ci95_low"), "1", concat!("Lower end of the 95 % interval of the mean: ", $what)).or_null().from($source),
+            real(concat!($name, "_ci95_high"), "1", concat!("Upper end of the 95 % interval of the mean: ", $what)).or_null().from($source),
         ]
     };
 }
@@ -127,22 +92,10 @@ macro_rules! over_realizations {
 const SPREADS: [&[Column]; 7] = [
     over_realizations!("pull_off_load", "pull-off load over E* A0", ""),
     over_realizations!("area_at_max_load", "A/A0 at the end of loading", ""),
-    over_realizations!(
-        "penetration_at_max_load",
-        "approach over rms height at the end of loading",
-        ""
-    ),
+    over_realizations!("penetration_at_max_load", "approach over rms height at the end of loading", ""),
     over_realizations!("loss", "energy lost in the loop over E* A0 h_rms", ""),
-    over_realizations!(
-        "loss_dk",
-        "loss after Deng and Kesari, continuous moments",
-        "Eqs A1-A4"
-    ),
-    over_realizations!(
-        "loss_dk_realised",
-        "loss after Deng and Kesari, realised moments",
-        "Eqs A1-A4"
-    ),
+    over_realizations!("loss_dk", "loss after Deng and Kesari, continuous moments", "Eqs A1-A4"),
+    over_realizations!("loss_dk_realised", "loss after Deng and Kesari, realised moments", "Eqs A1-A4"),
     over_realizations!("loss_ratio_dk", "loss over loss after Deng and Kesari", ""),
 ];
 
@@ -150,17 +103,11 @@ const COUNTS: &[Column] = &[
     count("planned_count", "Realizations that the spec asks for"),
     count("done_count", "Realizations that are in the means"),
     count("failed_count", "Realizations that failed"),
-    text(
-        "caution",
-        "What speaks against trusting the row, words joined by +; empty if nothing does",
-    ),
+    text("caution", "What speaks against trusting the row, words joined by +; empty if nothing does"),
 ];
 
-const CASE_COLUMNS: [Column;
-    CASE.len() + PARAMETERS.len() + MAX_LOAD.len() + 4 * SPREADS.len() + COUNTS.len()] = join(&[
-    CASE, PARAMETERS, MAX_LOAD, SPREADS[0], SPREADS[1], SPREADS[2], SPREADS[3], SPREADS[4],
-    SPREADS[5], SPREADS[6], COUNTS,
-]);
+const CASE_COLUMNS: [Column; CASE.len() + PARAMETERS.len() + MAX_LOAD.len() + 4 * SPREADS.len() + COUNTS.len()] =
+    join(&[CASE, PARAMETERS, MAX_LOAD, SPREADS[0], SPREADS[1], SPREADS[2], SPREADS[3], SPREADS[4], SPREADS[5], SPREADS[6], COUNTS]);
 
 /// Means over realizations.
 pub static CASES: Table = Table {
@@ -180,8 +127,12 @@ pub static CURVES: Table = Table {
     columns: &[
         CASE[0],
         CASE[1],
-        real("max_load", "1", "F/(E* A0) from which this unloading began; null while loading, since one loading path serves every turning point")
-            .or_null(),
+        real(
+            "max_load",
+            "1",
+            "F/(E* A0) from which this unloading began; null while loading, since one loading path serves every turning point",
+        )
+        .or_null(),
         text("branch", "\"loading\" or \"unloading\""),
         index("grid_index", "Number of the point on the common grid, from 0"),
         real("load", "1", "F/(E* A0) of the point"),

@@ -53,15 +53,7 @@ impl SpecErrors {
     /// The file could not be read at all.
     pub(super) fn unreadable(file: &str, cause: &str) -> Self {
         let message = format!("the spec cannot be read: {cause}");
-        Self {
-            file: file.to_owned(),
-            faults: vec![Fault {
-                message,
-                help: None,
-                place: None,
-            }],
-            more: 0,
-        }
+        Self { file: file.to_owned(), faults: vec![Fault { message, help: None, place: None }], more: 0 }
     }
 
     /// The file is no text: `valid` bytes of it are.
@@ -69,19 +61,8 @@ impl SpecErrors {
         let message = "the spec cannot be read: this is not UTF-8 text".to_owned();
         let help = Some("save the file as UTF-8".to_owned());
         let text = String::from_utf8_lossy(bytes);
-        let place = Some(Place::new(
-            &text,
-            &(valid..valid + char::REPLACEMENT_CHARACTER.len_utf8()),
-        ));
-        Self {
-            file: file.to_owned(),
-            faults: vec![Fault {
-                message,
-                help,
-                place,
-            }],
-            more: 0,
-        }
+        let place = Some(Place::new(&text, &(valid..valid + char::REPLACEMENT_CHARACTER.len_utf8())));
+        Self { file: file.to_owned(), faults: vec![Fault { message, help, place }], more: 0 }
     }
 }
 
@@ -94,19 +75,12 @@ impl fmt::Display for SpecErrors {
                 writeln!(out)?;
             }
             writeln!(out, "error: {}", fault.message)?;
-            let line = fault
-                .place
-                .as_ref()
-                .map_or_else(String::new, |place| place.line.to_string());
+            let line = fault.place.as_ref().map_or_else(String::new, |place| place.line.to_string());
             let pad = " ".repeat(line.len().max(1) + 1);
             match &fault.place {
                 None => writeln!(out, "{pad}--> {}", self.file)?,
                 Some(place) => {
-                    writeln!(
-                        out,
-                        "{pad}--> {}:{}:{}",
-                        self.file, place.line, place.column
-                    )?;
+                    writeln!(out, "{pad}--> {}:{}:{}", self.file, place.line, place.column)?;
                     writeln!(out, "{pad} |")?;
                     writeln!(out, " {line} | {}", place.excerpt)?;
                     writeln!(out, "{pad} | {}", place.carets)?;
@@ -137,60 +111,29 @@ impl Place {
         let end = boundary(text, span.end).max(start);
         let head = text.get(..start).unwrap_or_default();
         let line_start = head.rfind('\n').map_or(0, |newline| newline + 1);
-        let source = text
-            .get(line_start..)
-            .and_then(|rest| rest.split('\n').next())
-            .unwrap_or_default();
+        let source = text.get(line_start..).and_then(|rest| rest.split('\n').next()).unwrap_or_default();
         let line_text = source.strip_suffix('\r').unwrap_or(source);
         let before = head.get(line_start..).unwrap_or_default();
         // A byte order mark is no character that an editor shows or counts.
         let hidden = usize::from(line_text.starts_with('\u{feff}'));
         let column = before.chars().count().saturating_sub(hidden);
-        let marked = text
-            .get(start..end)
-            .and_then(|part| part.split(['\n', '\r']).next())
-            .unwrap_or_default();
+        let marked = text.get(start..end).and_then(|part| part.split(['\n', '\r']).next()).unwrap_or_default();
 
-        let from = if column > WINDOW - 10 {
-            column - BEFORE
-        } else {
-            0
-        };
+        let from = if column > WINDOW - 10 { column - BEFORE } else { 0 };
         let shown: Vec<char> = line_text.chars().skip(hidden + from).take(WINDOW).collect();
         let more = line_text.chars().count() > hidden + from + shown.len();
         let lead = if from > 0 { "…" } else { "" };
         let tail = if more { "…" } else { "" };
         // Control characters could move the cursor of a terminal; tabs stay, and the carets repeat them to stay below.
-        let excerpt: String = shown
-            .iter()
-            .map(|&c| {
-                if c != '\t' && c.is_control() {
-                    '\u{fffd}'
-                } else {
-                    c
-                }
-            })
-            .collect();
+        let excerpt: String = shown.iter().map(|&c| if c != '\t' && c.is_control() { '\u{fffd}' } else { c }).collect();
         let offset = column - from;
-        let pad: String = shown
-            .iter()
-            .take(offset)
-            .map(|&c| if c == '\t' { '\t' } else { ' ' })
-            .collect();
-        let width = marked
-            .chars()
-            .count()
-            .min(shown.len().saturating_sub(offset))
-            .max(1);
+        let pad: String = shown.iter().take(offset).map(|&c| if c == '\t' { '\t' } else { ' ' }).collect();
+        let width = marked.chars().count().min(shown.len().saturating_sub(offset)).max(1);
         Self {
             line: head.matches('\n').count() + 1,
             column: column + 1,
             excerpt: format!("{lead}{excerpt}{tail}"),
-            carets: format!(
-                "{}{pad}{}",
-                if from > 0 { " " } else { "" },
-                "^".repeat(width)
-            ),
+            carets: format!("{}{pad}{}", if from > 0 { " " } else { "" }, "^".repeat(width)),
         }
     }
 }
@@ -215,38 +158,17 @@ pub(super) struct Faults<'t> {
 impl<'t> Faults<'t> {
     /// No fault yet.
     pub(super) fn new(text: &'t str, file: &str) -> Self {
-        Self {
-            text,
-            file: file.to_owned(),
-            found: Vec::new(),
-            more: 0,
-        }
+        Self { text, file: file.to_owned(), found: Vec::new(), more: 0 }
     }
 
     /// Adds a fault; a second one with the same words at the same place says nothing new.
-    pub(super) fn add(
-        &mut self,
-        span: &Range<usize>,
-        message: String,
-        help: impl Into<Option<String>>,
-    ) {
+    pub(super) fn add(&mut self, span: &Range<usize>, message: String, help: impl Into<Option<String>>) {
         let help = help.into();
         if self.found.len() >= MOST {
             self.more += 1;
-        } else if !self
-            .found
-            .iter()
-            .any(|(known, fault)| known == span && fault.message == message)
-        {
+        } else if !self.found.iter().any(|(known, fault)| known == span && fault.message == message) {
             let place = Some(Place::new(self.text, span));
-            self.found.push((
-                span.clone(),
-                Fault {
-                    message,
-                    help,
-                    place,
-                },
-            ));
+            self.found.push((span.clone(), Fault { message, help, place }));
         }
     }
 
@@ -264,11 +186,7 @@ impl<'t> Faults<'t> {
     pub(super) fn written(&self, span: &Range<usize>) -> String {
         let text = self.text.get(span.clone()).unwrap_or_default();
         let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
-        if line.chars().count() > 40 {
-            line.chars().take(39).chain(['…']).collect()
-        } else {
-            line
-        }
+        if line.chars().count() > 40 { line.chars().take(39).chain(['…']).collect() } else { line }
     }
 
     /// What was read, if nothing is wrong with it.
@@ -278,11 +196,7 @@ impl<'t> Faults<'t> {
             _ => {
                 self.found.sort_by_key(|(span, _)| span.start);
                 let faults = self.found.into_iter().map(|(_, fault)| fault).collect();
-                Err(SpecErrors {
-                    file: self.file,
-                    faults,
-                    more: self.more,
-                })
+                Err(SpecErrors { file: self.file, faults, more: self.more })
             }
         }
     }

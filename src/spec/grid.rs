@@ -17,14 +17,7 @@ const BASE: &str = "base";
 
 /// Multiplies the sweeps out. Nothing, with the faults added, if there are too many cases or the draft has no name.
 pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
-    let Draft {
-        name,
-        seed,
-        realizations,
-        base,
-        origins,
-        sweeps,
-    } = draft;
+    let Draft { name, seed, realizations, base, origins, sweeps } = draft;
     let read: Vec<&SweepDraft> = sweeps.iter().flatten().collect();
     if too_many(&read, faults) {
         return None;
@@ -47,14 +40,7 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
         }
     }
     let sweeps = read.into_iter().map(sweep).collect();
-    Some(Spec {
-        name: name?,
-        seed,
-        realizations,
-        cases: cases.list,
-        base,
-        sweeps,
-    })
+    Some(Spec { name: name?, seed, realizations, cases: cases.list, base, sweeps })
 }
 
 /// Whether the sweeps make more cases than allowed, found without making them.
@@ -62,9 +48,7 @@ fn too_many(sweeps: &[&SweepDraft], faults: &mut Faults<'_>) -> bool {
     let mut total: u128 = 0;
     let mut first_beyond: Option<&Range<usize>> = None;
     for sweep in sweeps {
-        let count = sweep.axes.iter().fold(1_u128, |count, axis| {
-            count.saturating_mul(axis.values.len() as u128)
-        });
+        let count = sweep.axes.iter().fold(1_u128, |count, axis| count.saturating_mul(axis.values.len() as u128));
         total = total.saturating_add(count);
         if total > u128::from(MAX_CASES) {
             first_beyond = first_beyond.or(Some(&sweep.span));
@@ -72,8 +56,7 @@ fn too_many(sweeps: &[&SweepDraft], faults: &mut Faults<'_>) -> bool {
     }
     if let Some(span) = first_beyond {
         let message = format!("the sweeps make {total} cases: at most {MAX_CASES} are allowed");
-        let help = "arrays in one sweep multiply; sweep fewer keys at once, or take several sweeps"
-            .to_owned();
+        let help = "arrays in one sweep multiply; sweep fewer keys at once, or take several sweeps".to_owned();
         faults.add(span, message, help);
     }
     first_beyond.is_some()
@@ -109,17 +92,11 @@ impl Cases {
     /// Adds a case, or the sweep's name to an equal one.
     fn add(&mut self, sweep: &str, params: CaseParams) {
         // Every value is finite and none is a zero with a sign, so that equal cases are written alike, and only they.
-        let place = *self
-            .places
-            .entry(format!("{params:?}"))
-            .or_insert(self.list.len());
+        let place = *self.places.entry(format!("{params:?}")).or_insert(self.list.len());
         match self.list.get_mut(place) {
             Some(case) if case.sweeps.iter().any(|known| known == sweep) => {}
             Some(case) => case.sweeps.push(sweep.to_owned()),
-            None => self.list.push(Case {
-                sweeps: vec![sweep.to_owned()],
-                params,
-            }),
+            None => self.list.push(Case { sweeps: vec![sweep.to_owned()], params }),
         }
     }
 }
@@ -131,16 +108,11 @@ fn check(case: &CaseParams, origins: &[Origin], faults: &mut Faults<'_>) {
         && let Some(span) = blamed(["rms_height_m", "length_m"], origins)
     {
         let (height, length) = (short(surface.rms_height_m), short(surface.length_m));
-        let message = format!(
-            "`surface.rms_height_m`, {height} m, must be less than `surface.length_m`, {length} m"
-        );
+        let message = format!("`surface.rms_height_m`, {height} m, must be less than `surface.length_m`, {length} m");
         faults.add(&span, message, "both are in metres".to_owned());
     }
     let grid = surface.grid();
-    let (zeta, points) = (
-        surface.magnification,
-        surface.points_per_shortest_wavelength,
-    );
+    let (zeta, points) = (surface.magnification, surface.points_per_shortest_wavelength);
     let made = || format!("{zeta} times {points} points make a grid of {grid} x {grid} points");
     let keys = ["magnification", "points_per_shortest_wavelength"];
     if grid > u64::from(MAX_GRID)
@@ -153,9 +125,7 @@ fn check(case: &CaseParams, origins: &[Origin], faults: &mut Faults<'_>) {
         && let Some(span) = blamed(keys, origins)
     {
         let message = format!("{}: their number along a side must be even", made());
-        let help =
-            "only an even grid has a Nyquist line, which the transforms of a real surface build on"
-                .to_owned();
+        let help = "only an even grid has a Nyquist line, which the transforms of a real surface build on".to_owned();
         faults.add(&span, message, help);
     }
 }
@@ -167,9 +137,7 @@ fn blamed(keys: [&str; 2], origins: &[Origin]) -> Option<Range<usize>> {
         match &origins[find("surface", name)?] {
             Origin::Default => {}
             Origin::Faulty => return None,
-            Origin::Written(span)
-                if later.as_ref().is_none_or(|known| known.start < span.start) =>
-            {
+            Origin::Written(span) if later.as_ref().is_none_or(|known| known.start < span.start) => {
                 later = Some(span.clone());
             }
             Origin::Written(_) => {}
@@ -180,16 +148,7 @@ fn blamed(keys: [&str; 2], origins: &[Origin]) -> Option<Range<usize>> {
 
 /// A sweep as it is told.
 fn sweep(draft: &SweepDraft) -> Sweep {
-    let axis = |axis: &AxisDraft| Axis {
-        key: KEYS[axis.key].path,
-        values: axis
-            .values
-            .iter()
-            .map(|value| value.get_ref().clone())
-            .collect(),
-    };
-    Sweep {
-        name: draft.name.clone(),
-        axes: draft.axes.iter().map(axis).collect(),
-    }
+    let axis =
+        |axis: &AxisDraft| Axis { key: KEYS[axis.key].path, values: axis.values.iter().map(|value| value.get_ref().clone()).collect() };
+    Sweep { name: draft.name.clone(), axes: draft.axes.iter().map(axis).collect() }
 }

@@ -1,32 +1,17 @@
 //! The keys: what each takes, and where its value goes.
 
 use super::{CaseParams, Value};
-use crate::model::{
-    Amplitudes, Boundary, Choice, Coalescence, Interaction, JumpIn, KeptContacts, Normalization,
-    Slip,
-};
+use crate::model::{Amplitudes, Boundary, Choice, Coalescence, Interaction, JumpIn, KeptContacts, Normalization, Slip};
 
 /// Words that the spec knows and this version cannot run: key, word, reason.
 pub const UNAVAILABLE: &[(&str, &str, &str)] = &[
-    (
-        "model.boundary",
-        "isolated",
-        "a single patch on a half-space",
-    ),
+    ("model.boundary", "isolated", "a single patch on a half-space"),
     ("model.coalescence", "merge", "joining spots that touch"),
-    (
-        "model.coalescence",
-        "none",
-        "letting spots grow through one another",
-    ),
+    ("model.coalescence", "none", "letting spots grow through one another"),
     ("model.as_printed", "eq8", "putting back the printed Eq 8"),
     ("model.as_printed", "eq9", "putting back the printed Eq 9"),
     ("model.as_printed", "a2", "putting back the printed Eq A2"),
-    (
-        "model.as_printed",
-        "a3",
-        "putting back the printed root below Eq A3",
-    ),
+    ("model.as_printed", "a3", "putting back the printed root below Eq A3"),
 ];
 
 /// One key of a table.
@@ -50,12 +35,7 @@ pub(super) enum Kind {
     /// A real number.
     Number(Limits),
     /// A whole number from `low` to `high`. Below, the first sentence whose number is not exceeded tells why.
-    Count {
-        low: u32,
-        high: u32,
-        why: &'static [(i128, &'static str)],
-        note: &'static str,
-    },
+    Count { low: u32, high: u32, why: &'static [(i128, &'static str)], note: &'static str },
     /// True or false.
     Flag,
     /// One of some words.
@@ -94,12 +74,7 @@ pub(super) struct Limits {
 impl Limits {
     /// Whether a value lies within.
     pub(super) fn hold(&self, value: f64) -> bool {
-        value <= self.high
-            && if self.above {
-                value > self.low
-            } else {
-                value >= self.low
-            }
+        value <= self.high && if self.above { value > self.low } else { value >= self.low }
     }
 }
 
@@ -200,30 +175,20 @@ pub(super) const MEASURED: [&str; 3] = ["file", "dataset", "periodic"];
 
 /// The place in [`KEYS`] of a key of a table.
 pub(super) fn find(table: &str, name: &str) -> Option<usize> {
-    KEYS.iter()
-        .position(|key| key.table == table && key.name == name)
+    KEYS.iter().position(|key| key.table == table && key.name == name)
 }
 
 /// The names of the keys of a table.
 pub(super) fn names(table: &str) -> impl Iterator<Item = &'static str> {
-    KEYS.iter()
-        .filter(move |key| key.table == table)
-        .map(|key| key.name)
+    KEYS.iter().filter(move |key| key.table == table).map(|key| key.name)
 }
 
 /// The words of a key that this version can run.
 pub(super) fn available(key: &Key, words: &[&'static str]) -> Vec<&'static str> {
-    words
-        .iter()
-        .copied()
-        .filter(|word| unavailable(key, word).is_none())
-        .collect()
+    words.iter().copied().filter(|word| unavailable(key, word).is_none()).collect()
 }
 
 /// Why this version cannot run a word of a key, if so.
 pub(super) fn unavailable(key: &Key, word: &str) -> Option<&'static str> {
-    UNAVAILABLE
-        .iter()
-        .find(|(path, known, _)| *path == key.path && *known == word)
-        .map(|(_, _, reason)| *reason)
+    UNAVAILABLE.iter().find(|(path, known, _)| *path == key.path && *known == word).map(|(_, _, reason)| *reason)
 }

@@ -19,10 +19,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::model::{
-    Amplitudes, Boundary, Coalescence, Interaction, JumpIn, KeptContacts, Material, Normalization,
-    Slip,
-};
+use crate::model::{Amplitudes, Boundary, Coalescence, Interaction, JumpIn, KeptContacts, Material, Normalization, Slip};
 
 pub use fault::{Fault, Place, SpecErrors};
 pub use keys::UNAVAILABLE;
@@ -190,11 +187,7 @@ impl Default for SurfaceParams {
 
 impl Default for Material {
     fn default() -> Self {
-        Self {
-            contact_modulus_pa: 1e6,
-            work_of_adhesion_j_m2: 0.07,
-            interaction_range_m: 1e-9,
-        }
+        Self { contact_modulus_pa: 1e6, work_of_adhesion_j_m2: 0.07, interaction_range_m: 1e-9 }
     }
 }
 
@@ -213,11 +206,7 @@ impl Default for ModelParams {
 
 impl Default for CycleParams {
     fn default() -> Self {
-        Self {
-            max_load: vec![0.0071],
-            approach_step: 0.01,
-            contacts: KeptContacts::Turning,
-        }
+        Self { max_load: vec![0.0071], approach_step: 0.01, contacts: KeptContacts::Turning }
     }
 }
 
@@ -228,8 +217,7 @@ impl Spec {
     /// Every fault of the text, each with its place.
     pub fn parse(text: &str, file: &str) -> Result<Self, SpecErrors> {
         let mut faults = fault::Faults::new(text, file);
-        let spec =
-            walk::document(text, &mut faults).and_then(|draft| grid::expand(draft, &mut faults));
+        let spec = walk::document(text, &mut faults).and_then(|draft| grid::expand(draft, &mut faults));
         faults.finish(spec)
     }
 
@@ -242,25 +230,18 @@ impl Spec {
         let file = path.display().to_string();
         // Windows answers "access denied" for a folder; the question is cheap and the answer is the same everywhere.
         if path.is_dir() {
-            return Err(SpecErrors::unreadable(
-                &file,
-                "it is a folder; a spec is a TOML file",
-            ));
+            return Err(SpecErrors::unreadable(&file, "it is a folder; a spec is a TOML file"));
         }
         let mut bytes = Vec::new();
         // One byte more than allowed tells a full file from one that is too long, also where a pipe has no length.
-        let read = std::fs::File::open(path)
-            .and_then(|opened| opened.take(MAX_BYTES + 1).read_to_end(&mut bytes));
+        let read = std::fs::File::open(path).and_then(|opened| opened.take(MAX_BYTES + 1).read_to_end(&mut bytes));
         match read {
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
                 return Err(SpecErrors::unreadable(&file, "there is no such file"));
             }
             Err(error) => return Err(SpecErrors::unreadable(&file, &error.to_string())),
             Ok(length) if length as u64 > MAX_BYTES => {
-                return Err(SpecErrors::unreadable(
-                    &file,
-                    &format!("it is longer than {} MiB", MAX_BYTES >> 20),
-                ));
+                return Err(SpecErrors::unreadable(&file, &format!("it is longer than {} MiB", MAX_BYTES >> 20)));
             }
             Ok(_) => {}
         }

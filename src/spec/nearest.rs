@@ -1,10 +1,7 @@
 //! The known word nearest to an unknown one.
 
 /// The known word that was probably meant, if one is near enough to be worth saying.
-pub(super) fn nearest<'a>(
-    unknown: &str,
-    known: impl IntoIterator<Item = &'a str>,
-) -> Option<&'a str> {
+pub(super) fn nearest<'a>(unknown: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     // Longer than any key with its table: no slip of the finger, and the distance costs the product of the lengths.
     if unknown.chars().count() > 64 {
         return None;
@@ -16,11 +13,7 @@ pub(super) fn nearest<'a>(
         let distance = distance(&unknown, &word.to_lowercase());
         // `length` for `length_m`, `points` for `points_per_shortest_wavelength`: half a key is a good hint, but a weaker one.
         let begun = unknown.len() >= 3 && word.starts_with(&unknown);
-        let rank = if distance <= allowed {
-            distance
-        } else {
-            allowed + 1
-        };
+        let rank = if distance <= allowed { distance } else { allowed + 1 };
         if (distance <= allowed || begun) && best.is_none_or(|(least, _)| rank < least) {
             best = Some((rank, word));
         }
@@ -37,9 +30,7 @@ fn distance(from: &str, to: &str) -> usize {
     for (i, a) in from.iter().enumerate() {
         let mut row = vec![i + 1];
         for (j, b) in to.iter().enumerate() {
-            let mut least = (above[j] + usize::from(a != b))
-                .min(above[j + 1] + 1)
-                .min(row[j] + 1);
+            let mut least = (above[j] + usize::from(a != b)).min(above[j + 1] + 1).min(row[j] + 1);
             if i > 0 && j > 0 && *a == to[j - 1] && from[i - 1] == *b {
                 least = least.min(before[j - 1] + 1);
             }

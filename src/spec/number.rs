@@ -7,12 +7,7 @@ use super::keys::{Key, Limits};
 use super::value::{Written, array, wrong_type};
 
 /// A real number within its bounds.
-pub(super) fn number(
-    path: &str,
-    limits: &Limits,
-    value: &Written<'_>,
-    faults: &mut Faults<'_>,
-) -> Option<f64> {
+pub(super) fn number(path: &str, limits: &Limits, value: &Written<'_>, faults: &mut Faults<'_>) -> Option<f64> {
     let span = value.span();
     let found = match value.get_ref() {
         DeValue::Float(float) => real(float),
@@ -24,45 +19,20 @@ pub(super) fn number(
     };
     let written = faults.written(&span);
     if !found.is_finite() {
-        let what = if found.is_nan() {
-            "is not a number"
-        } else {
-            "is infinite"
-        };
-        faults.add(
-            &span,
-            format!(
-                "`{path}` cannot be {written}, which {what}: {}",
-                allowed(limits)
-            ),
-            None,
-        );
+        let what = if found.is_nan() { "is not a number" } else { "is infinite" };
+        faults.add(&span, format!("`{path}` cannot be {written}, which {what}: {}", allowed(limits)), None);
         return None;
     }
     if limits.hold(found) {
         return Some(found);
     }
     let name = path.rsplit('.').next().unwrap_or(path);
-    let slip = limits
-        .slip
-        .filter(|(size, _)| limits.hold(found * size))
-        .map(|(size, unit)| {
-            let right = short(rounded(found * size));
-            format!(
-                "is this in {unit}? {name} is in {}: write {right}",
-                limits.unit_name
-            )
-        });
+    let slip = limits.slip.filter(|(size, _)| limits.hold(found * size)).map(|(size, unit)| {
+        let right = short(rounded(found * size));
+        format!("is this in {unit}? {name} is in {}: write {right}", limits.unit_name)
+    });
     let help = slip.or_else(|| (!limits.note.is_empty()).then(|| limits.note.to_owned()));
-    faults.add(
-        &span,
-        format!(
-            "`{path}` cannot be {written}{}: {}",
-            limits.unit,
-            allowed(limits)
-        ),
-        help,
-    );
+    faults.add(&span, format!("`{path}` cannot be {written}{}: {}", limits.unit, allowed(limits)), help);
     None
 }
 
@@ -77,20 +47,11 @@ fn allowed(limits: &Limits) -> String {
 }
 
 /// The array of numbers of a key: ascending, each once.
-pub(super) fn numbers(
-    key: &Key,
-    limits: &Limits,
-    most: usize,
-    value: &Written<'_>,
-    faults: &mut Faults<'_>,
-) -> Option<Vec<f64>> {
+pub(super) fn numbers(key: &Key, limits: &Limits, most: usize, value: &Written<'_>, faults: &mut Faults<'_>) -> Option<Vec<f64>> {
     let path = key.path;
     let elements = array(path, "numbers", value, faults)?;
     if elements.is_empty() || elements.len() > most {
-        let message = format!(
-            "`{path}` cannot have {} values: it must have from 1 to {most}",
-            elements.len()
-        );
+        let message = format!("`{path}` cannot have {} values: it must have from 1 to {most}", elements.len());
         faults.add(&value.span(), message, None);
         return None;
     }
@@ -100,11 +61,7 @@ pub(super) fn numbers(
         if let Some(found) = number(path, limits, element, faults) {
             if seen.contains(&found) {
                 let message = format!("`{path}` has the value {} twice", short(found));
-                faults.add(
-                    &element.span(),
-                    message,
-                    "each turning point must stand once".to_owned(),
-                );
+                faults.add(&element.span(), message, "each turning point must stand once".to_owned());
             }
             seen.push(found);
         }
@@ -128,10 +85,7 @@ pub(super) fn integer(path: &str, value: &Written<'_>, faults: &mut Faults<'_>) 
     };
     let whole = whole(found);
     if whole.is_none() {
-        let message = format!(
-            "`{path}` cannot be {}: a TOML integer has at most 64 bits",
-            faults.written(&span)
-        );
+        let message = format!("`{path}` cannot be {}: a TOML integer has at most 64 bits", faults.written(&span));
         faults.add(&span, message, None);
     }
     whole
@@ -140,9 +94,7 @@ pub(super) fn integer(path: &str, value: &Written<'_>, faults: &mut Faults<'_>) 
 /// What to say of a number in quotes.
 fn unquoted(value: &DeValue<'_>) -> Option<String> {
     match value {
-        DeValue::String(text) if text.trim().parse::<f64>().is_ok() => {
-            Some("write it without quotes".to_owned())
-        }
+        DeValue::String(text) if text.trim().parse::<f64>().is_ok() => Some("write it without quotes".to_owned()),
         _ => None,
     }
 }
@@ -154,9 +106,7 @@ fn real(float: &DeFloat<'_>) -> f64 {
 
 /// The value of an integer, if it has at most 64 bits.
 fn whole(integer: &DeInteger<'_>) -> Option<i128> {
-    i64::from_str_radix(integer.as_str(), integer.radix())
-        .ok()
-        .map(i128::from)
+    i64::from_str_radix(integer.as_str(), integer.radix()).ok().map(i128::from)
 }
 
 /// A number as one would write it: 1e-9, 0.2, 64, 1e13.

@@ -29,12 +29,7 @@ pub(super) struct AxisDraft {
 const IN_SWEEP: [&str; 5] = ["name", "surface", "material", "model", "cycle"];
 
 /// Reads the sweeps.
-pub(super) fn sweeps(
-    written: &Spanned<DeValue<'_>>,
-    span: &Range<usize>,
-    read: &mut Vec<Option<SweepDraft>>,
-    faults: &mut Faults<'_>,
-) {
+pub(super) fn sweeps(written: &Spanned<DeValue<'_>>, span: &Range<usize>, read: &mut Vec<Option<SweepDraft>>, faults: &mut Faults<'_>) {
     let DeValue::Array(tables) = written.get_ref() else {
         let help = "a sweep begins with [[sweep]], in double brackets".to_owned();
         faults.add(span, "`sweep` must be an array of tables".to_owned(), help);
@@ -44,14 +39,7 @@ pub(super) fn sweeps(
     for table in tables.iter() {
         let DeValue::Table(found) = table.get_ref() else {
             let help = "a sweep begins with [[sweep]], in double brackets".to_owned();
-            value::wrong_type(
-                "sweep",
-                "an array of tables",
-                table.get_ref(),
-                &table.span(),
-                help,
-                faults,
-            );
+            value::wrong_type("sweep", "an array of tables", table.get_ref(), &table.span(), help, faults);
             continue;
         };
         read.push(sweep(found, table.span(), &mut names, faults));
@@ -59,22 +47,13 @@ pub(super) fn sweeps(
 }
 
 /// Reads one sweep.
-fn sweep(
-    found: &DeTable<'_>,
-    at: Range<usize>,
-    known: &mut Vec<String>,
-    faults: &mut Faults<'_>,
-) -> Option<SweepDraft> {
+fn sweep(found: &DeTable<'_>, at: Range<usize>, known: &mut Vec<String>, faults: &mut Faults<'_>) -> Option<SweepDraft> {
     let before = faults.count();
     let mut name = None;
     let mut overrides = Vec::new();
     let entries = entries(found);
     if !entries.iter().any(|(key, ..)| *key == "name") {
-        faults.add(
-            &at,
-            "the sweep has no `name`".to_owned(),
-            "add a line such as name = \"loads\"".to_owned(),
-        );
+        faults.add(&at, "the sweep has no `name`".to_owned(), "add a line such as name = \"loads\"".to_owned());
     }
     for (key, span, written) in entries {
         match key {
@@ -83,11 +62,7 @@ fn sweep(
                 if let Some(name) = &name {
                     if known.contains(name) {
                         let message = format!("two sweeps have the name \"{name}\"");
-                        faults.add(
-                            &written.span(),
-                            message,
-                            "each sweep needs a name of its own".to_owned(),
-                        );
+                        faults.add(&written.span(), message, "each sweep needs a name of its own".to_owned());
                     }
                     known.push(name.clone());
                 }
@@ -97,66 +72,35 @@ fn sweep(
             }
             unknown => {
                 let help = if unknown == "seed" || unknown == "realizations" {
-                    format!(
-                        "`{unknown}` is the same for all sweeps: it stands at the top of the spec"
-                    )
+                    format!("`{unknown}` is the same for all sweeps: it stands at the top of the spec")
                 } else {
-                    lost(
-                        unknown,
-                        &IN_SWEEP,
-                        |table| format!("write {table}.{unknown}"),
-                        "[[sweep]] takes",
-                    )
+                    lost(unknown, &IN_SWEEP, |table| format!("write {table}.{unknown}"), "[[sweep]] takes")
                 };
-                faults.add(
-                    &span,
-                    format!("unknown key `{}` in [[sweep]]", shown(unknown)),
-                    help,
-                );
+                faults.add(&span, format!("unknown key `{}` in [[sweep]]", shown(unknown)), help);
             }
         }
     }
     // Keys of different tables may alternate; the grid follows the order written.
     overrides.sort_by_key(|(_, span, _)| span.start);
-    let axes: Vec<_> = overrides
-        .into_iter()
-        .filter_map(|(place, _, written)| axis(place, written, faults))
-        .collect();
+    let axes: Vec<_> = overrides.into_iter().filter_map(|(place, _, written)| axis(place, written, faults)).collect();
     let name = name.filter(|_| faults.count() == before)?;
-    Some(SweepDraft {
-        name,
-        span: at,
-        axes,
-    })
+    Some(SweepDraft { name, span: at, axes })
 }
 
 /// Reads one axis: an array of values, or a single one. An array is one value for a key that takes an array.
-fn axis(
-    place: usize,
-    written: &Spanned<DeValue<'_>>,
-    faults: &mut Faults<'_>,
-) -> Option<AxisDraft> {
+fn axis(place: usize, written: &Spanned<DeValue<'_>>, faults: &mut Faults<'_>) -> Option<AxisDraft> {
     let key = &KEYS[place];
     let one = |value: &Spanned<DeValue<'_>>, faults: &mut Faults<'_>| {
         value::read(key, value, faults).map(|read| Spanned::new(value.span(), read))
     };
     let values = match written.get_ref() {
-        DeValue::Array(many)
-            if !key.kind.is_list()
-                || many.first().is_some_and(|first| first.get_ref().is_array()) =>
-        {
+        DeValue::Array(many) if !key.kind.is_list() || many.first().is_some_and(|first| first.get_ref().is_array()) => {
             if many.is_empty() {
                 let message = format!("the axis `{}` has no value", key.path);
-                faults.add(
-                    &written.span(),
-                    message,
-                    "give at least one value, or leave the key out".to_owned(),
-                );
+                faults.add(&written.span(), message, "give at least one value, or leave the key out".to_owned());
                 return None;
             }
-            many.iter()
-                .map(|value| one(value, faults))
-                .collect::<Vec<_>>()
+            many.iter().map(|value| one(value, faults)).collect::<Vec<_>>()
         }
         _ => vec![one(written, faults)],
     };

@@ -12,10 +12,7 @@ pub(super) fn seed(value: &Written<'_>, faults: &mut Faults<'_>) -> Option<u64> 
     let found = integer("seed", value, faults)?;
     let seed = u64::try_from(found).ok();
     if seed.is_none() {
-        let message = format!(
-            "`seed` cannot be {found}: it must be from 0 to {}",
-            i64::MAX
-        );
+        let message = format!("`seed` cannot be {found}: it must be from 0 to {}", i64::MAX);
         faults.add(&value.span(), message, None);
     }
     seed
@@ -24,12 +21,9 @@ pub(super) fn seed(value: &Written<'_>, faults: &mut Faults<'_>) -> Option<u64> 
 /// The number of realisations.
 pub(super) fn realizations(value: &Written<'_>, faults: &mut Faults<'_>) -> Option<u32> {
     let found = integer("realizations", value, faults)?;
-    let count = u32::try_from(found)
-        .ok()
-        .filter(|count| (1..=MAX_REALIZATIONS).contains(count));
+    let count = u32::try_from(found).ok().filter(|count| (1..=MAX_REALIZATIONS).contains(count));
     if count.is_none() {
-        let message =
-            format!("`realizations` cannot be {found}: it must be from 1 to {MAX_REALIZATIONS}");
+        let message = format!("`realizations` cannot be {found}: it must be from 1 to {MAX_REALIZATIONS}");
         faults.add(&value.span(), message, None);
     }
     count
@@ -47,14 +41,7 @@ pub(super) fn name(of: &str, value: &Written<'_>, faults: &mut Faults<'_>) -> Op
     if (1..=64).contains(&found.len()) && found.chars().all(allowed) {
         return Some(found.to_string());
     }
-    let message = format!(
-        "`{of}` cannot be {}: it names a folder or a table row",
-        faults.written(&span)
-    );
-    faults.add(
-        &span,
-        message,
-        "1 to 64 of the letters A-Z and a-z, digits, - and _ are allowed".to_owned(),
-    );
+    let message = format!("`{of}` cannot be {}: it names a folder or a table row", faults.written(&span));
+    faults.add(&span, message, "1 to 64 of the letters A-Z and a-z, digits, - and _ are allowed".to_owned());
     None
 }

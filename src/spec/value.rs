@@ -18,27 +18,13 @@ pub(super) type Written<'t> = Spanned<DeValue<'t>>;
 pub(super) fn read(key: &Key, value: &Written<'_>, faults: &mut Faults<'_>) -> Option<Value> {
     match &key.kind {
         Kind::Number(limits) => number(key.path, limits, value, faults).map(Value::Number),
-        Kind::Count {
-            low,
-            high,
-            why,
-            note,
-        } => {
+        Kind::Count { low, high, why, note } => {
             let found = integer(key.path, value, faults)?;
-            if let Some(count) = u32::try_from(found)
-                .ok()
-                .filter(|count| (*low..=*high).contains(count))
-            {
+            if let Some(count) = u32::try_from(found).ok().filter(|count| (*low..=*high).contains(count)) {
                 return Some(Value::Count(count));
             }
-            let why = why
-                .iter()
-                .find(|(most, _)| found <= *most)
-                .map_or(*note, |(_, why)| *why);
-            let message = format!(
-                "`{}` cannot be {found}: it must be from {low} to {high}",
-                key.path
-            );
+            let why = why.iter().find(|(most, _)| found <= *most).map_or(*note, |(_, why)| *why);
+            let message = format!("`{}` cannot be {found}: it must be from {low} to {high}", key.path);
             faults.add(&value.span(), message, why.to_owned());
             None
         }
@@ -46,94 +32,47 @@ pub(super) fn read(key: &Key, value: &Written<'_>, faults: &mut Faults<'_>) -> O
             DeValue::Boolean(flag) => Some(Value::Flag(*flag)),
             other => {
                 let help = "write true or false, without quotes".to_owned();
-                wrong_type(
-                    key.path,
-                    "true or false",
-                    other,
-                    &value.span(),
-                    help,
-                    faults,
-                );
+                wrong_type(key.path, "true or false", other, &value.span(), help, faults);
                 None
             }
         },
         Kind::Word(words) => word(key, &words(), value, faults).map(Value::Word),
-        Kind::Numbers(limits, most) => {
-            numbers(key, limits, *most, value, faults).map(Value::Numbers)
-        }
+        Kind::Numbers(limits, most) => numbers(key, limits, *most, value, faults).map(Value::Numbers),
         Kind::Words(words) => {
             let words = words();
             let elements = array(key.path, "words", value, faults)?;
-            let read: Vec<_> = elements
-                .iter()
-                .map(|element| word(key, &words, element, faults))
-                .collect();
+            let read: Vec<_> = elements.iter().map(|element| word(key, &words, element, faults)).collect();
             let said: Vec<_> = read.into_iter().collect::<Option<_>>()?;
             // In the order of the choice, so that two orders of writing are one case.
-            Some(Value::Words(
-                words
-                    .into_iter()
-                    .filter(|word| said.contains(word))
-                    .collect(),
-            ))
+            Some(Value::Words(words.into_iter().filter(|word| said.contains(word)).collect()))
         }
     }
 }
 
 /// The elements of an array.
-pub(super) fn array<'v, 't>(
-    path: &str,
-    of: &str,
-    value: &'v Written<'t>,
-    faults: &mut Faults<'_>,
-) -> Option<&'v toml::de::DeArray<'t>> {
+pub(super) fn array<'v, 't>(path: &str, of: &str, value: &'v Written<'t>, faults: &mut Faults<'_>) -> Option<&'v toml::de::DeArray<'t>> {
     match value.get_ref() {
         DeValue::Array(elements) => Some(elements),
         other => {
             let span = value.span();
             let help = format!("write [{}]", faults.written(&span));
-            wrong_type(
-                path,
-                &format!("an array of {of}"),
-                other,
-                &span,
-                help,
-                faults,
-            );
+            wrong_type(path, &format!("an array of {of}"), other, &span, help, faults);
             None
         }
     }
 }
 
 /// One of the words of a key.
-fn word(
-    key: &Key,
-    words: &[&'static str],
-    value: &Written<'_>,
-    faults: &mut Faults<'_>,
-) -> Option<&'static str> {
+fn word(key: &Key, words: &[&'static str], value: &Written<'_>, faults: &mut Faults<'_>) -> Option<&'static str> {
     let span = value.span();
     let can = available(key, words);
     let listed = if can.is_empty() {
         "allowed now: an empty array".to_owned()
     } else {
-        format!(
-            "allowed now: {}",
-            can.iter()
-                .map(|word| format!("\"{word}\""))
-                .collect::<Vec<_>>()
-                .join(", ")
-        )
+        format!("allowed now: {}", can.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", "))
     };
     let DeValue::String(found) = value.get_ref() else {
-        wrong_type(
-            key.path,
-            "a word in quotes",
-            value.get_ref(),
-            &span,
-            listed,
-            faults,
-        );
+        wrong_type(key.path, "a word in quotes", value.get_ref(), &span, listed, faults);
         return None;
     };
     let Some(known) = words.iter().find(|word| **word == found.as_ref()) else {
@@ -141,22 +80,11 @@ fn word(
             Some(near) => format!("did you mean \"{near}\"? {listed}"),
             None => listed,
         };
-        faults.add(
-            &span,
-            format!(
-                "`{}` does not know the word {}",
-                key.path,
-                faults.written(&span)
-            ),
-            help,
-        );
+        faults.add(&span, format!("`{}` does not know the word {}", key.path, faults.written(&span)), help);
         return None;
     };
     if let Some(reason) = unavailable(key, known) {
-        let message = format!(
-            "`{}` cannot be \"{known}\": {reason} is not available in this version",
-            key.path
-        );
+        let message = format!("`{}` cannot be \"{known}\": {reason} is not available in this version", key.path);
         faults.add(&span, message, listed);
         return None;
     }
@@ -175,11 +103,7 @@ pub(super) fn wrong_type(
     let message = match found {
         DeValue::Table(_) => format!("`{path}` must be {wanted}, not a table"),
         DeValue::Array(_) => format!("`{path}` must be {wanted}, not an array"),
-        other => format!(
-            "`{path}` must be {wanted}, not the {} {}",
-            other.type_str(),
-            faults.written(span)
-        ),
+        other => format!("`{path}` must be {wanted}, not the {} {}", other.type_str(), faults.written(span)),
     };
     faults.add(span, message, help);
 }

@@ -38,23 +38,11 @@ pub(super) enum Origin {
 type Entry<'a, 't> = (&'a str, Range<usize>, &'a Spanned<DeValue<'t>>);
 
 /// What the top of a spec takes.
-const TOP: [&str; 8] = [
-    "name",
-    "seed",
-    "realizations",
-    "surface",
-    "material",
-    "model",
-    "cycle",
-    "sweep",
-];
+const TOP: [&str; 8] = ["name", "seed", "realizations", "surface", "material", "model", "cycle", "sweep"];
 
 /// The entries of a table in the order written.
 pub(super) fn entries<'a, 't>(table: &'a DeTable<'t>) -> Vec<Entry<'a, 't>> {
-    let mut entries: Vec<Entry<'a, 't>> = table
-        .iter()
-        .map(|(key, value)| (key.get_ref().as_ref(), key.span(), value))
-        .collect();
+    let mut entries: Vec<Entry<'a, 't>> = table.iter().map(|(key, value)| (key.get_ref().as_ref(), key.span(), value)).collect();
     entries.sort_by_key(|(_, span, _)| span.start);
     entries
 }
@@ -70,11 +58,7 @@ pub(super) fn document(text: &str, faults: &mut Faults<'_>) -> Option<Draft> {
             // A parser that recovers stumbles over the rest of the same line.
             if !lines.contains(&line) {
                 lines.push(line);
-                faults.add(
-                    &span,
-                    format!("the spec is not valid TOML: {}", error.message()),
-                    None,
-                );
+                faults.add(&span, format!("the spec is not valid TOML: {}", error.message()), None);
             }
         }
         return None;
@@ -89,39 +73,21 @@ pub(super) fn document(text: &str, faults: &mut Faults<'_>) -> Option<Draft> {
     };
     let entries = entries(root.get_ref());
     if !entries.iter().any(|(key, ..)| *key == "name") {
-        let what = if entries.is_empty() {
-            "the spec is empty: it needs a `name`"
-        } else {
-            "the spec has no `name`"
-        };
-        faults.add(
-            &(0..0),
-            what.to_owned(),
-            "begin with a line such as name = \"first\"".to_owned(),
-        );
+        let what = if entries.is_empty() { "the spec is empty: it needs a `name`" } else { "the spec has no `name`" };
+        faults.add(&(0..0), what.to_owned(), "begin with a line such as name = \"first\"".to_owned());
     }
     for (key, span, written) in entries {
         match key {
             "name" => draft.name = top::name("name", written, faults),
             "seed" => draft.seed = top::seed(written, faults).unwrap_or(draft.seed),
             "realizations" => {
-                draft.realizations =
-                    top::realizations(written, faults).unwrap_or(draft.realizations);
+                draft.realizations = top::realizations(written, faults).unwrap_or(draft.realizations);
             }
             "sweep" => sweeps(written, &span, &mut draft.sweeps, faults),
             table if TABLES.contains(&table) => base(table, written, &span, &mut draft, faults),
             unknown => {
-                let help = lost(
-                    unknown,
-                    &TOP,
-                    |table| format!("`{unknown}` belongs in [{table}]"),
-                    "a spec takes",
-                );
-                faults.add(
-                    &span,
-                    format!("unknown key `{}` at the top of the spec", shown(unknown)),
-                    help,
-                );
+                let help = lost(unknown, &TOP, |table| format!("`{unknown}` belongs in [{table}]"), "a spec takes");
+                faults.add(&span, format!("unknown key `{}` at the top of the spec", shown(unknown)), help);
             }
         }
     }
@@ -129,22 +95,12 @@ pub(super) fn document(text: &str, faults: &mut Faults<'_>) -> Option<Draft> {
 }
 
 /// Reads a table of the base.
-fn base(
-    table: &str,
-    written: &Spanned<DeValue<'_>>,
-    span: &Range<usize>,
-    draft: &mut Draft,
-    faults: &mut Faults<'_>,
-) {
+fn base(table: &str, written: &Spanned<DeValue<'_>>, span: &Range<usize>, draft: &mut Draft, faults: &mut Faults<'_>) {
     for (place, _, written) in keys(table, written, span, faults) {
         let key = &KEYS[place];
         let read = if !key.kind.is_list() && written.get_ref().is_array() {
             let message = format!("`{}` has one value here, not an array", key.path);
-            faults.add(
-                &written.span(),
-                message,
-                "an array makes a grid, and only in a [[sweep]]".to_owned(),
-            );
+            faults.add(&written.span(), message, "an array makes a grid, and only in a [[sweep]]".to_owned());
             None
         } else {
             value::read(key, written, faults)
@@ -181,42 +137,22 @@ pub(super) fn keys<'a, 't>(
         } else if table == "surface" && MEASURED.contains(&name) {
             // `file`, `dataset` and `periodic` go together: one answer is enough.
             if !measured {
-                let message = format!(
-                    "`surface.{name}` describes a measured surface, which this version cannot run"
-                );
-                faults.add(
-                    &span,
-                    message,
-                    "give the parameters of a self-affine surface instead".to_owned(),
-                );
+                let message = format!("`surface.{name}` describes a measured surface, which this version cannot run");
+                faults.add(&span, message, "give the parameters of a self-affine surface instead".to_owned());
             }
             measured = true;
         } else {
             let own: Vec<_> = names(table).collect();
             let takes = format!("[{table}] takes");
-            let help = lost(
-                name,
-                &own,
-                |other| format!("`{name}` belongs in [{other}]"),
-                &takes,
-            );
-            faults.add(
-                &span,
-                format!("unknown key `{}` in [{table}]", shown(name)),
-                help,
-            );
+            let help = lost(name, &own, |other| format!("`{name}` belongs in [{other}]"), &takes);
+            faults.add(&span, format!("unknown key `{}` in [{table}]", shown(name)), help);
         }
     }
     known
 }
 
 /// Where an unknown key belongs, what it was meant to be, and what there is.
-pub(super) fn lost(
-    unknown: &str,
-    here: &[&str],
-    elsewhere: impl Fn(&str) -> String,
-    takes: &str,
-) -> String {
+pub(super) fn lost(unknown: &str, here: &[&str], elsewhere: impl Fn(&str) -> String, takes: &str) -> String {
     let listed = format!("{takes}: {}", here.join(", "));
     if let Some(table) = TABLES.iter().find(|table| find(table, unknown).is_some()) {
         return elsewhere(table);
@@ -229,14 +165,6 @@ pub(super) fn lost(
 
 /// A key as it can stand in a sentence: a quoted key may hold anything.
 pub(super) fn shown(key: &str) -> String {
-    let plain: String = key
-        .chars()
-        .map(|c| if c.is_control() { '\u{fffd}' } else { c })
-        .take(41)
-        .collect();
-    if plain.chars().count() > 40 {
-        plain.chars().take(39).chain(['…']).collect()
-    } else {
-        plain
-    }
+    let plain: String = key.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).take(41).collect();
+    if plain.chars().count() > 40 { plain.chars().take(39).chain(['…']).collect() } else { plain }
 }

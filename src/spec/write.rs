@@ -43,10 +43,7 @@ fn value(value: &Value) -> String {
         Value::Count(count) => count.to_string(),
         Value::Flag(flag) => flag.to_string(),
         Value::Word(word) => format!("\"{word}\""),
-        Value::Numbers(numbers) => format!(
-            "[{}]",
-            list(numbers.iter().map(|number| format!("{number:?}")))
-        ),
+        Value::Numbers(numbers) => format!("[{}]", list(numbers.iter().map(|number| format!("{number:?}")))),
         Value::Words(words) => {
             format!("[{}]", list(words.iter().map(|word| format!("\"{word}\""))))
         }

@@ -42,7 +42,9 @@ pub enum StageError {
         source: std::io::Error,
     },
     /// A stage lacks what an earlier one writes.
-    #[error("cannot {stage}: {missing} of {all} units of the stage before it are missing or damaged ({example}); run `hysteron run SPEC` or the stage before first")]
+    #[error(
+        "cannot {stage}: {missing} of {all} units of the stage before it are missing or damaged ({example}); run `hysteron run SPEC` or the stage before first"
+    )]
     Incomplete {
         /// The stage.
         stage: &'static str,

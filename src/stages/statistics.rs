@@ -23,11 +23,7 @@ pub(super) fn done(standings: &[Standing]) -> Vec<bool> {
 
 /// The moments that a surface's header tells.
 pub(super) fn moments(header: &SurfaceHeader) -> Moments {
-    Moments {
-        m0_m2: header.rms_height_m.powi(2),
-        m2: 0.5 * header.rms_slope.powi(2),
-        m4_1_m2: 0.375 * header.rms_curvature_1_m.powi(2),
-    }
+    Moments { m0_m2: header.rms_height_m.powi(2), m2: 0.5 * header.rms_slope.powi(2), m4_1_m2: 0.375 * header.rms_curvature_1_m.powi(2) }
 }
 
 pub(super) fn run(campaign: &Campaign, partial: bool, watch: &dyn Watch) -> Result<Tally, StageError> {

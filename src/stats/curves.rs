@@ -26,11 +26,7 @@ pub fn curves(cases: &[CaseInput], cycles: &[CycleInput]) -> Result<Frame, Stats
     for input in cycles {
         ordered.push((case_of(cases, input)?, input));
     }
-    ordered.sort_by(|a, b| {
-        a.0.case_id
-            .cmp(&b.0.case_id)
-            .then(a.1.realization.cmp(&b.1.realization))
-    });
+    ordered.sort_by(|a, b| a.0.case_id.cmp(&b.0.case_id).then(a.1.realization.cmp(&b.1.realization)));
     let mut rows = Rows::of(&CURVES);
     for of_case in ordered.chunk_by(|a, b| a.0.case_id == b.0.case_id) {
         push_case(&mut rows, of_case)?;
@@ -49,19 +45,12 @@ struct Bundle {
 
 fn push_case(rows: &mut Rows, of_case: &[(&CaseInput, &CycleInput)]) -> Result<(), StatsError> {
     let mut bundles: Vec<Bundle> = Vec::new();
-    let mut add = |max_load: Option<f64>, from: f64, walk: Walk| match bundles
-        .iter_mut()
-        .find(|bundle| bundle.max_load == max_load)
-    {
+    let mut add = |max_load: Option<f64>, from: f64, walk: Walk| match bundles.iter_mut().find(|bundle| bundle.max_load == max_load) {
         Some(bundle) => {
             bundle.from = bundle.from.max(from);
             bundle.walks.push(walk);
         }
-        None => bundles.push(Bundle {
-            max_load,
-            from,
-            walks: vec![walk],
-        }),
+        None => bundles.push(Bundle { max_load, from, walks: vec![walk] }),
     };
     for (_, input) in of_case {
         let cycle = Cycle::read(&input.steps)?;
@@ -69,25 +58,12 @@ fn push_case(rows: &mut Rows, of_case: &[(&CaseInput, &CycleInput)]) -> Result<(
         for (at, (max_load, unloading)) in cycle.unloading.iter().enumerate() {
             let row = cycle.turning_row(input, *max_load)?;
             if at + 1 == cycle.unloading.len() {
-                add(
-                    None,
-                    *max_load,
-                    exact(cycle.loading.backwards_from(row), *max_load),
-                );
+                add(None, *max_load, exact(cycle.loading.backwards_from(row), *max_load));
             }
-            add(
-                Some(*max_load),
-                *max_load,
-                exact(unloading.onwards_from(points.get(row).copied()), *max_load),
-            );
+            add(Some(*max_load), *max_load, exact(unloading.onwards_from(points.get(row).copied()), *max_load));
         }
     }
-    bundles.sort_by(|a, b| {
-        a.max_load
-            .is_some()
-            .cmp(&b.max_load.is_some())
-            .then(a.from.total_cmp(&b.from))
-    });
+    bundles.sort_by(|a, b| a.max_load.is_some().cmp(&b.max_load.is_some()).then(a.from.total_cmp(&b.from)));
     if let Some((case, _)) = of_case.first() {
         for bundle in &bundles {
             push_bundle(rows, &identity(case), bundle);
@@ -105,47 +81,24 @@ fn exact(mut walk: Walk, max_load: f64) -> Walk {
 }
 
 fn push_bundle(rows: &mut Rows, identity: &Given, bundle: &Bundle) {
-    let read: Vec<Vec<Option<Point>>> = bundle
-        .walks
-        .iter()
-        .map(|walk| walk.stations(bundle.from))
-        .collect();
-    let stations = if bundle
-        .walks
-        .iter()
-        .all(|walk| walk.greatest_tension() == 0.0)
-    {
-        COMPRESSION_STATIONS
-    } else {
-        STATIONS
-    };
+    let read: Vec<Vec<Option<Point>>> = bundle.walks.iter().map(|walk| walk.stations(bundle.from)).collect();
+    let stations = if bundle.walks.iter().all(|walk| walk.greatest_tension() == 0.0) { COMPRESSION_STATIONS } else { STATIONS };
     let loading = bundle.max_load.is_none();
     for index in 0..stations {
         // A loading branch is walked backwards, and its rows follow the path.
         let station = if loading { stations - 1 - index } else { index };
-        let points: Vec<Point> = read
-            .iter()
-            .filter_map(|walk| walk.get(station).copied().flatten())
-            .collect();
+        let points: Vec<Point> = read.iter().filter_map(|walk| walk.get(station).copied().flatten()).collect();
         let Some(first) = points.first() else {
             continue;
         };
-        let over =
-            |what: fn(&Point) -> f64| Sample::of(&points.iter().map(what).collect::<Vec<_>>());
+        let over = |what: fn(&Point) -> f64| Sample::of(&points.iter().map(what).collect::<Vec<_>>());
         let (area, penetration) = (over(|point| point.area), over(|point| point.penetration));
         // A mean of equal numbers need not be that number to the last bit.
         let common = points.iter().all(|point| point.load == first.load);
-        let load = if common {
-            Some(first.load)
-        } else {
-            over(|point| point.load).mean
-        };
+        let load = if common { Some(first.load) } else { over(|point| point.load).mean };
         let columns: [(&str, Value); 9] = [
             ("max_load", bundle.max_load.into()),
-            (
-                "branch",
-                if loading { "loading" } else { "unloading" }.into(),
-            ),
+            ("branch", if loading { "loading" } else { "unloading" }.into()),
             ("grid_index", index.into()),
             ("load", load.into()),
             ("area_mean", area.mean.into()),
@@ -154,10 +107,7 @@ fn push_bundle(rows: &mut Rows, identity: &Given, bundle: &Bundle) {
             ("penetration_sd", penetration.sd.into()),
             ("realization_count", points.len().into()),
         ];
-        let row: Given = columns
-            .into_iter()
-            .map(|(name, value)| (name.to_owned(), value))
-            .collect();
+        let row: Given = columns.into_iter().map(|(name, value)| (name.to_owned(), value)).collect();
         rows.push(&[identity, &row]);
     }
 }

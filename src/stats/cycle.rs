@@ -2,10 +2,7 @@
 
 use std::path::Path;
 
-use polars::prelude::{
-    Column, DataFrame, Expr, LazyFrame, PlRefPath, PolarsResult, ScanArgsParquet, Series,
-    SortMultipleOptions, col,
-};
+use polars::prelude::{Column, DataFrame, Expr, LazyFrame, PlRefPath, PolarsResult, ScanArgsParquet, Series, SortMultipleOptions, col};
 
 use super::walk::{Point, Walk};
 use super::{CycleInput, StatsError};
@@ -45,10 +42,7 @@ impl Cycle {
     /// Reads a table of steps.
     pub(super) fn read(path: &Path) -> Result<Self, StatsError> {
         let grouped = group(path).and_then(|frame| split(&frame));
-        let branches = grouped.map_err(|source| StatsError::Steps {
-            path: path.to_owned(),
-            source,
-        })?;
+        let branches = grouped.map_err(|source| StatsError::Steps { path: path.to_owned(), source })?;
         let mut loading = None;
         let mut unloading = Vec::new();
         for (word, max_load, branch) in branches {
@@ -58,9 +52,7 @@ impl Cycle {
                 _ => {
                     return Err(fault(
                         path,
-                        format!(
-                            "hold a branch {word:?} with max_load {max_load:?}; loading has none, unloading has one"
-                        ),
+                        format!("hold a branch {word:?} with max_load {max_load:?}; loading has none, unloading has one"),
                     ));
                 }
             }
@@ -71,54 +63,30 @@ impl Cycle {
     }
 
     /// The position in the loading branch of the step at which it turned.
-    pub(super) fn turning_row(
-        &self,
-        input: &CycleInput,
-        max_load: f64,
-    ) -> Result<usize, StatsError> {
+    pub(super) fn turning_row(&self, input: &CycleInput, max_load: f64) -> Result<usize, StatsError> {
         let near = |load: f64| (load - max_load).abs() <= TURNING_TOLERANCE * max_load.abs();
         let stated = input.turning_steps.iter().find(|(load, _)| near(*load));
         let row = match stated {
             Some((_, step)) => self.loading.step.iter().position(|known| known == step),
             None => {
                 let distance = |load: &f64| (load - max_load).abs();
-                let nearest = self
-                    .loading
-                    .load
-                    .iter()
-                    .enumerate()
-                    .min_by(|a, b| distance(a.1).total_cmp(&distance(b.1)));
+                let nearest = self.loading.load.iter().enumerate().min_by(|a, b| distance(a.1).total_cmp(&distance(b.1)));
                 nearest.filter(|(_, load)| near(**load)).map(|(row, _)| row)
             }
         };
-        row.ok_or_else(|| {
-            fault(
-                &input.steps,
-                format!("have no loading step at the turning point {max_load}"),
-            )
-        })
+        row.ok_or_else(|| fault(&input.steps, format!("have no loading step at the turning point {max_load}")))
     }
 }
 
 pub(super) fn fault(path: &Path, problem: String) -> StatsError {
-    StatsError::Cycle {
-        path: path.to_owned(),
-        problem,
-    }
+    StatsError::Cycle { path: path.to_owned(), problem }
 }
 
 impl Branch {
     /// The branch as a walk away from its turning point; a loading branch, cut off at its turning row, is walked backwards.
     pub(super) fn points(&self) -> impl DoubleEndedIterator<Item = Point> {
         let rest = self.area.iter().zip(&self.penetration);
-        self.load
-            .iter()
-            .zip(rest)
-            .map(|(load, (area, penetration))| Point {
-                load: *load,
-                area: *area,
-                penetration: *penetration,
-            })
+        self.load.iter().zip(rest).map(|(load, (area, penetration))| Point { load: *load, area: *area, penetration: *penetration })
     }
 
     /// The branch walked from its turning row backwards.
@@ -156,16 +124,10 @@ fn group(path: &Path) -> PolarsResult<DataFrame> {
     let keys = [col("branch"), col("max_load")];
     let lists: Vec<Expr> = COLUMNS.iter().map(|name| col(*name)).collect();
     // A run's directory may have any name: no pattern and no partition is to be read from it.
-    let arguments = ScanArgsParquet {
-        glob: false,
-        ..ScanArgsParquet::default()
-    };
+    let arguments = ScanArgsParquet { glob: false, ..ScanArgsParquet::default() };
     LazyFrame::scan_parquet(PlRefPath::try_from_path(path)?, arguments)?
         .select([keys.as_slice(), lists.as_slice()].concat())
-        .sort(
-            ["step"],
-            SortMultipleOptions::default().with_maintain_order(true),
-        )
+        .sort(["step"], SortMultipleOptions::default().with_maintain_order(true))
         .group_by_stable(keys)
         .agg(lists)
         .collect()
@@ -180,35 +142,15 @@ fn split(frame: &DataFrame) -> PolarsResult<Split> {
         .iter()
         .zip(loads.iter())
         .enumerate()
-        .map(|(row, (word, load))| {
-            Ok((
-                word.unwrap_or_default().to_owned(),
-                load,
-                branch(frame, row)?,
-            ))
-        })
+        .map(|(row, (word, load))| Ok((word.unwrap_or_default().to_owned(), load, branch(frame, row)?)))
         .collect()
 }
 
 fn branch(frame: &DataFrame, row: usize) -> PolarsResult<Branch> {
-    let list = |name: &str| -> PolarsResult<Series> {
-        Ok(cell(frame.column(name)?, row)?.unwrap_or_default())
-    };
+    let list = |name: &str| -> PolarsResult<Series> { Ok(cell(frame.column(name)?, row)?.unwrap_or_default()) };
     // These columns are never null in the schema; a null in a damaged file becomes NaN, which the table of results refuses.
-    let reals = |name: &str| -> PolarsResult<Vec<f64>> {
-        Ok(list(name)?
-            .f64()?
-            .iter()
-            .map(|value| value.unwrap_or(f64::NAN))
-            .collect())
-    };
-    let wholes = |name: &str| -> PolarsResult<Vec<i64>> {
-        Ok(list(name)?
-            .i64()?
-            .iter()
-            .map(Option::unwrap_or_default)
-            .collect())
-    };
+    let reals = |name: &str| -> PolarsResult<Vec<f64>> { Ok(list(name)?.f64()?.iter().map(|value| value.unwrap_or(f64::NAN)).collect()) };
+    let wholes = |name: &str| -> PolarsResult<Vec<i64>> { Ok(list(name)?.i64()?.iter().map(Option::unwrap_or_default).collect()) };
     Ok(Branch {
         step: wholes("step")?,
         load: reals("load")?,
@@ -224,11 +166,7 @@ fn branch(frame: &DataFrame, row: usize) -> PolarsResult<Branch> {
         covered_count: wholes("covered_count")?,
         touching_count: wholes("touching_count")?,
         held_count: wholes("held_count")?,
-        converged: list("converged")?
-            .bool()?
-            .iter()
-            .map(Option::unwrap_or_default)
-            .collect(),
+        converged: list("converged")?.bool()?.iter().map(Option::unwrap_or_default).collect(),
     })
 }
 

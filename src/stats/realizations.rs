@@ -19,21 +19,8 @@ pub fn realizations(cases: &[CaseInput], cycles: &[CycleInput]) -> Result<Frame,
         let case = case_of(cases, input)?;
         let cycle = Cycle::read(&input.steps)?;
         for (max_load, unloading) in &cycle.unloading {
-            let results = reduce(
-                &cycle.loading,
-                cycle.turning_row(input, *max_load)?,
-                unloading,
-                *max_load,
-                input,
-            )?;
-            ordered.push((
-                &case.case_id,
-                *max_load,
-                input.realization,
-                results,
-                case,
-                input,
-            ));
+            let results = reduce(&cycle.loading, cycle.turning_row(input, *max_load)?, unloading, *max_load, input)?;
+            ordered.push((&case.case_id, *max_load, input.realization, results, case, input));
         }
     }
     ordered.sort_by(|a, b| a.0.cmp(b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
@@ -45,47 +32,19 @@ pub fn realizations(cases: &[CaseInput], cycles: &[CycleInput]) -> Result<Frame,
 }
 
 /// The case that a cycle names.
-pub(super) fn case_of<'a>(
-    cases: &'a [CaseInput],
-    input: &CycleInput,
-) -> Result<&'a CaseInput, StatsError> {
-    let unknown = || StatsError::UnknownCase {
-        case_id: input.case_id.clone(),
-        realization: input.realization,
-    };
-    cases
-        .iter()
-        .find(|case| case.case_id == input.case_id)
-        .ok_or_else(unknown)
+pub(super) fn case_of<'a>(cases: &'a [CaseInput], input: &CycleInput) -> Result<&'a CaseInput, StatsError> {
+    let unknown = || StatsError::UnknownCase { case_id: input.case_id.clone(), realization: input.realization };
+    cases.iter().find(|case| case.case_id == input.case_id).ok_or_else(unknown)
 }
 
 /// The columns that name a case.
 pub(super) fn identity(case: &CaseInput) -> Given {
-    vec![
-        ("case_id".to_owned(), case.case_id.as_str().into()),
-        ("sweep".to_owned(), case.sweep.as_str().into()),
-    ]
+    vec![("case_id".to_owned(), case.case_id.as_str().into()), ("sweep".to_owned(), case.sweep.as_str().into())]
 }
 
-fn reduce(
-    loading: &Branch,
-    turning: usize,
-    unloading: &Branch,
-    max_load: f64,
-    input: &CycleInput,
-) -> Result<Given, StatsError> {
-    let lacking = |what: &str| {
-        fault(
-            &input.steps,
-            format!("lack {what} at the turning point {max_load}"),
-        )
-    };
-    let at = |values: &[f64]| {
-        values
-            .get(turning)
-            .copied()
-            .ok_or_else(|| lacking("a number"))
-    };
+fn reduce(loading: &Branch, turning: usize, unloading: &Branch, max_load: f64, input: &CycleInput) -> Result<Given, StatsError> {
+    let lacking = |what: &str| fault(&input.steps, format!("lack {what} at the turning point {max_load}"));
+    let at = |values: &[f64]| values.get(turning).copied().ok_or_else(|| lacking("a number"));
     let count_at = |values: &[i64]| values.get(turning).copied().unwrap_or_default();
     let Some(work_back) = unloading.work_j.last() else {
         return Err(lacking("an unloading branch"));
@@ -97,21 +56,9 @@ fn reduce(
     let union = loading.area_union_m2.get(turning).copied().flatten();
     let dk = |slope: Option<f64>| slope.map(|slope| slope * area / input.energy_scale_j);
     let loss_dk = dk(input.loss_dk_per_area_j);
-    let dissipated_j: f64 = loading
-        .dissipated_j
-        .iter()
-        .take(turning + 1)
-        .chain(&unloading.dissipated_j)
-        .sum();
-    let converged = loading
-        .converged
-        .iter()
-        .take(turning + 1)
-        .chain(&unloading.converged);
-    let (contacts, covered) = (
-        count_at(&loading.contact_count),
-        count_at(&loading.covered_count),
-    );
+    let dissipated_j: f64 = loading.dissipated_j.iter().take(turning + 1).chain(&unloading.dissipated_j).sum();
+    let converged = loading.converged.iter().take(turning + 1).chain(&unloading.converged);
+    let (contacts, covered) = (count_at(&loading.contact_count), count_at(&loading.covered_count));
     let tension = |loads: &[f64]| -loads.iter().copied().fold(0.0, f64::min);
     // `0 − 0` keeps a minus sign that no reader of the table wants.
     let pull_off = |loads: &[f64]| tension(loads) + 0.0;
@@ -120,58 +67,26 @@ fn reduce(
     let columns: [(&str, Value); 20] = [
         ("realization", input.realization.into()),
         ("max_load", max_load.into()),
-        ("pull_off_load", pull_off(&unloading.load).into()),
-        ("pull_off_load_n", pull_off(&unloading.load_n).into()),
+        // The turning step has the unit of load, as the quotient of its two columns.
+        ("pull_off_load", (pull_off(&unloading.least_load_n) * at(&loading.load)? / at(&loading.load_n)?).into()),
+        ("pull_off_load_n", pull_off(&unloading.least_load_n).into()),
         ("area_at_max_load", area.into()),
         // The sum and the union of the discs are both in m²; A0 need not be known to scale the one like the other.
-        (
-            "area_union_at_max_load",
-            union
-                .map(|union| {
-                    if discs > 0.0 {
-                        union * area / discs
-                    } else {
-                        0.0
-                    }
-                })
-                .into(),
-        ),
+        ("area_union_at_max_load", union.map(|union| if discs > 0.0 { union * area / discs } else { 0.0 }).into()),
         ("penetration_at_max_load", at(&loading.penetration)?.into()),
         ("loss", loss.into()),
         ("loss_j", loss_j.into()),
         ("loss_dk", loss_dk.into()),
-        (
-            "loss_dk_realised",
-            dk(input.loss_dk_realised_per_area_j).into(),
-        ),
-        (
-            "loss_ratio_dk",
-            loss_dk.filter(|dk| *dk != 0.0).map(|dk| loss / dk).into(),
-        ),
+        ("loss_dk_realised", dk(input.loss_dk_realised_per_area_j).into()),
+        ("loss_ratio_dk", loss_dk.filter(|dk| *dk != 0.0).map(|dk| loss / dk).into()),
         ("dissipated_j", dissipated_j.into()),
-        (
-            "audit_gap",
-            (loss_j != 0.0)
-                .then(|| (loss_j - dissipated_j).abs() / loss_j.abs())
-                .into(),
-        ),
+        ("audit_gap", (loss_j != 0.0).then(|| (loss_j - dissipated_j).abs() / loss_j.abs()).into()),
         ("contact_count_at_max_load", contacts.into()),
         ("step_count", (turning + 1 + unloading.step.len()).into()),
-        (
-            "unconverged_count",
-            converged.filter(|converged| !**converged).count().into(),
-        ),
+        ("unconverged_count", converged.filter(|converged| !**converged).count().into()),
         ("held_count", held.into()),
         ("touching_share", (contacts > 0).then(|| touching as f64 / contacts as f64).into()),
-        (
-            "covered_share",
-            (contacts + covered > 0)
-                .then(|| covered as f64 / (contacts + covered) as f64)
-                .into(),
-        ),
+        ("covered_share", (contacts + covered > 0).then(|| covered as f64 / (contacts + covered) as f64).into()),
     ];
-    Ok(columns
-        .into_iter()
-        .map(|(name, value)| (name.to_owned(), value))
-        .collect())
+    Ok(columns.into_iter().map(|(name, value)| (name.to_owned(), value)).collect())
 }

@@ -20,32 +20,17 @@ impl Sample {
     pub fn of(values: &[f64]) -> Self {
         let count = values.len();
         if count == 0 {
-            return Self {
-                count,
-                mean: None,
-                sd: None,
-                ci95: None,
-            };
+            return Self { count, mean: None, sd: None, ci95: None };
         }
         let n = count as f64;
         let mean = values.iter().sum::<f64>() / n;
         if count < 2 {
-            return Self {
-                count,
-                mean: Some(mean),
-                sd: None,
-                ci95: None,
-            };
+            return Self { count, mean: Some(mean), sd: None, ci95: None };
         }
         let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
         let sd = (squares / (n - 1.0)).sqrt();
         let ci95 = t_quantile(0.975, count - 1).map(|t| t * sd / n.sqrt());
-        Self {
-            count,
-            mean: Some(mean),
-            sd: Some(sd),
-            ci95,
-        }
+        Self { count, mean: Some(mean), sd: Some(sd), ci95 }
     }
 }
 
@@ -82,16 +67,8 @@ fn central_probability(theta: f64, degrees_of_freedom: usize) -> f64 {
     let mut sum = 0.0;
     for k in 1..=terms {
         sum += term;
-        let (above, below) = if odd {
-            (2 * k, 2 * k + 1)
-        } else {
-            (2 * k - 1, 2 * k)
-        };
+        let (above, below) = if odd { (2 * k, 2 * k + 1) } else { (2 * k - 1, 2 * k) };
         term *= cos * cos * above as f64 / below as f64;
     }
-    if odd {
-        (theta + sin * sum) / FRAC_PI_2
-    } else {
-        sin * sum
-    }
+    if odd { (theta + sin * sum) / FRAC_PI_2 } else { sin * sum }
 }

@@ -23,34 +23,19 @@ pub fn summary(cases: &Frame) -> Result<String, StatsError> {
     names.dedup();
     let mut lines = vec![HEADER.to_owned()];
     for name in names {
-        let mut rows: Vec<usize> = (0..sweeps.len())
-            .filter(|row| sweeps.get(*row) == Some(&name))
-            .collect();
+        let mut rows: Vec<usize> = (0..sweeps.len()).filter(|row| sweeps.get(*row) == Some(&name)).collect();
         let differing = varying(cases, &rows)?;
         let places: Vec<usize> = {
             let mut places: Vec<usize> = (0..rows.len()).collect();
-            let load = |place: &usize| {
-                rows.get(*place)
-                    .and_then(|row| max_loads.get(*row))
-                    .copied()
-                    .unwrap_or_default()
-            };
+            let load = |place: &usize| rows.get(*place).and_then(|row| max_loads.get(*row)).copied().unwrap_or_default();
             places.sort_by(|a, b| order(&differing, *a, *b).then(load(a).total_cmp(&load(b))));
             places
         };
-        let labels: Vec<String> = places
-            .iter()
-            .map(|place| label(cases, &differing, &rows, *place))
-            .collect::<Result<_, _>>()?;
-        rows = places
-            .iter()
-            .filter_map(|place| rows.get(*place).copied())
-            .collect();
+        let labels: Vec<String> = places.iter().map(|place| label(cases, &differing, &rows, *place)).collect::<Result<_, _>>()?;
+        rows = places.iter().filter_map(|place| rows.get(*place).copied()).collect();
         lines.push(String::new());
         let title = if name.is_empty() { "case" } else { name };
-        lines.push(line(
-            [title, "F_max", "n", "A", "F_po", "Θ", "Θ/Θ_DK"].map(str::to_owned),
-        ));
+        lines.push(line([title, "F_max", "n", "A", "F_po", "Θ", "Θ/Θ_DK"].map(str::to_owned)));
         for (row, label) in rows.into_iter().zip(labels) {
             lines.extend(case_lines(cases, row, label)?);
         }
@@ -71,18 +56,10 @@ fn order(differing: &[Varying], a: usize, b: usize) -> std::cmp::Ordering {
 }
 
 /// What tells the case from the others of its sweep; its identity, shortened, if nothing does.
-fn label(
-    cases: &Frame,
-    differing: &[Varying],
-    rows: &[usize],
-    place: usize,
-) -> Result<String, StatsError> {
+fn label(cases: &Frame, differing: &[Varying], rows: &[usize], place: usize) -> Result<String, StatsError> {
     if differing.is_empty() {
         let ids = cases.text("case_id")?;
-        return Ok(rows
-            .get(place)
-            .and_then(|row| ids.get(*row))
-            .map_or_else(String::new, |id| id.chars().take(12).collect()));
+        return Ok(rows.get(place).and_then(|row| ids.get(*row)).map_or_else(String::new, |id| id.chars().take(12).collect()));
     }
     let shown = |parameter: &Varying| match parameter.values {
         Values::Numbers(_) => format!("{}={}", parameter.symbol, parameter.text(place)),
@@ -92,38 +69,20 @@ fn label(
 }
 
 fn case_lines(cases: &Frame, row: usize, label: String) -> Result<Vec<String>, StatsError> {
-    let value = |name: &str| -> Result<Option<f64>, StatsError> {
-        Ok(cases.f64_or_null(name)?.get(row).copied().flatten())
-    };
+    let value = |name: &str| -> Result<Option<f64>, StatsError> { Ok(cases.f64_or_null(name)?.get(row).copied().flatten()) };
     let pair = |name: &str, unit: f64| -> Result<String, StatsError> {
-        let (mean, sd) = (
-            value(&format!("{name}_mean"))?,
-            value(&format!("{name}_sd"))?,
-        );
-        Ok(mean_and_sd(
-            mean.map(|mean| mean / unit),
-            sd.map(|sd| sd / unit),
-        ))
+        let (mean, sd) = (value(&format!("{name}_mean"))?, value(&format!("{name}_sd"))?);
+        Ok(mean_and_sd(mean.map(|mean| mean / unit), sd.map(|sd| sd / unit)))
     };
-    let count = |name: &str| -> Result<i64, StatsError> {
-        Ok(cases.i64(name)?.get(row).copied().unwrap_or_default())
-    };
+    let count = |name: &str| -> Result<i64, StatsError> { Ok(cases.i64(name)?.get(row).copied().unwrap_or_default()) };
     let load = value("max_load")?.map_or_else(String::new, |load| plain(load * 1e3));
     let counts = format!("{}/{}", count("done_count")?, count("planned_count")?);
-    let results = [
-        pair("area_at_max_load", 1.0)?,
-        pair("pull_off_load", 1e-3)?,
-        pair("loss", 1e-3)?,
-        pair("loss_ratio_dk", 1.0)?,
-    ];
+    let results = [pair("area_at_max_load", 1.0)?, pair("pull_off_load", 1e-3)?, pair("loss", 1e-3)?, pair("loss_ratio_dk", 1.0)?];
     let [area, pull_off, loss, ratio] = results;
     let mut lines = vec![line([label, load, counts, area, pull_off, loss, ratio])];
     let caution = cases.text("caution")?.get(row).copied().unwrap_or_default();
     if !caution.is_empty() {
-        lines.push(cut(
-            &format!("  caution: {}", caution.replace('+', ", ")),
-            80,
-        ));
+        lines.push(cut(&format!("  caution: {}", caution.replace('+', ", ")), 80));
     }
     Ok(lines)
 }
@@ -166,12 +125,5 @@ fn line(cells: [String; 7]) -> String {
 }
 
 fn cut(text: &str, width: usize) -> String {
-    if text.chars().count() <= width {
-        text.to_owned()
-    } else {
-        text.chars()
-            .take(width.saturating_sub(1))
-            .chain(['…'])
-            .collect()
-    }
+    if text.chars().count() <= width { text.to_owned() } else { text.chars().take(width.saturating_sub(1)).chain(['…']).collect() }
 }

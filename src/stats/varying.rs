@@ -9,11 +9,7 @@ const PARAMETERS: [(&str, &str, &str); 16] = [
     ("hurst", "H", "Hurst exponent H"),
     ("rms_height_m", "h", "h_{rms} [m]"),
     ("length_m", "L", "L [m]"),
-    (
-        "points_per_shortest_wavelength",
-        "n",
-        "points per shortest wavelength",
-    ),
+    ("points_per_shortest_wavelength", "n", "points per shortest wavelength"),
     ("contact_modulus_pa", "E*", "E^{*} [Pa]"),
     ("work_of_adhesion_j_m2", "Δγ", "Δγ [J/m^{2}]"),
     ("interaction_range_m", "ε", "ε [m]"),
@@ -53,19 +49,11 @@ impl Varying {
     /// The value of a row as text: `64`, `0.45`, `spots`, or `?` where it is missing.
     pub fn text(&self, row: usize) -> String {
         match &self.values {
-            Values::Numbers(numbers) => numbers
-                .get(row)
-                .copied()
-                .flatten()
-                .map_or_else(|| "?".to_owned(), |number| format!("{number}")),
+            Values::Numbers(numbers) => numbers.get(row).copied().flatten().map_or_else(|| "?".to_owned(), |number| format!("{number}")),
             Values::Words(words) => words.get(row).map_or_else(
                 || "?".to_owned(),
                 |word| {
-                    if word.is_empty() {
-                        "none".to_owned()
-                    } else {
-                        word.clone()
-                    }
+                    if word.is_empty() { "none".to_owned() } else { word.clone() }
                 },
             ),
         }
@@ -81,33 +69,16 @@ pub fn varying(cases: &Frame, rows: &[usize]) -> Result<Vec<Varying>, StatsError
     for (name, symbol, label) in PARAMETERS {
         let values = match cases.column(name)? {
             ColumnData::F64(all) => {
-                let picked: Vec<Option<f64>> = rows
-                    .iter()
-                    .map(|row| all.get(*row).copied().flatten())
-                    .collect();
-                picked
-                    .windows(2)
-                    .any(|pair| pair.first() != pair.last())
-                    .then_some(Values::Numbers(picked))
+                let picked: Vec<Option<f64>> = rows.iter().map(|row| all.get(*row).copied().flatten()).collect();
+                picked.windows(2).any(|pair| pair.first() != pair.last()).then_some(Values::Numbers(picked))
             }
             ColumnData::Text(all) => {
-                let picked: Vec<String> = rows
-                    .iter()
-                    .map(|row| all.get(*row).cloned().flatten().unwrap_or_default())
-                    .collect();
-                picked
-                    .windows(2)
-                    .any(|pair| pair.first() != pair.last())
-                    .then_some(Values::Words(picked))
+                let picked: Vec<String> = rows.iter().map(|row| all.get(*row).cloned().flatten().unwrap_or_default()).collect();
+                picked.windows(2).any(|pair| pair.first() != pair.last()).then_some(Values::Words(picked))
             }
             ColumnData::I64(_) | ColumnData::Bool(_) => None,
         };
-        found.extend(values.map(|values| Varying {
-            name,
-            symbol,
-            label,
-            values,
-        }));
+        found.extend(values.map(|values| Varying { name, symbol, label, values }));
     }
     Ok(found)
 }

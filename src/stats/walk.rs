@@ -42,18 +42,12 @@ impl Walk {
         // Every earlier point is above `load` and this one is not, so the difference is never zero.
         let share = (before.load - load) / (before.load - after.load);
         let between = |from: f64, to: f64| from + share * (to - from);
-        Some(Point {
-            load,
-            area: between(before.area, after.area),
-            penetration: between(before.penetration, after.penetration),
-        })
+        Some(Point { load, area: between(before.area, after.area), penetration: between(before.penetration, after.penetration) })
     }
 
     /// The lowest load of the walk if it is a tension, and zero otherwise.
     pub fn greatest_tension(&self) -> f64 {
-        self.0
-            .iter()
-            .fold(0.0, |least, point| point.load.min(least))
+        self.0.iter().fold(0.0, |least, point| point.load.min(least))
     }
 
     /// The walk at every station: loads spaced evenly from `max_load` to zero, the same for every realization, and then evenly from zero
@@ -65,13 +59,11 @@ impl Walk {
         let tension = self.greatest_tension();
         let steps = (COMPRESSION_STATIONS - 1) as f64;
         (0..STATIONS)
-            .map(
-                |index| match (index + 1).checked_sub(COMPRESSION_STATIONS) {
-                    // The share is rounded first, so that it is exactly one at the turning point and never more.
-                    None | Some(0) => self.at(max_load * ((steps - index as f64) / steps)),
-                    Some(below) => self.at(tension * (below as f64 / TENSION_STATIONS as f64)),
-                },
-            )
+            .map(|index| match (index + 1).checked_sub(COMPRESSION_STATIONS) {
+                // The share is rounded first, so that it is exactly one at the turning point and never more.
+                None | Some(0) => self.at(max_load * ((steps - index as f64) / steps)),
+                Some(below) => self.at(tension * (below as f64 / TENSION_STATIONS as f64)),
+            })
             .collect()
     }
 }

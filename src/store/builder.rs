@@ -15,37 +15,19 @@ pub struct FrameBuilder {
 
 impl FrameBuilder {
     pub(super) fn new(table: &'static Table) -> Self {
-        Self {
-            table,
-            columns: vec![None; table.columns.len()],
-            error: None,
-        }
+        Self { table, columns: vec![None; table.columns.len()], error: None }
     }
 
     /// Gives a column of real numbers: `f64`, or `Option<f64>` where values may be missing.
     #[must_use]
-    pub fn f64<T: Into<Option<f64>>>(
-        self,
-        name: &str,
-        values: impl IntoIterator<Item = T>,
-    ) -> Self {
-        self.with(
-            name,
-            ColumnData::F64(values.into_iter().map(Into::into).collect()),
-        )
+    pub fn f64<T: Into<Option<f64>>>(self, name: &str, values: impl IntoIterator<Item = T>) -> Self {
+        self.with(name, ColumnData::F64(values.into_iter().map(Into::into).collect()))
     }
 
     /// Gives a column of whole numbers: `i64`, or `Option<i64>` where values may be missing.
     #[must_use]
-    pub fn i64<T: Into<Option<i64>>>(
-        self,
-        name: &str,
-        values: impl IntoIterator<Item = T>,
-    ) -> Self {
-        self.with(
-            name,
-            ColumnData::I64(values.into_iter().map(Into::into).collect()),
-        )
+    pub fn i64<T: Into<Option<i64>>>(self, name: &str, values: impl IntoIterator<Item = T>) -> Self {
+        self.with(name, ColumnData::I64(values.into_iter().map(Into::into).collect()))
     }
 
     /// Gives a column of counts or positions. One that no signed integer can hold becomes missing, and is refused where it may not be.
@@ -57,15 +39,8 @@ impl FrameBuilder {
 
     /// Gives a column of truth values: `bool`, or `Option<bool>` where values may be missing.
     #[must_use]
-    pub fn bool<T: Into<Option<bool>>>(
-        self,
-        name: &str,
-        values: impl IntoIterator<Item = T>,
-    ) -> Self {
-        self.with(
-            name,
-            ColumnData::Bool(values.into_iter().map(Into::into).collect()),
-        )
+    pub fn bool<T: Into<Option<bool>>>(self, name: &str, values: impl IntoIterator<Item = T>) -> Self {
+        self.with(name, ColumnData::Bool(values.into_iter().map(Into::into).collect()))
     }
 
     /// Gives a column of words, none missing.
@@ -76,11 +51,7 @@ impl FrameBuilder {
 
     /// Gives a column of words, some of which may be missing.
     #[must_use]
-    pub fn text_or_null<T: Into<String>>(
-        self,
-        name: &str,
-        values: impl IntoIterator<Item = Option<T>>,
-    ) -> Self {
+    pub fn text_or_null<T: Into<String>>(self, name: &str, values: impl IntoIterator<Item = Option<T>>) -> Self {
         let values = values.into_iter().map(|value| value.map(Into::into));
         self.with(name, ColumnData::Text(values.collect()))
     }
@@ -109,9 +80,7 @@ impl FrameBuilder {
             )));
         }
         if let (false, Some(row)) = (column.nullable, data.first_missing()) {
-            return Err(self.fault(format!(
-                "lacks a value in the column {name:?}, row {row}: this column must be complete"
-            )));
+            return Err(self.fault(format!("lacks a value in the column {name:?}, row {row}: this column must be complete")));
         }
         self.columns[at] = Some(data);
         Ok(())
@@ -131,10 +100,7 @@ impl FrameBuilder {
             return Err(error);
         }
         let names = || self.table.columns.iter().map(|column| column.name);
-        let absent: Vec<&str> = names()
-            .zip(&self.columns)
-            .filter_map(|(name, data)| data.is_none().then_some(name))
-            .collect();
+        let absent: Vec<&str> = names().zip(&self.columns).filter_map(|(name, data)| data.is_none().then_some(name)).collect();
         if !absent.is_empty() {
             return Err(self.fault(format!("was not given: {}", absent.join(", "))));
         }
@@ -148,37 +114,19 @@ impl FrameBuilder {
                 self.table.columns[0].name
             )));
         }
-        Ok(Frame {
-            table: self.table,
-            rows,
-            columns,
-        })
+        Ok(Frame { table: self.table, rows, columns })
     }
 }
 
 /// The error of a column that holds one kind where another was wanted.
 pub(super) fn wrong_kind(table: &'static Table, name: &str, is: Kind, wanted: Kind) -> FrameError {
-    FrameError::new(
-        table.name,
-        format!(
-            "holds {} in the column {name:?}, not {}",
-            is.word(),
-            wanted.word()
-        ),
-    )
+    FrameError::new(table.name, format!("holds {} in the column {name:?}, not {}", is.word(), wanted.word()))
 }
 
 /// Where in the table the column of this name stands.
 pub(super) fn position(table: &'static Table, name: &str) -> Result<usize, FrameError> {
-    table
-        .columns
-        .iter()
-        .position(|column| column.name == name)
-        .ok_or_else(|| {
-            let allowed: Vec<_> = table.columns.iter().map(|column| column.name).collect();
-            FrameError::new(
-                table.name,
-                format!("has no column {name:?}; allowed: {}", allowed.join(", ")),
-            )
-        })
+    table.columns.iter().position(|column| column.name == name).ok_or_else(|| {
+        let allowed: Vec<_> = table.columns.iter().map(|column| column.name).collect();
+        FrameError::new(table.name, format!("has no column {name:?}; allowed: {}", allowed.join(", ")))
+    })
 }

@@ -18,9 +18,7 @@ pub const TEMPORARY_SUFFIX: &str = ".tmp";
 /// Whether this is the name of a file that is being written, or was when the program was killed.
 #[must_use]
 pub fn is_temporary(path: &Path) -> bool {
-    path.file_name()
-        .and_then(OsStr::to_str)
-        .is_some_and(|name| name.starts_with(TEMPORARY_PREFIX) && name.ends_with(TEMPORARY_SUFFIX))
+    path.file_name().and_then(OsStr::to_str).is_some_and(|name| name.starts_with(TEMPORARY_PREFIX) && name.ends_with(TEMPORARY_SUFFIX))
 }
 
 /// Writes a file with `write`, checks with `check` what can be read back, and puts it in place of `path`.
@@ -50,11 +48,7 @@ pub fn commit_bytes(action: &str, path: &Path, bytes: &[u8]) -> Result<(), Store
         path,
         |temporary| Ok(fs::write(temporary, bytes)?),
         |temporary| {
-            if fs::read(temporary)? == bytes {
-                Ok(())
-            } else {
-                Err("what was read back is not what was written".into())
-            }
+            if fs::read(temporary)? == bytes { Ok(()) } else { Err("what was read back is not what was written".into()) }
         },
     )
 }
@@ -70,11 +64,7 @@ fn commit_inner(
         None => return Err("it is not the path of a file".into()),
     };
     if !directory.is_dir() {
-        let state = if directory.exists() {
-            "is not a directory"
-        } else {
-            "does not exist"
-        };
+        let state = if directory.exists() { "is not a directory" } else { "does not exist" };
         return Err(format!("{} {state}", directory.display()).into());
     }
     if path.is_dir() {

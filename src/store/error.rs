@@ -22,11 +22,7 @@ pub struct StoreError {
 
 impl StoreError {
     pub(super) fn new(action: &str, path: &Path, source: impl Into<Cause>) -> Self {
-        Self {
-            action: action.to_owned(),
-            path: path.to_owned(),
-            source: source.into(),
-        }
+        Self { action: action.to_owned(), path: path.to_owned(), source: source.into() }
     }
 }
 
@@ -42,10 +38,7 @@ pub struct FrameError {
 
 impl FrameError {
     pub(super) fn new(table: &'static str, problem: impl Into<String>) -> Self {
-        Self {
-            table,
-            problem: problem.into(),
-        }
+        Self { table, problem: problem.into() }
     }
 }
 
@@ -54,18 +47,10 @@ impl FrameError {
 /// The libraries promise errors, and mostly keep it; a table that someone else damaged must not end the program.
 pub(super) fn fenced<T>(work: impl FnOnce() -> Result<T, Cause>) -> Result<T, Cause> {
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| {
-        Err(format!(
-            "the file is damaged in a way that its library does not foresee ({})",
-            panic_text(panic.as_ref())
-        )
-        .into())
+        Err(format!("the file is damaged in a way that its library does not foresee ({})", panic_text(panic.as_ref())).into())
     })
 }
 
 fn panic_text(panic: &(dyn Any + Send)) -> &str {
-    panic
-        .downcast_ref::<&str>()
-        .copied()
-        .or_else(|| panic.downcast_ref::<String>().map(String::as_str))
-        .unwrap_or("no reason given")
+    panic.downcast_ref::<&str>().copied().or_else(|| panic.downcast_ref::<String>().map(String::as_str)).unwrap_or("no reason given")
 }

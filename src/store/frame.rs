@@ -58,11 +58,7 @@ impl ColumnData {
 
     pub(super) fn first_not_finite(&self) -> Option<(usize, f64)> {
         let Self::F64(values) = self else { return None };
-        values.iter().enumerate().find_map(|(row, value)| {
-            value
-                .filter(|number| !number.is_finite())
-                .map(|number| (row, number))
-        })
+        values.iter().enumerate().find_map(|(row, value)| value.filter(|number| !number.is_finite()).map(|number| (row, number)))
     }
 }
 
@@ -144,40 +140,29 @@ impl Frame {
     /// The real numbers of a column that has no missing ones.
     pub fn f64(&self, name: &str) -> Result<Vec<f64>, FrameError> {
         let values = self.f64_or_null(name)?.iter().copied();
-        values
-            .collect::<Option<_>>()
-            .ok_or_else(|| self.missing(name))
+        values.collect::<Option<_>>().ok_or_else(|| self.missing(name))
     }
 
     /// The whole numbers of a column that has no missing ones.
     pub fn i64(&self, name: &str) -> Result<Vec<i64>, FrameError> {
         let values = self.i64_or_null(name)?.iter().copied();
-        values
-            .collect::<Option<_>>()
-            .ok_or_else(|| self.missing(name))
+        values.collect::<Option<_>>().ok_or_else(|| self.missing(name))
     }
 
     /// The truth values of a column that has no missing ones.
     pub fn bool(&self, name: &str) -> Result<Vec<bool>, FrameError> {
         let values = self.bool_or_null(name)?.iter().copied();
-        values
-            .collect::<Option<_>>()
-            .ok_or_else(|| self.missing(name))
+        values.collect::<Option<_>>().ok_or_else(|| self.missing(name))
     }
 
     /// The words of a column that has no missing ones.
     pub fn text(&self, name: &str) -> Result<Vec<&str>, FrameError> {
         let values = self.text_or_null(name)?.iter().map(Option::as_deref);
-        values
-            .collect::<Option<_>>()
-            .ok_or_else(|| self.missing(name))
+        values.collect::<Option<_>>().ok_or_else(|| self.missing(name))
     }
 
     fn missing(&self, name: &str) -> FrameError {
-        FrameError::new(
-            self.table.name,
-            format!("has missing values in the column {name:?}, where none were expected"),
-        )
+        FrameError::new(self.table.name, format!("has missing values in the column {name:?}, where none were expected"))
     }
 
     fn wrong_kind(&self, name: &str, found: &ColumnData, wanted: Kind) -> FrameError {

@@ -24,11 +24,7 @@ const MOST_PACKED: u64 = 1100;
 /// # Errors
 /// If the field is not square, empty or not finite, or the file cannot be written whole; what was at `path` is then
 /// still there.
-pub fn write_surface(
-    path: &Path,
-    header: &SurfaceHeader,
-    heights: ArrayView2<'_, f64>,
-) -> Result<(), StoreError> {
+pub fn write_surface(path: &Path, header: &SurfaceHeader, heights: ArrayView2<'_, f64>) -> Result<(), StoreError> {
     commit(
         "write the surface to",
         path,
@@ -105,34 +101,18 @@ fn open(path: &Path) -> Result<File, Cause> {
     Ok(options().open(path)?)
 }
 
-fn write_all(
-    path: &Path,
-    header: &SurfaceHeader,
-    heights: ArrayView2<'_, f64>,
-) -> Result<(), Cause> {
+fn write_all(path: &Path, header: &SurfaceHeader, heights: ArrayView2<'_, f64>) -> Result<(), Cause> {
     let (rows, columns) = heights.dim();
     if rows != columns || rows == 0 {
-        return Err(
-            format!("its field has {rows} by {columns} heights, and must be square").into(),
-        );
+        return Err(format!("its field has {rows} by {columns} heights, and must be square").into());
     }
-    if let Some(((row, column), height)) = heights
-        .indexed_iter()
-        .find(|(_, height)| !height.is_finite())
-    {
-        return Err(format!(
-            "its height in row {row}, column {column} is {height}, and must be finite"
-        )
-        .into());
+    if let Some(((row, column), height)) = heights.indexed_iter().find(|(_, height)| !height.is_finite()) {
+        return Err(format!("its height in row {row}, column {column} is {height}, and must be finite").into());
     }
     let file = options().create(path)?;
     surface_header::write(&file, header)?;
     let chunk = CHUNK.min(rows);
-    let data = file
-        .new_dataset::<f64>()
-        .shape((rows, rows))
-        .chunk((chunk, chunk))
-        .create(HEIGHT)?;
+    let data = file.new_dataset::<f64>().shape((rows, rows)).chunk((chunk, chunk)).create(HEIGHT)?;
     surface_header::write_word(&data, "unit", "m")?;
     for first in (0..rows).step_by(chunk) {
         let band = first..rows.min(first + chunk);
@@ -145,52 +125,32 @@ fn write_all(
     Ok(())
 }
 
-fn check_all(
-    path: &Path,
-    header: &SurfaceHeader,
-    heights: ArrayView2<'_, f64>,
-) -> Result<(), Cause> {
+fn check_all(path: &Path, header: &SurfaceHeader, heights: ArrayView2<'_, f64>) -> Result<(), Cause> {
     let file = open(path)?;
     let data = heights_of(path, &file)?;
     let mut same = surface_header::read(&file)? == *header && data.get_shape()? == heights.shape();
     for first in (0..heights.nrows()).step_by(CHUNK) {
         let band = first..heights.nrows().min(first + CHUNK);
-        same = same
-            && data.read_slice_2d::<f64, _>(s![band.clone(), ..])? == heights.slice(s![band, ..]);
+        same = same && data.read_slice_2d::<f64, _>(s![band.clone(), ..])? == heights.slice(s![band, ..]);
     }
-    if same {
-        Ok(())
-    } else {
-        Err("what was read back is not what was written".into())
-    }
+    if same { Ok(()) } else { Err("what was read back is not what was written".into()) }
 }
 
 /// The height field of a surface file, square and no larger than the file.
 fn heights_of(path: &Path, file: &File) -> Result<Dataset, Cause> {
     let data = file.dataset(HEIGHT)?;
     let (rows, columns) = check_extent(path, &data, HEIGHT, 1)?;
-    if rows == columns {
-        Ok(data)
-    } else {
-        Err(format!("its field has {rows} by {columns} heights, and must be square").into())
-    }
+    if rows == columns { Ok(data) } else { Err(format!("its field has {rows} by {columns} heights, and must be square").into()) }
 }
 
 /// Rows and columns of a dataset that the file can really hold, before memory is asked for.
-fn check_extent(
-    path: &Path,
-    data: &Dataset,
-    name: &str,
-    packed: u64,
-) -> Result<(usize, usize), Cause> {
+fn check_extent(path: &Path, data: &Dataset, name: &str, packed: u64) -> Result<(usize, usize), Cause> {
     let [rows, columns] = data.get_shape()?[..] else {
         return Err(format!("its dataset {name:?} is not two-dimensional").into());
     };
     let most = fs::metadata(path)?.len().saturating_mul(packed);
     let width = data.dtype()?.size() as u64;
-    let bytes = (rows as u64)
-        .checked_mul(columns as u64)
-        .and_then(|count| count.checked_mul(width));
+    let bytes = (rows as u64).checked_mul(columns as u64).and_then(|count| count.checked_mul(width));
     match bytes {
         Some(bytes) if bytes > 0 && bytes <= most => Ok((rows, columns)),
         _ => Err(format!("its dataset {name:?} claims {rows} by {columns} values, which a file of its size cannot hold").into()),
@@ -202,8 +162,6 @@ fn field(data: &Dataset, name: &str) -> Result<Array2<f64>, Cause> {
     let values = data.read_2d::<f64>()?;
     match values.indexed_iter().find(|(_, value)| !value.is_finite()) {
         None => Ok(values),
-        Some(((row, column), value)) => {
-            Err(format!("its dataset {name:?} has {value} in row {row}, column {column}").into())
-        }
+        Some(((row, column), value)) => Err(format!("its dataset {name:?} has {value} in row {row}, column {column}").into()),
     }
 }

@@ -72,11 +72,7 @@ pub(super) fn write(file: &File, header: &SurfaceHeader) -> Result<(), Cause> {
     write_finite(file, "hurst", generated.hurst)?;
     write_finite(file, "magnification", generated.magnification)?;
     write_number(file, "seed", generated.seed)?;
-    write_finite(
-        file,
-        "points_per_shortest_wavelength",
-        generated.points_per_shortest_wavelength,
-    )?;
+    write_finite(file, "points_per_shortest_wavelength", generated.points_per_shortest_wavelength)?;
     write_word(file, "normalization", generated.normalization.word())?;
     write_word(file, "amplitudes", generated.amplitudes.word())
 }
@@ -85,9 +81,7 @@ pub(super) fn write(file: &File, header: &SurfaceHeader) -> Result<(), Cause> {
 pub(super) fn read(file: &File) -> Result<SurfaceHeader, Cause> {
     let names = file.attr_names()?;
     if !names.iter().any(|name| name == "schema_version") {
-        return Err(
-            "it is no surface of this program: it has no attribute \"schema_version\"".into(),
-        );
+        return Err("it is no surface of this program: it has no attribute \"schema_version\"".into());
     }
     let version: u32 = number(file, "schema_version")?;
     if version != SURFACE_VERSION {
@@ -124,11 +118,7 @@ fn write_number<T: H5Type>(place: &Location, name: &str, value: T) -> Result<(),
 }
 
 fn write_finite(place: &Location, name: &str, value: f64) -> Result<(), Cause> {
-    if value.is_finite() {
-        write_number(place, name, value)
-    } else {
-        Err(format!("its {name} is {value}, and must be finite").into())
-    }
+    if value.is_finite() { write_number(place, name, value) } else { Err(format!("its {name} is {value}, and must be finite").into()) }
 }
 
 /// Writes a word as an attribute, as a string of fixed length.
@@ -137,10 +127,7 @@ fn write_finite(place: &Location, name: &str, value: f64) -> Result<(), Cause> {
 /// a single changed byte there was seen to keep the library busy for ever.
 pub(super) fn write_word(place: &Location, name: &str, value: &str) -> Result<(), Cause> {
     if value.len() > LONGEST_WORD || value.contains('\0') {
-        return Err(format!(
-            "its {name} {value:?} cannot be stored: it may have {LONGEST_WORD} bytes, none of them 0"
-        )
-        .into());
+        return Err(format!("its {name} {value:?} cannot be stored: it may have {LONGEST_WORD} bytes, none of them 0").into());
     }
     let word: FixedUnicode<LONGEST_WORD> = value.parse()?;
     // HDF5 knows no string of length 0; an empty word is one zero byte.
@@ -160,11 +147,7 @@ fn bad_attribute(name: &str, why: &dyn std::fmt::Display) -> Cause {
 
 fn finite(place: &Location, name: &str) -> Result<f64, Cause> {
     let value: f64 = number(place, name)?;
-    if value.is_finite() {
-        Ok(value)
-    } else {
-        Err(bad_attribute(name, &format!("it is {value}")))
-    }
+    if value.is_finite() { Ok(value) } else { Err(bad_attribute(name, &format!("it is {value}"))) }
 }
 
 /// A truth value, read as a number first: any other byte than 0 and 1 would be no `bool` at all.
@@ -172,10 +155,7 @@ fn truth(place: &Location, name: &str) -> Result<bool, Cause> {
     match number::<i8>(place, name)? {
         0 => Ok(false),
         1 => Ok(true),
-        other => Err(bad_attribute(
-            name,
-            &format!("it is {other}, neither true nor false"),
-        )),
+        other => Err(bad_attribute(name, &format!("it is {other}, neither true nor false"))),
     }
 }
 
@@ -189,9 +169,6 @@ fn choice<T: Choice>(place: &Location, name: &str) -> Result<T, Cause> {
     let value = word(place, name)?;
     T::from_word(&value).ok_or_else(|| {
         let allowed: Vec<_> = T::WORDS.iter().map(|(word, _)| *word).collect();
-        bad_attribute(
-            name,
-            &format!("it is {value:?}; allowed: {}", allowed.join(", ")),
-        )
+        bad_attribute(name, &format!("it is {value:?}; allowed: {}", allowed.join(", ")))
     })
 }

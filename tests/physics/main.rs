@@ -193,7 +193,7 @@ mod support {
         Loop {
             loss: turning(cycle, k).work_j + back.last().unwrap().work_j,
             events: lost(&mut cycle.steps[..=cycle.turning[k].0].iter()) + lost(&mut back.iter().copied()),
-            pull_off: -back.iter().map(|s| s.load_n).fold(0.0, f64::min),
+            pull_off: -back.iter().map(|s| s.least_load_n).fold(0.0, f64::min),
             area: turning(cycle, k).area_m2,
         }
     }

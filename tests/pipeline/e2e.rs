@@ -82,7 +82,8 @@ fn e2e_a_spec_becomes_tables_figures_and_a_page() {
     let said = stdout(&first);
     assert!(said.lines().all(|line| line.chars().count() <= 100 || line.contains('/')), "{said}");
     let written = files(&bench.out());
-    for name in ["campaign.toml", "report.html", "statistics/realizations.parquet", "statistics/cases.parquet", "statistics/curves.parquet"] {
+    for name in ["campaign.toml", "report.html", "statistics/realizations.parquet", "statistics/cases.parquet", "statistics/curves.parquet"]
+    {
         assert!(written.contains_key(Path::new(name)), "{name} is missing");
     }
     for panel in ["A", "B", "C", "D"] {

@@ -32,10 +32,7 @@ fn tables(inputs: &[(CaseInput, Result)], realization_count: i32) -> (Frame, Fra
     }
     let inputs: Vec<CaseInput> = inputs.iter().map(|(input, _)| input.clone()).collect();
     let rows = realizations(&inputs, &cycles).unwrap();
-    (
-        cases(&rows, &inputs).unwrap(),
-        curves(&inputs, &cycles).unwrap(),
-    )
+    (cases(&rows, &inputs).unwrap(), curves(&inputs, &cycles).unwrap())
 }
 
 /// Panels of a sweep, each checked to be well formed, and left where a person can look at them.
@@ -67,60 +64,31 @@ fn well_formed(svg: &str) {
     }
     assert!(open.is_empty(), "{open:?}");
     assert!(svg.starts_with("<svg") && !svg.contains("NaN") && !svg.contains("kuva-clip"));
-    let ids: Vec<&str> = svg
-        .split(" id=\"")
-        .skip(1)
-        .filter_map(|rest| rest.split('"').next())
-        .collect();
-    assert!(
-        (1..ids.len()).all(|at| !ids[..at].contains(&ids[at])),
-        "{ids:?}"
-    );
+    let ids: Vec<&str> = svg.split(" id=\"").skip(1).filter_map(|rest| rest.split('"').next()).collect();
+    assert!((1..ids.len()).all(|at| !ids[..at].contains(&ids[at])), "{ids:?}");
 }
 
 /// The text that a reader sees, markup and spans removed.
 fn read(svg: &str) -> String {
-    svg.split('<')
-        .filter_map(|piece| piece.split_once('>'))
-        .map(|(_, text)| text)
-        .collect()
+    svg.split('<').filter_map(|piece| piece.split_once('>')).map(|(_, text)| text).collect()
 }
 
 /// Curves of a stroke; samples in the key are lines, not paths.
 fn paths(svg: &str, dashes: Option<&str>) -> usize {
-    let curves = svg
-        .split("<path")
-        .skip(1)
-        .filter_map(|piece| piece.split_once('>'))
-        .map(|(tag, _)| tag);
+    let curves = svg.split("<path").skip(1).filter_map(|piece| piece.split_once('>')).map(|(tag, _)| tag);
     curves
         .filter(|tag| {
             tag.contains("stroke-width=\"2")
-                && dashes.map_or(!tag.contains("dasharray"), |dashes| {
-                    tag.contains(&format!("dasharray=\"{dashes}\""))
-                })
+                && dashes.map_or(!tag.contains("dasharray"), |dashes| tag.contains(&format!("dasharray=\"{dashes}\"")))
         })
         .count()
 }
 
 fn fig4() -> (Frame, Frame) {
-    let result = [
-        (0.186, 6.7e-4, 6.9e-4, 2.6),
-        (0.133, 5.0e-4, 4.9e-4, 2.5),
-        (0.098, 3.9e-4, 3.7e-4, 2.45),
-        (0.071, 3.2e-4, 2.9e-4, 2.4),
-    ];
+    let result = [(0.186, 6.7e-4, 6.9e-4, 2.6), (0.133, 5.0e-4, 4.9e-4, 2.5), (0.098, 3.9e-4, 3.7e-4, 2.45), (0.071, 3.2e-4, 2.9e-4, 2.4)];
     let zetas = [64.0, 128.0, 256.0, 512.0];
-    let inputs: Vec<_> = zetas
-        .iter()
-        .zip(result)
-        .map(|(zeta, result)| {
-            (
-                case(&format!("z{zeta}"), "fig4", 0.8, *zeta, &[0.0071]),
-                result,
-            )
-        })
-        .collect();
+    let inputs: Vec<_> =
+        zetas.iter().zip(result).map(|(zeta, result)| (case(&format!("z{zeta}"), "fig4", 0.8, *zeta, &[0.0071]), result)).collect();
     tables(&inputs, 6)
 }
 
@@ -129,103 +97,43 @@ fn e2e_magnification_sweep_has_four_panels() {
     let drawn = draw(&fig4(), "fig4");
     let stems: Vec<&str> = drawn.iter().map(|(stem, _)| stem.as_str()).collect();
     assert_eq!(stems, ["fig4_A", "fig4_B", "fig4_C", "fig4_D"]);
-    for (at, label) in [
-        (0, "A/A0"),
-        (1, "Fpo/(E*A0)"),
-        (2, "Δ/hrms"),
-        (3, "Θ/(E*A0hrms)"),
-    ] {
+    for (at, label) in [(0, "A/A0"), (1, "Fpo/(E*A0)"), (2, "Δ/hrms"), (3, "Θ/(E*A0hrms)")] {
         let text = read(&drawn[at].1);
-        assert!(
-            text.contains(label) && text.contains("mean of 6 surfaces"),
-            "{text}"
-        );
+        assert!(text.contains(label) && text.contains("mean of 6 surfaces"), "{text}");
     }
     for panel in [0, 2] {
-        assert_eq!(
-            (
-                paths(&drawn[panel].1, Some("7 4")),
-                paths(&drawn[panel].1, None)
-            ),
-            (4, 4)
-        );
+        assert_eq!((paths(&drawn[panel].1, Some("7 4")), paths(&drawn[panel].1, None)), (4, 4));
         let text = read(&drawn[panel].1);
         assert!(
-            [
-                "ζ = 64",
-                "ζ = 128",
-                "ζ = 256",
-                "ζ = 512",
-                "F/(E*A0)",
-                "loading",
-                "unloading"
-            ]
-            .iter()
-            .all(|label| text.contains(label)),
+            ["ζ = 64", "ζ = 128", "ζ = 256", "ζ = 512", "F/(E*A0)", "loading", "unloading"].iter().all(|label| text.contains(label)),
             "{text}"
         );
     }
     // One computed line, and in panel D one dashed and one dotted prediction.
-    assert_eq!(
-        (paths(&drawn[1].1, Some("7 4")), paths(&drawn[1].1, None)),
-        (0, 1)
-    );
-    assert_eq!(
-        (
-            paths(&drawn[3].1, Some("7 4")),
-            paths(&drawn[3].1, Some("1.5 3.5")),
-            paths(&drawn[3].1, None)
-        ),
-        (1, 1, 1)
-    );
-    assert!(
-        read(&drawn[3].1).contains("Deng–Kesari") && read(&drawn[1].1).contains("magnification ζ")
-    );
+    assert_eq!((paths(&drawn[1].1, Some("7 4")), paths(&drawn[1].1, None)), (0, 1));
+    assert_eq!((paths(&drawn[3].1, Some("7 4")), paths(&drawn[3].1, Some("1.5 3.5")), paths(&drawn[3].1, None)), (1, 1, 1));
+    assert!(read(&drawn[3].1).contains("Deng–Kesari") && read(&drawn[1].1).contains("magnification ζ"));
 }
 
 #[test]
 fn e2e_load_sweep_stands_over_area() {
-    let one = case(
-        "f3",
-        "fig3+other",
-        0.8,
-        128.0,
-        &[0.004, 0.0071, 0.012, 0.015],
-    );
+    let one = case("f3", "fig3+other", 0.8, 128.0, &[0.004, 0.0071, 0.012, 0.015]);
     let tables = tables(&[(one, (0.25, 5.2e-4, 1.1e-3, 3.2))], 6);
     let drawn = draw(&tables, "fig3");
-    assert_eq!(
-        (paths(&drawn[0].1, Some("7 4")), paths(&drawn[0].1, None)),
-        (1, 4)
-    );
+    assert_eq!((paths(&drawn[0].1, Some("7 4")), paths(&drawn[0].1, None)), (1, 4));
     let text = read(&drawn[0].1);
-    assert!(
-        ["0.004", "0.0071", "0.012", "0.015", "Fmax/(E*A0)"]
-            .iter()
-            .all(|label| text.contains(label)),
-        "{text}"
-    );
+    assert!(["0.004", "0.0071", "0.012", "0.015", "Fmax/(E*A0)"].iter().all(|label| text.contains(label)), "{text}");
     assert!(read(&drawn[3].1).contains("A/A0"));
     assert_eq!(panels(&tables.0, &tables.1, "other").unwrap().len(), 4);
 }
 
 #[test]
 fn e2e_hurst_sweep() {
-    let result = [
-        (0.047, 2.3e-5, 1.3e-4, 2.2),
-        (0.09, 2.0e-4, 3.0e-4, 2.35),
-        (0.133, 5.0e-4, 4.9e-4, 2.5),
-        (0.217, 9.7e-4, 8.8e-4, 2.8),
-    ];
+    let result = [(0.047, 2.3e-5, 1.3e-4, 2.2), (0.09, 2.0e-4, 3.0e-4, 2.35), (0.133, 5.0e-4, 4.9e-4, 2.5), (0.217, 9.7e-4, 8.8e-4, 2.8)];
     let inputs: Vec<_> = [0.45, 0.65, 0.8, 0.95]
         .iter()
         .zip(result)
-        .map(|(hurst, result)| {
-            (
-                case(&format!("h{hurst}"), "fig5", *hurst, 128.0, &[0.0071]),
-                result,
-            )
-        })
+        .map(|(hurst, result)| (case(&format!("h{hurst}"), "fig5", *hurst, 128.0, &[0.0071]), result))
         .collect();
     let drawn = draw(&tables(&inputs, 6), "fig5");
     assert!(read(&drawn[1].1).contains("Hurst exponent H"));
@@ -234,21 +142,9 @@ fn e2e_hurst_sweep() {
 
 #[test]
 fn e2e_one_case_one_surface() {
-    let drawn = draw(
-        &tables(
-            &[(
-                case("a", "", 0.8, 128.0, &[0.0071]),
-                (0.133, 5e-4, 4.9e-4, 2.5),
-            )],
-            1,
-        ),
-        "",
-    );
+    let drawn = draw(&tables(&[(case("a", "", 0.8, 128.0, &[0.0071]), (0.133, 5e-4, 4.9e-4, 2.5))], 1), "");
     assert_eq!(drawn[0].0, "run_A");
-    assert_eq!(
-        (paths(&drawn[0].1, Some("7 4")), paths(&drawn[0].1, None)),
-        (1, 1)
-    );
+    assert_eq!((paths(&drawn[0].1, Some("7 4")), paths(&drawn[0].1, None)), (1, 1));
     assert!(read(&drawn[0].1).contains("one surface"));
 }
 
@@ -259,12 +155,7 @@ fn e2e_two_parameters_are_named() {
         .map(|(hurst, zeta)| {
             (
                 case(&format!("{hurst}-{zeta}"), "grid", *hurst, *zeta, &[0.0071]),
-                (
-                    0.25 * hurst * (64.0_f64 / zeta).sqrt(),
-                    6e-4 * hurst,
-                    6e-4 * hurst,
-                    2.5,
-                ),
+                (0.25 * hurst * (64.0_f64 / zeta).sqrt(), 6e-4 * hurst, 6e-4 * hurst, 2.5),
             )
         })
         .collect();
@@ -281,21 +172,12 @@ fn e2e_words_stand_on_an_axis() {
         .enumerate()
         .map(|(at, word)| {
             let mut input = case(word, "models", 0.8, 128.0, &[0.0071]);
-            input
-                .parameters
-                .iter_mut()
-                .filter(|(name, _)| name == "interaction")
-                .for_each(|(_, value)| *value = (*word).into());
+            input.parameters.iter_mut().filter(|(name, _)| name == "interaction").for_each(|(_, value)| *value = (*word).into());
             (input, (0.13 + 0.02 * at as f64, 5e-4, 5e-4, 2.5))
         })
         .collect();
     let text = read(&draw(&tables(&inputs, 3), "models")[1].1);
-    assert!(
-        ["spots", "point", "none"]
-            .iter()
-            .all(|word| text.contains(word)),
-        "{text}"
-    );
+    assert!(["spots", "point", "none"].iter().all(|word| text.contains(word)), "{text}");
 }
 
 #[test]
@@ -310,7 +192,5 @@ fn law_nothing_finished_draws_empty_axes() {
 fn law_unknown_sweep_is_a_sentence() {
     let tables = fig4();
     let error = panels(&tables.0, &tables.1, "fig9").unwrap_err();
-    assert!(
-        matches!(error, FigureError::UnknownSweep { .. }) && error.to_string().contains("fig4")
-    );
+    assert!(matches!(error, FigureError::UnknownSweep { .. }) && error.to_string().contains("fig4"));
 }

@@ -1,12 +1,12 @@
 //! The pipeline: files, verbs, tables.
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
-mod spec;
 #[cfg(feature = "stats")]
 mod e2e;
 #[cfg(feature = "stats")]
 mod figures;
 mod schema;
+mod spec;
 #[cfg(feature = "stats")]
 mod stats;
 #[cfg(feature = "stats")]

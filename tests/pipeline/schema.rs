@@ -5,29 +5,17 @@ use std::fs;
 use std::path::Path;
 
 use hysteron::schema::{
-    ASPERITIES, CASES, CONTACTS, CURVES, DIRECTORY, EVENTS, Kind, REALIZATIONS, STEPS, TABLES,
-    files, metadata_json, readme_markdown, schema_json,
+    ASPERITIES, CASES, CONTACTS, CURVES, DIRECTORY, EVENTS, Kind, REALIZATIONS, STEPS, TABLES, files, metadata_json, readme_markdown,
+    schema_json,
 };
 
 /// The unit that a column's name promises: suffixes from the longest, as the contract has them.
 fn promised(name: &str) -> &'static str {
-    let stem = ["_mean", "_sd", "_ci95_low", "_ci95_high"]
+    let stem = ["_mean", "_sd", "_ci95_low", "_ci95_high"].iter().find_map(|end| name.strip_suffix(end)).unwrap_or(name);
+    [("_j_m2", "J/m^2"), ("_1_m2", "1/m^2"), ("_1_m", "1/m"), ("_m2", "m^2"), ("_pa", "Pa"), ("_m", "m"), ("_n", "N"), ("_j", "J")]
         .iter()
-        .find_map(|end| name.strip_suffix(end))
-        .unwrap_or(name);
-    [
-        ("_j_m2", "J/m^2"),
-        ("_1_m2", "1/m^2"),
-        ("_1_m", "1/m"),
-        ("_m2", "m^2"),
-        ("_pa", "Pa"),
-        ("_m", "m"),
-        ("_n", "N"),
-        ("_j", "J"),
-    ]
-    .iter()
-    .find(|(end, _)| stem.ends_with(end))
-    .map_or("1", |(_, unit)| unit)
+        .find(|(end, _)| stem.ends_with(end))
+        .map_or("1", |(_, unit)| unit)
 }
 
 #[test]
@@ -51,25 +39,14 @@ fn law_names_are_unique_plain_words_and_documented() {
     let names: BTreeSet<_> = TABLES.iter().map(|table| table.name).collect();
     assert_eq!(names.len(), TABLES.len());
     for table in TABLES {
-        assert!(
-            table.version >= 1 && table.doc.ends_with('.'),
-            "{}",
-            table.name
-        );
+        assert!(table.version >= 1 && table.doc.ends_with('.'), "{}", table.name);
         let mut seen = BTreeSet::new();
         for column in table.columns {
             let place = format!("{}.{}", table.name, column.name);
             assert!(seen.insert(column.name), "{place} is there twice");
             let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
-            assert!(
-                !column.name.is_empty() && column.name.chars().all(plain),
-                "{place}"
-            );
-            assert!(
-                column.doc.len() > 3 && !column.doc.ends_with('.'),
-                "{place}: {}",
-                column.doc
-            );
+            assert!(!column.name.is_empty() && column.name.chars().all(plain), "{place}");
+            assert!(column.doc.len() > 3 && !column.doc.ends_with('.'), "{place}: {}", column.doc);
             assert_eq!(table.column(column.name), Some(column));
         }
         assert_eq!(table.column("no such column"), None);
@@ -80,18 +57,12 @@ fn law_names_are_unique_plain_words_and_documented() {
 #[test]
 fn val_columns_are_those_of_the_contract() {
     let contract: [(_, &str); 7] = [
-        (
-            &ASPERITIES,
-            "asperity_id x_m y_m height_m radius_m curvature_1_m curvature_min_1_m curvature_max_1_m grid_row grid_col refined",
-        ),
+        (&ASPERITIES, "asperity_id x_m y_m height_m radius_m curvature_1_m curvature_min_1_m curvature_max_1_m grid_row grid_col refined"),
         (
             &STEPS,
             "step branch max_load approach_m load_n least_load_n area_m2 area_union_m2 contact_count covered_count jump_in_count jump_off_count cover_count uncover_count snap_count held_count touching_count dissipated_j work_j residual_m converged iteration_count pair_evaluation_count load area penetration",
         ),
-        (
-            &CONTACTS,
-            "step branch max_load asperity_id state contact_radius_m load_n penetration_m interaction_m",
-        ),
+        (&CONTACTS, "step branch max_load asperity_id state contact_radius_m load_n penetration_m interaction_m"),
         (
             &EVENTS,
             "step branch max_load kind asperity_id approach_m avalanche_id load_before_n load_after_n area_before_m2 area_after_m2 energy_lost_j",
@@ -104,18 +75,11 @@ fn val_columns_are_those_of_the_contract() {
             &CASES,
             "case_id sweep hurst jump_in max_load pull_off_load_mean pull_off_load_sd pull_off_load_ci95_low pull_off_load_ci95_high area_at_max_load_mean penetration_at_max_load_sd loss_mean loss_dk_mean loss_dk_realised_ci95_low loss_ratio_dk_ci95_high planned_count done_count failed_count caution",
         ),
-        (
-            &CURVES,
-            "case_id sweep max_load branch grid_index load area_mean area_sd penetration_mean penetration_sd realization_count",
-        ),
+        (&CURVES, "case_id sweep max_load branch grid_index load area_mean area_sd penetration_mean penetration_sd realization_count"),
     ];
     for (table, names) in contract {
         for name in names.split(' ') {
-            assert!(
-                table.column(name).is_some(),
-                "{} lost its column {name}",
-                table.name
-            );
+            assert!(table.column(name).is_some(), "{} lost its column {name}", table.name);
         }
     }
     assert_eq!(CASES.columns.len(), 2 + 16 + 1 + 7 * 4 + 4);
@@ -140,8 +104,7 @@ fn law_json_says_all_that_the_schema_says() {
             assert_eq!(found["source"], column.source);
         }
         let keys = BTreeMap::from([("key", "0a\"1"), ("program", "hysteron")]);
-        let carried: serde_json::Value =
-            serde_json::from_str(&metadata_json(table, &keys)).unwrap();
+        let carried: serde_json::Value = serde_json::from_str(&metadata_json(table, &keys)).unwrap();
         assert_eq!(carried["columns"], json["columns"]);
         assert_eq!(carried["key"], "0a\"1");
     }
@@ -151,10 +114,7 @@ fn law_json_says_all_that_the_schema_says() {
 fn law_markdown_has_a_row_for_every_column() {
     for table in TABLES {
         let page = readme_markdown(table);
-        let rows: Vec<_> = page
-            .lines()
-            .filter(|line| line.starts_with("| `"))
-            .collect();
+        let rows: Vec<_> = page.lines().filter(|line| line.starts_with("| `")).collect();
         assert_eq!(rows.len(), table.columns.len());
         for (row, column) in rows.iter().zip(table.columns) {
             assert!(row.starts_with(&format!("| `{}` | ", column.name)));
@@ -166,10 +126,7 @@ fn law_markdown_has_a_row_for_every_column() {
 #[test]
 fn e2e_schema_files_are_up_to_date() {
     let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join(DIRECTORY);
-    let expected: BTreeMap<_, _> = files()
-        .into_iter()
-        .map(|file| (file.name, file.content))
-        .collect();
+    let expected: BTreeMap<_, _> = files().into_iter().map(|file| (file.name, file.content)).collect();
     let mut wrong = Vec::new();
     for (name, content) in &expected {
         if fs::read_to_string(directory.join(name)).ok().as_ref() != Some(content) {
@@ -179,9 +136,7 @@ fn e2e_schema_files_are_up_to_date() {
     for entry in fs::read_dir(&directory).into_iter().flatten() {
         let name = entry.unwrap().file_name().into_string().unwrap();
         // Schemas of earlier versions stay, for the files that were written with them.
-        let earlier = TABLES.iter().any(|table| {
-            (1..table.version).any(|version| name == format!("{}.v{version}.json", table.name))
-        });
+        let earlier = TABLES.iter().any(|table| (1..table.version).any(|version| name == format!("{}.v{version}.json", table.name)));
         if !expected.contains_key(&name) && !earlier {
             wrong.push(name);
         }

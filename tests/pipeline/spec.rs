@@ -11,21 +11,10 @@ use hysteron::spec::{CaseParams, Spec};
 /// The files of a folder of the package, with their names and texts, sorted.
 fn specs(folder: &str) -> Vec<(String, String)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
-    let mut paths: Vec<PathBuf> = std::fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().path())
-        .collect();
+    let mut paths: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     paths.sort();
     let name = |path: &Path| path.file_name().unwrap().to_str().unwrap().to_owned();
-    paths
-        .iter()
-        .map(|path| {
-            (
-                name(path),
-                std::fs::read_to_string(path).unwrap().replace("\r\n", "\n"),
-            )
-        })
-        .collect()
+    paths.iter().map(|path| (name(path), std::fs::read_to_string(path).unwrap().replace("\r\n", "\n"))).collect()
 }
 
 /// Every spec that ought to be accepted.
@@ -35,16 +24,11 @@ fn accepted() -> Vec<(String, String)> {
 
 /// What a file expects of its own reading.
 fn expectations<'a>(text: &'a str, mark: &str) -> Vec<&'a str> {
-    text.lines()
-        .filter_map(|line| line.strip_prefix(mark))
-        .collect()
+    text.lines().filter_map(|line| line.strip_prefix(mark)).collect()
 }
 
 fn errors_in(rendered: &str) -> usize {
-    rendered
-        .lines()
-        .filter(|line| line.starts_with("error: "))
-        .count()
+    rendered.lines().filter(|line| line.starts_with("error: ")).count()
 }
 
 /// The one fault of a text, rendered.
@@ -64,27 +48,12 @@ fn val_bad_specs_are_refused_in_these_words() {
             Err(errors) => errors.to_string(),
         };
         let expected = expectations(&text, "#^ ");
-        assert!(
-            expected
-                .iter()
-                .any(|part| part.starts_with(&format!("--> {name}:"))),
-            "{name} expects no place"
-        );
+        assert!(expected.iter().any(|part| part.starts_with(&format!("--> {name}:"))), "{name} expects no place");
         for part in &expected {
-            assert!(
-                rendered.contains(part),
-                "{name} lacks `{part}`:\n{rendered}"
-            );
+            assert!(rendered.contains(part), "{name} lacks `{part}`:\n{rendered}");
         }
-        let wanted = expected
-            .iter()
-            .filter(|part| part.starts_with("error: "))
-            .count();
-        assert_eq!(
-            errors_in(&rendered),
-            wanted,
-            "{name} has other faults too:\n{rendered}"
-        );
+        let wanted = expected.iter().filter(|part| part.starts_with("error: ")).count();
+        assert_eq!(errors_in(&rendered), wanted, "{name} has other faults too:\n{rendered}");
     }
 }
 
@@ -112,27 +81,18 @@ fn law_a_spec_written_out_reads_back_equal() {
     for (name, text) in accepted() {
         let spec = Spec::parse(&text, &name).unwrap_or_else(|errors| panic!("{errors}"));
         let written = spec.to_toml();
-        let again = Spec::parse(&written, "campaign.toml")
-            .unwrap_or_else(|errors| panic!("{name}:\n{errors}"));
+        let again = Spec::parse(&written, "campaign.toml").unwrap_or_else(|errors| panic!("{name}:\n{errors}"));
         assert_eq!(again, spec, "{name}");
         assert_eq!(again.to_toml(), written, "{name}");
         // Others read it too, with any TOML reader.
         let table: toml::Table = written.parse().unwrap();
-        assert_eq!(
-            table.get("name").and_then(toml::Value::as_str),
-            Some(spec.name.as_str()),
-            "{name}"
-        );
+        assert_eq!(table.get("name").and_then(toml::Value::as_str), Some(spec.name.as_str()), "{name}");
     }
 }
 
 #[test]
 fn law_the_written_spec_holds_every_key_of_a_case() {
-    let written: toml::Table = Spec::parse("name = \"x\"", "x")
-        .unwrap()
-        .to_toml()
-        .parse()
-        .unwrap();
+    let written: toml::Table = Spec::parse("name = \"x\"", "x").unwrap().to_toml().parse().unwrap();
     let json = serde_json::to_value(CaseParams::default()).unwrap();
     for (table, keys) in json.as_object().unwrap() {
         let wanted: Vec<&String> = keys.as_object().unwrap().keys().collect();
@@ -147,11 +107,7 @@ fn law_case_parameters_survive_json() {
     for (name, text) in accepted() {
         for case in Spec::parse(&text, &name).unwrap().cases.iter().take(20) {
             let json = serde_json::to_string(&case.params).unwrap();
-            assert_eq!(
-                serde_json::from_str::<CaseParams>(&json).unwrap(),
-                case.params,
-                "{name}"
-            );
+            assert_eq!(serde_json::from_str::<CaseParams>(&json).unwrap(), case.params, "{name}");
         }
     }
 }
@@ -166,22 +122,12 @@ fn val_the_paper_is_eight_cases() {
         .iter()
         .map(|case| {
             let surface = &case.params.surface;
-            (
-                case.sweeps.join("+"),
-                surface.magnification,
-                surface.hurst,
-                case.params.cycle.max_load.clone(),
-            )
+            (case.sweeps.join("+"), surface.magnification, surface.hurst, case.params.cycle.max_load.clone())
         })
         .collect();
     let one = |sweeps: &str, zeta, hurst| (sweeps.to_owned(), zeta, hurst, vec![0.0071]);
     let wanted = vec![
-        (
-            "fig3".to_owned(),
-            128,
-            0.8,
-            vec![0.004, 0.0071, 0.012, 0.015],
-        ),
+        ("fig3".to_owned(), 128, 0.8, vec![0.004, 0.0071, 0.012, 0.015]),
         one("fig4", 64, 0.8),
         one("fig4+fig5", 128, 0.8),
         one("fig4", 256, 0.8),
@@ -201,20 +147,7 @@ fn val_the_paper_is_eight_cases() {
 fn val_the_quickstart_is_two_small_cases() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("pipelines/quickstart.toml");
     let spec = Spec::read(path).unwrap_or_else(|errors| panic!("{errors}"));
-    assert_eq!(
-        (spec.name.as_str(), spec.realizations, spec.cases.len()),
-        ("quickstart", 3, 2)
-    );
-    assert_eq!(
-        spec.cases
-            .iter()
-            .map(|case| case.params.surface.grid())
-            .collect::<Vec<_>>(),
-        [256, 512]
-    );
-    assert!(
-        spec.cases
-            .iter()
-            .all(|case| case.params.cycle.max_load == [0.004, 0.0071])
-    );
+    assert_eq!((spec.name.as_str(), spec.realizations, spec.cases.len()), ("quickstart", 3, 2));
+    assert_eq!(spec.cases.iter().map(|case| case.params.surface.grid()).collect::<Vec<_>>(), [256, 512]);
+    assert!(spec.cases.iter().all(|case| case.params.cycle.max_load == [0.004, 0.0071]));
 }

@@ -3,8 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use hysteron::stats::{
-    CaseInput, CycleInput, Point, STATIONS, Sample, StatsError, Value, Walk, cases, curves,
-    realizations, summary, t_quantile,
+    CaseInput, CycleInput, Point, STATIONS, Sample, StatsError, Value, Walk, cases, curves, realizations, summary, t_quantile,
 };
 use hysteron::store::Frame;
 use hysteron::store::parquet::{read_table, write_table};
@@ -25,10 +24,7 @@ const KNOWN_T: [(f64, usize, f64); 9] = [
 ];
 
 fn close(a: f64, b: f64, tolerance: f64) {
-    assert!(
-        (a - b).abs() <= tolerance * b.abs().max(1e-300),
-        "{a} is not {b}"
-    );
+    assert!((a - b).abs() <= tolerance * b.abs().max(1e-300), "{a} is not {b}");
 }
 
 /// A cycle with two turning points and jumps on both branches, times a factor for its areas.
@@ -50,9 +46,7 @@ fn by_hand(path: &Path, factor: f64) {
         ("unloading", Some(0.004), 0.0, 0.0, 0.0, -2e-9),
     ]
     .into_iter()
-    .map(|(branch, max_load, load, area, depth, work)| {
-        (branch, max_load, load, area * factor, depth, work)
-    })
+    .map(|(branch, max_load, load, area, depth, work)| (branch, max_load, load, area * factor, depth, work))
     .collect();
     write(path, &steps);
 }
@@ -65,21 +59,14 @@ struct Bench {
 
 fn bench(factors: &[f64]) -> Bench {
     let directory = tempfile::tempdir().unwrap();
-    let cases = vec![
-        case("c1", "fig3", 0.8, 128.0, &[0.0071, 0.004]),
-        case("c0", "fig4", 0.8, 64.0, &[0.0071]),
-    ];
+    let cases = vec![case("c1", "fig3", 0.8, 128.0, &[0.0071, 0.004]), case("c0", "fig4", 0.8, 64.0, &[0.0071])];
     let cycles = factors.iter().enumerate().map(|(at, factor)| {
         let path: PathBuf = directory.path().join(format!("{at}.parquet"));
         by_hand(&path, *factor);
         cycle("c1", at as i64, &path, 2e-8)
     });
     let cycles = cycles.collect();
-    Bench {
-        directory,
-        cases,
-        cycles,
-    }
+    Bench { directory, cases, cycles }
 }
 
 fn row(frame: &Frame, name: &str, at: usize) -> Option<f64> {
@@ -96,11 +83,7 @@ fn val_t_quantiles_agree_with_thirty_digit_ones() {
 
 #[test]
 fn law_t_quantile_is_odd_about_a_half_and_refuses_what_has_none() {
-    close(
-        t_quantile(0.025, 7).unwrap(),
-        -t_quantile(0.975, 7).unwrap(),
-        1e-12,
-    );
+    close(t_quantile(0.025, 7).unwrap(), -t_quantile(0.975, 7).unwrap(), 1e-12);
     assert!(t_quantile(0.5, 3).unwrap().abs() < 1e-12);
     for (probability, freedom) in [(0.975, 0), (0.0, 3), (1.0, 3), (f64::NAN, 3)] {
         assert_eq!(t_quantile(probability, freedom), None);
@@ -112,48 +95,20 @@ fn val_sample_by_hand() {
     let sample = Sample::of(&[1.0, 2.0, 3.0, 6.0]);
     close(sample.mean.unwrap(), 3.0, 1e-15);
     close(sample.sd.unwrap(), (14.0_f64 / 3.0).sqrt(), 1e-15);
-    close(
-        sample.ci95.unwrap(),
-        3.182_446_305_284_263 * (14.0_f64 / 12.0).sqrt(),
-        1e-12,
-    );
-    assert_eq!(
-        Sample::of(&[4.0]),
-        Sample {
-            count: 1,
-            mean: Some(4.0),
-            sd: None,
-            ci95: None
-        }
-    );
-    assert_eq!(
-        Sample::of(&[]),
-        Sample {
-            count: 0,
-            mean: None,
-            sd: None,
-            ci95: None
-        }
-    );
+    close(sample.ci95.unwrap(), 3.182_446_305_284_263 * (14.0_f64 / 12.0).sqrt(), 1e-12);
+    assert_eq!(Sample::of(&[4.0]), Sample { count: 1, mean: Some(4.0), sd: None, ci95: None });
+    assert_eq!(Sample::of(&[]), Sample { count: 0, mean: None, sd: None, ci95: None });
 }
 
 #[test]
 fn val_walk_takes_the_first_crossing_from_the_turning_point() {
     let walk = Walk(
         [(4.0, 8.0), (0.5, 5.0), (1.0, 3.0), (-1.0, 2.0), (0.0, 0.0)]
-            .map(|(load, area)| Point {
-                load,
-                area,
-                penetration: 2.0 * area,
-            })
+            .map(|(load, area)| Point { load, area, penetration: 2.0 * area })
             .to_vec(),
     );
     close(walk.at(0.8).unwrap().area, 8.0 - 3.0 * 3.2 / 3.5, 1e-15);
-    close(
-        walk.at(0.8).unwrap().penetration,
-        16.0 - 6.0 * 3.2 / 3.5,
-        1e-15,
-    );
+    close(walk.at(0.8).unwrap().penetration, 16.0 - 6.0 * 3.2 / 3.5, 1e-15);
     close(walk.at(0.0).unwrap().area, 2.5, 1e-15);
     close(walk.at(4.0).unwrap().area, 8.0, 0.0);
     close(walk.at(-1.0).unwrap().area, 2.0, 0.0);
@@ -176,31 +131,11 @@ fn val_realization_from_work_and_loads() {
     close(row(&frame, "pull_off_load", 0).unwrap(), 0.002, 1e-15);
     close(row(&frame, "pull_off_load_n", 1).unwrap(), 0.003, 1e-15);
     close(row(&frame, "area_at_max_load", 0).unwrap(), 0.08, 1e-15);
-    close(
-        row(&frame, "area_union_at_max_load", 0).unwrap(),
-        0.072,
-        1e-12,
-    );
-    close(
-        row(&frame, "penetration_at_max_load", 1).unwrap(),
-        0.9,
-        1e-15,
-    );
-    close(
-        row(&frame, "loss_dk", 0).unwrap(),
-        2e-8 * 0.08 / ENERGY_J,
-        1e-12,
-    );
-    close(
-        row(&frame, "loss_ratio_dk", 0).unwrap(),
-        3e-9 / (2e-8 * 0.08),
-        1e-12,
-    );
-    close(
-        row(&frame, "dissipated_j", 0).unwrap(),
-        5.0 * 1e-10 + 5.0 * 2e-10,
-        1e-12,
-    );
+    close(row(&frame, "area_union_at_max_load", 0).unwrap(), 0.072, 1e-12);
+    close(row(&frame, "penetration_at_max_load", 1).unwrap(), 0.9, 1e-15);
+    close(row(&frame, "loss_dk", 0).unwrap(), 2e-8 * 0.08 / ENERGY_J, 1e-12);
+    close(row(&frame, "loss_ratio_dk", 0).unwrap(), 3e-9 / (2e-8 * 0.08), 1e-12);
+    close(row(&frame, "dissipated_j", 0).unwrap(), 5.0 * 1e-10 + 5.0 * 2e-10, 1e-12);
     close(row(&frame, "audit_gap", 0).unwrap(), 0.5, 1e-12);
     close(row(&frame, "covered_share", 0).unwrap(), 0.05, 1e-12);
     close(row(&frame, "touching_share", 0).unwrap(), 5.0 / 19.0, 1e-12);
@@ -221,62 +156,26 @@ fn law_a_stated_turning_step_is_taken() {
 #[test]
 fn val_case_means_by_hand() {
     let bench = bench(&[1.0, 2.0, 1.5]);
-    let frame = cases(
-        &realizations(&bench.cases, &bench.cycles).unwrap(),
-        &bench.cases,
-    )
-    .unwrap();
+    let frame = cases(&realizations(&bench.cases, &bench.cycles).unwrap(), &bench.cases).unwrap();
     assert_eq!(frame.text("case_id").unwrap(), ["c0", "c1", "c1"]);
-    close(
-        row(&frame, "area_at_max_load_mean", 2).unwrap(),
-        0.18,
-        1e-14,
-    );
+    close(row(&frame, "area_at_max_load_mean", 2).unwrap(), 0.18, 1e-14);
     close(row(&frame, "area_at_max_load_sd", 2).unwrap(), 0.06, 1e-14);
     let half = 4.302_652_729_749_46 * 0.06 / 3.0_f64.sqrt();
-    close(
-        row(&frame, "area_at_max_load_ci95_low", 2).unwrap(),
-        0.18 - half,
-        1e-9,
-    );
-    close(
-        row(&frame, "area_at_max_load_ci95_high", 2).unwrap(),
-        0.18 + half,
-        1e-9,
-    );
+    close(row(&frame, "area_at_max_load_ci95_low", 2).unwrap(), 0.18 - half, 1e-9);
+    close(row(&frame, "area_at_max_load_ci95_high", 2).unwrap(), 0.18 + half, 1e-9);
     assert_eq!(frame.i64("done_count").unwrap(), [0, 3, 3]);
     assert_eq!(frame.i64("planned_count").unwrap(), [6, 6, 6]);
-    assert_eq!(
-        frame.text("caution").unwrap(),
-        [
-            "incomplete",
-            "incomplete+unconverged+audit",
-            "incomplete+unconverged+audit"
-        ]
-    );
+    assert_eq!(frame.text("caution").unwrap(), ["incomplete", "incomplete+unconverged+audit", "incomplete+unconverged+audit"]);
 }
 
 #[test]
 fn law_one_realization_has_no_spread() {
     let bench = bench(&[1.0]);
-    let frame = cases(
-        &realizations(&bench.cases, &bench.cycles).unwrap(),
-        &bench.cases,
-    )
-    .unwrap();
+    let frame = cases(&realizations(&bench.cases, &bench.cycles).unwrap(), &bench.cases).unwrap();
     close(row(&frame, "loss_mean", 1).unwrap(), 3e-9 / ENERGY_J, 1e-12);
-    assert_eq!(
-        (row(&frame, "loss_sd", 1), row(&frame, "loss_ci95_low", 1)),
-        (None, None)
-    );
+    assert_eq!((row(&frame, "loss_sd", 1), row(&frame, "loss_ci95_low", 1)), (None, None));
     let paths = curves(&bench.cases, &bench.cycles).unwrap();
-    assert!(
-        paths
-            .f64_or_null("area_sd")
-            .unwrap()
-            .iter()
-            .all(Option::is_none)
-    );
+    assert!(paths.f64_or_null("area_sd").unwrap().iter().all(Option::is_none));
 }
 
 #[test]
@@ -295,11 +194,7 @@ fn law_order_of_inputs_changes_nothing() {
     let mut bench = bench(&[1.0, 1.1, 0.7, 1.3]);
     let all = |bench: &Bench| {
         let rows = realizations(&bench.cases, &bench.cycles).unwrap();
-        (
-            cases(&rows, &bench.cases).unwrap(),
-            curves(&bench.cases, &bench.cycles).unwrap(),
-            rows,
-        )
+        (cases(&rows, &bench.cases).unwrap(), curves(&bench.cases, &bench.cycles).unwrap(), rows)
     };
     let before = all(&bench);
     bench.cycles.rotate_left(1);
@@ -317,46 +212,22 @@ fn val_curves_read_jumps_from_the_turning_point() {
     let max_loads = frame.f64_or_null("max_load").unwrap();
     let loads = frame.f64("load").unwrap();
     let picked = |branch: &str, max_load: Option<f64>| -> Vec<usize> {
-        (0..frame.row_count())
-            .filter(|at| branches[*at] == branch && max_loads[*at] == max_load)
-            .collect()
+        (0..frame.row_count()).filter(|at| branches[*at] == branch && max_loads[*at] == max_load).collect()
     };
     let loading = picked("loading", None);
     assert_eq!(loading.len(), STATIONS);
-    assert!(
-        loading
-            .windows(2)
-            .all(|pair| loads[pair[0]] < loads[pair[1]])
-    );
+    assert!(loading.windows(2).all(|pair| loads[pair[0]] < loads[pair[1]]));
     close(loads[loading[0]], -0.001, 0.0);
     close(loads[loading[STATIONS - 1]], 0.0071, 0.0);
     // At zero load the last crossing is the jump into contact at step 1 to 2; areas 0.025 and three times that.
     close(row(&frame, "area_mean", loading[50]).unwrap(), 0.05, 1e-12);
-    close(
-        row(&frame, "area_sd", loading[50]).unwrap(),
-        0.05 / 2.0_f64.sqrt(),
-        1e-12,
-    );
+    close(row(&frame, "area_sd", loading[50]).unwrap(), 0.05 / 2.0_f64.sqrt(), 1e-12);
     let unloading = picked("unloading", Some(0.004));
     close(row(&frame, "area_mean", unloading[0]).unwrap(), 0.16, 1e-12);
-    close(
-        row(&frame, "area_mean", unloading[75]).unwrap(),
-        0.14,
-        1e-12,
-    );
-    close(
-        row(&frame, "penetration_mean", unloading[150]).unwrap(),
-        0.4,
-        1e-12,
-    );
+    close(row(&frame, "area_mean", unloading[75]).unwrap(), 0.14, 1e-12);
+    close(row(&frame, "penetration_mean", unloading[150]).unwrap(), 0.4, 1e-12);
     close(loads[unloading[STATIONS - 1]], -0.002, 0.0);
-    assert!(
-        frame
-            .i64("realization_count")
-            .unwrap()
-            .iter()
-            .all(|count| *count == 2)
-    );
+    assert!(frame.i64("realization_count").unwrap().iter().all(|count| *count == 2));
 }
 
 #[test]
@@ -378,15 +249,9 @@ fn law_a_damaged_table_is_a_sentence() {
     let whole = std::fs::read(&bench.cycles[0].steps).unwrap();
     let path = bench.directory.path().join("damaged.parquet");
     bench.cycles[0].steps = path.clone();
-    for bytes in [
-        &whole[..0],
-        &whole[..whole.len() / 2],
-        b"not a table at all",
-    ] {
+    for bytes in [&whole[..0], &whole[..whole.len() / 2], b"not a table at all"] {
         std::fs::write(&path, bytes).unwrap();
-        let fault = realizations(&bench.cases, &bench.cycles)
-            .unwrap_err()
-            .to_string();
+        let fault = realizations(&bench.cases, &bench.cycles).unwrap_err().to_string();
         assert!(fault.contains("damaged.parquet"), "{fault}");
     }
 }
@@ -395,78 +260,39 @@ fn law_a_damaged_table_is_a_sentence() {
 fn law_faults_are_sentences() {
     let mut bench = bench(&[1.0]);
     bench.cycles[0].surface.clear();
-    let lacking = realizations(&bench.cases, &bench.cycles)
-        .unwrap_err()
-        .to_string();
-    assert!(
-        lacking.contains("realizations") && lacking.contains("summit_count"),
-        "{lacking}"
-    );
+    let lacking = realizations(&bench.cases, &bench.cycles).unwrap_err().to_string();
+    assert!(lacking.contains("realizations") && lacking.contains("summit_count"), "{lacking}");
     bench.cycles[0].case_id = "c9".to_owned();
-    assert!(matches!(
-        realizations(&bench.cases, &bench.cycles),
-        Err(StatsError::UnknownCase { .. })
-    ));
+    assert!(matches!(realizations(&bench.cases, &bench.cycles), Err(StatsError::UnknownCase { .. })));
     bench.cycles[0].case_id = "c1".to_owned();
     bench.cycles[0].steps = bench.directory.path().join("absent.parquet");
     let absent = curves(&bench.cases, &bench.cycles).unwrap_err().to_string();
     assert!(absent.contains("absent.parquet"), "{absent}");
     let path = bench.directory.path().join("turn.parquet");
-    write(
-        &path,
-        &[
-            ("loading", None, 0.003, 0.1, 0.1, 0.0),
-            ("unloading", Some(0.004), 0.0, 0.0, 0.0, 0.0),
-        ],
-    );
+    write(&path, &[("loading", None, 0.003, 0.1, 0.1, 0.0), ("unloading", Some(0.004), 0.0, 0.0, 0.0, 0.0)]);
     bench.cycles[0].steps = path;
-    let unturned = realizations(&bench.cases, &bench.cycles)
-        .unwrap_err()
-        .to_string();
-    assert!(
-        unturned.contains("no loading step at the turning point 0.004"),
-        "{unturned}"
-    );
+    let unturned = realizations(&bench.cases, &bench.cycles).unwrap_err().to_string();
+    assert!(unturned.contains("no loading step at the turning point 0.004"), "{unturned}");
 }
 
 #[test]
 fn e2e_summary_fits_a_terminal() {
     let directory = tempfile::tempdir().unwrap();
-    let inputs: Vec<CaseInput> = [64.0, 512.0, 128.0, 256.0]
-        .iter()
-        .map(|zeta| case(&format!("id{zeta}"), "fig4", 0.8, *zeta, &[0.0071]))
-        .collect();
+    let inputs: Vec<CaseInput> =
+        [64.0, 512.0, 128.0, 256.0].iter().map(|zeta| case(&format!("id{zeta}"), "fig4", 0.8, *zeta, &[0.0071])).collect();
     let mut cycles = Vec::new();
     for input in inputs.iter().take(3) {
         for realization in 0..3_i32 {
-            let path = directory
-                .path()
-                .join(format!("{}-{realization}.parquet", input.case_id));
+            let path = directory.path().join(format!("{}-{realization}.parquet", input.case_id));
             let factor = 1.0 + 0.1 * f64::from(realization);
-            realistic(
-                &path,
-                &[0.0071],
-                0.13 * factor,
-                5e-4 * factor,
-                4.9e-4 * factor,
-                2.5,
-            );
+            realistic(&path, &[0.0071], 0.13 * factor, 5e-4 * factor, 4.9e-4 * factor, 2.5);
             cycles.push(cycle(&input.case_id, i64::from(realization), &path, 2e-8));
         }
     }
     let text = summary(&cases(&realizations(&inputs, &cycles).unwrap(), &inputs).unwrap()).unwrap();
-    assert!(
-        text.lines().all(|line| line.chars().count() <= 80),
-        "{text}"
-    );
-    let places: Vec<_> = ["ζ=64", "ζ=128", "ζ=256", "ζ=512"]
-        .iter()
-        .map(|label| text.find(label).unwrap())
-        .collect();
+    assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
+    let places: Vec<_> = ["ζ=64", "ζ=128", "ζ=256", "ζ=512"].iter().map(|label| text.find(label).unwrap()).collect();
     assert!(places.is_sorted(), "{text}");
-    assert!(
-        text.contains("0.143±0.013") && text.contains("0.539±0.049"),
-        "{text}"
-    );
+    assert!(text.contains("0.143±0.013") && text.contains("0.539±0.049"), "{text}");
     assert_eq!(Value::from(None::<f64>), Value::Missing);
 }

@@ -37,10 +37,7 @@ pub fn write(path: &Path, steps: &[Step]) {
         .count("snap_count", zeros())
         .count("held_count", (0..steps.len()).map(|row| usize::from(row == 1)))
         .count("touching_count", vec![5; steps.len()])
-        .f64(
-            "dissipated_j",
-            reals(|step| if step.0 == "loading" { 1e-10 } else { 2e-10 }),
-        )
+        .f64("dissipated_j", reals(|step| if step.0 == "loading" { 1e-10 } else { 2e-10 }))
         .f64("work_j", reals(|step| step.5))
         .f64("residual_m", vec![1e-15; steps.len()])
         .bool("converged", (0..steps.len()).map(|row| row != 3))
@@ -55,10 +52,7 @@ pub fn write(path: &Path, steps: &[Step]) {
 }
 
 fn given(columns: &[(&str, Value)]) -> Given {
-    columns
-        .iter()
-        .map(|(name, value)| ((*name).to_owned(), value.clone()))
-        .collect()
+    columns.iter().map(|(name, value)| ((*name).to_owned(), value.clone())).collect()
 }
 
 /// A case with the paper's material.
@@ -126,23 +120,12 @@ pub fn realistic(path: &Path, max_loads: &[f64], area: f64, pull_off: f64, loss:
     for row in 1..=200 {
         let wanted = greatest * (f64::from(row) / 200.0).powf(1.6);
         let previous = greatest * (f64::from(row - 1) / 200.0).powf(1.6);
-        for turning in max_loads
-            .iter()
-            .filter(|load| previous < **load && **load <= wanted)
-        {
+        for turning in max_loads.iter().filter(|load| previous < **load && **load <= wanted) {
             let (area, depth) = at(*turning);
-            steps.push((
-                "loading",
-                None,
-                *turning,
-                area,
-                depth,
-                loss * 3.0 * ENERGY_J * (turning / greatest),
-            ));
+            steps.push(("loading", None, *turning, area, depth, loss * 3.0 * ENERGY_J * (turning / greatest)));
         }
         let (area, depth) = at(wanted);
-        let tooth =
-            0.03 * pull_off * f64::from(row % 7) - if row < 12 { 0.25 * pull_off } else { 0.0 };
+        let tooth = 0.03 * pull_off * f64::from(row % 7) - if row < 12 { 0.25 * pull_off } else { 0.0 };
         steps.push(("loading", None, wanted - tooth, area, depth, 0.0));
     }
     for turning in max_loads {
@@ -153,14 +136,7 @@ pub fn realistic(path: &Path, max_loads: &[f64], area: f64, pull_off: f64, loss:
             let load = (turning + pull_off) * rest.powf(1.7) - pull_off * (rest / 0.02).min(1.0);
             let spread = area * (0.04 + 0.96 * rest.powf(1.05)) * (rest / 0.02).min(1.0);
             let work = -loss * 2.0 * ENERGY_J * share;
-            steps.push((
-                "unloading",
-                Some(*turning),
-                load,
-                spread,
-                depth * (rest.powf(0.45) * 1.2 - 0.2),
-                work,
-            ));
+            steps.push(("unloading", Some(*turning), load, spread, depth * (rest.powf(0.45) * 1.2 - 0.2), work));
         }
     }
     write(path, &steps);

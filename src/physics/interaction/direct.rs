@@ -93,10 +93,14 @@ impl DirectSum {
         }
         if self.periodic {
             let line = self.table.get(target * self.positions.len()..(target + 1) * self.positions.len());
-            for (j, &source) in spots.index.iter().enumerate() {
-                let rest = line.map_or_else(|| self.pair_remainder(target, source), |line| line[source]);
-                values[j] += columns.load[j] * rest;
-                slopes[j] += columns.load_slope[j] * rest;
+            let rest = spots.index.iter().map(|&source| match line {
+                Some(line) => line[source],
+                None => self.pair_remainder(target, source),
+            });
+            let fields = values.iter_mut().zip(slopes.iter_mut()).zip(columns.load.iter().zip(&columns.load_slope));
+            for (((value, slope), (load, load_slope)), rest) in fields.zip(rest) {
+                *value += load * rest;
+                *slope += load_slope * rest;
             }
         }
         if let Ok(me) = spots.index.binary_search(&target) {

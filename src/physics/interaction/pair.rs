@@ -152,7 +152,7 @@ pub fn dimensionless_field(u: f64) -> (f64, f64) {
 }
 
 /// Sources that one pass takes together; the order of a sum depends on it, and on nothing of the machine.
-pub(crate) const LANES: usize = 16;
+pub(crate) const LANES: usize = 8;
 
 /// Sources of a displacement field as columns, so that one instruction takes several. The columns are filled up with spots far away from
 /// anything to whole passes; [`Self::len`] counts the true ones.

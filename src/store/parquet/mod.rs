@@ -26,11 +26,7 @@ pub fn write_table(path: &Path, frame: &Frame, keys: &[(&str, String)]) -> Resul
         path,
         |temporary| write::rows(temporary, frame, keys),
         |temporary| {
-            if &read::rows(temporary, frame.table())? == frame {
-                Ok(())
-            } else {
-                Err("what was read back is not what was written".into())
-            }
+            if &read::rows(temporary, frame.table())? == frame { Ok(()) } else { Err("what was read back is not what was written".into()) }
         },
     )
 }
@@ -40,9 +36,7 @@ pub fn write_table(path: &Path, frame: &Frame, keys: &[(&str, String)]) -> Resul
 /// # Errors
 /// If the file cannot be read, is damaged, or is another table.
 pub fn read_table(path: &Path, table: &'static Table) -> Result<Frame, StoreError> {
-    read::rows(path, table).map_err(|cause| {
-        StoreError::new(&format!("read the table {} from", table.name), path, cause)
-    })
+    read::rows(path, table).map_err(|cause| StoreError::new(&format!("read the table {} from", table.name), path, cause))
 }
 
 /// Reads one of the keys that were given to [`write_table`], if the file has it.
@@ -50,8 +44,7 @@ pub fn read_table(path: &Path, table: &'static Table) -> Result<Frame, StoreErro
 /// # Errors
 /// If the file cannot be read, is damaged, or is no table of this program.
 pub fn read_metadata(path: &Path, name: &str) -> Result<Option<String>, StoreError> {
-    read::metadata(path, name)
-        .map_err(|cause| StoreError::new("read the metadata of the table", path, cause))
+    read::metadata(path, name).map_err(|cause| StoreError::new("read the metadata of the table", path, cause))
 }
 
 /// Reads the key of the unit that wrote the table, if the file has one.

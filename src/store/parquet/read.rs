@@ -43,11 +43,7 @@ pub(super) fn rows(path: &Path, table: &'static Table) -> Result<Frame, Cause> {
         check_identity(table, &own_metadata(reader.metadata())?)?;
         check_columns(table, reader.schema())?;
         let claimed = check_size(reader.metadata())?;
-        let mut columns: Vec<ColumnData> = table
-            .columns
-            .iter()
-            .map(|column| empty(column.kind))
-            .collect();
+        let mut columns: Vec<ColumnData> = table.columns.iter().map(|column| empty(column.kind)).collect();
         for batch in reader.build()? {
             let batch = batch?;
             for (data, array) in columns.iter_mut().zip(batch.columns()) {
@@ -62,11 +58,7 @@ pub(super) fn rows(path: &Path, table: &'static Table) -> Result<Frame, Cause> {
         if i64::try_from(frame.row_count()).is_ok_and(|read| read == claimed) {
             Ok(frame)
         } else {
-            Err(format!(
-                "it has {} rows and says that it has {claimed}",
-                frame.row_count()
-            )
-            .into())
+            Err(format!("it has {} rows and says that it has {claimed}", frame.row_count()).into())
         }
     })
 }
@@ -77,9 +69,7 @@ fn own_metadata(metadata: &ParquetMetaData) -> Result<Value, Cause> {
         .key_value_metadata()
         .and_then(|all| all.iter().find(|entry| entry.key == METADATA_KEY))
         .and_then(|entry| entry.value.as_deref())
-        .ok_or_else(|| {
-            format!("it is no table of this program: it has no metadata key {METADATA_KEY:?}")
-        })?;
+        .ok_or_else(|| format!("it is no table of this program: it has no metadata key {METADATA_KEY:?}"))?;
     Ok(serde_json::from_str(text)?)
 }
 
@@ -92,14 +82,8 @@ fn check_identity(table: &Table, own: &Value) -> Result<(), Cause> {
     if version == Some(u64::from(table.version)) {
         return Ok(());
     }
-    let version = version.map_or("no version".to_owned(), |number| {
-        format!("version {number}")
-    });
-    Err(format!(
-        "it has {version} of this table, and this program reads version {}",
-        table.version
-    )
-    .into())
+    let version = version.map_or("no version".to_owned(), |number| format!("version {number}"));
+    Err(format!("it has {version} of this table, and this program reads version {}", table.version).into())
 }
 
 fn check_columns(table: &Table, found: &Schema) -> Result<(), Cause> {
@@ -109,30 +93,14 @@ fn check_columns(table: &Table, found: &Schema) -> Result<(), Cause> {
         };
         if *field.data_type() != data_type(column.kind) {
             let (name, kind) = (column.name, column.kind.word());
-            return Err(format!(
-                "its column {name:?} holds {}, not {kind}",
-                field.data_type()
-            )
-            .into());
+            return Err(format!("its column {name:?} holds {}, not {kind}", field.data_type()).into());
         }
     }
-    let strange = found
-        .fields()
-        .iter()
-        .find(|field| table.column(field.name()).is_none());
+    let strange = found.fields().iter().find(|field| table.column(field.name()).is_none());
     if let Some(field) = strange {
-        return Err(format!(
-            "it has a column {:?} that version {} does not know",
-            field.name(),
-            table.version
-        )
-        .into());
+        return Err(format!("it has a column {:?} that version {} does not know", field.name(), table.version).into());
     }
-    let in_order = table
-        .columns
-        .iter()
-        .zip(found.fields())
-        .all(|(column, field)| column.name == field.name());
+    let in_order = table.columns.iter().zip(found.fields()).all(|(column, field)| column.name == field.name());
     if in_order && found.fields().len() == table.columns.len() {
         Ok(())
     } else {
@@ -144,12 +112,8 @@ fn check_columns(table: &Table, found: &Schema) -> Result<(), Cause> {
 fn check_size(metadata: &ParquetMetaData) -> Result<i64, Cause> {
     let rows = metadata.file_metadata().num_rows();
     let groups = metadata.row_groups();
-    let bytes = groups
-        .iter()
-        .try_fold(0_i64, |sum, group| sum.checked_add(group.total_byte_size()));
-    if (0..=MOST_ROWS).contains(&rows)
-        && bytes.is_some_and(|bytes| (0..=MOST_BYTES).contains(&bytes))
-    {
+    let bytes = groups.iter().try_fold(0_i64, |sum, group| sum.checked_add(group.total_byte_size()));
+    if (0..=MOST_ROWS).contains(&rows) && bytes.is_some_and(|bytes| (0..=MOST_BYTES).contains(&bytes)) {
         Ok(rows)
     } else {
         Err(format!("it says that it has {rows} rows, which no such table has").into())
@@ -169,20 +133,10 @@ fn append(data: &mut ColumnData, array: &ArrayRef) -> Result<(), Cause> {
     let unexpected = || format!("a column holds {}", array.data_type());
     match data {
         ColumnData::F64(values) => {
-            values.extend(
-                array
-                    .as_primitive_opt::<Float64Type>()
-                    .ok_or_else(unexpected)?
-                    .iter(),
-            );
+            values.extend(array.as_primitive_opt::<Float64Type>().ok_or_else(unexpected)?.iter());
         }
         ColumnData::I64(values) => {
-            values.extend(
-                array
-                    .as_primitive_opt::<Int64Type>()
-                    .ok_or_else(unexpected)?
-                    .iter(),
-            );
+            values.extend(array.as_primitive_opt::<Int64Type>().ok_or_else(unexpected)?.iter());
         }
         ColumnData::Bool(values) => {
             values.extend(array.as_boolean_opt().ok_or_else(unexpected)?.iter());

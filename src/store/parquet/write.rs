@@ -28,16 +28,9 @@ fn arrow_schema(table: &Table) -> Arc<Schema> {
         .columns
         .iter()
         .map(|column| {
-            let known = [
-                ("unit", column.unit),
-                ("description", column.doc),
-                ("source", column.source),
-            ];
-            let known: BTreeMap<String, String> = known
-                .into_iter()
-                .filter(|(_, value)| !value.is_empty())
-                .map(|(key, value)| (key.to_owned(), value.to_owned()))
-                .collect();
+            let known = [("unit", column.unit), ("description", column.doc), ("source", column.source)];
+            let known: BTreeMap<String, String> =
+                known.into_iter().filter(|(_, value)| !value.is_empty()).map(|(key, value)| (key.to_owned(), value.to_owned())).collect();
             Field::new(column.name, data_type(column.kind), column.nullable).with_metadata(known)
         })
         .collect();
@@ -48,10 +41,7 @@ fn own_json(table: &Table, keys: &[(&str, String)]) -> Result<String, Cause> {
     let mut given = BTreeMap::new();
     for (name, value) in keys {
         if OWN_KEYS.contains(name) || given.insert(*name, value.as_str()).is_some() {
-            return Err(format!(
-                "the metadata key {name:?} was given twice or belongs to the schema"
-            )
-            .into());
+            return Err(format!("the metadata key {name:?} was given twice or belongs to the schema").into());
         }
     }
     Ok(metadata_json(table, &given))
@@ -64,15 +54,8 @@ fn writer_properties(table: &Table, keys: &[(&str, String)]) -> Result<WriterPro
         .set_compression(Compression::ZSTD(ZstdLevel::try_new(3)?))
         .set_max_row_group_row_count(Some(ROW_GROUP))
         .set_statistics_enabled(EnabledStatistics::Chunk)
-        .set_key_value_metadata(Some(vec![KeyValue::new(
-            METADATA_KEY.to_owned(),
-            own_json(table, keys)?,
-        )]));
-    for column in table
-        .columns
-        .iter()
-        .filter(|column| column.kind == Kind::F64)
-    {
+        .set_key_value_metadata(Some(vec![KeyValue::new(METADATA_KEY.to_owned(), own_json(table, keys)?)]));
+    for column in table.columns.iter().filter(|column| column.kind == Kind::F64) {
         // Real numbers hardly repeat: a dictionary of them is larger than they are.
         properties = properties.set_column_dictionary_enabled(ColumnPath::from(column.name), false);
     }
@@ -96,8 +79,6 @@ fn array(data: &ColumnData) -> ArrayRef {
         ColumnData::F64(values) => Arc::new(Float64Array::from(values.clone())),
         ColumnData::I64(values) => Arc::new(Int64Array::from(values.clone())),
         ColumnData::Bool(values) => Arc::new(BooleanArray::from(values.clone())),
-        ColumnData::Text(values) => {
-            Arc::new(values.iter().map(Option::as_deref).collect::<StringArray>())
-        }
+        ColumnData::Text(values) => Arc::new(values.iter().map(Option::as_deref).collect::<StringArray>()),
     }
 }

@@ -9,10 +9,7 @@ struct Lcg(u64);
 
 impl Lcg {
     fn below(&mut self, bound: usize) -> usize {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         usize::try_from(self.0 >> 33).unwrap() % bound.max(1)
     }
 }
@@ -68,11 +65,7 @@ const SPLICES: &[&str] = &[
 
 #[test]
 fn law_no_text_makes_the_reader_panic() {
-    let seeds: Vec<String> = accepted()
-        .into_iter()
-        .filter(|(name, _)| name != "ten_thousand.toml")
-        .map(|(_, text)| text)
-        .collect();
+    let seeds: Vec<String> = accepted().into_iter().filter(|(name, _)| name != "ten_thousand.toml").map(|(_, text)| text).collect();
     let mut random = Lcg(2021);
     let (mut good, mut bad) = (0, 0);
     for round in 0..6000 {
@@ -85,8 +78,7 @@ fn law_no_text_makes_the_reader_panic() {
                 1 => drop(text.splice(at..until, SPLICES[random.below(SPLICES.len())].chars())),
                 2 => drop(text.splice(at..at, SPLICES[random.below(SPLICES.len())].chars())),
                 _ => {
-                    let piece: Vec<char> =
-                        text[at..(at + random.below(60)).min(text.len())].to_vec();
+                    let piece: Vec<char> = text[at..(at + random.below(60)).min(text.len())].to_vec();
                     let to = random.below(text.len() + 1);
                     drop(text.splice(to..to, piece));
                 }
@@ -96,21 +88,14 @@ fn law_no_text_makes_the_reader_panic() {
         match Spec::parse(&text, "x.toml") {
             Ok(spec) => {
                 good += 1;
-                assert_eq!(
-                    Spec::parse(&spec.to_toml(), "again.toml").as_ref(),
-                    Ok(&spec),
-                    "{text}"
-                );
+                assert_eq!(Spec::parse(&spec.to_toml(), "again.toml").as_ref(), Ok(&spec), "{text}");
             }
             Err(errors) => {
                 bad += 1;
                 assert!(!errors.faults().is_empty(), "{text}");
                 let rendered = errors.to_string();
                 assert_eq!(errors_in(&rendered), errors.faults().len(), "{rendered}");
-                assert!(
-                    !rendered.contains('\u{1b}') && !rendered.contains('\0'),
-                    "{rendered:?}"
-                );
+                assert!(!rendered.contains('\u{1b}') && !rendered.contains('\0'), "{rendered:?}");
             }
         }
     }

@@ -1,9 +1,6 @@
 //! Bounds and words.
 
-use hysteron::model::{
-    Amplitudes, Boundary, Choice, Coalescence, Interaction, JumpIn, KeptContacts, Normalization,
-    Slip,
-};
+use hysteron::model::{Amplitudes, Boundary, Choice, Coalescence, Interaction, JumpIn, KeptContacts, Normalization, Slip};
 use hysteron::spec::{Spec, UNAVAILABLE};
 
 use super::refused;
@@ -13,108 +10,29 @@ use super::refused;
 fn val_bounds_are_where_the_message_says() {
     // Table, key, refused below, allowed, allowed, refused above; what else must be written for the two to be a case.
     let bounds = [
-        (
-            "surface",
-            "length_m",
-            "9.99e-10",
-            "1e-9",
-            "1",
-            "1.0000001",
-            "rms_height_m = 1e-12",
-        ),
-        (
-            "surface",
-            "rms_height_m",
-            "9.99e-13",
-            "1e-12",
-            "0.1",
-            "0.1000001",
-            "length_m = 1",
-        ),
+        ("surface", "length_m", "9.99e-10", "1e-9", "1", "1.0000001", "rms_height_m = 1e-12"),
+        ("surface", "rms_height_m", "9.99e-13", "1e-12", "0.1", "0.1000001", "length_m = 1"),
         ("surface", "hurst", "0.0", "1e-300", "1.0", "1.0000001", ""),
         ("surface", "magnification", "1", "2", "4096", "4097", ""),
-        (
-            "surface",
-            "magnification",
-            "1",
-            "2",
-            "8192",
-            "16385",
-            "points_per_shortest_wavelength = 4",
-        ),
-        (
-            "surface",
-            "points_per_shortest_wavelength",
-            "3",
-            "4",
-            "64",
-            "65",
-            "",
-        ),
-        (
-            "material",
-            "contact_modulus_pa",
-            "0.999",
-            "1",
-            "1e13",
-            "1.0001e13",
-            "",
-        ),
-        (
-            "material",
-            "work_of_adhesion_j_m2",
-            "0",
-            "1e-300",
-            "1e3",
-            "1000.001",
-            "",
-        ),
-        (
-            "material",
-            "interaction_range_m",
-            "9.99e-13",
-            "1e-12",
-            "1e-5",
-            "1.001e-5",
-            "",
-        ),
-        (
-            "cycle",
-            "max_load",
-            "[0.0]",
-            "[1e-300]",
-            "[0.2]",
-            "[0.2000001]",
-            "",
-        ),
-        (
-            "cycle",
-            "approach_step",
-            "9.99e-7",
-            "1e-6",
-            "1",
-            "1.0000001",
-            "",
-        ),
+        ("surface", "magnification", "1", "2", "8192", "16385", "points_per_shortest_wavelength = 4"),
+        ("surface", "points_per_shortest_wavelength", "3", "4", "64", "65", ""),
+        ("material", "contact_modulus_pa", "0.999", "1", "1e13", "1.0001e13", ""),
+        ("material", "work_of_adhesion_j_m2", "0", "1e-300", "1e3", "1000.001", ""),
+        ("material", "interaction_range_m", "9.99e-13", "1e-12", "1e-5", "1.001e-5", ""),
+        ("cycle", "max_load", "[0.0]", "[1e-300]", "[0.2]", "[0.2000001]", ""),
+        ("cycle", "approach_step", "9.99e-7", "1e-6", "1", "1.0000001", ""),
     ];
     for (table, key, below, least, greatest, above, also) in bounds {
         let text = |value: &str| format!("name = \"x\"\n[{table}]\n{also}\n{key} = {value}\n");
         for value in [least, greatest] {
-            assert_eq!(
-                Spec::parse(&text(value), "x")
-                    .map_err(|errors| errors.to_string())
-                    .map(|_| ()),
-                Ok(())
-            );
+            assert_eq!(Spec::parse(&text(value), "x").map_err(|errors| errors.to_string()).map(|_| ()), Ok(()));
         }
         for value in [below, above] {
             let rendered = refused(&text(value));
             assert!(rendered.contains("--> x.toml:4:"), "{rendered}");
         }
         // A sweep holds the same bounds.
-        let swept = format!(
-            "name = \"x\"\n[{table}]\n{also}\n[[sweep]]\nname = \"s\"\n{table}.{key} = [{below}]\n"
-        );
+        let swept = format!("name = \"x\"\n[{table}]\n{also}\n[[sweep]]\nname = \"s\"\n{table}.{key} = [{below}]\n");
         assert!(refused(&swept).contains("--> x.toml:6:"));
     }
 }
@@ -145,35 +63,21 @@ fn law_every_word_is_taken_unless_the_table_says_why_not() {
         assert!(all.contains(&(*key, *word)), "{key} has no word {word}");
     }
     for (key, word) in all {
-        let value = if key == "model.as_printed" {
-            format!("[\"{word}\"]")
-        } else {
-            format!("\"{word}\"")
-        };
+        let value = if key == "model.as_printed" { format!("[\"{word}\"]") } else { format!("\"{word}\"") };
         let text = format!("name = \"x\"\n{key} = {value}\n");
-        match UNAVAILABLE
-            .iter()
-            .find(|(path, known, _)| *path == key && *known == word)
-        {
+        match UNAVAILABLE.iter().find(|(path, known, _)| *path == key && *known == word) {
             None => {
                 let spec = Spec::parse(&text, "x.toml").unwrap_or_else(|errors| panic!("{errors}"));
                 let json = serde_json::to_value(&spec.cases[0].params).unwrap();
-                let found = json
-                    .pointer(&format!("/{}", key.replace('.', "/")))
-                    .unwrap();
+                let found = json.pointer(&format!("/{}", key.replace('.', "/"))).unwrap();
                 assert_eq!(found.to_string(), value, "{key}");
             }
             Some((_, _, reason)) => {
                 let rendered = refused(&text);
-                let sentence = format!(
-                    "`{key}` cannot be \"{word}\": {reason} is not available in this version"
-                );
+                let sentence = format!("`{key}` cannot be \"{word}\": {reason} is not available in this version");
                 assert!(rendered.contains(&sentence), "{rendered}");
                 assert!(rendered.contains("allowed now: "), "{rendered}");
-                let allowed = rendered
-                    .lines()
-                    .find(|line| line.contains("allowed now: "))
-                    .unwrap();
+                let allowed = rendered.lines().find(|line| line.contains("allowed now: ")).unwrap();
                 assert!(!allowed.contains(&format!("\"{word}\"")), "{rendered}");
             }
         }
@@ -185,29 +89,11 @@ fn law_slips_are_sorted_and_stand_once() {
     let can: Vec<&str> = Slip::WORDS
         .iter()
         .map(|(word, _)| *word)
-        .filter(|word| {
-            !UNAVAILABLE
-                .iter()
-                .any(|(key, known, _)| *key == "model.as_printed" && known == word)
-        })
+        .filter(|word| !UNAVAILABLE.iter().any(|(key, known, _)| *key == "model.as_printed" && known == word))
         .collect();
-    let quoted: Vec<String> = can
-        .iter()
-        .rev()
-        .chain(&can)
-        .map(|word| format!("\"{word}\""))
-        .collect();
+    let quoted: Vec<String> = can.iter().rev().chain(&can).map(|word| format!("\"{word}\"")).collect();
     let text = format!("name = \"x\"\nmodel.as_printed = [{}]\n", quoted.join(", "));
-    let slips = Spec::parse(&text, "x.toml")
-        .unwrap()
-        .cases
-        .remove(0)
-        .params
-        .model
-        .as_printed;
-    assert_eq!(
-        slips.iter().map(|slip| slip.word()).collect::<Vec<_>>(),
-        can
-    );
+    let slips = Spec::parse(&text, "x.toml").unwrap().cases.remove(0).params.model.as_printed;
+    assert_eq!(slips.iter().map(|slip| slip.word()).collect::<Vec<_>>(), can);
     assert!(slips.is_sorted());
 }

@@ -4,9 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use hysteron::schema::EVENTS;
-use hysteron::store::commit::{
-    TEMPORARY_PREFIX, TEMPORARY_SUFFIX, commit, commit_bytes, is_temporary,
-};
+use hysteron::store::commit::{TEMPORARY_PREFIX, TEMPORARY_SUFFIX, commit, commit_bytes, is_temporary};
 use hysteron::store::parquet::write_table;
 use tempfile::tempdir;
 
@@ -30,29 +28,12 @@ fn e2e_a_failure_at_any_point_leaves_what_was_there_and_nothing_else() {
     fs::write(&path, "before").unwrap();
     let half = |temporary: &Path| Ok(fs::write(temporary, "half")?);
     let ends = [
-        commit(
-            "write",
-            &path,
-            |_| Err("the writer gave up".into()),
-            |_| Ok(()),
-        ),
+        commit("write", &path, |_| Err("the writer gave up".into()), |_| Ok(())),
         commit("write", &path, half, |_| Err("the check failed".into())),
-        commit(
-            "write",
-            &path,
-            |temporary| Ok(fs::remove_file(temporary)?),
-            |_| Ok(()),
-        ),
+        commit("write", &path, |temporary| Ok(fs::remove_file(temporary)?), |_| Ok(())),
     ];
-    for (end, part) in
-        ends.into_iter()
-            .zip(["the writer gave up", "the check failed", "No such file"])
-    {
-        says(
-            &end.unwrap_err().to_string(),
-            &path,
-            &["cannot write", part],
-        );
+    for (end, part) in ends.into_iter().zip(["the writer gave up", "the check failed", "No such file"]) {
+        says(&end.unwrap_err().to_string(), &path, &["cannot write", part]);
     }
     assert_eq!(fs::read_to_string(&path).unwrap(), "before");
     assert_eq!(names(directory.path()), ["a.txt"]);
@@ -62,9 +43,7 @@ fn e2e_a_failure_at_any_point_leaves_what_was_there_and_nothing_else() {
 fn e2e_a_panic_of_the_writer_leaves_no_temporary_file() {
     let directory = tempdir().unwrap();
     let path = directory.path().join("a.txt");
-    let inside = std::panic::AssertUnwindSafe(|| {
-        commit("write", &path, |_| panic!("on purpose"), |_| Ok(()))
-    });
+    let inside = std::panic::AssertUnwindSafe(|| commit("write", &path, |_| panic!("on purpose"), |_| Ok(())));
     assert!(std::panic::catch_unwind(inside).is_err());
     assert!(names(directory.path()).is_empty());
 }
@@ -83,9 +62,7 @@ fn law_temporary_files_are_known_by_their_names() {
         Ok(())
     })
     .unwrap();
-    assert!(is_temporary(Path::new(&format!(
-        "a/{TEMPORARY_PREFIX}1{TEMPORARY_SUFFIX}"
-    ))));
+    assert!(is_temporary(Path::new(&format!("a/{TEMPORARY_PREFIX}1{TEMPORARY_SUFFIX}"))));
     assert!(!is_temporary(&path) && !is_temporary(Path::new("/")));
 }
 
@@ -94,10 +71,7 @@ fn law_temporary_files_are_known_by_their_names() {
 fn e2e_a_committed_file_is_an_ordinary_file() {
     use std::os::unix::fs::PermissionsExt;
     let directory = tempdir().unwrap();
-    let (plain, committed) = (
-        directory.path().join("plain"),
-        directory.path().join("committed"),
-    );
+    let (plain, committed) = (directory.path().join("plain"), directory.path().join("committed"));
     fs::write(&plain, "x").unwrap();
     commit_bytes("write", &committed, b"x").unwrap();
     let mode = |path| fs::metadata(path).unwrap().permissions().mode();
@@ -113,10 +87,7 @@ fn e2e_impossible_places_are_named() {
     let folder = directory.path().join("folder.parquet");
     fs::create_dir(&folder).unwrap();
     for (path, part) in [
-        (
-            directory.path().join("absent/events.parquet"),
-            "absent does not exist",
-        ),
+        (directory.path().join("absent/events.parquet"), "absent does not exist"),
         (file.join("events.parquet"), "file is not a directory"),
         (folder, "there is a directory of that name"),
         (Path::new("/").to_owned(), "it is not the path of a file"),
@@ -132,8 +103,6 @@ fn e2e_impossible_places_are_named() {
 #[cfg(target_os = "linux")]
 fn e2e_a_directory_that_takes_no_files_is_named() {
     let path = Path::new("/proc/events.parquet");
-    let message = write_table(path, &sample(&EVENTS, 3), &[])
-        .unwrap_err()
-        .to_string();
+    let message = write_table(path, &sample(&EVENTS, 3), &[]).unwrap_err().to_string();
     says(&message, path, &["cannot write the table events to"]);
 }

@@ -19,10 +19,7 @@ fn contacts() -> FrameBuilder {
 
 #[test]
 fn law_a_frame_gives_back_its_columns() {
-    let frame = contacts()
-        .f64("interaction_m", [2e-9, 3e-9])
-        .build()
-        .unwrap();
+    let frame = contacts().f64("interaction_m", [2e-9, 3e-9]).build().unwrap();
     assert_eq!(frame.row_count(), 2);
     assert_eq!(frame.table(), &CONTACTS);
     assert_eq!(frame.i64("step").unwrap(), [0, 7]);
@@ -34,52 +31,26 @@ fn law_a_frame_gives_back_its_columns() {
 
 #[test]
 fn law_a_frame_names_what_is_asked_wrongly() {
-    let frame = contacts()
-        .f64("interaction_m", [2e-9, 3e-9])
-        .build()
-        .unwrap();
+    let frame = contacts().f64("interaction_m", [2e-9, 3e-9]).build().unwrap();
     let message = |result: Result<(), hysteron::store::FrameError>| result.unwrap_err().to_string();
     assert_eq!(
         message(frame.f64("max_load").map(drop)),
         "the table contacts has missing values in the column \"max_load\", where none were expected"
     );
-    assert_eq!(
-        message(frame.i64("load_n").map(drop)),
-        "the table contacts holds f64 in the column \"load_n\", not i64"
-    );
-    assert!(
-        message(frame.bool("loud_n").map(drop))
-            .starts_with("the table contacts has no column \"loud_n\"; allowed: step, branch,")
-    );
+    assert_eq!(message(frame.i64("load_n").map(drop)), "the table contacts holds f64 in the column \"load_n\", not i64");
+    assert!(message(frame.bool("loud_n").map(drop)).starts_with("the table contacts has no column \"loud_n\"; allowed: step, branch,"));
 }
 
 #[test]
 fn law_a_frame_that_does_not_fit_is_refused() {
     let refusal = |builder: FrameBuilder| builder.build().unwrap_err().to_string();
     let full = || contacts().f64("interaction_m", [2e-9, 3e-9]);
-    assert_eq!(
-        refusal(contacts()),
-        "the table contacts was not given: interaction_m"
-    );
-    assert!(
-        refusal(full().f64("interaction", [1.0, 2.0]))
-            .contains("has no column \"interaction\"; allowed: step")
-    );
-    assert!(
-        refusal(full().f64("load_n", [1.0, 2.0])).contains("was given the column \"load_n\" twice")
-    );
-    assert!(
-        refusal(contacts().i64("interaction_m", [1, 2]))
-            .contains("holds f64 in the column \"interaction_m\", not i64")
-    );
-    assert!(
-        refusal(contacts().f64("interaction_m", [1.0]))
-            .contains("different length: 1 values in \"interaction_m\", 2 in \"step\"")
-    );
-    assert!(
-        refusal(contacts().f64("interaction_m", [Some(1.0), None]))
-            .contains("lacks a value in the column \"interaction_m\", row 1")
-    );
+    assert_eq!(refusal(contacts()), "the table contacts was not given: interaction_m");
+    assert!(refusal(full().f64("interaction", [1.0, 2.0])).contains("has no column \"interaction\"; allowed: step"));
+    assert!(refusal(full().f64("load_n", [1.0, 2.0])).contains("was given the column \"load_n\" twice"));
+    assert!(refusal(contacts().i64("interaction_m", [1, 2])).contains("holds f64 in the column \"interaction_m\", not i64"));
+    assert!(refusal(contacts().f64("interaction_m", [1.0])).contains("different length: 1 values in \"interaction_m\", 2 in \"step\""));
+    assert!(refusal(contacts().f64("interaction_m", [Some(1.0), None])).contains("lacks a value in the column \"interaction_m\", row 1"));
     for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let message = refusal(contacts().f64("interaction_m", [value, 1.0]));
         assert!(message.contains("column \"interaction_m\", row 0: every number must be finite, and a missing one is null"), "{message}");
@@ -92,16 +63,8 @@ fn law_a_frame_that_does_not_fit_is_refused() {
 fn law_columns_may_come_in_any_order() {
     for table in TABLES {
         let frame = sample(table, 9);
-        let columns: Vec<_> = frame
-            .columns()
-            .map(|(column, data)| (column.name, data.clone()))
-            .collect();
-        let reversed = columns
-            .into_iter()
-            .rev()
-            .fold(Frame::of(table), |builder, (name, data)| {
-                builder.with(name, data)
-            });
+        let columns: Vec<_> = frame.columns().map(|(column, data)| (column.name, data.clone())).collect();
+        let reversed = columns.into_iter().rev().fold(Frame::of(table), |builder, (name, data)| builder.with(name, data));
         assert_eq!(reversed.build().unwrap(), frame);
     }
 }

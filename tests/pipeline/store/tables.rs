@@ -18,9 +18,7 @@ use super::{names, sample, says};
 
 fn written(frame: &Frame) -> (TempDir, PathBuf) {
     let directory = tempdir().unwrap();
-    let path = directory
-        .path()
-        .join(format!("{}.parquet", frame.table().name));
+    let path = directory.path().join(format!("{}.parquet", frame.table().name));
     write_table(&path, frame, &[("key", "0123abcd".to_owned())]).unwrap();
     (directory, path)
 }
@@ -33,11 +31,7 @@ fn e2e_every_table_comes_back_bit_by_bit() {
             let (directory, path) = written(&frame);
             let back = read_table(&path, table).unwrap();
             assert_eq!(back, frame, "{}", table.name);
-            for column in table
-                .columns
-                .iter()
-                .filter(|column| frame.f64_or_null(column.name).is_ok())
-            {
+            for column in table.columns.iter().filter(|column| frame.f64_or_null(column.name).is_ok()) {
                 let bits = |frame: &Frame| -> Vec<_> {
                     let values = frame.f64_or_null(column.name).unwrap();
                     values.iter().map(|value| value.map(f64::to_bits)).collect()
@@ -55,14 +49,8 @@ fn e2e_a_table_of_several_row_groups_comes_back() {
     let at = |row: usize| row as f64 * 1e-9;
     let frame = Frame::of(&CONTACTS)
         .count("step", (0..rows).map(|row| row / 700))
-        .text(
-            "branch",
-            (0..rows).map(|row| if row < 9 { "loading" } else { "unloading" }),
-        )
-        .f64(
-            "max_load",
-            (0..rows).map(|row| (row % 2 == 0).then_some(0.0071)),
-        )
+        .text("branch", (0..rows).map(|row| if row < 9 { "loading" } else { "unloading" }))
+        .f64("max_load", (0..rows).map(|row| (row % 2 == 0).then_some(0.0071)))
         .count("asperity_id", (0..rows).map(|row| row % 700))
         .text("state", (0..rows).map(|_| "contact"))
         .f64("contact_radius_m", (0..rows).map(at))
@@ -82,12 +70,7 @@ fn e2e_equal_tables_are_equal_bytes() {
     for table in TABLES {
         let (_one, first) = written(&sample(table, 50));
         let (_other, second) = written(&sample(table, 50));
-        assert_eq!(
-            fs::read(first).unwrap(),
-            fs::read(second).unwrap(),
-            "{}",
-            table.name
-        );
+        assert_eq!(fs::read(first).unwrap(), fs::read(second).unwrap(), "{}", table.name);
     }
 }
 
@@ -106,13 +89,8 @@ fn e2e_units_meanings_and_sources_travel_with_the_file() {
         }
         let file = reader.metadata().file_metadata();
         assert_eq!(file.created_by(), Some("hysteron"));
-        let own = file
-            .key_value_metadata()
-            .unwrap()
-            .iter()
-            .find(|entry| entry.key == METADATA_KEY);
-        let own: serde_json::Value =
-            serde_json::from_str(own.unwrap().value.as_deref().unwrap()).unwrap();
+        let own = file.key_value_metadata().unwrap().iter().find(|entry| entry.key == METADATA_KEY);
+        let own: serde_json::Value = serde_json::from_str(own.unwrap().value.as_deref().unwrap()).unwrap();
         assert_eq!(own["table"], table.name);
         assert_eq!(own["key"], "0123abcd");
         assert_eq!(own["columns"][0]["description"], table.columns[0].doc);
@@ -127,16 +105,9 @@ fn law_a_metadata_key_is_given_once_and_is_not_the_schemas_own() {
     let path = directory.path().join("steps.parquet");
     let frame = sample(&STEPS, 2);
     for keys in [vec!["columns"], vec!["key", "key"], vec!["version"]] {
-        let keys: Vec<_> = keys
-            .into_iter()
-            .map(|name| (name, "x".to_owned()))
-            .collect();
+        let keys: Vec<_> = keys.into_iter().map(|name| (name, "x".to_owned())).collect();
         let message = write_table(&path, &frame, &keys).unwrap_err().to_string();
-        says(
-            &message,
-            &path,
-            &["the metadata key", "given twice or belongs to the schema"],
-        );
+        says(&message, &path, &["the metadata key", "given twice or belongs to the schema"]);
     }
     assert!(names(directory.path()).is_empty());
 }
@@ -150,11 +121,7 @@ fn e2e_every_truncation_is_refused() {
         fs::write(&short, &whole[..length]).unwrap();
         let message = read_table(&short, &CONTACTS).unwrap_err().to_string();
         says(&message, &short, &["cannot read the table contacts from"]);
-        assert!(
-            length % 16 != 0 || read_key(&short).is_err(),
-            "{length} of {}",
-            whole.len()
-        );
+        assert!(length % 16 != 0 || read_key(&short).is_err(), "{length} of {}", whole.len());
     }
 }
 
@@ -176,15 +143,8 @@ fn e2e_no_changed_byte_ends_the_program() {
 fn foreign(path: &Path, own: Option<String>, columns: Vec<(&str, ArrayRef)>) {
     let batch = RecordBatch::try_from_iter(columns).unwrap();
     let notes = own.map(|text| vec![KeyValue::new(METADATA_KEY.to_owned(), text)]);
-    let properties = WriterProperties::builder()
-        .set_key_value_metadata(notes)
-        .build();
-    let mut writer = ArrowWriter::try_new(
-        File::create(path).unwrap(),
-        batch.schema(),
-        Some(properties),
-    )
-    .unwrap();
+    let properties = WriterProperties::builder().set_key_value_metadata(notes).build();
+    let mut writer = ArrowWriter::try_new(File::create(path).unwrap(), batch.schema(), Some(properties)).unwrap();
     writer.write(&batch).unwrap();
     writer.close().unwrap();
 }
@@ -199,10 +159,7 @@ fn e2e_another_table_is_told_from_this_one() {
     says(
         &read_table(&path, &CURVES).unwrap_err().to_string(),
         &path,
-        &[
-            "cannot read the table curves from",
-            "it holds the table \"steps\"",
-        ],
+        &["cannot read the table curves from", "it holds the table \"steps\""],
     );
     let reals = || Arc::new(Float64Array::from(vec![1.0])) as ArrayRef;
     let whole = || Arc::new(Int64Array::from(vec![1])) as ArrayRef;
@@ -214,52 +171,27 @@ fn e2e_another_table_is_told_from_this_one() {
         error
     };
     let good = || Some(identity(&ASPERITIES, 1));
-    assert!(
-        message(None, vec![("x_m", reals())])
-            .contains("it is no table of this program: it has no metadata key \"hysteron\"")
-    );
+    assert!(message(None, vec![("x_m", reals())]).contains("it is no table of this program: it has no metadata key \"hysteron\""));
     assert!(message(Some("{".to_owned()), vec![("x_m", reals())]).contains("EOF"));
-    assert!(
-        message(Some("[]".to_owned()), vec![("x_m", reals())]).contains("it holds the table \"\"")
-    );
+    assert!(message(Some("[]".to_owned()), vec![("x_m", reals())]).contains("it holds the table \"\""));
     assert!(
         message(Some(identity(&ASPERITIES, 2)), vec![("x_m", reals())])
             .contains("it has version 2 of this table, and this program reads version 1")
     );
-    assert!(
-        message(good(), vec![("x_m", reals())]).contains("it lacks the column \"asperity_id\"")
-    );
-    assert!(
-        message(good(), vec![("asperity_id", reals())])
-            .contains("its column \"asperity_id\" holds Float64, not i64")
-    );
+    assert!(message(good(), vec![("x_m", reals())]).contains("it lacks the column \"asperity_id\""));
+    assert!(message(good(), vec![("asperity_id", reals())]).contains("its column \"asperity_id\" holds Float64, not i64"));
     let all = |last: Option<&'static str>| {
         let mut columns: Vec<(&str, ArrayRef)> = ASPERITIES
             .columns
             .iter()
             .filter(|column| column.name != "refined")
-            .map(|column| {
-                (
-                    column.name,
-                    if column.name.ends_with("_m") {
-                        reals()
-                    } else {
-                        whole()
-                    },
-                )
-            })
+            .map(|column| (column.name, if column.name.ends_with("_m") { reals() } else { whole() }))
             .collect();
-        columns.push((
-            "refined",
-            Arc::new(arrow::array::BooleanArray::from(vec![true])),
-        ));
+        columns.push(("refined", Arc::new(arrow::array::BooleanArray::from(vec![true]))));
         columns.extend(last.map(|name| (name, reals())));
         columns
     };
-    assert!(
-        message(good(), all(Some("mood")))
-            .contains("it has a column \"mood\" that version 1 does not know")
-    );
+    assert!(message(good(), all(Some("mood"))).contains("it has a column \"mood\" that version 1 does not know"));
     let mut swapped = all(None);
     swapped.swap(0, 1);
     assert!(message(good(), swapped).contains("its columns are repeated or in another order"));
@@ -275,17 +207,9 @@ fn e2e_another_table_is_told_from_this_one() {
 fn e2e_what_is_no_parquet_file_is_refused() {
     let directory = tempdir().unwrap();
     let path = directory.path().join("a.parquet");
-    says(
-        &read_table(&path, &STEPS).unwrap_err().to_string(),
-        &path,
-        &["No such file"],
-    );
+    says(&read_table(&path, &STEPS).unwrap_err().to_string(), &path, &["No such file"]);
     fs::write(&path, "not a table, whatever its name says").unwrap();
-    says(
-        &read_table(&path, &STEPS).unwrap_err().to_string(),
-        &path,
-        &["cannot read the table steps from"],
-    );
+    says(&read_table(&path, &STEPS).unwrap_err().to_string(), &path, &["cannot read the table steps from"]);
     let error = read_table(directory.path(), &STEPS).unwrap_err();
     says(&error.to_string(), directory.path(), &["directory"]);
 }
