@@ -1,7 +1,8 @@
 //! Whole cycles: where the loss has a closed form, where energy must balance, and what must not depend on the step.
 
 use crate::support::{
-    ALONE, DEFAULT, LENGTH, Loop, PAPER, RMS, asperity, close, loop_of, near, paper_cycle, paper_summits, run, turning, unloading,
+    ALONE, DEFAULT, LENGTH, Loop, PAPER, RMS, asperity, close, loop_of, near, paper_cycle, paper_spectrum, paper_summits, run, surface,
+    turning, unloading,
 };
 use hysteron::model::{Coalescence, Interaction, JumpIn, KeptContacts, Material};
 use hysteron::physics::PhysicsError;
@@ -10,6 +11,7 @@ use hysteron::physics::events::Kind;
 use hysteron::physics::jkr::Asperity;
 use hysteron::physics::state::{Problem, Rules};
 use hysteron::physics::summits::Summit;
+use hysteron::physics::theory::deng_kesari_loss;
 use std::f64::consts::PI;
 
 /// Σθ over every asperity that touched, with the given jump-in.
@@ -227,6 +229,22 @@ fn e2e_the_paper_without_interaction() {
         // Two means of six with that deviation each: three standard errors of their difference, other phases being drawn.
         near(["area", "loss", "pull-off"][k], ours, mean, 3.0 * deviation * (2.0f64 / 6.0).sqrt());
     }
+}
+
+#[test]
+fn e2e_the_paper_at_zeta_64_lies_where_an_independent_program_found_it() {
+    // Ranges over single realisations of a direct-sum Gauss–Seidel in another language: H = 0.8, ζ = 64, Wu, covered spots, F_max = 0.0071.
+    let cycle = paper_cycle(&paper_summits(64, 0), DEFAULT, &[0.0071], 0.02);
+    let sums = loop_of(&cycle, 0);
+    let unit = PAPER.contact_modulus_pa * LENGTH * LENGTH;
+    let within = |what: &str, value: f64, least: f64, most: f64| assert!((least..=most).contains(&value), "{what}: {value:e}");
+    within("area", sums.area / (LENGTH * LENGTH), 0.32, 0.39);
+    within("pull-off", sums.pull_off / unit, 0.5e-3, 1.2e-3);
+    within("loss", sums.loss / (unit * RMS), 1.5e-3, 2.2e-3);
+    within("contacts", turning(&cycle, 0).contact_count as f64, 270.0, 350.0);
+    let realised = surface(&paper_spectrum(0.8, 64), 0, 8).moments;
+    within("loss over Deng and Kesari's", sums.loss / deng_kesari_loss(&realised, &PAPER, sums.area).unwrap(), 1.4, 1.7);
+    assert!(cycle.steps.iter().all(|step| step.residual_m <= 1e-8 * RMS), "every step is an equilibrium");
 }
 
 #[test]
