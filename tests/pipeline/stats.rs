@@ -138,7 +138,7 @@ fn val_realization_from_work_and_loads() {
     close(row(&frame, "dissipated_j", 0).unwrap(), 5.0 * 1e-10 + 5.0 * 2e-10, 1e-12);
     close(row(&frame, "audit_gap", 0).unwrap(), 0.5, 1e-12);
     close(row(&frame, "covered_share", 0).unwrap(), 0.05, 1e-12);
-    close(row(&frame, "touching_share", 0).unwrap(), 5.0 / 19.0, 1e-12);
+    close(row(&frame, "touching_share", 0).unwrap(), 1.0 / 19.0, 1e-12);
     assert_eq!(frame.i64("held_count").unwrap()[0], 1);
     assert_eq!(frame.i64("step_count").unwrap(), [10, 9]);
     assert_eq!(frame.i64("unconverged_count").unwrap(), [1, 1]);

@@ -36,7 +36,7 @@ pub fn write(path: &Path, steps: &[Step]) {
         .count("uncover_count", zeros())
         .count("snap_count", zeros())
         .count("held_count", (0..steps.len()).map(|row| usize::from(row == 1)))
-        .count("touching_count", vec![5; steps.len()])
+        .count("touching_count", vec![1; steps.len()])
         .f64("dissipated_j", reals(|step| if step.0 == "loading" { 1e-10 } else { 2e-10 }))
         .f64("work_j", reals(|step| step.5))
         .f64("residual_m", vec![1e-15; steps.len()])

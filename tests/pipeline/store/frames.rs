@@ -50,7 +50,12 @@ fn law_a_frame_that_does_not_fit_is_refused() {
     assert!(refusal(full().f64("load_n", [1.0, 2.0])).contains("was given the column \"load_n\" twice"));
     assert!(refusal(contacts().i64("interaction_m", [1, 2])).contains("holds f64 in the column \"interaction_m\", not i64"));
     assert!(refusal(contacts().f64("interaction_m", [1.0])).contains("different length: 1 values in \"interaction_m\", 2 in \"step\""));
-    assert!(refusal(contacts().f64("interaction_m", [Some(1.0), None])).contains("lacks a value in the column \"interaction_m\", row 1"));
+    let whole = sample(&CONTACTS, 2);
+    let holed = whole.columns().fold(Frame::of(&CONTACTS), |builder, (column, data)| match column.name {
+        "load_n" => builder.f64("load_n", [Some(1.0), None]),
+        name => builder.with(name, data.clone()),
+    });
+    assert!(refusal(holed).contains("lacks a value in the column \"load_n\", row 1"));
     for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let message = refusal(contacts().f64("interaction_m", [value, 1.0]));
         assert!(message.contains("column \"interaction_m\", row 0: every number must be finite, and a missing one is null"), "{message}");
