@@ -14,7 +14,7 @@ const GENERATE: u32 = 1;
 const EXTRACT: u32 = 1;
 const CYCLE: u32 = 1;
 const AGGREGATE: u32 = 1;
-const REPORT: u32 = 1;
+const REPORT: u32 = 2;
 
 /// The stages, in their order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

@@ -119,7 +119,9 @@ pub fn plot_xy(plot: &XyPlot) -> String {
     scene.add(letter);
     add_notes(&mut scene, &frame, plot);
     key::add(&mut scene, &frame, plot);
-    let svg = SvgBackend.render_scene(&scene);
+    // A view box lets a page scale the picture; the backend gives a width and a height only.
+    let view_box = format!("<svg viewBox=\"0 0 {} {}\" ", scene.width, scene.height);
+    let svg = SvgBackend.render_scene(&scene).replacen("<svg ", &view_box, 1);
     // The library numbers its clip paths from zero in every picture: two pictures in one page would cut each other.
     markup::render(&svg.replace("kuva-clip-", &format!("{}-clip-", plot.stem)))
 }
