@@ -88,7 +88,8 @@ impl<'p> Path<'p> {
     /// A path from a state in equilibrium.
     pub(crate) fn new(problem: &'p Problem, state: State) -> Result<Self, PhysicsError> {
         let mut solver = Solver::new(problem);
-        let node = settled_node(&mut solver, state)?;
+        let free = solver.free_penetrations(&state);
+        let node = settled_node(&mut solver, state, free)?;
         let known = (node.free.clone(), node.state.approach_m);
         Ok(Self {
             solver,
@@ -274,10 +275,7 @@ impl<'p> Path<'p> {
         if let Some((&asperity, _)) = far {
             return Err(Unsettled { residual_m: f64::NAN, asperity });
         }
-        let totals = self.solver.problem.totals(&state);
-        let rates = self.solver.rates(&state);
-        let load_slope = load_slope(self.solver.problem, &state, &rates);
-        Ok(Node { state, totals, free: Vec::new(), rates, load_slope })
+        Ok(node(&mut self.solver, state, Vec::new()))
     }
 
     /// Makes `next` the present node, and adds the work of the load on the way. `reach` is the distance to the end of a spot's branch.
@@ -351,7 +349,8 @@ impl<'p> Path<'p> {
                 .max_by(|u, v| u.overshoot.total_cmp(&v.overshoot).then(v.change.asperity.cmp(&u.change.asperity)));
             let Some(next) = next else {
                 self.latch(&mut state, &free, &moved);
-                self.node = settled_node(&mut self.solver, state)?;
+                // Nothing has moved since these penetrations were taken.
+                self.node = settled_node(&mut self.solver, state, free)?;
                 self.known = (self.node.free.clone(), self.node.state.approach_m);
                 return Ok(());
             };
@@ -458,13 +457,17 @@ impl<'p> Path<'p> {
 }
 
 /// A node from an equilibrium: the solve only confirms it, and has its tangent.
-fn settled_node(solver: &mut Solver<'_>, mut state: State) -> Result<Node, PhysicsError> {
+fn settled_node(solver: &mut Solver<'_>, mut state: State, free: Vec<f64>) -> Result<Node, PhysicsError> {
     solver.newton(&mut state).map_err(|unsettled| stuck(&state, unsettled, solver.effort))?;
-    let free = solver.free_penetrations(&state);
+    Ok(node(solver, state, free))
+}
+
+/// The node of the equilibrium that was solved last.
+fn node(solver: &mut Solver<'_>, state: State, free: Vec<f64>) -> Node {
     let totals = solver.problem.totals(&state);
     let rates = solver.rates(&state);
     let load_slope = load_slope(solver.problem, &state, &rates);
-    Ok(Node { state, totals, free, rates, load_slope })
+    Node { state, totals, free, rates, load_slope }
 }
 
 fn load_slope(problem: &Problem, state: &State, rates: &[f64]) -> f64 {
