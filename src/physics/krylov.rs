@@ -7,9 +7,9 @@ use super::interaction::{Effort, Tangent};
 
 /// `(diag(diagonal) + tangent)·x`.
 fn apply(tangent: &Tangent, diagonal: &[f64], x: &[f64], y: &mut [f64]) {
-    let n = tangent.size;
-    for ((line, yi), (di, xi)) in tangent.matrix.chunks(n.max(1)).zip(y.iter_mut()).zip(diagonal.iter().zip(x)) {
-        *yi = di * xi + dot(line, x);
+    tangent.product(x, y);
+    for (yi, (di, xi)) in y.iter_mut().zip(diagonal.iter().zip(x)) {
+        *yi += di * xi;
     }
 }
 
@@ -41,7 +41,7 @@ pub(crate) fn gmres(tangent: &Tangent, diagonal: &[f64], rhs: &[f64], tolerance:
         .iter()
         .enumerate()
         .map(|(i, d)| {
-            let whole = d + tangent.matrix[i * n + i];
+            let whole = d + tangent.own(i);
             // A diagonal near zero belongs to a spot near the end of its branch: keep its sign, bound its inverse.
             if whole.abs() > 1e-3 { 1.0 / whole } else { 1e3f64.copysign(whole) }
         })

@@ -5,6 +5,7 @@ pub mod ewald;
 pub mod pair;
 
 pub use direct::DirectSum;
+use super::krylov::dot;
 use pair::SpotColumns;
 
 /// The spots in contact: which asperities they are, ascending, and their columns.
@@ -21,6 +22,20 @@ pub struct Spots {
 pub struct Tangent {
     pub(crate) size: usize,
     pub(crate) matrix: Vec<f64>,
+}
+
+impl Tangent {
+    /// `y = ∂ŵ/∂a · x`.
+    pub(crate) fn product(&self, x: &[f64], y: &mut [f64]) {
+        for (line, yi) in self.matrix.chunks(self.size.max(1)).zip(y.iter_mut()) {
+            *yi = dot(line, x);
+        }
+    }
+
+    /// `∂ŵ_i/∂a_i`: what a spot's own images and the background do to it.
+    pub(crate) fn own(&self, i: usize) -> f64 {
+        self.matrix[i * self.size + i]
+    }
 }
 
 /// What it cost: counted, never timed.
