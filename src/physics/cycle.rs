@@ -4,6 +4,7 @@
 
 use super::PhysicsError;
 use super::events::Kind;
+use super::interaction::Effort;
 use super::path::{Event, Path};
 use super::state::{Problem, State, Status};
 use crate::model::KeptContacts;
@@ -72,6 +73,8 @@ pub struct Step {
     pub work_j: f64,
     /// Worst residual \[m\].
     pub residual_m: f64,
+    /// Greatest residual that the whole contact had since the step before, before it was solved \[m\].
+    pub drift_m: f64,
     /// Newton and relaxation iterations since the step before.
     pub iterations: u64,
     /// Pair fields evaluated since the step before.
@@ -133,25 +136,29 @@ fn grid(problem: &Problem, settings: &Settings) -> f64 {
 fn load(problem: &Problem, settings: &Settings, cycle: &mut Cycle, progress: &dyn Fn(f64)) -> Result<(), PhysicsError> {
     let spacing = grid(problem, settings);
     let mut number = (problem.first_contact_m() / spacing).floor() - 1.0;
-    let mut path = Path::new(problem, State::free(problem, number * spacing))?;
+    let mut path = Path::new(problem, State::free(problem, number * spacing), 1.0)?;
     let mut recorder = Recorder::new(Branch::Loading, None);
-    recorder.record(problem, settings, &mut path, cycle, false);
+    recorder.record(problem, settings, &mut path, None, cycle, false);
     let last = settings.max_loads.last().copied().unwrap_or(0.0);
-    let mut turns = settings.max_loads.iter();
-    let mut turn = turns.next();
-    while let Some(max_load) = turn {
-        let target = (number + 1.0) * spacing;
-        if path.advance(target, Some(max_load * problem.load_unit_n()))? {
-            recorder.record(problem, settings, &mut path, cycle, true);
-            cycle.turning.push((cycle.steps.len() - 1, path.node.state.clone()));
-            turn = turns.next();
-        } else {
-            number += 1.0;
-            recorder.record(problem, settings, &mut path, cycle, false);
+    let mut turns = settings.max_loads.iter().peekable();
+    while turns.peek().is_some() {
+        path.stretch(None)?;
+        while let Some(max_load) = turns.next_if(|load| path.reaches(**load * problem.load_unit_n())) {
+            let turning = path.turning(max_load * problem.load_unit_n())?;
+            let end = turning.state().approach_m;
+            recorder.grid_points(problem, settings, &mut path, end, &mut number, cycle)?;
+            recorder.record(problem, settings, &mut path, Some(&turning), cycle, true);
+            cycle.turning.push((cycle.steps.len() - 1, turning.state().clone()));
         }
-        let reached = path.node.totals.load_n / problem.load_unit_n();
-        if target > 100.0 * problem.rms_height_m {
-            return Err(PhysicsError::LoadNotReached { wanted: *max_load, reached, approach_m: target });
+        let end = path.state().approach_m;
+        if turns.peek().is_some() {
+            recorder.grid_points(problem, settings, &mut path, end, &mut number, cycle)?;
+        }
+        let reached = path.totals.load_n / problem.load_unit_n();
+        if let Some(max_load) = turns.peek()
+            && end > 100.0 * problem.rms_height_m
+        {
+            return Err(PhysicsError::LoadNotReached { wanted: **max_load, reached, approach_m: end });
         }
         progress((reached / last).clamp(0.0, 1.0));
     }
@@ -168,17 +175,20 @@ fn unload(
     progress: &dyn Fn(f64),
 ) -> Result<(), PhysicsError> {
     let spacing = grid(problem, settings);
-    let start = state.approach_m;
-    let mut path = Path::new(problem, state)?;
+    let mut number = -(state.approach_m / spacing).ceil();
+    let mut path = Path::new(problem, state, -1.0)?;
     let mut recorder = Recorder::new(Branch::Unloading, Some(max_load));
-    recorder.record(problem, settings, &mut path, cycle, false);
-    let mut number = (start / spacing).ceil();
-    let full = path.node.totals.area_m2;
-    while !path.node.state.contacts.is_empty() {
-        number -= 1.0;
-        path.advance(number * spacing, None)?;
-        recorder.record(problem, settings, &mut path, cycle, false);
-        progress(1.0 - path.node.totals.area_m2 / full);
+    recorder.record(problem, settings, &mut path, None, cycle, false);
+    let full = path.totals.area_m2;
+    while !path.state().contacts.is_empty() {
+        path.stretch(None)?;
+        let end = path.state().approach_m;
+        recorder.grid_points(problem, settings, &mut path, end, &mut number, cycle)?;
+        progress(1.0 - path.totals.area_m2 / full);
+    }
+    if recorder.events_before < path.log.events.len() {
+        // The last spot has gone between two points of the grid.
+        recorder.record(problem, settings, &mut path, None, cycle, false);
     }
     Ok(())
 }
@@ -188,53 +198,95 @@ struct Recorder {
     branch: Branch,
     max_load: Option<f64>,
     events_before: usize,
-    iterations_before: u64,
-    pairs_before: u64,
+    ways_before: usize,
+    effort_before: Effort,
 }
 
 impl Recorder {
     fn new(branch: Branch, max_load: Option<f64>) -> Self {
-        Self { branch, max_load, events_before: 0, iterations_before: 0, pairs_before: 0 }
+        Self { branch, max_load, events_before: 0, ways_before: 0, effort_before: Effort::default() }
     }
 
-    fn record(&mut self, problem: &Problem, settings: &Settings, path: &mut Path<'_>, cycle: &mut Cycle, turning: bool) {
+    /// Records the points of the grid that the last stretch has passed, up to `end` \[m\]; `number` counts them in the sense of the path.
+    fn grid_points(
+        &mut self,
+        problem: &Problem,
+        settings: &Settings,
+        path: &mut Path<'_>,
+        end: f64,
+        number: &mut f64,
+        cycle: &mut Cycle,
+    ) -> Result<(), PhysicsError> {
+        let spacing = grid(problem, settings);
+        loop {
+            let next = (*number + 1.0) * path.sign * spacing;
+            if (next - end) * path.sign > 1e-9 * spacing {
+                return Ok(());
+            }
+            *number += 1.0;
+            if (next - path.state().approach_m).abs() <= 1e-9 * spacing {
+                self.record(problem, settings, path, None, cycle, false);
+            } else {
+                let excursion = path.excursion(next)?;
+                self.record(problem, settings, path, Some(&excursion), cycle, false);
+            }
+        }
+    }
+
+    /// Records the state of the path, or that of an excursion from it.
+    fn record(
+        &mut self,
+        problem: &Problem,
+        settings: &Settings,
+        path: &mut Path<'_>,
+        excursion: Option<&Path<'_>>,
+        cycle: &mut Cycle,
+        turning: bool,
+    ) {
         let number = cycle.steps.len();
-        let least_load_n = path.take_least_load();
-        let recent = &path.events[self.events_before..];
+        let at = excursion.unwrap_or(path);
+        let state = at.state();
+        let passed = |approach: f64| excursion.is_none() || (approach - state.approach_m) * path.sign <= 0.0;
+        let recent: Vec<Event> =
+            path.log.events[self.events_before..].iter().take_while(|event| passed(event.approach_m)).copied().collect();
+        let ways: Vec<f64> = path.log.ways[self.ways_before..].iter().take_while(|way| passed(way.approach)).map(|way| way.least).collect();
         let count = |kind: Kind| recent.iter().filter(|event| event.kind == kind).count();
-        let node = &path.node;
         let effort = path.effort();
+        let kinds = [Kind::JumpIn, Kind::JumpOff, Kind::Cover, Kind::Uncover, Kind::Snap];
         cycle.steps.push(Step {
             branch: self.branch,
             max_load: self.max_load,
-            approach_m: node.state.approach_m,
-            load_n: node.totals.load_n,
-            least_load_n,
-            area_m2: node.totals.area_m2,
-            area_union_m2: super::union::area(problem, &node.state),
-            contact_count: node.state.contacts.len(),
-            covered_count: node.state.covered_count(),
-            touching_count: touching(problem, &node.state),
-            held_count: path.held.len(),
-            event_counts: [Kind::JumpIn, Kind::JumpOff, Kind::Cover, Kind::Uncover, Kind::Snap].map(count),
+            approach_m: state.approach_m,
+            load_n: at.totals.load_n,
+            least_load_n: ways.iter().copied().fold(at.totals.load_n, f64::min),
+            area_m2: at.totals.area_m2,
+            area_union_m2: super::union::area(problem, state),
+            contact_count: state.contacts.len(),
+            covered_count: state.covered_count(),
+            touching_count: touching(problem, state),
+            held_count: at.held.len(),
+            event_counts: kinds.map(count),
             dissipated_j: recent.iter().map(|event| event.energy_lost_j).sum(),
-            work_j: path.work_j,
-            residual_m: node.state.residual_m,
-            iterations: effort.iterations - self.iterations_before,
-            pairs: effort.pairs - self.pairs_before,
+            work_j: at.log.work_j,
+            residual_m: state.residual_m,
+            drift_m: path.log.drift_m,
+            iterations: effort.iterations - self.effort_before.iterations,
+            pairs: effort.pairs - self.effort_before.pairs,
         });
-        cycle.events.extend(recent.iter().map(|event| (number, *event)));
-        self.events_before = path.events.len();
-        self.iterations_before = effort.iterations;
-        self.pairs_before = effort.pairs;
+        self.events_before += recent.len();
+        self.ways_before += ways.len();
+        self.effort_before = effort;
+        cycle.events.extend(recent.into_iter().map(|event| (number, event)));
         let keep = match settings.contacts {
             KeptContacts::All => true,
             KeptContacts::Turning => turning,
             KeptContacts::None => false,
         };
         if keep {
-            cycle.contacts.extend(spots_of(problem, &node.state, number));
+            cycle.contacts.extend(spots_of(problem, state, number));
         }
+        path.log.drift_m = 0.0;
+        path.held.clear();
     }
 }
 

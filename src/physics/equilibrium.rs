@@ -7,10 +7,11 @@
 //!   Euler steps that grow as the state comes to rest. On the way a spot whose own branch has ended leaves, and one that a greater spot
 //!   has reached is covered: the flow decides who, without reference to the step of the approach.
 
-use super::events::{Change, Kind};
-use super::interaction::{Effort, Spots, Tangent};
+use super::events::Change;
+use super::interaction::{Effort, Spots, Tangent, strand_sum};
 use super::krylov::{dot, gmres};
-use super::state::{Problem, State, Status};
+use super::patch::Trace;
+use super::state::{Problem, State};
 
 /// Greatest relative change of a radius in one iteration.
 const STRIDE: f64 = 0.2;
@@ -69,9 +70,23 @@ impl<'p> Solver<'p> {
         worst
     }
 
-    /// Newton's method on the radii, from those of `state`, at its approach, with its spots.
-    pub(crate) fn newton(&mut self, state: &mut State) -> Result<(), Unsettled> {
+    /// Newton's method on the radii, from those of `state`, at its approach, with its spots. Its first residual is returned \[m\]; where
+    /// that is above `limit`, nothing is tried.
+    pub(crate) fn newton(&mut self, state: &mut State, limit: f64) -> Result<f64, Unsettled> {
+        let first = self.evaluate(state);
+        if first.residual_m > limit || first.residual_m.is_nan() {
+            return Err(first);
+        }
+        let start: Vec<f64> = state.contacts.iter().map(|&i| state.radius[i]).collect();
         self.descend(state, 0.2, 20)
+            .or_else(|_| {
+                // Near the edge of a spot, where the slope of its field is infinite, only short steps descend.
+                for (&i, a) in state.contacts.iter().zip(&start) {
+                    state.radius[i] = *a;
+                }
+                self.descend(state, 1e-4, 60)
+            })
+            .map(|()| first.residual_m)
     }
 
     /// Newton's method, at most so many iterations, each step shortened down to the share `least` of itself until it descends.
@@ -125,7 +140,8 @@ impl<'p> Solver<'p> {
             if worst.residual_m.is_nan() {
                 return Err(worst);
             }
-            if let Some(change) = self.overtaken(state) {
+            let spots: Vec<_> = state.contacts.iter().zip(&self.residual).map(|(&i, r)| (i, state.radius[i], *r)).collect();
+            if let Some(change) = self.problem.overtaken(&spots) {
                 state.set(change.asperity, change.status(self.problem), 0.0);
                 changes.push(change);
                 if uncovered.is_some_and(|earlier| change.undoes(earlier)) {
@@ -165,71 +181,31 @@ impl<'p> Solver<'p> {
         Err(self.evaluate(state))
     }
 
-    /// Who leaves or is covered at this point of a relaxation: the spot furthest below the end of its branch and still shrinking, else
-    /// the spot furthest under a greater one.
-    fn overtaken(&self, state: &State) -> Option<Change> {
-        let problem = self.problem;
-        let leaving = state
-            .contacts
-            .iter()
-            .zip(&self.residual)
-            .filter(|(i, residual)| **residual < 0.0 && state.radius[**i] < problem.asperities[**i].jump_off_radius())
-            .min_by(|(i, _), (j, _)| {
-                let share = |k: usize| state.radius[k] / problem.asperities[k].jump_off_radius();
-                share(**i).total_cmp(&share(**j)).then(i.cmp(j))
-            })
-            .map(|(i, _)| Change { kind: Kind::JumpOff, asperity: *i, by: None });
-        leaving.or_else(|| {
-            problem
-                .triggers(state, &[])
-                .into_iter()
-                .filter(|t| t.change.kind == Kind::Cover && state.status[t.change.asperity] == Status::Contact)
-                .max_by(|s, t| s.overshoot.total_cmp(&t.overshoot).then(t.change.asperity.cmp(&s.change.asperity)))
-                .map(|t| t.change)
-        })
-    }
-
     /// `da_i/dδ` of the spots at the equilibrium that was evaluated last.
     pub(crate) fn rates(&mut self, state: &State) -> Vec<f64> {
         let ones = vec![1.0; state.contacts.len()];
         gmres(&self.tangent, &self.diagonal, &ones, 1e-8, PRODUCTS, &mut self.effort)
     }
 
-    /// Penetrations `D_i − ŵ_i` \[m\] of the free asperities, one to each asperity; not a number for the others.
-    pub(crate) fn free_penetrations(&mut self, state: &State) -> Vec<f64> {
-        let mut penetrations = vec![f64::NAN; self.problem.len()];
-        self.renew(state, &mut penetrations, |_| true);
-        penetrations
-    }
-
-    /// The same, anew only for the asperities that may have come to their jump-in since `known` was taken at the approach `from` \[m\].
-    /// Between events the half-space follows the surface, so no penetration grows by more than three times the way; the tenth of an rms
-    /// height is for the smaller displacements of a relaxation.
-    pub(crate) fn near_penetrations(&mut self, state: &State, known: &[f64], from: f64) -> Vec<f64> {
-        let margin = 3.0 * (state.approach_m - from).abs() + 0.1 * self.problem.rms_height_m;
-        let mut penetrations = known.to_vec();
-        let jump_in = &self.problem.jump_in;
-        self.renew(state, &mut penetrations, |i| known[i].is_nan() || known[i] > jump_in[i] - margin);
-        penetrations
-    }
-
-    fn renew(&mut self, state: &State, penetrations: &mut [f64], wanted: impl Fn(usize) -> bool) {
+    /// Penetrations `D_i − ŵ_i` of asperities that are not in contact, with their rates, in an equilibrium and its rates.
+    pub(crate) fn penetrations(&mut self, state: &State, rates: &[f64], wanted: &[usize]) -> Vec<Trace> {
         let problem = self.problem;
         problem.spots(state, &mut self.spots);
-        let free: Vec<usize> = (0..problem.len()).filter(|i| state.status[*i] == Status::Free && wanted(*i)).collect();
-        let mut displacement = Vec::new();
-        problem.field.displacements(&self.spots, &free, &mut displacement, &mut self.effort);
-        for (i, w) in free.into_iter().zip(displacement) {
-            penetrations[i] = state.approach_m + problem.heights[i] - w;
-        }
+        let (mut displacement, mut slopes) = (Vec::new(), Vec::new());
+        problem.field.approach(&self.spots, rates, wanted, &mut displacement, &mut slopes, &mut self.effort);
+        let at = state.approach_m;
+        let pairs = displacement.iter().zip(&slopes).zip(wanted);
+        pairs.map(|((w, slope), &i)| Trace { at, value: at + problem.heights[i] - w, rate: 1.0 - slope }).collect()
     }
 
-    /// Penetration of one asperity that is not in contact \[m\].
-    pub(crate) fn penetration_of(&mut self, state: &State, asperity: usize) -> f64 {
-        self.problem.spots(state, &mut self.spots);
-        let mut displacement = Vec::new();
-        self.problem.field.displacements(&self.spots, &[asperity], &mut displacement, &mut self.effort);
-        state.approach_m + self.problem.heights[asperity] - displacement.first().copied().unwrap_or(0.0)
+    /// Displacement at one asperity by spots of these radii \[m\].
+    pub(crate) fn displacement(&mut self, spots: &[(usize, f64)], asperity: usize) -> f64 {
+        self.problem.columns(spots.iter().copied(), &mut self.spots);
+        let columns = self.spots.columns.padded();
+        let (mut values, mut slopes) = (vec![0.0; columns], vec![0.0; columns]);
+        self.problem.field.row(&self.spots, asperity, &mut values, &mut slopes);
+        self.effort.pairs += spots.len() as u64;
+        strand_sum(&values[..spots.len()])
     }
 }
 

@@ -8,6 +8,7 @@
 //! releases; and where uncovering would only end in being covered again, or in the two changing parts, it is not done, and tried
 //! again when the spot has shrunk by another 3 %. Neither depends on the step of the approach.
 
+use super::front::Front;
 use super::state::{Problem, State, Status};
 use crate::model::Coalescence;
 
@@ -89,53 +90,58 @@ pub(crate) struct Trigger {
     pub(crate) overshoot: f64,
 }
 
+/// A spot as a relaxation has it: its asperity, its radius \[m\] and its residual \[m\].
+pub(crate) type Moving = (usize, f64, f64);
+
 impl Problem {
-    /// All changes that are due in an equilibrium. `free` holds the penetrations of the free asperities; if it is empty, jump-ins are
-    /// not looked for.
-    pub(crate) fn triggers(&self, state: &State, free: &[f64]) -> Vec<Trigger> {
+    /// Whether spots cover asperities.
+    pub(crate) fn covers(&self) -> bool {
+        self.rules.coalescence == Coalescence::Cover
+    }
+
+    /// All changes that are due among these asperities: of spots and of what they cover (`touched`), and of free ones (`free`), whose
+    /// penetrations are known at the present approach.
+    pub(crate) fn triggers(&self, front: &Front, touched: &[usize], free: &[usize]) -> Vec<Trigger> {
         let mut due = Vec::new();
         let mut add = |change: Change| {
-            let overshoot = self.overshoot(&change, state, free);
+            let overshoot = self.overshoot(&change, front);
             if overshoot >= 0.0 {
                 due.push(Trigger { change, overshoot });
             }
         };
-        for &i in &state.contacts {
-            add(Change { kind: Kind::JumpOff, asperity: i, by: None });
-        }
-        let covering = self.rules.coalescence == Coalescence::Cover;
-        let mut inside = vec![false; if covering { self.len() } else { 0 }];
-        if covering {
-            for &j in &state.contacts {
+        let state = &front.state;
+        let mut inside = Vec::new();
+        for &j in touched {
+            for i in front.riders(j) {
+                add(Change { kind: Kind::Uncover, asperity: i, by: Some(j) });
+            }
+            if state.status[j] != Status::Contact {
+                continue;
+            }
+            add(Change { kind: Kind::JumpOff, asperity: j, by: None });
+            if self.covers() {
                 self.neighbours.within(&self.positions, j, state.radius[j], |_, i| {
-                    if matches!(state.status[i], Status::Covered { .. }) || state.radius[i] >= state.radius[j] {
-                        return;
+                    if !matches!(state.status[i], Status::Covered { .. }) && state.radius[i] < state.radius[j] {
+                        inside.push(i);
+                        add(Change { kind: Kind::Cover, asperity: i, by: Some(j) });
                     }
-                    inside[i] = true;
-                    add(Change { kind: Kind::Cover, asperity: i, by: Some(j) });
                 });
             }
         }
-        for (i, status) in state.status.iter().enumerate() {
-            match *status {
-                Status::Free if !free.is_empty() && !inside.get(i).copied().unwrap_or(false) && !state.barred[i] => {
-                    add(Change { kind: Kind::JumpIn, asperity: i, by: None });
-                }
-                Status::Covered { by, .. } => add(Change { kind: Kind::Uncover, asperity: i, by: Some(by) }),
-                _ => {}
+        for &i in free {
+            if state.status[i] == Status::Free && !state.barred[i] && !inside.contains(&i) {
+                add(Change { kind: Kind::JumpIn, asperity: i, by: None });
             }
         }
         due
     }
 
     /// How far a state is beyond a change: negative before it.
-    pub(crate) fn overshoot(&self, change: &Change, state: &State, free: &[f64]) -> f64 {
-        let i = change.asperity;
+    pub(crate) fn overshoot(&self, change: &Change, front: &Front) -> f64 {
+        let (i, state) = (change.asperity, &front.state);
         match (change.kind, change.by) {
             (Kind::JumpOff, _) => 1.0 - state.radius[i] / self.asperities[i].jump_off_radius(),
-            (Kind::JumpIn, _) => {
-                (free.get(i).copied().unwrap_or(f64::NAN) - self.jump_in[i]) / self.asperities[i].jump_off_penetration().abs()
-            }
+            (Kind::JumpIn, _) => (front.traces[i].value - self.jump_in[i]) / self.asperities[i].jump_off_penetration().abs(),
             (Kind::Cover, Some(by)) => {
                 let distance = self.neighbours.distance(&self.positions[i], &self.positions[by]);
                 state.radius[by] / distance - 1.0
@@ -149,14 +155,53 @@ impl Problem {
         }
     }
 
-    /// The greatest spot over the centre of asperity `i`, with its distance.
-    pub(crate) fn covering(&self, state: &State, i: usize) -> Option<(usize, f64)> {
+    /// How late a change is, as a penetration \[m\].
+    pub(crate) fn lateness(&self, trigger: &Trigger, front: &Front) -> f64 {
+        let (i, state) = (trigger.change.asperity, &front.state);
+        let between = |j: usize, radius: f64| {
+            let asperity = &self.asperities[j];
+            (asperity.penetration(state.radius[j]) - asperity.penetration(radius)).abs()
+        };
+        match (trigger.change.kind, trigger.change.by, state.status[i]) {
+            (Kind::JumpOff, ..) => between(i, self.asperities[i].jump_off_radius()),
+            (Kind::Cover, Some(by), _) => between(by, self.neighbours.distance(&self.positions[i], &self.positions[by])),
+            (Kind::Uncover, _, Status::Covered { by, release_m }) if state.radius[by] > 0.0 => between(by, release_m),
+            (Kind::JumpIn, ..) => trigger.overshoot * self.asperities[i].jump_off_penetration().abs(),
+            _ => 0.0,
+        }
+    }
+
+    /// The greatest spot over the centre of asperity `i` other than `but`, with its distance.
+    pub(crate) fn covering(&self, state: &State, i: usize, but: Option<usize>) -> Option<(usize, f64)> {
         state
             .contacts
             .iter()
-            .filter(|j| **j != i)
+            .filter(|j| **j != i && Some(**j) != but)
             .map(|&j| (j, self.neighbours.distance(&self.positions[i], &self.positions[j])))
             .filter(|(j, r)| state.radius[*j] >= *r)
             .max_by(|(j, _), (k, _)| state.radius[*j].total_cmp(&state.radius[*k]).then(k.cmp(j)))
+    }
+
+    /// Who leaves or is covered at this point of a relaxation of `spots` (ascending): the spot furthest below the end of its branch and
+    /// still shrinking, else the spot furthest under a greater one.
+    pub(crate) fn overtaken(&self, spots: &[Moving]) -> Option<Change> {
+        let mut found: Option<(f64, Change)> = None;
+        for &(i, a, residual) in spots {
+            let overshoot = self.asperities[i].jump_off_radius() / a;
+            if residual < 0.0 && overshoot > 1.0 && found.is_none_or(|(most, _)| overshoot > most) {
+                found = Some((overshoot, Change { kind: Kind::JumpOff, asperity: i, by: None }));
+            }
+        }
+        if found.is_none() && self.covers() {
+            for &(j, a, _) in spots {
+                self.neighbours.within(&self.positions, j, a, |r, i| {
+                    let smaller = spots.binary_search_by_key(&i, |spot| spot.0).is_ok_and(|k| spots[k].1 < a);
+                    if smaller && found.is_none_or(|(most, _)| a / r > most) {
+                        found = Some((a / r, Change { kind: Kind::Cover, asperity: i, by: Some(j) }));
+                    }
+                });
+            }
+        }
+        found.map(|(_, change)| change)
     }
 }

@@ -2,13 +2,18 @@
 //!
 //! This room opens no file and knows no stage. SI units inside, everywhere; compression and approach are positive.
 
+mod avalanche;
 pub mod bandlimited;
 pub mod cycle;
+mod dense;
 pub mod equilibrium;
 pub mod events;
+mod front;
 pub mod interaction;
 pub mod jkr;
 mod krylov;
+mod locate;
+mod patch;
 pub mod path;
 pub mod spectrum;
 pub mod state;

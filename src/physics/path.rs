@@ -1,30 +1,48 @@
-//! The path of the contact under displacement control: from one equilibrium to the next, events located on the way.
+//! The path of the contact under displacement control, from event to event.
 //!
-//! Between events the state is a smooth function of the approach δ, and the load is integrated along it to high order. An event is located
-//! in δ to [`EVENT_TOLERANCE`] of the rms height, and taken with everything that follows it at that approach: an avalanche. Within an avalanche
-//! one change is taken at a time, the one that is most overdue, and the rest relaxes before the next is looked for. An asperity that
-//! left within an avalanche does not return within it.
+//! The path goes in stretches. At both ends of a stretch the whole contact is in equilibrium (residual 1e-10 of the rms height). Between them
+//! every event is found and solved in its own neighbourhood ([`super::patch`]), in the order of the approaches; what the rest of the contact
+//! does to a neighbourhood changes in proportion to the approach meanwhile. At the end the whole contact is solved: what its residual was
+//! before is the error of all this, and where it is more than [`DRIFT`] the stretch is done again in halves. Nothing of it depends on where
+//! the path is asked for its state: the steps of the approach are read off the path, and do not make it.
+//!
+//! An event takes everything with it that follows at the same approach: an avalanche. Within it one change is taken at a time, the most
+//! overdue, and the neighbourhood relaxes before the next is looked for. An asperity that left within an avalanche does not return within it.
 
 use super::PhysicsError;
 use super::equilibrium::{Solver, Unsettled};
-use super::events::{Change, Kind, Trigger};
+use super::events::{Change, Kind};
+use super::front::{Due, Front, least, work};
 use super::interaction::Effort;
+use super::patch::{Patch, Trace};
 use super::state::{Problem, State, Status, Totals};
 
-/// Tolerance of an event's approach, of the rms height.
+/// Greatest residual of the whole contact at the end of a stretch, before it is solved, and greatest lateness of an event; of the mean jump-off penetration.
+pub const DRIFT: f64 = 2e-3;
+
+/// Tolerance of an event's approach, of the rms height, where the order of two is decided or a fold is passed.
 pub const EVENT_TOLERANCE: f64 = 1e-6;
 
-/// A spot counts as at the end of its branch when its penetration is this close to it, of the jump-off penetration.
-const END_TOLERANCE: f64 = 2e-5;
+/// Tolerance of the load at a turning point, relative; and of its approach, of the rms height, where the load jumps over it.
+const LOAD_TOLERANCE: f64 = 1e-9;
+
+/// Longest stretch, of the mean jump-off penetration.
+const STRETCH: f64 = 0.05;
+
+/// Least scale of lengths along the path, of the rms height: below it adhesion does not set the scale.
+const LEAST_SCALE: f64 = 0.02;
+
+/// How often a stretch is halved before the whole contact is relaxed in place of it.
+const HALVINGS: u32 = 14;
+
+/// How often a stretch is halved before its drift is let pass.
+const PATIENCE: u32 = 6;
 
 /// Where uncovering an asperity is in vain, it is tried again when the covering spot has shrunk to this share of its radius.
 const RETRY: f64 = 0.97;
 
-/// Changes other than leaving that one asperity takes between two grid points of the approach.
-const FLIPS: u8 = 3;
-
-/// Tolerance of the load at a turning point, relative.
-const LOAD_TOLERANCE: f64 = 1e-9;
+/// Changes other than leaving that one asperity takes in one longest stretch.
+pub(crate) const FLIPS: u8 = 3;
 
 /// An event as it happened.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,454 +63,609 @@ pub struct Event {
     pub energy_lost_j: f64,
 }
 
-/// An equilibrium with all that the path needs to leave it.
-#[derive(Debug, Clone)]
-pub(crate) struct Node {
-    pub(crate) state: State,
-    pub(crate) totals: Totals,
-    free: Vec<f64>,
-    /// `da_i/dδ` of the spots in contact.
-    rates: Vec<f64>,
-    /// `dF/dδ` \[N/m\].
-    load_slope: f64,
+/// What a path has left behind.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Log {
+    pub(crate) events: Vec<Event>,
+    /// `∫F dΔ` since the branch began \[J\].
+    pub(crate) work_j: f64,
+    pub(crate) avalanches: u64,
+    /// The way of the load, from event to event.
+    pub(crate) ways: Vec<Way>,
+    /// Approach, load and its derivative where they were known last.
+    last: (f64, [f64; 2]),
+    /// Greatest residual before the whole contact was solved, since this was asked last \[m\].
+    pub(crate) drift_m: f64,
+}
+
+/// A part of the way of the load on which it does not jump.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Way {
+    /// Approach and load at its end \[m, N\].
+    pub(crate) approach: f64,
+    load: f64,
+    /// Least load on it \[N\].
+    pub(crate) least: f64,
+}
+
+/// Where a path was, to go back to.
+struct Mark {
+    front: Front,
+    events: usize,
+    ways: usize,
+    log: Log,
+    totals: Totals,
+    balance: f64,
+    flips: Vec<u8>,
+    held: Vec<usize>,
 }
 
 /// A state on its way.
 pub(crate) struct Path<'p> {
-    solver: Solver<'p>,
-    pub(crate) node: Node,
-    pub(crate) events: Vec<Event>,
-    /// `∫F dΔ` since the branch began \[J\].
-    pub(crate) work_j: f64,
-    avalanches: u64,
+    pub(crate) solver: Solver<'p>,
+    pub(crate) front: Front,
+    pub(crate) log: Log,
+    /// Sense of the path: 1 inwards, −1 outwards.
+    pub(crate) sign: f64,
+    /// Load and area at the end of the last stretch.
+    pub(crate) totals: Totals,
+    /// The longest stretch \[m\], and how often it is halved now.
+    longest: f64,
+    halvings: u32,
+    /// Spots in a neighbourhood.
+    pub(crate) spots: usize,
+    /// Spots next to the neighbourhood, and how far the avalanche at hand has moved the surface under them \[m\].
+    pub(crate) halo: Vec<usize>,
+    pub(crate) shift: f64,
+    /// Displacement under each spot since the whole contact was solved, as far as it does not know it yet \[m\]; what that will do to the
+    /// load \[N\], and the approach from which on it has been counted \[m\].
+    pub(crate) lags: Vec<f64>,
+    pub(crate) far: f64,
+    far_at: f64,
+    /// How many events there were when the whole contact was solved last, at which approach, and the balance `Π + Σ energy lost − work` then \[J\].
+    settled: usize,
+    settled_at: f64,
+    balance: f64,
+    /// Whether the balance is to be closed by what the last event has lost.
+    unbalanced: bool,
+    /// The neighbourhood of the event at hand; the radii that its spots had at the approach `reference` \[m\], before they went to the event.
+    pub(crate) patch: Patch,
+    pub(crate) origin: Vec<f64>,
+    pub(crate) reference: f64,
+    /// Traces to be put into the front: asperity, radius, trace.
+    pub(crate) pending: Vec<(usize, f64, Trace)>,
+    /// Asperities that the last avalanche has touched.
+    pub(crate) touched: Vec<usize>,
+    /// Events expected in this stretch.
+    pub(crate) queue: Vec<Due>,
     /// Penetrations of all free asperities as they were taken last, and the approach of that.
     known: (Vec<f64>, f64),
-    /// Least load since this was asked last, events included \[N\].
-    least_load_n: f64,
-    /// How often each asperity has been covered, uncovered or has jumped in since the last grid point of the approach.
-    flips: Vec<u8>,
-    /// Changes that were not taken since then because the asperity had flipped too often.
+    /// How often each asperity has been covered, uncovered or has jumped in within the present longest stretch.
+    pub(crate) flips: Vec<u8>,
+    /// Changes that were not taken since the last record because the asperity had flipped too often.
     pub(crate) held: Vec<usize>,
+    /// Before the last stretch.
+    mark: Option<Box<Mark>>,
 }
 
-/// The nearest approach on the way that is known not to be free of events: what is due there, or nothing where no equilibrium was found.
-struct Obstacle {
-    approach: f64,
-    due: Vec<Trigger>,
-    load: f64,
-    /// Halved each time that the event was sought before its place (the Illinois rule), since some events come on as a square root.
-    weight: f64,
+/// Why a stretch was not done.
+pub(crate) enum Halt {
+    /// It is too long, or leads to no equilibrium.
+    Unsettled(Unsettled),
+    /// It cannot be done at all.
+    Error(PhysicsError),
+}
+
+impl From<Unsettled> for Halt {
+    fn from(unsettled: Unsettled) -> Self {
+        Self::Unsettled(unsettled)
+    }
 }
 
 impl<'p> Path<'p> {
-    /// A path from a state in equilibrium.
-    pub(crate) fn new(problem: &'p Problem, state: State) -> Result<Self, PhysicsError> {
-        let mut solver = Solver::new(problem);
-        let free = solver.free_penetrations(&state);
-        let node = settled_node(&mut solver, state, free)?;
-        let known = (node.free.clone(), node.state.approach_m);
-        Ok(Self {
-            solver,
-            least_load_n: node.totals.load_n,
-            node,
-            known,
-            events: Vec::new(),
-            work_j: 0.0,
-            avalanches: 0,
-            flips: vec![0; problem.len()],
+    /// A path from a state in equilibrium, in the sense `sign`.
+    pub(crate) fn new(problem: &'p Problem, state: State, sign: f64) -> Result<Self, PhysicsError> {
+        let n = problem.len();
+        let off = problem.asperities.iter().map(|a| a.jump_off_penetration().abs()).sum::<f64>() / n as f64;
+        // Where adhesion is next to nothing, the roughness sets the scale.
+        let off = off.max(LEAST_SCALE * problem.rms_height_m);
+        // A power of two of a hundredth of the rms height, so that round steps of the approach end stretches.
+        let unit = 0.01 * problem.rms_height_m;
+        let longest = unit * (STRETCH * off / unit).log2().floor().exp2();
+        let approach = state.approach_m;
+        let mut path = Self {
+            solver: Solver::new(problem),
+            front: Front::new(problem, state),
+            log: Log::default(),
+            sign,
+            totals: Totals::default(),
+            longest,
+            halvings: 0,
+            spots: problem.spots_in_patch,
+            halo: Vec::new(),
+            shift: 0.0,
+            lags: vec![0.0; n],
+            far: 0.0,
+            far_at: approach,
+            settled: 0,
+            settled_at: approach,
+            balance: 0.0,
+            unbalanced: false,
+            patch: Patch::default(),
+            origin: Vec::new(),
+            reference: approach,
+            pending: Vec::new(),
+            touched: Vec::new(),
+            queue: Vec::new(),
+            known: (Vec::new(), approach),
+            flips: vec![0; n],
             held: Vec::new(),
-        })
+            mark: None,
+        };
+        match path.settle(approach, f64::INFINITY, true) {
+            Ok(()) => {}
+            Err(Halt::Unsettled(unsettled)) => return Err(path.stuck(unsettled)),
+            Err(Halt::Error(error)) => return Err(error),
+        }
+        path.log = Log { last: path.log.last, ..Log::default() };
+        Ok(path)
+    }
+
+    pub(crate) fn problem(&self) -> &'p Problem {
+        self.solver.problem
+    }
+
+    pub(crate) fn state(&self) -> &State {
+        &self.front.state
     }
 
     pub(crate) fn effort(&self) -> Effort {
         self.solver.effort
     }
 
-    /// Goes to the approach `target` \[m\], or to the load `stop` \[N\] if that is reached first on the way in; says whether it was.
-    pub(crate) fn advance(&mut self, target: f64, stop: Option<f64>) -> Result<bool, PhysicsError> {
-        let unit = self.solver.problem.rms_height_m;
-        let tolerance = EVENT_TOLERANCE * unit;
-        let mut obstacle: Option<Obstacle> = None;
-        let mut tries = 0;
-        self.flips.fill(0);
-        self.held.clear();
+    /// The mean jump-off penetration, rounded down \[m\].
+    fn scale(&self) -> f64 {
+        self.longest / STRETCH
+    }
+
+    /// Error that is let pass at the end of a stretch \[m\].
+    fn drift_limit(&self) -> f64 {
+        DRIFT * self.scale()
+    }
+
+    /// Goes on by one stretch, but not beyond `bound` \[m\].
+    pub(crate) fn stretch(&mut self, bound: Option<f64>) -> Result<(), PhysicsError> {
+        let mut mark = Mark {
+            front: self.front.clone(),
+            events: self.log.events.len(),
+            ways: self.log.ways.len(),
+            log: self.log.clone_without_events(),
+            totals: self.totals,
+            balance: self.balance,
+            flips: self.flips.clone(),
+            held: self.held.clone(),
+        };
         loop {
-            let here = self.node.state.approach_m;
-            if stop.is_some_and(|stop| self.node.totals.load_n >= stop * (1.0 - LOAD_TOLERANCE)) {
-                return Ok(true);
+            let here = self.front.state.approach_m;
+            let size = self.longest * 0.5f64.powi(self.halvings as i32);
+            let mut target = next_multiple(here, size, self.sign);
+            if bound.is_some_and(|bound| (target - bound) * self.sign > -1e-9 * size) {
+                target = bound.unwrap_or(target);
             }
-            if here == target {
-                return Ok(false);
-            }
-            let sign = (target - here).signum();
-            let end = self.branch_end(sign);
-            if let Some((asperity, _, true)) = end {
-                self.avalanche(Change { kind: Kind::JumpOff, asperity, by: None })?;
-                (obstacle, tries) = (None, 0);
-                continue;
-            }
-            let mut trial = match &obstacle {
-                None => target,
-                Some(known) => self.aim(known, stop, tolerance, tries),
-            };
-            let reach = end.map_or(f64::INFINITY, |(_, reach, _)| reach);
-            if 0.98 * reach < (trial - here).abs() {
-                trial = here + sign * 0.98 * reach;
-            }
-            tries += 1;
-            match self.attempt(trial) {
-                Err(_) if (trial - here).abs() <= tolerance => {
-                    self.collapse(trial)?;
-                    (obstacle, tries) = (None, 0);
+            let done = self.events_and_settle(target);
+            match done {
+                Ok(()) => {
+                    // Whether the next longer stretch may be tried: it must end on a multiple of itself.
+                    if self.halvings > 0 && next_multiple(target, size, self.sign) == next_multiple(target, 2.0 * size, self.sign) {
+                        self.halvings -= 1;
+                    }
+                    if is_multiple(target, self.longest) {
+                        self.flips.fill(0);
+                    }
+                    self.mark = Some(Box::new(mark));
+                    return Ok(());
                 }
-                Err(_) => obstacle = Some(Obstacle { approach: trial, due: Vec::new(), load: f64::NAN, weight: 1.0 }),
-                Ok(mut next) => {
-                    next.free = if trial == target {
-                        self.solver.free_penetrations(&next.state)
+                Err(Halt::Error(error)) => return Err(error),
+                Err(Halt::Unsettled(unsettled)) => {
+                    let mut uncovered: Vec<usize> =
+                        self.log.events[mark.events..].iter().filter(|e| e.kind == Kind::Uncover).map(|e| e.asperity).collect();
+                    self.back_to(&mark);
+                    uncovered.retain(|i| matches!(self.front.state.status[*i], Status::Covered { .. }));
+                    if self.halvings >= PATIENCE && !uncovered.is_empty() {
+                        // At the edge of a spot the field is steepest, and there may be no equilibrium with an asperity there: it stays
+                        // covered for a while, and is counted.
+                        for i in uncovered {
+                            self.keep_covered(i);
+                            self.held.push(i);
+                        }
+                        mark.front.clone_from(&self.front);
+                        mark.held.clone_from(&self.held);
+                        self.halvings = 0;
+                    } else if self.halvings >= HALVINGS {
+                        self.collapse(target).map_err(|_| self.stuck(unsettled))?;
+                        self.halvings = HALVINGS / 2;
+                        self.mark = Some(Box::new(mark));
+                        return Ok(());
                     } else {
-                        self.solver.near_penetrations(&next.state, &self.known.0, self.known.1)
-                    };
-                    let due = self.due(&next.state, &next.free);
-                    let over = stop.is_some_and(|stop| next.totals.load_n > stop * (1.0 + LOAD_TOLERANCE));
-                    if due.is_empty() && !over {
-                        if trial == target {
-                            self.known = (next.free.clone(), trial);
-                        }
-                        self.accept(next, reach);
-                        match &mut obstacle {
-                            Some(known) if (known.approach - trial) * sign > 0.0 => known.weight *= 0.5,
-                            _ => (obstacle, tries) = (None, 0),
-                        }
-                        continue;
-                    }
-                    let known = Obstacle { approach: trial, due, load: next.totals.load_n, weight: 1.0 };
-                    let first = self.first_due(&known, stop);
-                    let close =
-                        (trial - first.map_or(here, |(approach, _)| approach)).abs() <= tolerance || (trial - here).abs() <= tolerance;
-                    match first {
-                        // A load that jumps at an event is met by the event; one that cannot be met more closely is met.
-                        Some((_, None)) if tries >= 60 => self.accept(next, reach),
-                        Some((_, Some(change))) if close => {
-                            self.accept(next, reach);
-                            self.avalanche(change)?;
-                            (obstacle, tries) = (None, 0);
-                        }
-                        _ => obstacle = Some(known),
+                        self.halvings += 1;
                     }
                 }
             }
         }
     }
 
-    /// The changes that are due, but for those of asperities that flip to and fro: such an asperity is held as it is up to the next grid
-    /// point, and counted. Two spots that each grow when the other is there, and withdraw when it is not, have no rest otherwise.
-    fn due(&mut self, state: &State, free: &[f64]) -> Vec<Trigger> {
-        let mut due = self.solver.problem.triggers(state, free);
-        due.retain(|trigger| {
-            let i = trigger.change.asperity;
-            let orphan = matches!(state.status[i], Status::Covered { by, .. } if state.radius[by] == 0.0);
-            let taken = trigger.change.kind == Kind::JumpOff || orphan || self.flips[i] < FLIPS;
-            if !taken && !self.held.contains(&i) {
-                self.held.push(i);
-            }
-            taken
-        });
-        due
-    }
-
-    /// The first obstacle's approach by linear interpolation from here: of a change, or (nothing) of the load at which to stop.
-    fn first_due(&self, known: &Obstacle, stop: Option<f64>) -> Option<(f64, Option<Change>)> {
-        let here = self.node.state.approach_m;
-        let across = |before: f64, beyond: f64| {
-            let share = if before < 0.0 && beyond > 0.0 { -before / (known.weight * beyond - before) } else { 0.0 };
-            here + share * (known.approach - here)
-        };
-        let changes = known.due.iter().map(|trigger| {
-            let before = self.solver.problem.overshoot(&trigger.change, &self.node.state, &self.node.free);
-            (across(before, trigger.overshoot), Some(trigger.change))
-        });
-        let load = stop.filter(|stop| known.load > *stop).map(|stop| (across(self.node.totals.load_n - stop, known.load - stop), None));
-        changes.chain(load).min_by(|(a, _), (b, _)| (a - here).abs().total_cmp(&(b - here).abs()))
-    }
-
-    /// Where to look next before an obstacle.
-    fn aim(&self, known: &Obstacle, stop: Option<f64>, tolerance: f64, tries: u32) -> f64 {
-        let here = self.node.state.approach_m;
-        let gap = (known.approach - here).abs();
-        let middle = 0.5 * (here + known.approach);
-        match self.first_due(known, stop) {
-            // At a load itself.
-            Some((approach, None)) if tries < 60 => approach,
-            _ if gap <= tolerance => known.approach,
-            // A little beyond a change, so that it is found due.
-            Some((approach, Some(_))) if tries < 12 || tries.is_multiple_of(2) => {
-                let aimed = approach + (0.3 * tolerance).copysign(known.approach - here);
-                if (aimed - here).abs() < gap { aimed } else { middle }
-            }
-            _ => middle,
-        }
-    }
-
-    /// The spot whose own branch ends first on the way: who, in what distance, and whether it is there.
-    fn branch_end(&self, sign: f64) -> Option<(usize, f64, bool)> {
-        let node = &self.node;
-        node.state
-            .contacts
-            .iter()
-            .zip(&node.rates)
-            .filter_map(|(&i, rate)| {
-                let asperity = &self.solver.problem.asperities[i];
-                let a = node.state.radius[i];
-                let sinking = -sign * asperity.penetration_slope(a) * rate;
-                let left = asperity.penetration(a) - asperity.jump_off_penetration();
-                // Nor can it be told closer than equilibria are solved for.
-                let there = left <= END_TOLERANCE * asperity.jump_off_penetration().abs() + 4.0 * self.solver.problem.tolerance_m();
-                (sinking > 0.0).then(|| (i, left / sinking, there))
-            })
-            .min_by(|u, v| v.2.cmp(&u.2).then(u.1.total_cmp(&v.1)).then(u.0.cmp(&v.0)))
-    }
-
-    /// The equilibrium with the same spots at another approach, if there is one near.
-    fn attempt(&mut self, approach: f64) -> Result<Node, Unsettled> {
-        let change = approach - self.node.state.approach_m;
-        let mut state = self.node.state.clone();
-        state.approach_m = approach;
-        let mut guess = Vec::with_capacity(state.contacts.len());
-        for (&i, rate) in state.contacts.iter().zip(&self.node.rates) {
-            let asperity = &self.solver.problem.asperities[i];
-            let a = state.radius[i];
-            // Penetration is nearly linear in the approach, up to the end of the branch; the radius is not.
-            let ahead = asperity.penetration(a) + asperity.penetration_slope(a) * rate * change;
-            let end = asperity.jump_off_radius() * (1.0 + 1e-4);
-            guess.push(asperity.radius_at_penetration(ahead).unwrap_or(end).clamp(0.05 * a, 4.0 * a));
-        }
-        for (&i, radius) in self.node.state.contacts.iter().zip(&guess) {
-            state.radius[i] = *radius;
-        }
-        self.solver.newton(&mut state)?;
-        // A state far from where the path led is another path's.
-        let far = state.contacts.iter().zip(&guess).find(|(i, radius)| (state.radius[**i] - **radius).abs() > 0.3 * **radius);
-        if let Some((&asperity, _)) = far {
-            return Err(Unsettled { residual_m: f64::NAN, asperity });
-        }
-        Ok(node(&mut self.solver, state, Vec::new()))
-    }
-
-    /// Makes `next` the present node, and adds the work of the load on the way. `reach` is the distance to the end of a spot's branch.
-    fn accept(&mut self, mut next: Node, reach: f64) {
-        let distance = next.state.approach_m - self.node.state.approach_m;
-        let (f0, f1) = (self.node.totals.load_n, next.totals.load_n);
-        let (s0, s1) = (self.node.load_slope, next.load_slope);
-        let span = distance.abs();
-        self.work_j += if reach < 4.0 * span {
-            // Near the end of a branch the load is smooth in s = sqrt(distance to the end), not in δ: cubic Hermite in s.
-            let (u0, u1) = (reach.sqrt(), (reach - span).max(0.0).sqrt());
-            let sign = distance.signum();
-            // dF/ds = dF/dδ · dδ/ds, and s falls as the path goes on.
-            let (t0, t1) = (-2.0 * u0 * sign * s0, -2.0 * u1 * sign * s1);
-            sign * hermite_moment(u1, u0, f1, f0, t1, t0)
-        } else {
-            distance * 0.5 * (f0 + f1) + distance * distance / 12.0 * (s0 - s1)
-        };
-        if next.state.barred.contains(&true) {
-            for i in 0..next.state.barred.len() {
-                next.state.barred[i] &= next.free[i] >= self.solver.problem.jump_in[i];
-            }
-        }
-        self.least_load_n = self.least_load_n.min(f1);
-        self.node = next;
-    }
-
-    /// The least load since this was asked last, events included \[N\]: the load is a saw-tooth whose teeth stand at the events.
-    pub(crate) fn take_least_load(&mut self) -> f64 {
-        std::mem::replace(&mut self.least_load_n, self.node.totals.load_n)
-    }
-
-    /// Beyond a fold: the spots relax to the next equilibrium at `approach`.
-    fn collapse(&mut self, approach: f64) -> Result<(), PhysicsError> {
-        let mut state = self.node.state.clone();
-        self.work_j += self.node.totals.load_n * (approach - state.approach_m);
-        state.approach_m = approach;
-        let before = self.node.totals;
-        let changes = self.solver.relax(&mut state, None).map_err(|unsettled| stuck(&state, unsettled, self.solver.effort))?;
-        self.avalanches += 1;
-        let moved = if changes.is_empty() {
-            let most = |i: &usize| (state.radius[*i] / self.node.state.radius[*i] - 1.0).abs();
-            let asperity = state.contacts.iter().copied().max_by(|i, j| most(i).total_cmp(&most(j))).unwrap_or(0);
-            vec![Change { kind: Kind::Snap, asperity, by: None }]
-        } else {
-            changes
-        };
-        let after = self.record(&moved, before, &state);
-        self.follow(state, after, moved)
-    }
-
-    /// An event at the present approach, and all that follows it there.
-    fn avalanche(&mut self, first: Change) -> Result<(), PhysicsError> {
-        self.avalanches += 1;
-        let mut state = self.node.state.clone();
-        let free = std::mem::take(&mut self.node.free);
-        let mut moved = Vec::new();
-        let after = self.take(&mut state, first, &free, self.node.totals, &mut moved)?;
-        self.follow(state, after, moved)
-    }
-
-    /// Takes what is due until nothing is.
-    fn follow(&mut self, mut state: State, mut totals: Totals, mut moved: Vec<Change>) -> Result<(), PhysicsError> {
-        let bound = 10 * self.solver.problem.len() + 100;
-        loop {
-            let free = self.solver.free_penetrations(&state);
-            let next = self
-                .due(&state, &free)
-                .into_iter()
-                .filter(|trigger| !trigger.change.returns(&moved, &state))
-                .max_by(|u, v| u.overshoot.total_cmp(&v.overshoot).then(v.change.asperity.cmp(&u.change.asperity)));
-            let Some(next) = next else {
-                self.latch(&mut state, &free, &moved);
-                // Nothing has moved since these penetrations were taken.
-                self.node = settled_node(&mut self.solver, state, free)?;
-                self.known = (self.node.free.clone(), self.node.state.approach_m);
+    /// Takes the events on the way to `target` and solves the whole contact there; on the way too, after events that move all of it.
+    fn events_and_settle(&mut self, target: f64) -> Result<(), Halt> {
+        let limit = self.drift_limit();
+        while let Some(approach) = self.events_until(target, limit)? {
+            // What such an event does to the rest is no error: the neighbourhood has relaxed first, and now the rest does.
+            self.settle(approach, f64::INFINITY, true)?;
+            if approach == target {
                 return Ok(());
-            };
-            if moved.len() > bound {
-                let asperity = next.change.asperity;
-                return Err(PhysicsError::EndlessAvalanche { approach_m: state.approach_m, events: moved.len(), asperity });
             }
-            totals = self.take(&mut state, next.change, &free, totals, &mut moved)?;
         }
+        self.settle(target, if self.halvings < PATIENCE { limit } else { f64::INFINITY }, false)
     }
 
-    /// Applies one change, lets the rest relax and writes both down, and adds them to what has `moved` in this avalanche.
-    fn take(
-        &mut self,
-        state: &mut State,
-        change: Change,
-        free: &[f64],
-        before: Totals,
-        moved: &mut Vec<Change>,
-    ) -> Result<Totals, PhysicsError> {
-        let i = change.asperity;
-        let asperity = self.solver.problem.asperities[i];
-        let covered = state.clone();
-        match change.kind {
-            Kind::JumpIn => {
-                let landed = free.get(i).and_then(|d| asperity.radius_at_penetration(*d)).unwrap_or(asperity.jump_off_radius());
-                state.set(i, Status::Contact, landed);
+    /// Another path, from before the last stretch to `target` within it.
+    pub(crate) fn excursion(&self, target: f64) -> Result<Self, PhysicsError> {
+        let mark = self.mark.as_deref();
+        let mut other = Self {
+            solver: Solver::new(self.problem()),
+            front: mark.map_or_else(|| self.front.clone(), |m| m.front.clone()),
+            log: mark.map_or_else(|| self.log.clone_without_events(), |m| m.log.clone_without_events()),
+            totals: mark.map_or(self.totals, |m| m.totals),
+            halvings: 0,
+            spots: self.problem().spots_in_patch,
+            halo: Vec::new(),
+            shift: 0.0,
+            lags: vec![0.0; self.problem().len()],
+            far: 0.0,
+            far_at: mark.map_or(self.far_at, |m| m.front.state.approach_m),
+            settled: 0,
+            settled_at: mark.map_or(self.settled_at, |m| m.front.state.approach_m),
+            balance: mark.map_or(self.balance, |m| m.balance),
+            unbalanced: false,
+            patch: Patch::default(),
+            origin: Vec::new(),
+            pending: Vec::new(),
+            touched: Vec::new(),
+            queue: Vec::new(),
+            known: (Vec::new(), self.known.1),
+            flips: mark.map_or_else(|| self.flips.clone(), |m| m.flips.clone()),
+            held: Vec::new(),
+            mark: None,
+            ..*self
+        };
+        while other.front.state.approach_m != target {
+            other.stretch(Some(target))?;
+        }
+        Ok(other)
+    }
+
+    /// The part of the last stretch on which the load comes to `load` \[N\]: where it begins and where it ends, and what is missing at both.
+    fn crossing(&self, load: f64) -> Option<([f64; 2], [f64; 2])> {
+        let mark = self.mark.as_deref()?;
+        let mut before = (mark.front.state.approach_m, mark.totals.load_n);
+        for way in &self.log.ways[mark.ways..] {
+            if way.load >= load {
+                return Some(([before.0, way.approach], [before.1 - load, way.load - load]));
             }
-            Kind::Uncover => {
-                if let Some((by, release_m)) = self.solver.problem.covering(state, i) {
-                    // Another spot covers it as well: nothing moves.
-                    state.set(i, Status::Covered { by, release_m }, 0.0);
-                    return Ok(before);
+            before = (way.approach, way.load);
+        }
+        None
+    }
+
+    /// Whether the load was as great on the last stretch \[N\].
+    pub(crate) fn reaches(&self, load: f64) -> bool {
+        self.crossing(load).is_some()
+    }
+
+    /// The first state of the last stretch that has this load \[N\], on an excursion.
+    pub(crate) fn turning(&self, load: f64) -> Result<Self, PhysicsError> {
+        let Some(([mut low, mut high], [mut under, mut over])) = self.crossing(load) else {
+            return self.excursion(self.front.state.approach_m);
+        };
+        let mut side = 0.0;
+        for _ in 0..100 {
+            let share = under / (under - over);
+            let middle = low + share.clamp(0.01, 0.99) * (high - low);
+            let trial = self.excursion(middle)?;
+            let off = trial.totals.load_n - load;
+            // A load that jumps over what is wanted is met where it jumps.
+            let closed = (high - low).abs() <= LOAD_TOLERANCE * self.problem().rms_height_m;
+            if off.abs() <= LOAD_TOLERANCE * load.abs() || (closed && off >= 0.0) {
+                return Ok(trial);
+            }
+            if closed {
+                return self.excursion(high);
+            }
+            if off < 0.0 {
+                (low, under) = (middle, off);
+                if side < 0.0 {
+                    over *= 0.5;
                 }
-                match asperity.radius_at_penetration(self.solver.penetration_of(state, i)) {
-                    Some(radius) => state.set(i, Status::Contact, radius),
-                    None => state.set(i, Status::Free, 0.0),
+                side = -1.0;
+            } else {
+                (high, over) = (middle, off);
+                if side > 0.0 {
+                    under *= 0.5;
+                }
+                side = 1.0;
+            }
+        }
+        self.excursion(high)
+    }
+
+    /// Puts an uncovering off until the covering spot has shrunk further.
+    pub(crate) fn keep_covered(&mut self, i: usize) {
+        if let Status::Covered { by, release_m } = self.front.state.status[i] {
+            let radius = self.front.state.radius[by].min(release_m);
+            self.front.state.status[i] = Status::Covered { by, release_m: RETRY * radius };
+        }
+    }
+
+    fn back_to(&mut self, mark: &Mark) {
+        self.front.clone_from(&mark.front);
+        self.log.events.truncate(mark.events);
+        self.log.ways.truncate(mark.ways);
+        let (events, ways) = (std::mem::take(&mut self.log.events), std::mem::take(&mut self.log.ways));
+        self.log = Log { events, ways, ..mark.log.clone_without_events() };
+        self.totals = mark.totals;
+        (self.far, self.far_at, self.settled) = (0.0, mark.front.state.approach_m, mark.events);
+        (self.settled_at, self.balance, self.unbalanced) = (mark.front.state.approach_m, mark.balance, false);
+        self.lags.fill(0.0);
+        self.flips.clone_from(&mark.flips);
+        self.held.clone_from(&mark.held);
+    }
+
+    /// Solves the whole contact at an approach, from where the traces lead; takes the events that are overdue there.
+    ///
+    /// After an event the whole contact jumps here (`jump`): up to here it went on as its traces had it. Otherwise the difference grew on
+    /// the way.
+    fn settle(&mut self, target: f64, limit: f64, jump: bool) -> Result<(), Halt> {
+        let problem = self.problem();
+        let mut rounds = 0;
+        loop {
+            self.front.state.approach_m = target;
+            for k in 0..self.front.state.contacts.len() {
+                let i = self.front.state.contacts[k];
+                let trace = self.front.traces[i];
+                if trace.at != target && !trace.value.is_nan() {
+                    let asperity = &problem.asperities[i];
+                    self.front.state.radius[i] = asperity.radius_at_penetration(trace.ahead(target)).unwrap_or(asperity.jump_off_radius());
                 }
             }
-            Kind::JumpOff | Kind::Cover | Kind::Snap => state.set(i, change.status(self.solver.problem), 0.0),
-        }
-        let start = state.clone();
-        let mut taken = vec![change];
-        if self.solver.newton(state).is_err() {
-            *state = start;
-            let uncovered = (change.kind == Kind::Uncover).then_some(&change);
-            taken.extend(self.solver.relax(state, uncovered).map_err(|unsettled| stuck(state, unsettled, self.solver.effort))?);
-        }
-        if change.kind == Kind::Uncover && self.vain(&change, &taken, state) {
-            *state = covered;
-            if let Status::Covered { by, .. } = state.status[i] {
-                state.status[i] = Status::Covered { by, release_m: RETRY * state.radius[by] };
+            let whole = limit.is_infinite() && rounds == 0;
+            let start = if whole { self.front.state.radius.clone() } else { Vec::new() };
+            match self.solver.newton(&mut self.front.state, limit) {
+                Ok(drift) => self.log.drift_m = self.log.drift_m.max(drift),
+                Err(_) if whole => {
+                    self.front.state.radius = start;
+                    self.relax_whole(target)?;
+                }
+                Err(unsettled) => return Err(unsettled.into()),
             }
-            return Ok(before);
+            let lagged = self.log.events.len() > self.settled;
+            self.retrace(jump || rounds > 0 || lagged);
+            self.settled = self.log.events.len();
+            let due = self.overdue();
+            let Some(first) = due.first() else { break };
+            if due.iter().any(|(late, _)| *late > limit) {
+                return Err(Unsettled { residual_m: first.0, asperity: first.1.asperity }.into());
+            }
+            rounds += 1;
+            if rounds > 10 * problem.len() + 100 {
+                let asperity = first.1.asperity;
+                return Err(Halt::Error(PhysicsError::EndlessAvalanche { approach_m: target, events: rounds, asperity }));
+            }
+            let change = first.1;
+            self.log.avalanches += 1;
+            self.avalanche(change)?;
         }
-        let after = self.record(&taken, before, state);
-        moved.extend(taken);
-        Ok(after)
+        Ok(())
     }
 
-    /// Whether an uncovering was in vain: it was undone on the way, or is to be undone at once.
-    fn vain(&self, uncovering: &Change, taken: &[Change], state: &State) -> bool {
-        taken.iter().any(|change| change.undoes(uncovering))
-            || self.solver.problem.triggers(state, &[]).iter().any(|trigger| trigger.change.undoes(uncovering))
+    /// Counts the work of the load that spots will have when they know what events have done, up to an approach; from there on it is
+    /// greater by `more` \[N\].
+    pub(crate) fn far_load(&mut self, approach: f64, more: f64) {
+        self.log.work_j += self.far * (approach - self.far_at);
+        self.far_at = approach;
+        self.far += more;
+        self.front.add_load(more);
     }
 
-    /// Writes changes down that led from `before` to `state`; the energy of changes within one relaxation is the first one's.
-    fn record(&mut self, moved: &[Change], before: Totals, state: &State) -> Totals {
-        let after = self.solver.problem.totals(state);
-        self.least_load_n = self.least_load_n.min(after.load_n);
+    /// New traces of everything after the whole contact was solved; the work since the old ones is counted.
+    fn retrace(&mut self, jump: bool) {
+        let problem = self.problem();
+        let target = self.front.state.approach_m;
+        let rates = self.solver.rates(&self.front.state);
+        if jump {
+            self.log.pass(target, self.front.load(target));
+        }
+        self.far_load(target, 0.0);
+        self.far = 0.0;
+        let mut relaxed = 0.0;
+        for (k, rate) in rates.iter().enumerate() {
+            let i = self.front.state.contacts[k];
+            let (asperity, a) = (&problem.asperities[i], self.front.state.radius[i]);
+            let trace = Trace { at: target, value: asperity.penetration(a), rate: asperity.penetration_slope(a) * rate };
+            let from = self.front.traces[i];
+            if !from.value.is_nan() {
+                let to = if jump { Trace { at: target, value: from.ahead(target), ..from } } else { trace };
+                self.log.work_j += work(problem, i, from, to);
+                if self.lags[i] != 0.0 {
+                    let expected = asperity.radius_at_penetration(to.value).unwrap_or(asperity.jump_off_radius());
+                    relaxed += 0.5 * self.lags[i] * (asperity.load(a) - asperity.load(expected));
+                }
+            }
+            self.lags[i] = 0.0;
+            self.front.traces[i] = trace;
+        }
+        // Events were charged with the potential of a contact whose other spots keep their loads; those have answered now.
+        if let Some(event) = self.log.events[self.settled..].last_mut() {
+            event.energy_lost_j += relaxed;
+        }
+        self.front.recount(problem);
+        self.totals = problem.totals(&self.front.state);
+        let lost: f64 = self.log.events[self.settled..].iter().map(|event| event.energy_lost_j).sum();
+        let balance = self.totals.potential_j + lost - self.log.work_j;
+        if std::mem::take(&mut self.unbalanced)
+            && let Some(event) = self.log.events[self.settled..].last_mut()
+        {
+            event.energy_lost_j += self.balance - balance;
+        }
+        // From one solution of the whole to the next only the events since are counted.
+        self.balance = self.totals.potential_j - self.log.work_j;
+        self.settled_at = target;
+        if jump {
+            self.log.restart(target, self.front.load(target));
+        } else {
+            self.log.pass(target, self.front.load(target));
+        }
+        self.watch(&rates);
+    }
+
+    /// New traces of the free asperities that may come to their jump-in. All penetrations are taken anew now and then; between, only those
+    /// that can have come near: the half-space follows the surface, so that none grows by more than three times the way, and an event
+    /// next to an asperity moves it by no more than a jump-off penetration.
+    fn watch(&mut self, rates: &[f64]) {
+        let problem = self.problem();
+        let (target, unit) = (self.front.state.approach_m, problem.rms_height_m);
+        let way = (target - self.known.1).abs();
+        let block = |approach: f64| (approach / (0.05 * unit)).floor();
+        let anew = self.known.0.is_empty() || block(target) != block(self.known.1);
+        let margin = 3.0 * way + self.scale();
+        let status = &self.front.state.status;
+        let free = |i: &usize| status[*i] == Status::Free;
+        let wanted: Vec<usize> = (0..problem.len())
+            .filter(free)
+            .filter(|i| anew || self.known.0[*i].is_nan() || self.known.0[*i] > problem.jump_in[*i] - margin)
+            .collect();
+        let found = self.solver.penetrations(&self.front.state, rates, &wanted);
+        if anew {
+            self.known = (vec![f64::NAN; problem.len()], target);
+        }
+        let span = 3.0 * self.longest + self.scale();
+        self.front.candidates.clear();
+        for (i, trace) in wanted.into_iter().zip(found) {
+            if anew {
+                self.known.0[i] = trace.value;
+            }
+            self.front.traces[i] = trace;
+            self.front.state.barred[i] &= trace.value >= problem.jump_in[i];
+            if trace.value > problem.jump_in[i] - span {
+                self.front.candidates.push(i);
+            }
+        }
+    }
+
+    /// Changes that are due in the whole contact, the most overdue first, each with its lateness \[m\].
+    fn overdue(&mut self) -> Vec<(f64, Change)> {
+        let problem = self.problem();
+        let contacts = self.front.state.contacts.clone();
+        let candidates = self.front.candidates.clone();
+        let due = self.due(&contacts, &candidates);
+        let mut late: Vec<(f64, Change)> = due.iter().map(|t| (problem.lateness(t, &self.front), t.change)).collect();
+        late.sort_by(|u, v| v.0.total_cmp(&u.0).then(u.1.asperity.cmp(&v.1.asperity)));
+        late
+    }
+
+    /// Where Newton's method finds no equilibrium of the whole contact, it relaxes. What leaves or is covered on the way belongs to the avalanche at
+    /// hand; what the potential loses is charged to it when the whole is counted.
+    fn relax_whole(&mut self, target: f64) -> Result<(), Halt> {
+        let before = self.front.totals(target);
+        let changes = self.solver.relax(&mut self.front.state, None)?;
+        for change in &changes {
+            self.front.traces[change.asperity].value = f64::NAN;
+            self.front.set(change.asperity, change.status(self.problem()), 0.0);
+        }
+        let after = self.problem().totals(&self.front.state);
+        self.record(&changes, target, before, after, 0.0);
+        self.unbalanced = true;
+        Ok(())
+    }
+
+    /// Last resort: the whole contact goes to `target` and relaxes there.
+    fn collapse(&mut self, target: f64) -> Result<(), Halt> {
+        self.log.avalanches += 1;
+        let events = self.log.events.len();
+        let asperity = self.front.state.contacts.first().copied().unwrap_or(0);
+        self.front.state.approach_m = target;
+        for (i, a) in self.front.radii(self.problem(), target) {
+            self.front.state.radius[i] = a;
+        }
+        self.relax_whole(target)?;
+        if self.log.events.len() == events {
+            let (before, after) = (self.totals, self.problem().totals(&self.front.state));
+            self.record(&[Change { kind: Kind::Snap, asperity, by: None }], target, before, after, 0.0);
+        }
+        for i in self.front.state.contacts.clone() {
+            self.front.traces[i].value = f64::NAN;
+        }
+        self.log.work_j += self.totals.load_n * (target - self.settled_at);
+        self.settle(target, f64::INFINITY, true)
+    }
+
+    /// Writes changes of one relaxation down; its energy is the first one's.
+    pub(crate) fn record(&mut self, moved: &[Change], approach: f64, before: Totals, after: Totals, energy: f64) {
         for (k, change) in moved.iter().enumerate() {
             if change.kind != Kind::JumpOff {
                 self.flips[change.asperity] = self.flips[change.asperity].saturating_add(1);
             }
-            let from = if k == 0 { before } else { after };
-            self.events.push(Event {
+            let (from, energy_lost_j) = if k == 0 { (before, energy) } else { (after, 0.0) };
+            self.log.events.push(Event {
                 kind: change.kind,
                 asperity: change.asperity,
-                approach_m: state.approach_m,
-                avalanche: self.avalanches,
+                approach_m: approach,
+                avalanche: self.log.avalanches,
                 before: from,
                 after,
-                energy_lost_j: from.potential_j - after.potential_j,
+                energy_lost_j,
             });
         }
-        after
     }
 
-    /// At the end of an avalanche: what would undo a change at once is remembered, and waits for the path to go on (see [`super::events`]).
-    fn latch(&self, state: &mut State, free: &[f64], moved: &[Change]) {
-        let problem = self.solver.problem;
-        for change in moved {
-            let i = change.asperity;
-            match state.status[i] {
-                Status::Covered { by, release_m } => {
-                    let radius = state.radius[by];
-                    state.status[i] = Status::Covered { by, release_m: release_m.min(radius) };
-                }
-                Status::Contact => {}
-                Status::Free => state.barred[i] = free[i] >= problem.jump_in[i],
-            }
+    pub(crate) fn stuck(&self, unsettled: Unsettled) -> PhysicsError {
+        PhysicsError::NoEquilibrium {
+            approach_m: self.front.state.approach_m,
+            residual_m: unsettled.residual_m,
+            asperity: unsettled.asperity,
+            iterations: self.solver.effort.iterations,
         }
     }
 }
 
-/// A node from an equilibrium: the solve only confirms it, and has its tangent.
-fn settled_node(solver: &mut Solver<'_>, mut state: State, free: Vec<f64>) -> Result<Node, PhysicsError> {
-    solver.newton(&mut state).map_err(|unsettled| stuck(&state, unsettled, solver.effort))?;
-    Ok(node(solver, state, free))
-}
-
-/// The node of the equilibrium that was solved last.
-fn node(solver: &mut Solver<'_>, state: State, free: Vec<f64>) -> Node {
-    let totals = solver.problem.totals(&state);
-    let rates = solver.rates(&state);
-    let load_slope = load_slope(solver.problem, &state, &rates);
-    Node { state, totals, free, rates, load_slope }
-}
-
-fn load_slope(problem: &Problem, state: &State, rates: &[f64]) -> f64 {
-    state.contacts.iter().zip(rates).map(|(&i, rate)| problem.asperities[i].load_slope(state.radius[i]) * rate).sum()
-}
-
-/// `∫ F(s) 2s ds` over `[u, v]`, of the cubic with values `f` and slopes `t` at the ends: exact by three-point Gauss quadrature.
-fn hermite_moment(u: f64, v: f64, fu: f64, fv: f64, tu: f64, tv: f64) -> f64 {
-    let width = v - u;
-    let cubic = |x: f64| {
-        let y = 1.0 - x;
-        y * y * (1.0 + 2.0 * x) * fu + x * x * (1.0 + 2.0 * y) * fv + width * x * y * (y * tu - x * tv)
-    };
-    let offset = 0.5 * 0.6f64.sqrt();
-    [(0.5 - offset, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.5 + offset, 5.0 / 18.0)]
-        .iter()
-        .map(|(x, weight)| weight * width * cubic(*x) * 2.0 * (u + x * width))
-        .sum()
-}
-
-fn stuck(state: &State, unsettled: Unsettled, effort: Effort) -> PhysicsError {
-    PhysicsError::NoEquilibrium {
-        approach_m: state.approach_m,
-        residual_m: unsettled.residual_m,
-        asperity: unsettled.asperity,
-        iterations: effort.iterations,
+impl Log {
+    /// The load has gone on without a jump; it is a cubic since it was known last.
+    pub(crate) fn pass(&mut self, approach: f64, load: [f64; 2]) {
+        let (at, [before, slope]) = self.last;
+        let way = approach - at;
+        let least = least(before, load[0], slope * way, load[1] * way);
+        self.ways.push(Way { approach, load: load[0], least });
+        self.last = (approach, load);
     }
+
+    /// The load has jumped.
+    pub(crate) fn restart(&mut self, approach: f64, load: [f64; 2]) {
+        self.ways.push(Way { approach, load: load[0], least: load[0] });
+        self.last = (approach, load);
+    }
+
+    /// The same, of a path that has had no event.
+    fn clone_without_events(&self) -> Self {
+        Self { events: Vec::new(), ways: Vec::new(), ..*self }
+    }
+}
+
+fn is_multiple(value: f64, size: f64) -> bool {
+    let count = value / size;
+    (count - count.round()).abs() < 1e-9
+}
+
+/// The next multiple of `size` after `here` in the sense `sign`.
+fn next_multiple(here: f64, size: f64, sign: f64) -> f64 {
+    let count = here / size * sign;
+    let next = if is_multiple(here, size) { count.round() + 1.0 } else { count.ceil() };
+    next * sign * size
 }

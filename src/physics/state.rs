@@ -36,13 +36,24 @@ pub struct Problem {
     pub(crate) rules: Rules,
     pub(crate) field: Box<dyn Interaction>,
     pub(crate) neighbours: Neighbours,
+    /// Spots that are solved together at an event.
+    pub(crate) spots_in_patch: usize,
     /// Side of the square L \[m\].
     pub length_m: f64,
     /// Rms height, the unit of penetration \[m\].
     pub rms_height_m: f64,
 }
 
+/// Spots that are solved together at an event, with all others held to first order: some five screening lengths around it.
+const SPOTS_IN_PATCH: usize = 24;
+
 impl Problem {
+    /// The same problem with another number of spots solved together at an event; with `usize::MAX` every event is solved with all.
+    #[must_use]
+    pub fn with_patches_of(self, spots: usize) -> Self {
+        Self { spots_in_patch: spots.max(1), ..self }
+    }
+
     /// Asperities from summits, in their order.
     ///
     /// # Errors
@@ -72,6 +83,7 @@ impl Problem {
             tabor,
             field: Box::new(DirectSum::new(positions.clone(), length_m, &material, rules.interaction, rules.boundary)),
             neighbours: Neighbours::new(&positions, length_m, periodic),
+            spots_in_patch: SPOTS_IN_PATCH,
             asperities,
             positions,
             material,
@@ -117,15 +129,20 @@ impl Problem {
         self.material.contact_modulus_pa * self.length_m * self.length_m
     }
 
-    /// The spots of a state as sources.
-    pub(crate) fn spots(&self, state: &State, spots: &mut Spots) {
+    /// Spots as sources: asperities, ascending, with their contact radii \[m\].
+    pub(crate) fn columns(&self, of: impl Iterator<Item = (usize, f64)> + Clone, spots: &mut Spots) {
         spots.index.clear();
-        spots.index.extend_from_slice(&state.contacts);
-        spots.columns.set(state.contacts.iter().map(|&i| {
-            let (asperity, a) = (&self.asperities[i], state.radius[i]);
+        spots.index.extend(of.clone().map(|(i, _)| i));
+        spots.columns.set(of.map(|(i, a)| {
+            let asperity = &self.asperities[i];
             let [x, y] = self.positions[i];
             Spot { x, y, a, radius: asperity.radius_m(), load: asperity.load(a), load_slope: asperity.load_slope(a) }
         }));
+    }
+
+    /// The spots of a state as sources.
+    pub(crate) fn spots(&self, state: &State, spots: &mut Spots) {
+        self.columns(state.contacts.iter().map(|&i| (i, state.radius[i])), spots);
     }
 
     /// Load, area and potential of an equilibrium whose displacements at the spots are known.

@@ -4,6 +4,7 @@ use super::ewald::{RemainderSeries, remainder};
 use super::pair::{Place, spot_fields};
 use super::{Effort, Interaction, Spots, Tangent};
 use crate::model::{Boundary, Interaction as Kind, Material};
+use crate::physics::krylov::dot;
 use std::f64::consts::PI;
 
 /// Above this many asperities the table of remainders (8 bytes a pair) would outgrow a laptop's memory, and each is computed when needed.
@@ -66,8 +67,60 @@ impl DirectSum {
         });
         self.compliance / self.length * self.series.at(dx, dy)
     }
+}
 
-    /// Fields of all spots at asperity `target`, one by one, with their slopes.
+/// A sum in eight fixed strands: the same on every machine, and open to vector instructions.
+pub(crate) fn strand_sum(values: &[f64]) -> f64 {
+    let mut strands = [0.0; 8];
+    let (whole, rest) = values.as_chunks::<8>();
+    for chunk in whole {
+        for (strand, value) in strands.iter_mut().zip(chunk) {
+            *strand += value;
+        }
+    }
+    for (strand, value) in strands.iter_mut().zip(rest) {
+        *strand += value;
+    }
+    strands.iter().sum()
+}
+
+impl Interaction for DirectSum {
+    fn displacements(&self, spots: &Spots, targets: &[usize], displacements: &mut Vec<f64>, effort: &mut Effort) {
+        displacements.clear();
+        displacements.resize(targets.len(), 0.0);
+        if self.kind == Kind::None {
+            return;
+        }
+        let n = spots.index.len();
+        let (mut values, mut slopes) = (vec![0.0; spots.columns.padded()], vec![0.0; spots.columns.padded()]);
+        for (target, displacement) in targets.iter().zip(displacements.iter_mut()) {
+            self.row(spots, *target, &mut values, &mut slopes);
+            *displacement = strand_sum(&values[..n]);
+        }
+        effort.pairs += (n * targets.len()) as u64;
+    }
+
+    fn approach(
+        &self,
+        spots: &Spots,
+        rates: &[f64],
+        targets: &[usize],
+        displacements: &mut Vec<f64>,
+        along: &mut Vec<f64>,
+        effort: &mut Effort,
+    ) {
+        displacements.clear();
+        along.clear();
+        let n = spots.index.len();
+        let (mut values, mut slopes) = (vec![0.0; spots.columns.padded()], vec![0.0; spots.columns.padded()]);
+        for &target in targets {
+            self.row(spots, target, &mut values, &mut slopes);
+            displacements.push(strand_sum(&values[..n]));
+            along.push(dot(&slopes[..n], rates));
+        }
+        effort.pairs += (n * targets.len()) as u64;
+    }
+
     fn row(&self, spots: &Spots, target: usize, values: &mut [f64], slopes: &mut [f64]) {
         let columns = &spots.columns;
         let [x, y] = self.positions[target];
@@ -107,38 +160,6 @@ impl DirectSum {
             values[me] = columns.load[me] * self.own;
             slopes[me] = columns.load_slope[me] * self.own;
         }
-    }
-}
-
-/// A sum in eight fixed strands: the same on every machine, and open to vector instructions.
-pub(crate) fn strand_sum(values: &[f64]) -> f64 {
-    let mut strands = [0.0; 8];
-    let (whole, rest) = values.as_chunks::<8>();
-    for chunk in whole {
-        for (strand, value) in strands.iter_mut().zip(chunk) {
-            *strand += value;
-        }
-    }
-    for (strand, value) in strands.iter_mut().zip(rest) {
-        *strand += value;
-    }
-    strands.iter().sum()
-}
-
-impl Interaction for DirectSum {
-    fn displacements(&self, spots: &Spots, targets: &[usize], displacements: &mut Vec<f64>, effort: &mut Effort) {
-        displacements.clear();
-        displacements.resize(targets.len(), 0.0);
-        if self.kind == Kind::None {
-            return;
-        }
-        let n = spots.index.len();
-        let (mut values, mut slopes) = (vec![0.0; spots.columns.padded()], vec![0.0; spots.columns.padded()]);
-        for (target, displacement) in targets.iter().zip(displacements.iter_mut()) {
-            self.row(spots, *target, &mut values, &mut slopes);
-            *displacement = strand_sum(&values[..n]);
-        }
-        effort.pairs += (n * targets.len()) as u64;
     }
 
     fn linearise(&self, spots: &Spots, displacements: &mut Vec<f64>, tangent: &mut Tangent, effort: &mut Effort) {

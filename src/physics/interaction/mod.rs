@@ -4,8 +4,9 @@ mod direct;
 pub mod ewald;
 pub mod pair;
 
-pub use direct::DirectSum;
 use super::krylov::dot;
+pub use direct::DirectSum;
+pub(crate) use direct::strand_sum;
 use pair::SpotColumns;
 
 /// The spots in contact: which asperities they are, ascending, and their columns.
@@ -54,6 +55,20 @@ pub trait Interaction: Sync {
     /// Displacement ŵ \[m\] at each of `targets` (asperity numbers), and in `displacements` in their order. A spot does not act on its own
     /// centre, but its periodic images and the background do.
     fn displacements(&self, spots: &Spots, targets: &[usize], displacements: &mut Vec<f64>, effort: &mut Effort);
+
+    /// Displacement ŵ \[m\] at each of `targets`, and its derivative along a motion of the spots: `dŵ_i = Σ_j (∂ŵ_i/∂a_j)·rates_j`.
+    fn approach(
+        &self,
+        spots: &Spots,
+        rates: &[f64],
+        targets: &[usize],
+        displacements: &mut Vec<f64>,
+        slopes: &mut Vec<f64>,
+        effort: &mut Effort,
+    );
+
+    /// Fields of all spots at one asperity, one by one \[m\], and their derivatives to the radii; both slices as long as the filled columns.
+    fn row(&self, spots: &Spots, target: usize, values: &mut [f64], slopes: &mut [f64]);
 
     /// Displacements at the spots themselves, with the tangent.
     fn linearise(&self, spots: &Spots, displacements: &mut Vec<f64>, tangent: &mut Tangent, effort: &mut Effort);

@@ -134,7 +134,8 @@ fn field<const L: usize>(
         let outer = FRAC_1_PI * (a[k] * flat).mul_add(indentation, -2.0 * pull * root_a[k] * arc);
         let inner = a[k].mul_add(flat, -0.5 * r2[k] * curvature[k]) - pull * root_a[k];
         value[k] = if inside { inner } else { outer };
-        let crack = 0.5 * arc * inverse_root_a[k] + root_a[k] / half_chord[k];
+        // At the very edge the slope is infinite; a finite one, as great as rounding tells apart, keeps linear systems of it solvable.
+        let crack = 0.5 * arc * inverse_root_a[k] + root_a[k] / half_chord[k].max(1e-7 * a[k]);
         let outer_slope = FRAC_1_PI * (4.0 * flat).mul_add(arc, -2.0 * pull * crack);
         let inner_slope = 2.0f64.mul_add(flat, -0.5 * pull * inverse_root_a[k]);
         slope[k] = if inside { inner_slope } else { outer_slope };

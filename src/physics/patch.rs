@@ -1,0 +1,477 @@
+//! The neighbourhood of an event: the spots next to it as unknowns, all others by the field that they have there.
+//!
+//! An event moves its neighbours by much and the rest of the contact by little, since what one spot gains its neighbours lose: the response
+//! falls off beyond a few spacings. So each event is solved among its nearest spots, with the displacement by all others as it was and as
+//! it changes with the approach; the whole contact is solved again at the end of each stretch of the path, and the difference is measured
+//! (see [`super::path`]). Where a patch holds all spots there is no difference.
+
+use super::dense::Lu;
+use super::equilibrium::Unsettled;
+use super::events::{Change, Kind};
+use super::interaction::{Effort, Spots, strand_sum};
+use super::locate::Point;
+use super::state::Problem;
+use std::f64::consts::PI;
+
+/// Greatest relative change of a radius in one iteration.
+const STRIDE: f64 = 0.2;
+
+/// A penetration `D − ŵ` \[m\] known at one approach, with its rate along the path: of a spot in contact its own, of a free asperity the
+/// one that decides on its jump-in.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Trace {
+    /// Approach at which it is known \[m\].
+    pub(crate) at: f64,
+    /// Penetration there \[m\].
+    pub(crate) value: f64,
+    /// Its derivative to the approach.
+    pub(crate) rate: f64,
+}
+
+impl Trace {
+    /// The penetration expected at another approach \[m\].
+    pub(crate) fn ahead(&self, approach: f64) -> f64 {
+        self.value + self.rate * (approach - self.at)
+    }
+}
+
+/// An asperity of the patch: what the rest of the contact does to it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Place {
+    pub(crate) asperity: usize,
+    /// Displacement by the spots outside the patch at the reference approach \[m\].
+    outside: f64,
+    /// Its derivative to the approach.
+    drift: f64,
+}
+
+/// What is held while a patch is solved; the approach is an unknown unless it is what is held.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Hold {
+    /// The approach.
+    Approach,
+    /// The radius of the member of this number.
+    Radius(usize),
+    /// The penetration of the watched asperity of this number \[m\].
+    Penetration(usize, f64),
+}
+
+/// The spots around an event, ascending, and the free asperities among them.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Patch {
+    /// Approach \[m\].
+    pub(crate) approach: f64,
+    reference: f64,
+    pub(crate) members: Vec<Place>,
+    /// Contact radii of the members \[m\].
+    pub(crate) radius: Vec<f64>,
+    pub(crate) watched: Vec<Place>,
+    /// Where the patch has been on its way to an event, if it was followed there by a radius.
+    pub(crate) way: Vec<Point>,
+    spots: Spots,
+    /// Displacement at the members by one another \[m\], and its derivatives to their radii.
+    field: Vec<f64>,
+    slopes: Vec<f64>,
+    residual: Vec<f64>,
+    values: Vec<f64>,
+    row: Vec<f64>,
+    matrix: Vec<f64>,
+    lu: Lu,
+}
+
+impl Patch {
+    /// The patch of these spots and free asperities at an approach \[m\], each with its trace; both lists ascending.
+    pub(crate) fn gather(
+        &mut self,
+        problem: &Problem,
+        contacts: &[(usize, Trace)],
+        free: &[(usize, Trace)],
+        approach: f64,
+        effort: &mut Effort,
+    ) {
+        (self.approach, self.reference) = (approach, approach);
+        self.members.clear();
+        self.way.clear();
+        self.radius.clear();
+        let mut speeds = Vec::with_capacity(contacts.len());
+        for (i, trace) in contacts {
+            let asperity = &problem.asperities[*i];
+            let a = asperity.radius_at_penetration(trace.ahead(approach)).unwrap_or(asperity.jump_off_radius());
+            self.members.push(Place { asperity: *i, outside: 0.0, drift: 0.0 });
+            self.radius.push(a);
+            // At the very end of a branch the radius has no finite rate.
+            speeds.push(trace.rate / asperity.penetration_slope(a).max(1e-6));
+        }
+        self.evaluate(problem, effort);
+        let n = self.members.len();
+        for (k, (i, trace)) in contacts.iter().enumerate() {
+            let displaced = approach + problem.heights[*i] - problem.asperities[*i].penetration(self.radius[k]);
+            let by_members: f64 = self.slopes[k * n..(k + 1) * n].iter().zip(&speeds).map(|(s, v)| s * v).sum();
+            self.members[k].outside = displaced - self.field[k];
+            self.members[k].drift = 1.0 - trace.rate - by_members;
+        }
+        self.watched.clear();
+        for (i, trace) in free {
+            let field = self.field_at(problem, *i, effort);
+            let by_members: f64 = self.row[..n].iter().zip(&speeds).map(|(s, v)| s * v).sum();
+            let displaced = approach + problem.heights[*i] - trace.ahead(approach);
+            self.watched.push(Place { asperity: *i, outside: displaced - field, drift: 1.0 - trace.rate - by_members });
+        }
+    }
+
+    /// Where a member stands.
+    pub(crate) fn find(&self, asperity: usize) -> Option<usize> {
+        self.members.binary_search_by_key(&asperity, |m| m.asperity).ok()
+    }
+
+    /// Puts an asperity into contact; what acts on it from outside is known from watching it, or given.
+    pub(crate) fn insert(&mut self, place: Place, radius: f64) {
+        if let Err(at) = self.members.binary_search_by_key(&place.asperity, |m| m.asperity) {
+            self.members.insert(at, place);
+            self.radius.insert(at, radius);
+            self.watched.retain(|w| w.asperity != place.asperity);
+        }
+    }
+
+    /// Takes a member out of contact; if it is free then, it is watched.
+    pub(crate) fn remove(&mut self, asperity: usize, free: bool) {
+        if let Some(at) = self.find(asperity) {
+            let place = self.members.remove(at);
+            self.radius.remove(at);
+            if free {
+                self.watched.push(place);
+            }
+        }
+    }
+
+    /// An asperity whose whole displacement is known at the present approach \[m\], as one of the patch.
+    pub(crate) fn place(&mut self, problem: &Problem, asperity: usize, displacement: f64, effort: &mut Effort) -> Place {
+        let field = self.field_at(problem, asperity, effort);
+        Place { asperity, outside: displacement - field, drift: 0.0 }
+    }
+
+    /// Displacement at an asperity by the members \[m\]; the derivatives to their radii are left in `row`.
+    fn field_at(&mut self, problem: &Problem, asperity: usize, effort: &mut Effort) -> f64 {
+        let n = self.members.len();
+        self.values.resize(self.spots.columns.padded(), 0.0);
+        self.row.resize(self.spots.columns.padded(), 0.0);
+        problem.field.row(&self.spots, asperity, &mut self.values, &mut self.row);
+        effort.pairs += n as u64;
+        strand_sum(&self.values[..n])
+    }
+
+    /// Displacements at asperities by the members \[m\].
+    pub(crate) fn fields_at(&mut self, problem: &Problem, asperities: &[usize], effort: &mut Effort) -> Vec<f64> {
+        asperities.iter().map(|&i| self.field_at(problem, i, effort)).collect()
+    }
+
+    /// Displacements at asperities by the members after a way of the approach on which their radii go on at these speeds \[m\].
+    pub(crate) fn fields_ahead(
+        &mut self,
+        problem: &Problem,
+        asperities: &[usize],
+        speeds: &[f64],
+        way: f64,
+        effort: &mut Effort,
+    ) -> Vec<f64> {
+        let n = self.members.len();
+        asperities
+            .iter()
+            .map(|&i| {
+                let field = self.field_at(problem, i, effort);
+                field + way * self.row[..n].iter().zip(speeds).map(|(s, v)| s * v).sum::<f64>()
+            })
+            .collect()
+    }
+
+    /// Displacement by what is outside, at the present approach \[m\].
+    fn outside(&self, place: &Place) -> f64 {
+        place.outside + place.drift * (self.approach - self.reference)
+    }
+
+    /// Fields, slopes and residuals of the members at their radii; the worst residual and whose it is.
+    pub(crate) fn evaluate(&mut self, problem: &Problem, effort: &mut Effort) -> Unsettled {
+        let n = self.members.len();
+        problem.columns(self.members.iter().map(|m| m.asperity).zip(self.radius.iter().copied()), &mut self.spots);
+        self.values.resize(self.spots.columns.padded(), 0.0);
+        self.row.resize(self.spots.columns.padded(), 0.0);
+        self.field.clear();
+        self.slopes.clear();
+        self.residual.clear();
+        let mut worst = Unsettled { residual_m: 0.0, asperity: self.members.first().map_or(0, |m| m.asperity) };
+        for k in 0..n {
+            let member = self.members[k];
+            let i = member.asperity;
+            problem.field.row(&self.spots, i, &mut self.values, &mut self.row);
+            let field = strand_sum(&self.values[..n]);
+            self.field.push(field);
+            self.slopes.extend_from_slice(&self.row[..n]);
+            let residual =
+                self.approach + problem.heights[i] - self.outside(&member) - field - problem.asperities[i].penetration(self.radius[k]);
+            self.residual.push(residual);
+            // A residual that is not a number must not pass as a small one.
+            if residual.is_nan() || residual.abs() > worst.residual_m {
+                worst = Unsettled { residual_m: residual.abs(), asperity: i };
+            }
+        }
+        effort.pairs += (n * n) as u64;
+        worst
+    }
+
+    /// The Jacobian `∂(δ_JKR + ŵ)/∂a`, with `1/time` on its diagonal.
+    fn assemble(&mut self, problem: &Problem, damping: f64) {
+        let n = self.members.len();
+        self.matrix.clear();
+        self.matrix.extend_from_slice(&self.slopes);
+        for (k, (member, a)) in self.members.iter().zip(&self.radius).enumerate() {
+            self.matrix[k * n + k] += problem.asperities[member.asperity].penetration_slope(*a) + damping;
+        }
+    }
+
+    /// Puts `−∂residual/∂δ` into column `at` of the Jacobian, for an approach that is an unknown in the place of a radius.
+    fn exchange(&mut self, at: usize) {
+        let n = self.members.len();
+        for (k, member) in self.members.iter().enumerate() {
+            self.matrix[k * n + at] = member.drift - 1.0;
+        }
+    }
+
+    /// The step of Newton's method, of the radii and of the approach.
+    fn newton_step(&mut self, problem: &Problem, hold: Hold, effort: &mut Effort) -> (Vec<f64>, f64) {
+        let n = self.members.len();
+        let mut step = self.residual.clone();
+        match hold {
+            Hold::Approach => {
+                self.assemble(problem, 0.0);
+                self.lu.factor(&self.matrix, n);
+                self.lu.solve(&mut step);
+                (step, 0.0)
+            }
+            Hold::Radius(at) => {
+                self.assemble(problem, 0.0);
+                self.exchange(at);
+                self.lu.factor(&self.matrix, n);
+                self.lu.solve(&mut step);
+                let approach = std::mem::replace(&mut step[at], 0.0);
+                (step, approach)
+            }
+            Hold::Penetration(watched, wanted) => {
+                let place = self.watched[watched];
+                let off = self.penetration_of(problem, watched, effort) - wanted;
+                self.assemble(problem, 0.0);
+                let mut bordered = Vec::with_capacity((n + 1) * (n + 1));
+                for (k, member) in self.members.iter().enumerate() {
+                    bordered.extend_from_slice(&self.matrix[k * n..(k + 1) * n]);
+                    bordered.push(member.drift - 1.0);
+                }
+                bordered.extend(self.row[..n].iter().map(|s| -s));
+                bordered.push(1.0 - place.drift);
+                step.push(-off);
+                self.lu.factor(&bordered, n + 1);
+                self.lu.solve(&mut step);
+                let approach = step.pop().unwrap_or(0.0);
+                (step, approach)
+            }
+        }
+    }
+
+    /// Newton's method from the present radii and approach.
+    pub(crate) fn solve(&mut self, problem: &Problem, hold: Hold, effort: &mut Effort) -> Result<(), Unsettled> {
+        self.descend(problem, hold, 0.2, 25, effort)
+    }
+
+    /// Newton's method, at most so many iterations, each step shortened down to the share `least` of itself until it descends.
+    fn descend(&mut self, problem: &Problem, hold: Hold, least: f64, most: usize, effort: &mut Effort) -> Result<(), Unsettled> {
+        let tolerance = problem.tolerance_m();
+        let mut start = (self.radius.clone(), self.approach);
+        let mut step = (Vec::new(), 0.0);
+        let mut before = f64::INFINITY;
+        let mut share = 1.0;
+        let mut last = Unsettled { residual_m: f64::NAN, asperity: 0 };
+        for _ in 0..most {
+            effort.iterations += 1;
+            last = self.evaluate(problem, effort);
+            let mut worst = last.residual_m;
+            if let Hold::Penetration(watched, wanted) = hold {
+                worst = worst.max((self.penetration_of(problem, watched, effort) - wanted).abs());
+            }
+            if worst <= tolerance {
+                return Ok(());
+            }
+            if worst < before {
+                before = worst;
+                share = 1.0;
+                step = self.newton_step(problem, hold, effort);
+                let stride = step.0.iter().zip(&self.radius).map(|(s, a)| (s / a).abs()).fold(0.0, f64::max);
+                if stride > STRIDE {
+                    step.0.iter_mut().for_each(|s| *s *= STRIDE / stride);
+                    step.1 *= STRIDE / stride;
+                }
+                start = (self.radius.clone(), self.approach);
+            } else {
+                // No descent, or not a number: half as far from where the step began.
+                share *= 0.5;
+                if share < least || step.0.is_empty() {
+                    return Err(last);
+                }
+            }
+            for ((radius, from), s) in self.radius.iter_mut().zip(&start.0).zip(&step.0) {
+                *radius = from + share * s;
+            }
+            self.approach = start.1 + share * step.1;
+        }
+        Err(last)
+    }
+
+    /// `da_i/dδ` of the members at the equilibrium that was evaluated last, and whether it is on the stable side of every fold: the sign of
+    /// the Jacobian's determinant.
+    pub(crate) fn rates(&mut self, problem: &Problem) -> (Vec<f64>, bool) {
+        let mut rates: Vec<f64> = self.members.iter().map(|m| 1.0 - m.drift).collect();
+        self.assemble(problem, 0.0);
+        self.lu.factor(&self.matrix, self.members.len());
+        self.lu.solve(&mut rates);
+        (rates, self.lu.sign() > 0.0)
+    }
+
+    /// Derivatives along the curve of equilibria to the radius of member `at`: of the other radii, and of the approach.
+    pub(crate) fn along(&mut self, problem: &Problem, at: usize) -> (Vec<f64>, f64) {
+        let n = self.members.len();
+        self.assemble(problem, 0.0);
+        let mut direction: Vec<f64> = (0..n).map(|k| -self.matrix[k * n + at]).collect();
+        self.exchange(at);
+        self.lu.factor(&self.matrix, n);
+        self.lu.solve(&mut direction);
+        let approach = std::mem::replace(&mut direction[at], 1.0);
+        (direction, approach)
+    }
+
+    /// Penetration of a watched asperity \[m\].
+    pub(crate) fn penetration_of(&mut self, problem: &Problem, watched: usize, effort: &mut Effort) -> f64 {
+        let place = self.watched[watched];
+        let field = self.field_at(problem, place.asperity, effort);
+        self.approach + problem.heights[place.asperity] - self.outside(&place) - field
+    }
+
+    /// Penetration and its rate of each watched asperity, given the rates of the members.
+    pub(crate) fn watch(&mut self, problem: &Problem, rates: &[f64], effort: &mut Effort) -> Vec<Trace> {
+        let n = self.members.len();
+        (0..self.watched.len())
+            .map(|w| {
+                let value = self.penetration_of(problem, w, effort);
+                let by_members: f64 = self.row[..n].iter().zip(rates).map(|(s, v)| s * v).sum();
+                Trace { at: self.approach, value, rate: 1.0 - self.watched[w].drift - by_members }
+            })
+            .collect()
+    }
+
+    /// Load and area of the members, and the part of the potential that changes with them:
+    /// `Σ[U(d_i, a_i) − Δγπa_i²] + ½ΣF_iŵ_i`, ŵ by one another. What acts from outside is held, and `Π` is stationary, so that its change
+    /// is the whole one's to second order in what the rest of the contact does.
+    pub(crate) fn totals(&self, problem: &Problem) -> super::state::Totals {
+        let mut totals = super::state::Totals::default();
+        for ((member, &a), field) in self.members.iter().zip(&self.radius).zip(&self.field) {
+            let asperity = &problem.asperities[member.asperity];
+            let load = asperity.load(a);
+            let spot = PI * a * a;
+            totals.load_n += load;
+            totals.area_m2 += spot;
+            totals.potential_j +=
+                asperity.stored_energy(asperity.penetration(a), a) - problem.material.work_of_adhesion_j_m2 * spot + 0.5 * load * field;
+        }
+        totals
+    }
+
+    /// `∂Π/∂δ` at the radii that are: the loads, less what the field from outside takes up \[N\].
+    pub(crate) fn potential_slope(&self, problem: &Problem) -> f64 {
+        let pairs = self.members.iter().zip(&self.radius);
+        pairs.map(|(member, a)| problem.asperities[member.asperity].load(*a) * (1.0 - member.drift)).sum()
+    }
+
+    /// Overdamped relaxation `da_i/dt = residual_i` at the present approach, by implicit Euler steps that grow as it comes to rest. Spots
+    /// that leave or are covered on the way are taken out, and returned.
+    ///
+    /// Where an asperity has just been uncovered (`uncovered`) and is covered again on the way, or exchanges parts with the spot that covered
+    /// it, the rest of the way is of no interest, and the relaxation ends there.
+    pub(crate) fn relax(&mut self, problem: &Problem, uncovered: Option<&Change>, effort: &mut Effort) -> Result<Vec<Change>, Unsettled> {
+        let tolerance = problem.tolerance_m();
+        let mut changes: Vec<Change> = Vec::new();
+        let mut time = 1.0;
+        let mut finish = 100.0;
+        let mut last = Unsettled { residual_m: f64::NAN, asperity: 0 };
+        for _ in 0..1000 {
+            effort.iterations += 1;
+            let worst = self.evaluate(problem, effort);
+            last = worst;
+            if worst.residual_m <= tolerance {
+                return Ok(changes);
+            }
+            if worst.residual_m.is_nan() {
+                return Err(worst);
+            }
+            let spots: Vec<_> = self.members.iter().zip(&self.radius).zip(&self.residual).map(|((m, a), r)| (m.asperity, *a, *r)).collect();
+            if let Some(change) = problem.overtaken(&spots) {
+                self.remove(change.asperity, change.kind == Kind::JumpOff);
+                changes.push(change);
+                if uncovered.is_some_and(|earlier| change.undoes(earlier)) {
+                    return Ok(changes);
+                }
+                (time, finish) = (1.0, 100.0);
+                continue;
+            }
+            if time > finish {
+                // Nearly at rest: Newton's method finishes, unless it is led to an equilibrium that repels. At the edge of a spot, where the
+                // slope of its field jumps, implicit steps would go to and fro for ever, while short steps that descend arrive.
+                let rest = self.radius.clone();
+                if self.descend(problem, Hold::Approach, 1e-4, 40, effort).is_ok() && self.rates(problem).1 {
+                    continue;
+                }
+                self.radius = rest;
+                self.evaluate(problem, effort);
+                finish *= 1e3;
+            }
+            let mut step = Vec::new();
+            for _ in 0..24 {
+                self.assemble(problem, 1.0 / time);
+                self.lu.factor(&self.matrix, self.members.len());
+                step = self.residual.clone();
+                self.lu.solve(&mut step);
+                let stride = step.iter().zip(&self.radius).map(|(s, a)| (s / a).abs()).fold(0.0, f64::max);
+                // With too long a step a saddle attracts: the step must go along the flow.
+                let along: f64 = step.iter().zip(&self.residual).map(|(s, r)| s * r).sum();
+                if stride <= STRIDE && along > 0.0 && self.lu.sign() > 0.0 {
+                    break;
+                }
+                time *= 0.25;
+            }
+            let stride = step.iter().zip(&self.radius).map(|(s, a)| (s / a).abs()).fold(0.0, f64::max);
+            let share = if stride > STRIDE { STRIDE / stride } else { 1.0 };
+            for (radius, s) in self.radius.iter_mut().zip(&step) {
+                *radius += share * s;
+            }
+            time = (time * 3.0).min(1e9);
+        }
+        Err(last)
+    }
+
+    /// Sets out for another approach \[m\], every penetration going on at its rate.
+    pub(crate) fn ahead(&mut self, problem: &Problem, approach: f64) {
+        let (rates, _) = self.rates(problem);
+        let way = approach - self.approach;
+        for ((member, radius), rate) in self.members.iter().zip(&mut self.radius).zip(rates) {
+            let asperity = &problem.asperities[member.asperity];
+            let penetration = asperity.penetration(*radius) + asperity.penetration_slope(*radius) * rate * way;
+            *radius = asperity.radius_at_penetration(penetration).unwrap_or(asperity.jump_off_radius());
+        }
+        self.approach = approach;
+    }
+
+    /// Moves the patch over the fold at which it stands: member `at` by this share of its radius, the others with it, the approach by `gap` \[m\].
+    pub(crate) fn nudge(&mut self, problem: &Problem, at: usize, share: f64, gap: f64) {
+        let (direction, _) = self.along(problem, at);
+        let span = share * self.radius[at];
+        for (radius, d) in self.radius.iter_mut().zip(&direction) {
+            *radius += (d * span).clamp(-0.05 * *radius, 0.05 * *radius);
+        }
+        self.approach += gap;
+    }
+}
