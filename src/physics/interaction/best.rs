@@ -1,0 +1,62 @@
+//! Which of the sums: few spots are summed directly, many fast. Both give the same field, so that the choice may change along a path.
+
+use super::{DirectSum, Effort, FastSum, Interaction, Spots, Tangent};
+use crate::model::{Boundary, Interaction as Kind, Material};
+
+/// Spots from which the fast sum is the faster one, measured for a linearisation and the products that follow it.
+const MANY: usize = 600;
+
+/// Error of the fast sum, of the greatest displacement: an equilibrium is met to 1e-10 of the rms height.
+const TOLERANCE: f64 = 1e-10;
+
+/// The displacement field of asperities at `positions` \[m\] on the square of side `length_m`, summed in the way that is the faster one for
+/// the number of spots in contact.
+#[must_use]
+pub fn best(positions: Vec<[f64; 2]>, length_m: f64, material: &Material, kind: Kind, boundary: Boundary) -> Box<dyn Interaction> {
+    let many = positions.len() >= MANY && boundary == Boundary::Periodic && kind != Kind::None;
+    if many {
+        let fast = FastSum::new(positions.clone(), length_m, material, kind, TOLERANCE);
+        Box::new(Best { direct: DirectSum::new(positions, length_m, material, kind, boundary), fast })
+    } else {
+        Box::new(DirectSum::new(positions, length_m, material, kind, boundary))
+    }
+}
+
+#[derive(Debug)]
+struct Best {
+    direct: DirectSum,
+    fast: FastSum,
+}
+
+impl Best {
+    fn for_spots(&self, spots: &Spots) -> &dyn Interaction {
+        if spots.columns.len() < MANY { &self.direct } else { &self.fast }
+    }
+
+    /// For other places than the spots: a mesh is worth its while only for many of them.
+    fn for_targets(&self, spots: &Spots, targets: &[usize]) -> &dyn Interaction {
+        if spots.columns.len() < MANY || targets.len() < MANY / 2 { &self.direct } else { &self.fast }
+    }
+}
+
+impl Interaction for Best {
+    fn displacements(&self, spots: &Spots, targets: &[usize], displacements: &mut Vec<f64>, effort: &mut Effort) {
+        self.for_targets(spots, targets).displacements(spots, targets, displacements, effort);
+    }
+
+    fn linearise(&self, spots: &Spots, displacements: &mut Vec<f64>, tangent: &mut Tangent, effort: &mut Effort) {
+        self.for_spots(spots).linearise(spots, displacements, tangent, effort);
+    }
+
+    fn approach(
+        &self,
+        spots: &Spots,
+        rates: &[f64],
+        targets: &[usize],
+        displacements: &mut Vec<f64>,
+        slopes: &mut Vec<f64>,
+        effort: &mut Effort,
+    ) {
+        self.for_targets(spots, targets).approach(spots, rates, targets, displacements, slopes, effort);
+    }
+}
