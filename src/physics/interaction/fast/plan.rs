@@ -37,7 +37,7 @@ impl Accuracy {
     pub(super) fn of(tolerance: f64) -> Self {
         let tolerance = tolerance.clamp(1e-13, 1e-2);
         let mut edge = 1.0;
-        while libm::erfc(edge) > 0.01 * tolerance {
+        while libm::erfc(edge) > 0.3 * tolerance {
             edge += 0.02;
         }
         let alias = |waves: f64| {
@@ -45,10 +45,10 @@ impl Accuracy {
             (1..=100).map(|k| share(0.01 * f64::from(k))).fold(0.0, f64::max)
         };
         let mut waves = edge;
-        while alias(waves) > 0.05 * tolerance {
+        while alias(waves) > tolerance {
             waves += 0.02;
         }
-        Self { edge, waves, girth: (3.0 * tolerance).powf(0.125).min(0.15) }
+        Self { edge, waves, girth: (10.0 * tolerance).powf(0.125).min(0.2) }
     }
 }
 
@@ -57,8 +57,6 @@ impl Accuracy {
 pub(super) struct Smooth {
     /// Polynomials in `2·fraction − 1`, highest power first, by pieces of equal `r²`.
     pieces: Vec<[[f64; ORDERS]; TERMS]>,
-    /// At the centre.
-    pub(super) centre: [f64; ORDERS],
 }
 
 impl Smooth {
@@ -89,7 +87,7 @@ impl Smooth {
                 next
             })
             .collect();
-        Self { pieces, centre: smooth(alpha, 0.0) }
+        Self { pieces }
     }
 
     /// At the square of the distance over that of the reach, below 1.
