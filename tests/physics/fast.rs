@@ -90,7 +90,7 @@ fn law_the_fast_sum_is_the_direct_sum() {
 #[test]
 fn law_some_targets_are_some_of_all() {
     let (positions, spots) = contact(6, 700, 300, 5e-5);
-    let fast = FastSum::new(positions.clone(), LENGTH, &PAPER, Kind::Spots, 1e-9);
+    let fast = FastSum::new(positions, LENGTH, &PAPER, Kind::Spots, 1e-9);
     let all = displacements(&fast, &spots, &(0..700).collect::<Vec<_>>());
     let some = [3, 650, 299, 300, 0];
     // The reach is chosen by the number of targets: within the tolerance, not to the last digit.
@@ -108,7 +108,7 @@ fn law_the_slope_along_a_path_is_a_difference() {
     let rates: Vec<f64> = (0..300).map(|_| dice.roll()).collect();
     let targets: Vec<usize> = (200..500).collect();
     let direct = DirectSum::new(positions.clone(), LENGTH, &PAPER, Kind::Spots, Boundary::Periodic);
-    let fast = FastSum::new(positions.clone(), LENGTH, &PAPER, Kind::Spots, 1e-9);
+    let fast = FastSum::new(positions, LENGTH, &PAPER, Kind::Spots, 1e-9);
     let (mut want, mut want_slopes, mut got, mut slopes) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     direct.approach(&spots, &rates, &targets, &mut want, &mut want_slopes, &mut Effort::default());
     fast.approach(&spots, &rates, &targets, &mut got, &mut slopes, &mut Effort::default());
@@ -146,7 +146,6 @@ fn law_the_tolerance_is_kept_and_used() {
     for tolerance in [1e-5, 1e-7, 1e-9, 1e-11] {
         let fast = FastSum::new(positions.clone(), LENGTH, &PAPER, Kind::Spots, tolerance);
         let off = error(&displacements(&fast, &spots, &targets), &want);
-        println!("{tolerance:e}: {off:e}");
         assert!(off < tolerance, "{tolerance:e}: {off:e}");
         // A looser one is looser: nothing is paid for that was not asked for.
         assert!(off < 0.2 * last && off > 1e-4 * tolerance, "{tolerance:e}: {off:e} after {last:e}");

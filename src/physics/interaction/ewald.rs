@@ -135,17 +135,19 @@ const DEGREE: usize = 24;
 const CELLS: usize = 20;
 const TERMS: usize = 8;
 
-/// The same for all orders, where six digits less are enough: the higher orders are worth 1e-4 of a displacement and less.
+/// The same for the higher orders, of which seven digits are enough: they are worth 1e-4 of a displacement and less. Small, since what a loop
+/// over pairs spends is the way of the coefficients from memory.
 const COARSE_CELLS: usize = 12;
 const COARSE_TERMS: usize = 6;
+const COARSE_ALL: usize = COARSE_TERMS * (COARSE_TERMS + 1) / 2;
 
 /// [`image_sums`] as polynomials on small cells, fast enough to be taken for every pair.
 #[derive(Debug, Clone)]
 pub struct RemainderSeries {
     /// Coefficients of `S_0`, of `t^q s^p` by falling q, then falling p, by cells of `0 ≤ y ≤ x ≤ ½`; s and t run from −1 to 1 through a cell.
     fine: Vec<[[f64; TERMS]; TERMS]>,
-    /// Coefficients of all orders.
-    coarse: Vec<[[[f64; ORDERS]; COARSE_TERMS]; COARSE_TERMS]>,
+    /// Coefficients of all orders, of `s^p t^q`, `p + q ≤ 5`, by falling p, then falling q.
+    coarse: Vec<[[f32; ORDERS]; COARSE_ALL]>,
 }
 
 /// The one table of a process: it depends on nothing.
@@ -158,7 +160,7 @@ impl RemainderSeries {
         let rows = global_series();
         Self {
             fine: fit::<TERMS>(&rows, CELLS).iter().map(|cell| cell.map(|row| row.map(|c| c[0]))).collect(),
-            coarse: fit::<COARSE_TERMS>(&rows, COARSE_CELLS),
+            coarse: fit::<COARSE_TERMS>(&rows, COARSE_CELLS).iter().map(shorten).collect(),
         }
     }
 
@@ -168,7 +170,7 @@ impl RemainderSeries {
         remainder_at(self, x, y)
     }
 
-    /// [`image_sums`] for `|x|, |y| ≤ ½`; the orders above the first to 1e-7.
+    /// [`image_sums`] for `|x|, |y| ≤ ½`; the orders above the first to 3e-7.
     #[must_use]
     pub fn sums(&self, x: f64, y: f64) -> [f64; ORDERS] {
         sums_at(self, x, y)
@@ -193,13 +195,9 @@ impl RemainderSeries {
     #[inline(always)]
     pub(crate) fn local(&self, x: f64, y: f64) -> [f64; ORDERS] {
         let (number, s, t) = cell_of::<COARSE_CELLS>(x, y);
-        let mut rows = [[0.0; ORDERS]; COARSE_TERMS];
-        for line in &self.coarse[number] {
-            for p in 0..COARSE_TERMS {
-                rows[p] = step(rows[p], t, line[p]);
-            }
-        }
-        let [a, b, c, d, e, f] = rows;
+        let cell = &self.coarse[number];
+        let (a, b, c) = (row::<0>(cell, t), row::<1>(cell, t), row::<2>(cell, t));
+        let (d, e, f) = (row::<3>(cell, t), row::<4>(cell, t), row::<5>(cell, t));
         let square = s * s;
         let mut sums = step(step(step(a, s, b), square, step(c, s, d)), square, step(e, s, f));
         sums[0] = self.first(x, y);
@@ -227,6 +225,29 @@ fn cell_of<const N: usize>(x: f64, y: f64) -> (usize, f64, f64) {
 #[inline(always)]
 fn step(high: [f64; ORDERS], t: f64, low: [f64; ORDERS]) -> [f64; ORDERS] {
     [0, 1, 2, 3].map(|k: usize| high[k].mul_add(t, low[k]))
+}
+
+/// The polynomial in t that belongs to `s^(5−R)`: the rows do not wait for one another.
+#[inline(always)]
+fn row<const R: usize>(cell: &[[f32; ORDERS]; COARSE_ALL], t: f64) -> [f64; ORDERS] {
+    let from = R * (R + 1) / 2;
+    let mut sum = cell[from].map(f64::from);
+    for q in 1..=R {
+        sum = step(sum, t, cell[from + q].map(f64::from));
+    }
+    sum
+}
+
+/// The terms of the lowest degrees, in the digits that are kept.
+fn shorten(cell: &[[[f64; ORDERS]; COARSE_TERMS]; COARSE_TERMS]) -> [[f32; ORDERS]; COARSE_ALL] {
+    let mut short = [[0.0; ORDERS]; COARSE_ALL];
+    for row in 0..COARSE_TERMS {
+        for q in 0..=row {
+            // By falling q, then falling p, where p = 5 − row.
+            short[row * (row + 1) / 2 + row - q] = cell[COARSE_TERMS - 1 - q][row].map(|c| c as f32);
+        }
+    }
+    short
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
