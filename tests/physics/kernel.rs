@@ -116,7 +116,7 @@ fn law_sums_of_higher_powers_do_not_depend_on_the_splitting() {
         }
         for m in 1..ORDERS {
             // Worth 1e-4 of a displacement and less, and fitted to that.
-            close("table", series[m], want[m], 3e-7);
+            close("table", series[m], want[m], 1e-6);
         }
     }
 }

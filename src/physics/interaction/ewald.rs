@@ -170,7 +170,7 @@ impl RemainderSeries {
         remainder_at(self, x, y)
     }
 
-    /// [`image_sums`] for `|x|, |y| ≤ ½`; the orders above the first to 3e-7.
+    /// [`image_sums`] for `|x|, |y| ≤ ½`; the orders above the first to 1e-6.
     #[must_use]
     pub fn sums(&self, x: f64, y: f64) -> [f64; ORDERS] {
         sums_at(self, x, y)
@@ -187,7 +187,9 @@ impl RemainderSeries {
                 lanes[p] = lanes[p].mul_add(t, row[p]);
             }
         }
-        let [a, b, c, d] = [0, 1, 2, 3].map(|p: usize| lanes[p].mul_add((s * s) * (s * s), lanes[p + 4]));
+        // Written out: a closure would not be compiled for the machine's vectors.
+        let [a, b, c, d, e, f, g, h] = lanes;
+        let [a, b, c, d] = step([a, b, c, d], (s * s) * (s * s), [e, f, g, h]);
         a.mul_add(s, b).mul_add(s * s, c.mul_add(s, d))
     }
 
@@ -224,18 +226,23 @@ fn cell_of<const N: usize>(x: f64, y: f64) -> (usize, f64, f64) {
 /// `high·t + low`, of all orders.
 #[inline(always)]
 fn step(high: [f64; ORDERS], t: f64, low: [f64; ORDERS]) -> [f64; ORDERS] {
-    [0, 1, 2, 3].map(|k: usize| high[k].mul_add(t, low[k]))
+    [high[0].mul_add(t, low[0]), high[1].mul_add(t, low[1]), high[2].mul_add(t, low[2]), high[3].mul_add(t, low[3])]
 }
 
 /// The polynomial in t that belongs to `s^(5−R)`: the rows do not wait for one another.
 #[inline(always)]
 fn row<const R: usize>(cell: &[[f32; ORDERS]; COARSE_ALL], t: f64) -> [f64; ORDERS] {
     let from = R * (R + 1) / 2;
-    let mut sum = cell[from].map(f64::from);
+    let mut sum = long(&cell[from]);
     for q in 1..=R {
-        sum = step(sum, t, cell[from + q].map(f64::from));
+        sum = step(sum, t, long(&cell[from + q]));
     }
     sum
+}
+
+#[inline(always)]
+fn long(short: &[f32; ORDERS]) -> [f64; ORDERS] {
+    [f64::from(short[0]), f64::from(short[1]), f64::from(short[2]), f64::from(short[3])]
 }
 
 /// The terms of the lowest degrees, in the digits that are kept.

@@ -204,9 +204,13 @@ fn fields(group: &Group, measure: Measure, place: [f64; 2], me: Option<usize>, r
             let spot = group.spots[number];
             let (value, slope) = if me == Some(spot) { (0.0, 0.0) } else { (values[k], slopes[k]) };
             let others = match &group.rest {
-                Rest::Mesh(plan) => plan.smooth.at(square / (plan.reach * plan.reach * length * length)).map(|s| -s),
+                Rest::Mesh(plan) => {
+                    let [a, b, c, d] = plan.smooth.at(square / (plan.reach * plan.reach * length * length));
+                    [-a, -b, -c, -d]
+                }
                 Rest::Images => {
-                    let [dx, dy] = [place[0] - group.x[number], place[1] - group.y[number]].map(|d| d / length);
+                    let dx = (place[0] - group.x[number]) / length;
+                    let dy = (place[1] - group.y[number]) / length;
                     images.local(dx - dx.round_ties_even(), dy - dy.round_ties_even())
                 }
             };
