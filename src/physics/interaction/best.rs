@@ -1,10 +1,13 @@
 //! Which of the sums: few spots are summed directly, many fast. Both give the same field, so that the choice may change along a path.
 
+use super::direct::TABLE_LIMIT;
 use super::{DirectSum, Effort, FastSum, Interaction, Spots, Tangent};
 use crate::model::{Boundary, Interaction as Kind, Material};
 
-/// Spots from which the fast sum is the faster one, measured for a linearisation and the products that follow it.
+/// Spots from which the fast sum is the faster one, measured for a linearisation and the dozen products that follow it, where the direct sum
+/// has its table, and where there are too many asperities for one.
 const MANY: usize = 600;
+const MANY_WITHOUT_TABLE: usize = 300;
 
 /// Error of the fast sum, of the greatest displacement: an equilibrium is met to 1e-10 of the rms height.
 const TOLERANCE: f64 = 1e-10;
@@ -16,7 +19,8 @@ pub fn best(positions: Vec<[f64; 2]>, length_m: f64, material: &Material, kind: 
     let many = positions.len() >= MANY && boundary == Boundary::Periodic && kind != Kind::None;
     if many {
         let fast = FastSum::new(positions.clone(), length_m, material, kind, TOLERANCE);
-        Box::new(Best { direct: DirectSum::new(positions, length_m, material, kind, boundary), fast })
+        let least = if positions.len() <= TABLE_LIMIT { MANY } else { MANY_WITHOUT_TABLE };
+        Box::new(Best { direct: DirectSum::new(positions, length_m, material, kind, boundary), fast, least })
     } else {
         Box::new(DirectSum::new(positions, length_m, material, kind, boundary))
     }
@@ -26,16 +30,18 @@ pub fn best(positions: Vec<[f64; 2]>, length_m: f64, material: &Material, kind: 
 struct Best {
     direct: DirectSum,
     fast: FastSum,
+    /// Spots from which it is taken.
+    least: usize,
 }
 
 impl Best {
     fn for_spots(&self, spots: &Spots) -> &dyn Interaction {
-        if spots.columns.len() < MANY { &self.direct } else { &self.fast }
+        if spots.columns.len() < self.least { &self.direct } else { &self.fast }
     }
 
     /// For other places than the spots: a mesh is worth its while only for many of them.
     fn for_targets(&self, spots: &Spots, targets: &[usize]) -> &dyn Interaction {
-        if spots.columns.len() < MANY || targets.len() < MANY / 2 { &self.direct } else { &self.fast }
+        if spots.columns.len() < self.least || targets.len() < self.least / 2 { &self.direct } else { &self.fast }
     }
 }
 

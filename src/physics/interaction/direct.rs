@@ -2,7 +2,7 @@
 
 use super::ewald::{IMAGES, ORDERS, RemainderSeries};
 use super::moments::{Moments, product};
-use super::pair::{Place, SpotColumns, spot_fields};
+use super::pair::{LANES, Place, SpotColumns, spot_fields};
 use super::{Effort, Interaction, Spots, Tangent};
 use crate::model::{Boundary, Interaction as Kind, Material};
 use crate::physics::krylov::dot;
@@ -10,7 +10,7 @@ use multiversion::multiversion;
 use std::f64::consts::PI;
 
 /// Up to this many asperities the sums over images of every pair are kept, 32 bytes each: 128 MB; beyond, each is computed when needed.
-const TABLE_LIMIT: usize = 2000;
+pub(crate) const TABLE_LIMIT: usize = 2000;
 
 /// All pairs, one by one: the exact field of the nearest image of every spot, and of its other images what is seen from afar.
 #[derive(Debug)]
@@ -104,12 +104,21 @@ impl DirectSum {
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
 fn image_fields(place: Place, spots: &SpotColumns, moments: &Moments, values: &mut [f64], slopes: &mut [f64]) {
     let images: &RemainderSeries = &IMAGES;
-    for j in 0..spots.len() {
-        let dx = (place.x - spots.x[j]) * place.inverse_length;
-        let dy = (place.y - spots.y[j]) * place.inverse_length;
-        let sums = images.local(dx - dx.round_ties_even(), dy - dy.round_ties_even());
-        values[j] += product(&sums, &moments.value[j]);
-        slopes[j] += product(&sums, &moments.slope[j]);
+    let columns = [&spots.x, &spots.y].map(|column| column.as_chunks::<LANES>().0);
+    for (pass, (x, y)) in columns[0].iter().zip(columns[1]).enumerate() {
+        let (mut dx, mut dy) = ([0.0; LANES], [0.0; LANES]);
+        for k in 0..LANES {
+            dx[k] = (place.x - x[k]) * place.inverse_length;
+            dy[k] = (place.y - y[k]) * place.inverse_length;
+            dx[k] -= dx[k].round_ties_even();
+            dy[k] -= dy[k].round_ties_even();
+        }
+        let sums = images.local(&dx, &dy);
+        let from = pass * LANES;
+        for (sums, j) in sums.iter().zip(from..spots.len()) {
+            values[j] += product(sums, &moments.value[j]);
+            slopes[j] += product(sums, &moments.slope[j]);
+        }
     }
 }
 

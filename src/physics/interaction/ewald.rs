@@ -137,7 +137,7 @@ const TERMS: usize = 8;
 
 /// The same for the higher orders, of which seven digits are enough: they are worth 1e-4 of a displacement and less. Small, since what a loop
 /// over pairs spends is the way of the coefficients from memory.
-const COARSE_CELLS: usize = 12;
+const COARSE_CELLS: usize = 14;
 const COARSE_TERMS: usize = 6;
 const COARSE_ALL: usize = COARSE_TERMS * (COARSE_TERMS + 1) / 2;
 
@@ -176,34 +176,49 @@ impl RemainderSeries {
         sums_at(self, x, y)
     }
 
-    /// `S_0`, to be built into a loop that is compiled for the machine's vectors.
+    /// All orders at several places, to be built into a loop that is compiled for the machine's vectors. What is stored for every place in
+    /// turn is worked out in vectors; the rest of all places follows.
     #[inline(always)]
-    fn first(&self, x: f64, y: f64) -> f64 {
-        let (number, s, t) = cell_of::<CELLS>(x, y);
-        let cell = &self.fine[number];
-        let mut lanes = cell[0];
-        for row in &cell[1..] {
-            for p in 0..TERMS {
-                lanes[p] = lanes[p].mul_add(t, row[p]);
-            }
+    pub(crate) fn local<const L: usize>(&self, x: &[f64; L], y: &[f64; L]) -> [[f64; ORDERS]; L] {
+        let mut sums = [[0.0; ORDERS]; L];
+        for k in 0..L {
+            let (number, s, t) = cell_of::<COARSE_CELLS>(x[k], y[k]);
+            let cell = &self.coarse[number];
+            let (a, b, c) = (row::<0>(cell, t), row::<1>(cell, t), row::<2>(cell, t));
+            let (d, e, f) = (row::<3>(cell, t), row::<4>(cell, t), row::<5>(cell, t));
+            let square = s * s;
+            sums[k] = step(step(step(a, s, b), square, step(c, s, d)), square, step(e, s, f));
         }
-        // Written out: a closure would not be compiled for the machine's vectors.
-        let [a, b, c, d, e, f, g, h] = lanes;
-        let [a, b, c, d] = step([a, b, c, d], (s * s) * (s * s), [e, f, g, h]);
-        a.mul_add(s, b).mul_add(s * s, c.mul_add(s, d))
+        let first = self.first(x, y);
+        for k in 0..L {
+            sums[k][0] = first[k];
+        }
+        sums
     }
 
-    /// All orders, the same way.
+    /// `S_0`, the same way.
     #[inline(always)]
-    pub(crate) fn local(&self, x: f64, y: f64) -> [f64; ORDERS] {
-        let (number, s, t) = cell_of::<COARSE_CELLS>(x, y);
-        let cell = &self.coarse[number];
-        let (a, b, c) = (row::<0>(cell, t), row::<1>(cell, t), row::<2>(cell, t));
-        let (d, e, f) = (row::<3>(cell, t), row::<4>(cell, t), row::<5>(cell, t));
-        let square = s * s;
-        let mut sums = step(step(step(a, s, b), square, step(c, s, d)), square, step(e, s, f));
-        sums[0] = self.first(x, y);
-        sums
+    fn first<const L: usize>(&self, x: &[f64; L], y: &[f64; L]) -> [f64; L] {
+        let mut lanes = [[0.0; TERMS]; L];
+        let mut places = [0.0; L];
+        for k in 0..L {
+            let (number, s, t) = cell_of::<CELLS>(x[k], y[k]);
+            let cell = &self.fine[number];
+            let mut sum = cell[0];
+            for row in &cell[1..] {
+                for p in 0..TERMS {
+                    sum[p] = sum[p].mul_add(t, row[p]);
+                }
+            }
+            (lanes[k], places[k]) = (sum, s);
+        }
+        let mut first = [0.0; L];
+        for k in 0..L {
+            for lane in lanes[k] {
+                first[k] = places[k].mul_add(first[k], lane);
+            }
+        }
+        first
     }
 }
 
@@ -259,12 +274,12 @@ fn shorten(cell: &[[[f64; ORDERS]; COARSE_TERMS]; COARSE_TERMS]) -> [[f32; ORDER
 
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
 fn remainder_at(series: &RemainderSeries, x: f64, y: f64) -> f64 {
-    series.first(x, y)
+    series.first(&[x], &[y])[0]
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
 fn sums_at(series: &RemainderSeries, x: f64, y: f64) -> [f64; ORDERS] {
-    series.local(x, y)
+    series.local(&[x], &[y])[0]
 }
 
 /// Coefficients of `t^q s^p`, by falling q, then falling p, of the polynomials of `N` terms along each direction on every cell.

@@ -199,24 +199,37 @@ fn fields(group: &Group, measure: Measure, place: [f64; 2], me: Option<usize>, r
                 (values[k], slopes[k]) = (group.sources[number].value[0] * unit, group.sources[number].slope[0] * unit);
             }
         }
-        for (k, (&number, &square)) in found.iter().zip(squares).enumerate() {
+        let mut others = [[0.0; ORDERS]; LANES];
+        match &group.rest {
+            Rest::Mesh(plan) => {
+                let share = 1.0 / (plan.reach * plan.reach * length * length);
+                for (other, square) in others.iter_mut().zip(squares) {
+                    *other = plan.smooth.at(share * square);
+                }
+                for other in &mut others {
+                    for sum in other {
+                        *sum = -*sum;
+                    }
+                }
+            }
+            Rest::Images => {
+                let (mut dx, mut dy) = ([0.0; LANES], [0.0; LANES]);
+                for (k, &number) in found.iter().enumerate() {
+                    dx[k] = (place[0] - group.x[number]) / length;
+                    dy[k] = (place[1] - group.y[number]) / length;
+                    dx[k] -= dx[k].round_ties_even();
+                    dy[k] -= dy[k].round_ties_even();
+                }
+                others = images.local(&dx, &dy);
+            }
+        }
+        for (k, &number) in found.iter().enumerate() {
             let source = &group.sources[number];
             let spot = group.spots[number];
             let (value, slope) = if me == Some(spot) { (0.0, 0.0) } else { (values[k], slopes[k]) };
-            let others = match &group.rest {
-                Rest::Mesh(plan) => {
-                    let [a, b, c, d] = plan.smooth.at(square / (plan.reach * plan.reach * length * length));
-                    [-a, -b, -c, -d]
-                }
-                Rest::Images => {
-                    let dx = (place[0] - group.x[number]) / length;
-                    let dy = (place[1] - group.y[number]) / length;
-                    images.local(dx - dx.round_ties_even(), dy - dy.round_ties_even())
-                }
-            };
             row.spots.push(spot);
-            row.values.push(value + product(&others, &source.value));
-            row.slopes.push(slope + product(&others, &source.slope));
+            row.values.push(value + product(&others[k], &source.value));
+            row.slopes.push(slope + product(&others[k], &source.slope));
         }
     }
 }
