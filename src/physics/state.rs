@@ -2,7 +2,7 @@
 
 use super::PhysicsError;
 use super::interaction::pair::Spot;
-use super::interaction::{DirectSum, Interaction, Spots};
+use super::interaction::{Interaction, Spots, best};
 use super::jkr::Asperity;
 use super::summits::Summit;
 use crate::model::{Boundary, Coalescence, Interaction as Kind, JumpIn, Material};
@@ -70,7 +70,7 @@ impl Problem {
             heights: summits.iter().map(|s| s.height_m - highest).collect(),
             jump_in,
             tabor,
-            field: Box::new(DirectSum::new(positions.clone(), length_m, &material, rules.interaction, rules.boundary)),
+            field: best(positions.clone(), length_m, &material, rules.interaction, rules.boundary),
             neighbours: Neighbours::new(&positions, length_m, periodic),
             asperities,
             positions,
