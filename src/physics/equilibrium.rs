@@ -8,7 +8,7 @@
 //!   has reached is covered: the flow decides who, without reference to the step of the approach.
 
 use super::events::Change;
-use super::interaction::{Effort, Spots, Tangent, strand_sum};
+use super::interaction::{Effort, Interaction as _, Spots, Tangent};
 use super::krylov::{dot, gmres};
 use super::patch::Trace;
 use super::state::{Problem, State};
@@ -201,11 +201,9 @@ impl<'p> Solver<'p> {
     /// Displacement at one asperity by spots of these radii \[m\].
     pub(crate) fn displacement(&mut self, spots: &[(usize, f64)], asperity: usize) -> f64 {
         self.problem.columns(spots.iter().copied(), &mut self.spots);
-        let columns = self.spots.columns.padded();
-        let (mut values, mut slopes) = (vec![0.0; columns], vec![0.0; columns]);
-        self.problem.field.row(&self.spots, asperity, &mut values, &mut slopes);
-        self.effort.pairs += spots.len() as u64;
-        strand_sum(&values[..spots.len()])
+        let mut displacement = Vec::new();
+        self.problem.field.displacements(&self.spots, &[asperity], &mut displacement, &mut self.effort);
+        displacement.first().copied().unwrap_or(0.0)
     }
 }
 

@@ -73,7 +73,6 @@ pub(crate) struct Patch {
     field: Vec<f64>,
     slopes: Vec<f64>,
     residual: Vec<f64>,
-    values: Vec<f64>,
     row: Vec<f64>,
     matrix: Vec<f64>,
     lu: Lu,
@@ -152,17 +151,20 @@ impl Patch {
 
     /// Displacement at an asperity by the members \[m\]; the derivatives to their radii are left in `row`.
     fn field_at(&mut self, problem: &Problem, asperity: usize, effort: &mut Effort) -> f64 {
-        let n = self.members.len();
-        self.values.resize(self.spots.columns.padded(), 0.0);
-        self.row.resize(self.spots.columns.padded(), 0.0);
-        problem.field.row(&self.spots, asperity, &mut self.values, &mut self.row);
-        effort.pairs += n as u64;
-        strand_sum(&self.values[..n])
+        let mut field = 0.0;
+        problem.field.rows(&self.spots, &[asperity], effort, |_, values, slopes| {
+            field = strand_sum(values);
+            self.row.clear();
+            self.row.extend_from_slice(slopes);
+        });
+        field
     }
 
     /// Displacements at asperities by the members \[m\].
     pub(crate) fn fields_at(&mut self, problem: &Problem, asperities: &[usize], effort: &mut Effort) -> Vec<f64> {
-        asperities.iter().map(|&i| self.field_at(problem, i, effort)).collect()
+        let mut fields = Vec::with_capacity(asperities.len());
+        problem.field.rows(&self.spots, asperities, effort, |_, values, _| fields.push(strand_sum(values)));
+        fields
     }
 
     /// Displacements at asperities by the members after a way of the approach on which their radii go on at these speeds \[m\].
@@ -174,14 +176,11 @@ impl Patch {
         way: f64,
         effort: &mut Effort,
     ) -> Vec<f64> {
-        let n = self.members.len();
-        asperities
-            .iter()
-            .map(|&i| {
-                let field = self.field_at(problem, i, effort);
-                field + way * self.row[..n].iter().zip(speeds).map(|(s, v)| s * v).sum::<f64>()
-            })
-            .collect()
+        let mut fields = Vec::with_capacity(asperities.len());
+        problem.field.rows(&self.spots, asperities, effort, |_, values, slopes| {
+            fields.push(strand_sum(values) + way * slopes.iter().zip(speeds).map(|(s, v)| s * v).sum::<f64>());
+        });
+        fields
     }
 
     /// Displacement by what is outside, at the present approach \[m\].
@@ -193,28 +192,28 @@ impl Patch {
     pub(crate) fn evaluate(&mut self, problem: &Problem, effort: &mut Effort) -> Unsettled {
         let n = self.members.len();
         problem.columns(self.members.iter().map(|m| m.asperity).zip(self.radius.iter().copied()), &mut self.spots);
-        self.values.resize(self.spots.columns.padded(), 0.0);
-        self.row.resize(self.spots.columns.padded(), 0.0);
         self.field.clear();
         self.slopes.clear();
         self.residual.clear();
         let mut worst = Unsettled { residual_m: 0.0, asperity: self.members.first().map_or(0, |m| m.asperity) };
+        let targets: Vec<usize> = self.members.iter().map(|m| m.asperity).collect();
+        problem.field.rows(&self.spots, &targets, effort, |_, values, slopes| {
+            self.field.push(strand_sum(values));
+            self.slopes.extend_from_slice(slopes);
+        });
         for k in 0..n {
             let member = self.members[k];
             let i = member.asperity;
-            problem.field.row(&self.spots, i, &mut self.values, &mut self.row);
-            let field = strand_sum(&self.values[..n]);
-            self.field.push(field);
-            self.slopes.extend_from_slice(&self.row[..n]);
-            let residual =
-                self.approach + problem.heights[i] - self.outside(&member) - field - problem.asperities[i].penetration(self.radius[k]);
+            let residual = self.approach + problem.heights[i]
+                - self.outside(&member)
+                - self.field[k]
+                - problem.asperities[i].penetration(self.radius[k]);
             self.residual.push(residual);
             // A residual that is not a number must not pass as a small one.
             if residual.is_nan() || residual.abs() > worst.residual_m {
                 worst = Unsettled { residual_m: residual.abs(), asperity: i };
             }
         }
-        effort.pairs += (n * n) as u64;
         worst
     }
 

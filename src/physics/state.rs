@@ -2,7 +2,7 @@
 
 use super::PhysicsError;
 use super::interaction::pair::Spot;
-use super::interaction::{DirectSum, Interaction, Spots};
+use super::interaction::{Best, Spots, best};
 use super::jkr::Asperity;
 use super::summits::Summit;
 use crate::model::{Boundary, Coalescence, Interaction as Kind, JumpIn, Material};
@@ -34,7 +34,7 @@ pub struct Problem {
     pub(crate) tabor: Vec<f64>,
     pub(crate) material: Material,
     pub(crate) rules: Rules,
-    pub(crate) field: Box<dyn Interaction>,
+    pub(crate) field: Best,
     pub(crate) neighbours: Neighbours,
     /// Spots that are solved together at an event.
     pub(crate) spots_in_patch: usize,
@@ -81,7 +81,7 @@ impl Problem {
             heights: summits.iter().map(|s| s.height_m - highest).collect(),
             jump_in,
             tabor,
-            field: Box::new(DirectSum::new(positions.clone(), length_m, &material, rules.interaction, rules.boundary)),
+            field: best(positions.clone(), length_m, &material, rules.interaction, rules.boundary),
             neighbours: Neighbours::new(&positions, length_m, periodic),
             spots_in_patch: SPOTS_IN_PATCH,
             asperities,

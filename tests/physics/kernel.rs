@@ -2,7 +2,7 @@
 
 use crate::reference::table;
 use crate::support::{Dice, close, near};
-use hysteron::physics::interaction::ewald::{RemainderSeries, kernel, remainder};
+use hysteron::physics::interaction::ewald::{ORDERS, RemainderSeries, image_sums, kernel, remainder};
 use std::f64::consts::PI;
 
 /// `4 ζ(½) β(½)`: own images and background.
@@ -95,5 +95,51 @@ fn law_a_finer_lattice_of_loads_is_a_smaller_cell() {
             }
         }
         close("lattice", sum, side * kernel(side * x, side * y, 2.0), 1e-11);
+    }
+}
+
+#[test]
+fn law_sums_of_higher_powers_do_not_depend_on_the_splitting() {
+    let mut dice = Dice(4);
+    let mut places: Vec<(f64, f64)> = (0..20).map(|_| (dice.roll() - 0.5, dice.roll() - 0.5)).collect();
+    places.extend([(0.0, 0.0), (0.5, 0.5)]);
+    for (x, y) in places {
+        let want = image_sums(x, y, 2.0);
+        near("S_0", want[0], remainder(x, y, 2.5), 2e-13);
+        let series = RemainderSeries::new().sums(x, y);
+        for alpha in [1.1, 2.5, 3.0] {
+            let got = image_sums(x, y, alpha);
+            for m in 0..ORDERS {
+                // The terms that cancel grow as α^(2m+1), below 1e3 at α = 3.
+                close("S_m", got[m], want[m], 1e-12 * alpha.powi(2 * m as i32));
+            }
+        }
+        for m in 1..ORDERS {
+            // Worth 1e-4 of a displacement and less, and fitted to that.
+            close("table", series[m], want[m], 1e-6);
+        }
+    }
+}
+
+#[test]
+fn val_sums_of_higher_powers_are_lattice_sums() {
+    // 4 ζ(s) β(s) at the origin, s = 3/2, 5/2, 7/2 (Glasser, J. Math. Phys. 14:409, 1973); and plain sums elsewhere, whose tail beyond the
+    // square of half-side N + ½ is that of an integral, ∫∫ 1/r^p = 4·2·∫₀^{π/4} cos^(p−2) / ((p − 2)(N + ½)^(p−2)), relative error (1/N)².
+    let own = image_sums(0.0, 0.0, 2.5);
+    close("S_1", own[1], 9.033_621_683_100_95, 1e-13);
+    close("S_2", own[2], 5.090_258_233_665_483, 1e-13);
+    close("S_3", own[3], 4.423_117_787_678_166, 1e-13);
+    let (x, y) = (0.31, -0.44);
+    let sums = image_sums(x, y, 2.5);
+    for (m, power) in [(2, 5), (3, 7)] {
+        let mut plain = 0.0;
+        for i in -60..=60 {
+            for j in -60..=60 {
+                if (i, j) != (0, 0) {
+                    plain += (x + f64::from(i)).hypot(y + f64::from(j)).powi(-power);
+                }
+            }
+        }
+        close("S_m", sums[m], plain, 1e-5);
     }
 }

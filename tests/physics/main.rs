@@ -7,6 +7,7 @@
 
 mod coupled;
 mod cycle;
+mod fast;
 mod homogeneity;
 mod jkr;
 mod kernel;

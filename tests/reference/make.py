@@ -21,7 +21,7 @@ import os
 import sys
 
 from mpmath import (mp, mpf, acos, asin, cos, diff, ellipk, erfc, exp,
-                    findroot, gamma, hyp2f1, inf, linspace, log, matrix, nstr, pi, polyroots,
+                    findroot, gamma, gammainc, hyp2f1, inf, linspace, log, matrix, nstr, pi, polyroots,
                     quad, sin, sqrt, zeta)
 
 mp.dps = 60
@@ -383,6 +383,36 @@ SETS = {       # name: [(x, y, z, R)], L = 1e-3
 APPROACHES = (-1e-7, 4e-7, 1.5e-6)
 
 
+def images(x, y, s):
+    """Sum over R != 0 of |r + R|^(-2s), unit side, s > 1: Ewald's method with incomplete gamma functions."""
+    def sums(alpha):
+        total = mpf(0)
+        for i in range(-9, 10):
+            for j in range(-9, 10):
+                r2 = (x + i) ** 2 + (y + j) ** 2
+                if (i, j) != (0, 0):
+                    total += gammainc(s, alpha ** 2 * r2) / gamma(s) / r2 ** s
+                elif r2:
+                    total -= gammainc(s, 0, alpha ** 2 * r2) / gamma(s) / r2 ** s
+                else:
+                    total -= alpha ** (2 * s) / gamma(s + 1)
+                h2 = pi ** 2 * (i * i + j * j)
+                if (i, j) != (0, 0):
+                    total += pi / gamma(s) * h2 ** (s - 1) * gammainc(1 - s, h2 / alpha ** 2) * cos(2 * pi * (i * x + j * y))
+        return total + pi / gamma(s) * alpha ** (2 * s - 2) / (s - 1)
+    value = sums(mpf(1.75))
+    agree("images", value, sums(mpf(2)), 1e-45)
+    return value
+
+
+def moments_of(E, g, R, a):
+    """c_m of w = sum c_m / r^(2m+1) far from a spot, m = 1, 2, 3."""
+    hertz = (mpf(1) / 10, mpf(9) / 280, mpf(5) / 336)
+    punch = (mpf(1) / 6, mpf(3) / 40, mpf(5) / 112)
+    return [a ** (2 * m + 3) * (4 * a * a / (3 * R) * h - 2 * sqrt(2 * pi * a * g / E) * p) / pi
+            for m, (h, p) in enumerate(zip(hertz, punch))]
+
+
 def coupled():
     L, E, g = dbl(1e-3), dbl(1e6), dbl(0.07)
     rows = []
@@ -391,7 +421,7 @@ def coupled():
         n = len(xs)
         cs = [Jkr(E, g, s[3]) for s in xs]
         scale = [c.a_off() for c in cs]
-        r, rest = {}, {}
+        r, rest, far = {}, {}, {}
         for i in range(n):
             for j in range(n):
                 if i != j:
@@ -400,12 +430,17 @@ def coupled():
                     dy -= L * mp.nint(dy / L)
                     r[i, j] = sqrt(dx * dx + dy * dy)
                     rest[i, j] = ewald(dx / L, dy / L, sqrt(pi))[1] / (pi * E * L)
+                    far[i, j] = [images(dx / L, dy / L, m + mpf(1) / 2) / L ** (2 * m + 1) for m in (1, 2, 3)]
+        far_own = [images(mpf(0), mpf(0), m + mpf(1) / 2) / L ** (2 * m + 1) for m in (1, 2, 3)]
         own = self_term() / (pi * E * L)
 
         for interaction in ("spots", "point"):
             def w_hat(a):
                 F = [c.F(t) for c, t in zip(cs, a)]
-                return [own * F[i] + sum(rest[i, j] * F[j]
+                C = [moments_of(E, g, s[3], t) if interaction == "spots" else (0, 0, 0) for s, t in zip(xs, a)]
+                return [own * F[i]
+                        + sum(c * t for j in range(n) for c, t in zip(C[j], far[i, j] if j != i else far_own))
+                        + sum(rest[i, j] * F[j]
                                          + (field(E, g, xs[j][3], a[j], r[i, j]) if interaction == "spots"
                                             else F[j] / (pi * E * r[i, j]))
                                          for j in range(n) if j != i) for i in range(n)]
@@ -466,7 +501,8 @@ def coupled():
           ["Coupled equilibria of a few JKR asperities, all in contact, periodic square L = 1e-3 m,",
            "E* = 1e6 Pa, dgamma = 0.07 J/m^2: delta + z_i - w_i = delta_JKR(a_i), self-balanced load.",
            "w_i = F_i s + sum over j != i of (X_ij + F_j (G_ij - 1/(pi E* r_ij))), s = self term, G = kernel,",
-           "r_ij = nearest image; X_ij = exact field of the spot (spots) or F_j/(pi E* r_ij) (point).",
+           "r_ij = nearest image; X_ij = exact field of the spot (spots) or F_j/(pi E* r_ij) (point); for spots plus, over all j,",
+           "sum over m = 1, 2, 3 of c_jm S_m(r_ij): far field c_m / r^(2m+1) of all images but the nearest.",
            "findroot, residual below 1e-46 m; stable: symmetric part of d(delta_JKR + w)/da positive definite; "
            "no two spots touch.",
            "Checked: dPi/d(delta) = sum F for point (18 digits). Set 'wrap' interacts across the corner."],

@@ -1,12 +1,18 @@
 //! The displacement field of contact spots, behind one small trait.
 
+mod best;
 mod direct;
 pub mod ewald;
+mod fast;
+mod moments;
 pub mod pair;
 
 use super::krylov::dot;
+pub use best::{Best, best};
 pub use direct::DirectSum;
 pub(crate) use direct::strand_sum;
+pub use fast::FastSum;
+use fast::Sparse;
 use pair::SpotColumns;
 
 /// The spots in contact: which asperities they are, ascending, and their columns.
@@ -18,24 +24,71 @@ pub struct Spots {
     pub columns: SpotColumns,
 }
 
-/// `∂ŵ_i/∂a_j` over the spots in contact, rows of i.
-#[derive(Debug, Clone, Default)]
-pub struct Tangent {
-    pub(crate) size: usize,
-    pub(crate) matrix: Vec<f64>,
+/// `∂ŵ_i/∂a_j` over the spots in contact: what is asked of it is its product with a vector.
+#[derive(Debug, Clone)]
+pub struct Tangent(Form);
+
+#[derive(Debug, Clone)]
+enum Form {
+    /// Rows of i, so many of each.
+    Dense(usize, Vec<f64>),
+    /// Near pairs and a mesh.
+    Sparse(Box<Sparse>),
+}
+
+impl Default for Tangent {
+    fn default() -> Self {
+        Self(Form::Dense(0, Vec::new()))
+    }
 }
 
 impl Tangent {
     /// `y = ∂ŵ/∂a · x`.
-    pub(crate) fn product(&self, x: &[f64], y: &mut [f64]) {
-        for (line, yi) in self.matrix.chunks(self.size.max(1)).zip(y.iter_mut()) {
-            *yi = dot(line, x);
+    pub fn product(&self, x: &[f64], y: &mut [f64]) {
+        match &self.0 {
+            Form::Dense(size, matrix) => {
+                for (line, yi) in matrix.chunks((*size).max(1)).zip(y.iter_mut()) {
+                    *yi = dot(line, x);
+                }
+            }
+            Form::Sparse(sparse) => sparse.product(x, y),
         }
     }
 
     /// `∂ŵ_i/∂a_i`: what a spot's own images and the background do to it.
-    pub(crate) fn own(&self, i: usize) -> f64 {
-        self.matrix[i * self.size + i]
+    #[must_use]
+    pub fn own(&self, i: usize) -> f64 {
+        match &self.0 {
+            Form::Dense(size, matrix) => matrix[i * size + i],
+            Form::Sparse(sparse) => sparse.own(i),
+        }
+    }
+
+    /// Takes the matrix out, as `size` rows of zeros, to be filled and given back by [`Self::set_dense`].
+    fn take_dense(&mut self, size: usize) -> Vec<f64> {
+        let mut matrix = match std::mem::take(self).0 {
+            Form::Dense(_, matrix) => matrix,
+            Form::Sparse(_) => Vec::new(),
+        };
+        matrix.clear();
+        matrix.resize(size * size, 0.0);
+        matrix
+    }
+
+    fn set_dense(&mut self, size: usize, matrix: Vec<f64>) {
+        self.0 = Form::Dense(size, matrix);
+    }
+
+    /// Takes the sparse form out, for its memory; to be filled anew and given back by [`Self::set_sparse`].
+    fn take_sparse(&mut self) -> Box<Sparse> {
+        match std::mem::take(self).0 {
+            Form::Sparse(sparse) => sparse,
+            Form::Dense(..) => Box::default(),
+        }
+    }
+
+    fn set_sparse(&mut self, sparse: Box<Sparse>) {
+        self.0 = Form::Sparse(sparse);
     }
 }
 
@@ -56,7 +109,11 @@ pub trait Interaction: Sync {
     /// centre, but its periodic images and the background do.
     fn displacements(&self, spots: &Spots, targets: &[usize], displacements: &mut Vec<f64>, effort: &mut Effort);
 
-    /// Displacement ŵ \[m\] at each of `targets`, and its derivative along a motion of the spots: `dŵ_i = Σ_j (∂ŵ_i/∂a_j)·rates_j`.
+    /// Displacements at the spots themselves, with the tangent.
+    fn linearise(&self, spots: &Spots, displacements: &mut Vec<f64>, tangent: &mut Tangent, effort: &mut Effort);
+
+    /// Displacement at each of `targets` and its derivative along a path on which the radii of the spots change by `rates`:
+    /// `dŵ_i = Σ_j (∂ŵ_i/∂a_j) rates_j`. With `rates` = da_j/dδ it is dŵ_i/dδ.
     fn approach(
         &self,
         spots: &Spots,
@@ -66,10 +123,4 @@ pub trait Interaction: Sync {
         slopes: &mut Vec<f64>,
         effort: &mut Effort,
     );
-
-    /// Fields of all spots at one asperity, one by one \[m\], and their derivatives to the radii; both slices as long as the filled columns.
-    fn row(&self, spots: &Spots, target: usize, values: &mut [f64], slopes: &mut [f64]);
-
-    /// Displacements at the spots themselves, with the tangent.
-    fn linearise(&self, spots: &Spots, displacements: &mut Vec<f64>, tangent: &mut Tangent, effort: &mut Effort);
 }

@@ -108,7 +108,7 @@ pub fn spot_field(r: f64, a: f64, radius: f64, pull: f64) -> (f64, f64) {
 
 /// Both formulae are taken and one is chosen, so that several spots go through at once.
 #[inline(always)]
-fn field<const L: usize>(
+pub(crate) fn field<const L: usize>(
     r2: &[f64; L],
     a: &[f64; L],
     root_a: &[f64; L],

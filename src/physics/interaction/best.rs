@@ -1,0 +1,74 @@
+//! Which of the sums: few spots are summed directly, many fast. Both give the same field, so that the choice may change along a path.
+
+use super::direct::TABLE_LIMIT;
+use super::{DirectSum, Effort, FastSum, Interaction, Spots, Tangent};
+use crate::model::{Boundary, Interaction as Kind, Material};
+
+/// Spots from which the fast sum is the faster one, measured for a linearisation and the dozen products that follow it, where the direct sum
+/// has its table, and where there are too many asperities for one.
+const MANY: usize = 600;
+const MANY_WITHOUT_TABLE: usize = 300;
+
+/// Error of the fast sum, of the greatest displacement: an equilibrium is met to 1e-10 of the rms height.
+const TOLERANCE: f64 = 1e-10;
+
+/// The displacement field of asperities at `positions` \[m\] on the square of side `length_m`, summed in the way that is the faster one for
+/// the number of spots in contact.
+#[must_use]
+pub fn best(positions: Vec<[f64; 2]>, length_m: f64, material: &Material, kind: Kind, boundary: Boundary) -> Best {
+    let many = positions.len() >= MANY && boundary == Boundary::Periodic && kind != Kind::None;
+    let least = if positions.len() <= TABLE_LIMIT { MANY } else { MANY_WITHOUT_TABLE };
+    let fast = many.then(|| FastSum::new(positions.clone(), length_m, material, kind, TOLERANCE));
+    Best { direct: DirectSum::new(positions, length_m, material, kind, boundary), fast, least }
+}
+
+/// The direct sum, and the fast one where there are asperities enough for it.
+#[derive(Debug)]
+pub struct Best {
+    direct: DirectSum,
+    fast: Option<FastSum>,
+    /// Spots from which the fast sum is taken.
+    least: usize,
+}
+
+impl Best {
+    fn for_spots(&self, spots: &Spots) -> &dyn Interaction {
+        match &self.fast {
+            Some(fast) if spots.columns.len() >= self.least => fast,
+            _ => &self.direct,
+        }
+    }
+
+    /// For other places than the spots: a mesh is worth its while only for many of them.
+    fn for_targets(&self, spots: &Spots, targets: &[usize]) -> &dyn Interaction {
+        if targets.len() < self.least / 2 { &self.direct } else { self.for_spots(spots) }
+    }
+
+    /// Fields of all spots at each of `targets`, one by one \[m\], and their derivatives to the radii: `visit` is given the number of the target
+    /// in the list, the fields and the derivatives.
+    pub(crate) fn rows(&self, spots: &Spots, targets: &[usize], effort: &mut Effort, visit: impl FnMut(usize, &[f64], &[f64])) {
+        self.direct.rows(spots, targets, effort, visit);
+    }
+}
+
+impl Interaction for Best {
+    fn displacements(&self, spots: &Spots, targets: &[usize], displacements: &mut Vec<f64>, effort: &mut Effort) {
+        self.for_targets(spots, targets).displacements(spots, targets, displacements, effort);
+    }
+
+    fn linearise(&self, spots: &Spots, displacements: &mut Vec<f64>, tangent: &mut Tangent, effort: &mut Effort) {
+        self.for_spots(spots).linearise(spots, displacements, tangent, effort);
+    }
+
+    fn approach(
+        &self,
+        spots: &Spots,
+        rates: &[f64],
+        targets: &[usize],
+        displacements: &mut Vec<f64>,
+        slopes: &mut Vec<f64>,
+        effort: &mut Effort,
+    ) {
+        self.for_targets(spots, targets).approach(spots, rates, targets, displacements, slopes, effort);
+    }
+}

@@ -1,0 +1,281 @@
+//! The same field as the direct sum's in n log n: near pairs exactly, the smooth rest by a mesh.
+//!
+//! Ewald splitting (Darden, York & Pedersen, J. Chem. Phys. 98:10089, 1993; Essmann et al., 103:8577, 1995) of a field that is, from afar,
+//! `Σ_m c_m/r^(2m+1)`, m = 0 … 3 ([`super::moments`]). As `∇^2m (1/r) = [(2m−1)!!]²/r^(2m+1)` in the plane, the smooth field of a spot is
+//! `Σ_m c_m ∇^2m(erf(αr)/r)/[(2m−1)!!]²`: one kernel, whose sources are a spot's load and Laplacians of it. Within the reach `r_c` of a
+//! source its field is exact, less the smooth field of its nearest image; the smooth fields of all sources and images come from a mesh.
+//!
+//! A spot must be small against its reach. So sources form groups by their radii: every group has twice the reach of the one before and
+//! a mesh half as fine, and one large spot costs one long list. What is too large for any mesh acts on all by its exact field.
+
+mod mesh;
+mod near;
+mod plan;
+
+use super::ewald::{IMAGES, ORDERS};
+use super::moments::{Moments, product};
+use super::pair::SpotColumns;
+use super::{Effort, Interaction, Spots, Tangent};
+use crate::model::{Interaction as Kind, Material};
+use mesh::{Reader, Source, Work, read, transform};
+use near::{Group, Measure, Rest, Row};
+use plan::{Accuracy, Plan, mesh_size};
+use std::cell::RefCell;
+use std::f64::consts::PI;
+use std::sync::{Arc, OnceLock};
+
+/// The longest reach, in sides: within it no image but the nearest can lie.
+const LONGEST: f64 = 0.45;
+
+/// Reaches to choose from, each `1/√2` of the one before.
+const REACHES: usize = 15;
+
+/// What is spent for one pair in a linearisation and the dozen products that follow, in units of one point of a mesh in one transform.
+const PAIR_COST: f64 = 8.0;
+
+/// The same for one spot or target, spread and read.
+const SPREAD_COST: f64 = 500.0;
+
+/// Near pairs and a mesh.
+#[derive(Debug)]
+pub struct FastSum {
+    measure: Measure,
+    positions: Vec<[f64; 2]>,
+    /// `1/(πE*)` \[1/Pa\].
+    compliance: f64,
+    accuracy: Accuracy,
+    /// What has been made, from the longest reach to the shortest.
+    plans: [OnceLock<Arc<Plan>>; REACHES],
+}
+
+/// One evaluation: the sources in groups.
+struct Field {
+    moments: Moments,
+    groups: Vec<Group>,
+    /// Plans that are in use with their spots, the finest first.
+    levels: Vec<(Arc<Plan>, Vec<usize>)>,
+}
+
+impl FastSum {
+    /// Asperities at `positions` \[m\] on the periodic square of side `length_m`; every displacement is right to `tolerance` times the
+    /// greatest one. The load of a spot must be the one of its radii by Eq 1.
+    #[must_use]
+    pub fn new(positions: Vec<[f64; 2]>, length_m: f64, material: &Material, kind: Kind, tolerance: f64) -> Self {
+        let pull = (2.0 * PI * material.work_of_adhesion_j_m2 / material.contact_modulus_pa).sqrt();
+        Self {
+            measure: Measure { kind, pull, length: length_m },
+            positions,
+            compliance: 1.0 / (PI * material.contact_modulus_pa),
+            accuracy: Accuracy::of(tolerance),
+            plans: [const { OnceLock::new() }; REACHES],
+        }
+    }
+
+    fn reach(step: usize) -> f64 {
+        LONGEST * 0.5f64.powf(0.5 * step as f64)
+    }
+
+    fn plan(&self, step: usize) -> Arc<Plan> {
+        self.plans[step].get_or_init(|| Arc::new(Plan::new(self.accuracy, Self::reach(step)))).clone()
+    }
+
+    /// The longest of the reaches `finest`, `finest` − 2, … that a spot of radius `a` \[m\] needs, or nothing if it is too large for all.
+    fn level(&self, finest: usize, a: f64) -> Option<usize> {
+        let least = if self.measure.kind == Kind::Spots { a / (self.accuracy.girth * self.measure.length) } else { 0.0 };
+        (0..=finest / 2).map(|k| finest - 2 * k).find(|step| Self::reach(*step) >= least)
+    }
+
+    /// The finest reach that costs least, by the radii of the spots and the number of targets.
+    fn finest(&self, columns: &SpotColumns, targets: usize) -> usize {
+        let cost = |finest: usize| {
+            let mut counts = [0usize; REACHES];
+            let mut large = 0;
+            for a in &columns.a[..columns.len()] {
+                match self.level(finest, *a) {
+                    Some(step) => counts[step] += 1,
+                    None => large += 1,
+                }
+            }
+            counts[finest] = counts[finest].max(1);
+            let mut cost = PAIR_COST * (targets * large) as f64 + SPREAD_COST * (columns.len() + targets) as f64;
+            for (step, count) in counts.iter().enumerate().filter(|(_, count)| **count > 0) {
+                let reach = Self::reach(step);
+                let mesh = mesh_size(self.accuracy, reach) as f64;
+                cost += PAIR_COST * PI * reach * reach * (count * targets) as f64 + mesh * mesh * mesh.log2() * 2.0;
+            }
+            cost
+        };
+        (0..REACHES).map(|step| (step, cost(step))).min_by(|(_, a), (_, b)| a.total_cmp(b)).map_or(0, |(step, _)| step)
+    }
+
+    /// Sources in groups for so many targets.
+    fn field(&self, spots: &Spots, targets: usize) -> Field {
+        let columns = &spots.columns;
+        let Measure { kind, pull, length } = self.measure;
+        let moments = Moments::of(kind, columns, pull, self.compliance, length);
+        let finest = self.finest(columns, targets);
+        let mut members: [Vec<usize>; REACHES] = Default::default();
+        let mut large = Vec::new();
+        for (j, a) in columns.a[..columns.len()].iter().enumerate() {
+            self.level(finest, *a).map_or(&mut large, |step| &mut members[step]).push(j);
+        }
+        let (mut groups, mut levels) = (Vec::new(), Vec::new());
+        for (step, members) in members.into_iter().enumerate().rev() {
+            if !members.is_empty() {
+                let plan = self.plan(step);
+                groups.push(Group::new(Rest::Mesh(plan.clone()), &members, columns, &moments, length));
+                levels.push((plan, members));
+            }
+        }
+        if !large.is_empty() {
+            groups.push(Group::new(Rest::Images, &large, columns, &moments, length));
+        }
+        Field { moments, groups, levels }
+    }
+
+    fn share(&self, place: [f64; 2]) -> [f64; 2] {
+        place.map(|p| p / self.measure.length)
+    }
+
+    /// The sources on their meshes, with the moments given.
+    fn sources(&self, field: &Field, columns: &SpotColumns, moments: &[[f64; ORDERS]]) -> Vec<(Arc<Plan>, Vec<Source>)> {
+        let source = |plan: &Plan, j: usize| Source::new(j, self.share([columns.x[j], columns.y[j]]), plan.mesh, &moments[j]);
+        field.levels.iter().map(|(plan, members)| (plan.clone(), members.iter().map(|j| source(plan, *j)).collect())).collect()
+    }
+
+    fn readers(&self, field: &Field, targets: &[usize]) -> (usize, Vec<Reader>) {
+        let mesh = field.levels.first().map_or(0, |(plan, _)| plan.mesh);
+        let readers =
+            if mesh == 0 { Vec::new() } else { targets.iter().map(|t| Reader::new(self.share(self.positions[*t]), mesh)).collect() };
+        (mesh, readers)
+    }
+
+    /// Near fields of all targets, each handed to `take` with the target's place in the list.
+    fn near(&self, field: &Field, spots: &Spots, targets: &[usize], effort: &mut Effort, mut take: impl FnMut(usize, &Row)) {
+        let mut row = Row::default();
+        for (k, &target) in targets.iter().enumerate() {
+            row.clear();
+            let me = spots.index.binary_search(&target).ok();
+            for group in &field.groups {
+                group.add(self.measure, self.positions[target], me, &mut row);
+            }
+            effort.pairs += row.spots.len() as u64;
+            take(k, &row);
+        }
+    }
+}
+
+impl Interaction for FastSum {
+    fn displacements(&self, spots: &Spots, targets: &[usize], displacements: &mut Vec<f64>, effort: &mut Effort) {
+        displacements.clear();
+        displacements.resize(targets.len(), 0.0);
+        if self.measure.kind == Kind::None || spots.index.is_empty() {
+            return;
+        }
+        let field = self.field(spots, targets.len());
+        self.near(&field, spots, targets, effort, |k, row| displacements[k] = row.values.iter().sum());
+        let mut work = Work::default();
+        let (mesh, readers) = self.readers(&field, targets);
+        transform(&self.sources(&field, &spots.columns, &field.moments.value), None, &mut work);
+        read(&readers, mesh, &work, displacements);
+    }
+
+    fn approach(
+        &self,
+        spots: &Spots,
+        rates: &[f64],
+        targets: &[usize],
+        displacements: &mut Vec<f64>,
+        slopes: &mut Vec<f64>,
+        effort: &mut Effort,
+    ) {
+        for column in [&mut *displacements, &mut *slopes] {
+            column.clear();
+            column.resize(targets.len(), 0.0);
+        }
+        if self.measure.kind == Kind::None || spots.index.is_empty() {
+            return;
+        }
+        let field = self.field(spots, targets.len());
+        self.near(&field, spots, targets, effort, |k, row| {
+            displacements[k] = row.values.iter().sum();
+            slopes[k] = row.slopes.iter().zip(&row.spots).map(|(s, j)| s * rates[*j]).sum();
+        });
+        let mut work = Work::default();
+        let (mesh, readers) = self.readers(&field, targets);
+        transform(&self.sources(&field, &spots.columns, &field.moments.value), None, &mut work);
+        read(&readers, mesh, &work, displacements);
+        transform(&self.sources(&field, &spots.columns, &field.moments.slope), Some(rates), &mut work);
+        read(&readers, mesh, &work, slopes);
+    }
+
+    fn linearise(&self, spots: &Spots, displacements: &mut Vec<f64>, tangent: &mut Tangent, effort: &mut Effort) {
+        displacements.clear();
+        displacements.resize(spots.index.len(), 0.0);
+        if self.measure.kind == Kind::None || spots.index.is_empty() {
+            let zeros = tangent.take_dense(spots.index.len());
+            tangent.set_dense(spots.index.len(), zeros);
+            return;
+        }
+        let field = self.field(spots, spots.index.len());
+        let mut sparse = tangent.take_sparse();
+        sparse.starts.clear();
+        sparse.columns.clear();
+        sparse.values.clear();
+        sparse.starts.push(0);
+        self.near(&field, spots, &spots.index, effort, |k, row| {
+            displacements[k] = row.values.iter().sum();
+            sparse.columns.extend(row.spots.iter().map(|j| *j as u32));
+            sparse.values.extend_from_slice(&row.slopes);
+            sparse.starts.push(sparse.values.len());
+        });
+        let own = IMAGES.sums(0.0, 0.0);
+        sparse.own = field.moments.slope.iter().map(|slope| product(&own, slope)).collect();
+        (sparse.mesh, sparse.readers) = self.readers(&field, &spots.index);
+        let work = sparse.work.get_mut();
+        transform(&self.sources(&field, &spots.columns, &field.moments.value), None, work);
+        read(&sparse.readers, sparse.mesh, work, displacements);
+        sparse.levels = self.sources(&field, &spots.columns, &field.moments.slope);
+        tangent.set_sparse(sparse);
+    }
+}
+
+/// `∂ŵ/∂a` as near pairs and a mesh.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Sparse {
+    /// First entry of each row, and one past the last of all; the spot and the value of each entry.
+    starts: Vec<usize>,
+    columns: Vec<u32>,
+    values: Vec<f64>,
+    own: Vec<f64>,
+    levels: Vec<(Arc<Plan>, Vec<Source>)>,
+    mesh: usize,
+    readers: Vec<Reader>,
+    work: RefCell<Work>,
+}
+
+impl Sparse {
+    pub(super) fn product(&self, x: &[f64], y: &mut [f64]) {
+        for (ends, yi) in self.starts.windows(2).zip(y.iter_mut()) {
+            let mut strands = [0.0; 4];
+            let (columns, values) = (&self.columns[ends[0]..ends[1]], &self.values[ends[0]..ends[1]]);
+            let ((columns, left), (values, over)) = (columns.as_chunks::<4>(), values.as_chunks::<4>());
+            for (column, value) in columns.iter().zip(values) {
+                for k in 0..4 {
+                    strands[k] += value[k] * x[column[k] as usize];
+                }
+            }
+            for (column, value) in left.iter().zip(over) {
+                strands[0] += value * x[*column as usize];
+            }
+            *yi = strands.iter().sum();
+        }
+        let work = &mut *self.work.borrow_mut();
+        transform(&self.levels, Some(x), work);
+        read(&self.readers, self.mesh, work, y);
+    }
+
+    pub(super) fn own(&self, i: usize) -> f64 {
+        self.own[i]
+    }
+}

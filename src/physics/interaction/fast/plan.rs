@@ -1,0 +1,210 @@
+//! What depends on the reach of the near field alone: the splitting, the smooth field by radius, the mesh and its waves.
+
+use super::super::ewald::ORDERS;
+use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
+use rustfft::{Fft, FftPlanner};
+use std::f64::consts::{PI, TAU};
+use std::fmt;
+use std::sync::Arc;
+
+/// Points of the mesh on which a source is spread along each direction: the order of its B-spline.
+pub(super) const WIDTH: usize = 16;
+
+/// `[(2m − 1)!!]²`: `∇^2m (1/r)` is so much times `1/r^(2m+1)` in the plane.
+pub(super) const LAPLACIANS: [f64; ORDERS] = [1.0, 1.0, 9.0, 225.0];
+
+/// Pieces of the smooth field between its centre and its reach, and terms of each.
+const PIECES: usize = 64;
+const TERMS: usize = 10;
+
+/// What a tolerance asks of the splitting.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Accuracy {
+    /// Splitting parameter times reach, `α r_c`: beyond, `erfc(αr)` is no part of the field.
+    edge: f64,
+    /// Highest wave of the mesh over `2α`.
+    waves: f64,
+    /// Greatest radius of a spot over its reach, so that four orders of its far field are enough beyond.
+    pub(super) girth: f64,
+}
+
+impl Accuracy {
+    /// For displacements that are right to `tolerance` times the greatest of them.
+    ///
+    /// Beyond the reach `erfc(αr)` of a field is left out. A B-spline of order p takes a wave at the share t of the mesh's highest for its
+    /// alias with the weight `(t/(2 − t))^p`, and `e^(−(q/2α)²)` of a wave is there to be taken. Beyond `r = r_c` the far field lacks
+    /// `0.03 (a/r)⁸`. Each of the three is bound to a field at the reach, which is a small part of the greatest displacement: what comes of
+    /// them is below a fifth of the tolerance in every case measured, and a thirtieth in most.
+    pub(super) fn of(tolerance: f64) -> Self {
+        let tolerance = tolerance.clamp(1e-13, 1e-2);
+        let mut edge = 1.0;
+        while libm::erfc(edge) > 0.3 * tolerance {
+            edge += 0.02;
+        }
+        let alias = |waves: f64| {
+            let share = |t: f64| (t / (2.0 - t)).powi(WIDTH as i32) * (-(waves * t).powi(2)).exp();
+            (1..=100).map(|k| share(0.01 * f64::from(k))).fold(0.0, f64::max)
+        };
+        let mut waves = edge;
+        while alias(waves) > tolerance {
+            waves += 0.02;
+        }
+        Self { edge, waves, girth: (10.0 * tolerance).powf(0.125).min(0.2) }
+    }
+}
+
+/// `∇^2m(erf(αr)/r)/[(2m−1)!!]²` for m = 0 … 3 within a reach: what the mesh has of a source, to be taken off its near field.
+#[derive(Debug, Clone)]
+pub(super) struct Smooth {
+    /// Polynomials in `2·fraction − 1`, highest power first, by pieces of equal `r²`.
+    pieces: Vec<[[f64; ORDERS]; TERMS]>,
+}
+
+impl Smooth {
+    fn new(alpha: f64, reach: f64) -> Self {
+        let angle = |k: usize| PI * (k as f64 + 0.5) / TERMS as f64;
+        let pieces = (0..PIECES)
+            .map(|piece| {
+                let samples: Vec<_> = (0..TERMS)
+                    .map(|k| smooth(alpha, reach * reach * (piece as f64 + 0.5 + 0.5 * angle(k).cos()) / PIECES as f64))
+                    .collect();
+                // A Chebyshev series, then powers by Clenshaw's rule on polynomials.
+                let (mut next, mut after) = ([[0.0; ORDERS]; TERMS], [[0.0; ORDERS]; TERMS]);
+                for n in (0..TERMS).rev() {
+                    let scale = if n == 0 { 1.0 } else { 2.0 } / TERMS as f64;
+                    let mut value = [[0.0; ORDERS]; TERMS];
+                    for m in 0..ORDERS {
+                        let sum: f64 = samples.iter().enumerate().map(|(k, s)| s[m] * (n as f64 * angle(k)).cos()).sum();
+                        value[0][m] = scale * sum;
+                        let factor = if n == 0 { 1.0 } else { 2.0 };
+                        for p in 0..TERMS {
+                            let shifted = if p > 0 { next[p - 1][m] } else { 0.0 };
+                            value[p][m] += factor * shifted - after[p][m];
+                        }
+                    }
+                    (after, next) = (next, value);
+                }
+                next.reverse();
+                next
+            })
+            .collect();
+        Self { pieces }
+    }
+
+    /// At the square of the distance over that of the reach, below 1.
+    #[inline(always)]
+    pub(super) fn at(&self, share: f64) -> [f64; ORDERS] {
+        let place = share * PIECES as f64;
+        let number = (place as usize).min(PIECES - 1);
+        let t = 2.0 * (place - number as f64) - 1.0;
+        let piece = &self.pieces[number];
+        let mut sums = piece[0];
+        for term in &piece[1..] {
+            for m in 0..ORDERS {
+                sums[m] = sums[m].mul_add(t, term[m]);
+            }
+        }
+        sums
+    }
+}
+
+/// With `erf(αr)/r = (2α/√π) ∫₀¹ e^(−v t²) dt`, `v = α²r²`, and `∇^2m e^(−βr²) = (−4β)^m m! L_m(βr²) e^(−βr²)` in the plane.
+fn smooth(alpha: f64, r2: f64) -> [f64; ORDERS] {
+    /// Coefficients of `m! L_m`.
+    const LAGUERRE: [[f64; ORDERS]; ORDERS] = [[1.0, 0.0, 0.0, 0.0], [1.0, -1.0, 0.0, 0.0], [2.0, -4.0, 1.0, 0.0], [6.0, -18.0, 9.0, -1.0]];
+    let v = alpha * alpha * r2;
+    // ∫₀¹ t^2p e^(−v t²) dt = ½ e^(−v) Σ_k v^k/((p+½)(p+3/2) … (p+½+k)): all terms positive.
+    let integral = |p: usize| {
+        let mut k = p as f64 + 0.5;
+        let (mut term, mut sum) = (0.5 / k, 0.0);
+        while term > 1e-18 * sum {
+            sum += term;
+            k += 1.0;
+            term *= v / k;
+        }
+        sum * (-v).exp()
+    };
+    [0, 1, 2, 3].map(|m: usize| {
+        let sum: f64 = (0..=m).map(|i| LAGUERRE[m][i] * v.powi(i as i32) * integral(m + i)).sum();
+        2.0 * alpha / PI.sqrt() * (-4.0 * alpha * alpha).powi(m as i32) / LAPLACIANS[m] * sum
+    })
+}
+
+/// A near reach, and the mesh that does the rest. Lengths are in units of the side.
+pub(super) struct Plan {
+    pub(super) reach: f64,
+    /// Points of the mesh on a side.
+    pub(super) mesh: usize,
+    pub(super) smooth: Smooth,
+    /// `(2π/q) erfc(q/2α)` over the spread of a source, by ky then kx; at q = 0 what the near fields have of mean taken off.
+    pub(super) waves: Vec<f64>,
+    /// One over the transform of the B-spline, of k = 0 … N − 1; 0 at the highest wave, which has no sign.
+    pub(super) sharpen: Vec<f64>,
+    pub(super) rows: Arc<dyn RealToComplex<f64>>,
+    pub(super) rows_back: Arc<dyn ComplexToReal<f64>>,
+    pub(super) columns: Arc<dyn Fft<f64>>,
+    pub(super) columns_back: Arc<dyn Fft<f64>>,
+}
+
+impl fmt::Debug for Plan {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Plan").field("reach", &self.reach).field("mesh", &self.mesh).finish_non_exhaustive()
+    }
+}
+
+/// Points that a mesh needs on a side for a reach.
+pub(super) fn mesh_size(accuracy: Accuracy, reach: f64) -> usize {
+    // The highest wave is πN.
+    let least = (2.0 * accuracy.edge / reach * accuracy.waves / PI).ceil() as usize;
+    let smooth = |n: usize| {
+        let mut left = n;
+        for prime in [2, 3, 5] {
+            while left.is_multiple_of(prime) {
+                left /= prime;
+            }
+        }
+        n.is_multiple_of(4) && left == 1
+    };
+    (least.max(2 * WIDTH)..).find(|n| smooth(*n)).unwrap_or(least)
+}
+
+impl Plan {
+    pub(super) fn new(accuracy: Accuracy, reach: f64) -> Self {
+        let n = mesh_size(accuracy, reach);
+        let alpha = accuracy.edge / reach;
+        let wave = |k: usize| if 2 * k < n { k as f64 } else { k as f64 - n as f64 };
+        let sharpen: Vec<f64> = (0..n)
+            .map(|k| {
+                let angle = PI * wave(k) / n as f64;
+                if 2 * k == n {
+                    0.0
+                } else if k == 0 {
+                    1.0
+                } else {
+                    (angle / angle.sin()).powi(WIDTH as i32)
+                }
+            })
+            .collect();
+        let half = n / 2 + 1;
+        let mut waves = vec![0.0; half * n];
+        for ky in 0..half {
+            for kx in 0..n {
+                let q = TAU * wave(kx).hypot(ky as f64);
+                let far = if q > 0.0 { TAU / q * libm::erfc(0.5 * q / alpha) } else { -2.0 * PI.sqrt() / alpha };
+                waves[ky * n + kx] = far * sharpen[ky] * sharpen[kx];
+            }
+        }
+        let (mut real, mut complex) = (RealFftPlanner::<f64>::new(), FftPlanner::<f64>::new());
+        Self {
+            reach,
+            mesh: n,
+            smooth: Smooth::new(alpha, reach),
+            waves,
+            sharpen,
+            rows: real.plan_fft_forward(n),
+            rows_back: real.plan_fft_inverse(n),
+            columns: complex.plan_fft_forward(n),
+            columns_back: complex.plan_fft_inverse(n),
+        }
+    }
+}
