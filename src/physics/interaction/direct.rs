@@ -1,9 +1,9 @@
 //! Direct sums over all pairs: exact, and the measure of every faster way.
 
 use super::ewald::{RemainderSeries, remainder};
-use super::pair::{Place, spot_fields};
+use super::pair::{Place, sag, spot_fields};
 use super::{Effort, Interaction, Spots, Tangent};
-use crate::model::{Boundary, Interaction as Kind, Material};
+use crate::model::{Boundary, Interaction as Kind, Material, Slips};
 use std::f64::consts::PI;
 
 /// Above this many asperities the table of remainders (8 bytes a pair) would outgrow a laptop's memory, and each is computed when needed.
@@ -17,6 +17,7 @@ pub struct DirectSum {
     positions: Vec<[f64; 2]>,
     length: f64,
     pull: f64,
+    sag: f64,
     /// `1/(πE*)` \[1/Pa\].
     compliance: f64,
     series: RemainderSeries,
@@ -27,9 +28,9 @@ pub struct DirectSum {
 }
 
 impl DirectSum {
-    /// Asperities at `positions` \[m\] on the square of side `length_m`.
+    /// Asperities at `positions` \[m\] on the square of side `length_m`; of the slips only that of Eq 8 is read.
     #[must_use]
-    pub fn new(positions: Vec<[f64; 2]>, length_m: f64, material: &Material, kind: Kind, boundary: Boundary) -> Self {
+    pub fn new(positions: Vec<[f64; 2]>, length_m: f64, material: &Material, kind: Kind, boundary: Boundary, slips: Slips) -> Self {
         let compliance = 1.0 / (PI * material.contact_modulus_pa);
         let periodic = boundary == Boundary::Periodic;
         let own = if periodic && kind != Kind::None { compliance / length_m * remainder(0.0, 0.0, 2.5) } else { 0.0 };
@@ -39,6 +40,7 @@ impl DirectSum {
             positions,
             length: length_m,
             pull: (2.0 * PI * material.work_of_adhesion_j_m2 / material.contact_modulus_pa).sqrt(),
+            sag: sag(slips),
             compliance,
             series: RemainderSeries::new(),
             table: Vec::new(),
@@ -79,7 +81,7 @@ impl DirectSum {
                 return;
             }
             Kind::Spots => {
-                let place = Place { x, y, length: self.length, inverse_length, pull: self.pull };
+                let place = Place { x, y, length: self.length, inverse_length, pull: self.pull, sag: self.sag };
                 spot_fields(place, columns, values, slopes);
             }
             Kind::Point => {
