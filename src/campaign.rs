@@ -3,10 +3,10 @@
 //! What is done is derived from the files and never stored: a file is done if it can be opened and carries the key that the unit has now.
 
 use crate::keys::{key, short};
-use crate::spec::{Case, Spec, SurfaceParams};
+use crate::spec::{Case, ModelParams, Spec, SurfaceParams};
 use crate::store::{StoreError, hdf5, parquet};
 use serde_json::{Value, json};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 /// A stage's meaning: raised by hand when what it writes changes for the same parameters.
@@ -96,7 +96,7 @@ pub struct Campaign {
     pub cases: Vec<CaseUnit>,
     /// Surfaces, each once however many cases share it.
     pub surfaces: Vec<SurfaceUnit>,
-    /// Cycles, by case and realisation.
+    /// Cycles, by case and realisation. Cases that differ only in what stands beside a cycle share it: their units have one key and one id.
     pub cycles: Vec<CycleUnit>,
 }
 
@@ -146,7 +146,7 @@ impl Campaign {
                 let reads = json!({
                     "asperities": campaign.surfaces[place].asperities_key,
                     "material": plain(&case.params.material),
-                    "model": plain(&case.params.model),
+                    "model": plain(&read_by_cycle(&case.params.model)),
                     "cycle": plain(&case.params.cycle),
                 });
                 let own = key("cycle", CYCLE, &reads);
@@ -155,6 +155,13 @@ impl Campaign {
             }
         }
         campaign
+    }
+
+    /// The cycles to be computed: each once, however many cases share it.
+    #[must_use]
+    pub fn distinct_cycles(&self) -> Vec<CycleUnit> {
+        let mut known = HashSet::new();
+        self.cycles.iter().filter(|unit| known.insert(unit.key.as_str())).cloned().collect()
     }
 
     /// `surfaces/<id>.h5`.
@@ -255,6 +262,13 @@ impl Campaign {
             Ok(_) => Standing::Stale,
         }
     }
+}
+
+/// Of the model's choices what a cycle reads: all but the slips of the estimate beside it.
+fn read_by_cycle(model: &ModelParams) -> ModelParams {
+    let mut model = model.clone();
+    model.as_printed.retain(|slip| slip.in_contact());
+    model
 }
 
 /// A parameter set as JSON; a number that JSON cannot hold is refused by the spec long before.

@@ -78,7 +78,7 @@ choice! {
     Boundary {
         /// Its own periodic images, with a self-balanced load.
         Periodic = "periodic",
-        /// Nothing: a single patch on a half-space.
+        /// Nothing: a single patch on a half-space. The approach is measured from where the half-space lies far away, at rest.
         Isolated = "isolated",
     }
 }
@@ -124,5 +124,46 @@ choice! {
         A2 = "a2",
         /// `sqrt(m4/3t)` for `sqrt(m4/3)·t` below Eq A3.
         A3 = "a3",
+    }
+}
+
+impl Slip {
+    /// Whether the contact itself reads it. The others only enter Deng and Kesari's estimate beside it, so they make no other cycle.
+    #[must_use]
+    pub fn in_contact(self) -> bool {
+        matches!(self, Self::Eq8 | Self::Eq9)
+    }
+}
+
+/// Which slips of the paper are put back: one flag to each [`Slip`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Slips {
+    /// [`Slip::Eq8`].
+    pub eq8: bool,
+    /// [`Slip::Eq9`].
+    pub eq9: bool,
+    /// [`Slip::A2`].
+    pub a2: bool,
+    /// [`Slip::A3`].
+    pub a3: bool,
+}
+
+impl Slips {
+    /// Every equation as it is right.
+    pub const NONE: Self = Self { eq8: false, eq9: false, a2: false, a3: false };
+}
+
+impl FromIterator<Slip> for Slips {
+    fn from_iter<T: IntoIterator<Item = Slip>>(list: T) -> Self {
+        let mut slips = Self::NONE;
+        for slip in list {
+            match slip {
+                Slip::Eq8 => slips.eq8 = true,
+                Slip::Eq9 => slips.eq9 = true,
+                Slip::A2 => slips.a2 = true,
+                Slip::A3 => slips.a3 = true,
+            }
+        }
+        slips
     }
 }

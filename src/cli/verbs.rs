@@ -9,6 +9,7 @@ use crate::stages::{self, Tally};
 use crate::stats::summary;
 use crate::store::{commit, parquet};
 use serde_json::json;
+use std::collections::HashSet;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -131,8 +132,10 @@ fn conclusion(campaign: &Campaign, tallies: &[(Stage, Tally)], until: Stage) -> 
 fn survey(campaign: &Campaign) -> Vec<(Stage, Vec<(String, Standing)>)> {
     let surfaces = campaign.surfaces.iter().map(|unit| (unit.id.clone(), campaign.surface_standing(unit))).collect();
     let asperities = campaign.surfaces.iter().map(|unit| (unit.id.clone(), campaign.asperities_standing(unit))).collect();
-    let cycles: Vec<(String, Standing)> = campaign.cycles.iter().map(|unit| (unit.id.clone(), campaign.cycle_standing(unit))).collect();
-    let finished: Vec<bool> = cycles.iter().map(|(_, standing)| *standing == Standing::Done).collect();
+    let cycles: Vec<(String, Standing)> =
+        campaign.distinct_cycles().into_iter().map(|unit| (unit.id.clone(), campaign.cycle_standing(&unit))).collect();
+    let done: HashSet<&str> = cycles.iter().filter(|(_, standing)| *standing == Standing::Done).map(|(id, _)| id.as_str()).collect();
+    let finished: Vec<bool> = campaign.cycles.iter().map(|unit| done.contains(unit.id.as_str())).collect();
     let statistics = campaign.statistics_key(&finished);
     let report = campaign.report_standing(&campaign.report_key(&statistics));
     vec![

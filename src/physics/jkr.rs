@@ -5,9 +5,15 @@
 //! curvature `R` \[m\], contact modulus `E*` \[Pa\], work of adhesion `Δγ` \[J/m²\].
 //!
 //! In units `a: (R²Δγ/E*)^⅓`, `δ: (RΔγ²/E*²)^⅓`, `F: RΔγ` every asperity is the same one.
+//!
+//! # The slip in Eq 9
+//! The denominator of Eq 9 is the slope dδ/da of Eq 2, printed as `2a/R − sqrt(πΔγ/(E*a))`. The equilibrium does not know it: Eq 9 is a
+//! way to get there. What does is the end of the branch, which is where this slope vanishes: printed, at
+//! `a = (πR²Δγ/(4E*))^⅓ = 2^⅓ a_off`. So with the slip put back ([`Asperity::as_printed`]) a spot's branch ends there, and with it the
+//! spot leaves: at a penetration that is 3 % less deep than `δ_off`. Eq 4, which the paper prints for it, is right, and the two do not agree.
 
 use super::PhysicsError;
-use crate::model::Material;
+use crate::model::{Material, Slips};
 use std::f64::consts::PI;
 
 /// One asperity with its material.
@@ -18,7 +24,11 @@ pub struct Asperity {
     adhesion: f64,
     /// `sqrt(2πΔγ/E*)` \[m^½\].
     pull: f64,
+    /// Where dδ/da vanishes, right as it is \[m\].
+    fold_radius: f64,
+    /// Where the branch ends \[m\]: there, or where the printed slope vanishes.
     jump_off_radius: f64,
+    jump_off_penetration: f64,
 }
 
 impl Asperity {
@@ -27,6 +37,16 @@ impl Asperity {
     /// # Errors
     /// Radius, modulus and work of adhesion must be positive and finite.
     pub fn new(radius_m: f64, material: &Material) -> Result<Self, PhysicsError> {
+        Self::as_printed(radius_m, material, Slips::NONE)
+    }
+
+    /// The same, with the end of the branch by the printed Eq 9 if that is among `slips`; see the head of this module. It changes
+    /// [`Self::jump_off_radius`], [`Self::jump_off_penetration`], what [`Self::radius_at_penetration`] refuses and
+    /// [`Self::loop_loss_from`], and nothing else.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn as_printed(radius_m: f64, material: &Material, slips: Slips) -> Result<Self, PhysicsError> {
         let (modulus, adhesion) = (material.contact_modulus_pa, material.work_of_adhesion_j_m2);
         for (quantity, value) in
             [("the radius of curvature [m]", radius_m), ("the contact modulus [Pa]", modulus), ("the work of adhesion [J/m2]", adhesion)]
@@ -36,12 +56,17 @@ impl Asperity {
             }
         }
         let pull_squared = 2.0 * PI * adhesion / modulus;
+        let fold_radius = (pull_squared * radius_m * radius_m / 16.0).cbrt();
+        // In units of a_off and a_off²/R Eq 2 is κ² − 4 sqrt(κ).
+        let (stretch, depth) = if slips.eq9 { (2f64.cbrt(), 4.0 * 2f64.cbrt().sqrt() - 4f64.cbrt()) } else { (1.0, 3.0) };
         Ok(Self {
             radius: radius_m,
             modulus,
             adhesion,
             pull: pull_squared.sqrt(),
-            jump_off_radius: (pull_squared * radius_m * radius_m / 16.0).cbrt(),
+            fold_radius,
+            jump_off_radius: stretch * fold_radius,
+            jump_off_penetration: -depth * fold_radius * fold_radius / radius_m,
         })
     }
 
@@ -79,27 +104,30 @@ impl Asperity {
     ///
     /// # Deviations
     /// The denominator of the paper's Eq 9 has `sqrt(πΔγ/(E*a))`, which is not the derivative of Eq 2: it vanishes before the true jump-off.
+    /// This is the true one also where the slip is put back, since an equilibrium is solved for with it.
     #[must_use]
     pub fn penetration_slope(&self, a: f64) -> f64 {
         2.0 * a / self.radius - self.pull / (2.0 * a.sqrt())
     }
 
-    /// Contact radius at jump-off under displacement control `(πR²Δγ/(8E*))^⅓` \[m\], where `dδ/da = 0`.
+    /// Contact radius at jump-off under displacement control `(πR²Δγ/(8E*))^⅓` \[m\], where `dδ/da = 0`; with the slip of Eq 9
+    /// `(πR²Δγ/(4E*))^⅓`.
     #[must_use]
     pub fn jump_off_radius(&self) -> f64 {
         self.jump_off_radius
     }
 
-    /// Penetration at jump-off `δ_off = −(27π²Δγ²R/(64E*²))^⅓` \[m\]. Eq 4.
+    /// Penetration at jump-off `δ_off = −(27π²Δγ²R/(64E*²))^⅓` \[m\]. Eq 4. With the slip of Eq 9 that of Eq 2 at the jump-off radius,
+    /// `(4·2^(1/6) − 2^(2/3))/3 = 0.9675` of it.
     #[must_use]
     pub fn jump_off_penetration(&self) -> f64 {
-        -3.0 * self.jump_off_radius * self.jump_off_radius / self.radius
+        self.jump_off_penetration
     }
 
     /// Contact radius `(9πR²Δγ/(8E*))^⅓` \[m\] at the greatest tension.
     #[must_use]
     pub fn pull_off_radius(&self) -> f64 {
-        self.jump_off_radius * 9f64.cbrt()
+        self.fold_radius * 9f64.cbrt()
     }
 
     /// Greatest tension `−(3/2)πRΔγ` \[N\], as a load.
@@ -108,15 +136,15 @@ impl Asperity {
         -1.5 * PI * self.radius * self.adhesion
     }
 
-    /// Contact radius \[m\] on the stable branch (`a ≥ a_off`) at penetration `δ` \[m\]: the inverse of Eq 2; nothing below `δ_off`.
+    /// Contact radius \[m\] on the stable branch at penetration `δ` \[m\]: the inverse of Eq 2; nothing below the jump-off penetration.
     ///
     /// With `a = a_off(1 + e)²` Eq 2 reads `6e² + 4e³ + e⁴ = (δ − δ_off)/(a_off²/R)`, whose left side is convex: Newton from above
     /// converges from any start, and the root keeps its digits down to the jump-off itself.
     #[must_use]
     pub fn radius_at_penetration(&self, penetration: f64) -> Option<f64> {
-        let off = self.jump_off_radius;
-        let excess = (penetration - self.jump_off_penetration()) * self.radius / (off * off);
-        if !(excess >= 0.0 && excess.is_finite()) {
+        let off = self.fold_radius;
+        let excess = (penetration + 3.0 * off * off / self.radius) * self.radius / (off * off);
+        if !(penetration >= self.jump_off_penetration && excess.is_finite()) {
             return None;
         }
         let mut e = (excess / 6.0).sqrt().min(excess.sqrt().sqrt() + 0.6);
@@ -162,7 +190,7 @@ impl Asperity {
     /// Loss of one loading–unloading loop whose jump-in is at `δ = 0`: `θ = 2E*R³ (πΔγ/(E*R))^(5/3) × 0.5262…` \[J\]. Eq A1.
     ///
     /// # Deviations
-    /// The constant is exact here, `2^⅔ (3/10 + (1/5) 16^(−⅔))`; the paper prints 0.5262.
+    /// The constant is exact here, `2^⅔ (3/10 + (1/5) 16^(−⅔))`; the paper prints 0.5262. The slip of Eq 9 does not enter.
     #[must_use]
     pub fn loop_loss(&self) -> f64 {
         let ratio = PI * self.adhesion / (self.modulus * self.radius);
@@ -170,7 +198,7 @@ impl Asperity {
     }
 
     /// Loss of one loading–unloading loop whose jump-in is at `jump_in` \[m\], `δ_off ≤ jump_in ≤ 0` \[J\]: the release of
-    /// `U − Δγπa²` in the two jumps. Nothing if the jump-in lies outside the branch.
+    /// `U − Δγπa²` in the two jumps. Nothing if the jump-in lies outside the branch. The loop ends where the branch does.
     #[must_use]
     pub fn loop_loss_from(&self, jump_in: f64) -> Option<f64> {
         let energy = |penetration: f64, a: f64| self.stored_energy(penetration, a) - PI * self.adhesion * a * a;

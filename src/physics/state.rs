@@ -5,7 +5,7 @@ use super::interaction::pair::Spot;
 use super::interaction::{Best, Spots, best};
 use super::jkr::Asperity;
 use super::summits::Summit;
-use crate::model::{Boundary, Coalescence, Interaction as Kind, JumpIn, Material};
+use crate::model::{Boundary, Coalescence, Interaction as Kind, JumpIn, Material, Slips};
 use std::f64::consts::PI;
 
 /// The choices of the contact model that a cycle reads.
@@ -21,6 +21,8 @@ pub struct Rules {
     pub jump_in: JumpIn,
     /// Go on below Tabor number 2 with Wu's rule.
     pub allow_low_tabor: bool,
+    /// Slips of the paper that are put back.
+    pub slips: Slips,
 }
 
 /// A set of asperities over a half-space: everything that does not change along the path.
@@ -60,7 +62,8 @@ impl Problem {
     /// There must be a summit; radii and material must be positive; with Wu's rule all Tabor numbers must be at least 2 unless allowed.
     pub fn new(summits: &[Summit], length_m: f64, rms_height_m: f64, material: Material, rules: Rules) -> Result<Self, PhysicsError> {
         let highest = summits.iter().map(|s| s.height_m).max_by(f64::total_cmp).ok_or(PhysicsError::NoSummit)?;
-        let asperities: Vec<Asperity> = summits.iter().map(|s| Asperity::new(s.radius_m(), &material)).collect::<Result<_, _>>()?;
+        let of = |s: &Summit| Asperity::as_printed(s.radius_m(), &material, rules.slips);
+        let asperities: Vec<Asperity> = summits.iter().map(of).collect::<Result<_, _>>()?;
         let range = material.interaction_range_m;
         let tabor: Vec<f64> = asperities.iter().map(|a| a.tabor(range)).collect();
         let below = tabor.iter().filter(|mu| **mu < 2.0).count();
@@ -81,7 +84,7 @@ impl Problem {
             heights: summits.iter().map(|s| s.height_m - highest).collect(),
             jump_in,
             tabor,
-            field: best(positions.clone(), length_m, &material, rules.interaction, rules.boundary),
+            field: best(positions.clone(), length_m, &material, rules.interaction, rules.boundary, rules.slips),
             neighbours: Neighbours::new(&positions, length_m, periodic),
             spots_in_patch: SPOTS_IN_PATCH,
             asperities,

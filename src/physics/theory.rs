@@ -3,7 +3,7 @@
 use super::PhysicsError;
 use super::jkr::loop_loss_constant;
 use super::spectrum::Moments;
-use crate::model::Material;
+use crate::model::{Material, Slips};
 use std::f64::consts::PI;
 
 /// Nayak's density of the reduced summit curvature in the limit that Deng and Kesari use,
@@ -11,8 +11,33 @@ use std::f64::consts::PI;
 ///
 /// # Deviations
 /// The exponent printed in Eq A2 is `8(C1² − C2²)t²/(16C1)`; Nayak's marginal has `(8C1² − C2²)t²/(16C1) = t²/4`, and only this integrates to 1.
+/// [`curvature_decay`] and [`curvature_density_as_printed`] can put the printed one back.
 #[must_use]
 pub fn curvature_density(t: f64) -> f64 {
+    curvature_density_as_printed(t, NAYAK_DECAY)
+}
+
+/// `c` in the factor `e^(−ct²)` of the density of curvature.
+const NAYAK_DECAY: f64 = 0.25;
+
+/// `c` in the factor `e^(−ct²)` of Eq A2, of Nayak's parameter `α = m0 m4/m2² ≥ 3/2` (dimensionless): `(8C1² − C2²)/(16C1)` with
+/// `C1 = α/(2α − 3)` and `C2 = C1 sqrt(12/α)`, which is ¼ whatever `α` is.
+///
+/// With the slip of A2 the printed `8(C1² − C2²)/(16C1) = (α − 12)/(2(2α − 3))`: below ¼, which it comes to for great `α` only. The density
+/// then integrates to `(√3/2)(c^(−3/2)/4 − c^(−1/2) + (c + ½)^(−1/2)) > 1`, and for `α ≤ 12` to nothing finite: there is no `c` then.
+#[must_use]
+pub fn curvature_decay(nayak_parameter: f64, slips: Slips) -> Option<f64> {
+    if !slips.a2 {
+        return Some(NAYAK_DECAY);
+    }
+    let decay = (nayak_parameter - 12.0) / (2.0 * (2.0 * nayak_parameter - 3.0));
+    (nayak_parameter > 12.0 && decay > 0.0).then_some(decay)
+}
+
+/// The density of curvature with another decay in its last factor, `p_k(t) = sqrt(3/(4π)) (t² − 2 + 2e^(−t²/2)) e^(−ct²)` for `t < 0`: Eq A2 as
+/// printed, with `c` of [`curvature_decay`]. It integrates to 1 only with `c = ¼`.
+#[must_use]
+pub fn curvature_density_as_printed(t: f64, decay: f64) -> f64 {
     if t >= 0.0 {
         return 0.0;
     }
@@ -23,7 +48,7 @@ pub fn curvature_density(t: f64) -> f64 {
     } else {
         2.0 * (half + (-half).exp_m1())
     };
-    (3.0 / (4.0 * PI)).sqrt() * bracket * (-0.5 * half).exp()
+    (3.0 / (4.0 * PI)).sqrt() * bracket * (-decay * t * t).exp()
 }
 
 /// Mean loss of one asperity `⟨θ⟩ = ∫ 2E*R³ (πΔγ/(E*R))^(5/3) × 0.5262… p_k(t) dt` \[J\], with `1/R(t) = 1/R_tip + sqrt(m4/3)|t|`. Eq A3.
@@ -31,20 +56,38 @@ pub fn curvature_density(t: f64) -> f64 {
 /// `tip_radius_m` is the radius of a spherical indenter \[m\]; nothing for nominally flat surfaces.
 ///
 /// # Deviations
-/// The curvature printed below Eq A3 is `sqrt(m4/3t)`; from `t = −sqrt(3/m4) k_m` it is `sqrt(m4/3)·t`.
+/// The curvature printed below Eq A3 is `sqrt(m4/3t)`; from `t = −sqrt(3/m4) k_m` it is `sqrt(m4/3)·t`. [`mean_loop_loss_as_printed`] can put
+/// that and the printed Eq A2 back.
 ///
 /// # Errors
 /// m4 must be positive and finite, and so must the tip's radius.
 pub fn mean_loop_loss(moments: &Moments, material: &Material, tip_radius_m: Option<f64>) -> Result<f64, PhysicsError> {
-    let domain = |quantity, value| PhysicsError::Domain {
-        action: "Deng and Kesari's mean loss (Eq A3)",
-        quantity,
-        value,
-        allowed: "a positive, finite number",
-    };
+    mean_loop_loss_as_printed(moments, material, tip_radius_m, Slips::NONE)
+}
+
+/// The same, with the printed Eq A2 ([`curvature_decay`]) and the printed curvature below Eq A3 if they are among `slips`.
+///
+/// The printed `1/R(t) = 1/R_tip − sqrt(m4/3t)` is read as `1/R_tip + sqrt((m4/3)|t|)`: the root drawn one symbol too far. The same page
+/// writes `h''_rms = sqrt(8/3m4)` for `sqrt((8/3)m4)`, so that a slash takes one symbol only; and as `t < 0`, no reading has a root without `|t|`.
+///
+/// # Errors
+/// As [`mean_loop_loss`]; with the slip of A2 Nayak's parameter must be above 12 too, since the mean has no end below.
+pub fn mean_loop_loss_as_printed(
+    moments: &Moments,
+    material: &Material,
+    tip_radius_m: Option<f64>,
+    slips: Slips,
+) -> Result<f64, PhysicsError> {
+    let refused =
+        |quantity, value, allowed| PhysicsError::Domain { action: "Deng and Kesari's mean loss (Eq A3)", quantity, value, allowed };
+    let domain = |quantity, value| refused(quantity, value, "a positive, finite number");
     if !(moments.m4_1_m2 > 0.0 && moments.m4_1_m2.is_finite()) {
         return Err(domain("m4 [1/m2]", moments.m4_1_m2));
     }
+    let nayak = moments.nayak_parameter();
+    let Some(decay) = curvature_decay(nayak, slips) else {
+        return Err(refused("Nayak's parameter", nayak, "with Eq A2 as printed, above 12"));
+    };
     let tip_curvature = match tip_radius_m {
         None => 0.0,
         Some(radius) if radius > 0.0 && radius.is_finite() => 1.0 / radius,
@@ -54,13 +97,17 @@ pub fn mean_loop_loss(moments: &Moments, material: &Material, tip_radius_m: Opti
     let unit = (moments.m4_1_m2 / 3.0).sqrt();
     // θ(R) = 2·0.5262 E* (πΔγ/E*)^(5/3) R^(4/3).
     let prefactor = 2.0 * loop_loss_constant() * modulus * (PI * adhesion / modulus).powf(5.0 / 3.0);
-    // With t = −y³ the integrand p(t)·(…)^(−4/3) has no fractional power at 0 left; beyond |t| = 15 the density is below 1e-21.
-    let most = 15f64.cbrt();
+    // With t = −y³ the integrand p(t)·(…)^(−4/3) has no fractional power at 0 left but far below its rounding; beyond ct² = 56, which is
+    // |t| = 15, the density is below 1e-21.
+    let most = (7.5 / decay.sqrt()).cbrt();
+    let panels = (48.0 * most / 15f64.cbrt()).ceil() as usize;
     let integrand = |y: f64| {
         let t = y.powi(3);
-        if y == 0.0 { 0.0 } else { curvature_density(-t) * (tip_curvature + unit * t).powf(-4.0 / 3.0) * 3.0 * y * y }
+        let reduced = if slips.a3 { t.sqrt() } else { t };
+        let size = tip_curvature + unit * reduced;
+        if y == 0.0 { 0.0 } else { curvature_density_as_printed(-t, decay) * size.powf(-4.0 / 3.0) * 3.0 * y * y }
     };
-    Ok(prefactor * gauss_panels(integrand, 0.0, most, 48))
+    Ok(prefactor * gauss_panels(integrand, 0.0, most, panels))
 }
 
 /// Composite five-point Gauss quadrature.
@@ -82,5 +129,13 @@ fn gauss_panels(f: impl Fn(f64) -> f64, from: f64, to: f64, panels: usize) -> f6
 /// # Errors
 /// As [`mean_loop_loss`].
 pub fn deng_kesari_loss(moments: &Moments, material: &Material, area_m2: f64) -> Result<f64, PhysicsError> {
-    Ok(moments.summit_density_1_m2() * area_m2 * mean_loop_loss(moments, material, None)?)
+    deng_kesari_loss_as_printed(moments, material, area_m2, Slips::NONE)
+}
+
+/// The same with the slips of A2 and A3, if they are among `slips`.
+///
+/// # Errors
+/// As [`mean_loop_loss_as_printed`].
+pub fn deng_kesari_loss_as_printed(moments: &Moments, material: &Material, area_m2: f64, slips: Slips) -> Result<f64, PhysicsError> {
+    Ok(moments.summit_density_1_m2() * area_m2 * mean_loop_loss_as_printed(moments, material, None, slips)?)
 }

@@ -39,7 +39,7 @@ const RESULTS: &[Column] = &[
     real("penetration_at_max_load", "1", "Approach over rms height at the end of loading"),
     real("loss", "1", "Energy lost in the loop over E* A0 h_rms"),
     real("loss_j", "J", "Energy lost in the loop, the integral of load over approach around it"),
-    real("loss_dk", "1", "Loss after Deng and Kesari over E* A0 h_rms, at this area, from the moments of the continuous spectrum; null for a measured surface")
+    real("loss_dk", "1", "Loss after Deng and Kesari over E* A0 h_rms, at this area, from the moments of the continuous spectrum; null for a measured surface, and where the printed Eq A2 has no integral")
         .or_null()
         .from("Eqs A1-A4"),
     real("loss_dk_realised", "1", "Loss after Deng and Kesari over E* A0 h_rms, at this area, from the moments that this surface has; null where they do not define one")

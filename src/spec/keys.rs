@@ -4,15 +4,7 @@ use super::{CaseParams, Value};
 use crate::model::{Amplitudes, Boundary, Choice, Coalescence, Interaction, JumpIn, KeptContacts, Normalization, Slip};
 
 /// Words that the spec knows and this version cannot run: key, word, reason.
-pub const UNAVAILABLE: &[(&str, &str, &str)] = &[
-    ("model.boundary", "isolated", "a single patch on a half-space"),
-    ("model.coalescence", "merge", "joining spots that touch"),
-    ("model.coalescence", "none", "letting spots grow through one another"),
-    ("model.as_printed", "eq8", "putting back the printed Eq 8"),
-    ("model.as_printed", "eq9", "putting back the printed Eq 9"),
-    ("model.as_printed", "a2", "putting back the printed Eq A2"),
-    ("model.as_printed", "a3", "putting back the printed root below Eq A3"),
-];
+pub const UNAVAILABLE: &[(&str, &str, &str)] = &[("model.coalescence", "merge", "joining spots that touch")];
 
 /// One key of a table.
 pub(super) struct Key {

@@ -19,7 +19,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::model::{Amplitudes, Boundary, Coalescence, Interaction, JumpIn, KeptContacts, Material, Normalization, Slip};
+use crate::model::{Amplitudes, Boundary, Coalescence, Interaction, JumpIn, KeptContacts, Material, Normalization, Slip, Slips};
 
 pub use fault::{Fault, Place, SpecErrors};
 pub use keys::UNAVAILABLE;
@@ -120,6 +120,14 @@ pub struct ModelParams {
     pub as_printed: Vec<Slip>,
     /// Go on where an asperity's Tabor parameter is below 2 and JKR no longer holds.
     pub allow_low_tabor: bool,
+}
+
+impl ModelParams {
+    /// The slips that are put back, as the physics takes them.
+    #[must_use]
+    pub fn slips(&self) -> Slips {
+        self.as_printed.iter().copied().collect()
+    }
 }
 
 /// The loading and unloading path.

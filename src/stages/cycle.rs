@@ -20,6 +20,7 @@ pub(super) fn problem(params: &CaseParams, summits: &[crate::physics::summits::S
         coalescence: params.model.coalescence,
         jump_in: params.model.jump_in,
         allow_low_tabor: params.model.allow_low_tabor,
+        slips: params.model.slips(),
     };
     Ok(Problem::new(summits, params.surface.length_m, params.surface.rms_height_m, params.material, rules)?)
 }

@@ -160,25 +160,24 @@ fn extract(campaign: &Campaign, watch: &dyn Watch) -> Result<Tally, StageError> 
 
 /// Cycles all cases. One that the physics refuses is recorded as failed, and the others go on.
 fn cycles(campaign: &Campaign, watch: &dyn Watch) -> Result<Tally, StageError> {
-    let mut wanted = due(&campaign.cycles, |unit| campaign.cycle_standing(unit), |unit| unit.id.clone(), watch);
+    let units = campaign.distinct_cycles();
+    let mut wanted = due(&units, |unit| campaign.cycle_standing(unit), |unit| unit.id.clone(), watch);
     let surface = |unit: &&crate::campaign::CycleUnit| campaign.asperities_standing(&campaign.surfaces[unit.surface]);
     require(Stage::Cycle, &wanted, |unit| surface(&unit), |unit| campaign.surfaces[unit.surface].id.clone())?;
     // The longest first, so that the threads end together.
     wanted.sort_by_key(|unit| std::cmp::Reverse(campaign.surfaces[unit.surface].params.magnification));
-    each(Stage::Cycle, campaign.cycles.len(), &wanted, watch, |unit| {
-        match cycle::run(campaign, unit, &|part| watch.progress(Stage::Cycle, part)) {
-            Err(StageError::Physics(error)) => {
-                let record = json!({ "key": unit.key, "error": error.to_string() });
-                let text = format!("{record:#}\n");
-                commit::commit_bytes("record a failed case", &campaign.failure_path(unit), text.as_bytes())?;
-                watch.notice(&format!("{} failed: {error}", unit.id));
-                Err(StageError::Physics(error))
-            }
-            Err(error) => Err(error),
-            Ok(()) => {
-                let _ = std::fs::remove_file(campaign.failure_path(unit));
-                Ok(unit.id.clone())
-            }
+    each(Stage::Cycle, units.len(), &wanted, watch, |unit| match cycle::run(campaign, unit, &|part| watch.progress(Stage::Cycle, part)) {
+        Err(StageError::Physics(error)) => {
+            let record = json!({ "key": unit.key, "error": error.to_string() });
+            let text = format!("{record:#}\n");
+            commit::commit_bytes("record a failed case", &campaign.failure_path(unit), text.as_bytes())?;
+            watch.notice(&format!("{} failed: {error}", unit.id));
+            Err(StageError::Physics(error))
+        }
+        Err(error) => Err(error),
+        Ok(()) => {
+            let _ = std::fs::remove_file(campaign.failure_path(unit));
+            Ok(unit.id.clone())
         }
     })
 }

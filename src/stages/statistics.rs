@@ -6,7 +6,8 @@ use crate::campaign::{Campaign, CaseUnit, CycleUnit, Stage, Standing};
 use crate::model::Choice;
 use crate::physics::jkr::Asperity;
 use crate::physics::spectrum::Moments;
-use crate::physics::theory::deng_kesari_loss;
+use crate::physics::theory::{curvature_decay, deng_kesari_loss_as_printed};
+use crate::spec::CaseParams;
 use crate::stats::{self, CaseInput, CycleInput, Given, Value};
 use crate::store::hdf5::{SurfaceHeader, read_header};
 use crate::store::parquet;
@@ -136,10 +137,17 @@ fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<CycleInput, Stag
         steps: campaign.cycle_dir(unit).join("steps.parquet"),
         turning_steps: Vec::new(),
         energy_scale_j: params.material.contact_modulus_pa * area * params.surface.rms_height_m,
-        loss_dk_per_area_j: Some(deng_kesari_loss(&spectrum(&params.surface).moments(), &params.material, area)?),
-        loss_dk_realised_per_area_j: Some(deng_kesari_loss(&realised, &params.material, area)?),
+        loss_dk_per_area_j: deng_kesari(&spectrum(&params.surface).moments(), params, area)?,
+        loss_dk_realised_per_area_j: deng_kesari(&realised, params, area)?,
         surface: named(numbers),
     })
+}
+
+/// Deng and Kesari's loss of an area \[J\]; nothing where the printed Eq A2 defines none.
+fn deng_kesari(moments: &Moments, params: &CaseParams, area_m2: f64) -> Result<Option<f64>, StageError> {
+    let slips = params.model.slips();
+    let defined = curvature_decay(moments.nayak_parameter(), slips).is_some();
+    Ok(if defined { Some(deng_kesari_loss_as_printed(moments, &params.material, area_m2, slips)?) } else { None })
 }
 
 fn named<const N: usize>(values: [(&str, Value); N]) -> Given {

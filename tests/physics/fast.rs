@@ -1,7 +1,7 @@
 //! The fast sum against the direct sum: the same field, the same tangent.
 
 use crate::support::{Dice, LENGTH, PAPER, near};
-use hysteron::model::{Boundary, Interaction as Kind};
+use hysteron::model::{Boundary, Interaction as Kind, Slips};
 use hysteron::physics::interaction::pair::Spot;
 use hysteron::physics::interaction::{DirectSum, Effort, FastSum, Interaction, Spots, Tangent, best};
 use hysteron::physics::jkr::Asperity;
@@ -62,8 +62,8 @@ fn law_the_fast_sum_is_the_direct_sum() {
         // Spots, asperities that are none, and some of these inside a spot.
         let targets: Vec<usize> = (0..contacts + 200).collect();
         for kind in [Kind::Spots, Kind::Point] {
-            let direct = DirectSum::new(positions.clone(), LENGTH, &PAPER, kind, Boundary::Periodic);
-            let fast = FastSum::new(positions.clone(), LENGTH, &PAPER, kind, 1e-9);
+            let direct = DirectSum::new(positions.clone(), LENGTH, &PAPER, kind, Boundary::Periodic, Slips::default());
+            let fast = FastSum::new(positions.clone(), LENGTH, &PAPER, kind, Slips::default(), 1e-9);
             let want = displacements(&direct, &spots, &targets);
             let off = error(&displacements(&fast, &spots, &targets), &want);
             assert!(off < 1e-9, "{kind:?} of {contacts}: {off:e}");
@@ -90,7 +90,7 @@ fn law_the_fast_sum_is_the_direct_sum() {
 #[test]
 fn law_some_targets_are_some_of_all() {
     let (positions, spots) = contact(6, 700, 300, 5e-5);
-    let fast = FastSum::new(positions, LENGTH, &PAPER, Kind::Spots, 1e-9);
+    let fast = FastSum::new(positions, LENGTH, &PAPER, Kind::Spots, Slips::default(), 1e-9);
     let all = displacements(&fast, &spots, &(0..700).collect::<Vec<_>>());
     let some = [3, 650, 299, 300, 0];
     // The reach is chosen by the number of targets: within the tolerance, not to the last digit.
@@ -107,8 +107,8 @@ fn law_the_slope_along_a_path_is_a_difference() {
     let mut dice = Dice(70);
     let rates: Vec<f64> = (0..300).map(|_| dice.roll()).collect();
     let targets: Vec<usize> = (200..500).collect();
-    let direct = DirectSum::new(positions.clone(), LENGTH, &PAPER, Kind::Spots, Boundary::Periodic);
-    let fast = FastSum::new(positions, LENGTH, &PAPER, Kind::Spots, 1e-9);
+    let direct = DirectSum::new(positions.clone(), LENGTH, &PAPER, Kind::Spots, Boundary::Periodic, Slips::default());
+    let fast = FastSum::new(positions, LENGTH, &PAPER, Kind::Spots, Slips::default(), 1e-9);
     let (mut want, mut want_slopes, mut got, mut slopes) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     direct.approach(&spots, &rates, &targets, &mut want, &mut want_slopes, &mut Effort::default());
     fast.approach(&spots, &rates, &targets, &mut got, &mut slopes, &mut Effort::default());
@@ -126,11 +126,11 @@ fn law_the_slope_along_a_path_is_a_difference() {
 fn law_the_torus_has_no_origin_for_the_fast_sum() {
     let (positions, spots) = contact(8, 400, 300, 5e-5);
     let targets: Vec<usize> = (0..400).collect();
-    let want = displacements(&FastSum::new(positions.clone(), LENGTH, &PAPER, Kind::Spots, 1e-9), &spots, &targets);
+    let want = displacements(&FastSum::new(positions.clone(), LENGTH, &PAPER, Kind::Spots, Slips::default(), 1e-9), &spots, &targets);
     for shift in [[0.123e-3, 0.77e-3], [-2.3e-3, 0.5e-3]] {
         let moved: Vec<[f64; 2]> = positions.iter().map(|[x, y]| [x + shift[0], y + shift[1]]).collect();
         let spots_moved = on_spots(&moved[..300], 8, 300, 5e-5);
-        let field = FastSum::new(moved, LENGTH, &PAPER, Kind::Spots, 1e-9);
+        let field = FastSum::new(moved, LENGTH, &PAPER, Kind::Spots, Slips::default(), 1e-9);
         let off = error(&displacements(&field, &spots_moved, &targets), &want);
         assert!(off < 1e-9, "{off:e}");
     }
@@ -140,11 +140,11 @@ fn law_the_torus_has_no_origin_for_the_fast_sum() {
 fn law_the_tolerance_is_kept_and_used() {
     let (positions, spots) = contact(9, 1200, 1000, 3e-5);
     let targets: Vec<usize> = (0..1200).collect();
-    let direct = DirectSum::new(positions.clone(), LENGTH, &PAPER, Kind::Spots, Boundary::Periodic);
+    let direct = DirectSum::new(positions.clone(), LENGTH, &PAPER, Kind::Spots, Boundary::Periodic, Slips::default());
     let want = displacements(&direct, &spots, &targets);
     let mut last = f64::INFINITY;
     for tolerance in [1e-5, 1e-7, 1e-9, 1e-11] {
-        let fast = FastSum::new(positions.clone(), LENGTH, &PAPER, Kind::Spots, tolerance);
+        let fast = FastSum::new(positions.clone(), LENGTH, &PAPER, Kind::Spots, Slips::default(), tolerance);
         let off = error(&displacements(&fast, &spots, &targets), &want);
         assert!(off < tolerance, "{tolerance:e}: {off:e}");
         // A looser one is looser: nothing is paid for that was not asked for.
@@ -157,14 +157,15 @@ fn law_the_tolerance_is_kept_and_used() {
 fn lim_copies_of_a_cell_are_the_cell() {
     // The same spots nine times on a square three times as wide: images act as spots, so it is the same field.
     let (positions, spots) = contact(10, 60, 60, 4e-5);
-    let field = |n: usize| DirectSum::new(copies(&positions, n), LENGTH * n as f64, &PAPER, Kind::Spots, Boundary::Periodic);
+    let field =
+        |n: usize| DirectSum::new(copies(&positions, n), LENGTH * n as f64, &PAPER, Kind::Spots, Boundary::Periodic, Slips::default());
     let targets: Vec<usize> = (0..60).collect();
     let want = displacements(&field(1), &spots, &targets);
     let many = on_spots(&copies(&positions, 3), 10, 60, 4e-5);
     // Of the images of a spot of a/L = 0.07 the orders beyond the last are left out: 0.03 (2a/L)⁸ of F/(πE*L) at most.
     let off = error(&displacements(&field(3), &many, &targets), &want);
     assert!(off < 1e-9, "{off:e}");
-    let fast = FastSum::new(copies(&positions, 3), 3.0 * LENGTH, &PAPER, Kind::Spots, 1e-10);
+    let fast = FastSum::new(copies(&positions, 3), 3.0 * LENGTH, &PAPER, Kind::Spots, Slips::default(), 1e-10);
     let off = error(&displacements(&fast, &many, &targets), &want);
     assert!(off < 1e-9, "{off:e}");
 }
@@ -179,8 +180,8 @@ fn reg_the_best_sum_is_the_same_field_for_few_and_many() {
     let (positions, spots) = contact(11, 900, 800, 3e-5);
     let targets: Vec<usize> = (0..900).collect();
     for (kind, boundary) in [(Kind::Spots, Boundary::Periodic), (Kind::Point, Boundary::Isolated), (Kind::None, Boundary::Periodic)] {
-        let field = best(positions.clone(), LENGTH, &PAPER, kind, boundary);
-        let direct = DirectSum::new(positions.clone(), LENGTH, &PAPER, kind, boundary);
+        let field = best(positions.clone(), LENGTH, &PAPER, kind, boundary, Slips::default());
+        let direct = DirectSum::new(positions.clone(), LENGTH, &PAPER, kind, boundary, Slips::default());
         for spots in [&spots, &contact(11, 900, 20, 3e-5).1] {
             let want = displacements(&direct, spots, &targets);
             let got = displacements(field.as_ref(), spots, &targets);

@@ -1,14 +1,14 @@
 //! Nothing depends on the units: with lengths λ and forces φ times greater every equation scales by its dimension.
 
 use crate::support::{ALONE, DEFAULT, Dice, LENGTH, PAPER, RMS, asperity, close, near, paper_spectrum, run};
-use hysteron::model::{Amplitudes, Coalescence, Interaction, KeptContacts, Material, Normalization};
-use hysteron::physics::interaction::pair::spot_field;
+use hysteron::model::{Amplitudes, Boundary, Coalescence, Interaction, KeptContacts, Material, Normalization, Slips};
+use hysteron::physics::interaction::pair::spot_field_as_printed;
 use hysteron::physics::jkr::Asperity;
 use hysteron::physics::spectrum::{Moments, Spectrum};
 use hysteron::physics::state::{Problem, Rules};
 use hysteron::physics::summits::{Summit, find_summits};
 use hysteron::physics::synthesis::{realization_seed, synthesize};
-use hysteron::physics::theory::{deng_kesari_loss, mean_loop_loss};
+use hysteron::physics::theory::{deng_kesari_loss_as_printed, mean_loop_loss_as_printed};
 
 /// Something that moments have.
 type Moment = fn(&Moments) -> f64;
@@ -59,6 +59,9 @@ fn several() -> Vec<Units> {
     (0..8).map(|_| Units { length: factor(), force: factor() }).collect()
 }
 
+/// Every equation as it is right, and every slip put back.
+const PRINTED: [Slips; 2] = [Slips::NONE, Slips { eq8: true, eq9: true, a2: true, a3: true }];
+
 /// A dozen roundings, through cube roots and powers of numbers of order 1e±12.
 const ROUNDING: f64 = 1e-13;
 
@@ -66,8 +69,9 @@ const ROUNDING: f64 = 1e-13;
 fn law_one_asperity_scales() {
     for units in several() {
         let material = units.material(PAPER);
-        for radius in [1e-6, 2.5e-5, 1e-3] {
-            let (p, q) = (Asperity::new(radius, &PAPER).unwrap(), Asperity::new(radius * units.length, &material).unwrap());
+        for (radius, slips) in [1e-6, 2.5e-5, 1e-3].into_iter().flat_map(|radius| PRINTED.map(|slips| (radius, slips))) {
+            let of = |radius: f64, material: &Material| Asperity::as_printed(radius, material, slips).unwrap();
+            let (p, q) = (of(radius, &PAPER), of(radius * units.length, &material));
             let scaled = |what: &str, got: f64, want: f64, l: f64, f: f64| close(what, got, want * units.of(l, f), ROUNDING);
             scaled("radius", q.radius_m(), p.radius_m(), 1.0, 0.0);
             scaled("pull", q.pull_sqrt_m(), p.pull_sqrt_m(), 0.5, 0.0);
@@ -101,12 +105,14 @@ fn law_a_spot_scales() {
     for units in several() {
         let (a, radius, pull) = (8e-6, 2.5e-5, 6.6e-4);
         for r in [2e-6, 9e-6, 4e-5, 1e-2] {
-            let (w, slope) = spot_field(r, a, radius, pull);
-            let by = units.length;
-            let (v, steep) = spot_field(r * by, a * by, radius * by, pull * by.sqrt());
-            // The two terms of the field have opposite signs.
-            near("w", v, w * by, 1e-13 * by * (w.abs() + a * a / r.max(a)));
-            near("dw/da", steep, slope, 1e-13 * (slope.abs() + a / r.max(a)));
+            for slips in PRINTED {
+                let (w, slope) = spot_field_as_printed(r, a, radius, pull, slips);
+                let by = units.length;
+                let (v, steep) = spot_field_as_printed(r * by, a * by, radius * by, pull * by.sqrt(), slips);
+                // The two terms of the field have opposite signs.
+                near("w", v, w * by, 1e-13 * by * (w.abs() + a * a / r.max(a)));
+                near("dw/da", steep, slope, 1e-13 * (slope.abs() + a / r.max(a)));
+            }
         }
     }
 }
@@ -136,12 +142,14 @@ fn law_spectrum_and_theory_scale() {
                     scaled(&format!("moment {k}"), moment(&n), moment(&m), dimension, 0.0);
                 }
                 let stuff = units.material(PAPER);
-                for tip in [None, Some(1e-3)] {
-                    let (x, y) = (mean_loop_loss(&m, &PAPER, tip), mean_loop_loss(&n, &stuff, tip.map(|r| r * units.length)));
-                    scaled("<theta>", y.unwrap(), x.unwrap(), 1.0, 1.0);
+                for slips in PRINTED {
+                    for tip in [None, Some(1e-3)] {
+                        let mean = |m, material, tip| mean_loop_loss_as_printed(m, material, tip, slips).unwrap();
+                        scaled("<theta>", mean(&n, &stuff, tip.map(|r| r * units.length)), mean(&m, &PAPER, tip), 1.0, 1.0);
+                    }
+                    let loss = |m, material, area| deng_kesari_loss_as_printed(m, material, area, slips).unwrap();
+                    scaled("Theta", loss(&n, &stuff, 1e-7 * units.of(2.0, 0.0)), loss(&m, &PAPER, 1e-7), 1.0, 1.0);
                 }
-                let (x, y) = (deng_kesari_loss(&m, &PAPER, 1e-7), deng_kesari_loss(&n, &stuff, 1e-7 * units.of(2.0, 0.0)));
-                scaled("Theta", y.unwrap(), x.unwrap(), 1.0, 1.0);
             }
         }
     }
@@ -184,7 +192,8 @@ fn law_a_whole_cycle_scales() {
     ]
     .map(|(x, y, z, r)| asperity(x * LENGTH, y * LENGTH, z, r));
     let cover = Rules { coalescence: Coalescence::Cover, ..DEFAULT };
-    for rules in [ALONE, cover, Rules { interaction: Interaction::Point, ..cover }] {
+    let others = Rules { boundary: Boundary::Isolated, slips: PRINTED[1], ..cover };
+    for rules in [ALONE, cover, Rules { interaction: Interaction::Point, ..cover }, others] {
         let base = Problem::new(&summits, LENGTH, RMS, PAPER, rules).unwrap();
         let want = run(&base, &[1e-4, 2e-4], 0.05, KeptContacts::None);
         assert!(want.steps.iter().map(|s| s.event_counts.iter().sum::<usize>()).sum::<usize>() > 10);

@@ -161,7 +161,7 @@ fn law_slopes_are_derivatives() {
 }
 
 /// `∫ F dδ` from radius `from` to `to` along the branch: Simpson in `y = sqrt(a)`, where the integrand is a polynomial of degree 9.
-fn work(jkr: &Asperity, from: f64, to: f64) -> f64 {
+pub fn work(jkr: &Asperity, from: f64, to: f64) -> f64 {
     let n = 400;
     let (y0, y1) = (from.sqrt(), to.sqrt());
     let h = (y1 - y0) / f64::from(n);

@@ -9,10 +9,12 @@ mod coupled;
 mod cycle;
 mod fast;
 mod homogeneity;
+mod isolated;
 mod jkr;
 mod kernel;
 mod ledger;
 mod pair;
+mod printed;
 mod spectrum;
 mod summits;
 mod synthesis;
@@ -70,7 +72,7 @@ mod reference {
 
 /// What several files use.
 mod support {
-    use hysteron::model::{Amplitudes, Boundary, Coalescence, Interaction, JumpIn, KeptContacts, Material, Normalization};
+    use hysteron::model::{Amplitudes, Boundary, Coalescence, Interaction, JumpIn, KeptContacts, Material, Normalization, Slips};
     use hysteron::physics::cycle::{self, Branch, Cycle, Settings, Step};
     use hysteron::physics::spectrum::Spectrum;
     use hysteron::physics::state::{Problem, Rules};
@@ -90,6 +92,7 @@ mod support {
         coalescence: Coalescence::Cover,
         jump_in: JumpIn::Wu,
         allow_low_tabor: false,
+        slips: Slips::NONE,
     };
     /// Interactions off and plain JKR: everything has a closed form.
     pub const ALONE: Rules = Rules { interaction: Interaction::None, coalescence: Coalescence::None, jump_in: JumpIn::Jkr, ..DEFAULT };

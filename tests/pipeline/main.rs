@@ -5,6 +5,8 @@
 mod e2e;
 #[cfg(feature = "stats")]
 mod figures;
+#[cfg(feature = "stats")]
+mod keys;
 mod schema;
 mod spec;
 #[cfg(feature = "stats")]

@@ -151,3 +151,40 @@ fn val_the_quickstart_is_two_small_cases() {
     assert_eq!(spec.cases.iter().map(|case| case.params.surface.grid()).collect::<Vec<_>>(), [256, 512]);
     assert!(spec.cases.iter().all(|case| case.params.cycle.max_load == [0.002, 0.004]));
 }
+
+#[test]
+fn val_the_sensitivity_varies_one_choice_at_a_time() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("pipelines");
+    let spec = Spec::read(folder.join("sensitivity.toml")).unwrap_or_else(|errors| panic!("{errors}"));
+    // Its base is the paper's central case, on the paper's surfaces.
+    let paper = Spec::read(folder.join("paper.toml")).unwrap_or_else(|errors| panic!("{errors}"));
+    let mut base = paper.base;
+    base.surface.magnification = 128;
+    assert_eq!((&spec.base, spec.seed, spec.realizations), (&base, paper.seed, paper.realizations));
+    let json = |params: &CaseParams| serde_json::to_value(params).unwrap();
+    let wanted = json(&base);
+    let mut choices = Vec::new();
+    for case in &spec.cases {
+        let found = json(&case.params);
+        let differing: Vec<String> = wanted
+            .as_object()
+            .unwrap()
+            .iter()
+            .flat_map(|(table, keys)| keys.as_object().unwrap().iter().map(move |(key, value)| (table, key, value)))
+            .filter(|(table, key, value)| found[table][key] != **value)
+            .map(|(table, key, _)| format!("{table}.{key}"))
+            .collect();
+        match differing.as_slice() {
+            [] => assert_eq!(case.sweeps.len(), spec.sweeps.len(), "every sweep holds the base"),
+            [key] => choices.push(key.clone()),
+            more => panic!("{more:?} at once"),
+        }
+    }
+    choices.dedup();
+    let names: Vec<&str> = spec.sweeps.iter().map(|sweep| sweep.name.as_str()).collect();
+    assert_eq!(
+        names,
+        ["coalescence", "boundary", "interaction", "jump_in", "range", "points", "normalization", "amplitudes", "step", "as_printed"]
+    );
+    assert_eq!(choices.len(), names.len());
+}

@@ -2,7 +2,7 @@
 
 use super::direct::TABLE_LIMIT;
 use super::{DirectSum, Effort, FastSum, Interaction, Spots, Tangent};
-use crate::model::{Boundary, Interaction as Kind, Material};
+use crate::model::{Boundary, Interaction as Kind, Material, Slips};
 
 /// Spots from which the fast sum is the faster one, measured for a linearisation and the dozen products that follow it, where the direct sum
 /// has its table, and where there are too many asperities for one.
@@ -15,11 +15,11 @@ const TOLERANCE: f64 = 1e-10;
 /// The displacement field of asperities at `positions` \[m\] on the square of side `length_m`, summed in the way that is the faster one for
 /// the number of spots in contact.
 #[must_use]
-pub fn best(positions: Vec<[f64; 2]>, length_m: f64, material: &Material, kind: Kind, boundary: Boundary) -> Best {
+pub fn best(positions: Vec<[f64; 2]>, length_m: f64, material: &Material, kind: Kind, boundary: Boundary, slips: Slips) -> Best {
     let many = positions.len() >= MANY && boundary == Boundary::Periodic && kind != Kind::None;
     let least = if positions.len() <= TABLE_LIMIT { MANY } else { MANY_WITHOUT_TABLE };
-    let fast = many.then(|| FastSum::new(positions.clone(), length_m, material, kind, TOLERANCE));
-    Best { direct: DirectSum::new(positions, length_m, material, kind, boundary), fast, least }
+    let fast = many.then(|| FastSum::new(positions.clone(), length_m, material, kind, slips, TOLERANCE));
+    Best { direct: DirectSum::new(positions, length_m, material, kind, boundary, slips), fast, least }
 }
 
 /// The direct sum, and the fast one where there are asperities enough for it.

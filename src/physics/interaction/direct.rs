@@ -2,9 +2,9 @@
 
 use super::ewald::{IMAGES, ORDERS, RemainderSeries};
 use super::moments::{Moments, product};
-use super::pair::{LANES, Place, SpotColumns, spot_fields};
+use super::pair::{LANES, Place, SpotColumns, sag, spot_fields};
 use super::{Effort, Interaction, Spots, Tangent};
-use crate::model::{Boundary, Interaction as Kind, Material};
+use crate::model::{Boundary, Interaction as Kind, Material, Slips};
 use crate::physics::krylov::dot;
 use multiversion::multiversion;
 use std::f64::consts::PI;
@@ -20,6 +20,7 @@ pub struct DirectSum {
     positions: Vec<[f64; 2]>,
     length: f64,
     pull: f64,
+    sag: f64,
     /// `1/(πE*)` \[1/Pa\].
     compliance: f64,
     /// [`super::ewald::image_sums`] of every pair of asperities, or nothing above the limit.
@@ -27,9 +28,9 @@ pub struct DirectSum {
 }
 
 impl DirectSum {
-    /// Asperities at `positions` \[m\] on the square of side `length_m`.
+    /// Asperities at `positions` \[m\] on the square of side `length_m`; of the slips only that of Eq 8 is read.
     #[must_use]
-    pub fn new(positions: Vec<[f64; 2]>, length_m: f64, material: &Material, kind: Kind, boundary: Boundary) -> Self {
+    pub fn new(positions: Vec<[f64; 2]>, length_m: f64, material: &Material, kind: Kind, boundary: Boundary, slips: Slips) -> Self {
         let periodic = boundary == Boundary::Periodic;
         let n = positions.len();
         let mut table = Vec::new();
@@ -53,6 +54,7 @@ impl DirectSum {
             positions,
             length: length_m,
             pull: (2.0 * PI * material.work_of_adhesion_j_m2 / material.contact_modulus_pa).sqrt(),
+            sag: sag(slips),
             compliance: 1.0 / (PI * material.contact_modulus_pa),
             table,
         }
@@ -81,7 +83,7 @@ impl DirectSum {
         let columns = &spots.columns;
         let [x, y] = self.positions[target];
         let inverse_length = if self.periodic { 1.0 / self.length } else { 0.0 };
-        let place = Place { x, y, length: self.length, inverse_length, pull: self.pull };
+        let place = Place { x, y, length: self.length, inverse_length, pull: self.pull, sag: self.sag };
         match self.kind {
             Kind::None => {
                 values.fill(0.0);

@@ -5,6 +5,7 @@
 //! As printed the bracket cancels: its relative error grows as `(r/a)²` and is 1e-4 at `r/a` = 1e6. But `[…]/x` and `asin(x)/x` are
 //! analytic in `w` on `[0, 1]` (the nearest singularity is `w = −1`), so one polynomial in `w` each is right for every `r ≥ a`.
 
+use crate::model::Slips;
 use multiversion::multiversion;
 use std::f64::consts::FRAC_1_PI;
 
@@ -99,11 +100,23 @@ pub struct Spot {
 /// `pull` is `sqrt(2πΔγ/E*)` \[m^½\]. Eqs 6 and 7 outside; inside, `ŵ = a²/R − r²/(2R) − sqrt(2πaΔγ/E*)`.
 ///
 /// # Deviations
-/// The paper's Eq 8 lacks `r²/(2R)` inside, without which the field jumps by `a²/(2R)` at the edge.
+/// The paper's Eq 8 lacks `r²/(2R)` inside, without which the field jumps by `a²/(2R)` at the edge; [`spot_field_as_printed`] can put that back.
 #[must_use]
 pub fn spot_field(r: f64, a: f64, radius: f64, pull: f64) -> (f64, f64) {
-    let ([value], [slope]) = field(&[r * r], &[a], &[a.sqrt()], &[1.0 / a.sqrt()], &[1.0 / radius], pull);
+    spot_field_as_printed(r, a, radius, pull, Slips::NONE)
+}
+
+/// The same, with the printed Eq 8 if that is among `slips`: inside `ŵ = a²/R − sqrt(2πaΔγ/E*)`, wherever in the spot. The derivative to the
+/// spot's radius is the same, but for the jump at the edge, which it does not tell.
+#[must_use]
+pub fn spot_field_as_printed(r: f64, a: f64, radius: f64, pull: f64, slips: Slips) -> (f64, f64) {
+    let ([value], [slope]) = field(&[r * r], &[a], &[a.sqrt()], &[1.0 / a.sqrt()], &[1.0 / radius], pull, sag(slips));
     (value, slope)
+}
+
+/// The coefficient of `r²/R` inside a spot: ½, or nothing as printed.
+pub(crate) fn sag(slips: Slips) -> f64 {
+    if slips.eq8 { 0.0 } else { 0.5 }
 }
 
 /// Both formulae are taken and one is chosen, so that several spots go through at once.
@@ -115,6 +128,7 @@ pub(crate) fn field<const L: usize>(
     inverse_root_a: &[f64; L],
     curvature: &[f64; L],
     pull: f64,
+    sag: f64,
 ) -> ([f64; L], [f64; L]) {
     let (mut inverse_r, mut half_chord, mut s) = ([0.0; L], [0.0; L], [0.0; L]);
     for k in 0..L {
@@ -132,7 +146,7 @@ pub(crate) fn field<const L: usize>(
         let flat = a[k] * curvature[k];
         let inside = r2[k] <= a[k] * a[k];
         let outer = FRAC_1_PI * (a[k] * flat).mul_add(indentation, -2.0 * pull * root_a[k] * arc);
-        let inner = a[k].mul_add(flat, -0.5 * r2[k] * curvature[k]) - pull * root_a[k];
+        let inner = a[k].mul_add(flat, -sag * r2[k] * curvature[k]) - pull * root_a[k];
         value[k] = if inside { inner } else { outer };
         // At the very edge the slope is infinite; a finite one, as great as rounding tells apart, keeps linear systems of it solvable.
         let crack = 0.5 * arc * inverse_root_a[k] + root_a[k] / half_chord[k].max(1e-7 * a[k]);
@@ -234,6 +248,8 @@ pub(crate) struct Place {
     pub(crate) length: f64,
     pub(crate) inverse_length: f64,
     pub(crate) pull: f64,
+    /// What [`sag`] says.
+    pub(crate) sag: f64,
 }
 
 /// The fields of all sources at one place, each written on its own: `values[j]` and `slopes[j]`, both as long as the filled columns.
@@ -253,6 +269,6 @@ pub(crate) fn spot_fields(place: Place, spots: &SpotColumns, values: &mut [f64],
             let dy = dy - place.length * (dy * place.inverse_length).round_ties_even();
             r2[k] = dx.mul_add(dx, dy * dy);
         }
-        (*values, *slopes) = field(&r2, &a[pass], &root_a[pass], &inverse_root_a[pass], &inverse_radius[pass], place.pull);
+        (*values, *slopes) = field(&r2, &a[pass], &root_a[pass], &inverse_root_a[pass], &inverse_radius[pass], place.pull, place.sag);
     }
 }

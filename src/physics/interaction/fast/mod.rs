@@ -14,9 +14,9 @@ mod plan;
 
 use super::ewald::{IMAGES, ORDERS};
 use super::moments::{Moments, product};
-use super::pair::SpotColumns;
+use super::pair::{SpotColumns, sag};
 use super::{Effort, Interaction, Spots, Tangent};
-use crate::model::{Interaction as Kind, Material};
+use crate::model::{Interaction as Kind, Material, Slips};
 use mesh::{Reader, Source, Work, read, transform};
 use near::{Group, Measure, Rest, Row};
 use plan::{Accuracy, Plan, mesh_size};
@@ -58,12 +58,13 @@ struct Field {
 
 impl FastSum {
     /// Asperities at `positions` \[m\] on the periodic square of side `length_m`; every displacement is right to `tolerance` times the
-    /// greatest one. The load of a spot must be the one of its radii by Eq 1.
+    /// greatest one. The load of a spot must be the one of its radii by Eq 1; of the
+    /// slips only that of Eq 8 is read.
     #[must_use]
-    pub fn new(positions: Vec<[f64; 2]>, length_m: f64, material: &Material, kind: Kind, tolerance: f64) -> Self {
+    pub fn new(positions: Vec<[f64; 2]>, length_m: f64, material: &Material, kind: Kind, slips: Slips, tolerance: f64) -> Self {
         let pull = (2.0 * PI * material.work_of_adhesion_j_m2 / material.contact_modulus_pa).sqrt();
         Self {
-            measure: Measure { kind, pull, length: length_m },
+            measure: Measure { kind, pull, sag: sag(slips), length: length_m },
             positions,
             compliance: 1.0 / (PI * material.contact_modulus_pa),
             accuracy: Accuracy::of(tolerance),
@@ -111,7 +112,7 @@ impl FastSum {
     /// Sources in groups for so many targets.
     fn field(&self, spots: &Spots, targets: usize) -> Field {
         let columns = &spots.columns;
-        let Measure { kind, pull, length } = self.measure;
+        let Measure { kind, pull, length, .. } = self.measure;
         let moments = Moments::of(kind, columns, pull, self.compliance, length);
         let finest = self.finest(columns, targets);
         let mut members: [Vec<usize>; REACHES] = Default::default();

@@ -44,11 +44,12 @@ struct Near {
     slope: [f64; ORDERS],
 }
 
-/// How fields are measured: the kind, `sqrt(2πΔγ/E*)` \[m^½\] and the side \[m\].
+/// How fields are measured: the kind, `sqrt(2πΔγ/E*)` \[m^½\], the factor of `r²/R` inside a spot and the side \[m\].
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Measure {
     pub(super) kind: Kind,
     pub(super) pull: f64,
+    pub(super) sag: f64,
     pub(super) length: f64,
 }
 
@@ -192,7 +193,7 @@ fn fields(group: &Group, measure: Measure, place: [f64; 2], me: Option<usize>, r
                 (r2[k], a[k], root_a[k]) = (square, source.a, source.root_a);
                 (inverse_root_a[k], inverse_radius[k]) = (source.inverse_root_a, source.inverse_radius);
             }
-            (values, slopes) = field(&r2, &a, &root_a, &inverse_root_a, &inverse_radius, measure.pull);
+            (values, slopes) = field(&r2, &a, &root_a, &inverse_root_a, &inverse_radius, measure.pull, measure.sag);
         } else {
             for (k, (&number, &square)) in found.iter().zip(squares).enumerate() {
                 let unit = length / square.sqrt();

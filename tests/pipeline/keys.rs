@@ -1,0 +1,58 @@
+//! The keys of a spec's units: what of a case changes which.
+
+use hysteron::campaign::Campaign;
+use hysteron::spec::Spec;
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
+/// The campaign of one case, with lines of `[model]` of its own.
+fn campaign(model: &str) -> Campaign {
+    let text = format!("name = \"x\"\nrealizations = 2\n[surface]\nmagnification = 8\n[model]\n{model}\n");
+    Campaign::new(Spec::parse(&text, "x.toml").unwrap_or_else(|errors| panic!("{errors}")), PathBuf::from("out"))
+}
+
+/// Keys of the surfaces, of the cycles, and of the statistics when all is done.
+fn keys(campaign: &Campaign) -> (Vec<&str>, Vec<&str>, String) {
+    let surfaces = campaign.surfaces.iter().flat_map(|unit| [unit.key.as_str(), unit.asperities_key.as_str()]).collect();
+    let cycles = campaign.cycles.iter().map(|unit| unit.key.as_str()).collect();
+    (surfaces, cycles, campaign.statistics_key(&vec![true; campaign.cycles.len()]))
+}
+
+#[test]
+fn law_a_slip_changes_the_keys_of_what_reads_it() {
+    let base = campaign("");
+    let (surfaces, cycles, statistics) = keys(&base);
+    assert_eq!(keys(&campaign("as_printed = []")), keys(&base), "what is said is what is meant");
+    // Line, whether the cycle reads it.
+    let lines = [
+        ("as_printed = [\"eq8\"]", true),
+        ("as_printed = [\"eq9\"]", true),
+        ("as_printed = [\"a2\"]", false),
+        ("as_printed = [\"a3\"]", false),
+        ("boundary = \"isolated\"", true),
+        ("coalescence = \"none\"", true),
+    ];
+    let mut seen = BTreeSet::from([statistics]);
+    for (line, in_cycle) in lines {
+        let other = campaign(line);
+        let (of_surfaces, of_cycles, of_statistics) = keys(&other);
+        assert_eq!(of_surfaces, surfaces, "{line}");
+        assert!(of_cycles.iter().zip(&cycles).all(|(a, b)| (a != b) == in_cycle), "{line}");
+        assert!(seen.insert(of_statistics), "{line}: statistics of its own");
+    }
+    // Of two slips together the cycle reads one.
+    assert_eq!(keys(&campaign("as_printed = [\"a3\", \"eq9\"]")).1, keys(&campaign("as_printed = [\"eq9\"]")).1);
+}
+
+#[test]
+fn law_cases_that_differ_beside_the_cycle_share_it() {
+    let text = "name = \"x\"\nrealizations = 3\n[surface]\nmagnification = 8\n[[sweep]]\nname = \"s\"\n\
+                model.as_printed = [[], [\"a2\"], [\"a3\"], [\"eq8\"], [\"eq8\", \"a2\"]]\n";
+    let campaign = Campaign::new(Spec::parse(text, "x.toml").unwrap(), PathBuf::from("out"));
+    assert_eq!((campaign.cases.len(), campaign.cycles.len()), (5, 15), "every case has its cycles");
+    let distinct = campaign.distinct_cycles();
+    assert_eq!(distinct.len(), 6, "of which there are two for each surface");
+    let folders = |units: &[hysteron::campaign::CycleUnit]| units.iter().map(|unit| campaign.cycle_dir(unit)).collect::<BTreeSet<_>>();
+    assert_eq!(folders(&distinct), folders(&campaign.cycles));
+    assert_eq!(campaign.cases.iter().map(|case| &case.id).collect::<BTreeSet<_>>().len(), 5);
+}
