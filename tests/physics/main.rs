@@ -17,6 +17,7 @@ mod summits;
 mod synthesis;
 mod theory;
 mod union;
+mod validity;
 
 /// Values made without the program.
 mod reference {
