@@ -5,6 +5,8 @@
 mod e2e;
 #[cfg(feature = "stats")]
 mod figures;
+#[cfg(feature = "stats")]
+mod losses;
 mod schema;
 mod spec;
 #[cfg(feature = "stats")]
@@ -13,3 +15,5 @@ mod stats;
 mod steps;
 #[cfg(feature = "store")]
 mod store;
+#[cfg(feature = "stats")]
+mod validity;
