@@ -62,7 +62,8 @@ h1,h2{line-height:1.2}pre{overflow-x:auto;background:#f4f4f2;padding:1rem;font-s
 .panels{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(24rem,100%),1fr));gap:1rem}\
 .panels svg{width:100%;height:auto;background:#fff}table{border-collapse:collapse;font-size:.9rem}\
 td,th{padding:.2rem .7rem;border-bottom:1px solid #ccc;text-align:left;vertical-align:top}\
-.wide{overflow-x:auto}.wide td{white-space:nowrap}.n{text-align:right}.beyond{font-weight:700;color:#b3261e}\
+.wide{overflow-x:auto}.wide table{font-size:.82rem}.wide td{white-space:nowrap}.wide td,.wide th{padding:.2rem .45rem}\
+.wide :is(td,th):nth-child(n+2){text-align:right}.beyond{font-weight:700;color:#b3261e}\
 @media(prefers-color-scheme:dark){body{color:#e6e6e6;background:#161616}pre{background:#242424}.beyond{color:#ff8a80}}\
 @media print{body{max-width:none}}";
 

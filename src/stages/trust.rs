@@ -14,17 +14,15 @@ enum Shown {
     Percent,
 }
 
-/// The table "How far to trust it": heading, column of the mean, column of the worst realization if it is shown too.
-const TRUST: [(&str, &str, Option<&str>, Shown); 9] = [
+/// The table "How far to trust it": heading, the column that is judged, and another one shown in brackets.
+const TRUST: [(&str, &str, Option<&str>, Shown); 7] = [
     ("Tabor number: least (mean)", "tabor_min_min", Some("tabor_mean_mean"), Shown::Plain),
-    ("asperities with less than 2", "low_tabor_share_mean", None, Shown::Percent),
+    ("share below 2", "low_tabor_share_mean", None, Shown::Percent),
     ("spots that touch (worst)", "touching_share_mean", Some("touching_share_max"), Shown::Percent),
     ("asperities covered (worst)", "covered_share_mean", Some("covered_share_max"), Shown::Percent),
     ("A/A<sub>0</sub>", "area_at_max_load_mean", None, Shown::Percent),
-    ("conformity number", "conformity_realised_mean", None, Shown::Plain),
-    ("U<sub>el</sub>/Δγ", "persson_tosatti_realised_mean", None, Shown::Plain),
-    ("audit gap: worst (mean)", "audit_gap_max", Some("audit_gap_mean"), Shown::Percent),
-    ("of the continuous spectrum: conformity (U<sub>el</sub>/Δγ)", "conformity_mean", Some("persson_tosatti_mean"), Shown::Plain),
+    ("conformity number (spectrum)", "conformity_realised_mean", Some("conformity_mean"), Shown::Plain),
+    ("U<sub>el</sub>/Δγ (spectrum)", "persson_tosatti_realised_mean", Some("persson_tosatti_mean"), Shown::Plain),
 ];
 
 /// The rows of the table `cases`, as the tables of the page name them.
@@ -48,12 +46,19 @@ impl<'a> Cases<'a> {
     fn name(&self, row: usize) -> String {
         let id = self.ids.get(row).copied().unwrap_or_default();
         let load = self.loads.get(row).copied().unwrap_or_default();
-        format!("<td>{}</td><td class=\"n\">{load}</td>", escape(id))
+        format!("<td>{}</td><td>{load}</td>", escape(id))
     }
 
     /// Whether a row carries a caution.
     fn has(&self, row: usize, word: &str) -> bool {
         self.words.get(row).is_some_and(|said| said.split('+').any(|part| part == word))
+    }
+
+    /// A cell, marked if the number of this column is beyond its limit.
+    fn cell(&self, row: usize, column: &str, text: &str) -> String {
+        // The caution decides, not the number: the Tabor number is a limit of one jump-in rule only.
+        let beyond = limit_of(column).is_some_and(|limit| self.has(row, limit.caution));
+        format!("<td{}>{text}</td>", if beyond { " class=\"beyond\"" } else { "" })
     }
 
     fn rows(&self) -> std::ops::Range<usize> {
@@ -73,10 +78,11 @@ pub(super) fn split(html: &mut String, cases: &Frame) -> Result<(), StageError> 
     }
     html.push_str(
         "<h2>Where the loss goes</h2>\n<p>Θ is the work around the loop. The sum over its events is a second account of it, and the audit gap is the \
-         difference over Θ. Shares are of that sum: by branch, and by what began each relaxation.</p>\n<div class=\"wide\"><table>\n\
-         <tr><th>case</th><th>max load</th><th>Θ/(E*A<sub>0</sub>h<sub>rms</sub>)</th><th>sum over events</th><th>audit gap: mean (worst)</th>\
-         <th>loading</th><th>unloading</th>",
+         difference over Θ; both are over E*A<sub>0</sub>h<sub>rms</sub>, in 1e-3. Shares are of that sum: by branch, and by the event that began each \
+         relaxation. Covering has no potential, so its share may be negative.</p>\n<div class=\"wide\"><table>\n<tr><th>case</th><th>max load</th>\
+         <th>Θ</th><th>sum over events</th>",
     );
+    let _ = write!(html, "<th>audit gap: worst (mean){}</th><th>loading</th><th>unloading</th>", bound("audit_gap_max", Shown::Percent));
     for kind in &kinds {
         let _ = write!(html, "<th>{}</th>", kind.replace('_', " "));
     }
@@ -85,13 +91,15 @@ pub(super) fn split(html: &mut String, cases: &Frame) -> Result<(), StageError> 
         let mean = |column: &str| cases.number(&format!("{column}_mean"), row);
         let whole = mean("dissipated")?;
         let _ = write!(html, "<tr>{}", cases.name(row));
-        let gap = with_aside(mean("audit_gap")?, Some(cases.number("audit_gap_max", row)?), Shown::Percent);
-        for text in [scientific(mean("loss")?), scientific(whole), gap] {
-            let _ = write!(html, "<td class=\"n\">{text}</td>");
+        let thousandths = |number: Option<f64>| number.map_or_else(|| MISSING.to_owned(), |number| format!("{:.3}", 1e3 * number));
+        for text in [thousandths(mean("loss")?), thousandths(whole)] {
+            let _ = write!(html, "<td>{text}</td>");
         }
+        let gap = with_aside(cases.number("audit_gap_max", row)?, mean("audit_gap")?, Shown::Percent);
+        html.push_str(&cases.cell(row, "audit_gap_max", &gap));
         for part in ["loading", "unloading"].iter().chain(&kinds) {
             let share = mean(&format!("dissipated_{part}"))?.zip(whole.filter(|whole| *whole != 0.0)).map(|(part, whole)| part / whole);
-            let _ = write!(html, "<td class=\"n\">{}</td>", shown(share, Shown::Percent));
+            let _ = write!(html, "<td>{}</td>", shown(share, Shown::Percent));
         }
         html.push_str("</tr>\n");
     }
@@ -106,23 +114,18 @@ pub(super) fn trust(html: &mut String, cases: &Frame) -> Result<(), StageError> 
         "<h2>How far to trust it</h2>\n<p>A summit model is outside its range where spots coalesce: a third of the contact area of a \
          boundary-element solution is then missing even without adhesion. It reproduces the model of the paper; see the limits in the README. \
          Numbers beyond their limit are bold. The conformity number is the elastic energy that flattens the shortest octave of the roughness over the \
-         work of adhesion, U<sub>el</sub>/Δγ that of all the roughness; both of the modes that the surfaces have, and in the last column of \
-         the continuous spectrum.</p>\n<div class=\"wide\"><table>\n<tr><th>case</th><th>max load</th>",
+         work of adhesion, and U<sub>el</sub>/Δγ that of all the roughness: of the modes that the surfaces have, and in brackets of the \
+         continuous spectrum.</p>\n<div class=\"wide\"><table>\n<tr><th>case</th><th>max load</th>",
     );
-    let limit_of = |column: &str| LIMITS.iter().find(|limit| limit.column == column);
     for (heading, column, _, as_what) in TRUST {
-        let bound = limit_of(column).map_or_else(String::new, |limit| format!("<br>{}", bound(limit, as_what)));
-        let _ = write!(html, "<th>{heading}{bound}</th>");
+        let _ = write!(html, "<th>{heading}{}</th>", bound(column, as_what));
     }
     html.push_str("</tr>\n");
     for row in cases.rows() {
         let _ = write!(html, "<tr>{}", cases.name(row));
         for (_, column, aside, as_what) in TRUST {
-            let aside = aside.map(|column| cases.number(column, row)).transpose()?;
-            let text = with_aside(cases.number(column, row)?, aside, as_what);
-            // The caution decides, not the number: the Tabor number is a limit of one jump-in rule only.
-            let class = if limit_of(column).is_some_and(|limit| cases.has(row, limit.caution)) { "n beyond" } else { "n" };
-            let _ = write!(html, "<td class=\"{class}\">{text}</td>");
+            let aside = aside.map(|column| cases.number(column, row)).transpose()?.flatten();
+            html.push_str(&cases.cell(row, column, &with_aside(cases.number(column, row)?, aside, as_what)));
         }
         html.push_str("</tr>\n");
     }
@@ -154,36 +157,41 @@ fn cautions(html: &mut String, cases: &Cases<'_>) {
     html.push_str("</table>\n");
 }
 
-fn bound(limit: &Limit, as_what: Shown) -> String {
-    format!("{} {}", if limit.at_least { "≥" } else { "≤" }, shown(Some(limit.bound), as_what))
+fn limit_of(column: &str) -> Option<&'static Limit> {
+    LIMITS.iter().find(|limit| limit.column == column)
 }
 
-fn with_aside(number: Option<f64>, aside: Option<Option<f64>>, as_what: Shown) -> String {
+/// The limit of a column, as it stands below its heading; nothing if it has none.
+fn bound(column: &str, as_what: Shown) -> String {
+    let said = |limit: &Limit| format!("<br>{}\u{a0}{}", if limit.at_least { "≥" } else { "≤" }, shown(Some(limit.bound), as_what));
+    limit_of(column).map_or_else(String::new, said)
+}
+
+/// A number, and another one in brackets if there is one.
+fn with_aside(number: Option<f64>, aside: Option<f64>, as_what: Shown) -> String {
     match aside {
-        Some(aside @ Some(_)) => format!("{} ({})", shown(number, as_what), shown(aside, as_what)),
-        _ => shown(number, as_what),
+        Some(_) => format!("{} ({})", shown(number, as_what), shown(aside, as_what)),
+        None => shown(number, as_what),
     }
 }
+
+/// What stands for a missing number.
+const MISSING: &str = "–";
 
 /// A number with three digits, or a dash where it is missing.
 fn shown(number: Option<f64>, as_what: Shown) -> String {
     let Some(number) = number else {
-        return "–".to_owned();
+        return MISSING.to_owned();
     };
-    if as_what == Shown::Percent {
-        let percent = 100.0 * number;
-        return if percent == percent.round() { format!("{percent:.0} %") } else { format!("{percent:.1} %") };
-    }
-    match number.abs() {
-        size if size == size.round() && size < 1e4 => format!("{number:.0}"),
-        size if size >= 100.0 => format!("{number:.0}"),
-        size if size >= 10.0 => format!("{number:.1}"),
-        size if size >= 1.0 => format!("{number:.2}"),
-        size if size >= 0.01 => format!("{number:.3}"),
-        _ => format!("{number:.1e}"),
-    }
-}
-
-fn scientific(number: Option<f64>) -> String {
-    number.map_or_else(|| "–".to_owned(), |number| format!("{number:.3e}"))
+    let text = match (as_what, number.abs()) {
+        (Shown::Percent, size) if (100.0 * size).fract() == 0.0 => format!("{:.0}\u{a0}%", 100.0 * number),
+        (Shown::Percent, _) => format!("{:.1}\u{a0}%", 100.0 * number),
+        (Shown::Plain, size) if size >= 100.0 || size.fract() == 0.0 => format!("{number:.0}"),
+        (Shown::Plain, size) if size >= 10.0 => format!("{number:.1}"),
+        (Shown::Plain, size) if size >= 1.0 => format!("{number:.2}"),
+        (Shown::Plain, size) if size >= 0.01 => format!("{number:.3}"),
+        (Shown::Plain, _) => format!("{number:.1e}"),
+    };
+    // A minus sign that is as wide as a digit.
+    text.replace('-', "−")
 }
