@@ -4,8 +4,8 @@ mod direct;
 pub mod ewald;
 pub mod pair;
 
-use super::krylov::dot;
 pub use direct::DirectSum;
+use super::krylov::dot;
 use pair::SpotColumns;
 
 /// The spots in contact: which asperities they are, ascending, and their columns.
