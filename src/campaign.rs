@@ -13,8 +13,8 @@ use std::path::{Path, PathBuf};
 const GENERATE: u32 = 1;
 const EXTRACT: u32 = 1;
 const CYCLE: u32 = 1;
-const AGGREGATE: u32 = 1;
-const REPORT: u32 = 2;
+const AGGREGATE: u32 = 2;
+const REPORT: u32 = 3;
 
 /// The stages, in their order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -245,7 +245,7 @@ impl Campaign {
     /// Whether the tables over realisations are there, with this key.
     #[must_use]
     pub fn statistics_standing(&self, key: &str) -> Standing {
-        ["realizations", "cases", "curves"]
+        ["realizations", "cases", "curves", "avalanches"]
             .iter()
             .map(|table| standing(&self.statistics_path(table), key, parquet::read_key))
             .find(|standing| *standing != Standing::Done)

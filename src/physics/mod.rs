@@ -21,6 +21,7 @@ pub mod summits;
 pub mod synthesis;
 pub mod theory;
 pub mod union;
+pub mod validity;
 
 use thiserror::Error;
 

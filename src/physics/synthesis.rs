@@ -106,6 +106,27 @@ pub fn synthesize(spectrum: &Spectrum, seed: &[u8; 32], n: usize) -> Surface {
     Surface { length_m: spectrum.length_m, heights_m: heights, moments: sums.moments(spectrum) }
 }
 
+/// Weighted sums `Σ_k w(k²)|c_k|²` \[m²\] over all modes of the surface that [`synthesize`] makes, `k²` the squared mode number: 1 for a weight gives `h_rms²`.
+#[must_use]
+pub fn mode_sums<const N: usize>(spectrum: &Spectrum, seed: &[u8; 32], weights: impl Fn(u64) -> [f64; N]) -> [f64; N] {
+    let reach = i64::from(spectrum.magnification) - 1;
+    let mut moments = MomentSums::default();
+    let mut totals = [0.0; N];
+    for kx in -reach..=reach {
+        let mut phases = Phases::of_row(seed, kx);
+        for ky in u64::from(kx <= 0)..=reach.unsigned_abs() {
+            let (_, mode_squared, power) = mode(spectrum, &mut phases, kx, ky);
+            // The mode and its conjugate at −k.
+            moments.add(mode_squared, 2.0 * power);
+            for (total, weight) in totals.iter_mut().zip(weights(mode_squared)) {
+                *total += 2.0 * power * weight;
+            }
+        }
+    }
+    let unit = (spectrum.lowest_wavenumber() * moments.scale(spectrum)).powi(2);
+    totals.map(|total| total * unit)
+}
+
 /// The modes by columns of fixed ky, kx running fastest in transform order, and the sums of their powers.
 fn draw_columns(spectrum: &Spectrum, seed: &[u8; 32], n: usize, zeta: usize) -> (Vec<Complex64>, MomentSums) {
     let mut columns = vec![Complex64::ZERO; n * zeta];

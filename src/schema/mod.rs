@@ -3,10 +3,12 @@
 //! The writer, the reader's checks, `schemas/*.json` and the tables in the README all come from here. Nothing in this
 //! room knows a file format.
 
+mod avalanches;
 mod render;
 mod run;
 mod statistics;
 
+pub use avalanches::{AVALANCHES, EVENT_KINDS};
 pub use render::{DIRECTORY, OWN_KEYS, SchemaFile, files, metadata_json, readme_markdown, schema_file_name, schema_json};
 pub use run::{ASPERITIES, CONTACTS, EVENTS, STEPS};
 pub use statistics::{CASES, CURVES, REALIZATIONS};
@@ -79,7 +81,7 @@ impl Table {
 }
 
 /// Every table that the program writes.
-pub static TABLES: &[&Table] = &[&ASPERITIES, &STEPS, &CONTACTS, &EVENTS, &REALIZATIONS, &CASES, &CURVES];
+pub static TABLES: &[&Table] = &[&ASPERITIES, &STEPS, &CONTACTS, &EVENTS, &REALIZATIONS, &CASES, &CURVES, &AVALANCHES];
 
 impl Column {
     /// The same column, whose values may be missing.

@@ -2,7 +2,7 @@
 
 use super::{Column, Table, count, index, join, real, text};
 
-const CASE: &[Column] = &[
+pub(super) const CASE: &[Column] = &[
     text("case_id", "Identity of the case: a hash of everything that defines it"),
     text("sweep", "The sweeps of the spec that the case belongs to, joined by +; empty for a spec without sweeps"),
 ];
@@ -27,6 +27,28 @@ const PARAMETERS: &[Column] = &[
     real("approach_step", "1", "Greatest step of the approach, in rms heights"),
 ];
 
+/// Mean, spread and interval of one result. All are null where no realization has it; spread and interval need two.
+macro_rules! over_realizations {
+    ($($name:literal)+, $unit:literal, $what:expr, $source:literal) => {
+        &[
+            real(concat!($($name,)+ "_mean"), $unit, concat!("Mean over realizations: ", $what)).or_null().from($source),
+            real(concat!($($name,)+ "_sd"), $unit, concat!("Standard deviation over realizations (n - 1): ", $what)).or_null().from($source),
+            real(concat!($($name,)+ "_ci95_low"), $unit, concat!("Lower end of the 95 % interval of the mean: ", $what)).or_null().from($source),
+            real(concat!($($name,)+ "_ci95_high"), $unit, concat!("Upper end of the 95 % interval of the mean: ", $what)).or_null().from($source),
+        ]
+    };
+}
+
+/// Mean over realizations and the worst of them. Both are null where no realization has it.
+macro_rules! mean_and_worst {
+    ($name:literal, $end:literal, $word:literal, $what:literal, $source:literal) => {
+        &[
+            real(concat!($name, "_mean"), "1", concat!("Mean over realizations: ", $what)).or_null().from($source),
+            real(concat!($name, "_", $end), "1", concat!($word, " over realizations: ", $what)).or_null().from($source),
+        ]
+    };
+}
+
 const MAX_LOAD: &[Column] = &[real("max_load", "1", "F/(E* A0) at which loading turned to unloading")];
 
 const RESULTS: &[Column] = &[
@@ -46,6 +68,7 @@ const RESULTS: &[Column] = &[
         .or_null()
         .from("Eqs A1-A4"),
     real("loss_ratio_dk", "1", "Loss over loss_dk; null where either is missing or the latter is 0").or_null(),
+    real("dissipated", "1", "Energy lost in the loop over E* A0 h_rms, the sum over its events"),
     real("dissipated_j", "J", "Energy lost in the loop, the sum over its events"),
     real("audit_gap", "1", "|loss_j - dissipated_j| / loss_j; null where nothing was lost").or_null(),
     count("summit_count", "Asperities of the surface"),
@@ -58,15 +81,58 @@ const RESULTS: &[Column] = &[
     count("held_count", "Asperities held as they are since they flipped between covered and uncovered, summed over the steps"),
     real("tabor_min", "1", "Smallest Tabor number of the asperities").from("Eq 3"),
     real("tabor_median", "1", "Median Tabor number of the asperities").from("Eq 3"),
-    real("tabor_max", "1", "Greatest Tabor number of the asperities; Wu's jump-in holds from 2 on").from("Eq 3"),
+    real("tabor_max", "1", "Greatest Tabor number of the asperities").from("Eq 3"),
+    real("tabor_mean", "1", "Mean Tabor number of the asperities").from("Eq 3"),
+    real("low_tabor_share", "1", "Share of the asperities whose Tabor number is below 2, where Wu's jump-in does not hold").from("Eq 3"),
     real("rms_slope", "1", "Rms of the gradient that this surface has"),
     real("rms_curvature_1_m", "1/m", "Rms of the Laplacian that this surface has"),
     real("nayak_parameter", "1", "m0 m4 / m2^2 that this surface has").from("Nayak 1971"),
     real("touching_share", "1", "Share of contact spots that touch another one at the end of loading; null without contact").or_null(),
     real("covered_share", "1", "Share of asperities in contact or covered that are covered, at the end of loading; null without contact").or_null(),
+    real("conformity", "1", "Elastic energy that flattens the shortest octave of the roughness over the work of adhesion, of the continuous spectrum; below 1 adhesion conforms to the summits; null for a measured surface")
+        .or_null()
+        .from("Persson and Tosatti 2001"),
+    real("conformity_realised", "1", "The same of the modes that this surface has; null where they are not known")
+        .or_null()
+        .from("Persson and Tosatti 2001"),
+    real("persson_tosatti", "1", "Elastic energy that flattens all the roughness over the work of adhesion, of the continuous spectrum; below 1 the surface is sticky; null for a measured surface")
+        .or_null()
+        .from("Persson and Tosatti 2001"),
+    real("persson_tosatti_realised", "1", "The same of the modes that this surface has; null where they are not known")
+        .or_null()
+        .from("Persson and Tosatti 2001"),
 ];
 
-const REALIZATION_COLUMNS: [Column; CASE.len() + PARAMETERS.len() + RESULTS.len()] = join(&[CASE, PARAMETERS, RESULTS]);
+/// Where the energy of the events goes: `dissipated` in parts, over E* A0 h_rms and in joule. The first two make the whole, and so do the others.
+macro_rules! parts {
+    ($($part:literal, $what:literal;)+) => {
+        const PARTS: &[&[Column]] = &[$(&[
+            real(concat!("dissipated_", $part), "1", concat!("Energy lost ", $what, " over E* A0 h_rms")),
+            real(concat!("dissipated_", $part, "_j"), "J", concat!("Energy lost ", $what)),
+        ]),+];
+        const PART_SPREADS: &[&[Column]] = &[$(
+            over_realizations!("dissipated_" $part, "1", concat!("energy lost ", $what, " over E* A0 h_rms"), ""),
+            over_realizations!("dissipated_" $part "_j", "J", concat!("energy lost ", $what), ""),
+        )+];
+    };
+}
+
+parts! {
+    "loading", "in events on the way to the turning point";
+    "unloading", "in events on the way back from the turning point";
+    "jump_in", "in asperities' jumps into contact, with what relaxed after them";
+    "jump_off", "in asperities' jumps out of contact, with what relaxed after them";
+    "cover", "in the covering of asperities, with what relaxed after it; negative where energy was gained, since covering has no potential";
+    "uncover", "in the uncovering of asperities, with what relaxed after it; negative where energy was gained, since covering has no potential";
+    "snap", "in moves to another equilibrium with the same spots";
+    "merge", "in spots that become one, with what relaxed after them";
+    "split", "in spots that part again, with what relaxed after them";
+}
+
+const PART_COLUMNS: [Column; 2 * PARTS.len()] = join(PARTS);
+
+const REALIZATION_COLUMNS: [Column; CASE.len() + PARAMETERS.len() + RESULTS.len() + PART_COLUMNS.len()] =
+    join(&[CASE, PARAMETERS, RESULTS, &PART_COLUMNS]);
 
 /// One cycle, in numbers.
 pub static REALIZATIONS: Table = Table {
@@ -77,26 +143,60 @@ pub static REALIZATIONS: Table = Table {
     columns: &REALIZATION_COLUMNS,
 };
 
-/// Mean, spread and interval of one result. All are null where no realization has it; spread and interval need two.
-macro_rules! over_realizations {
-    ($name:literal, $what:literal, $source:literal) => {
-        &[
-            real(concat!($name, "_mean"), "1", concat!("Mean over realizations: ", $what)).or_null().from($source),
-            real(concat!($name, "_sd"), "1", concat!("Standard deviation over realizations (n - 1): ", $what)).or_null().from($source),
-            real(concat!($name, "_ci95_low"), "1", concat!("Lower end of the 95 % interval of the mean: ", $what)).or_null().from($source),
-            real(concat!($name, "_ci95_high"), "1", concat!("Upper end of the 95 % interval of the mean: ", $what)).or_null().from($source),
-        ]
-    };
-}
+const SPREADS: &[&[Column]] = &[
+    over_realizations!("pull_off_load", "1", "pull-off load over E* A0", ""),
+    over_realizations!("area_at_max_load", "1", "A/A0 at the end of loading", ""),
+    over_realizations!("penetration_at_max_load", "1", "approach over rms height at the end of loading", ""),
+    over_realizations!("loss", "1", "energy lost in the loop over E* A0 h_rms", ""),
+    over_realizations!("loss_dk", "1", "loss after Deng and Kesari, continuous moments", "Eqs A1-A4"),
+    over_realizations!("loss_dk_realised", "1", "loss after Deng and Kesari, realised moments", "Eqs A1-A4"),
+    over_realizations!("loss_ratio_dk", "1", "loss over loss after Deng and Kesari", ""),
+    over_realizations!("dissipated", "1", "energy lost in the events of the loop over E* A0 h_rms", ""),
+    over_realizations!("dissipated_j", "J", "energy lost in the events of the loop", ""),
+];
 
-const SPREADS: [&[Column]; 7] = [
-    over_realizations!("pull_off_load", "pull-off load over E* A0", ""),
-    over_realizations!("area_at_max_load", "A/A0 at the end of loading", ""),
-    over_realizations!("penetration_at_max_load", "approach over rms height at the end of loading", ""),
-    over_realizations!("loss", "energy lost in the loop over E* A0 h_rms", ""),
-    over_realizations!("loss_dk", "loss after Deng and Kesari, continuous moments", "Eqs A1-A4"),
-    over_realizations!("loss_dk_realised", "loss after Deng and Kesari, realised moments", "Eqs A1-A4"),
-    over_realizations!("loss_ratio_dk", "loss over loss after Deng and Kesari", ""),
+/// What tells how far a row is to be trusted.
+const VALIDITY: &[&[Column]] = &[
+    mean_and_worst!("audit_gap", "max", "Greatest", "|loss_j - dissipated_j| / |loss_j|", ""),
+    mean_and_worst!("tabor_min", "min", "Least", "smallest Tabor number of the asperities", "Eq 3"),
+    mean_and_worst!("tabor_mean", "min", "Least", "mean Tabor number of the asperities", "Eq 3"),
+    mean_and_worst!("low_tabor_share", "max", "Greatest", "share of the asperities whose Tabor number is below 2", "Eq 3"),
+    mean_and_worst!("touching_share", "max", "Greatest", "share of contact spots that touch another one at the end of loading", ""),
+    mean_and_worst!(
+        "covered_share",
+        "max",
+        "Greatest",
+        "share of asperities in contact or covered that are covered at the end of loading",
+        ""
+    ),
+    mean_and_worst!(
+        "conformity",
+        "min",
+        "Least",
+        "energy of flattening the shortest octave over the work of adhesion, continuous spectrum",
+        "Persson and Tosatti 2001"
+    ),
+    mean_and_worst!(
+        "conformity_realised",
+        "min",
+        "Least",
+        "energy of flattening the shortest octave over the work of adhesion, realised modes",
+        "Persson and Tosatti 2001"
+    ),
+    mean_and_worst!(
+        "persson_tosatti",
+        "min",
+        "Least",
+        "energy of flattening all the roughness over the work of adhesion, continuous spectrum",
+        "Persson and Tosatti 2001"
+    ),
+    mean_and_worst!(
+        "persson_tosatti_realised",
+        "min",
+        "Least",
+        "energy of flattening all the roughness over the work of adhesion, realised modes",
+        "Persson and Tosatti 2001"
+    ),
 ];
 
 const COUNTS: &[Column] = &[
@@ -106,8 +206,18 @@ const COUNTS: &[Column] = &[
     text("caution", "What speaks against trusting the row, words joined by +; empty if nothing does"),
 ];
 
-const CASE_COLUMNS: [Column; CASE.len() + PARAMETERS.len() + MAX_LOAD.len() + 4 * SPREADS.len() + COUNTS.len()] =
-    join(&[CASE, PARAMETERS, MAX_LOAD, SPREADS[0], SPREADS[1], SPREADS[2], SPREADS[3], SPREADS[4], SPREADS[5], SPREADS[6], COUNTS]);
+const SPREAD_COLUMNS: [Column; 4 * SPREADS.len()] = join(SPREADS);
+const PART_SPREAD_COLUMNS: [Column; 4 * PART_SPREADS.len()] = join(PART_SPREADS);
+const VALIDITY_COLUMNS: [Column; 2 * VALIDITY.len()] = join(VALIDITY);
+
+const CASE_COLUMNS: [Column;
+    CASE.len()
+        + PARAMETERS.len()
+        + MAX_LOAD.len()
+        + SPREAD_COLUMNS.len()
+        + PART_SPREAD_COLUMNS.len()
+        + VALIDITY_COLUMNS.len()
+        + COUNTS.len()] = join(&[CASE, PARAMETERS, MAX_LOAD, &SPREAD_COLUMNS, &PART_SPREAD_COLUMNS, &VALIDITY_COLUMNS, COUNTS]);
 
 /// Means over realizations.
 pub static CASES: Table = Table {

@@ -4,6 +4,7 @@ mod cycle;
 mod report;
 mod statistics;
 mod surface;
+mod trust;
 
 use crate::campaign::{Campaign, Stage, Standing};
 use crate::physics::PhysicsError;

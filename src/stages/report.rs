@@ -1,11 +1,12 @@
 //! report: figures of every sweep, and one page that holds them.
 
 use super::statistics::{done, finished};
+use super::trust::{split, trust};
 use super::{StageError, Tally, Watch};
 use crate::campaign::{Campaign, Stage, Standing};
 use crate::figures::panels;
 use crate::schema;
-use crate::stats::{CAUTIONS, summary};
+use crate::stats::summary;
 use crate::store::{Frame, commit, parquet};
 use std::fmt::Write as _;
 
@@ -60,8 +61,10 @@ const STYLE: &str = "body{font:16px/1.5 system-ui,sans-serif;max-width:60rem;mar
 h1,h2{line-height:1.2}pre{overflow-x:auto;background:#f4f4f2;padding:1rem;font-size:.85rem}\
 .panels{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(24rem,100%),1fr));gap:1rem}\
 .panels svg{width:100%;height:auto;background:#fff}table{border-collapse:collapse;font-size:.9rem}\
-td,th{padding:.2rem .7rem;border-bottom:1px solid #ccc;text-align:left}\
-@media(prefers-color-scheme:dark){body{color:#e6e6e6;background:#161616}pre{background:#242424}}\
+td,th{padding:.2rem .7rem;border-bottom:1px solid #ccc;text-align:left;vertical-align:top}\
+.wide{overflow-x:auto}.wide table{font-size:.82rem}.wide td{white-space:nowrap}.wide td,.wide th{padding:.2rem .45rem}\
+.wide :is(td,th):nth-child(n+2){text-align:right}.beyond{font-weight:700;color:#b3261e}\
+@media(prefers-color-scheme:dark){body{color:#e6e6e6;background:#161616}pre{background:#242424}.beyond{color:#ff8a80}}\
 @media print{body{max-width:none}}";
 
 fn page(campaign: &Campaign, key: &str, cases: &Frame, drawings: &[(String, String)]) -> Result<String, StageError> {
@@ -87,30 +90,14 @@ fn page(campaign: &Campaign, key: &str, cases: &Frame, drawings: &[(String, Stri
         }
         html.push_str("</div>\n");
     }
-    cautions(&mut html, cases)?;
+    split(&mut html, cases)?;
+    trust(&mut html, cases)?;
     let spec = escape(&campaign.spec.to_toml());
-    let _ = write!(
-        html,
-        "<h2>How far to trust it</h2>\n<p>A summit model at these parameters is outside its range where spots coalesce: a third of the contact area of a \
-         boundary-element solution is missing even without adhesion. It reproduces the model of the paper; see the limits in the README.</p>\n\
-         <h2>The spec, with every default</h2>\n<pre>{spec}</pre>\n</body>\n</html>\n"
-    );
+    let _ = write!(html, "<h2>The spec, with every default</h2>\n<pre>{spec}</pre>\n</body>\n</html>\n");
     Ok(html)
 }
 
-/// Every caution that a case carries, with what it says.
-fn cautions(html: &mut String, cases: &Frame) -> Result<(), StageError> {
-    html.push_str("<h2>Cautions</h2>\n<table>\n<tr><th>case</th><th>max load</th><th>caution</th></tr>\n");
-    let (ids, loads, words) = (cases.text("case_id")?, cases.f64("max_load")?, cases.text("caution")?);
-    for ((id, load), said) in ids.iter().zip(&loads).zip(&words) {
-        for (_, meaning) in CAUTIONS.iter().filter(|(word, _)| said.split([' ', '+', ',']).any(|part| part == *word)) {
-            let _ = writeln!(html, "<tr><td>{}</td><td>{load}</td><td>{meaning}</td></tr>", escape(id));
-        }
-    }
-    html.push_str("</table>\n");
-    Ok(())
-}
-
-fn escape(text: &str) -> String {
+/// A text as it stands in HTML.
+pub(super) fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

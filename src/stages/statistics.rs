@@ -6,7 +6,9 @@ use crate::campaign::{Campaign, CaseUnit, CycleUnit, Stage, Standing};
 use crate::model::Choice;
 use crate::physics::jkr::Asperity;
 use crate::physics::spectrum::Moments;
+use crate::physics::synthesis::realization_seed;
 use crate::physics::theory::{curvature_decay, deng_kesari_loss_as_printed};
+use crate::physics::validity::{LEAST_TABOR, flattening, realised_flattening};
 use crate::spec::CaseParams;
 use crate::stats::{self, CaseInput, CycleInput, Given, Value};
 use crate::store::hdf5::{SurfaceHeader, read_header};
@@ -64,7 +66,8 @@ pub(super) fn run(campaign: &Campaign, partial: bool, watch: &dyn Watch) -> Resu
     let realizations = stats::realizations(&cases, &cycles)?;
     let averaged = stats::cases(&realizations, &cases)?;
     let curves = stats::curves(&cases, &cycles)?;
-    for (name, frame) in [("realizations", &realizations), ("curves", &curves), ("cases", &averaged)] {
+    let avalanches = stats::avalanches(&cases, &cycles)?;
+    for (name, frame) in [("realizations", &realizations), ("curves", &curves), ("avalanches", &avalanches), ("cases", &averaged)] {
         parquet::write_table(&campaign.statistics_path(name), frame, &[("key", key.clone())])?;
     }
     watch.progress(Stage::Aggregate, 1.0);
@@ -120,13 +123,25 @@ fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<CycleInput, Stag
         .map(|s| Ok(Asperity::new(s.radius_m(), &params.material)?.tabor(params.material.interaction_range_m)))
         .collect::<Result<Vec<f64>, StageError>>()?;
     tabor.sort_by(f64::total_cmp);
-    let numbers: [(&str, Value); 9] = [
+    let low = tabor.iter().filter(|number| **number < LEAST_TABOR).count();
+    let over_all = |sum: f64| (!tabor.is_empty()).then(|| sum / tabor.len() as f64);
+    let (asked, adhesion) = (spectrum(&params.surface), params.material.work_of_adhesion_j_m2);
+    let seed = realization_seed(campaign.spec.seed, u64::from(surface.realization));
+    let continuous = flattening(&asked, params.material.contact_modulus_pa);
+    let of_modes = realised_flattening(&asked, &seed, params.material.contact_modulus_pa);
+    let numbers: [(&str, Value); 15] = [
         ("summit_count", summits.len().into()),
         ("summit_density_1_m2", (summits.len() as f64 / area).into()),
         ("nayak_density_1_m2", realised.summit_density_1_m2().into()),
         ("tabor_min", tabor.first().copied().into()),
         ("tabor_median", tabor.get(tabor.len() / 2).copied().into()),
         ("tabor_max", tabor.last().copied().into()),
+        ("tabor_mean", over_all(tabor.iter().sum()).into()),
+        ("low_tabor_share", over_all(low as f64).into()),
+        ("conformity", continuous.conformity(adhesion).into()),
+        ("conformity_realised", of_modes.conformity(adhesion).into()),
+        ("persson_tosatti", continuous.persson_tosatti(adhesion).into()),
+        ("persson_tosatti_realised", of_modes.persson_tosatti(adhesion).into()),
         ("rms_slope", header.rms_slope.into()),
         ("rms_curvature_1_m", header.rms_curvature_1_m.into()),
         ("nayak_parameter", header.nayak_parameter.into()),
@@ -135,9 +150,10 @@ fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<CycleInput, Stag
         case_id: case.id.clone(),
         realization: i64::from(surface.realization),
         steps: campaign.cycle_dir(unit).join("steps.parquet"),
+        events: campaign.cycle_dir(unit).join("events.parquet"),
         turning_steps: Vec::new(),
         energy_scale_j: params.material.contact_modulus_pa * area * params.surface.rms_height_m,
-        loss_dk_per_area_j: deng_kesari(&spectrum(&params.surface).moments(), params, area)?,
+        loss_dk_per_area_j: deng_kesari(&asked.moments(), params, area)?,
         loss_dk_realised_per_area_j: deng_kesari(&realised, params, area)?,
         surface: named(numbers),
     })

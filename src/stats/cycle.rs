@@ -119,13 +119,18 @@ const COLUMNS: [&str; 15] = [
     "converged",
 ];
 
+/// A table that Polars reads from a file.
+pub(super) fn scan(path: &Path) -> PolarsResult<LazyFrame> {
+    // A run's directory may have any name: no pattern and no partition is to be read from it.
+    let arguments = ScanArgsParquet { glob: false, ..ScanArgsParquet::default() };
+    LazyFrame::scan_parquet(PlRefPath::try_from_path(path)?, arguments)
+}
+
 /// One row per branch, each column a list in the order of the steps.
 fn group(path: &Path) -> PolarsResult<DataFrame> {
     let keys = [col("branch"), col("max_load")];
     let lists: Vec<Expr> = COLUMNS.iter().map(|name| col(*name)).collect();
-    // A run's directory may have any name: no pattern and no partition is to be read from it.
-    let arguments = ScanArgsParquet { glob: false, ..ScanArgsParquet::default() };
-    LazyFrame::scan_parquet(PlRefPath::try_from_path(path)?, arguments)?
+    scan(path)?
         .select([keys.as_slice(), lists.as_slice()].concat())
         .sort(["step"], SortMultipleOptions::default().with_maintain_order(true))
         .group_by_stable(keys)

@@ -3,9 +3,12 @@
 //! Polars reads, filters, sorts and groups; every sum is taken here, in the order of the realizations, so that the tables
 //! have the same bytes with any number of threads. This room knows no physics: what is not in the steps, it is given as numbers.
 
+mod avalanches;
 mod cases;
+mod cautions;
 mod curves;
 mod cycle;
+mod events;
 mod realizations;
 mod rows;
 mod student;
@@ -15,7 +18,9 @@ mod walk;
 
 use std::path::PathBuf;
 
-pub use cases::{CAUTIONS, cases};
+pub use avalanches::avalanches;
+pub use cases::cases;
+pub use cautions::{CAUTIONS, LIMITS, Limit};
 pub use curves::curves;
 pub use realizations::realizations;
 pub use rows::Value;
@@ -55,6 +60,8 @@ pub struct CycleInput {
     pub realization: i64,
     /// The table of its steps.
     pub steps: PathBuf,
+    /// The table of its events.
+    pub events: PathBuf,
     /// The steps at which loading turned, by `max_load`. For a turning point that is not here, the loading step of the nearest load is taken.
     pub turning_steps: Vec<(f64, i64)>,
     /// `E* A0 h_rms` \[J\], by which energies are made dimensionless.
@@ -93,6 +100,14 @@ pub enum StatsError {
         /// The table.
         path: PathBuf,
         /// What is wrong, as in "have no loading branch".
+        problem: String,
+    },
+    /// The events hold what no cycle can hold.
+    #[error("the events in {} {problem}", path.display())]
+    Events {
+        /// The table.
+        path: PathBuf,
+        /// What is wrong, as in "hold the kind ...".
         problem: String,
     },
     /// A cycle names a case that was not given.

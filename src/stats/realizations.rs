@@ -1,14 +1,17 @@
 //! One row per case, realization and turning point.
 
 use super::cycle::{Branch, Cycle, fault};
+use super::events::{Events, Lost};
 use super::rows::{Rows, Value};
 use super::{CaseInput, CycleInput, Given, StatsError};
-use crate::schema::REALIZATIONS;
+use crate::schema::{EVENT_KINDS, REALIZATIONS};
 use crate::store::Frame;
 
 /// Reduces each cycle to one row per turning point, ordered by case, turning point and realization, whatever the order of the inputs.
 ///
 /// The loss is `Θ = ∮F dΔ`: the work at the turning step, and the work of the whole unloading branch, which is negative where load falls with Δ.
+/// What its events lost is told in parts: on the way to the turning point, which is only a part of the loading path if loading went on, and on the
+/// way back; and by the kind of event.
 /// The pull-off load is minus the least load of the unloading branch; it is zero if that is no tension.
 ///
 /// # Errors
@@ -18,8 +21,12 @@ pub fn realizations(cases: &[CaseInput], cycles: &[CycleInput]) -> Result<Frame,
     for input in cycles {
         let case = case_of(cases, input)?;
         let cycle = Cycle::read(&input.steps)?;
+        let events = Events::read(&input.events)?;
         for (max_load, unloading) in &cycle.unloading {
-            let results = reduce(&cycle.loading, cycle.turning_row(input, *max_load)?, unloading, *max_load, input)?;
+            let turning = cycle.turning_row(input, *max_load)?;
+            let mut results = reduce(&cycle.loading, turning, unloading, *max_load, input)?;
+            let step = cycle.loading.step.get(turning).copied().unwrap_or_default();
+            results.extend(parts(&events.lost(step, *max_load), input));
             ordered.push((&case.case_id, *max_load, input.realization, results, case, input));
         }
     }
@@ -40,6 +47,16 @@ pub(super) fn case_of<'a>(cases: &'a [CaseInput], input: &CycleInput) -> Result<
 /// The columns that name a case.
 pub(super) fn identity(case: &CaseInput) -> Given {
     vec![("case_id".to_owned(), case.case_id.as_str().into()), ("sweep".to_owned(), case.sweep.as_str().into())]
+}
+
+/// The columns of what the events of a loop lost.
+fn parts(lost: &Lost, input: &CycleInput) -> Given {
+    let branches = [("loading", lost.loading), ("unloading", lost.unloading)];
+    let kinds = EVENT_KINDS.iter().copied().zip(lost.kinds);
+    let both = |(part, energy_j): (&str, f64)| {
+        [(format!("dissipated_{part}"), (energy_j / input.energy_scale_j).into()), (format!("dissipated_{part}_j"), energy_j.into())]
+    };
+    branches.into_iter().chain(kinds).flat_map(both).collect()
 }
 
 fn reduce(loading: &Branch, turning: usize, unloading: &Branch, max_load: f64, input: &CycleInput) -> Result<Given, StatsError> {
@@ -64,7 +81,7 @@ fn reduce(loading: &Branch, turning: usize, unloading: &Branch, max_load: f64, i
     let pull_off = |loads: &[f64]| tension(loads) + 0.0;
     let touching = count_at(&loading.touching_count);
     let held: i64 = loading.held_count.iter().take(turning + 1).chain(&unloading.held_count).sum();
-    let columns: [(&str, Value); 20] = [
+    let columns: [(&str, Value); 21] = [
         ("realization", input.realization.into()),
         ("max_load", max_load.into()),
         // The turning step has the unit of load, as the quotient of its two columns.
@@ -79,6 +96,7 @@ fn reduce(loading: &Branch, turning: usize, unloading: &Branch, max_load: f64, i
         ("loss_dk", loss_dk.into()),
         ("loss_dk_realised", dk(input.loss_dk_realised_per_area_j).into()),
         ("loss_ratio_dk", loss_dk.filter(|dk| *dk != 0.0).map(|dk| loss / dk).into()),
+        ("dissipated", (dissipated_j / input.energy_scale_j).into()),
         ("dissipated_j", dissipated_j.into()),
         ("audit_gap", (loss_j != 0.0).then(|| (loss_j - dissipated_j).abs() / loss_j.abs()).into()),
         ("contact_count_at_max_load", contacts.into()),

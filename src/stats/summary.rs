@@ -82,9 +82,30 @@ fn case_lines(cases: &Frame, row: usize, label: String) -> Result<Vec<String>, S
     let mut lines = vec![line([label, load, counts, area, pull_off, loss, ratio])];
     let caution = cases.text("caution")?.get(row).copied().unwrap_or_default();
     if !caution.is_empty() {
-        lines.push(cut(&format!("  caution: {}", caution.replace('+', ", ")), 80));
+        lines.extend(caution_lines(caution));
     }
     Ok(lines)
+}
+
+/// The cautions of a row, as many on a line as fit.
+fn caution_lines(joined: &str) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in joined.split('+') {
+        match lines.last_mut().filter(|line| line.chars().count() + 2 + word.chars().count() <= 79) {
+            Some(line) => {
+                line.push_str(", ");
+                line.push_str(word);
+            }
+            None => {
+                // A comma ends each line that another one follows.
+                if let Some(line) = lines.last_mut() {
+                    line.push(',');
+                }
+                lines.push(format!("  {}{word}", if lines.is_empty() { "caution: " } else { "         " }));
+            }
+        }
+    }
+    lines
 }
 
 /// A load in thousandths, with as many digits as it has.

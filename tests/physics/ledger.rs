@@ -58,6 +58,7 @@ fn law_every_public_equation_has_a_test() {
         ("jkr", "src/physics/jkr.rs"),
         ("spectrum", "src/physics/spectrum.rs"),
         ("theory", "src/physics/theory.rs"),
+        ("validity", "src/physics/validity.rs"),
         ("pair", "src/physics/interaction/pair.rs"),
         ("ewald", "src/physics/interaction/ewald.rs"),
     ];

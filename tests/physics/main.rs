@@ -20,6 +20,7 @@ mod summits;
 mod synthesis;
 mod theory;
 mod union;
+mod validity;
 
 /// Values made without the program.
 mod reference {

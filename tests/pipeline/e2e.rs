@@ -82,9 +82,11 @@ fn e2e_a_spec_becomes_tables_figures_and_a_page() {
     let said = stdout(&first);
     assert!(said.lines().all(|line| line.chars().count() <= 100 || line.contains('/')), "{said}");
     let written = files(&bench.out());
-    for name in ["campaign.toml", "report.html", "statistics/realizations.parquet", "statistics/cases.parquet", "statistics/curves.parquet"]
-    {
+    for name in ["campaign.toml", "report.html"] {
         assert!(written.contains_key(Path::new(name)), "{name} is missing");
+    }
+    for name in ["realizations", "cases", "curves", "avalanches"] {
+        assert!(written.contains_key(&PathBuf::from(format!("statistics/{name}.parquet"))), "{name} is missing");
     }
     for panel in ["A", "B", "C", "D"] {
         assert!(written.contains_key(Path::new(&format!("figures/zeta_{panel}.svg"))), "panel {panel}");
@@ -100,6 +102,11 @@ fn e2e_a_spec_becomes_tables_figures_and_a_page() {
     assert_eq!(cases.row_count(), 4, "two cases at two loads");
     assert_eq!(cases.i64("done_count").unwrap(), [2, 2, 2, 2]);
     assert!(cases.f64("loss_mean").unwrap().iter().all(|loss| *loss > 0.0));
+    let page = fs::read_to_string(bench.out().join("report.html")).unwrap();
+    for part in ["Where the loss goes", "How far to trust it", "Cautions", "conformity number", "audit gap", "jump off"] {
+        assert!(page.contains(part), "{part} is not on the page");
+    }
+    assert!(!page.contains("NaN") && !page.contains("inf"), "a number of the page is none");
 
     // The same command again does nothing, and says so.
     let again = bench.verb("run", &[]);
@@ -141,6 +148,38 @@ fn e2e_threads_do_not_change_a_byte() {
     assert_eq!(code(&one.verb("run", &["--jobs", "1"])), 0);
     assert_eq!(code(&three.verb("run", &["--jobs", "3"])), 0);
     assert_eq!(files(&one.out()), files(&three.out()));
+}
+
+#[test]
+fn e2e_losses_add_up_from_the_events_to_the_cases() {
+    let bench = Bench::new(SPEC);
+    assert_eq!(code(&bench.verb("run", &["--until", "aggregate"])), 0);
+    let close = |what: &str, got: f64, want: f64| assert!((got - want).abs() <= 1e-9 * want.abs(), "{what}: {got} is not {want}");
+    let realizations = read_table(&bench.out().join("statistics/realizations.parquet"), &schema::REALIZATIONS).unwrap();
+    let part = |name: &str| realizations.f64(&format!("dissipated_{name}_j")).unwrap();
+    let whole = realizations.f64("dissipated_j").unwrap();
+    for (row, whole) in whole.iter().enumerate() {
+        // The steps and the events are two tables of the same energies, added in another order.
+        close("branches", part("loading")[row] + part("unloading")[row], *whole);
+        close("kinds", schema::EVENT_KINDS.iter().map(|kind| part(kind)[row]).sum(), *whole);
+    }
+    let avalanches = read_table(&bench.out().join("statistics/avalanches.parquet"), &schema::AVALANCHES).unwrap();
+    let (mut events, mut lost) = (0, 0.0);
+    for (path, _) in files(&bench.out()).into_iter().filter(|(path, _)| path.ends_with("events.parquet")) {
+        let table = read_table(&bench.out().join(path), &schema::EVENTS).unwrap();
+        events += table.row_count();
+        lost += table.f64("energy_lost_j").unwrap().iter().sum::<f64>();
+    }
+    assert!(avalanches.row_count() > 0);
+    assert_eq!(avalanches.i64("event_count").unwrap().iter().sum::<i64>(), events as i64);
+    close("avalanches", avalanches.f64("energy_lost_j").unwrap().iter().sum(), lost);
+    // The modes' ratios are the surface's own: with fixed moduli all surfaces of a case have the same.
+    for name in ["conformity_realised", "persson_tosatti_realised"] {
+        let mut all = realizations.f64(name).unwrap();
+        all.sort_by(f64::total_cmp);
+        all.dedup();
+        assert_eq!(all.len(), 2, "{name}: two magnifications");
+    }
 }
 
 #[test]

@@ -7,6 +7,8 @@ mod e2e;
 mod figures;
 #[cfg(feature = "stats")]
 mod keys;
+#[cfg(feature = "stats")]
+mod losses;
 mod schema;
 mod spec;
 #[cfg(feature = "stats")]
@@ -15,3 +17,5 @@ mod stats;
 mod steps;
 #[cfg(feature = "store")]
 mod store;
+#[cfg(feature = "stats")]
+mod validity;

@@ -5,8 +5,8 @@ use std::fs;
 use std::path::Path;
 
 use hysteron::schema::{
-    ASPERITIES, CASES, CONTACTS, CURVES, DIRECTORY, EVENTS, Kind, REALIZATIONS, STEPS, TABLES, files, metadata_json, readme_markdown,
-    schema_json,
+    ASPERITIES, AVALANCHES, CASES, CONTACTS, CURVES, DIRECTORY, EVENT_KINDS, EVENTS, Kind, REALIZATIONS, STEPS, TABLES, files,
+    metadata_json, readme_markdown, schema_json,
 };
 
 /// The unit that a column's name promises: suffixes from the longest, as the contract has them.
@@ -56,7 +56,7 @@ fn law_names_are_unique_plain_words_and_documented() {
 /// The contract: these names stand in published files and are never changed.
 #[test]
 fn val_columns_are_those_of_the_contract() {
-    let contract: [(_, &str); 7] = [
+    let contract: [(_, &str); 8] = [
         (&ASPERITIES, "asperity_id x_m y_m height_m radius_m curvature_1_m curvature_min_1_m curvature_max_1_m grid_row grid_col refined"),
         (
             &STEPS,
@@ -69,20 +69,37 @@ fn val_columns_are_those_of_the_contract() {
         ),
         (
             &REALIZATIONS,
-            "case_id sweep hurst magnification length_m rms_height_m points_per_shortest_wavelength normalization amplitudes contact_modulus_pa work_of_adhesion_j_m2 interaction_range_m interaction boundary coalescence jump_in as_printed approach_step realization max_load pull_off_load pull_off_load_n area_at_max_load area_union_at_max_load penetration_at_max_load loss loss_j loss_dk loss_dk_realised loss_ratio_dk dissipated_j audit_gap summit_count summit_density_1_m2 nayak_density_1_m2 contact_count_at_max_load step_count unconverged_count held_count tabor_min tabor_median tabor_max rms_slope rms_curvature_1_m nayak_parameter touching_share covered_share",
+            "case_id sweep hurst magnification length_m rms_height_m points_per_shortest_wavelength normalization amplitudes contact_modulus_pa work_of_adhesion_j_m2 interaction_range_m interaction boundary coalescence jump_in as_printed approach_step realization max_load pull_off_load pull_off_load_n area_at_max_load area_union_at_max_load penetration_at_max_load loss loss_j loss_dk loss_dk_realised loss_ratio_dk dissipated_j audit_gap summit_count summit_density_1_m2 nayak_density_1_m2 contact_count_at_max_load step_count unconverged_count held_count tabor_min tabor_median tabor_max rms_slope rms_curvature_1_m nayak_parameter touching_share covered_share dissipated dissipated_loading dissipated_loading_j dissipated_unloading dissipated_unloading_j dissipated_jump_in dissipated_jump_off_j dissipated_split_j tabor_mean low_tabor_share conformity conformity_realised persson_tosatti persson_tosatti_realised",
         ),
         (
             &CASES,
-            "case_id sweep hurst jump_in max_load pull_off_load_mean pull_off_load_sd pull_off_load_ci95_low pull_off_load_ci95_high area_at_max_load_mean penetration_at_max_load_sd loss_mean loss_dk_mean loss_dk_realised_ci95_low loss_ratio_dk_ci95_high planned_count done_count failed_count caution",
+            "case_id sweep hurst jump_in max_load pull_off_load_mean pull_off_load_sd pull_off_load_ci95_low pull_off_load_ci95_high area_at_max_load_mean penetration_at_max_load_sd loss_mean loss_dk_mean loss_dk_realised_ci95_low loss_ratio_dk_ci95_high planned_count done_count failed_count caution dissipated_mean dissipated_j_mean dissipated_loading_sd dissipated_unloading_j_ci95_low dissipated_merge_ci95_high audit_gap_mean audit_gap_max tabor_min_min tabor_mean_mean low_tabor_share_mean touching_share_mean touching_share_max covered_share_mean conformity_mean conformity_realised_min persson_tosatti_realised_mean",
         ),
         (&CURVES, "case_id sweep max_load branch grid_index load area_mean area_sd penetration_mean penetration_sd realization_count"),
+        (
+            &AVALANCHES,
+            "case_id sweep realization branch max_load avalanche_id step approach_m event_count jump_in_count jump_off_count cover_count uncover_count snap_count merge_count split_count energy_lost_j energy_lost load_drop_n area_change_m2",
+        ),
     ];
     for (table, names) in contract {
         for name in names.split(' ') {
             assert!(table.column(name).is_some(), "{} lost its column {name}", table.name);
         }
     }
-    assert_eq!(CASES.columns.len(), 2 + 16 + 1 + 7 * 4 + 4);
+    // Seven results and what the events lost; its two branches and every kind of event; what tells how far to trust the row. The losses are
+    // there in both units.
+    assert_eq!(CASES.columns.len(), 2 + 16 + 1 + (7 + 2) * 4 + (2 + EVENT_KINDS.len()) * 2 * 4 + 10 * 2 + 4);
+}
+
+#[test]
+fn law_every_kind_of_event_has_its_columns() {
+    for kind in EVENT_KINDS {
+        assert!(AVALANCHES.column(&format!("{kind}_count")).is_some(), "{kind}");
+        for unit in ["", "_j"] {
+            assert!(REALIZATIONS.column(&format!("dissipated_{kind}{unit}")).is_some(), "{kind}");
+            assert!(CASES.column(&format!("dissipated_{kind}{unit}_mean")).is_some(), "{kind}");
+        }
+    }
 }
 
 #[test]

@@ -1,8 +1,8 @@
-//! Tables of steps made by hand, and cases around them, for the tests of statistics and figures.
+//! Tables of steps and events made by hand, and cases around them, for the tests of statistics and figures.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use hysteron::schema::STEPS;
+use hysteron::schema::{EVENTS, STEPS};
 use hysteron::stats::{CaseInput, CycleInput, Given, Value};
 use hysteron::store::Frame;
 use hysteron::store::parquet::write_table;
@@ -15,7 +15,36 @@ pub const FORCE_N: f64 = 1.0;
 /// E* A0 h_rms of every synthetic case \[J\].
 pub const ENERGY_J: f64 = 5e-6;
 
-/// Writes a table of steps.
+/// One event: step, branch, max_load, kind, avalanche, then [load before, load after, area before, area after, energy lost].
+pub type Event = (i64, &'static str, Option<f64>, &'static str, i64, [f64; 5]);
+
+/// Where the events of a table of steps are.
+pub fn events_path(steps: &Path) -> PathBuf {
+    steps.with_extension("events.parquet")
+}
+
+/// Writes the table of events that belongs to a table of steps.
+pub fn write_events(steps: &Path, events: &[Event]) {
+    let reals = |at: usize| events.iter().map(move |event| event.5[at]);
+    let frame = Frame::of(&EVENTS)
+        .i64("step", events.iter().map(|event| event.0))
+        .text("branch", events.iter().map(|event| event.1))
+        .f64("max_load", events.iter().map(|event| event.2))
+        .text("kind", events.iter().map(|event| event.3))
+        .i64("asperity_id", vec![7; events.len()])
+        .f64("approach_m", events.iter().map(|event| 1e-8 * event.0 as f64))
+        .i64("avalanche_id", events.iter().map(|event| event.4))
+        .f64("load_before_n", reals(0))
+        .f64("load_after_n", reals(1))
+        .f64("area_before_m2", reals(2))
+        .f64("area_after_m2", reals(3))
+        .f64("energy_lost_j", reals(4))
+        .build()
+        .unwrap();
+    write_table(&events_path(steps), &frame, &[]).unwrap();
+}
+
+/// Writes a table of steps, and beside it one of events without rows.
 pub fn write(path: &Path, steps: &[Step]) {
     let reals = |value: fn(&Step) -> f64| steps.iter().map(value).collect::<Vec<f64>>();
     let zeros = || vec![0_usize; steps.len()];
@@ -49,6 +78,7 @@ pub fn write(path: &Path, steps: &[Step]) {
         .build()
         .unwrap();
     write_table(path, &frame, &[]).unwrap();
+    write_events(path, &[]);
 }
 
 fn given(columns: &[(&str, Value)]) -> Given {
@@ -90,6 +120,7 @@ pub fn cycle(case_id: &str, realization: i64, steps: &Path, dk_per_area_j: f64) 
         case_id: case_id.to_owned(),
         realization,
         steps: steps.to_owned(),
+        events: events_path(steps),
         turning_steps: Vec::new(),
         energy_scale_j: ENERGY_J,
         loss_dk_per_area_j: Some(dk_per_area_j),
@@ -101,6 +132,12 @@ pub fn cycle(case_id: &str, realization: i64, steps: &Path, dk_per_area_j: f64) 
             ("tabor_min", 20.0.into()),
             ("tabor_median", 60.0.into()),
             ("tabor_max", 400.0.into()),
+            ("tabor_mean", 70.0.into()),
+            ("low_tabor_share", 0.0.into()),
+            ("conformity", 1.5.into()),
+            ("conformity_realised", 1.25.into()),
+            ("persson_tosatti", 8.0.into()),
+            ("persson_tosatti_realised", 6.0.into()),
             ("rms_slope", 0.3.into()),
             ("rms_curvature_1_m", 1e5.into()),
             ("nayak_parameter", 10.0.into()),

@@ -3,7 +3,7 @@
 
 Needs Python 3 and mpmath, nothing else:  python make.py [names...]
 Writes the CSV files of this folder (pair_field, jkr, wu_loss, kernel, coupled,
-moments, moments_constants, hertz); names choose some of them.
+moments, moments_constants, flattening, hertz); names choose some of them.
 
 Everything is worked out at 60 digits and printed with 20. Every input is a
 double, and its exact binary value is what is used, so that a program reading
@@ -592,7 +592,38 @@ def moments():
            ("mean_abs_t_pow_minus_4_3", t43), ("theta_c", THETA), ("theta_mean_tip_H0.8_zeta64", tip)])
 
 
-# ---------------------------------------------------------------- 7. Hertz limit
+# ---------------------------------------------------------------- 7. energy of flattening
+
+def flattening():
+    L, h, E, g = dbl(1e-3), dbl(5e-6), dbl(1e6), dbl(0.07)
+    q0 = 2 * pi / L
+    # one mode: u = c cos(qx) under p = (E q/2) c cos(qx); half of the mean of p u is E q c^2/8,
+    # which is E/4 times the sum of q |c_k|^2 over k = q and -q with |c_k| = c/2
+    c, q = mpf("0.3"), mpf(7)
+    work = quad(lambda x: E * q / 2 * (c * cos(x)) ** 2 / 2, [0, pi, 2 * pi]) / (2 * pi)
+    agree("one mode", work, E / 4 * q * 2 * (c / 2) ** 2, 1e-40)
+    rows = []
+    for H, z in ((0.8, 64), (0.8, 128), (0.8, 256), (0.8, 512), (0.45, 128), (0.5, 128), (0.65, 128),
+                 (0.95, 128), (0.8, 2)):
+        H, z = dbl(H), mpf(z)
+        C0 = h * h * H / (pi * q0**2 * (1 - z ** (-2 * H)))
+        # E/4 int q C d2q = E/4 2 pi int q^2 C dq, q = q0 e^v
+        band = lambda lo: quad(lambda v: E / 4 * 2 * pi * C0 * q0**3 * exp((1 - 2 * H) * v),
+                               [log(lo), (log(lo) + log(z)) / 2, log(z)])
+        closed = lambda lo: pi * E / 2 * C0 * q0**3 * (
+            log(z / lo) if H == mpf("0.5") else (z ** (1 - 2 * H) - lo ** (1 - 2 * H)) / (1 - 2 * H))
+        whole, octave = band(mpf(1)), band(z / 2)
+        agree("whole", whole, closed(mpf(1)), 1e-30)
+        agree("octave", octave, closed(z / 2), 1e-30)
+        rows.append((H, z, whole, octave, whole / g, octave / g))
+    write("flattening.csv",
+          ["Elastic energy per area that flattens C(q) = C0 (q/qL)^(-2(H+1)), qL <= q < zeta qL, h_rms = 5e-6,",
+           "L = 1e-3, E* = 1e6, dgamma = 0.07: (E*/4) int q C d2q over the whole band and over q1/2 <= q < q1.",
+           "SI units; ratios to dgamma. Checked: quadrature against closed forms; one mode from pressure times displacement."],
+          ["H", "zeta", "whole", "octave", "persson_tosatti", "conformity"], rows)
+
+
+# ---------------------------------------------------------------- 8. Hertz limit
 
 def hertz():
     rows = []
@@ -618,7 +649,7 @@ def hertz():
           rows)
 
 
-ALL = {f.__name__: f for f in (pair_field, jkr, wu_loss, kernel, coupled, moments, hertz)}
+ALL = {f.__name__: f for f in (pair_field, jkr, wu_loss, kernel, coupled, moments, flattening, hertz)}
 
 if __name__ == "__main__":
     for name in sys.argv[1:] or ALL:

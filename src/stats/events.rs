@@ -1,0 +1,125 @@
+//! The events of one cycle, read by Polars in the order of the path.
+
+use std::path::Path;
+
+use polars::prelude::{DataFrame, Expr, PolarsResult, SortMultipleOptions, col};
+
+use super::StatsError;
+use super::cycle::scan;
+use crate::schema::EVENT_KINDS;
+
+/// One event.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Event {
+    pub(super) step: i64,
+    pub(super) loading: bool,
+    /// Nothing while loading.
+    pub(super) max_load: Option<f64>,
+    /// Its place in [`EVENT_KINDS`].
+    pub(super) kind: usize,
+    pub(super) approach_m: f64,
+    pub(super) avalanche_id: i64,
+    pub(super) load_before_n: f64,
+    pub(super) load_after_n: f64,
+    pub(super) area_before_m2: f64,
+    pub(super) area_after_m2: f64,
+    pub(super) energy_lost_j: f64,
+}
+
+/// The events of a cycle.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Events(Vec<Event>);
+
+/// The energy lost in the events of one loop \[J\], in parts.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct Lost {
+    pub(super) loading: f64,
+    pub(super) unloading: f64,
+    /// By kind, as [`EVENT_KINDS`] has them.
+    pub(super) kinds: [f64; EVENT_KINDS.len()],
+}
+
+impl Events {
+    /// Reads a table of events. One without rows is a cycle in which nothing happened.
+    pub(super) fn read(path: &Path) -> Result<Self, StatsError> {
+        let frame = read(path).map_err(|source| StatsError::Steps { path: path.to_owned(), source })?;
+        let rows = rows(&frame).map_err(|source| StatsError::Steps { path: path.to_owned(), source })?;
+        let events = rows.into_iter().collect::<Result<_, _>>();
+        events.map(Self).map_err(|problem| StatsError::Events { path: path.to_owned(), problem })
+    }
+
+    /// The avalanches, in the order of the path; none is empty.
+    pub(super) fn avalanches(&self) -> impl Iterator<Item = &[Event]> {
+        self.0.chunk_by(|a, b| a.avalanche_id == b.avalanche_id)
+    }
+
+    /// What was lost on the way to a turning point, whose step is given, and on the way back from it.
+    ///
+    /// One loading path serves every turning point: what happened beyond this one's step is no part of its loop.
+    pub(super) fn lost(&self, turning_step: i64, max_load: f64) -> Lost {
+        // A turning point is a number of the spec, copied; the tolerance only forgives a rounding on the way through a file.
+        let back = |event: &Event| event.max_load.is_some_and(|load| (load - max_load).abs() <= 1e-9 * max_load.abs());
+        let mut lost = Lost::default();
+        for event in &self.0 {
+            if event.loading && event.step <= turning_step {
+                lost.loading += event.energy_lost_j;
+            } else if !event.loading && back(event) {
+                lost.unloading += event.energy_lost_j;
+            } else {
+                continue;
+            }
+            if let Some(of_kind) = lost.kinds.get_mut(event.kind) {
+                *of_kind += event.energy_lost_j;
+            }
+        }
+        lost
+    }
+}
+
+const WHOLES: [&str; 2] = ["step", "avalanche_id"];
+const WORDS: [&str; 2] = ["branch", "kind"];
+const REALS: [&str; 7] = ["max_load", "approach_m", "load_before_n", "load_after_n", "area_before_m2", "area_after_m2", "energy_lost_j"];
+
+fn read(path: &Path) -> PolarsResult<DataFrame> {
+    let columns: Vec<Expr> = WHOLES.iter().chain(&WORDS).chain(&REALS).map(|name| col(*name)).collect();
+    let order = SortMultipleOptions::default().with_maintain_order(true);
+    scan(path)?.select(columns).sort(["avalanche_id"], order).collect()
+}
+
+fn rows(frame: &DataFrame) -> PolarsResult<Vec<Result<Event, String>>> {
+    // Of these only max_load is null in the schema; a null in a damaged file becomes NaN, which the tables of results refuse.
+    let reals = |name: &str| -> PolarsResult<Vec<Option<f64>>> { Ok(frame.column(name)?.f64()?.iter().collect()) };
+    let wholes = |name: &str| -> PolarsResult<Vec<i64>> { Ok(frame.column(name)?.i64()?.iter().map(Option::unwrap_or_default).collect()) };
+    let [max_load, approach, load_before, load_after, area_before, area_after, energy] = REALS.map(reals);
+    let (max_load, approach, energy) = (max_load?, approach?, energy?);
+    let (load_before, load_after, area_before, area_after) = (load_before?, load_after?, area_before?, area_after?);
+    let [step, avalanche] = WHOLES.map(wholes);
+    let (step, avalanche) = (step?, avalanche?);
+    let at = |values: &[Option<f64>], row: usize| values.get(row).copied().flatten();
+    let number = |values: &[Option<f64>], row: usize| at(values, row).unwrap_or(f64::NAN);
+    let words = frame.column("branch")?.str()?.iter().zip(frame.column("kind")?.str()?.iter());
+    let event = |(row, (branch, word)): (usize, (Option<&str>, Option<&str>))| {
+        let max_load = at(&max_load, row);
+        let (branch, word) = (branch.unwrap_or_default(), word.unwrap_or_default());
+        let loading = match (branch, max_load) {
+            ("loading", None) => true,
+            ("unloading", Some(_)) => false,
+            _ => return Err(format!("hold a branch {branch:?} with max_load {max_load:?}; loading has none, unloading has one")),
+        };
+        let kind = EVENT_KINDS.iter().position(|known| *known == word);
+        Ok(Event {
+            step: step.get(row).copied().unwrap_or_default(),
+            loading,
+            max_load,
+            kind: kind.ok_or_else(|| format!("hold the kind {word:?}; there are: {}", EVENT_KINDS.join(", ")))?,
+            approach_m: number(&approach, row),
+            avalanche_id: avalanche.get(row).copied().unwrap_or_default(),
+            load_before_n: number(&load_before, row),
+            load_after_n: number(&load_after, row),
+            area_before_m2: number(&area_before, row),
+            area_after_m2: number(&area_after, row),
+            energy_lost_j: number(&energy, row),
+        })
+    };
+    Ok(words.enumerate().map(event).collect())
+}
