@@ -341,14 +341,14 @@ impl Path<'_> {
         let i = change.asperity;
         let before = self.front.totals(self.patch.approach);
         self.log.pass(self.patch.approach, self.front.load(self.patch.approach));
-        let mut potential = self.patch.totals(problem).potential_j;
+        let mut potential = self.patch.totals(problem).1;
         let halo = self.patch.fields_at(problem, &self.halo, &mut self.solver.effort);
         let mut taken = Vec::new();
         if let Some(Located { leader: Some(at), fold: true }) = located {
             let sense = if self.patch.radius[at] > self.origin[at] { 1.0 } else { -1.0 };
             let gap = self.sign * EVENT_TOLERANCE * problem.rms_height_m;
             potential += gap * self.patch.potential_slope(problem);
-            self.log.work_j += gap * self.patch.totals(problem).load_n;
+            self.log.work_j += gap * self.patch.totals(problem).0;
             let leader = self.patch.members[at].asperity;
             self.patch.nudge(problem, at, sense * NUDGE, gap);
             taken = self.patch.relax(problem, None, &mut self.solver.effort)?;
@@ -379,7 +379,7 @@ impl Path<'_> {
                 return Ok(());
             }
         }
-        let after_potential = self.patch.totals(problem).potential_j;
+        let after_potential = self.patch.totals(problem).1;
         let moved_by = self.patch.fields_at(problem, &self.halo, &mut self.solver.effort);
         self.lag(halo.iter().zip(&moved_by).map(|(before, after)| after - before).collect());
         for change in &taken {

@@ -123,8 +123,32 @@ pub fn run(problem: &Problem, settings: &Settings, progress: &dyn Fn(f64)) -> Re
     let branches = settings.max_loads.len() as f64;
     for (k, max_load) in settings.max_loads.iter().enumerate() {
         let state = cycle.turning[k].1.clone();
-        unload(problem, settings, *max_load, state, &mut cycle, &|done| progress(0.5 + 0.5 * (k as f64 + done) / branches))?;
+        unload(problem, settings, Some(*max_load), state, &mut cycle, &|done| progress(0.5 + 0.5 * (k as f64 + done) / branches))?;
     }
+    Ok(cycle)
+}
+
+/// Loads to the approach `turn` \[m\] and unloads from there, under displacement control alone: the load at the turn may be a tension. The
+/// turning loads of the settings are not read; the unloading steps have none.
+///
+/// # Errors
+/// An approach without an equilibrium.
+pub fn run_to(problem: &Problem, settings: &Settings, turn: f64) -> Result<Cycle, PhysicsError> {
+    let mut cycle = Cycle::default();
+    let spacing = grid(problem, settings);
+    let mut number = (problem.first_contact_m() / spacing).floor() - 1.0;
+    let mut path = Path::new(problem, State::free(problem, number * spacing), 1.0)?;
+    let mut recorder = Recorder::new(Branch::Loading, None);
+    recorder.record(problem, settings, &mut path, None, &mut cycle, false);
+    while path.state().approach_m < turn {
+        path.stretch(Some(turn))?;
+        let end = path.state().approach_m;
+        recorder.grid_points(problem, settings, &mut path, end, &mut number, &mut cycle)?;
+    }
+    recorder.record(problem, settings, &mut path, None, &mut cycle, true);
+    let state = path.state().clone();
+    cycle.turning.push((cycle.steps.len() - 1, state.clone()));
+    unload(problem, settings, None, state, &mut cycle, &|_| {})?;
     Ok(cycle)
 }
 
@@ -169,7 +193,7 @@ fn load(problem: &Problem, settings: &Settings, cycle: &mut Cycle, progress: &dy
 fn unload(
     problem: &Problem,
     settings: &Settings,
-    max_load: f64,
+    max_load: Option<f64>,
     state: State,
     cycle: &mut Cycle,
     progress: &dyn Fn(f64),
@@ -177,7 +201,7 @@ fn unload(
     let spacing = grid(problem, settings);
     let mut number = -(state.approach_m / spacing).ceil();
     let mut path = Path::new(problem, state, -1.0)?;
-    let mut recorder = Recorder::new(Branch::Unloading, Some(max_load));
+    let mut recorder = Recorder::new(Branch::Unloading, max_load);
     recorder.record(problem, settings, &mut path, None, cycle, false);
     let full = path.totals.area_m2;
     while !path.state().contacts.is_empty() {

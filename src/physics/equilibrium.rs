@@ -131,7 +131,7 @@ impl<'p> Solver<'p> {
         let mut changes: Vec<Change> = Vec::new();
         let mut time = 1.0;
         let mut finish = 100.0;
-        for _ in 0..600 {
+        for round in 0..1000 {
             self.effort.iterations += 1;
             let worst = self.evaluate(state);
             if worst.residual_m <= tolerance {
@@ -141,7 +141,8 @@ impl<'p> Solver<'p> {
                 return Err(worst);
             }
             let spots: Vec<_> = state.contacts.iter().zip(&self.residual).map(|(&i, r)| (i, state.radius[i], *r)).collect();
-            if let Some(change) = self.problem.overtaken(&spots) {
+            let restless = if round % 200 == 199 { self.problem.at_edge(&spots, worst.asperity) } else { None };
+            if let Some(change) = self.problem.overtaken(&spots).or(restless) {
                 state.set(change.asperity, change.status(self.problem), 0.0);
                 changes.push(change);
                 if uncovered.is_some_and(|earlier| change.undoes(earlier)) {

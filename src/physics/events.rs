@@ -204,4 +204,31 @@ impl Problem {
         }
         found.map(|(_, change)| change)
     }
+
+    /// Where a relaxation finds no rest because a spot is at the edge of a greater one, and the field jumps in slope there: the smaller of the two
+    /// is covered. `restless` is the asperity with the worst residual.
+    pub(crate) fn at_edge(&self, spots: &[Moving], restless: usize) -> Option<Change> {
+        let mut found: Option<(f64, Change)> = None;
+        let mut offer = |i: usize, j: usize, a: f64, r: f64| {
+            let off = (a / r - 1.0).abs();
+            if off < EDGE && found.is_none_or(|(least, _)| off < least) {
+                found = Some((off, Change { kind: Kind::Cover, asperity: i, by: Some(j) }));
+            }
+        };
+        if !self.covers() {
+            return None;
+        }
+        let radius = |i: usize| spots.binary_search_by_key(&i, |spot| spot.0).ok().map(|k| spots[k].1);
+        let mine = radius(restless)?;
+        let greatest = spots.iter().map(|spot| spot.1).fold(0.0, f64::max);
+        self.neighbours.within(&self.positions, restless, 1.1 * greatest, |r, other| match radius(other) {
+            Some(a) if a > mine => offer(restless, other, a, r),
+            Some(a) if a < mine => offer(other, restless, mine, r),
+            _ => {}
+        });
+        found.map(|(_, change)| change)
+    }
 }
+
+/// How near the edge of a spot counts as at it, of the distance.
+const EDGE: f64 = 0.02;

@@ -125,7 +125,7 @@ impl Front {
     /// Load and area expected at an approach.
     pub(crate) fn totals(&self, approach: f64) -> Totals {
         let way = approach - self.sums.at;
-        Totals { load_n: self.sums.load + self.sums.load_rate * way, area_m2: self.sums.area + self.sums.area_rate * way, potential_j: 0.0 }
+        Totals { load_n: self.sums.load + self.sums.load_rate * way, area_m2: self.sums.area + self.sums.area_rate * way }
     }
 
     /// Takes a spot out of the sums (−1), or puts it in (+1), as its trace has it at an approach.

@@ -363,21 +363,20 @@ impl Patch {
             .collect()
     }
 
-    /// Load and area of the members, and the part of the potential that changes with them:
+    /// Load of the members \[N\], and the part of the potential that changes with them \[J\]:
     /// `Σ[U(d_i, a_i) − Δγπa_i²] + ½ΣF_iŵ_i`, ŵ by one another. What acts from outside is held, and `Π` is stationary, so that its change
     /// is the whole one's to second order in what the rest of the contact does.
-    pub(crate) fn totals(&self, problem: &Problem) -> super::state::Totals {
-        let mut totals = super::state::Totals::default();
+    pub(crate) fn totals(&self, problem: &Problem) -> (f64, f64) {
+        let (mut whole, mut potential) = (0.0, 0.0);
         for ((member, &a), field) in self.members.iter().zip(&self.radius).zip(&self.field) {
             let asperity = &problem.asperities[member.asperity];
             let load = asperity.load(a);
             let spot = PI * a * a;
-            totals.load_n += load;
-            totals.area_m2 += spot;
-            totals.potential_j +=
+            whole += load;
+            potential +=
                 asperity.stored_energy(asperity.penetration(a), a) - problem.material.work_of_adhesion_j_m2 * spot + 0.5 * load * field;
         }
-        totals
+        (whole, potential)
     }
 
     /// `∂Π/∂δ` at the radii that are: the loads, less what the field from outside takes up \[N\].
@@ -397,7 +396,7 @@ impl Patch {
         let mut time = 1.0;
         let mut finish = 100.0;
         let mut last = Unsettled { residual_m: f64::NAN, asperity: 0 };
-        for _ in 0..1000 {
+        for round in 0..1000 {
             effort.iterations += 1;
             let worst = self.evaluate(problem, effort);
             last = worst;
@@ -408,7 +407,8 @@ impl Patch {
                 return Err(worst);
             }
             let spots: Vec<_> = self.members.iter().zip(&self.radius).zip(&self.residual).map(|((m, a), r)| (m.asperity, *a, *r)).collect();
-            if let Some(change) = problem.overtaken(&spots) {
+            let restless = if round % 200 == 199 { problem.at_edge(&spots, worst.asperity) } else { None };
+            if let Some(change) = problem.overtaken(&spots).or(restless) {
                 self.remove(change.asperity, change.kind == Kind::JumpOff);
                 changes.push(change);
                 if uncovered.is_some_and(|earlier| change.undoes(earlier)) {

@@ -67,6 +67,8 @@ pub struct Event {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Log {
     pub(crate) events: Vec<Event>,
+    /// Which of them has the energy of the last relaxation.
+    charged: usize,
     /// `∫F dΔ` since the branch began \[J\].
     pub(crate) work_j: f64,
     pub(crate) avalanches: u64,
@@ -503,20 +505,21 @@ impl<'p> Path<'p> {
             self.front.traces[i] = trace;
         }
         // Events were charged with the potential of a contact whose other spots keep their loads; those have answered now.
-        if let Some(event) = self.log.events[self.settled..].last_mut() {
+        if let Some(event) = self.log.charged() {
             event.energy_lost_j += relaxed;
         }
         self.front.recount(problem);
-        self.totals = problem.totals(&self.front.state);
+        let (totals, potential) = problem.totals(&self.front.state);
+        self.totals = totals;
         let lost: f64 = self.log.events[self.settled..].iter().map(|event| event.energy_lost_j).sum();
-        let balance = self.totals.potential_j + lost - self.log.work_j;
+        let balance = potential + lost - self.log.work_j;
         if std::mem::take(&mut self.unbalanced)
-            && let Some(event) = self.log.events[self.settled..].last_mut()
+            && let Some(event) = self.log.charged()
         {
             event.energy_lost_j += self.balance - balance;
         }
         // From one solution of the whole to the next only the events since are counted.
-        self.balance = self.totals.potential_j - self.log.work_j;
+        self.balance = potential - self.log.work_j;
         self.settled_at = target;
         if jump {
             self.log.restart(target, self.front.load(target));
@@ -580,7 +583,7 @@ impl<'p> Path<'p> {
             self.front.traces[change.asperity].value = f64::NAN;
             self.front.set(change.asperity, change.status(self.problem()), 0.0);
         }
-        let after = self.problem().totals(&self.front.state);
+        let (after, _) = self.problem().totals(&self.front.state);
         self.record(&changes, target, before, after, 0.0);
         self.unbalanced = true;
         Ok(())
@@ -597,7 +600,7 @@ impl<'p> Path<'p> {
         }
         self.relax_whole(target)?;
         if self.log.events.len() == events {
-            let (before, after) = (self.totals, self.problem().totals(&self.front.state));
+            let (before, (after, _)) = (self.totals, self.problem().totals(&self.front.state));
             self.record(&[Change { kind: Kind::Snap, asperity, by: None }], target, before, after, 0.0);
         }
         for i in self.front.state.contacts.clone() {
@@ -609,6 +612,7 @@ impl<'p> Path<'p> {
 
     /// Writes changes of one relaxation down; its energy is the first one's.
     pub(crate) fn record(&mut self, moved: &[Change], approach: f64, before: Totals, after: Totals, energy: f64) {
+        self.log.charged = self.log.events.len();
         for (k, change) in moved.iter().enumerate() {
             if change.kind != Kind::JumpOff {
                 self.flips[change.asperity] = self.flips[change.asperity].saturating_add(1);
@@ -637,6 +641,10 @@ impl<'p> Path<'p> {
 }
 
 impl Log {
+    fn charged(&mut self) -> Option<&mut Event> {
+        self.events.get_mut(self.charged)
+    }
+
     /// The load has gone on without a jump; it is a cubic since it was known last.
     pub(crate) fn pass(&mut self, approach: f64, load: [f64; 2]) {
         let (at, [before, slope]) = self.last;

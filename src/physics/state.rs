@@ -148,11 +148,12 @@ impl Problem {
         self.columns(state.contacts.iter().map(|&i| (i, state.radius[i])), spots);
     }
 
-    /// Load, area and potential of an equilibrium whose displacements at the spots are known.
+    /// Load, area and potential \[J\] of an equilibrium whose displacements at the spots are known.
     ///
     /// The potential is `Π = Σ[U(d_i, a_i) − Δγπa_i²] + ½ΣF_iŵ_i`: exact for point interaction.
-    pub(crate) fn totals(&self, state: &State) -> Totals {
+    pub(crate) fn totals(&self, state: &State) -> (Totals, f64) {
         let mut totals = Totals::default();
+        let mut potential = 0.0;
         for (&i, &w) in state.contacts.iter().zip(&state.displacement) {
             let (asperity, a) = (&self.asperities[i], state.radius[i]);
             let load = asperity.load(a);
@@ -160,9 +161,9 @@ impl Problem {
             totals.load_n += load;
             totals.area_m2 += spot;
             let energy = asperity.stored_energy(asperity.penetration(a), a) - self.material.work_of_adhesion_j_m2 * spot;
-            totals.potential_j += energy + 0.5 * load * w;
+            potential += energy + 0.5 * load * w;
         }
-        totals
+        (totals, potential)
     }
 }
 
@@ -173,8 +174,6 @@ pub struct Totals {
     pub load_n: f64,
     /// Area Σπa² \[m²\].
     pub area_m2: f64,
-    /// Potential Π \[J\].
-    pub potential_j: f64,
 }
 
 /// What an asperity is doing.

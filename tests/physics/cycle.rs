@@ -35,18 +35,14 @@ fn law_without_interaction_the_loss_is_the_sum_over_those_that_touched() {
     let summits = paper_summits(16, 0);
     for jump_in in [JumpIn::Jkr, JumpIn::Wu] {
         let rules = Rules { jump_in, ..ALONE };
-        let mut off = Vec::new();
-        for (step, tolerance) in [(0.08, 2e-4), (0.04, 5e-5), (0.02, 1.5e-5), (0.01, 1.5e-5)] {
+        for step in [0.08, 0.01] {
             let cycle = paper_cycle(&summits, rules, &[0.0071], step);
             let (sums, want) = (loop_of(&cycle, 0), closed_form(&cycle, &summits, jump_in));
-            // Between events the work is integrated to fourth order in the step. What is left at small steps is where the events are
-            // taken: a jump-off within 2e-5 of δ_off before the end, which is 2e-5 × (5π/6)(1.609)/7.09 = 1.2e-5 of θ (hardly
-            // more of Wu's: μ is several hundred here); a jump-in within 1e-6 of the rms height, less than that.
-            close("Theta", sums.loss, want, tolerance);
-            close("events", sums.events, want, 1.5e-5);
-            off.push((sums.loss / want - 1.0).abs());
+            // Between events the work is integrated to fourth order in the stretches of the path, not in the step (found: 1.6e-6); events are
+            // met to 1e-6 of the rms height, which is 1e-6 of θ.
+            close("Theta", sums.loss, want, 4e-6);
+            close("events", sums.events, want, 3e-6);
         }
-        assert!(off[2] < off[1] && off[1] < off[0], "{off:?}");
     }
 }
 
@@ -77,13 +73,14 @@ fn law_without_interaction_the_load_is_a_sum() {
 
 #[test]
 fn law_point_interaction_loses_what_its_events_lose() {
-    let summits = paper_summits(16, 0);
-    for coalescence in [Coalescence::None, Coalescence::Cover] {
+    for (realization, coalescence) in [(0, Coalescence::None), (0, Coalescence::Cover), (2, Coalescence::Cover)] {
+        let summits = paper_summits(16, realization);
         let rules = Rules { interaction: Interaction::Point, coalescence, ..DEFAULT };
-        // Found: 4.8e-5 and 2.8e-5 of the loss. Quadrature of the load between events, in places with the root singularity of a spot that
-        // nears its end; and each of some 80 events within 1e-6 of the rms height and 2e-5 of its own end.
-        for (step, bound) in [(0.04, 1e-4), (0.02, 6e-5)] {
-            let cycle = paper_cycle(&summits, rules, &[0.004, 0.0071], step);
+        // With every event solved among all spots, what is left is the quadrature of the load between events (found: at most 7e-6).
+        // With patches, what the rest of the contact does is known to first order when an event is charged.
+        for (patch, bound) in [(usize::MAX, 1e-5), (24, 1e-3)] {
+            let problem = Problem::new(&summits, LENGTH, RMS, PAPER, rules).unwrap().with_patches_of(patch);
+            let cycle = run(&problem, &[0.004, 0.0071], 0.04, KeptContacts::None);
             for k in 0..2 {
                 let Loop { loss, events, .. } = loop_of(&cycle, k);
                 assert!(loss > 0.0);
@@ -103,7 +100,6 @@ fn law_every_event_loses_energy_with_point_interaction() {
     for (_, event) in &cycle.events {
         // Relaxation goes down the potential. A hundredth of a thousandth of the whole is its evaluation's rounding, far above.
         assert!(event.energy_lost_j > -1e-5 * loss, "{event:?}");
-        close("energy", event.energy_lost_j, event.before.potential_j - event.after.potential_j, 1e-12);
     }
     // As many leave as come: the loop ends free.
     let count = |kind| cycle.events.iter().filter(|(_, e)| e.kind == kind).count();
@@ -148,12 +144,14 @@ fn law_unloading_does_not_depend_on_the_other_turning_points() {
 #[test]
 fn law_the_step_does_not_matter() {
     let summits = paper_summits(32, 0);
-    let [coarse, fine] = [0.04, 0.02].map(|step| loop_of(&paper_cycle(&summits, DEFAULT, &[0.0071], step), 0));
-    // The sheet's own bound is 1 %. Area and loss hold far better (found: 1e-9 and 5e-5), since no decision depends on the step;
-    // the pull-off load is that of the recorded steps.
-    close("area", coarse.area, fine.area, 1e-6);
-    close("loss", coarse.loss, fine.loss, 1e-3);
-    close("pull-off", coarse.pull_off, fine.pull_off, 1e-2);
+    let [coarse, fine] = [0.04, 0.01].map(|step| paper_cycle(&summits, DEFAULT, &[0.0071], step));
+    // The steps are read off the path and do not make it: the same events, and the same loop but for the rounding of a sum of other parts.
+    let list = |cycle: &Cycle| cycle.events.iter().map(|(_, e)| (e.kind, e.asperity, e.approach_m)).collect::<Vec<_>>();
+    assert_eq!(list(&coarse), list(&fine));
+    let (coarse, fine) = (loop_of(&coarse, 0), loop_of(&fine, 0));
+    close("area", coarse.area, fine.area, 1e-12);
+    close("loss", coarse.loss, fine.loss, 1e-12);
+    close("pull-off", coarse.pull_off, fine.pull_off, 1e-12);
 }
 
 #[test]

@@ -184,7 +184,7 @@ fn reg_the_best_sum_is_the_same_field_for_few_and_many() {
         let direct = DirectSum::new(positions.clone(), LENGTH, &PAPER, kind, boundary, Slips::default());
         for spots in [&spots, &contact(11, 900, 20, 3e-5).1] {
             let want = displacements(&direct, spots, &targets);
-            let got = displacements(field.as_ref(), spots, &targets);
+            let got = displacements(&field, spots, &targets);
             if kind == Kind::None {
                 assert!(got.iter().chain(&want).all(|w| *w == 0.0));
             } else {

@@ -14,6 +14,7 @@ mod jkr;
 mod kernel;
 mod ledger;
 mod pair;
+mod path;
 mod printed;
 mod spectrum;
 mod summits;
