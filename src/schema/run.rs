@@ -70,6 +70,11 @@ pub static STEPS: Table = Table {
         real("dissipated_j", "J", "Energy lost in the events of this step"),
         real("work_j", "J", "Work done on the contact since this branch began, the integral of load over approach"),
         real("residual_m", "m", "Greatest difference left between local penetration and JKR penetration, over all spots").from("Eqs 2, 5"),
+        real(
+            "drift_m",
+            "m",
+            "Greatest residual that the whole contact had since the step before when it came to be solved: what the neighbourhoods of events had left out",
+        ),
         flag("converged", "Whether the residual came below the tolerance"),
         count("iteration_count", "Newton iterations of this step"),
         count("pair_evaluation_count", "Evaluations of the displacement field of one spot at another in this step"),
