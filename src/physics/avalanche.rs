@@ -340,7 +340,7 @@ impl Path<'_> {
         let problem = self.problem();
         let i = change.asperity;
         let before = self.front.totals(self.patch.approach);
-        self.log.pass(self.patch.approach, self.front.load(self.patch.approach));
+        self.log.pass(self.patch.approach, before.load_n);
         let mut potential = self.patch.totals(problem).1;
         let halo = self.patch.fields_at(problem, &self.halo, &mut self.solver.effort);
         let mut taken = Vec::new();
@@ -401,7 +401,7 @@ impl Path<'_> {
             open.push(place.asperity);
         }
         let after = self.front.totals(self.patch.approach);
-        self.log.restart(self.patch.approach, self.front.load(self.patch.approach));
+        self.log.restart(self.patch.approach, after.load_n);
         self.record(&taken, self.patch.approach, before, after, potential - after_potential);
         moved.extend(taken);
         Ok(())

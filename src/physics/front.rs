@@ -104,11 +104,6 @@ impl Front {
         self.state.contacts.iter().map(|&i| (i, radius(i))).collect()
     }
 
-    /// Load expected at an approach, and its derivative \[N, N/m\].
-    pub(crate) fn load(&self, approach: f64) -> [f64; 2] {
-        [self.totals(approach).load_n, self.sums.load_rate]
-    }
-
     /// Load and area of a spot at its trace, and their derivatives to the approach.
     fn share(&self, problem: &Problem, i: usize) -> Sums {
         let (asperity, a, speed) = (&problem.asperities[i], self.state.radius[i], self.speed(problem, i));
@@ -249,20 +244,6 @@ pub(crate) fn work_along(problem: &Problem, i: usize, span: f64, from: CurvePoin
         let a = hermite(p, from.radius[0], to.radius[0], from.radius[1] * span, to.radius[1] * span);
         asperity.load(a) * hermite_slope(p, from.approach[0], to.approach[0], from.approach[1] * span, to.approach[1] * span)
     })
-}
-
-/// The least of a cubic in `[0, 1]` with these values and slopes at the ends.
-pub(crate) fn least(f0: f64, f1: f64, t0: f64, t1: f64) -> f64 {
-    if !(t0 < 0.0 && t1 > 0.0) {
-        return f0.min(f1);
-    }
-    // The slope has one root between them; it is a parabola.
-    let (mut low, mut high) = (0.0, 1.0);
-    for _ in 0..50 {
-        let middle = 0.5 * (low + high);
-        if hermite_slope(middle, f0, f1, t0, t1) < 0.0 { low = middle } else { high = middle }
-    }
-    hermite(low, f0, f1, t0, t1).min(f0).min(f1)
 }
 
 fn hermite(x: f64, f0: f64, f1: f64, t0: f64, t1: f64) -> f64 {

@@ -12,7 +12,7 @@
 use super::PhysicsError;
 use super::equilibrium::{Solver, Unsettled};
 use super::events::{Change, Kind};
-use super::front::{Due, Front, least, work};
+use super::front::{Due, Front, work};
 use super::interaction::Effort;
 use super::patch::{Patch, Trace};
 use super::state::{Problem, State, Status, Totals};
@@ -74,8 +74,8 @@ pub(crate) struct Log {
     pub(crate) avalanches: u64,
     /// The way of the load, from event to event.
     pub(crate) ways: Vec<Way>,
-    /// Approach, load and its derivative where they were known last.
-    last: (f64, [f64; 2]),
+    /// Load where it was known last \[N\].
+    last: f64,
     /// Greatest residual before the whole contact was solved, since this was asked last \[m\].
     pub(crate) drift_m: f64,
 }
@@ -235,9 +235,9 @@ impl<'p> Path<'p> {
         DRIFT * self.scale()
     }
 
-    /// Goes on by one stretch, but not beyond `bound` \[m\].
-    pub(crate) fn stretch(&mut self, bound: Option<f64>) -> Result<(), PhysicsError> {
-        let mut mark = Mark {
+    /// What is needed to come back to the present state, in which the whole contact is solved.
+    fn mark(&self) -> Mark {
+        Mark {
             front: self.front.clone(),
             events: self.log.events.len(),
             ways: self.log.ways.len(),
@@ -246,7 +246,12 @@ impl<'p> Path<'p> {
             balance: self.balance,
             flips: self.flips.clone(),
             held: self.held.clone(),
-        };
+        }
+    }
+
+    /// Goes on by one stretch, but not beyond `bound` \[m\].
+    pub(crate) fn stretch(&mut self, bound: Option<f64>) -> Result<(), PhysicsError> {
+        let mut mark = self.mark();
         loop {
             let here = self.front.state.approach_m;
             let size = self.longest * 0.5f64.powi(self.halvings as i32);
@@ -428,6 +433,7 @@ impl<'p> Path<'p> {
     fn settle(&mut self, target: f64, limit: f64, jump: bool) -> Result<(), Halt> {
         let problem = self.problem();
         let mut rounds = 0;
+        let mut before_uncovering: Option<(Mark, usize)> = None;
         loop {
             self.front.state.approach_m = target;
             for k in 0..self.front.state.contacts.len() {
@@ -438,10 +444,19 @@ impl<'p> Path<'p> {
                     self.front.state.radius[i] = asperity.radius_at_penetration(trace.ahead(target)).unwrap_or(asperity.jump_off_radius());
                 }
             }
-            let whole = limit.is_infinite() && rounds == 0;
+            let whole = limit.is_infinite();
             let start = if whole { self.front.state.radius.clone() } else { Vec::new() };
             match self.solver.newton(&mut self.front.state, limit) {
                 Ok(drift) => self.log.drift_m = self.log.drift_m.max(drift),
+                Err(_) if before_uncovering.is_some() => {
+                    // There is no equilibrium with that asperity at the edge of the spot: it stays covered for a while, and is counted.
+                    if let Some((mark, i)) = before_uncovering.take() {
+                        self.back_to(&mark);
+                        self.keep_covered(i);
+                        self.held.push(i);
+                    }
+                    continue;
+                }
                 Err(_) if whole => {
                     self.front.state.radius = start;
                     self.relax_whole(target)?;
@@ -462,6 +477,7 @@ impl<'p> Path<'p> {
                 return Err(Halt::Error(PhysicsError::EndlessAvalanche { approach_m: target, events: rounds, asperity }));
             }
             let change = first.1;
+            before_uncovering = (change.kind == Kind::Uncover).then(|| (self.mark(), change.asperity));
             self.log.avalanches += 1;
             self.avalanche(change)?;
         }
@@ -483,7 +499,7 @@ impl<'p> Path<'p> {
         let target = self.front.state.approach_m;
         let rates = self.solver.rates(&self.front.state);
         if jump {
-            self.log.pass(target, self.front.load(target));
+            self.log.pass(target, self.front.totals(target).load_n);
         }
         self.far_load(target, 0.0);
         self.far = 0.0;
@@ -522,9 +538,9 @@ impl<'p> Path<'p> {
         self.balance = potential - self.log.work_j;
         self.settled_at = target;
         if jump {
-            self.log.restart(target, self.front.load(target));
+            self.log.restart(target, self.front.totals(target).load_n);
         } else {
-            self.log.pass(target, self.front.load(target));
+            self.log.pass(target, self.front.totals(target).load_n);
         }
         self.watch(&rates);
     }
@@ -645,19 +661,16 @@ impl Log {
         self.events.get_mut(self.charged)
     }
 
-    /// The load has gone on without a jump; it is a cubic since it was known last.
-    pub(crate) fn pass(&mut self, approach: f64, load: [f64; 2]) {
-        let (at, [before, slope]) = self.last;
-        let way = approach - at;
-        let least = least(before, load[0], slope * way, load[1] * way);
-        self.ways.push(Way { approach, load: load[0], least });
-        self.last = (approach, load);
+    /// The load has gone on without a jump; it is known at the ends of the parts of a stretch, a twentieth of a jump-off penetration apart.
+    pub(crate) fn pass(&mut self, approach: f64, load: f64) {
+        self.ways.push(Way { approach, load, least: load.min(self.last) });
+        self.last = load;
     }
 
     /// The load has jumped.
-    pub(crate) fn restart(&mut self, approach: f64, load: [f64; 2]) {
-        self.ways.push(Way { approach, load: load[0], least: load[0] });
-        self.last = (approach, load);
+    pub(crate) fn restart(&mut self, approach: f64, load: f64) {
+        self.ways.push(Way { approach, load, least: load });
+        self.last = load;
     }
 
     /// The same, of a path that has had no event.
