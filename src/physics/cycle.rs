@@ -5,7 +5,8 @@
 use super::PhysicsError;
 use super::events::Kind;
 use super::interaction::Effort;
-use super::path::{Event, Path};
+use super::log::Event;
+use super::path::Path;
 use super::state::{Problem, State, Status};
 use crate::model::KeptContacts;
 
@@ -320,7 +321,7 @@ fn touching(problem: &Problem, state: &State) -> usize {
     let touches = |i: usize| {
         let a = state.radius[i];
         let mut found = false;
-        problem.neighbours.within(&problem.positions, i, a + greatest, |r, j| found |= state.radius[j] > 0.0 && r < a + state.radius[j]);
+        problem.neighbours.within(i, a + greatest, |r, j| found |= state.radius[j] > 0.0 && r < a + state.radius[j]);
         found
     };
     state.contacts.iter().filter(|i| touches(**i)).count()

@@ -9,7 +9,7 @@
 
 use super::events::Change;
 use super::interaction::{Effort, Interaction as _, Spots, Tangent};
-use super::krylov::{dot, gmres};
+use super::krylov::{dot, gmres, gmres_and_least};
 use super::patch::Trace;
 use super::state::{Problem, State};
 
@@ -32,7 +32,8 @@ pub(crate) struct Solver<'p> {
     pub(crate) effort: Effort,
     spots: Spots,
     tangent: Tangent,
-    residual: Vec<f64>,
+    /// Residuals of the spots that were evaluated last \[m\].
+    pub(crate) residual: Vec<f64>,
     diagonal: Vec<f64>,
 }
 
@@ -49,7 +50,7 @@ impl<'p> Solver<'p> {
     }
 
     /// Displacements, residuals and tangent of a state; its worst residual and whose it is.
-    fn evaluate(&mut self, state: &mut State) -> Unsettled {
+    pub(crate) fn evaluate(&mut self, state: &mut State) -> Unsettled {
         let problem = self.problem;
         problem.spots(state, &mut self.spots);
         problem.field.linearise(&self.spots, &mut state.displacement, &mut self.tangent, &mut self.effort);
@@ -70,35 +71,27 @@ impl<'p> Solver<'p> {
         worst
     }
 
-    /// Newton's method on the radii, from those of `state`, at its approach, with its spots. Its first residual is returned \[m\]; where
-    /// that is above `limit`, nothing is tried.
-    pub(crate) fn newton(&mut self, state: &mut State, limit: f64) -> Result<f64, Unsettled> {
-        let first = self.evaluate(state);
-        if first.residual_m > limit || first.residual_m.is_nan() {
-            return Err(first);
-        }
+    /// Newton's method on the radii, from those of `state`, at its approach, with its spots; it was evaluated last.
+    pub(crate) fn newton(&mut self, state: &mut State, first: Unsettled) -> Result<(), Unsettled> {
         let start: Vec<f64> = state.contacts.iter().map(|&i| state.radius[i]).collect();
-        self.descend(state, 0.2, 20)
-            .or_else(|_| {
-                // Near the edge of a spot, where the slope of its field is infinite, only short steps descend.
-                for (&i, a) in state.contacts.iter().zip(&start) {
-                    state.radius[i] = *a;
-                }
-                self.descend(state, 1e-4, 60)
-            })
-            .map(|()| first.residual_m)
+        self.descend(state, first, 0.2, 20).or_else(|_| {
+            // Near the edge of a spot, where the slope of its field is infinite, only short steps descend.
+            for (&i, a) in state.contacts.iter().zip(&start) {
+                state.radius[i] = *a;
+            }
+            let first = self.evaluate(state);
+            self.descend(state, first, 1e-4, 60)
+        })
     }
 
     /// Newton's method, at most so many iterations, each step shortened down to the share `least` of itself until it descends.
-    fn descend(&mut self, state: &mut State, least: f64, most: usize) -> Result<(), Unsettled> {
+    fn descend(&mut self, state: &mut State, mut worst: Unsettled, least: f64, most: usize) -> Result<(), Unsettled> {
         let tolerance = self.problem.tolerance_m();
         let mut start: Vec<f64> = Vec::new();
         let mut step: Vec<f64> = Vec::new();
         let mut before = f64::INFINITY;
         let mut share = 1.0;
         for _ in 0..most {
-            self.effort.iterations += 1;
-            let worst = self.evaluate(state);
             if worst.residual_m <= tolerance {
                 return Ok(());
             }
@@ -118,15 +111,14 @@ impl<'p> Solver<'p> {
             for ((&i, s), from) in state.contacts.iter().zip(&step).zip(&start) {
                 state.radius[i] = from + share * s;
             }
+            self.effort.iterations += 1;
+            worst = self.evaluate(state);
         }
-        Err(self.evaluate(state))
+        Err(worst)
     }
 
     /// Overdamped relaxation from the radii of `state`, at its approach. Spots that leave or are covered on the way are returned.
-    ///
-    /// Where an asperity has just been uncovered (`uncovered`) and is covered again on the way, or exchanges parts with the spot that covered
-    /// it, the rest of the way is of no interest: the state is left as it is then.
-    pub(crate) fn relax(&mut self, state: &mut State, uncovered: Option<&Change>) -> Result<Vec<Change>, Unsettled> {
+    pub(crate) fn relax(&mut self, state: &mut State) -> Result<Vec<Change>, Unsettled> {
         let tolerance = self.problem.tolerance_m();
         let mut changes: Vec<Change> = Vec::new();
         let mut time = 1.0;
@@ -145,9 +137,6 @@ impl<'p> Solver<'p> {
             if let Some(change) = self.problem.overtaken(&spots).or(restless) {
                 state.set(change.asperity, change.status(self.problem), 0.0);
                 changes.push(change);
-                if uncovered.is_some_and(|earlier| change.undoes(earlier)) {
-                    return Ok(changes);
-                }
                 (time, finish) = (1.0, 100.0);
                 continue;
             }
@@ -155,7 +144,7 @@ impl<'p> Solver<'p> {
                 // Nearly at rest: Newton's method finishes. At the edge of a spot, where the slope of its field jumps, implicit steps would go
                 // to and fro for ever, while short steps that descend arrive.
                 let mut end = state.clone();
-                if self.descend(&mut end, 1e-4, 40).is_ok() {
+                if self.descend(&mut end, worst, 1e-4, 40).is_ok() {
                     *state = end;
                     continue;
                 }
@@ -182,10 +171,12 @@ impl<'p> Solver<'p> {
         Err(self.evaluate(state))
     }
 
-    /// `da_i/dδ` of the spots at the equilibrium that was evaluated last.
-    pub(crate) fn rates(&mut self, state: &State) -> Vec<f64> {
+    /// `da_i/dδ` of the spots at the equilibrium that was evaluated last. Its stability is entered into the state.
+    pub(crate) fn rates(&mut self, state: &mut State) -> Vec<f64> {
         let ones = vec![1.0; state.contacts.len()];
-        gmres(&self.tangent, &self.diagonal, &ones, 1e-8, PRODUCTS, &mut self.effort)
+        let (rates, least) = gmres_and_least(&self.tangent, &self.diagonal, &ones, 1e-8, PRODUCTS, &mut self.effort);
+        state.stability = least;
+        rates
     }
 
     /// Penetrations `D_i − ŵ_i` of asperities that are not in contact, with their rates, in an equilibrium and its rates.

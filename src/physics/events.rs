@@ -120,7 +120,7 @@ impl Problem {
             }
             add(Change { kind: Kind::JumpOff, asperity: j, by: None });
             if self.covers() {
-                self.neighbours.within(&self.positions, j, state.radius[j], |_, i| {
+                self.neighbours.within(j, state.radius[j], |_, i| {
                     if !matches!(state.status[i], Status::Covered { .. }) && state.radius[i] < state.radius[j] {
                         inside.push(i);
                         add(Change { kind: Kind::Cover, asperity: i, by: Some(j) });
@@ -134,6 +134,19 @@ impl Problem {
             }
         }
         due
+    }
+
+    /// Whether a change that was due still is.
+    pub(crate) fn is_due(&self, change: &Change, front: &Front) -> bool {
+        let (i, state) = (change.asperity, &front.state);
+        let possible = match (change.kind, state.status[i], change.by) {
+            (Kind::JumpIn, Status::Free, _) => !state.barred[i],
+            (Kind::JumpOff, Status::Contact, _) => true,
+            (Kind::Uncover, Status::Covered { by, .. }, _) => Some(by) == change.by,
+            (Kind::Cover, Status::Free | Status::Contact, Some(by)) => state.radius[i] < state.radius[by],
+            _ => false,
+        };
+        possible && self.overshoot(change, front) >= 0.0
     }
 
     /// How far a state is beyond a change: negative before it.
@@ -194,7 +207,7 @@ impl Problem {
         }
         if found.is_none() && self.covers() {
             for &(j, a, _) in spots {
-                self.neighbours.within(&self.positions, j, a, |r, i| {
+                self.neighbours.within(j, a, |r, i| {
                     let smaller = spots.binary_search_by_key(&i, |spot| spot.0).is_ok_and(|k| spots[k].1 < a);
                     if smaller && found.is_none_or(|(most, _)| a / r > most) {
                         found = Some((a / r, Change { kind: Kind::Cover, asperity: i, by: Some(j) }));
@@ -221,7 +234,7 @@ impl Problem {
         let radius = |i: usize| spots.binary_search_by_key(&i, |spot| spot.0).ok().map(|k| spots[k].1);
         let mine = radius(restless)?;
         let greatest = spots.iter().map(|spot| spot.1).fold(0.0, f64::max);
-        self.neighbours.within(&self.positions, restless, 1.1 * greatest, |r, other| match radius(other) {
+        self.neighbours.within(restless, 1.1 * greatest, |r, other| match radius(other) {
             Some(a) if a > mine => offer(restless, other, a, r),
             Some(a) if a < mine => offer(other, restless, mine, r),
             _ => {}

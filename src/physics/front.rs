@@ -5,7 +5,7 @@
 //! approach follows from there.
 
 use super::events::{Change, Kind};
-use super::patch::Trace;
+use super::patch::{STEEPEST, Trace};
 use super::state::{Problem, State, Status, Totals};
 
 /// A rate of penetration beyond this tells of a fold: it grows as the inverse root of the distance to it, and is below 1.2 elsewhere.
@@ -14,6 +14,9 @@ const STEEP: f64 = 2.5;
 /// A spot's end is sought when its penetration would be there within this many times the way that is left: before a fold the penetration
 /// goes as a root, and moves as far again as its rate tells.
 const REACH: f64 = 2.2;
+
+/// Share of their distance at which the radii of two spots bring them near a fold: the field of each is steep there.
+const TWINS: f64 = 0.95;
 
 /// A change expected on the way, and the approach at which it is \[m\].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -92,29 +95,45 @@ impl Front {
 
     /// `da/dδ` of a spot at its trace.
     pub(crate) fn speed(&self, problem: &Problem, i: usize) -> f64 {
-        self.traces[i].rate / problem.asperities[i].penetration_slope(self.state.radius[i]).max(1e-6)
+        self.traces[i].rate.clamp(-STEEPEST, STEEPEST) / problem.asperities[i].penetration_slope(self.state.radius[i]).max(1e-6)
+    }
+
+    /// How the load of a spot goes on with the approach \[N/m\], no faster than that of a flat punch of thrice its size: at the end of its branch it
+    /// is infinite, but not for long.
+    pub(crate) fn answer(&self, problem: &Problem, i: usize) -> f64 {
+        let (asperity, a) = (&problem.asperities[i], self.state.radius[i]);
+        let most = 6.0 * problem.material.contact_modulus_pa * a;
+        (asperity.load_slope(a) * self.speed(problem, i)).clamp(-most, most)
+    }
+
+    /// Contact radius of a spot expected at an approach \[m\]. Where it is known it may be beyond the end of its branch, where the penetration
+    /// tells another radius.
+    pub(crate) fn radius(&self, problem: &Problem, i: usize, approach: f64) -> f64 {
+        let trace = self.traces[i];
+        if trace.at == approach { self.state.radius[i] } else { problem.asperities[i].radius_ahead(trace.ahead(approach)) }
     }
 
     /// Contact radii expected at an approach \[m\].
     pub(crate) fn radii(&self, problem: &Problem, approach: f64) -> Vec<(usize, f64)> {
-        let radius = |i: usize| {
-            let asperity = &problem.asperities[i];
-            asperity.radius_at_penetration(self.traces[i].ahead(approach)).unwrap_or(asperity.jump_off_radius())
-        };
-        self.state.contacts.iter().map(|&i| (i, radius(i))).collect()
+        self.state.contacts.iter().map(|&i| (i, self.radius(problem, i, approach))).collect()
+    }
+
+    /// All spots at an approach as it is expected \[m\].
+    pub(crate) fn go_to(&mut self, problem: &Problem, approach: f64) {
+        self.state.approach_m = approach;
+        for (i, a) in self.radii(problem, approach) {
+            if !self.traces[i].value.is_nan() {
+                self.state.radius[i] = a;
+            }
+        }
     }
 
     /// Load and area of a spot at its trace, and their derivatives to the approach.
     fn share(&self, problem: &Problem, i: usize) -> Sums {
         let (asperity, a, speed) = (&problem.asperities[i], self.state.radius[i], self.speed(problem, i));
+        let load_rate = self.answer(problem, i);
         let turn = 2.0 * std::f64::consts::PI * a;
-        Sums {
-            at: self.traces[i].at,
-            load: asperity.load(a),
-            load_rate: asperity.load_slope(a) * speed,
-            area: 0.5 * turn * a,
-            area_rate: turn * speed,
-        }
+        Sums { at: self.traces[i].at, load: asperity.load(a), load_rate, area: 0.5 * turn * a, area_rate: turn * speed }
     }
 
     /// Load and area expected at an approach.
@@ -191,6 +210,8 @@ impl Front {
             if way <= REACH * left || -speed > STEEP {
                 offer(way.min(left), Kind::JumpOff, j, None);
             }
+            // A fold comes before what such a rate promises.
+            let speed = speed.max(-STEEP);
             for i in self.riders(j) {
                 if let Status::Covered { release_m, .. } = self.state.status[i] {
                     let way = (trace.value - asperity.penetration(release_m)) / -speed;
@@ -203,13 +224,16 @@ impl Front {
             if speed > STEEP {
                 offer(left, Kind::Snap, j, None);
             }
+            let speed = speed.min(STEEP);
             if problem.covers() {
                 let most = trace.value + 1.1 * speed * left;
                 let Some(reach) = asperity.radius_at_penetration(most) else { return };
-                problem.neighbours.within(&problem.positions, j, reach, |r, i| {
+                problem.neighbours.within(j, reach / TWINS, |r, i| {
                     let open = !matches!(self.state.status[i], Status::Covered { .. }) && self.state.radius[i] < r;
-                    if open && r >= a {
-                        offer((asperity.penetration(r) - trace.value) / speed, Kind::Cover, i, Some(j));
+                    // Two spots that reach for one another's centres have a fold before they get there.
+                    let reached = reach >= r || self.state.radius[i] > TWINS * r;
+                    if open && r >= a && reached {
+                        offer(((asperity.penetration(r) - trace.value) / speed).min(left), Kind::Cover, i, Some(j));
                     }
                 });
             }
@@ -226,7 +250,7 @@ pub(crate) fn work(problem: &Problem, i: usize, from: Trace, to: Trace) -> f64 {
     }
     gauss(|p| {
         let d = hermite(p, from.value, to.value, from.rate * span, to.rate * span);
-        asperity.load(asperity.radius_at_penetration(d).unwrap_or(asperity.jump_off_radius())) * span
+        asperity.load(asperity.radius_ahead(d)) * span
     })
 }
 

@@ -164,6 +164,11 @@ impl Asperity {
         Some(off * (1.0 + e) * (1.0 + e))
     }
 
+    /// The same, and the end of the branch beyond it.
+    pub(crate) fn radius_ahead(&self, penetration: f64) -> f64 {
+        self.radius_at_penetration(penetration).unwrap_or(self.jump_off_radius())
+    }
+
     /// Stored elastic energy at fixed contact radius `U(δ, a) = E*(aδ² − 2a³δ/(3R) + a⁵/(5R²))` \[J\]. On the equilibrium path
     /// `∂U/∂δ = F` and `∂U/∂(πa²) = Δγ`.
     #[must_use]

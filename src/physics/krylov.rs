@@ -3,7 +3,11 @@
 //! Saad & Schultz, SIAM J. Sci. Stat. Comput. 7:856 (1986), right-preconditioned, modified Gram–Schmidt, no restart: the tangent of a
 //! contact is a diagonal and a long-range coupling of low rank, and some ten products are enough.
 
+use super::dense::Lu;
 use super::interaction::{Effort, Tangent};
+
+/// Steps of the inverse iteration for the least eigenvalue: it stands apart where it matters.
+const INVERSE_ITERATIONS: usize = 30;
 
 /// `(diag(diagonal) + tangent)·x`.
 fn apply(tangent: &Tangent, diagonal: &[f64], x: &[f64], y: &mut [f64]) {
@@ -31,6 +35,61 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 /// Solves `(diag(diagonal) + tangent)·x = rhs` to the relative residual `tolerance`; what is reached within `most` products is returned.
 pub(crate) fn gmres(tangent: &Tangent, diagonal: &[f64], rhs: &[f64], tolerance: f64, most: usize, effort: &mut Effort) -> Vec<f64> {
+    solve(tangent, diagonal, rhs, tolerance, most, effort, None)
+}
+
+/// The same, with the least eigenvalue of the matrix, each column over its diagonal element, in the space that the solution took: 1 without
+/// coupling, 0 at a fold.
+pub(crate) fn gmres_and_least(
+    tangent: &Tangent,
+    diagonal: &[f64],
+    rhs: &[f64],
+    tolerance: f64,
+    most: usize,
+    effort: &mut Effort,
+) -> (Vec<f64>, f64) {
+    let mut raw = Vec::new();
+    let x = solve(tangent, diagonal, rhs, tolerance, most, effort, Some(&mut raw));
+    (x, least_eigenvalue(&raw))
+}
+
+/// The eigenvalue of least magnitude of an upper Hessenberg matrix given by columns, each down to its subdiagonal element, by inverse iteration. At
+/// a fold it is real, and passes through zero.
+fn least_eigenvalue(columns: &[Vec<f64>]) -> f64 {
+    let n = columns.len();
+    if n == 0 {
+        return 1.0;
+    }
+    let mut matrix = vec![0.0; n * n];
+    for (k, column) in columns.iter().enumerate() {
+        for (i, value) in column.iter().take(n).enumerate() {
+            matrix[i * n + k] = *value;
+        }
+    }
+    let mut lu = Lu::default();
+    lu.factor(&matrix, n);
+    let mut x: Vec<f64> = (0..n).map(|k| if k == 0 { 1.0 } else { 0.1 }).collect();
+    let mut inverse = 1.0;
+    for _ in 0..INVERSE_ITERATIONS {
+        let length = dot(&x, &x).sqrt();
+        x.iter_mut().for_each(|v| *v /= length);
+        let before = x.clone();
+        lu.solve(&mut x);
+        inverse = dot(&before, &x);
+    }
+    1.0 / inverse
+}
+
+/// Solves, and keeps the Hessenberg matrix if it is asked for.
+fn solve(
+    tangent: &Tangent,
+    diagonal: &[f64],
+    rhs: &[f64],
+    tolerance: f64,
+    most: usize,
+    effort: &mut Effort,
+    mut raw: Option<&mut Vec<Vec<f64>>>,
+) -> Vec<f64> {
     let n = rhs.len();
     let beta = dot(rhs, rhs).sqrt();
     let mut x = vec![0.0; n];
@@ -67,6 +126,9 @@ pub(crate) fn gmres(tangent: &Tangent, diagonal: &[f64], rhs: &[f64], tolerance:
             column.push(h);
         }
         let length = dot(&w, &w).sqrt();
+        if let Some(raw) = &mut raw {
+            raw.push(column.iter().copied().chain([length]).collect());
+        }
         for i in 0..k {
             let (upper, lower) = (column[i], column[i + 1]);
             column[i] = cosines[i] * upper + sines[i] * lower;

@@ -12,6 +12,9 @@ use super::state::Problem;
 /// Shortest part of a way that is tried where the whole is too long.
 const SHORTEST: f64 = 1e-3;
 
+/// Greatest relative change of a radius on a way that is trusted to be without a fold.
+const NEAR: f64 = 0.3;
+
 /// Where a spot's way ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Found {
@@ -63,6 +66,18 @@ impl Patch {
             }
         }
         Ok(())
+    }
+
+    /// The radii at another approach \[m\], if the patch gets there without a fold on the way; it stays where it is.
+    pub(crate) fn glance(&mut self, problem: &Problem, approach: f64, effort: &mut Effort) -> Option<Vec<f64>> {
+        let start = (self.radius.clone(), self.approach);
+        self.ahead(problem, approach);
+        let arrived = self.solve(problem, Hold::Approach, effort).is_ok() && self.rates(problem).1;
+        let near = self.radius.iter().zip(&start.0).all(|(a, from)| (a / from - 1.0).abs() < NEAR);
+        let there = std::mem::replace(&mut self.radius, start.0);
+        self.approach = start.1;
+        self.evaluate(problem, effort);
+        (arrived && near).then_some(there)
     }
 
     /// Follows member `at` in the sense of `sense` (the sign of its change) up to the radius `bound` \[m\], until the approach turns round or

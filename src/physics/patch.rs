@@ -9,6 +9,7 @@ use super::dense::Lu;
 use super::equilibrium::Unsettled;
 use super::events::{Change, Kind};
 use super::interaction::{Effort, Spots, strand_sum};
+use super::jkr::Asperity;
 use super::locate::Point;
 use super::state::Problem;
 use std::f64::consts::PI;
@@ -28,11 +29,29 @@ pub(crate) struct Trace {
     pub(crate) rate: f64,
 }
 
+/// Greatest rate at which a penetration goes on. Without a fold near it is below 1.2; at a fold it is infinite, but the way to it is short.
+pub(crate) const STEEPEST: f64 = 4.0;
+
 impl Trace {
+    /// Of a spot of radius `a` \[m\] at an approach, whose radius changes by `speed`.
+    pub(crate) fn of(asperity: &Asperity, at: f64, a: f64, speed: f64) -> Self {
+        Self { at, value: asperity.penetration(a), rate: asperity.penetration_slope(a) * speed }
+    }
+
     /// The penetration expected at another approach \[m\].
     pub(crate) fn ahead(&self, approach: f64) -> f64 {
-        self.value + self.rate * (approach - self.at)
+        self.value + self.rate.clamp(-STEEPEST, STEEPEST) * (approach - self.at)
     }
+}
+
+/// The same where it tells how loads answer.
+fn part(drift: f64) -> f64 {
+    drift.clamp(-1.0, 2.0)
+}
+
+/// What is outside a patch follows the approach by a part of it; next to a fold of the whole it would go further, but not far.
+fn bounded(drift: f64) -> f64 {
+    drift.clamp(-2.0, 3.0)
 }
 
 /// An asperity of the patch: what the rest of the contact does to it.
@@ -40,9 +59,9 @@ impl Trace {
 pub(crate) struct Place {
     pub(crate) asperity: usize,
     /// Displacement by the spots outside the patch at the reference approach \[m\].
-    outside: f64,
+    pub(crate) outside: f64,
     /// Its derivative to the approach.
-    drift: f64,
+    pub(crate) drift: f64,
 }
 
 /// What is held while a patch is solved; the approach is an unknown unless it is what is held.
@@ -79,11 +98,11 @@ pub(crate) struct Patch {
 }
 
 impl Patch {
-    /// The patch of these spots and free asperities at an approach \[m\], each with its trace; both lists ascending.
+    /// The patch of these spots and free asperities at an approach \[m\], each with its trace, the spots with their radii \[m\]; both lists ascending.
     pub(crate) fn gather(
         &mut self,
         problem: &Problem,
-        contacts: &[(usize, Trace)],
+        contacts: &[(usize, Trace, f64)],
         free: &[(usize, Trace)],
         approach: f64,
         effort: &mut Effort,
@@ -93,9 +112,8 @@ impl Patch {
         self.way.clear();
         self.radius.clear();
         let mut speeds = Vec::with_capacity(contacts.len());
-        for (i, trace) in contacts {
-            let asperity = &problem.asperities[*i];
-            let a = asperity.radius_at_penetration(trace.ahead(approach)).unwrap_or(asperity.jump_off_radius());
+        for (i, trace, a) in contacts {
+            let (asperity, a) = (&problem.asperities[*i], *a);
             self.members.push(Place { asperity: *i, outside: 0.0, drift: 0.0 });
             self.radius.push(a);
             // At the very end of a branch the radius has no finite rate.
@@ -103,18 +121,18 @@ impl Patch {
         }
         self.evaluate(problem, effort);
         let n = self.members.len();
-        for (k, (i, trace)) in contacts.iter().enumerate() {
+        for (k, (i, trace, _)) in contacts.iter().enumerate() {
             let displaced = approach + problem.heights[*i] - problem.asperities[*i].penetration(self.radius[k]);
             let by_members: f64 = self.slopes[k * n..(k + 1) * n].iter().zip(&speeds).map(|(s, v)| s * v).sum();
             self.members[k].outside = displaced - self.field[k];
-            self.members[k].drift = 1.0 - trace.rate - by_members;
+            self.members[k].drift = bounded(1.0 - trace.rate - by_members);
         }
         self.watched.clear();
         for (i, trace) in free {
             let field = self.field_at(problem, *i, effort);
             let by_members: f64 = self.row[..n].iter().zip(&speeds).map(|(s, v)| s * v).sum();
             let displaced = approach + problem.heights[*i] - trace.ahead(approach);
-            self.watched.push(Place { asperity: *i, outside: displaced - field, drift: 1.0 - trace.rate - by_members });
+            self.watched.push(Place { asperity: *i, outside: displaced - field, drift: bounded(1.0 - trace.rate - by_members) });
         }
     }
 
@@ -143,10 +161,11 @@ impl Patch {
         }
     }
 
-    /// An asperity whose whole displacement is known at the present approach \[m\], as one of the patch.
-    pub(crate) fn place(&mut self, problem: &Problem, asperity: usize, displacement: f64, effort: &mut Effort) -> Place {
+    /// An asperity whose whole displacement is known at the present approach \[m\], with the rate of what is outside, as one of the patch.
+    pub(crate) fn place(&mut self, problem: &Problem, asperity: usize, (displacement, drift): (f64, f64), effort: &mut Effort) -> Place {
         let field = self.field_at(problem, asperity, effort);
-        Place { asperity, outside: displacement - field, drift: 0.0 }
+        let outside = displacement - field - drift * (self.approach - self.reference);
+        Place { asperity, outside, drift }
     }
 
     /// Displacement at an asperity by the members \[m\]; the derivatives to their radii are left in `row`.
@@ -385,6 +404,24 @@ impl Patch {
         pairs.map(|(member, a)| problem.asperities[member.asperity].load(*a) * (1.0 - member.drift)).sum()
     }
 
+    /// What the spots outside do to the loads of the members as the approach goes on, `Σ F_i ∂ŵ_i/∂δ`; by reciprocity, what these loads do to the
+    /// load of the others \[N\].
+    pub(crate) fn pull(&self, problem: &Problem) -> f64 {
+        self.members.iter().zip(&self.radius).map(|(m, a)| part(m.drift) * problem.asperities[m.asperity].load(*a)).sum()
+    }
+
+    /// Derivative of the load of the members to the approach, the radii changing at these speeds \[N/m\].
+    pub(crate) fn load_rate(&self, problem: &Problem, speeds: &[f64]) -> f64 {
+        let members = self.members.iter().zip(&self.radius).zip(speeds);
+        members.map(|((m, a), speed)| problem.asperities[m.asperity].load_slope(*a) * speed).sum()
+    }
+
+    /// The same of [`Self::pull`] \[N/m\].
+    pub(crate) fn pull_rate(&self, problem: &Problem, speeds: &[f64]) -> f64 {
+        let members = self.members.iter().zip(&self.radius).zip(speeds);
+        members.map(|((m, a), speed)| part(m.drift) * problem.asperities[m.asperity].load_slope(*a) * speed).sum()
+    }
+
     /// Overdamped relaxation `da_i/dt = residual_i` at the present approach, by implicit Euler steps that grow as it comes to rest. Spots
     /// that leave or are covered on the way are taken out, and returned.
     ///
@@ -459,7 +496,7 @@ impl Patch {
         for ((member, radius), rate) in self.members.iter().zip(&mut self.radius).zip(rates) {
             let asperity = &problem.asperities[member.asperity];
             let penetration = asperity.penetration(*radius) + asperity.penetration_slope(*radius) * rate * way;
-            *radius = asperity.radius_at_penetration(penetration).unwrap_or(asperity.jump_off_radius());
+            *radius = asperity.radius_ahead(penetration);
         }
         self.approach = approach;
     }

@@ -12,13 +12,24 @@
 use super::PhysicsError;
 use super::equilibrium::{Solver, Unsettled};
 use super::events::{Change, Kind};
-use super::front::{Due, Front, work};
+use super::front::{Due, Front};
 use super::interaction::Effort;
+use super::log::Log;
+use super::neighbourhood::Ripple;
 use super::patch::{Patch, Trace};
 use super::state::{Problem, State, Status, Totals};
 
-/// Greatest residual of the whole contact at the end of a stretch, before it is solved, and greatest lateness of an event; of the mean jump-off penetration.
-pub const DRIFT: f64 = 2e-3;
+/// Greatest root mean square of the residuals at the end of a stretch, before the whole contact is solved; of the mean jump-off penetration.
+pub const DRIFT: f64 = 1e-2;
+
+/// Greatest residual of one spot there.
+pub(crate) const WORST: f64 = 1e-1;
+
+/// Greatest lateness of an event that is found there.
+pub(crate) const LATE: f64 = 5e-3;
+
+/// Greatest lag of a spot next to a neighbourhood, until it learns of it.
+const LAG: f64 = 5e-3;
 
 /// Tolerance of an event's approach, of the rms height, where the order of two is decided or a fold is passed.
 pub const EVENT_TOLERANCE: f64 = 1e-6;
@@ -44,54 +55,8 @@ const RETRY: f64 = 0.97;
 /// Changes other than leaving that one asperity takes in one longest stretch.
 pub(crate) const FLIPS: u8 = 3;
 
-/// An event as it happened.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Event {
-    /// What happened.
-    pub kind: Kind,
-    /// To which asperity.
-    pub asperity: usize,
-    /// At which approach δ \[m\].
-    pub approach_m: f64,
-    /// Which avalanche it belongs to, counted along the branch.
-    pub avalanche: u64,
-    /// Load and area before.
-    pub before: Totals,
-    /// Load and area when the rest has relaxed.
-    pub after: Totals,
-    /// Potential lost \[J\].
-    pub energy_lost_j: f64,
-}
-
-/// What a path has left behind.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Log {
-    pub(crate) events: Vec<Event>,
-    /// Which of them has the energy of the last relaxation.
-    charged: usize,
-    /// `∫F dΔ` since the branch began \[J\].
-    pub(crate) work_j: f64,
-    pub(crate) avalanches: u64,
-    /// The way of the load, from event to event.
-    pub(crate) ways: Vec<Way>,
-    /// Load where it was known last \[N\].
-    last: f64,
-    /// Greatest residual before the whole contact was solved, since this was asked last \[m\].
-    pub(crate) drift_m: f64,
-}
-
-/// A part of the way of the load on which it does not jump.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Way {
-    /// Approach and load at its end \[m, N\].
-    pub(crate) approach: f64,
-    load: f64,
-    /// Least load on it \[N\].
-    pub(crate) least: f64,
-}
-
 /// Where a path was, to go back to.
-struct Mark {
+pub(crate) struct Mark {
     front: Front,
     events: usize,
     ways: usize,
@@ -112,36 +77,42 @@ pub(crate) struct Path<'p> {
     /// Load and area at the end of the last stretch.
     pub(crate) totals: Totals,
     /// The longest stretch \[m\], and how often it is halved now.
-    longest: f64,
+    pub(crate) longest: f64,
     halvings: u32,
-    /// Spots in a neighbourhood.
-    pub(crate) spots: usize,
-    /// Spots next to the neighbourhood, and how far the avalanche at hand has moved the surface under them \[m\].
+    /// Spots and free asperities next to the neighbourhood, how far they reach \[m\], and where it is.
     pub(crate) halo: Vec<usize>,
-    pub(crate) shift: f64,
-    /// Displacement under each spot since the whole contact was solved, as far as it does not know it yet \[m\]; what that will do to the
+    pub(crate) halo_reach: f64,
+    pub(crate) centre: [f64; 2],
+    /// What its spots do not know yet \[m\].
+    pub(crate) missed: Vec<f64>,
+    /// What neighbourhoods have done from afar since the whole contact was solved, and how many of these each asperity has heard of.
+    pub(crate) ripples: Vec<Ripple>,
+    pub(crate) heard: Vec<usize>,
+    /// Displacement under each spot since the whole contact was solved, as far as it does not know it yet \[m\]; what all that will do to the
     /// load \[N\], and the approach from which on it has been counted \[m\].
     pub(crate) lags: Vec<f64>,
     pub(crate) far: f64,
-    far_at: f64,
+    pub(crate) far_at: f64,
+    /// Spots that lag too far.
+    pub(crate) urgent: Vec<usize>,
+    /// Changes that were found too late when this stretch was tried before.
+    pub(crate) foreseen: Vec<Change>,
     /// How many events there were when the whole contact was solved last, at which approach, and the balance `Π + Σ energy lost − work` then \[J\].
-    settled: usize,
-    settled_at: f64,
-    balance: f64,
+    pub(crate) settled: usize,
+    pub(crate) settled_at: f64,
+    pub(crate) balance: f64,
     /// Whether the balance is to be closed by what the last event has lost.
-    unbalanced: bool,
+    pub(crate) unbalanced: bool,
     /// The neighbourhood of the event at hand; the radii that its spots had at the approach `reference` \[m\], before they went to the event.
     pub(crate) patch: Patch,
     pub(crate) origin: Vec<f64>,
     pub(crate) reference: f64,
     /// Traces to be put into the front: asperity, radius, trace.
     pub(crate) pending: Vec<(usize, f64, Trace)>,
-    /// Asperities that the last avalanche has touched.
-    pub(crate) touched: Vec<usize>,
     /// Events expected in this stretch.
     pub(crate) queue: Vec<Due>,
     /// Penetrations of all free asperities as they were taken last, and the approach of that.
-    known: (Vec<f64>, f64),
+    pub(crate) known: (Vec<f64>, f64),
     /// How often each asperity has been covered, uncovered or has jumped in within the present longest stretch.
     pub(crate) flips: Vec<u8>,
     /// Changes that were not taken since the last record because the asperity had flipped too often.
@@ -154,6 +125,8 @@ pub(crate) struct Path<'p> {
 pub(crate) enum Halt {
     /// It is too long, or leads to no equilibrium.
     Unsettled(Unsettled),
+    /// These changes were found too late.
+    Late(Vec<Change>, Unsettled),
     /// It cannot be done at all.
     Error(PhysicsError),
 }
@@ -175,20 +148,38 @@ impl<'p> Path<'p> {
         let unit = 0.01 * problem.rms_height_m;
         let longest = unit * (STRETCH * off / unit).log2().floor().exp2();
         let approach = state.approach_m;
-        let mut path = Self {
+        let mut path = Self::bare(problem, Front::new(problem, state), sign, longest);
+        match path.settle(approach, false, true) {
+            Ok(()) => {}
+            Err(Halt::Unsettled(unsettled) | Halt::Late(_, unsettled)) => return Err(path.stuck(unsettled)),
+            Err(Halt::Error(error)) => return Err(error),
+        }
+        path.log = path.log.anew();
+        Ok(path)
+    }
+
+    /// A path that knows nothing but its front.
+    fn bare(problem: &'p Problem, front: Front, sign: f64, longest: f64) -> Self {
+        let (n, approach) = (problem.len(), front.state.approach_m);
+        Self {
             solver: Solver::new(problem),
-            front: Front::new(problem, state),
+            front,
             log: Log::default(),
             sign,
             totals: Totals::default(),
             longest,
             halvings: 0,
-            spots: problem.spots_in_patch,
             halo: Vec::new(),
-            shift: 0.0,
+            halo_reach: 0.0,
+            centre: [0.0; 2],
+            missed: Vec::new(),
+            ripples: Vec::new(),
+            heard: vec![0; n],
             lags: vec![0.0; n],
             far: 0.0,
             far_at: approach,
+            urgent: Vec::new(),
+            foreseen: Vec::new(),
             settled: 0,
             settled_at: approach,
             balance: 0.0,
@@ -197,20 +188,12 @@ impl<'p> Path<'p> {
             origin: Vec::new(),
             reference: approach,
             pending: Vec::new(),
-            touched: Vec::new(),
             queue: Vec::new(),
             known: (Vec::new(), approach),
             flips: vec![0; n],
             held: Vec::new(),
             mark: None,
-        };
-        match path.settle(approach, f64::INFINITY, true) {
-            Ok(()) => {}
-            Err(Halt::Unsettled(unsettled)) => return Err(path.stuck(unsettled)),
-            Err(Halt::Error(error)) => return Err(error),
         }
-        path.log = Log { last: path.log.last, ..Log::default() };
-        Ok(path)
     }
 
     pub(crate) fn problem(&self) -> &'p Problem {
@@ -226,17 +209,25 @@ impl<'p> Path<'p> {
     }
 
     /// The mean jump-off penetration, rounded down \[m\].
-    fn scale(&self) -> f64 {
+    pub(crate) fn scale(&self) -> f64 {
         self.longest / STRETCH
     }
 
-    /// Error that is let pass at the end of a stretch \[m\].
-    fn drift_limit(&self) -> f64 {
-        DRIFT * self.scale()
+    /// Lag that a spot may have \[m\].
+    pub(crate) fn lag_limit(&self) -> f64 {
+        LAG * self.scale()
+    }
+
+    /// The whole contact has been solved: nothing is to be learned.
+    pub(crate) fn forget(&mut self) {
+        self.lags.fill(0.0);
+        self.heard.fill(0);
+        self.ripples.clear();
+        self.urgent.clear();
     }
 
     /// What is needed to come back to the present state, in which the whole contact is solved.
-    fn mark(&self) -> Mark {
+    pub(crate) fn mark(&self) -> Mark {
         Mark {
             front: self.front.clone(),
             events: self.log.events.len(),
@@ -259,8 +250,8 @@ impl<'p> Path<'p> {
             if bound.is_some_and(|bound| (target - bound) * self.sign > -1e-9 * size) {
                 target = bound.unwrap_or(target);
             }
-            let done = self.events_and_settle(target);
-            match done {
+            let strict = self.halvings < PATIENCE;
+            let unsettled = match self.events_and_settle(target, strict) {
                 Ok(()) => {
                     // Whether the next longer stretch may be tried: it must end on a multiple of itself.
                     if self.halvings > 0 && next_multiple(target, size, self.sign) == next_multiple(target, 2.0 * size, self.sign) {
@@ -269,81 +260,81 @@ impl<'p> Path<'p> {
                     if is_multiple(target, self.longest) {
                         self.flips.fill(0);
                     }
+                    self.foreseen.clear();
                     self.mark = Some(Box::new(mark));
                     return Ok(());
                 }
                 Err(Halt::Error(error)) => return Err(error),
-                Err(Halt::Unsettled(unsettled)) => {
-                    let mut uncovered: Vec<usize> =
-                        self.log.events[mark.events..].iter().filter(|e| e.kind == Kind::Uncover).map(|e| e.asperity).collect();
-                    self.back_to(&mark);
-                    uncovered.retain(|i| matches!(self.front.state.status[*i], Status::Covered { .. }));
-                    if self.halvings >= PATIENCE && !uncovered.is_empty() {
-                        // At the edge of a spot the field is steepest, and there may be no equilibrium with an asperity there: it stays
-                        // covered for a while, and is counted.
-                        for i in uncovered {
-                            self.keep_covered(i);
-                            self.held.push(i);
+                Err(Halt::Late(late, unsettled)) => {
+                    let known = self.foreseen.len();
+                    for change in late {
+                        if !self.foreseen.contains(&change) {
+                            self.foreseen.push(change);
                         }
-                        mark.front.clone_from(&self.front);
-                        mark.held.clone_from(&self.held);
-                        self.halvings = 0;
-                    } else if self.halvings >= HALVINGS {
-                        self.collapse(target).map_err(|_| self.stuck(unsettled))?;
-                        self.halvings = HALVINGS / 2;
-                        self.mark = Some(Box::new(mark));
-                        return Ok(());
-                    } else {
-                        self.halvings += 1;
                     }
+                    if self.foreseen.len() > known {
+                        self.back_to(&mark);
+                        continue;
+                    }
+                    unsettled
+                }
+                Err(Halt::Unsettled(unsettled)) => unsettled,
+            };
+            let mut uncovered: Vec<usize> =
+                self.log.events[mark.events..].iter().filter(|e| e.kind == Kind::Uncover).map(|e| e.asperity).collect();
+            self.back_to(&mark);
+            uncovered.retain(|i| matches!(self.front.state.status[*i], Status::Covered { .. }));
+            if self.halvings >= PATIENCE && !uncovered.is_empty() {
+                // At the edge of a spot the field is steepest, and there may be no equilibrium with an asperity there: it stays
+                // covered for a while, and is counted.
+                for i in uncovered {
+                    self.keep_covered(i);
+                    self.held.push(i);
+                }
+                mark.front.clone_from(&self.front);
+                mark.held.clone_from(&self.held);
+                self.halvings = 0;
+            } else if self.halvings >= HALVINGS {
+                self.collapse(target).map_err(|_| self.stuck(unsettled))?;
+                self.halvings = HALVINGS / 2;
+                self.mark = Some(Box::new(mark));
+                return Ok(());
+            } else {
+                // Half a stretch may end where the whole one did.
+                let end = |halvings: u32| next_multiple(here, self.longest * 0.5f64.powi(halvings as i32), self.sign);
+                let ended = end(self.halvings);
+                self.halvings += 1;
+                while end(self.halvings) == ended && self.halvings < HALVINGS {
+                    self.halvings += 1;
                 }
             }
         }
     }
 
     /// Takes the events on the way to `target` and solves the whole contact there; on the way too, after events that move all of it.
-    fn events_and_settle(&mut self, target: f64) -> Result<(), Halt> {
-        let limit = self.drift_limit();
-        while let Some(approach) = self.events_until(target, limit)? {
-            // What such an event does to the rest is no error: the neighbourhood has relaxed first, and now the rest does.
-            self.settle(approach, f64::INFINITY, true)?;
+    fn events_and_settle(&mut self, target: f64, strict: bool) -> Result<(), Halt> {
+        while let Some(approach) = self.events_until(target)? {
+            self.settle(approach, false, true)?;
             if approach == target {
                 return Ok(());
             }
         }
-        self.settle(target, if self.halvings < PATIENCE { limit } else { f64::INFINITY }, false)
+        self.settle(target, strict, false)
     }
 
     /// Another path, from before the last stretch to `target` within it.
     pub(crate) fn excursion(&self, target: f64) -> Result<Self, PhysicsError> {
-        let mark = self.mark.as_deref();
-        let mut other = Self {
-            solver: Solver::new(self.problem()),
-            front: mark.map_or_else(|| self.front.clone(), |m| m.front.clone()),
-            log: mark.map_or_else(|| self.log.clone_without_events(), |m| m.log.clone_without_events()),
-            totals: mark.map_or(self.totals, |m| m.totals),
-            halvings: 0,
-            spots: self.problem().spots_in_patch,
-            halo: Vec::new(),
-            shift: 0.0,
-            lags: vec![0.0; self.problem().len()],
-            far: 0.0,
-            far_at: mark.map_or(self.far_at, |m| m.front.state.approach_m),
-            settled: 0,
-            settled_at: mark.map_or(self.settled_at, |m| m.front.state.approach_m),
-            balance: mark.map_or(self.balance, |m| m.balance),
-            unbalanced: false,
-            patch: Patch::default(),
-            origin: Vec::new(),
-            pending: Vec::new(),
-            touched: Vec::new(),
-            queue: Vec::new(),
-            known: (Vec::new(), self.known.1),
-            flips: mark.map_or_else(|| self.flips.clone(), |m| m.flips.clone()),
-            held: Vec::new(),
-            mark: None,
-            ..*self
-        };
+        let mut other = Self::bare(self.problem(), self.front.clone(), self.sign, self.longest);
+        (other.far_at, other.settled_at, other.known.1) = (self.far_at, self.settled_at, self.known.1);
+        match self.mark.as_deref() {
+            Some(mark) => other.back_to(mark),
+            None => {
+                other.log = self.log.clone_without_events();
+                (other.totals, other.balance) = (self.totals, self.balance);
+                other.flips.clone_from(&self.flips);
+            }
+        }
+        other.held.clear();
         while other.front.state.approach_m != target {
             other.stretch(Some(target))?;
         }
@@ -412,238 +403,15 @@ impl<'p> Path<'p> {
         }
     }
 
-    fn back_to(&mut self, mark: &Mark) {
+    pub(crate) fn back_to(&mut self, mark: &Mark) {
         self.front.clone_from(&mark.front);
-        self.log.events.truncate(mark.events);
-        self.log.ways.truncate(mark.ways);
-        let (events, ways) = (std::mem::take(&mut self.log.events), std::mem::take(&mut self.log.ways));
-        self.log = Log { events, ways, ..mark.log.clone_without_events() };
+        self.log.back_to(&mark.log, mark.events, mark.ways);
         self.totals = mark.totals;
-        (self.far, self.far_at, self.settled) = (0.0, mark.front.state.approach_m, mark.events);
+        (self.far, self.far_at, self.settled) = (0.0, mark.front.state.approach_m, self.log.events.len());
         (self.settled_at, self.balance, self.unbalanced) = (mark.front.state.approach_m, mark.balance, false);
-        self.lags.fill(0.0);
+        self.forget();
         self.flips.clone_from(&mark.flips);
         self.held.clone_from(&mark.held);
-    }
-
-    /// Solves the whole contact at an approach, from where the traces lead; takes the events that are overdue there.
-    ///
-    /// After an event the whole contact jumps here (`jump`): up to here it went on as its traces had it. Otherwise the difference grew on
-    /// the way.
-    fn settle(&mut self, target: f64, limit: f64, jump: bool) -> Result<(), Halt> {
-        let problem = self.problem();
-        let mut rounds = 0;
-        let mut before_uncovering: Option<(Mark, usize)> = None;
-        loop {
-            self.front.state.approach_m = target;
-            for k in 0..self.front.state.contacts.len() {
-                let i = self.front.state.contacts[k];
-                let trace = self.front.traces[i];
-                if trace.at != target && !trace.value.is_nan() {
-                    let asperity = &problem.asperities[i];
-                    self.front.state.radius[i] = asperity.radius_at_penetration(trace.ahead(target)).unwrap_or(asperity.jump_off_radius());
-                }
-            }
-            let whole = limit.is_infinite();
-            let start = if whole { self.front.state.radius.clone() } else { Vec::new() };
-            match self.solver.newton(&mut self.front.state, limit) {
-                Ok(drift) => self.log.drift_m = self.log.drift_m.max(drift),
-                Err(_) if before_uncovering.is_some() => {
-                    // There is no equilibrium with that asperity at the edge of the spot: it stays covered for a while, and is counted.
-                    if let Some((mark, i)) = before_uncovering.take() {
-                        self.back_to(&mark);
-                        self.keep_covered(i);
-                        self.held.push(i);
-                    }
-                    continue;
-                }
-                Err(_) if whole => {
-                    self.front.state.radius = start;
-                    self.relax_whole(target)?;
-                }
-                Err(unsettled) => return Err(unsettled.into()),
-            }
-            let lagged = self.log.events.len() > self.settled;
-            self.retrace(jump || rounds > 0 || lagged);
-            self.settled = self.log.events.len();
-            let due = self.overdue();
-            let Some(first) = due.first() else { break };
-            if due.iter().any(|(late, _)| *late > limit) {
-                return Err(Unsettled { residual_m: first.0, asperity: first.1.asperity }.into());
-            }
-            rounds += 1;
-            if rounds > 10 * problem.len() + 100 {
-                let asperity = first.1.asperity;
-                return Err(Halt::Error(PhysicsError::EndlessAvalanche { approach_m: target, events: rounds, asperity }));
-            }
-            let change = first.1;
-            before_uncovering = (change.kind == Kind::Uncover).then(|| (self.mark(), change.asperity));
-            self.log.avalanches += 1;
-            self.avalanche(change)?;
-        }
-        Ok(())
-    }
-
-    /// Counts the work of the load that spots will have when they know what events have done, up to an approach; from there on it is
-    /// greater by `more` \[N\].
-    pub(crate) fn far_load(&mut self, approach: f64, more: f64) {
-        self.log.work_j += self.far * (approach - self.far_at);
-        self.far_at = approach;
-        self.far += more;
-        self.front.add_load(more);
-    }
-
-    /// New traces of everything after the whole contact was solved; the work since the old ones is counted.
-    fn retrace(&mut self, jump: bool) {
-        let problem = self.problem();
-        let target = self.front.state.approach_m;
-        let rates = self.solver.rates(&self.front.state);
-        if jump {
-            self.log.pass(target, self.front.totals(target).load_n);
-        }
-        self.far_load(target, 0.0);
-        self.far = 0.0;
-        let mut relaxed = 0.0;
-        for (k, rate) in rates.iter().enumerate() {
-            let i = self.front.state.contacts[k];
-            let (asperity, a) = (&problem.asperities[i], self.front.state.radius[i]);
-            let trace = Trace { at: target, value: asperity.penetration(a), rate: asperity.penetration_slope(a) * rate };
-            let from = self.front.traces[i];
-            if !from.value.is_nan() {
-                let to = if jump { Trace { at: target, value: from.ahead(target), ..from } } else { trace };
-                self.log.work_j += work(problem, i, from, to);
-                if self.lags[i] != 0.0 {
-                    let expected = asperity.radius_at_penetration(to.value).unwrap_or(asperity.jump_off_radius());
-                    relaxed += 0.5 * self.lags[i] * (asperity.load(a) - asperity.load(expected));
-                }
-            }
-            self.lags[i] = 0.0;
-            self.front.traces[i] = trace;
-        }
-        // Events were charged with the potential of a contact whose other spots keep their loads; those have answered now.
-        if let Some(event) = self.log.charged() {
-            event.energy_lost_j += relaxed;
-        }
-        self.front.recount(problem);
-        let (totals, potential) = problem.totals(&self.front.state);
-        self.totals = totals;
-        let lost: f64 = self.log.events[self.settled..].iter().map(|event| event.energy_lost_j).sum();
-        let balance = potential + lost - self.log.work_j;
-        if std::mem::take(&mut self.unbalanced)
-            && let Some(event) = self.log.charged()
-        {
-            event.energy_lost_j += self.balance - balance;
-        }
-        // From one solution of the whole to the next only the events since are counted.
-        self.balance = potential - self.log.work_j;
-        self.settled_at = target;
-        if jump {
-            self.log.restart(target, self.front.totals(target).load_n);
-        } else {
-            self.log.pass(target, self.front.totals(target).load_n);
-        }
-        self.watch(&rates);
-    }
-
-    /// New traces of the free asperities that may come to their jump-in. All penetrations are taken anew now and then; between, only those
-    /// that can have come near: the half-space follows the surface, so that none grows by more than three times the way, and an event
-    /// next to an asperity moves it by no more than a jump-off penetration.
-    fn watch(&mut self, rates: &[f64]) {
-        let problem = self.problem();
-        let (target, unit) = (self.front.state.approach_m, problem.rms_height_m);
-        let way = (target - self.known.1).abs();
-        let block = |approach: f64| (approach / (0.05 * unit)).floor();
-        let anew = self.known.0.is_empty() || block(target) != block(self.known.1);
-        let margin = 3.0 * way + self.scale();
-        let status = &self.front.state.status;
-        let free = |i: &usize| status[*i] == Status::Free;
-        let wanted: Vec<usize> = (0..problem.len())
-            .filter(free)
-            .filter(|i| anew || self.known.0[*i].is_nan() || self.known.0[*i] > problem.jump_in[*i] - margin)
-            .collect();
-        let found = self.solver.penetrations(&self.front.state, rates, &wanted);
-        if anew {
-            self.known = (vec![f64::NAN; problem.len()], target);
-        }
-        let span = 3.0 * self.longest + self.scale();
-        self.front.candidates.clear();
-        for (i, trace) in wanted.into_iter().zip(found) {
-            if anew {
-                self.known.0[i] = trace.value;
-            }
-            self.front.traces[i] = trace;
-            self.front.state.barred[i] &= trace.value >= problem.jump_in[i];
-            if trace.value > problem.jump_in[i] - span {
-                self.front.candidates.push(i);
-            }
-        }
-    }
-
-    /// Changes that are due in the whole contact, the most overdue first, each with its lateness \[m\].
-    fn overdue(&mut self) -> Vec<(f64, Change)> {
-        let problem = self.problem();
-        let contacts = self.front.state.contacts.clone();
-        let candidates = self.front.candidates.clone();
-        let due = self.due(&contacts, &candidates);
-        let mut late: Vec<(f64, Change)> = due.iter().map(|t| (problem.lateness(t, &self.front), t.change)).collect();
-        late.sort_by(|u, v| v.0.total_cmp(&u.0).then(u.1.asperity.cmp(&v.1.asperity)));
-        late
-    }
-
-    /// Where Newton's method finds no equilibrium of the whole contact, it relaxes. What leaves or is covered on the way belongs to the avalanche at
-    /// hand; what the potential loses is charged to it when the whole is counted.
-    fn relax_whole(&mut self, target: f64) -> Result<(), Halt> {
-        let before = self.front.totals(target);
-        let changes = self.solver.relax(&mut self.front.state, None)?;
-        for change in &changes {
-            self.front.traces[change.asperity].value = f64::NAN;
-            self.front.set(change.asperity, change.status(self.problem()), 0.0);
-        }
-        let (after, _) = self.problem().totals(&self.front.state);
-        self.record(&changes, target, before, after, 0.0);
-        self.unbalanced = true;
-        Ok(())
-    }
-
-    /// Last resort: the whole contact goes to `target` and relaxes there.
-    fn collapse(&mut self, target: f64) -> Result<(), Halt> {
-        self.log.avalanches += 1;
-        let events = self.log.events.len();
-        let asperity = self.front.state.contacts.first().copied().unwrap_or(0);
-        self.front.state.approach_m = target;
-        for (i, a) in self.front.radii(self.problem(), target) {
-            self.front.state.radius[i] = a;
-        }
-        self.relax_whole(target)?;
-        if self.log.events.len() == events {
-            let (before, (after, _)) = (self.totals, self.problem().totals(&self.front.state));
-            self.record(&[Change { kind: Kind::Snap, asperity, by: None }], target, before, after, 0.0);
-        }
-        for i in self.front.state.contacts.clone() {
-            self.front.traces[i].value = f64::NAN;
-        }
-        self.log.work_j += self.totals.load_n * (target - self.settled_at);
-        self.settle(target, f64::INFINITY, true)
-    }
-
-    /// Writes changes of one relaxation down; its energy is the first one's.
-    pub(crate) fn record(&mut self, moved: &[Change], approach: f64, before: Totals, after: Totals, energy: f64) {
-        self.log.charged = self.log.events.len();
-        for (k, change) in moved.iter().enumerate() {
-            if change.kind != Kind::JumpOff {
-                self.flips[change.asperity] = self.flips[change.asperity].saturating_add(1);
-            }
-            let (from, energy_lost_j) = if k == 0 { (before, energy) } else { (after, 0.0) };
-            self.log.events.push(Event {
-                kind: change.kind,
-                asperity: change.asperity,
-                approach_m: approach,
-                avalanche: self.log.avalanches,
-                before: from,
-                after,
-                energy_lost_j,
-            });
-        }
     }
 
     pub(crate) fn stuck(&self, unsettled: Unsettled) -> PhysicsError {
@@ -653,29 +421,6 @@ impl<'p> Path<'p> {
             asperity: unsettled.asperity,
             iterations: self.solver.effort.iterations,
         }
-    }
-}
-
-impl Log {
-    fn charged(&mut self) -> Option<&mut Event> {
-        self.events.get_mut(self.charged)
-    }
-
-    /// The load has gone on without a jump; it is known at the ends of the parts of a stretch, a twentieth of a jump-off penetration apart.
-    pub(crate) fn pass(&mut self, approach: f64, load: f64) {
-        self.ways.push(Way { approach, load, least: load.min(self.last) });
-        self.last = load;
-    }
-
-    /// The load has jumped.
-    pub(crate) fn restart(&mut self, approach: f64, load: f64) {
-        self.ways.push(Way { approach, load, least: load });
-        self.last = load;
-    }
-
-    /// The same, of a path that has had no event.
-    fn clone_without_events(&self) -> Self {
-        Self { events: Vec::new(), ways: Vec::new(), ..*self }
     }
 }
 

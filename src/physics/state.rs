@@ -4,6 +4,7 @@ use super::PhysicsError;
 use super::interaction::pair::Spot;
 use super::interaction::{Best, Spots, best};
 use super::jkr::Asperity;
+use super::neighbours::Neighbours;
 use super::summits::Summit;
 use crate::model::{Boundary, Coalescence, Interaction as Kind, JumpIn, Material, Slips};
 use std::f64::consts::PI;
@@ -209,6 +210,9 @@ pub struct State {
     pub displacement: Vec<f64>,
     /// Worst residual of the equilibrium \[m\].
     pub residual_m: f64,
+    /// Least eigenvalue of the tangent `∂(δ_JKR + ŵ)/∂a`, each column over its diagonal element: 1 without coupling, 0 at a fold, negative where the
+    /// equilibrium repels.
+    pub stability: f64,
 }
 
 impl State {
@@ -224,6 +228,7 @@ impl State {
             contacts: Vec::new(),
             displacement: Vec::new(),
             residual_m: 0.0,
+            stability: 1.0,
         }
     }
 
@@ -249,80 +254,5 @@ impl State {
     #[must_use]
     pub fn covered_count(&self) -> usize {
         self.status.iter().filter(|s| matches!(s, Status::Covered { .. })).count()
-    }
-}
-
-/// Which asperities lie near which, by a grid of cells.
-pub(crate) struct Neighbours {
-    /// For each asperity, the others within the reach, nearest first.
-    near: Vec<Vec<(f64, usize)>>,
-    reach: f64,
-    length: f64,
-    periodic: bool,
-}
-
-impl Neighbours {
-    fn new(positions: &[[f64; 2]], length: f64, periodic: bool) -> Self {
-        // Spots rarely outgrow twice the mean spacing; those that do are looked up among all.
-        let reach = (2.0 * length / (positions.len() as f64).sqrt()).min(0.5 * length);
-        let mut found = Self { near: Vec::new(), reach, length, periodic };
-        let cells = ((length / reach) as usize).max(1);
-        let cell_of = |p: &[f64; 2]| p.map(|c| ((c / length * cells as f64) as usize).min(cells - 1));
-        let mut buckets = vec![Vec::new(); cells * cells];
-        for (i, p) in positions.iter().enumerate() {
-            let [cx, cy] = cell_of(p);
-            buckets[cx * cells + cy].push(i);
-        }
-        found.near = positions
-            .iter()
-            .enumerate()
-            .map(|(i, p)| {
-                let [cx, cy] = cell_of(p);
-                let around = |c: usize| -> Vec<usize> {
-                    let mut list = vec![(c + cells - 1) % cells, c, (c + 1) % cells];
-                    list.sort_unstable();
-                    list.dedup();
-                    list
-                };
-                let mut list = Vec::new();
-                for bx in around(cx) {
-                    for by in around(cy) {
-                        for &j in &buckets[bx * cells + by] {
-                            let r = found.distance(p, &positions[j]);
-                            if j != i && r <= reach {
-                                list.push((r, j));
-                            }
-                        }
-                    }
-                }
-                list.sort_by(|u, v| u.0.total_cmp(&v.0).then(u.1.cmp(&v.1)));
-                list
-            })
-            .collect();
-        found
-    }
-
-    pub(crate) fn distance(&self, p: &[f64; 2], q: &[f64; 2]) -> f64 {
-        let [dx, dy] = [0, 1].map(|k| {
-            let d = p[k] - q[k];
-            if self.periodic { d - self.length * (d / self.length).round_ties_even() } else { d }
-        });
-        (dx * dx + dy * dy).sqrt()
-    }
-
-    /// Calls `visit(distance, asperity)` for every asperity within `radius` of asperity `j`.
-    pub(crate) fn within(&self, positions: &[[f64; 2]], j: usize, radius: f64, mut visit: impl FnMut(f64, usize)) {
-        if radius <= self.reach {
-            for &(r, i) in self.near[j].iter().take_while(|(r, _)| *r <= radius) {
-                visit(r, i);
-            }
-        } else {
-            for (i, p) in positions.iter().enumerate() {
-                let r = self.distance(&positions[j], p);
-                if i != j && r <= radius {
-                    visit(r, i);
-                }
-            }
-        }
     }
 }

@@ -15,7 +15,7 @@ pub fn area(problem: &Problem, state: &State) -> f64 {
     let greatest = discs.iter().map(|d| d.radius).fold(0.0, f64::max);
     let overlapping = |k: usize| {
         let mut list = Vec::new();
-        problem.neighbours.within(&problem.positions, state.contacts[k], discs[k].radius + greatest, |r, i| {
+        problem.neighbours.within(state.contacts[k], discs[k].radius + greatest, |r, i| {
             if let Ok(other) = state.contacts.binary_search(&i)
                 && r < discs[k].radius + discs[other].radius
             {

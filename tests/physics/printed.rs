@@ -166,9 +166,9 @@ fn e2e_a_cycle_with_a_slip_of_the_contact() {
         assert!(cycle.steps.iter().all(|step| step.residual_m <= 1e-8 * RMS));
         let (p, q) = (loop_of(&right, 0), loop_of(&cycle, 0));
         // It is another loop, and a near one: few summits lie within a spot and are not covered (Eq 8: 0.3 % of the loss), and a branch loses its
-        // last corner (Eq 9: 3 %). The area at the turning point knows no end of a branch.
+        // last corner, and some spots leave in another order (Eq 9: 6 %). The area at the turning point knows no end of a branch.
         assert!((p.loss / q.loss - 1.0).abs() > 1e-3, "{slips:?}");
-        close("loss", q.loss, p.loss, 0.05);
+        close("loss", q.loss, p.loss, 0.1);
         close("area", turning(&cycle, 0).area_m2, turning(&right, 0).area_m2, 0.01);
     }
     // Those of the estimate beside it do not enter.
