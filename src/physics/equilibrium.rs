@@ -71,10 +71,14 @@ impl<'p> Solver<'p> {
         worst
     }
 
-    /// Newton's method on the radii, from those of `state`, at its approach, with its spots; it was evaluated last.
-    pub(crate) fn newton(&mut self, state: &mut State, first: Unsettled) -> Result<(), Unsettled> {
+    /// Newton's method on the radii, from those of `state`, at its approach, with its spots; it was evaluated last. Where `patient`, it is tried
+    /// again in short steps before it fails.
+    pub(crate) fn newton(&mut self, state: &mut State, first: Unsettled, patient: bool) -> Result<(), Unsettled> {
         let start: Vec<f64> = state.contacts.iter().map(|&i| state.radius[i]).collect();
-        self.descend(state, first, 0.2, 20).or_else(|_| {
+        self.descend(state, first, 0.2, 20).or_else(|unsettled| {
+            if !patient {
+                return Err(unsettled);
+            }
             // Near the edge of a spot, where the slope of its field is infinite, only short steps descend.
             for (&i, a) in state.contacts.iter().zip(&start) {
                 state.radius[i] = *a;
@@ -98,7 +102,7 @@ impl<'p> Solver<'p> {
             if worst.residual_m < before {
                 before = worst.residual_m;
                 share = 1.0;
-                step = gmres(&self.tangent, &self.diagonal, &self.residual, 1e-4, PRODUCTS, &mut self.effort);
+                step = gmres(&self.tangent, &self.diagonal, &self.residual, 1e-3, PRODUCTS, &mut self.effort);
                 limit(&mut step, state, STRIDE);
                 start = state.contacts.iter().map(|&i| state.radius[i]).collect();
             } else {
@@ -174,7 +178,7 @@ impl<'p> Solver<'p> {
     /// `da_i/dδ` of the spots at the equilibrium that was evaluated last. Its stability is entered into the state.
     pub(crate) fn rates(&mut self, state: &mut State) -> Vec<f64> {
         let ones = vec![1.0; state.contacts.len()];
-        let (rates, least) = gmres_and_least(&self.tangent, &self.diagonal, &ones, 1e-8, PRODUCTS, &mut self.effort);
+        let (rates, least) = gmres_and_least(&self.tangent, &self.diagonal, &ones, 1e-6, PRODUCTS, &mut self.effort);
         state.stability = least;
         rates
     }

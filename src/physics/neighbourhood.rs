@@ -15,10 +15,16 @@ use crate::model::Interaction;
 use std::f64::consts::PI;
 
 /// Spots that learn of an event at once or lag, over those that are solved with it.
-const AROUND: usize = 6;
+const AROUND: usize = 5;
 
 /// Spots that are solved together where few find no rest, over the usual number.
 const WIDE: usize = 4;
+
+/// Free asperities next to an event are watched from so many jump-off penetrations before their jump-in.
+const SPAN: f64 = 5.0;
+
+/// Distance over reach from which on a ripple is the same for a whole neighbourhood.
+const AFAR: f64 = 4.0;
 
 /// Share of the greatest lag that spots of a neighbourhood may have when it is solved.
 const LEAST_LAG: f64 = 0.1;
@@ -61,10 +67,12 @@ impl Path<'_> {
         let most = if alone { 1 } else { spots };
         let place = problem.positions[centre];
         let (state, traces) = (&self.front.state, &self.front.traces);
-        let known = |i: &usize| !traces[*i].value.is_nan();
+        // An event next to a free asperity moves it by some jump-off penetrations.
+        let span = SPAN * self.scale();
+        let near_jump_in = |i: &usize| state.status[*i] == Status::Free && traces[*i].value > problem.jump_in[*i] - span;
         self.halo.clear();
         let (members, mut watched): (Vec<usize>, Vec<usize>) = if state.contacts.len() <= most {
-            (state.contacts.clone(), self.front.candidates.iter().copied().filter(known).collect())
+            (state.contacts.clone(), (0..problem.len()).filter(near_jump_in).collect())
         } else {
             let near = problem.neighbours.nearest(&place, most.saturating_mul(AROUND), |i| state.status[i] == Status::Contact);
             let mut members: Vec<usize> = near[..most].iter().map(|(_, i)| *i).collect();
@@ -80,7 +88,7 @@ impl Path<'_> {
                 self.halo_reach = near.last().map_or(reach, |(r, _)| *r);
                 self.halo.extend(near[most..].iter().map(|(_, i)| *i).filter(|i| members.binary_search(i).is_err()));
                 problem.neighbours.around(&place, self.halo_reach, |r, i| {
-                    if known(&i) && self.front.candidates.binary_search(&i).is_ok() {
+                    if near_jump_in(&i) {
                         if r <= reach { &mut watched } else { &mut self.halo }.push(i);
                     }
                 });
@@ -116,14 +124,20 @@ impl Path<'_> {
         let oldest = places.clone().map(|place| self.heard[place.asperity]).min().unwrap_or(0);
         let mut missed_by_free = vec![0.0; self.patch.watched.len()];
         for (number, ripple) in self.ripples.iter().enumerate().skip(oldest) {
-            let field = ripple.load_n * unit * problem.neighbours.kernel(&self.centre, &ripple.place);
-            let hears =
-                |i: usize| self.heard[i] <= number && problem.neighbours.distance(&problem.positions[i], &ripple.place) > ripple.reach;
+            let field = |place: &[f64; 2]| ripple.load_n * unit * problem.neighbours.kernel(place, &ripple.place);
+            // From afar it is the same for all.
+            let afar = problem.neighbours.distance(&self.centre, &ripple.place) > AFAR * ripple.reach;
+            let all = if afar { Some(field(&self.centre)) } else { None };
+            let heard = |i: usize| {
+                let place = &problem.positions[i];
+                let hears = self.heard[i] <= number && (afar || problem.neighbours.distance(place, &ripple.place) > ripple.reach);
+                if hears { all.unwrap_or_else(|| field(place)) } else { 0.0 }
+            };
             for (missed, member) in self.missed.iter_mut().zip(&self.patch.members) {
-                *missed += if hears(member.asperity) { field } else { 0.0 };
+                *missed += heard(member.asperity);
             }
             for (missed, place) in missed_by_free.iter_mut().zip(&self.patch.watched) {
-                *missed += if hears(place.asperity) { field } else { 0.0 };
+                *missed += heard(place.asperity);
             }
         }
         for (place, missed) in self.patch.watched.iter_mut().zip(missed_by_free) {

@@ -111,8 +111,8 @@ pub(crate) struct Path<'p> {
     pub(crate) pending: Vec<(usize, f64, Trace)>,
     /// Events expected in this stretch.
     pub(crate) queue: Vec<Due>,
-    /// Penetrations of all free asperities as they were taken last, and the approach of that.
-    pub(crate) known: (Vec<f64>, f64),
+    /// Where the penetrations of all free asperities were taken last \[m\].
+    pub(crate) watched_at: Option<f64>,
     /// How often each asperity has been covered, uncovered or has jumped in within the present longest stretch.
     pub(crate) flips: Vec<u8>,
     /// Changes that were not taken since the last record because the asperity had flipped too often.
@@ -189,7 +189,7 @@ impl<'p> Path<'p> {
             reference: approach,
             pending: Vec::new(),
             queue: Vec::new(),
-            known: (Vec::new(), approach),
+            watched_at: None,
             flips: vec![0; n],
             held: Vec::new(),
             mark: None,
@@ -325,7 +325,7 @@ impl<'p> Path<'p> {
     /// Another path, from before the last stretch to `target` within it.
     pub(crate) fn excursion(&self, target: f64) -> Result<Self, PhysicsError> {
         let mut other = Self::bare(self.problem(), self.front.clone(), self.sign, self.longest);
-        (other.far_at, other.settled_at, other.known.1) = (self.far_at, self.settled_at, self.known.1);
+        (other.far_at, other.settled_at) = (self.far_at, self.settled_at);
         match self.mark.as_deref() {
             Some(mark) => other.back_to(mark),
             None => {

@@ -16,8 +16,8 @@ enum Since {
     Growth,
     /// The approach, and events whose lags are known.
     Both,
-    /// A jump of all of it, here.
-    Jump,
+    /// A jump of all of it, here, where the potential, less the work of the loads on what they lag, was so much \[J\].
+    Jump(f64),
 }
 
 impl Path<'_> {
@@ -37,10 +37,12 @@ impl Path<'_> {
             if strict && rounds == 0 && (strange || self.astray()) {
                 return Err(first.into());
             }
+            // The state as it is now is an equilibrium at approaches that differ by the residuals.
+            let shifted = problem.totals(&self.front.state).1 + self.work_on_residuals();
             if !strange {
                 self.log.drift_m = self.log.drift_m.max(first.residual_m);
             }
-            let mut found = self.solver.newton(&mut self.front.state, first);
+            let mut found = self.solver.newton(&mut self.front.state, first, !strict);
             let mut rates = self.solver.rates(&mut self.front.state);
             if found.is_ok() && self.front.state.stability <= 0.0 {
                 found = Err(Unsettled { residual_m: f64::NAN, ..first });
@@ -68,7 +70,7 @@ impl Path<'_> {
             self.retrace(
                 &rates,
                 if jump || rounds > 0 {
-                    Since::Jump
+                    Since::Jump(shifted)
                 } else if self.ripples.is_empty() {
                     Since::Growth
                 } else {
@@ -99,6 +101,13 @@ impl Path<'_> {
                 }
             }
         }
+    }
+
+    /// `Σ F r` over the residuals that were evaluated last \[J\].
+    fn work_on_residuals(&self) -> f64 {
+        let state = &self.front.state;
+        let load = |i: usize| self.problem().asperities[i].load(state.radius[i]);
+        state.contacts.iter().zip(&self.solver.residual).map(|(&i, residual)| load(i) * residual).sum()
     }
 
     /// Whether the traces have led too far from the equilibrium of the whole contact, but for what they were known to lack.
@@ -141,11 +150,11 @@ impl Path<'_> {
             // What the lags do not explain has grown with the square of the way.
             self.log.work_j += grown * (target - self.settled_at) / 3.0;
         }
-        // Events were charged with the potential of a contact whose other spots keep their loads; those have answered now.
-        self.log.charge(relaxed);
         self.front.recount(problem);
         let (totals, potential) = problem.totals(&self.front.state);
         self.totals = totals;
+        // Events were charged with the potential of a contact whose other spots keep their loads; those have answered now.
+        self.log.charge(if let Since::Jump(shifted) = since { shifted - potential } else { relaxed });
         let lost: f64 = self.log.events[self.settled..].iter().map(|event| event.energy_lost_j).sum();
         let balance = potential + lost - self.log.work_j;
         if std::mem::take(&mut self.unbalanced) {
@@ -162,32 +171,26 @@ impl Path<'_> {
         self.watch(rates);
     }
 
-    /// New traces of the free asperities that may come to their jump-in. All penetrations are taken anew now and then; between, only those
-    /// that can have come near: the half-space follows the surface, so that none grows by more than three times the way, and an event
-    /// next to an asperity moves it by no more than a jump-off penetration.
+    /// New traces of the free asperities that may come to their jump-in. All are taken anew now and then; between, only those that can have come
+    /// near: the half-space follows the surface, so that none grows by more than three times the way.
     fn watch(&mut self, rates: &[f64]) {
         let problem = self.problem();
         let (target, unit) = (self.front.state.approach_m, problem.rms_height_m);
-        let way = (target - self.known.1).abs();
         let block = |approach: f64| (approach / (0.05 * unit)).floor();
-        let anew = self.known.0.is_empty() || block(target) != block(self.known.1);
-        let margin = 3.0 * way + self.scale();
-        let status = &self.front.state.status;
-        let free = |i: &usize| status[*i] == Status::Free;
-        let wanted: Vec<usize> = (0..problem.len())
-            .filter(free)
-            .filter(|i| anew || self.known.0[*i].is_nan() || self.known.0[*i] > problem.jump_in[*i] - margin)
-            .collect();
+        let anew = self.watched_at.is_none_or(|at| block(target) != block(at));
+        let near = |i: &usize| {
+            let trace = &self.front.traces[*i];
+            let margin = 3.0 * (target - trace.at).abs() + self.scale();
+            anew || trace.value.is_nan() || trace.value > problem.jump_in[*i] - margin
+        };
+        let wanted: Vec<usize> = (0..problem.len()).filter(|i| self.front.state.status[*i] == Status::Free).filter(near).collect();
         let found = self.solver.penetrations(&self.front.state, rates, &wanted);
         if anew {
-            self.known = (vec![f64::NAN; problem.len()], target);
+            self.watched_at = Some(target);
         }
         let span = 3.0 * self.longest + self.scale();
         self.front.candidates.clear();
         for (i, trace) in wanted.into_iter().zip(found) {
-            if anew {
-                self.known.0[i] = trace.value;
-            }
             self.front.traces[i] = trace;
             self.front.state.barred[i] &= trace.value >= problem.jump_in[i];
             if trace.value > problem.jump_in[i] - span {

@@ -11,8 +11,26 @@ const BEFORE: usize = WIDTH / 2 - 1;
 
 type Weights = [f64; WIDTH];
 
-/// Values of the B-spline at the points of the mesh around `place`, and its second, fourth and sixth derivatives; and the first point.
-fn spline(place: f64, mesh: usize) -> (usize, [Weights; ORDERS]) {
+/// Where a place lies on a mesh along one direction: the first point that its B-spline reaches, the values of that at the points, and its second, fourth
+/// and sixth derivatives.
+#[derive(Debug, Clone, Copy)]
+struct Spline {
+    base: usize,
+    all: [Weights; ORDERS],
+}
+
+/// The same along both directions.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Splines([Spline; 2]);
+
+/// Places in units of the side, on a mesh.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
+pub(super) fn splines(places: &[[f64; 2]], mesh: usize) -> Vec<Splines> {
+    places.iter().map(|place| Splines([spline(place[0], mesh), spline(place[1], mesh)])).collect()
+}
+
+#[inline(always)]
+fn spline(place: f64, mesh: usize) -> Spline {
     let scaled = (place - place.floor()) * mesh as f64;
     let base = (scaled as usize).min(mesh - 1);
     let f = scaled - base as f64;
@@ -22,10 +40,11 @@ fn spline(place: f64, mesh: usize) -> (usize, [Weights; ORDERS]) {
     for order in 2..=WIDTH {
         if order > 2 {
             // (n − 1) M_n(x) = x M_(n−1)(x) + (n − x) M_(n−1)(x − 1), at x = f + k.
-            for k in (0..order).rev() {
+            let before = shifted(&weights, 1);
+            let share = 1.0 / (order - 1) as f64;
+            for k in 0..WIDTH {
                 let x = f + k as f64;
-                let before = if k > 0 { weights[k - 1] } else { 0.0 };
-                weights[k] = (x * weights[k] + (order as f64 - x) * before) / (order - 1) as f64;
+                weights[k] = x.mul_add(weights[k], (order as f64 - x) * before[k]) * share;
             }
         }
         if order + 2 * ORDERS > WIDTH + 1 && (WIDTH - order).is_multiple_of(2) {
@@ -33,9 +52,9 @@ fn spline(place: f64, mesh: usize) -> (usize, [Weights; ORDERS]) {
             let mut differences = weights;
             for _ in 0..times {
                 // M_n″(x) = M_(n−2)(x) − 2 M_(n−2)(x − 1) + M_(n−2)(x − 2).
-                for k in (0..WIDTH).rev() {
-                    let [one, two] = [1, 2].map(|back| if k >= back { differences[k - back] } else { 0.0 });
-                    differences[k] += two - 2.0 * one;
+                let (one, two) = (shifted(&differences, 1), shifted(&differences, 2));
+                for k in 0..WIDTH {
+                    differences[k] += two[k] - 2.0 * one[k];
                 }
             }
             all[times] = differences;
@@ -44,7 +63,14 @@ fn spline(place: f64, mesh: usize) -> (usize, [Weights; ORDERS]) {
     for weights in &mut all {
         weights.reverse();
     }
-    (base, all)
+    Spline { base, all }
+}
+
+#[inline(always)]
+fn shifted(weights: &Weights, by: usize) -> Weights {
+    let mut moved = [0.0; WIDTH];
+    moved[by..].copy_from_slice(&weights[..WIDTH - by]);
+    moved
 }
 
 /// A source on a mesh: the point of its first weight, and its spread as a sum of products, along x and along y.
@@ -58,22 +84,20 @@ pub(super) struct Source {
 
 impl Source {
     /// The source of `moments` at a place, number `spot` among all: `Σ_m c_m ∇^2m δ/[(2m−1)!!]²`, the Laplacian taken of its spline.
-    pub(super) fn new(spot: usize, place: [f64; 2], mesh: usize, moments: &[f64; ORDERS]) -> Self {
+    pub(super) fn new(spot: usize, Splines([x, y]): &Splines, mesh: usize, moments: &[f64; ORDERS]) -> Self {
         const BINOMIALS: [[f64; ORDERS]; ORDERS] = [[1.0, 1.0, 1.0, 1.0], [1.0, 2.0, 3.0, 0.0], [1.0, 3.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]];
-        let (x, along_x) = spline(place[0], mesh);
-        let (y, derivatives) = spline(place[1], mesh);
         let square = (mesh * mesh) as f64;
         let mut along_y = [[0.0; WIDTH]; ORDERS];
         for p in 0..ORDERS {
             for q in 0..ORDERS - p {
                 let m = p + q;
                 let factor = BINOMIALS[p][q] * moments[m] / LAPLACIANS[m] * square.powi(m as i32);
-                for (w, d) in along_y[p].iter_mut().zip(&derivatives[q]) {
+                for (w, d) in along_y[p].iter_mut().zip(&y.all[q]) {
                     *w += factor * d;
                 }
             }
         }
-        Self { spot, base: [x, y], along_x, along_y }
+        Self { spot, base: [x.base, y.base], along_x: x.all, along_y }
     }
 }
 
@@ -86,13 +110,8 @@ pub(super) struct Reader {
 }
 
 impl Reader {
-    pub(super) fn new(place: [f64; 2], mesh: usize) -> Self {
-        let ([x, y], [across, along]) = {
-            let (x, wx) = spline(place[0], mesh);
-            let (y, wy) = spline(place[1], mesh);
-            ([x, y], [wx[0], wy[0]])
-        };
-        Self { base: [x, y], along_x: across, along_y: along }
+    pub(super) fn new(Splines([x, y]): &Splines) -> Self {
+        Self { base: [x.base, y.base], along_x: x.all[0], along_y: y.all[0] }
     }
 }
 

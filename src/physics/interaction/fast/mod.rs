@@ -17,9 +17,10 @@ use super::moments::{Moments, product};
 use super::pair::{SpotColumns, sag};
 use super::{Effort, Interaction, Spots, Tangent};
 use crate::model::{Interaction as Kind, Material, Slips};
-use mesh::{Reader, Source, Work, read, transform};
+use mesh::{Reader, Source, Splines, Work, read, splines, transform};
 use near::{Group, Measure, Rest, Row};
 use plan::{Accuracy, Plan, mesh_size};
+use rayon::prelude::*;
 use std::cell::RefCell;
 use std::f64::consts::PI;
 use std::sync::{Arc, OnceLock};
@@ -35,6 +36,9 @@ const PAIR_COST: f64 = 8.0;
 
 /// The same for one spot or target, spread and read.
 const SPREAD_COST: f64 = 500.0;
+
+/// Targets that one thread takes at a time.
+const TOGETHER: usize = 64;
 
 /// Near pairs and a mesh.
 #[derive(Debug)]
@@ -52,8 +56,8 @@ pub struct FastSum {
 struct Field {
     moments: Moments,
     groups: Vec<Group>,
-    /// Plans that are in use with their spots, the finest first.
-    levels: Vec<(Arc<Plan>, Vec<usize>)>,
+    /// Plans that are in use with their spots and where these lie on their meshes, the finest first.
+    levels: Vec<(Arc<Plan>, Vec<usize>, Vec<Splines>)>,
 }
 
 impl FastSum {
@@ -125,7 +129,9 @@ impl FastSum {
             if !members.is_empty() {
                 let plan = self.plan(step);
                 groups.push(Group::new(Rest::Mesh(plan.clone()), &members, columns, &moments, length));
-                levels.push((plan, members));
+                let places: Vec<_> = members.iter().map(|j| [columns.x[*j] / length, columns.y[*j] / length]).collect();
+                let splines = splines(&places, plan.mesh);
+                levels.push((plan, members, splines));
             }
         }
         if !large.is_empty() {
@@ -134,35 +140,45 @@ impl FastSum {
         Field { moments, groups, levels }
     }
 
-    fn share(&self, place: [f64; 2]) -> [f64; 2] {
-        place.map(|p| p / self.measure.length)
-    }
-
     /// The sources on their meshes, with the moments given.
-    fn sources(&self, field: &Field, columns: &SpotColumns, moments: &[[f64; ORDERS]]) -> Vec<(Arc<Plan>, Vec<Source>)> {
-        let source = |plan: &Plan, j: usize| Source::new(j, self.share([columns.x[j], columns.y[j]]), plan.mesh, &moments[j]);
-        field.levels.iter().map(|(plan, members)| (plan.clone(), members.iter().map(|j| source(plan, *j)).collect())).collect()
+    fn sources(field: &Field, moments: &[[f64; ORDERS]]) -> Vec<(Arc<Plan>, Vec<Source>)> {
+        let of = |(plan, members, splines): &(Arc<Plan>, Vec<usize>, Vec<Splines>)| {
+            let sources = members.iter().zip(splines).map(|(j, splines)| Source::new(*j, splines, plan.mesh, &moments[*j])).collect();
+            (plan.clone(), sources)
+        };
+        field.levels.iter().map(of).collect()
     }
 
     fn readers(&self, field: &Field, targets: &[usize]) -> (usize, Vec<Reader>) {
-        let mesh = field.levels.first().map_or(0, |(plan, _)| plan.mesh);
-        let readers =
-            if mesh == 0 { Vec::new() } else { targets.iter().map(|t| Reader::new(self.share(self.positions[*t]), mesh)).collect() };
-        (mesh, readers)
+        let mesh = field.levels.first().map_or(0, |(plan, ..)| plan.mesh);
+        if mesh == 0 {
+            return (0, Vec::new());
+        }
+        let places: Vec<_> = targets.iter().map(|t| self.positions[*t].map(|p| p / self.measure.length)).collect();
+        (mesh, splines(&places, mesh).iter().map(Reader::new).collect())
     }
 
-    /// Near fields of all targets, each handed to `take` with the target's place in the list.
-    fn near(&self, field: &Field, spots: &Spots, targets: &[usize], effort: &mut Effort, mut take: impl FnMut(usize, &Row)) {
-        let mut row = Row::default();
-        for (k, &target) in targets.iter().enumerate() {
+    /// Near fields of all targets, each made into something by `take`; in parallel, and in their order.
+    fn near<T: Send>(
+        &self,
+        field: &Field,
+        spots: &Spots,
+        targets: &[usize],
+        effort: &mut Effort,
+        take: impl Fn(&Row) -> T + Sync,
+    ) -> Vec<T> {
+        let of = |target: &usize, row: &mut Row| {
             row.clear();
-            let me = spots.index.binary_search(&target).ok();
+            let me = spots.index.binary_search(target).ok();
             for group in &field.groups {
-                group.add(self.measure, self.positions[target], me, &mut row);
+                group.add(self.measure, self.positions[*target], me, row);
             }
-            effort.pairs += row.spots.len() as u64;
-            take(k, &row);
-        }
+            (row.spots.len() as u64, take(row))
+        };
+        let found: Vec<(u64, T)> =
+            targets.par_iter().with_min_len(TOGETHER).map_init(Row::default, |row, target| of(target, row)).collect();
+        effort.pairs += found.iter().map(|(pairs, _)| pairs).sum::<u64>();
+        found.into_iter().map(|(_, made)| made).collect()
     }
 }
 
@@ -174,10 +190,10 @@ impl Interaction for FastSum {
             return;
         }
         let field = self.field(spots, targets.len());
-        self.near(&field, spots, targets, effort, |k, row| displacements[k] = row.values.iter().sum());
+        *displacements = self.near(&field, spots, targets, effort, |row| row.values.iter().sum());
         let mut work = Work::default();
         let (mesh, readers) = self.readers(&field, targets);
-        transform(&self.sources(&field, &spots.columns, &field.moments.value), None, &mut work);
+        transform(&Self::sources(&field, &field.moments.value), None, &mut work);
         read(&readers, mesh, &work, displacements);
     }
 
@@ -198,15 +214,14 @@ impl Interaction for FastSum {
             return;
         }
         let field = self.field(spots, targets.len());
-        self.near(&field, spots, targets, effort, |k, row| {
-            displacements[k] = row.values.iter().sum();
-            slopes[k] = row.slopes.iter().zip(&row.spots).map(|(s, j)| s * rates[*j]).sum();
-        });
+        let along = |row: &Row| row.slopes.iter().zip(&row.spots).map(|(s, j)| s * rates[*j]).sum::<f64>();
+        let found = self.near(&field, spots, targets, effort, |row| (row.values.iter().sum::<f64>(), along(row)));
+        (*displacements, *slopes) = found.into_iter().unzip();
         let mut work = Work::default();
         let (mesh, readers) = self.readers(&field, targets);
-        transform(&self.sources(&field, &spots.columns, &field.moments.value), None, &mut work);
+        transform(&Self::sources(&field, &field.moments.value), None, &mut work);
         read(&readers, mesh, &work, displacements);
-        transform(&self.sources(&field, &spots.columns, &field.moments.slope), Some(rates), &mut work);
+        transform(&Self::sources(&field, &field.moments.slope), Some(rates), &mut work);
         read(&readers, mesh, &work, slopes);
     }
 
@@ -224,19 +239,23 @@ impl Interaction for FastSum {
         sparse.columns.clear();
         sparse.values.clear();
         sparse.starts.push(0);
-        self.near(&field, spots, &spots.index, effort, |k, row| {
-            displacements[k] = row.values.iter().sum();
-            sparse.columns.extend(row.spots.iter().map(|j| *j as u32));
-            sparse.values.extend_from_slice(&row.slopes);
-            sparse.starts.push(sparse.values.len());
+        let rows = self.near(&field, spots, &spots.index, effort, |row| {
+            let columns: Vec<u32> = row.spots.iter().map(|j| *j as u32).collect();
+            (row.values.iter().sum::<f64>(), columns, row.slopes.clone())
         });
+        for ((value, columns, slopes), displacement) in rows.iter().zip(displacements.iter_mut()) {
+            *displacement = *value;
+            sparse.columns.extend_from_slice(columns);
+            sparse.values.extend_from_slice(slopes);
+            sparse.starts.push(sparse.values.len());
+        }
         let own = IMAGES.sums(0.0, 0.0);
         sparse.own = field.moments.slope.iter().map(|slope| product(&own, slope)).collect();
         (sparse.mesh, sparse.readers) = self.readers(&field, &spots.index);
         let work = sparse.work.get_mut();
-        transform(&self.sources(&field, &spots.columns, &field.moments.value), None, work);
+        transform(&Self::sources(&field, &field.moments.value), None, work);
         read(&sparse.readers, sparse.mesh, work, displacements);
-        sparse.levels = self.sources(&field, &spots.columns, &field.moments.slope);
+        sparse.levels = Self::sources(&field, &field.moments.slope);
         tangent.set_sparse(sparse);
     }
 }
