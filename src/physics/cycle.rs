@@ -76,6 +76,8 @@ pub struct Step {
     pub residual_m: f64,
     /// Greatest residual that the whole contact had since the step before, before it was solved \[m\].
     pub drift_m: f64,
+    /// Least eigenvalue of the tangent, as [`State::stability`] has it.
+    pub stability: f64,
     /// Newton and relaxation iterations since the step before.
     pub iterations: u64,
     /// Pair fields evaluated since the step before.
@@ -295,6 +297,7 @@ impl Recorder {
             work_j: at.log.work_j,
             residual_m: state.residual_m,
             drift_m: path.log.drift_m,
+            stability: state.stability,
             iterations: effort.iterations - self.effort_before.iterations,
             pairs: effort.pairs - self.effort_before.pairs,
         });

@@ -15,6 +15,9 @@ const SHORTEST: f64 = 1e-3;
 /// Greatest relative change of a radius on a way that is trusted to be without a fold.
 const NEAR: f64 = 0.3;
 
+/// Points of one way, and parts of one march, after which no shorter ones are tried.
+const STATIONS: usize = 50;
+
 /// Where a spot's way ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Found {
@@ -41,7 +44,13 @@ impl Patch {
     /// Follows the curve until the radius of member `at` is `value` \[m\], from an equilibrium that was evaluated last.
     pub(crate) fn march(&mut self, problem: &Problem, at: usize, value: f64, effort: &mut Effort) -> Result<(), Unsettled> {
         let mut share = 1.0;
+        let mut parts = 0;
         while self.radius[at] != value {
+            // Where the field itself jumps, as with the printed Eq 8, ever shorter parts lead to the jump and not beyond.
+            parts += 1;
+            if parts > STATIONS {
+                return Err(Unsettled { residual_m: f64::NAN, asperity: self.members[at].asperity });
+            }
             let from = (self.radius.clone(), self.approach);
             let (direction, rate) = self.along(problem, at);
             let whole = value - self.radius[at];
@@ -124,7 +133,7 @@ impl Patch {
                 Err(unsettled) => {
                     self.restore(problem, &before, effort);
                     stride *= 0.25;
-                    if stride < 1e-6 * self.radius[at] {
+                    if stride < 1e-6 * self.radius[at] || self.way.len() > STATIONS {
                         return Err(unsettled);
                     }
                 }

@@ -97,11 +97,6 @@ impl Log {
         self.last = load;
     }
 
-    /// A log that begins where this one is.
-    pub(crate) fn anew(&self) -> Self {
-        Self { last: self.last, ..Self::default() }
-    }
-
     /// Back to what it `was` when it had so many events and ways.
     pub(crate) fn back_to(&mut self, was: &Self, events: usize, ways: usize) {
         self.events.truncate(events);

@@ -186,8 +186,8 @@ impl Path<'_> {
                 break (before, start, Vec::new());
             }
             // Few spots may find no rest where more do.
-            if spots < WIDE * problem.spots_in_patch && self.patch.members.len() < self.front.state.contacts.len() {
-                spots *= WIDE;
+            if spots == problem.spots_in_patch && self.patch.members.len() < self.front.state.contacts.len() {
+                spots = spots.saturating_mul(WIDE);
                 self.gather_so_many(change, Some(approach), spots);
                 continue;
             }

@@ -154,7 +154,7 @@ impl<'p> Path<'p> {
             Err(Halt::Unsettled(unsettled) | Halt::Late(_, unsettled)) => return Err(path.stuck(unsettled)),
             Err(Halt::Error(error)) => return Err(error),
         }
-        path.log = path.log.anew();
+        path.log.drift_m = 0.0;
         Ok(path)
     }
 

@@ -75,6 +75,11 @@ pub static STEPS: Table = Table {
             "m",
             "Greatest residual that the whole contact had since the step before when it came to be solved: what the neighbourhoods of events had left out",
         ),
+        real(
+            "stability",
+            "1",
+            "Least eigenvalue of the tangent of penetration to contact radius, each column over its own diagonal element: 1 without coupling, 0 at a fold, negative where the equilibrium repels",
+        ),
         flag("converged", "Whether the residual came below the tolerance"),
         count("iteration_count", "Newton iterations of this step"),
         count("pair_evaluation_count", "Evaluations of the displacement field of one spot at another in this step"),

@@ -79,6 +79,7 @@ fn steps(cycle: &Cycle, problem: &Problem) -> Result<Frame, StageError> {
         .f64("work_j", each(|s| s.work_j))
         .f64("residual_m", each(|s| s.residual_m))
         .f64("drift_m", each(|s| s.drift_m))
+        .f64("stability", each(|s| s.stability))
         .bool("converged", steps.iter().map(|s| s.residual_m <= tolerance))
         .count("iteration_count", count(|s| s.iterations as usize))
         .count("pair_evaluation_count", count(|s| s.pairs as usize))

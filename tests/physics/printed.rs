@@ -169,7 +169,8 @@ fn e2e_a_cycle_with_a_slip_of_the_contact() {
         // last corner, and some spots leave in another order (Eq 9: 6 %). The area at the turning point knows no end of a branch.
         assert!((p.loss / q.loss - 1.0).abs() > 1e-3, "{slips:?}");
         close("loss", q.loss, p.loss, 0.1);
-        close("area", turning(&cycle, 0).area_m2, turning(&right, 0).area_m2, 0.01);
+        // As printed Eq 8 makes the field jump at the edge of a spot: an asperity there may be covered or not, and so may those next to it (8 %).
+        close("area", turning(&cycle, 0).area_m2, turning(&right, 0).area_m2, if slips.eq8 { 0.15 } else { 0.01 });
     }
     // Those of the estimate beside it do not enter.
     let beside = paper_cycle(&summits, Rules { slips: Slips { a2: true, a3: true, ..Slips::NONE }, ..DEFAULT }, &[0.0071], 0.04);

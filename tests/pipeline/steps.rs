@@ -70,6 +70,7 @@ pub fn write(path: &Path, steps: &[Step]) {
         .f64("work_j", reals(|step| step.5))
         .f64("residual_m", vec![1e-15; steps.len()])
         .f64("drift_m", vec![0.0; steps.len()])
+        .f64("stability", vec![1.0; steps.len()])
         .bool("converged", (0..steps.len()).map(|row| row != 3))
         .count("iteration_count", zeros())
         .count("pair_evaluation_count", zeros())

@@ -89,10 +89,10 @@ impl Source {
         let square = (mesh * mesh) as f64;
         let mut along_y = [[0.0; WIDTH]; ORDERS];
         for p in 0..ORDERS {
-            for q in 0..ORDERS - p {
+            for (q, derivative) in y.all[..ORDERS - p].iter().enumerate() {
                 let m = p + q;
                 let factor = BINOMIALS[p][q] * moments[m] / LAPLACIANS[m] * square.powi(m as i32);
-                for (w, d) in along_y[p].iter_mut().zip(&y.all[q]) {
+                for (w, d) in along_y[p].iter_mut().zip(derivative) {
                     *w += factor * d;
                 }
             }
