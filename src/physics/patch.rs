@@ -348,7 +348,8 @@ impl Patch {
         self.assemble(problem, 0.0);
         self.lu.factor(&self.matrix, self.members.len());
         self.lu.solve(&mut rates);
-        (rates, self.lu.sign() > 0.0)
+        let stable = self.lu.sign() > 0.0 && rates.iter().all(|rate| rate.is_finite());
+        (rates, stable)
     }
 
     /// Derivatives along the curve of equilibria to the radius of member `at`: of the other radii, and of the approach.

@@ -251,7 +251,7 @@ impl<'p> Path<'p> {
                 target = bound.unwrap_or(target);
             }
             let strict = self.halvings < PATIENCE;
-            let unsettled = match self.events_and_settle(target, strict) {
+            let unsettled = match self.events_and_settle(target, strict).and_then(|()| self.sound(mark.events)) {
                 Ok(()) => {
                     // Whether the next longer stretch may be tried: it must end on a multiple of itself.
                     if self.halvings > 0 && next_multiple(target, size, self.sign) == next_multiple(target, 2.0 * size, self.sign) {
@@ -295,7 +295,7 @@ impl<'p> Path<'p> {
                 mark.held.clone_from(&self.held);
                 self.halvings = 0;
             } else if self.halvings >= HALVINGS {
-                self.collapse(target).map_err(|_| self.stuck(unsettled))?;
+                self.collapse(target).and_then(|()| self.sound(mark.events)).map_err(|_| self.stuck(unsettled))?;
                 self.halvings = HALVINGS / 2;
                 self.mark = Some(Box::new(mark));
                 return Ok(());
@@ -320,6 +320,16 @@ impl<'p> Path<'p> {
             }
         }
         self.settle(target, strict, false)
+    }
+
+    /// Whether all that was counted is a number: a load that was not must not spoil a sum without a word.
+    fn sound(&self, events: usize) -> Result<(), Halt> {
+        let energies = self.log.events[events..].iter().map(|event| event.energy_lost_j + event.before.load_n + event.after.load_n);
+        if self.log.work_j.is_finite() && self.totals.load_n.is_finite() && energies.into_iter().all(f64::is_finite) {
+            return Ok(());
+        }
+        let asperity = self.front.state.contacts.first().copied().unwrap_or(0);
+        Err(Unsettled { residual_m: f64::NAN, asperity }.into())
     }
 
     /// Another path, from before the last stretch to `target` within it.

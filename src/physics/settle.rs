@@ -44,7 +44,8 @@ impl Path<'_> {
             }
             let mut found = self.solver.newton(&mut self.front.state, first, !strict);
             let mut rates = self.solver.rates(&mut self.front.state);
-            if found.is_ok() && self.front.state.stability <= 0.0 {
+            let astray = |rates: &[f64]| rates.iter().any(|rate| !rate.is_finite());
+            if found.is_ok() && (self.front.state.stability <= 0.0 || astray(&rates)) {
                 found = Err(Unsettled { residual_m: f64::NAN, ..first });
             }
             match found {
@@ -65,6 +66,9 @@ impl Path<'_> {
                     self.front.state.radius = start;
                     self.relax_whole(target)?;
                     rates = self.solver.rates(&mut self.front.state);
+                    if astray(&rates) {
+                        return Err(first.into());
+                    }
                 }
             }
             self.retrace(
@@ -154,7 +158,10 @@ impl Path<'_> {
         let (totals, potential) = problem.totals(&self.front.state);
         self.totals = totals;
         // Events were charged with the potential of a contact whose other spots keep their loads; those have answered now.
-        self.log.charge(if let Since::Jump(shifted) = since { shifted - potential } else { relaxed });
+        self.log.charge(match since {
+            Since::Jump(shifted) if !shifted.is_nan() => shifted - potential,
+            _ => relaxed,
+        });
         let lost: f64 = self.log.events[self.settled..].iter().map(|event| event.energy_lost_j).sum();
         let balance = potential + lost - self.log.work_j;
         if std::mem::take(&mut self.unbalanced) {

@@ -9,6 +9,7 @@ mod coupled;
 mod cycle;
 mod fast;
 mod homogeneity;
+mod invariance;
 mod isolated;
 mod jkr;
 mod kernel;

@@ -1,0 +1,36 @@
+//! What a result must not depend on: the direction that was taken before.
+
+use crate::support::{DEFAULT, LENGTH, PAPER, RMS, close, paper_summits};
+use hysteron::model::KeptContacts;
+use hysteron::physics::cycle::{Settings, run_to};
+use hysteron::physics::state::Problem;
+
+#[test]
+fn law_a_way_without_an_event_is_retraced() {
+    // Between the first jump-in and the second lies a way on which nothing happens; there and back on it costs nothing.
+    let summits = paper_summits(16, 0);
+    let problem = Problem::new(&summits, LENGTH, RMS, PAPER, DEFAULT).unwrap();
+    let settings = Settings { max_loads: Vec::new(), approach_step: 0.01, contacts: KeptContacts::None };
+    let far = run_to(&problem, &settings, 0.3 * RMS).unwrap();
+    let loading: Vec<f64> =
+        far.events.iter().take_while(|(step, _)| *step <= far.turning[0].0).map(|(_, event)| event.approach_m).collect();
+    let gap = loading.windows(2).max_by(|u, v| (u[1] - u[0]).total_cmp(&(v[1] - v[0]))).unwrap();
+    // Down from the turning point to a little after the event before it: the loads of both ways at the points of the grid between.
+    let turn = 0.25f64.mul_add(gap[0], 0.75 * gap[1]);
+    let cycle = run_to(&problem, &settings, turn).unwrap();
+    let at = cycle.turning[0].0;
+    let quiet = |approach: f64| approach > gap[0] + 1e-3 * RMS && approach < turn;
+    let first = cycle.events.iter().find(|(step, _)| *step > at).map_or(f64::NEG_INFINITY, |(_, event)| event.approach_m);
+    let mut compared = 0;
+    for back in cycle.steps[at + 1..].iter().filter(|step| quiet(step.approach_m) && step.approach_m > first) {
+        let there = cycle.steps[..at].iter().find(|step| (step.approach_m - back.approach_m).abs() < 1e-9 * RMS).unwrap();
+        // Equilibria are met to 1e-10 of the rms height, some 1e-9 of a penetration.
+        close("load", back.load_n, there.load_n, 1e-8);
+        close("area", back.area_m2, there.area_m2, 1e-8);
+        // What was done on the way there is given back.
+        let given = cycle.steps[at].work_j - there.work_j;
+        close("work", -back.work_j, given, 1e-6);
+        compared += 1;
+    }
+    assert!(compared > 3, "{compared}");
+}
