@@ -12,6 +12,9 @@ use super::state::Status;
 /// Share of its radius by which a spot is moved over a fold.
 const NUDGE: f64 = 1e-3;
 
+/// Relative change of a radius that an equilibrium does not tell from none.
+const EDGE: f64 = 1e-8;
+
 /// Small solutions that follow one event, at least; and the share of the spots in contact that may be as many.
 const MOST: usize = 16;
 
@@ -190,9 +193,13 @@ impl Path<'_> {
             let i = change.asperity;
             match self.front.state.status[i] {
                 Status::Covered { by, release_m } => {
-                    if self.front.state.radius[by] < release_m {
+                    let edge = (1.0 - EDGE) * release_m;
+                    if self.front.state.radius[by] < edge {
                         // The covering spot has shrunk by covering it.
                         self.keep_covered(i);
+                    } else {
+                        // It stands at the edge, and rounding must not decide whether it has shrunk.
+                        self.front.state.status[i] = Status::Covered { by, release_m: edge };
                     }
                 }
                 Status::Contact => {}

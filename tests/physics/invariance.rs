@@ -1,9 +1,33 @@
-//! What a result must not depend on: the direction that was taken before.
+//! What a result must not depend on: the numbering of the asperities, where the square begins, the direction that was taken before.
 
-use crate::support::{DEFAULT, LENGTH, PAPER, RMS, close, paper_summits};
+use crate::support::{DEFAULT, LENGTH, PAPER, RMS, close, loop_of, paper_cycle, paper_summits, turning};
 use hysteron::model::KeptContacts;
-use hysteron::physics::cycle::{Settings, run_to};
+use hysteron::physics::cycle::{Cycle, Settings, run_to};
 use hysteron::physics::state::Problem;
+use hysteron::physics::summits::Summit;
+
+/// The same loop, the same events, but for their places: a fold is passed by 1e-6 of the rms height, and the flow that follows it begins where
+/// rounding has it. Measured: 9e-6 of the loss.
+fn same(got: &Cycle, want: &Cycle) {
+    let (p, q) = (loop_of(got, 0), loop_of(want, 0));
+    close("loss", p.loss, q.loss, 3e-5);
+    close("events", p.events, q.events, 3e-5);
+    close("pull-off", p.pull_off, q.pull_off, 3e-5);
+    close("area", p.area, q.area, 1e-10);
+    assert_eq!(turning(got, 0).contact_count, turning(want, 0).contact_count);
+    assert_eq!(got.events.len(), want.events.len());
+}
+
+#[test]
+fn law_numbering_and_origin_do_not_matter() {
+    let summits = paper_summits(16, 0);
+    let want = paper_cycle(&summits, DEFAULT, &[0.0071], 0.04);
+    let moved = |s: &Summit| Summit { x_m: (s.x_m + 0.37 * LENGTH) % LENGTH, y_m: (s.y_m + 0.61 * LENGTH) % LENGTH, ..*s };
+    let moved: Vec<Summit> = summits.iter().map(moved).collect();
+    same(&paper_cycle(&moved, DEFAULT, &[0.0071], 0.04), &want);
+    let backwards: Vec<Summit> = summits.iter().rev().copied().collect();
+    same(&paper_cycle(&backwards, DEFAULT, &[0.0071], 0.04), &want);
+}
 
 #[test]
 fn law_a_way_without_an_event_is_retraced() {
