@@ -170,8 +170,8 @@ impl Path<'_> {
                 .filter(|trigger| !trigger.change.returns(&moved, &self.front.state))
                 .max_by(|u, v| u.overshoot.total_cmp(&v.overshoot).then(v.change.asperity.cmp(&u.change.asperity)))
                 .map(|trigger| trigger.change);
-            let lagging = || Change { kind: Kind::Snap, asperity: 0, by: None };
-            let Some(change) = next.or_else(|| self.most_lagging().map(|asperity| Change { asperity, ..lagging() })) else { break };
+            let lagging = |asperity| Change { kind: Kind::Snap, asperity, by: None };
+            let Some(change) = next.or_else(|| self.most_lagging().map(lagging)) else { break };
             taken += 1;
             if taken > bound {
                 return Err(Halt::Error(PhysicsError::EndlessAvalanche { approach_m: approach, events: taken, asperity: change.asperity }));

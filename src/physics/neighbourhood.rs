@@ -10,7 +10,7 @@ use super::front::{CurvePoint, gauss, hermite_slope, work, work_along};
 use super::locate::Point;
 use super::patch::{Hold, Trace};
 use super::path::{Halt, Path};
-use super::state::{Status, Totals};
+use super::state::{Problem, Status, Totals};
 use crate::model::Interaction;
 use std::f64::consts::PI;
 
@@ -48,6 +48,18 @@ pub(crate) struct Ripple {
     reach: f64,
     /// Change of its load \[N\].
     load_n: f64,
+}
+
+impl Ripple {
+    /// Whether a place was not told of it.
+    fn passes(&self, problem: &Problem, place: &[f64; 2]) -> bool {
+        problem.neighbours.distance(place, &self.place) > self.reach
+    }
+
+    /// What it does to a place \[m\].
+    fn field(&self, problem: &Problem, place: &[f64; 2]) -> f64 {
+        self.load_n * (1.0 / (PI * problem.material.contact_modulus_pa)) * problem.neighbours.kernel(place, &self.place)
+    }
 }
 
 impl Path<'_> {
@@ -117,20 +129,19 @@ impl Path<'_> {
     /// What the spots of the neighbourhood do not know yet; the free asperities learn it, since they have nothing to answer.
     fn learn(&mut self) {
         let problem = self.problem();
-        let unit = 1.0 / (PI * problem.material.contact_modulus_pa);
         self.missed.clear();
         self.missed.extend(self.patch.members.iter().map(|m| self.lags[m.asperity]));
         let places = self.patch.members.iter().chain(&self.patch.watched);
         let oldest = places.clone().map(|place| self.heard[place.asperity]).min().unwrap_or(0);
         let mut missed_by_free = vec![0.0; self.patch.watched.len()];
         for (number, ripple) in self.ripples.iter().enumerate().skip(oldest) {
-            let field = |place: &[f64; 2]| ripple.load_n * unit * problem.neighbours.kernel(place, &ripple.place);
+            let field = |place: &[f64; 2]| ripple.field(problem, place);
             // From afar it is the same for all.
             let afar = problem.neighbours.distance(&self.centre, &ripple.place) > AFAR * ripple.reach;
             let all = if afar { Some(field(&self.centre)) } else { None };
             let heard = |i: usize| {
                 let place = &problem.positions[i];
-                let hears = self.heard[i] <= number && (afar || problem.neighbours.distance(place, &ripple.place) > ripple.reach);
+                let hears = self.heard[i] <= number && (afar || ripple.passes(problem, place));
                 if hears { all.unwrap_or_else(|| field(place)) } else { 0.0 }
             };
             for (missed, member) in self.missed.iter_mut().zip(&self.patch.members) {
@@ -148,10 +159,9 @@ impl Path<'_> {
     /// Lag of a spot \[m\], with what has come from afar.
     pub(crate) fn whole_lag(&self, i: usize) -> f64 {
         let problem = self.problem();
-        let unit = 1.0 / (PI * problem.material.contact_modulus_pa);
         let place = &problem.positions[i];
-        let afar = self.ripples[self.heard[i]..].iter().filter(|ripple| problem.neighbours.distance(place, &ripple.place) > ripple.reach);
-        self.lags[i] + afar.map(|ripple| ripple.load_n * unit * problem.neighbours.kernel(place, &ripple.place)).sum::<f64>()
+        let afar = self.ripples[self.heard[i]..].iter().filter(|ripple| ripple.passes(problem, place));
+        self.lags[i] + afar.map(|ripple| ripple.field(problem, place)).sum::<f64>()
     }
 
     /// Whether spots of the neighbourhood have lags that matter.

@@ -285,12 +285,8 @@ impl<'p> Path<'p> {
             self.back_to(&mark);
             uncovered.retain(|i| matches!(self.front.state.status[*i], Status::Covered { .. }));
             if self.halvings >= PATIENCE && !uncovered.is_empty() {
-                // At the edge of a spot the field is steepest, and there may be no equilibrium with an asperity there: it stays
-                // covered for a while, and is counted.
-                for i in uncovered {
-                    self.keep_covered(i);
-                    self.held.push(i);
-                }
+                // At the edge of a spot the field is steepest, and there may be no equilibrium with an asperity there.
+                self.hold_covered(&uncovered);
                 mark.front.clone_from(&self.front);
                 mark.held.clone_from(&self.held);
                 self.halvings = 0;
@@ -410,6 +406,14 @@ impl<'p> Path<'p> {
         if let Status::Covered { by, release_m } = self.front.state.status[i] {
             let radius = self.front.state.radius[by].min(release_m);
             self.front.state.status[i] = Status::Covered { by, release_m: RETRY * radius };
+        }
+    }
+
+    /// Asperities that find no equilibrium where they are uncovered stay covered for a while, and are counted.
+    pub(crate) fn hold_covered(&mut self, uncovered: &[usize]) {
+        for &i in uncovered {
+            self.keep_covered(i);
+            self.held.push(i);
         }
     }
 

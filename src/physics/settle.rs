@@ -42,35 +42,28 @@ impl Path<'_> {
             if !strange {
                 self.log.drift_m = self.log.drift_m.max(first.residual_m);
             }
-            let mut found = self.solver.newton(&mut self.front.state, first, !strict);
-            let mut rates = self.solver.rates(&mut self.front.state);
-            let astray = |rates: &[f64]| rates.iter().any(|rate| !rate.is_finite());
-            if found.is_ok() && (self.front.state.stability <= 0.0 || astray(&rates)) {
-                found = Err(Unsettled { residual_m: f64::NAN, ..first });
-            }
-            match found {
-                Ok(()) => {}
-                Err(_) if uncovering.is_some() => {
-                    // There is no equilibrium with those asperities at the edge of the spot: they stay covered for a while, and are counted.
+            let found = self.solver.newton(&mut self.front.state, first, !strict).and_then(|()| {
+                let rates = self.finite_rates(first)?;
+                let stable = self.front.state.stability > 0.0;
+                if stable { Ok(rates) } else { Err(Unsettled { residual_m: f64::NAN, ..first }) }
+            });
+            let rates = match found {
+                Ok(rates) => rates,
+                Err(unsettled) => {
                     if let Some((mark, uncovered)) = uncovering.take() {
+                        // There is no equilibrium with those asperities at the edge of the spot.
                         self.back_to(&mark);
-                        for i in uncovered {
-                            self.keep_covered(i);
-                            self.held.push(i);
-                        }
+                        self.hold_covered(&uncovered);
+                        continue;
                     }
-                    continue;
-                }
-                Err(unsettled) if strict => return Err(unsettled.into()),
-                Err(_) => {
+                    if strict {
+                        return Err(unsettled.into());
+                    }
                     self.front.state.radius = start;
                     self.relax_whole(target)?;
-                    rates = self.solver.rates(&mut self.front.state);
-                    if astray(&rates) {
-                        return Err(first.into());
-                    }
+                    self.finite_rates(first)?
                 }
-            }
+            };
             self.retrace(
                 &rates,
                 if jump || rounds > 0 {
@@ -107,6 +100,12 @@ impl Path<'_> {
         }
     }
 
+    /// Rates of the spots at the equilibrium that was evaluated last; where they are no numbers, `first` tells why.
+    fn finite_rates(&mut self, first: Unsettled) -> Result<Vec<f64>, Unsettled> {
+        let rates = self.solver.rates(&mut self.front.state);
+        if rates.iter().all(|rate| rate.is_finite()) { Ok(rates) } else { Err(first) }
+    }
+
     /// `Σ F r` over the residuals that were evaluated last \[J\].
     fn work_on_residuals(&self) -> f64 {
         let state = &self.front.state;
@@ -128,6 +127,10 @@ impl Path<'_> {
         let problem = self.problem();
         let target = self.front.state.approach_m;
         let jump = since != Since::Growth;
+        let shifted = match since {
+            Since::Jump(shifted) if !shifted.is_nan() => Some(shifted),
+            _ => None,
+        };
         if jump {
             self.log.pass(target, self.front.totals(target).load_n);
         }
@@ -143,7 +146,9 @@ impl Path<'_> {
                 self.log.work_j += work(problem, i, from, to);
                 if jump {
                     let more = asperity.load(a) - asperity.load(asperity.radius_ahead(to.value));
-                    relaxed += 0.5 * self.whole_lag(i) * more;
+                    if shifted.is_none() {
+                        relaxed += 0.5 * self.whole_lag(i) * more;
+                    }
                     grown += more;
                 }
             }
@@ -158,10 +163,7 @@ impl Path<'_> {
         let (totals, potential) = problem.totals(&self.front.state);
         self.totals = totals;
         // Events were charged with the potential of a contact whose other spots keep their loads; those have answered now.
-        self.log.charge(match since {
-            Since::Jump(shifted) if !shifted.is_nan() => shifted - potential,
-            _ => relaxed,
-        });
+        self.log.charge(shifted.map_or(relaxed, |shifted| shifted - potential));
         let lost: f64 = self.log.events[self.settled..].iter().map(|event| event.energy_lost_j).sum();
         let balance = potential + lost - self.log.work_j;
         if std::mem::take(&mut self.unbalanced) {

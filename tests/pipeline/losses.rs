@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use hysteron::schema::{AVALANCHES, EVENT_KINDS};
-use hysteron::stats::{CaseInput, CycleInput, StatsError, avalanches, cases, realizations};
+use hysteron::stats::{StatsError, avalanches, cases, realizations};
 use hysteron::store::Frame;
 use hysteron::store::parquet::{read_table, write_table};
 
-use crate::steps::{ENERGY_J, Event, Step, case, cycle, events_path, write, write_events};
+use crate::steps::{Bench, ENERGY_J, Event, Step, case, cycle, events_path, write, write_events};
 
 fn close(a: f64, b: f64) {
     assert!((a - b).abs() <= 1e-12 * b.abs().max(1e-30), "{a} is not {b}");
@@ -39,12 +39,6 @@ const EVENTS: [Event; 11] = [
     (6, "unloading", Some(0.004), "jump_off", 5, [0.10, 0.12, 2.0e-9, 1.5e-9, 6e-12]),
     (7, "unloading", Some(0.004), "jump_off", 6, [-0.02, 0.0, 0.5e-9, 0.0, 1e-12]),
 ];
-
-struct Bench {
-    directory: tempfile::TempDir,
-    cases: Vec<CaseInput>,
-    cycles: Vec<CycleInput>,
-}
 
 /// One cycle per factor, by which the energies of its events are multiplied.
 fn bench(factors: &[f64]) -> Bench {

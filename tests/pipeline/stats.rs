@@ -2,13 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use hysteron::stats::{
-    CaseInput, CycleInput, Point, STATIONS, Sample, StatsError, Value, Walk, cases, curves, realizations, summary, t_quantile,
-};
+use hysteron::stats::{CaseInput, Point, STATIONS, Sample, StatsError, Value, Walk, cases, curves, realizations, summary, t_quantile};
 use hysteron::store::Frame;
 use hysteron::store::parquet::{read_table, write_table};
 
-use crate::steps::{ENERGY_J, Step, case, cycle, realistic, write};
+use crate::steps::{Bench, ENERGY_J, Step, case, cycle, realistic, write};
 
 /// Probability, degrees of freedom, quantile.
 const KNOWN_T: [(f64, usize, f64); 9] = [
@@ -49,12 +47,6 @@ fn by_hand(path: &Path, factor: f64) {
     .map(|(branch, max_load, load, area, depth, work)| (branch, max_load, load, area * factor, depth, work))
     .collect();
     write(path, &steps);
-}
-
-struct Bench {
-    directory: tempfile::TempDir,
-    cases: Vec<CaseInput>,
-    cycles: Vec<CycleInput>,
 }
 
 fn bench(factors: &[f64]) -> Bench {

@@ -18,6 +18,13 @@ pub const ENERGY_J: f64 = 5e-6;
 /// One event: step, branch, max_load, kind, avalanche, then [load before, load after, area before, area after, energy lost].
 pub type Event = (i64, &'static str, Option<f64>, &'static str, i64, [f64; 5]);
 
+/// Cases and their cycles, and the folder of their tables.
+pub struct Bench {
+    pub directory: tempfile::TempDir,
+    pub cases: Vec<CaseInput>,
+    pub cycles: Vec<CycleInput>,
+}
+
 /// Where the events of a table of steps are.
 pub fn events_path(steps: &Path) -> PathBuf {
     steps.with_extension("events.parquet")
