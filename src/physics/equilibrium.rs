@@ -2,7 +2,9 @@
 //!
 //! Unknowns are the contact radii; the residual of each is `D_i − ŵ_i − δ_JKR(a_i)`, with `D_i = δ + z_i`. The paper's Eq 9 is one
 //! diagonal-Newton update of this system, all spots at once; it diverges. Here:
-//! - [`Solver::newton`]: Newton's method with GMRES, steps limited to 20 % of each radius, accepted only where they descend;
+//! - [`Solver::newton`]: Newton's method with GMRES, steps limited to 20 % of each radius, accepted only where they descend. Where a step does not
+//!   descend, it is mostly for one spot at the edge of another, where the slope of the field is infinite: the few spots around it are solved for
+//!   themselves with dense matrices, and the whole goes on from there (nonlinear elimination, Lanzkron, Rose & Wilkes, SIAM J. Sci. Comput. 17:538, 1996);
 //! - [`Solver::relax`]: where Newton finds nothing (a fold, or after a jump), overdamped relaxation `da_i/dt = residual_i` by implicit
 //!   Euler steps that grow as the state comes to rest. On the way a spot whose own branch has ended leaves, and one that a greater spot
 //!   has reached is covered: the flow decides who, without reference to the step of the approach.
@@ -10,14 +12,24 @@
 use super::events::Change;
 use super::interaction::{Effort, Interaction as _, Spots, Tangent};
 use super::krylov::{dot, gmres, gmres_and_least};
-use super::patch::Trace;
-use super::state::{Problem, State};
+use super::patch::{Hold, Patch, Trace};
+use super::state::{Problem, State, Status};
 
 /// Greatest relative change of a radius in one iteration.
 const STRIDE: f64 = 0.2;
 
 /// Products at most in one linear solve.
 const PRODUCTS: usize = 120;
+
+/// Neighbourhoods that are solved for themselves on the way of one solution of the whole.
+const MENDS: usize = 6;
+
+/// Share of the residual that a step with an earlier tangent must leave less than, or the next one has a tangent of its own.
+const WORTH: f64 = 0.03;
+
+/// Relative residuals to which linear systems are solved.
+const MOST: f64 = 3e-3;
+const LEAST: f64 = 1e-5;
 
 /// Why an iteration ended without an equilibrium: the worst residual and its asperity.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,9 +44,13 @@ pub(crate) struct Solver<'p> {
     pub(crate) effort: Effort,
     spots: Spots,
     tangent: Tangent,
+    /// Whether the tangent is that of the state that was evaluated last.
+    fresh: bool,
     /// Residuals of the spots that were evaluated last \[m\].
     pub(crate) residual: Vec<f64>,
     diagonal: Vec<f64>,
+    /// The neighbourhood that is solved where Newton's method on the whole does not descend.
+    patch: Patch,
 }
 
 impl<'p> Solver<'p> {
@@ -44,8 +60,10 @@ impl<'p> Solver<'p> {
             effort: Effort::default(),
             spots: Spots::default(),
             tangent: Tangent::default(),
+            fresh: false,
             residual: Vec::new(),
             diagonal: Vec::new(),
+            patch: Patch::default(),
         }
     }
 
@@ -54,6 +72,22 @@ impl<'p> Solver<'p> {
         let problem = self.problem;
         problem.spots(state, &mut self.spots);
         problem.field.linearise(&self.spots, &mut state.displacement, &mut self.tangent, &mut self.effort);
+        self.fresh = true;
+        self.compare(state)
+    }
+
+    /// The same with the tangent left as it is.
+    fn glance(&mut self, state: &mut State) -> Unsettled {
+        let problem = self.problem;
+        problem.spots(state, &mut self.spots);
+        problem.field.displacements(&self.spots, &self.spots.index, &mut state.displacement, &mut self.effort);
+        self.fresh = false;
+        self.compare(state)
+    }
+
+    /// Residuals of a state whose displacements are known; the worst and whose it is.
+    fn compare(&mut self, state: &mut State) -> Unsettled {
+        let problem = self.problem;
         self.residual.clear();
         self.diagonal.clear();
         let mut worst = Unsettled { residual_m: 0.0, asperity: state.contacts.first().copied().unwrap_or(0) };
@@ -95,14 +129,30 @@ impl<'p> Solver<'p> {
         let mut step: Vec<f64> = Vec::new();
         let mut before = f64::INFINITY;
         let mut share = 1.0;
-        for _ in 0..most {
+        let mut mends = 0;
+        for round in 0..most {
             if worst.residual_m <= tolerance {
                 return Ok(());
+            }
+            if !self.fresh && worst.residual_m > WORTH * before {
+                worst = self.evaluate(state);
+            }
+            if worst.residual_m >= before && mends < MENDS {
+                // One spot is where the field is no smooth function of the radii: a few spots are solved for themselves there.
+                mends += 1;
+                if self.mend(state, worst.asperity) {
+                    worst = self.evaluate(state);
+                    if worst.residual_m <= tolerance {
+                        return Ok(());
+                    }
+                }
             }
             if worst.residual_m < before {
                 before = worst.residual_m;
                 share = 1.0;
-                step = gmres(&self.tangent, &self.diagonal, &self.residual, 1e-3, PRODUCTS, &mut self.effort);
+                // The first step leaves the square of the residual, however well it is solved for; the next ones are to be the last.
+                let wanted = if round == 0 { MOST } else { (0.1 * tolerance / worst.residual_m).clamp(LEAST, MOST) };
+                step = gmres(&self.tangent, &self.diagonal, &self.residual, wanted, PRODUCTS, &mut self.effort);
                 limit(&mut step, state, STRIDE);
                 start = state.contacts.iter().map(|&i| state.radius[i]).collect();
             } else {
@@ -116,9 +166,29 @@ impl<'p> Solver<'p> {
                 state.radius[i] = from + share * s;
             }
             self.effort.iterations += 1;
-            worst = self.evaluate(state);
+            // The first step leads near enough for the tangent there to serve to the end.
+            worst = if round == 0 { self.evaluate(state) } else { self.glance(state) };
         }
         Err(worst)
+    }
+
+    /// Solves the neighbourhood of a spot with the displacement by all others held; says whether it has an equilibrium.
+    fn mend(&mut self, state: &mut State, asperity: usize) -> bool {
+        let problem = self.problem;
+        let near = problem.neighbours.nearest(&problem.positions[asperity], problem.spots_in_patch, |i| state.status[i] == Status::Contact);
+        let mut spots: Vec<(usize, f64, f64)> = near
+            .into_iter()
+            .filter_map(|(_, i)| state.contacts.binary_search(&i).ok().map(|k| (i, state.radius[i], state.displacement[k])))
+            .collect();
+        spots.sort_unstable_by_key(|spot| spot.0);
+        self.patch.fix(problem, &spots, state.approach_m, &mut self.effort);
+        if self.patch.descend(problem, Hold::Approach, 1e-4, 60, &mut self.effort).is_err() {
+            return false;
+        }
+        for (member, a) in self.patch.members.iter().zip(&self.patch.radius) {
+            state.radius[member.asperity] = *a;
+        }
+        true
     }
 
     /// Overdamped relaxation from the radii of `state`, at its approach. Spots that leave or are covered on the way are returned.
@@ -177,6 +247,10 @@ impl<'p> Solver<'p> {
 
     /// `da_i/dδ` of the spots at the equilibrium that was evaluated last. Its stability is entered into the state.
     pub(crate) fn rates(&mut self, state: &mut State) -> Vec<f64> {
+        if !self.fresh && self.tangent.is_exact() {
+            // Where the tangent is exact, neighbourhoods that hold all spots are to find nothing outside them.
+            self.evaluate(state);
+        }
         let ones = vec![1.0; state.contacts.len()];
         let (rates, least) = gmres_and_least(&self.tangent, &self.diagonal, &ones, 1e-6, PRODUCTS, &mut self.effort);
         state.stability = least;

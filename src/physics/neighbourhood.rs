@@ -8,7 +8,7 @@
 use super::events::{Change, Kind};
 use super::front::{CurvePoint, gauss, hermite_slope, work, work_along};
 use super::locate::Point;
-use super::patch::{Hold, Trace};
+use super::patch::{Hold, Stood, Trace};
 use super::path::{Halt, Path};
 use super::state::{Problem, Status, Totals};
 use crate::model::Interaction;
@@ -33,8 +33,8 @@ const LEAST_LAG: f64 = 0.1;
 pub(crate) struct Before {
     totals: Totals,
     pub(crate) potential: f64,
-    /// Displacements around it \[m\].
-    fields: Vec<f64>,
+    /// Its spots.
+    stood: Vec<Stood>,
     /// Load of its spots, and what the rest of the contact does to their loads as the approach goes on \[N\].
     load: f64,
     pull: f64,
@@ -122,7 +122,8 @@ impl Path<'_> {
         });
         let members: Vec<_> = members.into_iter().map(|i| (i, traces[i], self.front.radius(problem, i, approach))).collect();
         let watched: Vec<_> = watched.into_iter().map(|i| (i, traces[i])).collect();
-        self.patch.gather(problem, &members, &watched, approach, &mut self.solver.effort);
+        let local = members.len() < self.front.state.contacts.len();
+        self.patch.gather(problem, &members, &watched, approach, local, &mut self.solver.effort);
         self.learn();
     }
 
@@ -233,23 +234,16 @@ impl Path<'_> {
         let totals = self.front.totals(self.patch.approach);
         self.log.pass(self.patch.approach, totals.load_n);
         let (load, potential) = self.patch.totals(problem);
-        Before {
-            totals,
-            potential,
-            load,
-            fields: self.patch.fields_at(problem, &self.halo, &mut self.solver.effort),
-            pull: self.patch.pull(problem),
-        }
+        Before { totals, potential, load, stood: self.patch.stand(), pull: self.patch.pull(problem) }
     }
 
     /// After the neighbourhood has changed: the front has it so, and the changes that were `taken` are written down, and lost so much energy \[J\].
     pub(crate) fn finish(&mut self, before: &Before, taken: Vec<Change>, energy: f64, moved: &mut Vec<Change>, open: &mut Vec<usize>) {
         let problem = self.problem();
         let approach = self.patch.approach;
-        let fields = self.patch.fields_at(problem, &self.halo, &mut self.solver.effort);
+        let moved_by = self.patch.moved_at(problem, &self.halo, &self.centre, &before.stood);
         let load = self.patch.totals(problem).0 - before.load;
-        let moved_by = fields.iter().zip(&before.fields).map(|(after, before)| after - before);
-        self.lag(moved_by, load, before.pull - self.patch.pull(problem), open);
+        self.lag(&moved_by, load, before.pull - self.patch.pull(problem), open);
         for change in &taken {
             self.enter(change, open);
         }
@@ -295,10 +289,10 @@ impl Path<'_> {
 
     /// The field around the neighbourhood is another by `moved` \[m\], since its load is another by `load`. Free asperities take it, spots do not
     /// know it yet; the load of the contact will be another by `answer` \[N\] when they do.
-    fn lag(&mut self, moved: impl Iterator<Item = f64>, load: f64, answer: f64, open: &mut Vec<usize>) {
+    fn lag(&mut self, moved: &[f64], load: f64, answer: f64, open: &mut Vec<usize>) {
         let limit = self.lag_limit();
         let problem = self.problem();
-        for (&j, moved) in self.halo.iter().zip(moved) {
+        for (&j, &moved) in self.halo.iter().zip(moved) {
             if self.front.state.status[j] == Status::Contact {
                 self.lags[j] += moved;
                 if self.lags[j].abs() > limit && !self.urgent.contains(&j) {
@@ -323,23 +317,14 @@ impl Path<'_> {
             return;
         }
         let problem = self.problem();
-        let effort = &mut self.solver.effort;
-        let (there, approach) = (self.patch.radius.clone(), self.patch.approach);
-        let (now, pull) = (self.patch.fields_at(problem, &self.halo, effort), self.patch.pull(problem));
-        let load = self.patch.totals(problem).0;
-        let speeds: Vec<f64> = self.patch.members.iter().map(|m| self.front.speed(problem, m.asperity)).collect();
-        self.patch.radius.clone_from(&self.origin);
-        self.patch.approach = self.reference;
-        self.patch.evaluate(problem, effort);
-        let way = approach - self.reference;
-        let expected = self.patch.fields_ahead(problem, &self.halo, &speeds, way, effort);
-        let load = load - self.patch.totals(problem).0 - way * self.patch.load_rate(problem, &speeds);
-        let answer = self.patch.pull(problem) + way * self.patch.pull_rate(problem, &speeds) - pull;
-        self.patch.radius = there;
-        self.patch.approach = approach;
-        self.patch.evaluate(problem, effort);
+        let way = self.patch.approach - self.reference;
+        let speeds = self.patch.members.iter().map(|m| self.front.speed(problem, m.asperity));
+        let stood: Vec<Stood> =
+            self.patch.members.iter().zip(&self.origin).zip(speeds).map(|((m, a), speed)| (m.asperity, *a, speed * way)).collect();
+        let moved = self.patch.moved_at(problem, &self.halo, &self.centre, &stood);
+        let (load, pull) = self.patch.off(problem, &stood);
         let before = self.far;
-        self.lag(now.iter().zip(&expected).map(|(now, expected)| now - expected), load, answer, open);
+        self.lag(&moved, load, -pull, open);
         // It has grown on the way, slowly at first.
         let grown = self.far - before;
         self.log.work_j += grown * mean_square(stations, way);

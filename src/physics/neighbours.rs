@@ -61,15 +61,19 @@ impl Neighbours {
 
     /// What a load at `q` does at `p`, `1/r` and the same of all images \[1/m\].
     pub(crate) fn kernel(&self, p: &[f64; 2], q: &[f64; 2]) -> f64 {
-        let near = 1.0 / self.distance(p, q);
+        1.0 / self.distance(p, q) + self.image_kernel(p, q)
+    }
+
+    /// The part of the images but the nearest \[1/m\].
+    pub(crate) fn image_kernel(&self, p: &[f64; 2], q: &[f64; 2]) -> f64 {
         if !self.periodic {
-            return near;
+            return 0.0;
         }
         let [x, y] = [0, 1].map(|k| {
             let d = (p[k] - q[k]) / self.length;
             d - d.round_ties_even()
         });
-        near + IMAGES.at(x, y) / self.length
+        IMAGES.at(x, y) / self.length
     }
 
     /// Rows or columns of cells that a circle may meet.

@@ -8,7 +8,7 @@
 use super::dense::Lu;
 use super::equilibrium::Unsettled;
 use super::events::{Change, Kind};
-use super::interaction::{Effort, Spots, strand_sum};
+use super::interaction::{Effort, Spots};
 use super::jkr::Asperity;
 use super::locate::Point;
 use super::state::Problem;
@@ -64,6 +64,49 @@ pub(crate) struct Place {
     pub(crate) drift: f64,
 }
 
+/// A member as it stood: the asperity, its radius, and by how much that was expected to change \[m\].
+pub(crate) type Stood = (usize, f64, f64);
+
+/// A member as those outside feel it: its radius now and before (0 out of contact), by how much that was expected to change, and how much more load it
+/// has than expected.
+struct Source {
+    asperity: usize,
+    radius: f64,
+    was: f64,
+    more: f64,
+    load: f64,
+}
+
+/// Distance over radius from which on a spot's load alone is felt: what else there is is 2 % of it there, and less beyond.
+const ALOOF: f64 = 2.0;
+
+impl Source {
+    fn before(problem: &Problem, asperity: usize, was: f64, more: f64) -> Self {
+        let sphere = &problem.asperities[asperity];
+        Self { asperity, radius: 0.0, was, more, load: -sphere.load(was) - more * sphere.load_slope(was) }
+    }
+
+    fn new(problem: &Problem, asperity: usize, radius: f64) -> Self {
+        Self { asperity, radius, was: 0.0, more: 0.0, load: problem.asperities[asperity].load(radius) }
+    }
+
+    fn become_of(&mut self, problem: &Problem, radius: f64) {
+        self.radius = radius;
+        self.load += problem.asperities[self.asperity].load(radius);
+    }
+
+    /// What it does at a place beyond what was expected \[m\], without images.
+    fn field(&self, problem: &Problem, place: &[f64; 2], compliance: f64) -> f64 {
+        let r = problem.neighbours.distance(place, &problem.positions[self.asperity]);
+        if r > ALOOF * self.radius.max(self.was) {
+            return compliance * self.load / r;
+        }
+        let field = |a: f64| if a > 0.0 { problem.spot_field(self.asperity, r, a) } else { (0.0, 0.0) };
+        let (was, slope) = field(self.was);
+        field(self.radius).0 - was - self.more * slope
+    }
+}
+
 /// What is held while a patch is solved; the approach is an unknown unless it is what is held.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Hold {
@@ -85,6 +128,8 @@ pub(crate) struct Patch {
     /// Contact radii of the members \[m\].
     pub(crate) radius: Vec<f64>,
     pub(crate) watched: Vec<Place>,
+    /// Whether there are spots outside it: what they do is held, and some digits of what images do are enough.
+    local: bool,
     /// Where the patch has been on its way to an event, if it was followed there by a radius.
     pub(crate) way: Vec<Point>,
     spots: Spots,
@@ -105,9 +150,10 @@ impl Patch {
         contacts: &[(usize, Trace, f64)],
         free: &[(usize, Trace)],
         approach: f64,
+        local: bool,
         effort: &mut Effort,
     ) {
-        (self.approach, self.reference) = (approach, approach);
+        (self.approach, self.reference, self.local) = (approach, approach, local);
         self.members.clear();
         self.way.clear();
         self.radius.clear();
@@ -133,6 +179,21 @@ impl Patch {
             let by_members: f64 = self.row[..n].iter().zip(&speeds).map(|(s, v)| s * v).sum();
             let displaced = approach + problem.heights[*i] - trace.ahead(approach);
             self.watched.push(Place { asperity: *i, outside: displaced - field, drift: bounded(1.0 - trace.rate - by_members) });
+        }
+    }
+
+    /// The patch of these spots (ascending) at an approach \[m\], each with its radius and its displacement by all \[m\], which need be no equilibrium.
+    pub(crate) fn fix(&mut self, problem: &Problem, spots: &[(usize, f64, f64)], approach: f64, effort: &mut Effort) {
+        (self.approach, self.reference, self.local) = (approach, approach, false);
+        self.way.clear();
+        self.watched.clear();
+        self.members.clear();
+        self.members.extend(spots.iter().map(|spot| Place { asperity: spot.0, outside: 0.0, drift: 0.0 }));
+        self.radius.clear();
+        self.radius.extend(spots.iter().map(|spot| spot.1));
+        self.evaluate(problem, effort);
+        for ((member, spot), field) in self.members.iter_mut().zip(spots).zip(&self.field) {
+            member.outside = spot.2 - field;
         }
     }
 
@@ -171,35 +232,37 @@ impl Patch {
     /// Displacement at an asperity by the members \[m\]; the derivatives to their radii are left in `row`.
     fn field_at(&mut self, problem: &Problem, asperity: usize, effort: &mut Effort) -> f64 {
         let mut field = 0.0;
-        problem.field.rows(&self.spots, &[asperity], effort, |_, values, slopes| {
-            field = strand_sum(values);
+        problem.field.rows(&self.spots, &[asperity], self.local, effort, |_, sum, slopes| {
+            field = sum;
             self.row.clear();
             self.row.extend_from_slice(slopes);
         });
         field
     }
 
-    /// Displacements at asperities by the members \[m\].
-    pub(crate) fn fields_at(&mut self, problem: &Problem, asperities: &[usize], effort: &mut Effort) -> Vec<f64> {
-        let mut fields = Vec::with_capacity(asperities.len());
-        problem.field.rows(&self.spots, asperities, effort, |_, values, _| fields.push(strand_sum(values)));
-        fields
+    /// How the members stand, as [`Self::moved_at`] wants it, if nothing more is expected of them.
+    pub(crate) fn stand(&self) -> Vec<Stood> {
+        self.members.iter().zip(&self.radius).map(|(member, a)| (member.asperity, *a, 0.0)).collect()
     }
 
-    /// Displacements at asperities by the members after a way of the approach on which their radii go on at these speeds \[m\].
-    pub(crate) fn fields_ahead(
-        &mut self,
-        problem: &Problem,
-        asperities: &[usize],
-        speeds: &[f64],
-        way: f64,
-        effort: &mut Effort,
-    ) -> Vec<f64> {
-        let mut fields = Vec::with_capacity(asperities.len());
-        problem.field.rows(&self.spots, asperities, effort, |_, values, slopes| {
-            fields.push(strand_sum(values) + way * slopes.iter().zip(speeds).map(|(s, v)| s * v).sum::<f64>());
-        });
-        fields
+    /// By how much the displacements at asperities are other than they were expected to be, when members stood as they did before \[m\]: what the loads
+    /// do from their centres, and near a spot, where that is not enough, its field.
+    pub(crate) fn moved_at(&self, problem: &Problem, asperities: &[usize], centre: &[f64; 2], before: &[Stood]) -> Vec<f64> {
+        let mut sources: Vec<Source> = before.iter().map(|&(i, a, more)| Source::before(problem, i, a, more)).collect();
+        for (member, &a) in self.members.iter().zip(&self.radius) {
+            match before.binary_search_by_key(&member.asperity, |stood| stood.0) {
+                Ok(at) => sources[at].become_of(problem, a),
+                Err(_) => sources.push(Source::new(problem, member.asperity, a)),
+            }
+        }
+        let whole: f64 = sources.iter().map(|source| source.load).sum();
+        let compliance = 1.0 / (PI * problem.material.contact_modulus_pa);
+        let of = |&i: &usize| {
+            let place = &problem.positions[i];
+            let near: f64 = sources.iter().map(|source| source.field(problem, place, compliance)).sum();
+            near + compliance * whole * problem.neighbours.image_kernel(place, centre)
+        };
+        asperities.iter().map(of).collect()
     }
 
     /// Displacement by what is outside, at the present approach \[m\].
@@ -216,8 +279,8 @@ impl Patch {
         self.residual.clear();
         let mut worst = Unsettled { residual_m: 0.0, asperity: self.members.first().map_or(0, |m| m.asperity) };
         let targets: Vec<usize> = self.members.iter().map(|m| m.asperity).collect();
-        problem.field.rows(&self.spots, &targets, effort, |_, values, slopes| {
-            self.field.push(strand_sum(values));
+        problem.field.rows(&self.spots, &targets, self.local, effort, |_, sum, slopes| {
+            self.field.push(sum);
             self.slopes.extend_from_slice(slopes);
         });
         for k in 0..n {
@@ -299,7 +362,7 @@ impl Patch {
     }
 
     /// Newton's method, at most so many iterations, each step shortened down to the share `least` of itself until it descends.
-    fn descend(&mut self, problem: &Problem, hold: Hold, least: f64, most: usize, effort: &mut Effort) -> Result<(), Unsettled> {
+    pub(crate) fn descend(&mut self, problem: &Problem, hold: Hold, least: f64, most: usize, effort: &mut Effort) -> Result<(), Unsettled> {
         let tolerance = problem.tolerance_m();
         let mut start = (self.radius.clone(), self.approach);
         let mut step = (Vec::new(), 0.0);
@@ -411,16 +474,17 @@ impl Patch {
         self.members.iter().zip(&self.radius).map(|(m, a)| part(m.drift) * problem.asperities[m.asperity].load(*a)).sum()
     }
 
-    /// Derivative of the load of the members to the approach, the radii changing at these speeds \[N/m\].
-    pub(crate) fn load_rate(&self, problem: &Problem, speeds: &[f64]) -> f64 {
-        let members = self.members.iter().zip(&self.radius).zip(speeds);
-        members.map(|((m, a), speed)| problem.asperities[m.asperity].load_slope(*a) * speed).sum()
-    }
-
-    /// The same of [`Self::pull`] \[N/m\].
-    pub(crate) fn pull_rate(&self, problem: &Problem, speeds: &[f64]) -> f64 {
-        let members = self.members.iter().zip(&self.radius).zip(speeds);
-        members.map(|((m, a), speed)| part(m.drift) * problem.asperities[m.asperity].load_slope(*a) * speed).sum()
+    /// By how much the load of the members is other than it was expected to be, and by how much what the spots outside do to it is, both as the
+    /// radii were to change \[N\].
+    pub(crate) fn off(&self, problem: &Problem, before: &[Stood]) -> (f64, f64) {
+        let (mut load, mut pull) = (0.0, 0.0);
+        for ((member, &a), &(i, was, more)) in self.members.iter().zip(&self.radius).zip(before) {
+            let asperity = &problem.asperities[i];
+            let off = asperity.load(a) - asperity.load(was) - more * asperity.load_slope(was);
+            load += off;
+            pull += part(member.drift) * off;
+        }
+        (load, pull)
     }
 
     /// Overdamped relaxation `da_i/dt = residual_i` at the present approach, by implicit Euler steps that grow as it comes to rest. Spots

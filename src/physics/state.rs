@@ -1,7 +1,7 @@
 //! The contact as a problem (what is given) and as a state (what is found).
 
 use super::PhysicsError;
-use super::interaction::pair::Spot;
+use super::interaction::pair::{Spot, spot_field_as_printed};
 use super::interaction::{Best, Spots, best};
 use super::jkr::Asperity;
 use super::neighbours::Neighbours;
@@ -142,6 +142,17 @@ impl Problem {
             let [x, y] = self.positions[i];
             Spot { x, y, a, radius: asperity.radius_m(), load: asperity.load(a), load_slope: asperity.load_slope(a) }
         }));
+    }
+
+    /// Displacement at distance r \[m\] from a spot of this radius \[m\], with its derivative to the radius.
+    pub(crate) fn spot_field(&self, i: usize, r: f64, a: f64) -> (f64, f64) {
+        let asperity = &self.asperities[i];
+        if self.rules.interaction == Kind::Point {
+            let unit = 1.0 / (PI * self.material.contact_modulus_pa * r);
+            return (asperity.load(a) * unit, asperity.load_slope(a) * unit);
+        }
+        let pull = (2.0 * PI * self.material.work_of_adhesion_j_m2 / self.material.contact_modulus_pa).sqrt();
+        spot_field_as_printed(r, a, asperity.radius_m(), pull, self.rules.slips)
     }
 
     /// The spots of a state as sources.

@@ -44,10 +44,9 @@ impl Best {
         if targets.len() < self.least / 2 { &self.direct } else { self.for_spots(spots) }
     }
 
-    /// Fields of all spots at each of `targets`, one by one \[m\], and their derivatives to the radii: `visit` is given the number of the target
-    /// in the list, the fields and the derivatives.
-    pub(crate) fn rows(&self, spots: &Spots, targets: &[usize], effort: &mut Effort, visit: impl FnMut(usize, &[f64], &[f64])) {
-        self.direct.rows(spots, targets, effort, visit);
+    /// As [`DirectSum::rows`] has it.
+    pub(crate) fn rows(&self, spots: &Spots, targets: &[usize], rough: bool, effort: &mut Effort, visit: impl FnMut(usize, f64, &[f64])) {
+        self.direct.rows(spots, targets, rough, effort, visit);
     }
 }
 

@@ -1,5 +1,6 @@
 //! Direct sums over all pairs: exact, and the measure of every faster way.
 
+use super::centre::{CENTRE, Centre};
 use super::ewald::{IMAGES, ORDERS, RemainderSeries};
 use super::moments::{Moments, product};
 use super::pair::{LANES, Place, SpotColumns, sag, spot_fields};
@@ -65,136 +66,156 @@ impl DirectSum {
         Moments::of(self.kind, &spots.columns, self.pull, self.compliance, self.length)
     }
 
-    /// Fields of all spots at each of `targets`, one by one \[m\], and their derivatives to the radii: `visit` is given the number of the target
-    /// in the list, the fields and the derivatives.
-    pub(crate) fn rows(&self, spots: &Spots, targets: &[usize], effort: &mut Effort, mut visit: impl FnMut(usize, &[f64], &[f64])) {
+    /// Displacement by all spots at each of `targets` \[m\], and its derivatives to the radii of each: `visit` is given the number of the target in the
+    /// list, the displacement and the derivatives. Where `rough`, some digits of what images do are enough.
+    pub(crate) fn rows(
+        &self,
+        spots: &Spots,
+        targets: &[usize],
+        rough: bool,
+        effort: &mut Effort,
+        mut visit: impl FnMut(usize, f64, &[f64]),
+    ) {
         let n = spots.index.len();
         let moments = self.moments(spots);
-        let (mut values, mut slopes) = (vec![0.0; spots.columns.padded()], vec![0.0; spots.columns.padded()]);
+        let mut slopes = vec![0.0; spots.columns.padded()];
         for (k, target) in targets.iter().enumerate() {
-            self.row(spots, &moments, *target, &mut values, &mut slopes);
-            visit(k, &values[..n], &slopes[..n]);
+            let sum = self.row::<true>(spots, &moments, *target, rough, &mut slopes);
+            visit(k, sum, &slopes[..n]);
         }
         effort.pairs += (n * targets.len()) as u64;
     }
 
-    /// Fields of all spots at asperity `target`, one by one, with their slopes.
-    fn row(&self, spots: &Spots, moments: &Moments, target: usize, values: &mut [f64], slopes: &mut [f64]) {
+    /// Displacement at asperity `target` by all spots, with its derivatives if they are wanted.
+    fn row<const SLOPES: bool>(&self, spots: &Spots, moments: &Moments, target: usize, rough: bool, slopes: &mut [f64]) -> f64 {
         let columns = &spots.columns;
         let [x, y] = self.positions[target];
         let inverse_length = if self.periodic { 1.0 / self.length } else { 0.0 };
         let place = Place { x, y, length: self.length, inverse_length, pull: self.pull, sag: self.sag };
-        match self.kind {
+        let mut sum = match self.kind {
             Kind::None => {
-                values.fill(0.0);
                 slopes.fill(0.0);
-                return;
+                return 0.0;
             }
-            Kind::Spots => spot_fields(place, columns, values, slopes),
+            Kind::Spots => spot_fields::<SLOPES>(place, columns, slopes),
             Kind::Point => {
-                for j in 0..columns.len() {
+                let mut sum = 0.0;
+                for (j, load) in columns.load[..columns.len()].iter().enumerate() {
                     let [dx, dy] = [x - columns.x[j], y - columns.y[j]].map(|d| d - self.length * (d * inverse_length).round_ties_even());
-                    let unit = self.compliance / dx.hypot(dy);
-                    values[j] = columns.load[j] * unit;
-                    slopes[j] = columns.load_slope[j] * unit;
+                    let r = dx.hypot(dy);
+                    let unit = if r > 0.0 { self.compliance / r } else { 0.0 };
+                    sum += load * unit;
+                    if SLOPES {
+                        slopes[j] = columns.load_slope[j] * unit;
+                    }
                 }
+                sum
             }
-        }
-        let me = spots.index.binary_search(&target);
-        if let Ok(me) = me {
-            values[me] = 0.0;
-            slopes[me] = 0.0;
-        }
+        };
         if self.periodic {
             let n = self.positions.len();
-            match self.table.get(target * n..(target + 1) * n) {
-                Some(line) => known_image_fields(&spots.index, line, moments, values, slopes),
-                None => image_fields(place, columns, moments, values, slopes),
-            }
+            sum += if rough {
+                rough_image_fields::<SLOPES>(place, columns, moments, slopes)
+            } else {
+                match self.table.get(target * n..(target + 1) * n) {
+                    Some(line) => known_image_fields::<SLOPES>(&spots.index, line, moments, slopes),
+                    None => image_fields::<SLOPES>(place, columns, moments, slopes),
+                }
+            };
         }
+        sum
     }
 }
 
-/// Adds to the fields of the nearest images those of all others.
+/// The sum of the fields of all images but the nearest; their derivatives are added.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-fn image_fields(place: Place, spots: &SpotColumns, moments: &Moments, values: &mut [f64], slopes: &mut [f64]) {
+fn image_fields<const SLOPES: bool>(place: Place, spots: &SpotColumns, moments: &Moments, slopes: &mut [f64]) -> f64 {
     let images: &RemainderSeries = &IMAGES;
     let columns = [&spots.x, &spots.y].map(|column| column.as_chunks::<LANES>().0);
+    let mut all = [0.0; ORDERS];
     for (pass, (x, y)) in columns[0].iter().zip(columns[1]).enumerate() {
-        let (mut dx, mut dy) = ([0.0; LANES], [0.0; LANES]);
-        for k in 0..LANES {
-            dx[k] = (place.x - x[k]) * place.inverse_length;
-            dy[k] = (place.y - y[k]) * place.inverse_length;
-            dx[k] -= dx[k].round_ties_even();
-            dy[k] -= dy[k].round_ties_even();
-        }
+        let (dx, dy) = in_sides(place, x, y);
         let sums = images.local(&dx, &dy);
         let from = pass * LANES;
         for (sums, j) in sums.iter().zip(from..spots.len()) {
-            values[j] += product(sums, &moments.value[j]);
-            slopes[j] += product(sums, &moments.slope[j]);
+            gather(&mut all, sums, &moments.value[j]);
+            if SLOPES {
+                slopes[j] += product(sums, &moments.slope[j]);
+            }
         }
     }
+    all.iter().sum()
+}
+
+/// The same to some digits.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
+fn rough_image_fields<const SLOPES: bool>(place: Place, spots: &SpotColumns, moments: &Moments, slopes: &mut [f64]) -> f64 {
+    let centre: &Centre = &CENTRE;
+    let columns = [&spots.x, &spots.y].map(|column| column.as_chunks::<LANES>().0);
+    let mut sum = 0.0;
+    for (pass, (x, y)) in columns[0].iter().zip(columns[1]).enumerate() {
+        let (dx, dy) = in_sides(place, x, y);
+        let [first, second] = centre.sums(&dx, &dy);
+        let from = pass * LANES;
+        for (k, j) in (from..spots.len().min(from + LANES)).enumerate() {
+            sum += first[k].mul_add(moments.value[j][0], second[k] * moments.value[j][1]);
+            if SLOPES {
+                slopes[j] += first[k].mul_add(moments.slope[j][0], second[k] * moments.slope[j][1]);
+            }
+        }
+    }
+    sum
 }
 
 /// The same by the sums that are known.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-fn known_image_fields(index: &[usize], line: &[[f64; ORDERS]], moments: &Moments, values: &mut [f64], slopes: &mut [f64]) {
+fn known_image_fields<const SLOPES: bool>(index: &[usize], line: &[[f64; ORDERS]], moments: &Moments, slopes: &mut [f64]) -> f64 {
+    let mut all = [[0.0; ORDERS]; 2];
     for (j, &source) in index.iter().enumerate() {
-        values[j] += product(&line[source], &moments.value[j]);
-        slopes[j] += product(&line[source], &moments.slope[j]);
+        gather(&mut all[j % 2], &line[source], &moments.value[j]);
+        if SLOPES {
+            slopes[j] += product(&line[source], &moments.slope[j]);
+        }
+    }
+    all.iter().flatten().sum()
+}
+
+#[inline(always)]
+fn gather(all: &mut [f64; ORDERS], sums: &[f64; ORDERS], moments: &[f64; ORDERS]) {
+    for m in 0..ORDERS {
+        all[m] = sums[m].mul_add(moments[m], all[m]);
     }
 }
 
-/// A sum in eight fixed strands: the same on every machine, and open to vector instructions.
-pub(crate) fn strand_sum(values: &[f64]) -> f64 {
-    let mut strands = [0.0; 8];
-    let (whole, rest) = values.as_chunks::<8>();
-    for chunk in whole {
-        for (strand, value) in strands.iter_mut().zip(chunk) {
-            *strand += value;
-        }
+/// Distances along both directions to the nearest images, in sides.
+#[inline(always)]
+fn in_sides(place: Place, x: &[f64; LANES], y: &[f64; LANES]) -> ([f64; LANES], [f64; LANES]) {
+    let (mut dx, mut dy) = ([0.0; LANES], [0.0; LANES]);
+    for k in 0..LANES {
+        dx[k] = (place.x - x[k]) * place.inverse_length;
+        dy[k] = (place.y - y[k]) * place.inverse_length;
+        dx[k] -= dx[k].round_ties_even();
+        dy[k] -= dy[k].round_ties_even();
     }
-    for (strand, value) in strands.iter_mut().zip(rest) {
-        *strand += value;
-    }
-    strands.iter().sum()
+    (dx, dy)
 }
 
 impl Interaction for DirectSum {
     fn displacements(&self, spots: &Spots, targets: &[usize], displacements: &mut Vec<f64>, effort: &mut Effort) {
         displacements.clear();
-        displacements.resize(targets.len(), 0.0);
-        if self.kind == Kind::None {
-            return;
-        }
-        let n = spots.index.len();
         let moments = self.moments(spots);
-        let (mut values, mut slopes) = (vec![0.0; spots.columns.padded()], vec![0.0; spots.columns.padded()]);
-        for (target, displacement) in targets.iter().zip(displacements.iter_mut()) {
-            self.row(spots, &moments, *target, &mut values, &mut slopes);
-            *displacement = strand_sum(&values[..n]);
-        }
-        effort.pairs += (n * targets.len()) as u64;
+        displacements.extend(targets.iter().map(|target| self.row::<false>(spots, &moments, *target, false, &mut [])));
+        effort.pairs += (spots.index.len() * targets.len()) as u64;
     }
 
     fn linearise(&self, spots: &Spots, displacements: &mut Vec<f64>, tangent: &mut Tangent, effort: &mut Effort) {
         let n = spots.index.len();
         let mut matrix = tangent.take_dense(n);
         displacements.clear();
-        displacements.resize(n, 0.0);
-        if n == 0 || self.kind == Kind::None {
-            tangent.set_dense(n, matrix);
-            return;
-        }
-        let moments = self.moments(spots);
-        let (mut values, mut slopes) = (vec![0.0; spots.columns.padded()], vec![0.0; spots.columns.padded()]);
-        for ((target, displacement), line) in spots.index.iter().zip(displacements.iter_mut()).zip(matrix.chunks_mut(n)) {
-            self.row(spots, &moments, *target, &mut values, &mut slopes);
-            line.copy_from_slice(&slopes[..n]);
-            *displacement = strand_sum(&values[..n]);
-        }
-        effort.pairs += (n * n) as u64;
+        self.rows(spots, &spots.index, false, effort, |k, sum, slopes| {
+            displacements.push(sum);
+            matrix[k * n..(k + 1) * n].copy_from_slice(slopes);
+        });
         tangent.set_dense(n, matrix);
     }
 
@@ -207,21 +228,11 @@ impl Interaction for DirectSum {
         slopes: &mut Vec<f64>,
         effort: &mut Effort,
     ) {
-        for column in [&mut *displacements, &mut *slopes] {
-            column.clear();
-            column.resize(targets.len(), 0.0);
-        }
-        if self.kind == Kind::None {
-            return;
-        }
-        let n = spots.index.len();
-        let moments = self.moments(spots);
-        let (mut fields, mut gradients) = (vec![0.0; spots.columns.padded()], vec![0.0; spots.columns.padded()]);
-        for ((target, displacement), slope) in targets.iter().zip(displacements.iter_mut()).zip(slopes.iter_mut()) {
-            self.row(spots, &moments, *target, &mut fields, &mut gradients);
-            *displacement = strand_sum(&fields[..n]);
-            *slope = dot(&gradients[..n], &rates[..n]);
-        }
-        effort.pairs += (n * targets.len()) as u64;
+        displacements.clear();
+        slopes.clear();
+        self.rows(spots, targets, false, effort, |_, sum, row| {
+            displacements.push(sum);
+            slopes.push(dot(row, rates));
+        });
     }
 }

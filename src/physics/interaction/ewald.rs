@@ -312,7 +312,7 @@ fn fit<const N: usize>(rows: &[Vec<[f64; ORDERS]>], cells: usize) -> Vec<[[[f64;
 }
 
 /// `T_0 … T_(n−1)` in powers of their argument.
-fn chebyshev_monomials(n: usize) -> Vec<Vec<f64>> {
+pub(super) fn chebyshev_monomials(n: usize) -> Vec<Vec<f64>> {
     let mut all = vec![vec![1.0], vec![0.0, 1.0]];
     for m in 2..n {
         let mut next = vec![0.0; m + 1];
@@ -328,7 +328,7 @@ fn chebyshev_monomials(n: usize) -> Vec<Vec<f64>> {
 }
 
 /// Coefficient of `T_m T_n` of what was sampled at the Chebyshev nodes.
-fn chebyshev_coefficient(samples: &[Vec<[f64; ORDERS]>], m: usize, n: usize) -> [f64; ORDERS] {
+pub(super) fn chebyshev_coefficient(samples: &[Vec<[f64; ORDERS]>], m: usize, n: usize) -> [f64; ORDERS] {
     let nodes = samples.len();
     let angle = |k: usize| PI * (k as f64 + 0.5) / nodes as f64;
     let halves = if m == 0 { 0.5 } else { 1.0 } * if n == 0 { 0.5 } else { 1.0 };
@@ -347,7 +347,7 @@ fn chebyshev_coefficient(samples: &[Vec<[f64; ORDERS]>], m: usize, n: usize) -> 
 }
 
 /// Coefficients of `T_m(ξ) T_n(η)`, `m + n ≤ DEGREE`, of [`image_sums`] by rows of m.
-fn global_series() -> Vec<Vec<[f64; ORDERS]>> {
+pub(super) fn global_series() -> Vec<Vec<[f64; ORDERS]>> {
     let nodes = DEGREE + 4;
     let angle = |k: usize| PI * (k as f64 + 0.5) / nodes as f64;
     // ξ = 8x² − 1 ∈ [−1, 1] for x ∈ [0, ½].
@@ -356,7 +356,7 @@ fn global_series() -> Vec<Vec<[f64; ORDERS]>> {
     (0..=DEGREE).map(|m| (0..=DEGREE - m).map(|n| chebyshev_coefficient(&samples, m, n)).collect()).collect()
 }
 
-fn global(rows: &[Vec<[f64; ORDERS]>], x: f64, y: f64) -> [f64; ORDERS] {
+pub(super) fn global(rows: &[Vec<[f64; ORDERS]>], x: f64, y: f64) -> [f64; ORDERS] {
     let xi = 8.0 * x * x - 1.0;
     let eta = 8.0 * y * y - 1.0;
     let (mut next, mut after) = ([0.0; ORDERS], [0.0; ORDERS]);

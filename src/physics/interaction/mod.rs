@@ -1,6 +1,7 @@
 //! The displacement field of contact spots, behind one small trait.
 
 mod best;
+mod centre;
 mod direct;
 pub mod ewald;
 mod fast;
@@ -10,7 +11,6 @@ pub mod pair;
 use super::krylov::dot;
 pub use best::{Best, best};
 pub use direct::DirectSum;
-pub(crate) use direct::strand_sum;
 pub use fast::FastSum;
 use fast::Sparse;
 use pair::SpotColumns;
@@ -53,6 +53,12 @@ impl Tangent {
             }
             Form::Sparse(sparse) => sparse.product(x, y),
         }
+    }
+
+    /// Whether it has all digits; made fast, it has some.
+    #[must_use]
+    pub fn is_exact(&self) -> bool {
+        matches!(self.0, Form::Dense(..))
     }
 
     /// `∂ŵ_i/∂a_i`: what a spot's own images and the background do to it.

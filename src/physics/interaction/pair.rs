@@ -169,8 +169,8 @@ pub fn dimensionless_field(u: f64) -> (f64, f64) {
 /// Sources that one pass takes together; the order of a sum depends on it, and on nothing of the machine.
 pub(crate) const LANES: usize = 8;
 
-/// Sources of a displacement field as columns, so that one instruction takes several. The columns are filled up with spots far away from
-/// anything to whole passes; [`Self::len`] counts the true ones.
+/// Sources of a displacement field as columns, so that one instruction takes several. The columns are filled up to whole passes with spots
+/// that have no field; [`Self::len`] counts the true ones.
 #[derive(Debug, Clone, Default)]
 pub struct SpotColumns {
     count: usize,
@@ -201,24 +201,25 @@ impl SpotColumns {
         }
         self.count = 0;
         for spot in spots {
-            self.push(&spot);
+            let root_a = spot.a.sqrt();
+            self.push([spot.x, spot.y, spot.a, root_a, 1.0 / root_a, 1.0 / spot.radius, spot.load, spot.load_slope]);
             self.count += 1;
         }
         while !self.x.len().is_multiple_of(LANES) {
-            self.push(&Spot { x: 0.0, y: 0.0, a: 1.0, radius: 1.0, load: 0.0, load_slope: 0.0 });
+            // A flat spot without adhesion has no field.
+            self.push([0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
         }
     }
 
-    fn push(&mut self, spot: &Spot) {
-        let root_a = spot.a.sqrt();
-        self.x.push(spot.x);
-        self.y.push(spot.y);
-        self.a.push(spot.a);
+    fn push(&mut self, [x, y, a, root_a, inverse_root_a, inverse_radius, load, load_slope]: [f64; 8]) {
+        self.x.push(x);
+        self.y.push(y);
+        self.a.push(a);
         self.root_a.push(root_a);
-        self.inverse_root_a.push(1.0 / root_a);
-        self.inverse_radius.push(1.0 / spot.radius);
-        self.load.push(spot.load);
-        self.load_slope.push(spot.load_slope);
+        self.inverse_root_a.push(inverse_root_a);
+        self.inverse_radius.push(inverse_radius);
+        self.load.push(load);
+        self.load_slope.push(load_slope);
     }
 
     /// How many spots there are.
@@ -252,15 +253,14 @@ pub(crate) struct Place {
     pub(crate) sag: f64,
 }
 
-/// The fields of all sources at one place, each written on its own: `values[j]` and `slopes[j]`, both as long as the filled columns.
-///
-/// The caller sums, leaving out the source at the place itself; a source at distance 0 gives the field at its own centre.
+/// The sum of the fields of all sources at one place, but for that of the source at the place itself; where `SLOPES`, the derivative of each to its radius
+/// is written into `slopes`, as long as the filled columns.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-pub(crate) fn spot_fields(place: Place, spots: &SpotColumns, values: &mut [f64], slopes: &mut [f64]) {
+pub(crate) fn spot_fields<const SLOPES: bool>(place: Place, spots: &SpotColumns, slopes: &mut [f64]) -> f64 {
     let columns = [&spots.x, &spots.y, &spots.a, &spots.root_a, &spots.inverse_root_a, &spots.inverse_radius];
     let [x, y, a, root_a, inverse_root_a, inverse_radius] = columns.map(|column| column.as_chunks::<LANES>().0);
-    let targets = values.as_chunks_mut::<LANES>().0.iter_mut().zip(slopes.as_chunks_mut::<LANES>().0);
-    for (pass, (values, slopes)) in targets.enumerate() {
+    let mut strands = [0.0; LANES];
+    for pass in 0..x.len() {
         let mut r2 = [0.0; LANES];
         for k in 0..LANES {
             let dx = place.x - x[pass][k];
@@ -269,6 +269,15 @@ pub(crate) fn spot_fields(place: Place, spots: &SpotColumns, values: &mut [f64],
             let dy = dy - place.length * (dy * place.inverse_length).round_ties_even();
             r2[k] = dx.mul_add(dx, dy * dy);
         }
-        (*values, *slopes) = field(&r2, &a[pass], &root_a[pass], &inverse_root_a[pass], &inverse_radius[pass], place.pull, place.sag);
+        let (value, slope) = field(&r2, &a[pass], &root_a[pass], &inverse_root_a[pass], &inverse_radius[pass], place.pull, place.sag);
+        for k in 0..LANES {
+            strands[k] += if r2[k] == 0.0 { 0.0 } else { value[k] };
+        }
+        if SLOPES {
+            for k in 0..LANES {
+                slopes[pass * LANES + k] = if r2[k] == 0.0 { 0.0 } else { slope[k] };
+            }
+        }
     }
+    strands.iter().sum()
 }

@@ -17,9 +17,9 @@ use super::moments::{Moments, product};
 use super::pair::{SpotColumns, sag};
 use super::{Effort, Interaction, Spots, Tangent};
 use crate::model::{Interaction as Kind, Material, Slips};
-use mesh::{Reader, Source, Splines, Work, read, splines, transform};
-use near::{Group, Measure, Rest, Row};
-use plan::{Accuracy, Plan, mesh_size};
+use mesh::{Level, Reader, Source, Splines, Work, read, splines, transform};
+use near::{Found, Group, Measure, Rest, Rows};
+use plan::{Accuracy, Plan, ROUGH_ORDERS, ROUGH_WIDTH, WIDTH, mesh_size};
 use rayon::prelude::*;
 use std::cell::RefCell;
 use std::f64::consts::PI;
@@ -56,9 +56,50 @@ pub struct FastSum {
 struct Field {
     moments: Moments,
     groups: Vec<Group>,
-    /// Plans that are in use with their spots and where these lie on their meshes, the finest first.
-    levels: Vec<(Arc<Plan>, Vec<usize>, Vec<Splines>)>,
+    /// Plans that are in use, the finest first, each with its spots.
+    levels: Vec<(Arc<Plan>, Vec<Placed>)>,
 }
+
+/// A spot and its place in units of the side.
+type Placed = (usize, [f64; 2]);
+
+/// Sources on their meshes and readers there, for displacements or for their derivatives.
+#[derive(Debug, Clone, Default)]
+struct Meshes<const W: usize, const O: usize> {
+    levels: Vec<Level<W, O>>,
+    readers: Vec<Reader<W>>,
+}
+
+impl<const W: usize, const O: usize> Meshes<W, O> {
+    /// Of a field, on its meshes of this `rank` and with the moments given, at targets in units of the side.
+    fn new(field: &Field, rank: usize, moments: &[[f64; ORDERS]], targets: &[[f64; 2]]) -> Self {
+        let of = |(plan, members): &(Arc<Plan>, Vec<Placed>)| {
+            let mesh = plan.meshes[rank].clone();
+            let places: Vec<[f64; 2]> = members.iter().map(|member| member.1).collect();
+            let splines: Vec<Splines<W, O>> = splines(&places, mesh.size);
+            let sources = members.iter().zip(&splines).map(|((j, _), splines)| Source::new(*j, splines, mesh.size, &moments[*j]));
+            (mesh.clone(), sources.collect())
+        };
+        let levels: Vec<Level<W, O>> = field.levels.iter().map(of).collect();
+        let readers = levels.first().map_or(Vec::new(), |(mesh, _)| splines::<W, O>(targets, mesh.size).iter().map(Reader::new).collect());
+        Self { levels, readers }
+    }
+
+    /// Adds the fields at the targets to `values`; each source counts `factors` of its spot, or once.
+    fn add(&self, factors: Option<&[f64]>, work: &mut Work, values: &mut [f64]) {
+        if let Some((mesh, _)) = self.levels.first() {
+            transform(&self.levels, factors, work);
+            read(&self.readers, mesh.size, work, values);
+        }
+    }
+}
+
+type Fine = Meshes<WIDTH, ORDERS>;
+type Rough = Meshes<ROUGH_WIDTH, ROUGH_ORDERS>;
+
+/// Which of the meshes of a plan.
+const FINE: usize = 0;
+const ROUGH: usize = 1;
 
 impl FastSum {
     /// Asperities at `positions` \[m\] on the periodic square of side `length_m`; every displacement is right to `tolerance` times the
@@ -129,9 +170,8 @@ impl FastSum {
             if !members.is_empty() {
                 let plan = self.plan(step);
                 groups.push(Group::new(Rest::Mesh(plan.clone()), &members, columns, &moments, length));
-                let places: Vec<_> = members.iter().map(|j| [columns.x[*j] / length, columns.y[*j] / length]).collect();
-                let splines = splines(&places, plan.mesh);
-                levels.push((plan, members, splines));
+                let placed = members.iter().map(|j| (*j, [columns.x[*j] / length, columns.y[*j] / length]));
+                levels.push((plan, placed.collect()));
             }
         }
         if !large.is_empty() {
@@ -140,61 +180,40 @@ impl FastSum {
         Field { moments, groups, levels }
     }
 
-    /// The sources on their meshes, with the moments given.
-    fn sources(field: &Field, moments: &[[f64; ORDERS]]) -> Vec<(Arc<Plan>, Vec<Source>)> {
-        let of = |(plan, members, splines): &(Arc<Plan>, Vec<usize>, Vec<Splines>)| {
-            let sources = members.iter().zip(splines).map(|(j, splines)| Source::new(*j, splines, plan.mesh, &moments[*j])).collect();
-            (plan.clone(), sources)
-        };
-        field.levels.iter().map(of).collect()
+    /// Places of targets in units of the side.
+    fn places(&self, targets: &[usize]) -> Vec<[f64; 2]> {
+        targets.iter().map(|t| self.positions[*t].map(|p| p / self.measure.length)).collect()
     }
 
-    fn readers(&self, field: &Field, targets: &[usize]) -> (usize, Vec<Reader>) {
-        let mesh = field.levels.first().map_or(0, |(plan, ..)| plan.mesh);
-        if mesh == 0 {
-            return (0, Vec::new());
-        }
-        let places: Vec<_> = targets.iter().map(|t| self.positions[*t].map(|p| p / self.measure.length)).collect();
-        (mesh, splines(&places, mesh).iter().map(Reader::new).collect())
-    }
-
-    /// Near fields of all targets, each made into something by `take`; in parallel, and in their order.
-    fn near<T: Send>(
-        &self,
-        field: &Field,
-        spots: &Spots,
-        targets: &[usize],
-        effort: &mut Effort,
-        take: impl Fn(&Row) -> T + Sync,
-    ) -> Vec<T> {
-        let of = |target: &usize, row: &mut Row| {
-            row.clear();
-            let me = spots.index.binary_search(target).ok();
-            for group in &field.groups {
-                group.add(self.measure, self.positions[*target], me, row);
+    /// Near fields of all targets, in parallel and in their order: so many targets by each of the rows.
+    fn near<const SLOPES: bool>(&self, field: &Field, targets: &[usize], effort: &mut Effort) -> Vec<Rows> {
+        let rows = |found: &mut Found, targets: &[usize]| {
+            let mut rows = Rows::default();
+            for target in targets {
+                rows.starts.push(rows.slopes.len());
+                let sums = field.groups.iter().map(|group| group.add::<SLOPES>(self.measure, self.positions[*target], found, &mut rows));
+                let sum = sums.sum();
+                rows.sums.push(sum);
             }
-            (row.spots.len() as u64, take(row))
+            rows.starts.push(rows.slopes.len());
+            rows
         };
-        let found: Vec<(u64, T)> =
-            targets.par_iter().with_min_len(TOGETHER).map_init(Row::default, |row, target| of(target, row)).collect();
-        effort.pairs += found.iter().map(|(pairs, _)| pairs).sum::<u64>();
-        found.into_iter().map(|(_, made)| made).collect()
+        let all: Vec<Rows> = targets.par_chunks(TOGETHER).map_init(Found::default, rows).collect();
+        effort.pairs += all.iter().map(|rows| rows.pairs).sum::<u64>();
+        all
     }
 }
 
 impl Interaction for FastSum {
     fn displacements(&self, spots: &Spots, targets: &[usize], displacements: &mut Vec<f64>, effort: &mut Effort) {
         displacements.clear();
-        displacements.resize(targets.len(), 0.0);
         if self.measure.kind == Kind::None || spots.index.is_empty() {
+            displacements.resize(targets.len(), 0.0);
             return;
         }
         let field = self.field(spots, targets.len());
-        *displacements = self.near(&field, spots, targets, effort, |row| row.values.iter().sum());
-        let mut work = Work::default();
-        let (mesh, readers) = self.readers(&field, targets);
-        transform(&Self::sources(&field, &field.moments.value), None, &mut work);
-        read(&readers, mesh, &work, displacements);
+        displacements.extend(self.near::<false>(&field, targets, effort).iter().flat_map(|rows| &rows.sums));
+        Fine::new(&field, FINE, &field.moments.value, &self.places(targets)).add(None, &mut Work::default(), displacements);
     }
 
     fn approach(
@@ -206,29 +225,30 @@ impl Interaction for FastSum {
         slopes: &mut Vec<f64>,
         effort: &mut Effort,
     ) {
-        for column in [&mut *displacements, &mut *slopes] {
-            column.clear();
-            column.resize(targets.len(), 0.0);
-        }
+        displacements.clear();
+        slopes.clear();
         if self.measure.kind == Kind::None || spots.index.is_empty() {
+            displacements.resize(targets.len(), 0.0);
+            slopes.resize(targets.len(), 0.0);
             return;
         }
         let field = self.field(spots, targets.len());
-        let along = |row: &Row| row.slopes.iter().zip(&row.spots).map(|(s, j)| s * rates[*j]).sum::<f64>();
-        let found = self.near(&field, spots, targets, effort, |row| (row.values.iter().sum::<f64>(), along(row)));
-        (*displacements, *slopes) = found.into_iter().unzip();
-        let mut work = Work::default();
-        let (mesh, readers) = self.readers(&field, targets);
-        transform(&Self::sources(&field, &field.moments.value), None, &mut work);
-        read(&readers, mesh, &work, displacements);
-        transform(&Self::sources(&field, &field.moments.slope), Some(rates), &mut work);
-        read(&readers, mesh, &work, slopes);
+        for rows in self.near::<true>(&field, targets, effort) {
+            displacements.extend_from_slice(&rows.sums);
+            slopes.extend(rows.starts.windows(2).map(|ends| {
+                let entries = rows.slopes[ends[0]..ends[1]].iter().zip(&rows.spots[ends[0]..ends[1]]);
+                entries.map(|(slope, j)| slope * rates[*j as usize]).sum::<f64>()
+            }));
+        }
+        let (mut work, places) = (Work::default(), self.places(targets));
+        Fine::new(&field, FINE, &field.moments.value, &places).add(None, &mut work, displacements);
+        Rough::new(&field, ROUGH, &field.moments.slope, &places).add(Some(rates), &mut work, slopes);
     }
 
     fn linearise(&self, spots: &Spots, displacements: &mut Vec<f64>, tangent: &mut Tangent, effort: &mut Effort) {
         displacements.clear();
-        displacements.resize(spots.index.len(), 0.0);
         if self.measure.kind == Kind::None || spots.index.is_empty() {
+            displacements.resize(spots.index.len(), 0.0);
             let zeros = tangent.take_dense(spots.index.len());
             tangent.set_dense(spots.index.len(), zeros);
             return;
@@ -239,23 +259,18 @@ impl Interaction for FastSum {
         sparse.columns.clear();
         sparse.values.clear();
         sparse.starts.push(0);
-        let rows = self.near(&field, spots, &spots.index, effort, |row| {
-            let columns: Vec<u32> = row.spots.iter().map(|j| *j as u32).collect();
-            (row.values.iter().sum::<f64>(), columns, row.slopes.clone())
-        });
-        for ((value, columns, slopes), displacement) in rows.iter().zip(displacements.iter_mut()) {
-            *displacement = *value;
-            sparse.columns.extend_from_slice(columns);
-            sparse.values.extend_from_slice(slopes);
-            sparse.starts.push(sparse.values.len());
+        for rows in self.near::<true>(&field, &spots.index, effort) {
+            displacements.extend_from_slice(&rows.sums);
+            let before = sparse.values.len();
+            sparse.columns.extend_from_slice(&rows.spots);
+            sparse.values.extend_from_slice(&rows.slopes);
+            sparse.starts.extend(rows.starts[1..].iter().map(|end| before + end));
         }
         let own = IMAGES.sums(0.0, 0.0);
         sparse.own = field.moments.slope.iter().map(|slope| product(&own, slope)).collect();
-        (sparse.mesh, sparse.readers) = self.readers(&field, &spots.index);
-        let work = sparse.work.get_mut();
-        transform(&Self::sources(&field, &field.moments.value), None, work);
-        read(&sparse.readers, sparse.mesh, work, displacements);
-        sparse.levels = Self::sources(&field, &field.moments.slope);
+        let places = self.places(&spots.index);
+        Fine::new(&field, FINE, &field.moments.value, &places).add(None, sparse.work.get_mut(), displacements);
+        sparse.far = Rough::new(&field, ROUGH, &field.moments.slope, &places);
         tangent.set_sparse(sparse);
     }
 }
@@ -268,9 +283,7 @@ pub(super) struct Sparse {
     columns: Vec<u32>,
     values: Vec<f64>,
     own: Vec<f64>,
-    levels: Vec<(Arc<Plan>, Vec<Source>)>,
-    mesh: usize,
-    readers: Vec<Reader>,
+    far: Rough,
     work: RefCell<Work>,
 }
 
@@ -290,9 +303,7 @@ impl Sparse {
             }
             *yi = strands.iter().sum();
         }
-        let work = &mut *self.work.borrow_mut();
-        transform(&self.levels, Some(x), work);
-        read(&self.readers, self.mesh, work, y);
+        self.far.add(Some(x), &mut self.work.borrow_mut(), y);
     }
 
     pub(super) fn own(&self, i: usize) -> f64 {

@@ -53,22 +53,22 @@ pub(super) struct Measure {
     pub(super) length: f64,
 }
 
-/// Fields of near sources at one target: spot numbers, displacements, derivatives to the radii.
+/// Fields of near sources at targets: of each target the displacement, and where its entries begin; of each entry the spot and the derivative to its
+/// radius, if they are wanted.
 #[derive(Debug, Default)]
-pub(super) struct Row {
-    pub(super) spots: Vec<usize>,
-    pub(super) values: Vec<f64>,
+pub(super) struct Rows {
+    pub(super) sums: Vec<f64>,
+    pub(super) starts: Vec<usize>,
+    pub(super) spots: Vec<u32>,
     pub(super) slopes: Vec<f64>,
-    found: Vec<usize>,
-    r2: Vec<f64>,
+    pub(super) pairs: u64,
 }
 
-impl Row {
-    pub(super) fn clear(&mut self) {
-        self.spots.clear();
-        self.values.clear();
-        self.slopes.clear();
-    }
+/// Sources that were found near a target, and the squares of their distances \[m²\].
+#[derive(Debug, Default)]
+pub(super) struct Found {
+    numbers: Vec<usize>,
+    r2: Vec<f64>,
 }
 
 impl Group {
@@ -115,16 +115,20 @@ impl Group {
         }
     }
 
-    /// Adds the fields at the place `[x, y]` \[m\] to `row`; `me` is the number of the spot that has its centre there.
-    pub(super) fn add(&self, measure: Measure, place: [f64; 2], me: Option<usize>, row: &mut Row) {
-        row.found.clear();
-        row.r2.clear();
+    /// The displacement at the place `[x, y]` \[m\]; the entries are added to `rows` where `SLOPES`.
+    pub(super) fn add<const SLOPES: bool>(&self, measure: Measure, place: [f64; 2], found: &mut Found, rows: &mut Rows) -> f64 {
+        found.numbers.clear();
+        found.r2.clear();
         let reach2 = match &self.rest {
             Rest::Mesh(plan) => (plan.reach * measure.length).powi(2),
             Rest::Images => f64::INFINITY,
         };
+        let mut look = |range: std::ops::Range<usize>| {
+            let (x, y) = (&self.x[range.clone()], &self.y[range.clone()]);
+            search(x, y, range.start, measure.length, place, reach2, &mut found.numbers, &mut found.r2);
+        };
         if 2 * self.span + 1 >= self.cells {
-            self.search(0..self.spots.len(), measure.length, place, reach2, row);
+            look(0..self.spots.len());
         } else {
             let [cx, cy] = place.map(|p| cell_of(p, measure.length, self.cells));
             for i in 0..=2 * self.span {
@@ -132,20 +136,19 @@ impl Group {
                 let (from, to) = (cy as isize - self.span as isize, cy + self.span + 1);
                 let range = |a: usize, b: usize| self.starts[line + a]..self.starts[line + b];
                 if from < 0 {
-                    self.search(range((from + self.cells as isize) as usize, self.cells), measure.length, place, reach2, row);
+                    look(range((from + self.cells as isize) as usize, self.cells));
                 }
-                self.search(range(from.max(0) as usize, to.min(self.cells)), measure.length, place, reach2, row);
+                look(range(from.max(0) as usize, to.min(self.cells)));
                 if to > self.cells {
-                    self.search(range(0, to - self.cells), measure.length, place, reach2, row);
+                    look(range(0, to - self.cells));
                 }
             }
         }
-        fields(self, measure, place, me, row);
-    }
-
-    /// Which of a range of sources lie within the reach.
-    fn search(&self, range: std::ops::Range<usize>, length: f64, place: [f64; 2], reach2: f64, row: &mut Row) {
-        search(&self.x[range.clone()], &self.y[range.clone()], range.start, length, place, reach2, &mut row.found, &mut row.r2);
+        rows.pairs += found.numbers.len() as u64;
+        if SLOPES {
+            rows.spots.extend(found.numbers.iter().map(|number| self.spots[*number] as u32));
+        }
+        fields::<SLOPES>(self, measure, place, found, &mut rows.slopes)
     }
 }
 
@@ -180,11 +183,12 @@ fn search(x: &[f64], y: &[f64], from: usize, length: f64, place: [f64; 2], reach
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-fn fields(group: &Group, measure: Measure, place: [f64; 2], me: Option<usize>, row: &mut Row) {
+fn fields<const SLOPES: bool>(group: &Group, measure: Measure, place: [f64; 2], found: &Found, slopes: &mut Vec<f64>) -> f64 {
     let images: &RemainderSeries = &IMAGES;
     let length = measure.length;
-    for (found, squares) in row.found.chunks(LANES).zip(row.r2.chunks(LANES)) {
-        let (mut values, mut slopes) = ([0.0; LANES], [0.0; LANES]);
+    let mut all = [0.0; LANES];
+    for (found, squares) in found.numbers.chunks(LANES).zip(found.r2.chunks(LANES)) {
+        let (mut values, mut rates) = ([0.0; LANES], [0.0; LANES]);
         if measure.kind == Kind::Spots {
             let mut r2 = [1.0; LANES];
             let [mut a, mut root_a, mut inverse_root_a, mut inverse_radius] = [[1.0; LANES]; 4];
@@ -193,24 +197,20 @@ fn fields(group: &Group, measure: Measure, place: [f64; 2], me: Option<usize>, r
                 (r2[k], a[k], root_a[k]) = (square, source.a, source.root_a);
                 (inverse_root_a[k], inverse_radius[k]) = (source.inverse_root_a, source.inverse_radius);
             }
-            (values, slopes) = field(&r2, &a, &root_a, &inverse_root_a, &inverse_radius, measure.pull, measure.sag);
+            (values, rates) = field(&r2, &a, &root_a, &inverse_root_a, &inverse_radius, measure.pull, measure.sag);
         } else {
             for (k, (&number, &square)) in found.iter().zip(squares).enumerate() {
                 let unit = length / square.sqrt();
-                (values[k], slopes[k]) = (group.sources[number].value[0] * unit, group.sources[number].slope[0] * unit);
+                (values[k], rates[k]) = (group.sources[number].value[0] * unit, group.sources[number].slope[0] * unit);
             }
         }
+        // What the mesh has of these fields, or what all other images are.
         let mut others = [[0.0; ORDERS]; LANES];
         match &group.rest {
             Rest::Mesh(plan) => {
                 let share = 1.0 / (plan.reach * plan.reach * length * length);
                 for (other, square) in others.iter_mut().zip(squares) {
-                    *other = plan.smooth.at(share * square);
-                }
-                for other in &mut others {
-                    for sum in other {
-                        *sum = -*sum;
-                    }
+                    *other = plan.smooth.at(share * square).map(|sum| -sum);
                 }
             }
             Rest::Images => {
@@ -224,13 +224,18 @@ fn fields(group: &Group, measure: Measure, place: [f64; 2], me: Option<usize>, r
                 others = images.local(&dx, &dy);
             }
         }
-        for (k, &number) in found.iter().enumerate() {
+        for (k, (&number, &square)) in found.iter().zip(squares).enumerate() {
             let source = &group.sources[number];
-            let spot = group.spots[number];
-            let (value, slope) = if me == Some(spot) { (0.0, 0.0) } else { (values[k], slopes[k]) };
-            row.spots.push(spot);
-            row.values.push(value + product(&others[k], &source.value));
-            row.slopes.push(slope + product(&others[k], &source.slope));
+            // A spot does not act on its own centre.
+            let apart = square > 0.0;
+            all[k] += product(&others[k], &source.value) + if apart { values[k] } else { 0.0 };
+            if SLOPES {
+                rates[k] = product(&others[k], &source.slope) + if apart { rates[k] } else { 0.0 };
+            }
+        }
+        if SLOPES {
+            slopes.extend_from_slice(&rates[..found.len()]);
         }
     }
+    all.iter().sum()
 }

@@ -7,23 +7,30 @@ use std::f64::consts::{PI, TAU};
 use std::fmt;
 use std::sync::Arc;
 
-/// Points of the mesh on which a source is spread along each direction: the order of its B-spline.
+/// Points of the mesh on which a source is spread along each direction, the order of its B-spline: where displacements are wanted, and where their
+/// derivatives are.
 pub(super) const WIDTH: usize = 16;
+pub(super) const ROUGH_WIDTH: usize = 8;
+
+/// Orders of the far field that a mesh has of the derivatives, and their error, of the greatest one: linear systems are solved no better.
+pub(super) const ROUGH_ORDERS: usize = 2;
+const ROUGH: f64 = 1e-5;
 
 /// `[(2m − 1)!!]²`: `∇^2m (1/r)` is so much times `1/r^(2m+1)` in the plane.
 pub(super) const LAPLACIANS: [f64; ORDERS] = [1.0, 1.0, 9.0, 225.0];
 
-/// Pieces of the smooth field between its centre and its reach, and terms of each.
+/// Pieces of the smooth field between its centre and its reach, and terms of each: the argument of the exponentials in it changes by 0.4 within a
+/// piece, so that one term more is worth a factor of some 70.
 const PIECES: usize = 64;
-const TERMS: usize = 10;
+const TERMS: usize = 7;
 
 /// What a tolerance asks of the splitting.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Accuracy {
     /// Splitting parameter times reach, `α r_c`: beyond, `erfc(αr)` is no part of the field.
     edge: f64,
-    /// Highest wave of the mesh over `2α`.
-    waves: f64,
+    /// Highest wave of the mesh over `2α`: where displacements are wanted, and where their derivatives are.
+    waves: [f64; 2],
     /// Greatest radius of a spot over its reach, so that four orders of its far field are enough beyond.
     pub(super) girth: f64,
 }
@@ -41,15 +48,19 @@ impl Accuracy {
         while libm::erfc(edge) > 0.3 * tolerance {
             edge += 0.02;
         }
-        let alias = |waves: f64| {
-            let share = |t: f64| (t / (2.0 - t)).powi(WIDTH as i32) * (-(waves * t).powi(2)).exp();
-            (1..=100).map(|k| share(0.01 * f64::from(k))).fold(0.0, f64::max)
+        let waves = |width: usize, tolerance: f64| {
+            let alias = |waves: f64| {
+                let share = |t: f64| (t / (2.0 - t)).powi(width as i32) * (-(waves * t).powi(2)).exp();
+                (1..=100).map(|k| share(0.01 * f64::from(k))).fold(0.0, f64::max)
+            };
+            let mut waves = 1.0;
+            while alias(waves) > tolerance || (-waves * waves).exp() > tolerance {
+                waves += 0.02;
+            }
+            waves
         };
-        let mut waves = edge;
-        while alias(waves) > tolerance {
-            waves += 0.02;
-        }
-        Self { edge, waves, girth: (10.0 * tolerance).powf(0.125).min(0.2) }
+        let girth = (10.0 * tolerance).powf(0.125).min(0.2);
+        Self { edge, waves: [waves(WIDTH, tolerance).max(edge), waves(ROUGH_WIDTH, ROUGH.max(tolerance))], girth }
     }
 }
 
@@ -98,8 +109,8 @@ impl Smooth {
         let number = (place as usize).min(PIECES - 1);
         let t = 2.0 * (place - number as f64) - 1.0;
         let piece = &self.pieces[number];
-        let mut sums = piece[0];
-        for term in &piece[1..] {
+        let mut sums = [0.0_f64; ORDERS];
+        for term in piece {
             for m in 0..ORDERS {
                 sums[m] = sums[m].mul_add(t, term[m]);
             }
@@ -130,12 +141,19 @@ fn smooth(alpha: f64, r2: f64) -> [f64; ORDERS] {
     })
 }
 
-/// A near reach, and the mesh that does the rest. Lengths are in units of the side.
+/// A near reach, and the meshes that do the rest. Lengths are in units of the side.
+#[derive(Debug)]
 pub(super) struct Plan {
     pub(super) reach: f64,
-    /// Points of the mesh on a side.
-    pub(super) mesh: usize,
     pub(super) smooth: Smooth,
+    /// For displacements, and for their derivatives.
+    pub(super) meshes: [Arc<Mesh>; 2],
+}
+
+/// A mesh and its waves.
+pub(super) struct Mesh {
+    /// Points on a side.
+    pub(super) size: usize,
     /// `(2π/q) erfc(q/2α)` over the spread of a source, by ky then kx; at q = 0 what the near fields have of mean taken off.
     pub(super) waves: Vec<f64>,
     /// One over the transform of the B-spline, of k = 0 … N − 1; 0 at the highest wave, which has no sign.
@@ -146,16 +164,21 @@ pub(super) struct Plan {
     pub(super) columns_back: Arc<dyn Fft<f64>>,
 }
 
-impl fmt::Debug for Plan {
+impl fmt::Debug for Mesh {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Plan").field("reach", &self.reach).field("mesh", &self.mesh).finish_non_exhaustive()
+        f.debug_struct("Mesh").field("size", &self.size).finish_non_exhaustive()
     }
 }
 
-/// Points that a mesh needs on a side for a reach.
+/// Points that the finer mesh needs on a side for a reach.
 pub(super) fn mesh_size(accuracy: Accuracy, reach: f64) -> usize {
+    points(accuracy.edge / reach, accuracy.waves[0], WIDTH)
+}
+
+/// Points on a side for waves up to `waves` times 2α, and splines of so many points.
+fn points(alpha: f64, waves: f64, width: usize) -> usize {
     // The highest wave is πN.
-    let least = (2.0 * accuracy.edge / reach * accuracy.waves / PI).ceil() as usize;
+    let least = (2.0 * alpha * waves / PI).ceil() as usize;
     let smooth = |n: usize| {
         let mut left = n;
         for prime in [2, 3, 5] {
@@ -165,13 +188,20 @@ pub(super) fn mesh_size(accuracy: Accuracy, reach: f64) -> usize {
         }
         n.is_multiple_of(4) && left == 1
     };
-    (least.max(2 * WIDTH)..).find(|n| smooth(*n)).unwrap_or(least)
+    (least.max(2 * width)..).find(|n| smooth(*n)).unwrap_or(least)
 }
 
 impl Plan {
     pub(super) fn new(accuracy: Accuracy, reach: f64) -> Self {
-        let n = mesh_size(accuracy, reach);
         let alpha = accuracy.edge / reach;
+        let mesh = |waves: f64, width: usize| Arc::new(Mesh::new(points(alpha, waves, width), alpha, width));
+        let meshes = [mesh(accuracy.waves[0], WIDTH), mesh(accuracy.waves[1], ROUGH_WIDTH)];
+        Self { reach, smooth: Smooth::new(alpha, reach), meshes }
+    }
+}
+
+impl Mesh {
+    fn new(n: usize, alpha: f64, width: usize) -> Self {
         let wave = |k: usize| if 2 * k < n { k as f64 } else { k as f64 - n as f64 };
         let sharpen: Vec<f64> = (0..n)
             .map(|k| {
@@ -181,7 +211,7 @@ impl Plan {
                 } else if k == 0 {
                     1.0
                 } else {
-                    (angle / angle.sin()).powi(WIDTH as i32)
+                    (angle / angle.sin()).powi(width as i32)
                 }
             })
             .collect();
@@ -196,9 +226,7 @@ impl Plan {
         }
         let (mut real, mut complex) = (RealFftPlanner::<f64>::new(), FftPlanner::<f64>::new());
         Self {
-            reach,
-            mesh: n,
-            smooth: Smooth::new(alpha, reach),
+            size: n,
             waves,
             sharpen,
             rows: real.plan_fft_forward(n),
