@@ -224,7 +224,7 @@ impl Campaign {
     #[must_use]
     pub fn cycle_standing(&self, unit: &CycleUnit) -> Standing {
         let dir = self.cycle_dir(unit);
-        let worst = ["steps", "contacts", "events"]
+        let worst = ["steps", "contacts", "turning", "events"]
             .iter()
             .map(|table| standing(&dir.join(format!("{table}.parquet")), &unit.key, parquet::read_key))
             .find(|standing| *standing != Standing::Done);

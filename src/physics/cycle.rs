@@ -131,6 +131,16 @@ pub fn run(problem: &Problem, settings: &Settings, progress: &dyn Fn(f64)) -> Re
     Ok(cycle)
 }
 
+/// Unloads from a state that was kept at a turning point, `max_load` its `F/(E* A0)`: step by step what [`run`] does from there.
+///
+/// # Errors
+/// An approach without an equilibrium.
+pub fn unload_from(problem: &Problem, settings: &Settings, max_load: f64, state: State) -> Result<Cycle, PhysicsError> {
+    let mut cycle = Cycle::default();
+    unload(problem, settings, Some(max_load), state, &mut cycle, &|_| {})?;
+    Ok(cycle)
+}
+
 /// Loads to the approach `turn` \[m\] and unloads from there, under displacement control alone: the load at the turn may be a tension. The
 /// turning loads of the settings are not read; the unloading steps have none.
 ///

@@ -18,6 +18,7 @@ mod neighbourhood;
 mod neighbours;
 mod patch;
 pub mod path;
+pub mod restart;
 mod settle;
 pub mod spectrum;
 pub mod state;
@@ -75,6 +76,14 @@ pub enum PhysicsError {
         asperity: usize,
         /// Iterations spent.
         iterations: u64,
+    },
+    /// A kept state speaks of an asperity that is not there.
+    #[error("cannot restore a state: it holds asperity {asperity}, and the surface has {count}; allowed: a state of this very surface")]
+    UnknownAsperity {
+        /// The number of the asperity.
+        asperity: usize,
+        /// How many asperities there are.
+        count: usize,
     },
     /// An avalanche did not end.
     #[error(

@@ -108,6 +108,24 @@ pub static CONTACTS: Table = Table {
     ],
 };
 
+/// The states from which unloading begins.
+pub static TURNING: Table = Table {
+    name: "turning",
+    version: 1,
+    file: "cycles/<id>/turning.parquet",
+    doc: "One row per asperity that is not simply free, at each turning point: all that is needed to unload from there again.",
+    columns: &[
+        real("max_load", "1", "F/(E* A0) at which the path turns"),
+        real("approach_m", "m", "Approach of the surface at the turning point, zero as in the table steps"),
+        ASPERITY,
+        text("state", "\"contact\", \"covered\", or \"free\" if it has left and does not return yet"),
+        real("contact_radius_m", "m", "Radius of the contact spot; 0 if there is none").from("Eq 2"),
+        index("covered_by", "The asperity whose spot covers it; null if none does").or_null(),
+        real("release_m", "m", "Radius of the covering spot below which it is uncovered; null if none covers it").or_null(),
+        flag("barred", "Whether it has left and stays free until its penetration falls below its jump-in distance"),
+    ],
+};
+
 /// What happened to single asperities.
 pub static EVENTS: Table = Table {
     name: "events",

@@ -4,7 +4,8 @@ use super::StageError;
 use super::surface::read_summits;
 use crate::campaign::{Campaign, CycleUnit};
 use crate::physics::cycle::{self, Cycle, Settings, Step};
-use crate::physics::state::{Problem, Rules};
+use crate::physics::restart::Kept;
+use crate::physics::state::{Problem, Rules, State, Status};
 use crate::schema;
 use crate::spec::CaseParams;
 use crate::store::{Frame, parquet};
@@ -31,8 +32,7 @@ pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, progress: &(dyn Fn(f64)
     let dir = campaign.cycle_dir(unit);
     std::fs::create_dir_all(&dir).map_err(|source| StageError::Folder { path: dir.clone(), source })?;
     let problem = problem(params, &summits)?;
-    let settings =
-        Settings { max_loads: params.cycle.max_load.clone(), approach_step: params.cycle.approach_step, contacts: params.cycle.contacts };
+    let settings = settings(params);
     // The physics tells how far it is; the watch wants what was added.
     let reached = std::cell::Cell::new(0.0);
     let report = |done: f64| {
@@ -46,9 +46,67 @@ pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, progress: &(dyn Fn(f64)
     let keys = [("key", unit.key.clone())];
     // The steps come last: where they are, the cycle is done.
     parquet::write_table(&dir.join("contacts.parquet"), &contacts(&cycle)?, &keys)?;
+    parquet::write_table(&dir.join("turning.parquet"), &turning(&cycle, &settings.max_loads)?, &keys)?;
     parquet::write_table(&dir.join("events.parquet"), &events(&cycle)?, &keys)?;
     parquet::write_table(&dir.join("steps.parquet"), &steps(&cycle, &problem)?, &keys)?;
     Ok(())
+}
+
+/// Unloads anew from a turning point that a finished cycle has kept.
+///
+/// # Errors
+/// The tables of the cycle and of its surface must be there and whole, and hold that load.
+pub fn unload_again(campaign: &Campaign, unit: &CycleUnit, max_load: f64) -> Result<Cycle, StageError> {
+    let params = &campaign.cases[unit.case].case.params;
+    let problem = problem(params, &read_summits(&campaign.asperities_path(&campaign.surfaces[unit.surface]))?)?;
+    let path = campaign.cycle_dir(unit).join("turning.parquet");
+    let frame = parquet::read_table(&path, &schema::TURNING)?;
+    let (loads, approaches) = (frame.f64("max_load")?, frame.f64("approach_m")?);
+    let (asperities, states, radii) = (frame.i64("asperity_id")?, frame.text("state")?, frame.f64("contact_radius_m")?);
+    let (covering, release, barred) = (frame.i64_or_null("covered_by")?, frame.f64_or_null("release_m")?, frame.bool("barred")?);
+    let rows: Vec<usize> = (0..frame.row_count()).filter(|k| loads[*k] == max_load).collect();
+    let status = |k: usize| match (states[k], covering[k], release[k]) {
+        ("contact", ..) => Status::Contact,
+        ("covered", Some(by), Some(release_m)) => Status::Covered { by: by as usize, release_m },
+        _ => Status::Free,
+    };
+    let kept = |&k: &usize| Kept { asperity: asperities[k] as usize, status: status(k), radius_m: radii[k], barred: barred[k] };
+    let Some(approach) = rows.first().map(|k| approaches[*k]) else {
+        let mut kept = loads.clone();
+        kept.dedup();
+        return Err(StageError::NoTurning { max_load, path, kept: format!("the loads {kept:?}") });
+    };
+    let state = State::restored(&problem, approach, &rows.iter().map(kept).collect::<Vec<_>>())?;
+    Ok(cycle::unload_from(&problem, &settings(params), max_load, state)?)
+}
+
+fn settings(params: &CaseParams) -> Settings {
+    Settings { max_loads: params.cycle.max_load.clone(), approach_step: params.cycle.approach_step, contacts: params.cycle.contacts }
+}
+
+fn turning(cycle: &Cycle, loads: &[f64]) -> Result<Frame, StageError> {
+    let states = loads.iter().zip(&cycle.turning);
+    let rows: Vec<(f64, f64, Kept)> =
+        states.flat_map(|(load, (_, state))| state.kept().into_iter().map(|kept| (*load, state.approach_m, kept))).collect();
+    let word = |status: Status| match status {
+        Status::Contact => "contact",
+        Status::Covered { .. } => "covered",
+        Status::Free => "free",
+    };
+    let covered = |status: Status| match status {
+        Status::Covered { by, release_m } => Some((by, release_m)),
+        _ => None,
+    };
+    Ok(Frame::of(&schema::TURNING)
+        .f64("max_load", rows.iter().map(|row| row.0))
+        .f64("approach_m", rows.iter().map(|row| row.1))
+        .i64("asperity_id", rows.iter().map(|row| row.2.asperity as i64))
+        .text("state", rows.iter().map(|row| word(row.2.status)))
+        .f64("contact_radius_m", rows.iter().map(|row| row.2.radius_m))
+        .i64("covered_by", rows.iter().map(|row| covered(row.2.status).map(|(by, _)| by as i64)))
+        .f64("release_m", rows.iter().map(|row| covered(row.2.status).map(|(_, release_m)| release_m)))
+        .bool("barred", rows.iter().map(|row| row.2.barred))
+        .build()?)
 }
 
 fn steps(cycle: &Cycle, problem: &Problem) -> Result<Frame, StageError> {

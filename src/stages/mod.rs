@@ -6,6 +6,8 @@ mod statistics;
 mod surface;
 mod trust;
 
+pub use cycle::unload_again;
+
 use crate::campaign::{Campaign, Stage, Standing};
 use crate::physics::PhysicsError;
 use crate::stats::StatsError;
@@ -41,6 +43,16 @@ pub enum StageError {
         path: PathBuf,
         /// What the system says.
         source: std::io::Error,
+    },
+    /// A turning point that was not kept.
+    #[error("cannot unload from F/(E* A0) = {max_load}: {} holds {kept}; allowed: one of these", path.display())]
+    NoTurning {
+        /// The load asked for.
+        max_load: f64,
+        /// The table.
+        path: PathBuf,
+        /// What it has.
+        kept: String,
     },
     /// A stage lacks what an earlier one writes.
     #[error(

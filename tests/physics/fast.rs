@@ -207,3 +207,20 @@ fn reg_the_best_sum_is_the_same_field_for_few_and_many() {
         }
     }
 }
+
+#[test]
+fn law_the_number_of_threads_changes_no_digit() {
+    let (positions, spots) = contact(12, 1200, 900, 3e-5);
+    let fast = FastSum::new(positions, LENGTH, &PAPER, Kind::Spots, Slips::default(), 1e-9);
+    let x = vec![1.0; 900];
+    let found = [1, 4].map(|threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let (displacements, tangent) = linearised(&fast, &spots);
+            let mut product = vec![0.0; 900];
+            tangent.product(&x, &mut product);
+            (displacements, product)
+        })
+    });
+    assert_eq!(found[0], found[1]);
+}

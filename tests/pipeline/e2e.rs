@@ -5,7 +5,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use hysteron::campaign::Campaign;
 use hysteron::schema;
+use hysteron::spec::Spec;
+use hysteron::stages;
 use hysteron::store::parquet::read_table;
 use tempfile::TempDir;
 
@@ -313,4 +316,50 @@ fn e2e_json_is_json() {
     let plan: serde_json::Value = serde_json::from_str(&stdout(&bench.verb("plan", &["--json"]))).unwrap();
     assert_eq!(plan["stages"][0]["units"][0]["state"], "done");
     assert_eq!(plan["stages"][2]["units"][0]["state"], "planned");
+}
+
+#[test]
+fn e2e_the_number_of_threads_changes_no_byte() {
+    let written = [1, 3].map(|threads: usize| {
+        let bench = Bench::new(SPEC);
+        assert_eq!(code(&bench.verb("run", &["--until", "aggregate", "--jobs", &threads.to_string()])), 0);
+        files(&bench.out())
+    });
+    assert_eq!(written[0].len(), written[1].len());
+    for ((path, one), (other_path, three)) in written[0].iter().zip(&written[1]) {
+        assert_eq!(path, other_path);
+        assert!(one == three, "{} depends on the threads", path.display());
+    }
+}
+
+#[test]
+fn e2e_a_turning_point_in_a_file_is_enough_to_unload_from() {
+    let bench = Bench::new(SPEC);
+    assert_eq!(code(&bench.verb("run", &["--until", "cycle"])), 0);
+    // This is another process than the one that loaded.
+    let campaign = Campaign::new(Spec::read(bench.folder.path().join("spec.toml")).unwrap(), bench.out());
+    let mut compared = 0;
+    for unit in campaign.distinct_cycles() {
+        let steps = read_table(&campaign.cycle_dir(&unit).join("steps.parquet"), &schema::STEPS).unwrap();
+        let of = steps.f64_or_null("max_load").unwrap();
+        let column = |name: &str| steps.f64(name).unwrap();
+        let (approach, load, area) = (column("approach_m"), column("load_n"), column("area_m2"));
+        let (work, residual, stability) = (column("work_j"), column("residual_m"), column("stability"));
+        let effort = steps.i64("pair_evaluation_count").unwrap();
+        for max_load in [0.001, 0.002] {
+            let rows: Vec<usize> = (0..of.len()).filter(|k| of[*k] == Some(max_load)).collect();
+            let again = stages::unload_again(&campaign, &unit, max_load).unwrap();
+            assert_eq!(again.steps.len(), rows.len());
+            for (step, &k) in again.steps.iter().zip(&rows) {
+                let got = [step.approach_m, step.load_n, step.area_m2, step.work_j, step.residual_m, step.stability];
+                let want = [approach[k], load[k], area[k], work[k], residual[k], stability[k]];
+                assert_eq!(got.map(f64::to_bits), want.map(f64::to_bits), "step {k}");
+                assert_eq!(step.pairs as i64, effort[k]);
+                compared += 1;
+            }
+        }
+        let told = stages::unload_again(&campaign, &unit, 0.003).unwrap_err().to_string();
+        assert!(told.contains("0.003") && told.contains("[0.001, 0.002]"), "{told}");
+    }
+    assert!(compared > 100, "{compared}");
 }

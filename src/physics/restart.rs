@@ -1,0 +1,56 @@
+//! A state at a turning point as rows, and the state again from them: all that is needed to unload from it in another process.
+//!
+//! What a state was found by, displacements and residual, is not kept: it is computed anew before the path goes on.
+
+use super::PhysicsError;
+use super::state::{Problem, State, Status};
+
+/// An asperity that is not simply free.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Kept {
+    /// The asperity.
+    pub asperity: usize,
+    /// What it is doing.
+    pub status: Status,
+    /// Contact radius \[m\], 0 out of contact.
+    pub radius_m: f64,
+    /// Whether it has left and waits until its penetration falls below the jump-in.
+    pub barred: bool,
+}
+
+impl State {
+    /// All asperities that are not simply free, ascending.
+    #[must_use]
+    pub fn kept(&self) -> Vec<Kept> {
+        let all = self.status.iter().zip(&self.radius).zip(&self.barred).enumerate();
+        all.map(|(asperity, ((status, radius_m), barred))| Kept { asperity, status: *status, radius_m: *radius_m, barred: *barred })
+            .filter(|kept| kept.status != Status::Free || kept.barred)
+            .collect()
+    }
+
+    /// The state at an approach \[m\] in which these asperities are as they were kept, and all others free.
+    ///
+    /// # Errors
+    /// Every asperity and every covering one must be of the problem; a contact radius must be positive.
+    pub fn restored(problem: &Problem, approach_m: f64, rows: &[Kept]) -> Result<Self, PhysicsError> {
+        let mut state = Self::free(problem, approach_m);
+        let count = problem.len();
+        for row in rows {
+            let by = if let Status::Covered { by, .. } = row.status { by } else { row.asperity };
+            if row.asperity.max(by) >= count {
+                return Err(PhysicsError::UnknownAsperity { asperity: row.asperity.max(by), count });
+            }
+            if row.status == Status::Contact && !(row.radius_m > 0.0 && row.radius_m.is_finite()) {
+                return Err(PhysicsError::Domain {
+                    action: "a state to unload from",
+                    quantity: "the radius of a contact spot in m",
+                    value: row.radius_m,
+                    allowed: "a positive number",
+                });
+            }
+            state.set(row.asperity, row.status, row.radius_m);
+            state.barred[row.asperity] = row.barred;
+        }
+        Ok(state)
+    }
+}
