@@ -5,18 +5,14 @@
 //! - [`Solver::newton`]: Newton's method with GMRES, steps limited to 20 % of each radius, accepted only where they descend. Where a step does not
 //!   descend, it is mostly for one spot at the edge of another, where the slope of the field is infinite: the few spots around it are solved for
 //!   themselves with dense matrices, and the whole goes on from there (nonlinear elimination, Lanzkron, Rose & Wilkes, SIAM J. Sci. Comput. 17:538, 1996);
-//! - [`Solver::relax`]: where Newton finds nothing (a fold, or after a jump), overdamped relaxation `da_i/dt = residual_i` by implicit
-//!   Euler steps that grow as the state comes to rest. On the way a spot whose own branch has ended leaves, and one that a greater spot
-//!   has reached is covered: the flow decides who, without reference to the step of the approach.
+//! - [`Solver::relax`]: where Newton finds nothing (a fold, or after a jump), overdamped relaxation ([`super::relax`]).
 
-use super::events::Change;
+use super::events::{Change, Moving};
 use super::interaction::{Effort, Interaction as _, Spots, Tangent};
-use super::krylov::{dot, gmres, gmres_and_least};
+use super::krylov::{gmres, gmres_and_least};
 use super::patch::{Hold, Patch, Trace};
+use super::relax::{Relaxing, STRIDE, relax};
 use super::state::{Problem, State, Status};
-
-/// Greatest relative change of a radius in one iteration.
-const STRIDE: f64 = 0.2;
 
 /// Products at most in one linear solve.
 const PRODUCTS: usize = 120;
@@ -191,58 +187,10 @@ impl<'p> Solver<'p> {
         true
     }
 
-    /// Overdamped relaxation from the radii of `state`, at its approach. Spots that leave or are covered on the way are returned.
+    /// Relaxes from the radii of `state`, at its approach. Spots that leave or are covered on the way are returned.
     pub(crate) fn relax(&mut self, state: &mut State) -> Result<Vec<Change>, Unsettled> {
-        let tolerance = self.problem.tolerance_m();
-        let mut changes: Vec<Change> = Vec::new();
-        let mut time = 1.0;
-        let mut finish = 100.0;
-        for round in 0..1000 {
-            self.effort.iterations += 1;
-            let worst = self.evaluate(state);
-            if worst.residual_m <= tolerance {
-                return Ok(changes);
-            }
-            if worst.residual_m.is_nan() {
-                return Err(worst);
-            }
-            let spots: Vec<_> = state.contacts.iter().zip(&self.residual).map(|(&i, r)| (i, state.radius[i], *r)).collect();
-            let restless = if round % 200 == 199 { self.problem.at_edge(&spots, worst.asperity) } else { None };
-            if let Some(change) = self.problem.overtaken(&spots).or(restless) {
-                state.set(change.asperity, change.status(self.problem), 0.0);
-                changes.push(change);
-                (time, finish) = (1.0, 100.0);
-                continue;
-            }
-            if time > finish {
-                // Nearly at rest: Newton's method finishes. At the edge of a spot, where the slope of its field jumps, implicit steps would go
-                // to and fro for ever, while short steps that descend arrive.
-                let mut end = state.clone();
-                if self.descend(&mut end, worst, 1e-4, 40).is_ok() {
-                    *state = end;
-                    continue;
-                }
-                self.evaluate(state);
-                finish *= 1e3;
-            }
-            let mut step = Vec::new();
-            for _ in 0..24 {
-                let damped: Vec<f64> = self.diagonal.iter().map(|d| d + 1.0 / time).collect();
-                step = gmres(&self.tangent, &damped, &self.residual, 1e-3, PRODUCTS, &mut self.effort);
-                let stride = stride(&step, state);
-                // With too long a step a saddle attracts: the step must go along the flow.
-                if stride <= STRIDE && dot(&step, &self.residual) > 0.0 {
-                    break;
-                }
-                time *= 0.25;
-            }
-            limit(&mut step, state, STRIDE);
-            for (&i, s) in state.contacts.iter().zip(&step) {
-                state.radius[i] += s;
-            }
-            time = (time * 3.0).min(1e9);
-        }
-        Err(self.evaluate(state))
+        let problem = self.problem;
+        relax(&mut Whole { solver: self, state }, problem, None)
     }
 
     /// `da_i/dδ` of the spots at the equilibrium that was evaluated last. Its stability is entered into the state.
@@ -277,13 +225,52 @@ impl<'p> Solver<'p> {
     }
 }
 
-/// Greatest relative change of a radius by a step.
-fn stride(step: &[f64], state: &State) -> f64 {
-    state.contacts.iter().zip(step).map(|(&i, s)| s.abs() / state.radius[i]).fold(0.0, f64::max)
+/// The whole contact on its way to rest.
+struct Whole<'a, 'p> {
+    solver: &'a mut Solver<'p>,
+    state: &'a mut State,
 }
 
+impl Relaxing for Whole<'_, '_> {
+    fn evaluate(&mut self) -> Unsettled {
+        self.solver.effort.iterations += 1;
+        self.solver.evaluate(self.state)
+    }
+
+    fn spots(&self) -> Vec<Moving> {
+        self.state.contacts.iter().zip(&self.solver.residual).map(|(&i, r)| (i, self.state.radius[i], *r)).collect()
+    }
+
+    fn take_out(&mut self, change: &Change) {
+        self.state.set(change.asperity, change.status(self.solver.problem), 0.0);
+    }
+
+    fn finish(&mut self) -> bool {
+        let mut end = self.state.clone();
+        let first = self.solver.evaluate(&mut end);
+        let found = self.solver.descend(&mut end, first, 1e-4, 40).is_ok();
+        if found {
+            *self.state = end;
+        }
+        found
+    }
+
+    fn step(&mut self, time: f64) -> (Vec<f64>, bool) {
+        let Solver { tangent, diagonal, residual, effort, .. } = &mut *self.solver;
+        let damped: Vec<f64> = diagonal.iter().map(|d| d + 1.0 / time).collect();
+        (gmres(tangent, &damped, residual, 1e-3, PRODUCTS, effort), true)
+    }
+
+    fn advance(&mut self, step: &[f64], share: f64) {
+        for (&i, s) in self.state.contacts.iter().zip(step) {
+            self.state.radius[i] += share * s;
+        }
+    }
+}
+
+/// Shortens a step to the greatest relative change of a radius that is let pass.
 fn limit(step: &mut [f64], state: &State, most: f64) {
-    let stride = stride(step, state);
+    let stride = state.contacts.iter().zip(&*step).map(|(&i, s)| s.abs() / state.radius[i]).fold(0.0, f64::max);
     if stride > most {
         step.iter_mut().for_each(|s| *s *= most / stride);
     }

@@ -8,7 +8,8 @@
 use super::events::{Change, Kind};
 use super::front::{CurvePoint, gauss, hermite_slope, work, work_along};
 use super::locate::Point;
-use super::patch::{Hold, Stood, Trace};
+use super::outside::Stood;
+use super::patch::{Hold, Trace};
 use super::path::{Halt, Path};
 use super::state::{Problem, Status, Totals};
 use crate::model::Interaction;

@@ -7,15 +7,13 @@
 
 use super::dense::Lu;
 use super::equilibrium::Unsettled;
-use super::events::{Change, Kind};
+use super::events::{Change, Kind, Moving};
 use super::interaction::{Effort, Spots};
 use super::jkr::Asperity;
 use super::locate::Point;
+use super::relax::{Relaxing, STRIDE, relax};
 use super::state::Problem;
 use std::f64::consts::PI;
-
-/// Greatest relative change of a radius in one iteration.
-const STRIDE: f64 = 0.2;
 
 /// A penetration `D − ŵ` \[m\] known at one approach, with its rate along the path: of a spot in contact its own, of a free asperity the
 /// one that decides on its jump-in.
@@ -44,11 +42,6 @@ impl Trace {
     }
 }
 
-/// The same where it tells how loads answer.
-fn part(drift: f64) -> f64 {
-    drift.clamp(-1.0, 2.0)
-}
-
 /// What is outside a patch follows the approach by a part of it; next to a fold of the whole it would go further, but not far.
 fn bounded(drift: f64) -> f64 {
     drift.clamp(-2.0, 3.0)
@@ -62,49 +55,6 @@ pub(crate) struct Place {
     pub(crate) outside: f64,
     /// Its derivative to the approach.
     pub(crate) drift: f64,
-}
-
-/// A member as it stood: the asperity, its radius, and by how much that was expected to change \[m\].
-pub(crate) type Stood = (usize, f64, f64);
-
-/// A member as those outside feel it: its radius now and before (0 out of contact), by how much that was expected to change, and how much more load it
-/// has than expected.
-struct Source {
-    asperity: usize,
-    radius: f64,
-    was: f64,
-    more: f64,
-    load: f64,
-}
-
-/// Distance over radius from which on a spot's load alone is felt: what else there is is 2 % of it there, and less beyond.
-const ALOOF: f64 = 2.0;
-
-impl Source {
-    fn before(problem: &Problem, asperity: usize, was: f64, more: f64) -> Self {
-        let sphere = &problem.asperities[asperity];
-        Self { asperity, radius: 0.0, was, more, load: -sphere.load(was) - more * sphere.load_slope(was) }
-    }
-
-    fn new(problem: &Problem, asperity: usize, radius: f64) -> Self {
-        Self { asperity, radius, was: 0.0, more: 0.0, load: problem.asperities[asperity].load(radius) }
-    }
-
-    fn become_of(&mut self, problem: &Problem, radius: f64) {
-        self.radius = radius;
-        self.load += problem.asperities[self.asperity].load(radius);
-    }
-
-    /// What it does at a place beyond what was expected \[m\], without images.
-    fn field(&self, problem: &Problem, place: &[f64; 2], compliance: f64) -> f64 {
-        let r = problem.neighbours.distance(place, &problem.positions[self.asperity]);
-        if r > ALOOF * self.radius.max(self.was) {
-            return compliance * self.load / r;
-        }
-        let field = |a: f64| if a > 0.0 { problem.spot_field(self.asperity, r, a) } else { (0.0, 0.0) };
-        let (was, slope) = field(self.was);
-        field(self.radius).0 - was - self.more * slope
-    }
 }
 
 /// What is held while a patch is solved; the approach is an unknown unless it is what is held.
@@ -238,31 +188,6 @@ impl Patch {
             self.row.extend_from_slice(slopes);
         });
         field
-    }
-
-    /// How the members stand, as [`Self::moved_at`] wants it, if nothing more is expected of them.
-    pub(crate) fn stand(&self) -> Vec<Stood> {
-        self.members.iter().zip(&self.radius).map(|(member, a)| (member.asperity, *a, 0.0)).collect()
-    }
-
-    /// By how much the displacements at asperities are other than they were expected to be, when members stood as they did before \[m\]: what the loads
-    /// do from their centres, and near a spot, where that is not enough, its field.
-    pub(crate) fn moved_at(&self, problem: &Problem, asperities: &[usize], centre: &[f64; 2], before: &[Stood]) -> Vec<f64> {
-        let mut sources: Vec<Source> = before.iter().map(|&(i, a, more)| Source::before(problem, i, a, more)).collect();
-        for (member, &a) in self.members.iter().zip(&self.radius) {
-            match before.binary_search_by_key(&member.asperity, |stood| stood.0) {
-                Ok(at) => sources[at].become_of(problem, a),
-                Err(_) => sources.push(Source::new(problem, member.asperity, a)),
-            }
-        }
-        let whole: f64 = sources.iter().map(|source| source.load).sum();
-        let compliance = 1.0 / (PI * problem.material.contact_modulus_pa);
-        let of = |&i: &usize| {
-            let place = &problem.positions[i];
-            let near: f64 = sources.iter().map(|source| source.field(problem, place, compliance)).sum();
-            near + compliance * whole * problem.neighbours.image_kernel(place, centre)
-        };
-        asperities.iter().map(of).collect()
     }
 
     /// Displacement by what is outside, at the present approach \[m\].
@@ -468,90 +393,9 @@ impl Patch {
         pairs.map(|(member, a)| problem.asperities[member.asperity].load(*a) * (1.0 - member.drift)).sum()
     }
 
-    /// What the spots outside do to the loads of the members as the approach goes on, `Σ F_i ∂ŵ_i/∂δ`; by reciprocity, what these loads do to the
-    /// load of the others \[N\].
-    pub(crate) fn pull(&self, problem: &Problem) -> f64 {
-        self.members.iter().zip(&self.radius).map(|(m, a)| part(m.drift) * problem.asperities[m.asperity].load(*a)).sum()
-    }
-
-    /// By how much the load of the members is other than it was expected to be, and by how much what the spots outside do to it is, both as the
-    /// radii were to change \[N\].
-    pub(crate) fn off(&self, problem: &Problem, before: &[Stood]) -> (f64, f64) {
-        let (mut load, mut pull) = (0.0, 0.0);
-        for ((member, &a), &(i, was, more)) in self.members.iter().zip(&self.radius).zip(before) {
-            let asperity = &problem.asperities[i];
-            let off = asperity.load(a) - asperity.load(was) - more * asperity.load_slope(was);
-            load += off;
-            pull += part(member.drift) * off;
-        }
-        (load, pull)
-    }
-
-    /// Overdamped relaxation `da_i/dt = residual_i` at the present approach, by implicit Euler steps that grow as it comes to rest. Spots
-    /// that leave or are covered on the way are taken out, and returned.
-    ///
-    /// Where an asperity has just been uncovered (`uncovered`) and is covered again on the way, or exchanges parts with the spot that covered
-    /// it, the rest of the way is of no interest, and the relaxation ends there.
+    /// Relaxes at the present approach ([`super::relax`]). Spots that leave or are covered on the way are taken out, and returned.
     pub(crate) fn relax(&mut self, problem: &Problem, uncovered: Option<&Change>, effort: &mut Effort) -> Result<Vec<Change>, Unsettled> {
-        let tolerance = problem.tolerance_m();
-        let mut changes: Vec<Change> = Vec::new();
-        let mut time = 1.0;
-        let mut finish = 100.0;
-        let mut last = Unsettled { residual_m: f64::NAN, asperity: 0 };
-        for round in 0..1000 {
-            effort.iterations += 1;
-            let worst = self.evaluate(problem, effort);
-            last = worst;
-            if worst.residual_m <= tolerance {
-                return Ok(changes);
-            }
-            if worst.residual_m.is_nan() {
-                return Err(worst);
-            }
-            let spots: Vec<_> = self.members.iter().zip(&self.radius).zip(&self.residual).map(|((m, a), r)| (m.asperity, *a, *r)).collect();
-            let restless = if round % 200 == 199 { problem.at_edge(&spots, worst.asperity) } else { None };
-            if let Some(change) = problem.overtaken(&spots).or(restless) {
-                self.remove(change.asperity, change.kind == Kind::JumpOff);
-                changes.push(change);
-                if uncovered.is_some_and(|earlier| change.undoes(earlier)) {
-                    return Ok(changes);
-                }
-                (time, finish) = (1.0, 100.0);
-                continue;
-            }
-            if time > finish {
-                // Nearly at rest: Newton's method finishes, unless it is led to an equilibrium that repels. At the edge of a spot, where the
-                // slope of its field jumps, implicit steps would go to and fro for ever, while short steps that descend arrive.
-                let rest = self.radius.clone();
-                if self.descend(problem, Hold::Approach, 1e-4, 40, effort).is_ok() && self.rates(problem).1 {
-                    continue;
-                }
-                self.radius = rest;
-                self.evaluate(problem, effort);
-                finish *= 1e3;
-            }
-            let mut step = Vec::new();
-            for _ in 0..24 {
-                self.assemble(problem, 1.0 / time);
-                self.lu.factor(&self.matrix, self.members.len());
-                step = self.residual.clone();
-                self.lu.solve(&mut step);
-                let stride = step.iter().zip(&self.radius).map(|(s, a)| (s / a).abs()).fold(0.0, f64::max);
-                // With too long a step a saddle attracts: the step must go along the flow.
-                let along: f64 = step.iter().zip(&self.residual).map(|(s, r)| s * r).sum();
-                if stride <= STRIDE && along > 0.0 && self.lu.sign() > 0.0 {
-                    break;
-                }
-                time *= 0.25;
-            }
-            let stride = step.iter().zip(&self.radius).map(|(s, a)| (s / a).abs()).fold(0.0, f64::max);
-            let share = if stride > STRIDE { STRIDE / stride } else { 1.0 };
-            for (radius, s) in self.radius.iter_mut().zip(&step) {
-                *radius += share * s;
-            }
-            time = (time * 3.0).min(1e9);
-        }
-        Err(last)
+        relax(&mut Part { patch: self, problem, effort }, problem, uncovered)
     }
 
     /// Sets out for another approach \[m\], every penetration going on at its rate.
@@ -574,5 +418,52 @@ impl Patch {
             *radius += (d * span).clamp(-0.05 * *radius, 0.05 * *radius);
         }
         self.approach += gap;
+    }
+}
+
+/// A patch on its way to rest.
+struct Part<'a> {
+    patch: &'a mut Patch,
+    problem: &'a Problem,
+    effort: &'a mut Effort,
+}
+
+impl Relaxing for Part<'_> {
+    fn evaluate(&mut self) -> Unsettled {
+        self.effort.iterations += 1;
+        self.patch.evaluate(self.problem, self.effort)
+    }
+
+    fn spots(&self) -> Vec<Moving> {
+        let Patch { members, radius, residual, .. } = &*self.patch;
+        members.iter().zip(radius).zip(residual).map(|((m, a), r)| (m.asperity, *a, *r)).collect()
+    }
+
+    fn take_out(&mut self, change: &Change) {
+        self.patch.remove(change.asperity, change.kind == Kind::JumpOff);
+    }
+
+    fn finish(&mut self) -> bool {
+        let rest = self.patch.radius.clone();
+        let found = self.patch.descend(self.problem, Hold::Approach, 1e-4, 40, self.effort).is_ok() && self.patch.rates(self.problem).1;
+        if !found {
+            self.patch.radius = rest;
+        }
+        found
+    }
+
+    fn step(&mut self, time: f64) -> (Vec<f64>, bool) {
+        let patch = &mut *self.patch;
+        patch.assemble(self.problem, 1.0 / time);
+        patch.lu.factor(&patch.matrix, patch.members.len());
+        let mut step = patch.residual.clone();
+        patch.lu.solve(&mut step);
+        (step, patch.lu.sign() > 0.0)
+    }
+
+    fn advance(&mut self, step: &[f64], share: f64) {
+        for (radius, s) in self.patch.radius.iter_mut().zip(step) {
+            *radius += share * s;
+        }
     }
 }

@@ -6,6 +6,7 @@ use super::interaction::{Best, Spots, best};
 use super::jkr::Asperity;
 use super::neighbours::Neighbours;
 use super::summits::Summit;
+use super::validity::LEAST_TABOR;
 use crate::model::{Boundary, Coalescence, Interaction as Kind, JumpIn, Material, Slips};
 use std::f64::consts::PI;
 
@@ -67,7 +68,7 @@ impl Problem {
         let asperities: Vec<Asperity> = summits.iter().map(of).collect::<Result<_, _>>()?;
         let range = material.interaction_range_m;
         let tabor: Vec<f64> = asperities.iter().map(|a| a.tabor(range)).collect();
-        let below = tabor.iter().filter(|mu| **mu < 2.0).count();
+        let below = tabor.iter().filter(|mu| **mu < LEAST_TABOR).count();
         if rules.jump_in == JumpIn::Wu && below > 0 && !rules.allow_low_tabor {
             let smallest = tabor.iter().copied().fold(f64::INFINITY, f64::min);
             return Err(PhysicsError::LowTabor { smallest, below, all: tabor.len() });
