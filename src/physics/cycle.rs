@@ -180,8 +180,9 @@ fn load(problem: &Problem, settings: &Settings, cycle: &mut Cycle, progress: &dy
     let mut turns = settings.max_loads.iter().peekable();
     while turns.peek().is_some() {
         path.stretch(None)?;
-        while let Some(max_load) = turns.next_if(|load| path.reaches(**load * problem.load_unit_n())) {
-            let turning = path.turning(max_load * problem.load_unit_n())?;
+        while let Some(max_load) = turns.peek() {
+            let Some(turning) = path.turning(**max_load * problem.load_unit_n())? else { break };
+            turns.next();
             let end = turning.state().approach_m;
             recorder.grid_points(problem, settings, &mut path, end, &mut number, cycle)?;
             recorder.record(problem, settings, &mut path, Some(&turning), cycle, true);

@@ -360,16 +360,9 @@ impl<'p> Path<'p> {
         None
     }
 
-    /// Whether the load was as great on the last stretch \[N\].
-    pub(crate) fn reaches(&self, load: f64) -> bool {
-        self.crossing(load).is_some()
-    }
-
-    /// The first state of the last stretch that has this load \[N\], on an excursion.
-    pub(crate) fn turning(&self, load: f64) -> Result<Self, PhysicsError> {
-        let Some(([mut low, mut high], [mut under, mut over])) = self.crossing(load) else {
-            return self.excursion(self.front.state.approach_m);
-        };
+    /// The first state of the last stretch that has this load \[N\], on an excursion; nothing where only the traces had it.
+    pub(crate) fn turning(&self, load: f64) -> Result<Option<Self>, PhysicsError> {
+        let Some(([mut low, mut high], [mut under, mut over])) = self.crossing(load) else { return Ok(None) };
         let mut side = 0.0;
         for _ in 0..100 {
             let share = under / (under - over);
@@ -379,10 +372,10 @@ impl<'p> Path<'p> {
             // A load that jumps over what is wanted is met where it jumps.
             let closed = (high - low).abs() <= LOAD_TOLERANCE * self.problem().rms_height_m;
             if off.abs() <= LOAD_TOLERANCE * load.abs() || (closed && off >= 0.0) {
-                return Ok(trial);
+                return Ok(Some(trial));
             }
             if closed {
-                return self.excursion(high);
+                break;
             }
             if off < 0.0 {
                 (low, under) = (middle, off);
@@ -398,7 +391,25 @@ impl<'p> Path<'p> {
                 side = 1.0;
             }
         }
-        self.excursion(high)
+        let found = self.reaching(high, load)?;
+        Ok((found.totals.load_n >= load - LOAD_TOLERANCE * load.abs()).then_some(found))
+    }
+
+    /// The state of the last stretch at an approach or soon after it that has so much load \[N\]: where the load jumps over it, an excursion may
+    /// meet the jump a little later than the stretch did. Where none has, the one with the greatest load.
+    fn reaching(&self, mut at: f64, load: f64) -> Result<Self, PhysicsError> {
+        let end = self.front.state.approach_m;
+        let mut further = LOAD_TOLERANCE * self.problem().rms_height_m;
+        let mut best = self.excursion(at)?;
+        while best.totals.load_n < load && at != end {
+            further *= 4.0;
+            at = if (end - at) * self.sign > further { at + self.sign * further } else { end };
+            let trial = self.excursion(at)?;
+            if trial.totals.load_n > best.totals.load_n {
+                best = trial;
+            }
+        }
+        Ok(best)
     }
 
     /// Puts an uncovering off until the covering spot has shrunk further.
