@@ -72,7 +72,7 @@ pub fn unload_again(campaign: &Campaign, unit: &CycleUnit, max_load: f64) -> Res
     };
     let kept = |&k: &usize| Kept { asperity: asperities[k] as usize, status: status(k), radius_m: radii[k], barred: barred[k] };
     let Some(approach) = rows.first().map(|k| approaches[*k]) else {
-        let mut kept = loads.clone();
+        let mut kept = loads;
         kept.dedup();
         return Err(StageError::NoTurning { max_load, path, kept: format!("the loads {kept:?}") });
     };
