@@ -95,7 +95,8 @@ impl Front {
 
     /// `da/dδ` of a spot at its trace.
     pub(crate) fn speed(&self, problem: &Problem, i: usize) -> f64 {
-        self.traces[i].rate.clamp(-STEEPEST, STEEPEST) / problem.asperities[i].penetration_slope(self.state.radius[i]).max(1e-6)
+        let trace = self.traces[i];
+        Trace { rate: trace.rate.clamp(-STEEPEST, STEEPEST), ..trace }.speed(&problem.asperities[i], self.state.radius[i])
     }
 
     /// How the load of a spot goes on with the approach \[N/m\], no faster than that of a flat punch of thrice its size: at the end of its branch it

@@ -30,10 +30,20 @@ pub(crate) struct Trace {
 /// Greatest rate at which a penetration goes on. Without a fold near it is below 1.2; at a fold it is infinite, but the way to it is short.
 pub(crate) const STEEPEST: f64 = 4.0;
 
+/// Least derivative of a penetration to a radius that is told from none.
+const LEAST_SLOPE: f64 = 1e-6;
+
 impl Trace {
     /// Of a spot of radius `a` \[m\] at an approach, whose radius changes by `speed`.
     pub(crate) fn of(asperity: &Asperity, at: f64, a: f64, speed: f64) -> Self {
         Self { at, value: asperity.penetration(a), rate: asperity.penetration_slope(a) * speed }
+    }
+
+    /// `da/dδ` of a spot of radius `a` \[m\]. At the very end of its branch the radius has no finite rate, and beyond it, where others hold the spot, it
+    /// goes against the penetration.
+    pub(crate) fn speed(&self, asperity: &Asperity, a: f64) -> f64 {
+        let slope = asperity.penetration_slope(a);
+        self.rate / if slope.abs() < LEAST_SLOPE { LEAST_SLOPE.copysign(slope) } else { slope }
     }
 
     /// The penetration expected at another approach \[m\].
@@ -112,8 +122,7 @@ impl Patch {
             let (asperity, a) = (&problem.asperities[*i], *a);
             self.members.push(Place { asperity: *i, outside: 0.0, drift: 0.0 });
             self.radius.push(a);
-            // At the very end of a branch the radius has no finite rate.
-            speeds.push(trace.rate / asperity.penetration_slope(a).max(1e-6));
+            speeds.push(trace.speed(asperity, a));
         }
         self.evaluate(problem, effort);
         let n = self.members.len();

@@ -40,6 +40,9 @@ const LOAD_TOLERANCE: f64 = 1e-9;
 /// Longest stretch, of the mean jump-off penetration.
 const STRETCH: f64 = 0.05;
 
+/// The same where every event is solved with all spots: nothing is left out then, and the work is to be as exact as the events.
+const FINE_STRETCH: f64 = 0.0125;
+
 /// Least scale of lengths along the path, of the rms height: below it adhesion does not set the scale.
 const LEAST_SCALE: f64 = 0.02;
 
@@ -76,8 +79,9 @@ pub(crate) struct Path<'p> {
     pub(crate) sign: f64,
     /// Load and area at the end of the last stretch.
     pub(crate) totals: Totals,
-    /// The longest stretch \[m\], and how often it is halved now.
+    /// The longest stretch, the mean jump-off penetration rounded down \[m\], and how often a stretch is halved now.
     pub(crate) longest: f64,
+    scale: f64,
     halvings: u32,
     /// Spots and free asperities next to the neighbourhood, how far they reach \[m\], and where it is.
     pub(crate) halo: Vec<usize>,
@@ -146,9 +150,10 @@ impl<'p> Path<'p> {
         let off = off.max(LEAST_SCALE * problem.rms_height_m);
         // A power of two of a hundredth of the rms height, so that round steps of the approach end stretches.
         let unit = 0.01 * problem.rms_height_m;
-        let longest = unit * (STRETCH * off / unit).log2().floor().exp2();
+        let share = if problem.spots_in_patch >= n { FINE_STRETCH } else { STRETCH };
+        let longest = unit * (share * off / unit).log2().floor().exp2();
         let approach = state.approach_m;
-        let mut path = Self::bare(problem, Front::new(problem, state), sign, longest);
+        let mut path = Self::bare(problem, Front::new(problem, state), sign, (longest, longest / share));
         match path.settle(approach, false, true) {
             Ok(()) => {}
             Err(Halt::Unsettled(unsettled) | Halt::Late(_, unsettled)) => return Err(path.stuck(unsettled)),
@@ -159,7 +164,7 @@ impl<'p> Path<'p> {
     }
 
     /// A path that knows nothing but its front.
-    fn bare(problem: &'p Problem, front: Front, sign: f64, longest: f64) -> Self {
+    fn bare(problem: &'p Problem, front: Front, sign: f64, (longest, scale): (f64, f64)) -> Self {
         let (n, approach) = (problem.len(), front.state.approach_m);
         Self {
             solver: Solver::new(problem),
@@ -168,6 +173,7 @@ impl<'p> Path<'p> {
             sign,
             totals: Totals::default(),
             longest,
+            scale,
             halvings: 0,
             halo: Vec::new(),
             halo_reach: 0.0,
@@ -210,7 +216,7 @@ impl<'p> Path<'p> {
 
     /// The mean jump-off penetration, rounded down \[m\].
     pub(crate) fn scale(&self) -> f64 {
-        self.longest / STRETCH
+        self.scale
     }
 
     /// Lag that a spot may have \[m\].
@@ -330,7 +336,7 @@ impl<'p> Path<'p> {
 
     /// Another path, from before the last stretch to `target` within it.
     pub(crate) fn excursion(&self, target: f64) -> Result<Self, PhysicsError> {
-        let mut other = Self::bare(self.problem(), self.front.clone(), self.sign, self.longest);
+        let mut other = Self::bare(self.problem(), self.front.clone(), self.sign, (self.longest, self.scale));
         (other.far_at, other.settled_at) = (self.far_at, self.settled_at);
         match self.mark.as_deref() {
             Some(mark) => other.back_to(mark),
