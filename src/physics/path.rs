@@ -41,7 +41,7 @@ const LOAD_TOLERANCE: f64 = 1e-9;
 const STRETCH: f64 = 0.05;
 
 /// The same where every event is solved with all spots: nothing is left out then, and the work is to be as exact as the events.
-const FINE_STRETCH: f64 = 0.0125;
+const FINE_STRETCH: f64 = 0.00625;
 
 /// Least scale of lengths along the path, of the rms height: below it adhesion does not set the scale.
 const LEAST_SCALE: f64 = 0.02;
