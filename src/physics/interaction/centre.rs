@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 use std::sync::LazyLock;
 
 /// Degree in `x²` and `y²` together, of `S_0` and of `S_1`: with `ξ = 8x² − 1` on the square, the nearest image is at an ellipse of 5.8, and `5.8^−8` is
-/// 8e-7. `S_1` is worth 1e-4 of that, and the higher orders nothing.
+/// 8e-7 (measured: 1.3e-6 of `S_0`, 2e-3 of `S_1`). `S_1` is worth 1e-4 of that, and the higher orders nothing.
 const DEGREE: usize = 8;
 const LOW_DEGREE: usize = 4;
 
@@ -72,4 +72,26 @@ fn polynomial<const N: usize>(rows: &[[f64; N]; N], s: &[f64; LANES], t: &[f64; 
         }
     }
     sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::ewald::IMAGES;
+    use super::{CENTRE, LANES};
+
+    #[test]
+    fn val_the_sums_have_the_digits_that_they_are_said_to_have() {
+        let mut worst = [0.0f64; 2];
+        for i in -20..=20 {
+            for j in -20..=20 {
+                let (x, y) = (0.025 * f64::from(i), 0.025 * f64::from(j));
+                let exact = IMAGES.sums(x, y);
+                let found = CENTRE.sums(&[x; LANES], &[y; LANES]);
+                for (order, worst) in worst.iter_mut().enumerate() {
+                    *worst = worst.max((found[order][0] / exact[order] - 1.0).abs());
+                }
+            }
+        }
+        assert!(worst[0] < 3e-6 && worst[1] < 4e-3, "{worst:?}");
+    }
 }
