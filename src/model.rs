@@ -16,6 +16,20 @@ pub struct Material {
     pub interaction_range_m: f64,
 }
 
+impl Material {
+    /// `1/(πE*)` \[1/Pa\]: what a point load displaces at a distance, over load and inverse distance.
+    #[must_use]
+    pub fn compliance(&self) -> f64 {
+        1.0 / (std::f64::consts::PI * self.contact_modulus_pa)
+    }
+
+    /// `sqrt(2πΔγ/E*)` \[m^½\]: times the root of its radius, what adhesion draws a spot up (Eq 2).
+    #[must_use]
+    pub fn pull(&self) -> f64 {
+        (2.0 * std::f64::consts::PI * self.work_of_adhesion_j_m2 / self.contact_modulus_pa).sqrt()
+    }
+}
+
 /// A choice that a spec makes by a word.
 pub trait Choice: Copy + PartialEq + Sized + 'static {
     /// Every value with its word, in the order in which they are shown.

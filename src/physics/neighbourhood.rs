@@ -13,7 +13,6 @@ use super::patch::{Hold, Trace};
 use super::path::{Halt, Path};
 use super::state::{Problem, Status, Totals};
 use crate::model::Interaction;
-use std::f64::consts::PI;
 
 /// Spots that learn of an event at once or lag, over those that are solved with it.
 const AROUND: usize = 5;
@@ -59,7 +58,7 @@ impl Ripple {
 
     /// What it does to a place \[m\].
     fn field(&self, problem: &Problem, place: &[f64; 2]) -> f64 {
-        self.load_n * (1.0 / (PI * problem.material.contact_modulus_pa)) * problem.neighbours.kernel(place, &self.place)
+        self.load_n * problem.material.compliance() * problem.neighbours.kernel(place, &self.place)
     }
 }
 

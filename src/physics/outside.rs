@@ -2,7 +2,6 @@
 
 use super::patch::Patch;
 use super::state::Problem;
-use std::f64::consts::PI;
 
 /// A member as it stood: the asperity, its radius, and by how much that was expected to change \[m\].
 pub(crate) type Stood = (usize, f64, f64);
@@ -69,7 +68,7 @@ impl Patch {
             }
         }
         let whole: f64 = sources.iter().map(|source| source.load).sum();
-        let compliance = 1.0 / (PI * problem.material.contact_modulus_pa);
+        let compliance = problem.material.compliance();
         let of = |&i: &usize| {
             let place = &problem.positions[i];
             let near: f64 = sources.iter().map(|source| source.field(problem, place, compliance)).sum();

@@ -152,8 +152,7 @@ impl Problem {
             let unit = 1.0 / (PI * self.material.contact_modulus_pa * r);
             return (asperity.load(a) * unit, asperity.load_slope(a) * unit);
         }
-        let pull = (2.0 * PI * self.material.work_of_adhesion_j_m2 / self.material.contact_modulus_pa).sqrt();
-        spot_field_as_printed(r, a, asperity.radius_m(), pull, self.rules.slips)
+        spot_field_as_printed(r, a, asperity.radius_m(), self.material.pull(), self.rules.slips)
     }
 
     /// The spots of a state as sources.

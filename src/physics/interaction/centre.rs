@@ -3,7 +3,7 @@
 //! What stands around a neighbourhood is held while it is solved, so that six digits of what images do are enough there. The exact sums, cell by
 //! cell or from a table, would be read from slow memory for each pair.
 
-use super::ewald::{chebyshev_coefficient, chebyshev_monomials, global, global_series};
+use super::ewald::{SERIES, chebyshev_coefficient, chebyshev_monomials, global};
 use super::pair::LANES;
 use std::f64::consts::PI;
 use std::sync::LazyLock;
@@ -25,10 +25,9 @@ pub(super) static CENTRE: LazyLock<Centre> = LazyLock::new(Centre::new);
 
 impl Centre {
     fn new() -> Self {
-        let rows = global_series();
         let nodes = DEGREE + 4;
         let place = |k: usize| 0.5 * (0.5 + 0.5 * (PI * (k as f64 + 0.5) / nodes as f64).cos()).sqrt();
-        let samples: Vec<Vec<_>> = (0..nodes).map(|i| (0..nodes).map(|j| global(&rows, place(i), place(j))).collect()).collect();
+        let samples: Vec<Vec<_>> = (0..nodes).map(|i| (0..nodes).map(|j| global(&SERIES, place(i), place(j))).collect()).collect();
         let (mut first, mut second) = ([[0.0; DEGREE + 1]; DEGREE + 1], [[0.0; LOW_DEGREE + 1]; LOW_DEGREE + 1]);
         let monomials = chebyshev_monomials(DEGREE + 1);
         for m in 0..=DEGREE {

@@ -8,7 +8,6 @@ use super::{Effort, Interaction, Spots, Tangent};
 use crate::model::{Boundary, Interaction as Kind, Material, Slips};
 use crate::physics::krylov::dot;
 use multiversion::multiversion;
-use std::f64::consts::PI;
 
 /// Up to this many asperities the sums over images of every pair are kept, 32 bytes each: 290 MB; beyond, each is computed when needed.
 pub(crate) const TABLE_LIMIT: usize = 3000;
@@ -54,9 +53,9 @@ impl DirectSum {
             periodic,
             positions,
             length: length_m,
-            pull: (2.0 * PI * material.work_of_adhesion_j_m2 / material.contact_modulus_pa).sqrt(),
+            pull: material.pull(),
             sag: sag(slips),
-            compliance: 1.0 / (PI * material.contact_modulus_pa),
+            compliance: material.compliance(),
             table,
         }
     }

@@ -150,6 +150,9 @@ pub struct RemainderSeries {
     coarse: Vec<[[f32; ORDERS]; COARSE_ALL]>,
 }
 
+/// The series of the whole square, from which all polynomials of the sums are made.
+pub(super) static SERIES: LazyLock<Vec<Vec<[f64; ORDERS]>>> = LazyLock::new(global_series);
+
 /// The one table of a process: it depends on nothing.
 pub(crate) static IMAGES: LazyLock<RemainderSeries> = LazyLock::new(RemainderSeries::new);
 
@@ -157,10 +160,10 @@ impl RemainderSeries {
     /// Polynomials through [`image_sums`], by way of one Chebyshev series for the whole square.
     #[must_use]
     pub fn new() -> Self {
-        let rows = global_series();
+        let rows = &SERIES;
         Self {
-            fine: fit::<TERMS>(&rows, CELLS).iter().map(|cell| cell.map(|row| row.map(|c| c[0]))).collect(),
-            coarse: fit::<COARSE_TERMS>(&rows, COARSE_CELLS).iter().map(shorten).collect(),
+            fine: fit::<TERMS>(rows, CELLS).iter().map(|cell| cell.map(|row| row.map(|c| c[0]))).collect(),
+            coarse: fit::<COARSE_TERMS>(rows, COARSE_CELLS).iter().map(shorten).collect(),
         }
     }
 
@@ -347,7 +350,7 @@ pub(super) fn chebyshev_coefficient(samples: &[Vec<[f64; ORDERS]>], m: usize, n:
 }
 
 /// Coefficients of `T_m(ξ) T_n(η)`, `m + n ≤ DEGREE`, of [`image_sums`] by rows of m.
-pub(super) fn global_series() -> Vec<Vec<[f64; ORDERS]>> {
+fn global_series() -> Vec<Vec<[f64; ORDERS]>> {
     let nodes = DEGREE + 4;
     let angle = |k: usize| PI * (k as f64 + 0.5) / nodes as f64;
     // ξ = 8x² − 1 ∈ [−1, 1] for x ∈ [0, ½].

@@ -107,11 +107,10 @@ impl FastSum {
     /// slips only that of Eq 8 is read.
     #[must_use]
     pub fn new(positions: Vec<[f64; 2]>, length_m: f64, material: &Material, kind: Kind, slips: Slips, tolerance: f64) -> Self {
-        let pull = (2.0 * PI * material.work_of_adhesion_j_m2 / material.contact_modulus_pa).sqrt();
         Self {
-            measure: Measure { kind, pull, sag: sag(slips), length: length_m },
+            measure: Measure { kind, pull: material.pull(), sag: sag(slips), length: length_m },
             positions,
-            compliance: 1.0 / (PI * material.contact_modulus_pa),
+            compliance: material.compliance(),
             accuracy: Accuracy::of(tolerance),
             plans: [const { OnceLock::new() }; REACHES],
         }
