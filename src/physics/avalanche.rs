@@ -202,7 +202,7 @@ impl Path<'_> {
                         self.front.state.status[i] = Status::Covered { by, release_m: edge };
                     }
                 }
-                Status::Contact => {}
+                Status::Contact | Status::Merged { .. } => {}
                 Status::Free => self.front.state.barred[i] = self.front.traces[i].value >= problem.jump_in[i],
             }
         }
@@ -305,7 +305,7 @@ impl Path<'_> {
                     None => self.patch.watched.push(place),
                 }
             }
-            Kind::Snap => {}
+            Kind::Snap | Kind::Merge | Kind::Split => {}
         }
         true
     }

@@ -6,7 +6,8 @@ use super::PhysicsError;
 use super::events::Kind;
 use super::interaction::Effort;
 use super::log::Event;
-use super::path::Path;
+use super::merge::Merged;
+use super::path::{Carried, Path};
 use super::state::{Problem, State, Status};
 use crate::model::KeptContacts;
 
@@ -66,8 +67,8 @@ pub struct Step {
     pub touching_count: usize,
     /// Asperities held as they are, since they flipped between states.
     pub held_count: usize,
-    /// Events since the step before, by kind: jump-in, jump-off, cover, uncover, snap.
-    pub event_counts: [usize; 5],
+    /// Events since the step before, in the order of [`Kind::ALL`].
+    pub event_counts: [usize; Kind::ALL.len()],
     /// Energy lost in them \[J\].
     pub dissipated_j: f64,
     /// `∫F dΔ` since the branch began \[J\].
@@ -103,6 +104,18 @@ pub struct Contact {
     pub interaction_m: Option<f64>,
 }
 
+/// A merged spot, its number, and the number of the step to which its merging belongs. Numbers follow those of the summits; an unloading branch goes on
+/// with those of its turning point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MergedAt {
+    /// Number of the step.
+    pub step: usize,
+    /// Its own number.
+    pub asperity: usize,
+    /// The spot.
+    pub spot: Merged,
+}
+
 /// A cycle: every step, the kept spots, and the events with the step that they belong to.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Cycle {
@@ -112,6 +125,8 @@ pub struct Cycle {
     pub contacts: Vec<Contact>,
     /// Events, and the number of their step.
     pub events: Vec<(usize, Event)>,
+    /// Spots that became one, by branch in the order of their numbers.
+    pub merged: Vec<MergedAt>,
     /// For each turning point, its step and its state.
     pub turning: Vec<(usize, State)>,
 }
@@ -148,19 +163,17 @@ pub fn unload_from(problem: &Problem, settings: &Settings, max_load: f64, state:
 /// An approach without an equilibrium.
 pub fn run_to(problem: &Problem, settings: &Settings, turn: f64) -> Result<Cycle, PhysicsError> {
     let mut cycle = Cycle::default();
-    let spacing = grid(problem, settings);
-    let mut number = (problem.first_contact_m() / spacing).floor() - 1.0;
-    let mut path = Path::new(problem, State::free(problem, number * spacing), 1.0)?;
-    let mut recorder = Recorder::new(Branch::Loading, None);
-    recorder.record(problem, settings, &mut path, None, &mut cycle, false);
-    while path.state().approach_m < turn {
-        path.stretch(Some(turn))?;
-        let end = path.state().approach_m;
-        recorder.grid_points(problem, settings, &mut path, end, &mut number, &mut cycle)?;
-    }
-    recorder.record(problem, settings, &mut path, None, &mut cycle, true);
-    let state = path.state().clone();
-    cycle.turning.push((cycle.steps.len() - 1, state.clone()));
+    let (state, number) = begin(problem, settings);
+    let mut recorder = Recorder::new(settings, Branch::Loading, None, number);
+    travel(problem, state, 1.0, Some(turn), &mut |path| {
+        recorder.grid_points(path, &mut cycle)?;
+        let there = path.state().approach_m >= turn;
+        if there {
+            recorder.turn(path, None, &mut cycle)?;
+        }
+        Ok(there)
+    })?;
+    let state = cycle.turning[0].1.clone();
     unload(problem, settings, None, state, &mut cycle, &|_| {})?;
     Ok(cycle)
 }
@@ -170,37 +183,33 @@ fn grid(problem: &Problem, settings: &Settings) -> f64 {
     settings.approach_step * problem.rms_height_m
 }
 
-fn load(problem: &Problem, settings: &Settings, cycle: &mut Cycle, progress: &dyn Fn(f64)) -> Result<(), PhysicsError> {
+/// A point of the grid before the first jump-in: the state there, and the number of the point.
+fn begin(problem: &Problem, settings: &Settings) -> (State, f64) {
     let spacing = grid(problem, settings);
-    let mut number = (problem.first_contact_m() / spacing).floor() - 1.0;
-    let mut path = Path::new(problem, State::free(problem, number * spacing), 1.0)?;
-    let mut recorder = Recorder::new(Branch::Loading, None);
-    recorder.record(problem, settings, &mut path, None, cycle, false);
+    let number = (problem.first_contact_m() / spacing).floor() - 1.0;
+    (State::free(problem, number * spacing), number)
+}
+
+fn load(problem: &Problem, settings: &Settings, cycle: &mut Cycle, progress: &dyn Fn(f64)) -> Result<(), PhysicsError> {
+    let (state, number) = begin(problem, settings);
+    let mut recorder = Recorder::new(settings, Branch::Loading, None, number);
     let last = settings.max_loads.last().copied().unwrap_or(0.0);
     let mut turns = settings.max_loads.iter().peekable();
-    while turns.peek().is_some() {
-        path.stretch(None)?;
+    travel(problem, state, 1.0, None, &mut |path| {
         while let Some(max_load) = turns.peek() {
             let Some(turning) = path.turning(**max_load * problem.load_unit_n())? else { break };
             turns.next();
-            let end = turning.state().approach_m;
-            recorder.grid_points(problem, settings, &mut path, end, &mut number, cycle)?;
-            recorder.record(problem, settings, &mut path, Some(&turning), cycle, true);
-            cycle.turning.push((cycle.steps.len() - 1, turning.state().clone()));
+            recorder.turn(path, Some(&turning), cycle)?;
         }
-        let end = path.state().approach_m;
-        if turns.peek().is_some() {
-            recorder.grid_points(problem, settings, &mut path, end, &mut number, cycle)?;
-        }
-        let reached = path.totals.load_n / problem.load_unit_n();
-        if let Some(max_load) = turns.peek()
-            && end > 100.0 * problem.rms_height_m
-        {
-            return Err(PhysicsError::LoadNotReached { wanted: **max_load, reached, approach_m: end });
+        let Some(max_load) = turns.peek() else { return Ok(true) };
+        recorder.grid_points(path, cycle)?;
+        let (reached, approach_m) = (path.totals.load_n / problem.load_unit_n(), path.state().approach_m);
+        if approach_m > 100.0 * problem.rms_height_m {
+            return Err(PhysicsError::LoadNotReached { wanted: **max_load, reached, approach_m });
         }
         progress((reached / last).clamp(0.0, 1.0));
-    }
-    Ok(())
+        Ok(false)
+    })
 }
 
 /// Unloads from a turning state to the last separation. The state is all that it needs.
@@ -212,76 +221,126 @@ fn unload(
     cycle: &mut Cycle,
     progress: &dyn Fn(f64),
 ) -> Result<(), PhysicsError> {
-    let spacing = grid(problem, settings);
-    let mut number = -(state.approach_m / spacing).ceil();
-    let mut path = Path::new(problem, state, -1.0)?;
-    let mut recorder = Recorder::new(Branch::Unloading, max_load);
-    recorder.record(problem, settings, &mut path, None, cycle, false);
-    let full = path.totals.area_m2;
-    while !path.state().contacts.is_empty() {
-        path.stretch(None)?;
-        let end = path.state().approach_m;
-        recorder.grid_points(problem, settings, &mut path, end, &mut number, cycle)?;
+    let number = -(state.approach_m / grid(problem, settings)).ceil();
+    let mut recorder = Recorder::new(settings, Branch::Unloading, max_load, number);
+    recorder.merged_before = state.merged.len();
+    let mut full = f64::NAN;
+    travel(problem, state, -1.0, None, &mut |path| {
+        if full.is_nan() {
+            full = path.totals.area_m2;
+        }
+        recorder.grid_points(path, cycle)?;
+        let over = path.state().contacts.is_empty();
+        if over && recorder.events_before < path.log.events.len() {
+            // The last spot has gone between two points of the grid.
+            recorder.record(path, None, cycle, false);
+        }
         progress(1.0 - path.totals.area_m2 / full);
+        Ok(over)
+    })
+}
+
+/// Goes along a branch from a state in equilibrium, in the sense `sign`, but not beyond `bound` \[m\]; spots merge and part on the way. At the beginning, after every
+/// stretch and after every meeting `visit` is shown where the path is, and says whether that is the end.
+fn travel(
+    problem: &Problem,
+    state: State,
+    sign: f64,
+    bound: Option<f64>,
+    visit: &mut dyn FnMut(&mut Path<'_>) -> Result<bool, PhysicsError>,
+) -> Result<(), PhysicsError> {
+    let mut own = problem.grown(&state.merged)?;
+    let mut known = own.as_ref().unwrap_or(problem).touching(&state);
+    let mut carried = Carried::begin(problem, state, sign);
+    loop {
+        let mut path = Path::resume(own.as_ref().unwrap_or(problem), carried)?;
+        path.settle_meeting();
+        let meeting = loop {
+            if visit(&mut path)? {
+                return Ok(());
+            }
+            if let Some(meeting) = path.due_meeting(&mut known)? {
+                break meeting;
+            }
+            let mut bound = bound;
+            loop {
+                path.stretch(bound)?;
+                match path.meeting(&known)? {
+                    Some(at) if at != path.state().approach_m => {
+                        path.rewind();
+                        bound = Some(at);
+                    }
+                    _ => break,
+                }
+            }
+        };
+        carried = path.carry();
+        let grown = match own.take() {
+            Some(grown) => own.insert(grown),
+            None => own.insert(problem.clone()),
+        };
+        carried.meet(grown, meeting, &mut known)?;
     }
-    if recorder.events_before < path.log.events.len() {
-        // The last spot has gone between two points of the grid.
-        recorder.record(problem, settings, &mut path, None, cycle, false);
-    }
-    Ok(())
 }
 
 /// Writes the steps of one branch down.
-struct Recorder {
+struct Recorder<'s> {
+    settings: &'s Settings,
     branch: Branch,
     max_load: Option<f64>,
+    /// Number of the last point of the grid, counted in the sense of the path; whether the beginning has been recorded.
+    number: f64,
+    begun: bool,
     events_before: usize,
     ways_before: usize,
+    merged_before: usize,
     effort_before: Effort,
 }
 
-impl Recorder {
-    fn new(branch: Branch, max_load: Option<f64>) -> Self {
-        Self { branch, max_load, events_before: 0, ways_before: 0, effort_before: Effort::default() }
+impl<'s> Recorder<'s> {
+    fn new(settings: &'s Settings, branch: Branch, max_load: Option<f64>, number: f64) -> Self {
+        let effort_before = Effort::default();
+        Self { settings, branch, max_load, number, begun: false, events_before: 0, ways_before: 0, merged_before: 0, effort_before }
     }
 
-    /// Records the points of the grid that the last stretch has passed, up to `end` \[m\]; `number` counts them in the sense of the path.
-    fn grid_points(
-        &mut self,
-        problem: &Problem,
-        settings: &Settings,
-        path: &mut Path<'_>,
-        end: f64,
-        number: &mut f64,
-        cycle: &mut Cycle,
-    ) -> Result<(), PhysicsError> {
-        let spacing = grid(problem, settings);
+    /// Records the points of the grid that the last stretch has passed, and the beginning.
+    fn grid_points(&mut self, path: &mut Path<'_>, cycle: &mut Cycle) -> Result<(), PhysicsError> {
+        let end = path.state().approach_m;
+        self.grid_points_until(end, path, cycle)
+    }
+
+    fn grid_points_until(&mut self, end: f64, path: &mut Path<'_>, cycle: &mut Cycle) -> Result<(), PhysicsError> {
+        if !std::mem::replace(&mut self.begun, true) {
+            self.record(path, None, cycle, false);
+        }
+        let spacing = grid(path.problem(), self.settings);
         loop {
-            let next = (*number + 1.0) * path.sign * spacing;
+            let next = (self.number + 1.0) * path.sign * spacing;
             if (next - end) * path.sign > 1e-9 * spacing {
                 return Ok(());
             }
-            *number += 1.0;
+            self.number += 1.0;
             if (next - path.state().approach_m).abs() <= 1e-9 * spacing {
-                self.record(problem, settings, path, None, cycle, false);
+                self.record(path, None, cycle, false);
             } else {
                 let excursion = path.excursion(next)?;
-                self.record(problem, settings, path, Some(&excursion), cycle, false);
+                self.record(path, Some(&excursion), cycle, false);
             }
         }
     }
 
+    /// Records a turning point, where the path is or on an excursion from it, and the points of the grid before it.
+    fn turn(&mut self, path: &mut Path<'_>, excursion: Option<&Path<'_>>, cycle: &mut Cycle) -> Result<(), PhysicsError> {
+        let state = excursion.map_or_else(|| path.state().clone(), |at| at.state().clone());
+        self.grid_points_until(state.approach_m, path, cycle)?;
+        self.record(path, excursion, cycle, true);
+        cycle.turning.push((cycle.steps.len() - 1, state));
+        Ok(())
+    }
+
     /// Records the state of the path, or that of an excursion from it.
-    fn record(
-        &mut self,
-        problem: &Problem,
-        settings: &Settings,
-        path: &mut Path<'_>,
-        excursion: Option<&Path<'_>>,
-        cycle: &mut Cycle,
-        turning: bool,
-    ) {
-        let number = cycle.steps.len();
+    fn record(&mut self, path: &mut Path<'_>, excursion: Option<&Path<'_>>, cycle: &mut Cycle, turning: bool) {
+        let (number, problem) = (cycle.steps.len(), path.problem());
         let at = excursion.unwrap_or(path);
         let state = at.state();
         let passed = |approach: f64| excursion.is_none() || (approach - state.approach_m) * path.sign <= 0.0;
@@ -290,7 +349,6 @@ impl Recorder {
         let ways: Vec<f64> = path.log.ways[self.ways_before..].iter().take_while(|way| passed(way.approach)).map(|way| way.least).collect();
         let count = |kind: Kind| recent.iter().filter(|event| event.kind == kind).count();
         let effort = path.effort();
-        let kinds = [Kind::JumpIn, Kind::JumpOff, Kind::Cover, Kind::Uncover, Kind::Snap];
         cycle.steps.push(Step {
             branch: self.branch,
             max_load: self.max_load,
@@ -303,7 +361,7 @@ impl Recorder {
             covered_count: state.covered_count(),
             touching_count: touching(problem, state),
             held_count: at.held.len(),
-            event_counts: kinds.map(count),
+            event_counts: Kind::ALL.map(count),
             dissipated_j: recent.iter().map(|event| event.energy_lost_j).sum(),
             work_j: at.log.work_j,
             residual_m: state.residual_m,
@@ -316,7 +374,7 @@ impl Recorder {
         self.ways_before += ways.len();
         self.effort_before = effort;
         cycle.events.extend(recent.into_iter().map(|event| (number, event)));
-        let keep = match settings.contacts {
+        let keep = match self.settings.contacts {
             KeptContacts::All => true,
             KeptContacts::Turning => turning,
             KeptContacts::None => false,
@@ -324,6 +382,9 @@ impl Recorder {
         if keep {
             cycle.contacts.extend(spots_of(problem, state, number));
         }
+        let merged = state.merged.iter().enumerate().skip(self.merged_before);
+        cycle.merged.extend(merged.map(|(k, spot)| MergedAt { step: number, asperity: problem.summits + k, spot: *spot }));
+        self.merged_before = state.merged.len();
         path.log.drift_m = 0.0;
         path.held.clear();
     }

@@ -25,9 +25,16 @@ pub enum Kind {
     Uncover,
     /// The coupled state has a fold, and moves to another equilibrium with the same spots.
     Snap,
+    /// Two spots that touch become one.
+    Merge,
+    /// They part again.
+    Split,
 }
 
 impl Kind {
+    /// Every kind, in the order in which they are counted.
+    pub const ALL: [Self; 7] = [Self::JumpIn, Self::JumpOff, Self::Cover, Self::Uncover, Self::Snap, Self::Merge, Self::Split];
+
     /// The word in the tables.
     #[must_use]
     pub fn word(self) -> &'static str {
@@ -37,6 +44,8 @@ impl Kind {
             Self::Cover => "cover",
             Self::Uncover => "uncover",
             Self::Snap => "snap",
+            Self::Merge => "merge",
+            Self::Split => "split",
         }
     }
 }
@@ -96,7 +105,16 @@ pub(crate) type Moving = (usize, f64, f64);
 impl Problem {
     /// Whether spots cover asperities.
     pub(crate) fn covers(&self) -> bool {
-        self.rules.coalescence == Coalescence::Cover
+        self.rules.coalescence != Coalescence::None
+    }
+
+    /// Whether an asperity is there to be covered: it is not yet, nor a part of a merged spot, nor one that has parted.
+    pub(crate) fn can_be_covered(&self, state: &State, i: usize) -> bool {
+        match state.status[i] {
+            Status::Contact => true,
+            Status::Free => i < self.summits,
+            Status::Covered { .. } | Status::Merged { .. } => false,
+        }
     }
 
     /// All changes that are due among these asperities: of spots and of what they cover (`touched`), and of free ones (`free`), whose
@@ -121,7 +139,7 @@ impl Problem {
             add(Change { kind: Kind::JumpOff, asperity: j, by: None });
             if self.covers() {
                 self.neighbours.within(j, state.radius[j], |_, i| {
-                    if !matches!(state.status[i], Status::Covered { .. }) && state.radius[i] < state.radius[j] {
+                    if self.can_be_covered(state, i) && state.radius[i] < state.radius[j] {
                         inside.push(i);
                         add(Change { kind: Kind::Cover, asperity: i, by: Some(j) });
                     }

@@ -162,6 +162,11 @@ impl Front {
         self.sums.load += load;
     }
 
+    /// Load and area at the present approach, before any trace is known.
+    pub(crate) fn expect_totals(&mut self, totals: Totals) {
+        self.sums = Sums { at: self.state.approach_m, load: totals.load_n, area: totals.area_m2, ..Sums::default() };
+    }
+
     /// Sums anew, all traces being of the same approach.
     pub(crate) fn recount(&mut self, problem: &Problem) {
         let mut sums = Sums { at: self.state.approach_m, ..Sums::default() };
@@ -180,7 +185,7 @@ impl Front {
         match self.state.status[i] {
             Status::Free => self.expect_jump_in(problem, i, target, sign, due),
             Status::Contact => self.expect_of_spot(problem, i, target, sign, due),
-            Status::Covered { .. } => {}
+            Status::Covered { .. } | Status::Merged { .. } => {}
         }
     }
 
@@ -230,7 +235,7 @@ impl Front {
                 let most = trace.value + 1.1 * speed * left;
                 let Some(reach) = asperity.radius_at_penetration(most) else { return };
                 problem.neighbours.within(j, reach / TWINS, |r, i| {
-                    let open = !matches!(self.state.status[i], Status::Covered { .. }) && self.state.radius[i] < r;
+                    let open = problem.can_be_covered(&self.state, i) && self.state.radius[i] < r;
                     // Two spots that reach for one another's centres have a fold before they get there.
                     let reached = reach >= r || self.state.radius[i] > TWINS * r;
                     if open && r >= a && reached {

@@ -14,6 +14,7 @@ pub mod jkr;
 mod krylov;
 mod locate;
 pub mod log;
+pub mod merge;
 mod neighbourhood;
 mod neighbours;
 mod outside;
@@ -98,6 +99,17 @@ pub enum PhysicsError {
         events: usize,
         /// The asperity that changed last.
         asperity: usize,
+    },
+    /// Merged spots fill the square.
+    #[error(
+        "cannot go on at the approach {approach_m:e} m: the merged spots have the area {share:.3} A0, and a spot may not grow over its own image; \
+         allowed: a smaller max_load, or coalescence = \"cover\""
+    )]
+    FullContact {
+        /// Approach δ \[m\].
+        approach_m: f64,
+        /// Area over that of the square.
+        share: f64,
     },
     /// The greatest load is not reached.
     #[error("cannot reach the load F/(E* A0) = {wanted}: at the approach {approach_m:e} m it is {reached}; allowed: a smaller max_load")]

@@ -3,6 +3,7 @@
 use super::interaction::ewald::IMAGES;
 
 /// Asperities on the square, by cells of two mean spacings.
+#[derive(Clone)]
 pub(crate) struct Neighbours {
     positions: Vec<[f64; 2]>,
     length: f64,
@@ -45,6 +46,23 @@ impl Neighbours {
         // Most spots stay within: they are looked up at every step.
         found.near = (0..positions.len()).map(|i| found.others(i, found.side)).collect();
         found
+    }
+
+    /// Adds a place \[m\], whose number follows the last one.
+    pub(crate) fn add(&mut self, place: [f64; 2]) {
+        let number = self.positions.len();
+        let cell = self.cell(place[0]) * self.cells + self.cell(place[1]);
+        self.members.insert(self.starts[cell + 1], number as u32);
+        for start in &mut self.starts[cell + 1..] {
+            *start += 1;
+        }
+        self.positions.push(place);
+        let others = self.others(number, self.side);
+        for &(r, i) in &others {
+            let at = self.near[i].partition_point(|other| other.0 <= r);
+            self.near[i].insert(at, (r, number));
+        }
+        self.near.push(others);
     }
 
     fn cell(&self, coordinate: f64) -> usize {

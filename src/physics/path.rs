@@ -14,7 +14,7 @@ use super::equilibrium::{Solver, Unsettled};
 use super::events::{Change, Kind};
 use super::front::{Due, Front};
 use super::interaction::Effort;
-use super::log::Log;
+use super::log::{Event, Log};
 use super::neighbourhood::Ripple;
 use super::patch::{Patch, Trace};
 use super::state::{Problem, State, Status, Totals};
@@ -68,6 +68,50 @@ pub(crate) struct Mark {
     balance: f64,
     flips: Vec<u8>,
     held: Vec<usize>,
+}
+
+/// What goes on where a path goes on with other asperities.
+pub(crate) struct Carried {
+    pub(crate) state: State,
+    pub(crate) sign: f64,
+    /// The longest stretch, and the scale of lengths \[m\].
+    lengths: (f64, f64),
+    pub(crate) log: Log,
+    /// Load and area, and the balance, when the whole contact was solved last; how many events there were.
+    pub(crate) totals: Totals,
+    balance: f64,
+    settled: usize,
+    halvings: u32,
+    flips: Vec<u8>,
+    held: Vec<usize>,
+    effort: Effort,
+}
+
+impl Carried {
+    /// At the beginning of a path.
+    pub(crate) fn begin(problem: &Problem, state: State, sign: f64) -> Self {
+        let summits = &problem.asperities[..problem.summits];
+        let off = summits.iter().map(|a| a.jump_off_penetration().abs()).sum::<f64>() / summits.len() as f64;
+        // Where adhesion is next to nothing, the roughness sets the scale.
+        let off = off.max(LEAST_SCALE * problem.rms_height_m);
+        // A power of two of a hundredth of the rms height, so that round steps of the approach end stretches.
+        let unit = 0.01 * problem.rms_height_m;
+        let share = if problem.spots_in_patch >= summits.len() { FINE_STRETCH } else { STRETCH };
+        let longest = unit * (share * off / unit).log2().floor().exp2();
+        Self {
+            state,
+            sign,
+            lengths: (longest, longest / share),
+            log: Log::default(),
+            totals: Totals::default(),
+            balance: 0.0,
+            settled: 0,
+            halvings: 0,
+            flips: Vec::new(),
+            held: Vec::new(),
+            effort: Effort::default(),
+        }
+    }
 }
 
 /// A state on its way.
@@ -142,25 +186,61 @@ impl From<Unsettled> for Halt {
 }
 
 impl<'p> Path<'p> {
-    /// A path from a state in equilibrium, in the sense `sign`.
-    pub(crate) fn new(problem: &'p Problem, state: State, sign: f64) -> Result<Self, PhysicsError> {
-        let n = problem.len();
-        let off = problem.asperities.iter().map(|a| a.jump_off_penetration().abs()).sum::<f64>() / n as f64;
-        // Where adhesion is next to nothing, the roughness sets the scale.
-        let off = off.max(LEAST_SCALE * problem.rms_height_m);
-        // A power of two of a hundredth of the rms height, so that round steps of the approach end stretches.
-        let unit = 0.01 * problem.rms_height_m;
-        let share = if problem.spots_in_patch >= n { FINE_STRETCH } else { STRETCH };
-        let longest = unit * (share * off / unit).log2().floor().exp2();
-        let approach = state.approach_m;
-        let mut path = Self::bare(problem, Front::new(problem, state), sign, (longest, longest / share));
-        match path.settle(approach, false, true) {
-            Ok(()) => {}
-            Err(Halt::Unsettled(unsettled) | Halt::Late(_, unsettled)) => return Err(path.stuck(unsettled)),
-            Err(Halt::Error(error)) => return Err(error),
+    /// A path that begins, or goes on with what another has carried here. The state need be no equilibrium: what the potential loses is charged to the
+    /// last event, and how far it was from one is no drift.
+    pub(crate) fn resume(problem: &'p Problem, carried: Carried) -> Result<Self, PhysicsError> {
+        let (approach, drift) = (carried.state.approach_m, carried.log.drift_m);
+        let mut path = Self::bare(problem, Front::new(problem, carried.state), carried.sign, carried.lengths);
+        path.front.expect_totals(carried.totals);
+        path.solver.effort = carried.effort;
+        (path.log, path.totals, path.balance) = (carried.log, carried.totals, carried.balance);
+        (path.halvings, path.settled, path.unbalanced) = (carried.halvings, carried.settled, carried.settled < path.log.events.len());
+        path.held = carried.held;
+        for (mine, flips) in path.flips.iter_mut().zip(carried.flips) {
+            *mine = flips;
         }
-        path.log.drift_m = 0.0;
-        Ok(path)
+        match path.settle(approach, false, true) {
+            Ok(()) => {
+                path.log.drift_m = drift;
+                Ok(path)
+            }
+            Err(Halt::Unsettled(unsettled) | Halt::Late(_, unsettled)) => Err(path.stuck(unsettled)),
+            Err(Halt::Error(error)) => Err(error),
+        }
+    }
+
+    /// Ends here, where the whole contact is solved.
+    pub(crate) fn carry(self) -> Carried {
+        Carried {
+            state: self.front.state,
+            sign: self.sign,
+            lengths: (self.longest, self.scale),
+            settled: self.log.events.len(),
+            log: self.log,
+            totals: self.totals,
+            balance: self.balance,
+            halvings: self.halvings,
+            flips: self.flips,
+            held: self.held,
+            effort: self.solver.effort,
+        }
+    }
+
+    /// The state before the last stretch.
+    pub(crate) fn start(&self) -> Option<&State> {
+        self.mark.as_deref().map(|mark| &mark.front.state)
+    }
+
+    /// Events of the last stretch.
+    pub(crate) fn recent_events(&self) -> &[Event] {
+        &self.log.events[self.mark.as_deref().map_or(0, |mark| mark.events)..]
+    }
+
+    /// Goes back to before the last stretch.
+    pub(crate) fn rewind(&mut self) {
+        if let Some(mark) = self.mark.take() {
+            self.back_to(&mark);
+        }
     }
 
     /// A path that knows nothing but its front.
@@ -368,6 +448,9 @@ impl<'p> Path<'p> {
 
     /// The first state of the last stretch that has this load \[N\], on an excursion; nothing where only the traces had it.
     pub(crate) fn turning(&self, load: f64) -> Result<Option<Self>, PhysicsError> {
+        if self.mark.is_none() && self.totals.load_n >= load {
+            return self.excursion(self.front.state.approach_m).map(Some);
+        }
         let Some(([mut low, mut high], [mut under, mut over])) = self.crossing(load) else { return Ok(None) };
         let mut side = 0.0;
         for _ in 0..100 {

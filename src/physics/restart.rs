@@ -3,6 +3,7 @@
 //! What a state was found by, displacements and residual, is not kept: it is computed anew before the path goes on.
 
 use super::PhysicsError;
+use super::merge::Merged;
 use super::state::{Problem, State, Status};
 
 /// An asperity that is not simply free.
@@ -28,15 +29,23 @@ impl State {
             .collect()
     }
 
-    /// The state at an approach \[m\] in which these asperities are as they were kept, and all others free.
+    /// The state at an approach \[m\] in which these asperities are as they were kept, and all others free; `merged` are the spots that
+    /// had become one before.
     ///
     /// # Errors
     /// Every asperity and every covering one must be of the problem; a contact radius must be positive.
-    pub fn restored(problem: &Problem, approach_m: f64, rows: &[Kept]) -> Result<Self, PhysicsError> {
+    pub fn restored(problem: &Problem, approach_m: f64, merged: &[Merged], rows: &[Kept]) -> Result<Self, PhysicsError> {
         let mut state = Self::free(problem, approach_m);
-        let count = problem.len();
+        for spot in merged {
+            state.extend();
+            state.merged.push(*spot);
+        }
+        let count = state.status.len();
         for row in rows {
-            let by = if let Status::Covered { by, .. } = row.status { by } else { row.asperity };
+            let by = match row.status {
+                Status::Covered { by, .. } | Status::Merged { into: by } => by,
+                _ => row.asperity,
+            };
             if row.asperity.max(by) >= count {
                 return Err(PhysicsError::UnknownAsperity { asperity: row.asperity.max(by), count });
             }

@@ -4,6 +4,7 @@ use super::PhysicsError;
 use super::interaction::pair::{Spot, spot_field_as_printed};
 use super::interaction::{Best, Spots, best};
 use super::jkr::Asperity;
+use super::merge::Merged;
 use super::neighbours::Neighbours;
 use super::summits::Summit;
 use super::validity::LEAST_TABOR;
@@ -27,7 +28,8 @@ pub struct Rules {
     pub slips: Slips,
 }
 
-/// A set of asperities over a half-space: everything that does not change along the path.
+/// A set of asperities over a half-space: everything that does not change along the path, but for spots that become one ([`super::merge`]).
+#[derive(Clone)]
 pub struct Problem {
     pub(crate) asperities: Vec<Asperity>,
     /// Heights over the highest summit \[m\]: zero or negative.
@@ -40,6 +42,8 @@ pub struct Problem {
     pub(crate) rules: Rules,
     pub(crate) field: Best,
     pub(crate) neighbours: Neighbours,
+    /// How many of the asperities are summits; beyond are merged spots.
+    pub(crate) summits: usize,
     /// Spots that are solved together at an event.
     pub(crate) spots_in_patch: usize,
     /// Side of the square L \[m\].
@@ -82,13 +86,15 @@ impl Problem {
             .collect();
         let positions: Vec<[f64; 2]> = summits.iter().map(|s| [s.x_m, s.y_m]).collect();
         let periodic = rules.boundary == Boundary::Periodic;
+        let field = best(positions.clone(), length_m, &material, rules.interaction, rules.boundary, rules.slips);
         Ok(Self {
             heights: summits.iter().map(|s| s.height_m - highest).collect(),
             jump_in,
             tabor,
-            field: best(positions.clone(), length_m, &material, rules.interaction, rules.boundary, rules.slips),
+            field: if rules.coalescence == Coalescence::Merge { field } else { field.with_table() },
             neighbours: Neighbours::new(&positions, length_m, periodic),
             spots_in_patch: SPOTS_IN_PATCH,
+            summits: asperities.len(),
             asperities,
             positions,
             material,
@@ -110,7 +116,7 @@ impl Problem {
         self.jump_in.iter().zip(&self.heights).map(|(jump, z)| jump - z).fold(f64::INFINITY, f64::min)
     }
 
-    /// Number of asperities.
+    /// Number of asperities, merged spots among them.
     #[must_use]
     pub fn len(&self) -> usize {
         self.heights.len()
@@ -202,6 +208,11 @@ pub enum Status {
         /// The radius of that spot below which it is released \[m\]: the distance, or less where covering it made the spot shrink.
         release_m: f64,
     },
+    /// Part of a merged spot.
+    Merged {
+        /// That spot.
+        into: usize,
+    },
 }
 
 /// A state along the path. It is all that is needed to go on from there.
@@ -215,6 +226,8 @@ pub struct State {
     pub radius: Vec<f64>,
     /// Asperities that left while others still invited them back: they stay free until their penetration falls below the jump-in.
     pub barred: Vec<bool>,
+    /// Spots that stand for two since these touched, in the order in which they came; their numbers follow those of the summits.
+    pub merged: Vec<Merged>,
     /// Asperities in contact, ascending.
     pub contacts: Vec<usize>,
     /// Displacement ŵ at the asperities in contact \[m\], in their order.
@@ -236,6 +249,7 @@ impl State {
             status: vec![Status::Free; n],
             radius: vec![0.0; n],
             barred: vec![false; n],
+            merged: Vec::new(),
             contacts: Vec::new(),
             displacement: Vec::new(),
             residual_m: 0.0,
@@ -243,9 +257,16 @@ impl State {
         }
     }
 
+    /// One asperity more, free.
+    pub(crate) fn extend(&mut self) {
+        self.status.push(Status::Free);
+        self.radius.push(0.0);
+        self.barred.push(false);
+    }
+
     pub(crate) fn set(&mut self, i: usize, status: Status, radius: f64) {
         match (self.contacts.binary_search(&i), status) {
-            (Ok(at), Status::Free | Status::Covered { .. }) => {
+            (Ok(at), Status::Free | Status::Covered { .. } | Status::Merged { .. }) => {
                 self.contacts.remove(at);
                 if at < self.displacement.len() {
                     self.displacement.remove(at);

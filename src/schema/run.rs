@@ -10,7 +10,8 @@ const MAX_LOAD: Column = real(
 )
 .or_null();
 const STEP: Column = index("step", "Number of the step along the whole path, from 0");
-const ASPERITY: Column = index("asperity_id", "The asperity, as in the table asperities");
+const ASPERITY: Column =
+    index("asperity_id", "The asperity, as in the table asperities; numbers beyond its last are merged spots, as in the table merged");
 
 /// The summits of one surface.
 pub static ASPERITIES: Table = Table {
@@ -65,6 +66,8 @@ pub static STEPS: Table = Table {
         count("cover_count", "Asperities that were covered in this step"),
         count("uncover_count", "Asperities that were uncovered in this step"),
         count("snap_count", "Moves of the contact to another equilibrium with the same spots in this step"),
+        count("merge_count", "Spots that became one with another in this step"),
+        count("split_count", "Merged spots that parted in this step"),
         count("held_count", "Asperities held as they are since they flipped between covered and uncovered in this step"),
         count("touching_count", "Contact spots that touch another one"),
         real("dissipated_j", "J", "Energy lost in the events of this step"),
@@ -118,11 +121,37 @@ pub static TURNING: Table = Table {
         real("max_load", "1", "F/(E* A0) at which the path turns"),
         real("approach_m", "m", "Approach of the surface at the turning point, zero as in the table steps"),
         ASPERITY,
-        text("state", "\"contact\", \"covered\", or \"free\" if it has left and does not return yet"),
+        text("state", "\"contact\", \"covered\", \"merged\", or \"free\" if it has left and does not return yet"),
         real("contact_radius_m", "m", "Radius of the contact spot; 0 if there is none").from("Eq 2"),
         index("covered_by", "The asperity whose spot covers it; null if none does").or_null(),
         real("release_m", "m", "Radius of the covering spot below which it is uncovered; null if none covers it").or_null(),
         flag("barred", "Whether it has left and stays free until its penetration falls below its jump-in distance"),
+        index("merged_into", "The merged spot of which it is a part; null if it is none").or_null(),
+        count("merged_count", "How many rows of the table merged, from the first, there were by then"),
+    ],
+};
+
+/// Spots that stand for two.
+pub static MERGED: Table = Table {
+    name: "merged",
+    version: 1,
+    file: "cycles/<id>/merged.parquet",
+    doc: "One row per spot that two touching ones became (coalescence \"merge\"), in the order in which they did.",
+    columns: &[
+        STEP,
+        BRANCH,
+        MAX_LOAD,
+        index("asperity_id", "Its number: they follow those of the asperities, and on unloading those of the turning point"),
+        real("approach_m", "m", "Approach of the surface where they merged, zero as in the table steps"),
+        index("part_1", "One of the two, an asperity or a merged spot"),
+        index("part_2", "The other one"),
+        real("part_radius_1_m", "m", "Contact radius of the first one when they merged"),
+        real("part_radius_2_m", "m", "Contact radius of the second one when they merged"),
+        real("release_m", "m", "Contact radius of the merged spot at which it parts"),
+        real("x_m", "m", "x of its centre, the area-weighted one of the two"),
+        real("y_m", "m", "y of its centre"),
+        real("height_m", "m", "Height of its apex over the highest summit").from("Eq 5"),
+        real("radius_m", "m", "Radius of the sphere that has its contact radius and its load").from("Eq 1"),
     ],
 };
 
@@ -138,7 +167,7 @@ pub static EVENTS: Table = Table {
         MAX_LOAD,
         text(
             "kind",
-            "What happened: \"jump_in\", \"jump_off\", \"cover\", \"uncover\", and \"snap\" where the contact moves to another equilibrium with the same spots",
+            "What happened: \"jump_in\", \"jump_off\", \"cover\", \"uncover\", \"merge\", \"split\", and \"snap\" where the contact moves to another equilibrium with the same spots",
         ),
         ASPERITY,
         real("approach_m", "m", "Approach of the surface at the event, zero as in the table steps").from("Eqs 3, 4"),

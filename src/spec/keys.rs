@@ -4,7 +4,7 @@ use super::{CaseParams, Value};
 use crate::model::{Amplitudes, Boundary, Choice, Coalescence, Interaction, JumpIn, KeptContacts, Normalization, Slip};
 
 /// Words that the spec knows and this version cannot run: key, word, reason.
-pub const UNAVAILABLE: &[(&str, &str, &str)] = &[("model.coalescence", "merge", "joining spots that touch")];
+pub const UNAVAILABLE: &[(&str, &str, &str)] = &[];
 
 /// One key of a table.
 pub(super) struct Key {

@@ -4,11 +4,13 @@ use super::StageError;
 use super::surface::read_summits;
 use crate::campaign::{Campaign, CycleUnit};
 use crate::physics::cycle::{self, Cycle, Settings, Step};
+use crate::physics::merge::Merged;
 use crate::physics::restart::Kept;
 use crate::physics::state::{Problem, Rules, State, Status};
 use crate::schema;
 use crate::spec::CaseParams;
 use crate::store::{Frame, parquet};
+use std::path::Path;
 
 /// A state counts as converged below this residual, of the rms height.
 const CONVERGED: f64 = 1e-8;
@@ -47,6 +49,7 @@ pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, progress: &(dyn Fn(f64)
     // The steps come last: where they are, the cycle is done.
     parquet::write_table(&dir.join("contacts.parquet"), &contacts(&cycle)?, &keys)?;
     parquet::write_table(&dir.join("turning.parquet"), &turning(&cycle, &settings.max_loads)?, &keys)?;
+    parquet::write_table(&dir.join("merged.parquet"), &merged(&cycle)?, &keys)?;
     parquet::write_table(&dir.join("events.parquet"), &events(&cycle)?, &keys)?;
     parquet::write_table(&dir.join("steps.parquet"), &steps(&cycle, &problem)?, &keys)?;
     Ok(())
@@ -65,9 +68,11 @@ pub fn unload_again(campaign: &Campaign, unit: &CycleUnit, max_load: f64) -> Res
     let (asperities, states, radii) = (frame.i64("asperity_id")?, frame.text("state")?, frame.f64("contact_radius_m")?);
     let (covering, release, barred) = (frame.i64_or_null("covered_by")?, frame.f64_or_null("release_m")?, frame.bool("barred")?);
     let rows: Vec<usize> = (0..frame.row_count()).filter(|k| loads[*k] == max_load).collect();
-    let status = |k: usize| match (states[k], covering[k], release[k]) {
-        ("contact", ..) => Status::Contact,
-        ("covered", Some(by), Some(release_m)) => Status::Covered { by: by as usize, release_m },
+    let (into, counts) = (frame.i64_or_null("merged_into")?, frame.i64("merged_count")?);
+    let status = |k: usize| match (covering[k], release[k], into[k]) {
+        (Some(by), Some(release_m), _) => Status::Covered { by: by as usize, release_m },
+        (_, _, Some(into)) => Status::Merged { into: into as usize },
+        _ if states[k] == word(Status::Contact) => Status::Contact,
         _ => Status::Free,
     };
     let kept = |&k: &usize| Kept { asperity: asperities[k] as usize, status: status(k), radius_m: radii[k], barred: barred[k] };
@@ -76,8 +81,29 @@ pub fn unload_again(campaign: &Campaign, unit: &CycleUnit, max_load: f64) -> Res
         kept.dedup();
         return Err(StageError::NoTurning { max_load, path, kept: format!("the loads {kept:?}") });
     };
-    let state = State::restored(&problem, approach, &rows.iter().map(kept).collect::<Vec<_>>())?;
+    let merged = merged_rows(&campaign.cycle_dir(unit).join("merged.parquet"), counts[rows[0]] as usize)?;
+    let state = State::restored(&problem, approach, &merged, &rows.iter().map(kept).collect::<Vec<_>>())?;
     Ok(cycle::unload_from(&problem, &settings(params), max_load, state)?)
+}
+
+/// The first spots that have merged on loading.
+fn merged_rows(path: &Path, count: usize) -> Result<Vec<Merged>, StageError> {
+    let frame = parquet::read_table(path, &schema::MERGED)?;
+    let (first, second) = (frame.i64("part_1")?, frame.i64("part_2")?);
+    let [a, b] = [frame.f64("part_radius_1_m")?, frame.f64("part_radius_2_m")?];
+    let [x, y] = [frame.f64("x_m")?, frame.f64("y_m")?];
+    let [radius, height] = [frame.f64("radius_m")?, frame.f64("height_m")?];
+    let [release, approach] = [frame.f64("release_m")?, frame.f64("approach_m")?];
+    let row = |k: usize| Merged {
+        parts: [first[k] as usize, second[k] as usize],
+        radii_m: [a[k], b[k]],
+        place_m: [x[k], y[k]],
+        radius_m: radius[k],
+        height_m: height[k],
+        release_m: release[k],
+        approach_m: approach[k],
+    };
+    Ok((0..count.min(frame.row_count())).map(row).collect())
 }
 
 fn settings(params: &CaseParams) -> Settings {
@@ -86,13 +112,9 @@ fn settings(params: &CaseParams) -> Settings {
 
 fn turning(cycle: &Cycle, loads: &[f64]) -> Result<Frame, StageError> {
     let states = loads.iter().zip(&cycle.turning);
-    let rows: Vec<(f64, f64, Kept)> =
-        states.flat_map(|(load, (_, state))| state.kept().into_iter().map(|kept| (*load, state.approach_m, kept))).collect();
-    let word = |status: Status| match status {
-        Status::Contact => "contact",
-        Status::Covered { .. } => "covered",
-        Status::Free => "free",
-    };
+    let rows: Vec<(f64, f64, Kept, usize)> = states
+        .flat_map(|(load, (_, state))| state.kept().into_iter().map(|kept| (*load, state.approach_m, kept, state.merged.len())))
+        .collect();
     let covered = |status: Status| match status {
         Status::Covered { by, release_m } => Some((by, release_m)),
         _ => None,
@@ -106,6 +128,40 @@ fn turning(cycle: &Cycle, loads: &[f64]) -> Result<Frame, StageError> {
         .i64("covered_by", rows.iter().map(|row| covered(row.2.status).map(|(by, _)| by as i64)))
         .f64("release_m", rows.iter().map(|row| covered(row.2.status).map(|(_, release_m)| release_m)))
         .bool("barred", rows.iter().map(|row| row.2.barred))
+        .i64("merged_into", rows.iter().map(|row| if let Status::Merged { into } = row.2.status { Some(into as i64) } else { None }))
+        .i64("merged_count", rows.iter().map(|row| row.3 as i64))
+        .build()?)
+}
+
+/// What an asperity is doing, in the tables.
+fn word(status: Status) -> &'static str {
+    match status {
+        Status::Contact => "contact",
+        Status::Covered { .. } => "covered",
+        Status::Merged { .. } => "merged",
+        Status::Free => "free",
+    }
+}
+
+fn merged(cycle: &Cycle) -> Result<Frame, StageError> {
+    let spots = &cycle.merged;
+    let step = |k: usize| &cycle.steps[k];
+    let each = |value: fn(&Merged) -> f64| spots.iter().map(move |s| value(&s.spot));
+    Ok(Frame::of(&schema::MERGED)
+        .i64("step", spots.iter().map(|s| s.step as i64))
+        .text("branch", spots.iter().map(|s| step(s.step).branch.word()))
+        .f64("max_load", spots.iter().map(|s| step(s.step).max_load))
+        .i64("asperity_id", spots.iter().map(|s| s.asperity as i64))
+        .f64("approach_m", each(|s| s.approach_m))
+        .i64("part_1", spots.iter().map(|s| s.spot.parts[0] as i64))
+        .i64("part_2", spots.iter().map(|s| s.spot.parts[1] as i64))
+        .f64("part_radius_1_m", each(|s| s.radii_m[0]))
+        .f64("part_radius_2_m", each(|s| s.radii_m[1]))
+        .f64("release_m", each(|s| s.release_m))
+        .f64("x_m", each(|s| s.place_m[0]))
+        .f64("y_m", each(|s| s.place_m[1]))
+        .f64("height_m", each(|s| s.height_m))
+        .f64("radius_m", each(|s| s.radius_m))
         .build()?)
 }
 
@@ -131,6 +187,8 @@ fn steps(cycle: &Cycle, problem: &Problem) -> Result<Frame, StageError> {
         .count("cover_count", count(|s| s.event_counts[2]))
         .count("uncover_count", count(|s| s.event_counts[3]))
         .count("snap_count", count(|s| s.event_counts[4]))
+        .count("merge_count", count(|s| s.event_counts[5]))
+        .count("split_count", count(|s| s.event_counts[6]))
         .count("held_count", count(|s| s.held_count))
         .count("touching_count", count(|s| s.touching_count))
         .f64("dissipated_j", each(|s| s.dissipated_j))

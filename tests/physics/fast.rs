@@ -184,7 +184,7 @@ fn reg_the_best_sum_is_the_same_field_for_few_and_many() {
     let (positions, spots) = contact(11, 900, 800, 3e-5);
     let targets: Vec<usize> = (0..900).collect();
     for (kind, boundary) in [(Kind::Spots, Boundary::Periodic), (Kind::Point, Boundary::Isolated), (Kind::None, Boundary::Periodic)] {
-        let field = best(positions.clone(), LENGTH, &PAPER, kind, boundary, Slips::default());
+        let field = best(positions.clone(), LENGTH, &PAPER, kind, boundary, Slips::default()).with_table();
         let direct = DirectSum::new(positions.clone(), LENGTH, &PAPER, kind, boundary, Slips::default());
         for spots in [&spots, &contact(11, 900, 20, 3e-5).1] {
             let want = displacements(&direct, spots, &targets);

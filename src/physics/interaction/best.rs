@@ -17,13 +17,12 @@ const TOLERANCE: f64 = 1e-10;
 #[must_use]
 pub fn best(positions: Vec<[f64; 2]>, length_m: f64, material: &Material, kind: Kind, boundary: Boundary, slips: Slips) -> Best {
     let many = positions.len() >= MANY && boundary == Boundary::Periodic && kind != Kind::None;
-    let least = if positions.len() <= TABLE_LIMIT { MANY } else { MANY_WITHOUT_TABLE };
     let fast = many.then(|| FastSum::new(positions.clone(), length_m, material, kind, slips, TOLERANCE));
-    Best { direct: DirectSum::new(positions, length_m, material, kind, boundary, slips), fast, least }
+    Best { direct: DirectSum::new(positions, length_m, material, kind, boundary, slips), fast, least: MANY_WITHOUT_TABLE }
 }
 
 /// The direct sum, and the fast one where there are asperities enough for it.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Best {
     direct: DirectSum,
     fast: Option<FastSum>,
@@ -42,6 +41,23 @@ impl Best {
     /// For other places than the spots: a mesh is worth its while only for many of them.
     fn for_targets(&self, spots: &Spots, targets: &[usize]) -> &dyn Interaction {
         if targets.len() < self.least / 2 { &self.direct } else { self.for_spots(spots) }
+    }
+
+    /// The same with a table of what images do, where there are few enough asperities; no place can be added then.
+    #[must_use]
+    pub fn with_table(self) -> Self {
+        if self.direct.places() > TABLE_LIMIT {
+            return self;
+        }
+        Self { direct: self.direct.with_table(), least: MANY, ..self }
+    }
+
+    /// Adds a place \[m\], whose number follows the last one.
+    pub(crate) fn add(&mut self, place: [f64; 2]) {
+        self.direct.add(place);
+        if let Some(fast) = &mut self.fast {
+            fast.add(place);
+        }
     }
 
     /// As [`DirectSum::rows`] has it.

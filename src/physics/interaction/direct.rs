@@ -8,12 +8,13 @@ use super::{Effort, Interaction, Spots, Tangent};
 use crate::model::{Boundary, Interaction as Kind, Material, Slips};
 use crate::physics::krylov::dot;
 use multiversion::multiversion;
+use std::sync::Arc;
 
-/// Up to this many asperities the sums over images of every pair are kept, 32 bytes each: 290 MB; beyond, each is computed when needed.
+/// Up to this many asperities the sums over images of every pair may be kept, 32 bytes each: 290 MB.
 pub(crate) const TABLE_LIMIT: usize = 3000;
 
 /// All pairs, one by one: the exact field of the nearest image of every spot, and of its other images what is seen from afar.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct DirectSum {
     kind: Kind,
     periodic: bool,
@@ -23,8 +24,8 @@ pub struct DirectSum {
     sag: f64,
     /// `1/(πE*)` \[1/Pa\].
     compliance: f64,
-    /// [`super::ewald::image_sums`] of every pair of asperities, or nothing above the limit.
-    table: Vec<[f64; ORDERS]>,
+    /// The sums over images of every pair of asperities, or nothing: then each is computed when needed.
+    table: Arc<Vec<[f64; ORDERS]>>,
 }
 
 impl DirectSum {
@@ -32,22 +33,6 @@ impl DirectSum {
     #[must_use]
     pub fn new(positions: Vec<[f64; 2]>, length_m: f64, material: &Material, kind: Kind, boundary: Boundary, slips: Slips) -> Self {
         let periodic = boundary == Boundary::Periodic;
-        let n = positions.len();
-        let mut table = Vec::new();
-        if periodic && kind != Kind::None && n <= TABLE_LIMIT {
-            table.resize(n * n, [0.0; ORDERS]);
-            for i in 0..n {
-                for j in 0..=i {
-                    let [dx, dy] = [0, 1].map(|k| {
-                        let d = (positions[i][k] - positions[j][k]) / length_m;
-                        d - d.round_ties_even()
-                    });
-                    let sums = IMAGES.sums(dx, dy);
-                    table[i * n + j] = sums;
-                    table[j * n + i] = sums;
-                }
-            }
-        }
         Self {
             kind,
             periodic,
@@ -56,8 +41,41 @@ impl DirectSum {
             pull: material.pull(),
             sag: sag(slips),
             compliance: material.compliance(),
-            table,
+            table: Arc::default(),
         }
+    }
+
+    /// The same, with the sums over images of every pair at hand; no place can be added then.
+    #[must_use]
+    pub fn with_table(self) -> Self {
+        let (n, positions) = (self.positions.len(), &self.positions);
+        if !self.periodic || self.kind == Kind::None {
+            return self;
+        }
+        let mut table = vec![[0.0; ORDERS]; n * n];
+        for i in 0..n {
+            for j in 0..=i {
+                let [dx, dy] = [0, 1].map(|k| {
+                    let d = (positions[i][k] - positions[j][k]) / self.length;
+                    d - d.round_ties_even()
+                });
+                let sums = IMAGES.sums(dx, dy);
+                table[i * n + j] = sums;
+                table[j * n + i] = sums;
+            }
+        }
+        Self { table: Arc::new(table), ..self }
+    }
+
+    /// How many places there are.
+    pub(crate) fn places(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// Adds a place \[m\], whose number follows the last one.
+    pub(crate) fn add(&mut self, place: [f64; 2]) {
+        self.table = Arc::default();
+        self.positions.push(place);
     }
 
     /// What the images of the spots need.

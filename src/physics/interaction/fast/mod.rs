@@ -41,7 +41,7 @@ const SPREAD_COST: f64 = 500.0;
 const TOGETHER: usize = 64;
 
 /// Near pairs and a mesh.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct FastSum {
     measure: Measure,
     positions: Vec<[f64; 2]>,
@@ -114,6 +114,11 @@ impl FastSum {
             accuracy: Accuracy::of(tolerance),
             plans: [const { OnceLock::new() }; REACHES],
         }
+    }
+
+    /// Adds a place \[m\], whose number follows the last one.
+    pub(crate) fn add(&mut self, place: [f64; 2]) {
+        self.positions.push(place);
     }
 
     fn reach(step: usize) -> f64 {

@@ -1,0 +1,344 @@
+//! Touching spots become one and part again, where coalescence is `merge`.
+//!
+//! Two spots with `r < a_i + a_j` become one of the same area and load: `a² = a_i² + a_j²`, at their area-weighted centre, `F = F_i + F_j`. So its
+//! sphere is that of radius `R = (4/3)E*a³/(F + sqrt(8πE*Δγa³))` (Eq 1), at the height at which it is in equilibrium as it is (Eqs 2 and 5). It is an
+//! asperity from then on, may merge again, and parts where its area has come back to what it was then.
+//!
+//! Spots merge where they come to touch, in equilibrium, one pair at a time, the most overlapping first; merging on the way to an equilibrium runs
+//! away. An asperity whose centre a greater spot reaches before they have merged, since it is free or on the way to an equilibrium, is covered
+//! as with `cover`. A pair that would be beyond the end of its branch, by its tension, does not merge until it would not be; one that has parted must have been
+//! apart before it merges again.
+//!
+//! A merged spot is another sphere than its two parts, and has another potential. What the potential loses when they merge is no dissipation
+//! alone: parting gives it back, and only the sum over both is a loss.
+
+use super::PhysicsError;
+use super::events::{Change, Kind};
+use super::interaction::{Effort, Interaction as _, Spots};
+use super::jkr::Asperity;
+use super::log::Event;
+use super::path::{Carried, Path};
+use super::state::{Problem, State, Status};
+use crate::model::{Boundary, Coalescence};
+use std::collections::BTreeSet;
+use std::f64::consts::PI;
+
+/// Overlap at which spots merge at the latest, of their distance; and by how much smaller than at merging a spot parts at the latest, of its radius.
+const TOUCH: f64 = 1e-3;
+
+/// Way within which they merge where they come to touch by a jump, of the rms height.
+const SUDDEN: f64 = 1e-6;
+
+/// Greatest tension of a merged spot, of `sqrt(8πE*Δγa³)`. The branch ends at 5/6.
+const TENSEST: f64 = 0.8;
+
+/// A spot that stands for two.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Merged {
+    /// Its parts: summits, or merged spots themselves.
+    pub parts: [usize; 2],
+    /// Their contact radii when they merged \[m\].
+    pub radii_m: [f64; 2],
+    /// Its centre \[m\].
+    pub place_m: [f64; 2],
+    /// Its radius of curvature R \[m\].
+    pub radius_m: f64,
+    /// Its height over the highest summit \[m\].
+    pub height_m: f64,
+    /// The contact radius at which it parts \[m\].
+    pub release_m: f64,
+    /// Approach at which they merged \[m\].
+    pub approach_m: f64,
+}
+
+impl Merged {
+    /// Contact radius when the parts merged \[m\].
+    #[must_use]
+    pub fn contact_radius_m(&self) -> f64 {
+        self.radii_m[0].hypot(self.radii_m[1])
+    }
+}
+
+/// What is to be done.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Meeting {
+    /// These spots become one.
+    Touch(usize, usize),
+    /// This merged spot parts.
+    Part(usize),
+    /// A merged spot has left, and what it stood for is free.
+    Leave,
+}
+
+/// Pairs that touch and are no news.
+pub(crate) type Known = BTreeSet<(usize, usize)>;
+
+impl Problem {
+    /// The problem of a state that has merged spots; nothing where it has none.
+    pub(crate) fn grown(&self, merged: &[Merged]) -> Result<Option<Self>, PhysicsError> {
+        if merged.is_empty() {
+            return Ok(None);
+        }
+        let mut grown = self.clone();
+        for spot in merged {
+            grown.add(spot)?;
+        }
+        Ok(Some(grown))
+    }
+
+    fn add(&mut self, merged: &Merged) -> Result<(), PhysicsError> {
+        let asperity = Asperity::as_printed(merged.radius_m, &self.material, self.rules.slips)?;
+        self.tabor.push(asperity.tabor(self.material.interaction_range_m));
+        self.asperities.push(asperity);
+        self.heights.push(merged.height_m);
+        self.positions.push(merged.place_m);
+        // Once it has parted it is nothing.
+        self.jump_in.push(f64::INFINITY);
+        self.field.add(merged.place_m);
+        self.neighbours.add(merged.place_m);
+        Ok(())
+    }
+
+    /// Load over `sqrt(8πE*Δγa³)` of what two spots would be, and that root \[N\].
+    fn tension(&self, state: &State, i: usize, j: usize) -> (f64, f64) {
+        let [a, b] = [state.radius[i], state.radius[j]];
+        let area_radius = a.hypot(b);
+        let root = 2.0 * self.material.contact_modulus_pa * self.material.pull() * area_radius * area_radius.sqrt();
+        ((self.asperities[i].load(a) + self.asperities[j].load(b)) / root, root)
+    }
+
+    /// How far a state is beyond a meeting: negative before it.
+    fn beyond(&self, state: &State, meeting: Meeting) -> f64 {
+        match meeting {
+            Meeting::Touch(i, j) if state.radius[i] > 0.0 && state.radius[j] > 0.0 => {
+                let overlap = (state.radius[i] + state.radius[j]) / self.neighbours.distance(&self.positions[i], &self.positions[j]) - 1.0;
+                overlap.min(self.tension(state, i, j).0 + TENSEST)
+            }
+            Meeting::Part(m) if state.radius[m] > 0.0 => 1.0 - state.radius[m] / state.merged[m - self.summits].release_m,
+            _ => -1.0,
+        }
+    }
+
+    /// Pairs that touch and could merge.
+    pub(crate) fn touching(&self, state: &State) -> Known {
+        let mut pairs = Known::new();
+        if self.rules.coalescence != Coalescence::Merge {
+            return pairs;
+        }
+        let greatest = state.contacts.iter().map(|&i| state.radius[i]).fold(0.0, f64::max);
+        for &i in &state.contacts {
+            self.neighbours.within(i, state.radius[i] + greatest, |_, j| {
+                if j > i && self.beyond(state, Meeting::Touch(i, j)) >= 0.0 {
+                    pairs.insert((i, j));
+                }
+            });
+        }
+        pairs
+    }
+
+    /// Meetings that are due, the furthest beyond first.
+    pub(crate) fn meetings(&self, state: &State, known: &Known) -> Vec<(f64, Meeting)> {
+        let touching = self.touching(state).into_iter().filter(|pair| !known.contains(pair)).map(|(i, j)| Meeting::Touch(i, j));
+        let parting = (self.summits..self.len()).map(Meeting::Part);
+        let mut due: Vec<(f64, Meeting)> = touching.chain(parting).map(|m| (self.beyond(state, m), m)).filter(|due| due.0 >= 0.0).collect();
+        due.sort_by(|u, v| v.0.total_cmp(&u.0).then(u.1.cmp(&v.1)));
+        due
+    }
+
+    /// Makes two spots of a state one; its number is returned.
+    pub(crate) fn join(&mut self, state: &mut State, i: usize, j: usize) -> Result<usize, PhysicsError> {
+        let [a, b] = [state.radius[i], state.radius[j]];
+        let radius = a.hypot(b);
+        let (tension, root) = self.tension(state, i, j);
+        let number = self.len();
+        let mut merged = Merged {
+            parts: [i, j],
+            radii_m: [a, b],
+            place_m: self.between(i, j, b * b / (radius * radius)),
+            radius_m: 4.0 / 3.0 * self.material.contact_modulus_pa * radius.powi(3) / ((tension + 1.0) * root),
+            height_m: 0.0,
+            release_m: radius,
+            approach_m: state.approach_m,
+        };
+        self.add(&merged)?;
+        state.extend();
+        for part in [i, j] {
+            state.set(part, Status::Merged { into: number }, 0.0);
+        }
+        state.set(number, Status::Contact, radius);
+        merged.height_m = self.asperities[number].penetration(radius) + self.displacement(state, number) - state.approach_m;
+        self.heights[number] = merged.height_m;
+        state.merged.push(merged);
+        Ok(number)
+    }
+
+    /// A merged spot of a state becomes its parts again, of the area that it has.
+    pub(crate) fn part(&self, state: &mut State, number: usize) {
+        let merged = state.merged[number - self.summits];
+        let share = state.radius[number] / merged.contact_radius_m();
+        state.set(number, Status::Free, 0.0);
+        for (part, radius) in merged.parts.into_iter().zip(merged.radii_m) {
+            state.set(part, Status::Contact, share * radius);
+        }
+    }
+
+    /// Where a merged spot has left, what it stood for is free, as anything that has left.
+    fn free_orphans(&self, state: &mut State) {
+        // A part has a lower number than its spot.
+        for i in (0..state.status.len()).rev() {
+            if matches!(state.status[i], Status::Merged { into } if state.status[into] == Status::Free) {
+                state.set(i, Status::Free, 0.0);
+                state.barred[i] = i < self.summits;
+            }
+        }
+    }
+
+    /// Displacement at an asperity by the spots of a state \[m\].
+    fn displacement(&self, state: &State, i: usize) -> f64 {
+        let (mut spots, mut found) = (Spots::default(), Vec::new());
+        self.spots(state, &mut spots);
+        self.field.displacements(&spots, &[i], &mut found, &mut Effort::default());
+        found[0]
+    }
+
+    /// The point between asperities i and j at this share of the way from i \[m\].
+    fn between(&self, i: usize, j: usize, share: f64) -> [f64; 2] {
+        let (p, q) = (self.positions[i], self.positions[j]);
+        [0, 1].map(|k| {
+            let d = q[k] - p[k];
+            if self.rules.boundary == Boundary::Periodic {
+                let d = d - self.length_m * (d / self.length_m).round_ties_even();
+                let x = (p[k] + share * d).rem_euclid(self.length_m);
+                if x < self.length_m { x } else { 0.0 }
+            } else {
+                p[k] + share * d
+            }
+        })
+    }
+
+    /// Whether there is room for the spots of a state.
+    pub(crate) fn check_room(&self, state: &State) -> Result<(), PhysicsError> {
+        let share = state.contacts.iter().map(|&i| PI * state.radius[i] * state.radius[i]).sum::<f64>() / (self.length_m * self.length_m);
+        let greatest = state.contacts.iter().map(|&i| state.radius[i]).fold(0.0, f64::max);
+        if share < 1.0 && greatest < 0.5 * self.length_m {
+            return Ok(());
+        }
+        Err(PhysicsError::FullContact { approach_m: state.approach_m, share })
+    }
+}
+
+impl Path<'_> {
+    /// The approach \[m\] at which the first of the meetings comes that are due at the end of the last stretch; nothing where none is.
+    pub(crate) fn meeting(&self, known: &Known) -> Result<Option<f64>, PhysicsError> {
+        let problem = self.problem();
+        let end = self.state();
+        let due = problem.meetings(end, known);
+        let furthest = |state: &State| due.iter().map(|(_, m)| problem.beyond(state, *m)).fold(f64::NEG_INFINITY, f64::max);
+        let (Some((over, _)), Some(start)) = (due.first(), self.start()) else { return Ok(None) };
+        let (mut low, mut under) = (start.approach_m, furthest(start).min(0.0));
+        let (mut high, mut over) = (end.approach_m, *over);
+        let sudden = SUDDEN * problem.rms_height_m;
+        // Where an event of the spots themselves has brought it about, it is looked for there, on both sides.
+        let mut sides =
+            self.last_event_of(&due).map_or(Vec::new(), |at| vec![at - 0.4 * self.sign * sudden, at + 0.4 * self.sign * sudden]);
+        sides.retain(|side| (side - low) * self.sign > 0.0 && (high - side) * self.sign > 0.0);
+        for round in 0.. {
+            if over <= TOUCH || (high - low).abs() <= sudden {
+                break;
+            }
+            // A little beyond where the straight line has it; where that does not lead there, one of the ends is before a jump.
+            let margin = if round < 3 { 0.02 } else { 0.3 };
+            let share = ((0.5 * TOUCH - under) / (over - under)).clamp(margin, 1.0 - margin);
+            let middle = sides.pop().unwrap_or(low + share * (high - low));
+            let trial = furthest(self.excursion(middle)?.state());
+            if trial < 0.0 {
+                (low, under) = (middle, trial);
+                sides.clear();
+            } else {
+                (high, over) = (middle, trial);
+            }
+        }
+        Ok(Some(high))
+    }
+}
+
+impl Path<'_> {
+    /// The approach of the last event within the last stretch by which one of these spots came to be \[m\].
+    fn last_event_of(&self, due: &[(f64, Meeting)]) -> Option<f64> {
+        let spots = |meeting: &Meeting| match *meeting {
+            Meeting::Touch(i, j) => [i, j],
+            Meeting::Part(m) => [m, m],
+            Meeting::Leave => [usize::MAX; 2],
+        };
+        let events = self.recent_events().iter().rev().filter(|event| matches!(event.kind, Kind::JumpIn | Kind::Uncover));
+        events
+            .into_iter()
+            .find(|event| due.iter().any(|(_, meeting)| spots(meeting).contains(&event.asperity)))
+            .map(|event| event.approach_m)
+    }
+
+    /// The contact is in equilibrium after a meeting. A spot that has become smaller by merging does not part again at once.
+    pub(crate) fn settle_meeting(&mut self) {
+        let (totals, state) = (self.totals, &mut self.front.state);
+        for (k, spot) in state.merged.iter_mut().enumerate().filter(|(_, spot)| spot.approach_m == state.approach_m) {
+            let radius = state.radius[self.solver.problem.summits + k];
+            if radius > 0.0 {
+                spot.release_m = spot.release_m.min((1.0 - TOUCH) * radius);
+            }
+        }
+        if let Some(event) = self.log.events.last_mut().filter(|event| matches!(event.kind, Kind::Merge | Kind::Split)) {
+            event.after = totals;
+        }
+    }
+
+    /// Meetings that are due where the path is; where none is, what touches there is known from now on.
+    pub(crate) fn due_meeting(&self, known: &mut Known) -> Result<Option<Meeting>, PhysicsError> {
+        let problem = self.problem();
+        if problem.rules.coalescence != Coalescence::Merge {
+            return Ok(None);
+        }
+        problem.check_room(self.state())?;
+        let orphan = |status: &Status| matches!(status, Status::Merged { into } if self.state().status[*into] == Status::Free);
+        if self.state().status.iter().any(orphan) {
+            return Ok(Some(Meeting::Leave));
+        }
+        let due = problem.meetings(self.state(), known).first().map(|(_, meeting)| *meeting);
+        if due.is_none() {
+            // A pair of which one is part of another spot has not been apart.
+            let state = self.state();
+            known.retain(|(i, j)| [i, j].iter().any(|k| matches!(state.status[**k], Status::Merged { .. })));
+            known.extend(problem.touching(state));
+        }
+        Ok(due)
+    }
+}
+
+impl Carried {
+    /// Does what is to be done; `problem` is the path's own.
+    pub(crate) fn meet(&mut self, problem: &mut Problem, meeting: Meeting, known: &mut Known) -> Result<(), PhysicsError> {
+        let (kind, asperity) = match meeting {
+            Meeting::Touch(i, j) => (Kind::Merge, problem.join(&mut self.state, i, j)?),
+            Meeting::Part(number) => {
+                problem.part(&mut self.state, number);
+                let [i, j] = self.state.merged[number - problem.summits].parts;
+                known.insert((i.min(j), i.max(j)));
+                // Others have grown up to them meanwhile.
+                let theirs = |(k, l): &(usize, usize)| [i, j].contains(k) || [i, j].contains(l);
+                known.extend(problem.touching(&self.state).into_iter().filter(theirs));
+                (Kind::Split, number)
+            }
+            Meeting::Leave => {
+                problem.free_orphans(&mut self.state);
+                return Ok(());
+            }
+        };
+        let here = self.state.approach_m;
+        let follows = |event: &Event| event.approach_m == here && matches!(event.kind, Kind::Merge | Kind::Split);
+        if !self.log.events.last().is_some_and(follows) {
+            self.log.begin_avalanche();
+        }
+        // What is lost is charged when the whole contact is in equilibrium again.
+        self.log.record(&[Change { kind, asperity, by: None }], here, self.totals, self.totals, 0.0);
+        Ok(())
+    }
+}
