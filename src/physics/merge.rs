@@ -23,8 +23,14 @@ use crate::model::{Boundary, Coalescence};
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
 
-/// Overlap at which spots merge at the latest, of their distance; and by how much smaller than at merging a spot parts at the latest, of its radius.
+/// Overlap at which spots merge at the latest, of their distance.
 const TOUCH: f64 = 1e-3;
+
+/// How many times nearer to its radius of release a spot parts at the latest.
+const NEARER: f64 = 10.0;
+
+/// Relative change of a radius that an equilibrium does not tell from none.
+const ROUNDING: f64 = 1e-8;
 
 /// Way within which they merge where they come to touch by a jump, of the rms height.
 const SUDDEN: f64 = 1e-6;
@@ -114,7 +120,7 @@ impl Problem {
                 let overlap = (state.radius[i] + state.radius[j]) / self.neighbours.distance(&self.positions[i], &self.positions[j]) - 1.0;
                 overlap.min(self.tension(state, i, j).0 + TENSEST)
             }
-            Meeting::Part(m) if state.radius[m] > 0.0 => 1.0 - state.radius[m] / state.merged[m - self.summits].release_m,
+            Meeting::Part(m) if state.radius[m] > 0.0 => NEARER * (1.0 - state.radius[m] / state.merged[m - self.summits].release_m),
             _ => -1.0,
         }
     }
@@ -283,7 +289,7 @@ impl Path<'_> {
         for (k, spot) in state.merged.iter_mut().enumerate().filter(|(_, spot)| spot.approach_m == state.approach_m) {
             let radius = state.radius[self.solver.problem.summits + k];
             if radius > 0.0 {
-                spot.release_m = spot.release_m.min((1.0 - TOUCH) * radius);
+                spot.release_m = spot.release_m.min((1.0 - ROUNDING) * radius);
             }
         }
         if let Some(event) = self.log.events.last_mut().filter(|event| matches!(event.kind, Kind::Merge | Kind::Split)) {

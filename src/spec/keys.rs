@@ -3,9 +3,6 @@
 use super::{CaseParams, Value};
 use crate::model::{Amplitudes, Boundary, Choice, Coalescence, Interaction, JumpIn, KeptContacts, Normalization, Slip};
 
-/// Words that the spec knows and this version cannot run: key, word, reason.
-pub const UNAVAILABLE: &[(&str, &str, &str)] = &[];
-
 /// One key of a table.
 pub(super) struct Key {
     /// Table and key, such as `surface.length_m`.
@@ -173,14 +170,4 @@ pub(super) fn find(table: &str, name: &str) -> Option<usize> {
 /// The names of the keys of a table.
 pub(super) fn names(table: &str) -> impl Iterator<Item = &'static str> {
     KEYS.iter().filter(move |key| key.table == table).map(|key| key.name)
-}
-
-/// The words of a key that this version can run.
-pub(super) fn available(key: &Key, words: &[&'static str]) -> Vec<&'static str> {
-    words.iter().copied().filter(|word| unavailable(key, word).is_none()).collect()
-}
-
-/// Why this version cannot run a word of a key, if so.
-pub(super) fn unavailable(key: &Key, word: &str) -> Option<&'static str> {
-    UNAVAILABLE.iter().find(|(path, known, _)| *path == key.path && *known == word).map(|(_, _, reason)| *reason)
 }

@@ -22,7 +22,6 @@ use serde::{Deserialize, Serialize};
 use crate::model::{Amplitudes, Boundary, Coalescence, Interaction, JumpIn, KeptContacts, Material, Normalization, Slip, Slips};
 
 pub use fault::{Fault, Place, SpecErrors};
-pub use keys::UNAVAILABLE;
 
 /// The greatest number of cases that one spec may make.
 pub const MAX_CASES: u32 = 10_000;

@@ -7,7 +7,7 @@ use toml::de::DeValue;
 
 use super::Value;
 use super::fault::Faults;
-use super::keys::{Key, Kind, available, unavailable};
+use super::keys::{Key, Kind};
 use super::nearest::nearest;
 use super::number::{integer, number, numbers};
 
@@ -65,29 +65,19 @@ pub(super) fn array<'v, 't>(path: &str, of: &str, value: &'v Written<'t>, faults
 /// One of the words of a key.
 fn word(key: &Key, words: &[&'static str], value: &Written<'_>, faults: &mut Faults<'_>) -> Option<&'static str> {
     let span = value.span();
-    let can = available(key, words);
-    let listed = if can.is_empty() {
-        "allowed now: an empty array".to_owned()
-    } else {
-        format!("allowed now: {}", can.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", "))
-    };
+    let listed = format!("allowed: {}", words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", "));
     let DeValue::String(found) = value.get_ref() else {
         wrong_type(key.path, "a word in quotes", value.get_ref(), &span, listed, faults);
         return None;
     };
     let Some(known) = words.iter().find(|word| **word == found.as_ref()) else {
-        let help = match nearest(found, can.iter().copied()) {
+        let help = match nearest(found, words.iter().copied()) {
             Some(near) => format!("did you mean \"{near}\"? {listed}"),
             None => listed,
         };
         faults.add(&span, format!("`{}` does not know the word {}", key.path, faults.written(&span)), help);
         return None;
     };
-    if let Some(reason) = unavailable(key, known) {
-        let message = format!("`{}` cannot be \"{known}\": {reason} is not available in this version", key.path);
-        faults.add(&span, message, listed);
-        return None;
-    }
     Some(known)
 }
 

@@ -89,8 +89,8 @@ pub fn unload_again(campaign: &Campaign, unit: &CycleUnit, max_load: f64) -> Res
 /// The first spots that have merged on loading.
 fn merged_rows(path: &Path, count: usize) -> Result<Vec<Merged>, StageError> {
     let frame = parquet::read_table(path, &schema::MERGED)?;
-    let (first, second) = (frame.i64("part_1")?, frame.i64("part_2")?);
-    let [a, b] = [frame.f64("part_radius_1_m")?, frame.f64("part_radius_2_m")?];
+    let (first, second) = (frame.i64("first_id")?, frame.i64("second_id")?);
+    let [a, b] = [frame.f64("first_radius_m")?, frame.f64("second_radius_m")?];
     let [x, y] = [frame.f64("x_m")?, frame.f64("y_m")?];
     let [radius, height] = [frame.f64("radius_m")?, frame.f64("height_m")?];
     let [release, approach] = [frame.f64("release_m")?, frame.f64("approach_m")?];
@@ -153,10 +153,10 @@ fn merged(cycle: &Cycle) -> Result<Frame, StageError> {
         .f64("max_load", spots.iter().map(|s| step(s.step).max_load))
         .i64("asperity_id", spots.iter().map(|s| s.asperity as i64))
         .f64("approach_m", each(|s| s.approach_m))
-        .i64("part_1", spots.iter().map(|s| s.spot.parts[0] as i64))
-        .i64("part_2", spots.iter().map(|s| s.spot.parts[1] as i64))
-        .f64("part_radius_1_m", each(|s| s.radii_m[0]))
-        .f64("part_radius_2_m", each(|s| s.radii_m[1]))
+        .i64("first_id", spots.iter().map(|s| s.spot.parts[0] as i64))
+        .i64("second_id", spots.iter().map(|s| s.spot.parts[1] as i64))
+        .f64("first_radius_m", each(|s| s.radii_m[0]))
+        .f64("second_radius_m", each(|s| s.radii_m[1]))
         .f64("release_m", each(|s| s.release_m))
         .f64("x_m", each(|s| s.place_m[0]))
         .f64("y_m", each(|s| s.place_m[1]))

@@ -71,6 +71,8 @@ pub fn write(path: &Path, steps: &[Step]) {
         .count("cover_count", zeros())
         .count("uncover_count", zeros())
         .count("snap_count", zeros())
+        .count("merge_count", zeros())
+        .count("split_count", zeros())
         .count("held_count", (0..steps.len()).map(|row| usize::from(row == 1)))
         .count("touching_count", vec![1; steps.len()])
         .f64("dissipated_j", reals(|step| if step.0 == "loading" { 1e-10 } else { 2e-10 }))

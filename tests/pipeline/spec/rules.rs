@@ -1,7 +1,7 @@
 //! Bounds and words.
 
 use hysteron::model::{Amplitudes, Boundary, Choice, Coalescence, Interaction, JumpIn, KeptContacts, Normalization, Slip};
-use hysteron::spec::{Spec, UNAVAILABLE};
+use hysteron::spec::Spec;
 
 use super::refused;
 
@@ -57,40 +57,20 @@ fn all_words() -> Vec<(&'static str, &'static str)> {
 }
 
 #[test]
-fn law_every_word_is_taken_unless_the_table_says_why_not() {
-    let all = all_words();
-    for (key, word, _) in UNAVAILABLE {
-        assert!(all.contains(&(*key, *word)), "{key} has no word {word}");
-    }
-    for (key, word) in all {
+fn law_every_word_is_taken() {
+    for (key, word) in all_words() {
         let value = if key == "model.as_printed" { format!("[\"{word}\"]") } else { format!("\"{word}\"") };
         let text = format!("name = \"x\"\n{key} = {value}\n");
-        match UNAVAILABLE.iter().find(|(path, known, _)| *path == key && *known == word) {
-            None => {
-                let spec = Spec::parse(&text, "x.toml").unwrap_or_else(|errors| panic!("{errors}"));
-                let json = serde_json::to_value(&spec.cases[0].params).unwrap();
-                let found = json.pointer(&format!("/{}", key.replace('.', "/"))).unwrap();
-                assert_eq!(found.to_string(), value, "{key}");
-            }
-            Some((_, _, reason)) => {
-                let rendered = refused(&text);
-                let sentence = format!("`{key}` cannot be \"{word}\": {reason} is not available in this version");
-                assert!(rendered.contains(&sentence), "{rendered}");
-                assert!(rendered.contains("allowed now: "), "{rendered}");
-                let allowed = rendered.lines().find(|line| line.contains("allowed now: ")).unwrap();
-                assert!(!allowed.contains(&format!("\"{word}\"")), "{rendered}");
-            }
-        }
+        let spec = Spec::parse(&text, "x.toml").unwrap_or_else(|errors| panic!("{errors}"));
+        let json = serde_json::to_value(&spec.cases[0].params).unwrap();
+        let found = json.pointer(&format!("/{}", key.replace('.', "/"))).unwrap();
+        assert_eq!(found.to_string(), value, "{key}");
     }
 }
 
 #[test]
 fn law_slips_are_sorted_and_stand_once() {
-    let can: Vec<&str> = Slip::WORDS
-        .iter()
-        .map(|(word, _)| *word)
-        .filter(|word| !UNAVAILABLE.iter().any(|(key, known, _)| *key == "model.as_printed" && known == word))
-        .collect();
+    let can: Vec<&str> = Slip::WORDS.iter().map(|(word, _)| *word).collect();
     let quoted: Vec<String> = can.iter().rev().chain(&can).map(|word| format!("\"{word}\"")).collect();
     let text = format!("name = \"x\"\nmodel.as_printed = [{}]\n", quoted.join(", "));
     let slips = Spec::parse(&text, "x.toml").unwrap().cases.remove(0).params.model.as_printed;

@@ -1,0 +1,169 @@
+//! Touching spots become one of the same area and load, and part again.
+
+use crate::support::{ALONE, DEFAULT, Dice, LENGTH, PAPER, RMS, asperity, close, loop_of, near, paper_summits, run, turning, unloading};
+use hysteron::model::{Coalescence, Interaction, KeptContacts};
+use hysteron::physics::PhysicsError;
+use hysteron::physics::cycle::{self, Cycle, Settings};
+use hysteron::physics::events::Kind;
+use hysteron::physics::jkr::Asperity;
+use hysteron::physics::state::{Problem, Rules, State};
+use hysteron::physics::summits::Summit;
+
+const MERGE: Rules = Rules { coalescence: Coalescence::Merge, ..DEFAULT };
+const MERGE_ALONE: Rules = Rules { coalescence: Coalescence::Merge, ..ALONE };
+
+/// Two spheres across the edge of the square, 20 μm apart.
+fn pair() -> [Summit; 2] {
+    [asperity(LENGTH - 4e-6, 0.5 * LENGTH, 0.0, 3e-5), asperity(1.2e-5, 0.5 * LENGTH + 1.2e-5, -1e-7, 2e-5)]
+}
+
+fn pair_cycle() -> Cycle {
+    let problem = Problem::new(&pair(), LENGTH, RMS, PAPER, MERGE_ALONE).unwrap();
+    run(&problem, &[1.2e-4], 0.002, KeptContacts::All)
+}
+
+#[test]
+fn law_two_spots_that_touch_become_one_of_their_area_and_load() {
+    let cycle = pair_cycle();
+    let kinds: Vec<Kind> = cycle.events.iter().map(|(_, e)| e.kind).collect();
+    assert_eq!(kinds, [Kind::JumpIn, Kind::JumpIn, Kind::Merge, Kind::Split, Kind::JumpOff, Kind::JumpOff]);
+    let spheres = pair().map(|s| Asperity::new(s.radius_m(), &PAPER).unwrap());
+    let (merged, event) = (cycle.merged[0], cycle.events[2].1);
+    assert_eq!((cycle.merged.len(), merged.asperity, event.asperity, merged.spot.parts), (1, 2, 2, [0, 1]));
+    let spot = merged.spot;
+    // Alone, each is on its own JKR branch, with penetration δ + z; equilibria are met to 5e-16 m of 1e-6 m.
+    for (k, sphere) in spheres.iter().enumerate() {
+        let want = sphere.radius_at_penetration(spot.approach_m + pair()[k].height_m).unwrap();
+        close("radius of a part", spot.radii_m[k], want, 1e-8);
+    }
+    // They merge where they touch, to a thousandth of their distance.
+    let distance = (16e-6f64).hypot(12e-6);
+    let overlap = (spot.radii_m[0] + spot.radii_m[1]) / distance - 1.0;
+    assert!((0.0..=1e-3).contains(&overlap), "{overlap:e}");
+    // Its centre divides the way between theirs, over the edge, in the inverse ratio of their areas.
+    let share = (spot.radii_m[1] / spot.contact_radius_m()).powi(2);
+    near("x", spot.place_m[0], (LENGTH - 4e-6 + share * 16e-6) % LENGTH, 1e-15);
+    near("y", spot.place_m[1], 0.5 * LENGTH + share * 12e-6, 1e-15);
+    // Area and load are those of the two: what is left is the rounding of cubes and differences.
+    let whole = Asperity::new(spot.radius_m, &PAPER).unwrap();
+    let load: f64 = spheres.iter().zip(spot.radii_m).map(|(sphere, a)| sphere.load(a)).sum();
+    close("load of the merged spot", whole.load(spot.contact_radius_m()), load, 1e-10);
+    close("load", event.after.load_n, event.before.load_n, 1e-8);
+    close("area", event.after.area_m2, event.before.area_m2, 1e-8);
+    // From then on it is one JKR sphere, at the height at which it was in equilibrium.
+    let top = turning(&cycle, 0);
+    let a = whole.radius_at_penetration(top.approach_m + spot.height_m).unwrap();
+    close("area at the turning point", top.area_m2, std::f64::consts::PI * a * a, 1e-8);
+    close("load at the turning point", top.load_n, whole.load(a), 1e-8);
+    assert_eq!(top.contact_count, 1);
+}
+
+#[test]
+fn law_merging_and_parting_of_a_pair_costs_nothing() {
+    let cycle = pair_cycle();
+    let [merge, split] = [2, 3].map(|k| cycle.events[k].1);
+    // It parts at the radius at which it merged, to 1e-4: twice that of the way of 1e-5 m that a²/R has made.
+    near("approach", split.approach_m, merge.approach_m, 2e-9);
+    // What the potential loses at one it gains at the other; the loads are equal where both are, so that the difference is of second order.
+    near("energy", split.energy_lost_j, -merge.energy_lost_j, 1e-5 * merge.energy_lost_j.abs());
+    // The loop loses what its jumps lose: by plain JKR each jumps in at δ = 0 and off at the end of its branch.
+    let sums = loop_of(&cycle, 0);
+    let want: f64 = pair().iter().map(|s| Asperity::new(s.radius_m(), &PAPER).unwrap().loop_loss()).sum();
+    // The shares of two radii at parting are those at merging, though each of the two would have gone its own way: 1e-3 of it.
+    close("loss", sums.loss, want, 1e-3);
+    close("events", sums.events, sums.loss, 1e-6);
+}
+
+#[test]
+fn law_with_point_interaction_the_loop_loses_what_its_events_lose() {
+    // Merged spots are other spheres at other heights, and yet the sum over merging and parting closes the account of the whole loop.
+    for (rules, most) in [(MERGE_ALONE, 1e-6), (Rules { interaction: Interaction::Point, ..MERGE }, 1e-6)] {
+        let summits = paper_summits(16, 1);
+        let problem = Problem::new(&summits, LENGTH, RMS, PAPER, rules).unwrap().with_patches_of(usize::MAX);
+        let cycle = run(&problem, &[0.0071], 0.04, KeptContacts::None);
+        let sums = loop_of(&cycle, 0);
+        let count = |kind: Kind| cycle.events.iter().filter(|(_, e)| e.kind == kind).count();
+        assert!(count(Kind::Merge) > 20 && count(Kind::Split) > 20, "{:?}", rules.interaction);
+        // The audit's tolerance: folds are passed by 1e-6 of the rms height, work is a sum of fourth order.
+        close("events", sums.events, sums.loss, most);
+        assert!(cycle.steps.iter().all(|s| s.residual_m <= 1e-8 * RMS));
+    }
+}
+
+#[test]
+fn law_area_and_load_are_continuous_at_every_merger() {
+    let summits = paper_summits(16, 0);
+    let problem = Problem::new(&summits, LENGTH, RMS, PAPER, MERGE_ALONE).unwrap();
+    let cycle = run(&problem, &[0.0071], 0.04, KeptContacts::None);
+    let mut compared = 0;
+    for (_, event) in cycle.events.iter().filter(|(_, e)| e.kind == Kind::Merge) {
+        // Without interaction nothing else moves: the sum over fifty spots, each in equilibrium to 5e-16 m.
+        close("area", event.after.area_m2, event.before.area_m2, 1e-8);
+        near("load", event.after.load_n, event.before.load_n, 1e-12);
+        compared += 1;
+    }
+    assert!(compared > 20, "{compared}");
+}
+
+#[test]
+fn law_a_turning_point_with_merged_spots_is_enough_to_unload_from() {
+    let summits = paper_summits(16, 0);
+    let problem = Problem::new(&summits, LENGTH, RMS, PAPER, MERGE).unwrap();
+    let settings = Settings { max_loads: vec![0.004, 0.0071], approach_step: 0.04, contacts: KeptContacts::None };
+    let cycle = cycle::run(&problem, &settings, &|_| {}).unwrap();
+    for (k, max_load) in settings.max_loads.iter().enumerate() {
+        let state = &cycle.turning[k].1;
+        assert!(state.merged.len() > 10);
+        let again = State::restored(&problem, state.approach_m, &state.merged, &state.kept()).unwrap();
+        let other = cycle::unload_from(&problem, &settings, *max_load, again).unwrap();
+        let want = unloading(&cycle, k);
+        assert_eq!(other.steps.len(), want.len());
+        for (got, want) in other.steps.iter().zip(want) {
+            assert_eq!(got, want, "the same bytes");
+        }
+        let numbers = |cycle: &Cycle| -> Vec<_> {
+            cycle.merged.iter().filter(|m| cycle.steps[m.step].max_load == Some(*max_load)).map(|m| (m.asperity, m.spot)).collect()
+        };
+        assert_eq!(numbers(&other), numbers(&cycle));
+    }
+}
+
+#[test]
+fn reg_merged_spots_that_fill_the_square_are_refused_with_a_sentence() {
+    // Soft and sticky enough: full contact at hardly any load.
+    let summits = paper_summits(16, 0);
+    let problem = Problem::new(&summits, LENGTH, RMS, PAPER, MERGE).unwrap();
+    let settings = Settings { max_loads: vec![0.1], approach_step: 0.04, contacts: KeptContacts::None };
+    let error = cycle::run(&problem, &settings, &|_| {}).unwrap_err();
+    assert!(matches!(error, PhysicsError::FullContact { .. }), "{error}");
+    assert!(error.to_string().contains("the merged spots have the area") && error.to_string().contains("allowed:"), "{error}");
+}
+
+#[test]
+fn law_spots_that_never_touch_do_not_know_of_it() {
+    // Few and far between: `merge` and `cover` are the same, event by event.
+    let mut dice = Dice(7);
+    let summits: Vec<Summit> = (0..9)
+        .map(|k| {
+            let (row, column) = (f64::from(k / 3), f64::from(k % 3));
+            asperity(
+                (row + 0.4 + 0.2 * dice.roll()) / 3.0 * LENGTH,
+                (column + 0.4 + 0.2 * dice.roll()) / 3.0 * LENGTH,
+                -4e-7 * dice.roll(),
+                2e-5,
+            )
+        })
+        .collect();
+    let [merge, cover] = [MERGE, DEFAULT].map(|rules| {
+        let problem = Problem::new(&summits, LENGTH, RMS, PAPER, rules).unwrap();
+        run(&problem, &[2e-4], 0.02, KeptContacts::None)
+    });
+    let list = |cycle: &Cycle| cycle.events.iter().map(|(_, e)| (e.kind, e.asperity, e.approach_m.to_bits())).collect::<Vec<_>>();
+    assert_eq!(list(&merge).len(), 18);
+    // The sums over images are looked up in a table in one and computed in the other: 1e-15 of the approach.
+    for ((_, p), (_, q)) in merge.events.iter().zip(&cover.events) {
+        assert_eq!((p.kind, p.asperity), (q.kind, q.asperity));
+        near("approach", p.approach_m, q.approach_m, 1e-14);
+    }
+    close("loss", loop_of(&merge, 0).loss, loop_of(&cover, 0).loss, 1e-8);
+}
