@@ -174,7 +174,11 @@ impl Path<'_> {
             let Some(change) = next.or_else(|| self.most_lagging().map(lagging)) else { break };
             taken += 1;
             if taken > bound {
-                return Err(Halt::Error(PhysicsError::EndlessAvalanche { approach_m: approach, events: taken, asperity: change.asperity }));
+                return Err(Halt::Error(PhysicsError::EndlessAvalanche {
+                    approach_m: approach,
+                    events: taken,
+                    asperity: problem.number(change.asperity),
+                }));
             }
             self.gather(&change, Some(approach));
             if next.is_none() || self.lagging() {

@@ -373,7 +373,7 @@ impl<'s> Recorder<'s> {
         self.events_before += recent.len();
         self.ways_before += ways.len();
         self.effort_before = effort;
-        cycle.events.extend(recent.into_iter().map(|event| (number, event)));
+        cycle.events.extend(recent.into_iter().map(|event| (number, Event { asperity: problem.number(event.asperity), ..event })));
         let keep = match self.settings.contacts {
             KeptContacts::All => true,
             KeptContacts::Turning => turning,
@@ -383,7 +383,7 @@ impl<'s> Recorder<'s> {
             cycle.contacts.extend(spots_of(problem, state, number));
         }
         let merged = state.merged.iter().enumerate().skip(self.merged_before);
-        cycle.merged.extend(merged.map(|(k, spot)| MergedAt { step: number, asperity: problem.summits + k, spot: *spot }));
+        cycle.merged.extend(merged.map(|(k, spot)| MergedAt { step: number, asperity: problem.summits + k, spot: problem.outward(spot) }));
         self.merged_before = state.merged.len();
         path.log.drift_m = 0.0;
         path.held.clear();
@@ -411,7 +411,7 @@ fn spots_of(problem: &Problem, state: &State, step: usize) -> Vec<Contact> {
             let (asperity, a) = (&problem.asperities[i], state.radius[i]);
             Contact {
                 step,
-                asperity: i,
+                asperity: problem.number(i),
                 covered: false,
                 contact_radius_m: a,
                 load_n: asperity.load(a),
@@ -423,7 +423,7 @@ fn spots_of(problem: &Problem, state: &State, step: usize) -> Vec<Contact> {
     let covered = state.status.iter().enumerate().filter(|(_, status)| matches!(status, Status::Covered { .. }));
     spots.extend(covered.map(|(i, _)| Contact {
         step,
-        asperity: i,
+        asperity: problem.number(i),
         covered: true,
         contact_radius_m: 0.0,
         load_n: 0.0,

@@ -113,6 +113,11 @@ impl Problem {
         ((self.asperities[i].load(a) + self.asperities[j].load(b)) / root, root)
     }
 
+    /// A merged spot by the caller's numbers and places.
+    pub(crate) fn outward(&self, spot: &Merged) -> Merged {
+        Merged { parts: spot.parts.map(|part| self.number(part)), place_m: self.places.outward(spot.place_m), ..*spot }
+    }
+
     /// How far a state is beyond a meeting: negative before it.
     fn beyond(&self, state: &State, meeting: Meeting) -> f64 {
         match meeting {
@@ -157,10 +162,12 @@ impl Problem {
         let radius = a.hypot(b);
         let (tension, root) = self.tension(state, i, j);
         let number = self.len();
+        let place = self.places.inward(self.places.outward(self.between(i, j, b * b / (radius * radius))));
         let mut merged = Merged {
             parts: [i, j],
             radii_m: [a, b],
-            place_m: self.between(i, j, b * b / (radius * radius)),
+            // As it will be when it has been written down and read again.
+            place_m: place,
             radius_m: 4.0 / 3.0 * self.material.contact_modulus_pa * radius.powi(3) / ((tension + 1.0) * root),
             height_m: 0.0,
             release_m: radius,

@@ -20,6 +20,7 @@ mod neighbours;
 mod outside;
 mod patch;
 pub mod path;
+mod places;
 mod relax;
 pub mod restart;
 mod settle;

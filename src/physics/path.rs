@@ -532,7 +532,7 @@ impl<'p> Path<'p> {
         PhysicsError::NoEquilibrium {
             approach_m: self.front.state.approach_m,
             residual_m: unsettled.residual_m,
-            asperity: unsettled.asperity,
+            asperity: self.problem().number(unsettled.asperity),
             iterations: self.solver.effort.iterations,
         }
     }

@@ -9,7 +9,7 @@ use super::state::{Problem, State, Status};
 /// An asperity that is not simply free.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Kept {
-    /// The asperity.
+    /// The asperity, by the caller's number.
     pub asperity: usize,
     /// What it is doing.
     pub status: Status,
@@ -20,13 +20,27 @@ pub struct Kept {
 }
 
 impl State {
-    /// All asperities that are not simply free, ascending.
+    /// All asperities that are not simply free, by the caller's numbers, ascending.
     #[must_use]
-    pub fn kept(&self) -> Vec<Kept> {
+    pub fn kept(&self, problem: &Problem) -> Vec<Kept> {
         let all = self.status.iter().zip(&self.radius).zip(&self.barred).enumerate();
-        all.map(|(asperity, ((status, radius_m), barred))| Kept { asperity, status: *status, radius_m: *radius_m, barred: *barred })
+        let mut kept: Vec<Kept> = all
+            .map(|(i, ((status, radius_m), barred))| Kept {
+                asperity: problem.number(i),
+                status: status.renumbered(|i| problem.number(i)),
+                radius_m: *radius_m,
+                barred: *barred,
+            })
             .filter(|kept| kept.status != Status::Free || kept.barred)
-            .collect()
+            .collect();
+        kept.sort_by_key(|kept| kept.asperity);
+        kept
+    }
+
+    /// The spots that have become one, by the caller's numbers and places.
+    #[must_use]
+    pub fn merged(&self, problem: &Problem) -> Vec<Merged> {
+        self.merged.iter().map(|spot| problem.outward(spot)).collect()
     }
 
     /// The state at an approach \[m\] in which these asperities are as they were kept, and all others free; `merged` are the spots that
@@ -36,9 +50,11 @@ impl State {
     /// Every asperity and every covering one must be of the problem; a contact radius must be positive.
     pub fn restored(problem: &Problem, approach_m: f64, merged: &[Merged], rows: &[Kept]) -> Result<Self, PhysicsError> {
         let mut state = Self::free(problem, approach_m);
+        let inside = problem.places.inside();
+        let number = |i: usize| inside.get(i).copied().unwrap_or(i);
         for spot in merged {
             state.extend();
-            state.merged.push(*spot);
+            state.merged.push(Merged { parts: spot.parts.map(number), place_m: problem.places.inward(spot.place_m), ..*spot });
         }
         let count = state.status.len();
         for row in rows {
@@ -57,9 +73,21 @@ impl State {
                     allowed: "a positive number",
                 });
             }
-            state.set(row.asperity, row.status, row.radius_m);
-            state.barred[row.asperity] = row.barred;
+            let i = number(row.asperity);
+            state.set(i, row.status.renumbered(number), row.radius_m);
+            state.barred[i] = row.barred;
         }
         Ok(state)
+    }
+}
+
+impl Status {
+    /// The same with another numbering of the asperities.
+    fn renumbered(self, number: impl Fn(usize) -> usize) -> Self {
+        match self {
+            Self::Covered { by, release_m } => Self::Covered { by: number(by), release_m },
+            Self::Merged { into } => Self::Merged { into: number(into) },
+            Self::Free | Self::Contact => self,
+        }
     }
 }

@@ -85,7 +85,7 @@ impl Path<'_> {
             }
             rounds += 1;
             if rounds > 10 * problem.len() + 100 {
-                let asperity = first.1.asperity;
+                let asperity = problem.number(first.1.asperity);
                 return Err(Halt::Error(PhysicsError::EndlessAvalanche { approach_m: target, events: rounds, asperity }));
             }
             let uncovered: Vec<usize> =

@@ -6,6 +6,7 @@ use super::interaction::{Best, Spots, best};
 use super::jkr::Asperity;
 use super::merge::Merged;
 use super::neighbours::Neighbours;
+use super::places::Places;
 use super::summits::Summit;
 use super::validity::LEAST_TABOR;
 use crate::model::{Boundary, Coalescence, Interaction as Kind, JumpIn, Material, Slips};
@@ -32,6 +33,8 @@ pub struct Rules {
 #[derive(Clone)]
 pub struct Problem {
     pub(crate) asperities: Vec<Asperity>,
+    /// How the caller numbers and places them.
+    pub(crate) places: Places,
     /// Heights over the highest summit \[m\]: zero or negative.
     pub(crate) heights: Vec<f64>,
     pub(crate) positions: Vec<[f64; 2]>,
@@ -62,12 +65,18 @@ impl Problem {
         Self { spots_in_patch: spots.max(1), ..self }
     }
 
-    /// Asperities from summits, in their order.
+    /// Asperities from summits.
+    ///
+    /// Inside they are numbered from the highest down, at places from the highest one on, rounded to 2⁻⁴⁰ of the side: so nothing depends on how a caller
+    /// numbers them, or on where the square begins. [`Self::number`] is the caller's number.
     ///
     /// # Errors
     /// There must be a summit; radii and material must be positive; with Wu's rule all Tabor numbers must be at least 2 unless allowed.
     pub fn new(summits: &[Summit], length_m: f64, rms_height_m: f64, material: Material, rules: Rules) -> Result<Self, PhysicsError> {
-        let highest = summits.iter().map(|s| s.height_m).max_by(f64::total_cmp).ok_or(PhysicsError::NoSummit)?;
+        let periodic = rules.boundary == Boundary::Periodic;
+        let places = Places::new(summits, length_m, periodic)?;
+        let highest = summits[places.numbers[0]].height_m;
+        let summits: Vec<Summit> = places.numbers.iter().map(|i| summits[*i]).collect();
         let of = |s: &Summit| Asperity::as_printed(s.radius_m(), &material, rules.slips);
         let asperities: Vec<Asperity> = summits.iter().map(of).collect::<Result<_, _>>()?;
         let range = material.interaction_range_m;
@@ -84,8 +93,7 @@ impl Problem {
                 JumpIn::Wu => a.wu_jump_in_penetration(range).min(0.0).max(a.jump_off_penetration()),
             })
             .collect();
-        let positions: Vec<[f64; 2]> = summits.iter().map(|s| [s.x_m, s.y_m]).collect();
-        let periodic = rules.boundary == Boundary::Periodic;
+        let positions: Vec<[f64; 2]> = summits.iter().map(|s| places.inward([s.x_m, s.y_m])).collect();
         let field = best(positions.clone(), length_m, &material, rules.interaction, rules.boundary, rules.slips);
         Ok(Self {
             heights: summits.iter().map(|s| s.height_m - highest).collect(),
@@ -95,6 +103,7 @@ impl Problem {
             neighbours: Neighbours::new(&positions, length_m, periodic),
             spots_in_patch: SPOTS_IN_PATCH,
             summits: asperities.len(),
+            places,
             asperities,
             positions,
             material,
@@ -128,7 +137,13 @@ impl Problem {
         self.heights.is_empty()
     }
 
-    /// Tabor numbers of the asperities.
+    /// The caller's number of an asperity. Those of merged spots follow the summits' inside and outside.
+    #[must_use]
+    pub fn number(&self, i: usize) -> usize {
+        self.places.numbers.get(i).copied().unwrap_or(i)
+    }
+
+    /// Tabor numbers of the asperities, from the highest down.
     #[must_use]
     pub fn tabor(&self) -> &[f64] {
         &self.tabor

@@ -48,7 +48,7 @@ pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, progress: &(dyn Fn(f64)
     let keys = [("key", unit.key.clone())];
     // The steps come last: where they are, the cycle is done.
     parquet::write_table(&dir.join("contacts.parquet"), &contacts(&cycle)?, &keys)?;
-    parquet::write_table(&dir.join("turning.parquet"), &turning(&cycle, &settings.max_loads)?, &keys)?;
+    parquet::write_table(&dir.join("turning.parquet"), &turning(&cycle, &problem, &settings.max_loads)?, &keys)?;
     parquet::write_table(&dir.join("merged.parquet"), &merged(&cycle)?, &keys)?;
     parquet::write_table(&dir.join("events.parquet"), &events(&cycle)?, &keys)?;
     parquet::write_table(&dir.join("steps.parquet"), &steps(&cycle, &problem)?, &keys)?;
@@ -110,10 +110,10 @@ fn settings(params: &CaseParams) -> Settings {
     Settings { max_loads: params.cycle.max_load.clone(), approach_step: params.cycle.approach_step, contacts: params.cycle.contacts }
 }
 
-fn turning(cycle: &Cycle, loads: &[f64]) -> Result<Frame, StageError> {
+fn turning(cycle: &Cycle, problem: &Problem, loads: &[f64]) -> Result<Frame, StageError> {
     let states = loads.iter().zip(&cycle.turning);
     let rows: Vec<(f64, f64, Kept, usize)> = states
-        .flat_map(|(load, (_, state))| state.kept().into_iter().map(|kept| (*load, state.approach_m, kept, state.merged.len())))
+        .flat_map(|(load, (_, state))| state.kept(problem).into_iter().map(|kept| (*load, state.approach_m, kept, state.merged.len())))
         .collect();
     let covered = |status: Status| match status {
         Status::Covered { by, release_m } => Some((by, release_m)),

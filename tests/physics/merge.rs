@@ -114,7 +114,7 @@ fn law_a_turning_point_with_merged_spots_is_enough_to_unload_from() {
     for (k, max_load) in settings.max_loads.iter().enumerate() {
         let state = &cycle.turning[k].1;
         assert!(state.merged.len() > 10);
-        let again = State::restored(&problem, state.approach_m, &state.merged, &state.kept()).unwrap();
+        let again = State::restored(&problem, state.approach_m, &state.merged(&problem), &state.kept(&problem)).unwrap();
         let other = cycle::unload_from(&problem, &settings, *max_load, again).unwrap();
         let want = unloading(&cycle, k);
         assert_eq!(other.steps.len(), want.len());
