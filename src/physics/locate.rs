@@ -5,6 +5,7 @@
 //! radius and solving for the approach; a fold is where `dδ/da` of a spot that moves with it vanishes.
 
 use super::equilibrium::Unsettled;
+use super::illinois::{End, Illinois};
 use super::interaction::Effort;
 use super::patch::{Hold, Patch};
 use super::state::Problem;
@@ -153,30 +154,22 @@ impl Patch {
         effort: &mut Effort,
     ) -> Result<(), Unsettled> {
         let tolerance = 1e-9 * problem.rms_height_m;
-        let (mut low, mut high) = (before.slope, beyond.slope);
-        let mut side = 0.0;
+        let mut ends = Illinois::new(before.slope, beyond.slope);
         for _ in 0..60 {
             let span = beyond.at - before.at;
             if (before.slope * span).abs() <= tolerance || span.abs() <= 1e-9 * before.at {
                 break;
             }
-            let share = (low / (low - high)).clamp(0.02, 0.98);
-            let value = before.at + share * span;
+            let value = before.at + ends.share(0.02) * span;
             self.restore(problem, &before, effort);
             self.march(problem, at, value, effort)?;
             let point = self.point(problem, at);
             if point.slope * before.slope > 0.0 {
-                (low, before) = (point.slope, point);
-                if side < 0.0 {
-                    high *= 0.5;
-                }
-                side = -1.0;
+                ends.narrow(End::Low, point.slope);
+                before = point;
             } else {
-                (high, beyond) = (point.slope, point);
-                if side > 0.0 {
-                    low *= 0.5;
-                }
-                side = 1.0;
+                ends.narrow(End::High, point.slope);
+                beyond = point;
             }
         }
         self.restore(problem, &before, effort);

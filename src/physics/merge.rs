@@ -14,6 +14,7 @@
 
 use super::PhysicsError;
 use super::events::{Change, Kind};
+use super::illinois::{End, Illinois};
 use super::interaction::{Effort, Interaction as _, Spots};
 use super::jkr::Asperity;
 use super::log::Event;
@@ -248,8 +249,10 @@ impl Path<'_> {
         let due = problem.meetings(end, known);
         let furthest = |state: &State| due.iter().map(|(_, m)| problem.beyond(state, *m)).fold(f64::NEG_INFINITY, f64::max);
         let (Some((over, _)), Some(start)) = (due.first(), self.start()) else { return Ok(None) };
-        let (mut low, mut under) = (start.approach_m, furthest(start).min(0.0));
-        let (mut high, mut over) = (end.approach_m, *over);
+        let (mut low, mut high, mut over) = (start.approach_m, end.approach_m, *over);
+        // What is looked for is a little beyond the meeting.
+        let aim = |value: f64| value - 0.5 * TOUCH;
+        let mut ends = Illinois::new(aim(furthest(start).min(0.0)), aim(over));
         let sudden = SUDDEN * problem.rms_height_m;
         // Where an event of the spots themselves has brought it about, it is looked for there, on both sides.
         let mut sides =
@@ -259,16 +262,17 @@ impl Path<'_> {
             if over <= TOUCH || (high - low).abs() <= sudden {
                 break;
             }
-            // A little beyond where the straight line has it; where that does not lead there, one of the ends is before a jump.
+            // Where a straight line does not lead there, one of the ends is before a jump.
             let margin = if round < 3 { 0.02 } else { 0.3 };
-            let share = ((0.5 * TOUCH - under) / (over - under)).clamp(margin, 1.0 - margin);
-            let middle = sides.pop().unwrap_or(low + share * (high - low));
+            let middle = sides.pop().unwrap_or(low + ends.share(margin) * (high - low));
             let trial = furthest(self.excursion(middle)?.state());
             if trial < 0.0 {
-                (low, under) = (middle, trial);
+                low = middle;
+                ends.narrow(End::Low, aim(trial));
                 sides.clear();
             } else {
                 (high, over) = (middle, trial);
+                ends.narrow(End::High, aim(trial));
             }
         }
         Ok(Some(high))

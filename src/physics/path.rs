@@ -13,6 +13,7 @@ use super::PhysicsError;
 use super::equilibrium::{Solver, Unsettled};
 use super::events::{Change, Kind};
 use super::front::{Due, Front};
+use super::illinois::{End, Illinois};
 use super::interaction::Effort;
 use super::log::{Event, Log};
 use super::neighbourhood::Ripple;
@@ -451,11 +452,10 @@ impl<'p> Path<'p> {
         if self.mark.is_none() && self.totals.load_n >= load {
             return self.excursion(self.front.state.approach_m).map(Some);
         }
-        let Some(([mut low, mut high], [mut under, mut over])) = self.crossing(load) else { return Ok(None) };
-        let mut side = 0.0;
+        let Some(([mut low, mut high], [under, over])) = self.crossing(load) else { return Ok(None) };
+        let mut ends = Illinois::new(under, over);
         for _ in 0..100 {
-            let share = under / (under - over);
-            let middle = low + share.clamp(0.01, 0.99) * (high - low);
+            let middle = low + ends.share(0.01) * (high - low);
             let trial = self.excursion(middle)?;
             let off = trial.totals.load_n - load;
             // A load that jumps over what is wanted is met where it jumps.
@@ -467,17 +467,11 @@ impl<'p> Path<'p> {
                 break;
             }
             if off < 0.0 {
-                (low, under) = (middle, off);
-                if side < 0.0 {
-                    over *= 0.5;
-                }
-                side = -1.0;
+                low = middle;
+                ends.narrow(End::Low, off);
             } else {
-                (high, over) = (middle, off);
-                if side > 0.0 {
-                    under *= 0.5;
-                }
-                side = 1.0;
+                high = middle;
+                ends.narrow(End::High, off);
             }
         }
         let found = self.reaching(high, load)?;

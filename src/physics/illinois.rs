@@ -1,0 +1,42 @@
+//! Where a function changes its sign between two points, by the Illinois rule (Dowell & Jarratt, BIT 11:168, 1971): the straight line between the ends,
+//! with the value at an end that stays halved.
+
+/// The values at both ends.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Illinois {
+    low: f64,
+    high: f64,
+    last: Option<End>,
+}
+
+/// An end of the bracket.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum End {
+    Low,
+    High,
+}
+
+impl Illinois {
+    /// Between two points at which the function has these values, of opposite sign.
+    pub(crate) fn new(low: f64, high: f64) -> Self {
+        Self { low, high, last: None }
+    }
+
+    /// Where to look next, as a share of the way from the low end, no nearer to an end than `margin`.
+    pub(crate) fn share(&self, margin: f64) -> f64 {
+        (self.low / (self.low - self.high)).clamp(margin, 1.0 - margin)
+    }
+
+    /// The point that was looked at is the low or the high end from now on; the function has this value there.
+    pub(crate) fn narrow(&mut self, end: End, value: f64) {
+        let (mine, other) = match end {
+            End::Low => (&mut self.low, &mut self.high),
+            End::High => (&mut self.high, &mut self.low),
+        };
+        *mine = value;
+        if self.last == Some(end) {
+            *other *= 0.5;
+        }
+        self.last = Some(end);
+    }
+}
