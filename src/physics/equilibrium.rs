@@ -63,6 +63,11 @@ impl<'p> Solver<'p> {
         }
     }
 
+    /// Before a solution that is to owe nothing to those before it.
+    pub(crate) fn begin(&mut self) {
+        self.tangent.forget();
+    }
+
     /// Displacements, residuals and tangent of a state; its worst residual and whose it is.
     pub(crate) fn evaluate(&mut self, state: &mut State) -> Unsettled {
         let problem = self.problem;
@@ -76,7 +81,7 @@ impl<'p> Solver<'p> {
     fn glance(&mut self, state: &mut State) -> Unsettled {
         let problem = self.problem;
         problem.spots(state, &mut self.spots);
-        problem.field.displacements(&self.spots, &self.spots.index, &mut state.displacement, &mut self.effort);
+        problem.field.again(&self.spots, &mut state.displacement, &mut self.tangent, &mut self.effort);
         self.fresh = false;
         self.compare(state)
     }

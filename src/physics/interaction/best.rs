@@ -59,6 +59,10 @@ impl Interaction for Best {
         self.for_spots(spots).linearise(spots, displacements, tangent, effort);
     }
 
+    fn again(&self, spots: &Spots, displacements: &mut Vec<f64>, tangent: &mut Tangent, effort: &mut Effort) {
+        self.for_spots(spots).again(spots, displacements, tangent, effort);
+    }
+
     fn approach(
         &self,
         spots: &Spots,
