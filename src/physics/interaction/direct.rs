@@ -9,8 +9,8 @@ use crate::model::{Boundary, Interaction as Kind, Material, Slips};
 use crate::physics::krylov::dot;
 use multiversion::multiversion;
 
-/// Up to this many asperities the sums over images of every pair are kept, 32 bytes each: 290 MB; beyond, each is computed when needed.
-pub(crate) const TABLE_LIMIT: usize = 3000;
+/// Up to this many asperities the sums over images of every pair are kept, 32 bytes each: 32 MB; beyond, each is computed when needed.
+const TABLE_LIMIT: usize = 1000;
 
 /// All pairs, one by one: the exact field of the nearest image of every spot, and of its other images what is seen from afar.
 #[derive(Debug)]

@@ -6,7 +6,7 @@ use super::mesh::{Level, Loads, Reader, Real, Splines, Work, read, splines, tran
 use super::near::{Group, Rest};
 use super::pairs::{Pairs, Sources};
 use super::plan::{Accuracy, Mesh, Plan, ROUGH_ORDERS, ROUGH_WIDTH, WIDTH};
-use super::{Effort, FastSum, MARGIN, REACHES};
+use super::{Effort, FastSum, MARGIN, REACHES, level};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -36,11 +36,12 @@ impl FastSum {
         geometry.places = (0..columns.len()).map(|j| [columns.x[j], columns.y[j]]).collect();
         geometry.limits = columns.a[..columns.len()].iter().map(|a| MARGIN * a).collect();
         geometry.accuracy = Some(self.accuracy);
-        let finest = self.finest(columns, targets.len());
+        let shortest: Vec<Option<usize>> = geometry.limits.iter().map(|limit| self.shortest(*limit)).collect();
+        let finest = self.finest(&shortest, columns, targets.len());
         let mut members: [Vec<usize>; REACHES] = Default::default();
         let mut large = Vec::new();
-        for (j, limit) in geometry.limits.iter().enumerate() {
-            self.level(finest, *limit).map_or(&mut large, |step| &mut members[step]).push(j);
+        for (j, shortest) in shortest.iter().enumerate() {
+            shortest.and_then(|shortest| level(finest, shortest)).map_or(&mut large, |step| &mut members[step]).push(j);
         }
         let (mut groups, mut levels) = (Vec::new(), Vec::new());
         for (step, members) in members.into_iter().enumerate().rev() {
@@ -131,7 +132,8 @@ impl<T: Real, const W: usize, const O: usize> Meshes<T, W, O> {
             (mesh, members.iter().copied().zip(splines).collect())
         };
         let levels: Vec<Level<T, W, O>> = levels.iter().map(of).collect();
-        let readers = levels.first().map_or(Vec::new(), |(mesh, _)| splines::<T, W, O>(targets, mesh.size).iter().map(Reader::new).collect());
+        let readers =
+            levels.first().map_or(Vec::new(), |(mesh, _)| splines::<T, W, O>(targets, mesh.size).iter().map(Reader::new).collect());
         Self { levels, readers }
     }
 

@@ -250,12 +250,7 @@ fn turn<T: Copy>(from: &[T], to: &mut [T], rows: usize, columns: usize) {
 
 /// Adds each source to the points: `Σ_m c_m ∇^2m δ/[(2m−1)!!]²`, the Laplacian taken of its spline.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-fn spread<T: Real, const W: usize, const O: usize>(
-    sources: &[(usize, Splines<T, W, O>)],
-    loads: Loads<'_>,
-    mesh: usize,
-    points: &mut [T],
-) {
+fn spread<T: Real, const W: usize, const O: usize>(sources: &[(usize, Splines<T, W, O>)], loads: Loads<'_>, mesh: usize, points: &mut [T]) {
     const BINOMIALS: [[f64; ORDERS]; ORDERS] = [[1.0, 1.0, 1.0, 1.0], [1.0, 2.0, 3.0, 0.0], [1.0, 3.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]];
     let stride = mesh + W - 1;
     let mut scales = [1.0; ORDERS];

@@ -25,7 +25,7 @@ use near::Measure;
 use pairs::Sources;
 use plan::{Accuracy, Plan, mesh_size};
 use std::cell::RefCell;
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_1_SQRT_2, PI};
 use std::sync::{Arc, OnceLock};
 
 /// The longest reach, in sides: within it no image but the nearest can lie.
@@ -33,6 +33,15 @@ const LONGEST: f64 = 0.45;
 
 /// Reaches to choose from, each `1/√2` of the one before.
 const REACHES: usize = 15;
+const REACH: [f64; REACHES] = {
+    let mut all = [LONGEST; REACHES];
+    let mut step = 1;
+    while step < REACHES {
+        all[step] = all[step - 1] * FRAC_1_SQRT_2;
+        step += 1;
+    }
+    all
+};
 
 /// What is spent for one pair in a solution of some linearisations and the products that follow, in units of one point of a mesh in one transform.
 const PAIR_COST: f64 = 8.0;
@@ -67,38 +76,37 @@ impl FastSum {
         }
     }
 
-    fn reach(step: usize) -> f64 {
-        LONGEST * 0.5f64.powf(0.5 * step as f64)
-    }
-
     fn plan(&self, step: usize) -> Arc<Plan> {
-        self.plans[step].get_or_init(|| Arc::new(Plan::new(self.accuracy, Self::reach(step)))).clone()
+        self.plans[step].get_or_init(|| Arc::new(Plan::new(self.accuracy, REACH[step]))).clone()
     }
 
-    /// The longest of the reaches `finest`, `finest` − 2, … that a spot of radius `a` \[m\] needs, or nothing if it is too large for all.
-    fn level(&self, finest: usize, a: f64) -> Option<usize> {
+    /// The shortest of the reaches that a spot of radius `a` \[m\] may have, or nothing if it is too large for all.
+    fn shortest(&self, a: f64) -> Option<usize> {
         let least = if self.measure.kind == Kind::Spots { a / (self.accuracy.girth * self.measure.length) } else { 0.0 };
-        (0..=finest / 2).map(|k| finest - 2 * k).find(|step| Self::reach(*step) >= least)
+        REACH.iter().rposition(|reach| *reach >= least)
     }
 
-    /// The finest reach that costs least, by the radii of the spots, where they lie and the number of targets.
-    fn finest(&self, columns: &SpotColumns, targets: usize) -> usize {
+    /// The finest reach that costs least, by the shortest ones that the spots may have, where these lie and the number of targets.
+    fn finest(&self, shortest: &[Option<usize>], columns: &SpotColumns, targets: usize) -> usize {
         let crowds = crowds(columns, self.measure.length);
+        let mut spots = [0usize; REACHES];
+        for step in shortest.iter().flatten() {
+            spots[*step] += 1;
+        }
         let cost = |finest: usize| {
             let mut counts = [0usize; REACHES];
-            let mut large = 0;
-            for a in &columns.a[..columns.len()] {
-                match self.level(finest, MARGIN * a) {
-                    Some(step) => counts[step] += 1,
-                    None => large += 1,
+            for (shortest, count) in spots.iter().enumerate() {
+                if let Some(step) = level(finest, shortest) {
+                    counts[step] += count;
                 }
             }
+            let large = shortest.len() - counts.iter().sum::<usize>();
             counts[finest] = counts[finest].max(1);
             let mut cost = PAIR_COST * (targets * large) as f64;
             for (step, count) in counts.iter().enumerate().filter(|(_, count)| **count > 0) {
-                let reach = Self::reach(step);
-                let mesh = mesh_size(self.accuracy, reach) as f64;
-                cost += PAIR_COST * crowds[step] * PI * reach * reach * (count * targets) as f64 + mesh * mesh * mesh.log2() * 2.0;
+                let mesh = mesh_size(self.accuracy, REACH[step]) as f64;
+                let pairs = crowds[step] * PI * REACH[step] * REACH[step] * (count * targets) as f64;
+                cost += PAIR_COST * pairs + mesh * mesh * mesh.log2() * 2.0;
             }
             cost
         };
@@ -115,13 +123,18 @@ impl FastSum {
     }
 }
 
+/// The longest of the reaches `finest`, `finest` − 2, … that is no shorter than `shortest`, if there is one.
+fn level(finest: usize, shortest: usize) -> Option<usize> {
+    if finest <= shortest { Some(finest) } else { (shortest + 1 - (finest - shortest) % 2).checked_sub(1) }
+}
+
 /// How many times as many spots lie near one of them as if they were spread evenly, within each of the reaches.
 fn crowds(columns: &SpotColumns, length: f64) -> [f64; REACHES] {
     let n = columns.len();
     let mut counts = Vec::new();
     std::array::from_fn(|step| {
         // No more cells than spots: within less there are few in any case.
-        let cells = ((1.0 / FastSum::reach(step)) as usize).min((n as f64).sqrt() as usize).max(1);
+        let cells = ((1.0 / REACH[step]) as usize).min((n as f64).sqrt() as usize).max(1);
         counts.clear();
         counts.resize(cells * cells, 0u32);
         let cell = |p: f64| (((p / length).rem_euclid(1.0) * cells as f64) as usize).min(cells - 1);
