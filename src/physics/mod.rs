@@ -12,6 +12,7 @@ mod front;
 pub mod interaction;
 pub mod jkr;
 mod krylov;
+mod local;
 mod locate;
 pub mod log;
 mod neighbourhood;

@@ -1,6 +1,6 @@
 //! Which of the sums: few spots are summed directly, many fast. Both give the same field, so that the choice may change along a path.
 
-use super::{DirectSum, Effort, FastSum, Interaction, Spots, Tangent};
+use super::{DirectSum, Effort, FastSum, Interaction, PairTable, Spots, Tangent};
 use crate::model::{Boundary, Interaction as Kind, Material, Slips};
 
 /// Spots from which the fast sum is the faster one, measured for the linearisations of one solution and the products that follow them.
@@ -39,6 +39,11 @@ impl Best {
     /// For other places than the spots: a mesh is worth its while only for many of them.
     fn for_targets(&self, spots: &Spots, targets: &[usize]) -> &dyn Interaction {
         if targets.len() < MANY / 2 { &self.direct } else { self.for_spots(spots) }
+    }
+
+    /// As [`DirectSum::among`] has it.
+    pub(crate) fn among(&self, spots: &Spots, table: &mut PairTable, fields: &mut Vec<f64>, slopes: &mut Vec<f64>, effort: &mut Effort) {
+        self.direct.among(spots, table, fields, slopes, effort);
     }
 
     /// As [`DirectSum::rows`] has it.

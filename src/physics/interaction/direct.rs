@@ -4,6 +4,7 @@ use super::centre::{CENTRE, Centre};
 use super::ewald::{IMAGES, ORDERS, RemainderSeries};
 use super::moments::{Moments, product};
 use super::pair::{LANES, Place, SpotColumns, sag, spot_fields};
+use super::table::{PairTable, Sources};
 use super::{Effort, Interaction, Spots, Tangent};
 use crate::model::{Boundary, Interaction as Kind, Material, Slips};
 use crate::physics::krylov::dot;
@@ -83,6 +84,15 @@ impl DirectSum {
             visit(k, sum, &slopes[..n]);
         }
         effort.pairs += (n * targets.len()) as u64;
+    }
+
+    /// Displacements at the spots themselves, with some digits of what images do, and the derivatives to the radii of all, row by row.
+    pub(crate) fn among(&self, spots: &Spots, table: &mut PairTable, fields: &mut Vec<f64>, slopes: &mut Vec<f64>, effort: &mut Effort) {
+        table.find(&spots.index, &self.positions, self.length, self.periodic);
+        let moments = self.moments(spots);
+        let Self { kind, compliance, pull, sag, .. } = *self;
+        table.fields(Sources { kind, columns: &spots.columns, moments: &moments, compliance, pull, sag }, fields, slopes);
+        effort.pairs += (spots.index.len() * spots.index.len()) as u64;
     }
 
     /// Displacement at asperity `target` by all spots, with its derivatives if they are wanted.

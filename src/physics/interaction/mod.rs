@@ -7,6 +7,7 @@ pub mod ewald;
 mod fast;
 mod moments;
 pub mod pair;
+mod table;
 
 use super::krylov::dot;
 pub use best::{Best, best};
@@ -14,6 +15,7 @@ pub use direct::DirectSum;
 pub use fast::FastSum;
 use fast::Sparse;
 use pair::SpotColumns;
+pub(crate) use table::PairTable;
 
 /// The spots in contact: which asperities they are, ascending, and their columns.
 #[derive(Debug, Clone, Default)]

@@ -185,6 +185,9 @@ pub fn dimensionless_field(u: f64) -> (f64, f64) {
     (x * indentation, x * arc)
 }
 
+/// So far away no spot has a field \[m\].
+pub(crate) const AWAY: f64 = 1e30;
+
 /// Sources that one pass takes together; the order of a sum depends on it, and on nothing of the machine.
 pub(crate) const LANES: usize = 8;
 

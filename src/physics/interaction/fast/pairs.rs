@@ -4,9 +4,8 @@
 
 use super::super::ewald::ORDERS;
 use super::super::moments::{Moments, product};
-use super::super::pair::{LANES, field_at};
+use super::super::pair::{AWAY, LANES, field_at};
 use super::near::{Found, Group, Measure};
-use crate::model::Interaction as Kind;
 use multiversion::multiversion;
 
 /// A source as an exact field wants it: a, √a, 1/√a and 1/R.
@@ -96,18 +95,17 @@ fn enter(pairs: &mut Pairs, group: &Group, measure: Measure, place: [f64; 2], fo
     let length = measure.length;
     for (&number, &square) in found.numbers.iter().zip(&found.r2) {
         let spot = group.spots[number];
-        let r = square.sqrt();
-        let unit = if square > 0.0 { length / r } else { 0.0 };
         let rest = group.rest_at(measure, place, number, square);
-        // A spot does not act on its own centre.
-        if square > 0.0 && r < aloof[spot] {
+        // A spot does not act on its own centre: its field is felt there as from far away, and what the mesh has of it is taken off with all digits.
+        let r = if square > 0.0 { square.sqrt() } else { AWAY };
+        if r < aloof[spot] || square == 0.0 {
             pairs.spots.push(spot as u32);
             pairs.r.push(r);
             pairs.inverse_r.push(1.0 / r);
             pairs.rest.push(rest);
         } else {
-            let unit2 = unit * unit;
-            let mut power = unit;
+            let mut power = length / r;
+            let unit2 = power * power;
             let mut kernel = rest;
             for factor in &mut kernel {
                 *factor += power;
@@ -123,8 +121,7 @@ fn enter(pairs: &mut Pairs, group: &Group, measure: Measure, place: [f64; 2], fo
 
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
 fn evaluate<const SLOPES: bool>(pairs: &Pairs, sources: Sources<'_>, values: &mut [f64], slopes: &mut [f32]) {
-    let Measure { pull, sag, kind, .. } = sources.measure;
-    debug_assert!(kind == Kind::Spots || pairs.r.is_empty());
+    let Measure { pull, sag, .. } = sources.measure;
     for (k, value) in values.iter_mut().enumerate() {
         let (from, to) = (pairs.starts[k], pairs.starts[k + 1]);
         let exact = pairs.exact[k]..pairs.exact[k + 1];

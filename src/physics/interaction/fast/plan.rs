@@ -63,8 +63,8 @@ impl Accuracy {
             waves
         };
         let girth = (10.0 * tolerance).powf(0.125).min(0.2);
-        // The field of one spot there is a twentieth of the greatest displacement, and less.
-        let aloof = (0.03 / (20.0 * tolerance)).powf(0.125).max(3.0);
+        // The field of one spot there is a fourth of the greatest displacement, and less.
+        let aloof = (0.03 / (4.0 * tolerance)).powf(0.125).max(3.0);
         Self { edge, waves: [waves(WIDTH, tolerance).max(edge), waves(ROUGH_WIDTH, ROUGH.max(tolerance))], girth, aloof }
     }
 }
