@@ -221,7 +221,9 @@ impl<'p> Solver<'p> {
             self.evaluate(state);
         }
         let ones = vec![1.0; state.contacts.len()];
-        let (rates, least) = gmres_and_least(&self.tangent, &self.diagonal, &ones, 1e-6, PRODUCTS, &mut self.effort);
+        // No better than the tangent.
+        let wanted = if self.tangent.is_exact() { 1e-6 } else { LEAST };
+        let (rates, least) = gmres_and_least(&self.tangent, &self.diagonal, &ones, wanted, PRODUCTS, &mut self.effort);
         state.stability = least;
         rates
     }

@@ -9,8 +9,8 @@ use super::interaction::Tangent;
 use super::state::{Problem, State, Status};
 
 /// Spots in one group, at most, and spots that are solved together for it.
-const GROUP: usize = 16;
-const TOGETHER: usize = 36;
+const GROUP: usize = 24;
+const TOGETHER: usize = 44;
 
 /// Distance over radius from which on a spot is felt by its load.
 const ALOOF: f64 = 2.0;

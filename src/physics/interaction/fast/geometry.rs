@@ -2,7 +2,7 @@
 
 use super::super::Spots;
 use super::super::ewald::ORDERS;
-use super::mesh::{Level, Loads, Reader, Real, Splines, Work, read, splines, transform};
+use super::mesh::{Level, Loads, Reader, Real, Work, read, splines, transform};
 use super::near::{Group, Rest};
 use super::pairs::{Pairs, Sources};
 use super::plan::{Accuracy, Mesh, Plan, ROUGH_ORDERS, ROUGH_WIDTH, WIDTH};
@@ -128,8 +128,8 @@ impl<T: Real, const W: usize, const O: usize> Meshes<T, W, O> {
         let of = |(plan, members): &(Arc<Plan>, Vec<usize>)| {
             let mesh = mesh(plan).clone();
             let places: Vec<[f64; 2]> = members.iter().map(|j| sources[*j]).collect();
-            let splines: Vec<Splines<T, W, O>> = splines(&places, mesh.size);
-            (mesh, members.iter().copied().zip(splines).collect())
+            let splines = splines(&places, mesh.size);
+            (mesh, (members.clone(), splines))
         };
         let levels: Vec<Level<T, W, O>> = levels.iter().map(of).collect();
         let readers =

@@ -128,8 +128,11 @@ pub(super) struct Work<T> {
     scratch: Vec<Complex<T>>,
 }
 
-/// A mesh and its sources: the number of each, and where it lies.
-pub(super) type Level<T, const W: usize, const O: usize> = (Arc<Mesh<T>>, Vec<(usize, Splines<T, W, O>)>);
+/// A mesh and its sources.
+pub(super) type Level<T, const W: usize, const O: usize> = (Arc<Mesh<T>>, Placed<T, W, O>);
+
+/// Numbers of sources, and where they lie.
+pub(super) type Placed<T, const W: usize, const O: usize> = (Vec<usize>, Vec<Splines<T, W, O>>);
 
 /// What all sources have: their moments, and how much each counts, or once.
 #[derive(Clone, Copy)]
@@ -193,7 +196,7 @@ pub(super) fn transform<T: Real, const W: usize, const O: usize>(levels: &[Level
 /// The waves of the sources of one mesh, by ky then kx, into `work.turned`.
 fn forward<T: Real, const W: usize, const O: usize>(
     mesh: &Mesh<T>,
-    sources: &[(usize, Splines<T, W, O>)],
+    (spots, sources): &Placed<T, W, O>,
     loads: Loads<'_>,
     work: &mut Work<T>,
 ) {
@@ -202,7 +205,7 @@ fn forward<T: Real, const W: usize, const O: usize>(
     let stride = n + W - 1;
     work.points.clear();
     work.points.resize(stride * stride, T::default());
-    spread(sources, loads, n, &mut work.points);
+    spread(spots, sources, loads, n, &mut work.points);
     // What was spread beyond the period belongs to its other side.
     for i in 0..stride {
         let row = &mut work.points[i * stride..(i + 1) * stride];
@@ -250,14 +253,20 @@ fn turn<T: Copy>(from: &[T], to: &mut [T], rows: usize, columns: usize) {
 
 /// Adds each source to the points: `Σ_m c_m ∇^2m δ/[(2m−1)!!]²`, the Laplacian taken of its spline.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-fn spread<T: Real, const W: usize, const O: usize>(sources: &[(usize, Splines<T, W, O>)], loads: Loads<'_>, mesh: usize, points: &mut [T]) {
+fn spread<T: Real, const W: usize, const O: usize>(
+    spots: &[usize],
+    sources: &[Splines<T, W, O>],
+    loads: Loads<'_>,
+    mesh: usize,
+    points: &mut [T],
+) {
     const BINOMIALS: [[f64; ORDERS]; ORDERS] = [[1.0, 1.0, 1.0, 1.0], [1.0, 2.0, 3.0, 0.0], [1.0, 3.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]];
     let stride = mesh + W - 1;
     let mut scales = [1.0; ORDERS];
     for m in 0..ORDERS {
         scales[m] = ((mesh * mesh) as f64).powi(m as i32) / LAPLACIANS[m];
     }
-    for (spot, Splines([x, y])) in sources {
+    for (spot, Splines([x, y])) in spots.iter().zip(sources) {
         let factor = loads.factors.map_or(1.0, |all| all[*spot]);
         let mut moments = loads.moments[*spot];
         for (moment, scale) in moments.iter_mut().zip(&scales) {
