@@ -263,8 +263,8 @@ fn spread<T: Real, const W: usize, const O: usize>(
     const BINOMIALS: [[f64; ORDERS]; ORDERS] = [[1.0, 1.0, 1.0, 1.0], [1.0, 2.0, 3.0, 0.0], [1.0, 3.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]];
     let stride = mesh + W - 1;
     let mut scales = [1.0; ORDERS];
-    for m in 0..ORDERS {
-        scales[m] = ((mesh * mesh) as f64).powi(m as i32) / LAPLACIANS[m];
+    for (m, scale) in scales.iter_mut().enumerate() {
+        *scale = ((mesh * mesh) as f64).powi(m as i32) / LAPLACIANS[m];
     }
     for (spot, Splines([x, y])) in spots.iter().zip(sources) {
         let factor = loads.factors.map_or(1.0, |all| all[*spot]);
@@ -273,10 +273,10 @@ fn spread<T: Real, const W: usize, const O: usize>(
             *moment *= factor * scale;
         }
         let mut along_y = [[T::default(); W]; O];
-        for p in 0..O {
-            for q in 0..O - p {
+        for (p, along_y) in along_y.iter_mut().enumerate() {
+            for (q, derivatives) in y.all[..O - p].iter().enumerate() {
                 let weight = T::of(BINOMIALS[p][q] * moments[p + q]);
-                for (sum, derivative) in along_y[p].iter_mut().zip(&y.all[q]) {
+                for (sum, derivative) in along_y.iter_mut().zip(derivatives) {
                     *sum = weight.mul_add(*derivative, *sum);
                 }
             }
@@ -285,10 +285,9 @@ fn spread<T: Real, const W: usize, const O: usize>(
             let from = (x.base + i) * stride + y.base;
             let line = &mut points[from..from + W];
             let mut sums = [T::default(); W];
-            for p in 0..O {
-                let weight = x.all[p][i];
-                for (sum, along) in sums.iter_mut().zip(&along_y[p]) {
-                    *sum = weight.mul_add(*along, *sum);
+            for (along_x, along_y) in x.all.iter().zip(&along_y) {
+                for (sum, along) in sums.iter_mut().zip(along_y) {
+                    *sum = along_x[i].mul_add(*along, *sum);
                 }
             }
             for (point, sum) in line.iter_mut().zip(sums) {
