@@ -1,5 +1,7 @@
 //! Small dense linear systems: the neighbourhood of an event has some tens of spots.
 
+use multiversion::multiversion;
+
 /// `P·A = L·U` by Gaussian elimination with partial pivoting, rows of A one after another.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Lu {
@@ -17,37 +19,7 @@ impl Lu {
         self.factors.clear();
         self.factors.extend_from_slice(matrix);
         self.pivots.clear();
-        self.sign = 1.0;
-        let n = size;
-        let least = 1e-16 * matrix.iter().fold(0.0f64, |most, v| most.max(v.abs()));
-        for k in 0..n {
-            let mut pivot = k;
-            for i in k + 1..n {
-                if self.factors[i * n + k].abs() > self.factors[pivot * n + k].abs() {
-                    pivot = i;
-                }
-            }
-            self.pivots.push(pivot);
-            if pivot != k {
-                let (upper, lower) = self.factors.split_at_mut(pivot * n);
-                upper[k * n..(k + 1) * n].swap_with_slice(&mut lower[..n]);
-                self.sign = -self.sign;
-            }
-            let (upper, lower) = self.factors.split_at_mut((k + 1) * n);
-            let top = &mut upper[k * n..];
-            if top[k].abs() < least {
-                top[k] = least.copysign(top[k]);
-            }
-            self.sign *= top[k].signum();
-            let inverse = 1.0 / top[k];
-            for row in lower.chunks_mut(n) {
-                let factor = row[k] * inverse;
-                row[k] = factor;
-                if factor != 0.0 {
-                    subtract(&mut row[k + 1..], factor, &top[k + 1..]);
-                }
-            }
-        }
+        self.sign = eliminate(&mut self.factors, &mut self.pivots, size);
     }
 
     /// Solves `A·x = b`, in place of b.
@@ -67,12 +39,77 @@ impl Lu {
         }
     }
 
+    /// Solves it for several right sides at once: `b` has a row for each row of A.
+    pub(crate) fn solve_all(&self, b: &mut [f64], columns: usize) {
+        for (k, &pivot) in self.pivots.iter().enumerate().filter(|(k, pivot)| k != *pivot) {
+            let (upper, lower) = b.split_at_mut(pivot * columns);
+            upper[k * columns..(k + 1) * columns].swap_with_slice(&mut lower[..columns]);
+        }
+        substitute(&self.factors, self.size, b, columns);
+    }
+
     /// The sign of the determinant.
     pub(crate) fn sign(&self) -> f64 {
         self.sign
     }
 }
 
+/// The factors in place of the matrix; the sign of the determinant.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
+fn eliminate(matrix: &mut [f64], pivots: &mut Vec<usize>, n: usize) -> f64 {
+    let mut sign = 1.0;
+    let least = 1e-16 * matrix.iter().fold(0.0f64, |most, v| most.max(v.abs()));
+    for k in 0..n {
+        let mut pivot = k;
+        for i in k + 1..n {
+            if matrix[i * n + k].abs() > matrix[pivot * n + k].abs() {
+                pivot = i;
+            }
+        }
+        pivots.push(pivot);
+        if pivot != k {
+            let (upper, lower) = matrix.split_at_mut(pivot * n);
+            upper[k * n..(k + 1) * n].swap_with_slice(&mut lower[..n]);
+            sign = -sign;
+        }
+        let (upper, lower) = matrix.split_at_mut((k + 1) * n);
+        let top = &mut upper[k * n..];
+        if top[k].abs() < least {
+            top[k] = least.copysign(top[k]);
+        }
+        sign *= top[k].signum();
+        let inverse = 1.0 / top[k];
+        for row in lower.chunks_mut(n) {
+            let factor = row[k] * inverse;
+            row[k] = factor;
+            if factor != 0.0 {
+                subtract(&mut row[k + 1..], factor, &top[k + 1..]);
+            }
+        }
+    }
+    sign
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
+fn substitute(factors: &[f64], n: usize, b: &mut [f64], columns: usize) {
+    for k in 0..n {
+        let (done, rest) = b.split_at_mut(k * columns);
+        for (factor, row) in factors[k * n..k * n + k].iter().zip(done.chunks(columns)) {
+            subtract(&mut rest[..columns], *factor, row);
+        }
+    }
+    for k in (0..n).rev() {
+        let (head, done) = b.split_at_mut((k + 1) * columns);
+        let row = &mut head[k * columns..];
+        for (factor, other) in factors[k * n + k + 1..(k + 1) * n].iter().zip(done.chunks(columns)) {
+            subtract(row, *factor, other);
+        }
+        let inverse = 1.0 / factors[k * n + k];
+        row.iter_mut().for_each(|v| *v *= inverse);
+    }
+}
+
+#[inline(always)]
 fn subtract(row: &mut [f64], factor: f64, top: &[f64]) {
     for (r, t) in row.iter_mut().zip(top) {
         *r -= factor * t;
@@ -80,5 +117,13 @@ fn subtract(row: &mut [f64], factor: f64, top: &[f64]) {
 }
 
 fn product(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
+    let mut strands = [0.0; 4];
+    let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<4>(), b.as_chunks::<4>());
+    for (x, y) in a.iter().zip(b) {
+        for k in 0..4 {
+            strands[k] += x[k] * y[k];
+        }
+    }
+    let rest: f64 = a_rest.iter().zip(b_rest).map(|(x, y)| x * y).sum();
+    strands.iter().sum::<f64>() + rest
 }

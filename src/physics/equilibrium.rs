@@ -9,7 +9,8 @@
 
 use super::events::{Change, Moving};
 use super::interaction::{Effort, Interaction as _, Spots, Tangent};
-use super::krylov::{gmres, gmres_and_least};
+use super::krylov::{Matrix, gmres, gmres_and_least};
+use super::local::LocalInverse;
 use super::patch::{Hold, Patch, Trace};
 use super::relax::{Relaxing, STRIDE, relax};
 use super::state::{Problem, State, Status};
@@ -40,6 +41,8 @@ pub(crate) struct Solver<'p> {
     pub(crate) effort: Effort,
     spots: Spots,
     tangent: Tangent,
+    /// An approximate inverse of the tangent as it was when the solution began.
+    inverse: Option<LocalInverse>,
     /// Whether the tangent is that of the state that was evaluated last.
     fresh: bool,
     /// Residuals of the spots that were evaluated last \[m\].
@@ -56,11 +59,18 @@ impl<'p> Solver<'p> {
             effort: Effort::default(),
             spots: Spots::default(),
             tangent: Tangent::default(),
+            inverse: None,
             fresh: false,
             residual: Vec::new(),
             diagonal: Vec::new(),
             patch: Patch::default(),
         }
+    }
+
+    /// Before a solution that is to owe nothing to those before it.
+    pub(crate) fn begin(&mut self) {
+        self.tangent.forget();
+        self.inverse = None;
     }
 
     /// Displacements, residuals and tangent of a state; its worst residual and whose it is.
@@ -76,7 +86,7 @@ impl<'p> Solver<'p> {
     fn glance(&mut self, state: &mut State) -> Unsettled {
         let problem = self.problem;
         problem.spots(state, &mut self.spots);
-        problem.field.displacements(&self.spots, &self.spots.index, &mut state.displacement, &mut self.effort);
+        problem.field.again(&self.spots, &mut state.displacement, &mut self.tangent, &mut self.effort);
         self.fresh = false;
         self.compare(state)
     }
@@ -148,7 +158,7 @@ impl<'p> Solver<'p> {
                 share = 1.0;
                 // The first step leaves the square of the residual, however well it is solved for; the next ones are to be the last.
                 let wanted = if round == 0 { MOST } else { (0.1 * tolerance / worst.residual_m).clamp(LEAST, MOST) };
-                step = gmres(&self.tangent, &self.diagonal, &self.residual, wanted, PRODUCTS, &mut self.effort);
+                step = self.newton_step(state, wanted);
                 limit(&mut step, state, STRIDE);
                 start = state.contacts.iter().map(|&i| state.radius[i]).collect();
             } else {
@@ -166,6 +176,17 @@ impl<'p> Solver<'p> {
             worst = if round == 0 { self.evaluate(state) } else { self.glance(state) };
         }
         Err(worst)
+    }
+
+    /// The step of Newton's method, to this share of the residual.
+    fn newton_step(&mut self, state: &State, wanted: f64) -> Vec<f64> {
+        let Self { problem, tangent, inverse, diagonal, residual, effort, .. } = self;
+        // A dense tangent is of so few spots that its products cost nothing.
+        if !tangent.is_exact() && inverse.as_ref().is_none_or(|inverse| !inverse.serves(&state.contacts)) {
+            *inverse = Some(LocalInverse::new(problem, state, tangent, diagonal));
+        }
+        let inverse = inverse.as_ref().filter(|_| !tangent.is_exact());
+        gmres(Matrix { tangent, diagonal, inverse }, residual, wanted, PRODUCTS, effort)
     }
 
     /// Solves the neighbourhood of a spot with the displacement by all others held; says whether it has an equilibrium.
@@ -200,7 +221,9 @@ impl<'p> Solver<'p> {
             self.evaluate(state);
         }
         let ones = vec![1.0; state.contacts.len()];
-        let (rates, least) = gmres_and_least(&self.tangent, &self.diagonal, &ones, 1e-6, PRODUCTS, &mut self.effort);
+        // No better than the tangent.
+        let wanted = if self.tangent.is_exact() { 1e-6 } else { LEAST };
+        let (rates, least) = gmres_and_least(&self.tangent, &self.diagonal, &ones, wanted, PRODUCTS, &mut self.effort);
         state.stability = least;
         rates
     }
@@ -258,7 +281,7 @@ impl Relaxing for Whole<'_, '_> {
     fn step(&mut self, time: f64) -> (Vec<f64>, bool) {
         let Solver { tangent, diagonal, residual, effort, .. } = &mut *self.solver;
         let damped: Vec<f64> = diagonal.iter().map(|d| d + 1.0 / time).collect();
-        (gmres(tangent, &damped, residual, 1e-3, PRODUCTS, effort), true)
+        (gmres(Matrix { tangent, diagonal: &damped, inverse: None }, residual, 1e-3, PRODUCTS, effort), true)
     }
 
     fn advance(&mut self, step: &[f64], share: f64) {

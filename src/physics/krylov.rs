@@ -1,10 +1,11 @@
-//! GMRES with a diagonal preconditioner: the linear solves of the equilibrium.
+//! GMRES: the linear solves of the equilibrium.
 //!
 //! Saad & Schultz, SIAM J. Sci. Stat. Comput. 7:856 (1986), right-preconditioned, modified Gram–Schmidt, no restart: the tangent of a
-//! contact is a diagonal and a long-range coupling of low rank, and some ten products are enough.
+//! contact is a diagonal and a long-range coupling of low rank, and some ten products are enough; half as many with [`LocalInverse`].
 
 use super::dense::Lu;
 use super::interaction::{Effort, Tangent};
+use super::local::LocalInverse;
 
 /// Steps of the inverse iteration for the least eigenvalue: it stands apart where it matters.
 const INVERSE_ITERATIONS: usize = 30;
@@ -33,13 +34,21 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     strands.iter().sum()
 }
 
-/// Solves `(diag(diagonal) + tangent)·x = rhs` to the relative residual `tolerance`; what is reached within `most` products is returned.
-pub(crate) fn gmres(tangent: &Tangent, diagonal: &[f64], rhs: &[f64], tolerance: f64, most: usize, effort: &mut Effort) -> Vec<f64> {
-    solve(tangent, diagonal, rhs, tolerance, most, effort, None)
+/// A matrix `diag(diagonal) + tangent`, and an approximate inverse of it if there is one.
+#[derive(Clone, Copy)]
+pub(crate) struct Matrix<'a> {
+    pub(crate) tangent: &'a Tangent,
+    pub(crate) diagonal: &'a [f64],
+    pub(crate) inverse: Option<&'a LocalInverse>,
+}
+
+/// Solves `matrix·x = rhs` to the relative residual `tolerance`; what is reached within `most` products is returned.
+pub(crate) fn gmres(matrix: Matrix<'_>, rhs: &[f64], tolerance: f64, most: usize, effort: &mut Effort) -> Vec<f64> {
+    solve(matrix, rhs, tolerance, most, effort, None)
 }
 
 /// The same, with the least eigenvalue of the matrix, each column over its diagonal element, in the space that the solution took: 1 without
-/// coupling, 0 at a fold.
+/// coupling, 0 at a fold. No approximate inverse is used, which would be another matrix.
 pub(crate) fn gmres_and_least(
     tangent: &Tangent,
     diagonal: &[f64],
@@ -49,7 +58,7 @@ pub(crate) fn gmres_and_least(
     effort: &mut Effort,
 ) -> (Vec<f64>, f64) {
     let mut raw = Vec::new();
-    let x = solve(tangent, diagonal, rhs, tolerance, most, effort, Some(&mut raw));
+    let x = solve(Matrix { tangent, diagonal, inverse: None }, rhs, tolerance, most, effort, Some(&mut raw));
     (x, least_eigenvalue(&raw))
 }
 
@@ -82,8 +91,7 @@ fn least_eigenvalue(columns: &[Vec<f64>]) -> f64 {
 
 /// Solves, and keeps the Hessenberg matrix if it is asked for.
 fn solve(
-    tangent: &Tangent,
-    diagonal: &[f64],
+    Matrix { tangent, diagonal, inverse }: Matrix<'_>,
     rhs: &[f64],
     tolerance: f64,
     most: usize,
@@ -111,9 +119,7 @@ fn solve(
     let mut g = vec![beta];
     let mut scaled = vec![0.0; n];
     for k in 0..most.min(n) {
-        for ((s, v), d) in scaled.iter_mut().zip(&basis[k]).zip(&scale) {
-            *s = v * d;
-        }
+        precondition(inverse, &scale, &basis[k], &mut scaled);
         let mut w = vec![0.0; n];
         apply(tangent, diagonal, &scaled, &mut w);
         effort.products += 1;
@@ -157,9 +163,22 @@ fn solve(
         y[i] = (g[i] - tail) / hessenberg[i][i];
     }
     for (v, yk) in basis.iter().zip(&y) {
-        for ((xi, vi), d) in x.iter_mut().zip(v).zip(&scale) {
-            *xi += yk * vi * d;
+        for (xi, vi) in x.iter_mut().zip(v) {
+            *xi += yk * vi;
         }
     }
-    x
+    precondition(inverse, &scale, &x, &mut scaled);
+    scaled
+}
+
+/// `y` as the approximate inverse answers to `x`, or the inverse of the diagonal.
+fn precondition(inverse: Option<&LocalInverse>, scale: &[f64], x: &[f64], y: &mut [f64]) {
+    match inverse {
+        Some(inverse) => inverse.apply(x, y),
+        None => {
+            for ((y, x), scale) in y.iter_mut().zip(x).zip(scale) {
+                *y = x * scale;
+            }
+        }
+    }
 }

@@ -13,6 +13,7 @@ mod illinois;
 pub mod interaction;
 pub mod jkr;
 mod krylov;
+mod local;
 mod locate;
 pub mod log;
 pub mod merge;

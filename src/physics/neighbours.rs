@@ -70,11 +70,16 @@ impl Neighbours {
     }
 
     pub(crate) fn distance(&self, p: &[f64; 2], q: &[f64; 2]) -> f64 {
-        let [dx, dy] = [0, 1].map(|k| {
+        let [dx, dy] = self.apart(p, q);
+        (dx * dx + dy * dy).sqrt()
+    }
+
+    /// The way from `q` to the nearest image of `p` \[m\].
+    pub(crate) fn apart(&self, p: &[f64; 2], q: &[f64; 2]) -> [f64; 2] {
+        [0, 1].map(|k| {
             let d = p[k] - q[k];
             if self.periodic { d - self.length * (d / self.length).round_ties_even() } else { d }
-        });
-        (dx * dx + dy * dy).sqrt()
+        })
     }
 
     /// What a load at `q` does at `p`, `1/r` and the same of all images \[1/m\].

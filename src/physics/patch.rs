@@ -8,7 +8,7 @@
 use super::dense::Lu;
 use super::equilibrium::Unsettled;
 use super::events::{Change, Kind, Moving};
-use super::interaction::{Effort, Spots};
+use super::interaction::{Effort, PairTable, Spots};
 use super::jkr::Asperity;
 use super::locate::Point;
 use super::relax::{Relaxing, STRIDE, relax};
@@ -93,6 +93,7 @@ pub(crate) struct Patch {
     /// Where the patch has been on its way to an event, if it was followed there by a radius.
     pub(crate) way: Vec<Point>,
     spots: Spots,
+    pairs: PairTable,
     /// Displacement at the members by one another \[m\], and its derivatives to their radii.
     field: Vec<f64>,
     slopes: Vec<f64>,
@@ -212,11 +213,14 @@ impl Patch {
         self.slopes.clear();
         self.residual.clear();
         let mut worst = Unsettled { residual_m: 0.0, asperity: self.members.first().map_or(0, |m| m.asperity) };
-        let targets: Vec<usize> = self.members.iter().map(|m| m.asperity).collect();
-        problem.field.rows(&self.spots, &targets, self.local, effort, |_, sum, slopes| {
-            self.field.push(sum);
-            self.slopes.extend_from_slice(slopes);
-        });
+        if self.local {
+            problem.field.among(&self.spots, &mut self.pairs, &mut self.field, &mut self.slopes, effort);
+        } else {
+            problem.field.rows(&self.spots, &self.spots.index, false, effort, |_, sum, slopes| {
+                self.field.push(sum);
+                self.slopes.extend_from_slice(slopes);
+            });
+        }
         for k in 0..n {
             let member = self.members[k];
             let i = member.asperity;

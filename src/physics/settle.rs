@@ -27,6 +27,7 @@ impl Path<'_> {
     /// After a jump of the whole contact (`jump`) it went on as its traces had it up to here. Otherwise the difference grew on the way.
     pub(crate) fn settle(&mut self, target: f64, strict: bool, jump: bool) -> Result<(), Halt> {
         let problem = self.problem();
+        self.solver.begin();
         let mut rounds = 0;
         let mut uncovering: Option<(Mark, Vec<usize>)> = None;
         loop {

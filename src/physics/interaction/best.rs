@@ -1,13 +1,13 @@
 //! Which of the sums: few spots are summed directly, many fast. Both give the same field, so that the choice may change along a path.
 
-use super::direct::TABLE_LIMIT;
-use super::{DirectSum, Effort, FastSum, Interaction, Spots, Tangent};
+use super::{DirectSum, Effort, FastSum, Interaction, PairTable, Spots, Tangent};
 use crate::model::{Boundary, Interaction as Kind, Material, Slips};
 
-/// Spots from which the fast sum is the faster one, measured for a linearisation and the dozen products that follow it, where the direct sum
-/// has its table, and where there are too many asperities for one.
-const MANY: usize = 600;
-const MANY_WITHOUT_TABLE: usize = 300;
+/// Spots from which the fast sum is the faster one, measured for the linearisations of one solution and the products that follow them.
+const MANY: usize = 150;
+
+/// Asperities from which there may be so many spots.
+const ENOUGH: usize = 300;
 
 /// Error of the fast sum, of the greatest displacement: an equilibrium is met to 1e-10 of the rms height.
 const TOLERANCE: f64 = 1e-10;
@@ -16,9 +16,9 @@ const TOLERANCE: f64 = 1e-10;
 /// the number of spots in contact.
 #[must_use]
 pub fn best(positions: Vec<[f64; 2]>, length_m: f64, material: &Material, kind: Kind, boundary: Boundary, slips: Slips) -> Best {
-    let many = positions.len() >= MANY && boundary == Boundary::Periodic && kind != Kind::None;
+    let many = positions.len() >= ENOUGH && boundary == Boundary::Periodic && kind != Kind::None;
     let fast = many.then(|| FastSum::new(positions.clone(), length_m, material, kind, slips, TOLERANCE));
-    Best { direct: DirectSum::new(positions, length_m, material, kind, boundary, slips), fast, least: MANY_WITHOUT_TABLE }
+    Best { direct: DirectSum::new(positions, length_m, material, kind, boundary, slips), fast }
 }
 
 /// The direct sum, and the fast one where there are asperities enough for it.
@@ -26,30 +26,30 @@ pub fn best(positions: Vec<[f64; 2]>, length_m: f64, material: &Material, kind: 
 pub struct Best {
     direct: DirectSum,
     fast: Option<FastSum>,
-    /// Spots from which the fast sum is taken.
-    least: usize,
 }
 
 impl Best {
     fn for_spots(&self, spots: &Spots) -> &dyn Interaction {
         match &self.fast {
-            Some(fast) if spots.columns.len() >= self.least => fast,
+            Some(fast) if spots.columns.len() >= MANY => fast,
             _ => &self.direct,
         }
     }
 
     /// For other places than the spots: a mesh is worth its while only for many of them.
     fn for_targets(&self, spots: &Spots, targets: &[usize]) -> &dyn Interaction {
-        if targets.len() < self.least / 2 { &self.direct } else { self.for_spots(spots) }
+        if targets.len() < MANY / 2 { &self.direct } else { self.for_spots(spots) }
     }
 
-    /// The same with a table of what images do, where there are few enough asperities; no place can be added then.
+    /// As [`DirectSum::among`] has it.
+    pub(crate) fn among(&self, spots: &Spots, table: &mut PairTable, fields: &mut Vec<f64>, slopes: &mut Vec<f64>, effort: &mut Effort) {
+        self.direct.among(spots, table, fields, slopes, effort);
+    }
+
+    /// The same with a table of what images do, where there are few enough asperities; it is gone where a place is added.
     #[must_use]
     pub fn with_table(self) -> Self {
-        if self.direct.places() > TABLE_LIMIT {
-            return self;
-        }
-        Self { direct: self.direct.with_table(), least: MANY, ..self }
+        Self { direct: self.direct.with_table(), ..self }
     }
 
     /// Adds a place \[m\], whose number follows the last one.
@@ -73,6 +73,10 @@ impl Interaction for Best {
 
     fn linearise(&self, spots: &Spots, displacements: &mut Vec<f64>, tangent: &mut Tangent, effort: &mut Effort) {
         self.for_spots(spots).linearise(spots, displacements, tangent, effort);
+    }
+
+    fn again(&self, spots: &Spots, displacements: &mut Vec<f64>, tangent: &mut Tangent, effort: &mut Effort) {
+        self.for_spots(spots).again(spots, displacements, tangent, effort);
     }
 
     fn approach(

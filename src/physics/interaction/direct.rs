@@ -4,14 +4,15 @@ use super::centre::{CENTRE, Centre};
 use super::ewald::{IMAGES, ORDERS, RemainderSeries};
 use super::moments::{Moments, product};
 use super::pair::{LANES, Place, SpotColumns, sag, spot_fields};
+use super::table::{PairTable, Sources};
 use super::{Effort, Interaction, Spots, Tangent};
 use crate::model::{Boundary, Interaction as Kind, Material, Slips};
 use crate::physics::krylov::dot;
 use multiversion::multiversion;
 use std::sync::Arc;
 
-/// Up to this many asperities the sums over images of every pair may be kept, 32 bytes each: 290 MB.
-pub(crate) const TABLE_LIMIT: usize = 3000;
+/// Up to this many asperities the sums over images of every pair may be kept, 32 bytes each: 32 MB.
+const TABLE_LIMIT: usize = 1000;
 
 /// All pairs, one by one: the exact field of the nearest image of every spot, and of its other images what is seen from afar.
 #[derive(Debug, Clone)]
@@ -45,11 +46,11 @@ impl DirectSum {
         }
     }
 
-    /// The same, with the sums over images of every pair at hand; no place can be added then.
+    /// The same, with the sums over images of every pair at hand where there are few enough places.
     #[must_use]
     pub fn with_table(self) -> Self {
         let (n, positions) = (self.positions.len(), &self.positions);
-        if !self.periodic || self.kind == Kind::None {
+        if !self.periodic || self.kind == Kind::None || n > TABLE_LIMIT {
             return self;
         }
         let mut table = vec![[0.0; ORDERS]; n * n];
@@ -65,11 +66,6 @@ impl DirectSum {
             }
         }
         Self { table: Arc::new(table), ..self }
-    }
-
-    /// How many places there are.
-    pub(crate) fn places(&self) -> usize {
-        self.positions.len()
     }
 
     /// Adds a place \[m\], whose number follows the last one.
@@ -101,6 +97,15 @@ impl DirectSum {
             visit(k, sum, &slopes[..n]);
         }
         effort.pairs += (n * targets.len()) as u64;
+    }
+
+    /// Displacements at the spots themselves, with some digits of what images do, and the derivatives to the radii of all, row by row.
+    pub(crate) fn among(&self, spots: &Spots, table: &mut PairTable, fields: &mut Vec<f64>, slopes: &mut Vec<f64>, effort: &mut Effort) {
+        table.find(&spots.index, &self.positions, self.length, self.periodic);
+        let moments = self.moments(spots);
+        let Self { kind, compliance, pull, sag, .. } = *self;
+        table.fields(Sources { kind, columns: &spots.columns, moments: &moments, compliance, pull, sag }, fields, slopes);
+        effort.pairs += (spots.index.len() * spots.index.len()) as u64;
     }
 
     /// Displacement at asperity `target` by all spots, with its derivatives if they are wanted.

@@ -7,6 +7,7 @@ pub mod ewald;
 mod fast;
 mod moments;
 pub mod pair;
+mod table;
 
 use super::krylov::dot;
 pub use best::{Best, best};
@@ -14,6 +15,7 @@ pub use direct::DirectSum;
 pub use fast::FastSum;
 use fast::Sparse;
 use pair::SpotColumns;
+pub(crate) use table::PairTable;
 
 /// The spots in contact: which asperities they are, ascending, and their columns.
 #[derive(Debug, Clone, Default)]
@@ -55,6 +57,14 @@ impl Tangent {
         }
     }
 
+    /// What it keeps of the places of the spots from one linearisation to the next is to be found anew: the digits of a solution are to depend on where
+    /// it began, and not on what was solved before.
+    pub(crate) fn forget(&mut self) {
+        if let Form::Sparse(sparse) = &mut self.0 {
+            sparse.forget();
+        }
+    }
+
     /// Whether it has all digits; made fast, it has some.
     #[must_use]
     pub fn is_exact(&self) -> bool {
@@ -93,6 +103,13 @@ impl Tangent {
         }
     }
 
+    fn sparse(&mut self) -> Option<&mut Sparse> {
+        match &mut self.0 {
+            Form::Sparse(sparse) => Some(sparse),
+            Form::Dense(..) => None,
+        }
+    }
+
     fn set_sparse(&mut self, sparse: Box<Sparse>) {
         self.0 = Form::Sparse(sparse);
     }
@@ -117,6 +134,11 @@ pub trait Interaction: Sync {
 
     /// Displacements at the spots themselves, with the tangent.
     fn linearise(&self, spots: &Spots, displacements: &mut Vec<f64>, tangent: &mut Tangent, effort: &mut Effort);
+
+    /// Displacements at the spots themselves, by what the tangent, which stays as it is, has kept of their places.
+    fn again(&self, spots: &Spots, displacements: &mut Vec<f64>, _tangent: &mut Tangent, effort: &mut Effort) {
+        self.displacements(spots, &spots.index, displacements, effort);
+    }
 
     /// Displacement at each of `targets` and its derivative along a path on which the radii of the spots change by `rates`:
     /// `dŵ_i = Σ_j (∂ŵ_i/∂a_j) rates_j`. With `rates` = da_j/dδ it is dŵ_i/dδ.

@@ -119,7 +119,7 @@ pub(crate) fn sag(slips: Slips) -> f64 {
     if slips.eq8 { 0.0 } else { 0.5 }
 }
 
-/// Both formulae are taken and one is chosen, so that several spots go through at once.
+/// The fields of several spots by the squares of their distances.
 #[inline(always)]
 pub(crate) fn field<const L: usize>(
     r2: &[f64; L],
@@ -130,12 +130,31 @@ pub(crate) fn field<const L: usize>(
     pull: f64,
     sag: f64,
 ) -> ([f64; L], [f64; L]) {
-    let (mut inverse_r, mut half_chord, mut s) = ([0.0; L], [0.0; L], [0.0; L]);
+    let (mut r, mut inverse_r) = ([0.0; L], [0.0; L]);
     for k in 0..L {
-        let r = r2[k].sqrt().max(a[k]);
-        inverse_r[k] = 1.0 / r;
+        r[k] = r2[k].sqrt();
+        inverse_r[k] = 1.0 / r[k];
+    }
+    field_at(&r, &inverse_r, a, root_a, inverse_root_a, curvature, pull, sag)
+}
+
+/// The same by distances and their inverses. Both formulae are taken and one is chosen, so that several spots go through at once.
+#[allow(clippy::too_many_arguments)]
+#[inline(always)]
+pub(crate) fn field_at<const L: usize>(
+    r: &[f64; L],
+    inverse_r: &[f64; L],
+    a: &[f64; L],
+    root_a: &[f64; L],
+    inverse_root_a: &[f64; L],
+    curvature: &[f64; L],
+    pull: f64,
+    sag: f64,
+) -> ([f64; L], [f64; L]) {
+    let (mut half_chord, mut s) = ([0.0; L], [0.0; L]);
+    for k in 0..L {
         // sqrt(r² − a²): (r − a)(r + a) keeps the digits that 1 − x² would lose near the edge.
-        half_chord[k] = ((r - a[k]) * (r + a[k])).sqrt();
+        half_chord[k] = ((r[k] - a[k]) * (r[k] + a[k])).max(0.0).sqrt();
         s[k] = half_chord[k].mul_add(inverse_r[k], -0.5);
     }
     let (indentation, arc) = polynomials(&s);
@@ -144,9 +163,9 @@ pub(crate) fn field<const L: usize>(
         let x = a[k] * inverse_r[k];
         let (arc, indentation) = (x * arc[k], x * indentation[k]);
         let flat = a[k] * curvature[k];
-        let inside = r2[k] <= a[k] * a[k];
+        let inside = r[k] <= a[k];
         let outer = FRAC_1_PI * (a[k] * flat).mul_add(indentation, -2.0 * pull * root_a[k] * arc);
-        let inner = a[k].mul_add(flat, -sag * r2[k] * curvature[k]) - pull * root_a[k];
+        let inner = a[k].mul_add(flat, -sag * r[k] * r[k] * curvature[k]) - pull * root_a[k];
         value[k] = if inside { inner } else { outer };
         // At the very edge the slope is infinite; a finite one, as great as rounding tells apart, keeps linear systems of it solvable.
         let crack = 0.5 * arc * inverse_root_a[k] + root_a[k] / half_chord[k].max(1e-7 * a[k]);
@@ -165,6 +184,9 @@ pub fn dimensionless_field(u: f64) -> (f64, f64) {
     let ([indentation], [arc]) = polynomials(&s);
     (x * indentation, x * arc)
 }
+
+/// So far away no spot has a field \[m\].
+pub(crate) const AWAY: f64 = 1e30;
 
 /// Sources that one pass takes together; the order of a sum depends on it, and on nothing of the machine.
 pub(crate) const LANES: usize = 8;

@@ -3,8 +3,36 @@
 use super::super::ewald::ORDERS;
 use super::plan::{LAPLACIANS, Mesh};
 use multiversion::multiversion;
-use rustfft::num_complex::Complex64;
+use rustfft::FftNum;
+use rustfft::num_complex::Complex;
+use rustfft::num_traits::Float;
 use std::sync::Arc;
+
+/// What a mesh is made of: doubles where displacements are wanted, half as many digits where their derivatives are.
+pub(super) trait Real: FftNum + Float + Default {
+    fn of(value: f64) -> Self;
+    fn long(self) -> f64;
+}
+
+impl Real for f64 {
+    fn of(value: f64) -> Self {
+        value
+    }
+
+    fn long(self) -> f64 {
+        self
+    }
+}
+
+impl Real for f32 {
+    fn of(value: f64) -> Self {
+        value as Self
+    }
+
+    fn long(self) -> f64 {
+        Self::into(self)
+    }
+}
 
 /// Points of a row of a mesh before its first: a spline of so many points reaches beyond the period on both sides.
 const fn before(width: usize) -> usize {
@@ -14,23 +42,23 @@ const fn before(width: usize) -> usize {
 /// Where a place lies on a mesh along one direction: the first point that its B-spline of order `W` reaches, the values of that at the points, and its
 /// derivatives of even order, `O` in all.
 #[derive(Debug, Clone, Copy)]
-struct Spline<const W: usize, const O: usize> {
+struct Spline<T, const W: usize, const O: usize> {
     base: usize,
-    all: [[f64; W]; O],
+    all: [[T; W]; O],
 }
 
 /// The same along both directions.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Splines<const W: usize, const O: usize>([Spline<W, O>; 2]);
+pub(super) struct Splines<T, const W: usize, const O: usize>([Spline<T, W, O>; 2]);
 
 /// Places in units of the side, on a mesh.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-pub(super) fn splines<const W: usize, const O: usize>(places: &[[f64; 2]], mesh: usize) -> Vec<Splines<W, O>> {
+pub(super) fn splines<T: Real, const W: usize, const O: usize>(places: &[[f64; 2]], mesh: usize) -> Vec<Splines<T, W, O>> {
     places.iter().map(|place| Splines([spline(place[0], mesh), spline(place[1], mesh)])).collect()
 }
 
 #[inline(always)]
-fn spline<const W: usize, const O: usize>(place: f64, mesh: usize) -> Spline<W, O> {
+fn spline<T: Real, const W: usize, const O: usize>(place: f64, mesh: usize) -> Spline<T, W, O> {
     let scaled = (place - place.floor()) * mesh as f64;
     let base = (scaled as usize).min(mesh - 1);
     let f = scaled - base as f64;
@@ -60,10 +88,13 @@ fn spline<const W: usize, const O: usize>(place: f64, mesh: usize) -> Spline<W, 
             all[times] = differences;
         }
     }
-    for weights in &mut all {
-        weights.reverse();
+    let mut kept = [[T::default(); W]; O];
+    for (kept, weights) in kept.iter_mut().zip(&all) {
+        for (kept, weight) in kept.iter_mut().zip(weights.iter().rev()) {
+            *kept = T::of(*weight);
+        }
     }
-    Spline { base, all }
+    Spline { base, all: kept }
 }
 
 #[inline(always)]
@@ -73,73 +104,54 @@ fn shifted<const W: usize>(weights: &[f64; W], by: usize) -> [f64; W] {
     moved
 }
 
-/// A source on a mesh: the point of its first weight, and its spread as a sum of products, along x and along y.
-#[derive(Debug, Clone)]
-pub(super) struct Source<const W: usize, const O: usize> {
-    spot: usize,
-    base: [usize; 2],
-    along_x: [[f64; W]; O],
-    along_y: [[f64; W]; O],
-}
-
-impl<const W: usize, const O: usize> Source<W, O> {
-    /// The source of `moments` at a place, number `spot` among all: `Σ_m c_m ∇^2m δ/[(2m−1)!!]²`, the Laplacian taken of its spline.
-    pub(super) fn new(spot: usize, Splines([x, y]): &Splines<W, O>, mesh: usize, moments: &[f64; ORDERS]) -> Self {
-        const BINOMIALS: [[f64; ORDERS]; ORDERS] = [[1.0, 1.0, 1.0, 1.0], [1.0, 2.0, 3.0, 0.0], [1.0, 3.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]];
-        let square = (mesh * mesh) as f64;
-        let mut along_y = [[0.0; W]; O];
-        for p in 0..O {
-            for (q, derivative) in y.all[..O - p].iter().enumerate() {
-                let m = p + q;
-                let factor = BINOMIALS[p][q] * moments[m] / LAPLACIANS[m] * square.powi(m as i32);
-                for (w, d) in along_y[p].iter_mut().zip(derivative) {
-                    *w += factor * d;
-                }
-            }
-        }
-        Self { spot, base: [x.base, y.base], along_x: x.all, along_y }
-    }
-}
-
 /// A target on a mesh.
 #[derive(Debug, Clone)]
-pub(super) struct Reader<const W: usize> {
+pub(super) struct Reader<T, const W: usize> {
     base: [usize; 2],
-    along_x: [f64; W],
-    along_y: [f64; W],
+    along_x: [T; W],
+    along_y: [T; W],
 }
 
-impl<const W: usize> Reader<W> {
-    pub(super) fn new<const O: usize>(Splines([x, y]): &Splines<W, O>) -> Self {
+impl<T: Real, const W: usize> Reader<T, W> {
+    pub(super) fn new<const O: usize>(Splines([x, y]): &Splines<T, W, O>) -> Self {
         Self { base: [x.base, y.base], along_x: x.all[0], along_y: y.all[0] }
     }
 }
 
 /// Work space of the transforms: used again and again, and no part of any result.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Work {
-    points: Vec<f64>,
-    lines: Vec<Complex64>,
-    turned: Vec<Complex64>,
-    total: Vec<Complex64>,
-    scratch: Vec<Complex64>,
+pub(super) struct Work<T> {
+    points: Vec<T>,
+    lines: Vec<Complex<T>>,
+    turned: Vec<Complex<T>>,
+    total: Vec<Complex<T>>,
+    scratch: Vec<Complex<T>>,
 }
 
 /// A mesh and its sources.
-pub(super) type Level<const W: usize, const O: usize> = (Arc<Mesh>, Vec<Source<W, O>>);
+pub(super) type Level<T, const W: usize, const O: usize> = (Arc<Mesh<T>>, Placed<T, W, O>);
 
-/// The field of all sources on the finest mesh, which is left in the work space for [`read`]. Sources of each mesh, the finest first;
-/// each counts `factors` of its spot, or once.
-pub(super) fn transform<const W: usize, const O: usize>(levels: &[Level<W, O>], factors: Option<&[f64]>, work: &mut Work) {
+/// Numbers of sources, and where they lie.
+pub(super) type Placed<T, const W: usize, const O: usize> = (Vec<usize>, Vec<Splines<T, W, O>>);
+
+/// What all sources have: their moments, and how much each counts, or once.
+#[derive(Clone, Copy)]
+pub(super) struct Loads<'a> {
+    pub(super) moments: &'a [[f64; ORDERS]],
+    pub(super) factors: Option<&'a [f64]>,
+}
+
+/// The field of all sources on the finest mesh, which is left in the work space for [`read`]. Sources of each mesh, the finest first.
+pub(super) fn transform<T: Real, const W: usize, const O: usize>(levels: &[Level<T, W, O>], loads: Loads<'_>, work: &mut Work<T>) {
     let Some((finest, _)) = levels.first() else { return };
     let n = finest.size;
     let half = n / 2 + 1;
     for (level, (mesh, sources)) in levels.iter().enumerate() {
-        forward(mesh, sources, factors, work);
+        forward(mesh, sources, loads, work);
         if level == 0 {
             std::mem::swap(&mut work.total, &mut work.turned);
             for (value, wave) in work.total.iter_mut().zip(&mesh.waves) {
-                *value *= wave;
+                *value = *value * *wave;
             }
         } else {
             // The waves of a coarser mesh are the lowest of the finest.
@@ -147,7 +159,8 @@ pub(super) fn transform<const W: usize, const O: usize>(levels: &[Level<W, O>], 
             for ky in 0..m / 2 {
                 for kx in (0..m / 2).chain(m / 2 + 1..m) {
                     let to = if kx < m / 2 { kx } else { kx + n - m };
-                    work.total[ky * n + to] += work.turned[ky * m + kx] * mesh.waves[ky * m + kx];
+                    let to = &mut work.total[ky * n + to];
+                    *to = *to + work.turned[ky * m + kx] * mesh.waves[ky * m + kx];
                 }
             }
         }
@@ -155,23 +168,23 @@ pub(super) fn transform<const W: usize, const O: usize>(levels: &[Level<W, O>], 
     for (ky, line) in work.total.chunks_mut(n).enumerate() {
         let along = finest.sharpen[ky];
         for (value, across) in line.iter_mut().zip(&finest.sharpen) {
-            *value *= along * across;
+            *value = *value * (along * *across);
         }
     }
-    work.scratch.resize(finest.columns_back.get_inplace_scratch_len().max(finest.rows_back.get_scratch_len()), Complex64::default());
+    work.scratch.resize(finest.columns_back.get_inplace_scratch_len().max(finest.rows_back.get_scratch_len()), Complex::default());
     finest.columns_back.process_with_scratch(&mut work.total, &mut work.scratch);
-    work.lines.resize(half * n, Complex64::default());
+    work.lines.resize(half * n, Complex::default());
     turn(&work.total, &mut work.lines, half, n);
     let stride = n + W - 1;
-    work.points.resize(stride * stride, 0.0);
+    work.points.resize(stride * stride, T::default());
     for (i, line) in work.lines.chunks_mut(half).enumerate() {
         // Real by symmetry, but for rounding.
-        line[0].im = 0.0;
-        line[half - 1].im = 0.0;
+        line[0].im = T::default();
+        line[half - 1].im = T::default();
         let row = &mut work.points[(i + before(W)) * stride..][..stride];
         let inner = &mut row[before(W)..before(W) + n];
         if finest.rows_back.process_with_scratch(line, inner, &mut work.scratch).is_err() {
-            inner.fill(f64::NAN);
+            inner.fill(T::nan());
         }
         row.copy_within(n..n + before(W), 0);
         row.copy_within(before(W)..W - 1, before(W) + n);
@@ -181,21 +194,26 @@ pub(super) fn transform<const W: usize, const O: usize>(levels: &[Level<W, O>], 
 }
 
 /// The waves of the sources of one mesh, by ky then kx, into `work.turned`.
-fn forward<const W: usize, const O: usize>(mesh: &Mesh, sources: &[Source<W, O>], factors: Option<&[f64]>, work: &mut Work) {
+fn forward<T: Real, const W: usize, const O: usize>(
+    mesh: &Mesh<T>,
+    (spots, sources): &Placed<T, W, O>,
+    loads: Loads<'_>,
+    work: &mut Work<T>,
+) {
     let n = mesh.size;
     let half = n / 2 + 1;
     let stride = n + W - 1;
     work.points.clear();
-    work.points.resize(stride * stride, 0.0);
-    spread(sources, factors, &mut work.points, stride);
+    work.points.resize(stride * stride, T::default());
+    spread(spots, sources, loads, n, &mut work.points);
     // What was spread beyond the period belongs to its other side.
     for i in 0..stride {
         let row = &mut work.points[i * stride..(i + 1) * stride];
         for k in 0..before(W) {
-            row[n + k] += row[k];
+            row[n + k] = row[n + k] + row[k];
         }
         for k in before(W)..W - 1 {
-            row[k] += row[n + k];
+            row[k] = row[k] + row[n + k];
         }
     }
     for i in 0..W - 1 {
@@ -203,16 +221,16 @@ fn forward<const W: usize, const O: usize>(mesh: &Mesh, sources: &[Source<W, O>]
         let (low, high) = (&mut low[i * stride..(i + 1) * stride], &mut high[i * stride..(i + 1) * stride]);
         let (to, from) = if i < before(W) { (high, low) } else { (low, high) };
         for (to, from) in to.iter_mut().zip(from.iter()) {
-            *to += from;
+            *to = *to + *from;
         }
     }
-    work.lines.resize(half * n, Complex64::default());
-    work.turned.resize(half * n, Complex64::default());
-    work.scratch.resize(mesh.columns.get_inplace_scratch_len().max(mesh.rows.get_scratch_len()), Complex64::default());
+    work.lines.resize(half * n, Complex::default());
+    work.turned.resize(half * n, Complex::default());
+    work.scratch.resize(mesh.columns.get_inplace_scratch_len().max(mesh.rows.get_scratch_len()), Complex::default());
     for (i, line) in work.lines.chunks_mut(half).enumerate() {
         let row = &mut work.points[(i + before(W)) * stride + before(W)..][..n];
         if mesh.rows.process_with_scratch(row, line, &mut work.scratch).is_err() {
-            line.fill(Complex64::new(f64::NAN, 0.0));
+            line.fill(Complex::new(T::nan(), T::default()));
         }
     }
     turn(&work.lines, &mut work.turned, n, half);
@@ -220,7 +238,7 @@ fn forward<const W: usize, const O: usize>(mesh: &Mesh, sources: &[Source<W, O>]
 }
 
 /// The rows of `from` become the columns of `to`, block by block.
-fn turn(from: &[Complex64], to: &mut [Complex64], rows: usize, columns: usize) {
+fn turn<T: Copy>(from: &[T], to: &mut [T], rows: usize, columns: usize) {
     const BLOCK: usize = 16;
     for i in (0..rows).step_by(BLOCK) {
         for j in (0..columns).step_by(BLOCK) {
@@ -233,22 +251,47 @@ fn turn(from: &[Complex64], to: &mut [Complex64], rows: usize, columns: usize) {
     }
 }
 
+/// Adds each source to the points: `Σ_m c_m ∇^2m δ/[(2m−1)!!]²`, the Laplacian taken of its spline.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-fn spread<const W: usize, const O: usize>(sources: &[Source<W, O>], factors: Option<&[f64]>, points: &mut [f64], stride: usize) {
-    for source in sources {
-        let factor = factors.map_or(1.0, |all| all[source.spot]);
+fn spread<T: Real, const W: usize, const O: usize>(
+    spots: &[usize],
+    sources: &[Splines<T, W, O>],
+    loads: Loads<'_>,
+    mesh: usize,
+    points: &mut [T],
+) {
+    const BINOMIALS: [[f64; ORDERS]; ORDERS] = [[1.0, 1.0, 1.0, 1.0], [1.0, 2.0, 3.0, 0.0], [1.0, 3.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]];
+    let stride = mesh + W - 1;
+    let mut scales = [1.0; ORDERS];
+    for (m, scale) in scales.iter_mut().enumerate() {
+        *scale = ((mesh * mesh) as f64).powi(m as i32) / LAPLACIANS[m];
+    }
+    for (spot, Splines([x, y])) in spots.iter().zip(sources) {
+        let factor = loads.factors.map_or(1.0, |all| all[*spot]);
+        let mut moments = loads.moments[*spot];
+        for (moment, scale) in moments.iter_mut().zip(&scales) {
+            *moment *= factor * scale;
+        }
+        let mut along_y = [[T::default(); W]; O];
+        for (p, along_y) in along_y.iter_mut().enumerate() {
+            for (q, derivatives) in y.all[..O - p].iter().enumerate() {
+                let weight = T::of(BINOMIALS[p][q] * moments[p + q]);
+                for (sum, derivative) in along_y.iter_mut().zip(derivatives) {
+                    *sum = weight.mul_add(*derivative, *sum);
+                }
+            }
+        }
         for i in 0..W {
-            let from = (source.base[0] + i) * stride + source.base[1];
+            let from = (x.base + i) * stride + y.base;
             let line = &mut points[from..from + W];
-            let mut sums = [0.0; W];
-            for (along_x, along_y) in source.along_x.iter().zip(&source.along_y) {
-                let weight = factor * along_x[i];
+            let mut sums = [T::default(); W];
+            for (along_x, along_y) in x.all.iter().zip(&along_y) {
                 for (sum, along) in sums.iter_mut().zip(along_y) {
-                    *sum = weight.mul_add(*along, *sum);
+                    *sum = along_x[i].mul_add(*along, *sum);
                 }
             }
             for (point, sum) in line.iter_mut().zip(sums) {
-                *point += sum;
+                *point = *point + sum;
             }
         }
     }
@@ -256,10 +299,10 @@ fn spread<const W: usize, const O: usize>(sources: &[Source<W, O>], factors: Opt
 
 /// Adds the field in the work space at the targets to `values`.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-pub(super) fn read<const W: usize>(readers: &[Reader<W>], mesh: usize, work: &Work, values: &mut [f64]) {
+pub(super) fn read<T: Real, const W: usize>(readers: &[Reader<T, W>], mesh: usize, work: &Work<T>, values: &mut [f64]) {
     let stride = mesh + W - 1;
     for (reader, value) in readers.iter().zip(values) {
-        let mut strands = [0.0f64; W];
+        let mut strands = [T::default(); W];
         for i in 0..W {
             let across = reader.along_x[i];
             let from = (reader.base[0] + i) * stride + reader.base[1];
@@ -267,6 +310,10 @@ pub(super) fn read<const W: usize>(readers: &[Reader<W>], mesh: usize, work: &Wo
                 *strand = across.mul_add(*point, *strand);
             }
         }
-        *value += strands.iter().zip(&reader.along_y).map(|(s, w)| s * w).sum::<f64>();
+        let mut sum = T::default();
+        for (strand, weight) in strands.iter().zip(&reader.along_y) {
+            sum = strand.mul_add(*weight, sum);
+        }
+        *value += sum.long();
     }
 }

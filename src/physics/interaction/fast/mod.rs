@@ -8,21 +8,24 @@
 //! A spot must be small against its reach. So sources form groups by their radii: every group has twice the reach of the one before and
 //! a mesh half as fine, and one large spot costs one long list. What is too large for any mesh acts on all by its exact field.
 
+mod geometry;
 mod mesh;
 mod near;
+mod pairs;
 mod plan;
 
-use super::ewald::{IMAGES, ORDERS};
 use super::moments::{Moments, product};
 use super::pair::{SpotColumns, sag};
 use super::{Effort, Interaction, Spots, Tangent};
 use crate::model::{Interaction as Kind, Material, Slips};
-use mesh::{Level, Reader, Source, Splines, Work, read, splines, transform};
-use near::{Found, Group, Measure, Rest, Rows};
-use plan::{Accuracy, Plan, ROUGH_ORDERS, ROUGH_WIDTH, WIDTH, mesh_size};
-use rayon::prelude::*;
+use crate::physics::interaction::ewald::{IMAGES, ORDERS};
+use geometry::Geometry;
+use mesh::{Loads, Work};
+use near::Measure;
+use pairs::Sources;
+use plan::{Accuracy, Plan, mesh_size};
 use std::cell::RefCell;
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_1_SQRT_2, PI};
 use std::sync::{Arc, OnceLock};
 
 /// The longest reach, in sides: within it no image but the nearest can lie.
@@ -30,15 +33,21 @@ const LONGEST: f64 = 0.45;
 
 /// Reaches to choose from, each `1/√2` of the one before.
 const REACHES: usize = 15;
+const REACH: [f64; REACHES] = {
+    let mut all = [LONGEST; REACHES];
+    let mut step = 1;
+    while step < REACHES {
+        all[step] = all[step - 1] * FRAC_1_SQRT_2;
+        step += 1;
+    }
+    all
+};
 
-/// What is spent for one pair in a linearisation and the dozen products that follow, in units of one point of a mesh in one transform.
+/// What is spent for one pair in a solution of some linearisations and the products that follow, in units of one point of a mesh in one transform.
 const PAIR_COST: f64 = 8.0;
 
-/// The same for one spot or target, spread and read.
-const SPREAD_COST: f64 = 500.0;
-
-/// Targets that one thread takes at a time.
-const TOGETHER: usize = 64;
+/// What the radii may grow by until pairs are found anew.
+const MARGIN: f64 = 1.05;
 
 /// Near pairs and a mesh.
 #[derive(Debug, Clone)]
@@ -51,55 +60,6 @@ pub struct FastSum {
     /// What has been made, from the longest reach to the shortest.
     plans: [OnceLock<Arc<Plan>>; REACHES],
 }
-
-/// One evaluation: the sources in groups.
-struct Field {
-    moments: Moments,
-    groups: Vec<Group>,
-    /// Plans that are in use, the finest first, each with its spots.
-    levels: Vec<(Arc<Plan>, Vec<Placed>)>,
-}
-
-/// A spot and its place in units of the side.
-type Placed = (usize, [f64; 2]);
-
-/// Sources on their meshes and readers there, for displacements or for their derivatives.
-#[derive(Debug, Clone, Default)]
-struct Meshes<const W: usize, const O: usize> {
-    levels: Vec<Level<W, O>>,
-    readers: Vec<Reader<W>>,
-}
-
-impl<const W: usize, const O: usize> Meshes<W, O> {
-    /// Of a field, on its meshes of this `rank` and with the moments given, at targets in units of the side.
-    fn new(field: &Field, rank: usize, moments: &[[f64; ORDERS]], targets: &[[f64; 2]]) -> Self {
-        let of = |(plan, members): &(Arc<Plan>, Vec<Placed>)| {
-            let mesh = plan.meshes[rank].clone();
-            let places: Vec<[f64; 2]> = members.iter().map(|member| member.1).collect();
-            let splines: Vec<Splines<W, O>> = splines(&places, mesh.size);
-            let sources = members.iter().zip(&splines).map(|((j, _), splines)| Source::new(*j, splines, mesh.size, &moments[*j]));
-            (mesh.clone(), sources.collect())
-        };
-        let levels: Vec<Level<W, O>> = field.levels.iter().map(of).collect();
-        let readers = levels.first().map_or(Vec::new(), |(mesh, _)| splines::<W, O>(targets, mesh.size).iter().map(Reader::new).collect());
-        Self { levels, readers }
-    }
-
-    /// Adds the fields at the targets to `values`; each source counts `factors` of its spot, or once.
-    fn add(&self, factors: Option<&[f64]>, work: &mut Work, values: &mut [f64]) {
-        if let Some((mesh, _)) = self.levels.first() {
-            transform(&self.levels, factors, work);
-            read(&self.readers, mesh.size, work, values);
-        }
-    }
-}
-
-type Fine = Meshes<WIDTH, ORDERS>;
-type Rough = Meshes<ROUGH_WIDTH, ROUGH_ORDERS>;
-
-/// Which of the meshes of a plan.
-const FINE: usize = 0;
-const ROUGH: usize = 1;
 
 impl FastSum {
     /// Asperities at `positions` \[m\] on the periodic square of side `length_m`; every displacement is right to `tolerance` times the
@@ -121,103 +81,92 @@ impl FastSum {
         self.positions.push(place);
     }
 
-    fn reach(step: usize) -> f64 {
-        LONGEST * 0.5f64.powf(0.5 * step as f64)
-    }
-
     fn plan(&self, step: usize) -> Arc<Plan> {
-        self.plans[step].get_or_init(|| Arc::new(Plan::new(self.accuracy, Self::reach(step)))).clone()
+        self.plans[step].get_or_init(|| Arc::new(Plan::new(self.accuracy, REACH[step]))).clone()
     }
 
-    /// The longest of the reaches `finest`, `finest` − 2, … that a spot of radius `a` \[m\] needs, or nothing if it is too large for all.
-    fn level(&self, finest: usize, a: f64) -> Option<usize> {
+    /// The shortest of the reaches that a spot of radius `a` \[m\] may have, or nothing if it is too large for all.
+    fn shortest(&self, a: f64) -> Option<usize> {
         let least = if self.measure.kind == Kind::Spots { a / (self.accuracy.girth * self.measure.length) } else { 0.0 };
-        (0..=finest / 2).map(|k| finest - 2 * k).find(|step| Self::reach(*step) >= least)
+        REACH.iter().rposition(|reach| *reach >= least)
     }
 
-    /// The finest reach that costs least, by the radii of the spots and the number of targets.
-    fn finest(&self, columns: &SpotColumns, targets: usize) -> usize {
+    /// The finest reach that costs least, by the shortest ones that the spots may have, where these lie and the number of targets.
+    fn finest(&self, shortest: &[Option<usize>], columns: &SpotColumns, targets: usize) -> usize {
+        let crowds = crowds(columns, self.measure.length);
+        let mut spots = [0usize; REACHES];
+        for step in shortest.iter().flatten() {
+            spots[*step] += 1;
+        }
         let cost = |finest: usize| {
             let mut counts = [0usize; REACHES];
-            let mut large = 0;
-            for a in &columns.a[..columns.len()] {
-                match self.level(finest, *a) {
-                    Some(step) => counts[step] += 1,
-                    None => large += 1,
+            for (shortest, count) in spots.iter().enumerate() {
+                if let Some(step) = level(finest, shortest) {
+                    counts[step] += count;
                 }
             }
+            let large = shortest.len() - counts.iter().sum::<usize>();
             counts[finest] = counts[finest].max(1);
-            let mut cost = PAIR_COST * (targets * large) as f64 + SPREAD_COST * (columns.len() + targets) as f64;
+            let mut cost = PAIR_COST * (targets * large) as f64;
             for (step, count) in counts.iter().enumerate().filter(|(_, count)| **count > 0) {
-                let reach = Self::reach(step);
-                let mesh = mesh_size(self.accuracy, reach) as f64;
-                cost += PAIR_COST * PI * reach * reach * (count * targets) as f64 + mesh * mesh * mesh.log2() * 2.0;
+                let mesh = mesh_size(self.accuracy, REACH[step]) as f64;
+                let pairs = crowds[step] * PI * REACH[step] * REACH[step] * (count * targets) as f64;
+                cost += PAIR_COST * pairs + mesh * mesh * mesh.log2() * 2.0;
             }
             cost
         };
         (0..REACHES).map(|step| (step, cost(step))).min_by(|(_, a), (_, b)| a.total_cmp(b)).map_or(0, |(step, _)| step)
     }
 
-    /// Sources in groups for so many targets.
-    fn field(&self, spots: &Spots, targets: usize) -> Field {
-        let columns = &spots.columns;
-        let Measure { kind, pull, length, .. } = self.measure;
-        let moments = Moments::of(kind, columns, pull, self.compliance, length);
-        let finest = self.finest(columns, targets);
-        let mut members: [Vec<usize>; REACHES] = Default::default();
-        let mut large = Vec::new();
-        for (j, a) in columns.a[..columns.len()].iter().enumerate() {
-            self.level(finest, *a).map_or(&mut large, |step| &mut members[step]).push(j);
-        }
-        let (mut groups, mut levels) = (Vec::new(), Vec::new());
-        for (step, members) in members.into_iter().enumerate().rev() {
-            if !members.is_empty() {
-                let plan = self.plan(step);
-                groups.push(Group::new(Rest::Mesh(plan.clone()), &members, columns, &moments, length));
-                let placed = members.iter().map(|j| (*j, [columns.x[*j] / length, columns.y[*j] / length]));
-                levels.push((plan, placed.collect()));
-            }
-        }
-        if !large.is_empty() {
-            groups.push(Group::new(Rest::Images, &large, columns, &moments, length));
-        }
-        Field { moments, groups, levels }
+    fn moments(&self, spots: &Spots) -> Moments {
+        Moments::of(self.measure.kind, &spots.columns, self.measure.pull, self.compliance, self.measure.length)
     }
 
-    /// Places of targets in units of the side.
-    fn places(&self, targets: &[usize]) -> Vec<[f64; 2]> {
-        targets.iter().map(|t| self.positions[*t].map(|p| p / self.measure.length)).collect()
+    /// Whether there is any field.
+    fn acts(&self, spots: &Spots) -> bool {
+        self.measure.kind != Kind::None && !spots.index.is_empty()
     }
+}
 
-    /// Near fields of all targets, in parallel and in their order: so many targets by each of the rows.
-    fn near<const SLOPES: bool>(&self, field: &Field, targets: &[usize], effort: &mut Effort) -> Vec<Rows> {
-        let rows = |found: &mut Found, targets: &[usize]| {
-            let mut rows = Rows::default();
-            for target in targets {
-                rows.starts.push(rows.slopes.len());
-                let sums = field.groups.iter().map(|group| group.add::<SLOPES>(self.measure, self.positions[*target], found, &mut rows));
-                let sum = sums.sum();
-                rows.sums.push(sum);
-            }
-            rows.starts.push(rows.slopes.len());
-            rows
-        };
-        let all: Vec<Rows> = targets.par_chunks(TOGETHER).map_init(Found::default, rows).collect();
-        effort.pairs += all.iter().map(|rows| rows.pairs).sum::<u64>();
-        all
-    }
+/// The longest of the reaches `finest`, `finest` − 2, … that is no shorter than `shortest`, if there is one.
+fn level(finest: usize, shortest: usize) -> Option<usize> {
+    if finest <= shortest { Some(finest) } else { (shortest + 1 - (finest - shortest) % 2).checked_sub(1) }
+}
+
+/// How many times as many spots lie near one of them as if they were spread evenly, within each of the reaches.
+fn crowds(columns: &SpotColumns, length: f64) -> [f64; REACHES] {
+    let n = columns.len();
+    let mut counts = Vec::new();
+    std::array::from_fn(|step| {
+        // No more cells than spots: within less there are few in any case.
+        let cells = ((1.0 / REACH[step]) as usize).min((n as f64).sqrt() as usize).max(1);
+        counts.clear();
+        counts.resize(cells * cells, 0u32);
+        let cell = |p: f64| (((p / length).rem_euclid(1.0) * cells as f64) as usize).min(cells - 1);
+        for (x, y) in columns.x[..n].iter().zip(&columns.y[..n]) {
+            counts[cell(*x) * cells + cell(*y)] += 1;
+        }
+        let squares: f64 = counts.iter().map(|count| f64::from(*count).powi(2)).sum();
+        squares * (cells * cells) as f64 / (n * n) as f64
+    })
+}
+
+/// What exact fields want to know of each source.
+fn shapes(columns: &SpotColumns) -> Vec<[f64; 4]> {
+    (0..columns.len()).map(|j| [columns.a[j], columns.root_a[j], columns.inverse_root_a[j], columns.inverse_radius[j]]).collect()
 }
 
 impl Interaction for FastSum {
     fn displacements(&self, spots: &Spots, targets: &[usize], displacements: &mut Vec<f64>, effort: &mut Effort) {
         displacements.clear();
-        if self.measure.kind == Kind::None || spots.index.is_empty() {
-            displacements.resize(targets.len(), 0.0);
-            return;
+        displacements.resize(targets.len(), 0.0);
+        if self.acts(spots) {
+            let mut geometry = Geometry::default();
+            self.place(spots, targets, &mut geometry);
+            let (moments, shapes) = (self.moments(spots), shapes(&spots.columns));
+            let sources = Sources { measure: self.measure, shapes: &shapes, moments: &moments };
+            geometry.displacements(sources, &mut Work::default(), displacements, effort);
         }
-        let field = self.field(spots, targets.len());
-        displacements.extend(self.near::<false>(&field, targets, effort).iter().flat_map(|rows| &rows.sums));
-        Fine::new(&field, FINE, &field.moments.value, &self.places(targets)).add(None, &mut Work::default(), displacements);
     }
 
     fn approach(
@@ -229,88 +178,77 @@ impl Interaction for FastSum {
         slopes: &mut Vec<f64>,
         effort: &mut Effort,
     ) {
-        displacements.clear();
-        slopes.clear();
-        if self.measure.kind == Kind::None || spots.index.is_empty() {
-            displacements.resize(targets.len(), 0.0);
-            slopes.resize(targets.len(), 0.0);
-            return;
+        for values in [&mut *displacements, &mut *slopes] {
+            values.clear();
+            values.resize(targets.len(), 0.0);
         }
-        let field = self.field(spots, targets.len());
-        for rows in self.near::<true>(&field, targets, effort) {
-            displacements.extend_from_slice(&rows.sums);
-            slopes.extend(rows.starts.windows(2).map(|ends| {
-                let entries = rows.slopes[ends[0]..ends[1]].iter().zip(&rows.spots[ends[0]..ends[1]]);
-                entries.map(|(slope, j)| slope * rates[*j as usize]).sum::<f64>()
-            }));
+        if self.acts(spots) {
+            let mut geometry = Geometry::default();
+            self.place(spots, targets, &mut geometry);
+            let (moments, shapes) = (self.moments(spots), shapes(&spots.columns));
+            let sources = Sources { measure: self.measure, shapes: &shapes, moments: &moments };
+            geometry.linearise(sources, &mut Work::default(), displacements, effort);
+            geometry.product(Loads { moments: &moments.slope, factors: Some(rates) }, &mut Work::default(), slopes);
         }
-        let (mut work, places) = (Work::default(), self.places(targets));
-        Fine::new(&field, FINE, &field.moments.value, &places).add(None, &mut work, displacements);
-        Rough::new(&field, ROUGH, &field.moments.slope, &places).add(Some(rates), &mut work, slopes);
     }
 
     fn linearise(&self, spots: &Spots, displacements: &mut Vec<f64>, tangent: &mut Tangent, effort: &mut Effort) {
         displacements.clear();
-        if self.measure.kind == Kind::None || spots.index.is_empty() {
-            displacements.resize(spots.index.len(), 0.0);
+        displacements.resize(spots.index.len(), 0.0);
+        if !self.acts(spots) {
             let zeros = tangent.take_dense(spots.index.len());
             tangent.set_dense(spots.index.len(), zeros);
             return;
         }
-        let field = self.field(spots, spots.index.len());
         let mut sparse = tangent.take_sparse();
-        sparse.starts.clear();
-        sparse.columns.clear();
-        sparse.values.clear();
-        sparse.starts.push(0);
-        for rows in self.near::<true>(&field, &spots.index, effort) {
-            displacements.extend_from_slice(&rows.sums);
-            let before = sparse.values.len();
-            sparse.columns.extend_from_slice(&rows.spots);
-            sparse.values.extend_from_slice(&rows.slopes);
-            sparse.starts.extend(rows.starts[1..].iter().map(|end| before + end));
+        if !sparse.geometry.serves(self, spots) {
+            self.place(spots, &spots.index, &mut sparse.geometry);
         }
+        let (moments, shapes) = (self.moments(spots), shapes(&spots.columns));
+        let sources = Sources { measure: self.measure, shapes: &shapes, moments: &moments };
+        sparse.geometry.linearise(sources, &mut sparse.fine, displacements, effort);
         let own = IMAGES.sums(0.0, 0.0);
-        sparse.own = field.moments.slope.iter().map(|slope| product(&own, slope)).collect();
-        let places = self.places(&spots.index);
-        Fine::new(&field, FINE, &field.moments.value, &places).add(None, sparse.work.get_mut(), displacements);
-        sparse.far = Rough::new(&field, ROUGH, &field.moments.slope, &places);
+        sparse.own = moments.slope.iter().map(|slope| product(&own, slope)).collect();
+        sparse.slopes = moments.slope;
         tangent.set_sparse(sparse);
+    }
+
+    fn again(&self, spots: &Spots, displacements: &mut Vec<f64>, tangent: &mut Tangent, effort: &mut Effort) {
+        match tangent.sparse() {
+            Some(sparse) if self.acts(spots) && sparse.geometry.serves(self, spots) => {
+                displacements.clear();
+                displacements.resize(spots.index.len(), 0.0);
+                let (moments, shapes) = (self.moments(spots), shapes(&spots.columns));
+                let sources = Sources { measure: self.measure, shapes: &shapes, moments: &moments };
+                sparse.geometry.displacements(sources, &mut sparse.fine, displacements, effort);
+            }
+            _ => self.displacements(spots, &spots.index, displacements, effort),
+        }
     }
 }
 
 /// `∂ŵ/∂a` as near pairs and a mesh.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Sparse {
-    /// First entry of each row, and one past the last of all; the spot and the value of each entry.
-    starts: Vec<usize>,
-    columns: Vec<u32>,
-    values: Vec<f64>,
+    geometry: Geometry,
+    /// Derivatives of the moments to the radii.
+    slopes: Vec<[f64; ORDERS]>,
     own: Vec<f64>,
-    far: Rough,
-    work: RefCell<Work>,
+    fine: Work<f64>,
+    rough: RefCell<Work<f32>>,
 }
 
 impl Sparse {
     pub(super) fn product(&self, x: &[f64], y: &mut [f64]) {
-        for (ends, yi) in self.starts.windows(2).zip(y.iter_mut()) {
-            let mut strands = [0.0; 4];
-            let (columns, values) = (&self.columns[ends[0]..ends[1]], &self.values[ends[0]..ends[1]]);
-            let ((columns, left), (values, over)) = (columns.as_chunks::<4>(), values.as_chunks::<4>());
-            for (column, value) in columns.iter().zip(values) {
-                for k in 0..4 {
-                    strands[k] += value[k] * x[column[k] as usize];
-                }
-            }
-            for (column, value) in left.iter().zip(over) {
-                strands[0] += value * x[*column as usize];
-            }
-            *yi = strands.iter().sum();
-        }
-        self.far.add(Some(x), &mut self.work.borrow_mut(), y);
+        self.geometry.product(Loads { moments: &self.slopes, factors: Some(x) }, &mut self.rough.borrow_mut(), y);
     }
 
     pub(super) fn own(&self, i: usize) -> f64 {
         self.own[i]
+    }
+
+    /// The pairs are to be found anew.
+    pub(super) fn forget(&mut self) {
+        self.geometry.forget();
     }
 }

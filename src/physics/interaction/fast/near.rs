@@ -1,8 +1,7 @@
 //! The near field: pairs within a reach, found by cells, exact, less what the mesh has of them.
 
-use super::super::ewald::{IMAGES, ORDERS, RemainderSeries};
-use super::super::moments::{Moments, product};
-use super::super::pair::{LANES, SpotColumns, field};
+use super::super::ewald::{IMAGES, ORDERS};
+use super::super::pair::SpotColumns;
 use super::plan::Plan;
 use crate::model::Interaction as Kind;
 use multiversion::multiversion;
@@ -26,22 +25,10 @@ pub(super) struct Group {
     span: usize,
     /// First source of each cell, and one past the last of all.
     starts: Vec<usize>,
-    /// Spot numbers by cells, and their columns.
-    spots: Vec<usize>,
+    /// Spot numbers by cells, and where they are.
+    pub(super) spots: Vec<usize>,
     x: Vec<f64>,
     y: Vec<f64>,
-    sources: Vec<Near>,
-}
-
-/// One source.
-#[derive(Debug, Clone, Copy)]
-struct Near {
-    a: f64,
-    root_a: f64,
-    inverse_root_a: f64,
-    inverse_radius: f64,
-    value: [f64; ORDERS],
-    slope: [f64; ORDERS],
 }
 
 /// How fields are measured: the kind, `sqrt(2πΔγ/E*)` \[m^½\], the factor of `r²/R` inside a spot and the side \[m\].
@@ -53,27 +40,16 @@ pub(super) struct Measure {
     pub(super) length: f64,
 }
 
-/// Fields of near sources at targets: of each target the displacement, and where its entries begin; of each entry the spot and the derivative to its
-/// radius, if they are wanted.
-#[derive(Debug, Default)]
-pub(super) struct Rows {
-    pub(super) sums: Vec<f64>,
-    pub(super) starts: Vec<usize>,
-    pub(super) spots: Vec<u32>,
-    pub(super) slopes: Vec<f64>,
-    pub(super) pairs: u64,
-}
-
 /// Sources that were found near a target, and the squares of their distances \[m²\].
 #[derive(Debug, Default)]
 pub(super) struct Found {
-    numbers: Vec<usize>,
-    r2: Vec<f64>,
+    pub(super) numbers: Vec<usize>,
+    pub(super) r2: Vec<f64>,
 }
 
 impl Group {
     /// The group of the spots `members`.
-    pub(super) fn new(rest: Rest, members: &[usize], columns: &SpotColumns, moments: &Moments, length: f64) -> Self {
+    pub(super) fn new(rest: Rest, members: &[usize], columns: &SpotColumns, length: f64) -> Self {
         let reach = match &rest {
             Rest::Mesh(plan) => plan.reach,
             Rest::Images => 1.0,
@@ -95,14 +71,6 @@ impl Group {
             spots[*place] = j;
             *place += 1;
         }
-        let near = |&j: &usize| Near {
-            a: columns.a[j],
-            root_a: columns.root_a[j],
-            inverse_root_a: columns.inverse_root_a[j],
-            inverse_radius: columns.inverse_radius[j],
-            value: moments.value[j],
-            slope: moments.slope[j],
-        };
         Self {
             rest,
             cells,
@@ -110,13 +78,12 @@ impl Group {
             starts,
             x: spots.iter().map(|j| columns.x[*j]).collect(),
             y: spots.iter().map(|j| columns.y[*j]).collect(),
-            sources: spots.iter().map(near).collect(),
             spots,
         }
     }
 
-    /// The displacement at the place `[x, y]` \[m\]; the entries are added to `rows` where `SLOPES`.
-    pub(super) fn add<const SLOPES: bool>(&self, measure: Measure, place: [f64; 2], found: &mut Found, rows: &mut Rows) -> f64 {
+    /// The sources near the place `[x, y]` \[m\].
+    pub(super) fn find(&self, measure: Measure, place: [f64; 2], found: &mut Found) {
         found.numbers.clear();
         found.r2.clear();
         let reach2 = match &self.rest {
@@ -144,11 +111,21 @@ impl Group {
                 }
             }
         }
-        rows.pairs += found.numbers.len() as u64;
-        if SLOPES {
-            rows.spots.extend(found.numbers.iter().map(|number| self.spots[*number] as u32));
+    }
+
+    /// What the powers of the distance to a source are to be taken with: the mesh has so much of them, or all other images are so much.
+    #[inline(always)]
+    pub(super) fn rest_at(&self, measure: Measure, place: [f64; 2], number: usize, square: f64) -> [f64; ORDERS] {
+        match &self.rest {
+            Rest::Mesh(plan) => plan.smooth.at(square / (plan.reach * measure.length).powi(2)).map(|sum| -sum),
+            Rest::Images => {
+                let [dx, dy] = [place[0] - self.x[number], place[1] - self.y[number]].map(|d| {
+                    let share = d / measure.length;
+                    share - share.round_ties_even()
+                });
+                IMAGES.sums(dx, dy)
+            }
         }
-        fields::<SLOPES>(self, measure, place, found, &mut rows.slopes)
     }
 }
 
@@ -180,62 +157,4 @@ fn search(x: &[f64], y: &[f64], from: usize, length: f64, place: [f64; 2], reach
     }
     found.truncate(start + count);
     squares.truncate(start + count);
-}
-
-#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-fn fields<const SLOPES: bool>(group: &Group, measure: Measure, place: [f64; 2], found: &Found, slopes: &mut Vec<f64>) -> f64 {
-    let images: &RemainderSeries = &IMAGES;
-    let length = measure.length;
-    let mut all = [0.0; LANES];
-    for (found, squares) in found.numbers.chunks(LANES).zip(found.r2.chunks(LANES)) {
-        let (mut values, mut rates) = ([0.0; LANES], [0.0; LANES]);
-        if measure.kind == Kind::Spots {
-            let mut r2 = [1.0; LANES];
-            let [mut a, mut root_a, mut inverse_root_a, mut inverse_radius] = [[1.0; LANES]; 4];
-            for (k, (&number, &square)) in found.iter().zip(squares).enumerate() {
-                let source = &group.sources[number];
-                (r2[k], a[k], root_a[k]) = (square, source.a, source.root_a);
-                (inverse_root_a[k], inverse_radius[k]) = (source.inverse_root_a, source.inverse_radius);
-            }
-            (values, rates) = field(&r2, &a, &root_a, &inverse_root_a, &inverse_radius, measure.pull, measure.sag);
-        } else {
-            for (k, (&number, &square)) in found.iter().zip(squares).enumerate() {
-                let unit = length / square.sqrt();
-                (values[k], rates[k]) = (group.sources[number].value[0] * unit, group.sources[number].slope[0] * unit);
-            }
-        }
-        // What the mesh has of these fields, or what all other images are.
-        let mut others = [[0.0; ORDERS]; LANES];
-        match &group.rest {
-            Rest::Mesh(plan) => {
-                let share = 1.0 / (plan.reach * plan.reach * length * length);
-                for (other, square) in others.iter_mut().zip(squares) {
-                    *other = plan.smooth.at(share * square).map(|sum| -sum);
-                }
-            }
-            Rest::Images => {
-                let (mut dx, mut dy) = ([0.0; LANES], [0.0; LANES]);
-                for (k, &number) in found.iter().enumerate() {
-                    dx[k] = (place[0] - group.x[number]) / length;
-                    dy[k] = (place[1] - group.y[number]) / length;
-                    dx[k] -= dx[k].round_ties_even();
-                    dy[k] -= dy[k].round_ties_even();
-                }
-                others = images.local(&dx, &dy);
-            }
-        }
-        for (k, (&number, &square)) in found.iter().zip(squares).enumerate() {
-            let source = &group.sources[number];
-            // A spot does not act on its own centre.
-            let apart = square > 0.0;
-            all[k] += product(&others[k], &source.value) + if apart { values[k] } else { 0.0 };
-            if SLOPES {
-                rates[k] = product(&others[k], &source.slope) + if apart { rates[k] } else { 0.0 };
-            }
-        }
-        if SLOPES {
-            slopes.extend_from_slice(&rates[..found.len()]);
-        }
-    }
-    all.iter().sum()
 }

@@ -1,6 +1,7 @@
 //! What depends on the reach of the near field alone: the splitting, the smooth field by radius, the mesh and its waves.
 
 use super::super::ewald::ORDERS;
+use super::mesh::Real;
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use rustfft::{Fft, FftPlanner};
 use std::f64::consts::{PI, TAU};
@@ -33,6 +34,8 @@ pub(super) struct Accuracy {
     waves: [f64; 2],
     /// Greatest radius of a spot over its reach, so that four orders of its far field are enough beyond.
     pub(super) girth: f64,
+    /// Distance over radius from which on a spot's moments are its field.
+    pub(super) aloof: f64,
 }
 
 impl Accuracy {
@@ -60,7 +63,9 @@ impl Accuracy {
             waves
         };
         let girth = (10.0 * tolerance).powf(0.125).min(0.2);
-        Self { edge, waves: [waves(WIDTH, tolerance).max(edge), waves(ROUGH_WIDTH, ROUGH.max(tolerance))], girth }
+        // The field of one spot there is a fourth of the greatest displacement, and less.
+        let aloof = (0.03 / (4.0 * tolerance)).powf(0.125).max(3.0);
+        Self { edge, waves: [waves(WIDTH, tolerance).max(edge), waves(ROUGH_WIDTH, ROUGH.max(tolerance))], girth, aloof }
     }
 }
 
@@ -147,24 +152,25 @@ pub(super) struct Plan {
     pub(super) reach: f64,
     pub(super) smooth: Smooth,
     /// For displacements, and for their derivatives.
-    pub(super) meshes: [Arc<Mesh>; 2],
+    pub(super) fine: Arc<Mesh<f64>>,
+    pub(super) rough: Arc<Mesh<f32>>,
 }
 
 /// A mesh and its waves.
-pub(super) struct Mesh {
+pub(super) struct Mesh<T> {
     /// Points on a side.
     pub(super) size: usize,
     /// `(2π/q) erfc(q/2α)` over the spread of a source, by ky then kx; at q = 0 what the near fields have of mean taken off.
-    pub(super) waves: Vec<f64>,
+    pub(super) waves: Vec<T>,
     /// One over the transform of the B-spline, of k = 0 … N − 1; 0 at the highest wave, which has no sign.
-    pub(super) sharpen: Vec<f64>,
-    pub(super) rows: Arc<dyn RealToComplex<f64>>,
-    pub(super) rows_back: Arc<dyn ComplexToReal<f64>>,
-    pub(super) columns: Arc<dyn Fft<f64>>,
-    pub(super) columns_back: Arc<dyn Fft<f64>>,
+    pub(super) sharpen: Vec<T>,
+    pub(super) rows: Arc<dyn RealToComplex<T>>,
+    pub(super) rows_back: Arc<dyn ComplexToReal<T>>,
+    pub(super) columns: Arc<dyn Fft<T>>,
+    pub(super) columns_back: Arc<dyn Fft<T>>,
 }
 
-impl fmt::Debug for Mesh {
+impl<T> fmt::Debug for Mesh<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Mesh").field("size", &self.size).finish_non_exhaustive()
     }
@@ -194,13 +200,17 @@ fn points(alpha: f64, waves: f64, width: usize) -> usize {
 impl Plan {
     pub(super) fn new(accuracy: Accuracy, reach: f64) -> Self {
         let alpha = accuracy.edge / reach;
-        let mesh = |waves: f64, width: usize| Arc::new(Mesh::new(points(alpha, waves, width), alpha, width));
-        let meshes = [mesh(accuracy.waves[0], WIDTH), mesh(accuracy.waves[1], ROUGH_WIDTH)];
-        Self { reach, smooth: Smooth::new(alpha, reach), meshes }
+        let size = |waves: f64, width: usize| points(alpha, waves, width);
+        Self {
+            reach,
+            smooth: Smooth::new(alpha, reach),
+            fine: Arc::new(Mesh::new(size(accuracy.waves[0], WIDTH), alpha, WIDTH)),
+            rough: Arc::new(Mesh::new(size(accuracy.waves[1], ROUGH_WIDTH), alpha, ROUGH_WIDTH)),
+        }
     }
 }
 
-impl Mesh {
+impl<T: Real> Mesh<T> {
     fn new(n: usize, alpha: f64, width: usize) -> Self {
         let wave = |k: usize| if 2 * k < n { k as f64 } else { k as f64 - n as f64 };
         let sharpen: Vec<f64> = (0..n)
@@ -224,11 +234,12 @@ impl Mesh {
                 waves[ky * n + kx] = far * sharpen[ky] * sharpen[kx];
             }
         }
-        let (mut real, mut complex) = (RealFftPlanner::<f64>::new(), FftPlanner::<f64>::new());
+        let (mut real, mut complex) = (RealFftPlanner::<T>::new(), FftPlanner::<T>::new());
+        let short = |values: Vec<f64>| values.into_iter().map(T::of).collect();
         Self {
             size: n,
-            waves,
-            sharpen,
+            waves: short(waves),
+            sharpen: short(sharpen),
             rows: real.plan_fft_forward(n),
             rows_back: real.plan_fft_inverse(n),
             columns: complex.plan_fft_forward(n),
