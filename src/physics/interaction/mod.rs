@@ -6,6 +6,7 @@ mod direct;
 pub mod ewald;
 mod fast;
 mod moments;
+mod mutual;
 pub mod pair;
 
 use super::krylov::dot;
@@ -13,7 +14,9 @@ pub use best::{Best, best};
 pub use direct::DirectSum;
 pub use fast::FastSum;
 use fast::Sparse;
+pub use mutual::Mutual;
 use pair::SpotColumns;
+use std::sync::Arc;
 
 /// The spots in contact: which asperities they are, ascending, and their columns.
 #[derive(Debug, Clone, Default)]
@@ -22,9 +25,12 @@ pub struct Spots {
     pub index: Vec<usize>,
     /// Their columns, in the same order.
     pub columns: SpotColumns,
+    /// What they are to one another, where their loads depend on it.
+    pub mutual: Option<Arc<Mutual>>,
 }
 
-/// `∂ŵ_i/∂a_j` over the spots in contact: what is asked of it is its product with a vector.
+/// `∂ŵ_i/∂a_j` over the spots in contact: what is asked of it is its product with a vector. Where grips follow the radii, the change of the penetrations by
+/// them is in it.
 #[derive(Debug, Clone)]
 pub struct Tangent(Form);
 
@@ -34,6 +40,8 @@ enum Form {
     Dense(usize, Vec<f64>),
     /// Near pairs and a mesh.
     Sparse(Box<Sparse>),
+    /// Spots that change one another's grip.
+    Mutual(Arc<Mutual>),
 }
 
 impl Default for Tangent {
@@ -52,13 +60,14 @@ impl Tangent {
                 }
             }
             Form::Sparse(sparse) => sparse.product(x, y),
+            Form::Mutual(mutual) => mutual.product(x, y),
         }
     }
 
     /// Whether it has all digits; made fast, it has some.
     #[must_use]
     pub fn is_exact(&self) -> bool {
-        matches!(self.0, Form::Dense(..))
+        matches!(self.0, Form::Dense(..) | Form::Mutual(_))
     }
 
     /// `∂ŵ_i/∂a_i`: what a spot's own images and the background do to it.
@@ -67,6 +76,7 @@ impl Tangent {
         match &self.0 {
             Form::Dense(size, matrix) => matrix[i * size + i],
             Form::Sparse(sparse) => sparse.own(i),
+            Form::Mutual(mutual) => mutual.own(i),
         }
     }
 
@@ -74,7 +84,7 @@ impl Tangent {
     fn take_dense(&mut self, size: usize) -> Vec<f64> {
         let mut matrix = match std::mem::take(self).0 {
             Form::Dense(_, matrix) => matrix,
-            Form::Sparse(_) => Vec::new(),
+            Form::Sparse(_) | Form::Mutual(_) => Vec::new(),
         };
         matrix.clear();
         matrix.resize(size * size, 0.0);
@@ -89,12 +99,16 @@ impl Tangent {
     fn take_sparse(&mut self) -> Box<Sparse> {
         match std::mem::take(self).0 {
             Form::Sparse(sparse) => sparse,
-            Form::Dense(..) => Box::default(),
+            Form::Dense(..) | Form::Mutual(_) => Box::default(),
         }
     }
 
     fn set_sparse(&mut self, sparse: Box<Sparse>) {
         self.0 = Form::Sparse(sparse);
+    }
+
+    fn set_mutual(&mut self, mutual: Arc<Mutual>) {
+        self.0 = Form::Mutual(mutual);
     }
 }
 
