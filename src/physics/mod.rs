@@ -9,6 +9,7 @@ mod dense;
 pub mod equilibrium;
 pub mod events;
 mod front;
+mod grip;
 pub mod interaction;
 pub mod jkr;
 mod krylov;

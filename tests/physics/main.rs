@@ -17,6 +17,7 @@ mod ledger;
 mod pair;
 mod path;
 mod printed;
+mod reciprocal;
 mod spectrum;
 mod summits;
 mod synthesis;

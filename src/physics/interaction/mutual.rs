@@ -232,13 +232,13 @@ impl Mutual {
             }
         }
         // Rounding may go to and fro.
-        let far = (0..n).any(|i| {
+        let near = (0..n).all(|i| {
             let a = self.spheres[i].a;
             let b = self.modulus * a * a * (dot(&self.bend[i * n..(i + 1) * n], &self.load) + outer.get(i).map_or(0.0, |outer| outer * a));
             let off = self.stick[i] * (self.stick[i] + 2.0 * b) - self.alone[i] * self.alone[i];
-            !(off.abs() <= LOST * (self.alone[i].powi(2) + b * b))
+            off.abs() <= LOST * (self.alone[i].powi(2) + b * b)
         });
-        if far {
+        if !near {
             // Loads that are none must not pass as some.
             self.load.fill(f64::NAN);
         }
