@@ -83,6 +83,8 @@ choice! {
         Spots = "spots",
         /// Each spot acts as its load at its centre: the model has an exact potential.
         Point = "point",
+        /// The mean of a spot's field where another is, and of that one's as a punch in return: one mutual energy for each pair, so an exact potential.
+        Reciprocal = "reciprocal",
         /// No interaction: Greenwood and Williamson with JKR.
         None = "none",
     }

@@ -76,7 +76,7 @@ impl<'p> Solver<'p> {
     /// Displacements, residuals and tangent of a state; its worst residual and whose it is.
     pub(crate) fn evaluate(&mut self, state: &mut State) -> Unsettled {
         let problem = self.problem;
-        problem.spots(state, &mut self.spots);
+        self.couple(state);
         problem.field.linearise(&self.spots, &mut state.displacement, &mut self.tangent, &mut self.effort);
         self.fresh = true;
         self.compare(state)
@@ -85,10 +85,26 @@ impl<'p> Solver<'p> {
     /// The same with the tangent left as it is.
     fn glance(&mut self, state: &mut State) -> Unsettled {
         let problem = self.problem;
-        problem.spots(state, &mut self.spots);
+        self.couple(state);
         problem.field.again(&self.spots, &mut state.displacement, &mut self.tangent, &mut self.effort);
         self.fresh = false;
         self.compare(state)
+    }
+
+    /// The spots of a state as sources, and what follows from their radii for the state.
+    fn couple(&mut self, state: &mut State) {
+        self.problem.spots(state, &mut self.spots);
+        if let Some(mutual) = &self.spots.mutual {
+            for (k, &i) in state.contacts.iter().enumerate() {
+                state.grip[i] = mutual.grip(k);
+            }
+            mutual.returned(&mut state.returned);
+        }
+    }
+
+    /// How grips change as the radii do, in the state that was evaluated last; nothing where all are 1.
+    pub(crate) fn grip_rates(&self, rates: &[f64]) -> Vec<f64> {
+        self.spots.mutual.as_ref().map_or(Vec::new(), |mutual| mutual.grip_rates(rates))
     }
 
     /// Residuals of a state whose displacements are known; the worst and whose it is.
@@ -98,7 +114,7 @@ impl<'p> Solver<'p> {
         self.diagonal.clear();
         let mut worst = Unsettled { residual_m: 0.0, asperity: state.contacts.first().copied().unwrap_or(0) };
         for (&i, w) in state.contacts.iter().zip(&state.displacement) {
-            let (asperity, a) = (&problem.asperities[i], state.radius[i]);
+            let (asperity, a) = (state.asperity(problem, i), state.radius[i]);
             let residual = state.approach_m + problem.heights[i] - w - asperity.penetration(a);
             self.residual.push(residual);
             self.diagonal.push(asperity.penetration_slope(a));
@@ -193,9 +209,9 @@ impl<'p> Solver<'p> {
     fn mend(&mut self, state: &mut State, asperity: usize) -> bool {
         let problem = self.problem;
         let near = problem.neighbours.nearest(&problem.positions[asperity], problem.spots_in_patch, |i| state.status[i] == Status::Contact);
-        let mut spots: Vec<(usize, f64, f64)> = near
+        let mut spots: Vec<(usize, f64, f64, f64)> = near
             .into_iter()
-            .filter_map(|(_, i)| state.contacts.binary_search(&i).ok().map(|k| (i, state.radius[i], state.displacement[k])))
+            .filter_map(|(_, i)| state.contacts.binary_search(&i).ok().map(|k| (i, state.radius[i], state.displacement[k], state.grip[i])))
             .collect();
         spots.sort_unstable_by_key(|spot| spot.0);
         self.patch.fix(problem, &spots, state.approach_m, &mut self.effort);
@@ -236,12 +252,14 @@ impl<'p> Solver<'p> {
         problem.field.approach(&self.spots, rates, wanted, &mut displacement, &mut slopes, &mut self.effort);
         let at = state.approach_m;
         let pairs = displacement.iter().zip(&slopes).zip(wanted);
-        pairs.map(|((w, slope), &i)| Trace { at, value: at + problem.heights[i] - w, rate: 1.0 - slope }).collect()
+        pairs
+            .map(|((w, slope), &i)| Trace { at, value: at + problem.heights[i] - w, rate: 1.0 - slope, grip: 1.0, grip_rate: 0.0 })
+            .collect()
     }
 
     /// Displacement at one asperity by spots of these radii \[m\].
     pub(crate) fn displacement(&mut self, spots: &[(usize, f64)], asperity: usize) -> f64 {
-        self.problem.columns(spots.iter().copied(), &mut self.spots);
+        self.problem.columns(spots.iter().copied(), &[], &mut self.spots);
         let mut displacement = Vec::new();
         self.problem.field.displacements(&self.spots, &[asperity], &mut displacement, &mut self.effort);
         displacement.first().copied().unwrap_or(0.0)
@@ -261,7 +279,7 @@ impl Relaxing for Whole<'_, '_> {
     }
 
     fn spots(&self) -> Vec<Moving> {
-        self.state.contacts.iter().zip(&self.solver.residual).map(|(&i, r)| (i, self.state.radius[i], *r)).collect()
+        self.state.contacts.iter().zip(&self.solver.residual).map(|(&i, r)| (i, self.state.radius[i], *r, self.state.grip[i])).collect()
     }
 
     fn take_out(&mut self, change: &Change) {

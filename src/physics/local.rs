@@ -137,7 +137,7 @@ fn transposed(problem: &Problem, state: &State, spots: &[(usize, [f64; 2])], tan
             } else if r > ALOOF * a {
                 slope / r
             } else {
-                problem.spot_field(i, r, a).1
+                problem.spot_field(&problem.asperities[i], r, a).1
             };
             matrix.push(by + images);
         }

@@ -9,6 +9,7 @@ mod dense;
 pub mod equilibrium;
 pub mod events;
 mod front;
+mod grip;
 mod illinois;
 pub mod interaction;
 pub mod jkr;

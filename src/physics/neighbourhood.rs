@@ -9,7 +9,7 @@ use super::events::{Change, Kind};
 use super::front::{CurvePoint, gauss, hermite_slope, work, work_along};
 use super::locate::Point;
 use super::outside::Stood;
-use super::patch::{Hold, Trace};
+use super::patch::{Hold, Place, Trace};
 use super::path::{Halt, Path};
 use super::state::{Problem, Status, Totals};
 use crate::model::Interaction;
@@ -191,8 +191,9 @@ impl Path<'_> {
             for (member, lag) in self.patch.members.iter_mut().zip(&self.missed) {
                 member.outside += lag;
             }
-            let start: Vec<(usize, f64, f64)> =
-                self.patch.members.iter().zip(&self.patch.radius).zip(&self.missed).map(|((m, a), lag)| (m.asperity, *a, *lag)).collect();
+            let load = |k: usize| self.patch.asperity(problem, k).load(self.patch.radius[k]);
+            let start: Vec<(usize, f64, f64, f64)> =
+                (0..self.missed.len()).map(|k| (self.patch.members[k].asperity, self.patch.radius[k], load(k), self.missed[k])).collect();
             if self.patch.solve(problem, Hold::Approach, &mut self.solver.effort).is_ok() && self.patch.rates(problem).1 {
                 break (before, start, Vec::new());
             }
@@ -214,10 +215,9 @@ impl Path<'_> {
         // The event that is the cause was charged as if the loads here had not changed: their work on the lags is no part of the energy.
         let mut energy = before.potential - self.patch.totals(problem).1;
         let mut expected = 0.0;
-        for (i, from, lag) in start {
-            let asperity = &problem.asperities[i];
+        for (i, _, load, lag) in start {
             (self.lags[i], self.heard[i]) = (0.0, self.ripples.len());
-            energy -= lag * asperity.load(from);
+            energy -= lag * load;
             expected += self.front.answer(problem, i) * lag;
         }
         self.far_load(approach, expected);
@@ -234,7 +234,7 @@ impl Path<'_> {
         let totals = self.front.totals(self.patch.approach);
         self.log.pass(self.patch.approach, totals.load_n);
         let (load, potential) = self.patch.totals(problem);
-        Before { totals, potential, load, stood: self.patch.stand(), pull: self.patch.pull(problem) }
+        Before { totals, potential, load, stood: self.patch.stand(problem), pull: self.patch.pull(problem) }
     }
 
     /// After the neighbourhood has changed: the front has it so, and the changes that were `taken` are written down, and lost so much energy \[J\].
@@ -248,9 +248,11 @@ impl Path<'_> {
             self.enter(change, open);
         }
         let (rates, _) = self.patch.rates(problem);
+        let grip_rates = self.patch.grip_rates(&rates);
         for (k, rate) in rates.iter().enumerate() {
             let (i, a) = (self.patch.members[k].asperity, self.patch.radius[k]);
-            let trace = Trace::of(&problem.asperities[i], approach, a, *rate);
+            let grip_rate = grip_rates.get(k).copied().unwrap_or(0.0);
+            let trace = Trace::of(&self.patch.asperity(problem, k), approach, a, *rate, grip_rate);
             self.pending.push((i, a, trace));
             open.push(i);
         }
@@ -318,9 +320,15 @@ impl Path<'_> {
         }
         let problem = self.problem();
         let way = self.patch.approach - self.reference;
-        let speeds = self.patch.members.iter().map(|m| self.front.speed(problem, m.asperity));
-        let stood: Vec<Stood> =
-            self.patch.members.iter().zip(&self.origin).zip(speeds).map(|((m, a), speed)| (m.asperity, *a, speed * way)).collect();
+        let known = |m: &Place| {
+            let i = m.asperity;
+            (self.front.state.asperity(problem, i), self.front.speed(problem, i) * way, self.front.traces[i].grip_rate * way)
+        };
+        let stood = |(m, a): (&Place, &f64)| {
+            let (sphere, more, more_grip) = known(m);
+            Stood { asperity: m.asperity, sphere, radius: *a, more, more_grip }
+        };
+        let stood: Vec<Stood> = self.patch.members.iter().zip(&self.origin).map(stood).collect();
         let moved = self.patch.moved_at(problem, &self.halo, &self.centre, &stood);
         let (load, pull) = self.patch.off(problem, &stood);
         let before = self.far;
@@ -345,15 +353,19 @@ impl Path<'_> {
         let problem = self.problem();
         let (approach, reference) = (self.patch.approach, self.reference);
         let rates = if fold { None } else { Some(self.patch.rates(problem).0) };
+        let grip_rates = rates.as_ref().map_or(Vec::new(), |rates| self.patch.grip_rates(rates));
         for k in 0..self.patch.members.len() {
             let (i, a) = (self.patch.members[k].asperity, self.patch.radius[k]);
-            let asperity = &problem.asperities[i];
+            let asperity = self.patch.asperity(problem, k);
             let from = self.front.traces[i];
-            let value = asperity.penetration(a);
+            let (value, grip) = (asperity.penetration(a), asperity.grip());
             let trace = match &rates {
-                Some(rates) => Trace::of(asperity, approach, a, rates[k]),
-                None if approach == from.at => Trace { value, ..from },
-                None => Trace { at: approach, value, rate: (value - from.value) / (approach - from.at) },
+                Some(rates) => Trace::of(&asperity, approach, a, rates[k], grip_rates.get(k).copied().unwrap_or(0.0)),
+                None if approach == from.at => Trace { value, grip, ..from },
+                None => {
+                    let way = approach - from.at;
+                    Trace { at: approach, value, rate: (value - from.value) / way, grip, grip_rate: (grip - from.grip) / way }
+                }
             };
             let parts = stations.windows(2).map(|pair| work_along(problem, i, pair[1].at - pair[0].at, pair[0].of(k), pair[1].of(k)));
             self.log.work_j += if from.at == reference && stations.len() > 1 { parts.sum() } else { work(problem, i, from, trace) };
@@ -366,11 +378,12 @@ impl Path<'_> {
     pub(crate) fn catch_up(&mut self) {
         let problem = self.problem();
         let approach = self.patch.approach;
-        for (member, a) in self.patch.members.iter().zip(&self.patch.radius) {
+        for (k, (member, a)) in self.patch.members.iter().zip(&self.patch.radius).enumerate() {
             let i = member.asperity;
             let from = self.front.traces[i];
             if from.at != approach {
-                let to = Trace { at: approach, value: problem.asperities[i].penetration(*a), ..from };
+                let asperity = self.patch.asperity(problem, k);
+                let to = Trace { at: approach, value: asperity.penetration(*a), grip: asperity.grip(), ..from };
                 self.log.work_j += work(problem, i, from, to);
                 self.pending.push((i, *a, to));
             }
@@ -387,6 +400,7 @@ impl Path<'_> {
                 self.front.count(problem, *i, -1.0, trace.at);
             }
             self.front.state.radius[*i] = *a;
+            self.front.state.grip[*i] = trace.grip;
             self.front.traces[*i] = *trace;
             self.front.count(problem, *i, 1.0, trace.at);
         }
@@ -415,6 +429,7 @@ fn mean_square(stations: &[Point], way: f64) -> f64 {
 impl Point {
     /// The point as one member has it.
     fn of(&self, member: usize) -> CurvePoint {
-        CurvePoint { radius: [self.radius[member], self.direction[member]], approach: [self.approach, self.slope] }
+        let grip = self.grip.get(member).map_or([1.0, 0.0], |grip| [*grip, self.grip_direction[member]]);
+        CurvePoint { radius: [self.radius[member], self.direction[member]], grip, approach: [self.approach, self.slope] }
     }
 }

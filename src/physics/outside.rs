@@ -1,18 +1,35 @@
 //! What a neighbourhood does to those outside it, and they to its load.
 
-use super::patch::Patch;
+use super::jkr::Asperity;
+use super::patch::{Patch, Place};
 use super::state::Problem;
 
-/// A member as it stood: the asperity, its radius, and by how much that was expected to change \[m\].
-pub(crate) type Stood = (usize, f64, f64);
+/// A member as it stood.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Stood {
+    pub(crate) asperity: usize,
+    /// With the grip that it had.
+    pub(crate) sphere: Asperity,
+    /// Its radius \[m\].
+    pub(crate) radius: f64,
+    /// By how much that was expected to change \[m\], and its grip.
+    pub(crate) more: f64,
+    pub(crate) more_grip: f64,
+}
 
-/// A member as those outside feel it: its radius now and before (0 out of contact), by how much that was expected to change, and how much more load it
-/// has than expected.
+impl Stood {
+    /// The load that was expected of it \[N\].
+    fn load(&self) -> f64 {
+        let (sphere, was) = (&self.sphere, self.radius);
+        sphere.load(was) + (self.more * sphere.load_slope(was) + self.more_grip * sphere.load_by_grip(was))
+    }
+}
+
+/// A member as those outside feel it: now and before, out of contact perhaps, and how much more load it has than expected \[N\].
 struct Source {
     asperity: usize,
-    radius: f64,
-    was: f64,
-    more: f64,
+    now: Option<(Asperity, f64)>,
+    before: Option<Stood>,
     load: f64,
 }
 
@@ -20,29 +37,30 @@ struct Source {
 const ALOOF: f64 = 2.0;
 
 impl Source {
-    fn before(problem: &Problem, asperity: usize, was: f64, more: f64) -> Self {
-        let sphere = &problem.asperities[asperity];
-        Self { asperity, radius: 0.0, was, more, load: -sphere.load(was) - more * sphere.load_slope(was) }
+    fn before(stood: &Stood) -> Self {
+        Self { asperity: stood.asperity, now: None, before: Some(*stood), load: -stood.load() }
     }
 
-    fn new(problem: &Problem, asperity: usize, radius: f64) -> Self {
-        Self { asperity, radius, was: 0.0, more: 0.0, load: problem.asperities[asperity].load(radius) }
+    fn new(asperity: usize) -> Self {
+        Self { asperity, now: None, before: None, load: 0.0 }
     }
 
-    fn become_of(&mut self, problem: &Problem, radius: f64) {
-        self.radius = radius;
-        self.load += problem.asperities[self.asperity].load(radius);
+    fn become_of(&mut self, sphere: Asperity, radius: f64) {
+        self.now = Some((sphere, radius));
+        self.load += sphere.load(radius);
     }
 
     /// What it does at a place beyond what was expected \[m\], without images.
     fn field(&self, problem: &Problem, place: &[f64; 2], compliance: f64) -> f64 {
         let r = problem.neighbours.distance(place, &problem.positions[self.asperity]);
-        if r > ALOOF * self.radius.max(self.was) {
+        let (radius, was) = (self.now.map_or(0.0, |now| now.1), self.before.map_or(0.0, |before| before.radius));
+        if r > ALOOF * radius.max(was) {
             return compliance * self.load / r;
         }
-        let field = |a: f64| if a > 0.0 { problem.spot_field(self.asperity, r, a) } else { (0.0, 0.0) };
-        let (was, slope) = field(self.was);
-        field(self.radius).0 - was - self.more * slope
+        let field = |sphere: &Asperity, a: f64| problem.spot_field(sphere, r, a);
+        let (was, slope) = self.before.map_or((0.0, 0.0), |before| field(&before.sphere, before.radius));
+        let more = self.before.map_or(0.0, |before| before.more);
+        self.now.map_or(0.0, |(sphere, a)| field(&sphere, a).0) - was - more * slope
     }
 }
 
@@ -53,19 +71,27 @@ fn part(drift: f64) -> f64 {
 
 impl Patch {
     /// How the members stand, as [`Self::moved_at`] wants it, if nothing more is expected of them.
-    pub(crate) fn stand(&self) -> Vec<Stood> {
-        self.members.iter().zip(&self.radius).map(|(member, a)| (member.asperity, *a, 0.0)).collect()
+    pub(crate) fn stand(&self, problem: &Problem) -> Vec<Stood> {
+        let stood = |(k, (member, a)): (usize, (&Place, &f64))| Stood {
+            asperity: member.asperity,
+            sphere: self.asperity(problem, k),
+            radius: *a,
+            more: 0.0,
+            more_grip: 0.0,
+        };
+        self.members.iter().zip(&self.radius).enumerate().map(stood).collect()
     }
 
     /// By how much the displacements at asperities are other than they were expected to be, when members stood as they did before \[m\]: what the loads
     /// do from their centres, and near a spot, where that is not enough, its field.
     pub(crate) fn moved_at(&self, problem: &Problem, asperities: &[usize], centre: &[f64; 2], before: &[Stood]) -> Vec<f64> {
-        let mut sources: Vec<Source> = before.iter().map(|&(i, a, more)| Source::before(problem, i, a, more)).collect();
-        for (member, &a) in self.members.iter().zip(&self.radius) {
-            match before.binary_search_by_key(&member.asperity, |stood| stood.0) {
-                Ok(at) => sources[at].become_of(problem, a),
-                Err(_) => sources.push(Source::new(problem, member.asperity, a)),
-            }
+        let mut sources: Vec<Source> = before.iter().map(Source::before).collect();
+        for (k, (member, &a)) in self.members.iter().zip(&self.radius).enumerate() {
+            let at = before.binary_search_by_key(&member.asperity, |stood| stood.asperity).unwrap_or_else(|_| {
+                sources.push(Source::new(member.asperity));
+                sources.len() - 1
+            });
+            sources[at].become_of(self.asperity(problem, k), a);
         }
         let whole: f64 = sources.iter().map(|source| source.load).sum();
         let compliance = problem.material.compliance();
@@ -80,16 +106,18 @@ impl Patch {
     /// What the spots outside do to the loads of the members as the approach goes on, `Σ F_i ∂ŵ_i/∂δ`; by reciprocity, what these loads do to the
     /// load of the others \[N\].
     pub(crate) fn pull(&self, problem: &Problem) -> f64 {
-        self.members.iter().zip(&self.radius).map(|(m, a)| part(m.drift) * problem.asperities[m.asperity].load(*a)).sum()
+        self.members.iter().zip(&self.radius).enumerate().map(|(k, (m, a))| part(m.drift) * self.asperity(problem, k).load(*a)).sum()
     }
 
     /// By how much the load of the members is other than it was expected to be, and by how much what the spots outside do to it is, both as the
     /// radii were to change \[N\].
     pub(crate) fn off(&self, problem: &Problem, before: &[Stood]) -> (f64, f64) {
         let (mut load, mut pull) = (0.0, 0.0);
-        for ((member, &a), &(i, was, more)) in self.members.iter().zip(&self.radius).zip(before) {
-            let asperity = &problem.asperities[i];
-            let off = asperity.load(a) - asperity.load(was) - more * asperity.load_slope(was);
+        for (k, ((member, &a), stood)) in self.members.iter().zip(&self.radius).zip(before).enumerate() {
+            let (sphere, was) = (&stood.sphere, stood.radius);
+            let off = self.asperity(problem, k).load(a)
+                - sphere.load(was)
+                - (stood.more * sphere.load_slope(was) + stood.more_grip * sphere.load_by_grip(was));
             load += off;
             pull += part(member.drift) * off;
         }

@@ -110,7 +110,7 @@ impl Path<'_> {
     /// `Σ F r` over the residuals that were evaluated last \[J\].
     fn work_on_residuals(&self) -> f64 {
         let state = &self.front.state;
-        let load = |i: usize| self.problem().asperities[i].load(state.radius[i]);
+        let load = |i: usize| state.asperity(self.problem(), i).load(state.radius[i]);
         state.contacts.iter().zip(&self.solver.residual).map(|(&i, residual)| load(i) * residual).sum()
     }
 
@@ -137,16 +137,18 @@ impl Path<'_> {
         }
         self.far_load(target, 0.0);
         let (mut relaxed, mut grown) = (0.0, -std::mem::take(&mut self.far));
+        let grip_rates = self.solver.grip_rates(rates);
         for (k, rate) in rates.iter().enumerate() {
             let i = self.front.state.contacts[k];
-            let (asperity, a) = (&problem.asperities[i], self.front.state.radius[i]);
-            let trace = Trace::of(asperity, target, a, *rate);
+            let (asperity, a) = (self.front.state.asperity(problem, i), self.front.state.radius[i]);
+            let trace = Trace::of(&asperity, target, a, *rate, grip_rates.get(k).copied().unwrap_or(0.0));
             let from = self.front.traces[i];
             if !from.value.is_nan() {
-                let to = if jump { Trace { at: target, value: from.ahead(target), ..from } } else { trace };
+                let to = if jump { Trace { at: target, value: from.ahead(target), grip: from.grip_ahead(target), ..from } } else { trace };
                 self.log.work_j += work(problem, i, from, to);
                 if jump {
-                    let more = asperity.load(a) - asperity.load(asperity.radius_ahead(to.value));
+                    let expected = asperity.gripping(to.grip);
+                    let more = asperity.load(a) - expected.load(expected.radius_ahead(to.value));
                     if shifted.is_none() {
                         relaxed += 0.5 * self.whole_lag(i) * more;
                     }

@@ -19,7 +19,7 @@ const PARAMETERS: &[Column] = &[
     real("contact_modulus_pa", "Pa", "Contact modulus E*").from("Eq 1"),
     real("work_of_adhesion_j_m2", "J/m^2", "Work of adhesion").from("Eq 1"),
     real("interaction_range_m", "m", "Range of attraction").from("Eq 3"),
-    text("interaction", "How contact spots act on one another: \"spots\", \"point\" or \"none\"").from("Eqs 6-8"),
+    text("interaction", "How contact spots act on one another: \"spots\", \"point\", \"reciprocal\" or \"none\"").from("Eqs 6-8"),
     text("boundary", "What surrounds the square: \"periodic\" or \"isolated\""),
     text("coalescence", "What happens when a spot grows over another asperity: \"cover\", \"merge\" or \"none\"").from("Eq 8"),
     text("jump_in", "When a free asperity jumps into contact: \"wu\" or \"jkr\"").from("Eq 3"),

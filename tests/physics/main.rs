@@ -18,6 +18,7 @@ mod merge;
 mod pair;
 mod path;
 mod printed;
+mod reciprocal;
 mod spectrum;
 mod summits;
 mod synthesis;

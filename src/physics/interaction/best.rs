@@ -16,7 +16,7 @@ const TOLERANCE: f64 = 1e-10;
 /// the number of spots in contact.
 #[must_use]
 pub fn best(positions: Vec<[f64; 2]>, length_m: f64, material: &Material, kind: Kind, boundary: Boundary, slips: Slips) -> Best {
-    let many = positions.len() >= ENOUGH && boundary == Boundary::Periodic && kind != Kind::None;
+    let many = positions.len() >= ENOUGH && boundary == Boundary::Periodic && matches!(kind, Kind::Spots | Kind::Point);
     let fast = many.then(|| FastSum::new(positions.clone(), length_m, material, kind, slips, TOLERANCE));
     Best { direct: DirectSum::new(positions, length_m, material, kind, boundary, slips), fast }
 }
@@ -58,6 +58,11 @@ impl Best {
         if let Some(fast) = &mut self.fast {
             fast.add(place);
         }
+    }
+
+    /// As [`DirectSum::couple`] has it.
+    pub(crate) fn couple(&self, spots: &mut Spots, outer: &[f64]) {
+        self.direct.couple(spots, outer);
     }
 
     /// As [`DirectSum::rows`] has it.

@@ -6,6 +6,7 @@ mod direct;
 pub mod ewald;
 mod fast;
 mod moments;
+mod mutual;
 pub mod pair;
 mod table;
 
@@ -14,7 +15,9 @@ pub use best::{Best, best};
 pub use direct::DirectSum;
 pub use fast::FastSum;
 use fast::Sparse;
+pub use mutual::Mutual;
 use pair::SpotColumns;
+use std::sync::Arc;
 pub(crate) use table::PairTable;
 
 /// The spots in contact: which asperities they are, ascending, and their columns.
@@ -24,9 +27,12 @@ pub struct Spots {
     pub index: Vec<usize>,
     /// Their columns, in the same order.
     pub columns: SpotColumns,
+    /// What they are to one another, where their loads depend on it.
+    pub mutual: Option<Arc<Mutual>>,
 }
 
-/// `∂ŵ_i/∂a_j` over the spots in contact: what is asked of it is its product with a vector.
+/// `∂ŵ_i/∂a_j` over the spots in contact: what is asked of it is its product with a vector. Where grips follow the radii, the change of the penetrations by
+/// them is in it.
 #[derive(Debug, Clone)]
 pub struct Tangent(Form);
 
@@ -36,6 +42,8 @@ enum Form {
     Dense(usize, Vec<f64>),
     /// Near pairs and a mesh.
     Sparse(Box<Sparse>),
+    /// Spots that change one another's grip.
+    Mutual(Arc<Mutual>),
 }
 
 impl Default for Tangent {
@@ -54,6 +62,7 @@ impl Tangent {
                 }
             }
             Form::Sparse(sparse) => sparse.product(x, y),
+            Form::Mutual(mutual) => mutual.product(x, y),
         }
     }
 
@@ -68,7 +77,7 @@ impl Tangent {
     /// Whether it has all digits; made fast, it has some.
     #[must_use]
     pub fn is_exact(&self) -> bool {
-        matches!(self.0, Form::Dense(..))
+        matches!(self.0, Form::Dense(..) | Form::Mutual(_))
     }
 
     /// `∂ŵ_i/∂a_i`: what a spot's own images and the background do to it.
@@ -77,6 +86,7 @@ impl Tangent {
         match &self.0 {
             Form::Dense(size, matrix) => matrix[i * size + i],
             Form::Sparse(sparse) => sparse.own(i),
+            Form::Mutual(mutual) => mutual.own(i),
         }
     }
 
@@ -84,7 +94,7 @@ impl Tangent {
     fn take_dense(&mut self, size: usize) -> Vec<f64> {
         let mut matrix = match std::mem::take(self).0 {
             Form::Dense(_, matrix) => matrix,
-            Form::Sparse(_) => Vec::new(),
+            Form::Sparse(_) | Form::Mutual(_) => Vec::new(),
         };
         matrix.clear();
         matrix.resize(size * size, 0.0);
@@ -99,19 +109,23 @@ impl Tangent {
     fn take_sparse(&mut self) -> Box<Sparse> {
         match std::mem::take(self).0 {
             Form::Sparse(sparse) => sparse,
-            Form::Dense(..) => Box::default(),
+            Form::Dense(..) | Form::Mutual(_) => Box::default(),
         }
     }
 
     fn sparse(&mut self) -> Option<&mut Sparse> {
         match &mut self.0 {
             Form::Sparse(sparse) => Some(sparse),
-            Form::Dense(..) => None,
+            Form::Dense(..) | Form::Mutual(_) => None,
         }
     }
 
     fn set_sparse(&mut self, sparse: Box<Sparse>) {
         self.0 = Form::Sparse(sparse);
+    }
+
+    fn set_mutual(&mut self, mutual: Arc<Mutual>) {
+        self.0 = Form::Mutual(mutual);
     }
 }
 

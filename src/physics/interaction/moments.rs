@@ -9,8 +9,8 @@ use crate::model::Interaction as Kind;
 use std::f64::consts::FRAC_1_PI;
 
 /// Coefficients of the indentation and of the adhesive part.
-const HERTZ: [f64; ORDERS] = [4.0 / 3.0, 4.0 / 30.0, 12.0 / 280.0, 20.0 / 1008.0];
-const PUNCH: [f64; ORDERS] = [1.0, 1.0 / 6.0, 3.0 / 40.0, 5.0 / 112.0];
+pub(super) const HERTZ: [f64; ORDERS] = [4.0 / 3.0, 4.0 / 30.0, 12.0 / 280.0, 20.0 / 1008.0];
+pub(super) const PUNCH: [f64; ORDERS] = [1.0, 1.0 / 6.0, 3.0 / 40.0, 5.0 / 112.0];
 
 /// `c_m` of every spot over powers of a length `L`, `c_m/L^(2m+1)` \[m\], and their derivatives to the radius of the spot.
 #[derive(Debug, Clone, Default)]
@@ -26,7 +26,8 @@ impl Moments {
         for j in 0..spots.len() {
             let (mut value, mut slope) = ([0.0; ORDERS], [0.0; ORDERS]);
             match kind {
-                Kind::None => {}
+                // Spots that change one another's grip are seen by what they are to one another.
+                Kind::None | Kind::Reciprocal => {}
                 Kind::Point => {
                     value[0] = compliance / length * spots.load[j];
                     slope[0] = compliance / length * spots.load_slope[j];

@@ -244,6 +244,11 @@ impl SpotColumns {
         self.load_slope.push(load_slope);
     }
 
+    /// Other loads \[N\] than those of lone spots.
+    pub(crate) fn set_loads(&mut self, loads: &[f64]) {
+        self.load[..loads.len()].copy_from_slice(loads);
+    }
+
     /// How many spots there are.
     #[must_use]
     pub fn len(&self) -> usize {
