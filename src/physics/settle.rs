@@ -8,6 +8,7 @@ use super::krylov::dot;
 use super::patch::Trace;
 use super::path::{DRIFT, Halt, LATE, Mark, Path, WORST};
 use super::state::{Status, Totals};
+use crate::model::Interaction;
 
 /// What has led the whole contact away from its traces since it was solved last.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,7 +66,7 @@ impl Path<'_> {
                     self.finite_rates(first)?
                 }
             };
-            self.retrace(
+            let missing = self.retrace(
                 &rates,
                 if jump || rounds > 0 {
                     Since::Jump(shifted)
@@ -92,13 +93,25 @@ impl Path<'_> {
             let uncovered: Vec<usize> =
                 due.iter().filter(|(_, change)| change.kind == Kind::Uncover).map(|(_, change)| change.asperity).collect();
             uncovering = (!uncovered.is_empty()).then(|| (self.mark(), uncovered));
+            let events = self.log.events.len();
+            let crossed = rounds == 1 && !jump && due.iter().any(|(_, change)| self.crosses(change));
             for (_, change) in due {
                 // Another one may have brought it about, or made it needless.
                 if problem.is_due(&change, &self.front) {
                     self.avalanche(change)?;
                 }
             }
+            if crossed && self.log.events.len() > events {
+                self.log.charge(missing);
+            }
         }
+    }
+
+    /// Whether a spot has gone over the centre of another that is in contact, where fields are reciprocal: what that one does to its grip is without bound at its
+    /// edge, so that it has jumped there, and lost what the event that is due now is charged with.
+    fn crosses(&self, change: &Change) -> bool {
+        let reciprocal = self.problem().rules.interaction == Interaction::Reciprocal;
+        reciprocal && change.kind == Kind::Cover && self.front.state.status[change.asperity] == Status::Contact
     }
 
     /// Rates of the spots at the equilibrium that was evaluated last; where they are no numbers, `first` tells why.
@@ -123,8 +136,9 @@ impl Path<'_> {
         worst > WORST * self.scale() || rms > DRIFT * self.scale()
     }
 
-    /// New traces of everything after the whole contact was solved; the work since the old ones is counted.
-    fn retrace(&mut self, rates: &[f64], since: Since) {
+    /// New traces of everything after the whole contact was solved; the work since the old ones is counted. What the potential has lost beyond that and is charged to
+    /// no event is returned \[J\].
+    fn retrace(&mut self, rates: &[f64], since: Since) -> f64 {
         let problem = self.problem();
         let target = self.front.state.approach_m;
         let jump = since != Since::Growth;
@@ -169,8 +183,9 @@ impl Path<'_> {
         self.log.charge(shifted.map_or(relaxed, |shifted| shifted - potential));
         let lost: f64 = self.log.events[self.settled..].iter().map(|event| event.energy_lost_j).sum();
         let balance = potential + lost - self.log.work_j;
+        let mut missing = self.balance - balance;
         if std::mem::take(&mut self.unbalanced) {
-            self.log.charge(self.balance - balance);
+            self.log.charge(std::mem::take(&mut missing));
         }
         // From one solution of the whole to the next only the events since are counted.
         self.balance = potential - self.log.work_j;
@@ -181,6 +196,7 @@ impl Path<'_> {
             self.log.pass(target, self.front.totals(target).load_n);
         }
         self.watch(rates);
+        missing
     }
 
     /// New traces of the free asperities that may come to their jump-in. All are taken anew now and then; between, only those that can have come
