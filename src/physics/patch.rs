@@ -5,13 +5,14 @@
 //! it changes with the approach; the whole contact is solved again at the end of each stretch of the path, and the difference is measured
 //! (see [`super::path`]). Where a patch holds all spots there is no difference.
 
+mod part;
+
 use super::dense::Lu;
 use super::equilibrium::Unsettled;
-use super::events::{Change, Kind, Moving};
 use super::interaction::{Effort, PairTable, Spots};
 use super::jkr::Asperity;
 use super::locate::Point;
-use super::relax::{Relaxing, STRIDE, relax};
+use super::relax::STRIDE;
 use super::state::Problem;
 use crate::model::Interaction;
 use std::f64::consts::PI;
@@ -446,11 +447,6 @@ impl Patch {
         pairs.map(|(k, (member, a))| self.asperity(problem, k).load(*a) * (1.0 - member.drift)).sum()
     }
 
-    /// Relaxes at the present approach ([`super::relax`]). Spots that leave or are covered on the way are taken out, and returned.
-    pub(crate) fn relax(&mut self, problem: &Problem, uncovered: Option<&Change>, effort: &mut Effort) -> Result<Vec<Change>, Unsettled> {
-        relax(&mut Part { patch: self, problem, effort }, problem, uncovered)
-    }
-
     /// Sets out for another approach \[m\], every penetration going on at its rate.
     pub(crate) fn ahead(&mut self, problem: &Problem, approach: f64) {
         let (rates, _) = self.rates(problem);
@@ -474,53 +470,5 @@ impl Patch {
             *radius += (d * span).clamp(-0.05 * *radius, 0.05 * *radius);
         }
         self.approach += gap;
-    }
-}
-
-/// A patch on its way to rest.
-struct Part<'a> {
-    patch: &'a mut Patch,
-    problem: &'a Problem,
-    effort: &'a mut Effort,
-}
-
-impl Relaxing for Part<'_> {
-    fn evaluate(&mut self) -> Unsettled {
-        self.effort.iterations += 1;
-        self.patch.evaluate(self.problem, self.effort)
-    }
-
-    fn spots(&self) -> Vec<Moving> {
-        let Patch { members, radius, residual, .. } = &*self.patch;
-        let spots = members.iter().zip(radius).zip(residual).enumerate();
-        spots.map(|(k, ((m, a), r))| (m.asperity, *a, *r, self.patch.grip_of(k))).collect()
-    }
-
-    fn take_out(&mut self, change: &Change) {
-        self.patch.remove(change.asperity, change.kind == Kind::JumpOff);
-    }
-
-    fn finish(&mut self) -> bool {
-        let rest = self.patch.radius.clone();
-        let found = self.patch.descend(self.problem, Hold::Approach, 1e-4, 40, self.effort).is_ok() && self.patch.rates(self.problem).1;
-        if !found {
-            self.patch.radius = rest;
-        }
-        found
-    }
-
-    fn step(&mut self, time: f64) -> (Vec<f64>, bool) {
-        let patch = &mut *self.patch;
-        patch.assemble(self.problem, 1.0 / time);
-        patch.lu.factor(&patch.matrix, patch.members.len());
-        let mut step = patch.residual.clone();
-        patch.lu.solve(&mut step);
-        (step, patch.lu.sign() > 0.0)
-    }
-
-    fn advance(&mut self, step: &[f64], share: f64) {
-        for (radius, s) in self.patch.radius.iter_mut().zip(step) {
-            *radius += share * s;
-        }
     }
 }

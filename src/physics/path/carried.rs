@@ -1,0 +1,120 @@
+//! A path that begins, and one that goes on with other asperities.
+
+use super::super::PhysicsError;
+use super::super::front::Front;
+use super::super::interaction::Effort;
+use super::super::log::{Event, Log};
+use super::super::state::{Problem, State, Totals};
+use super::{Halt, Path};
+
+/// Longest stretch, of the mean jump-off penetration.
+const STRETCH: f64 = 0.05;
+
+/// The same where every event is solved with all spots: nothing is left out then, and the work is to be as exact as the events.
+const FINE_STRETCH: f64 = 0.00625;
+
+/// Least scale of lengths along the path, of the rms height: below it adhesion does not set the scale.
+const LEAST_SCALE: f64 = 0.02;
+
+/// What goes on where a path goes on with other asperities.
+pub(crate) struct Carried {
+    pub(crate) state: State,
+    pub(crate) sign: f64,
+    /// The longest stretch, and the scale of lengths \[m\].
+    lengths: (f64, f64),
+    pub(crate) log: Log,
+    /// Load and area, and the balance, when the whole contact was solved last; how many events there were.
+    pub(crate) totals: Totals,
+    balance: f64,
+    settled: usize,
+    halvings: u32,
+    flips: Vec<u8>,
+    held: Vec<usize>,
+    effort: Effort,
+}
+
+impl Carried {
+    /// At the beginning of a path.
+    pub(crate) fn begin(problem: &Problem, state: State, sign: f64) -> Self {
+        let summits = &problem.asperities[..problem.summits];
+        let off = summits.iter().map(|a| a.jump_off_penetration().abs()).sum::<f64>() / summits.len() as f64;
+        // Where adhesion is next to nothing, the roughness sets the scale.
+        let off = off.max(LEAST_SCALE * problem.rms_height_m);
+        // A power of two of a hundredth of the rms height, so that round steps of the approach end stretches.
+        let unit = 0.01 * problem.rms_height_m;
+        let share = if problem.spots_in_patch >= summits.len() { FINE_STRETCH } else { STRETCH };
+        let longest = unit * (share * off / unit).log2().floor().exp2();
+        Self {
+            state,
+            sign,
+            lengths: (longest, longest / share),
+            log: Log::default(),
+            totals: Totals::default(),
+            balance: 0.0,
+            settled: 0,
+            halvings: 0,
+            flips: Vec::new(),
+            held: Vec::new(),
+            effort: Effort::default(),
+        }
+    }
+}
+
+impl<'p> Path<'p> {
+    /// A path that begins, or goes on with what another has carried here. The state need be no equilibrium: what the potential loses is charged to the
+    /// last event, and how far it was from one is no drift.
+    pub(crate) fn resume(problem: &'p Problem, carried: Carried) -> Result<Self, PhysicsError> {
+        let (approach, drift) = (carried.state.approach_m, carried.log.drift_m);
+        let mut path = Self::bare(problem, Front::new(problem, carried.state), carried.sign, carried.lengths);
+        path.front.expect_totals(carried.totals);
+        path.solver.effort = carried.effort;
+        (path.log, path.totals, path.balance) = (carried.log, carried.totals, carried.balance);
+        (path.halvings, path.settled, path.unbalanced) = (carried.halvings, carried.settled, carried.settled < path.log.events.len());
+        path.held = carried.held;
+        for (mine, flips) in path.flips.iter_mut().zip(carried.flips) {
+            *mine = flips;
+        }
+        match path.settle(approach, false, true) {
+            Ok(()) => {
+                path.log.drift_m = drift;
+                Ok(path)
+            }
+            Err(Halt::Unsettled(unsettled) | Halt::Late(_, unsettled)) => Err(path.stuck(unsettled)),
+            Err(Halt::Error(error)) => Err(error),
+        }
+    }
+
+    /// Ends here, where the whole contact is solved.
+    pub(crate) fn carry(self) -> Carried {
+        Carried {
+            state: self.front.state,
+            sign: self.sign,
+            lengths: (self.longest, self.scale),
+            settled: self.log.events.len(),
+            log: self.log,
+            totals: self.totals,
+            balance: self.balance,
+            halvings: self.halvings,
+            flips: self.flips,
+            held: self.held,
+            effort: self.solver.effort,
+        }
+    }
+
+    /// The state before the last stretch.
+    pub(crate) fn start(&self) -> Option<&State> {
+        self.mark.as_deref().map(|mark| &mark.front.state)
+    }
+
+    /// Events of the last stretch.
+    pub(crate) fn recent_events(&self) -> &[Event] {
+        &self.log.events[self.mark.as_deref().map_or(0, |mark| mark.events)..]
+    }
+
+    /// Goes back to before the last stretch.
+    pub(crate) fn rewind(&mut self) {
+        if let Some(mark) = self.mark.take() {
+            self.back_to(&mark);
+        }
+    }
+}
