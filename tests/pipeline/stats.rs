@@ -146,6 +146,30 @@ fn law_a_stated_turning_step_is_taken() {
 }
 
 #[test]
+fn law_a_load_that_jumps_over_its_turning_point_turns_where_it_jumps() {
+    // From 0.0039 the load jumps to 0.0041; unloading begins there, and no loading step has 0.004.
+    let bench = bench(&[1.0]);
+    let path = bench.directory.path().join("jump.parquet");
+    let up = |load: f64, area: f64, penetration: f64| ("loading", None, load, area, penetration, 1e-9);
+    let down = |load: f64, area: f64, penetration: f64| ("unloading", Some(0.004), load, area, penetration, -5e-10);
+    write(
+        &path,
+        &[
+            up(0.0, 0.0, 0.0),
+            up(0.0039, 0.04, 0.6),
+            up(0.0041, 0.06, 0.6),
+            down(0.0041, 0.06, 0.6),
+            down(0.001, 0.02, 0.2),
+            down(0.0, 0.0, -0.1),
+        ],
+    );
+    let jump = [case("c0", "jump", 0.8, 64.0, &[0.004])];
+    let frame = realizations(&jump, &[cycle("c0", 0, &path, 2e-8)]).unwrap();
+    close(row(&frame, "area_at_max_load", 0).unwrap(), 0.06, 1e-15);
+    close(row(&frame, "loss_j", 0).unwrap(), 5e-10, 1e-12);
+}
+
+#[test]
 fn val_case_means_by_hand() {
     let bench = bench(&[1.0, 2.0, 1.5]);
     let frame = cases(&realizations(&bench.cases, &bench.cycles).unwrap(), &bench.cases).unwrap();
