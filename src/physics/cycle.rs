@@ -224,11 +224,9 @@ fn unload(
     let number = -(state.approach_m / grid(problem, settings)).ceil();
     let mut recorder = Recorder::new(settings, Branch::Unloading, max_load, number);
     recorder.merged_before = state.merged.len();
-    let mut full = f64::NAN;
+    let mut full = None;
     travel(problem, state, -1.0, None, &mut |path| {
-        if full.is_nan() {
-            full = path.totals.area_m2;
-        }
+        let full = *full.get_or_insert(path.totals.area_m2);
         recorder.grid_points(path, cycle)?;
         let over = path.state().contacts.is_empty();
         if over && recorder.events_before < path.log.events.len() {
@@ -275,11 +273,7 @@ fn travel(
             }
         };
         carried = path.carry();
-        let grown = match own.take() {
-            Some(grown) => own.insert(grown),
-            None => own.insert(problem.clone()),
-        };
-        carried.meet(grown, meeting, &mut known)?;
+        carried.meet(own.get_or_insert_with(|| problem.clone()), meeting, &mut known)?;
     }
 }
 
@@ -392,7 +386,7 @@ impl<'s> Recorder<'s> {
 
 /// How many spots touch another one.
 fn touching(problem: &Problem, state: &State) -> usize {
-    let greatest = state.contacts.iter().map(|&i| state.radius[i]).fold(0.0, f64::max);
+    let greatest = state.greatest_radius();
     let touches = |i: usize| {
         let a = state.radius[i];
         let mut found = false;

@@ -20,9 +20,8 @@ use super::jkr::Asperity;
 use super::log::Event;
 use super::path::{Carried, Path};
 use super::state::{Problem, State, Status};
-use crate::model::{Boundary, Coalescence};
+use crate::model::Coalescence;
 use std::collections::BTreeSet;
-use std::f64::consts::PI;
 
 /// Overlap at which spots merge at the latest, of their distance.
 const TOUCH: f64 = 1e-3;
@@ -137,7 +136,7 @@ impl Problem {
         if self.rules.coalescence != Coalescence::Merge {
             return pairs;
         }
-        let greatest = state.contacts.iter().map(|&i| state.radius[i]).fold(0.0, f64::max);
+        let greatest = state.greatest_radius();
         for &i in &state.contacts {
             self.neighbours.within(i, state.radius[i] + greatest, |_, j| {
                 if j > i && self.beyond(state, Meeting::Touch(i, j)) >= 0.0 {
@@ -148,9 +147,9 @@ impl Problem {
         pairs
     }
 
-    /// Meetings that are due, the furthest beyond first.
-    pub(crate) fn meetings(&self, state: &State, known: &Known) -> Vec<(f64, Meeting)> {
-        let touching = self.touching(state).into_iter().filter(|pair| !known.contains(pair)).map(|(i, j)| Meeting::Touch(i, j));
+    /// Meetings that are due, the furthest beyond first, given who is touching.
+    fn meetings(&self, state: &State, touching: &Known, known: &Known) -> Vec<(f64, Meeting)> {
+        let touching = touching.difference(known).map(|(i, j)| Meeting::Touch(*i, *j));
         let parting = (self.summits..self.len()).map(Meeting::Part);
         let mut due: Vec<(f64, Meeting)> = touching.chain(parting).map(|m| (self.beyond(state, m), m)).filter(|due| due.0 >= 0.0).collect();
         due.sort_by(|u, v| v.0.total_cmp(&u.0).then(u.1.cmp(&v.1)));
@@ -163,12 +162,13 @@ impl Problem {
         let radius = a.hypot(b);
         let (tension, root) = self.tension(state, i, j);
         let number = self.len();
-        let place = self.places.inward(self.places.outward(self.between(i, j, b * b / (radius * radius))));
+        let (from, way) = (self.positions[i], self.neighbours.apart(&self.positions[j], &self.positions[i]));
+        let between = [0, 1].map(|k| from[k] + b * b / (radius * radius) * way[k]);
         let mut merged = Merged {
             parts: [i, j],
             radii_m: [a, b],
             // As it will be when it has been written down and read again.
-            place_m: place,
+            place_m: self.places.inward(self.places.outward(between)),
             radius_m: 4.0 / 3.0 * self.material.contact_modulus_pa * radius.powi(3) / ((tension + 1.0) * root),
             height_m: 0.0,
             release_m: radius,
@@ -201,7 +201,7 @@ impl Problem {
     fn free_orphans(&self, state: &mut State) {
         // A part has a lower number than its spot.
         for i in (0..state.status.len()).rev() {
-            if matches!(state.status[i], Status::Merged { into } if state.status[into] == Status::Free) {
+            if state.is_orphan(i) {
                 state.set(i, Status::Free, 0.0);
                 state.barred[i] = i < self.summits;
             }
@@ -217,26 +217,10 @@ impl Problem {
         (found[0], grip)
     }
 
-    /// The point between asperities i and j at this share of the way from i \[m\].
-    fn between(&self, i: usize, j: usize, share: f64) -> [f64; 2] {
-        let (p, q) = (self.positions[i], self.positions[j]);
-        [0, 1].map(|k| {
-            let d = q[k] - p[k];
-            if self.rules.boundary == Boundary::Periodic {
-                let d = d - self.length_m * (d / self.length_m).round_ties_even();
-                let x = (p[k] + share * d).rem_euclid(self.length_m);
-                if x < self.length_m { x } else { 0.0 }
-            } else {
-                p[k] + share * d
-            }
-        })
-    }
-
-    /// Whether there is room for the spots of a state.
-    pub(crate) fn check_room(&self, state: &State) -> Result<(), PhysicsError> {
-        let share = state.contacts.iter().map(|&i| PI * state.radius[i] * state.radius[i]).sum::<f64>() / (self.length_m * self.length_m);
-        let greatest = state.contacts.iter().map(|&i| state.radius[i]).fold(0.0, f64::max);
-        if share < 1.0 && greatest < 0.5 * self.length_m {
+    /// Whether there is room for the spots of a state, which have this area \[m²\].
+    fn check_room(&self, state: &State, area: f64) -> Result<(), PhysicsError> {
+        let share = area / (self.length_m * self.length_m);
+        if share < 1.0 && state.greatest_radius() < 0.5 * self.length_m {
             return Ok(());
         }
         Err(PhysicsError::FullContact { approach_m: state.approach_m, share })
@@ -248,7 +232,7 @@ impl Path<'_> {
     pub(crate) fn meeting(&self, known: &Known) -> Result<Option<f64>, PhysicsError> {
         let problem = self.problem();
         let end = self.state();
-        let due = problem.meetings(end, known);
+        let due = problem.meetings(end, &problem.touching(end), known);
         let furthest = |state: &State| due.iter().map(|(_, m)| problem.beyond(state, *m)).fold(f64::NEG_INFINITY, f64::max);
         let (Some((over, _)), Some(start)) = (due.first(), self.start()) else { return Ok(None) };
         let (mut low, mut high, mut over) = (start.approach_m, end.approach_m, *over);
@@ -279,9 +263,7 @@ impl Path<'_> {
         }
         Ok(Some(high))
     }
-}
 
-impl Path<'_> {
     /// The approach of the last event within the last stretch by which one of these spots came to be \[m\].
     fn last_event_of(&self, due: &[(f64, Meeting)]) -> Option<f64> {
         let spots = |meeting: &Meeting| match *meeting {
@@ -289,11 +271,8 @@ impl Path<'_> {
             Meeting::Part(m) => [m, m],
             Meeting::Leave => [usize::MAX; 2],
         };
-        let events = self.recent_events().iter().rev().filter(|event| matches!(event.kind, Kind::JumpIn | Kind::Uncover));
-        events
-            .into_iter()
-            .find(|event| due.iter().any(|(_, meeting)| spots(meeting).contains(&event.asperity)))
-            .map(|event| event.approach_m)
+        let mut events = self.recent_events().iter().rev().filter(|event| matches!(event.kind, Kind::JumpIn | Kind::Uncover));
+        events.find(|event| due.iter().any(|(_, meeting)| spots(meeting).contains(&event.asperity))).map(|event| event.approach_m)
     }
 
     /// The contact is in equilibrium after a meeting. A spot that has become smaller by merging does not part again at once.
@@ -316,17 +295,17 @@ impl Path<'_> {
         if problem.rules.coalescence != Coalescence::Merge {
             return Ok(None);
         }
-        problem.check_room(self.state())?;
-        let orphan = |status: &Status| matches!(status, Status::Merged { into } if self.state().status[*into] == Status::Free);
-        if self.state().status.iter().any(orphan) {
+        problem.check_room(self.state(), self.totals.area_m2)?;
+        let state = self.state();
+        if (0..problem.summits + state.merged.len()).any(|i| state.is_orphan(i)) {
             return Ok(Some(Meeting::Leave));
         }
-        let due = problem.meetings(self.state(), known).first().map(|(_, meeting)| *meeting);
+        let touching = problem.touching(state);
+        let due = problem.meetings(state, &touching, known).first().map(|(_, meeting)| *meeting);
         if due.is_none() {
             // A pair of which one is part of another spot has not been apart.
-            let state = self.state();
             known.retain(|(i, j)| [i, j].iter().any(|k| matches!(state.status[**k], Status::Merged { .. })));
-            known.extend(problem.touching(state));
+            known.extend(touching);
         }
         Ok(due)
     }

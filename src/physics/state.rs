@@ -286,6 +286,16 @@ impl State {
         }
     }
 
+    /// Greatest contact radius \[m\], 0 without contact.
+    pub(crate) fn greatest_radius(&self) -> f64 {
+        self.contacts.iter().map(|&i| self.radius[i]).fold(0.0, f64::max)
+    }
+
+    /// Whether an asperity is part of a merged spot that has left.
+    pub(crate) fn is_orphan(&self, i: usize) -> bool {
+        matches!(self.status[i], Status::Merged { into } if self.status[into] == Status::Free)
+    }
+
     /// One asperity more, free.
     pub(crate) fn extend(&mut self) {
         self.status.push(Status::Free);

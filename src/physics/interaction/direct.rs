@@ -112,6 +112,27 @@ impl DirectSum {
         })
     }
 
+    /// Displacement at an asperity by spots that change one another's grip, and which of them it is. What the spots feel themselves is computed once, into
+    /// `known`; for another asperity the derivatives are left in `columns`.
+    fn felt(
+        &self,
+        spots: &Spots,
+        mutual: &Mutual,
+        target: usize,
+        known: &mut Vec<f64>,
+        columns: &mut [Vec<f64>; 2],
+    ) -> (f64, Option<usize>) {
+        match spots.index.binary_search(&target) {
+            Ok(i) => {
+                if known.is_empty() {
+                    mutual.displacements(known);
+                }
+                (known[i], Some(i))
+            }
+            Err(_) => (mutual.at(self.around(spots, target), columns), None),
+        }
+    }
+
     /// [`Self::rows`] of spots that change one another's grip.
     fn mutual_rows(
         &self,
@@ -121,39 +142,14 @@ impl DirectSum {
         slopes: &mut [f64],
         visit: &mut impl FnMut(usize, f64, &[f64]),
     ) {
-        let (mut displacements, mut columns) = (Vec::new(), Default::default());
-        for (k, target) in targets.iter().enumerate() {
-            let sum = match spots.index.binary_search(target) {
-                Ok(i) => {
-                    if displacements.is_empty() {
-                        mutual.displacements(&mut displacements);
-                    }
-                    mutual.row(i, slopes);
-                    displacements[i]
-                }
-                Err(_) => {
-                    let sum = mutual.at(self.around(spots, *target), &mut columns);
-                    mutual.row_at(&mut columns, slopes);
-                    sum
-                }
-            };
-            visit(k, sum, &slopes[..mutual.len()]);
-        }
-    }
-
-    /// Displacements at asperities by spots that change one another's grip.
-    fn mutual_displacements(&self, spots: &Spots, mutual: &Mutual, targets: &[usize], displacements: &mut Vec<f64>) {
         let (mut known, mut columns) = (Vec::new(), Default::default());
-        for target in targets {
-            displacements.push(match spots.index.binary_search(target) {
-                Ok(i) => {
-                    if known.is_empty() {
-                        mutual.displacements(&mut known);
-                    }
-                    known[i]
-                }
-                Err(_) => mutual.at(self.around(spots, *target), &mut columns),
-            });
+        for (k, target) in targets.iter().enumerate() {
+            let (sum, spot) = self.felt(spots, mutual, *target, &mut known, &mut columns);
+            match spot {
+                Some(i) => mutual.row(i, slopes),
+                None => mutual.row_at(&mut columns, slopes),
+            }
+            visit(k, sum, &slopes[..mutual.len()]);
         }
     }
 
@@ -319,7 +315,8 @@ impl Interaction for DirectSum {
         displacements.clear();
         effort.pairs += (spots.index.len() * targets.len()) as u64;
         if let Some(mutual) = &spots.mutual {
-            self.mutual_displacements(spots, mutual, targets, displacements);
+            let (mut known, mut columns) = (Vec::new(), Default::default());
+            displacements.extend(targets.iter().map(|target| self.felt(spots, mutual, *target, &mut known, &mut columns).0));
             return;
         }
         let moments = self.moments(spots);
