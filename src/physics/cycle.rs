@@ -7,7 +7,7 @@ use super::events::Kind;
 use super::interaction::Effort;
 use super::log::Event;
 use super::merge::Merged;
-use super::path::{Carried, Path};
+use super::path::{Carried, Depth, Path};
 use super::state::{Problem, State, Status};
 use crate::model::KeptContacts;
 
@@ -314,7 +314,7 @@ impl<'s> Recorder<'s> {
                 return Ok(());
             }
             self.number += 1.0;
-            if (next - path.state().approach_m).abs() <= 1e-9 * spacing {
+            if path.solved == Depth::Whole && (next - path.state().approach_m).abs() <= 1e-9 * spacing {
                 self.record(path, None, cycle, false);
             } else {
                 let excursion = path.excursion(next)?;

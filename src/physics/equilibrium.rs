@@ -28,6 +28,9 @@ const WORTH: f64 = 0.03;
 const MOST: f64 = 3e-3;
 const LEAST: f64 = 1e-5;
 
+/// The same where the whole contact is solved well enough to go on.
+const ROUGH: f64 = 3e-2;
+
 /// Why an iteration ended without an equilibrium: the worst residual and its asperity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Unsettled {
@@ -129,9 +132,9 @@ impl<'p> Solver<'p> {
 
     /// Newton's method on the radii, from those of `state`, at its approach, with its spots; it was evaluated last. Where `patient`, it is tried
     /// again in short steps before it fails.
-    pub(crate) fn newton(&mut self, state: &mut State, first: Unsettled, patient: bool) -> Result<(), Unsettled> {
+    pub(crate) fn newton(&mut self, state: &mut State, first: Unsettled, patient: bool, tolerance: f64) -> Result<(), Unsettled> {
         let start: Vec<f64> = state.contacts.iter().map(|&i| state.radius[i]).collect();
-        self.descend(state, first, 0.2, 20).or_else(|unsettled| {
+        self.descend(state, first, (0.2, 20), tolerance).or_else(|unsettled| {
             if !patient {
                 return Err(unsettled);
             }
@@ -140,13 +143,13 @@ impl<'p> Solver<'p> {
                 state.radius[i] = *a;
             }
             let first = self.evaluate(state);
-            self.descend(state, first, 1e-4, 60)
+            self.descend(state, first, (1e-4, 60), tolerance)
         })
     }
 
     /// Newton's method, at most so many iterations, each step shortened down to the share `least` of itself until it descends.
-    fn descend(&mut self, state: &mut State, mut worst: Unsettled, least: f64, most: usize) -> Result<(), Unsettled> {
-        let tolerance = self.problem.tolerance_m();
+    fn descend(&mut self, state: &mut State, mut worst: Unsettled, (least, most): (f64, usize), tolerance: f64) -> Result<(), Unsettled> {
+        let exact = tolerance <= self.problem.tolerance_m();
         let mut start: Vec<f64> = Vec::new();
         let mut step: Vec<f64> = Vec::new();
         let mut before = f64::INFINITY;
@@ -173,7 +176,11 @@ impl<'p> Solver<'p> {
                 before = worst.residual_m;
                 share = 1.0;
                 // The first step leaves the square of the residual, however well it is solved for; the next ones are to be the last.
-                let wanted = if round == 0 { MOST } else { (0.1 * tolerance / worst.residual_m).clamp(LEAST, MOST) };
+                let wanted = match (exact, round) {
+                    (true, 0) => MOST,
+                    (true, _) => (0.1 * tolerance / worst.residual_m).clamp(LEAST, MOST),
+                    (false, _) => (0.3 * tolerance / worst.residual_m).clamp(MOST, ROUGH),
+                };
                 step = self.newton_step(state, wanted);
                 limit(&mut step, state, STRIDE);
                 start = state.contacts.iter().map(|&i| state.radius[i]).collect();
@@ -189,20 +196,27 @@ impl<'p> Solver<'p> {
             }
             self.effort.iterations += 1;
             // The first step leads near enough for the tangent there to serve to the end.
-            worst = if round == 0 { self.evaluate(state) } else { self.glance(state) };
+            worst = if exact && round == 0 { self.evaluate(state) } else { self.glance(state) };
         }
         Err(worst)
     }
 
     /// The step of Newton's method, to this share of the residual.
     fn newton_step(&mut self, state: &State, wanted: f64) -> Vec<f64> {
-        let Self { problem, tangent, inverse, diagonal, residual, effort, .. } = self;
-        // A dense tangent is of so few spots that its products cost nothing.
-        if !tangent.is_exact() && inverse.as_ref().is_none_or(|inverse| !inverse.serves(&state.contacts)) {
+        self.invert(state);
+        let Self { tangent, inverse, diagonal, residual, effort, .. } = self;
+        gmres(Matrix { tangent, diagonal, inverse: inverse.as_ref() }, residual, wanted, PRODUCTS, effort)
+    }
+
+    /// Makes an approximate inverse of the tangent, if there is none of these spots.
+    fn invert(&mut self, state: &State) {
+        let Self { problem, tangent, inverse, diagonal, .. } = self;
+        if tangent.is_exact() {
+            // A dense tangent is of so few spots that its products cost nothing.
+            *inverse = None;
+        } else if inverse.as_ref().is_none_or(|inverse| !inverse.serves(&state.contacts)) {
             *inverse = Some(LocalInverse::new(problem, state, tangent, diagonal));
         }
-        let inverse = inverse.as_ref().filter(|_| !tangent.is_exact());
-        gmres(Matrix { tangent, diagonal, inverse }, residual, wanted, PRODUCTS, effort)
     }
 
     /// Solves the neighbourhood of a spot with the displacement by all others held; says whether it has an equilibrium.
@@ -239,7 +253,18 @@ impl<'p> Solver<'p> {
         let ones = vec![1.0; state.contacts.len()];
         // No better than the tangent.
         let wanted = if self.tangent.is_exact() { 1e-6 } else { LEAST };
-        let (rates, least) = gmres_and_least(&self.tangent, &self.diagonal, &ones, wanted, PRODUCTS, &mut self.effort);
+        let Self { tangent, diagonal, effort, .. } = self;
+        let (rates, least) = gmres_and_least(Matrix { tangent, diagonal, inverse: None }, &ones, wanted, PRODUCTS, effort);
+        state.stability = least;
+        rates
+    }
+
+    /// The same with fewer digits. Of the stability the sign is known: where the least eigenvalue is small, it is in the space of the solution.
+    pub(crate) fn rough_rates(&mut self, state: &mut State) -> Vec<f64> {
+        self.invert(state);
+        let ones = vec![1.0; state.contacts.len()];
+        let Self { tangent, inverse, diagonal, effort, .. } = self;
+        let (rates, least) = gmres_and_least(Matrix { tangent, diagonal, inverse: inverse.as_ref() }, &ones, MOST, PRODUCTS, effort);
         state.stability = least;
         rates
     }
@@ -289,7 +314,7 @@ impl Relaxing for Whole<'_, '_> {
     fn finish(&mut self) -> bool {
         let mut end = self.state.clone();
         let first = self.solver.evaluate(&mut end);
-        let found = self.solver.descend(&mut end, first, 1e-4, 40).is_ok();
+        let found = self.solver.descend(&mut end, first, (1e-4, 40), self.solver.problem.tolerance_m()).is_ok();
         if found {
             *self.state = end;
         }

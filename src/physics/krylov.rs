@@ -48,55 +48,63 @@ pub(crate) fn gmres(matrix: Matrix<'_>, rhs: &[f64], tolerance: f64, most: usize
 }
 
 /// The same, with the least eigenvalue of the matrix, each column over its diagonal element, in the space that the solution took: 1 without
-/// coupling, 0 at a fold. No approximate inverse is used, which would be another matrix.
-pub(crate) fn gmres_and_least(
-    tangent: &Tangent,
-    diagonal: &[f64],
-    rhs: &[f64],
-    tolerance: f64,
-    most: usize,
-    effort: &mut Effort,
-) -> (Vec<f64>, f64) {
-    let mut raw = Vec::new();
-    let x = solve(Matrix { tangent, diagonal, inverse: None }, rhs, tolerance, most, effort, Some(&mut raw));
-    (x, least_eigenvalue(&raw))
+/// coupling, 0 at a fold.
+pub(crate) fn gmres_and_least(matrix: Matrix<'_>, rhs: &[f64], tolerance: f64, most: usize, effort: &mut Effort) -> (Vec<f64>, f64) {
+    let mut projection = Projection::default();
+    let x = solve(matrix, rhs, tolerance, most, effort, Some(&mut projection));
+    (x, projection.least_eigenvalue())
 }
 
-/// The eigenvalue of least magnitude of an upper Hessenberg matrix given by columns, each down to its subdiagonal element, by inverse iteration. At
-/// a fold it is real, and passes through zero.
-fn least_eigenvalue(columns: &[Vec<f64>]) -> f64 {
-    let n = columns.len();
-    if n == 0 {
-        return 1.0;
-    }
-    let mut matrix = vec![0.0; n * n];
-    for (k, column) in columns.iter().enumerate() {
-        for (i, value) in column.iter().take(n).enumerate() {
-            matrix[i * n + k] = *value;
+/// What a solution has seen of the matrix `A`, by columns: `VᵀAW` down to its subdiagonal element and `VᵀDW`, V being the orthonormal basis, W that as
+/// the approximate inverse answers to it and D the diagonal.
+#[derive(Debug, Default)]
+struct Projection {
+    matrix: Vec<Vec<f64>>,
+    diagonal: Vec<Vec<f64>>,
+}
+
+impl Projection {
+    /// The eigenvalue θ of least magnitude of `VᵀAW y = θ VᵀDW y`, by inverse iteration. At a fold it is real, and passes through zero.
+    fn least_eigenvalue(&self) -> f64 {
+        let n = self.matrix.len();
+        if n == 0 {
+            return 1.0;
         }
+        let mut matrix = vec![0.0; n * n];
+        for (k, column) in self.matrix.iter().enumerate() {
+            for (i, value) in column.iter().take(n).enumerate() {
+                matrix[i * n + k] = *value;
+            }
+        }
+        let mut lu = Lu::default();
+        lu.factor(&matrix, n);
+        let mut x: Vec<f64> = (0..n).map(|k| if k == 0 { 1.0 } else { 0.1 }).collect();
+        let mut inverse = 1.0;
+        for _ in 0..INVERSE_ITERATIONS {
+            let length = dot(&x, &x).sqrt();
+            x.iter_mut().for_each(|v| *v /= length);
+            let before = x.clone();
+            x.fill(0.0);
+            for (column, factor) in self.diagonal.iter().zip(&before) {
+                for (xi, value) in x.iter_mut().zip(column) {
+                    *xi += value * factor;
+                }
+            }
+            lu.solve(&mut x);
+            inverse = dot(&before, &x);
+        }
+        1.0 / inverse
     }
-    let mut lu = Lu::default();
-    lu.factor(&matrix, n);
-    let mut x: Vec<f64> = (0..n).map(|k| if k == 0 { 1.0 } else { 0.1 }).collect();
-    let mut inverse = 1.0;
-    for _ in 0..INVERSE_ITERATIONS {
-        let length = dot(&x, &x).sqrt();
-        x.iter_mut().for_each(|v| *v /= length);
-        let before = x.clone();
-        lu.solve(&mut x);
-        inverse = dot(&before, &x);
-    }
-    1.0 / inverse
 }
 
-/// Solves, and keeps the Hessenberg matrix if it is asked for.
+/// Solves, and keeps what it has seen of the matrix if that is asked for.
 fn solve(
     Matrix { tangent, diagonal, inverse }: Matrix<'_>,
     rhs: &[f64],
     tolerance: f64,
     most: usize,
     effort: &mut Effort,
-    mut raw: Option<&mut Vec<Vec<f64>>>,
+    mut seen: Option<&mut Projection>,
 ) -> Vec<f64> {
     let n = rhs.len();
     let beta = dot(rhs, rhs).sqrt();
@@ -118,6 +126,7 @@ fn solve(
     let (mut cosines, mut sines): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
     let mut g = vec![beta];
     let mut scaled = vec![0.0; n];
+    let mut answers: Vec<Vec<f64>> = Vec::new();
     for k in 0..most.min(n) {
         precondition(inverse, &scale, &basis[k], &mut scaled);
         let mut w = vec![0.0; n];
@@ -132,8 +141,9 @@ fn solve(
             column.push(h);
         }
         let length = dot(&w, &w).sqrt();
-        if let Some(raw) = &mut raw {
-            raw.push(column.iter().copied().chain([length]).collect());
+        if let Some(seen) = &mut seen {
+            seen.matrix.push(column.iter().copied().chain([length]).collect());
+            answers.push(scaled.iter().zip(&scale).map(|(z, s)| z / s).collect());
         }
         for i in 0..k {
             let (upper, lower) = (column[i], column[i + 1]);
@@ -157,6 +167,9 @@ fn solve(
         basis.push(w.iter().map(|wi| wi / length).collect());
     }
     let m = hessenberg.len();
+    if let Some(seen) = seen {
+        seen.diagonal = answers.iter().map(|answer| basis.iter().take(answers.len()).map(|v| dot(v, answer)).collect()).collect();
+    }
     let mut y = vec![0.0; m];
     for i in (0..m).rev() {
         let tail: f64 = (i + 1..m).map(|j| hessenberg[j][i] * y[j]).sum();

@@ -42,6 +42,9 @@ pub const EVENT_TOLERANCE: f64 = 1e-6;
 /// Tolerance of the load at a turning point, relative; and of its approach, of the rms height, where the load jumps over it.
 const LOAD_TOLERANCE: f64 = 1e-9;
 
+/// Grid of approaches, of the rms height, on which the whole contact is solved to the last digits.
+pub(crate) const UNIT: f64 = 0.01;
+
 /// How often a stretch is halved before the whole contact is relaxed in place of it.
 const HALVINGS: u32 = 14;
 
@@ -53,6 +56,15 @@ const RETRY: f64 = 0.97;
 
 /// Changes other than leaving that one asperity takes in one longest stretch.
 pub(crate) const FLIPS: u8 = 3;
+
+/// How well the whole contact is solved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Depth {
+    /// To the last digits: the state is one to be written down.
+    Whole,
+    /// A good deal better than [`LAG`] and [`LATE`]: what is left is found at the next solution.
+    Enough,
+}
 
 /// Where a path was, to go back to.
 pub(crate) struct Mark {
@@ -117,6 +129,8 @@ pub(crate) struct Path<'p> {
     pub(crate) flips: Vec<u8>,
     /// Changes that were not taken since the last record because the asperity had flipped too often.
     pub(crate) held: Vec<usize>,
+    /// How well the whole contact is solved where the path is.
+    pub(crate) solved: Depth,
     /// Before the last stretch.
     mark: Option<Box<Mark>>,
 }
@@ -173,6 +187,7 @@ impl<'p> Path<'p> {
             watched_at: None,
             flips: vec![0; n],
             held: Vec::new(),
+            solved: Depth::Whole,
             mark: None,
         }
     }
@@ -232,7 +247,7 @@ impl<'p> Path<'p> {
                 target = bound.unwrap_or(target);
             }
             let strict = self.halvings < PATIENCE;
-            let unsettled = match self.events_and_settle(target, strict).and_then(|()| self.sound(mark.events)) {
+            let unsettled = match self.events_and_settle(target, strict, self.depth(target, bound)).and_then(|()| self.sound(mark.events)) {
                 Ok(()) => {
                     // Whether the next longer stretch may be tried: it must end on a multiple of itself.
                     if self.halvings > 0 && next_multiple(target, size, self.sign) == next_multiple(target, 2.0 * size, self.sign) {
@@ -289,14 +304,26 @@ impl<'p> Path<'p> {
     }
 
     /// Takes the events on the way to `target` and solves the whole contact there; on the way too, after events that move all of it.
-    fn events_and_settle(&mut self, target: f64, strict: bool) -> Result<(), Halt> {
+    fn events_and_settle(&mut self, target: f64, strict: bool, depth: Depth) -> Result<(), Halt> {
         while let Some(approach) = self.events_until(target)? {
-            self.settle(approach, false, true)?;
-            if approach == target {
+            let there = approach == target;
+            self.settle(approach, false, true, if there { depth } else { self.between() })?;
+            if there {
                 return Ok(());
             }
         }
-        self.settle(target, strict, false)
+        self.settle(target, strict, false, depth)
+    }
+
+    /// How well the whole contact is solved where its state is not asked for: where neighbourhoods hold all spots, as well as they are.
+    fn between(&self) -> Depth {
+        if self.problem().solves_whole() { Depth::Whole } else { Depth::Enough }
+    }
+
+    /// How well it is solved at the end of a stretch. States are asked for on the grid of [`UNIT`] mostly, and wherever a path is bound to go.
+    fn depth(&self, target: f64, bound: Option<f64>) -> Depth {
+        let asked = bound == Some(target) || is_multiple(target, UNIT * self.problem().rms_height_m);
+        if asked { Depth::Whole } else { self.between() }
     }
 
     /// Whether all that was counted is a number: a load that was not must not spoil a sum without a word.

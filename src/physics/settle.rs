@@ -6,9 +6,12 @@ use super::events::{Change, Kind};
 use super::front::work;
 use super::krylov::dot;
 use super::patch::Trace;
-use super::path::{DRIFT, Halt, LATE, Mark, Path, WORST};
+use super::path::{DRIFT, Depth, Halt, LATE, Mark, Path, WORST};
 use super::state::{Status, Totals};
 use crate::model::Interaction;
+
+/// Residual of the whole contact where its state is not asked for, of the mean jump-off penetration.
+const ENOUGH: f64 = 2e-4;
 
 /// What has led the whole contact away from its traces since it was solved last.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,8 +29,13 @@ impl Path<'_> {
     /// if the traces have led too far from it.
     ///
     /// After a jump of the whole contact (`jump`) it went on as its traces had it up to here. Otherwise the difference grew on the way.
-    pub(crate) fn settle(&mut self, target: f64, strict: bool, jump: bool) -> Result<(), Halt> {
+    pub(crate) fn settle(&mut self, target: f64, strict: bool, jump: bool, depth: Depth) -> Result<(), Halt> {
         let problem = self.problem();
+        let tolerance = match depth {
+            Depth::Whole => problem.tolerance_m(),
+            Depth::Enough => ENOUGH * self.scale(),
+        };
+        self.solved = depth;
         self.solver.begin();
         let mut rounds = 0;
         let mut uncovering: Option<(Mark, Vec<usize>)> = None;
@@ -44,7 +52,7 @@ impl Path<'_> {
             if !strange {
                 self.log.drift_m = self.log.drift_m.max(first.residual_m);
             }
-            let found = self.solver.newton(&mut self.front.state, first, !strict).and_then(|()| {
+            let found = self.solver.newton(&mut self.front.state, first, !strict, tolerance).and_then(|()| {
                 let rates = self.finite_rates(first)?;
                 let stable = self.front.state.stability > 0.0;
                 if stable { Ok(rates) } else { Err(Unsettled { residual_m: f64::NAN, ..first }) }
@@ -116,7 +124,10 @@ impl Path<'_> {
 
     /// Rates of the spots at the equilibrium that was evaluated last; where they are no numbers, `first` tells why.
     fn finite_rates(&mut self, first: Unsettled) -> Result<Vec<f64>, Unsettled> {
-        let rates = self.solver.rates(&mut self.front.state);
+        let rates = match self.solved {
+            Depth::Whole => self.solver.rates(&mut self.front.state),
+            Depth::Enough => self.solver.rough_rates(&mut self.front.state),
+        };
         if rates.iter().all(|rate| rate.is_finite()) { Ok(rates) } else { Err(first) }
     }
 
@@ -268,7 +279,7 @@ impl Path<'_> {
             self.front.traces[i].value = f64::NAN;
         }
         self.log.work_j += self.totals.load_n * (target - self.settled_at);
-        self.settle(target, false, true)
+        self.settle(target, false, true, Depth::Whole)
     }
 
     /// Writes changes of one relaxation down; its energy is the first one's.

@@ -113,6 +113,11 @@ impl Problem {
         })
     }
 
+    /// Whether neighbourhoods hold all summits.
+    pub(crate) fn solves_whole(&self) -> bool {
+        self.spots_in_patch >= self.summits
+    }
+
     /// Residual at which a state counts as an equilibrium \[m\].
     #[must_use]
     pub fn tolerance_m(&self) -> f64 {

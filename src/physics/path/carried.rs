@@ -5,7 +5,7 @@ use super::super::front::Front;
 use super::super::interaction::Effort;
 use super::super::log::{Event, Log};
 use super::super::state::{Problem, State, Totals};
-use super::{Halt, Path};
+use super::{Depth, Halt, Path, UNIT};
 
 /// Longest stretch, of the mean jump-off penetration.
 const STRETCH: f64 = 0.05;
@@ -40,9 +40,9 @@ impl Carried {
         let off = summits.iter().map(|a| a.jump_off_penetration().abs()).sum::<f64>() / summits.len() as f64;
         // Where adhesion is next to nothing, the roughness sets the scale.
         let off = off.max(LEAST_SCALE * problem.rms_height_m);
-        // A power of two of a hundredth of the rms height, so that round steps of the approach end stretches.
-        let unit = 0.01 * problem.rms_height_m;
-        let share = if problem.spots_in_patch >= summits.len() { FINE_STRETCH } else { STRETCH };
+        // A power of two of the unit, so that round steps of the approach end stretches.
+        let unit = UNIT * problem.rms_height_m;
+        let share = if problem.solves_whole() { FINE_STRETCH } else { STRETCH };
         let longest = unit * (share * off / unit).log2().floor().exp2();
         Self {
             state,
@@ -74,7 +74,7 @@ impl<'p> Path<'p> {
         for (mine, flips) in path.flips.iter_mut().zip(carried.flips) {
             *mine = flips;
         }
-        match path.settle(approach, false, true) {
+        match path.settle(approach, false, true, Depth::Whole) {
             Ok(()) => {
                 path.log.drift_m = drift;
                 Ok(path)
