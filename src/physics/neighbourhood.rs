@@ -157,8 +157,15 @@ impl Path<'_> {
         }
     }
 
-    /// Lag of a spot \[m\], with what has come from afar.
-    pub(crate) fn whole_lag(&self, i: usize) -> f64 {
+    /// Lags of all spots, with what has come from afar.
+    pub(crate) fn gather_lags(&mut self) {
+        for k in 0..self.front.state.contacts.len() {
+            let i = self.front.state.contacts[k];
+            self.whole_lags[i] = self.whole_lag(i);
+        }
+    }
+
+    fn whole_lag(&self, i: usize) -> f64 {
         let problem = self.problem();
         let place = &problem.positions[i];
         let afar = self.ripples[self.heard[i]..].iter().filter(|ripple| ripple.passes(problem, place));

@@ -2,6 +2,17 @@
 
 use super::interaction::ewald::IMAGES;
 
+/// The shortest of the ways that differ by whole sides, from one between two places on the square: no rounding, which is a call of a function.
+fn nearest_image(way: f64, side: f64) -> f64 {
+    if way > 0.5 * side {
+        way - side
+    } else if way < -0.5 * side {
+        way + side
+    } else {
+        way
+    }
+}
+
 /// Asperities on the square, by cells of two mean spacings.
 #[derive(Clone)]
 pub(crate) struct Neighbours {
@@ -78,7 +89,7 @@ impl Neighbours {
     pub(crate) fn apart(&self, p: &[f64; 2], q: &[f64; 2]) -> [f64; 2] {
         [0, 1].map(|k| {
             let d = p[k] - q[k];
-            if self.periodic { d - self.length * (d / self.length).round_ties_even() } else { d }
+            if self.periodic { nearest_image(d, self.length) } else { d }
         })
     }
 
@@ -92,10 +103,7 @@ impl Neighbours {
         if !self.periodic {
             return 0.0;
         }
-        let [x, y] = [0, 1].map(|k| {
-            let d = (p[k] - q[k]) / self.length;
-            d - d.round_ties_even()
-        });
+        let [x, y] = [0, 1].map(|k| nearest_image((p[k] - q[k]) / self.length, 1.0));
         IMAGES.at(x, y) / self.length
     }
 

@@ -103,6 +103,8 @@ pub(crate) struct Path<'p> {
     /// Displacement under each spot since the whole contact was solved, as far as it does not know it yet \[m\]; what all that will do to the
     /// load \[N\], and the approach from which on it has been counted \[m\].
     pub(crate) lags: Vec<f64>,
+    /// The same with what has come from afar, when the whole contact is being solved \[m\].
+    pub(crate) whole_lags: Vec<f64>,
     pub(crate) far: f64,
     pub(crate) far_at: f64,
     /// Spots that lag too far.
@@ -171,6 +173,7 @@ impl<'p> Path<'p> {
             ripples: Vec::new(),
             heard: vec![0; n],
             lags: vec![0.0; n],
+            whole_lags: vec![0.0; n],
             far: 0.0,
             far_at: approach,
             urgent: Vec::new(),

@@ -36,6 +36,7 @@ impl Path<'_> {
             Depth::Enough => ENOUGH * self.scale(),
         };
         self.solved = depth;
+        self.gather_lags();
         self.solver.begin();
         let mut rounds = 0;
         let mut uncovering: Option<(Mark, Vec<usize>)> = None;
@@ -141,7 +142,7 @@ impl Path<'_> {
     /// Whether the traces have led too far from the equilibrium of the whole contact, but for what they were known to lack.
     fn astray(&self) -> bool {
         let contacts = &self.front.state.contacts;
-        let off: Vec<f64> = contacts.iter().zip(&self.solver.residual).map(|(&i, residual)| residual + self.whole_lag(i)).collect();
+        let off: Vec<f64> = contacts.iter().zip(&self.solver.residual).map(|(&i, residual)| residual + self.whole_lags[i]).collect();
         let worst = off.iter().map(|r| r.abs()).fold(0.0, f64::max);
         let rms = (dot(&off, &off) / off.len().max(1) as f64).sqrt();
         worst > WORST * self.scale() || rms > DRIFT * self.scale()
@@ -175,7 +176,7 @@ impl Path<'_> {
                     let expected = asperity.gripping(to.grip);
                     let more = asperity.load(a) - expected.load(expected.radius_ahead(to.value));
                     if shifted.is_none() {
-                        relaxed += 0.5 * self.whole_lag(i) * more;
+                        relaxed += 0.5 * self.whole_lags[i] * more;
                     }
                     grown += more;
                 }

@@ -50,14 +50,14 @@ impl Pairs {
         self.rest.clear();
         self.kernel.clear();
         self.low.clear();
-        let mut found = Found::default();
+        let (mut found, mut rests) = (Found::default(), Vec::new());
         for place in places {
             self.starts.push(self.spots.len());
             self.exact.push(self.r.len());
             self.waiting.clear();
             for group in groups {
                 group.find(measure, place, &mut found);
-                enter(self, group, measure, place, &found, aloof);
+                enter(self, group, measure, place, &found, aloof, &mut rests);
             }
             self.spots.extend_from_slice(&self.waiting);
         }
@@ -91,11 +91,29 @@ impl Pairs {
 
 /// Enters the sources that were found near a target.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-fn enter(pairs: &mut Pairs, group: &Group, measure: Measure, place: [f64; 2], found: &Found, aloof: &[f64]) {
+fn enter(
+    pairs: &mut Pairs,
+    group: &Group,
+    measure: Measure,
+    place: [f64; 2],
+    found: &Found,
+    aloof: &[f64],
+    rests: &mut Vec<[f64; ORDERS]>,
+) {
     let length = measure.length;
-    for (&number, &square) in found.numbers.iter().zip(&found.r2) {
+    let count = found.numbers.len();
+    pairs.spots.reserve(count);
+    pairs.r.reserve(count);
+    pairs.inverse_r.reserve(count);
+    pairs.rest.reserve(count);
+    pairs.kernel.reserve(count);
+    pairs.low.reserve(count);
+    pairs.waiting.reserve(count);
+    // All at once, before any branch is to be guessed.
+    rests.clear();
+    rests.extend(found.numbers.iter().zip(&found.r2).map(|(number, square)| group.rest_at(measure, place, *number, *square)));
+    for ((&number, &square), &rest) in found.numbers.iter().zip(&found.r2).zip(&*rests) {
         let spot = group.spots[number];
-        let rest = group.rest_at(measure, place, number, square);
         // A spot does not act on its own centre: its field is felt there as from far away, and what the mesh has of it is taken off with all digits.
         let r = if square > 0.0 { square.sqrt() } else { AWAY };
         if r < aloof[spot] || square == 0.0 {
