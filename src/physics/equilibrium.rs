@@ -44,6 +44,8 @@ pub(crate) struct Solver<'p> {
     pub(crate) effort: Effort,
     spots: Spots,
     tangent: Tangent,
+    /// What is known of the places of free asperities against the spots.
+    watched: Tangent,
     /// An approximate inverse of the tangent as it was when the solution began.
     inverse: Option<LocalInverse>,
     /// Whether the tangent is that of the state that was evaluated last.
@@ -62,6 +64,7 @@ impl<'p> Solver<'p> {
             effort: Effort::default(),
             spots: Spots::default(),
             tangent: Tangent::default(),
+            watched: Tangent::default(),
             inverse: None,
             fresh: false,
             residual: Vec::new(),
@@ -72,7 +75,6 @@ impl<'p> Solver<'p> {
 
     /// Before a solution that is to owe nothing to those before it.
     pub(crate) fn begin(&mut self) {
-        self.tangent.forget();
         self.inverse = None;
     }
 
@@ -274,7 +276,7 @@ impl<'p> Solver<'p> {
         let problem = self.problem;
         problem.spots(state, &mut self.spots);
         let (mut displacement, mut slopes) = (Vec::new(), Vec::new());
-        problem.field.approach(&self.spots, rates, wanted, &mut displacement, &mut slopes, &mut self.effort);
+        problem.field.approach(&self.spots, rates, wanted, &mut displacement, &mut slopes, &mut self.watched, &mut self.effort);
         let at = state.approach_m;
         let pairs = displacement.iter().zip(&slopes).zip(wanted);
         pairs

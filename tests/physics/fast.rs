@@ -114,8 +114,8 @@ fn law_the_slope_along_a_path_is_a_difference() {
     let direct = DirectSum::new(positions.clone(), LENGTH, &PAPER, Kind::Spots, Boundary::Periodic, Slips::default());
     let fast = FastSum::new(positions, LENGTH, &PAPER, Kind::Spots, Slips::default(), 1e-9);
     let (mut want, mut want_slopes, mut got, mut slopes) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    direct.approach(&spots, &rates, &targets, &mut want, &mut want_slopes, &mut Effort::default());
-    fast.approach(&spots, &rates, &targets, &mut got, &mut slopes, &mut Effort::default());
+    direct.approach(&spots, &rates, &targets, &mut want, &mut want_slopes, &mut Tangent::default(), &mut Effort::default());
+    fast.approach(&spots, &rates, &targets, &mut got, &mut slopes, &mut Tangent::default(), &mut Effort::default());
     assert_eq!(want, displacements(&direct, &spots, &targets));
     assert!(error(&got, &want) < 1e-9);
     assert!(error(&slopes, &want_slopes) < ROUGH);
@@ -124,6 +124,61 @@ fn law_the_slope_along_a_path_is_a_difference() {
     let mut product = vec![0.0; 300];
     tangent.product(&rates, &mut product);
     assert!(error(&want_slopes[..100], &product[200..]) < 1e-13);
+}
+
+#[test]
+fn law_places_that_are_taken_over_are_as_if_found_anew() {
+    let mut dice = Dice(12);
+    let positions: Vec<[f64; 2]> = (0..900).map(|_| [LENGTH * dice.roll(), LENGTH * dice.roll()]).collect();
+    let shapes: Vec<[f64; 2]> = (0..700).map(|_| [4e-5 * (0.05 + 0.5 * dice.roll().powi(2)), 1.0 + 5.0 * dice.roll()]).collect();
+    // Some of the spots, of other radii than at first.
+    let some = |wanted: &dyn Fn(usize) -> bool, scale: &dyn Fn(usize) -> f64| {
+        let mut spots = Spots { index: (0..700).filter(|i| wanted(*i)).collect(), ..Spots::default() };
+        let of = |i: &usize| {
+            let ([a, flatness], [x, y]) = (shapes[*i], positions[*i]);
+            let (jkr, a) = (Asperity::new(a * flatness, &PAPER).unwrap(), scale(*i) * a);
+            Spot { x, y, a, radius: jkr.radius_m(), load: jkr.load(a), load_slope: jkr.load_slope(a) }
+        };
+        spots.columns.set(spots.index.iter().map(of).collect::<Vec<_>>().into_iter());
+        spots
+    };
+    let way = [
+        some(&|i| i < 600, &|_| 1.0),
+        // A little larger; one that has gone and one that has come.
+        some(&|i| i <= 600 && i != 17, &|_| 1.02),
+        // Some come, some go, some are too large for what was found, some much smaller.
+        some(&|i| i % 19 != 3 && i < 640, &|i| [1.0, 1.3, 0.4, 1.04][i % 4]),
+        // The same again, and then so many others that all is found anew.
+        some(&|i| i % 19 != 3 && i < 640, &|i| [1.0, 1.3, 0.4, 1.04][i % 4]),
+        some(&|i| i % 3 != 0, &|_| 1.0),
+    ];
+    for kind in [Kind::Spots, Kind::Point] {
+        let direct = DirectSum::new(positions.clone(), LENGTH, &PAPER, kind, Boundary::Periodic, Slips::default());
+        let fast = FastSum::new(positions.clone(), LENGTH, &PAPER, kind, Slips::default(), 1e-9);
+        let (mut tangent, mut kept) = (Tangent::default(), Tangent::default());
+        for (step, spots) in way.iter().enumerate() {
+            let n = spots.index.len();
+            let mut got = Vec::new();
+            fast.linearise(spots, &mut got, &mut tangent, &mut Effort::default());
+            let (want, exact) = linearised(&direct, spots);
+            let off = error(&got, &want);
+            assert!(off < 1e-9, "{kind:?}, step {step}: {off:e}");
+            let mut dice = Dice(step as u64);
+            let x: Vec<f64> = (0..n).map(|_| dice.roll() - 0.5).collect();
+            let (mut want, mut got) = (vec![0.0; n], vec![0.0; n]);
+            exact.product(&x, &mut want);
+            tangent.product(&x, &mut got);
+            let off = error(&got, &want);
+            assert!(off < ROUGH, "{kind:?}, step {step}, tangent: {off:e}");
+            // At other places, which change too.
+            let targets: Vec<usize> = (0..900).filter(|i| i % 11 != step && !spots.index.contains(i)).collect();
+            let (mut want, mut want_slopes, mut got, mut slopes) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+            direct.approach(spots, &x, &targets, &mut want, &mut want_slopes, &mut Tangent::default(), &mut Effort::default());
+            fast.approach(spots, &x, &targets, &mut got, &mut slopes, &mut kept, &mut Effort::default());
+            let off = [error(&got, &want), error(&slopes, &want_slopes)];
+            assert!(off[0] < 1e-9 && off[1] < ROUGH, "{kind:?}, step {step}, other places: {off:?}");
+        }
+    }
 }
 
 #[test]

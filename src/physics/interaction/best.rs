@@ -91,8 +91,9 @@ impl Interaction for Best {
         targets: &[usize],
         displacements: &mut Vec<f64>,
         slopes: &mut Vec<f64>,
+        kept: &mut Tangent,
         effort: &mut Effort,
     ) {
-        self.for_targets(spots, targets).approach(spots, rates, targets, displacements, slopes, effort);
+        self.for_targets(spots, targets).approach(spots, rates, targets, displacements, slopes, kept, effort);
     }
 }

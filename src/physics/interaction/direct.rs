@@ -347,6 +347,7 @@ impl Interaction for DirectSum {
         targets: &[usize],
         displacements: &mut Vec<f64>,
         slopes: &mut Vec<f64>,
+        _kept: &mut Tangent,
         effort: &mut Effort,
     ) {
         displacements.clear();

@@ -66,14 +66,6 @@ impl Tangent {
         }
     }
 
-    /// What it keeps of the places of the spots from one linearisation to the next is to be found anew: the digits of a solution are to depend on where
-    /// it began, and not on what was solved before.
-    pub(crate) fn forget(&mut self) {
-        if let Form::Sparse(sparse) = &mut self.0 {
-            sparse.forget();
-        }
-    }
-
     /// Whether it has all digits; made fast, it has some.
     #[must_use]
     pub fn is_exact(&self) -> bool {
@@ -146,7 +138,7 @@ pub trait Interaction: Sync {
     /// centre, but its periodic images and the background do.
     fn displacements(&self, spots: &Spots, targets: &[usize], displacements: &mut Vec<f64>, effort: &mut Effort);
 
-    /// Displacements at the spots themselves, with the tangent.
+    /// Displacements at the spots themselves, with the tangent. What this has kept of places is taken over.
     fn linearise(&self, spots: &Spots, displacements: &mut Vec<f64>, tangent: &mut Tangent, effort: &mut Effort);
 
     /// Displacements at the spots themselves, by what the tangent, which stays as it is, has kept of their places.
@@ -155,7 +147,7 @@ pub trait Interaction: Sync {
     }
 
     /// Displacement at each of `targets` and its derivative along a path on which the radii of the spots change by `rates`:
-    /// `dŵ_i = Σ_j (∂ŵ_i/∂a_j) rates_j`. With `rates` = da_j/dδ it is dŵ_i/dδ.
+    /// `dŵ_i = Σ_j (∂ŵ_i/∂a_j) rates_j`. With `rates` = da_j/dδ it is dŵ_i/dδ. What it finds of places is `kept` for the next time.
     fn approach(
         &self,
         spots: &Spots,
@@ -163,6 +155,7 @@ pub trait Interaction: Sync {
         targets: &[usize],
         displacements: &mut Vec<f64>,
         slopes: &mut Vec<f64>,
+        kept: &mut Tangent,
         effort: &mut Effort,
     );
 }

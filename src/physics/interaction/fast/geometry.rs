@@ -4,63 +4,93 @@ use super::super::Spots;
 use super::super::ewald::ORDERS;
 use super::mesh::{Level, Loads, Reader, Real, Work, read, splines, transform};
 use super::near::{Group, Rest};
-use super::pairs::{Pairs, Sources};
+use super::pairs::{GONE, Known, Pairs, Sources, TOGETHER, Target};
 use super::plan::{Accuracy, Mesh, Plan, ROUGH_ORDERS, ROUGH_WIDTH, WIDTH};
 use super::{Effort, FastSum, MARGIN, REACHES, level};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Targets that one thread takes at a time.
-const TOGETHER: usize = 64;
+/// Share of the spots, or of the targets, by which their number may have changed until all is found anew.
+const CHANGE: f64 = 0.2;
+
+/// How far the greatest radius that a spot's pairs serve may be beyond its own, over what it was when they were found.
+const LOOSE: f64 = 2.0;
 
 /// Near pairs of all targets, sources on meshes and readers there.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Geometry {
-    /// Of which spots, where, and up to which radii it serves \[m\].
+    /// Of which spots, where, and up to which radii it serves \[m\]; at which targets.
     index: Vec<usize>,
     places: Vec<[f64; 2]>,
     limits: Vec<f64>,
+    targets: Vec<usize>,
     accuracy: Option<Accuracy>,
-    /// So many targets by each, in their order.
+    /// The finest reach, and for how many spots and targets it was chosen.
+    finest: usize,
+    chosen_for: [usize; 2],
+    /// So many targets by each, in their order; and what was before.
     pairs: Vec<Pairs>,
+    old: Vec<Pairs>,
     fine: Meshes<f64, WIDTH, ORDERS>,
     rough: Meshes<f32, ROUGH_WIDTH, ROUGH_ORDERS>,
 }
 
 impl FastSum {
-    /// Finds the geometry of spots and targets.
+    /// Finds the geometry of spots and targets, both ascending: what it was before is taken over.
     pub(super) fn place(&self, spots: &Spots, targets: &[usize], geometry: &mut Geometry) {
         let columns = &spots.columns;
         let length = self.measure.length;
-        geometry.index.clone_from(&spots.index);
-        geometry.places = (0..columns.len()).map(|j| [columns.x[j], columns.y[j]]).collect();
-        geometry.limits = columns.a[..columns.len()].iter().map(|a| MARGIN * a).collect();
-        geometry.accuracy = Some(self.accuracy);
+        let kept = geometry.keep(self, spots, targets);
         let shortest: Vec<Option<usize>> = geometry.limits.iter().map(|limit| self.shortest(*limit)).collect();
-        let finest = self.finest(&shortest, columns, targets.len());
+        if kept.is_none() {
+            geometry.finest = self.finest(&shortest, columns, targets.len());
+            geometry.chosen_for = [spots.index.len(), targets.len()];
+        }
+        let finest = geometry.finest;
         let mut members: [Vec<usize>; REACHES] = Default::default();
         let mut large = Vec::new();
         for (j, shortest) in shortest.iter().enumerate() {
             shortest.and_then(|shortest| level(finest, shortest)).map_or(&mut large, |step| &mut members[step]).push(j);
         }
-        let (mut groups, mut levels) = (Vec::new(), Vec::new());
+        let changed = |members: &[usize]| match &kept {
+            Some(kept) => members.iter().copied().filter(|j| !kept.stays[*j]).collect(),
+            None => Vec::new(),
+        };
+        let (mut all, mut others, mut levels) = (Vec::new(), Vec::new(), Vec::new());
+        let mut group = |rest: Rest, members: &[usize]| {
+            let few: Vec<usize> = changed(members);
+            if !few.is_empty() {
+                others.push(Group::new(rest.clone(), &few, columns, length));
+            }
+            all.push(Group::new(rest, members, columns, length));
+        };
         for (step, members) in members.into_iter().enumerate().rev() {
             if !members.is_empty() {
                 let plan = self.plan(step);
-                groups.push(Group::new(Rest::Mesh(plan.clone()), &members, columns, length));
+                group(Rest::Mesh(plan.clone()), &members);
                 levels.push((plan, members));
             }
         }
         if !large.is_empty() {
-            groups.push(Group::new(Rest::Images, &large, columns, length));
+            group(Rest::Images, &large);
         }
         // By its moments a spot is felt that is felt by nothing else: with point interaction all are.
         let aloof = if self.measure.kind == super::Kind::Spots { self.accuracy.aloof } else { 0.0 };
         let aloof: Vec<f64> = geometry.limits.iter().map(|limit| aloof * limit).collect();
+        std::mem::swap(&mut geometry.pairs, &mut geometry.old);
+        let before = kept.as_ref().map(|kept| kept.targets.as_slice());
+        let numbers = kept.as_ref().map_or(&[][..], |kept| &kept.numbers);
+        let known = Known { pairs: &geometry.old, numbers, changed: &others };
         geometry.pairs.resize_with(targets.len().div_ceil(TOGETHER), Pairs::default);
-        geometry.pairs.par_iter_mut().zip(targets.par_chunks(TOGETHER)).for_each(|(pairs, targets)| {
-            pairs.find(targets.iter().map(|target| self.positions[*target]), &groups, self.measure, &aloof);
+        geometry.pairs.par_iter_mut().enumerate().zip(targets.par_chunks(TOGETHER)).for_each(|((chunk, pairs), targets)| {
+            let target = |(k, target): (usize, &usize)| Target {
+                place: self.positions[*target],
+                before: before.and_then(|before| before[chunk * TOGETHER + k]),
+            };
+            pairs.find(targets.iter().enumerate().map(target), known, &all, self.measure, &aloof);
         });
+        geometry.targets.clear();
+        geometry.targets.extend_from_slice(targets);
         let targets: Vec<[f64; 2]> = targets.iter().map(|target| self.positions[*target].map(|p| p / length)).collect();
         let sources: Vec<[f64; 2]> = geometry.places.iter().map(|place| place.map(|p| p / length)).collect();
         geometry.fine = Meshes::new(&levels, |plan| &plan.fine, &sources, &targets);
@@ -68,7 +98,57 @@ impl FastSum {
     }
 }
 
+/// What of a geometry is still as it was.
+struct Kept {
+    /// Which spots.
+    stays: Vec<bool>,
+    /// The new numbers of the spots that there were.
+    numbers: Vec<u32>,
+    /// The numbers that targets had.
+    targets: Vec<Option<usize>>,
+}
+
+/// The places of ascending numbers in another such list.
+fn places_in<'a>(numbers: &'a [usize], others: &'a [usize]) -> impl Iterator<Item = Option<usize>> + 'a {
+    let mut at = 0;
+    numbers.iter().map(move |number| {
+        while others.get(at).is_some_and(|other| other < number) {
+            at += 1;
+        }
+        (others.get(at) == Some(number)).then_some(at)
+    })
+}
+
 impl Geometry {
+    /// Goes over to other spots and targets; what is still as it was, if most is.
+    fn keep(&mut self, field: &FastSum, spots: &Spots, targets: &[usize]) -> Option<Kept> {
+        let columns = &spots.columns;
+        let near = |now: usize, then: usize| (now as f64 - then as f64).abs() <= CHANGE * then as f64;
+        let same = self.accuracy == Some(field.accuracy);
+        let serves = same && near(spots.index.len(), self.chosen_for[0]) && near(targets.len(), self.chosen_for[1]);
+        let ascending = |list: &[usize]| list.is_sorted();
+        let serves = serves && [&spots.index, targets, &self.index, &self.targets].into_iter().all(ascending);
+        let places: Vec<[f64; 2]> = (0..columns.len()).map(|j| [columns.x[j], columns.y[j]]).collect();
+        let mut kept = serves.then(|| Kept {
+            stays: vec![false; spots.index.len()],
+            numbers: vec![GONE; self.index.len()],
+            targets: places_in(targets, &self.targets).collect(),
+        });
+        let mut limits: Vec<f64> = columns.a[..columns.len()].iter().map(|a| MARGIN * a).collect();
+        if let Some(kept) = &mut kept {
+            for (j, before) in places_in(&spots.index, &self.index).enumerate() {
+                let Some(before) = before else { continue };
+                let limit = self.limits[before];
+                if self.places[before] == places[j] && (columns.a[j]..LOOSE * limits[j]).contains(&limit) {
+                    (kept.stays[j], kept.numbers[before], limits[j]) = (true, j as u32, limit);
+                }
+            }
+        }
+        self.index.clone_from(&spots.index);
+        (self.places, self.limits, self.accuracy) = (places, limits, Some(field.accuracy));
+        kept
+    }
+
     /// Whether it is that of the spots at themselves, and none of them has grown too large for it.
     pub(super) fn serves(&self, field: &FastSum, spots: &Spots) -> bool {
         let columns = &spots.columns;
@@ -77,10 +157,6 @@ impl Geometry {
             && self.index == spots.index
             && self.places.iter().enumerate().all(|(j, known)| *known == place(j))
             && self.limits.iter().zip(&columns.a).all(|(limit, a)| a <= limit)
-    }
-
-    pub(super) fn forget(&mut self) {
-        self.accuracy = None;
     }
 
     fn count(&self, effort: &mut Effort) {

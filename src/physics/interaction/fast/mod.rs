@@ -176,6 +176,7 @@ impl Interaction for FastSum {
         targets: &[usize],
         displacements: &mut Vec<f64>,
         slopes: &mut Vec<f64>,
+        kept: &mut Tangent,
         effort: &mut Effort,
     ) {
         for values in [&mut *displacements, &mut *slopes] {
@@ -183,12 +184,14 @@ impl Interaction for FastSum {
             values.resize(targets.len(), 0.0);
         }
         if self.acts(spots) {
-            let mut geometry = Geometry::default();
-            self.place(spots, targets, &mut geometry);
+            let mut sparse = kept.take_sparse();
+            self.place(spots, targets, &mut sparse.geometry);
             let (moments, shapes) = (self.moments(spots), shapes(&spots.columns));
             let sources = Sources { measure: self.measure, shapes: &shapes, moments: &moments };
-            geometry.linearise(sources, &mut Work::default(), displacements, effort);
-            geometry.product(Loads { moments: &moments.slope, factors: Some(rates) }, &mut Work::default(), slopes);
+            let Sparse { geometry, fine, rough, .. } = &mut *sparse;
+            geometry.linearise(sources, fine, displacements, effort);
+            geometry.product(Loads { moments: &moments.slope, factors: Some(rates) }, rough.get_mut(), slopes);
+            kept.set_sparse(sparse);
         }
     }
 
@@ -245,10 +248,5 @@ impl Sparse {
 
     pub(super) fn own(&self, i: usize) -> f64 {
         self.own[i]
-    }
-
-    /// The pairs are to be found anew.
-    pub(super) fn forget(&mut self) {
-        self.geometry.forget();
     }
 }

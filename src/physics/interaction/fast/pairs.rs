@@ -19,6 +19,27 @@ pub(super) struct Sources<'a> {
     pub(super) moments: &'a Moments,
 }
 
+/// Targets that one thread takes at a time.
+pub(super) const TOGETHER: usize = 64;
+
+/// The new number of a source that is no longer what it was.
+pub(super) const GONE: u32 = u32::MAX;
+
+/// A target, and its number when pairs were found last, if it was one.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Target {
+    pub(super) place: [f64; 2],
+    pub(super) before: Option<usize>,
+}
+
+/// What was found before: pairs of so many targets by each, the new numbers of its sources, and the sources that are others than then.
+#[derive(Clone, Copy)]
+pub(super) struct Known<'a> {
+    pub(super) pairs: &'a [Pairs],
+    pub(super) numbers: &'a [u32],
+    pub(super) changed: &'a [Group],
+}
+
 /// The near pairs of some targets. The entries of a target are its sources: first those that are felt by their exact fields, then those by moments.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Pairs {
@@ -40,8 +61,8 @@ pub(super) struct Pairs {
 }
 
 impl Pairs {
-    /// Enters the near pairs of some targets, at their places \[m\], anew. A source is felt by its moments from `aloof` \[m\] on, by its number.
-    pub(super) fn find(&mut self, places: impl Iterator<Item = [f64; 2]>, groups: &[Group], measure: Measure, aloof: &[f64]) {
+    /// Enters the near pairs of some targets anew. A source is felt by its moments from `aloof` \[m\] on, by its number.
+    pub(super) fn find(&mut self, targets: impl Iterator<Item = Target>, known: Known<'_>, all: &[Group], measure: Measure, aloof: &[f64]) {
         self.starts.clear();
         self.exact.clear();
         self.spots.clear();
@@ -51,10 +72,14 @@ impl Pairs {
         self.kernel.clear();
         self.low.clear();
         let (mut found, mut rests) = (Found::default(), Vec::new());
-        for place in places {
+        for Target { place, before } in targets {
             self.starts.push(self.spots.len());
             self.exact.push(self.r.len());
             self.waiting.clear();
+            let groups = before.map_or(all, |target| {
+                self.take(known, target);
+                known.changed
+            });
             for group in groups {
                 group.find(measure, place, &mut found);
                 enter(self, group, measure, place, &found, aloof, &mut rests);
@@ -63,6 +88,44 @@ impl Pairs {
         }
         self.starts.push(self.spots.len());
         self.exact.push(self.r.len());
+    }
+
+    /// Takes over the entries of a target whose sources are still what they were.
+    fn take(&mut self, known: Known<'_>, target: usize) {
+        let (old, k) = (&known.pairs[target / TOGETHER], target % TOGETHER);
+        let exact = old.exact[k]..old.exact[k + 1];
+        let (from, to) = (old.starts[k], old.starts[k + 1]);
+        let middle = from + exact.len();
+        let far = from - exact.start..to - exact.end;
+        self.reserve(to - from);
+        for (spot, at) in old.spots[from..middle].iter().zip(exact) {
+            let spot = known.numbers[*spot as usize];
+            if spot != GONE {
+                self.spots.push(spot);
+                self.r.push(old.r[at]);
+                self.inverse_r.push(old.inverse_r[at]);
+                self.rest.push(old.rest[at]);
+            }
+        }
+        for (spot, at) in old.spots[middle..to].iter().zip(far) {
+            let spot = known.numbers[*spot as usize];
+            if spot != GONE {
+                self.waiting.push(spot);
+                self.kernel.push(old.kernel[at]);
+                self.low.push(old.low[at]);
+            }
+        }
+    }
+
+    /// Makes room for so many entries of one target.
+    fn reserve(&mut self, count: usize) {
+        self.spots.reserve(count);
+        self.r.reserve(count);
+        self.inverse_r.reserve(count);
+        self.rest.reserve(count);
+        self.kernel.reserve(count);
+        self.low.reserve(count);
+        self.waiting.reserve(count);
     }
 
     /// How many entries there are.
@@ -101,14 +164,7 @@ fn enter(
     rests: &mut Vec<[f64; ORDERS]>,
 ) {
     let length = measure.length;
-    let count = found.numbers.len();
-    pairs.spots.reserve(count);
-    pairs.r.reserve(count);
-    pairs.inverse_r.reserve(count);
-    pairs.rest.reserve(count);
-    pairs.kernel.reserve(count);
-    pairs.low.reserve(count);
-    pairs.waiting.reserve(count);
+    pairs.reserve(found.numbers.len());
     // All at once, before any branch is to be guessed.
     rests.clear();
     rests.extend(found.numbers.iter().zip(&found.r2).map(|(number, square)| group.rest_at(measure, place, *number, *square)));
