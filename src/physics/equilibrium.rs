@@ -276,7 +276,8 @@ impl<'p> Solver<'p> {
         let problem = self.problem;
         problem.spots(state, &mut self.spots);
         let (mut displacement, mut slopes) = (Vec::new(), Vec::new());
-        problem.field.approach(&self.spots, rates, wanted, &mut displacement, &mut slopes, &mut self.watched, &mut self.effort);
+        let found = [&mut displacement, &mut slopes];
+        problem.field.approach(&self.spots, rates, wanted, found, &mut self.watched, &mut self.effort);
         let at = state.approach_m;
         let pairs = displacement.iter().zip(&slopes).zip(wanted);
         pairs

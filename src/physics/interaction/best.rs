@@ -89,11 +89,10 @@ impl Interaction for Best {
         spots: &Spots,
         rates: &[f64],
         targets: &[usize],
-        displacements: &mut Vec<f64>,
-        slopes: &mut Vec<f64>,
+        found: [&mut Vec<f64>; 2],
         kept: &mut Tangent,
         effort: &mut Effort,
     ) {
-        self.for_targets(spots, targets).approach(spots, rates, targets, displacements, slopes, kept, effort);
+        self.for_targets(spots, targets).approach(spots, rates, targets, found, kept, effort);
     }
 }

@@ -345,11 +345,11 @@ impl Interaction for DirectSum {
         spots: &Spots,
         rates: &[f64],
         targets: &[usize],
-        displacements: &mut Vec<f64>,
-        slopes: &mut Vec<f64>,
+        found: [&mut Vec<f64>; 2],
         _kept: &mut Tangent,
         effort: &mut Effort,
     ) {
+        let [displacements, slopes] = found;
         displacements.clear();
         slopes.clear();
         if let Some(mutual) = &spots.mutual {

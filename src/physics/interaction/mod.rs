@@ -147,15 +147,6 @@ pub trait Interaction: Sync {
     }
 
     /// Displacement at each of `targets` and its derivative along a path on which the radii of the spots change by `rates`:
-    /// `dŵ_i = Σ_j (∂ŵ_i/∂a_j) rates_j`. With `rates` = da_j/dδ it is dŵ_i/dδ. What it finds of places is `kept` for the next time.
-    fn approach(
-        &self,
-        spots: &Spots,
-        rates: &[f64],
-        targets: &[usize],
-        displacements: &mut Vec<f64>,
-        slopes: &mut Vec<f64>,
-        kept: &mut Tangent,
-        effort: &mut Effort,
-    );
+    /// `dŵ_i = Σ_j (∂ŵ_i/∂a_j) rates_j`; both into `found`. With `rates` = da_j/dδ it is dŵ_i/dδ. What it finds of places is `kept` for the next time.
+    fn approach(&self, spots: &Spots, rates: &[f64], targets: &[usize], found: [&mut Vec<f64>; 2], kept: &mut Tangent, effort: &mut Effort);
 }

@@ -174,11 +174,11 @@ impl Interaction for FastSum {
         spots: &Spots,
         rates: &[f64],
         targets: &[usize],
-        displacements: &mut Vec<f64>,
-        slopes: &mut Vec<f64>,
+        found: [&mut Vec<f64>; 2],
         kept: &mut Tangent,
         effort: &mut Effort,
     ) {
+        let [displacements, slopes] = found;
         for values in [&mut *displacements, &mut *slopes] {
             values.clear();
             values.resize(targets.len(), 0.0);
