@@ -9,7 +9,7 @@
 
 use super::events::{Change, Moving};
 use super::interaction::{Effort, Interaction as _, Spots, Tangent};
-use super::krylov::{Matrix, gmres, gmres_and_least};
+use super::krylov::{Matrix, alone, gmres, gmres_and_least};
 use super::local::LocalInverse;
 use super::patch::{Hold, Patch, Trace};
 use super::relax::{Relaxing, STRIDE, relax};
@@ -31,6 +31,9 @@ const LEAST: f64 = 1e-5;
 /// The same where the whole contact is solved well enough to go on.
 const ROUGH: f64 = 3e-2;
 
+/// Solutions that one approximate inverse serves.
+const OLD: usize = 4;
+
 /// Why an iteration ended without an equilibrium: the worst residual and its asperity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Unsettled {
@@ -46,8 +49,9 @@ pub(crate) struct Solver<'p> {
     tangent: Tangent,
     /// What is known of the places of free asperities against the spots.
     watched: Tangent,
-    /// An approximate inverse of the tangent as it was when the solution began.
+    /// An approximate inverse of the tangent as it was, and how many solutions have begun since: it only makes them short.
     inverse: Option<LocalInverse>,
+    age: usize,
     /// Whether the tangent is that of the state that was evaluated last.
     fresh: bool,
     /// Residuals of the spots that were evaluated last \[m\].
@@ -66,6 +70,7 @@ impl<'p> Solver<'p> {
             tangent: Tangent::default(),
             watched: Tangent::default(),
             inverse: None,
+            age: 0,
             fresh: false,
             residual: Vec::new(),
             diagonal: Vec::new(),
@@ -73,9 +78,9 @@ impl<'p> Solver<'p> {
         }
     }
 
-    /// Before a solution that is to owe nothing to those before it.
+    /// Before a solution.
     pub(crate) fn begin(&mut self) {
-        self.inverse = None;
+        self.age += 1;
     }
 
     /// Displacements, residuals and tangent of a state; its worst residual and whose it is.
@@ -212,11 +217,17 @@ impl<'p> Solver<'p> {
 
     /// Makes an approximate inverse of the tangent, if there is none of these spots.
     fn invert(&mut self, state: &State) {
-        let Self { problem, tangent, inverse, diagonal, .. } = self;
+        let Self { problem, tangent, inverse, age, diagonal, .. } = self;
         if tangent.is_exact() {
             // A dense tangent is of so few spots that its products cost nothing.
             *inverse = None;
-        } else if inverse.as_ref().is_none_or(|inverse| !inverse.serves(&state.contacts)) {
+            return;
+        }
+        let own = |k: usize| alone(diagonal[k] + tangent.own(k));
+        let known = inverse.take().filter(|_| *age < OLD);
+        *inverse = known.and_then(|known| if known.serves(&state.contacts) { Some(known) } else { known.carried(&state.contacts, own) });
+        if inverse.is_none() {
+            *age = 0;
             *inverse = Some(LocalInverse::new(problem, state, tangent, diagonal));
         }
     }

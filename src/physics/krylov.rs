@@ -112,15 +112,7 @@ fn solve(
     if beta == 0.0 || !beta.is_finite() {
         return x;
     }
-    let scale: Vec<f64> = diagonal
-        .iter()
-        .enumerate()
-        .map(|(i, d)| {
-            let whole = d + tangent.own(i);
-            // A diagonal near zero belongs to a spot near the end of its branch: keep its sign, bound its inverse.
-            if whole.abs() > 1e-3 { 1.0 / whole } else { 1e3f64.copysign(whole) }
-        })
-        .collect();
+    let scale: Vec<f64> = diagonal.iter().enumerate().map(|(i, d)| alone(d + tangent.own(i))).collect();
     let mut basis: Vec<Vec<f64>> = vec![rhs.iter().map(|v| v / beta).collect()];
     let mut hessenberg: Vec<Vec<f64>> = Vec::new();
     let (mut cosines, mut sines): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
@@ -182,6 +174,12 @@ fn solve(
     }
     precondition(inverse, &scale, &x, &mut scaled);
     scaled
+}
+
+/// What a spot alone answers to, its diagonal element being `whole`.
+pub(crate) fn alone(whole: f64) -> f64 {
+    // A diagonal near zero belongs to a spot near the end of its branch: keep its sign, bound its inverse.
+    if whole.abs() > 1e-3 { 1.0 / whole } else { 1e3f64.copysign(whole) }
 }
 
 /// `y` as the approximate inverse answers to `x`, or the inverse of the diagonal.

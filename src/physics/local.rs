@@ -5,12 +5,18 @@
 //! itself with the spots around it, and what comes out for the group itself is kept.
 
 use super::dense::Lu;
-use super::interaction::Tangent;
+use super::interaction::{Tangent, places_in};
 use super::state::{Problem, State, Status};
 
 /// Spots in one group, at most, and spots that are solved together for it.
 const GROUP: usize = 24;
 const TOGETHER: usize = 44;
+
+/// The new place of a spot that has gone.
+const GONE: u32 = u32::MAX;
+
+/// One in so many spots may have come or gone until it is made anew.
+const CHANGES: usize = 20;
 
 /// Distance over radius from which on a spot is felt by its load.
 const ALOOF: f64 = 2.0;
@@ -65,6 +71,39 @@ impl LocalInverse {
     /// Whether it is of these spots.
     pub(crate) fn serves(&self, contacts: &[usize]) -> bool {
         self.index == contacts
+    }
+
+    /// The same for other spots, if most are those that it is of: those that have come answer for themselves, by `own`, their place among all given.
+    pub(crate) fn carried(&self, contacts: &[usize], own: impl Fn(usize) -> f64) -> Option<Self> {
+        let mut places = vec![GONE; self.index.len()];
+        let rows: Vec<Option<usize>> = places_in(contacts, &self.index).collect();
+        let mut changes = contacts.len() + self.index.len();
+        for (k, old) in rows.iter().enumerate().filter_map(|(k, old)| old.map(|old| (k, old))) {
+            places[old] = k as u32;
+            changes -= 2;
+        }
+        if changes * CHANGES > contacts.len() {
+            return None;
+        }
+        let mut found = Self { index: contacts.to_vec(), starts: vec![0], ..Self::default() };
+        found.spots.reserve(self.spots.len());
+        found.values.reserve(self.values.len());
+        for (k, row) in rows.into_iter().enumerate() {
+            if let Some(old) = row {
+                for at in self.starts[old]..self.starts[old + 1] {
+                    let place = places[self.spots[at] as usize];
+                    if place != GONE {
+                        found.spots.push(place);
+                        found.values.push(self.values[at]);
+                    }
+                }
+            } else {
+                found.spots.push(k as u32);
+                found.values.push(own(k) as f32);
+            }
+            found.starts.push(found.spots.len());
+        }
+        Some(found)
     }
 
     /// `y` as it answers to `x`.

@@ -121,6 +121,17 @@ impl Tangent {
     }
 }
 
+/// The places of ascending numbers in another such list.
+pub(crate) fn places_in<'a>(numbers: &'a [usize], others: &'a [usize]) -> impl Iterator<Item = Option<usize>> + 'a {
+    let mut at = 0;
+    numbers.iter().map(move |number| {
+        while others.get(at).is_some_and(|other| other < number) {
+            at += 1;
+        }
+        (others.get(at) == Some(number)).then_some(at)
+    })
+}
+
 /// What it cost: counted, never timed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Effort {

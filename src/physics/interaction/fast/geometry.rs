@@ -1,7 +1,7 @@
 //! Where spots and targets lie to one another: all of the field that does not depend on the radii.
 
-use super::super::Spots;
 use super::super::ewald::ORDERS;
+use super::super::{Spots, places_in};
 use super::mesh::{Level, Loads, Reader, Real, Work, read, splines, transform};
 use super::near::{Group, Rest};
 use super::pairs::{GONE, Known, Pairs, Sources, TOGETHER, Target};
@@ -106,17 +106,6 @@ struct Kept {
     numbers: Vec<u32>,
     /// The numbers that targets had.
     targets: Vec<Option<usize>>,
-}
-
-/// The places of ascending numbers in another such list.
-fn places_in<'a>(numbers: &'a [usize], others: &'a [usize]) -> impl Iterator<Item = Option<usize>> + 'a {
-    let mut at = 0;
-    numbers.iter().map(move |number| {
-        while others.get(at).is_some_and(|other| other < number) {
-            at += 1;
-        }
-        (others.get(at) == Some(number)).then_some(at)
-    })
 }
 
 impl Geometry {
