@@ -151,7 +151,6 @@ fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<CycleInput, Stag
         realization: i64::from(surface.realization),
         steps: campaign.cycle_dir(unit).join("steps.parquet"),
         events: campaign.cycle_dir(unit).join("events.parquet"),
-        turning_steps: Vec::new(),
         energy_scale_j: params.material.contact_modulus_pa * area * params.surface.rms_height_m,
         loss_dk_per_area_j: deng_kesari(&asked.moments(), params, area)?,
         loss_dk_realised_per_area_j: deng_kesari(&realised, params, area)?,

@@ -76,16 +76,11 @@ impl Cycle {
     /// The position in the loading branch of the step at which it turned.
     pub(super) fn turning_row(&self, input: &CycleInput, max_load: f64) -> Result<usize, StatsError> {
         let near = |load: f64| (load - max_load).abs() <= TURNING_TOLERANCE * max_load.abs();
-        let stated = input.turning_steps.iter().find(|(load, _)| near(*load));
-        let row = match stated {
-            Some((_, step)) => self.loading.step.iter().position(|known| known == step),
-            None => {
-                let distance = |load: &f64| (load - max_load).abs();
-                let nearest = self.loading.load.iter().enumerate().min_by(|a, b| distance(a.1).total_cmp(&distance(b.1)));
-                nearest.filter(|(_, load)| near(**load)).map(|(row, _)| row).or_else(|| self.where_unloading_began(max_load))
-            }
-        };
-        row.ok_or_else(|| fault(&input.steps, format!("have no loading step at the turning point {max_load}")))
+        let distance = |load: &f64| (load - max_load).abs();
+        let nearest = self.loading.load.iter().enumerate().min_by(|a, b| distance(a.1).total_cmp(&distance(b.1)));
+        let row = nearest.filter(|(_, load)| near(**load)).map(|(row, _)| row);
+        row.or_else(|| self.where_unloading_began(max_load))
+            .ok_or_else(|| fault(&input.steps, format!("have no loading step at the turning point {max_load}")))
     }
 }
 

@@ -62,8 +62,6 @@ pub struct CycleInput {
     pub steps: PathBuf,
     /// The table of its events.
     pub events: PathBuf,
-    /// The steps at which loading turned, by `max_load`. For a turning point that is not here, the loading step of the nearest load is taken.
-    pub turning_steps: Vec<(f64, i64)>,
     /// `E* A0 h_rms` \[J\], by which energies are made dimensionless.
     pub energy_scale_j: f64,
     /// Θ after Deng and Kesari per unit of `A/A0` \[J\], from the moments of the continuous spectrum.

@@ -138,14 +138,6 @@ fn val_realization_from_work_and_loads() {
 }
 
 #[test]
-fn law_a_stated_turning_step_is_taken() {
-    let mut bench = bench(&[1.0]);
-    bench.cycles[0].turning_steps = vec![(0.004, 2)];
-    let frame = realizations(&bench.cases, &bench.cycles).unwrap();
-    close(row(&frame, "area_at_max_load", 0).unwrap(), 0.03, 1e-15);
-}
-
-#[test]
 fn law_a_load_that_jumps_over_its_turning_point_turns_where_it_jumps() {
     // From 0.0039 the load jumps to 0.0041; unloading begins there, and no loading step has 0.004.
     let bench = bench(&[1.0]);

@@ -132,7 +132,6 @@ pub fn cycle(case_id: &str, realization: i64, steps: &Path, dk_per_area_j: f64) 
         realization,
         steps: steps.to_owned(),
         events: events_path(steps),
-        turning_steps: Vec::new(),
         energy_scale_j: ENERGY_J,
         loss_dk_per_area_j: Some(dk_per_area_j),
         loss_dk_realised_per_area_j: Some(0.93 * dk_per_area_j),

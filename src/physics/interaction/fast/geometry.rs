@@ -153,14 +153,14 @@ impl Geometry {
     }
 
     /// Displacements at the targets.
-    pub(super) fn displacements(&self, sources: Sources<'_>, work: &mut Work<f64>, values: &mut [f64], effort: &mut Effort) {
+    pub(super) fn displacements(&self, sources: &Sources, work: &mut Work<f64>, values: &mut [f64], effort: &mut Effort) {
         self.count(effort);
         self.pairs.par_iter().zip(values.par_chunks_mut(TOGETHER)).for_each(|(pairs, values)| pairs.sums(sources, values));
         self.fine.add(Loads { moments: &sources.moments.value, factors: None }, work, values);
     }
 
     /// The same, and the derivatives for [`Self::product`].
-    pub(super) fn linearise(&mut self, sources: Sources<'_>, work: &mut Work<f64>, values: &mut [f64], effort: &mut Effort) {
+    pub(super) fn linearise(&mut self, sources: &Sources, work: &mut Work<f64>, values: &mut [f64], effort: &mut Effort) {
         self.count(effort);
         self.pairs.par_iter_mut().zip(values.par_chunks_mut(TOGETHER)).for_each(|(pairs, values)| pairs.linearise(sources, values));
         self.fine.add(Loads { moments: &sources.moments.value, factors: None }, work, values);

@@ -118,8 +118,15 @@ impl FastSum {
         (0..REACHES).map(|step| (step, cost(step))).min_by(|(_, a), (_, b)| a.total_cmp(b)).map_or(0, |(step, _)| step)
     }
 
-    fn moments(&self, spots: &Spots) -> Moments {
-        Moments::of(self.measure.kind, &spots.columns, self.measure.pull, self.compliance, self.measure.length)
+    /// The spots as sources, by exact fields and by moments.
+    fn sources(&self, spots: &Spots) -> Sources {
+        let columns = &spots.columns;
+        let shape = |j: usize| [columns.a[j], columns.root_a[j], columns.inverse_root_a[j], columns.inverse_radius[j]];
+        Sources {
+            measure: self.measure,
+            shapes: (0..columns.len()).map(shape).collect(),
+            moments: Moments::of(self.measure.kind, columns, self.measure.pull, self.compliance, self.measure.length),
+        }
     }
 
     /// Whether there is any field.
@@ -151,11 +158,6 @@ fn crowds(columns: &SpotColumns, length: f64) -> [f64; REACHES] {
     })
 }
 
-/// What exact fields want to know of each source.
-fn shapes(columns: &SpotColumns) -> Vec<[f64; 4]> {
-    (0..columns.len()).map(|j| [columns.a[j], columns.root_a[j], columns.inverse_root_a[j], columns.inverse_radius[j]]).collect()
-}
-
 impl Interaction for FastSum {
     fn displacements(&self, spots: &Spots, targets: &[usize], displacements: &mut Vec<f64>, effort: &mut Effort) {
         displacements.clear();
@@ -163,9 +165,8 @@ impl Interaction for FastSum {
         if self.acts(spots) {
             let mut geometry = Geometry::default();
             self.place(spots, targets, &mut geometry);
-            let (moments, shapes) = (self.moments(spots), shapes(&spots.columns));
-            let sources = Sources { measure: self.measure, shapes: &shapes, moments: &moments };
-            geometry.displacements(sources, &mut Work::default(), displacements, effort);
+            let sources = self.sources(spots);
+            geometry.displacements(&sources, &mut Work::default(), displacements, effort);
         }
     }
 
@@ -186,11 +187,10 @@ impl Interaction for FastSum {
         if self.acts(spots) {
             let mut sparse = kept.take_sparse();
             self.place(spots, targets, &mut sparse.geometry);
-            let (moments, shapes) = (self.moments(spots), shapes(&spots.columns));
-            let sources = Sources { measure: self.measure, shapes: &shapes, moments: &moments };
+            let sources = self.sources(spots);
             let Sparse { geometry, fine, rough, .. } = &mut *sparse;
-            geometry.linearise(sources, fine, displacements, effort);
-            geometry.product(Loads { moments: &moments.slope, factors: Some(rates) }, rough.get_mut(), slopes);
+            geometry.linearise(&sources, fine, displacements, effort);
+            geometry.product(Loads { moments: &sources.moments.slope, factors: Some(rates) }, rough.get_mut(), slopes);
             kept.set_sparse(sparse);
         }
     }
@@ -207,12 +207,11 @@ impl Interaction for FastSum {
         if !sparse.geometry.serves(self, spots) {
             self.place(spots, &spots.index, &mut sparse.geometry);
         }
-        let (moments, shapes) = (self.moments(spots), shapes(&spots.columns));
-        let sources = Sources { measure: self.measure, shapes: &shapes, moments: &moments };
-        sparse.geometry.linearise(sources, &mut sparse.fine, displacements, effort);
+        let sources = self.sources(spots);
+        sparse.geometry.linearise(&sources, &mut sparse.fine, displacements, effort);
         let own = IMAGES.sums(0.0, 0.0);
-        sparse.own = moments.slope.iter().map(|slope| product(&own, slope)).collect();
-        sparse.slopes = moments.slope;
+        sparse.own = sources.moments.slope.iter().map(|slope| product(&own, slope)).collect();
+        sparse.slopes = sources.moments.slope;
         tangent.set_sparse(sparse);
     }
 
@@ -221,9 +220,8 @@ impl Interaction for FastSum {
             Some(sparse) if self.acts(spots) && sparse.geometry.serves(self, spots) => {
                 displacements.clear();
                 displacements.resize(spots.index.len(), 0.0);
-                let (moments, shapes) = (self.moments(spots), shapes(&spots.columns));
-                let sources = Sources { measure: self.measure, shapes: &shapes, moments: &moments };
-                sparse.geometry.displacements(sources, &mut sparse.fine, displacements, effort);
+                let sources = self.sources(spots);
+                sparse.geometry.displacements(&sources, &mut sparse.fine, displacements, effort);
             }
             _ => self.displacements(spots, &spots.index, displacements, effort),
         }

@@ -12,11 +12,11 @@ use multiversion::multiversion;
 pub(super) type Shape = [f64; 4];
 
 /// All sources, by their numbers.
-#[derive(Clone, Copy)]
-pub(super) struct Sources<'a> {
+#[derive(Debug)]
+pub(super) struct Sources {
     pub(super) measure: Measure,
-    pub(super) shapes: &'a [Shape],
-    pub(super) moments: &'a Moments,
+    pub(super) shapes: Vec<Shape>,
+    pub(super) moments: Moments,
 }
 
 /// Targets that one thread takes at a time.
@@ -134,12 +134,12 @@ impl Pairs {
     }
 
     /// Displacements at the targets, one after another.
-    pub(super) fn sums(&self, sources: Sources<'_>, values: &mut [f64]) {
+    pub(super) fn sums(&self, sources: &Sources, values: &mut [f64]) {
         evaluate::<false>(self, sources, values, &mut []);
     }
 
     /// The same, and the derivatives of all entries.
-    pub(super) fn linearise(&mut self, sources: Sources<'_>, values: &mut [f64]) {
+    pub(super) fn linearise(&mut self, sources: &Sources, values: &mut [f64]) {
         let mut slopes = std::mem::take(&mut self.slopes);
         slopes.resize(self.spots.len(), 0.0);
         evaluate::<true>(self, sources, values, &mut slopes);
@@ -194,7 +194,7 @@ fn enter(
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-fn evaluate<const SLOPES: bool>(pairs: &Pairs, sources: Sources<'_>, values: &mut [f64], slopes: &mut [f32]) {
+fn evaluate<const SLOPES: bool>(pairs: &Pairs, sources: &Sources, values: &mut [f64], slopes: &mut [f32]) {
     let Measure { pull, sag, .. } = sources.measure;
     for (k, value) in values.iter_mut().enumerate() {
         let (from, to) = (pairs.starts[k], pairs.starts[k + 1]);
