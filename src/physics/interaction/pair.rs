@@ -119,6 +119,13 @@ pub(crate) fn sag(slips: Slips) -> f64 {
     if slips.eq8 { 0.0 } else { 0.5 }
 }
 
+/// One of two values, both of them known: with a branch, spots would go through one by one.
+#[inline(always)]
+fn either(first: bool, one: f64, other: f64) -> f64 {
+    let mask = u64::from(first).wrapping_neg();
+    f64::from_bits((one.to_bits() & mask) | (other.to_bits() & !mask))
+}
+
 /// The fields of several spots by the squares of their distances.
 #[inline(always)]
 pub(crate) fn field<const L: usize>(
@@ -166,12 +173,12 @@ pub(crate) fn field_at<const L: usize>(
         let inside = r[k] <= a[k];
         let outer = FRAC_1_PI * (a[k] * flat).mul_add(indentation, -2.0 * pull * root_a[k] * arc);
         let inner = a[k].mul_add(flat, -sag * r[k] * r[k] * curvature[k]) - pull * root_a[k];
-        value[k] = if inside { inner } else { outer };
+        value[k] = either(inside, inner, outer);
         // At the very edge the slope is infinite; a finite one, as great as rounding tells apart, keeps linear systems of it solvable.
         let crack = 0.5 * arc * inverse_root_a[k] + root_a[k] / half_chord[k].max(1e-7 * a[k]);
         let outer_slope = FRAC_1_PI * (4.0 * flat).mul_add(arc, -2.0 * pull * crack);
         let inner_slope = 2.0f64.mul_add(flat, -0.5 * pull * inverse_root_a[k]);
-        slope[k] = if inside { inner_slope } else { outer_slope };
+        slope[k] = either(inside, inner_slope, outer_slope);
     }
     (value, slope)
 }
@@ -227,6 +234,11 @@ impl SpotColumns {
             self.push([spot.x, spot.y, spot.a, root_a, 1.0 / root_a, 1.0 / spot.radius, spot.load, spot.load_slope]);
             self.count += 1;
         }
+        self.fill_up();
+    }
+
+    /// Fills up the last pass.
+    fn fill_up(&mut self) {
         while !self.x.len().is_multiple_of(LANES) {
             // A flat spot without adhesion has no field.
             self.push([0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
@@ -242,6 +254,26 @@ impl SpotColumns {
         self.inverse_radius.push(inverse_radius);
         self.load.push(load);
         self.load_slope.push(load_slope);
+    }
+
+    /// The same spots in another order: the numbers that they have now.
+    pub(crate) fn in_order(&self, from: &[usize]) -> Self {
+        let mut found = Self::default();
+        for &k in from {
+            found.push([
+                self.x[k],
+                self.y[k],
+                self.a[k],
+                self.root_a[k],
+                self.inverse_root_a[k],
+                self.inverse_radius[k],
+                self.load[k],
+                self.load_slope[k],
+            ]);
+        }
+        found.count = from.len();
+        found.fill_up();
+        found
     }
 
     /// Other loads \[N\] than those of lone spots.
@@ -298,11 +330,11 @@ pub(crate) fn spot_fields<const SLOPES: bool>(place: Place, spots: &SpotColumns,
         }
         let (value, slope) = field(&r2, &a[pass], &root_a[pass], &inverse_root_a[pass], &inverse_radius[pass], place.pull, place.sag);
         for k in 0..LANES {
-            strands[k] += if r2[k] == 0.0 { 0.0 } else { value[k] };
+            strands[k] += either(r2[k] == 0.0, 0.0, value[k]);
         }
         if SLOPES {
             for k in 0..LANES {
-                slopes[pass * LANES + k] = if r2[k] == 0.0 { 0.0 } else { slope[k] };
+                slopes[pass * LANES + k] = either(r2[k] == 0.0, 0.0, slope[k]);
             }
         }
     }

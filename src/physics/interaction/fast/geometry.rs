@@ -19,7 +19,7 @@ const LOOSE: f64 = 2.0;
 /// Near pairs of all targets, sources on meshes and readers there.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Geometry {
-    /// Of which spots, where, and up to which radii it serves \[m\]; at which targets.
+    /// Of which spots by their ranks, where, and up to which radii it serves \[m\]; at which targets.
     index: Vec<usize>,
     places: Vec<[f64; 2]>,
     limits: Vec<f64>,
@@ -36,7 +36,7 @@ pub(super) struct Geometry {
 }
 
 impl FastSum {
-    /// Finds the geometry of spots and targets, both ascending: what it was before is taken over.
+    /// Finds the geometry of spots and targets, both by their ranks: what it was before is taken over.
     pub(super) fn place(&self, spots: &Spots, targets: &[usize], geometry: &mut Geometry) {
         let columns = &spots.columns;
         let length = self.measure.length;
@@ -84,14 +84,14 @@ impl FastSum {
         geometry.pairs.resize_with(targets.len().div_ceil(TOGETHER), Pairs::default);
         geometry.pairs.par_iter_mut().enumerate().zip(targets.par_chunks(TOGETHER)).for_each(|((chunk, pairs), targets)| {
             let target = |(k, target): (usize, &usize)| Target {
-                place: self.positions[*target],
+                place: self.order.positions[*target],
                 before: before.and_then(|before| before[chunk * TOGETHER + k]),
             };
             pairs.find(targets.iter().enumerate().map(target), known, &all, self.measure, &aloof);
         });
         geometry.targets.clear();
         geometry.targets.extend_from_slice(targets);
-        let targets: Vec<[f64; 2]> = targets.iter().map(|target| self.positions[*target].map(|p| p / length)).collect();
+        let targets: Vec<[f64; 2]> = targets.iter().map(|target| self.order.positions[*target].map(|p| p / length)).collect();
         let sources: Vec<[f64; 2]> = geometry.places.iter().map(|place| place.map(|p| p / length)).collect();
         geometry.fine = Meshes::new(&levels, |plan| &plan.fine, &sources, &targets);
         geometry.rough = Meshes::new(&levels, |plan| &plan.rough, &sources, &targets);
@@ -115,8 +115,6 @@ impl Geometry {
         let near = |now: usize, then: usize| (now as f64 - then as f64).abs() <= CHANGE * then as f64;
         let same = self.accuracy == Some(field.accuracy);
         let serves = same && near(spots.index.len(), self.chosen_for[0]) && near(targets.len(), self.chosen_for[1]);
-        let ascending = |list: &[usize]| list.is_sorted();
-        let serves = serves && [&spots.index, targets, &self.index, &self.targets].into_iter().all(ascending);
         let places: Vec<[f64; 2]> = (0..columns.len()).map(|j| [columns.x[j], columns.y[j]]).collect();
         let mut kept = serves.then(|| Kept {
             stays: vec![false; spots.index.len()],

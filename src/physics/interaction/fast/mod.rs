@@ -11,6 +11,7 @@
 mod geometry;
 mod mesh;
 mod near;
+mod order;
 mod pairs;
 mod plan;
 
@@ -22,6 +23,7 @@ use crate::physics::interaction::ewald::{IMAGES, ORDERS};
 use geometry::Geometry;
 use mesh::{Loads, Work};
 use near::Measure;
+use order::{Order, inward, outward};
 use pairs::Sources;
 use plan::{Accuracy, Plan, mesh_size};
 use std::cell::RefCell;
@@ -53,7 +55,7 @@ const MARGIN: f64 = 1.05;
 #[derive(Debug, Clone)]
 pub struct FastSum {
     measure: Measure,
-    positions: Vec<[f64; 2]>,
+    order: Order,
     /// `1/(πE*)` \[1/Pa\].
     compliance: f64,
     accuracy: Accuracy,
@@ -69,7 +71,7 @@ impl FastSum {
     pub fn new(positions: Vec<[f64; 2]>, length_m: f64, material: &Material, kind: Kind, slips: Slips, tolerance: f64) -> Self {
         Self {
             measure: Measure { kind, pull: material.pull(), sag: sag(slips), length: length_m },
-            positions,
+            order: Order::new(positions, length_m),
             compliance: material.compliance(),
             accuracy: Accuracy::of(tolerance),
             plans: [const { OnceLock::new() }; REACHES],
@@ -78,7 +80,7 @@ impl FastSum {
 
     /// Adds a place \[m\], whose number follows the last one.
     pub(crate) fn add(&mut self, place: [f64; 2]) {
-        self.positions.push(place);
+        self.order.add(place);
     }
 
     fn plan(&self, step: usize) -> Arc<Plan> {
@@ -163,10 +165,11 @@ impl Interaction for FastSum {
         displacements.clear();
         displacements.resize(targets.len(), 0.0);
         if self.acts(spots) {
-            let mut geometry = Geometry::default();
-            self.place(spots, targets, &mut geometry);
-            let sources = self.sources(spots);
-            geometry.displacements(&sources, &mut Work::default(), displacements, effort);
+            let ((spots, _), targets) = (self.order.spots(spots), self.order.of(targets));
+            let (mut geometry, mut values) = (Geometry::default(), vec![0.0; targets.ranks.len()]);
+            self.place(&spots, &targets.ranks, &mut geometry);
+            geometry.displacements(&self.sources(&spots), &mut Work::default(), &mut values, effort);
+            outward(&targets.from, &values, displacements);
         }
     }
 
@@ -185,12 +188,19 @@ impl Interaction for FastSum {
             values.resize(targets.len(), 0.0);
         }
         if self.acts(spots) {
+            let ((spots, from), targets) = (self.order.spots(spots), self.order.of(targets));
             let mut sparse = kept.take_sparse();
-            self.place(spots, targets, &mut sparse.geometry);
-            let sources = self.sources(spots);
+            self.place(&spots, &targets.ranks, &mut sparse.geometry);
+            let sources = self.sources(&spots);
             let Sparse { geometry, fine, rough, .. } = &mut *sparse;
-            geometry.linearise(&sources, fine, displacements, effort);
-            geometry.product(Loads { moments: &sources.moments.slope, factors: Some(rates) }, rough.get_mut(), slopes);
+            let Rough { work, x, .. } = rough.get_mut();
+            inward(&from, rates, x);
+            let mut values = vec![0.0; targets.ranks.len()];
+            geometry.linearise(&sources, fine, &mut values, effort);
+            outward(&targets.from, &values, displacements);
+            values.fill(0.0);
+            geometry.product(Loads { moments: &sources.moments.slope, factors: Some(x) }, work, &mut values);
+            outward(&targets.from, &values, slopes);
             kept.set_sparse(sparse);
         }
     }
@@ -204,27 +214,38 @@ impl Interaction for FastSum {
             return;
         }
         let mut sparse = tangent.take_sparse();
-        if !sparse.geometry.serves(self, spots) {
-            self.place(spots, &spots.index, &mut sparse.geometry);
+        let (spots, from) = self.order.spots(spots);
+        sparse.from = from;
+        if !sparse.geometry.serves(self, &spots) {
+            self.place(&spots, &spots.index, &mut sparse.geometry);
         }
-        let sources = self.sources(spots);
-        sparse.geometry.linearise(&sources, &mut sparse.fine, displacements, effort);
+        let sources = self.sources(&spots);
+        let mut values = vec![0.0; spots.index.len()];
+        sparse.geometry.linearise(&sources, &mut sparse.fine, &mut values, effort);
+        outward(&sparse.from, &values, displacements);
         let own = IMAGES.sums(0.0, 0.0);
-        sparse.own = sources.moments.slope.iter().map(|slope| product(&own, slope)).collect();
+        for (value, slope) in values.iter_mut().zip(&sources.moments.slope) {
+            *value = product(&own, slope);
+        }
+        sparse.own.resize(values.len(), 0.0);
+        outward(&sparse.from, &values, &mut sparse.own);
         sparse.slopes = sources.moments.slope;
         tangent.set_sparse(sparse);
     }
 
     fn again(&self, spots: &Spots, displacements: &mut Vec<f64>, tangent: &mut Tangent, effort: &mut Effort) {
-        match tangent.sparse() {
-            Some(sparse) if self.acts(spots) && sparse.geometry.serves(self, spots) => {
+        if let Some(sparse) = tangent.sparse().filter(|_| self.acts(spots)) {
+            let (spots, from) = self.order.spots(spots);
+            if sparse.geometry.serves(self, &spots) {
+                let mut values = vec![0.0; from.len()];
+                sparse.geometry.displacements(&self.sources(&spots), &mut sparse.fine, &mut values, effort);
                 displacements.clear();
-                displacements.resize(spots.index.len(), 0.0);
-                let sources = self.sources(spots);
-                sparse.geometry.displacements(&sources, &mut sparse.fine, displacements, effort);
+                displacements.resize(from.len(), 0.0);
+                outward(&from, &values, displacements);
+                return;
             }
-            _ => self.displacements(spots, &spots.index, displacements, effort),
         }
+        self.displacements(spots, &spots.index, displacements, effort);
     }
 }
 
@@ -232,16 +253,31 @@ impl Interaction for FastSum {
 #[derive(Debug, Clone, Default)]
 pub(super) struct Sparse {
     geometry: Geometry,
+    /// Where each of the spots stood among those that were given; all but `own` is in their order.
+    from: Vec<usize>,
     /// Derivatives of the moments to the radii.
     slopes: Vec<[f64; ORDERS]>,
     own: Vec<f64>,
     fine: Work<f64>,
-    rough: RefCell<Work<f32>>,
+    rough: RefCell<Rough>,
+}
+
+/// Work space of products.
+#[derive(Debug, Clone, Default)]
+struct Rough {
+    work: Work<f32>,
+    x: Vec<f64>,
+    y: Vec<f64>,
 }
 
 impl Sparse {
     pub(super) fn product(&self, x: &[f64], y: &mut [f64]) {
-        self.geometry.product(Loads { moments: &self.slopes, factors: Some(x) }, &mut self.rough.borrow_mut(), y);
+        let rough = &mut *self.rough.borrow_mut();
+        inward(&self.from, x, &mut rough.x);
+        rough.y.clear();
+        rough.y.resize(x.len(), 0.0);
+        self.geometry.product(Loads { moments: &self.slopes, factors: Some(&rough.x) }, &mut rough.work, &mut rough.y);
+        outward(&self.from, &rough.y, y);
     }
 
     pub(super) fn own(&self, i: usize) -> f64 {
