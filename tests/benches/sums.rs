@@ -41,7 +41,7 @@ const COUNTS: [usize; 4] = [1_000, 10_000, 100_000, 1_000_000];
 const MOST: usize = 10_000;
 
 pub fn run() {
-    heading("sums: displacements of n spots at all of them, their tangent and one product of it", "over the evaluation of 1000, per spot");
+    heading("sums: displacements of n spots at all of them", "over 1000, per spot");
     let mut all = Vec::new();
     for count in COUNTS {
         let contact = contact(count);

@@ -10,7 +10,7 @@ use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
 pub fn run() {
-    heading("surfaces: of n x n points", "over bare transforms, over a copy");
+    heading("surfaces: of n x n points", "over what is plain");
     for (magnification, rounds) in [(128, 5), (512, 3)] {
         let spectrum = Spectrum {
             length_m: 1e-3,

@@ -51,7 +51,7 @@ pub fn run() {
         generated: None,
     };
     let bytes: Vec<u8> = surface.heights_m.iter().flat_map(|height| height.to_ne_bytes()).collect();
-    let mut compare = |what: &str, bytes: &[u8], work: &mut dyn FnMut()| {
+    let compare = |what: &str, bytes: &[u8], work: &mut dyn FnMut()| {
         let (ours, theirs) = race(5, work, || write(&bare, bytes).unwrap());
         plain(&format!("{} MB of bytes", bytes.len() / 1_000_000), theirs);
         line(what, ours, ours / theirs);
