@@ -1,24 +1,16 @@
 //! A whole cycle at ζ = 64, in direct evaluations of its contacts: what a plain iteration of some hundred steps would take many thousands of.
 
+use crate::paper::{MATERIAL, spectrum};
 use crate::watch::{heading, line, once, plain};
-use hysteron::model::{Amplitudes, Boundary, Coalescence, Interaction as Kind, JumpIn, KeptContacts, Material, Normalization, Slips};
+use hysteron::model::{Boundary, Coalescence, Interaction as Kind, JumpIn, KeptContacts, Slips};
 use hysteron::physics::cycle::{Settings, run as cycle};
 use hysteron::physics::interaction::{DirectSum, Effort, Interaction};
-use hysteron::physics::spectrum::Spectrum;
 use hysteron::physics::state::{Problem, Rules};
 use hysteron::physics::summits::find_summits;
 use hysteron::physics::synthesis::{realization_seed, synthesize};
 
 pub fn run() {
-    let spectrum = Spectrum {
-        length_m: 1e-3,
-        rms_height_m: 5e-6,
-        hurst: 0.8,
-        magnification: 64,
-        normalization: Normalization::Sample,
-        amplitudes: Amplitudes::Fixed,
-    };
-    let material = Material { contact_modulus_pa: 1e6, work_of_adhesion_j_m2: 0.07, interaction_range_m: 1e-9 };
+    let spectrum = spectrum(64);
     let rules = Rules {
         interaction: Kind::Spots,
         boundary: Boundary::Periodic,
@@ -29,14 +21,14 @@ pub fn run() {
     };
     let surface = synthesize(&spectrum, &realization_seed(2021, 0), 512);
     let summits = find_summits(surface.heights_m.view(), spectrum.length_m, 8.0).unwrap().list;
-    let problem = Problem::new(&summits, spectrum.length_m, spectrum.rms_height_m, material, rules).unwrap();
+    let problem = Problem::new(&summits, spectrum.length_m, spectrum.rms_height_m, MATERIAL, rules).unwrap();
     let settings = Settings { max_loads: vec![0.0071], approach_step: 0.01, contacts: KeptContacts::None };
     let mut done = None;
     let whole = once(|| done = Some(cycle(&problem, &settings, &|_| {}).unwrap()));
     let done = done.unwrap();
     // One evaluation of as many spots as there are at the turning point.
     let contact = crate::sums::contact(done.steps[done.turning[0].0].contact_count);
-    let direct = DirectSum::new(contact.positions.clone(), contact.length_m, &material, Kind::Spots, Boundary::Periodic, Slips::default())
+    let direct = DirectSum::new(contact.positions.clone(), contact.length_m, &MATERIAL, Kind::Spots, Boundary::Periodic, Slips::default())
         .with_table();
     let mut found = Vec::new();
     let mut evaluate = || direct.displacements(&contact.spots, &contact.spots.index, &mut found, &mut Effort::default());

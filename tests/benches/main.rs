@@ -5,6 +5,7 @@
 
 mod cycle;
 mod pairs;
+mod paper;
 mod sums;
 mod surfaces;
 #[cfg(feature = "store")]

@@ -1,5 +1,6 @@
 //! The field of one spot at another asperity, per pair: vectorised, against the printed formula with `sqrt` and `asin`.
 
+use crate::paper::MATERIAL;
 use crate::sums::contact;
 use crate::watch::{heading, line, plain, race};
 use hysteron::model::{Boundary, Interaction as Kind, Slips};
@@ -9,9 +10,9 @@ use std::f64::consts::PI;
 pub fn run() {
     const SPOTS: usize = 2000;
     let contact = contact(SPOTS);
-    let (spots, length, material) = (&contact.spots, contact.length_m, &contact.material);
-    let field = DirectSum::new(contact.positions.clone(), length, material, Kind::Spots, Boundary::Isolated, Slips::default());
-    let pull = (2.0 * PI * material.work_of_adhesion_j_m2 / material.contact_modulus_pa).sqrt();
+    let (spots, length) = (&contact.spots, contact.length_m);
+    let field = DirectSum::new(contact.positions.clone(), length, &MATERIAL, Kind::Spots, Boundary::Isolated, Slips::default());
+    let pull = (2.0 * PI * MATERIAL.work_of_adhesion_j_m2 / MATERIAL.contact_modulus_pa).sqrt();
     let printed = || {
         let at = |i: usize| {
             let [x, y] = contact.positions[i];

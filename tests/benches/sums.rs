@@ -1,7 +1,8 @@
 //! One evaluation of all displacements, by near pairs and a mesh against the direct sum.
 
+use crate::paper::MATERIAL;
 use crate::watch::{heading, line, once, plain};
-use hysteron::model::{Boundary, Interaction as Kind, Material, Slips};
+use hysteron::model::{Boundary, Interaction as Kind, Slips};
 use hysteron::physics::interaction::pair::Spot;
 use hysteron::physics::interaction::{DirectSum, Effort, FastSum, Interaction, Spots, Tangent};
 use hysteron::physics::jkr::Asperity;
@@ -13,12 +14,11 @@ pub struct Contact {
     pub shapes: Vec<(f64, f64)>,
     pub spots: Spots,
     pub length_m: f64,
-    pub material: Material,
 }
 
 /// So many spots that cover a third of the square, their radii spread over a factor of three as those of a rough surface.
 pub fn contact(count: usize) -> Contact {
-    let (length_m, material) = (1e-3, Material { contact_modulus_pa: 1e6, work_of_adhesion_j_m2: 0.07, interaction_range_m: 1e-9 });
+    let length_m = 1e-3;
     let mut seed = count as u64;
     // Weyl's sequence of the golden ratio, scrambled: even places that are the same in every run.
     let mut roll = || {
@@ -30,10 +30,10 @@ pub fn contact(count: usize) -> Contact {
     let shapes: Vec<(f64, f64)> = (0..count).map(|_| (spacing * (0.15 + 0.35 * roll()), spacing * (1.0 + 3.0 * roll()))).collect();
     let mut spots = Spots { index: (0..count).collect(), ..Spots::default() };
     spots.columns.set(positions.iter().zip(&shapes).map(|([x, y], (a, radius))| {
-        let jkr = Asperity::new(*radius, &material).unwrap();
+        let jkr = Asperity::new(*radius, &MATERIAL).unwrap();
         Spot { x: *x, y: *y, a: *a, radius: *radius, load: jkr.load(*a), load_slope: jkr.load_slope(*a) }
     }));
-    Contact { positions, shapes, spots, length_m, material }
+    Contact { positions, shapes, spots, length_m }
 }
 
 /// Contacts of one evaluation, and the most that are summed directly.
@@ -46,7 +46,7 @@ pub fn run() {
     for count in COUNTS {
         let contact = contact(count);
         let (spots, positions) = (&contact.spots, contact.positions.clone());
-        let fast = FastSum::new(positions.clone(), contact.length_m, &contact.material, Kind::Spots, Slips::default(), 1e-10);
+        let fast = FastSum::new(positions.clone(), contact.length_m, &MATERIAL, Kind::Spots, Slips::default(), 1e-10);
         let (mut found, mut tangent, mut effort) = (Vec::new(), Tangent::default(), Effort::default());
         let places = once(|| fast.linearise(spots, &mut found, &mut tangent, &mut effort));
         let rounds = if count < 100_000 { 5 } else { 1 };
@@ -64,8 +64,8 @@ pub fn run() {
         line("finding the pairs first", places, places / unit);
         line("a product of the tangent", product, product / unit);
         if count <= MOST {
-            let direct = DirectSum::new(positions, contact.length_m, &contact.material, Kind::Spots, Boundary::Periodic, Slips::default())
-                .with_table();
+            let direct =
+                DirectSum::new(positions, contact.length_m, &MATERIAL, Kind::Spots, Boundary::Periodic, Slips::default()).with_table();
             let time = once(|| direct.displacements(spots, &spots.index, &mut found, &mut effort));
             line("the direct sum", time, time / unit);
         }

@@ -1,8 +1,7 @@
 //! Surfaces: generation against a bare inverse transform of the same size, summits against a copy of the heights.
 
+use crate::paper::spectrum;
 use crate::watch::{heading, line, plain, race};
-use hysteron::model::{Amplitudes, Normalization};
-use hysteron::physics::spectrum::Spectrum;
 use hysteron::physics::summits::find_summits;
 use hysteron::physics::synthesis::{realization_seed, synthesize};
 use realfft::RealFftPlanner;
@@ -12,14 +11,7 @@ use rustfft::num_complex::Complex;
 pub fn run() {
     heading("surfaces: of n x n points", "over what is plain");
     for (magnification, rounds) in [(128, 5), (512, 3)] {
-        let spectrum = Spectrum {
-            length_m: 1e-3,
-            rms_height_m: 5e-6,
-            hurst: 0.8,
-            magnification,
-            normalization: Normalization::Sample,
-            amplitudes: Amplitudes::Fixed,
-        };
+        let spectrum = spectrum(magnification);
         let n = 8 * magnification as usize;
         let half = n / 2 + 1;
         let (rows, columns) = (RealFftPlanner::<f64>::new().plan_fft_inverse(n), FftPlanner::<f64>::new().plan_fft_inverse(n));

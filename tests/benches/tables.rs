@@ -1,8 +1,7 @@
 //! Files: a surface and a table of contacts, against the same bytes written plainly.
 
+use crate::paper::spectrum;
 use crate::watch::{heading, line, plain, race};
-use hysteron::model::{Amplitudes, Normalization};
-use hysteron::physics::spectrum::Spectrum;
 use hysteron::physics::synthesis::{realization_seed, synthesize};
 use hysteron::schema::CONTACTS;
 use hysteron::store::hdf5::{SurfaceHeader, write_surface};
@@ -30,14 +29,7 @@ pub fn run() {
     heading("tables: written, and committed whole", "over plain bytes");
     let folder = tempfile::tempdir().unwrap();
     let (kept, bare) = (folder.path().join("kept"), folder.path().join("bare"));
-    let spectrum = Spectrum {
-        length_m: 1e-3,
-        rms_height_m: 5e-6,
-        hurst: 0.8,
-        magnification: 256,
-        normalization: Normalization::Sample,
-        amplitudes: Amplitudes::Fixed,
-    };
+    let spectrum = spectrum(256);
     let surface = synthesize(&spectrum, &realization_seed(2021, 0), 2048);
     let header = SurfaceHeader {
         length_m: spectrum.length_m,
