@@ -235,7 +235,9 @@ impl<'p> Solver<'p> {
     /// Solves the neighbourhood of a spot with the displacement by all others held; says whether it has an equilibrium.
     fn mend(&mut self, state: &mut State, asperity: usize) -> bool {
         let problem = self.problem;
-        let near = problem.neighbours.nearest(&problem.positions[asperity], problem.spots_in_patch, |i| state.status[i] == Status::Contact);
+        let near = problem
+            .neighbours
+            .nearest(&problem.positions[asperity], problem.spots_in_patch, state.contacts.len(), |i| state.status[i] == Status::Contact);
         let mut spots: Vec<(usize, f64, f64, f64)> = near
             .into_iter()
             .filter_map(|(_, i)| state.contacts.binary_search(&i).ok().map(|k| (i, state.radius[i], state.displacement[k], state.grip[i])))

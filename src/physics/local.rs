@@ -152,7 +152,7 @@ fn around(problem: &Problem, state: &State, group: &[usize]) -> Vec<(usize, [f64
     let place = |k: usize| problem.positions[state.contacts[k]];
     let count = group.len() as f64;
     let centre = [0, 1].map(|along| group.iter().map(|k| place(*k)[along]).sum::<f64>() / count);
-    let near = problem.neighbours.nearest(&centre, TOGETHER, |i| state.status[i] == Status::Contact);
+    let near = problem.neighbours.nearest(&centre, TOGETHER, state.contacts.len(), |i| state.status[i] == Status::Contact);
     let mut spots: Vec<usize> =
         near.iter().filter_map(|(_, i)| state.contacts.binary_search(i).ok()).chain(group.iter().copied()).collect();
     spots.sort_unstable();

@@ -86,7 +86,9 @@ impl Path<'_> {
         let (members, mut watched): (Vec<usize>, Vec<usize>) = if state.contacts.len() <= most {
             (state.contacts.clone(), (0..problem.len()).filter(near_jump_in).collect())
         } else {
-            let near = problem.neighbours.nearest(&place, most.saturating_mul(AROUND), |i| state.status[i] == Status::Contact);
+            let near = problem
+                .neighbours
+                .nearest(&place, most.saturating_mul(AROUND), state.contacts.len(), |i| state.status[i] == Status::Contact);
             let mut members: Vec<usize> = near[..most].iter().map(|(_, i)| *i).collect();
             for i in [Some(change.asperity), change.by].into_iter().flatten() {
                 if state.status[i] == Status::Contact && !members.contains(&i) {

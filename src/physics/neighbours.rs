@@ -1,6 +1,7 @@
 //! Which asperities lie near which: a grid of cells.
 
 use super::interaction::ewald::IMAGES;
+use std::f64::consts::PI;
 
 /// The shortest of the ways that differ by whole sides, from one between two places on the square: no rounding, which is a call of a function.
 fn nearest_image(way: f64, side: f64) -> f64 {
@@ -163,9 +164,10 @@ impl Neighbours {
         }
     }
 
-    /// The `count` asperities nearest to `place` of those that are `wanted`, nearest first; fewer where there are no more.
-    pub(crate) fn nearest(&self, place: &[f64; 2], count: usize, wanted: impl Fn(usize) -> bool) -> Vec<(f64, usize)> {
-        let mut radius = self.side * (0.5 * (count as f64 / 4.0).sqrt()).max(1.0);
+    /// The `count` asperities nearest to `place` of those that are `wanted`, nearest first; fewer where there are no more. There are `all` of them.
+    pub(crate) fn nearest(&self, place: &[f64; 2], count: usize, all: usize, wanted: impl Fn(usize) -> bool) -> Vec<(f64, usize)> {
+        // So many lie within, if they are spread evenly, and half as many again.
+        let mut radius = self.length * (1.5 * count as f64 / (PI * all.max(1) as f64)).sqrt();
         loop {
             let mut list = Vec::new();
             let whole = radius >= self.length;
@@ -179,7 +181,7 @@ impl Neighbours {
                 list.truncate(count);
                 return list;
             }
-            radius *= 1.5;
+            radius *= 1.3;
         }
     }
 }
