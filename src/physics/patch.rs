@@ -156,13 +156,14 @@ impl Patch {
             self.members[k].drift = bounded(1.0 - trace.rate_by_radius(&asperity, a) - by_members);
         }
         self.watched.clear();
-        for (i, trace) in free {
-            let field = self.field_at(problem, *i, effort);
-            let by_members: f64 = self.row[..n].iter().zip(&speeds).map(|(s, v)| s * v).sum();
-            let displaced = approach + problem.heights[*i] - trace.ahead(approach);
+        let places: Vec<usize> = free.iter().map(|(i, _)| *i).collect();
+        problem.field.rows(&self.spots, &places, self.local, effort, |k, field, slopes| {
+            let (i, trace) = free[k];
+            let by_members: f64 = slopes.iter().zip(&speeds).map(|(s, v)| s * v).sum();
+            let displaced = approach + problem.heights[i] - trace.ahead(approach);
             let drift = bounded(1.0 - trace.rate - by_members);
-            self.watched.push(Place { asperity: *i, outside: displaced - field, drift, outer: 0.0 });
-        }
+            self.watched.push(Place { asperity: i, outside: displaced - field, drift, outer: 0.0 });
+        });
     }
 
     /// The patch of these spots (ascending) at an approach \[m\], each with its radius and its displacement by all \[m\], which need be no equilibrium, and
@@ -412,15 +413,16 @@ impl Patch {
     }
 
     /// Penetration and its rate of each watched asperity, given the rates of the members.
-    pub(crate) fn watch(&mut self, problem: &Problem, rates: &[f64], effort: &mut Effort) -> Vec<Trace> {
-        let n = self.members.len();
-        (0..self.watched.len())
-            .map(|w| {
-                let value = self.penetration_of(problem, w, effort);
-                let by_members: f64 = self.row[..n].iter().zip(rates).map(|(s, v)| s * v).sum();
-                Trace { at: self.approach, value, rate: 1.0 - self.watched[w].drift - by_members, grip: 1.0, grip_rate: 0.0 }
-            })
-            .collect()
+    pub(crate) fn watch(&self, problem: &Problem, rates: &[f64], effort: &mut Effort) -> Vec<Trace> {
+        let places: Vec<usize> = self.watched.iter().map(|place| place.asperity).collect();
+        let mut traces = Vec::with_capacity(places.len());
+        problem.field.rows(&self.spots, &places, self.local, effort, |k, field, slopes| {
+            let place = &self.watched[k];
+            let value = self.approach + problem.heights[place.asperity] - self.outside(place) - field;
+            let by_members: f64 = slopes.iter().zip(rates).map(|(s, v)| s * v).sum();
+            traces.push(Trace { at: self.approach, value, rate: 1.0 - place.drift - by_members, grip: 1.0, grip_rate: 0.0 });
+        });
+        traces
     }
 
     /// Load of the members \[N\], and the part of the potential that changes with them \[J\]:
