@@ -214,19 +214,34 @@ impl Path<'_> {
     }
 
     /// The changes that are due, but for those of asperities that flip to and fro: such an asperity is held as it is for a while, and counted.
-    /// Two spots that each grow when the other is there, and withdraw when it is not, have no rest otherwise.
+    /// Two spots that each grow when the other is there, and withdraw when it is not, have no rest otherwise; nor have three of which each covers the next
+    /// as soon as the third has covered it.
     pub(crate) fn due(&mut self, touched: &[usize], free: &[usize]) -> Vec<Trigger> {
         let mut due = self.problem().triggers(&self.front, touched, free);
         let state = &self.front.state;
+        let mut riding: Vec<(usize, usize)> = Vec::new();
         due.retain(|trigger| {
             let i = trigger.change.asperity;
-            let orphan = matches!(state.status[i], Status::Covered { by, .. } if state.radius[by] == 0.0);
-            let taken = trigger.change.kind == Kind::JumpOff || orphan || self.flips[i] < FLIPS;
+            let mut taken = trigger.change.kind == Kind::JumpOff || self.flips[i] < FLIPS;
+            if let Status::Covered { by, .. } = state.status[i]
+                && state.radius[by] == 0.0
+                && !taken
+            {
+                // Its covering spot is none any more: it is uncovered, or it rides on with the one that covers that.
+                match state.carrier(by) {
+                    Some(carrier) => riding.push((i, carrier)),
+                    None => taken = true,
+                }
+            }
             if !taken && !self.held.contains(&i) {
                 self.held.push(i);
             }
             taken
         });
+        for (i, carrier) in riding {
+            self.front.set(i, Status::Covered { by: carrier, release_m: self.front.state.radius[carrier] }, 0.0);
+            self.keep_covered(i);
+        }
         due
     }
 

@@ -296,6 +296,19 @@ impl State {
         self.contacts.iter().map(|&i| self.radius[i]).fold(0.0, f64::max)
     }
 
+    /// The spot that an asperity rides with, over others that are covered themselves.
+    pub(crate) fn carrier(&self, mut i: usize) -> Option<usize> {
+        // No longer than there are asperities: where each is covered by the next, none is a spot.
+        for _ in 0..self.status.len() {
+            match self.status[i] {
+                Status::Contact => return Some(i),
+                Status::Covered { by, .. } => i = by,
+                Status::Free | Status::Merged { .. } => return None,
+            }
+        }
+        None
+    }
+
     /// Whether an asperity is part of a merged spot that has left.
     pub(crate) fn is_orphan(&self, i: usize) -> bool {
         matches!(self.status[i], Status::Merged { into } if self.status[into] == Status::Free)
