@@ -265,21 +265,23 @@ impl<'p> Solver<'p> {
             // Where the tangent is exact, neighbourhoods that hold all spots are to find nothing outside them.
             self.evaluate(state);
         }
-        let ones = vec![1.0; state.contacts.len()];
         // No better than the tangent.
         let wanted = if self.tangent.is_exact() { 1e-6 } else { LEAST };
-        let Self { tangent, diagonal, effort, .. } = self;
-        let (rates, least) = gmres_and_least(Matrix { tangent, diagonal, inverse: None }, &ones, wanted, PRODUCTS, effort);
-        state.stability = least;
-        rates
+        self.rates_to(wanted, false, state)
     }
 
     /// The same with fewer digits. Of the stability the sign is known: where the least eigenvalue is small, it is in the space of the solution.
     pub(crate) fn rough_rates(&mut self, state: &mut State) -> Vec<f64> {
         self.invert(state);
+        self.rates_to(MOST, true, state)
+    }
+
+    /// Both, to a relative residual; `short` with the approximate inverse.
+    fn rates_to(&mut self, wanted: f64, short: bool, state: &mut State) -> Vec<f64> {
         let ones = vec![1.0; state.contacts.len()];
         let Self { tangent, inverse, diagonal, effort, .. } = self;
-        let (rates, least) = gmres_and_least(Matrix { tangent, diagonal, inverse: inverse.as_ref() }, &ones, MOST, PRODUCTS, effort);
+        let inverse = inverse.as_ref().filter(|_| short);
+        let (rates, least) = gmres_and_least(Matrix { tangent, diagonal, inverse }, &ones, wanted, PRODUCTS, effort);
         state.stability = least;
         rates
     }

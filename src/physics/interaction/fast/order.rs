@@ -6,8 +6,7 @@ use super::super::Spots;
 /// Asperities in the order of the Z-curve (Morton 1966) through the square.
 #[derive(Debug, Clone)]
 pub(super) struct Order {
-    /// Places as they are given, and in order \[m\].
-    given: Vec<[f64; 2]>,
+    /// Places in order \[m\].
     pub(super) positions: Vec<[f64; 2]>,
     /// Of each asperity its place in the order.
     ranks: Vec<u32>,
@@ -23,12 +22,12 @@ impl Order {
         for (rank, i) in numbers.iter().enumerate() {
             ranks[*i as usize] = rank as u32;
         }
-        Self { positions: numbers.iter().map(|i| given[*i as usize]).collect(), given, ranks, length }
+        Self { positions: numbers.iter().map(|i| given[*i as usize]).collect(), ranks, length }
     }
 
     /// Adds a place \[m\], whose number follows the last one.
     pub(super) fn add(&mut self, place: [f64; 2]) {
-        let mut given = std::mem::take(&mut self.given);
+        let mut given: Vec<[f64; 2]> = self.ranks.iter().map(|rank| self.positions[*rank as usize]).collect();
         given.push(place);
         *self = Self::new(given, self.length);
     }

@@ -101,20 +101,32 @@ impl Pairs {
         for (spot, at) in old.spots[from..middle].iter().zip(exact) {
             let spot = known.numbers[*spot as usize];
             if spot != GONE {
-                self.spots.push(spot);
-                self.r.push(old.r[at]);
-                self.inverse_r.push(old.inverse_r[at]);
-                self.rest.push(old.rest[at]);
+                self.push_exact(spot, (old.r[at], old.inverse_r[at]), old.rest[at]);
             }
         }
         for (spot, at) in old.spots[middle..to].iter().zip(far) {
             let spot = known.numbers[*spot as usize];
             if spot != GONE {
-                self.waiting.push(spot);
-                self.kernel.push(old.kernel[at]);
-                self.low.push(old.low[at]);
+                self.push_far(spot, old.kernel[at], old.low[at]);
             }
         }
+    }
+
+    /// Enters a source that is felt by its exact field.
+    #[inline(always)]
+    fn push_exact(&mut self, spot: u32, (r, inverse_r): (f64, f64), rest: [f64; ORDERS]) {
+        self.spots.push(spot);
+        self.r.push(r);
+        self.inverse_r.push(inverse_r);
+        self.rest.push(rest);
+    }
+
+    /// Enters a source that is felt by its moments, behind the exact ones.
+    #[inline(always)]
+    fn push_far(&mut self, spot: u32, kernel: [f32; ORDERS], low: f32) {
+        self.waiting.push(spot);
+        self.kernel.push(kernel);
+        self.low.push(low);
     }
 
     /// Makes room for so many entries of one target.
@@ -173,10 +185,7 @@ fn enter(
         // A spot does not act on its own centre: its field is felt there as from far away, and what the mesh has of it is taken off with all digits.
         let r = if square > 0.0 { square.sqrt() } else { AWAY };
         if r < aloof[spot] || square == 0.0 {
-            pairs.spots.push(spot as u32);
-            pairs.r.push(r);
-            pairs.inverse_r.push(1.0 / r);
-            pairs.rest.push(rest);
+            pairs.push_exact(spot as u32, (r, 1.0 / r), rest);
         } else {
             let mut power = length / r;
             let unit2 = power * power;
@@ -186,9 +195,7 @@ fn enter(
                 power *= unit2;
             }
             let short = kernel.map(|factor| factor as f32);
-            pairs.waiting.push(spot as u32);
-            pairs.kernel.push(short);
-            pairs.low.push((kernel[0] - f64::from(short[0])) as f32);
+            pairs.push_far(spot as u32, short, (kernel[0] - f64::from(short[0])) as f32);
         }
     }
 }
