@@ -294,3 +294,24 @@ fn reg_a_turning_load_is_met_though_the_traces_had_it_too_early() {
         }
     }
 }
+
+#[test]
+fn reg_three_spots_of_which_each_covers_the_next_come_to_rest() {
+    // Found by trial among random triples: without a rule of rest these change state for ever at approach 0. Positions, height, radius [µm].
+    let rings = [
+        [[1.90, 0.12, 0.106, 8.41], [-1.34, 1.35, 0.111, 8.07], [-0.56, -1.72, 0.080, 8.02]],
+        [[1.74, 0.13, 0.103, 6.81], [-0.93, 1.80, 0.133, 7.82], [-0.65, -1.21, 0.076, 6.66]],
+    ];
+    for ring in rings {
+        let summits = ring.map(|[x, y, z, r]| asperity(1e-6f64.mul_add(x, 5e-4), 1e-6f64.mul_add(y, 5e-4), 1e-6 * z, 1e-6 * r));
+        let rules = Rules { jump_in: JumpIn::Jkr, allow_low_tabor: true, ..DEFAULT };
+        let problem = Problem::new(&summits, LENGTH, RMS, PAPER, rules).unwrap();
+        let settings = Settings { max_loads: Vec::new(), approach_step: 0.05, contacts: KeptContacts::None };
+        let cycle = run_to(&problem, &settings, 0.5 * RMS).unwrap();
+        assert!(cycle.steps.iter().all(|step| step.converged));
+        // Nothing silent: whoever is held as it is stands in the data, and all have left in the end.
+        assert!(cycle.steps.iter().any(|step| step.held_count > 0));
+        let last = cycle.steps.last().unwrap();
+        assert_eq!((last.contact_count, last.covered_count, last.load_n), (0, 0, 0.0));
+    }
+}
