@@ -6,7 +6,7 @@ use crate::support::{
 };
 use hysteron::model::{Coalescence, Interaction, JumpIn, KeptContacts, Material};
 use hysteron::physics::PhysicsError;
-use hysteron::physics::cycle::Cycle;
+use hysteron::physics::cycle::{Cycle, Settings, run_to};
 use hysteron::physics::events::Kind;
 use hysteron::physics::jkr::Asperity;
 use hysteron::physics::state::{Problem, Rules};
