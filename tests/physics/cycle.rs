@@ -308,7 +308,7 @@ fn reg_three_spots_of_which_each_covers_the_next_come_to_rest() {
         let problem = Problem::new(&summits, LENGTH, RMS, PAPER, rules).unwrap();
         let settings = Settings { max_loads: Vec::new(), approach_step: 0.05, contacts: KeptContacts::None };
         let cycle = run_to(&problem, &settings, 0.5 * RMS).unwrap();
-        assert!(cycle.steps.iter().all(|step| step.converged));
+        assert!(cycle.steps.iter().all(|step| step.residual_m <= 1e-10 * RMS));
         // Nothing silent: whoever is held as it is stands in the data, and all have left in the end.
         assert!(cycle.steps.iter().any(|step| step.held_count > 0));
         let last = cycle.steps.last().unwrap();
