@@ -46,7 +46,7 @@ pub fn run() {
     for count in COUNTS {
         let contact = contact(count);
         let (spots, positions) = (&contact.spots, contact.positions.clone());
-        let fast = FastSum::new(positions.clone(), contact.length_m, &MATERIAL, Kind::Spots, Slips::default(), 1e-10);
+        let fast = FastSum::new(positions.clone(), contact.length_m, &MATERIAL, Kind::Spots, Boundary::Periodic, Slips::default(), 1e-10);
         let (mut found, mut tangent, mut effort) = (Vec::new(), Tangent::default(), Effort::default());
         let places = once(|| fast.linearise(spots, &mut found, &mut tangent, &mut effort));
         let rounds = if count < 100_000 { 5 } else { 1 };

@@ -16,8 +16,8 @@ const TOLERANCE: f64 = 1e-10;
 /// the number of spots in contact.
 #[must_use]
 pub fn best(positions: Vec<[f64; 2]>, length_m: f64, material: &Material, kind: Kind, boundary: Boundary, slips: Slips) -> Best {
-    let many = positions.len() >= ENOUGH && boundary == Boundary::Periodic && matches!(kind, Kind::Spots | Kind::Point);
-    let fast = many.then(|| FastSum::new(positions.clone(), length_m, material, kind, slips, TOLERANCE));
+    let many = positions.len() >= ENOUGH && matches!(kind, Kind::Spots | Kind::Point);
+    let fast = many.then(|| FastSum::new(positions.clone(), length_m, material, kind, boundary, slips, TOLERANCE));
     Best { direct: DirectSum::new(positions, length_m, material, kind, boundary, slips), fast }
 }
 

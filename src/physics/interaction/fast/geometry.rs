@@ -6,7 +6,7 @@ use super::mesh::{Level, Loads, Reader, Real, Work, read, splines, transform};
 use super::near::{Group, Rest};
 use super::pairs::{GONE, Known, Pairs, Sources, TOGETHER, Target};
 use super::plan::{Accuracy, Mesh, Plan, ROUGH_ORDERS, ROUGH_WIDTH, WIDTH};
-use super::{Effort, FastSum, MARGIN, REACHES, level};
+use super::{Effort, FastSum, MARGIN, REACHES};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -50,7 +50,7 @@ impl FastSum {
         let mut members: [Vec<usize>; REACHES] = Default::default();
         let mut large = Vec::new();
         for (j, shortest) in shortest.iter().enumerate() {
-            shortest.and_then(|shortest| level(finest, shortest)).map_or(&mut large, |step| &mut members[step]).push(j);
+            shortest.and_then(|shortest| self.level(finest, shortest)).map_or(&mut large, |step| &mut members[step]).push(j);
         }
         let changed = |members: &[usize]| match &kept {
             Some(kept) => members.iter().copied().filter(|j| !kept.stays[*j]).collect(),

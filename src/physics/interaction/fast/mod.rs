@@ -7,6 +7,9 @@
 //!
 //! A spot must be small against its reach. So sources form groups by their radii: every group has twice the reach of the one before and
 //! a mesh half as fine, and one large spot costs one long list. What is too large for any mesh acts on all by its exact field.
+//!
+//! An isolated square has no images: it lies in an empty one of [`ROOM`] times its side, and the mesh has of each source what falls off to nothing before
+//! the next image of it begins ([`plan`]).
 
 mod geometry;
 mod mesh;
@@ -18,8 +21,8 @@ mod plan;
 use super::moments::{Moments, product};
 use super::pair::{SpotColumns, sag};
 use super::{Effort, Interaction, Spots, Tangent};
-use crate::model::{Interaction as Kind, Material, Slips};
-use crate::physics::interaction::ewald::{IMAGES, ORDERS};
+use crate::model::{Boundary, Interaction as Kind, Material, Slips};
+use crate::physics::interaction::ewald::ORDERS;
 use geometry::Geometry;
 use mesh::{Loads, Work};
 use near::Measure;
@@ -45,6 +48,12 @@ const REACH: [f64; REACHES] = {
     all
 };
 
+/// Sides of the empty square in which an isolated one lies.
+const ROOM: f64 = 3.0;
+
+/// The longest reach there, in sides of the empty square: between what the square needs of a field and its next image this falls off, and rises again.
+const LONGEST_ALONE: f64 = 0.5 * (0.5 - 1.0 / ROOM);
+
 /// What is spent for one pair in a solution of some linearisations and the products that follow, in units of one point of a mesh in one transform.
 const PAIR_COST: f64 = 8.0;
 
@@ -64,14 +73,26 @@ pub struct FastSum {
 }
 
 impl FastSum {
-    /// Asperities at `positions` \[m\] on the periodic square of side `length_m`; every displacement is right to `tolerance` times the
+    /// Asperities at `positions` \[m\] on the square of side `length_m`; every displacement is right to `tolerance` times the
     /// greatest one. The load of a spot must be the one of its radii by Eq 1; of the
     /// slips only that of Eq 8 is read.
     #[must_use]
-    pub fn new(positions: Vec<[f64; 2]>, length_m: f64, material: &Material, kind: Kind, slips: Slips, tolerance: f64) -> Self {
+    pub fn new(
+        positions: Vec<[f64; 2]>,
+        length_m: f64,
+        material: &Material,
+        kind: Kind,
+        boundary: Boundary,
+        slips: Slips,
+        tolerance: f64,
+    ) -> Self {
+        let length = match boundary {
+            Boundary::Periodic => length_m,
+            Boundary::Isolated => ROOM * length_m,
+        };
         Self {
-            measure: Measure { kind, pull: material.pull(), sag: sag(slips), length: length_m },
-            order: Order::new(positions, length_m),
+            measure: Measure { kind, boundary, pull: material.pull(), sag: sag(slips), length },
+            order: Order::new(positions, length),
             compliance: material.compliance(),
             accuracy: Accuracy::of(tolerance),
             plans: [const { OnceLock::new() }; REACHES],
@@ -84,13 +105,27 @@ impl FastSum {
     }
 
     fn plan(&self, step: usize) -> Arc<Plan> {
-        self.plans[step].get_or_init(|| Arc::new(Plan::new(self.accuracy, REACH[step]))).clone()
+        self.plans[step].get_or_init(|| Arc::new(Plan::new(self.accuracy, REACH[step], self.measure.boundary))).clone()
     }
 
     /// The shortest of the reaches that a spot of radius `a` \[m\] may have, or nothing if it is too large for all.
     fn shortest(&self, a: f64) -> Option<usize> {
         let least = if self.measure.kind == Kind::Spots { a / (self.accuracy.girth * self.measure.length) } else { 0.0 };
-        REACH.iter().rposition(|reach| *reach >= least)
+        REACH.iter().rposition(|reach| *reach >= least).filter(|step| *step >= self.longest())
+    }
+
+    /// The longest of the reaches.
+    fn longest(&self) -> usize {
+        match self.measure.boundary {
+            Boundary::Periodic => 0,
+            Boundary::Isolated => REACH.iter().position(|reach| *reach <= LONGEST_ALONE).unwrap_or(REACHES - 1),
+        }
+    }
+
+    /// The longest of the reaches `finest`, `finest` − 2, … that is no shorter than `shortest`, if there is one.
+    fn level(&self, finest: usize, shortest: usize) -> Option<usize> {
+        let step = if finest <= shortest { Some(finest) } else { (shortest + 1 - (finest - shortest) % 2).checked_sub(1) };
+        step.filter(|step| *step >= self.longest())
     }
 
     /// The finest reach that costs least, by the shortest ones that the spots may have, where these lie and the number of targets.
@@ -103,7 +138,7 @@ impl FastSum {
         let cost = |finest: usize| {
             let mut counts = [0usize; REACHES];
             for (shortest, count) in spots.iter().enumerate() {
-                if let Some(step) = level(finest, shortest) {
+                if let Some(step) = self.level(finest, shortest) {
                     counts[step] += count;
                 }
             }
@@ -117,7 +152,8 @@ impl FastSum {
             }
             cost
         };
-        (0..REACHES).map(|step| (step, cost(step))).min_by(|(_, a), (_, b)| a.total_cmp(b)).map_or(0, |(step, _)| step)
+        let all = (self.longest()..REACHES).map(|step| (step, cost(step)));
+        all.min_by(|(_, a), (_, b)| a.total_cmp(b)).map_or(REACHES - 1, |(step, _)| step)
     }
 
     /// The spots as sources, by exact fields and by moments.
@@ -135,11 +171,6 @@ impl FastSum {
     fn acts(&self, spots: &Spots) -> bool {
         self.measure.kind != Kind::None && !spots.index.is_empty()
     }
-}
-
-/// The longest of the reaches `finest`, `finest` − 2, … that is no shorter than `shortest`, if there is one.
-fn level(finest: usize, shortest: usize) -> Option<usize> {
-    if finest <= shortest { Some(finest) } else { (shortest + 1 - (finest - shortest) % 2).checked_sub(1) }
 }
 
 /// How many times as many spots lie near one of them as if they were spread evenly, within each of the reaches.
@@ -223,7 +254,7 @@ impl Interaction for FastSum {
         let mut values = vec![0.0; spots.index.len()];
         sparse.geometry.linearise(&sources, &mut sparse.fine, &mut values, effort);
         outward(&sparse.from, &values, displacements);
-        let own = IMAGES.sums(0.0, 0.0);
+        let own = self.measure.images(0.0, 0.0);
         for (value, slope) in values.iter_mut().zip(&sources.moments.slope) {
             *value = product(&own, slope);
         }

@@ -3,7 +3,7 @@
 use super::super::ewald::{IMAGES, ORDERS};
 use super::super::pair::SpotColumns;
 use super::plan::Plan;
-use crate::model::Interaction as Kind;
+use crate::model::{Boundary, Interaction as Kind};
 use multiversion::multiversion;
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use std::sync::Arc;
 pub(super) enum Rest {
     /// Within the reach of a plan; its mesh does the rest.
     Mesh(Arc<Plan>),
-    /// Everywhere, with the sums over images: for spots too large for any reach.
+    /// Everywhere, with the sums over images where there are any: for spots too large for any reach.
     Images,
 }
 
@@ -31,13 +31,25 @@ pub(super) struct Group {
     y: Vec<f64>,
 }
 
-/// How fields are measured: the kind, `sqrt(2πΔγ/E*)` \[m^½\], the factor of `r²/R` inside a spot and the side \[m\].
+/// How fields are measured: the kind, what surrounds the square, `sqrt(2πΔγ/E*)` \[m^½\], the factor of `r²/R` inside a spot and the side \[m\], of
+/// the room where the square is isolated.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Measure {
     pub(super) kind: Kind,
+    pub(super) boundary: Boundary,
     pub(super) pull: f64,
     pub(super) sag: f64,
     pub(super) length: f64,
+}
+
+impl Measure {
+    /// The sums over all images but the nearest, at a place in units of the side from it.
+    pub(super) fn images(self, dx: f64, dy: f64) -> [f64; ORDERS] {
+        match self.boundary {
+            Boundary::Periodic => IMAGES.sums(dx, dy),
+            Boundary::Isolated => [0.0; ORDERS],
+        }
+    }
 }
 
 /// Sources that were found near a target, and the squares of their distances \[m²\].
@@ -123,7 +135,7 @@ impl Group {
                     let share = d / measure.length;
                     share - share.round_ties_even()
                 });
-                IMAGES.sums(dx, dy)
+                measure.images(dx, dy)
             }
         }
     }

@@ -1,8 +1,11 @@
 //! What depends on the reach of the near field alone: the splitting, the smooth field by radius, the mesh and its waves.
 
 use super::super::ewald::ORDERS;
+use super::ROOM;
 use super::mesh::Real;
+use crate::model::Boundary;
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
+use rustfft::num_complex::Complex;
 use rustfft::{Fft, FftPlanner};
 use std::f64::consts::{PI, TAU};
 use std::fmt;
@@ -160,7 +163,7 @@ pub(super) struct Plan {
 pub(super) struct Mesh<T> {
     /// Points on a side.
     pub(super) size: usize,
-    /// `(2π/q) erfc(q/2α)` over the spread of a source, by ky then kx; at q = 0 what the near fields have of mean taken off.
+    /// The smooth field's waves over the spread of a source, by ky then kx.
     pub(super) waves: Vec<T>,
     /// One over the transform of the B-spline, of k = 0 … N − 1; 0 at the highest wave, which has no sign.
     pub(super) sharpen: Vec<T>,
@@ -198,24 +201,23 @@ fn points(alpha: f64, waves: f64, width: usize) -> usize {
 }
 
 impl Plan {
-    pub(super) fn new(accuracy: Accuracy, reach: f64) -> Self {
+    pub(super) fn new(accuracy: Accuracy, reach: f64, boundary: Boundary) -> Self {
         let alpha = accuracy.edge / reach;
         let size = |waves: f64, width: usize| points(alpha, waves, width);
         Self {
             reach,
             smooth: Smooth::new(alpha, reach),
-            fine: Arc::new(Mesh::new(size(accuracy.waves[0], WIDTH), alpha, WIDTH)),
-            rough: Arc::new(Mesh::new(size(accuracy.waves[1], ROUGH_WIDTH), alpha, ROUGH_WIDTH)),
+            fine: Arc::new(Mesh::new(size(accuracy.waves[0], WIDTH), alpha, WIDTH, boundary)),
+            rough: Arc::new(Mesh::new(size(accuracy.waves[1], ROUGH_WIDTH), alpha, ROUGH_WIDTH, boundary)),
         }
     }
 }
 
 impl<T: Real> Mesh<T> {
-    fn new(n: usize, alpha: f64, width: usize) -> Self {
-        let wave = |k: usize| if 2 * k < n { k as f64 } else { k as f64 - n as f64 };
+    fn new(n: usize, alpha: f64, width: usize, boundary: Boundary) -> Self {
         let sharpen: Vec<f64> = (0..n)
             .map(|k| {
-                let angle = PI * wave(k) / n as f64;
+                let angle = PI * wave(k, n) / n as f64;
                 if 2 * k == n {
                     0.0
                 } else if k == 0 {
@@ -225,13 +227,13 @@ impl<T: Real> Mesh<T> {
                 }
             })
             .collect();
-        let half = n / 2 + 1;
-        let mut waves = vec![0.0; half * n];
-        for ky in 0..half {
-            for kx in 0..n {
-                let q = TAU * wave(kx).hypot(ky as f64);
-                let far = if q > 0.0 { TAU / q * libm::erfc(0.5 * q / alpha) } else { -2.0 * PI.sqrt() / alpha };
-                waves[ky * n + kx] = far * sharpen[ky] * sharpen[kx];
+        let mut waves = match boundary {
+            Boundary::Periodic => waves_of_all(n, alpha),
+            Boundary::Isolated => waves_of_one(n, alpha),
+        };
+        for (ky, waves) in waves.chunks_mut(n).enumerate() {
+            for (far, across) in waves.iter_mut().zip(&sharpen) {
+                *far *= sharpen[ky] * across;
             }
         }
         let (mut real, mut complex) = (RealFftPlanner::<T>::new(), FftPlanner::<T>::new());
@@ -246,4 +248,38 @@ impl<T: Real> Mesh<T> {
             columns_back: complex.plan_fft_inverse(n),
         }
     }
+}
+
+/// The wave that a mesh of `n` points has at its k-th place.
+fn wave(k: usize, n: usize) -> f64 {
+    if 2 * k < n { k as f64 } else { k as f64 - n as f64 }
+}
+
+/// Of `erf(αr)/r` with all its images: `(2π/q) erfc(q/2α)`; at q = 0 what the near fields have of mean taken off. By ky, up to the highest, then kx.
+fn waves_of_all(n: usize, alpha: f64) -> Vec<f64> {
+    let at = |ky: usize, kx: usize| {
+        let q = TAU * wave(kx, n).hypot(ky as f64);
+        if q > 0.0 { TAU / q * libm::erfc(0.5 * q / alpha) } else { -2.0 * PI.sqrt() / alpha }
+    };
+    (0..=n / 2).flat_map(|ky| (0..n).map(move |kx| at(ky, kx))).collect()
+}
+
+/// The same of `erf(αr)/r` alone, as far as an isolated square needs it. From there on it falls off as `erfc(αx)` does, along both directions, so that
+/// a mesh which has the one has the other; between two squares there is a reach for that, and one for the next image to rise.
+fn waves_of_one(n: usize, alpha: f64) -> Vec<f64> {
+    let middle = 0.5 * (1.0 / ROOM + 0.5);
+    let along = |k: usize| wave(k, n).abs() / n as f64;
+    let window: Vec<f64> = (0..n).map(|k| 0.5 * libm::erfc(alpha * (along(k) - middle))).collect();
+    let kernel = |r: f64| if r > 0.0 { libm::erf(alpha * r) / r } else { 2.0 * alpha / PI.sqrt() };
+    let point = |i: usize, j: usize| Complex::new(kernel(along(i).hypot(along(j))) * window[i] * window[j], 0.0);
+    let mut points: Vec<Complex<f64>> = (0..n * n).map(|k| point(k / n, k % n)).collect();
+    let lines = FftPlanner::new().plan_fft_forward(n);
+    lines.process(&mut points);
+    for i in 0..n {
+        for j in 0..i {
+            points.swap(i * n + j, j * n + i);
+        }
+    }
+    lines.process(&mut points);
+    points[..(n / 2 + 1) * n].iter().map(|value| value.re / (n * n) as f64).collect()
 }
