@@ -79,10 +79,8 @@ pub struct Step {
     pub drift_m: f64,
     /// Least eigenvalue of the tangent, as [`State::stability`] has it.
     pub stability: f64,
-    /// Newton and relaxation iterations since the step before.
-    pub iterations: u64,
-    /// Pair fields evaluated since the step before.
-    pub pairs: u64,
+    /// What has been done since the step before.
+    pub effort: Effort,
 }
 
 /// A spot at a kept step.
@@ -318,6 +316,7 @@ impl<'s> Recorder<'s> {
                 self.record(path, None, cycle, false);
             } else {
                 let excursion = path.excursion(next)?;
+                path.solver.effort += excursion.effort();
                 self.record(path, Some(&excursion), cycle, false);
             }
         }
@@ -361,8 +360,7 @@ impl<'s> Recorder<'s> {
             residual_m: state.residual_m,
             drift_m: path.log.drift_m,
             stability: state.stability,
-            iterations: effort.iterations - self.effort_before.iterations,
-            pairs: effort.pairs - self.effort_before.pairs,
+            effort: effort - self.effort_before,
         });
         self.events_before += recent.len();
         self.ways_before += ways.len();

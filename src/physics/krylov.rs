@@ -124,6 +124,7 @@ fn solve(
         let mut w = vec![0.0; n];
         apply(tangent, diagonal, &scaled, &mut w);
         effort.products += 1;
+        effort.transforms += tangent.transforms();
         let mut column = Vec::with_capacity(k + 2);
         for v in &basis {
             let h = dot(v, &w);

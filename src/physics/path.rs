@@ -372,7 +372,7 @@ impl<'p> Path<'p> {
     }
 
     /// The first state of the last stretch that has this load \[N\], on an excursion; nothing where only the traces had it.
-    pub(crate) fn turning(&self, load: f64) -> Result<Option<Self>, PhysicsError> {
+    pub(crate) fn turning(&mut self, load: f64) -> Result<Option<Self>, PhysicsError> {
         if self.mark.is_none() && self.totals.load_n >= load {
             return self.excursion(self.front.state.approach_m).map(Some);
         }
@@ -381,6 +381,7 @@ impl<'p> Path<'p> {
         for _ in 0..100 {
             let middle = low + ends.share(0.01) * (high - low);
             let trial = self.excursion(middle)?;
+            self.solver.effort += trial.effort();
             let off = trial.totals.load_n - load;
             // A load that jumps over what is wanted is met where it jumps.
             let closed = (high - low).abs() <= LOAD_TOLERANCE * self.problem().rms_height_m;
@@ -404,14 +405,16 @@ impl<'p> Path<'p> {
 
     /// The state of the last stretch at an approach or soon after it that has so much load \[N\]: where the load jumps over it, an excursion may
     /// meet the jump a little later than the stretch did. Where none has, the one with the greatest load.
-    fn reaching(&self, mut at: f64, load: f64) -> Result<Self, PhysicsError> {
+    fn reaching(&mut self, mut at: f64, load: f64) -> Result<Self, PhysicsError> {
         let end = self.front.state.approach_m;
         let mut further = LOAD_TOLERANCE * self.problem().rms_height_m;
         let mut best = self.excursion(at)?;
+        self.solver.effort += best.effort();
         while best.totals.load_n < load && at != end {
             further *= 4.0;
             at = if (end - at) * self.sign > further { at + self.sign * further } else { end };
             let trial = self.excursion(at)?;
+            self.solver.effort += trial.effort();
             if trial.totals.load_n > best.totals.load_n {
                 best = trial;
             }

@@ -65,6 +65,13 @@ impl Problem {
         Self { spots_in_patch: spots.max(1), ..self }
     }
 
+    /// The same problem with fast sums from another number of spots on; with `usize::MAX` every sum goes over all pairs. A problem of few asperities
+    /// has none.
+    #[must_use]
+    pub fn with_fast_sums_from(self, spots: usize) -> Self {
+        Self { field: self.field.fast_from(spots), ..self }
+    }
+
     /// Asperities from summits.
     ///
     /// Inside they are numbered from the highest down, at places from the highest one on, rounded to 2⁻⁴⁰ of the side: so nothing depends on how a caller

@@ -36,7 +36,7 @@ pub fn run() {
     heading("cycle: zeta = 64 to 0.0071, 0.01 h_rms a step", "in direct evaluations");
     plain(&format!("{} spots, all pairs once", contact.spots.index.len()), evaluation);
     line(&format!("{} steps, {} events", done.steps.len(), done.events.len()), whole, whole / evaluation);
-    let pairs: u64 = done.steps.iter().map(|step| step.pairs).sum();
-    let iterations: u64 = done.steps.iter().map(|step| step.iterations).sum();
+    let pairs: u64 = done.steps.iter().map(|step| step.effort.pairs).sum();
+    let iterations: u64 = done.steps.iter().map(|step| step.effort.iterations).sum();
     println!("{:>36}  {pairs} pairs, {iterations} iterations", "effort");
 }

@@ -60,7 +60,7 @@ fn val_columns_are_those_of_the_contract() {
         (&ASPERITIES, "asperity_id x_m y_m height_m radius_m curvature_1_m curvature_min_1_m curvature_max_1_m grid_row grid_col refined"),
         (
             &STEPS,
-            "step branch max_load approach_m load_n least_load_n area_m2 area_union_m2 contact_count covered_count jump_in_count jump_off_count cover_count uncover_count snap_count merge_count split_count held_count touching_count dissipated_j work_j residual_m drift_m stability converged iteration_count pair_evaluation_count load area penetration",
+            "step branch max_load approach_m load_n least_load_n area_m2 area_union_m2 contact_count covered_count jump_in_count jump_off_count cover_count uncover_count snap_count merge_count split_count held_count touching_count dissipated_j work_j residual_m drift_m stability converged iteration_count pair_evaluation_count product_count transform_count load area penetration",
         ),
         (&CONTACTS, "step branch max_load asperity_id state contact_radius_m load_n penetration_m interaction_m"),
         (

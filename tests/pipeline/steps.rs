@@ -83,6 +83,8 @@ pub fn write(path: &Path, steps: &[Step]) {
         .bool("converged", (0..steps.len()).map(|row| row != 3))
         .count("iteration_count", zeros())
         .count("pair_evaluation_count", zeros())
+        .count("product_count", zeros())
+        .count("transform_count", zeros())
         .f64("load", reals(|step| step.2))
         .f64("area", reals(|step| step.3))
         .f64("penetration", reals(|step| step.4))

@@ -3,8 +3,10 @@
 use super::{DirectSum, Effort, FastSum, Interaction, PairTable, Spots, Tangent};
 use crate::model::{Boundary, Interaction as Kind, Material, Slips};
 
-/// Spots from which the fast sum is the faster one, measured for the linearisations of one solution and the products that follow them.
+/// Spots from which the fast sum is the faster one, measured for the linearisations of one solution and the products that follow them; where there
+/// are no images, a pair costs less and the mesh more.
 const MANY: usize = 150;
+const MANY_ALONE: usize = 400;
 
 /// Asperities from which there may be so many spots.
 const ENOUGH: usize = 300;
@@ -18,7 +20,8 @@ const TOLERANCE: f64 = 1e-10;
 pub fn best(positions: Vec<[f64; 2]>, length_m: f64, material: &Material, kind: Kind, boundary: Boundary, slips: Slips) -> Best {
     let many = positions.len() >= ENOUGH && matches!(kind, Kind::Spots | Kind::Point);
     let fast = many.then(|| FastSum::new(positions.clone(), length_m, material, kind, boundary, slips, TOLERANCE));
-    Best { direct: DirectSum::new(positions, length_m, material, kind, boundary, slips), fast }
+    let many = if boundary == Boundary::Periodic { MANY } else { MANY_ALONE };
+    Best { direct: DirectSum::new(positions, length_m, material, kind, boundary, slips), fast, many }
 }
 
 /// The direct sum, and the fast one where there are asperities enough for it.
@@ -26,19 +29,21 @@ pub fn best(positions: Vec<[f64; 2]>, length_m: f64, material: &Material, kind: 
 pub struct Best {
     direct: DirectSum,
     fast: Option<FastSum>,
+    /// Spots from which on that one is used.
+    many: usize,
 }
 
 impl Best {
     fn for_spots(&self, spots: &Spots) -> &dyn Interaction {
         match &self.fast {
-            Some(fast) if spots.columns.len() >= MANY => fast,
+            Some(fast) if spots.columns.len() >= self.many => fast,
             _ => &self.direct,
         }
     }
 
     /// For other places than the spots: a mesh is worth its while only for many of them.
     fn for_targets(&self, spots: &Spots, targets: &[usize]) -> &dyn Interaction {
-        if targets.len() < MANY / 2 { &self.direct } else { self.for_spots(spots) }
+        if targets.len() < self.many / 2 { &self.direct } else { self.for_spots(spots) }
     }
 
     /// As [`DirectSum::among`] has it.
@@ -50,6 +55,11 @@ impl Best {
     #[must_use]
     pub fn with_table(self) -> Self {
         Self { direct: self.direct.with_table(), ..self }
+    }
+
+    /// The same with the fast sum from another number of spots on.
+    pub(crate) fn fast_from(self, many: usize) -> Self {
+        Self { many, ..self }
     }
 
     /// Adds a place \[m\], whose number follows the last one.

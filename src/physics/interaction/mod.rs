@@ -17,6 +17,7 @@ pub use fast::FastSum;
 use fast::Sparse;
 pub use mutual::Mutual;
 use pair::SpotColumns;
+use std::ops::{AddAssign, Sub};
 use std::sync::Arc;
 pub(crate) use table::PairTable;
 
@@ -63,6 +64,15 @@ impl Tangent {
             }
             Form::Sparse(sparse) => sparse.product(x, y),
             Form::Mutual(mutual) => mutual.product(x, y),
+        }
+    }
+
+    /// Transforms of a mesh in one product.
+    #[must_use]
+    pub fn transforms(&self) -> u64 {
+        match &self.0 {
+            Form::Sparse(sparse) => sparse.transforms(),
+            Form::Dense(..) | Form::Mutual(_) => 0,
         }
     }
 
@@ -139,8 +149,32 @@ pub struct Effort {
     pub pairs: u64,
     /// Newton and relaxation iterations.
     pub iterations: u64,
-    /// Products of the tangent with a vector.
+    /// Products of the tangent with a vector, one for each iteration of GMRES.
     pub products: u64,
+    /// Transforms of a mesh, there or back.
+    pub transforms: u64,
+}
+
+impl AddAssign for Effort {
+    fn add_assign(&mut self, more: Self) {
+        self.pairs += more.pairs;
+        self.iterations += more.iterations;
+        self.products += more.products;
+        self.transforms += more.transforms;
+    }
+}
+
+impl Sub for Effort {
+    type Output = Self;
+
+    fn sub(self, less: Self) -> Self {
+        Self {
+            pairs: self.pairs - less.pairs,
+            iterations: self.iterations - less.iterations,
+            products: self.products - less.products,
+            transforms: self.transforms - less.transforms,
+        }
+    }
 }
 
 /// How contact spots displace the half-space at one another and at free asperities.

@@ -148,6 +148,15 @@ impl Geometry {
 
     fn count(&self, effort: &mut Effort) {
         effort.pairs += self.pairs.iter().map(|pairs| pairs.len() as u64).sum::<u64>();
+        effort.transforms += self.transforms();
+    }
+
+    /// Of each mesh there, and of the finest back.
+    pub(super) fn transforms(&self) -> u64 {
+        match self.fine.levels.len() {
+            0 => 0,
+            meshes => meshes as u64 + 1,
+        }
     }
 
     /// Displacements at the targets.

@@ -314,4 +314,8 @@ impl Sparse {
     pub(super) fn own(&self, i: usize) -> f64 {
         self.own[i]
     }
+
+    pub(super) fn transforms(&self) -> u64 {
+        self.geometry.transforms()
+    }
 }
