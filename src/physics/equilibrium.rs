@@ -46,9 +46,13 @@ pub(crate) struct Solver<'p> {
     pub(crate) problem: &'p Problem,
     pub(crate) effort: Effort,
     spots: Spots,
+    /// Whether the present solution is only to be good enough to go on: sums are rough then.
+    roughly: bool,
+    /// The tangent of the present solution, and what is known of the places of free asperities against the spots; the same of the last solution of
+    /// the other kind, for what it knows of places.
     tangent: Tangent,
-    /// What is known of the places of free asperities against the spots.
     watched: Tangent,
+    others: [Tangent; 2],
     /// An approximate inverse of the tangent as it was, and how many solutions have begun since: it only makes them short.
     inverse: Option<LocalInverse>,
     age: usize,
@@ -67,8 +71,10 @@ impl<'p> Solver<'p> {
             problem,
             effort: Effort::default(),
             spots: Spots::default(),
+            roughly: false,
             tangent: Tangent::default(),
             watched: Tangent::default(),
+            others: Default::default(),
             inverse: None,
             age: 0,
             fresh: false,
@@ -79,15 +85,22 @@ impl<'p> Solver<'p> {
     }
 
     /// Before a solution.
-    pub(crate) fn begin(&mut self) {
+    pub(crate) fn begin(&mut self, roughly: bool) {
         self.age += 1;
+        if self.roughly != roughly {
+            self.roughly = roughly;
+            let [tangent, watched] = &mut self.others;
+            std::mem::swap(&mut self.tangent, tangent);
+            std::mem::swap(&mut self.watched, watched);
+        }
     }
 
     /// Displacements, residuals and tangent of a state; its worst residual and whose it is.
     pub(crate) fn evaluate(&mut self, state: &mut State) -> Unsettled {
         let problem = self.problem;
         self.couple(state);
-        problem.field.linearise(&self.spots, &mut state.displacement, &mut self.tangent, &mut self.effort);
+        let field = problem.field.for_spots(&self.spots, self.roughly);
+        field.linearise(&self.spots, &mut state.displacement, &mut self.tangent, &mut self.effort);
         self.fresh = true;
         self.compare(state)
     }
@@ -96,7 +109,8 @@ impl<'p> Solver<'p> {
     fn glance(&mut self, state: &mut State) -> Unsettled {
         let problem = self.problem;
         self.couple(state);
-        problem.field.again(&self.spots, &mut state.displacement, &mut self.tangent, &mut self.effort);
+        let field = problem.field.for_spots(&self.spots, self.roughly);
+        field.again(&self.spots, &mut state.displacement, &mut self.tangent, &mut self.effort);
         self.fresh = false;
         self.compare(state)
     }
@@ -292,7 +306,8 @@ impl<'p> Solver<'p> {
         problem.spots(state, &mut self.spots);
         let (mut displacement, mut slopes) = (Vec::new(), Vec::new());
         let found = [&mut displacement, &mut slopes];
-        problem.field.approach(&self.spots, rates, wanted, found, &mut self.watched, &mut self.effort);
+        let field = problem.field.for_targets(&self.spots, wanted, self.roughly);
+        field.approach(&self.spots, rates, wanted, found, &mut self.watched, &mut self.effort);
         let at = state.approach_m;
         let pairs = displacement.iter().zip(&slopes).zip(wanted);
         pairs

@@ -37,7 +37,7 @@ impl Path<'_> {
         };
         self.solved = depth;
         self.gather_lags();
-        self.solver.begin();
+        self.solver.begin(depth == Depth::Enough);
         let mut rounds = 0;
         let mut uncovering: Option<(Mark, Vec<usize>)> = None;
         loop {

@@ -11,15 +11,17 @@ const MANY_ALONE: usize = 400;
 /// Asperities from which there may be so many spots.
 const ENOUGH: usize = 300;
 
-/// Error of the fast sum, of the greatest displacement: an equilibrium is met to 1e-10 of the rms height.
+/// Errors of the fast sum, of the greatest displacement: where an equilibrium is met to 1e-10 of the rms height, and where it is met well enough to go on.
 const TOLERANCE: f64 = 1e-10;
+const ROUGH: f64 = 1e-6;
 
 /// The displacement field of asperities at `positions` \[m\] on the square of side `length_m`, summed in the way that is the faster one for
 /// the number of spots in contact.
 #[must_use]
 pub fn best(positions: Vec<[f64; 2]>, length_m: f64, material: &Material, kind: Kind, boundary: Boundary, slips: Slips) -> Best {
     let many = positions.len() >= ENOUGH && matches!(kind, Kind::Spots | Kind::Point);
-    let fast = many.then(|| FastSum::new(positions.clone(), length_m, material, kind, boundary, slips, TOLERANCE));
+    let to = |tolerance| FastSum::new(positions.clone(), length_m, material, kind, boundary, slips, tolerance);
+    let fast = many.then(|| [to(TOLERANCE), to(ROUGH)]);
     let many = if boundary == Boundary::Periodic { MANY } else { MANY_ALONE };
     Best { direct: DirectSum::new(positions, length_m, material, kind, boundary, slips), fast, many }
 }
@@ -28,22 +30,23 @@ pub fn best(positions: Vec<[f64; 2]>, length_m: f64, material: &Material, kind: 
 #[derive(Debug, Clone)]
 pub struct Best {
     direct: DirectSum,
-    fast: Option<FastSum>,
+    fast: Option<[FastSum; 2]>,
     /// Spots from which on that one is used.
     many: usize,
 }
 
 impl Best {
-    fn for_spots(&self, spots: &Spots) -> &dyn Interaction {
+    /// For the spots themselves; `roughly` with an error of 1e-6 where they are many.
+    pub(crate) fn for_spots(&self, spots: &Spots, roughly: bool) -> &dyn Interaction {
         match &self.fast {
-            Some(fast) if spots.columns.len() >= self.many => fast,
+            Some(fast) if spots.columns.len() >= self.many => &fast[usize::from(roughly)],
             _ => &self.direct,
         }
     }
 
     /// For other places than the spots: a mesh is worth its while only for many of them.
-    fn for_targets(&self, spots: &Spots, targets: &[usize]) -> &dyn Interaction {
-        if targets.len() < self.many / 2 { &self.direct } else { self.for_spots(spots) }
+    pub(crate) fn for_targets(&self, spots: &Spots, targets: &[usize], roughly: bool) -> &dyn Interaction {
+        if targets.len() < self.many / 2 { &self.direct } else { self.for_spots(spots, roughly) }
     }
 
     /// As [`DirectSum::among`] has it.
@@ -65,7 +68,7 @@ impl Best {
     /// Adds a place \[m\], whose number follows the last one.
     pub(crate) fn add(&mut self, place: [f64; 2]) {
         self.direct.add(place);
-        if let Some(fast) = &mut self.fast {
+        for fast in self.fast.iter_mut().flatten() {
             fast.add(place);
         }
     }
@@ -83,15 +86,15 @@ impl Best {
 
 impl Interaction for Best {
     fn displacements(&self, spots: &Spots, targets: &[usize], displacements: &mut Vec<f64>, effort: &mut Effort) {
-        self.for_targets(spots, targets).displacements(spots, targets, displacements, effort);
+        self.for_targets(spots, targets, false).displacements(spots, targets, displacements, effort);
     }
 
     fn linearise(&self, spots: &Spots, displacements: &mut Vec<f64>, tangent: &mut Tangent, effort: &mut Effort) {
-        self.for_spots(spots).linearise(spots, displacements, tangent, effort);
+        self.for_spots(spots, false).linearise(spots, displacements, tangent, effort);
     }
 
     fn again(&self, spots: &Spots, displacements: &mut Vec<f64>, tangent: &mut Tangent, effort: &mut Effort) {
-        self.for_spots(spots).again(spots, displacements, tangent, effort);
+        self.for_spots(spots, false).again(spots, displacements, tangent, effort);
     }
 
     fn approach(
@@ -103,6 +106,6 @@ impl Interaction for Best {
         kept: &mut Tangent,
         effort: &mut Effort,
     ) {
-        self.for_targets(spots, targets).approach(spots, rates, targets, found, kept, effort);
+        self.for_targets(spots, targets, false).approach(spots, rates, targets, found, kept, effort);
     }
 }

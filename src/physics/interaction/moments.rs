@@ -22,8 +22,9 @@ pub(crate) struct Moments {
 impl Moments {
     /// Of the spots of the columns. `pull` is `sqrt(2πΔγ/E*)` \[m^½\], `compliance` is `1/(πE*)` \[1/Pa\], `length` is L \[m\].
     pub(crate) fn of(kind: Kind, spots: &SpotColumns, pull: f64, compliance: f64, length: f64) -> Self {
-        let mut all = Self::default();
-        for j in 0..spots.len() {
+        let n = spots.len();
+        let mut all = Self { value: Vec::with_capacity(n), slope: Vec::with_capacity(n) };
+        for j in 0..n {
             let (mut value, mut slope) = ([0.0; ORDERS], [0.0; ORDERS]);
             match kind {
                 // Spots that change one another's grip are seen by what they are to one another.
