@@ -4,7 +4,7 @@
 
 use crate::keys::{key, short};
 use crate::spec::{Case, ModelParams, Spec, SurfaceParams};
-use crate::store::{StoreError, hdf5, parquet};
+use crate::store::{StoreError, hdf5, parquet, read_halfway};
 use serde_json::{Value, json};
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 /// A stage's meaning: raised by hand when what it writes changes for the same parameters.
 const GENERATE: u32 = 1;
 const EXTRACT: u32 = 1;
-const CYCLE: u32 = 10;
+const CYCLE: u32 = 11;
 const AGGREGATE: u32 = 2;
 const REPORT: u32 = 3;
 
@@ -113,6 +113,8 @@ pub enum Standing {
     Damaged(String),
     /// It was tried, and failed: why.
     Failed(String),
+    /// It has begun, and can go on from where it was kept last.
+    Interrupted,
 }
 
 impl Campaign {
@@ -188,6 +190,12 @@ impl Campaign {
         self.cycle_dir(unit).join("failed.json")
     }
 
+    /// Where a cycle on its way is kept.
+    #[must_use]
+    pub fn halfway_path(&self, unit: &CycleUnit) -> PathBuf {
+        self.cycle_dir(unit).join("halfway.bin")
+    }
+
     /// `statistics/<table>.parquet`.
     #[must_use]
     pub fn statistics_path(&self, table: &str) -> PathBuf {
@@ -230,7 +238,11 @@ impl Campaign {
             .find(|standing| *standing != Standing::Done);
         match worst {
             None => Standing::Done,
-            Some(Standing::Missing) => self.failure(unit).map_or(Standing::Missing, Standing::Failed),
+            Some(Standing::Missing) => match self.failure(unit) {
+                Some(why) => Standing::Failed(why),
+                None if read_halfway(&self.halfway_path(unit), &unit.key).is_some() => Standing::Interrupted,
+                None => Standing::Missing,
+            },
             Some(other) => other,
         }
     }

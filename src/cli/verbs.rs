@@ -154,6 +154,7 @@ fn word(standing: &Standing) -> &'static str {
         Standing::Stale => "stale",
         Standing::Damaged(_) => "corrupt",
         Standing::Failed(_) => "failed",
+        Standing::Interrupted => "interrupted",
     }
 }
 
@@ -185,7 +186,7 @@ fn describe(campaign: &Campaign, json: bool, verb: &str) -> String {
         campaign.spec.realizations
     );
     for (stage, units) in &survey {
-        let counted: Vec<String> = ["done", "planned", "stale", "corrupt", "failed"]
+        let counted: Vec<String> = ["done", "planned", "interrupted", "stale", "corrupt", "failed"]
             .iter()
             .map(|state| (state, units.iter().filter(|(_, s)| word(s) == *state).count()))
             .filter(|(_, count)| *count > 0)

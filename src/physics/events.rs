@@ -11,9 +11,10 @@
 use super::front::Front;
 use super::state::{Problem, State, Status};
 use crate::model::{Coalescence, Interaction};
+use serde::{Deserialize, Serialize};
 
 /// A kind of event.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Kind {
     /// A free asperity jumps into contact.
     JumpIn,

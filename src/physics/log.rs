@@ -2,9 +2,10 @@
 
 use super::events::{Change, Kind};
 use super::state::Totals;
+use serde::{Deserialize, Serialize};
 
 /// An event as it happened.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Event {
     /// What happened.
     pub kind: Kind,
@@ -23,7 +24,7 @@ pub struct Event {
 }
 
 /// What a path has left behind.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(crate) struct Log {
     pub(crate) events: Vec<Event>,
     /// Which of them has the energy of the last relaxation.
@@ -42,7 +43,7 @@ pub(crate) struct Log {
 }
 
 /// A part of the way of the load on which it does not jump.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub(crate) struct Way {
     /// Approach and load at its end \[m, N\].
     pub(crate) approach: f64,

@@ -21,6 +21,7 @@ use super::log::Event;
 use super::path::{Carried, Path};
 use super::state::{Problem, State, Status};
 use crate::model::Coalescence;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
 /// Overlap at which spots merge at the latest, of their distance.
@@ -39,7 +40,7 @@ const SUDDEN: f64 = 1e-6;
 const TENSEST: f64 = 0.8;
 
 /// A spot that stands for two.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Merged {
     /// Its parts: summits, or merged spots themselves.
     pub parts: [usize; 2],

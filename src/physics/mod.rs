@@ -24,6 +24,7 @@ mod outside;
 mod patch;
 pub mod path;
 mod places;
+mod recorder;
 mod relax;
 pub mod restart;
 mod settle;

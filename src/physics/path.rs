@@ -459,7 +459,8 @@ impl<'p> Path<'p> {
     }
 }
 
-fn is_multiple(value: f64, size: f64) -> bool {
+/// Whether it is one, but for rounding.
+pub(crate) fn is_multiple(value: f64, size: f64) -> bool {
     let count = value / size;
     (count - count.round()).abs() < 1e-9
 }

@@ -10,6 +10,7 @@ use super::places::Places;
 use super::summits::Summit;
 use super::validity::LEAST_TABOR;
 use crate::model::{Boundary, Coalescence, Interaction as Kind, JumpIn, Material, Slips};
+use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// The choices of the contact model that a cycle reads.
@@ -221,7 +222,7 @@ impl Problem {
 }
 
 /// Sums over the spots of a state.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Totals {
     /// Load F \[N\].
     pub load_n: f64,
@@ -230,7 +231,7 @@ pub struct Totals {
 }
 
 /// What an asperity is doing.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Status {
     /// Out of contact.
     Free,
@@ -251,7 +252,7 @@ pub enum Status {
 }
 
 /// A state along the path. It is all that is needed to go on from there.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// Approach δ \[m\], 0 at the highest summit.
     pub approach_m: f64,

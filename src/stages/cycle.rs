@@ -1,16 +1,17 @@
 //! cycle: load and unload one case on one surface, and write every step.
 
-use super::StageError;
 use super::surface::read_summits;
-use crate::campaign::{Campaign, CycleUnit};
-use crate::physics::cycle::{self, Cycle, Settings, Step};
+use super::{StageError, Watch};
+use crate::campaign::{Campaign, CycleUnit, Stage};
+use crate::physics::cycle::{self, Cycle, Halfway, Settings, Step};
 use crate::physics::merge::Merged;
 use crate::physics::restart::Kept;
 use crate::physics::state::{Problem, Rules, State, Status};
 use crate::schema;
 use crate::spec::CaseParams;
-use crate::store::{Frame, parquet};
+use crate::store::{Frame, parquet, read_halfway, write_halfway};
 use std::path::Path;
+use std::time::{Duration, Instant};
 
 /// A state counts as converged below this residual, of the rms height.
 const CONVERGED: f64 = 1e-8;
@@ -28,22 +29,40 @@ pub(super) fn problem(params: &CaseParams, summits: &[crate::physics::summits::S
     Ok(Problem::new(summits, params.surface.length_m, params.surface.rms_height_m, params.material, rules)?)
 }
 
-pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, progress: &(dyn Fn(f64) + Sync)) -> Result<(), StageError> {
+/// Asperities from which on a cycle takes so long that what is needed to go on is kept on the way; where it rests for that, of the rms height; and how
+/// long it goes on from there at least before it is kept again.
+const MANY: usize = 20_000;
+const REST_EVERY: f64 = 0.1;
+const KEPT_FOR: Duration = Duration::from_secs(60);
+
+pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> Result<(), StageError> {
     let params = &campaign.cases[unit.case].case.params;
     let summits = read_summits(&campaign.asperities_path(&campaign.surfaces[unit.surface]))?;
     let dir = campaign.cycle_dir(unit);
     std::fs::create_dir_all(&dir).map_err(|source| StageError::Folder { path: dir.clone(), source })?;
     let problem = problem(params, &summits)?;
-    let settings = settings(params);
+    let settings = settings(params, summits.len());
     // The physics tells how far it is; the watch wants what was added.
     let reached = std::cell::Cell::new(0.0);
     let report = |done: f64| {
         let done = done.max(reached.get());
-        progress(done - reached.replace(done));
+        watch.progress(Stage::Cycle, done - reached.replace(done));
     };
-    let outcome = cycle::run(&problem, &settings, &report);
+    let path = campaign.halfway_path(unit);
+    let halfway = read_halfway(&path, &unit.key).and_then(|bytes| postcard::from_bytes(&bytes).ok());
+    let mut kept_at = Instant::now();
+    let mut keep = |halfway: &Halfway| {
+        if kept_at.elapsed() >= KEPT_FOR {
+            kept_at = Instant::now();
+            let kept = postcard::to_stdvec(halfway).map_err(|error| error.to_string());
+            if let Err(why) = kept.and_then(|bytes| write_halfway(&path, &unit.key, &bytes).map_err(|error| error.to_string())) {
+                watch.notice(&format!("{}: {why}; it goes on, and if it is interrupted it begins anew", unit.id));
+            }
+        }
+    };
+    let outcome = cycle::run_from(&problem, &settings, halfway, &mut keep, &report);
     // A failed case leaves the bar as a finished one does.
-    progress(1.0 - reached.get());
+    watch.progress(Stage::Cycle, 1.0 - reached.get());
     let cycle = outcome?;
     let keys = [("key", unit.key.clone())];
     // The steps come last: where they are, the cycle is done.
@@ -61,7 +80,8 @@ pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, progress: &(dyn Fn(f64)
 /// The tables of the cycle and of its surface must be there and whole, and hold that load.
 pub fn unload_again(campaign: &Campaign, unit: &CycleUnit, max_load: f64) -> Result<Cycle, StageError> {
     let params = &campaign.cases[unit.case].case.params;
-    let problem = problem(params, &read_summits(&campaign.asperities_path(&campaign.surfaces[unit.surface]))?)?;
+    let summits = read_summits(&campaign.asperities_path(&campaign.surfaces[unit.surface]))?;
+    let problem = problem(params, &summits)?;
     let path = campaign.cycle_dir(unit).join("turning.parquet");
     let frame = parquet::read_table(&path, &schema::TURNING)?;
     let (loads, approaches) = (frame.f64("max_load")?, frame.f64("approach_m")?);
@@ -83,7 +103,7 @@ pub fn unload_again(campaign: &Campaign, unit: &CycleUnit, max_load: f64) -> Res
     };
     let merged = merged_rows(&campaign.cycle_dir(unit).join("merged.parquet"), counts[rows[0]] as usize)?;
     let state = State::restored(&problem, approach, &merged, &rows.iter().map(kept).collect::<Vec<_>>())?;
-    Ok(cycle::unload_from(&problem, &settings(params), max_load, state)?)
+    Ok(cycle::unload_from(&problem, &settings(params, summits.len()), max_load, state)?)
 }
 
 /// The first spots that have merged on loading.
@@ -106,8 +126,13 @@ fn merged_rows(path: &Path, count: usize) -> Result<Vec<Merged>, StageError> {
     Ok((0..count.min(frame.row_count())).map(row).collect())
 }
 
-fn settings(params: &CaseParams) -> Settings {
-    Settings { max_loads: params.cycle.max_load.clone(), approach_step: params.cycle.approach_step, contacts: params.cycle.contacts }
+fn settings(params: &CaseParams, asperities: usize) -> Settings {
+    Settings {
+        max_loads: params.cycle.max_load.clone(),
+        approach_step: params.cycle.approach_step,
+        contacts: params.cycle.contacts,
+        rest_every: (asperities >= MANY).then_some(REST_EVERY),
+    }
 }
 
 fn turning(cycle: &Cycle, problem: &Problem, loads: &[f64]) -> Result<Frame, StageError> {

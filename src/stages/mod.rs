@@ -145,7 +145,7 @@ where
                 Standing::Done => return None,
                 Standing::Damaged(why) => watch.notice(&format!("{}: {why}; it is computed again", name(unit))),
                 Standing::Stale => watch.notice(&format!("{} was written for other parameters; it is computed again", name(unit))),
-                Standing::Failed(_) | Standing::Missing => {}
+                Standing::Failed(_) | Standing::Missing | Standing::Interrupted => {}
             }
             Some(unit)
         })
@@ -179,7 +179,7 @@ fn cycles(campaign: &Campaign, watch: &dyn Watch) -> Result<Tally, StageError> {
     require(Stage::Cycle, &wanted, |unit| surface(&unit), |unit| campaign.surfaces[unit.surface].id.clone())?;
     // The longest first, so that the threads end together.
     wanted.sort_by_key(|unit| std::cmp::Reverse(campaign.surfaces[unit.surface].params.magnification));
-    each(Stage::Cycle, units.len(), &wanted, watch, |unit| match cycle::run(campaign, unit, &|part| watch.progress(Stage::Cycle, part)) {
+    each(Stage::Cycle, units.len(), &wanted, watch, |unit| match cycle::run(campaign, unit, watch) {
         Err(StageError::Physics(error)) => {
             let record = json!({ "key": unit.key, "error": error.to_string() });
             let text = format!("{record:#}\n");
@@ -189,7 +189,9 @@ fn cycles(campaign: &Campaign, watch: &dyn Watch) -> Result<Tally, StageError> {
         }
         Err(error) => Err(error),
         Ok(()) => {
-            let _ = std::fs::remove_file(campaign.failure_path(unit));
+            for left in [campaign.failure_path(unit), campaign.halfway_path(unit)] {
+                let _ = std::fs::remove_file(left);
+            }
             Ok(unit.id.clone())
         }
     })

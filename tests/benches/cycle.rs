@@ -22,7 +22,7 @@ pub fn run() {
     let surface = synthesize(&spectrum, &realization_seed(2021, 0), 512);
     let summits = find_summits(surface.heights_m.view(), spectrum.length_m, 8.0).unwrap().list;
     let problem = Problem::new(&summits, spectrum.length_m, spectrum.rms_height_m, MATERIAL, rules).unwrap();
-    let settings = Settings { max_loads: vec![0.0071], approach_step: 0.01, contacts: KeptContacts::None };
+    let settings = Settings { max_loads: vec![0.0071], approach_step: 0.01, contacts: KeptContacts::None, rest_every: None };
     let mut done = None;
     let whole = once(|| done = Some(cycle(&problem, &settings, &|_| {}).unwrap()));
     let done = done.unwrap();

@@ -6,7 +6,7 @@ use crate::support::{
 };
 use hysteron::model::{Coalescence, Interaction, JumpIn, KeptContacts, Material};
 use hysteron::physics::PhysicsError;
-use hysteron::physics::cycle::{Cycle, Settings, run_to};
+use hysteron::physics::cycle::{Cycle, Halfway, Settings, run_from, run_to};
 use hysteron::physics::events::Kind;
 use hysteron::physics::jkr::Asperity;
 use hysteron::physics::state::{Problem, Rules};
@@ -306,12 +306,39 @@ fn reg_three_spots_of_which_each_covers_the_next_come_to_rest() {
         let summits = ring.map(|[x, y, z, r]| asperity(1e-6f64.mul_add(x, 5e-4), 1e-6f64.mul_add(y, 5e-4), 1e-6 * z, 1e-6 * r));
         let rules = Rules { jump_in: JumpIn::Jkr, allow_low_tabor: true, ..DEFAULT };
         let problem = Problem::new(&summits, LENGTH, RMS, PAPER, rules).unwrap();
-        let settings = Settings { max_loads: Vec::new(), approach_step: 0.05, contacts: KeptContacts::None };
+        let settings = Settings { max_loads: Vec::new(), approach_step: 0.05, contacts: KeptContacts::None, rest_every: None };
         let cycle = run_to(&problem, &settings, 0.5 * RMS).unwrap();
         assert!(cycle.steps.iter().all(|step| step.residual_m <= 1e-10 * RMS));
         // Nothing silent: whoever is held as it is stands in the data, and all have left in the end.
         assert!(cycle.steps.iter().any(|step| step.held_count > 0));
         let last = cycle.steps.last().unwrap();
         assert_eq!((last.contact_count, last.covered_count, last.load_n), (0, 0, 0.0));
+    }
+}
+
+#[test]
+fn law_a_cycle_goes_on_from_where_it_rested_as_if_nothing_had_been() {
+    let summits = paper_summits(16, 0);
+    for coalescence in [Coalescence::Cover, Coalescence::Merge] {
+        let problem = Problem::new(&summits, LENGTH, RMS, PAPER, Rules { coalescence, ..DEFAULT }).unwrap();
+        let contacts = KeptContacts::Turning;
+        let settings = Settings { max_loads: vec![0.002, 0.004], approach_step: 0.04, contacts, rest_every: Some(0.2) };
+        let mut kept: Vec<Vec<u8>> = Vec::new();
+        let mut keep = |halfway: &Halfway| kept.push(postcard::to_stdvec(halfway).unwrap());
+        let whole = run_from(&problem, &settings, None, &mut keep, &|_| {}).unwrap();
+        assert!(kept.len() > 20, "{}", kept.len());
+        for (number, bytes) in kept.iter().enumerate() {
+            let halfway: Halfway = postcard::from_bytes(bytes).unwrap();
+            let mut later = 0;
+            let again = run_from(&problem, &settings, Some(halfway), &mut |_| later += 1, &|_| {}).unwrap();
+            assert_eq!(later, kept.len() - number - 1);
+            assert!(again == whole, "{coalescence:?}, from rest {number}");
+        }
+        // To rest is to lose nothing but digits: traces begin anew.
+        let through = paper_cycle(&summits, Rules { coalescence, ..DEFAULT }, &[0.002, 0.004], 0.04);
+        for k in [0, 1] {
+            close("loss", loop_of(&whole, k).loss, loop_of(&through, k).loss, 1e-6);
+            close("area", loop_of(&whole, k).area, loop_of(&through, k).area, 1e-9);
+        }
     }
 }

@@ -39,7 +39,7 @@ fn law_a_way_without_an_event_is_retraced() {
     // Between the first jump-in and the second lies a way on which nothing happens; there and back on it costs nothing.
     let summits = paper_summits(16, 0);
     let problem = Problem::new(&summits, LENGTH, RMS, PAPER, DEFAULT).unwrap();
-    let settings = Settings { max_loads: Vec::new(), approach_step: 0.01, contacts: KeptContacts::None };
+    let settings = Settings { max_loads: Vec::new(), approach_step: 0.01, contacts: KeptContacts::None, rest_every: None };
     let far = run_to(&problem, &settings, 0.3 * RMS).unwrap();
     let loading: Vec<f64> =
         far.events.iter().take_while(|(step, _)| *step <= far.turning[0].0).map(|(_, event)| event.approach_m).collect();

@@ -165,7 +165,7 @@ mod support {
 
     /// A whole cycle.
     pub fn run(problem: &Problem, max_loads: &[f64], approach_step: f64, contacts: KeptContacts) -> Cycle {
-        cycle::run(problem, &Settings { max_loads: max_loads.to_vec(), approach_step, contacts }, &|_| {}).unwrap()
+        cycle::run(problem, &Settings { max_loads: max_loads.to_vec(), approach_step, contacts, rest_every: None }, &|_| {}).unwrap()
     }
 
     /// What a loop of one turning point comes to.

@@ -109,7 +109,7 @@ fn law_area_and_load_are_continuous_at_every_merger() {
 fn law_a_turning_point_with_merged_spots_is_enough_to_unload_from() {
     let summits = paper_summits(16, 0);
     let problem = Problem::new(&summits, LENGTH, RMS, PAPER, MERGE).unwrap();
-    let settings = Settings { max_loads: vec![0.004, 0.0071], approach_step: 0.04, contacts: KeptContacts::None };
+    let settings = Settings { max_loads: vec![0.004, 0.0071], approach_step: 0.04, contacts: KeptContacts::None, rest_every: None };
     let cycle = cycle::run(&problem, &settings, &|_| {}).unwrap();
     for (k, max_load) in settings.max_loads.iter().enumerate() {
         let state = &cycle.turning[k].1;
@@ -133,7 +133,7 @@ fn reg_merged_spots_that_fill_the_square_are_refused_with_a_sentence() {
     // Soft and sticky enough: full contact at hardly any load.
     let summits = paper_summits(16, 0);
     let problem = Problem::new(&summits, LENGTH, RMS, PAPER, MERGE).unwrap();
-    let settings = Settings { max_loads: vec![0.1], approach_step: 0.04, contacts: KeptContacts::None };
+    let settings = Settings { max_loads: vec![0.1], approach_step: 0.04, contacts: KeptContacts::None, rest_every: None };
     let error = cycle::run(&problem, &settings, &|_| {}).unwrap_err();
     assert!(matches!(error, PhysicsError::FullContact { .. }), "{error}");
     assert!(error.to_string().contains("the merged spots have the area") && error.to_string().contains("allowed:"), "{error}");

@@ -15,7 +15,7 @@ fn run(surface: &str, spacing: f64) -> Cycle {
     let summits: Vec<_> =
         rows.iter().map(|r| crate::support::asperity(r.number("x"), r.number("y"), r.number("z"), r.number("R"))).collect();
     let problem = Problem::new(&summits, rows[0].number("L"), RMS, PAPER, Rules { interaction, ..DEFAULT }).unwrap();
-    let settings = Settings { max_loads: Vec::new(), approach_step: spacing / RMS, contacts: KeptContacts::None };
+    let settings = Settings { max_loads: Vec::new(), approach_step: spacing / RMS, contacts: KeptContacts::None, rest_every: None };
     cycle::run_to(&problem, &settings, rows[0].number("delta_turn")).unwrap()
 }
 

@@ -14,7 +14,7 @@ const UNIT: f64 = 1e-7;
 /// Loads to an approach \[m\] and back, in steps of the unit.
 fn cycle_to(summits: &[Summit], rules: Rules, turn: f64, contacts: KeptContacts) -> Cycle {
     let problem = Problem::new(summits, LENGTH, UNIT, PAPER, rules).unwrap();
-    cycle::run_to(&problem, &Settings { max_loads: Vec::new(), approach_step: 1.0, contacts }, turn).unwrap()
+    cycle::run_to(&problem, &Settings { max_loads: Vec::new(), approach_step: 1.0, contacts, rest_every: None }, turn).unwrap()
 }
 
 /// The spots at an approach \[m\], while loading.

@@ -2,6 +2,7 @@
 
 mod commit;
 mod frames;
+mod halfway;
 mod surfaces;
 mod tables;
 

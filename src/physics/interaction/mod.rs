@@ -17,6 +17,7 @@ pub use fast::FastSum;
 use fast::Sparse;
 pub use mutual::Mutual;
 use pair::SpotColumns;
+use serde::{Deserialize, Serialize};
 use std::ops::{AddAssign, Sub};
 use std::sync::Arc;
 pub(crate) use table::PairTable;
@@ -143,7 +144,7 @@ pub(crate) fn places_in<'a>(numbers: &'a [usize], others: &'a [usize]) -> impl I
 }
 
 /// What it cost: counted, never timed.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Effort {
     /// Pair fields evaluated.
     pub pairs: u64,

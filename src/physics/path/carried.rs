@@ -4,8 +4,10 @@ use super::super::PhysicsError;
 use super::super::front::Front;
 use super::super::interaction::Effort;
 use super::super::log::{Event, Log};
+use super::super::merge::Known;
 use super::super::state::{Problem, State, Totals};
 use super::{Depth, Halt, Path, UNIT};
+use serde::{Deserialize, Serialize};
 
 /// Longest stretch, of the mean jump-off penetration.
 const STRETCH: f64 = 0.05;
@@ -17,6 +19,7 @@ const FINE_STRETCH: f64 = 0.00625;
 const LEAST_SCALE: f64 = 0.02;
 
 /// What goes on where a path goes on with other asperities.
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct Carried {
     pub(crate) state: State,
     pub(crate) sign: f64,
@@ -31,6 +34,8 @@ pub(crate) struct Carried {
     flips: Vec<u8>,
     held: Vec<usize>,
     effort: Effort,
+    /// Pairs that touch and are no news, where the path has rested.
+    pub(crate) known: Option<Known>,
 }
 
 impl Carried {
@@ -56,6 +61,7 @@ impl Carried {
             flips: Vec::new(),
             held: Vec::new(),
             effort: Effort::default(),
+            known: None,
         }
     }
 }
@@ -98,6 +104,7 @@ impl<'p> Path<'p> {
             flips: self.flips,
             held: self.held,
             effort: self.solver.effort,
+            known: None,
         }
     }
 

@@ -1,0 +1,27 @@
+//! A unit on its way, as bytes that only the program reads: with the key of the unit and a hash, so that neither another unit's nor torn ones are taken
+//! for it.
+
+use super::commit::commit_bytes;
+use super::error::StoreError;
+use std::path::Path;
+
+/// Length of a key and of a hash, as hexadecimal digits.
+const DIGITS: usize = 64;
+
+/// Puts the bytes of the unit `key` in place of `path`.
+///
+/// # Errors
+/// As [`commit_bytes`].
+pub fn write_halfway(path: &Path, key: &str, bytes: &[u8]) -> Result<(), StoreError> {
+    let whole = [key.as_bytes(), blake3::hash(bytes).to_hex().as_bytes(), bytes].concat();
+    commit_bytes("keep what is needed to go on in", path, &whole)
+}
+
+/// The bytes at `path`, if they are whole and of the unit `key`.
+#[must_use]
+pub fn read_halfway(path: &Path, key: &str) -> Option<Vec<u8>> {
+    let whole = std::fs::read(path).ok()?;
+    let (head, bytes) = whole.split_at_checked(2 * DIGITS)?;
+    let is_its = head[..DIGITS] == *key.as_bytes() && head[DIGITS..] == *blake3::hash(bytes).to_hex().as_bytes();
+    is_its.then(|| bytes.to_vec())
+}
