@@ -1,5 +1,6 @@
 //! The command line: verbs, progress, and what is said at the end.
 
+mod interrupt;
 mod progress;
 mod verbs;
 
@@ -13,7 +14,8 @@ use std::process::ExitCode;
     version,
     about,
     max_term_width = 100,
-    after_help = "Exit codes: 0 done, 1 failed, 2 bad spec or usage, 3 finished with failed cases."
+    after_help = "Exit codes: 0 done, 1 failed, 2 bad spec or usage, 3 finished with failed cases, \
+                  130 interrupted: the same command goes on."
 )]
 pub struct Arguments {
     #[command(subcommand)]

@@ -36,6 +36,11 @@ impl Teller {
         }
     }
 
+    /// Takes the bar away: nothing more is done.
+    pub(super) fn clear(&self) {
+        self.with(|now| now.bar.finish_and_clear());
+    }
+
     fn line(text: &str) {
         // Nobody is left to be told if standard error is closed.
         let _ = writeln!(std::io::stderr().lock(), "{text}");
@@ -88,6 +93,6 @@ impl Watch for Teller {
     }
 
     fn end(&self, _stage: Stage) {
-        self.with(|now| now.bar.finish_and_clear());
+        self.clear();
     }
 }

@@ -1,5 +1,6 @@
 //! One function for each verb.
 
+use super::interrupt;
 use super::progress::Teller;
 use super::{CampaignArguments, OutputArguments, StageArgument, Verb};
 use crate::campaign::{Campaign, Stage, Standing};
@@ -13,6 +14,7 @@ use std::collections::HashSet;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Arc;
 
 /// Exit codes of the contract.
 const FAILED: u8 = 1;
@@ -78,8 +80,9 @@ fn stages_of(arguments: &CampaignArguments, from: Stage, until: Stage, partial: 
         pool = pool.num_threads(usize::from(jobs));
     }
     let pool = pool.build().map_err(failed)?;
-    let teller = Teller::new();
-    let tallies = pool.install(|| stages::run(&campaign, from, until, partial, &teller)).map_err(failed)?;
+    let teller = Arc::new(Teller::new());
+    interrupt::expect(teller.clone(), &campaign.dir).map_err(failed)?;
+    let tallies = pool.install(|| stages::run(&campaign, from, until, partial, &*teller)).map_err(failed)?;
     let failures: usize = tallies.iter().map(|(_, tally)| tally.failed).sum();
     if arguments.output.json {
         say(&tally_json(&campaign, &tallies));

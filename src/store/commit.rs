@@ -7,6 +7,7 @@
 use std::ffi::OsStr;
 use std::fs::{self, File, Permissions};
 use std::path::Path;
+use std::sync::{PoisonError, RwLock, RwLockWriteGuard};
 
 use super::error::{Cause, StoreError};
 
@@ -14,6 +15,14 @@ use super::error::{Cause, StoreError};
 pub const TEMPORARY_PREFIX: &str = ".hysteron-";
 /// How the name of a file that is still being written ends.
 pub const TEMPORARY_SUFFIX: &str = ".tmp";
+
+/// Held by all that write, and by one that lets nobody begin.
+static WRITING: RwLock<()> = RwLock::new(());
+
+/// Waits until no file is being written, and lets none begin while what is returned is held.
+pub fn quiet() -> RwLockWriteGuard<'static, ()> {
+    WRITING.write().unwrap_or_else(PoisonError::into_inner)
+}
 
 /// Whether this is the name of a file that is being written, or was when the program was killed.
 #[must_use]
@@ -58,6 +67,7 @@ fn commit_inner(
     write: impl FnOnce(&Path) -> Result<(), Cause>,
     check: impl FnOnce(&Path) -> Result<(), Cause>,
 ) -> Result<(), Cause> {
+    let _writing = WRITING.read().unwrap_or_else(PoisonError::into_inner);
     let directory = match path.parent() {
         Some(parent) if parent.as_os_str().is_empty() => Path::new("."),
         Some(parent) => parent,

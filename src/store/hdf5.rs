@@ -12,6 +12,11 @@ use super::error::{Cause, StoreError, fenced};
 use super::surface_header;
 pub use super::surface_header::{Generated, SURFACE_VERSION, SurfaceHeader};
 
+/// Does something while no other thread is in the HDF5 library, which ends with the program and must not be in use then.
+pub fn alone<T>(act: impl FnOnce() -> T) -> T {
+    hdf5_metno::sync::sync(act)
+}
+
 /// Name of the height field in a surface file.
 pub const HEIGHT: &str = "height_m";
 /// Rows and columns of a chunk.

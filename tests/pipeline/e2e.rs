@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 use hysteron::campaign::Campaign;
 use hysteron::schema;
@@ -60,9 +60,9 @@ fn stderr(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
 }
 
-/// All files below a folder, by path, with their bytes.
-fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
-    let mut found = BTreeMap::new();
+/// All files below a folder.
+fn paths(folder: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
     let mut open = vec![folder.to_owned()];
     while let Some(next) = open.pop() {
         for entry in fs::read_dir(next).unwrap() {
@@ -70,11 +70,16 @@ fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
             if path.is_dir() {
                 open.push(path);
             } else {
-                found.insert(path.strip_prefix(folder).unwrap().to_owned(), fs::read(&path).unwrap());
+                found.push(path);
             }
         }
     }
     found
+}
+
+/// The same by path, with their bytes.
+fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    paths(folder).into_iter().map(|path| (path.strip_prefix(folder).unwrap().to_owned(), fs::read(&path).unwrap())).collect()
 }
 
 #[test]
@@ -371,4 +376,37 @@ fn unload_from_files(spec: &str) {
         assert!(told.contains("0.003") && told.contains("[0.001, 0.002]"), "{told}");
     }
     assert!(compared > 50, "{compared}");
+}
+
+#[test]
+fn e2e_an_interrupt_loses_no_file_and_the_same_command_goes_on() {
+    let undisturbed = Bench::new(SPEC);
+    assert_eq!(code(&undisturbed.verb("run", &[])), 0);
+    let bench = Bench::new(SPEC);
+    let mut interrupts = 0;
+    for signal in ["-INT", "-TERM"] {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_hysteron"));
+        command.args(["run", "--jobs", "1", "--out"]).arg(bench.out()).arg(bench.folder.path().join("spec.toml"));
+        let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+        // Once a file is there that was not there before, it is at work.
+        let count = || if bench.out().exists() { paths(&bench.out()).len() } else { 0 };
+        let before = count();
+        while child.try_wait().unwrap().is_none() && count() <= before + 2 {
+            std::thread::yield_now();
+        }
+        Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
+        let ended = child.wait_with_output().unwrap();
+        let said = stderr(&ended);
+        if ended.status.code() == Some(130) {
+            interrupts += 1;
+            assert!(said.contains("interrupted: ") && said.contains("campaign.toml --out"), "{said}");
+        } else {
+            // It was done before the signal came.
+            assert_eq!(code(&ended), 0, "{said}");
+        }
+        assert!(files(&bench.out()).keys().all(|path| !path.to_string_lossy().contains(".tmp")), "a temporary file was left");
+    }
+    assert!(interrupts > 0);
+    assert_eq!(code(&bench.verb("run", &[])), 0);
+    assert!(files(&bench.out()) == files(&undisturbed.out()), "other bytes than without an interrupt");
 }
