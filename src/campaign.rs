@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 /// A stage's meaning: raised by hand when what it writes changes for the same parameters.
 const GENERATE: u32 = 1;
 const EXTRACT: u32 = 1;
-const CYCLE: u32 = 10;
+const CYCLE: u32 = 11;
 const AGGREGATE: u32 = 2;
 const REPORT: u32 = 3;
 

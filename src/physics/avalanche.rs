@@ -199,8 +199,8 @@ impl Path<'_> {
                 Status::Covered { by, release_m } => {
                     let edge = (1.0 - EDGE) * release_m;
                     if self.front.state.radius[by] < edge {
-                        // The covering spot has shrunk by covering it.
-                        self.keep_covered(i);
+                        // The covering spot has shrunk by covering it, or has left since.
+                        self.keep_covered(i, self.patch.approach);
                     } else {
                         // It stands at the edge, and rounding must not decide whether it has shrunk.
                         self.front.state.status[i] = Status::Covered { by, release_m: edge };
@@ -219,7 +219,7 @@ impl Path<'_> {
     pub(crate) fn due(&mut self, touched: &[usize], free: &[usize]) -> Vec<Trigger> {
         let mut due = self.problem().triggers(&self.front, touched, free);
         let state = &self.front.state;
-        let mut riding: Vec<(usize, usize)> = Vec::new();
+        let mut riding: Vec<usize> = Vec::new();
         due.retain(|trigger| {
             let i = trigger.change.asperity;
             let mut taken = trigger.change.kind == Kind::JumpOff || self.flips[i] < FLIPS;
@@ -229,7 +229,7 @@ impl Path<'_> {
             {
                 // Its covering spot is none any more: it is uncovered, or it rides on with the one that covers that.
                 match state.carrier(by) {
-                    Some(carrier) => riding.push((i, carrier)),
+                    Some(_) => riding.push(i),
                     None => taken = true,
                 }
             }
@@ -238,9 +238,8 @@ impl Path<'_> {
             }
             taken
         });
-        for (i, carrier) in riding {
-            self.front.set(i, Status::Covered { by: carrier, release_m: self.front.state.radius[carrier] }, 0.0);
-            self.keep_covered(i);
+        for i in riding {
+            self.keep_covered(i, self.patch.approach);
         }
         due
     }
@@ -276,14 +275,14 @@ impl Path<'_> {
                 match self.patch.relax(problem, uncovered, &mut self.solver.effort) {
                     Ok(further) => taken.extend(further),
                     Err(_) if uncovered.is_some() => {
-                        self.keep_covered(i);
+                        self.keep_covered(i, self.patch.approach);
                         return Ok(());
                     }
                     Err(unsettled) => return Err(unsettled.into()),
                 }
             }
             if change.kind == Kind::Uncover && self.vain(&change, &taken) {
-                self.keep_covered(i);
+                self.keep_covered(i, self.patch.approach);
                 return Ok(());
             }
         }

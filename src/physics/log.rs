@@ -86,6 +86,20 @@ impl Log {
         }
     }
 
+    /// Writes a change down that moves nothing.
+    pub(crate) fn note(&mut self, change: Change, approach: f64, totals: Totals) {
+        self.avalanches += u64::from(std::mem::take(&mut self.fresh));
+        self.events.push(Event {
+            kind: change.kind,
+            asperity: change.asperity,
+            approach_m: approach,
+            avalanche: self.avalanches,
+            before: totals,
+            after: totals,
+            energy_lost_j: 0.0,
+        });
+    }
+
     /// The load has gone on without a jump; it is known at the ends of the parts of a stretch, a twentieth of a jump-off penetration apart.
     pub(crate) fn pass(&mut self, approach: f64, load: f64) {
         self.ways.push(Way { approach, load, least: load.min(self.last) });

@@ -422,18 +422,33 @@ impl<'p> Path<'p> {
         Ok(best)
     }
 
-    /// Puts an uncovering off until the covering spot has shrunk further.
-    pub(crate) fn keep_covered(&mut self, i: usize) {
-        if let Status::Covered { by, release_m } = self.front.state.status[i] {
-            let radius = self.front.state.radius[by].min(release_m);
-            self.front.state.status[i] = Status::Covered { by, release_m: RETRY * radius };
+    /// Puts an uncovering off until the covering spot has shrunk further. Where that is no spot any more, the asperity rides with the one that carries it; where
+    /// there is none, it is free, and as one that has left it does not jump in before its penetration has been below the jump-in.
+    pub(crate) fn keep_covered(&mut self, i: usize, approach: f64) {
+        let Status::Covered { by, release_m } = self.front.state.status[i] else { return };
+        let radius = &self.front.state.radius;
+        match self.front.state.carrier(by) {
+            Some(carrier) if carrier == by => {
+                self.front.state.status[i] = Status::Covered { by, release_m: RETRY * radius[by].min(release_m) };
+            }
+            Some(carrier) => {
+                let release_m = RETRY * radius[carrier];
+                self.front.set(i, Status::Covered { by: carrier, release_m }, 0.0);
+            }
+            None => {
+                self.front.set(i, Status::Free, 0.0);
+                self.front.state.barred[i] = true;
+                self.front.traces[i].value = f64::NAN;
+                let totals = self.front.totals(approach);
+                self.log.note(Change { kind: Kind::Uncover, asperity: i, by: Some(by) }, approach, totals);
+            }
         }
     }
 
     /// Asperities that find no equilibrium where they are uncovered stay covered for a while, and are counted.
     pub(crate) fn hold_covered(&mut self, uncovered: &[usize]) {
         for &i in uncovered {
-            self.keep_covered(i);
+            self.keep_covered(i, self.front.state.approach_m);
             self.held.push(i);
         }
     }

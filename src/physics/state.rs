@@ -304,14 +304,15 @@ impl State {
         self.contacts.iter().map(|&i| self.radius[i]).fold(0.0, f64::max)
     }
 
-    /// The spot that an asperity rides with, over others that are covered themselves.
+    /// The spot that an asperity rides with, over others that are covered themselves or part of a merged spot.
     pub(crate) fn carrier(&self, mut i: usize) -> Option<usize> {
         // No longer than there are asperities: where each is covered by the next, none is a spot.
         for _ in 0..self.status.len() {
             match self.status[i] {
                 Status::Contact => return Some(i),
                 Status::Covered { by, .. } => i = by,
-                Status::Free | Status::Merged { .. } => return None,
+                Status::Merged { into } => i = into,
+                Status::Free => return None,
             }
         }
         None

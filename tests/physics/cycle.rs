@@ -342,3 +342,20 @@ fn law_a_cycle_goes_on_from_where_it_rested_as_if_nothing_had_been() {
         }
     }
 }
+
+#[test]
+fn law_nobody_is_covered_where_nobody_touches() {
+    for realization in [0, 1] {
+        let cycle = paper_cycle(&paper_summits(64, realization), DEFAULT, &[0.002], 0.04);
+        assert!(cycle.steps.iter().any(|step| step.covered_count > 20));
+        let last = cycle.steps.last().unwrap();
+        assert_eq!((last.contact_count, last.covered_count), (0, 0), "realization {realization}");
+        // Whoever was covered has been uncovered, each as often.
+        let of = |kind: Kind| {
+            let mut asperities: Vec<usize> = cycle.events.iter().filter(|(_, e)| e.kind == kind).map(|(_, e)| e.asperity).collect();
+            asperities.sort_unstable();
+            asperities
+        };
+        assert_eq!(of(Kind::Cover), of(Kind::Uncover), "realization {realization}");
+    }
+}
