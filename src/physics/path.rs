@@ -286,8 +286,7 @@ impl<'p> Path<'p> {
             if self.halvings >= PATIENCE && !uncovered.is_empty() {
                 // At the edge of a spot the field is steepest, and there may be no equilibrium with an asperity there.
                 self.hold_covered(&uncovered);
-                mark.front.clone_from(&self.front);
-                mark.held.clone_from(&self.held);
+                mark = self.mark();
                 self.halvings = 0;
             } else if self.halvings >= HALVINGS {
                 self.collapse(target).and_then(|()| self.sound(mark.events)).map_err(|_| self.stuck(unsettled))?;
