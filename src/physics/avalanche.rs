@@ -207,7 +207,7 @@ impl Path<'_> {
                     }
                 }
                 Status::Contact | Status::Merged { .. } => {}
-                Status::Free => self.front.state.barred[i] = self.front.traces[i].value >= problem.jump_in[i],
+                Status::Free => self.front.state.barred[i] |= self.front.traces[i].value >= problem.jump_in[i],
             }
         }
         Ok(all.then_some(open))
