@@ -228,9 +228,9 @@ impl Path<'_> {
                 && !taken
             {
                 // Its covering spot is none any more: it is uncovered, or it rides on with the one that covers that.
-                match state.carrier(by) {
-                    Some(_) => riding.push(i),
-                    None => taken = true,
+                taken = state.carrier(by).is_none();
+                if !taken {
+                    riding.push(i);
                 }
             }
             if !taken && !self.held.contains(&i) {

@@ -200,10 +200,7 @@ pub fn run_from(
 /// An approach without an equilibrium.
 pub fn unload_from(problem: &Problem, settings: &Settings, max_load: f64, state: State) -> Result<Cycle, PhysicsError> {
     let mut cycle = Cycle::default();
-    let mut leg = Some(Leg::unloading(problem, settings, Some(max_load), state));
-    while let Some(rests) = leg {
-        leg = unload(problem, settings, rests, &mut cycle, &|_| {})?;
-    }
+    unload_through(problem, settings, Some(max_load), state, &mut cycle)?;
     Ok(cycle)
 }
 
@@ -223,11 +220,24 @@ pub fn run_to(problem: &Problem, settings: &Settings, turn: f64) -> Result<Cycle
         recorder.turn(settings, path, None, &mut cycle)?;
         Ok(Next::End)
     })?;
-    let mut leg = Some(Leg::unloading(problem, settings, None, cycle.turning[0].1.clone()));
-    while let Some(rests) = leg {
-        leg = unload(problem, settings, rests, &mut cycle, &|_| {})?;
-    }
+    let state = cycle.turning[0].1.clone();
+    unload_through(problem, settings, None, state, &mut cycle)?;
     Ok(cycle)
+}
+
+/// Unloads from a turning state to the last separation, over all rests.
+fn unload_through(
+    problem: &Problem,
+    settings: &Settings,
+    max_load: Option<f64>,
+    state: State,
+    cycle: &mut Cycle,
+) -> Result<(), PhysicsError> {
+    let mut leg = Some(Leg::unloading(problem, settings, max_load, state));
+    while let Some(rests) = leg {
+        leg = unload(problem, settings, rests, cycle, &|_| {})?;
+    }
+    Ok(())
 }
 
 impl Settings {

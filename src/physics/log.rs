@@ -73,31 +73,20 @@ impl Log {
         self.avalanches += u64::from(std::mem::take(&mut self.fresh));
         self.charged = self.events.len();
         for (k, change) in moved.iter().enumerate() {
-            let (from, energy_lost_j) = if k == 0 { (before, energy) } else { (after, 0.0) };
-            self.events.push(Event {
-                kind: change.kind,
-                asperity: change.asperity,
-                approach_m: approach,
-                avalanche: self.avalanches,
-                before: from,
-                after,
-                energy_lost_j,
-            });
+            let (from, energy) = if k == 0 { (before, energy) } else { (after, 0.0) };
+            self.enter(change, approach, from, after, energy);
         }
     }
 
-    /// Writes a change down that moves nothing.
+    /// Writes a change down that moves nothing; what is charged belongs to the last relaxation still.
     pub(crate) fn note(&mut self, change: Change, approach: f64, totals: Totals) {
         self.avalanches += u64::from(std::mem::take(&mut self.fresh));
-        self.events.push(Event {
-            kind: change.kind,
-            asperity: change.asperity,
-            approach_m: approach,
-            avalanche: self.avalanches,
-            before: totals,
-            after: totals,
-            energy_lost_j: 0.0,
-        });
+        self.enter(&change, approach, totals, totals, 0.0);
+    }
+
+    fn enter(&mut self, change: &Change, approach_m: f64, before: Totals, after: Totals, energy_lost_j: f64) {
+        let (kind, asperity, avalanche) = (change.kind, change.asperity, self.avalanches);
+        self.events.push(Event { kind, asperity, approach_m, avalanche, before, after, energy_lost_j });
     }
 
     /// The load has gone on without a jump; it is known at the ends of the parts of a stretch, a twentieth of a jump-off penetration apart.
