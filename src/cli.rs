@@ -4,6 +4,7 @@ mod interrupt;
 mod progress;
 mod verbs;
 
+use crate::campaign::Shard;
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -41,11 +42,49 @@ enum Verb {
     },
     /// Say what of a run is done
     Status {
-        /// The output folder of a run
-        dir: PathBuf,
-        /// Answer in JSON
+        #[command(flatten)]
+        folder: FolderArguments,
+        /// Say it again every two seconds, until nothing is left to do
         #[arg(long)]
-        json: bool,
+        watch: bool,
+    },
+    /// Say why a unit is to be computed, field by field
+    Explain {
+        #[command(flatten)]
+        folder: FolderArguments,
+        /// The unit, as `status --json` and the file names have it; or `statistics`, or `report`
+        id: String,
+        /// The spec that names it [default: the one of the last run]
+        #[arg(long)]
+        spec: Option<PathBuf>,
+    },
+    /// Compare all files of a run with their receipts
+    Verify {
+        #[command(flatten)]
+        folder: FolderArguments,
+        /// Compare contents, and not lengths alone
+        #[arg(long)]
+        deep: bool,
+    },
+    /// Try failed cases again
+    Retry {
+        #[command(flatten)]
+        folder: FolderArguments,
+        /// Which ones [default: all]
+        ids: Vec<String>,
+        #[command(flatten)]
+        jobs: JobsArguments,
+    },
+    /// List what no spec names any more, and take it away if told to
+    Gc {
+        #[command(flatten)]
+        folder: FolderArguments,
+        /// Further specs whose results are to stay, beside that of the last run
+        #[arg(long, value_name = "SPEC")]
+        keep: Vec<PathBuf>,
+        /// Take it away
+        #[arg(long)]
+        delete: bool,
     },
     /// Make the surfaces
     Generate(CampaignArguments),
@@ -77,9 +116,30 @@ struct CampaignArguments {
     spec: PathBuf,
     #[command(flatten)]
     output: OutputArguments,
+    #[command(flatten)]
+    jobs: JobsArguments,
+    /// Only part K of N of the surfaces, and what is done with them (K from 0)
+    #[arg(long, value_name = "K/N")]
+    shard: Option<Shard>,
+    /// Take what is done for whole if its files are as long as they were, and do not compare contents
+    #[arg(long)]
+    quick: bool,
+}
+
+#[derive(Debug, Args)]
+struct JobsArguments {
     /// Threads [default: as many as there are cores]
     #[arg(long, short = 'j', value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
+}
+
+#[derive(Debug, Args)]
+struct FolderArguments {
+    /// The output folder of a run
+    dir: PathBuf,
+    /// Answer in JSON
+    #[arg(long)]
+    json: bool,
 }
 
 #[derive(Debug, Args)]

@@ -9,12 +9,22 @@ use serde_json::{Value, json};
 /// Version of this scheme.
 const SCHEME: u32 = 1;
 
+/// What a key is the hash of.
+#[must_use]
+pub fn preimage(stage: &str, meaning: u32, reads: &Value) -> Value {
+    json!({ "scheme": SCHEME, "stage": stage, "meaning": meaning, "reads": reads })
+}
+
 /// The key of a unit: 64 hexadecimal digits.
 #[must_use]
 pub fn key(stage: &str, meaning: u32, reads: &Value) -> String {
-    let preimage = json!({ "scheme": SCHEME, "stage": stage, "meaning": meaning, "reads": reads });
-    let mut text = String::new();
-    canonical(&preimage, &mut text);
+    key_of_text(stage, meaning, &canonical(reads))
+}
+
+/// The same, where what is read is canonical JSON already.
+#[must_use]
+pub fn key_of_text(stage: &str, meaning: u32, reads: &str) -> String {
+    let text = format!("{{\"meaning\":{meaning},\"reads\":{reads},\"scheme\":{SCHEME},\"stage\":\"{stage}\"}}");
     blake3::hash(text.as_bytes()).to_hex().to_string()
 }
 
@@ -25,7 +35,14 @@ pub fn short(key: &str) -> &str {
 }
 
 /// JSON with sorted names and without white space.
-fn canonical(value: &Value, text: &mut String) {
+#[must_use]
+pub fn canonical(value: &Value) -> String {
+    let mut text = String::new();
+    append(value, &mut text);
+    text
+}
+
+fn append(value: &Value, text: &mut String) {
     match value {
         Value::Array(items) => {
             text.push('[');
@@ -33,7 +50,7 @@ fn canonical(value: &Value, text: &mut String) {
                 if k > 0 {
                     text.push(',');
                 }
-                canonical(item, text);
+                append(item, text);
             }
             text.push(']');
         }
@@ -47,7 +64,7 @@ fn canonical(value: &Value, text: &mut String) {
                 }
                 text.push_str(&Value::from(name.as_str()).to_string());
                 text.push(':');
-                canonical(&members[name], text);
+                append(&members[name], text);
             }
             text.push('}');
         }

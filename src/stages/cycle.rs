@@ -1,15 +1,18 @@
 //! cycle: load and unload one case on one surface, and write every step.
 
+use super::done::Outcome;
 use super::surface::read_summits;
 use super::{StageError, Watch};
 use crate::campaign::{Campaign, CycleUnit, Stage};
 use crate::physics::cycle::{self, Cycle, Halfway, Settings, Step};
+use crate::physics::interaction::Effort;
 use crate::physics::merge::Merged;
 use crate::physics::restart::Kept;
 use crate::physics::state::{Problem, Rules, State, Status};
 use crate::schema;
 use crate::spec::CaseParams;
 use crate::store::{Frame, parquet, read_halfway, write_halfway};
+use serde_json::{Map, Value};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -35,7 +38,7 @@ const MANY: usize = 20_000;
 const REST_EVERY: f64 = 0.1;
 const KEPT_FOR: Duration = Duration::from_secs(60);
 
-pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> Result<(), StageError> {
+pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> Result<Outcome, StageError> {
     let params = &campaign.cases[unit.case].case.params;
     let summits = read_summits(&campaign.asperities_path(&campaign.surfaces[unit.surface]))?;
     let dir = campaign.cycle_dir(unit);
@@ -65,13 +68,29 @@ pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> R
     watch.progress(Stage::Cycle, 1.0 - reached.get());
     let cycle = outcome?;
     let keys = [("key", unit.key.clone())];
-    // The steps come last: where they are, the cycle is done.
-    parquet::write_table(&dir.join("contacts.parquet"), &contacts(&cycle)?, &keys)?;
-    parquet::write_table(&dir.join("turning.parquet"), &turning(&cycle, &problem, &settings.max_loads)?, &keys)?;
-    parquet::write_table(&dir.join("merged.parquet"), &merged(&cycle)?, &keys)?;
-    parquet::write_table(&dir.join("events.parquet"), &events(&cycle)?, &keys)?;
-    parquet::write_table(&dir.join("steps.parquet"), &steps(&cycle, &problem)?, &keys)?;
-    Ok(())
+    let tables =
+        [contacts(&cycle)?, turning(&cycle, &problem, &settings.max_loads)?, merged(&cycle)?, events(&cycle)?, steps(&cycle, &problem)?];
+    let write = |frame: &Frame| Ok(parquet::write_table(&dir.join(format!("{}.parquet", frame.table().name)), frame, &keys)?);
+    let files = tables.iter().map(write).collect::<Result<_, StageError>>()?;
+    Ok(Outcome { files, effort: effort(&cycle, &problem) })
+}
+
+/// What a cycle has taken, for its receipt.
+fn effort(cycle: &Cycle, problem: &Problem) -> Map<String, Value> {
+    let all = cycle.steps.iter().fold(Effort::default(), |mut sum, step| {
+        sum += step.effort;
+        sum
+    });
+    let counts = [
+        ("asperity_count", problem.len() as u64),
+        ("step_count", cycle.steps.len() as u64),
+        ("event_count", cycle.events.len() as u64),
+        ("iteration_count", all.iterations),
+        ("pair_evaluation_count", all.pairs),
+        ("product_count", all.products),
+        ("transform_count", all.transforms),
+    ];
+    counts.into_iter().map(|(name, count)| (name.to_owned(), count.into())).collect()
 }
 
 /// Unloads anew from a turning point that a finished cycle has kept.

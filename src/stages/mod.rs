@@ -1,6 +1,8 @@
 //! The stages: read, compute, commit. This room alone joins the physics and the files, and it alone knows the order of the stages.
 
 mod cycle;
+mod datapackage;
+mod done;
 mod report;
 mod statistics;
 mod surface;
@@ -8,12 +10,14 @@ mod trust;
 
 pub use cycle::unload_again;
 
-use crate::campaign::{Campaign, Stage, Standing};
+use crate::campaign::{Campaign, CycleUnit, Shard, Stage, Standing, SurfaceUnit, Unit};
 use crate::physics::PhysicsError;
 use crate::stats::StatsError;
-use crate::store::{FrameError, StoreError, commit};
+use crate::store::{Check, FrameError, StoreError, commit};
+use done::{Clock, Outcome};
 use rayon::prelude::*;
-use serde_json::json;
+use serde_json::{Map, Value, json};
+use std::collections::HashSet;
 use std::path::PathBuf;
 use thiserror::Error;
 
@@ -97,20 +101,52 @@ pub struct Tally {
     pub failed: usize,
 }
 
-/// Runs the stages that are named, in order. Failed units do not stop the others.
+/// What of a campaign is to be done.
+#[derive(Debug, Clone)]
+pub struct Task {
+    /// The first stage.
+    pub from: Stage,
+    /// The last one.
+    pub until: Stage,
+    /// Which part of the surfaces, and what is done with them.
+    pub shard: Shard,
+    /// Aggregate what is there, although cases are missing.
+    pub partial: bool,
+    /// How what is done is looked at: a file that has changed since is made again.
+    pub check: Check,
+    /// Cycles that have failed and are tried again.
+    pub retried: HashSet<String>,
+}
+
+impl Task {
+    /// These stages, of everything.
+    #[must_use]
+    pub fn new(from: Stage, until: Stage) -> Self {
+        Self { from, until, shard: Shard::default(), partial: false, check: Check::Contents, retried: HashSet::new() }
+    }
+}
+
+/// A unit at work: what it is known by, and what that is made of.
+struct Job<'a, T> {
+    of: &'a T,
+    unit: Unit<'a>,
+    preimages: Box<dyn Fn() -> Map<String, Value> + Send + Sync + 'a>,
+}
+
+/// Runs the stages of a task, in order. Failed units do not stop the others.
 ///
 /// # Errors
-/// A folder or file that cannot be written; with `only` a single stage: what that stage reads is not there.
-pub fn run(campaign: &Campaign, from: Stage, until: Stage, partial: bool, watch: &dyn Watch) -> Result<Vec<(Stage, Tally)>, StageError> {
+/// A folder or file that cannot be written; for a single stage: what that stage reads is not there.
+pub fn run(campaign: &Campaign, task: &Task, watch: &dyn Watch) -> Result<Vec<(Stage, Tally)>, StageError> {
     prepare(campaign)?;
     let mut tallies = Vec::new();
-    for stage in Stage::ALL.into_iter().filter(|stage| (from..=until).contains(stage)) {
+    for stage in Stage::ALL.into_iter().filter(|stage| (task.from..=task.until).contains(stage)) {
         let tally = match stage {
-            Stage::Generate => generate(campaign, watch)?,
-            Stage::Extract => extract(campaign, watch)?,
-            Stage::Cycle => cycles(campaign, watch)?,
-            Stage::Aggregate => statistics::run(campaign, partial || from != until, watch)?,
-            Stage::Report => report::run(campaign, watch)?,
+            Stage::Generate => generate(campaign, task, watch)?,
+            Stage::Extract => extract(campaign, task, watch)?,
+            Stage::Cycle => cycles(campaign, task, watch)?,
+            Stage::Aggregate => statistics::run(campaign, task.partial || task.from != task.until, task.check, watch)?,
+            Stage::Report => report::run(campaign, task.check, watch)?,
         };
         tallies.push((stage, tally));
     }
@@ -118,94 +154,145 @@ pub fn run(campaign: &Campaign, from: Stage, until: Stage, partial: bool, watch:
 }
 
 /// Makes the folders and writes the resolved spec.
-fn prepare(campaign: &Campaign) -> Result<(), StageError> {
-    for name in ["", "surfaces", "asperities", "cycles", "statistics", "figures"] {
-        let path = if name.is_empty() { campaign.dir.clone() } else { campaign.dir.join(name) };
+///
+/// # Errors
+/// A folder or file that cannot be written.
+pub fn prepare(campaign: &Campaign) -> Result<(), StageError> {
+    let folders = ["", "surfaces", "asperities", "cycles", "statistics", "figures"].map(|name| campaign.dir.join(name));
+    for path in folders.into_iter().chain(Stage::ALL.map(|stage| campaign.receipts_dir(stage))) {
         std::fs::create_dir_all(&path).map_err(|source| StageError::Folder { path, source })?;
     }
     let path = campaign.dir.join("campaign.toml");
     let text = campaign.spec.to_toml();
-    if std::fs::read_to_string(&path).is_ok_and(|present| present == text) {
+    if std::fs::read_to_string(&path).is_ok_and(|present| present == text) && campaign.spec_fault().is_none() {
         return Ok(());
     }
-    Ok(commit::commit_bytes("write the resolved spec", &path, text.as_bytes())?)
+    let clock = Clock::start();
+    let written = commit::commit_bytes("write the resolved spec", &path, text.as_bytes())?;
+    clock.spec_receipt(campaign, &Outcome::of(vec![written]))
 }
 
-/// The places of the units that are to be computed. Damaged and stale files are written anew, and it is said.
-fn due<'a, T>(units: &'a [T], standing: impl Fn(&T) -> Standing + Sync, name: impl Fn(&T) -> String, watch: &dyn Watch) -> Vec<&'a T>
-where
-    T: Sync,
-{
-    let standings: Vec<Standing> = units.par_iter().map(&standing).collect();
-    units
-        .iter()
-        .zip(standings)
-        .filter_map(|(unit, standing)| {
-            match &standing {
-                Standing::Done => return None,
-                Standing::Damaged(why) => watch.notice(&format!("{}: {why}; it is computed again", name(unit))),
-                Standing::Stale => watch.notice(&format!("{} was written for other parameters; it is computed again", name(unit))),
-                Standing::Failed(_) | Standing::Missing | Standing::Interrupted => {}
-            }
-            Some(unit)
-        })
-        .collect()
-}
-
-fn generate(campaign: &Campaign, watch: &dyn Watch) -> Result<Tally, StageError> {
-    let wanted = due(&campaign.surfaces, |unit| campaign.surface_standing(unit), |unit| unit.id.clone(), watch);
-    each(Stage::Generate, campaign.surfaces.len(), &wanted, watch, |unit| {
-        surface::generate(campaign, unit)?;
-        watch.progress(Stage::Generate, 1.0);
-        Ok(unit.id.clone())
+/// The jobs that are to be done, with how they stand. Damaged and stale files are written anew, and it is said.
+fn due<'a, T: Sync>(
+    jobs: Vec<Job<'a, T>>,
+    standing: impl Fn(&Job<'a, T>) -> Standing + Sync,
+    watch: &dyn Watch,
+) -> Vec<(Job<'a, T>, Standing)> {
+    let standings: Vec<Standing> = jobs.par_iter().map(&standing).collect();
+    let open = jobs.into_iter().zip(standings).filter(|(_, standing)| *standing != Standing::Done);
+    open.inspect(|(job, standing)| match standing {
+        Standing::Missing(why) | Standing::Corrupt(why) => watch.notice(&format!("{}: {why}; it is computed again", job.unit.id)),
+        Standing::Stale => watch.notice(&format!("{} was written for other parameters; it is computed again", job.unit.id)),
+        Standing::Done | Standing::Planned | Standing::Interrupted | Standing::Failed(_) => {}
     })
+    .collect()
 }
 
-fn extract(campaign: &Campaign, watch: &dyn Watch) -> Result<Tally, StageError> {
-    let wanted = due(&campaign.surfaces, |unit| campaign.asperities_standing(unit), |unit| unit.id.clone(), watch);
-    require(Stage::Extract, &wanted, |unit| campaign.surface_standing(unit), |unit| unit.id.clone())?;
-    each(Stage::Extract, campaign.surfaces.len(), &wanted, watch, |unit| {
-        surface::extract(campaign, unit)?;
-        watch.progress(Stage::Extract, 1.0);
-        Ok(unit.id.clone())
+fn surface_jobs<'a>(campaign: &'a Campaign, task: &Task, stage: Stage) -> Vec<Job<'a, SurfaceUnit>> {
+    let held = campaign.surfaces.iter().enumerate().filter(|(place, _)| task.shard.holds(*place));
+    held.map(|(_, of)| Job {
+        of,
+        unit: if stage == Stage::Generate { of.surface() } else { of.asperities() },
+        preimages: Box::new(move || campaign.surface_preimages(of, stage)),
     })
+    .collect()
 }
 
-/// Cycles all cases. One that the physics refuses is recorded as failed, and the others go on.
-fn cycles(campaign: &Campaign, watch: &dyn Watch) -> Result<Tally, StageError> {
+fn generate(campaign: &Campaign, task: &Task, watch: &dyn Watch) -> Result<Tally, StageError> {
+    let jobs = surface_jobs(campaign, task, Stage::Generate);
+    let planned = jobs.len();
+    let wanted = due(jobs, |job| campaign.standing(&job.unit, task.check), watch);
+    each(
+        campaign,
+        (Stage::Generate, planned),
+        &wanted,
+        watch,
+        |unit| {
+            let outcome = surface::generate(campaign, unit)?;
+            watch.progress(Stage::Generate, 1.0);
+            Ok(outcome)
+        },
+        |_| (),
+    )
+}
+
+fn extract(campaign: &Campaign, task: &Task, watch: &dyn Watch) -> Result<Tally, StageError> {
+    let jobs = surface_jobs(campaign, task, Stage::Extract);
+    let planned = jobs.len();
+    let wanted = due(jobs, |job| campaign.standing(&job.unit, task.check), watch);
+    require(Stage::Extract, &wanted, |unit| campaign.standing(&unit.surface(), task.check), |unit| unit.id.clone())?;
+    each(
+        campaign,
+        (Stage::Extract, planned),
+        &wanted,
+        watch,
+        |unit| {
+            let outcome = surface::extract(campaign, unit)?;
+            watch.progress(Stage::Extract, 1.0);
+            Ok(outcome)
+        },
+        |_| (),
+    )
+}
+
+/// Cycles all cases. One that the physics refuses is recorded as failed, and the others go on; it is not tried again unless that is asked for, since it would
+/// fail again.
+fn cycles(campaign: &Campaign, task: &Task, watch: &dyn Watch) -> Result<Tally, StageError> {
     let units = campaign.distinct_cycles();
-    let mut wanted = due(&units, |unit| campaign.cycle_standing(unit), |unit| unit.id.clone(), watch);
-    let surface = |unit: &&crate::campaign::CycleUnit| campaign.asperities_standing(&campaign.surfaces[unit.surface]);
-    require(Stage::Cycle, &wanted, |unit| surface(&unit), |unit| campaign.surfaces[unit.surface].id.clone())?;
+    let jobs: Vec<Job<'_, CycleUnit>> = units
+        .iter()
+        .filter(|unit| task.shard.holds(unit.surface))
+        .map(|of| Job { of, unit: of.cycle(), preimages: Box::new(move || campaign.cycle_preimages(of)) })
+        .collect();
+    let planned = jobs.len();
+    let mut wanted = due(jobs, |job| campaign.cycle_standing(job.of, task.check), watch);
+    let before = wanted.len();
+    wanted.retain(|(job, standing)| !matches!(standing, Standing::Failed(_)) || task.retried.contains(job.unit.id));
+    let failed = before - wanted.len();
+    let surface = |unit: &CycleUnit| &campaign.surfaces[unit.surface];
+    require(Stage::Cycle, &wanted, |unit| campaign.standing(&surface(unit).asperities(), task.check), |unit| surface(unit).id.clone())?;
     // The longest first, so that the threads end together.
-    wanted.sort_by_key(|unit| std::cmp::Reverse(campaign.surfaces[unit.surface].params.magnification));
-    each(Stage::Cycle, units.len(), &wanted, watch, |unit| match cycle::run(campaign, unit, watch) {
-        Err(StageError::Physics(error)) => {
-            let record = json!({ "key": unit.key, "error": error.to_string() });
-            let text = format!("{record:#}\n");
-            commit::commit_bytes("record a failed case", &campaign.failure_path(unit), text.as_bytes())?;
-            watch.notice(&format!("{} failed: {error}", unit.id));
-            Err(StageError::Physics(error))
-        }
-        Err(error) => Err(error),
-        Ok(()) => {
+    wanted.sort_by_key(|(job, _)| std::cmp::Reverse(surface(job.of).params.magnification));
+    let mut tally = each(
+        campaign,
+        (Stage::Cycle, planned - failed),
+        &wanted,
+        watch,
+        |unit| match cycle::run(campaign, unit, watch) {
+            Err(StageError::Physics(error)) => {
+                let again = format!("hysteron retry {} {}", campaign.dir.display(), unit.id);
+                let record = json!({ "key": unit.key, "error": error.to_string(), "again": again });
+                let text = format!("{record:#}\n");
+                commit::commit_bytes("record a failed case", &campaign.failure_path(unit), text.as_bytes())?;
+                watch.notice(&format!("{} failed: {error}", unit.id));
+                Err(StageError::Physics(error))
+            }
+            other => other,
+        },
+        |unit| {
             for left in [campaign.failure_path(unit), campaign.halfway_path(unit)] {
                 let _ = std::fs::remove_file(left);
             }
-            Ok(unit.id.clone())
-        }
-    })
+        },
+    )?;
+    tally.planned = planned;
+    tally.failed += failed;
+    Ok(tally)
 }
 
 /// Refuses to begin where units lack what they read.
-fn require<T>(stage: Stage, units: &[&T], standing: impl Fn(&T) -> Standing, name: impl Fn(&T) -> String) -> Result<(), StageError> {
+fn require<T: Sync>(
+    stage: Stage,
+    units: &[(Job<'_, T>, Standing)],
+    standing: impl Fn(&T) -> Standing + Sync,
+    name: impl Fn(&T) -> String,
+) -> Result<(), StageError> {
+    let standings: Vec<Standing> = units.par_iter().map(|(job, _)| standing(job.of)).collect();
     let lacking: Vec<String> = units
         .iter()
-        .filter_map(|unit| match standing(unit) {
-            Standing::Done => None,
-            Standing::Damaged(why) => Some(why),
-            _ => Some(name(unit)),
-        })
+        .zip(standings)
+        .filter(|(_, standing)| *standing != Standing::Done)
+        .map(|((job, _), standing)| standing.why().map_or_else(|| name(job.of), str::to_owned))
         .collect();
     match lacking.first() {
         None => Ok(()),
@@ -215,26 +302,30 @@ fn require<T>(stage: Stage, units: &[&T], standing: impl Fn(&T) -> Standing, nam
     }
 }
 
-/// Runs units in parallel. Failures of the physics are counted; the first other error ends the stage when all have been tried.
+/// Runs units in parallel, and writes the receipt of each; `then` is what is left to do. Failures of the physics are counted; the first other error ends the stage when all have been tried.
 fn each<T: Sync>(
-    stage: Stage,
-    planned: usize,
-    units: &[&T],
+    campaign: &Campaign,
+    (stage, planned): (Stage, usize),
+    jobs: &[(Job<'_, T>, Standing)],
     watch: &dyn Watch,
-    work: impl Fn(&T) -> Result<String, StageError> + Sync,
+    work: impl Fn(&T) -> Result<Outcome, StageError> + Sync,
+    then: impl Fn(&T) + Sync,
 ) -> Result<Tally, StageError> {
-    watch.begin(stage, planned - units.len(), planned);
-    let outcomes: Vec<Result<(), StageError>> = units
+    watch.begin(stage, planned - jobs.len(), planned);
+    let outcomes: Vec<Result<(), StageError>> = jobs
         .par_iter()
         .with_max_len(1)
-        .map(|unit| {
-            let id = work(unit)?;
-            watch.finished(stage, &id);
+        .map(|(job, _)| {
+            let clock = Clock::start();
+            let outcome = work(job.of)?;
+            clock.receipt(campaign, &job.unit, (job.preimages)(), &outcome)?;
+            then(job.of);
+            watch.finished(stage, job.unit.id);
             Ok(())
         })
         .collect();
     watch.end(stage);
-    let mut tally = Tally { planned, before: planned - units.len(), ..Tally::default() };
+    let mut tally = Tally { planned, before: planned - jobs.len(), ..Tally::default() };
     for outcome in outcomes {
         match outcome {
             Ok(()) => tally.computed += 1,

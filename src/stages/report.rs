@@ -1,45 +1,47 @@
 //! report: figures of every sweep, and one page that holds them.
 
-use super::statistics::{done, finished};
+use super::done::{Clock, Outcome};
+use super::statistics::done;
 use super::trust::{split, trust};
 use super::{StageError, Tally, Watch};
-use crate::campaign::{Campaign, Stage, Standing};
+use crate::campaign::{Campaign, REPORT_PAGE, STATISTICS, Stage, Standing, Unit};
 use crate::figures::panels;
 use crate::schema;
 use crate::stats::summary;
-use crate::store::{Frame, commit, parquet};
+use crate::store::{Check, Frame, commit, parquet};
 use std::fmt::Write as _;
 
-pub(super) fn run(campaign: &Campaign, watch: &dyn Watch) -> Result<Tally, StageError> {
-    let statistics = campaign.statistics_key(&done(&finished(campaign)));
+pub(super) fn run(campaign: &Campaign, check: Check, watch: &dyn Watch) -> Result<Tally, StageError> {
+    let clock = Clock::start();
+    let statistics = campaign.statistics_key(&done(&campaign.cycle_standings(check)));
     let key = campaign.report_key(&statistics);
+    let unit = Unit { stage: Stage::Report, id: REPORT_PAGE, key: &key };
     let mut tally = Tally { planned: 1, ..Tally::default() };
-    if campaign.report_standing(&key) == Standing::Done {
+    if campaign.standing(&unit, check) == Standing::Done {
         tally.before = 1;
         watch.begin(Stage::Report, 1, 1);
         watch.end(Stage::Report);
         return Ok(tally);
     }
-    if let standing @ (Standing::Missing | Standing::Stale | Standing::Damaged(_)) = campaign.statistics_standing(&statistics) {
-        let example = match standing {
-            Standing::Damaged(why) => why,
-            _ => campaign.statistics_path("cases").display().to_string(),
-        };
+    let standing = campaign.standing(&Unit { stage: Stage::Aggregate, id: STATISTICS, key: &statistics }, check);
+    if standing != Standing::Done {
+        let example = standing.why().map_or_else(|| campaign.statistics_path("cases").display().to_string(), str::to_owned);
         return Err(StageError::Incomplete { stage: Stage::Report.word(), missing: 1, all: 1, example });
     }
     watch.begin(Stage::Report, 0, 1);
     let cases = parquet::read_table(&campaign.statistics_path("cases"), &schema::CASES)?;
     let curves = parquet::read_table(&campaign.statistics_path("curves"), &schema::CURVES)?;
-    let mut drawings = Vec::new();
+    let (mut drawings, mut files) = (Vec::new(), Vec::new());
     for sweep in sweeps(campaign) {
         for (stem, svg) in panels(&cases, &curves, &sweep)? {
             let path = campaign.dir.join("figures").join(format!("{stem}.svg"));
-            commit::commit_bytes("write a figure", &path, svg.as_bytes())?;
+            files.push(commit::commit_bytes("write a figure", &path, svg.as_bytes())?);
             drawings.push((sweep.clone(), svg));
         }
     }
     let page = page(campaign, &key, &cases, &drawings)?;
-    commit::commit_bytes("write the report", &campaign.dir.join("report.html"), page.as_bytes())?;
+    files.push(commit::commit_bytes("write the report", &campaign.dir.join("report.html"), page.as_bytes())?);
+    clock.receipt(campaign, &unit, campaign.report_preimages(&statistics), &Outcome::of(files))?;
     watch.progress(Stage::Report, 1.0);
     watch.finished(Stage::Report, "report.html");
     watch.end(Stage::Report);

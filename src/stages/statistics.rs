@@ -1,8 +1,9 @@
 //! aggregate: from the steps of all cycles to the tables over realisations.
 
+use super::done::{Clock, Outcome};
 use super::surface::{read_summits, spectrum};
-use super::{StageError, Tally, Watch};
-use crate::campaign::{Campaign, CaseUnit, CycleUnit, Stage, Standing};
+use super::{StageError, Tally, Watch, datapackage};
+use crate::campaign::{Campaign, CaseUnit, CycleUnit, STATISTICS, Stage, Standing, Unit};
 use crate::model::Choice;
 use crate::physics::jkr::Asperity;
 use crate::physics::spectrum::Moments;
@@ -12,14 +13,10 @@ use crate::physics::validity::{LEAST_TABOR, flattening, realised_flattening};
 use crate::spec::CaseParams;
 use crate::stats::{self, CaseInput, CycleInput, Given, Value};
 use crate::store::hdf5::{SurfaceHeader, read_header};
-use crate::store::parquet;
+use crate::store::{Check, commit, parquet};
 use rayon::prelude::*;
 
-/// Which cycles are finished, in the order of the campaign.
-pub(super) fn finished(campaign: &Campaign) -> Vec<Standing> {
-    campaign.cycles.par_iter().map(|unit| campaign.cycle_standing(unit)).collect()
-}
-
+/// Which cycles are done.
 pub(super) fn done(standings: &[Standing]) -> Vec<bool> {
     standings.iter().map(|standing| *standing == Standing::Done).collect()
 }
@@ -29,8 +26,9 @@ pub(super) fn moments(header: &SurfaceHeader) -> Moments {
     Moments { m0_m2: header.rms_height_m.powi(2), m2: 0.5 * header.rms_slope.powi(2), m4_1_m2: 0.375 * header.rms_curvature_1_m.powi(2) }
 }
 
-pub(super) fn run(campaign: &Campaign, partial: bool, watch: &dyn Watch) -> Result<Tally, StageError> {
-    let standings = finished(campaign);
+pub(super) fn run(campaign: &Campaign, partial: bool, check: Check, watch: &dyn Watch) -> Result<Tally, StageError> {
+    let clock = Clock::start();
+    let standings = campaign.cycle_standings(check);
     let lacking: Vec<&CycleUnit> = campaign
         .cycles
         .iter()
@@ -46,9 +44,11 @@ pub(super) fn run(campaign: &Campaign, partial: bool, watch: &dyn Watch) -> Resu
             example: format!("{}; --partial aggregates what is there", first.id),
         });
     }
-    let key = campaign.statistics_key(&done(&standings));
+    let finished = done(&standings);
+    let key = campaign.statistics_key(&finished);
+    let unit = Unit { stage: Stage::Aggregate, id: STATISTICS, key: &key };
     let mut tally = Tally { planned: 1, ..Tally::default() };
-    if campaign.statistics_standing(&key) == Standing::Done {
+    if campaign.standing(&unit, check) == Standing::Done {
         tally.before = 1;
         watch.begin(Stage::Aggregate, 1, 1);
         watch.end(Stage::Aggregate);
@@ -67,9 +67,12 @@ pub(super) fn run(campaign: &Campaign, partial: bool, watch: &dyn Watch) -> Resu
     let averaged = stats::cases(&realizations, &cases)?;
     let curves = stats::curves(&cases, &cycles)?;
     let avalanches = stats::avalanches(&cases, &cycles)?;
-    for (name, frame) in [("realizations", &realizations), ("curves", &curves), ("avalanches", &avalanches), ("cases", &averaged)] {
-        parquet::write_table(&campaign.statistics_path(name), frame, &[("key", key.clone())])?;
-    }
+    let tables = [("realizations", &realizations), ("curves", &curves), ("avalanches", &avalanches), ("cases", &averaged)];
+    let write = |(name, frame)| Ok(parquet::write_table(&campaign.statistics_path(name), frame, &[("key", key.clone())])?);
+    let mut files = tables.into_iter().map(write).collect::<Result<Vec<_>, StageError>>()?;
+    let described = datapackage::text(campaign, &finished);
+    files.push(commit::commit_bytes("describe the tables in", &campaign.dir.join("datapackage.json"), described.as_bytes())?);
+    clock.receipt(campaign, &unit, campaign.statistics_preimages(&finished), &Outcome::of(files))?;
     watch.progress(Stage::Aggregate, 1.0);
     watch.finished(Stage::Aggregate, "statistics");
     watch.end(Stage::Aggregate);

@@ -1,6 +1,7 @@
 //! generate and extract: a surface from its spec, its asperities from the surface.
 
 use super::StageError;
+use super::done::Outcome;
 use crate::campaign::{Campaign, SurfaceUnit};
 use crate::physics::spectrum::Spectrum;
 use crate::physics::summits::{Summit, find_summits};
@@ -23,7 +24,7 @@ pub(super) fn spectrum(params: &SurfaceParams) -> Spectrum {
     }
 }
 
-pub(super) fn generate(campaign: &Campaign, unit: &SurfaceUnit) -> Result<(), StageError> {
+pub(super) fn generate(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Outcome, StageError> {
     use crate::store::hdf5::{Generated, SurfaceHeader};
     let params = &unit.params;
     let seed = realization_seed(campaign.spec.seed, u64::from(unit.realization));
@@ -47,10 +48,10 @@ pub(super) fn generate(campaign: &Campaign, unit: &SurfaceUnit) -> Result<(), St
             amplitudes: params.amplitudes,
         }),
     };
-    Ok(write_surface(&campaign.surface_path(unit), &header, surface.heights_m.view())?)
+    Ok(Outcome::of(vec![write_surface(&campaign.surface_path(unit), &header, surface.heights_m.view())?]))
 }
 
-pub(super) fn extract(campaign: &Campaign, unit: &SurfaceUnit) -> Result<(), StageError> {
+pub(super) fn extract(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Outcome, StageError> {
     let (header, heights) = read_surface(&campaign.surface_path(unit))?;
     let found = find_summits(heights.view(), header.length_m, f64::from(unit.params.points_per_shortest_wavelength))?;
     let list = &found.list;
@@ -77,7 +78,7 @@ pub(super) fn extract(campaign: &Campaign, unit: &SurfaceUnit) -> Result<(), Sta
         ("rejected_count", found.rejected.to_string()),
         ("unrefined_count", found.unrefined.to_string()),
     ];
-    Ok(parquet::write_table(&campaign.asperities_path(unit), &frame, &keys)?)
+    Ok(Outcome::of(vec![parquet::write_table(&campaign.asperities_path(unit), &frame, &keys)?]))
 }
 
 /// The asperities of a table, as the physics takes them.

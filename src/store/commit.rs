@@ -2,11 +2,11 @@
 //!
 //! It is written under another name in its own directory, flushed to the disk, opened again and checked, and only then
 //! given its name. Whenever the program ends, even by a power cut, the name stands for a whole file or for what was
-//! there before.
+//! there before. What was written is known by its size and hash, for the receipt of its unit.
 
 use std::ffi::OsStr;
 use std::fs::{self, File, Permissions};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::{PoisonError, RwLock, RwLockWriteGuard};
 
 use super::error::{Cause, StoreError};
@@ -24,10 +24,37 @@ pub fn quiet() -> RwLockWriteGuard<'static, ()> {
     WRITING.write().unwrap_or_else(PoisonError::into_inner)
 }
 
+/// A file that has been put in place.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Written {
+    /// Its place.
+    pub path: PathBuf,
+    /// Its length \[bytes\].
+    pub size_bytes: u64,
+    /// The BLAKE3 hash of its content, hexadecimal.
+    pub blake3: String,
+}
+
+/// Length and hash of a file's content.
+///
+/// # Errors
+/// If it cannot be read.
+pub fn sum(path: &Path) -> std::io::Result<(u64, String)> {
+    let mut hasher = blake3::Hasher::new();
+    hasher.update_reader(File::open(path)?)?;
+    Ok((hasher.count(), hasher.finalize().to_hex().to_string()))
+}
+
 /// Whether this is the name of a file that is being written, or was when the program was killed.
 #[must_use]
 pub fn is_temporary(path: &Path) -> bool {
     path.file_name().and_then(OsStr::to_str).is_some_and(|name| name.starts_with(TEMPORARY_PREFIX) && name.ends_with(TEMPORARY_SUFFIX))
+}
+
+/// Whether nobody is writing this temporary file any more.
+#[must_use]
+pub fn is_abandoned(path: &Path) -> bool {
+    is_temporary(path) && File::open(path).is_ok_and(|file| file.try_lock().is_ok())
 }
 
 /// Writes a file with `write`, checks with `check` what can be read back, and puts it in place of `path`.
@@ -43,7 +70,7 @@ pub fn commit(
     path: &Path,
     write: impl FnOnce(&Path) -> Result<(), Cause>,
     check: impl FnOnce(&Path) -> Result<(), Cause>,
-) -> Result<(), StoreError> {
+) -> Result<Written, StoreError> {
     commit_inner(path, write, check).map_err(|cause| StoreError::new(action, path, cause))
 }
 
@@ -51,7 +78,7 @@ pub fn commit(
 ///
 /// # Errors
 /// As [`commit`].
-pub fn commit_bytes(action: &str, path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
+pub fn commit_bytes(action: &str, path: &Path, bytes: &[u8]) -> Result<Written, StoreError> {
     commit(
         action,
         path,
@@ -66,7 +93,7 @@ fn commit_inner(
     path: &Path,
     write: impl FnOnce(&Path) -> Result<(), Cause>,
     check: impl FnOnce(&Path) -> Result<(), Cause>,
-) -> Result<(), Cause> {
+) -> Result<Written, Cause> {
     let _writing = WRITING.read().unwrap_or_else(PoisonError::into_inner);
     let directory = match path.parent() {
         Some(parent) if parent.as_os_str().is_empty() => Path::new("."),
@@ -85,12 +112,15 @@ fn commit_inner(
     // Temporary files are private by default; this one becomes an ordinary file, as the umask has it.
     #[cfg(unix)]
     builder.permissions(<Permissions as std::os::unix::fs::PermissionsExt>::from_mode(0o666));
-    let temporary = builder.tempfile_in(directory)?.into_temp_path();
+    let (held, temporary) = builder.tempfile_in(directory)?.into_parts();
+    // Whoever clears up after killed runs sees by this lock that the file is in use. Some file systems have none: then age must tell.
+    let _ = held.try_lock();
     write(&temporary)?;
     File::open(&temporary)?.sync_all()?;
     check(&temporary)?;
+    let (size_bytes, blake3) = sum(&temporary)?;
     temporary.persist(path)?;
     #[cfg(unix)]
     File::open(directory)?.sync_all()?;
-    Ok(())
+    Ok(Written { path: path.to_owned(), size_bytes, blake3 })
 }

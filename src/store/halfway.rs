@@ -14,7 +14,7 @@ const DIGITS: usize = 64;
 /// As [`commit_bytes`].
 pub fn write_halfway(path: &Path, key: &str, bytes: &[u8]) -> Result<(), StoreError> {
     let whole = [key.as_bytes(), blake3::hash(bytes).to_hex().as_bytes(), bytes].concat();
-    commit_bytes("keep what is needed to go on in", path, &whole)
+    commit_bytes("keep what is needed to go on in", path, &whole).map(drop)
 }
 
 /// The bytes at `path`, if they are whole and of the unit `key`.

@@ -7,7 +7,7 @@ use hdf5_metno::file::LibraryVersion;
 use hdf5_metno::{Dataset, File, FileBuilder};
 use ndarray::{Array2, ArrayView2, s};
 
-use super::commit::commit;
+use super::commit::{Written, commit};
 use super::error::{Cause, StoreError, fenced};
 use super::surface_header;
 pub use super::surface_header::{Generated, SURFACE_VERSION, SurfaceHeader};
@@ -29,7 +29,7 @@ const MOST_PACKED: u64 = 1100;
 /// # Errors
 /// If the field is not square, empty or not finite, or the file cannot be written whole; what was at `path` is then
 /// still there.
-pub fn write_surface(path: &Path, header: &SurfaceHeader, heights: ArrayView2<'_, f64>) -> Result<(), StoreError> {
+pub fn write_surface(path: &Path, header: &SurfaceHeader, heights: ArrayView2<'_, f64>) -> Result<Written, StoreError> {
     commit(
         "write the surface to",
         path,

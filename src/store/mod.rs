@@ -11,9 +11,11 @@ mod frame;
 mod halfway;
 pub mod hdf5;
 pub mod parquet;
+mod receipt;
 mod surface_header;
 
 pub use builder::FrameBuilder;
 pub use error::{FrameError, StoreError};
 pub use frame::{ColumnData, Frame};
 pub use halfway::{read_halfway, write_halfway};
+pub use receipt::{Check, Fault, Found, Kept, Made, RECEIPT_VERSION, Receipt, read_receipt, write_receipt};

@@ -9,7 +9,7 @@ use arrow::datatypes::DataType;
 
 use crate::schema::{Kind, Table};
 
-use super::commit::commit;
+use super::commit::{Written, commit};
 use super::error::StoreError;
 use super::frame::Frame;
 
@@ -19,7 +19,7 @@ pub const METADATA_KEY: &str = "hysteron";
 ///
 /// # Errors
 /// If the file cannot be written whole; what was at `path` is then still there.
-pub fn write_table(path: &Path, frame: &Frame, keys: &[(&str, String)]) -> Result<(), StoreError> {
+pub fn write_table(path: &Path, frame: &Frame, keys: &[(&str, String)]) -> Result<Written, StoreError> {
     let action = format!("write the table {} to", frame.table().name);
     commit(
         &action,

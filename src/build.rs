@@ -1,0 +1,36 @@
+//! Before the program is compiled: what it is compiled from and with, for the receipts of its units.
+
+use std::path::Path;
+use std::process::Command;
+
+fn main() {
+    println!("cargo:rerun-if-changed=src");
+    for path in [".git/HEAD", ".git/logs/HEAD", ".cargo_vcs_info.json"] {
+        // A file that is not there would have this run every time.
+        if Path::new(path).exists() {
+            println!("cargo:rerun-if-changed={path}");
+        }
+    }
+    println!("cargo:rustc-env=HYSTERON_COMMIT={}", commit().unwrap_or_default());
+    let compiler = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".to_owned());
+    let version = said(Command::new(compiler).arg("--version")).unwrap_or_else(|| "an unknown compiler".to_owned());
+    let target = std::env::var("TARGET").unwrap_or_default();
+    println!("cargo:rustc-env=HYSTERON_TOOLCHAIN={version}, {target}");
+}
+
+/// The commit of this checkout, with a plus where files have been changed since; that of a released package; or none.
+fn commit() -> Option<String> {
+    if Path::new(".git").exists() {
+        let commit = said(Command::new("git").args(["rev-parse", "--short=12", "HEAD"]))?;
+        let changed = said(Command::new("git").args(["status", "--porcelain", "--untracked-files=no"]))?;
+        return Some(if changed.is_empty() { commit } else { format!("{commit}+") });
+    }
+    let text = std::fs::read_to_string(".cargo_vcs_info.json").ok()?;
+    let hash = text.split_once("\"sha1\": \"")?.1;
+    Some(hash.get(..12)?.to_owned())
+}
+
+fn said(command: &mut Command) -> Option<String> {
+    let output = command.output().ok().filter(|output| output.status.success())?;
+    Some(String::from_utf8(output.stdout).ok()?.trim().to_owned())
+}

@@ -1,0 +1,190 @@
+//! Why a unit is to be computed: what its key is made of, field by field, beside the nearest unit that is done.
+
+use super::{Campaign, REPORT_PAGE, STATISTICS, Stage, Standing, Unit};
+use crate::keys::canonical;
+use crate::store::{Check, Found, Receipt, read_receipt};
+use rayon::prelude::*;
+use serde::Serialize;
+use serde_json::{Map, Value};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// How a unit stands, and what tells it from the nearest one that is done.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Explanation {
+    /// The stage's word.
+    pub stage: &'static str,
+    /// The unit.
+    pub id: String,
+    /// How it stands: a word of [`Standing`], or `orphan` if the spec does not name it.
+    pub state: &'static str,
+    /// Why, where there is more to say.
+    pub why: Option<String>,
+    /// The nearest unit: one that is done, or for an orphan one that the spec names.
+    pub nearest: Option<String>,
+    /// What differs.
+    pub differences: Vec<Difference>,
+}
+
+/// One field that differs.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Difference {
+    /// The field, as in the spec.
+    pub field: String,
+    /// The first stage that reads it.
+    pub read_by: String,
+    /// What the unit has; nothing if it has no such field.
+    pub here: Option<Value>,
+    /// What the nearest one has.
+    pub there: Option<Value>,
+}
+
+/// A field by stage and name.
+type Fields = BTreeMap<(usize, String), Value>;
+
+/// How much more another realization counts than another parameter: a unit is compared with one of its own realization, if there is any.
+const OTHER_REALIZATION: usize = 100;
+
+impl Campaign {
+    /// Explains the units of an id; none if neither the spec nor the folder knows it.
+    #[must_use]
+    pub fn explain(&self, id: &str) -> Vec<Explanation> {
+        let mut found = Vec::new();
+        for unit in self.surfaces.iter().filter(|unit| unit.id == id) {
+            for (of, stage) in [(unit.surface(), Stage::Generate), (unit.asperities(), Stage::Extract)] {
+                let standing = self.standing(&of, Check::Sizes);
+                found.push(self.beside_receipts(stage, id, &standing, &self.surface_preimages(unit, stage)));
+            }
+        }
+        if let Some(unit) = self.cycles.iter().find(|unit| unit.id == id) {
+            let standing = self.cycle_standing(unit, Check::Sizes);
+            found.push(self.beside_receipts(Stage::Cycle, id, &standing, &self.cycle_preimages(unit)));
+        }
+        if id == STATISTICS || id == REPORT_PAGE {
+            let finished: Vec<bool> = self.cycle_standings(Check::Sizes).iter().map(|standing| *standing == Standing::Done).collect();
+            let statistics = self.statistics_key(&finished);
+            let report = self.report_key(&statistics);
+            let (stage, key, preimages) = match id {
+                STATISTICS => (Stage::Aggregate, &statistics, self.statistics_preimages(&finished)),
+                _ => (Stage::Report, &report, self.report_preimages(&statistics)),
+            };
+            let standing = self.standing(&Unit { stage, id, key }, Check::Sizes);
+            found.push(self.beside_receipts(stage, id, &standing, &preimages));
+        }
+        if found.is_empty() {
+            found.extend([Stage::Generate, Stage::Extract, Stage::Cycle].into_iter().filter_map(|stage| self.orphan(stage, id)));
+        }
+        found
+    }
+
+    fn beside_receipts(&self, stage: Stage, id: &str, standing: &Standing, preimages: &Map<String, Value>) -> Explanation {
+        let mut explanation = Explanation {
+            stage: stage.word(),
+            id: id.to_owned(),
+            state: standing.word(),
+            why: standing.why().map(str::to_owned),
+            nearest: None,
+            differences: Vec::new(),
+        };
+        if !matches!(standing, Standing::Done | Standing::Missing(_) | Standing::Corrupt(_)) {
+            let here = fields(preimages);
+            let others = self.receipts(stage).into_iter().map(|receipt| (receipt.id.clone(), fields(&receipt.preimages)));
+            (explanation.nearest, explanation.differences) = nearest(&here, others);
+        }
+        explanation
+    }
+
+    /// A unit that is done and that the spec does not name, beside the nearest that it names.
+    fn orphan(&self, stage: Stage, id: &str) -> Option<Explanation> {
+        let Found::Whole(receipt) = read_receipt(&self.receipt_path(&Unit { stage, id, key: "" })) else { return None };
+        let here = fields(&receipt.preimages);
+        let (nearest, differences) = if stage == Stage::Cycle {
+            nearest(&here, self.distinct_cycles().iter().map(|unit| (unit.id.clone(), fields(&self.cycle_preimages(unit)))))
+        } else {
+            nearest(&here, self.surfaces.iter().map(|unit| (unit.id.clone(), fields(&self.surface_preimages(unit, stage)))))
+        };
+        Some(Explanation { stage: stage.word(), id: id.to_owned(), state: "orphan", why: None, nearest, differences })
+    }
+
+    /// All receipts of a stage that can be read.
+    fn receipts(&self, stage: Stage) -> Vec<Receipt> {
+        let Ok(entries) = std::fs::read_dir(self.receipts_dir(stage)) else { return Vec::new() };
+        let mut paths: Vec<_> =
+            entries.flatten().map(|entry| entry.path()).filter(|path| path.extension().is_some_and(|e| e == "json")).collect();
+        paths.sort();
+        paths
+            .par_iter()
+            .filter_map(|path| match read_receipt(path) {
+                Found::Whole(receipt) => Some(*receipt),
+                _ => None,
+            })
+            .collect()
+    }
+}
+
+/// The nearest of some units, and what differs.
+fn nearest(here: &Fields, others: impl Iterator<Item = (String, Fields)>) -> (Option<String>, Vec<Difference>) {
+    let far = |difference: &Difference| if matches!(difference.field.as_str(), "realization" | "seed") { OTHER_REALIZATION } else { 1 };
+    let compared = others.map(|(id, there)| (id, differences(here, &there)));
+    match compared.min_by_key(|(id, differences)| (differences.iter().map(far).sum::<usize>(), id.clone())) {
+        Some((id, differences)) => (Some(id), differences),
+        None => (None, Vec::new()),
+    }
+}
+
+fn differences(here: &Fields, there: &Fields) -> Vec<Difference> {
+    let names: BTreeSet<&(usize, String)> = here.keys().chain(there.keys()).collect();
+    let differs = |name: &&&(usize, String)| here.get(**name).map(canonical) != there.get(**name).map(canonical);
+    names
+        .iter()
+        .filter(differs)
+        .map(|name| {
+            let (here, there) = apart(here.get(*name), there.get(*name));
+            Difference { field: name.1.clone(), read_by: Stage::ALL[name.0].word().to_owned(), here, there }
+        })
+        .collect()
+}
+
+/// Two values; of two lists how many entries only one of them has.
+fn apart(here: Option<&Value>, there: Option<&Value>) -> (Option<Value>, Option<Value>) {
+    let (Some(Value::Array(a)), Some(Value::Array(b))) = (here, there) else { return (here.cloned(), there.cloned()) };
+    if a.len().max(b.len()) < 10 && !a.iter().chain(b).any(Value::is_array) {
+        return (here.cloned(), there.cloned());
+    }
+    let [mine, its] = [a, b].map(|list| list.iter().map(canonical).collect::<BTreeSet<String>>());
+    let only = |of: &BTreeSet<String>, but: &BTreeSet<String>| {
+        Some(Value::from(format!("{} of {} only here", of.difference(but).count(), of.len())))
+    };
+    (only(&mine, &its), only(&its, &mine))
+}
+
+/// The fields of the preimages of a unit, by the stage that reads them first. Keys of other units stand for what those are made of.
+fn fields(preimages: &Map<String, Value>) -> Fields {
+    let mut all = Fields::new();
+    for (place, stage) in Stage::ALL.into_iter().enumerate() {
+        let Some(preimage) = preimages.get(stage.word()) else { continue };
+        // A number may be read back as its neighbour: both sides go through the same words.
+        let preimage: Value = serde_json::from_str(&preimage.to_string()).unwrap_or(Value::Null);
+        let meaning = preimage.get("meaning").cloned().unwrap_or(Value::Null);
+        all.insert((place, format!("meaning of {}", stage.word())), meaning);
+        for (name, value) in preimage.get("reads").and_then(Value::as_object).into_iter().flatten() {
+            let is_key = matches!((stage, name.as_str()), (Stage::Extract, "surface") | (Stage::Cycle, "asperities"));
+            if !is_key {
+                flatten(place, name, value, &mut all);
+            }
+        }
+    }
+    all
+}
+
+fn flatten(place: usize, name: &str, value: &Value, all: &mut Fields) {
+    match value {
+        Value::Object(members) => {
+            for (inner, value) in members {
+                flatten(place, &format!("{name}.{inner}"), value, all);
+            }
+        }
+        plain => {
+            all.insert((place, name.to_owned()), plain.clone());
+        }
+    }
+}

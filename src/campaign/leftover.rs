@@ -1,0 +1,102 @@
+//! What no spec names any more.
+
+use super::{Campaign, Stage, Standing};
+use crate::store::Check;
+use crate::store::commit::is_abandoned;
+use std::collections::HashSet;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+/// Something that can go.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Leftover {
+    /// A file, or the folder of a cycle.
+    pub path: PathBuf,
+    /// The bytes of its files.
+    pub size_bytes: u64,
+    /// Why it can go.
+    pub why: &'static str,
+}
+
+const UNNAMED: &str = "no spec names it";
+const TORN: &str = "a killed run left it";
+const PAST: &str = "its cycle is done";
+
+impl Campaign {
+    /// What neither this campaign nor `others` in the same folder name: receipts first, so that whoever takes all away in this order leaves no receipt
+    /// without its files. Files that this program does not write are not looked at.
+    #[must_use]
+    pub fn leftovers(&self, others: &[Self]) -> Vec<Leftover> {
+        let all = || std::iter::once(self).chain(others);
+        let surfaces: HashSet<&str> = all().flat_map(|campaign| &campaign.surfaces).map(|unit| unit.id.as_str()).collect();
+        let cycles: HashSet<&str> = all().flat_map(|campaign| &campaign.cycles).map(|unit| unit.id.as_str()).collect();
+        let mut found = Vec::new();
+        for (stage, known) in [(Stage::Cycle, &cycles), (Stage::Extract, &surfaces), (Stage::Generate, &surfaces)] {
+            unnamed(&self.receipts_dir(stage), Some("json"), known, &mut found);
+        }
+        unnamed(&self.dir.join("cycles"), None, &cycles, &mut found);
+        unnamed(&self.dir.join("asperities"), Some("parquet"), &surfaces, &mut found);
+        unnamed(&self.dir.join("surfaces"), Some("h5"), &surfaces, &mut found);
+        for campaign in all() {
+            for unit in campaign.distinct_cycles() {
+                for path in [self.failure_path(&unit), self.halfway_path(&unit)] {
+                    if path.is_file() && self.cycle_standing(&unit, Check::Sizes) == Standing::Done {
+                        found.push(Leftover { size_bytes: size(&path), path, why: PAST });
+                    }
+                }
+            }
+        }
+        let folders = ["", "surfaces", "asperities", "statistics", "figures", "receipts"].map(|name| self.dir.join(name));
+        let receipts = Stage::ALL.map(|stage| self.receipts_dir(stage));
+        let cycles = entries(&self.dir.join("cycles")).into_iter().filter(|path| path.is_dir());
+        for folder in folders.into_iter().chain(receipts).chain(cycles) {
+            let torn = entries(&folder).into_iter().filter(|path| is_abandoned(path));
+            found.extend(torn.map(|path| Leftover { size_bytes: size(&path), path, why: TORN }));
+        }
+        let mut seen: HashSet<PathBuf> = HashSet::new();
+        found.retain(|left| !left.path.ancestors().skip(1).any(|folder| seen.contains(folder)) && seen.insert(left.path.clone()));
+        found
+    }
+}
+
+impl Leftover {
+    /// Takes it away.
+    ///
+    /// # Errors
+    /// If it is there and cannot be taken away.
+    pub fn remove(&self) -> std::io::Result<()> {
+        let removed = if self.path.is_dir() { std::fs::remove_dir_all(&self.path) } else { std::fs::remove_file(&self.path) };
+        removed.or_else(|error| if error.kind() == ErrorKind::NotFound { Ok(()) } else { Err(error) })
+    }
+}
+
+/// What of a folder has the name of a unit, but of none that is known; folders where there is no extension.
+fn unnamed(folder: &Path, extension: Option<&str>, known: &HashSet<&str>, found: &mut Vec<Leftover>) {
+    for path in entries(folder) {
+        let is_kind = if extension.is_some() { path.extension().and_then(|e| e.to_str()) == extension } else { path.is_dir() };
+        let stem = if extension.is_some() { path.file_stem() } else { path.file_name() };
+        let Some(id) = stem.and_then(|stem| stem.to_str()) else { continue };
+        if is_kind && is_id(id) && !known.contains(id) {
+            found.push(Leftover { size_bytes: size(&path), path, why: UNNAMED });
+        }
+    }
+}
+
+/// Whether a name is that of a surface or a cycle: readable first, then eight digits of a key.
+fn is_id(name: &str) -> bool {
+    name.rsplit_once('-')
+        .is_some_and(|(_, digits)| digits.len() == 8 && digits.bytes().all(|b| b.is_ascii_hexdigit() && !b.is_ascii_uppercase()))
+}
+
+/// What is in a folder, by name; nothing if it cannot be read.
+fn entries(folder: &Path) -> Vec<PathBuf> {
+    let mut paths: Vec<PathBuf> =
+        std::fs::read_dir(folder).map(|all| all.flatten().map(|entry| entry.path()).collect()).unwrap_or_default();
+    paths.sort();
+    paths
+}
+
+/// The bytes of a file, or of all files below a folder.
+fn size(path: &Path) -> u64 {
+    if path.is_dir() { entries(path).iter().map(|inner| size(inner)).sum() } else { std::fs::metadata(path).map_or(0, |found| found.len()) }
+}

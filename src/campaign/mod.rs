@@ -1,0 +1,331 @@
+//! The grid of units that a spec asks for, and what of it is done.
+//!
+//! What is done is derived from receipts and files and never stored: see [`Standing`].
+
+mod audit;
+mod compare;
+mod leftover;
+mod shard;
+mod standing;
+
+pub use audit::Audit;
+pub use compare::{Difference, Explanation};
+pub use leftover::Leftover;
+pub use shard::Shard;
+pub use standing::{Standing, Survey};
+
+use crate::keys::{canonical, key_of_text, preimage, short};
+use crate::spec::{Case, ModelParams, Spec, SurfaceParams};
+use serde_json::{Map, Value, json};
+use std::collections::{HashMap, HashSet};
+use std::path::PathBuf;
+
+/// A stage's meaning: raised by hand when what it writes changes for the same parameters.
+const GENERATE: u32 = 1;
+const EXTRACT: u32 = 1;
+const CYCLE: u32 = 11;
+const AGGREGATE: u32 = 2;
+const REPORT: u32 = 3;
+
+/// The stages, in their order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Stage {
+    /// Surfaces.
+    Generate,
+    /// Asperity tables.
+    Extract,
+    /// Loading and unloading.
+    Cycle,
+    /// Tables over realizations.
+    Aggregate,
+    /// Figures and a page.
+    Report,
+}
+
+impl Stage {
+    /// All stages.
+    pub const ALL: [Self; 5] = [Self::Generate, Self::Extract, Self::Cycle, Self::Aggregate, Self::Report];
+
+    /// The verb of the command line.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Generate => "generate",
+            Self::Extract => "extract",
+            Self::Cycle => "cycle",
+            Self::Aggregate => "aggregate",
+            Self::Report => "report",
+        }
+    }
+}
+
+/// One surface of one realisation, with its asperities.
+#[derive(Debug, Clone)]
+pub struct SurfaceUnit {
+    /// Readable first, then the key's first digits.
+    pub id: String,
+    /// Key of the surface.
+    pub key: String,
+    /// Key of the asperity table.
+    pub asperities_key: String,
+    /// What it is made from.
+    pub params: SurfaceParams,
+    /// Number of the realisation.
+    pub realization: u32,
+}
+
+/// One cycle: a case on one surface.
+#[derive(Debug, Clone)]
+pub struct CycleUnit {
+    /// Readable first, then the key's first digits.
+    pub id: String,
+    /// Key of its tables.
+    pub key: String,
+    /// Which case, by place in [`Campaign::cases`].
+    pub case: usize,
+    /// Which surface, by place in [`Campaign::surfaces`].
+    pub surface: usize,
+}
+
+/// A case with its identity.
+#[derive(Debug, Clone)]
+pub struct CaseUnit {
+    /// Readable first, then a hash of all its parameters.
+    pub id: String,
+    /// The case.
+    pub case: Case,
+}
+
+/// A spec in its folder: all units, by stage.
+#[derive(Debug, Clone)]
+pub struct Campaign {
+    /// The spec.
+    pub spec: Spec,
+    /// The output folder.
+    pub dir: PathBuf,
+    /// Cases.
+    pub cases: Vec<CaseUnit>,
+    /// Surfaces, each once however many cases share it.
+    pub surfaces: Vec<SurfaceUnit>,
+    /// Cycles, by case and realisation. Cases that differ only in what stands beside a cycle share it: their units have one key and one id.
+    pub cycles: Vec<CycleUnit>,
+}
+
+/// What a unit is known by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Unit<'a> {
+    /// Its stage.
+    pub stage: Stage,
+    /// Its id.
+    pub id: &'a str,
+    /// Its key.
+    pub key: &'a str,
+}
+
+impl SurfaceUnit {
+    /// The surface.
+    #[must_use]
+    pub fn surface(&self) -> Unit<'_> {
+        Unit { stage: Stage::Generate, id: &self.id, key: &self.key }
+    }
+
+    /// Its asperities.
+    #[must_use]
+    pub fn asperities(&self) -> Unit<'_> {
+        Unit { stage: Stage::Extract, id: &self.id, key: &self.asperities_key }
+    }
+}
+
+impl CycleUnit {
+    /// The cycle.
+    #[must_use]
+    pub fn cycle(&self) -> Unit<'_> {
+        Unit { stage: Stage::Cycle, id: &self.id, key: &self.key }
+    }
+}
+
+/// The id of the tables over realizations.
+pub const STATISTICS: &str = "statistics";
+/// The id of the page.
+pub const REPORT_PAGE: &str = "report";
+
+impl Campaign {
+    /// All units of a spec.
+    #[must_use]
+    pub fn new(spec: Spec, dir: PathBuf) -> Self {
+        let mut campaign = Self { dir, cases: Vec::new(), surfaces: Vec::new(), cycles: Vec::new(), spec };
+        let mut known: HashMap<String, usize> = HashMap::new();
+        for (number, case) in campaign.spec.cases.iter().enumerate() {
+            let params = &case.params;
+            let name = format!("H{:.2}_z{}", params.surface.hurst, params.surface.magnification);
+            // Whatever the realizations have in common is put into words once.
+            let surface = canonical(&plain(&params.surface));
+            let [material, model, cycle] = [plain(&params.material), plain(&read_by_cycle(&params.model)), plain(&params.cycle)];
+            let rest = format!("\"cycle\":{},\"material\":{},\"model\":{}", canonical(&cycle), canonical(&material), canonical(&model));
+            let whole = key_of_text("case", 1, &canonical(&plain(params)));
+            campaign.cases.push(CaseUnit { id: format!("{name}-{}", short(&whole)), case: case.clone() });
+            for realization in 0..campaign.spec.realizations {
+                let reads = format!("{{\"realization\":{realization},\"seed\":{},\"surface\":{surface}}}", campaign.spec.seed);
+                let own = key_of_text(Stage::Generate.word(), GENERATE, &reads);
+                let place = *known.entry(own).or_insert_with_key(|own| {
+                    campaign.surfaces.push(SurfaceUnit {
+                        id: format!("{name}_r{realization:02}-{}", short(own)),
+                        asperities_key: key_of_text(Stage::Extract.word(), EXTRACT, &format!("{{\"surface\":\"{own}\"}}")),
+                        key: own.clone(),
+                        params: params.surface.clone(),
+                        realization,
+                    });
+                    campaign.surfaces.len() - 1
+                });
+                let reads = format!("{{\"asperities\":\"{}\",{rest}}}", campaign.surfaces[place].asperities_key);
+                let own = key_of_text(Stage::Cycle.word(), CYCLE, &reads);
+                let id = format!("{name}_r{realization:02}-{}", short(&own));
+                campaign.cycles.push(CycleUnit { id, key: own, case: number, surface: place });
+            }
+        }
+        campaign
+    }
+
+    /// The cycles to be computed: each once, however many cases share it.
+    #[must_use]
+    pub fn distinct_cycles(&self) -> Vec<CycleUnit> {
+        let mut known = HashSet::new();
+        self.cycles.iter().filter(|unit| known.insert(unit.key.as_str())).cloned().collect()
+    }
+
+    /// `surfaces/<id>.h5`.
+    #[must_use]
+    pub fn surface_path(&self, unit: &SurfaceUnit) -> PathBuf {
+        self.dir.join("surfaces").join(format!("{}.h5", unit.id))
+    }
+
+    /// `asperities/<id>.parquet`.
+    #[must_use]
+    pub fn asperities_path(&self, unit: &SurfaceUnit) -> PathBuf {
+        self.dir.join("asperities").join(format!("{}.parquet", unit.id))
+    }
+
+    /// `cycles/<id>/`.
+    #[must_use]
+    pub fn cycle_dir(&self, unit: &CycleUnit) -> PathBuf {
+        self.dir.join("cycles").join(&unit.id)
+    }
+
+    /// Where the failure of a cycle is recorded.
+    #[must_use]
+    pub fn failure_path(&self, unit: &CycleUnit) -> PathBuf {
+        self.cycle_dir(unit).join("failed.json")
+    }
+
+    /// Where a cycle on its way is kept.
+    #[must_use]
+    pub fn halfway_path(&self, unit: &CycleUnit) -> PathBuf {
+        self.cycle_dir(unit).join("halfway.bin")
+    }
+
+    /// `statistics/<table>.parquet`.
+    #[must_use]
+    pub fn statistics_path(&self, table: &str) -> PathBuf {
+        self.dir.join("statistics").join(format!("{table}.parquet"))
+    }
+
+    /// Where the receipt of a unit is.
+    #[must_use]
+    pub fn receipt_path(&self, unit: &Unit<'_>) -> PathBuf {
+        self.receipts_dir(unit.stage).join(format!("{}.json", unit.id))
+    }
+
+    /// Where the receipt of the resolved spec is.
+    #[must_use]
+    pub fn spec_receipt_path(&self) -> PathBuf {
+        self.dir.join("receipts").join("campaign.json")
+    }
+
+    /// `receipts/<stage>/`.
+    #[must_use]
+    pub fn receipts_dir(&self, stage: Stage) -> PathBuf {
+        self.dir.join("receipts").join(stage.word())
+    }
+
+    /// What the key of the tables over realisations is made of: the cycles that are in them.
+    fn statistics_reads(&self, finished: &[bool]) -> Value {
+        let cycles: Vec<Value> = self.cycles.iter().zip(finished).map(|(unit, done)| json!([unit.key, done])).collect();
+        let cases: Vec<Value> = self.cases.iter().map(|unit| json!([unit.id, unit.case.sweeps])).collect();
+        json!({ "cases": cases, "cycles": cycles })
+    }
+
+    /// Key of the tables over realisations.
+    #[must_use]
+    pub fn statistics_key(&self, finished: &[bool]) -> String {
+        key_of_text(Stage::Aggregate.word(), AGGREGATE, &canonical(&self.statistics_reads(finished)))
+    }
+
+    fn report_reads(&self, statistics_key: &str) -> Value {
+        json!({ "name": self.spec.name, "statistics": statistics_key })
+    }
+
+    /// Key of the report.
+    #[must_use]
+    pub fn report_key(&self, statistics_key: &str) -> String {
+        key_of_text(Stage::Report.word(), REPORT, &canonical(&self.report_reads(statistics_key)))
+    }
+
+    /// What the keys of a surface's units are hashes of, by stage, up to and with `stage`.
+    #[must_use]
+    pub fn surface_preimages(&self, unit: &SurfaceUnit, stage: Stage) -> Map<String, Value> {
+        let reads = json!({ "surface": plain(&unit.params), "seed": self.spec.seed, "realization": unit.realization });
+        let mut preimages = Map::new();
+        enter(&mut preimages, Stage::Generate, GENERATE, &reads);
+        if stage >= Stage::Extract {
+            enter(&mut preimages, Stage::Extract, EXTRACT, &json!({ "surface": unit.key }));
+        }
+        preimages
+    }
+
+    /// What the key of a cycle, and those of what it builds on, are hashes of.
+    #[must_use]
+    pub fn cycle_preimages(&self, unit: &CycleUnit) -> Map<String, Value> {
+        let (surface, params) = (&self.surfaces[unit.surface], &self.cases[unit.case].case.params);
+        let mut preimages = self.surface_preimages(surface, Stage::Extract);
+        let reads = json!({
+            "asperities": surface.asperities_key,
+            "material": plain(&params.material),
+            "model": plain(&read_by_cycle(&params.model)),
+            "cycle": plain(&params.cycle),
+        });
+        enter(&mut preimages, Stage::Cycle, CYCLE, &reads);
+        preimages
+    }
+
+    /// What the key of the tables over realisations is a hash of.
+    #[must_use]
+    pub fn statistics_preimages(&self, finished: &[bool]) -> Map<String, Value> {
+        let mut preimages = Map::new();
+        enter(&mut preimages, Stage::Aggregate, AGGREGATE, &self.statistics_reads(finished));
+        preimages
+    }
+
+    /// What the key of the report is a hash of.
+    #[must_use]
+    pub fn report_preimages(&self, statistics_key: &str) -> Map<String, Value> {
+        let mut preimages = Map::new();
+        enter(&mut preimages, Stage::Report, REPORT, &self.report_reads(statistics_key));
+        preimages
+    }
+}
+
+fn enter(preimages: &mut Map<String, Value>, stage: Stage, meaning: u32, reads: &Value) {
+    preimages.insert(stage.word().to_owned(), preimage(stage.word(), meaning, reads));
+}
+
+/// Of the model's choices what a cycle reads: all but the slips of the estimate beside it.
+fn read_by_cycle(model: &ModelParams) -> ModelParams {
+    let mut model = model.clone();
+    model.as_printed.retain(|slip| slip.in_contact());
+    model
+}
+
+/// A parameter set as JSON; a number that JSON cannot hold is refused by the spec long before.
+fn plain(value: &impl serde::Serialize) -> Value {
+    serde_json::to_value(value).unwrap_or(Value::Null)
+}

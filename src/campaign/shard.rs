@@ -1,0 +1,43 @@
+//! A part of a campaign that is done by itself: every n-th surface, and all that is done with it.
+
+use std::str::FromStr;
+
+/// The part `index` of `count`, counted from 0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Shard {
+    index: usize,
+    count: usize,
+}
+
+impl Default for Shard {
+    /// All of it.
+    fn default() -> Self {
+        Self { index: 0, count: 1 }
+    }
+}
+
+impl Shard {
+    /// Whether the surface at this place of [`super::Campaign::surfaces`] belongs to it.
+    #[must_use]
+    pub fn holds(self, surface: usize) -> bool {
+        surface % self.count == self.index
+    }
+
+    /// Whether it is all of a campaign.
+    #[must_use]
+    pub fn is_whole(self) -> bool {
+        self.count == 1
+    }
+}
+
+impl FromStr for Shard {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parts = text.split_once('/').and_then(|(index, count)| Some((index.parse().ok()?, count.parse().ok()?)));
+        match parts {
+            Some((index, count)) if index < count => Ok(Self { index, count }),
+            _ => Err("allowed: K/N, two whole numbers with K from 0 to N - 1, as 0/4".to_owned()),
+        }
+    }
+}

@@ -1,0 +1,147 @@
+//! How a unit stands: read off its receipt and its files, never stored.
+
+use super::{Campaign, CycleUnit, REPORT_PAGE, STATISTICS, Stage, Unit};
+use crate::store::{Check, Fault, Found, Receipt, read_halfway, read_receipt};
+use rayon::prelude::*;
+use serde_json::Value;
+use std::collections::HashMap;
+
+/// How a unit stands.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Standing {
+    /// Done, with the present key: its receipt is there, and every file that it names.
+    Done,
+    /// Not done yet.
+    Planned,
+    /// It has begun, and can go on from where it was kept last.
+    Interrupted,
+    /// It was tried, and failed: why.
+    Failed(String),
+    /// Done, but for other parameters or by a stage of another meaning.
+    Stale,
+    /// Done, but a file is gone since: which.
+    Missing(String),
+    /// Done, but a file or the receipt is another one since: which, and how.
+    Corrupt(String),
+}
+
+impl Standing {
+    /// Every word of [`Self::word`], in the order in which they are counted.
+    pub const WORDS: [&'static str; 7] = ["done", "planned", "interrupted", "failed", "stale", "missing", "corrupt"];
+
+    /// The word in the answers of the program.
+    #[must_use]
+    pub fn word(&self) -> &'static str {
+        match self {
+            Self::Done => "done",
+            Self::Planned => "planned",
+            Self::Interrupted => "interrupted",
+            Self::Failed(_) => "failed",
+            Self::Stale => "stale",
+            Self::Missing(_) => "missing",
+            Self::Corrupt(_) => "corrupt",
+        }
+    }
+
+    /// Why it stands so, where there is more to say.
+    #[must_use]
+    pub fn why(&self) -> Option<&str> {
+        match self {
+            Self::Failed(why) | Self::Missing(why) | Self::Corrupt(why) => Some(why),
+            _ => None,
+        }
+    }
+}
+
+/// How all units of a campaign stand, in its order.
+#[derive(Debug, Clone)]
+pub struct Survey {
+    /// Surfaces.
+    pub surfaces: Vec<Standing>,
+    /// Their asperities.
+    pub asperities: Vec<Standing>,
+    /// Cycles, each once.
+    pub cycles: Vec<(CycleUnit, Standing)>,
+    /// The tables over realizations.
+    pub statistics: Standing,
+    /// The page.
+    pub report: Standing,
+}
+
+impl Campaign {
+    /// How a unit stands.
+    #[must_use]
+    pub fn standing(&self, unit: &Unit<'_>, check: Check) -> Standing {
+        let name = || format!("receipts/{}/{}.json", unit.stage.word(), unit.id);
+        match read_receipt(&self.receipt_path(unit)) {
+            Found::Nothing => Standing::Planned,
+            Found::Damaged(why) => Standing::Corrupt(format!("{}: {why}", name())),
+            Found::Whole(receipt) if receipt.key != unit.key => Standing::Stale,
+            Found::Whole(receipt) => self.faults(&receipt, check).map_or(Standing::Done, |fault| match fault {
+                Fault::Missing(why) => Standing::Missing(why),
+                Fault::Changed(why) => Standing::Corrupt(why),
+            }),
+        }
+    }
+
+    /// What is wrong with `campaign.toml`, if anything: another one than a run has written is not what the folder was made for.
+    #[must_use]
+    pub fn spec_fault(&self) -> Option<String> {
+        match read_receipt(&self.spec_receipt_path()) {
+            Found::Nothing => Some("campaign.toml has no receipt".to_owned()),
+            Found::Damaged(why) => Some(format!("receipts/campaign.json: {why}")),
+            Found::Whole(receipt) => self.faults(&receipt, Check::Contents).map(Fault::sentence),
+        }
+    }
+
+    /// The first fault of a unit's files.
+    fn faults(&self, receipt: &Receipt, check: Check) -> Option<Fault> {
+        receipt.files.iter().find_map(|file| file.fault(&self.dir, check))
+    }
+
+    /// How a cycle stands, which may have failed or be on its way.
+    #[must_use]
+    pub fn cycle_standing(&self, unit: &CycleUnit, check: Check) -> Standing {
+        match self.standing(&unit.cycle(), check) {
+            Standing::Planned => match self.failure(unit) {
+                Some(why) => Standing::Failed(why),
+                None if read_halfway(&self.halfway_path(unit), &unit.key).is_some() => Standing::Interrupted,
+                None => Standing::Planned,
+            },
+            other => other,
+        }
+    }
+
+    /// The recorded failure of a cycle with the present key.
+    fn failure(&self, unit: &CycleUnit) -> Option<String> {
+        let text = std::fs::read_to_string(self.failure_path(unit)).ok()?;
+        let record: Value = serde_json::from_str(&text).ok()?;
+        (record.get("key")?.as_str()? == unit.key).then(|| record.get("error").and_then(Value::as_str).map(str::to_owned))?
+    }
+
+    /// How all cycles stand, in the order of [`Campaign::cycles`]; those that cases share are looked at once.
+    #[must_use]
+    pub fn cycle_standings(&self, check: Check) -> Vec<Standing> {
+        let distinct = self.distinct_cycles();
+        let standings: Vec<Standing> = distinct.par_iter().map(|unit| self.cycle_standing(unit, check)).collect();
+        let by_key: HashMap<&str, &Standing> = distinct.iter().map(|unit| unit.key.as_str()).zip(&standings).collect();
+        self.cycles.iter().map(|unit| by_key.get(unit.key.as_str()).map_or(Standing::Planned, |found| (*found).clone())).collect()
+    }
+
+    /// How everything stands.
+    #[must_use]
+    pub fn survey(&self, check: Check) -> Survey {
+        let surfaces = self.surfaces.par_iter().map(|unit| self.standing(&unit.surface(), check)).collect();
+        let asperities = self.surfaces.par_iter().map(|unit| self.standing(&unit.asperities(), check)).collect();
+        let standings = self.cycle_standings(check);
+        let finished: Vec<bool> = standings.iter().map(|standing| *standing == Standing::Done).collect();
+        let statistics_key = self.statistics_key(&finished);
+        let statistics = self.standing(&Unit { stage: Stage::Aggregate, id: STATISTICS, key: &statistics_key }, check);
+        let report_key = self.report_key(&statistics_key);
+        let report = self.standing(&Unit { stage: Stage::Report, id: REPORT_PAGE, key: &report_key }, check);
+        let mut known = std::collections::HashSet::new();
+        let cycles =
+            self.cycles.iter().zip(standings).filter(|(unit, _)| known.insert(unit.key.clone())).map(|(unit, s)| (unit.clone(), s));
+        Survey { surfaces, asperities, cycles: cycles.collect(), statistics, report }
+    }
+}

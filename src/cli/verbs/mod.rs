@@ -1,0 +1,101 @@
+//! One function for each verb.
+
+mod care;
+mod survey;
+mod work;
+
+use super::{OutputArguments, StageArgument, Verb};
+use crate::campaign::{Campaign, Stage};
+use crate::schema;
+use crate::spec::Spec;
+use crate::store::commit;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Exit codes of the contract.
+const FAILED: u8 = 1;
+const BAD_SPEC: u8 = 2;
+const FAILED_CASES: u8 = 3;
+
+/// What went wrong, with the exit code that says it.
+struct Fault {
+    code: u8,
+    text: String,
+}
+
+fn failed(error: impl std::fmt::Display) -> Fault {
+    Fault { code: FAILED, text: format!("error: {error}") }
+}
+
+pub(super) fn perform(verb: &Verb) -> ExitCode {
+    let outcome = match verb {
+        Verb::Run { campaign, until } => work::stages(campaign, Stage::Generate, stage(*until), false),
+        Verb::Generate(campaign) => work::stages(campaign, Stage::Generate, Stage::Generate, false),
+        Verb::Extract(campaign) => work::stages(campaign, Stage::Extract, Stage::Extract, false),
+        Verb::Cycle(campaign) => work::stages(campaign, Stage::Cycle, Stage::Cycle, false),
+        Verb::Aggregate { campaign, partial } => work::stages(campaign, Stage::Aggregate, Stage::Aggregate, *partial),
+        Verb::Report(campaign) => work::stages(campaign, Stage::Report, Stage::Report, false),
+        Verb::Plan { spec, output } => survey::plan(spec, output),
+        Verb::Status { folder, watch } => survey::status(folder, *watch),
+        Verb::Explain { folder, id, spec } => care::explain(folder, id, spec.as_deref()),
+        Verb::Verify { folder, deep } => care::verify(folder, *deep),
+        Verb::Retry { folder, ids, jobs } => work::retry(folder, ids, jobs),
+        Verb::Gc { folder, keep, delete } => care::gc(folder, keep, *delete),
+        Verb::Schema { write } => schemas(*write),
+    };
+    match outcome {
+        Ok(code) => ExitCode::from(code),
+        Err(fault) => {
+            let _ = writeln!(std::io::stderr().lock(), "{}", fault.text);
+            ExitCode::from(fault.code)
+        }
+    }
+}
+
+fn stage(argument: StageArgument) -> Stage {
+    match argument {
+        StageArgument::Generate => Stage::Generate,
+        StageArgument::Extract => Stage::Extract,
+        StageArgument::Cycle => Stage::Cycle,
+        StageArgument::Aggregate => Stage::Aggregate,
+        StageArgument::Report => Stage::Report,
+    }
+}
+
+/// Prints to standard output; a reader that has gone away (`| head`) is no fault.
+fn say(text: &str) {
+    let _ = std::io::stdout().lock().write_all(text.as_bytes());
+}
+
+fn open(spec: &Path, output: &OutputArguments) -> Result<Campaign, Fault> {
+    let spec = Spec::read(spec).map_err(|errors| Fault { code: BAD_SPEC, text: errors.to_string() })?;
+    let dir = output.out.clone().unwrap_or_else(|| PathBuf::from("data/runs").join(&spec.name));
+    Ok(Campaign::new(spec, dir))
+}
+
+/// The campaign whose results a folder holds.
+fn open_dir(action: &str, dir: &Path) -> Result<Campaign, Fault> {
+    let path = dir.join("campaign.toml");
+    if !path.is_file() {
+        let dir = dir.display();
+        return Err(failed(format!("cannot {action} {dir}: it has no campaign.toml; allowed: the output folder of a run")));
+    }
+    open(&path, &OutputArguments { out: Some(dir.to_owned()), json: false })
+}
+
+fn schemas(write: bool) -> Result<u8, Fault> {
+    let folder = Path::new(schema::DIRECTORY);
+    if write {
+        std::fs::create_dir_all(folder).map_err(|source| failed(format!("cannot make the folder {}: {source}", folder.display())))?;
+    }
+    for file in schema::files() {
+        if write {
+            commit::commit_bytes("write a schema", &folder.join(&file.name), file.content.as_bytes()).map_err(failed)?;
+        } else if file.name.ends_with(".json") {
+            say(&file.content);
+            say("\n");
+        }
+    }
+    Ok(0)
+}

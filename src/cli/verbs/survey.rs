@@ -1,0 +1,106 @@
+//! The verbs that say how a campaign stands: `plan` and `status`. They write nothing.
+
+use super::{Fault, open, open_dir, say};
+use crate::campaign::{Campaign, REPORT_PAGE, STATISTICS, Stage, Standing};
+use crate::cli::{FolderArguments, OutputArguments};
+use crate::store::Check;
+use serde_json::json;
+use std::io::IsTerminal;
+use std::path::Path;
+use std::time::Duration;
+
+/// How often `status --watch` looks.
+const EVERY: Duration = Duration::from_secs(2);
+
+/// How every unit of a campaign stands, by stage.
+type Units = Vec<(Stage, Vec<(String, Standing)>)>;
+
+pub(super) fn plan(spec: &Path, output: &OutputArguments) -> Result<u8, Fault> {
+    let campaign = open(spec, output)?;
+    let units = units(&campaign);
+    say(&if output.json { answer(&campaign, &units) } else { describe(&campaign, &units) });
+    if !output.json {
+        say(&match left(&units) {
+            0 => "Nothing is left to do.\n".to_owned(),
+            open => format!("`run` would compute {open} units.\n"),
+        });
+    }
+    Ok(0)
+}
+
+pub(super) fn status(folder: &FolderArguments, watch: bool) -> Result<u8, Fault> {
+    loop {
+        let campaign = open_dir("tell the status of", &folder.dir)?;
+        let units = units(&campaign);
+        let open = left(&units);
+        let mut text = if folder.json { answer(&campaign, &units) } else { describe(&campaign, &units) };
+        if !folder.json {
+            if let Some(why) = campaign.spec_fault() {
+                text += &format!("caution: {why}; the spec of this folder may be another one than was run\n");
+            }
+            let dir = campaign.dir.display();
+            text += &match open {
+                0 => "Nothing is left to do.\n".to_owned(),
+                _ => format!("{open} units are left; `hysteron run {dir}/campaign.toml --out {dir}` does them.\n"),
+            };
+        }
+        if watch && !folder.json && std::io::stdout().is_terminal() {
+            // What was said before goes off the screen.
+            text.insert_str(0, "\x1b[H\x1b[2J");
+        }
+        say(&text);
+        let failed = units.iter().flat_map(|(_, units)| units).filter(|(_, s)| matches!(s, Standing::Failed(_))).count();
+        if !watch || open <= failed {
+            return Ok(0);
+        }
+        std::thread::sleep(EVERY);
+    }
+}
+
+fn units(campaign: &Campaign) -> Units {
+    let survey = campaign.survey(Check::Sizes);
+    let ids = || campaign.surfaces.iter().map(|unit| unit.id.clone());
+    vec![
+        (Stage::Generate, ids().zip(survey.surfaces).collect()),
+        (Stage::Extract, ids().zip(survey.asperities).collect()),
+        (Stage::Cycle, survey.cycles.into_iter().map(|(unit, standing)| (unit.id, standing)).collect()),
+        (Stage::Aggregate, vec![(STATISTICS.to_owned(), survey.statistics)]),
+        (Stage::Report, vec![(REPORT_PAGE.to_owned(), survey.report)]),
+    ]
+}
+
+/// How many units are not done.
+fn left(units: &Units) -> usize {
+    units.iter().flat_map(|(_, units)| units).filter(|(_, standing)| *standing != Standing::Done).count()
+}
+
+fn answer(campaign: &Campaign, units: &Units) -> String {
+    let stages: Vec<_> = units
+        .iter()
+        .map(|(stage, units)| {
+            let units: Vec<_> =
+                units.iter().map(|(id, s)| json!({ "id": id, "state": s.word(), "why": s.why().unwrap_or_default() })).collect();
+            json!({ "stage": stage.word(), "units": units })
+        })
+        .collect();
+    format!("{:#}\n", json!({ "name": campaign.spec.name, "dir": campaign.dir.display().to_string(), "stages": stages }))
+}
+
+fn describe(campaign: &Campaign, units: &Units) -> String {
+    let (name, dir) = (&campaign.spec.name, campaign.dir.display());
+    let mut text = format!("{name} in {dir}: {} cases, {} realizations\n", campaign.cases.len(), campaign.spec.realizations);
+    for (stage, units) in units {
+        let counted: Vec<String> = Standing::WORDS
+            .iter()
+            .map(|state| (state, units.iter().filter(|(_, s)| s.word() == *state).count()))
+            .filter(|(_, count)| *count > 0)
+            .map(|(state, count)| format!("{count} {state}"))
+            .collect();
+        text += &format!("{:9} {}\n", stage.word(), counted.join(", "));
+        for (id, standing) in units.iter().filter(|(_, s)| s.why().is_some() || *s == Standing::Stale) {
+            let why = standing.why().map_or_else(String::new, |why| format!(": {why}"));
+            text += &format!("  {id} is {}{why}\n", standing.word());
+        }
+    }
+    text
+}

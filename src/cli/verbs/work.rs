@@ -1,0 +1,100 @@
+//! The verbs that compute: `run`, one for each stage, and `retry`.
+
+use super::{FAILED_CASES, Fault, failed, open, open_dir, say};
+use crate::campaign::{Campaign, Shard, Stage, Standing};
+use crate::cli::progress::Teller;
+use crate::cli::{CampaignArguments, FolderArguments, JobsArguments, interrupt};
+use crate::schema;
+use crate::stages::{self, Tally, Task};
+use crate::stats::summary;
+use crate::store::{Check, parquet};
+use serde_json::json;
+use std::collections::HashSet;
+use std::sync::Arc;
+
+pub(super) fn stages(arguments: &CampaignArguments, from: Stage, until: Stage, partial: bool) -> Result<u8, Fault> {
+    let campaign = open(&arguments.spec, &arguments.output)?;
+    let shard = arguments.shard.unwrap_or_default();
+    if !shard.is_whole() && until > Stage::Cycle {
+        let stage = until.word();
+        return Err(failed(format!(
+            "cannot {stage} a part of {}: that takes all of it; allowed: --until cycle with --shard",
+            campaign.spec.name
+        )));
+    }
+    let check = if arguments.quick { Check::Sizes } else { Check::Contents };
+    perform(&campaign, &Task { shard, partial, check, ..Task::new(from, until) }, &arguments.jobs, arguments.output.json)
+}
+
+pub(super) fn retry(folder: &FolderArguments, ids: &[String], jobs: &JobsArguments) -> Result<u8, Fault> {
+    let campaign = open_dir("retry the failed cases of", &folder.dir)?;
+    let standings = campaign.cycle_standings(Check::Sizes);
+    let units = campaign.cycles.iter().zip(standings);
+    let failures: HashSet<String> = units.filter(|(_, s)| matches!(s, Standing::Failed(_))).map(|(unit, _)| unit.id.clone()).collect();
+    if let Some(strange) = ids.iter().find(|id| !failures.contains(*id)) {
+        let mut known: Vec<&str> = failures.iter().map(String::as_str).collect();
+        known.sort_unstable();
+        let known = if known.is_empty() { "none, since no case has failed".to_owned() } else { known.join(", ") };
+        return Err(failed(format!("cannot retry {strange}: it is no failed case of {}; allowed: {known}", folder.dir.display())));
+    }
+    let retried = if ids.is_empty() { failures } else { ids.iter().cloned().collect() };
+    let task = Task { retried, shard: Shard::default(), ..Task::new(Stage::Generate, Stage::Report) };
+    perform(&campaign, &task, jobs, folder.json)
+}
+
+fn perform(campaign: &Campaign, task: &Task, jobs: &JobsArguments, json: bool) -> Result<u8, Fault> {
+    let mut pool = rayon::ThreadPoolBuilder::new();
+    if let Some(jobs) = jobs.jobs {
+        pool = pool.num_threads(usize::from(jobs));
+    }
+    let pool = pool.build().map_err(failed)?;
+    let teller = Arc::new(Teller::new());
+    interrupt::expect(teller.clone(), &campaign.dir).map_err(failed)?;
+    let tallies = pool.install(|| stages::run(campaign, task, &*teller)).map_err(failed)?;
+    let failures: usize = tallies.iter().map(|(_, tally)| tally.failed).sum();
+    if json {
+        say(&tally_json(campaign, &tallies));
+    } else {
+        say(&conclusion(campaign, &tallies, task.until)?);
+    }
+    Ok(if failures > 0 { FAILED_CASES } else { 0 })
+}
+
+fn tally_json(campaign: &Campaign, tallies: &[(Stage, Tally)]) -> String {
+    let stages: Vec<_> = tallies
+        .iter()
+        .map(|(stage, t)| {
+            json!({ "stage": stage.word(), "planned_count": t.planned, "done_before_count": t.before, "computed_count": t.computed, "failed_count": t.failed })
+        })
+        .collect();
+    format!("{:#}\n", json!({ "name": campaign.spec.name, "dir": campaign.dir.display().to_string(), "stages": stages }))
+}
+
+/// What is said at the end: the table of cases, what failed, and where the results are.
+fn conclusion(campaign: &Campaign, tallies: &[(Stage, Tally)], until: Stage) -> Result<String, Fault> {
+    let mut text = String::new();
+    let computed: usize = tallies.iter().map(|(_, t)| t.computed).sum();
+    let failures: usize = tallies.iter().map(|(_, t)| t.failed).sum();
+    if until >= Stage::Aggregate {
+        let cases = parquet::read_table(&campaign.statistics_path("cases"), &schema::CASES).map_err(failed)?;
+        text += &summary(&cases).map_err(failed)?;
+        text += "\n";
+    }
+    if computed == 0 && failures == 0 {
+        text += "Nothing to do: everything was done before.\n";
+    } else {
+        for (stage, t) in tallies {
+            let lost = if t.failed > 0 { format!(", {} failed", t.failed) } else { String::new() };
+            text += &format!("{:9} {} of {} computed, {} done before{lost}\n", stage.word(), t.computed, t.planned, t.before);
+        }
+    }
+    let dir = campaign.dir.display();
+    if failures > 0 {
+        text += &format!("{failures} cases failed; why is in {dir}/cycles/*/failed.json. `hysteron retry {dir}` tries them again.\n");
+    }
+    text += &match until {
+        Stage::Report => format!("Report: {dir}/report.html\nTables: {dir}/statistics/*.parquet\n"),
+        _ => format!("Output: {dir}\n"),
+    };
+    Ok(text)
+}

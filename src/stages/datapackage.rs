@@ -1,0 +1,77 @@
+//! `datapackage.json`: what tables a run has and what their columns mean, as the Data Package standard (version 2) has it.
+
+use crate::campaign::Campaign;
+use crate::schema::{Column, Kind, TABLES, Table};
+use serde_json::{Value, json};
+
+/// The description of the tables of a campaign; of the cycles only of those that are done.
+pub(super) fn text(campaign: &Campaign, done: &[bool]) -> String {
+    let cycles: Vec<&str> = {
+        let mut ids: Vec<&str> = campaign.cycles.iter().zip(done).filter(|(_, done)| **done).map(|(unit, _)| unit.id.as_str()).collect();
+        ids.sort_unstable();
+        ids.dedup();
+        ids
+    };
+    let surfaces: Vec<&str> = campaign.surfaces.iter().map(|unit| unit.id.as_str()).collect();
+    let mut resources: Vec<Value> = TABLES
+        .iter()
+        .filter_map(|table| {
+            let ids = match table.file.split('/').next() {
+                Some("cycles") => &cycles,
+                Some("asperities") => &surfaces,
+                _ => return Some(resource(table, json!(table.file))),
+            };
+            let paths: Vec<String> = ids.iter().map(|id| table.file.replace("<id>", id)).collect();
+            (!paths.is_empty()).then(|| resource(table, json!(paths)))
+        })
+        .collect();
+    resources.push(json!({
+        "name": "surfaces",
+        "path": surfaces.iter().map(|id| format!("surfaces/{id}.h5")).collect::<Vec<_>>(),
+        "format": "hdf5",
+        "mediatype": "application/x-hdf5",
+        "description": "Height fields: the dataset /height_m (f64, N x N, rows along x), with what they were made from as attributes.",
+    }));
+    let package = json!({
+        "$schema": "https://datapackage.org/profiles/2.0/datapackage.json",
+        "name": campaign.spec.name.to_lowercase(),
+        "description": "Adhesive hysteresis of rough surfaces: loading and unloading of self-affine surfaces with interacting JKR asperities. \
+                        The spec is campaign.toml; what made each file is in receipts/.",
+        "resources": resources,
+    });
+    format!("{package:#}\n")
+}
+
+fn resource(table: &Table, path: Value) -> Value {
+    let fields: Vec<Value> = table.columns.iter().map(field).collect();
+    json!({
+        "name": table.name,
+        "path": path,
+        "format": "parquet",
+        "mediatype": "application/vnd.apache.parquet",
+        "description": table.doc,
+        "schema": { "fields": fields, "missingValues": [] },
+    })
+}
+
+fn field(column: &Column) -> Value {
+    let kind = match column.kind {
+        Kind::F64 => "number",
+        Kind::I64 => "integer",
+        Kind::Bool => "boolean",
+        Kind::Text => "string",
+    };
+    let mut field = json!({
+        "name": column.name,
+        "type": kind,
+        "description": column.doc,
+        "constraints": { "required": !column.nullable },
+    });
+    // The standard has no place of its own for units and sources, and lets publishers add some.
+    for (name, value) in [("unit", column.unit), ("source", column.source)] {
+        if !value.is_empty() {
+            field[name] = json!(value);
+        }
+    }
+    field
+}

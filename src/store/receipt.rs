@@ -1,0 +1,188 @@
+//! What is known of a unit that is done: its key and what that was made of, its files with their hashes, and how they came to be.
+//!
+//! A receipt is written after the unit's files, each of which was put in place whole. So a unit with a receipt is done, and one without is not, whatever files are
+//! there. It is the one place where a clock, a host and a program's version are told.
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+use std::io::ErrorKind;
+use std::path::Path;
+
+use super::commit::{Written, commit_bytes, sum};
+use super::error::StoreError;
+
+/// Version of this format.
+pub const RECEIPT_VERSION: u32 = 1;
+
+/// What stands before the hash of all that is before it.
+const SEAL: &str = ",\n  \"seal\": \"";
+
+/// More than any receipt of this program has \[bytes\]: that of the statistics of 10⁵ cycles has 10 MB.
+const MOST_BYTES: u64 = 1 << 28;
+
+/// A unit that is done.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Receipt {
+    /// [`RECEIPT_VERSION`].
+    pub receipt: u32,
+    /// The stage's word.
+    pub stage: String,
+    /// The unit.
+    pub id: String,
+    /// Its key.
+    pub key: String,
+    /// What the key is the hash of, and the same of all units that it builds on, by stage.
+    pub preimages: Map<String, Value>,
+    /// Its files.
+    pub files: Vec<Kept>,
+    /// How they came to be.
+    pub made: Made,
+}
+
+/// A file of a unit.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Kept {
+    /// Its place below the output folder, parts separated by `/`.
+    pub path: String,
+    /// Its length \[bytes\].
+    pub size_bytes: u64,
+    /// The BLAKE3 hash of its content, hexadecimal.
+    pub blake3: String,
+}
+
+/// How files came to be. Nothing of this is part of a key.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Made {
+    /// Version of the program.
+    pub version: String,
+    /// Commit that it was built from, if that is known; `+` after it where files had been changed since.
+    pub commit: Option<String>,
+    /// The compiler, and what it compiled for.
+    pub toolchain: String,
+    /// The machine.
+    pub host: String,
+    /// Threads of the run.
+    pub threads: usize,
+    /// When the unit was begun.
+    pub began: String,
+    /// How long it took \[s\].
+    pub seconds: f64,
+    /// What it counted.
+    pub effort: Map<String, Value>,
+}
+
+/// How a file is compared with its receipt.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Check {
+    /// It is there, and as long as it was.
+    Sizes,
+    /// Its content has the hash that it had.
+    Contents,
+}
+
+/// What a receipt's place holds.
+#[derive(Debug)]
+pub enum Found {
+    /// Nothing.
+    Nothing,
+    /// A receipt.
+    Whole(Box<Receipt>),
+    /// Something that is none: why.
+    Damaged(String),
+}
+
+/// What is wrong with a file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Fault {
+    /// It is not there.
+    Missing(String),
+    /// It is another one than was written.
+    Changed(String),
+}
+
+impl Fault {
+    /// What is wrong.
+    #[must_use]
+    pub fn sentence(self) -> String {
+        match self {
+            Self::Missing(why) | Self::Changed(why) => why,
+        }
+    }
+}
+
+impl Kept {
+    /// Of a file below `dir` that was written.
+    #[must_use]
+    pub fn of(written: &Written, dir: &Path) -> Self {
+        let path = written.path.strip_prefix(dir).unwrap_or(&written.path);
+        let parts: Vec<String> = path.components().map(|part| part.as_os_str().to_string_lossy().into_owned()).collect();
+        Self { path: parts.join("/"), size_bytes: written.size_bytes, blake3: written.blake3.clone() }
+    }
+
+    /// What is wrong with it below `dir`, if anything.
+    #[must_use]
+    pub fn fault(&self, dir: &Path, check: Check) -> Option<Fault> {
+        let path = dir.join(&self.path);
+        let size = match std::fs::metadata(&path) {
+            Ok(found) => found.len(),
+            Err(error) if error.kind() == ErrorKind::NotFound => return Some(Fault::Missing(format!("{} is missing", self.path))),
+            Err(error) => return Some(Fault::Changed(format!("{} cannot be looked at: {error}", self.path))),
+        };
+        if size != self.size_bytes {
+            return Some(Fault::Changed(format!("{} has {size} bytes, and {} were written", self.path, self.size_bytes)));
+        }
+        if check == Check::Sizes {
+            return None;
+        }
+        match sum(&path) {
+            Ok((_, found)) if found == self.blake3 => None,
+            Ok(_) => Some(Fault::Changed(format!("{} has another content than was written", self.path))),
+            Err(error) => Some(Fault::Changed(format!("{} cannot be read: {error}", self.path))),
+        }
+    }
+}
+
+/// Puts a receipt in place of `path`.
+///
+/// # Errors
+/// As [`commit_bytes`].
+pub fn write_receipt(path: &Path, receipt: &Receipt) -> Result<(), StoreError> {
+    const ACTION: &str = "write the receipt";
+    let text = serde_json::to_string_pretty(receipt).map_err(|error| StoreError::new(ACTION, path, error))?;
+    let body = text.trim_end_matches("\n}");
+    let seal = blake3::hash(body.as_bytes()).to_hex();
+    commit_bytes(ACTION, path, format!("{body}{SEAL}{seal}\"\n}}\n").as_bytes()).map(drop)
+}
+
+/// Reads a receipt; one that is not as it was written is none.
+#[must_use]
+pub fn read_receipt(path: &Path) -> Found {
+    let text =
+        match std::fs::metadata(path).and_then(|found| if found.len() > MOST_BYTES { Ok(None) } else { std::fs::read(path).map(Some) }) {
+            Ok(Some(bytes)) => bytes,
+            Ok(None) => return Found::Damaged("it is longer than any receipt".to_owned()),
+            Err(error) if error.kind() == ErrorKind::NotFound => return Found::Nothing,
+            Err(error) => return Found::Damaged(error.to_string()),
+        };
+    match parse(&text) {
+        Ok(receipt) => Found::Whole(Box::new(receipt)),
+        Err(why) => Found::Damaged(why),
+    }
+}
+
+fn parse(bytes: &[u8]) -> Result<Receipt, String> {
+    let text = std::str::from_utf8(bytes).map_err(|error| error.to_string())?;
+    let (body, rest) = text.rsplit_once(SEAL).ok_or("it has no seal")?;
+    if rest != format!("{}\"\n}}\n", blake3::hash(body.as_bytes()).to_hex()) {
+        return Err("its seal is not that of its content".to_owned());
+    }
+    let receipt: Receipt = serde_json::from_str(&format!("{body}}}")).map_err(|error| error.to_string())?;
+    if receipt.receipt == RECEIPT_VERSION {
+        Ok(receipt)
+    } else {
+        Err(format!("it is a receipt of version {}, and this program reads version {RECEIPT_VERSION}", receipt.receipt))
+    }
+}
