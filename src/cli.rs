@@ -102,6 +102,32 @@ enum Verb {
     },
     /// Draw the figures and write the page
     Report(CampaignArguments),
+    /// Hand what is not done yet to a scheduler
+    Submit {
+        /// The spec, a TOML file
+        spec: PathBuf,
+        #[command(flatten)]
+        output: OutputArguments,
+        /// The scheduler
+        #[arg(long, value_enum)]
+        engine: EngineArgument,
+        #[command(flatten)]
+        shards: ShardsArguments,
+        /// Threads of each task
+        #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
+        cpus: u16,
+        /// A further line for the scheduler, as --option=--time=4:00:00; may be given several times
+        #[arg(long, value_name = "LINE", allow_hyphen_values = true)]
+        option: Vec<String>,
+        /// Show the scripts and the commands, and do nothing
+        #[arg(long)]
+        dry_run: bool,
+    },
+    /// Write what other programs run or publish a campaign with
+    Export {
+        #[command(subcommand)]
+        what: ExportVerb,
+    },
     /// Print the tables and columns that the program writes
     Schema {
         /// Write schemas/*.json into the present folder instead
@@ -150,6 +176,39 @@ struct OutputArguments {
     /// Answer in JSON
     #[arg(long)]
     json: bool,
+}
+
+#[derive(Debug, Subcommand)]
+enum ExportVerb {
+    /// A Snakefile with one rule for each stage
+    Snakemake {
+        /// The spec, a TOML file
+        spec: PathBuf,
+        #[command(flatten)]
+        output: OutputArguments,
+        #[command(flatten)]
+        shards: ShardsArguments,
+    },
+    /// The description of a finished run for a repository of research data (RO-Crate 1.2)
+    RoCrate {
+        #[command(flatten)]
+        folder: FolderArguments,
+        /// The licence of the data, as the address of its text
+        #[arg(long, value_name = "ADDRESS")]
+        license: Option<String>,
+    },
+}
+
+#[derive(Debug, Args)]
+struct ShardsArguments {
+    /// Parts that are run by themselves [default: one for each surface, up to 1000]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    shards: Option<u32>,
+}
+
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+enum EngineArgument {
+    Slurm,
 }
 
 #[derive(Debug, Clone, Copy, clap::ValueEnum)]

@@ -8,6 +8,8 @@ pub mod campaign;
 #[cfg(feature = "stats")]
 pub mod cli;
 #[cfg(feature = "stats")]
+pub mod engines;
+#[cfg(feature = "stats")]
 pub mod figures;
 pub mod keys;
 pub mod model;

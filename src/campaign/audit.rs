@@ -1,7 +1,7 @@
 //! All receipts of a folder against the files that they name, whatever spec they are of.
 
 use super::Campaign;
-use crate::store::{Check, Fault, Found, read_receipt};
+use crate::store::{Check, Fault, Found, Receipt, read_receipt};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -36,6 +36,18 @@ impl Campaign {
             whole.faults.extend(part.faults);
         }
         whole
+    }
+
+    /// All receipts of the folder that can be read, the spec's first, then by stage and id.
+    #[must_use]
+    pub fn all_receipts(&self) -> Vec<Receipt> {
+        let mut paths = Vec::new();
+        receipts_below(&self.dir.join("receipts"), &mut paths);
+        let found = paths.par_iter().filter_map(|path| match read_receipt(path) {
+            Found::Whole(receipt) => Some(*receipt),
+            _ => None,
+        });
+        found.collect()
     }
 
     fn audit_one(&self, path: &Path, check: Check) -> Audit {

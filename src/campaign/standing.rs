@@ -1,7 +1,7 @@
 //! How a unit stands: read off its receipt and its files, never stored.
 
 use super::{Campaign, CycleUnit, REPORT_PAGE, STATISTICS, Stage, Unit};
-use crate::store::{Check, Fault, Found, Receipt, read_halfway, read_receipt};
+use crate::store::{Check, Fault, Found, Receipt, is_halfway, read_receipt};
 use rayon::prelude::*;
 use serde_json::Value;
 use std::collections::HashMap;
@@ -105,7 +105,7 @@ impl Campaign {
         match self.standing(&unit.cycle(), check) {
             Standing::Planned => match self.failure(unit) {
                 Some(why) => Standing::Failed(why),
-                None if read_halfway(&self.halfway_path(unit), &unit.key).is_some() => Standing::Interrupted,
+                None if is_halfway(&self.halfway_path(unit), &unit.key) => Standing::Interrupted,
                 None => Standing::Planned,
             },
             other => other,

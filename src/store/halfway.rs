@@ -3,6 +3,7 @@
 
 use super::commit::commit_bytes;
 use super::error::StoreError;
+use std::io::Read as _;
 use std::path::Path;
 
 /// Length of a key and of a hash, as hexadecimal digits.
@@ -15,6 +16,13 @@ const DIGITS: usize = 64;
 pub fn write_halfway(path: &Path, key: &str, bytes: &[u8]) -> Result<(), StoreError> {
     let whole = [key.as_bytes(), blake3::hash(bytes).to_hex().as_bytes(), bytes].concat();
     commit_bytes("keep what is needed to go on in", path, &whole).map(drop)
+}
+
+/// Whether `path` begins as one of the unit `key` does. Whether it is whole is seen when it is read.
+#[must_use]
+pub fn is_halfway(path: &Path, key: &str) -> bool {
+    let mut head = [0; DIGITS];
+    std::fs::File::open(path).and_then(|mut file| file.read_exact(&mut head)).is_ok() && head == *key.as_bytes()
 }
 
 /// The bytes at `path`, if they are whole and of the unit `key`.

@@ -17,5 +17,5 @@ mod surface_header;
 pub use builder::FrameBuilder;
 pub use error::{FrameError, StoreError};
 pub use frame::{ColumnData, Frame};
-pub use halfway::{read_halfway, write_halfway};
+pub use halfway::{is_halfway, read_halfway, write_halfway};
 pub use receipt::{Check, Fault, Found, Kept, Made, RECEIPT_VERSION, Receipt, read_receipt, write_receipt};

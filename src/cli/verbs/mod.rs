@@ -1,10 +1,12 @@
 //! One function for each verb.
 
 mod care;
+mod export;
+mod submit;
 mod survey;
 mod work;
 
-use super::{OutputArguments, StageArgument, Verb};
+use super::{EngineArgument, ExportVerb, OutputArguments, StageArgument, Verb};
 use crate::campaign::{Campaign, Stage};
 use crate::schema;
 use crate::spec::Spec;
@@ -42,6 +44,11 @@ pub(super) fn perform(verb: &Verb) -> ExitCode {
         Verb::Verify { folder, deep } => care::verify(folder, *deep),
         Verb::Retry { folder, ids, jobs } => work::retry(folder, ids, jobs),
         Verb::Gc { folder, keep, delete } => care::gc(folder, keep, *delete),
+        Verb::Submit { spec, output, engine: EngineArgument::Slurm, shards, cpus, option, dry_run } => {
+            submit::slurm(spec, output, shards.shards, (*cpus, option), *dry_run)
+        }
+        Verb::Export { what: ExportVerb::Snakemake { spec, output, shards } } => export::snakemake(spec, output, shards.shards),
+        Verb::Export { what: ExportVerb::RoCrate { folder, license } } => export::ro_crate(folder, license.as_deref()),
         Verb::Schema { write } => schemas(*write),
     };
     match outcome {

@@ -1,6 +1,6 @@
 //! The verbs that say how a campaign stands: `plan` and `status`. They write nothing.
 
-use super::{Fault, open, open_dir, say};
+use super::{Fault, open, open_dir, say, submit};
 use crate::campaign::{Campaign, REPORT_PAGE, STATISTICS, Stage, Standing};
 use crate::cli::{FolderArguments, OutputArguments};
 use crate::store::Check;
@@ -38,6 +38,7 @@ pub(super) fn status(folder: &FolderArguments, watch: bool) -> Result<u8, Fault>
             if let Some(why) = campaign.spec_fault() {
                 text += &format!("caution: {why}; the spec of this folder may be another one than was run\n");
             }
+            text += &in_queue(&campaign);
             let dir = campaign.dir.display();
             text += &match open {
                 0 => "Nothing is left to do.\n".to_owned(),
@@ -67,6 +68,19 @@ fn units(campaign: &Campaign) -> Units {
         (Stage::Aggregate, vec![(STATISTICS.to_owned(), survey.statistics)]),
         (Stage::Report, vec![(REPORT_PAGE.to_owned(), survey.report)]),
     ]
+}
+
+/// What Slurm's queue has of the jobs that were sent. Files are the truth: what it says of finished tasks is not asked for.
+fn in_queue(campaign: &Campaign) -> String {
+    let sent = submit::sent(campaign);
+    if sent.is_empty() {
+        return String::new();
+    }
+    let Some(queue) = submit::queue(&sent) else {
+        return format!("slurm     {} jobs were sent; the queue cannot be asked here\n", sent.len());
+    };
+    let counted: Vec<String> = queue.states.iter().map(|(state, count)| format!("{count} {state}")).collect();
+    format!("slurm     {}\n", if counted.is_empty() { "nothing in the queue".to_owned() } else { counted.join(", ") })
 }
 
 /// How many units are not done.

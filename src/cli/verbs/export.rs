@@ -1,0 +1,53 @@
+//! `export`: files that other programs run or publish a campaign with.
+
+use super::{Fault, failed, open, open_dir, say};
+use crate::cli::{FolderArguments, OutputArguments};
+use crate::engines::{ro_crate as description, snakemake as rules, usual_shards};
+use crate::stages;
+use crate::store::{Check, commit};
+use serde_json::json;
+use std::path::Path;
+use std::time::SystemTime;
+
+pub(super) fn snakemake(spec: &Path, output: &OutputArguments, shards: Option<u32>) -> Result<u8, Fault> {
+    let mut campaign = open(spec, output)?;
+    let absolute = |path: &Path| std::path::absolute(path).map_err(|error| failed(format!("cannot find {}: {error}", path.display())));
+    campaign.dir = absolute(&campaign.dir)?;
+    stages::prepare(&campaign).map_err(failed)?;
+    let folder = campaign.dir.join("snakemake");
+    std::fs::create_dir_all(&folder).map_err(|error| failed(format!("cannot make the folder {}: {error}", folder.display())))?;
+    let program = std::env::current_exe().map_err(|error| failed(format!("cannot find the program's own file: {error}")))?;
+    let shards = shards.map_or_else(|| usual_shards(&campaign), |count| count as usize);
+    let path = folder.join("Snakefile");
+    commit::commit_bytes("write the Snakefile", &path, rules::snakefile(&campaign, &program, shards).as_bytes()).map_err(failed)?;
+    if output.json {
+        say(&format!("{:#}\n", json!({ "file": path.display().to_string(), "shard_count": shards })));
+    } else {
+        say(&format!("Written: {}\nRun it with `snakemake --snakefile {} --cores 2`\n", path.display(), path.display()));
+    }
+    Ok(0)
+}
+
+pub(super) fn ro_crate(folder: &FolderArguments, license: Option<&str>) -> Result<u8, Fault> {
+    let campaign = open_dir("describe", &folder.dir)?;
+    let audit = campaign.audit(Check::Sizes);
+    if let Some(fault) = audit.faults.first() {
+        return Err(failed(format!(
+            "cannot describe {}: {fault}; allowed: a run whose files are as they were written",
+            folder.dir.display()
+        )));
+    }
+    let day: String = humantime::format_rfc3339_seconds(SystemTime::now()).to_string().chars().take(10).collect();
+    let text = description::metadata(&campaign, &campaign.all_receipts(), &day, license);
+    let path = folder.dir.join("ro-crate-metadata.json");
+    commit::commit_bytes("write the description", &path, text.as_bytes()).map_err(failed)?;
+    if folder.json {
+        say(&format!("{:#}\n", json!({ "file": path.display().to_string(), "file_count": audit.file_count })));
+        return Ok(0);
+    }
+    say(&format!("Written: {}, which describes {} files.\n", path.display(), audit.file_count));
+    if license.is_none() {
+        say("A crate that is published needs a licence: --license ADDRESS states it.\n");
+    }
+    Ok(0)
+}

@@ -1,0 +1,42 @@
+//! What other programs run or describe a campaign with: texts that a person can read too.
+//!
+//! The program is no scheduler. The one seam is a shard: some surfaces and all that is done with them, which may be run at any time, anywhere, twice at once.
+
+pub mod ro_crate;
+pub mod slurm;
+pub mod snakemake;
+
+use crate::campaign::{Campaign, Stage, Standing, Survey};
+use std::path::Path;
+
+/// Shards at most, unless more are asked for: a scheduler takes about a second for each.
+const MOST_SHARDS: usize = 1000;
+
+/// How many shards a campaign is split into where nobody says: one for each surface.
+#[must_use]
+pub fn usual_shards(campaign: &Campaign) -> usize {
+    campaign.surfaces.len().clamp(1, MOST_SHARDS)
+}
+
+/// The shards that have units of a stage which are not done; failed cases are not open.
+#[must_use]
+pub fn open_shards(campaign: &Campaign, survey: &Survey, stage: Stage, count: usize) -> Vec<usize> {
+    let mut open = vec![false; count];
+    let mut enter = |surface: usize, standing: &Standing| {
+        if !matches!(standing, Standing::Done | Standing::Failed(_)) {
+            open[surface % count] = true;
+        }
+    };
+    match stage {
+        Stage::Generate => survey.surfaces.iter().enumerate().for_each(|(surface, standing)| enter(surface, standing)),
+        Stage::Extract => survey.asperities.iter().enumerate().for_each(|(surface, standing)| enter(surface, standing)),
+        Stage::Cycle => survey.cycles.iter().for_each(|(unit, standing)| enter(unit.surface, standing)),
+        Stage::Aggregate | Stage::Report => debug_assert!(campaign.spec.realizations > 0, "these stages have no shards"),
+    }
+    (0..count).filter(|shard| open[*shard]).collect()
+}
+
+/// A path as one word of a shell.
+fn quoted(path: &Path) -> String {
+    format!("'{}'", path.display().to_string().replace('\'', "'\\''"))
+}

@@ -1,0 +1,97 @@
+//! RO-Crate 1.2: a run described for a repository of research data.
+
+use crate::campaign::Campaign;
+use crate::store::Receipt;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+
+/// The type of a file by its ending.
+const TYPES: [(&str, &str); 6] = [
+    (".parquet", "application/vnd.apache.parquet"),
+    (".h5", "application/x-hdf5"),
+    (".svg", "image/svg+xml"),
+    (".html", "text/html"),
+    (".json", "application/json"),
+    (".toml", "application/toml"),
+];
+
+/// `ro-crate-metadata.json` of a folder with these receipts, published on a day (`2026-01-31`), under a licence if one is told.
+#[must_use]
+pub fn metadata(campaign: &Campaign, receipts: &[Receipt], day: &str, licence: Option<&str>) -> String {
+    let mut files: Vec<Value> = Vec::new();
+    let mut made: BTreeMap<(String, String), Vec<&Receipt>> = BTreeMap::new();
+    for receipt in receipts {
+        for file in &receipt.files {
+            let kind = TYPES.iter().find(|(ending, _)| file.path.ends_with(ending)).map_or("application/octet-stream", |(_, kind)| kind);
+            files.push(json!({
+                "@id": file.path,
+                "@type": "File",
+                "name": file.path,
+                "contentSize": file.size_bytes.to_string(),
+                "encodingFormat": kind,
+                "identifier": format!("blake3:{}", file.blake3),
+            }));
+        }
+        let version =
+            receipt.made.commit.as_ref().map_or_else(|| receipt.made.version.clone(), |at| format!("{} ({at})", receipt.made.version));
+        made.entry((version, receipt.stage.clone())).or_default().push(receipt);
+    }
+    let parts: Vec<Value> = files.iter().map(|file| json!({ "@id": file["@id"] })).collect();
+    let programs: Vec<Value> = {
+        let mut versions: Vec<&str> = made.keys().map(|(version, _)| version.as_str()).collect();
+        versions.dedup();
+        versions
+            .into_iter()
+            .map(|version| json!({ "@id": program(version), "@type": "SoftwareApplication", "name": "hysteron", "softwareVersion": version }))
+            .collect()
+    };
+    let actions: Vec<Value> = made
+        .iter()
+        .map(|((version, stage), of)| {
+            let results: Vec<Value> = of.iter().flat_map(|receipt| &receipt.files).map(|file| json!({ "@id": file.path })).collect();
+            let begun = of.iter().map(|receipt| receipt.made.began.as_str()).min().unwrap_or_default();
+            json!({
+                "@id": format!("#{stage}-{}", program(version).trim_start_matches('#')),
+                "@type": "CreateAction",
+                "name": stage,
+                "startTime": begun,
+                "instrument": { "@id": program(version) },
+                "object": { "@id": "campaign.toml" },
+                "result": results,
+            })
+        })
+        .collect();
+    let mut root = json!({
+        "@id": "./",
+        "@type": "Dataset",
+        "name": format!("{}: adhesive hysteresis of rough surfaces", campaign.spec.name),
+        "description": "Loading and unloading of self-affine rough surfaces with interacting JKR asperities, computed with hysteron; \
+                        the spec is campaign.toml, the columns of the tables are described in datapackage.json.",
+        "datePublished": day,
+        "hasPart": parts,
+        "mentions": actions.iter().map(|action| json!({ "@id": action["@id"] })).collect::<Vec<_>>(),
+    });
+    if let Some(licence) = licence {
+        root["license"] = json!({ "@id": licence });
+    }
+    let mut graph = vec![
+        json!({
+            "@id": "ro-crate-metadata.json",
+            "@type": "CreativeWork",
+            "conformsTo": { "@id": "https://w3id.org/ro/crate/1.2" },
+            "about": { "@id": "./" },
+        }),
+        root,
+    ];
+    graph.extend(licence.map(|licence| json!({ "@id": licence, "@type": "CreativeWork", "name": licence })));
+    graph.extend(files);
+    graph.extend(programs);
+    graph.extend(actions);
+    format!("{:#}\n", json!({ "@context": "https://w3id.org/ro/crate/1.2/context", "@graph": graph }))
+}
+
+/// The identity of a version of the program within the crate.
+fn program(version: &str) -> String {
+    let plain: String = version.chars().map(|c| if c.is_ascii_alphanumeric() || c == '.' { c } else { '-' }).collect();
+    format!("#hysteron-{}", plain.trim_end_matches('-'))
+}
