@@ -1,87 +1,15 @@
 //! The program itself, from a spec to the tables and figures, on a surface small enough for a test.
 
-use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 
+use crate::bench::{Bench, SPEC, code, files, paths, stderr, stdout};
 use hysteron::campaign::Campaign;
 use hysteron::schema;
 use hysteron::spec::Spec;
 use hysteron::stages;
 use hysteron::store::parquet::read_table;
-use tempfile::TempDir;
-
-const SPEC: &str = r#"
-name = "tiny"
-seed = 7
-realizations = 2
-[cycle]
-max_load = [0.001, 0.002]
-approach_step = 0.05
-[[sweep]]
-name = "zeta"
-surface.magnification = [6, 8]
-"#;
-
-/// A folder with a spec in it.
-struct Bench {
-    folder: TempDir,
-}
-
-impl Bench {
-    fn new(spec: &str) -> Self {
-        let folder = TempDir::new().unwrap();
-        fs::write(folder.path().join("spec.toml"), spec).unwrap();
-        Self { folder }
-    }
-
-    fn out(&self) -> PathBuf {
-        self.folder.path().join("out")
-    }
-
-    /// Runs a verb on the spec, with more arguments.
-    fn verb(&self, verb: &str, more: &[&str]) -> Output {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_hysteron"));
-        command.arg(verb).arg(self.folder.path().join("spec.toml")).arg("--out").arg(self.out()).args(more);
-        command.output().unwrap()
-    }
-}
-
-fn code(output: &Output) -> i32 {
-    output.status.code().unwrap()
-}
-
-fn stdout(output: &Output) -> String {
-    String::from_utf8(output.stdout.clone()).unwrap()
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).unwrap()
-}
-
-/// All files below a folder.
-fn paths(folder: &Path) -> Vec<PathBuf> {
-    let mut found = Vec::new();
-    let mut open = vec![folder.to_owned()];
-    while let Some(next) = open.pop() {
-        for entry in fs::read_dir(next).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                open.push(path);
-            } else {
-                found.push(path);
-            }
-        }
-    }
-    found
-}
-
-/// The same by path, with their bytes; but for receipts, which tell when and by whom.
-fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
-    let all = paths(folder).into_iter().map(|path| (path.strip_prefix(folder).unwrap().to_owned(), fs::read(&path).unwrap()));
-    all.filter(|(path, _)| !path.starts_with("receipts")).collect()
-}
 
 #[test]
 fn e2e_a_spec_becomes_tables_figures_and_a_page() {

@@ -2,6 +2,10 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 #[cfg(feature = "stats")]
+mod bench;
+#[cfg(feature = "stats")]
+mod campaign;
+#[cfg(feature = "stats")]
 mod e2e;
 #[cfg(feature = "stats")]
 mod figures;

@@ -1,0 +1,104 @@
+//! The program itself in a folder of its own, for the tests that run it.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use tempfile::TempDir;
+
+/// Two magnifications, two realizations, two loads: a second of work.
+pub const SPEC: &str = r#"
+name = "tiny"
+seed = 7
+realizations = 2
+[cycle]
+max_load = [0.001, 0.002]
+approach_step = 0.05
+[[sweep]]
+name = "zeta"
+surface.magnification = [6, 8]
+"#;
+
+/// A folder with a spec in it.
+pub struct Bench {
+    pub folder: TempDir,
+}
+
+impl Bench {
+    pub fn new(spec: &str) -> Self {
+        let folder = TempDir::new().unwrap();
+        fs::write(folder.path().join("spec.toml"), spec).unwrap();
+        Self { folder }
+    }
+
+    pub fn out(&self) -> PathBuf {
+        self.folder.path().join("out")
+    }
+
+    pub fn spec(&self) -> PathBuf {
+        self.folder.path().join("spec.toml")
+    }
+
+    /// A verb on the spec.
+    pub fn command(&self, verb: &str) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_hysteron"));
+        command.arg(verb).arg(self.spec()).arg("--out").arg(self.out());
+        command
+    }
+
+    /// Runs a verb on the spec, with more arguments.
+    pub fn verb(&self, verb: &str, more: &[&str]) -> Output {
+        self.command(verb).args(more).output().unwrap()
+    }
+
+    /// Runs a verb on the output folder, with more arguments.
+    pub fn look(&self, verb: &str, more: &[&str]) -> Output {
+        Command::new(env!("CARGO_BIN_EXE_hysteron")).arg(verb).arg(self.out()).args(more).output().unwrap()
+    }
+
+    /// Receipts by path, with their bytes.
+    pub fn receipts(&self) -> BTreeMap<PathBuf, Vec<u8>> {
+        let folder = self.out().join("receipts");
+        let all = if folder.exists() { paths(&folder) } else { Vec::new() };
+        all.into_iter()
+            .filter(|path| path.extension().is_some_and(|e| e == "json"))
+            .map(|path| (path.clone(), fs::read(&path).unwrap()))
+            .collect()
+    }
+}
+
+pub fn code(output: &Output) -> i32 {
+    output.status.code().unwrap()
+}
+
+pub fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+pub fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+/// All files below a folder.
+pub fn paths(folder: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    let mut open = vec![folder.to_owned()];
+    while let Some(next) = open.pop() {
+        for entry in fs::read_dir(next).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                open.push(path);
+            } else {
+                found.push(path);
+            }
+        }
+    }
+    found
+}
+
+/// The same by path, with their bytes; but for receipts, which tell when and by whom.
+pub fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let all = paths(folder).into_iter().map(|path| (path.strip_prefix(folder).unwrap().to_owned(), fs::read(&path).unwrap()));
+    all.filter(|(path, _)| !path.starts_with("receipts")).collect()
+}

@@ -1,0 +1,100 @@
+//! Every key of the spec, and what it makes stale.
+
+use hysteron::campaign::Campaign;
+use hysteron::spec::Spec;
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
+fn campaign(text: &str) -> Campaign {
+    Campaign::new(Spec::parse(text, "x.toml").unwrap_or_else(|errors| panic!("{errors}\n{text}")), PathBuf::from("out"))
+}
+
+/// Keys by stage: surfaces, asperities, cycles, statistics, report.
+fn keys(campaign: &Campaign) -> [Vec<String>; 5] {
+    let statistics = campaign.statistics_key(&vec![true; campaign.cycles.len()]);
+    [
+        campaign.surfaces.iter().map(|unit| unit.key.clone()).collect(),
+        campaign.surfaces.iter().map(|unit| unit.asperities_key.clone()).collect(),
+        campaign.cycles.iter().map(|unit| unit.key.clone()).collect(),
+        vec![statistics.clone()],
+        vec![campaign.report_key(&statistics)],
+    ]
+}
+
+/// Another value for every key of a spec, and the first stage that reads it: 0 generate, 2 cycle, 3 aggregate, 4 report.
+const OTHERS: [(&str, &str, usize); 21] = [
+    ("name", "\"y\"", 4),
+    ("seed", "2022", 0),
+    ("surface.length_m", "0.002", 0),
+    ("surface.rms_height_m", "6e-6", 0),
+    ("surface.hurst", "0.7", 0),
+    ("surface.magnification", "12", 0),
+    ("surface.points_per_shortest_wavelength", "12", 0),
+    ("surface.normalization", "\"spectrum\"", 0),
+    ("surface.amplitudes", "\"gaussian\"", 0),
+    ("material.contact_modulus_pa", "2e6", 2),
+    ("material.work_of_adhesion_j_m2", "0.05", 2),
+    ("material.interaction_range_m", "2e-9", 2),
+    ("model.interaction", "\"point\"", 2),
+    ("model.boundary", "\"isolated\"", 2),
+    ("model.coalescence", "\"merge\"", 2),
+    ("model.jump_in", "\"jkr\"", 2),
+    ("model.as_printed", "[\"eq8\"]", 2),
+    ("model.allow_low_tabor", "true", 2),
+    ("cycle.max_load", "[0.003]", 2),
+    ("cycle.approach_step", "0.02", 2),
+    ("cycle.contacts", "\"all\"", 2),
+];
+
+#[test]
+fn law_every_key_reruns_exactly_the_stages_that_read_it() {
+    let base = campaign("name = \"x\"\nrealizations = 2\n[surface]\nmagnification = 8\n").spec.to_toml();
+    let before = keys(&campaign(&base));
+    let mut table = String::new();
+    let mut met = BTreeSet::new();
+    let lines: Vec<&str> = base.lines().collect();
+    for (place, line) in lines.iter().enumerate() {
+        if let Some(name) = line.strip_prefix('[') {
+            table = format!("{}.", name.trim_end_matches(']'));
+        }
+        let Some((name, _)) = line.split_once(" = ") else { continue };
+        let name = format!("{table}{name}");
+        if name == "realizations" {
+            continue;
+        }
+        let (_, value, first) = OTHERS.iter().find(|(known, ..)| *known == name).unwrap_or_else(|| panic!("no other value for {name}"));
+        let other = format!("{} = {value}", line.split_once(" = ").unwrap().0);
+        assert_ne!(*line, other, "{name} has another value");
+        let text: Vec<&str> = lines.iter().enumerate().map(|(k, line)| if k == place { other.as_str() } else { line }).collect();
+        let after = keys(&campaign(&text.join("\n")));
+        for (stage, (old, new)) in before.iter().zip(&after).enumerate() {
+            let changed = old.iter().zip(new).all(|(a, b)| a != b);
+            let kept = old == new;
+            assert!(if stage >= *first { changed } else { kept }, "{name}: stage {stage}");
+        }
+        met.insert(name);
+    }
+    assert_eq!(met.len(), OTHERS.len(), "every key of the spec has been tried");
+}
+
+#[test]
+fn law_ids_stay_when_a_campaign_grows() {
+    let text = |sweep: &str, realizations: u32| {
+        format!(
+            "name = \"x\"\nrealizations = {realizations}\n[surface]\nmagnification = 8\n[[sweep]]\nname = \"s\"\nsurface.hurst = [{sweep}]\n"
+        )
+    };
+    let ids = |campaign: &Campaign| {
+        let surfaces = campaign.surfaces.iter().map(|unit| unit.id.clone());
+        surfaces
+            .chain(campaign.cycles.iter().map(|unit| unit.id.clone()))
+            .chain(campaign.cases.iter().map(|unit| unit.id.clone()))
+            .collect::<BTreeSet<_>>()
+    };
+    let small = ids(&campaign(&text("0.5, 0.8", 2)));
+    // Values before and between, and more realizations: nothing is known by its place.
+    let large = ids(&campaign(&text("0.45, 0.5, 0.6, 0.8, 0.9", 5)));
+    assert_eq!(small.len(), 10);
+    assert!(small.is_subset(&large));
+    assert_eq!(large.len(), 5 * (5 + 5 + 1));
+}
