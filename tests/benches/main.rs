@@ -3,6 +3,8 @@
 //! `cargo bench` runs all, `cargo bench -- sums` those whose names hold a word. Nothing here is asserted: what is right is in `tests/physics`.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+#[cfg(feature = "stats")]
+mod campaign;
 mod cycle;
 mod pairs;
 mod paper;
@@ -17,7 +19,7 @@ use std::env::args;
 fn main() {
     // Cargo itself adds `--bench`.
     let wanted: Vec<String> = args().skip(1).filter(|word| !word.starts_with('-')).collect();
-    let all: [(&str, fn()); 5] = [
+    let all: [(&str, fn()); 6] = [
         ("pairs", pairs::run),
         ("sums", sums::run),
         ("surfaces", surfaces::run),
@@ -26,6 +28,10 @@ fn main() {
         #[cfg(not(feature = "store"))]
         ("tables", || println!("tables: not without the feature `store`")),
         ("cycle", cycle::run),
+        #[cfg(feature = "stats")]
+        ("planning", campaign::run),
+        #[cfg(not(feature = "stats"))]
+        ("planning", || println!("planning: not without the feature `stats`")),
     ];
     for (name, run) in all {
         if wanted.is_empty() || wanted.iter().any(|word| name.contains(word.as_str())) {

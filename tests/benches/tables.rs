@@ -48,9 +48,9 @@ pub fn run() {
         plain(&format!("{} MB of bytes", bytes.len() / 1_000_000), theirs);
         line(what, ours, ours / theirs);
     };
-    compare("2048 x 2048 heights as HDF5", &bytes, &mut || write_surface(&kept, &header, surface.heights_m.view()).unwrap());
+    compare("2048 x 2048 heights as HDF5", &bytes, &mut || write_surface(&kept, &header, surface.heights_m.view()).map(drop).unwrap());
     let spots: Vec<f64> = surface.heights_m.iter().take(ROWS).map(|height| height.abs()).collect();
     let frame = contacts(&spots).build().unwrap();
     let bytes: Vec<u8> = (0..6).flat_map(|_| spots.iter().flat_map(|a| a.to_ne_bytes())).collect();
-    compare(&format!("{ROWS} contacts as Parquet"), &bytes, &mut || write_table(&kept, &frame, &[]).unwrap());
+    compare(&format!("{ROWS} contacts as Parquet"), &bytes, &mut || write_table(&kept, &frame, &[]).map(drop).unwrap());
 }

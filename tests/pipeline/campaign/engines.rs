@@ -19,7 +19,7 @@ fn order(waiting: Vec<(Stage, Vec<usize>)>, most: usize) -> Order {
 fn law_tasks_correspond_and_nothing_waits_for_what_is_not_sent() {
     let all: Vec<usize> = (0..12).collect();
     let tried = [
-        vec![(Stage::Generate, all.clone()), (Stage::Extract, all.clone()), (Stage::Cycle, all.clone())],
+        vec![(Stage::Generate, all.clone()), (Stage::Extract, all.clone()), (Stage::Cycle, all)],
         vec![(Stage::Generate, vec![1]), (Stage::Extract, vec![1, 4]), (Stage::Cycle, vec![1, 4, 11])],
         vec![(Stage::Cycle, vec![0, 5, 6])],
         vec![(Stage::Generate, vec![7])],
