@@ -70,3 +70,21 @@ fn e2e_a_disk_that_fails_at_any_call_tears_nothing() {
     assert!(failed > 10, "{failed}");
     std::fs::remove_file(shim).unwrap();
 }
+
+#[test]
+fn e2e_a_power_cut_loses_nothing_that_has_a_receipt() {
+    let bench = Bench::new(SMALL);
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/disk/power_cut.sh");
+    let count = std::env::var("HYSTERON_CUTS").unwrap_or_else(|_| "5".to_owned());
+    let folder = bench.folder.path().join("disk");
+    std::fs::create_dir(&folder).unwrap();
+    let tried = Command::new(script).arg(env!("CARGO_BIN_EXE_hysteron")).arg(bench.spec()).arg(folder).arg(count).output().unwrap();
+    if tried.status.code() == Some(77) {
+        eprintln!("skipped: {}", stderr(&tried).trim());
+        return;
+    }
+    let said = String::from_utf8_lossy(&tried.stdout);
+    assert!(tried.status.success(), "{said}{}", stderr(&tried));
+    assert!(!said.trim_end().ends_with(" 0 receipts"), "{said}");
+    eprintln!("{}", said.lines().last().unwrap_or_default());
+}
