@@ -24,8 +24,8 @@ use std::path::PathBuf;
 const GENERATE: u32 = 1;
 const EXTRACT: u32 = 1;
 const CYCLE: u32 = 11;
-const AGGREGATE: u32 = 2;
-const REPORT: u32 = 3;
+const AGGREGATE: u32 = 3;
+const REPORT: u32 = 4;
 
 /// The stages, in their order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

@@ -1,4 +1,8 @@
-//! Theories beside a run: here Deng and Kesari's estimate of the loss, from Nayak's statistics of summits.
+//! Theories beside a run: Deng and Kesari's estimate of the loss, from Nayak's statistics of summits; what Dalvi and others found of soft solids in full
+//! contact; the area without adhesion; the parameter of Fuller and Tabor.
+//!
+//! Left out, since their formulae could not be confirmed at their sources: the bearing-area model (Ciavarella 2018) and the criterion of Pastewka and
+//! Robbins (2014). Persson and Tosatti's is in [`super::validity`].
 
 use super::PhysicsError;
 use super::jkr::loop_loss_constant;
@@ -138,4 +142,36 @@ pub fn deng_kesari_loss(moments: &Moments, material: &Material, area_m2: f64) ->
 /// As [`mean_loop_loss_as_printed`].
 pub fn deng_kesari_loss_as_printed(moments: &Moments, material: &Material, area_m2: f64, slips: Slips) -> Result<f64, PhysicsError> {
     Ok(moments.summit_density_1_m2() * area_m2 * mean_loop_loss_as_printed(moments, material, None, slips)?)
+}
+
+/// Loss of a contact that forms without loss and parts by its full work of adhesion, `Θ = Δγ A` \[J\]: with the true contact area `A` \[m²\] reached at the end of
+/// loading and Δγ \[J/m²\]. Dalvi et al., PNAS 116:25484 (2019), found it of soft spheres in nearly full contact with nanodiamond; of separate spots it is an upper
+/// bound, since each regains a part of the energy elastically.
+#[must_use]
+pub fn dalvi_loss(material: &Material, area_m2: f64) -> f64 {
+    material.work_of_adhesion_j_m2 * area_m2
+}
+
+/// Contact area over A0 without adhesion, `erf(√2 p/(E* h'_rms))`, of the load `p/E* = F/(E* A0) ≥ 0` and the rms gradient `h'_rms` of the surface (both
+/// dimensionless). Persson, J. Chem. Phys. 115:3840 (2001).
+///
+/// At full contact the pressure of a surface has the variance `E*²h'²_rms/4`, a mode of amplitude c and wavevector k being flattened by `(E*/2) k c`. In Persson's
+/// theory pressures spread by diffusion up to that variance with an absorbing wall at zero, which leaves `erf(p/(√2 E* h'_rms/2))` of the area in contact.
+#[must_use]
+pub fn adhesionless_area(load: f64, rms_slope: f64) -> f64 {
+    libm::erf(std::f64::consts::SQRT_2 * load / rms_slope)
+}
+
+/// Contact area over A0 without adhesion, `κ p/(E* h'_rms)` with κ = 2, at small loads: what boundary-element solutions find, between `√(8/π)` of Persson's theory
+/// and `√(2π)` of asperities that do not act on one another (Bush, Gibson and Thomas, Wear 35:87, 1975). Hyun, Pei, Molinari and Robbins, Phys. Rev. E 70:026117 (2004).
+#[must_use]
+pub fn adhesionless_area_small(load: f64, rms_slope: f64) -> f64 {
+    2.0 * load / rms_slope
+}
+
+/// Fuller and Tabor's adhesion parameter `E* σ^(3/2)/(R^(1/2) Δγ)` (dimensionless), with the standard deviation σ \[m\] of the summits' heights and their mean radius
+/// R \[m\]: the load that presses high asperities over the pull that low ones give. Above some 10 adhesion is lost. Fuller and Tabor, Proc. R. Soc. A 345:327 (1975).
+#[must_use]
+pub fn fuller_tabor(material: &Material, height_sd_m: f64, mean_radius_m: f64) -> f64 {
+    material.contact_modulus_pa * height_sd_m.powf(1.5) / (mean_radius_m.sqrt() * material.work_of_adhesion_j_m2)
 }

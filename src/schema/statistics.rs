@@ -58,6 +58,8 @@ const RESULTS: &[Column] = &[
     real("pull_off_load_n", "N", "Pull-off load: the greatest tension while unloading"),
     real("area_at_max_load", "1", "A/A0 at the end of loading, the sum of the discs"),
     real("area_union_at_max_load", "1", "A/A0 at the end of loading, the union of the discs; null where it was not computed").or_null(),
+    real("area_adhesionless", "1", "A/A0 at this load without adhesion, erf(sqrt(2) F/(E* A0 rms_slope)), of the gradient that this surface has").from("Persson 2001"),
+    real("area_adhesionless_small", "1", "A/A0 at small loads without adhesion as boundary elements find it, 2 F/(E* A0 rms_slope)").from("Hyun et al. 2004"),
     real("penetration_at_max_load", "1", "Approach over rms height at the end of loading"),
     real("loss", "1", "Energy lost in the loop over E* A0 h_rms"),
     real("loss_j", "J", "Energy lost in the loop, the integral of load over approach around it"),
@@ -67,6 +69,8 @@ const RESULTS: &[Column] = &[
     real("loss_dk_realised", "1", "Loss after Deng and Kesari over E* A0 h_rms, at this area, from the moments that this surface has; null where they do not define one")
         .or_null()
         .from("Eqs A1-A4"),
+    real("loss_touched", "1", "Sum over the asperities that came into contact of what each loses by itself, over E* A0 h_rms: the loss without interaction, of asperities that jump in at zero penetration").from("Eq A1"),
+    real("loss_dalvi", "1", "Work of adhesion times contact area at the end of loading, over E* A0 h_rms").from("Dalvi et al. 2019"),
     real("loss_ratio_dk", "1", "Loss over loss_dk; null where either is missing or the latter is 0").or_null(),
     real("dissipated", "1", "Energy lost in the loop over E* A0 h_rms, the sum over its events"),
     real("dissipated_j", "J", "Energy lost in the loop, the sum over its events"),
@@ -87,6 +91,7 @@ const RESULTS: &[Column] = &[
     real("rms_slope", "1", "Rms of the gradient that this surface has"),
     real("rms_curvature_1_m", "1/m", "Rms of the Laplacian that this surface has"),
     real("nayak_parameter", "1", "m0 m4 / m2^2 that this surface has").from("Nayak 1971"),
+    real("fuller_tabor", "1", "Adhesion parameter E* sd(height)^(3/2)/(mean(radius)^(1/2) work of adhesion) of the summits; above some 10 adhesion is lost; null where there are fewer than two").or_null().from("Fuller and Tabor 1975"),
     real("touching_share", "1", "Share of contact spots that touch another one at the end of loading; null without contact").or_null(),
     real("covered_share", "1", "Share of asperities in contact or covered that are covered, at the end of loading; null without contact").or_null(),
     real("conformity", "1", "Elastic energy that flattens the shortest octave of the roughness over the work of adhesion, of the continuous spectrum; below 1 adhesion conforms to the summits; null for a measured surface")
@@ -150,6 +155,11 @@ const SPREADS: &[&[Column]] = &[
     over_realizations!("loss", "1", "energy lost in the loop over E* A0 h_rms", ""),
     over_realizations!("loss_dk", "1", "loss after Deng and Kesari, continuous moments", "Eqs A1-A4"),
     over_realizations!("loss_dk_realised", "1", "loss after Deng and Kesari, realised moments", "Eqs A1-A4"),
+    over_realizations!("loss_touched", "1", "sum of what the asperities that touched lose by themselves over E* A0 h_rms", "Eq A1"),
+    over_realizations!("loss_dalvi", "1", "work of adhesion times contact area over E* A0 h_rms", "Dalvi et al. 2019"),
+    over_realizations!("area_adhesionless", "1", "A/A0 at this load without adhesion", "Persson 2001"),
+    over_realizations!("area_adhesionless_small", "1", "A/A0 at small loads without adhesion, boundary elements", "Hyun et al. 2004"),
+    over_realizations!("fuller_tabor", "1", "adhesion parameter of the summits", "Fuller and Tabor 1975"),
     over_realizations!("loss_ratio_dk", "1", "loss over loss after Deng and Kesari", ""),
     over_realizations!("dissipated", "1", "energy lost in the events of the loop over E* A0 h_rms", ""),
     over_realizations!("dissipated_j", "J", "energy lost in the events of the loop", ""),

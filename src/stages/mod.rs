@@ -6,6 +6,7 @@ mod done;
 mod report;
 mod statistics;
 mod surface;
+mod theories;
 mod trust;
 
 pub use cycle::unload_again;

@@ -2,6 +2,7 @@
 
 use super::done::{Clock, Outcome};
 use super::statistics::done;
+use super::theories::theories;
 use super::trust::{split, trust};
 use super::{StageError, Tally, Watch};
 use crate::campaign::{Campaign, REPORT_PAGE, STATISTICS, Stage, Standing, Unit};
@@ -92,6 +93,7 @@ fn page(campaign: &Campaign, key: &str, cases: &Frame, drawings: &[(String, Stri
         }
         html.push_str("</div>\n");
     }
+    theories(&mut html, cases)?;
     split(&mut html, cases)?;
     trust(&mut html, cases)?;
     let spec = escape(&campaign.spec.to_toml());

@@ -7,11 +7,14 @@ use crate::campaign::{Campaign, CaseUnit, CycleUnit, STATISTICS, Stage, Standing
 use crate::model::Choice;
 use crate::physics::jkr::Asperity;
 use crate::physics::spectrum::Moments;
+use crate::physics::summits::Summit;
 use crate::physics::synthesis::realization_seed;
-use crate::physics::theory::{curvature_decay, deng_kesari_loss_as_printed};
+use crate::physics::theory::{
+    adhesionless_area, adhesionless_area_small, curvature_decay, dalvi_loss, deng_kesari_loss_as_printed, fuller_tabor,
+};
 use crate::physics::validity::{LEAST_TABOR, flattening, realised_flattening};
 use crate::spec::CaseParams;
-use crate::stats::{self, CaseInput, CycleInput, Given, Value};
+use crate::stats::{self, CaseInput, CycleInput, Given, Sample, Value};
 use crate::store::hdf5::{SurfaceHeader, read_header};
 use crate::store::{Check, commit, parquet};
 use rayon::prelude::*;
@@ -129,10 +132,22 @@ fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<CycleInput, Stag
     let low = tabor.iter().filter(|number| **number < LEAST_TABOR).count();
     let over_all = |sum: f64| (!tabor.is_empty()).then(|| sum / tabor.len() as f64);
     let (asked, adhesion) = (spectrum(&params.surface), params.material.work_of_adhesion_j_m2);
+    let losses =
+        summits.iter().map(|s| Ok(Asperity::new(s.radius_m(), &params.material)?.loop_loss())).collect::<Result<Vec<f64>, StageError>>()?;
+    let heights: Vec<f64> = summits.iter().map(|s| s.height_m).collect();
+    let radii: f64 = summits.iter().map(Summit::radius_m).sum();
+    let spread = Sample::of(&heights).sd.map(|sd| fuller_tabor(&params.material, sd, radii / summits.len() as f64));
+    let at_max_load = |load: &f64| {
+        let columns: [(&str, Value); 2] = [
+            ("area_adhesionless", adhesionless_area(*load, header.rms_slope).into()),
+            ("area_adhesionless_small", adhesionless_area_small(*load, header.rms_slope).into()),
+        ];
+        (*load, named(columns))
+    };
     let seed = realization_seed(campaign.spec.seed, u64::from(surface.realization));
     let continuous = flattening(&asked, params.material.contact_modulus_pa);
     let of_modes = realised_flattening(&asked, &seed, params.material.contact_modulus_pa);
-    let numbers: [(&str, Value); 15] = [
+    let numbers: [(&str, Value); 16] = [
         ("summit_count", summits.len().into()),
         ("summit_density_1_m2", (summits.len() as f64 / area).into()),
         ("nayak_density_1_m2", realised.summit_density_1_m2().into()),
@@ -145,6 +160,7 @@ fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<CycleInput, Stag
         ("conformity_realised", of_modes.conformity(adhesion).into()),
         ("persson_tosatti", continuous.persson_tosatti(adhesion).into()),
         ("persson_tosatti_realised", of_modes.persson_tosatti(adhesion).into()),
+        ("fuller_tabor", spread.into()),
         ("rms_slope", header.rms_slope.into()),
         ("rms_curvature_1_m", header.rms_curvature_1_m.into()),
         ("nayak_parameter", header.nayak_parameter.into()),
@@ -157,6 +173,9 @@ fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<CycleInput, Stag
         energy_scale_j: params.material.contact_modulus_pa * area * params.surface.rms_height_m,
         loss_dk_per_area_j: deng_kesari(&asked.moments(), params, area)?,
         loss_dk_realised_per_area_j: deng_kesari(&realised, params, area)?,
+        loss_dalvi_per_area_j: dalvi_loss(&params.material, area),
+        asperity_loss_j: losses,
+        at_max_load: params.cycle.max_load.iter().map(at_max_load).collect(),
         surface: named(numbers),
     })
 }

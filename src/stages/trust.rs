@@ -9,7 +9,7 @@ use std::fmt::Write as _;
 
 /// How a number is shown.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Shown {
+pub(super) enum Shown {
     Plain,
     Percent,
 }
@@ -26,7 +26,7 @@ const TRUST: [(&str, &str, Option<&str>, Shown); 7] = [
 ];
 
 /// The rows of the table `cases`, as the tables of the page name them.
-struct Cases<'a> {
+pub(super) struct Cases<'a> {
     frame: &'a Frame,
     ids: Vec<&'a str>,
     loads: Vec<f64>,
@@ -34,16 +34,16 @@ struct Cases<'a> {
 }
 
 impl<'a> Cases<'a> {
-    fn of(frame: &'a Frame) -> Result<Self, StageError> {
+    pub(super) fn of(frame: &'a Frame) -> Result<Self, StageError> {
         Ok(Self { frame, ids: frame.text("case_id")?, loads: frame.f64("max_load")?, words: frame.text("caution")? })
     }
 
-    fn number(&self, column: &str, row: usize) -> Result<Option<f64>, StageError> {
+    pub(super) fn number(&self, column: &str, row: usize) -> Result<Option<f64>, StageError> {
         Ok(self.frame.f64_or_null(column)?.get(row).copied().flatten())
     }
 
     /// The first two cells of a row.
-    fn name(&self, row: usize) -> String {
+    pub(super) fn name(&self, row: usize) -> String {
         let id = self.ids.get(row).copied().unwrap_or_default();
         let load = self.loads.get(row).copied().unwrap_or_default();
         format!("<td>{}</td><td>{load}</td>", escape(id))
@@ -61,7 +61,7 @@ impl<'a> Cases<'a> {
         format!("<td{}>{text}</td>", if beyond { " class=\"beyond\"" } else { "" })
     }
 
-    fn rows(&self) -> std::ops::Range<usize> {
+    pub(super) fn rows(&self) -> std::ops::Range<usize> {
         0..self.ids.len()
     }
 }
@@ -179,7 +179,7 @@ fn with_aside(number: Option<f64>, aside: Option<f64>, as_what: Shown) -> String
 const MISSING: &str = "–";
 
 /// A number with three digits, or a dash where it is missing.
-fn shown(number: Option<f64>, as_what: Shown) -> String {
+pub(super) fn shown(number: Option<f64>, as_what: Shown) -> String {
     let Some(number) = number else {
         return MISSING.to_owned();
     };

@@ -17,6 +17,7 @@ pub(super) struct Event {
     pub(super) max_load: Option<f64>,
     /// Its place in [`EVENT_KINDS`].
     pub(super) kind: usize,
+    pub(super) asperity_id: i64,
     pub(super) approach_m: f64,
     pub(super) avalanche_id: i64,
     pub(super) load_before_n: f64,
@@ -53,20 +54,33 @@ impl Events {
         self.0.chunk_by(|a, b| a.avalanche_id == b.avalanche_id)
     }
 
+    /// The events of the loop of a turning point, whose step is given.
+    fn of_loop(&self, turning_step: i64, max_load: f64) -> impl Iterator<Item = &Event> {
+        // A turning point is a number of the spec, copied; the tolerance only forgives a rounding on the way through a file.
+        let back = move |event: &Event| event.max_load.is_some_and(|load| (load - max_load).abs() <= 1e-9 * max_load.abs());
+        self.0.iter().filter(move |event| if event.loading { event.step <= turning_step } else { back(event) })
+    }
+
+    /// The asperities that came into contact in that loop, each once, ascending.
+    pub(super) fn touched(&self, turning_step: i64, max_load: f64) -> Vec<i64> {
+        let jump_in = EVENT_KINDS.iter().position(|kind| *kind == "jump_in");
+        let mut touched: Vec<i64> =
+            self.of_loop(turning_step, max_load).filter(|event| Some(event.kind) == jump_in).map(|event| event.asperity_id).collect();
+        touched.sort_unstable();
+        touched.dedup();
+        touched
+    }
+
     /// What was lost on the way to a turning point, whose step is given, and on the way back from it.
     ///
     /// One loading path serves every turning point: what happened beyond this one's step is no part of its loop.
     pub(super) fn lost(&self, turning_step: i64, max_load: f64) -> Lost {
-        // A turning point is a number of the spec, copied; the tolerance only forgives a rounding on the way through a file.
-        let back = |event: &Event| event.max_load.is_some_and(|load| (load - max_load).abs() <= 1e-9 * max_load.abs());
         let mut lost = Lost::default();
-        for event in &self.0 {
-            if event.loading && event.step <= turning_step {
+        for event in self.of_loop(turning_step, max_load) {
+            if event.loading {
                 lost.loading += event.energy_lost_j;
-            } else if !event.loading && back(event) {
-                lost.unloading += event.energy_lost_j;
             } else {
-                continue;
+                lost.unloading += event.energy_lost_j;
             }
             if let Some(of_kind) = lost.kinds.get_mut(event.kind) {
                 *of_kind += event.energy_lost_j;
@@ -76,7 +90,7 @@ impl Events {
     }
 }
 
-const WHOLES: [&str; 2] = ["step", "avalanche_id"];
+const WHOLES: [&str; 3] = ["step", "avalanche_id", "asperity_id"];
 const WORDS: [&str; 2] = ["branch", "kind"];
 const REALS: [&str; 7] = ["max_load", "approach_m", "load_before_n", "load_after_n", "area_before_m2", "area_after_m2", "energy_lost_j"];
 
@@ -93,8 +107,8 @@ fn rows(frame: &DataFrame) -> PolarsResult<Vec<Result<Event, String>>> {
     let [max_load, approach, load_before, load_after, area_before, area_after, energy] = REALS.map(reals);
     let (max_load, approach, energy) = (max_load?, approach?, energy?);
     let (load_before, load_after, area_before, area_after) = (load_before?, load_after?, area_before?, area_after?);
-    let [step, avalanche] = WHOLES.map(wholes);
-    let (step, avalanche) = (step?, avalanche?);
+    let [step, avalanche, asperity] = WHOLES.map(wholes);
+    let (step, avalanche, asperity) = (step?, avalanche?, asperity?);
     let at = |values: &[Option<f64>], row: usize| values.get(row).copied().flatten();
     let number = |values: &[Option<f64>], row: usize| at(values, row).unwrap_or(f64::NAN);
     let words = frame.column("branch")?.str()?.iter().zip(frame.column("kind")?.str()?.iter());
@@ -112,6 +126,7 @@ fn rows(frame: &DataFrame) -> PolarsResult<Vec<Result<Event, String>>> {
             loading,
             max_load,
             kind: kind.ok_or_else(|| format!("hold the kind {word:?}; there are: {}", EVENT_KINDS.join(", ")))?,
+            asperity_id: asperity.get(row).copied().unwrap_or_default(),
             approach_m: number(&approach, row),
             avalanche_id: avalanche.get(row).copied().unwrap_or_default(),
             load_before_n: number(&load_before, row),

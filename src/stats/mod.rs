@@ -68,6 +68,12 @@ pub struct CycleInput {
     pub loss_dk_per_area_j: Option<f64>,
     /// The same, from the moments of this surface.
     pub loss_dk_realised_per_area_j: Option<f64>,
+    /// `Δγ A0` \[J\]: Θ after Dalvi and others per unit of `A/A0`.
+    pub loss_dalvi_per_area_j: f64,
+    /// What each asperity loses by itself \[J\], by its number.
+    pub asperity_loss_j: Vec<f64>,
+    /// Further columns that depend on the turning point, by its load.
+    pub at_max_load: Vec<(f64, Given)>,
     /// Every column of the table `realizations` that neither the steps nor the case can tell: numbers of summits, moments, Tabor numbers.
     /// One that is absent is null, and refused where the table allows no null.
     pub surface: Given,

@@ -27,6 +27,9 @@ pub fn realizations(cases: &[CaseInput], cycles: &[CycleInput]) -> Result<Frame,
             let mut results = reduce(&cycle.loading, turning, unloading, *max_load, input)?;
             let step = cycle.loading.step.get(turning).copied().unwrap_or_default();
             results.extend(parts(&events.lost(step, *max_load), input));
+            results.push(("loss_touched".to_owned(), touched(&events.touched(step, *max_load), input).into()));
+            let given = input.at_max_load.iter().find(|(load, _)| load == max_load);
+            results.extend(given.map(|(_, given)| given.clone()).unwrap_or_default());
             ordered.push((&case.case_id, *max_load, input.realization, results, case, input));
         }
     }
@@ -59,6 +62,13 @@ fn parts(lost: &Lost, input: &CycleInput) -> Given {
     branches.into_iter().chain(kinds).flat_map(both).collect()
 }
 
+/// What the asperities that touched lose by themselves, over the scale of energies.
+fn touched(asperities: &[i64], input: &CycleInput) -> f64 {
+    // Spots that have become one have numbers beyond those of the asperities.
+    let each = asperities.iter().filter_map(|id| input.asperity_loss_j.get(usize::try_from(*id).ok()?));
+    each.sum::<f64>() / input.energy_scale_j
+}
+
 fn reduce(loading: &Branch, turning: usize, unloading: &Branch, max_load: f64, input: &CycleInput) -> Result<Given, StatsError> {
     let lacking = |what: &str| fault(&input.steps, format!("lack {what} at the turning point {max_load}"));
     let at = |values: &[f64]| values.get(turning).copied().ok_or_else(|| lacking("a number"));
@@ -81,7 +91,7 @@ fn reduce(loading: &Branch, turning: usize, unloading: &Branch, max_load: f64, i
     let pull_off = |loads: &[f64]| tension(loads) + 0.0;
     let touching = count_at(&loading.touching_count);
     let held: i64 = loading.held_count.iter().take(turning + 1).chain(&unloading.held_count).sum();
-    let columns: [(&str, Value); 21] = [
+    let columns: [(&str, Value); 22] = [
         ("realization", input.realization.into()),
         ("max_load", max_load.into()),
         // The turning step has the unit of load, as the quotient of its two columns.
@@ -95,6 +105,7 @@ fn reduce(loading: &Branch, turning: usize, unloading: &Branch, max_load: f64, i
         ("loss_j", loss_j.into()),
         ("loss_dk", loss_dk.into()),
         ("loss_dk_realised", dk(input.loss_dk_realised_per_area_j).into()),
+        ("loss_dalvi", (input.loss_dalvi_per_area_j * area / input.energy_scale_j).into()),
         ("loss_ratio_dk", loss_dk.filter(|dk| *dk != 0.0).map(|dk| loss / dk).into()),
         ("dissipated", (dissipated_j / input.energy_scale_j).into()),
         ("dissipated_j", dissipated_j.into()),

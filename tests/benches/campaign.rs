@@ -36,7 +36,9 @@ pub fn run() {
     for stage in [Stage::Generate, Stage::Extract, Stage::Cycle] {
         create_dir_all(small.receipts_dir(stage)).unwrap();
     }
-    for unit in small.surfaces.iter().flat_map(|unit| [unit.surface(), unit.asperities()]).chain(small.cycles.iter().map(|unit| unit.cycle())) {
+    for unit in
+        small.surfaces.iter().flat_map(|unit| [unit.surface(), unit.asperities()]).chain(small.cycles.iter().map(|unit| unit.cycle()))
+    {
         let made = Made {
             version: String::new(),
             commit: None,

@@ -8,7 +8,7 @@ use hysteron::physics::spectrum::{Moments, Spectrum};
 use hysteron::physics::state::{Problem, Rules};
 use hysteron::physics::summits::{Summit, find_summits};
 use hysteron::physics::synthesis::{realization_seed, synthesize};
-use hysteron::physics::theory::{deng_kesari_loss_as_printed, mean_loop_loss_as_printed};
+use hysteron::physics::theory::{adhesionless_area, dalvi_loss, deng_kesari_loss_as_printed, fuller_tabor, mean_loop_loss_as_printed};
 
 /// Something that moments have.
 type Moment = fn(&Moments) -> f64;
@@ -152,6 +152,22 @@ fn law_spectrum_and_theory_scale() {
                 }
             }
         }
+    }
+}
+
+#[test]
+fn law_the_other_theories_scale() {
+    for units in several() {
+        let stuff = units.material(PAPER);
+        let scaled = |what: &str, got: f64, want: f64, l: f64, f: f64| close(what, got, want * units.of(l, f), ROUNDING);
+        scaled("Dalvi", dalvi_loss(&stuff, 1e-7 * units.of(2.0, 0.0)), dalvi_loss(&PAPER, 1e-7), 1.0, 1.0);
+        let known = fuller_tabor(&PAPER, 4e-6, 1e-4);
+        scaled("Fuller and Tabor", fuller_tabor(&stuff, 4e-6 * units.length, 1e-4 * units.length), known, 0.0, 0.0);
+        // Neither load nor slope has a dimension: F/(E* A0) of scaled F, E* and A0.
+        let load = 1e-3 * units.force / (PAPER.contact_modulus_pa * units.of(-2.0, 1.0) * 1e-6 * units.of(2.0, 0.0))
+            * PAPER.contact_modulus_pa
+            * 1e-6;
+        scaled("area", adhesionless_area(load, 0.3), adhesionless_area(1e-3, 0.3), 0.0, 0.0);
     }
 }
 

@@ -6,7 +6,9 @@ use hysteron::model::Material;
 use hysteron::physics::PhysicsError;
 use hysteron::physics::jkr::Asperity;
 use hysteron::physics::spectrum::Moments;
-use hysteron::physics::theory::{curvature_density, deng_kesari_loss, mean_loop_loss};
+use hysteron::physics::theory::{
+    adhesionless_area, adhesionless_area_small, curvature_density, dalvi_loss, deng_kesari_loss, fuller_tabor, mean_loop_loss,
+};
 use std::f64::consts::PI;
 
 fn constant(name: &str) -> f64 {
@@ -118,4 +120,39 @@ fn reg_the_mean_loss_refuses_what_it_cannot_use() {
         assert!(matches!(deng_kesari_loss(&moments(bad), &good, 1e-6), Err(PhysicsError::Domain { .. })), "m4 {bad}");
         assert!(matches!(mean_loop_loss(&moments(1e8), &good, Some(bad)), Err(PhysicsError::Domain { .. })), "tip {bad}");
     }
+}
+
+#[test]
+fn lim_the_area_without_adhesion_is_linear_at_small_loads_and_whole_at_great_ones() {
+    let slope = 0.3;
+    for load in [1e-6, 1e-4] {
+        // erf(x) = 2x/√π (1 − x²/3 …): at these loads the next term is below 1e-6.
+        let persson = adhesionless_area(load, slope);
+        close("Persson", persson, (8.0 / PI).sqrt() * load / slope, 1e-6);
+        assert!(persson < adhesionless_area_small(load, slope) && adhesionless_area_small(load, slope) < (2.0 * PI).sqrt() * load / slope);
+    }
+    // mpmath: erf(sqrt(2) 0.05/0.3) and erf(sqrt(2)).
+    close("in between", adhesionless_area(0.05, 0.3), 0.261_117_319_636_473, 1e-14);
+    close("at once the slope", adhesionless_area(0.3, 0.3), 0.954_499_736_103_641_6, 1e-14);
+    close("great", adhesionless_area(3.0, 0.3), 1.0, 1e-15);
+}
+
+#[test]
+fn lim_persson_s_area_is_that_of_a_wall_at_zero_pressure() {
+    // The distribution of pressures at full contact, Gaussian around p with the variance (E* h'/2)², less its mirror image: what is left of it is in contact.
+    let (pressure, slope, modulus) = (0.7e4, 0.05, 1e6);
+    let sd = 0.5 * modulus * slope;
+    let gauss = |x: f64| (-0.5 * (x / sd).powi(2)).exp() / (sd * (2.0 * PI).sqrt());
+    let (count, most) = (200_000, 12.0 * sd);
+    let step = most / f64::from(count);
+    let left: f64 = (0..count).map(|k| (f64::from(k) + 0.5) * step).map(|x| (gauss(x - pressure) - gauss(x + pressure)) * step).sum();
+    // The midpoint rule on a smooth function: far below 1e-8.
+    close("area", adhesionless_area(pressure / modulus, slope), left, 1e-8);
+}
+
+#[test]
+fn val_dalvi_and_fuller_and_tabor_by_hand() {
+    close("full contact", dalvi_loss(&PAPER, 1e-6), 0.07 * 1e-6, 1e-15);
+    // 1e6 (4e-6)^1.5/(1e-4^0.5 0.07) = 1e6 · 8e-9/(1e-2 · 0.07).
+    close("Fuller and Tabor", fuller_tabor(&PAPER, 4e-6, 1e-4), 8e-3 / 7e-4, 1e-14);
 }
