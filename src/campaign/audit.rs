@@ -1,6 +1,6 @@
 //! All receipts of a folder against the files that they name, whatever spec they are of.
 
-use super::Campaign;
+use super::{Campaign, Stage};
 use crate::store::{Check, Fault, Found, Receipt, read_receipt};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -25,14 +25,13 @@ impl Campaign {
     /// Compares every file of the folder that a receipt names with it.
     #[must_use]
     pub fn audit(&self, check: Check) -> Audit {
-        let mut paths = Vec::new();
-        receipts_below(&self.dir.join("receipts"), &mut paths);
+        let (paths, faults) = self.receipt_paths();
         let parts: Vec<Audit> = paths.par_iter().map(|path| self.audit_one(path, check)).collect();
-        let mut whole = Audit { deep: check == Check::Contents, ..Audit::default() };
+        let mut whole = Audit { deep: check == Check::Contents, faults, ..Audit::default() };
         for part in parts {
             whole.receipt_count += part.receipt_count;
             whole.file_count += part.file_count;
-            whole.size_bytes += part.size_bytes;
+            whole.size_bytes = whole.size_bytes.saturating_add(part.size_bytes);
             whole.faults.extend(part.faults);
         }
         whole
@@ -41,9 +40,7 @@ impl Campaign {
     /// All receipts of the folder that can be read, the spec's first, then by stage and id.
     #[must_use]
     pub fn all_receipts(&self) -> Vec<Receipt> {
-        let mut paths = Vec::new();
-        receipts_below(&self.dir.join("receipts"), &mut paths);
-        let found = paths.par_iter().filter_map(|path| match read_receipt(path) {
+        let found = self.receipt_paths().0.into_par_iter().filter_map(|path| match read_receipt(&path) {
             Found::Whole(receipt) => Some(*receipt),
             _ => None,
         });
@@ -61,23 +58,33 @@ impl Campaign {
                 let faults = receipt.files.iter().filter_map(|file| file.fault(&self.dir, check));
                 audit.faults.extend(faults.map(Fault::sentence));
                 audit.file_count = receipt.files.len();
-                audit.size_bytes = receipt.files.iter().map(|file| file.size_bytes).sum();
+                audit.size_bytes = receipt.files.iter().fold(0, |sum, file| sum.saturating_add(file.size_bytes));
             }
         }
         audit
     }
-}
 
-/// All receipts below a folder, in the order of their names.
-fn receipts_below(folder: &Path, found: &mut Vec<PathBuf>) {
-    let Ok(entries) = std::fs::read_dir(folder) else { return };
-    let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
-    paths.sort();
-    for path in paths {
-        if path.is_dir() {
-            receipts_below(&path, found);
-        } else if path.extension().is_some_and(|extension| extension == "json") {
-            found.push(path);
+    /// Where receipts are: the spec's, then those of each stage in the order of their names; and what could not be listed.
+    fn receipt_paths(&self) -> (Vec<PathBuf>, Vec<String>) {
+        let (mut paths, mut faults) = (vec![self.spec_receipt_path()], Vec::new());
+        for stage in Stage::ALL {
+            let folder = self.receipts_dir(stage);
+            let entries = match std::fs::read_dir(&folder) {
+                Ok(entries) => entries.collect::<Result<Vec<_>, _>>(),
+                // No unit of this stage has been done yet.
+                Err(error) if error.kind() == std::io::ErrorKind::NotFound => continue,
+                Err(error) => Err(error),
+            };
+            match entries {
+                Ok(entries) => {
+                    let mut names: Vec<PathBuf> = entries.into_iter().map(|entry| entry.path()).collect();
+                    names.retain(|path| path.extension().is_some_and(|extension| extension == "json"));
+                    names.sort();
+                    paths.extend(names);
+                }
+                Err(error) => faults.push(format!("receipts/{} cannot be listed: {error}", stage.word())),
+            }
         }
+        (paths, faults)
     }
 }

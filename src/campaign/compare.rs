@@ -1,5 +1,6 @@
 //! Why a unit is to be computed: what its key is made of, field by field, beside the nearest unit that is done.
 
+use super::leftover::is_id;
 use super::{Campaign, REPORT_PAGE, STATISTICS, Stage, Standing, Unit};
 use crate::keys::canonical;
 use crate::store::{Check, Found, Receipt, read_receipt};
@@ -60,17 +61,18 @@ impl Campaign {
             found.push(self.beside_receipts(Stage::Cycle, id, &standing, &self.cycle_preimages(unit)));
         }
         if id == STATISTICS || id == REPORT_PAGE {
-            let finished: Vec<bool> = self.cycle_standings(Check::Sizes).iter().map(|standing| *standing == Standing::Done).collect();
-            let statistics = self.statistics_key(&finished);
+            let cycles = self.cycle_standings(Check::Sizes);
+            let statistics = self.statistics_key(&cycles);
             let report = self.report_key(&statistics);
             let (stage, key, preimages) = match id {
-                STATISTICS => (Stage::Aggregate, &statistics, self.statistics_preimages(&finished)),
+                STATISTICS => (Stage::Aggregate, &statistics, self.statistics_preimages(&cycles)),
                 _ => (Stage::Report, &report, self.report_preimages(&statistics)),
             };
             let standing = self.standing(&Unit { stage, id, key }, Check::Sizes);
             found.push(self.beside_receipts(stage, id, &standing, &preimages));
         }
-        if found.is_empty() {
+        // An id that is none may be a path to somewhere else.
+        if found.is_empty() && is_id(id) {
             found.extend([Stage::Generate, Stage::Extract, Stage::Cycle].into_iter().filter_map(|stage| self.orphan(stage, id)));
         }
         found

@@ -1,8 +1,8 @@
 //! What no spec names any more.
 
-use super::{Campaign, Stage, Standing};
-use crate::store::Check;
+use super::{Campaign, REPORT_PAGE, Stage, Standing};
 use crate::store::commit::is_abandoned;
+use crate::store::{Check, Found, read_receipt};
 use std::collections::HashSet;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -19,6 +19,7 @@ pub struct Leftover {
 }
 
 const UNNAMED: &str = "no spec names it";
+const UNSHOWN: &str = "the report does not show it";
 const TORN: &str = "a killed run left it";
 const PAST: &str = "its cycle is done";
 
@@ -37,6 +38,11 @@ impl Campaign {
         unnamed(&self.dir.join("cycles"), None, &cycles, &mut found);
         unnamed(&self.dir.join("asperities"), Some("parquet"), &surfaces, &mut found);
         unnamed(&self.dir.join("surfaces"), Some("h5"), &surfaces, &mut found);
+        if let Found::Whole(receipt) = read_receipt(&self.receipts_dir(Stage::Report).join(format!("{REPORT_PAGE}.json"))) {
+            let kept: HashSet<PathBuf> = receipt.files.iter().map(|file| self.dir.join(&file.path)).collect();
+            let pictures = entries(&self.dir.join("figures")).into_iter().filter(|path| path.extension().is_some_and(|e| e == "svg"));
+            found.extend(pictures.filter(|path| !kept.contains(path)).map(|path| Leftover { size_bytes: size(&path), path, why: UNSHOWN }));
+        }
         for campaign in all() {
             for unit in campaign.distinct_cycles() {
                 for path in [self.failure_path(&unit), self.halfway_path(&unit)] {
@@ -82,10 +88,18 @@ fn unnamed(folder: &Path, extension: Option<&str>, known: &HashSet<&str>, found:
     }
 }
 
-/// Whether a name is that of a surface or a cycle: readable first, then eight digits of a key.
-fn is_id(name: &str) -> bool {
-    name.rsplit_once('-')
-        .is_some_and(|(_, digits)| digits.len() == 8 && digits.bytes().all(|b| b.is_ascii_hexdigit() && !b.is_ascii_uppercase()))
+/// Whether a name is that of a surface or a cycle, as `H0.80_z128_r03-1a2b3c4d`: nothing else may be taken for one, since it may be somebody's own.
+pub(super) fn is_id(name: &str) -> bool {
+    let digits = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
+    let key = |text: &str| matches!(text.len(), 8 | 16) && text.bytes().all(|b| matches!(b, b'0'..=b'9' | b'a'..=b'f'));
+    let parts = || {
+        let (readable, end) = name.rsplit_once('-')?;
+        let (hurst, rest) = readable.strip_prefix('H')?.split_once("_z")?;
+        let (zeta, realization) = rest.split_once("_r")?;
+        let (whole, part) = hurst.split_once('.')?;
+        Some(digits(whole) && digits(part) && digits(zeta) && digits(realization) && key(end))
+    };
+    parts().unwrap_or(false)
 }
 
 /// What is in a folder, by name; nothing if it cannot be read.

@@ -25,7 +25,7 @@ const GENERATE: u32 = 1;
 const EXTRACT: u32 = 1;
 const CYCLE: u32 = 11;
 const AGGREGATE: u32 = 3;
-const REPORT: u32 = 4;
+const REPORT: u32 = 5;
 
 /// The stages, in their order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -183,6 +183,9 @@ impl Campaign {
                 campaign.cycles.push(CycleUnit { id, key: own, case: number, surface: place });
             }
         }
+        let surfaces = campaign.surfaces.iter_mut().map(|unit| (&mut unit.id, unit.key.as_str())).collect();
+        tell_apart(surfaces);
+        tell_apart(campaign.cycles.iter_mut().map(|unit| (&mut unit.id, unit.key.as_str())).collect());
         campaign
     }
 
@@ -247,21 +250,28 @@ impl Campaign {
         self.dir.join("receipts").join(stage.word())
     }
 
-    /// What the key of the tables over realisations is made of: the cycles that are in them.
-    fn statistics_reads(&self, finished: &[bool]) -> Value {
-        let cycles: Vec<Value> = self.cycles.iter().zip(finished).map(|(unit, done)| json!([unit.key, done])).collect();
+    /// What the key of the tables over realisations is made of: the cycles that are in them, and those that failed; and the name, which their description has.
+    fn statistics_reads(&self, cycles: &[Standing]) -> Value {
+        let state = |standing: &Standing| match standing {
+            Standing::Done => "done",
+            Standing::Failed(_) => "failed",
+            _ => "open",
+        };
+        let cycles: Vec<Value> = self.cycles.iter().zip(cycles).map(|(unit, standing)| json!([unit.key, state(standing)])).collect();
         let cases: Vec<Value> = self.cases.iter().map(|unit| json!([unit.id, unit.case.sweeps])).collect();
-        json!({ "cases": cases, "cycles": cycles })
+        json!({ "name": self.spec.name, "cases": cases, "cycles": cycles })
     }
 
-    /// Key of the tables over realisations.
+    /// Key of the tables over realisations, where the cycles stand so.
     #[must_use]
-    pub fn statistics_key(&self, finished: &[bool]) -> String {
-        key_of_text(Stage::Aggregate.word(), AGGREGATE, &canonical(&self.statistics_reads(finished)))
+    pub fn statistics_key(&self, cycles: &[Standing]) -> String {
+        key_of_text(Stage::Aggregate.word(), AGGREGATE, &canonical(&self.statistics_reads(cycles)))
     }
 
+    /// What the report reads: the tables, and the spec as it is written out, which it shows.
     fn report_reads(&self, statistics_key: &str) -> Value {
-        json!({ "name": self.spec.name, "statistics": statistics_key })
+        let spec = blake3::hash(self.spec.to_toml().as_bytes()).to_hex().to_string();
+        json!({ "name": self.spec.name, "spec": spec, "statistics": statistics_key })
     }
 
     /// Key of the report.
@@ -299,9 +309,9 @@ impl Campaign {
 
     /// What the key of the tables over realisations is a hash of.
     #[must_use]
-    pub fn statistics_preimages(&self, finished: &[bool]) -> Map<String, Value> {
+    pub fn statistics_preimages(&self, cycles: &[Standing]) -> Map<String, Value> {
         let mut preimages = Map::new();
-        enter(&mut preimages, Stage::Aggregate, AGGREGATE, &self.statistics_reads(finished));
+        enter(&mut preimages, Stage::Aggregate, AGGREGATE, &self.statistics_reads(cycles));
         preimages
     }
 
@@ -311,6 +321,21 @@ impl Campaign {
         let mut preimages = Map::new();
         enter(&mut preimages, Stage::Report, REPORT, &self.report_reads(statistics_key));
         preimages
+    }
+}
+
+/// Ids end in the first digits of keys; where two keys share these, both ids end in as many again.
+fn tell_apart(mut units: Vec<(&mut String, &str)>) {
+    let mut first: HashMap<String, &str> = HashMap::new();
+    let mut shared: HashSet<String> = HashSet::new();
+    for (id, key) in &units {
+        if *first.entry((*id).clone()).or_insert(key) != *key {
+            shared.insert((*id).clone());
+        }
+    }
+    for (id, key) in units.iter_mut().filter(|(id, _)| shared.contains(*id)) {
+        let more = key.get(short(key).len()..2 * short(key).len()).unwrap_or_default();
+        id.push_str(more);
     }
 }
 

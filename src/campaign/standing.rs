@@ -134,8 +134,7 @@ impl Campaign {
         let surfaces = self.surfaces.par_iter().map(|unit| self.standing(&unit.surface(), check)).collect();
         let asperities = self.surfaces.par_iter().map(|unit| self.standing(&unit.asperities(), check)).collect();
         let standings = self.cycle_standings(check);
-        let finished: Vec<bool> = standings.iter().map(|standing| *standing == Standing::Done).collect();
-        let statistics_key = self.statistics_key(&finished);
+        let statistics_key = self.statistics_key(&standings);
         let statistics = self.standing(&Unit { stage: Stage::Aggregate, id: STATISTICS, key: &statistics_key }, check);
         let report_key = self.report_key(&statistics_key);
         let report = self.standing(&Unit { stage: Stage::Report, id: REPORT_PAGE, key: &report_key }, check);

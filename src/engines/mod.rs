@@ -37,6 +37,6 @@ pub fn open_shards(campaign: &Campaign, survey: &Survey, stage: Stage, count: us
 }
 
 /// A path as one word of a shell.
-fn quoted(path: &Path) -> String {
+pub(crate) fn quoted(path: &Path) -> String {
     format!("'{}'", path.display().to_string().replace('\'', "'\\''"))
 }

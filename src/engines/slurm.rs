@@ -24,6 +24,8 @@ pub struct Order {
     pub cpus: u16,
     /// Further options for `sbatch`, as they stand after `#SBATCH`.
     pub options: Vec<String>,
+    /// Jobs of this campaign that are in the queue: what is sent waits until they have ended, however.
+    pub queued: Vec<u64>,
 }
 
 /// A job array, or the job that aggregates.
@@ -68,7 +70,7 @@ pub fn script(campaign: &Campaign, stage: Stage, order: &Order) -> String {
     let mut text = format!("#!/bin/bash\n# {word} of the campaign {name}. `hysteron submit` wrote this file, and writes it anew.\n");
     let mut option = |what: &str| text.push_str(&format!("#SBATCH {what}\n"));
     option(&format!("--job-name={name}-{word}"));
-    option(&format!("--output={}/{word}-{}.log", log.display(), if array { "%A_%a" } else { "%j" }));
+    option(&format!("--output=\"{}/{word}-{}.log\"", log.display(), if array { "%A_%a" } else { "%j" }));
     option("--open-mode=append");
     option("--requeue");
     option("--signal=B:USR1@90");
@@ -118,16 +120,26 @@ pub fn jobs(order: &Order) -> Vec<Job> {
 impl Job {
     /// What follows `sbatch`, where the jobs before it have these numbers.
     #[must_use]
-    pub fn arguments(&self, folder: &Path, numbers: &[String]) -> Vec<String> {
+    pub fn arguments(&self, folder: &Path, numbers: &[String], queued: &[u64]) -> Vec<String> {
         let mut arguments = vec!["--parsable".to_owned()];
         if self.stage <= Stage::Cycle {
             arguments.push(format!("--array={}", ranges(&self.tasks)));
             arguments.push(format!("--export=ALL,HYSTERON_FIRST={}", self.first));
         }
-        let after: Vec<&str> = self.after.iter().map(|place| numbers[*place].as_str()).collect();
-        if !after.is_empty() {
-            let kind = if self.stage <= Stage::Cycle { "aftercorr" } else { "afterany" };
-            arguments.push(format!("--dependency={kind}:{}", after.join(":")));
+        let mut after: Vec<String> = self.after.iter().map(|place| numbers[*place].clone()).collect();
+        let mut any: Vec<String> = Vec::new();
+        // What waits for one of these jobs waits for what that one waits for.
+        if self.after.is_empty() || self.stage > Stage::Cycle {
+            any.extend(queued.iter().map(u64::to_string));
+        }
+        if self.stage > Stage::Cycle {
+            any.append(&mut after);
+        }
+        let kinds = [("aftercorr", after), ("afterany", any)];
+        let dependencies: Vec<String> =
+            kinds.iter().filter(|(_, jobs)| !jobs.is_empty()).map(|(kind, jobs)| format!("{kind}:{}", jobs.join(":"))).collect();
+        if !dependencies.is_empty() {
+            arguments.push(format!("--dependency={}", dependencies.join(",")));
             arguments.push("--kill-on-invalid-dep=yes".to_owned());
         }
         arguments.push(folder.join(format!("{}.sbatch", self.stage.word())).display().to_string());
@@ -157,6 +169,8 @@ pub struct Queue {
     pub shards: BTreeSet<(String, usize, usize)>,
     /// Whether the job that aggregates is there.
     pub aggregates: bool,
+    /// The jobs that are there.
+    pub jobs: BTreeSet<u64>,
 }
 
 impl Queue {
@@ -172,6 +186,7 @@ impl Queue {
             if !matches!(state, "PENDING" | "RUNNING" | "REQUEUED" | "CONFIGURING" | "COMPLETING" | "SUSPENDED" | "REQUEUE_HOLD") {
                 continue;
             }
+            queue.jobs.insert(sent.job);
             match task.parse::<usize>() {
                 Ok(task) => {
                     queue.shards.insert((sent.stage.clone(), sent.shards, sent.first + task));

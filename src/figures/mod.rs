@@ -12,10 +12,12 @@ mod plot;
 mod results;
 mod style;
 mod sweep;
+mod table;
 
 pub use axis::Axis;
-pub use panels::panels;
+pub use panels::{Panel, panels};
 pub use plot::{Curve, KeyEntry, Note, Stroke, XyPlot, plot_xy};
+pub use table::table;
 
 use crate::stats::StatsError;
 use crate::store::FrameError;

@@ -7,16 +7,27 @@ use super::results::results;
 use super::sweep::Sweep;
 use crate::store::Frame;
 
-/// Draws the panels of one sweep, each as the stem of a file name and an SVG document: `<sweep>_A` area over load, `<sweep>_B` pull-off load,
+/// A panel that has been drawn.
+#[derive(Debug, Clone)]
+pub struct Panel {
+    /// Stem of its file's name.
+    pub stem: String,
+    /// The drawing.
+    pub svg: String,
+    /// What was drawn.
+    pub plot: XyPlot,
+}
+
+/// Draws the panels of one sweep: `<sweep>_A` area over load, `<sweep>_B` pull-off load,
 /// `<sweep>_C` penetration over load, `<sweep>_D` energy lost, with the prediction of Deng and Kesari.
 ///
 /// B and D stand over the parameter that varies; over the area at the end of loading if only the turning point varies. If several
 /// parameters vary, the first one is the axis, the title names the others, and only cases that differ in nothing else are joined. A case without
-/// finished realizations has no curve and no point. Error bars are one standard deviation.
+/// finished realizations has no curve and no point. Error bars and bands are one standard deviation.
 ///
 /// # Errors
 /// If no case belongs to the sweep, or a table lacks a column.
-pub fn panels(cases: &Frame, curves: &Frame, sweep: &str) -> Result<Vec<(String, String)>, FigureError> {
+pub fn panels(cases: &Frame, curves: &Frame, sweep: &str) -> Result<Vec<Panel>, FigureError> {
     let found = Sweep::find(cases, sweep)?;
     let heading = heading(cases, &found, sweep)?;
     let stem: String = if sweep.is_empty() { "run" } else { sweep }
@@ -25,13 +36,13 @@ pub fn panels(cases: &Frame, curves: &Frame, sweep: &str) -> Result<Vec<(String,
         .collect();
     let panel = |letter: char, plot: XyPlot| {
         let stem = format!("{stem}_{letter}");
-        let svg = plot_xy(&XyPlot { letter, title: heading.clone(), stem: stem.clone(), ..plot });
-        (stem, svg)
+        let plot = XyPlot { letter, title: heading.clone(), stem: stem.clone(), ..plot };
+        Panel { stem, svg: plot_xy(&plot), plot }
     };
     Ok(vec![
-        panel('A', paths(curves, &found, "area_mean", "A/A_{0}")?),
+        panel('A', paths(curves, &found, "area", "A/A_{0}")?),
         panel('B', results(cases, &found, "F_{po}/(E^{*}A_{0})", "pull_off_load", &[])?),
-        panel('C', paths(curves, &found, "penetration_mean", "Δ/h_{rms}")?),
+        panel('C', paths(curves, &found, "penetration", "Δ/h_{rms}")?),
         panel(
             'D',
             results(

@@ -12,12 +12,17 @@ const LOAD: &str = "F/(E^{*}A_{0})";
 /// Loading and unloading paths of every member.
 pub(super) fn paths(table: &Frame, sweep: &Sweep, column: &str, label: &str) -> Result<XyPlot, FigureError> {
     let (ids, branches) = (table.text("case_id")?, table.text("branch")?);
-    let (max_loads, loads, values) = (table.f64_or_null("max_load")?, table.f64("load")?, table.f64(column)?);
-    let picked = |member: &Member, branch: &str, max_load: Option<f64>| -> Vec<(f64, f64)> {
-        let rows = (0..table.row_count()).filter(|row| {
+    let (max_loads, loads, values) = (table.f64_or_null("max_load")?, table.f64("load")?, table.f64(&format!("{column}_mean"))?);
+    let spreads = table.f64_or_null(&format!("{column}_sd"))?;
+    let picked = |member: &Member, branch: &str, max_load: Option<f64>, colour: String, stroke: Stroke| -> Curve {
+        let of_it = |row: &usize| {
             ids.get(*row) == Some(&member.case_id.as_str()) && branches.get(*row) == Some(&branch) && max_loads.get(*row) == Some(&max_load)
-        });
-        rows.filter_map(|row| loads.get(row).copied().zip(values.get(row).copied())).collect()
+        };
+        let rows: Vec<usize> = (0..table.row_count()).filter(of_it).collect();
+        let points = rows.iter().filter_map(|row| loads.get(*row).copied().zip(values.get(*row).copied())).collect();
+        let errors: Vec<Option<f64>> = rows.iter().map(|row| spreads.get(*row).copied().flatten()).collect();
+        let band = errors.iter().any(Option::is_some);
+        Curve { errors, band, ..curve((branch, &member.label), points, colour, stroke) }
     };
     let (mut curves, mut notes, mut drawn) = (Vec::new(), Vec::new(), Vec::new());
     let beside = !sweep.differing.is_empty();
@@ -25,23 +30,24 @@ pub(super) fn paths(table: &Frame, sweep: &Sweep, column: &str, label: &str) -> 
     for (at, member) in sweep.members.iter().enumerate() {
         // One loading path serves all turning points of a case.
         if !drawn.contains(&member.case_id) {
-            curves.push(curve(
-                picked(member, "loading", None),
-                shade(LOADING, at, if beside { sweep.members.len() } else { 1 }),
-                Stroke::Dashed,
-            ));
+            let colour = shade(LOADING, at, if beside { sweep.members.len() } else { 1 });
+            curves.push(picked(member, "loading", None, colour, Stroke::Dashed));
             drawn.push(member.case_id.clone());
         }
-        let unloading = picked(member, "unloading", Some(member.max_load));
-        if let Some(end) = unloading.first()
+        let colour = shade(UNLOADING, at, sweep.members.len());
+        let unloading = picked(member, "unloading", Some(member.max_load), colour, Stroke::Solid);
+        if let Some(end) = unloading.points.first()
             && sweep.members.len() > 1
             && at % every == 0
         {
             notes.push(Note { at: *end, text: member.label.clone(), beside });
         }
-        curves.push(curve(unloading, shade(UNLOADING, at, sweep.members.len()), Stroke::Solid));
+        curves.push(unloading);
     }
     let mut key = vec![entry("loading", LOADING, Some(Stroke::Dashed), false), entry("unloading", UNLOADING, Some(Stroke::Solid), false)];
+    if curves.iter().any(|curve| curve.band) {
+        key.push(entry("bands: ± one standard deviation", LOADING, None, false));
+    }
     if !beside && !notes.is_empty() {
         key.push(entry("numbers: F_{max}/(E^{*}A_{0})", LOADING, None, false));
     }

@@ -1,6 +1,7 @@
 //! Line plots in one style. The only place that knows the plotting library: it is young, and may be replaced here alone.
 
 use kuva::backend::svg::SvgBackend;
+use kuva::plot::band::BandPlot;
 use kuva::plot::line::LinePlot;
 use kuva::plot::scatter::{MarkerShape, ScatterPlot};
 use kuva::render::layout::{ComputedLayout, Layout, TickFormat};
@@ -16,6 +17,8 @@ const SIZE: (f64, f64) = (480.0, 380.0);
 const LABEL: u32 = 16;
 const TICK: u32 = 14;
 pub(super) const NOTE: u32 = 13;
+/// How much a band covers: several lie over one another.
+const BAND_OPACITY: f64 = 0.13;
 /// Least distance of two notes beside the plot, in pixels.
 pub(super) const NOTE_PITCH: f64 = 17.0;
 
@@ -43,10 +46,16 @@ impl Stroke {
 /// One curve, in units of the data.
 #[derive(Debug, Clone)]
 pub struct Curve {
+    /// What it shows, as a column of a table or a branch is called.
+    pub name: String,
+    /// Of what of the sweep, as it is named in the panel; may be empty.
+    pub of: String,
     /// Its points, in the order in which they are joined.
     pub points: Vec<(f64, f64)>,
-    /// Half the length of each point's error bar; empty for a curve without bars.
+    /// Half the length of each point's error bar, or half the width of the band around the curve; empty for a curve without.
     pub errors: Vec<Option<f64>>,
+    /// Whether the errors are a band.
+    pub band: bool,
     /// A CSS colour.
     pub colour: String,
     /// Its stroke.
@@ -102,7 +111,9 @@ pub struct XyPlot {
 
 /// Draws a panel as a complete SVG document.
 pub fn plot_xy(plot: &XyPlot) -> String {
-    let plots = plot.curves.iter().flat_map(|curve| drawn(curve, plot)).collect();
+    // Bands lie below all curves.
+    let bands = plot.curves.iter().filter(|curve| curve.band).map(|curve| band(curve, plot));
+    let plots = bands.chain(plot.curves.iter().flat_map(|curve| drawn(curve, plot))).collect();
     let layout = layout(plot);
     let frame = ComputedLayout::from_layout(&layout);
     let mut scene = render_multiple(plots, layout);
@@ -156,6 +167,21 @@ fn layout(plot: &XyPlot) -> Layout {
         .with_force_margins(left, 18.0 + if beside > 0.0 { beside + 6.0 } else { 0.0 })
 }
 
+/// What lies within the errors of a curve.
+fn band(curve: &Curve, plot: &XyPlot) -> Plot {
+    let points = curve.points.iter().zip(&curve.errors);
+    let (mut at, mut low, mut high) = (Vec::new(), Vec::new(), Vec::new());
+    for ((x, y), error) in points {
+        let error = error.unwrap_or_default();
+        at.push(plot.x.drawn(*x));
+        // The band is cut off where the panel ends.
+        let inside = |value: f64| plot.y.drawn(value).clamp(plot.y.drawn_range().0, plot.y.drawn_range().1);
+        low.push(inside(y - error));
+        high.push(inside(y + error));
+    }
+    Plot::Band(BandPlot::new(at, low, high).with_color(curve.colour.clone()).with_opacity(BAND_OPACITY))
+}
+
 fn drawn(curve: &Curve, plot: &XyPlot) -> Vec<Plot> {
     let points: Vec<(f64, f64)> = curve.points.iter().map(|(x, y)| (plot.x.drawn(*x), plot.y.drawn(*y))).collect();
     let style = match curve.stroke.dashes() {
@@ -164,7 +190,8 @@ fn drawn(curve: &Curve, plot: &XyPlot) -> Vec<Plot> {
     };
     let line = LinePlot::new().with_data(points.clone()).with_color(curve.colour.clone()).with_stroke_width(2.0).with_line_style(style);
     let mut plots = vec![Plot::Line(line)];
-    for (point, error) in points.iter().zip(&curve.errors) {
+    let bars = if curve.band { &[][..] } else { &curve.errors };
+    for (point, error) in points.iter().zip(bars) {
         if let Some(error) = error {
             let bar = LinePlot::new().with_data([*point]).with_color(curve.colour.clone());
             plots.push(Plot::Line(bar.with_y_err([plot.y.drawn_length(*error)])));

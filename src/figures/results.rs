@@ -30,23 +30,26 @@ pub(super) fn results(
             let points: Vec<(f64, f64)> =
                 sweep.members.iter().filter(|member| joined(member, name)).filter_map(|member| point(means, member)).collect();
             any |= !points.is_empty();
-            curves.push(curve(points, shade(THEORY, at, series.len()), *stroke));
+            curves.push(curve((theory, name), points, shade(THEORY, at, series.len()), *stroke));
         }
         if any {
             key.push(entry(text, THEORY, Some(*stroke), false));
         }
     }
     let (means, sds) = (table.f64_or_null(&format!("{name}_mean"))?, table.f64_or_null(&format!("{name}_sd"))?);
-    for (at, name) in series.iter().enumerate() {
-        let members: Vec<&Member> = sweep.members.iter().filter(|member| joined(member, name) && point(means, member).is_some()).collect();
+    for (at, of) in series.iter().enumerate() {
+        let members: Vec<&Member> = sweep.members.iter().filter(|member| joined(member, of) && point(means, member).is_some()).collect();
         let points: Vec<(f64, f64)> = members.iter().filter_map(|member| point(means, member)).collect();
         if let Some(end) = points.last()
             && series.len() > 1
             && at % series.len().div_ceil(MOST_NOTES) == 0
         {
-            notes.push(Note { at: *end, text: (*name).to_owned(), beside: true });
+            notes.push(Note { at: *end, text: (*of).to_owned(), beside: true });
         }
         curves.push(Curve {
+            name: name.to_owned(),
+            of: (*of).to_owned(),
+            band: false,
             points,
             errors: members.iter().map(|member| sds.get(member.row).copied().flatten()).collect(),
             colour: shade(UNLOADING, at, series.len()),

@@ -11,7 +11,7 @@ mod statistics;
 pub use avalanches::{AVALANCHES, EVENT_KINDS};
 pub use render::{DIRECTORY, OWN_KEYS, SchemaFile, files, metadata_json, readme_markdown, schema_file_name, schema_json};
 pub use run::{ASPERITIES, CONTACTS, EVENTS, MERGED, STEPS, TURNING};
-pub use statistics::{CASES, CURVES, REALIZATIONS};
+pub use statistics::{CASES, CURVES, PANELS, REALIZATIONS};
 
 /// What a column holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -81,7 +81,8 @@ impl Table {
 }
 
 /// Every table that the program writes.
-pub static TABLES: &[&Table] = &[&ASPERITIES, &STEPS, &CONTACTS, &TURNING, &MERGED, &EVENTS, &REALIZATIONS, &CASES, &CURVES, &AVALANCHES];
+pub static TABLES: &[&Table] =
+    &[&ASPERITIES, &STEPS, &CONTACTS, &TURNING, &MERGED, &EVENTS, &REALIZATIONS, &CASES, &CURVES, &AVALANCHES, &PANELS];
 
 impl Column {
     /// The same column, whose values may be missing.

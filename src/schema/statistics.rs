@@ -263,3 +263,24 @@ pub static CURVES: Table = Table {
         count("realization_count", "Realizations that reach this load on this branch"),
     ],
 };
+
+/// What the panels of the figures show.
+pub static PANELS: Table = Table {
+    name: "panels",
+    version: 1,
+    file: "statistics/panels.parquet",
+    doc: "One row per point of a curve of a panel of the figures, in the order of drawing.",
+    columns: &[
+        text("sweep", "The sweep that the panel is of"),
+        text("panel", "Its letter: A area, B pull-off load, C penetration, D loss"),
+        index("curve", "Number of the curve in the panel, from 0"),
+        text("name", "What it shows: a branch, or a column of the table cases without _mean"),
+        text("of", "Of what of the sweep, as the panel names it; empty if there is no choice"),
+        index("point", "Number of the point on its curve, from 0"),
+        real("x", "1", "Horizontal value, as x_label says; in units of the data, which for a swept parameter are its own"),
+        real("y", "1", "Vertical value, as y_label says"),
+        real("y_sd", "1", "Standard deviation over realizations (n - 1), drawn as a bar or a band; null where there is none").or_null(),
+        text("x_label", "Label of the horizontal axis, with _{} for subscripts and ^{} for superscripts"),
+        text("y_label", "Label of the vertical axis"),
+    ],
+};

@@ -1,12 +1,11 @@
 //! report: figures of every sweep, and one page that holds them.
 
 use super::done::{Clock, Outcome};
-use super::statistics::done;
 use super::theories::theories;
 use super::trust::{split, trust};
 use super::{StageError, Tally, Watch};
 use crate::campaign::{Campaign, REPORT_PAGE, STATISTICS, Stage, Standing, Unit};
-use crate::figures::panels;
+use crate::figures::{Panel, panels, table};
 use crate::schema;
 use crate::stats::summary;
 use crate::store::{Check, Frame, commit, parquet};
@@ -14,7 +13,7 @@ use std::fmt::Write as _;
 
 pub(super) fn run(campaign: &Campaign, check: Check, watch: &dyn Watch) -> Result<Tally, StageError> {
     let clock = Clock::start();
-    let statistics = campaign.statistics_key(&done(&campaign.cycle_standings(check)));
+    let statistics = campaign.statistics_key(&campaign.cycle_standings(check));
     let key = campaign.report_key(&statistics);
     let unit = Unit { stage: Stage::Report, id: REPORT_PAGE, key: &key };
     let mut tally = Tally { planned: 1, ..Tally::default() };
@@ -34,12 +33,13 @@ pub(super) fn run(campaign: &Campaign, check: Check, watch: &dyn Watch) -> Resul
     let curves = parquet::read_table(&campaign.statistics_path("curves"), &schema::CURVES)?;
     let (mut drawings, mut files) = (Vec::new(), Vec::new());
     for sweep in sweeps(campaign) {
-        for (stem, svg) in panels(&cases, &curves, &sweep)? {
-            let path = campaign.dir.join("figures").join(format!("{stem}.svg"));
-            files.push(commit::commit_bytes("write a figure", &path, svg.as_bytes())?);
-            drawings.push((sweep.clone(), svg));
+        for panel in panels(&cases, &curves, &sweep)? {
+            let path = campaign.dir.join("figures").join(format!("{}.svg", panel.stem));
+            files.push(commit::commit_bytes("write a figure", &path, panel.svg.as_bytes())?);
+            drawings.push((sweep.clone(), panel));
         }
     }
+    files.push(parquet::write_table(&campaign.statistics_path("panels"), &table(&drawings)?, &[("key", key.clone())])?);
     let page = page(campaign, &key, &cases, &drawings)?;
     files.push(commit::commit_bytes("write the report", &campaign.dir.join("report.html"), page.as_bytes())?);
     clock.receipt(campaign, &unit, campaign.report_preimages(&statistics), &Outcome::of(files))?;
@@ -70,7 +70,7 @@ td,th{padding:.2rem .7rem;border-bottom:1px solid #ccc;text-align:left;vertical-
 @media(prefers-color-scheme:dark){body{color:#e6e6e6;background:#161616}pre{background:#242424}.beyond{color:#ff8a80}}\
 @media print{body{max-width:none}}";
 
-fn page(campaign: &Campaign, key: &str, cases: &Frame, drawings: &[(String, String)]) -> Result<String, StageError> {
+fn page(campaign: &Campaign, key: &str, cases: &Frame, drawings: &[(String, Panel)]) -> Result<String, StageError> {
     let name = escape(&campaign.spec.name);
     let mut html = String::new();
     // Writing to a string cannot fail.
@@ -86,10 +86,10 @@ fn page(campaign: &Campaign, key: &str, cases: &Frame, drawings: &[(String, Stri
     );
     for sweep in sweeps(campaign) {
         let _ = write!(html, "<h2>Sweep {}</h2>\n<div class=\"panels\">\n", escape(&sweep));
-        for (_, svg) in drawings.iter().filter(|(of, _)| *of == sweep) {
+        for (_, panel) in drawings.iter().filter(|(of, _)| *of == sweep) {
             // Inline SVG stands without its XML declaration.
-            let start = svg.find("<svg").unwrap_or(0);
-            let _ = writeln!(html, "<div>{}</div>", &svg[start..]);
+            let start = panel.svg.find("<svg").unwrap_or(0);
+            let _ = writeln!(html, "<div>{}</div>", &panel.svg[start..]);
         }
         html.push_str("</div>\n");
     }

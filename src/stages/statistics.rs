@@ -20,7 +20,7 @@ use crate::store::{Check, commit, parquet};
 use rayon::prelude::*;
 
 /// Which cycles are done.
-pub(super) fn done(standings: &[Standing]) -> Vec<bool> {
+fn done(standings: &[Standing]) -> Vec<bool> {
     standings.iter().map(|standing| *standing == Standing::Done).collect()
 }
 
@@ -48,7 +48,7 @@ pub(super) fn run(campaign: &Campaign, partial: bool, check: Check, watch: &dyn 
         });
     }
     let finished = done(&standings);
-    let key = campaign.statistics_key(&finished);
+    let key = campaign.statistics_key(&standings);
     let unit = Unit { stage: Stage::Aggregate, id: STATISTICS, key: &key };
     let mut tally = Tally { planned: 1, ..Tally::default() };
     if campaign.standing(&unit, check) == Standing::Done {
@@ -75,7 +75,7 @@ pub(super) fn run(campaign: &Campaign, partial: bool, check: Check, watch: &dyn 
     let mut files = tables.into_iter().map(write).collect::<Result<Vec<_>, StageError>>()?;
     let described = datapackage::text(campaign, &finished);
     files.push(commit::commit_bytes("describe the tables in", &campaign.dir.join("datapackage.json"), described.as_bytes())?);
-    clock.receipt(campaign, &unit, campaign.statistics_preimages(&finished), &Outcome::of(files))?;
+    clock.receipt(campaign, &unit, campaign.statistics_preimages(&standings), &Outcome::of(files))?;
     watch.progress(Stage::Aggregate, 1.0);
     watch.finished(Stage::Aggregate, "statistics");
     watch.end(Stage::Aggregate);

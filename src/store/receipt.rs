@@ -6,7 +6,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use std::io::ErrorKind;
-use std::path::Path;
+use std::path::{Component, Path};
 
 use super::commit::{Written, commit_bytes, sum};
 use super::error::StoreError;
@@ -127,6 +127,7 @@ impl Kept {
     pub fn fault(&self, dir: &Path, check: Check) -> Option<Fault> {
         let path = dir.join(&self.path);
         let size = match std::fs::metadata(&path) {
+            Ok(found) if !found.is_file() => return Some(Fault::Changed(format!("{} is no file any more", self.path))),
             Ok(found) => found.len(),
             Err(error) if error.kind() == ErrorKind::NotFound => return Some(Fault::Missing(format!("{} is missing", self.path))),
             Err(error) => return Some(Fault::Changed(format!("{} cannot be looked at: {error}", self.path))),
@@ -160,16 +161,36 @@ pub fn write_receipt(path: &Path, receipt: &Receipt) -> Result<(), StoreError> {
 /// Reads a receipt; one that is not as it was written is none.
 #[must_use]
 pub fn read_receipt(path: &Path) -> Found {
-    let text =
-        match std::fs::metadata(path).and_then(|found| if found.len() > MOST_BYTES { Ok(None) } else { std::fs::read(path).map(Some) }) {
-            Ok(Some(bytes)) => bytes,
-            Ok(None) => return Found::Damaged("it is longer than any receipt".to_owned()),
-            Err(error) if error.kind() == ErrorKind::NotFound => return Found::Nothing,
-            Err(error) => return Found::Damaged(error.to_string()),
-        };
-    match parse(&text) {
+    let bytes = match std::fs::metadata(path).map(|found| found.is_file() && found.len() <= MOST_BYTES) {
+        Ok(true) => std::fs::read(path),
+        Ok(false) => return Found::Damaged("it is no file, or longer than any receipt".to_owned()),
+        Err(error) => Err(error),
+    };
+    let text = match bytes {
+        Ok(bytes) => bytes,
+        Err(error) if error.kind() == ErrorKind::NotFound => return Found::Nothing,
+        Err(error) => return Found::Damaged(error.to_string()),
+    };
+    match parse(&text).and_then(|receipt| fits(receipt, path)) {
         Ok(receipt) => Found::Whole(Box::new(receipt)),
         Err(why) => Found::Damaged(why),
+    }
+}
+
+/// A receipt that is where it belongs, and names files of its folder only.
+fn fits(receipt: Receipt, path: &Path) -> Result<Receipt, String> {
+    if path.file_stem().is_none_or(|stem| stem != receipt.id.as_str()) {
+        return Err(format!("it is the receipt of {:?}", receipt.id));
+    }
+    let folder = path.parent().and_then(Path::file_name);
+    if receipt.stage != "spec" && folder.is_none_or(|folder| folder != receipt.stage.as_str()) {
+        return Err(format!("it is a receipt of the stage {:?}", receipt.stage));
+    }
+    let inside = |path: &str| !path.is_empty() && Path::new(path).components().all(|part| matches!(part, Component::Normal(_)));
+    match receipt.files.iter().find(|file| !inside(&file.path)) {
+        _ if receipt.files.is_empty() => Err("it names no file".to_owned()),
+        Some(strange) => Err(format!("it names {:?}, which is no file of its folder", strange.path)),
+        None => Ok(receipt),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use hysteron::figures::{FigureError, panels};
+use hysteron::figures::{FigureError, panels, plot_xy, table};
 use hysteron::stats::{CaseInput, cases, curves, realizations};
 use hysteron::store::Frame;
 
@@ -37,7 +37,8 @@ fn tables(inputs: &[(CaseInput, Result)], realization_count: i32) -> (Frame, Fra
 
 /// Panels of a sweep, each checked to be well formed, and left where a person can look at them.
 fn draw(tables: &(Frame, Frame), sweep: &str) -> Vec<(String, String)> {
-    let drawn = panels(&tables.0, &tables.1, sweep).unwrap();
+    let drawn: Vec<(String, String)> =
+        panels(&tables.0, &tables.1, sweep).unwrap().into_iter().map(|panel| (panel.stem, panel.svg)).collect();
     let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join("figures");
     std::fs::create_dir_all(&directory).unwrap();
     for (stem, svg) in &drawn {
@@ -90,6 +91,28 @@ fn fig4() -> (Frame, Frame) {
     let inputs: Vec<_> =
         zetas.iter().zip(result).map(|(zeta, result)| (case(&format!("z{zeta}"), "fig4", 0.8, *zeta, &[0.0071]), result)).collect();
     tables(&inputs, 6)
+}
+
+#[test]
+fn e2e_every_panel_is_drawn_again_from_its_table() {
+    let tables = fig4();
+    let drawn: Vec<_> = panels(&tables.0, &tables.1, "fig4").unwrap().into_iter().map(|panel| ("fig4".to_owned(), panel)).collect();
+    let frame = table(&drawn).unwrap();
+    let (letters, curves) = (frame.text("panel").unwrap(), frame.i64("curve").unwrap());
+    let (x, y, spread) = (frame.f64("x").unwrap(), frame.f64("y").unwrap(), frame.f64_or_null("y_sd").unwrap());
+    for (_, panel) in &drawn {
+        let mut plot = panel.plot.clone();
+        for (number, curve) in plot.curves.iter_mut().enumerate() {
+            let rows: Vec<usize> =
+                (0..frame.row_count()).filter(|k| letters[*k] == panel.plot.letter.to_string() && curves[*k] == number as i64).collect();
+            curve.points = rows.iter().map(|k| (x[*k], y[*k])).collect();
+            curve.errors = rows.iter().map(|k| spread[*k]).collect();
+        }
+        assert!(plot.curves.iter().any(|curve| curve.points.len() > 1), "{}", panel.stem);
+        assert!(plot_xy(&plot) == panel.svg, "{} is another picture", panel.stem);
+    }
+    let names: std::collections::BTreeSet<&str> = frame.text("name").unwrap().into_iter().collect();
+    assert_eq!(names.into_iter().collect::<Vec<_>>(), ["loading", "loss", "loss_dk", "loss_dk_realised", "pull_off_load", "unloading"]);
 }
 
 #[test]

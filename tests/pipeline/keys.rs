@@ -1,6 +1,6 @@
 //! The keys of a spec's units: what of a case changes which.
 
-use hysteron::campaign::Campaign;
+use hysteron::campaign::{Campaign, Standing};
 use hysteron::spec::Spec;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -15,7 +15,7 @@ fn campaign(model: &str) -> Campaign {
 fn keys(campaign: &Campaign) -> (Vec<&str>, Vec<&str>, String) {
     let surfaces = campaign.surfaces.iter().flat_map(|unit| [unit.key.as_str(), unit.asperities_key.as_str()]).collect();
     let cycles = campaign.cycles.iter().map(|unit| unit.key.as_str()).collect();
-    (surfaces, cycles, campaign.statistics_key(&vec![true; campaign.cycles.len()]))
+    (surfaces, cycles, campaign.statistics_key(&vec![Standing::Done; campaign.cycles.len()]))
 }
 
 #[test]

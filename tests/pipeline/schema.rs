@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use hysteron::schema::{
-    ASPERITIES, AVALANCHES, CASES, CONTACTS, CURVES, DIRECTORY, EVENT_KINDS, EVENTS, Kind, REALIZATIONS, STEPS, TABLES, files,
+    ASPERITIES, AVALANCHES, CASES, CONTACTS, CURVES, DIRECTORY, EVENT_KINDS, EVENTS, Kind, PANELS, REALIZATIONS, STEPS, TABLES, files,
     metadata_json, readme_markdown, schema_json,
 };
 
@@ -81,14 +81,15 @@ fn val_columns_are_those_of_the_contract() {
             "case_id sweep realization branch max_load avalanche_id step approach_m event_count jump_in_count jump_off_count cover_count uncover_count snap_count merge_count split_count energy_lost_j energy_lost load_drop_n area_change_m2",
         ),
     ];
-    for (table, names) in contract {
+    let own = [(&PANELS, "sweep panel curve name of point x y y_sd x_label y_label")];
+    for (table, names) in contract.into_iter().chain(own) {
         for name in names.split(' ') {
             assert!(table.column(name).is_some(), "{} lost its column {name}", table.name);
         }
     }
-    // Seven results and what the events lost; its two branches and every kind of event; what tells how far to trust the row. The losses are
+    // Seven results, five numbers of theories, and what the events lost; its two branches and every kind of event; what tells how far to trust the row. The losses are
     // there in both units.
-    assert_eq!(CASES.columns.len(), 2 + 16 + 1 + (7 + 2) * 4 + (2 + EVENT_KINDS.len()) * 2 * 4 + 10 * 2 + 4);
+    assert_eq!(CASES.columns.len(), 2 + 16 + 1 + (12 + 2) * 4 + (2 + EVENT_KINDS.len()) * 2 * 4 + 10 * 2 + 4);
 }
 
 #[test]

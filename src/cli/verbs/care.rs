@@ -24,9 +24,11 @@ pub(super) fn explain(folder: &FolderArguments, id: &str, spec: Option<&Path>) -
         )));
     }
     if folder.json {
-        say(&format!("{:#}\n", json!(explanations)));
+        say(&format!("{:#}\n", json!(explanations)))?;
     } else {
-        explanations.iter().for_each(|explanation| say(&sentences(explanation)));
+        for explanation in &explanations {
+            say(&sentences(explanation))?;
+        }
     }
     Ok(0)
 }
@@ -59,18 +61,18 @@ pub(super) fn verify(folder: &FolderArguments, deep: bool) -> Result<u8, Fault> 
     let campaign = open_dir("verify", &folder.dir)?;
     let audit = campaign.audit(if deep { Check::Contents } else { Check::Sizes });
     if folder.json {
-        say(&format!("{:#}\n", json!(audit)));
+        say(&format!("{:#}\n", json!(audit)))?;
     } else {
         for fault in &audit.faults {
-            say(&format!("{fault}\n"));
+            say(&format!("{fault}\n"))?;
         }
         let compared = if deep { "contents" } else { "lengths (--deep compares contents)" };
         let (receipts, files) = (HumanCount(audit.receipt_count as u64), HumanCount(audit.file_count as u64));
-        say(&format!("{receipts} receipts, {files} files, {}: {compared} compared, ", HumanBytes(audit.size_bytes)));
+        say(&format!("{receipts} receipts, {files} files, {}: {compared} compared, ", HumanBytes(audit.size_bytes)))?;
         say(&match audit.faults.len() {
             0 => "all as they were written.\n".to_owned(),
             faults => format!("{faults} faults. `hysteron run` with the spec makes what it names again.\n"),
-        });
+        })?;
     }
     Ok(if audit.faults.is_empty() { 0 } else { FAILED })
 }
@@ -97,16 +99,16 @@ pub(super) fn gc(folder: &FolderArguments, keep: &[PathBuf], delete: bool) -> Re
     if folder.json {
         let units: Vec<Value> =
             leftovers.iter().map(|left| json!({ "path": name(left), "size_bytes": left.size_bytes, "why": left.why })).collect();
-        say(&format!("{:#}\n", json!({ "deleted": delete, "size_bytes": bytes, "leftovers": units })));
+        say(&format!("{:#}\n", json!({ "deleted": delete, "size_bytes": bytes, "leftovers": units })))?;
         return Ok(0);
     }
     for left in &leftovers {
-        say(&format!("{} ({}): {}\n", name(left), HumanBytes(left.size_bytes), left.why));
+        say(&format!("{} ({}): {}\n", name(left), HumanBytes(left.size_bytes), left.why))?;
     }
     say(&match (leftovers.len(), delete) {
         (0, _) => "Nothing is left over.\n".to_owned(),
         (count, true) => format!("{count} deleted, {}.\n", HumanBytes(bytes)),
         (count, false) => format!("{count} left over, {}; nothing was deleted: --delete does that.\n", HumanBytes(bytes)),
-    });
+    })?;
     Ok(0)
 }

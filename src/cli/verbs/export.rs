@@ -1,6 +1,7 @@
 //! `export`: files that other programs run or publish a campaign with.
 
-use super::{Fault, failed, open, open_dir, say};
+use super::{Fault, failed, open, open_dir, say, told};
+use crate::campaign::Standing;
 use crate::cli::{FolderArguments, OutputArguments};
 use crate::engines::{ro_crate as description, snakemake as rules, usual_shards};
 use crate::stages;
@@ -11,8 +12,7 @@ use std::time::SystemTime;
 
 pub(super) fn snakemake(spec: &Path, output: &OutputArguments, shards: Option<u32>) -> Result<u8, Fault> {
     let mut campaign = open(spec, output)?;
-    let absolute = |path: &Path| std::path::absolute(path).map_err(|error| failed(format!("cannot find {}: {error}", path.display())));
-    campaign.dir = absolute(&campaign.dir)?;
+    campaign.dir = told(&campaign.dir)?;
     stages::prepare(&campaign).map_err(failed)?;
     let folder = campaign.dir.join("snakemake");
     std::fs::create_dir_all(&folder).map_err(|error| failed(format!("cannot make the folder {}: {error}", folder.display())))?;
@@ -21,9 +21,9 @@ pub(super) fn snakemake(spec: &Path, output: &OutputArguments, shards: Option<u3
     let path = folder.join("Snakefile");
     commit::commit_bytes("write the Snakefile", &path, rules::snakefile(&campaign, &program, shards).as_bytes()).map_err(failed)?;
     if output.json {
-        say(&format!("{:#}\n", json!({ "file": path.display().to_string(), "shard_count": shards })));
+        say(&format!("{:#}\n", json!({ "file": path.display().to_string(), "shard_count": shards })))?;
     } else {
-        say(&format!("Written: {}\nRun it with `snakemake --snakefile {} --cores 2`\n", path.display(), path.display()));
+        say(&format!("Written: {}\nRun it with `snakemake --snakefile {} --cores 2`\n", path.display(), path.display()))?;
     }
     Ok(0)
 }
@@ -42,12 +42,15 @@ pub(super) fn ro_crate(folder: &FolderArguments, license: Option<&str>) -> Resul
     let path = folder.dir.join("ro-crate-metadata.json");
     commit::commit_bytes("write the description", &path, text.as_bytes()).map_err(failed)?;
     if folder.json {
-        say(&format!("{:#}\n", json!({ "file": path.display().to_string(), "file_count": audit.file_count })));
+        say(&format!("{:#}\n", json!({ "file": path.display().to_string(), "file_count": audit.file_count })))?;
         return Ok(0);
     }
-    say(&format!("Written: {}, which describes {} files.\n", path.display(), audit.file_count));
+    say(&format!("Written: {}, which describes {} files.\n", path.display(), audit.file_count))?;
+    if campaign.survey(Check::Sizes).report != Standing::Done {
+        say("Caution: this run is not finished, or its report is not of what is there now.\n")?;
+    }
     if license.is_none() {
-        say("A crate that is published needs a licence: --license ADDRESS states it.\n");
+        say("A crate that is published needs a licence: --license ADDRESS states it.\n")?;
     }
     Ok(0)
 }

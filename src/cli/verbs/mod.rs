@@ -31,7 +31,27 @@ fn failed(error: impl std::fmt::Display) -> Fault {
 }
 
 pub(super) fn perform(verb: &Verb) -> ExitCode {
-    let outcome = match verb {
+    match threads(jobs(verb)).and_then(|()| performed(verb)) {
+        Ok(code) => ExitCode::from(code),
+        Err(fault) => {
+            let _ = writeln!(std::io::stderr().lock(), "{}", fault.text);
+            ExitCode::from(fault.code)
+        }
+    }
+}
+
+/// How many threads are asked for.
+fn jobs(verb: &Verb) -> Option<u16> {
+    match verb {
+        Verb::Run { campaign, .. } | Verb::Aggregate { campaign, .. } => campaign.jobs.jobs,
+        Verb::Generate(campaign) | Verb::Extract(campaign) | Verb::Cycle(campaign) | Verb::Report(campaign) => campaign.jobs.jobs,
+        Verb::Retry { jobs, .. } => jobs.jobs,
+        _ => None,
+    }
+}
+
+fn performed(verb: &Verb) -> Result<u8, Fault> {
+    match verb {
         Verb::Run { campaign, until } => work::stages(campaign, Stage::Generate, stage(*until), false),
         Verb::Generate(campaign) => work::stages(campaign, Stage::Generate, Stage::Generate, false),
         Verb::Extract(campaign) => work::stages(campaign, Stage::Extract, Stage::Extract, false),
@@ -42,7 +62,7 @@ pub(super) fn perform(verb: &Verb) -> ExitCode {
         Verb::Status { folder, watch } => survey::status(folder, *watch),
         Verb::Explain { folder, id, spec } => care::explain(folder, id, spec.as_deref()),
         Verb::Verify { folder, deep } => care::verify(folder, *deep),
-        Verb::Retry { folder, ids, jobs } => work::retry(folder, ids, jobs),
+        Verb::Retry { folder, ids, .. } => work::retry(folder, ids),
         Verb::Gc { folder, keep, delete } => care::gc(folder, keep, *delete),
         Verb::Submit { spec, output, engine: EngineArgument::Slurm, shards, cpus, option, dry_run } => {
             submit::slurm(spec, output, shards.shards, (*cpus, option), *dry_run)
@@ -50,13 +70,6 @@ pub(super) fn perform(verb: &Verb) -> ExitCode {
         Verb::Export { what: ExportVerb::Snakemake { spec, output, shards } } => export::snakemake(spec, output, shards.shards),
         Verb::Export { what: ExportVerb::RoCrate { folder, license } } => export::ro_crate(folder, license.as_deref()),
         Verb::Schema { write } => schemas(*write),
-    };
-    match outcome {
-        Ok(code) => ExitCode::from(code),
-        Err(fault) => {
-            let _ = writeln!(std::io::stderr().lock(), "{}", fault.text);
-            ExitCode::from(fault.code)
-        }
     }
 }
 
@@ -70,15 +83,38 @@ fn stage(argument: StageArgument) -> Stage {
     }
 }
 
-/// Prints to standard output; a reader that has gone away (`| head`) is no fault.
-fn say(text: &str) {
-    let _ = std::io::stdout().lock().write_all(text.as_bytes());
+/// Prints to standard output, and says whether somebody reads it: one who has gone away (`| head`) is no fault.
+fn say(text: &str) -> Result<bool, Fault> {
+    let mut output = std::io::stdout().lock();
+    match output.write_all(text.as_bytes()).and_then(|()| output.flush()) {
+        Ok(()) => Ok(true),
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(false),
+        Err(error) => Err(failed(format!("cannot write to standard output: {error}"))),
+    }
+}
+
+/// The threads of everything that follows: as many as there are cores, unless it is said.
+fn threads(count: Option<u16>) -> Result<(), Fault> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(count.map_or(0, usize::from));
+    pool.build_global().map_err(|error| failed(format!("cannot start the threads: {error}; allowed: fewer of them (--jobs N)")))
 }
 
 fn open(spec: &Path, output: &OutputArguments) -> Result<Campaign, Fault> {
     let spec = Spec::read(spec).map_err(|errors| Fault { code: BAD_SPEC, text: errors.to_string() })?;
     let dir = output.out.clone().unwrap_or_else(|| PathBuf::from("data/runs").join(&spec.name));
     Ok(Campaign::new(spec, dir))
+}
+
+/// A folder by its whole name, as other programs are to be told of it: they read it as text.
+fn told(dir: &Path) -> Result<PathBuf, Fault> {
+    let refused = |why: String| failed(format!("cannot tell other programs of {}: {why}", dir.display()));
+    let dir = std::path::absolute(dir).map_err(|error| refused(error.to_string()))?;
+    let strange = |c: char| c.is_control() || matches!(c, '{' | '}' | '%' | '"' | '\\');
+    match dir.to_str().map(|name| name.chars().find(|c| strange(*c))) {
+        Some(None) => Ok(dir),
+        Some(Some(c)) => Err(refused(format!("its name has {c:?}; allowed: no control characters, and none of {{ }} % \" \\"))),
+        None => Err(refused("its name is no Unicode; allowed: a name that is".to_owned())),
+    }
 }
 
 /// The campaign whose results a folder holds.
@@ -100,8 +136,8 @@ fn schemas(write: bool) -> Result<u8, Fault> {
         if write {
             commit::commit_bytes("write a schema", &folder.join(&file.name), file.content.as_bytes()).map_err(failed)?;
         } else if file.name.ends_with(".json") {
-            say(&file.content);
-            say("\n");
+            say(&file.content)?;
+            say("\n")?;
         }
     }
     Ok(0)

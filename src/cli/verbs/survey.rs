@@ -18,13 +18,12 @@ type Units = Vec<(Stage, Vec<(String, Standing)>)>;
 pub(super) fn plan(spec: &Path, output: &OutputArguments) -> Result<u8, Fault> {
     let campaign = open(spec, output)?;
     let units = units(&campaign);
-    say(&if output.json { answer(&campaign, &units) } else { describe(&campaign, &units) });
-    if !output.json {
-        say(&match left(&units) {
-            0 => "Nothing is left to do.\n".to_owned(),
-            open => format!("`run` would compute {open} units.\n"),
-        });
-    }
+    let text = if output.json {
+        answer(&campaign, &units)
+    } else {
+        describe(&campaign, &units) + &remaining(&units, &campaign, |open| format!("`run` would compute {open} units.\n"))
+    };
+    say(&text)?;
     Ok(0)
 }
 
@@ -32,7 +31,6 @@ pub(super) fn status(folder: &FolderArguments, watch: bool) -> Result<u8, Fault>
     loop {
         let campaign = open_dir("tell the status of", &folder.dir)?;
         let units = units(&campaign);
-        let open = left(&units);
         let mut text = if folder.json { answer(&campaign, &units) } else { describe(&campaign, &units) };
         if !folder.json {
             if let Some(why) = campaign.spec_fault() {
@@ -40,22 +38,32 @@ pub(super) fn status(folder: &FolderArguments, watch: bool) -> Result<u8, Fault>
             }
             text += &in_queue(&campaign);
             let dir = campaign.dir.display();
-            text += &match open {
-                0 => "Nothing is left to do.\n".to_owned(),
-                _ => format!("{open} units are left; `hysteron run {dir}/campaign.toml --out {dir}` does them.\n"),
-            };
+            let does = |open| format!("{open} units are left; `hysteron run {dir}/campaign.toml --out {dir}` does them.\n");
+            text += &remaining(&units, &campaign, does);
         }
         if watch && !folder.json && std::io::stdout().is_terminal() {
             // What was said before goes off the screen.
             text.insert_str(0, "\x1b[H\x1b[2J");
         }
-        say(&text);
-        let failed = units.iter().flat_map(|(_, units)| units).filter(|(_, s)| matches!(s, Standing::Failed(_))).count();
-        if !watch || open <= failed {
+        let heard = say(&text)?;
+        if !watch || !heard || left(&units) == 0 {
             return Ok(0);
         }
         std::thread::sleep(EVERY);
     }
+}
+
+/// What is left to do, as a sentence; and what only `retry` does.
+fn remaining(units: &Units, campaign: &Campaign, does: impl Fn(usize) -> String) -> String {
+    let mut text = match left(units) {
+        0 => "Nothing is left to do.\n".to_owned(),
+        open => does(open),
+    };
+    let failed = units.iter().flat_map(|(_, units)| units).filter(|(_, s)| matches!(s, Standing::Failed(_))).count();
+    if failed > 0 {
+        text += &format!("{failed} cases failed; `hysteron retry {}` tries them again.\n", campaign.dir.display());
+    }
+    text
 }
 
 fn units(campaign: &Campaign) -> Units {
@@ -72,10 +80,11 @@ fn units(campaign: &Campaign) -> Units {
 
 /// What Slurm's queue has of the jobs that were sent. Files are the truth: what it says of finished tasks is not asked for.
 fn in_queue(campaign: &Campaign) -> String {
-    let sent = submit::sent(campaign);
-    if sent.is_empty() {
-        return String::new();
-    }
+    let sent = match submit::sent(campaign) {
+        Ok(sent) if sent.is_empty() => return String::new(),
+        Ok(sent) => sent,
+        Err(fault) => return format!("slurm     {}\n", fault.text),
+    };
     let Some(queue) = submit::queue(&sent) else {
         return format!("slurm     {} jobs were sent; the queue cannot be asked here\n", sent.len());
     };
@@ -83,9 +92,9 @@ fn in_queue(campaign: &Campaign) -> String {
     format!("slurm     {}\n", if counted.is_empty() { "nothing in the queue".to_owned() } else { counted.join(", ") })
 }
 
-/// How many units are not done.
+/// How many units a run would do.
 fn left(units: &Units) -> usize {
-    units.iter().flat_map(|(_, units)| units).filter(|(_, standing)| *standing != Standing::Done).count()
+    units.iter().flat_map(|(_, units)| units).filter(|(_, standing)| !matches!(standing, Standing::Done | Standing::Failed(_))).count()
 }
 
 fn answer(campaign: &Campaign, units: &Units) -> String {

@@ -1,9 +1,9 @@
 //! The verbs that compute: `run`, one for each stage, and `retry`.
 
-use super::{FAILED_CASES, Fault, failed, open, open_dir, say};
+use super::{BAD_SPEC, FAILED_CASES, Fault, failed, open, open_dir, say};
 use crate::campaign::{Campaign, Shard, Stage, Standing};
 use crate::cli::progress::Teller;
-use crate::cli::{CampaignArguments, FolderArguments, JobsArguments, interrupt};
+use crate::cli::{CampaignArguments, FolderArguments, interrupt};
 use crate::schema;
 use crate::stages::{self, Tally, Task};
 use crate::stats::summary;
@@ -17,17 +17,21 @@ pub(super) fn stages(arguments: &CampaignArguments, from: Stage, until: Stage, p
     let shard = arguments.shard.unwrap_or_default();
     if !shard.is_whole() && until > Stage::Cycle {
         let stage = until.word();
-        return Err(failed(format!(
-            "cannot {stage} a part of {}: that takes all of it; allowed: --until cycle with --shard",
-            campaign.spec.name
-        )));
+        return Err(Fault {
+            code: BAD_SPEC,
+            ..failed(format!("cannot {stage} a part of {}: that takes all of it; allowed: --until cycle with --shard", campaign.spec.name))
+        });
     }
     let check = if arguments.quick { Check::Sizes } else { Check::Contents };
-    perform(&campaign, &Task { shard, partial, check, ..Task::new(from, until) }, &arguments.jobs, arguments.output.json)
+    perform(&campaign, &Task { shard, partial, check, ..Task::new(from, until) }, arguments.output.json)
 }
 
-pub(super) fn retry(folder: &FolderArguments, ids: &[String], jobs: &JobsArguments) -> Result<u8, Fault> {
+pub(super) fn retry(folder: &FolderArguments, ids: &[String]) -> Result<u8, Fault> {
     let campaign = open_dir("retry the failed cases of", &folder.dir)?;
+    if let Some(why) = campaign.spec_fault() {
+        let dir = folder.dir.display();
+        return Err(failed(format!("cannot retry the failed cases of {dir}: {why}; allowed: after a `hysteron run` of the spec")));
+    }
     let standings = campaign.cycle_standings(Check::Sizes);
     let units = campaign.cycles.iter().zip(standings);
     let failures: HashSet<String> = units.filter(|(_, s)| matches!(s, Standing::Failed(_))).map(|(unit, _)| unit.id.clone()).collect();
@@ -37,25 +41,24 @@ pub(super) fn retry(folder: &FolderArguments, ids: &[String], jobs: &JobsArgumen
         let known = if known.is_empty() { "none, since no case has failed".to_owned() } else { known.join(", ") };
         return Err(failed(format!("cannot retry {strange}: it is no failed case of {}; allowed: {known}", folder.dir.display())));
     }
+    if failures.is_empty() {
+        say("Nothing to retry: no case has failed.\n")?;
+        return Ok(0);
+    }
     let retried = if ids.is_empty() { failures } else { ids.iter().cloned().collect() };
     let task = Task { retried, shard: Shard::default(), ..Task::new(Stage::Generate, Stage::Report) };
-    perform(&campaign, &task, jobs, folder.json)
+    perform(&campaign, &task, folder.json)
 }
 
-fn perform(campaign: &Campaign, task: &Task, jobs: &JobsArguments, json: bool) -> Result<u8, Fault> {
-    let mut pool = rayon::ThreadPoolBuilder::new();
-    if let Some(jobs) = jobs.jobs {
-        pool = pool.num_threads(usize::from(jobs));
-    }
-    let pool = pool.build().map_err(failed)?;
+fn perform(campaign: &Campaign, task: &Task, json: bool) -> Result<u8, Fault> {
     let teller = Arc::new(Teller::new());
     interrupt::expect(teller.clone(), &campaign.dir).map_err(failed)?;
-    let tallies = pool.install(|| stages::run(campaign, task, &*teller)).map_err(failed)?;
+    let tallies = rayon::scope(|_| stages::run(campaign, task, &*teller)).map_err(failed)?;
     let failures: usize = tallies.iter().map(|(_, tally)| tally.failed).sum();
     if json {
-        say(&tally_json(campaign, &tallies));
+        say(&tally_json(campaign, &tallies))?;
     } else {
-        say(&conclusion(campaign, &tallies, task.until)?);
+        say(&conclusion(campaign, &tallies, task.until)?)?;
     }
     Ok(if failures > 0 { FAILED_CASES } else { 0 })
 }

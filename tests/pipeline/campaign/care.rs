@@ -81,7 +81,7 @@ fn e2e_a_receipt_tells_what_when_and_with_what() {
         assert!(cycle["preimages"][stage]["meaning"].as_u64().unwrap() > 0, "{stage}");
     }
     assert_eq!(cycle["files"].as_array().unwrap().len(), 5);
-    assert_eq!(of("report")["files"].as_array().unwrap().len(), 5, "four panels and the page");
+    assert_eq!(of("report")["files"].as_array().unwrap().len(), 6, "four panels, their table and the page");
     // No data file tells any of that.
     let host = cycle["made"]["host"].as_str().unwrap();
     for (path, bytes) in files(&bench.out()) {
@@ -151,7 +151,9 @@ fn e2e_gc_takes_only_what_no_spec_names() {
     let first = bench.folder.path().join("first.toml");
     fs::copy(bench.spec(), &first).unwrap();
     fs::write(bench.spec(), SPEC.replace("[6, 8]", "[6]")).unwrap();
-    fs::write(bench.out().join("surfaces/notes.h5"), "mine").unwrap();
+    // Names that end like ids, but are none: a date has eight digits too.
+    fs::write(bench.out().join("surfaces/notes-20240131.h5"), "mine").unwrap();
+    fs::create_dir(bench.out().join("cycles/H0.80-deadbeef")).unwrap();
     fs::write(bench.out().join("surfaces/.hysteron-torn.tmp"), "torn").unwrap();
     assert_eq!(code(&bench.verb("run", &[])), 0);
     let kept = stdout(&bench.look("gc", &["--keep", first.to_str().unwrap()]));
@@ -167,12 +169,12 @@ fn e2e_gc_takes_only_what_no_spec_names() {
         "of two surfaces each two files and a folder with their three receipts; and a torn file"
     );
     let after = files(&bench.out());
-    assert!(after.contains_key(Path::new("surfaces/notes.h5")));
+    assert!(after.contains_key(Path::new("surfaces/notes-20240131.h5")) && bench.out().join("cycles/H0.80-deadbeef").is_dir());
     assert!(after.keys().all(|path| !path.to_string_lossy().contains("_z8_")), "nothing of the other magnification is left");
     assert_eq!(code(&bench.look("verify", &["--deep"])), 0);
     assert!(stdout(&bench.verb("run", &[])).contains("Nothing to do"));
     // What was taken is made again, the same.
-    fs::remove_file(bench.out().join("surfaces/notes.h5")).unwrap();
+    fs::remove_file(bench.out().join("surfaces/notes-20240131.h5")).unwrap();
     fs::copy(&first, bench.spec()).unwrap();
     assert_eq!(code(&bench.verb("run", &[])), 0);
     assert!(files(&bench.out()) == whole);
@@ -203,7 +205,7 @@ fn e2e_a_failed_case_waits_for_retry() {
     assert_eq!(code(&strange), 1);
     assert!(stderr(&strange).contains(id), "{}", stderr(&strange));
     let status = stdout(&bench.look("status", &["--watch"]));
-    assert!(status.contains("2 failed"), "it ends though failed cases are left: {status}");
+    assert!(status.contains("2 cases failed; `hysteron retry"), "it ends though failed cases are left: {status}");
 }
 
 #[test]
@@ -222,4 +224,47 @@ fn e2e_looking_writes_nothing() {
     let after: Vec<_> =
         crate::bench::paths(&bench.out()).into_iter().map(|path| (fs::metadata(&path).unwrap().modified().unwrap(), path)).collect();
     assert_eq!(after, before);
+}
+
+#[test]
+fn e2e_a_receipt_belongs_to_its_place_and_names_files_of_its_folder_only() {
+    let bench = Bench::new(SMALL);
+    assert_eq!(code(&bench.verb("run", &["--until", "generate"])), 0);
+    let (path, bytes) = bench.receipts().into_iter().find(|(path, _)| path.parent().unwrap().ends_with("generate")).unwrap();
+    let text = String::from_utf8(bytes).unwrap();
+    let (body, _) = text.rsplit_once(",\n  \"seal\": \"").unwrap();
+    let own = format!("surfaces/{}.h5", path.file_stem().unwrap().to_str().unwrap());
+    // Whoever can compute the seal can write a receipt; it is believed no more for that.
+    let sealed = |body: &str| format!("{body},\n  \"seal\": \"{}\"\n}}\n", blake3::hash(body.as_bytes()).to_hex());
+    assert_eq!(sealed(body), text);
+    fs::write(bench.folder.path().join("outside"), "x").unwrap();
+    for other in ["../outside", "/etc/passwd", "", "surfaces/../../outside"] {
+        fs::write(&path, sealed(&body.replace(&own, other))).unwrap();
+        let verified = bench.look("verify", &["--deep"]);
+        assert_eq!(code(&verified), 1, "{other}: {}", stdout(&verified));
+        assert!(stdout(&verified).contains("no file of its folder"), "{other}: {}", stdout(&verified));
+    }
+    fs::write(&path, sealed(&body.replace("\"generate\",\n  \"id\"", "\"extract\",\n  \"id\""))).unwrap();
+    assert!(stdout(&bench.look("verify", &[])).contains("a receipt of the stage \"extract\""));
+    fs::write(&path, &text).unwrap();
+    assert_eq!(code(&bench.look("verify", &["--deep"])), 0);
+    fs::copy(&path, path.with_file_name("copy.json")).unwrap();
+    assert!(stdout(&bench.look("verify", &[])).contains("it is the receipt of"), "a copy by another name is none");
+}
+
+#[test]
+fn e2e_output_that_nobody_takes() {
+    let bench = Bench::new(SMALL);
+    assert_eq!(code(&bench.verb("run", &["--until", "extract"])), 0);
+    let program = env!("CARGO_BIN_EXE_hysteron");
+    let shell = |line: String| std::process::Command::new("sh").args(["-c", &line]).output().unwrap();
+    let out = bench.out().display().to_string();
+    // One who has read enough is no fault, and ends what would go on; a full disk is one.
+    let head = shell(format!("timeout 60 '{program}' status '{out}' --watch | head -1"));
+    assert!(stdout(&head).starts_with("small in "), "{}", stdout(&head));
+    if Path::new("/dev/full").exists() {
+        let full = shell(format!("'{program}' status '{out}' --json > /dev/full"));
+        assert_eq!(code(&full), 1);
+        assert!(stderr(&full).contains("cannot write to standard output"), "{}", stderr(&full));
+    }
 }

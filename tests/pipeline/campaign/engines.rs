@@ -12,7 +12,15 @@ use std::process::{Command, Output};
 use std::time::{Duration, Instant};
 
 fn order(waiting: Vec<(Stage, Vec<usize>)>, most: usize) -> Order {
-    Order { program: PathBuf::from("/opt/it's/hysteron"), shards: 12, waiting, most, cpus: 3, options: vec!["--time=1:00:00".to_owned()] }
+    Order {
+        program: PathBuf::from("/opt/it's/hysteron"),
+        shards: 12,
+        waiting,
+        most,
+        cpus: 3,
+        options: vec!["--time=1:00:00".to_owned()],
+        queued: Vec::new(),
+    }
 }
 
 #[test]
@@ -60,7 +68,7 @@ fn val_the_arguments_of_sbatch() {
     let order = order(vec![(Stage::Extract, vec![1, 2, 3, 9]), (Stage::Cycle, vec![9])], 1000);
     let jobs = jobs(&order);
     let numbers = ["71", "72"].map(str::to_owned);
-    let said: Vec<String> = jobs.iter().map(|job| job.arguments(Path::new("/run/slurm"), &numbers).join(" ")).collect();
+    let said: Vec<String> = jobs.iter().map(|job| job.arguments(Path::new("/run/slurm"), &numbers, &[]).join(" ")).collect();
     assert_eq!(
         said,
         [
@@ -69,6 +77,10 @@ fn val_the_arguments_of_sbatch() {
             "--parsable --dependency=afterany:72 --kill-on-invalid-dep=yes /run/slurm/aggregate.sbatch",
         ]
     );
+    // What is in the queue already is waited for, by the first of a chain and by the tables.
+    let later: Vec<String> = jobs.iter().map(|job| job.arguments(Path::new("/run"), &numbers, &[60, 61]).join(" ")).collect();
+    assert!(later[0].contains("--dependency=afterany:60:61 ") && later[1].contains("--dependency=aftercorr:71 "), "{later:?}");
+    assert!(later[2].contains("--dependency=afterany:60:61:72 "), "{later:?}");
     let campaign = Campaign::new(Spec::parse(SMALL, "x.toml").unwrap(), PathBuf::from("/data/run"));
     let text = script(&campaign, Stage::Cycle, &order);
     assert!(text.contains("#SBATCH --time=1:00:00\n") && text.contains("#SBATCH --cpus-per-task=3\n"), "{text}");
@@ -156,7 +168,7 @@ fn e2e_slurm_does_what_run_does() {
     // At once again: all of it is in the queue, or done since.
     let again = submit(&[]);
     assert_eq!(code(&again), 0, "{}", stderr(&again));
-    assert!(stdout(&again).contains("Nothing to submit"), "{}", stdout(&again));
+    assert!(stdout(&again).contains("\"jobs\": []"), "{}", stdout(&again));
     let began = Instant::now();
     while !bench.out().join("receipts/report/report.json").is_file() {
         assert!(began.elapsed() < Duration::from_secs(120), "{}", stdout(&slurm.run(Command::new("squeue").arg("--all"))));

@@ -1,8 +1,8 @@
 //! Every key of the spec, and what it makes stale.
 
-use hysteron::campaign::Campaign;
+use hysteron::campaign::{Campaign, Standing};
 use hysteron::spec::Spec;
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 use std::path::PathBuf;
 
 fn campaign(text: &str) -> Campaign {
@@ -11,7 +11,7 @@ fn campaign(text: &str) -> Campaign {
 
 /// Keys by stage: surfaces, asperities, cycles, statistics, report.
 fn keys(campaign: &Campaign) -> [Vec<String>; 5] {
-    let statistics = campaign.statistics_key(&vec![true; campaign.cycles.len()]);
+    let statistics = campaign.statistics_key(&vec![Standing::Done; campaign.cycles.len()]);
     [
         campaign.surfaces.iter().map(|unit| unit.key.clone()).collect(),
         campaign.surfaces.iter().map(|unit| unit.asperities_key.clone()).collect(),
@@ -23,7 +23,7 @@ fn keys(campaign: &Campaign) -> [Vec<String>; 5] {
 
 /// Another value for every key of a spec, and the first stage that reads it: 0 generate, 2 cycle, 3 aggregate, 4 report.
 const OTHERS: [(&str, &str, usize); 21] = [
-    ("name", "\"y\"", 4),
+    ("name", "\"y\"", 3),
     ("seed", "2022", 0),
     ("surface.length_m", "0.002", 0),
     ("surface.rms_height_m", "6e-6", 0),
@@ -97,4 +97,39 @@ fn law_ids_stay_when_a_campaign_grows() {
     assert_eq!(small.len(), 10);
     assert!(small.is_subset(&large));
     assert_eq!(large.len(), 5 * (5 + 5 + 1));
+}
+
+#[test]
+fn law_two_units_never_share_an_id() {
+    let text = |values: &[String]| {
+        format!(
+            "name = \"x\"\nrealizations = 1\n[surface]\nmagnification = 6\n[[sweep]]\nname = \"s\"\nmaterial.work_of_adhesion_j_m2 = [{}]\n",
+            values.join(", ")
+        )
+    };
+    // Eight digits of a key: among some ten thousands of values two share them.
+    let mut known: HashMap<String, String> = HashMap::new();
+    let pair = (1..100).find_map(|block: u32| {
+        let values: Vec<String> = (0..5000).map(|k| format!("{}e-8", 5000 * block + k)).collect();
+        let cycles = campaign(&text(&values)).cycles;
+        values
+            .into_iter()
+            .zip(cycles)
+            .find_map(|(value, unit)| known.insert(unit.key[..8].to_owned(), value.clone()).map(|other| [other, value]))
+    });
+    let pair = pair.unwrap();
+    let both = campaign(&text(&pair));
+    let ids: BTreeSet<&str> = both.cycles.iter().map(|unit| unit.id.as_str()).collect();
+    assert_eq!(ids.len(), 2, "{ids:?}");
+    assert!(both.cycles.iter().all(|unit| unit.id.ends_with(&unit.key[..16])), "{ids:?}");
+    let alone = campaign(&text(&pair[..1]));
+    assert!(alone.cycles[0].id.ends_with(&format!("-{}", &alone.cycles[0].key[..8])));
+}
+
+#[test]
+fn law_what_failed_is_another_table_than_what_was_not_tried() {
+    let one = campaign("name = \"x\"\n[surface]\nmagnification = 8\n");
+    let failed = Standing::Failed("no equilibrium".to_owned());
+    let keys: BTreeSet<String> = [Standing::Done, Standing::Planned, failed].map(|standing| one.statistics_key(&[standing])).into();
+    assert_eq!(keys.len(), 3);
 }

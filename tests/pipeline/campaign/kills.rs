@@ -86,7 +86,7 @@ fn e2e_shards_and_jobs_change_no_byte() {
 fn e2e_a_shard_is_a_part_and_says_what_it_cannot_be() {
     let bench = Bench::new(SMALL);
     let report = bench.verb("run", &["--shard", "0/2"]);
-    assert_eq!(code(&report), 1);
+    assert_eq!(code(&report), 2);
     assert!(stderr(&report).contains("--until cycle"), "{}", stderr(&report));
     for wrong in ["2/2", "0/0", "1", "a/b", "-1/2"] {
         let refused = bench.verb("cycle", &[&format!("--shard={wrong}")]);
