@@ -133,8 +133,25 @@ pub fn plot_xy(plot: &XyPlot) -> String {
     // A view box lets a page scale the picture; the backend gives a width and a height only.
     let view_box = format!("<svg viewBox=\"0 0 {} {}\" ", scene.width, scene.height);
     let svg = SvgBackend.render_scene(&scene).replacen("<svg ", &view_box, 1);
-    // The library numbers its clip paths from zero in every picture: two pictures in one page would cut each other.
-    markup::render(&svg.replace("kuva-clip-", &format!("{}-clip-", plot.stem)))
+    markup::render(&own_clips(&svg, &plot.stem))
+}
+
+/// The library numbers its clip paths through all pictures that a program draws. Here each has its own, counted from zero under its own name: the same plot is the same
+/// picture whatever was drawn before, and two pictures in one page do not cut each other.
+fn own_clips(svg: &str, stem: &str) -> String {
+    let mut parts = svg.split("kuva-clip-");
+    let mut own = parts.next().unwrap_or_default().to_owned();
+    let mut known: Vec<&str> = Vec::new();
+    for part in parts {
+        let digits = part.len() - part.trim_start_matches(|c: char| c.is_ascii_digit()).len();
+        let (number, rest) = part.split_at(digits);
+        let place = known.iter().position(|seen| *seen == number).unwrap_or_else(|| {
+            known.push(number);
+            known.len() - 1
+        });
+        own += &format!("{stem}-clip-{place}{rest}");
+    }
+    own
 }
 
 fn layout(plot: &XyPlot) -> Layout {

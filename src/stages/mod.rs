@@ -303,7 +303,8 @@ fn require<T: Sync>(
     }
 }
 
-/// Runs units in parallel, and writes the receipt of each; `then` is what is left to do. Failures of the physics are counted; the first other error ends the stage when all have been tried.
+/// Runs units in parallel, in their order, and writes the receipt of each; `then` is what is left to do. Failures of the physics are counted; another error ends
+/// the stage when all have been tried.
 fn each<T: Sync>(
     campaign: &Campaign,
     (stage, planned): (Stage, usize),
@@ -313,9 +314,10 @@ fn each<T: Sync>(
     then: impl Fn(&T) + Sync,
 ) -> Result<Tally, StageError> {
     watch.begin(stage, planned - jobs.len(), planned);
+    // A bridge hands them out one by one, in their order; halves of a list would leave half of the longest ones to the end.
     let outcomes: Vec<Result<(), StageError>> = jobs
-        .par_iter()
-        .with_max_len(1)
+        .iter()
+        .par_bridge()
         .map(|(job, _)| {
             let clock = Clock::start();
             let outcome = work(job.of)?;

@@ -108,6 +108,12 @@ fn e2e_every_panel_is_drawn_again_from_its_table() {
             curve.points = rows.iter().map(|k| (x[*k], y[*k])).collect();
             curve.errors = rows.iter().map(|k| spread[*k]).collect();
         }
+        for (curve, drawn) in plot.curves.iter().zip(&panel.plot.curves) {
+            assert_eq!((&curve.points, &curve.name), (&drawn.points, &drawn.name), "{}", panel.stem);
+            let bars = |errors: &[Option<f64>]| errors.iter().flatten().copied().collect::<Vec<f64>>();
+            assert_eq!(bars(&curve.errors), bars(&drawn.errors), "{}", panel.stem);
+        }
+        assert!(plot_xy(&panel.plot) == panel.svg, "{} is another picture when it is drawn twice", panel.stem);
         assert!(plot.curves.iter().any(|curve| curve.points.len() > 1), "{}", panel.stem);
         assert!(plot_xy(&plot) == panel.svg, "{} is another picture", panel.stem);
     }
