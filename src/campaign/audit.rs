@@ -40,11 +40,12 @@ impl Campaign {
     /// All receipts of the folder that can be read, the spec's first, then by stage and id.
     #[must_use]
     pub fn all_receipts(&self) -> Vec<Receipt> {
-        let found = self.receipt_paths().0.into_par_iter().filter_map(|path| match read_receipt(&path) {
-            Found::Whole(receipt) => Some(*receipt),
-            _ => None,
-        });
-        found.collect()
+        readable(&self.receipt_paths().0)
+    }
+
+    /// All receipts of a stage that can be read, by id.
+    pub(super) fn receipts(&self, stage: Stage) -> Vec<Receipt> {
+        readable(&self.receipts_of(stage).unwrap_or_default())
     }
 
     fn audit_one(&self, path: &Path, check: Check) -> Audit {
@@ -68,23 +69,33 @@ impl Campaign {
     fn receipt_paths(&self) -> (Vec<PathBuf>, Vec<String>) {
         let (mut paths, mut faults) = (vec![self.spec_receipt_path()], Vec::new());
         for stage in Stage::ALL {
-            let folder = self.receipts_dir(stage);
-            let entries = match std::fs::read_dir(&folder) {
-                Ok(entries) => entries.collect::<Result<Vec<_>, _>>(),
-                // No unit of this stage has been done yet.
-                Err(error) if error.kind() == std::io::ErrorKind::NotFound => continue,
-                Err(error) => Err(error),
-            };
-            match entries {
-                Ok(entries) => {
-                    let mut names: Vec<PathBuf> = entries.into_iter().map(|entry| entry.path()).collect();
-                    names.retain(|path| path.extension().is_some_and(|extension| extension == "json"));
-                    names.sort();
-                    paths.extend(names);
-                }
+            match self.receipts_of(stage) {
+                Ok(found) => paths.extend(found),
                 Err(error) => faults.push(format!("receipts/{} cannot be listed: {error}", stage.word())),
             }
         }
         (paths, faults)
     }
+
+    /// Where the receipts of a stage are, in the order of their names.
+    fn receipts_of(&self, stage: Stage) -> std::io::Result<Vec<PathBuf>> {
+        let entries = match std::fs::read_dir(self.receipts_dir(stage)) {
+            // No unit of this stage has been done yet.
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
+            entries => entries?,
+        };
+        let mut paths = entries.map(|entry| Ok(entry?.path())).collect::<std::io::Result<Vec<PathBuf>>>()?;
+        paths.retain(|path| path.extension().is_some_and(|extension| extension == "json"));
+        paths.sort();
+        Ok(paths)
+    }
+}
+
+/// Those of some receipts that can be read.
+fn readable(paths: &[PathBuf]) -> Vec<Receipt> {
+    let found = paths.par_iter().filter_map(|path| match read_receipt(path) {
+        Found::Whole(receipt) => Some(*receipt),
+        _ => None,
+    });
+    found.collect()
 }

@@ -3,8 +3,7 @@
 use super::leftover::is_id;
 use super::{Campaign, REPORT_PAGE, STATISTICS, Stage, Standing, Unit};
 use crate::keys::canonical;
-use crate::store::{Check, Found, Receipt, read_receipt};
-use rayon::prelude::*;
+use crate::store::{Check, Found, read_receipt};
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::collections::{BTreeMap, BTreeSet};
@@ -105,21 +104,6 @@ impl Campaign {
             nearest(&here, self.surfaces.iter().map(|unit| (unit.id.clone(), fields(&self.surface_preimages(unit, stage)))))
         };
         Some(Explanation { stage: stage.word(), id: id.to_owned(), state: "orphan", why: None, nearest, differences })
-    }
-
-    /// All receipts of a stage that can be read.
-    fn receipts(&self, stage: Stage) -> Vec<Receipt> {
-        let Ok(entries) = std::fs::read_dir(self.receipts_dir(stage)) else { return Vec::new() };
-        let mut paths: Vec<_> =
-            entries.flatten().map(|entry| entry.path()).filter(|path| path.extension().is_some_and(|e| e == "json")).collect();
-        paths.sort();
-        paths
-            .par_iter()
-            .filter_map(|path| match read_receipt(path) {
-                Found::Whole(receipt) => Some(*receipt),
-                _ => None,
-            })
-            .collect()
     }
 }
 

@@ -140,14 +140,15 @@ struct Job<'a, T> {
 /// A folder or file that cannot be written; for a single stage: what that stage reads is not there.
 pub fn run(campaign: &Campaign, task: &Task, watch: &dyn Watch) -> Result<Vec<(Stage, Tally)>, StageError> {
     prepare(campaign)?;
+    // What an earlier stage of this run has looked at is not read again.
+    let cycles_check = if task.from <= Stage::Cycle { Check::Sizes } else { task.check };
     let mut tallies = Vec::new();
     for stage in Stage::ALL.into_iter().filter(|stage| (task.from..=task.until).contains(stage)) {
         let tally = match stage {
-            Stage::Generate => generate(campaign, task, watch)?,
-            Stage::Extract => extract(campaign, task, watch)?,
+            Stage::Generate | Stage::Extract => surfaces(campaign, task, stage, watch)?,
             Stage::Cycle => cycles(campaign, task, watch)?,
-            Stage::Aggregate => statistics::run(campaign, task.partial || task.from != task.until, task.check, watch)?,
-            Stage::Report => report::run(campaign, task.check, watch)?,
+            Stage::Aggregate => statistics::run(campaign, task.partial || task.from != task.until, (cycles_check, task.check), watch)?,
+            Stage::Report => report::run(campaign, (cycles_check, task.check), watch)?,
         };
         tallies.push((stage, tally));
     }
@@ -199,41 +200,24 @@ fn surface_jobs<'a>(campaign: &'a Campaign, task: &Task, stage: Stage) -> Vec<Jo
     .collect()
 }
 
-fn generate(campaign: &Campaign, task: &Task, watch: &dyn Watch) -> Result<Tally, StageError> {
-    let jobs = surface_jobs(campaign, task, Stage::Generate);
-    let planned = jobs.len();
-    let wanted = due(jobs, |job| campaign.standing(&job.unit, task.check), watch);
-    each(
-        campaign,
-        (Stage::Generate, planned),
-        &wanted,
-        watch,
-        |unit| {
-            let outcome = surface::generate(campaign, unit)?;
-            watch.progress(Stage::Generate, 1.0);
-            Ok(outcome)
-        },
-        |_| (),
-    )
-}
+/// What a stage does with a surface.
+type OfSurface = fn(&Campaign, &SurfaceUnit) -> Result<Outcome, StageError>;
 
-fn extract(campaign: &Campaign, task: &Task, watch: &dyn Watch) -> Result<Tally, StageError> {
-    let jobs = surface_jobs(campaign, task, Stage::Extract);
+/// generate and extract: one unit for each surface.
+fn surfaces(campaign: &Campaign, task: &Task, stage: Stage, watch: &dyn Watch) -> Result<Tally, StageError> {
+    let work: OfSurface = if stage == Stage::Generate { surface::generate } else { surface::extract };
+    let jobs = surface_jobs(campaign, task, stage);
     let planned = jobs.len();
     let wanted = due(jobs, |job| campaign.standing(&job.unit, task.check), watch);
-    require(Stage::Extract, &wanted, |unit| campaign.standing(&unit.surface(), task.check), |unit| unit.id.clone())?;
-    each(
-        campaign,
-        (Stage::Extract, planned),
-        &wanted,
-        watch,
-        |unit| {
-            let outcome = surface::extract(campaign, unit)?;
-            watch.progress(Stage::Extract, 1.0);
-            Ok(outcome)
-        },
-        |_| (),
-    )
+    if stage == Stage::Extract {
+        require(stage, &wanted, |unit| campaign.standing(&unit.surface(), task.check), |unit| unit.id.clone())?;
+    }
+    let work = |unit: &SurfaceUnit| {
+        let outcome = work(campaign, unit)?;
+        watch.progress(stage, 1.0);
+        Ok(outcome)
+    };
+    each(campaign, (stage, planned), &wanted, watch, work, |_| ())
 }
 
 /// Cycles all cases. One that the physics refuses is recorded as failed, and the others go on; it is not tried again unless that is asked for, since it would

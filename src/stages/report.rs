@@ -11,9 +11,9 @@ use crate::stats::summary;
 use crate::store::{Check, Frame, commit, parquet};
 use std::fmt::Write as _;
 
-pub(super) fn run(campaign: &Campaign, check: Check, watch: &dyn Watch) -> Result<Tally, StageError> {
+pub(super) fn run(campaign: &Campaign, (cycles_check, check): (Check, Check), watch: &dyn Watch) -> Result<Tally, StageError> {
     let clock = Clock::start();
-    let statistics = campaign.statistics_key(&campaign.cycle_standings(check));
+    let statistics = campaign.statistics_key(&campaign.cycle_standings(cycles_check));
     let key = campaign.report_key(&statistics);
     let unit = Unit { stage: Stage::Report, id: REPORT_PAGE, key: &key };
     let mut tally = Tally { planned: 1, ..Tally::default() };

@@ -29,9 +29,14 @@ pub(super) fn moments(header: &SurfaceHeader) -> Moments {
     Moments { m0_m2: header.rms_height_m.powi(2), m2: 0.5 * header.rms_slope.powi(2), m4_1_m2: 0.375 * header.rms_curvature_1_m.powi(2) }
 }
 
-pub(super) fn run(campaign: &Campaign, partial: bool, check: Check, watch: &dyn Watch) -> Result<Tally, StageError> {
+pub(super) fn run(
+    campaign: &Campaign,
+    partial: bool,
+    (cycles_check, check): (Check, Check),
+    watch: &dyn Watch,
+) -> Result<Tally, StageError> {
     let clock = Clock::start();
-    let standings = campaign.cycle_standings(check);
+    let standings = campaign.cycle_standings(cycles_check);
     let lacking: Vec<&CycleUnit> = campaign
         .cycles
         .iter()

@@ -1,6 +1,6 @@
 //! `export`: files that other programs run or publish a campaign with.
 
-use super::{Fault, failed, open, open_dir, say, told};
+use super::{Fault, failed, make_folder, open, open_dir, own_file, say, told};
 use crate::campaign::Standing;
 use crate::cli::{FolderArguments, OutputArguments};
 use crate::engines::{ro_crate as description, snakemake as rules, usual_shards};
@@ -15,8 +15,8 @@ pub(super) fn snakemake(spec: &Path, output: &OutputArguments, shards: Option<u3
     campaign.dir = told(&campaign.dir)?;
     stages::prepare(&campaign).map_err(failed)?;
     let folder = campaign.dir.join("snakemake");
-    std::fs::create_dir_all(&folder).map_err(|error| failed(format!("cannot make the folder {}: {error}", folder.display())))?;
-    let program = std::env::current_exe().map_err(|error| failed(format!("cannot find the program's own file: {error}")))?;
+    make_folder(&folder)?;
+    let program = own_file()?;
     let shards = shards.map_or_else(|| usual_shards(&campaign), |count| count as usize);
     let path = folder.join("Snakefile");
     commit::commit_bytes("write the Snakefile", &path, rules::snakefile(&campaign, &program, shards).as_bytes()).map_err(failed)?;

@@ -117,6 +117,15 @@ fn told(dir: &Path) -> Result<PathBuf, Fault> {
     }
 }
 
+fn make_folder(folder: &Path) -> Result<(), Fault> {
+    std::fs::create_dir_all(folder).map_err(|error| failed(format!("cannot make the folder {}: {error}", folder.display())))
+}
+
+/// The program itself, as another one is to start it.
+fn own_file() -> Result<PathBuf, Fault> {
+    std::env::current_exe().map_err(|error| failed(format!("cannot find the program's own file: {error}")))
+}
+
 /// The campaign whose results a folder holds.
 fn open_dir(action: &str, dir: &Path) -> Result<Campaign, Fault> {
     let path = dir.join("campaign.toml");
@@ -130,7 +139,7 @@ fn open_dir(action: &str, dir: &Path) -> Result<Campaign, Fault> {
 fn schemas(write: bool) -> Result<u8, Fault> {
     let folder = Path::new(schema::DIRECTORY);
     if write {
-        std::fs::create_dir_all(folder).map_err(|source| failed(format!("cannot make the folder {}: {source}", folder.display())))?;
+        make_folder(folder)?;
     }
     for file in schema::files() {
         if write {

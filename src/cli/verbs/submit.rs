@@ -1,6 +1,6 @@
 //! `submit`: what is not done yet goes to Slurm; and what `status` says of its queue.
 
-use super::{Fault, failed, open, say, told};
+use super::{Fault, failed, make_folder, open, own_file, say, told};
 use crate::campaign::{Campaign, Stage, Standing};
 use crate::cli::OutputArguments;
 use crate::engines::slurm::{Job, Order, Queue, Sent, folder, jobs, script};
@@ -28,7 +28,7 @@ pub(super) fn slurm(spec: &Path, output: &OutputArguments, shards: Option<u32>, 
     }
     let survey = campaign.survey(Check::Sizes);
     let open = |stage: Stage| {
-        let mut open = open_shards(&campaign, &survey, stage, shards);
+        let mut open = open_shards(&survey, stage, shards);
         // What is in the queue is on its way.
         open.retain(|shard| !queue.shards.contains(&(stage.word().to_owned(), shards, *shard)));
         (stage, open)
@@ -40,7 +40,7 @@ pub(super) fn slurm(spec: &Path, output: &OutputArguments, shards: Option<u32>, 
         say(&if output.json { jobs_json(&campaign, &[], &[]) } else { format!("Nothing to submit: {why}.\n") })?;
         return Ok(0);
     }
-    let program = std::env::current_exe().map_err(|error| failed(format!("cannot find the program's own file: {error}")))?;
+    let program = own_file()?;
     let queued = queue.jobs.iter().copied().collect();
     let order = Order { program, shards, waiting, most: most(), cpus: task.0, options: task.1.to_vec(), queued };
     if dry { show(&campaign, &order, output.json) } else { send(&campaign, &order, sent, output.json) }
@@ -81,7 +81,7 @@ fn send(campaign: &Campaign, order: &Order, mut sent: Vec<Sent>, json: bool) -> 
     let (folder, jobs) = (folder(campaign), jobs(order));
     stages::prepare(campaign).map_err(failed)?;
     let log = folder.join("log");
-    std::fs::create_dir_all(&log).map_err(|error| failed(format!("cannot make the folder {}: {error}", log.display())))?;
+    make_folder(&log)?;
     for (path, text) in scripts(campaign, order, &jobs) {
         commit::commit_bytes("write the script", &path, text.as_bytes()).map_err(failed)?;
     }
