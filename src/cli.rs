@@ -100,8 +100,17 @@ enum Verb {
         #[arg(long)]
         partial: bool,
     },
-    /// Draw the figures and write the page
-    Report(CampaignArguments),
+    /// Draw the figures and write the page; or compare finished campaigns
+    Report {
+        /// The spec, a TOML file
+        #[arg(required_unless_present = "compare")]
+        spec: Option<PathBuf>,
+        /// Compare the campaigns in these output folders with the first one, instead [default --out: data/runs/comparison]
+        #[arg(long, num_args = 2.., value_name = "DIR", conflicts_with = "spec")]
+        compare: Vec<PathBuf>,
+        #[command(flatten)]
+        campaign: HowArguments,
+    },
     /// Hand what is not done yet to a scheduler
     Submit {
         /// The spec, a TOML file
@@ -140,6 +149,12 @@ enum Verb {
 struct CampaignArguments {
     /// The spec, a TOML file
     spec: PathBuf,
+    #[command(flatten)]
+    how: HowArguments,
+}
+
+#[derive(Debug, Args)]
+struct HowArguments {
     #[command(flatten)]
     output: OutputArguments,
     #[command(flatten)]

@@ -123,7 +123,7 @@ choice! {
     KeptContacts {
         /// Every step.
         All = "all",
-        /// The turning points.
+        /// The turning points; and on the way the first steps at half their load, back at none, and the one of the greatest tension.
         Turning = "turning",
         /// None.
         None = "none",
@@ -140,6 +140,18 @@ choice! {
         A2 = "a2",
         /// `sqrt(m4/3t)` for `sqrt(m4/3)·t` below Eq A3.
         A3 = "a3",
+    }
+}
+
+choice! {
+    /// A result of a cycle whose mean can be asked for to a given precision.
+    Goal {
+        /// The energy lost, Θ.
+        Loss = "loss",
+        /// The greatest tension on unloading.
+        PullOff = "pull_off_load",
+        /// The area of contact at the turning point.
+        Area = "area_at_max_load",
     }
 }
 

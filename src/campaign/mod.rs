@@ -14,8 +14,9 @@ pub use leftover::Leftover;
 pub use shard::Shard;
 pub use standing::{Standing, Survey};
 
-use crate::keys::{canonical, key_of_text, preimage, short};
+use crate::keys::{canonical, key, key_of_text, preimage, short};
 use crate::spec::{Case, ModelParams, Spec, SurfaceParams};
+use rayon::prelude::*;
 use serde_json::{Map, Value, json};
 use std::collections::{HashMap, HashSet};
 use std::path::PathBuf;
@@ -23,9 +24,9 @@ use std::path::PathBuf;
 /// A stage's meaning: raised by hand when what it writes changes for the same parameters.
 const GENERATE: u32 = 1;
 const EXTRACT: u32 = 1;
-const CYCLE: u32 = 11;
-const AGGREGATE: u32 = 3;
-const REPORT: u32 = 5;
+const CYCLE: u32 = 12;
+const AGGREGATE: u32 = 4;
+const REPORT: u32 = 6;
 
 /// The stages, in their order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -105,6 +106,8 @@ pub struct Campaign {
     pub dir: PathBuf,
     /// Cases.
     pub cases: Vec<CaseUnit>,
+    /// How many realizations each case has, as far as is known.
+    pub counts: Vec<u32>,
     /// Surfaces, each once however many cases share it.
     pub surfaces: Vec<SurfaceUnit>,
     /// Cycles, by case and realisation. Cases that differ only in what stands beside a cycle share it: their units have one key and one id.
@@ -150,43 +153,57 @@ pub const STATISTICS: &str = "statistics";
 pub const REPORT_PAGE: &str = "report";
 
 impl Campaign {
-    /// All units of a spec.
+    /// All units of a spec; of one that asks for a precision, those that it begins with.
     #[must_use]
     pub fn new(spec: Spec, dir: PathBuf) -> Self {
-        let mut campaign = Self { dir, cases: Vec::new(), surfaces: Vec::new(), cycles: Vec::new(), spec };
+        let counts = vec![spec.realizations.least(); spec.cases.len()];
+        Self::with_counts(spec, dir, counts)
+    }
+
+    /// The units of a spec with so many realizations of each case.
+    #[must_use]
+    pub fn with_counts(spec: Spec, dir: PathBuf, counts: Vec<u32>) -> Self {
+        let mut campaign = Self { dir, cases: Vec::new(), surfaces: Vec::new(), cycles: Vec::new(), counts, spec };
         let mut known: HashMap<String, usize> = HashMap::new();
-        for (number, case) in campaign.spec.cases.iter().enumerate() {
-            let params = &case.params;
-            let name = format!("H{:.2}_z{}", params.surface.hurst, params.surface.magnification);
-            // Whatever the realizations have in common is put into words once.
-            let surface = canonical(&plain(&params.surface));
-            let [material, model, cycle] = [plain(&params.material), plain(&read_by_cycle(&params.model)), plain(&params.cycle)];
-            let rest = format!("\"cycle\":{},\"material\":{},\"model\":{}", canonical(&cycle), canonical(&material), canonical(&model));
-            let whole = key_of_text("case", 1, &canonical(&plain(params)));
+        // All of the hashing, in parallel: what follows is a few look-ups for each unit.
+        let hashed: Vec<Hashed> = campaign
+            .spec
+            .cases
+            .par_iter()
+            .zip(&campaign.counts)
+            .map(|(case, count)| Hashed::new(case, campaign.spec.seed, *count))
+            .collect();
+        for (number, (case, Hashed { name, whole, realizations })) in campaign.spec.cases.iter().zip(hashed).enumerate() {
             campaign.cases.push(CaseUnit { id: format!("{name}-{}", short(&whole)), case: case.clone() });
-            for realization in 0..campaign.spec.realizations {
-                let reads = format!("{{\"realization\":{realization},\"seed\":{},\"surface\":{surface}}}", campaign.spec.seed);
-                let own = key_of_text(Stage::Generate.word(), GENERATE, &reads);
-                let place = *known.entry(own).or_insert_with_key(|own| {
+            for (realization, keys) in (0..).zip(realizations) {
+                let place = *known.entry(keys.surface).or_insert_with_key(|key| {
                     campaign.surfaces.push(SurfaceUnit {
-                        id: format!("{name}_r{realization:02}-{}", short(own)),
-                        asperities_key: key_of_text(Stage::Extract.word(), EXTRACT, &format!("{{\"surface\":\"{own}\"}}")),
-                        key: own.clone(),
-                        params: params.surface.clone(),
+                        id: format!("{name}_r{realization:02}-{}", short(key)),
+                        asperities_key: keys.asperities,
+                        key: key.clone(),
+                        params: case.params.surface.clone(),
                         realization,
                     });
                     campaign.surfaces.len() - 1
                 });
-                let reads = format!("{{\"asperities\":\"{}\",{rest}}}", campaign.surfaces[place].asperities_key);
-                let own = key_of_text(Stage::Cycle.word(), CYCLE, &reads);
-                let id = format!("{name}_r{realization:02}-{}", short(&own));
-                campaign.cycles.push(CycleUnit { id, key: own, case: number, surface: place });
+                let id = format!("{name}_r{realization:02}-{}", short(&keys.cycle));
+                campaign.cycles.push(CycleUnit { id, key: keys.cycle, case: number, surface: place });
             }
         }
         let surfaces = campaign.surfaces.iter_mut().map(|unit| (&mut unit.id, unit.key.as_str())).collect();
         tell_apart(surfaces);
         tell_apart(campaign.cycles.iter_mut().map(|unit| (&mut unit.id, unit.key.as_str())).collect());
         campaign
+    }
+
+    /// How many realizations the cases have, as in "6 realizations" or "6 to 14 realizations".
+    #[must_use]
+    pub fn realizations_in_words(&self) -> String {
+        match (self.counts.iter().min(), self.counts.iter().max()) {
+            (Some(1), Some(1)) => "1 realization".to_owned(),
+            (Some(least), Some(most)) if least < most => format!("{least} to {most} realizations"),
+            (least, _) => format!("{} realizations", least.copied().unwrap_or_default()),
+        }
     }
 
     /// The cycles to be computed: each once, however many cases share it.
@@ -252,20 +269,27 @@ impl Campaign {
 
     /// What the key of the tables over realisations is made of: the cycles that are in them, and those that failed; and the name, which their description has.
     fn statistics_reads(&self, cycles: &[Standing]) -> Value {
-        let state = |standing: &Standing| match standing {
-            Standing::Done => "done",
-            Standing::Failed(_) => "failed",
-            _ => "open",
-        };
         let cycles: Vec<Value> = self.cycles.iter().zip(cycles).map(|(unit, standing)| json!([unit.key, state(standing)])).collect();
-        let cases: Vec<Value> = self.cases.iter().map(|unit| json!([unit.id, unit.case.sweeps])).collect();
-        json!({ "name": self.spec.name, "cases": cases, "cycles": cycles })
+        json!({ "name": self.spec.name, "cases": self.statistics_cases(), "cycles": cycles })
+    }
+
+    fn statistics_cases(&self) -> Value {
+        self.cases.iter().map(|unit| json!([unit.id, unit.case.sweeps])).collect()
     }
 
     /// Key of the tables over realisations, where the cycles stand so.
     #[must_use]
     pub fn statistics_key(&self, cycles: &[Standing]) -> String {
-        key_of_text(Stage::Aggregate.word(), AGGREGATE, &canonical(&self.statistics_reads(cycles)))
+        // As many words as there are cycles: written as canonical JSON at once.
+        let mut reads = format!("{{\"cases\":{},\"cycles\":[", canonical(&self.statistics_cases()));
+        for (k, (unit, standing)) in self.cycles.iter().zip(cycles).enumerate() {
+            let comma = if k > 0 { "," } else { "" };
+            for part in [comma, "[\"", &unit.key, "\",\"", state(standing), "\"]"] {
+                reads.push_str(part);
+            }
+        }
+        reads = format!("{reads}],\"name\":\"{}\"}}", self.spec.name);
+        key_of_text(Stage::Aggregate.word(), AGGREGATE, &reads)
     }
 
     /// What the report reads: the tables, and the spec as it is written out, which it shows.
@@ -277,7 +301,7 @@ impl Campaign {
     /// Key of the report.
     #[must_use]
     pub fn report_key(&self, statistics_key: &str) -> String {
-        key_of_text(Stage::Report.word(), REPORT, &canonical(&self.report_reads(statistics_key)))
+        key(Stage::Report.word(), REPORT, &self.report_reads(statistics_key))
     }
 
     /// What the keys of a surface's units are hashes of, by stage, up to and with `stage`.
@@ -324,6 +348,44 @@ impl Campaign {
     }
 }
 
+/// The keys of a case.
+struct Hashed {
+    /// The readable part of its ids.
+    name: String,
+    /// Of all its parameters.
+    whole: String,
+    realizations: Vec<Keys>,
+}
+
+/// The keys of one realization of a case.
+struct Keys {
+    surface: String,
+    asperities: String,
+    cycle: String,
+}
+
+impl Hashed {
+    fn new(case: &Case, seed: u64, count: u32) -> Self {
+        let params = &case.params;
+        // Whatever the realizations have in common is put into words once.
+        let surface = canonical(&plain(&params.surface));
+        let [material, model, cycle] = [plain(&params.material), plain(&read_by_cycle(&params.model)), plain(&params.cycle)];
+        let rest = format!("\"cycle\":{},\"material\":{},\"model\":{}", canonical(&cycle), canonical(&material), canonical(&model));
+        let keys = |realization: u32| {
+            let reads = format!("{{\"realization\":{realization},\"seed\":{seed},\"surface\":{surface}}}");
+            let surface = key_of_text(Stage::Generate.word(), GENERATE, &reads);
+            let asperities = key_of_text(Stage::Extract.word(), EXTRACT, &format!("{{\"surface\":\"{surface}\"}}"));
+            let cycle = key_of_text(Stage::Cycle.word(), CYCLE, &format!("{{\"asperities\":\"{asperities}\",{rest}}}"));
+            Keys { surface, asperities, cycle }
+        };
+        Self {
+            name: format!("H{:.2}_z{}", params.surface.hurst, params.surface.magnification),
+            whole: key_of_text("case", 1, &canonical(&plain(params))),
+            realizations: (0..count).into_par_iter().map(keys).collect(),
+        }
+    }
+}
+
 /// Ids end in the first digits of keys; where two keys share these, both ids end in as many again.
 fn tell_apart(mut units: Vec<(&mut String, &str)>) {
     let mut first: HashMap<String, &str> = HashMap::new();
@@ -341,6 +403,15 @@ fn tell_apart(mut units: Vec<(&mut String, &str)>) {
 
 fn enter(preimages: &mut Map<String, Value>, stage: Stage, meaning: u32, reads: &Value) {
     preimages.insert(stage.word().to_owned(), preimage(stage.word(), meaning, reads));
+}
+
+/// What of a cycle's standing the tables over realizations depend on.
+fn state(standing: &Standing) -> &'static str {
+    match standing {
+        Standing::Done => "done",
+        Standing::Failed(_) => "failed",
+        _ => "open",
+    }
 }
 
 /// Of the model's choices what a cycle reads: all but the slips of the estimate beside it.

@@ -122,10 +122,27 @@ impl Campaign {
     /// How all cycles stand, in the order of [`Campaign::cycles`]; those that cases share are looked at once.
     #[must_use]
     pub fn cycle_standings(&self, check: Check) -> Vec<Standing> {
-        let distinct = self.distinct_cycles();
-        let standings: Vec<Standing> = distinct.par_iter().map(|unit| self.cycle_standing(unit, check)).collect();
-        let by_key: HashMap<&str, &Standing> = distinct.iter().map(|unit| unit.key.as_str()).zip(&standings).collect();
-        self.cycles.iter().map(|unit| by_key.get(unit.key.as_str()).map_or(Standing::Planned, |found| (*found).clone())).collect()
+        self.distinct_standings(check).1
+    }
+
+    /// The cycles, each once, with how it stands; and how all of them stand.
+    fn distinct_standings(&self, check: Check) -> (Vec<(CycleUnit, Standing)>, Vec<Standing>) {
+        let mut places: HashMap<&str, usize> = HashMap::with_capacity(self.cycles.len());
+        let mut distinct: Vec<&CycleUnit> = Vec::new();
+        let of_all: Vec<usize> = self
+            .cycles
+            .iter()
+            .map(|unit| {
+                *places.entry(unit.key.as_str()).or_insert_with(|| {
+                    distinct.push(unit);
+                    distinct.len() - 1
+                })
+            })
+            .collect();
+        let found: Vec<(CycleUnit, Standing)> =
+            distinct.into_par_iter().map(|unit| (unit.clone(), self.cycle_standing(unit, check))).collect();
+        let all = of_all.iter().map(|place| found[*place].1.clone()).collect();
+        (found, all)
     }
 
     /// How everything stands.
@@ -133,14 +150,11 @@ impl Campaign {
     pub fn survey(&self, check: Check) -> Survey {
         let surfaces = self.surfaces.par_iter().map(|unit| self.standing(&unit.surface(), check)).collect();
         let asperities = self.surfaces.par_iter().map(|unit| self.standing(&unit.asperities(), check)).collect();
-        let standings = self.cycle_standings(check);
+        let (cycles, standings) = self.distinct_standings(check);
         let statistics_key = self.statistics_key(&standings);
         let statistics = self.standing(&Unit { stage: Stage::Aggregate, id: STATISTICS, key: &statistics_key }, check);
         let report_key = self.report_key(&statistics_key);
         let report = self.standing(&Unit { stage: Stage::Report, id: REPORT_PAGE, key: &report_key }, check);
-        let mut known = std::collections::HashSet::new();
-        let cycles =
-            self.cycles.iter().zip(standings).filter(|(unit, _)| known.insert(unit.key.clone())).map(|(unit, s)| (unit.clone(), s));
-        Survey { surfaces, asperities, cycles: cycles.collect(), statistics, report }
+        Survey { surfaces, asperities, cycles, statistics, report }
     }
 }

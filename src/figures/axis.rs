@@ -19,8 +19,10 @@ pub struct Axis {
 enum Scale {
     /// A difference.
     Linear,
-    /// A ratio.
+    /// A ratio, in doublings.
     Doublings,
+    /// A ratio, in powers of ten.
+    Decades,
     /// Nothing: places 0, 1, 2, … have these names.
     Words(Vec<String>),
 }
@@ -54,6 +56,15 @@ impl Axis {
         Self { label: label.to_owned(), range: (low - 0.5, high + 0.5), step, exponent: 0, scale: Scale::Doublings }
     }
 
+    /// An axis on which a factor of ten is always the same distance, with a tick at each power of ten; of values that are not positive it holds none.
+    pub fn of_decades(label: &str, values: impl IntoIterator<Item = f64>) -> Self {
+        let (low, high) = extent(values.into_iter().filter(|value| *value > 0.0));
+        let (low, high) = (low.max(f64::MIN_POSITIVE).log10(), high.max(f64::MIN_POSITIVE).log10());
+        let air = 0.06 * (high - low).max(1.0);
+        let step = ((high - low) / 6.0).ceil().max(1.0);
+        Self { label: label.to_owned(), range: (low - air, high + air), step, exponent: 0, scale: Scale::Decades }
+    }
+
     /// An axis of places with names instead of numbers; values on it are places.
     pub fn of_words(label: &str, words: Vec<String>) -> Self {
         let last = words.len().saturating_sub(1) as f64;
@@ -68,7 +79,11 @@ impl Axis {
 
     /// Where a value is drawn.
     pub fn drawn(&self, value: f64) -> f64 {
-        if self.scale == Scale::Doublings { value.max(f64::MIN_POSITIVE).log2() } else { self.drawn_length(value) }
+        match self.scale {
+            Scale::Doublings => value.max(f64::MIN_POSITIVE).log2(),
+            Scale::Decades => value.max(f64::MIN_POSITIVE).log10(),
+            Scale::Linear | Scale::Words(_) => self.drawn_length(value),
+        }
     }
 
     /// How long a difference is drawn.
@@ -98,6 +113,7 @@ impl Axis {
         match &self.scale {
             Scale::Linear => {}
             Scale::Doublings => return format!("{:.0}", drawn.exp2()),
+            Scale::Decades => return format!("10^{{{:.0}}}", drawn + 0.0).replace('-', "−"),
             Scale::Words(words) => {
                 return words.get(drawn.round().max(0.0) as usize).cloned().unwrap_or_default();
             }

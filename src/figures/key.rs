@@ -4,7 +4,7 @@ use kuva::render::layout::ComputedLayout;
 use kuva::render::render::{Primitive, Scene, TextAnchor};
 
 use super::markup;
-use super::plot::{NOTE, NOTE_PITCH, XyPlot, text};
+use super::plot::{NOTE, NOTE_PITCH, SPECK, Stroke, XyPlot, text};
 
 /// Length of a line's sample.
 const SAMPLE: f64 = 30.0;
@@ -21,20 +21,23 @@ pub(super) fn add(scene: &mut Scene, frame: &ComputedLayout, plot: &XyPlot) {
             text(scene, (left, y + 4.5), &entry.text, TextAnchor::Start);
             continue;
         };
-        scene.add(Primitive::Line {
-            x1: left,
-            y1: y,
-            x2: left + SAMPLE,
-            y2: y,
-            stroke: entry.colour.as_str().into(),
-            stroke_width: 2.0,
-            stroke_dasharray: stroke.dashes().map(str::to_owned),
-        });
-        if entry.marked {
+        let speck = stroke == Stroke::Points;
+        if !speck {
+            scene.add(Primitive::Line {
+                x1: left,
+                y1: y,
+                x2: left + SAMPLE,
+                y2: y,
+                stroke: entry.colour.as_str().into(),
+                stroke_width: 2.0,
+                stroke_dasharray: stroke.dashes().map(str::to_owned),
+            });
+        }
+        if entry.marked || speck {
             scene.add(Primitive::Circle {
                 cx: left + SAMPLE / 2.0,
                 cy: y,
-                r: 4.5,
+                r: if speck { SPECK } else { 4.5 },
                 fill: entry.colour.as_str().into(),
                 fill_opacity: None,
                 stroke: None,

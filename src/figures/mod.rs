@@ -1,10 +1,13 @@
-//! Tables in, pictures out: four panels for each sweep, in the style of the paper's Figs 3 to 5.
+//! Tables in, pictures out: five panels for each sweep, in the style of the paper's Figs 3 to 5, and a closer look at one cycle.
 //!
 //! Loading is green and dashed, unloading red and solid, the prediction of Deng and Kesari blue and dashed; the hues are told apart with any
 //! colour vision, and the strokes without colour. Where the cases of a sweep differ, later ones are darker and each is named at its end.
 
 mod axis;
+mod closer;
+mod formats;
 mod key;
+mod map;
 mod markup;
 mod panels;
 mod paths;
@@ -15,7 +18,10 @@ mod sweep;
 mod table;
 
 pub use axis::Axis;
-pub use panels::{Panel, panels};
+pub use closer::{Closer, closer};
+pub use formats::{pdf, png};
+pub use map::map;
+pub use panels::{Panel, compared, panels};
 pub use plot::{Curve, KeyEntry, Note, Stroke, XyPlot, plot_xy};
 pub use table::table;
 
@@ -33,6 +39,9 @@ pub enum FigureError {
         /// Those of the table.
         known: String,
     },
+    /// A picture could not be made into another format.
+    #[error("cannot make a PNG or a PDF of a figure: {0}")]
+    Format(String),
     /// A table lacks a column.
     #[error(transparent)]
     Frame(#[from] FrameError),

@@ -1,17 +1,22 @@
-//! The four panels of a sweep.
+//! The five panels of a sweep: the paper's four, and the loss by branches.
 
 use super::FigureError;
 use super::paths::paths;
 use super::plot::{Stroke, XyPlot, plot_xy};
-use super::results::results;
+use super::results::{Measured, results};
+use super::style::{LOADING, UNLOADING};
 use super::sweep::Sweep;
 use crate::store::Frame;
+
+const LOSS: &str = "Θ/(E^{*}A_{0}h_{rms})";
 
 /// A panel that has been drawn.
 #[derive(Debug, Clone)]
 pub struct Panel {
     /// Stem of its file's name.
     pub stem: String,
+    /// Its letter, or its word.
+    pub name: String,
     /// The drawing.
     pub svg: String,
     /// What was drawn.
@@ -19,9 +24,9 @@ pub struct Panel {
 }
 
 /// Draws the panels of one sweep: `<sweep>_A` area over load, `<sweep>_B` pull-off load,
-/// `<sweep>_C` penetration over load, `<sweep>_D` energy lost, with the prediction of Deng and Kesari.
+/// `<sweep>_C` penetration over load, `<sweep>_D` energy lost, with the prediction of Deng and Kesari, `<sweep>_E` how much of it is lost on each branch.
 ///
-/// B and D stand over the parameter that varies; over the area at the end of loading if only the turning point varies. If several
+/// B, D and E stand over the parameter that varies; over the area at the end of loading if only the turning point varies. If several
 /// parameters vary, the first one is the axis, the title names the others, and only cases that differ in nothing else are joined. A case without
 /// finished realizations has no curve and no point. Error bars and bands are one standard deviation.
 ///
@@ -34,23 +39,50 @@ pub fn panels(cases: &Frame, curves: &Frame, sweep: &str) -> Result<Vec<Panel>, 
         .chars()
         .map(|letter| if letter.is_ascii_alphanumeric() || letter == '-' { letter } else { '_' })
         .collect();
+    drawn(cases, curves, &found, (&heading, &stem))
+}
+
+/// Draws the same panels of one case in several campaigns: the tables hold a row of it, and its paths, for each, and `labels` are what the campaigns are called, in the
+/// order of the rows.
+///
+/// # Errors
+/// If a table lacks a column.
+pub fn compared(cases: &Frame, curves: &Frame, labels: &[String], (heading, stem): (&str, &str)) -> Result<Vec<Panel>, FigureError> {
+    drawn(cases, curves, &Sweep::side_by_side(cases, labels)?, (heading, stem))
+}
+
+fn drawn(cases: &Frame, curves: &Frame, found: &Sweep, (heading, stem): (&str, &str)) -> Result<Vec<Panel>, FigureError> {
     let panel = |letter: char, plot: XyPlot| {
         let stem = format!("{stem}_{letter}");
-        let plot = XyPlot { letter, title: heading.clone(), stem: stem.clone(), ..plot };
-        Panel { stem, svg: plot_xy(&plot), plot }
+        let plot = XyPlot { letter, title: heading.to_owned(), stem: stem.clone(), ..plot };
+        Panel { stem, name: letter.to_string(), svg: plot_xy(&plot), plot }
     };
+    let computed = |name: &'static str| Measured { name, text: "computed", hue: UNLOADING, stroke: Stroke::Solid };
     Ok(vec![
-        panel('A', paths(curves, &found, "area", "A/A_{0}")?),
-        panel('B', results(cases, &found, "F_{po}/(E^{*}A_{0})", "pull_off_load", &[])?),
-        panel('C', paths(curves, &found, "penetration", "Δ/h_{rms}")?),
+        panel('A', paths(curves, found, "area", "A/A_{0}")?),
+        panel('B', results(cases, found, "F_{po}/(E^{*}A_{0})", &[computed("pull_off_load")], &[])?),
+        panel('C', paths(curves, found, "penetration", "Δ/h_{rms}")?),
         panel(
             'D',
             results(
                 cases,
-                &found,
-                "Θ/(E^{*}A_{0}h_{rms})",
-                "loss",
+                found,
+                LOSS,
+                &[computed("loss")],
                 &[("loss_dk", Stroke::Dashed, "Deng–Kesari"), ("loss_dk_realised", Stroke::Dotted, "Deng–Kesari, realised moments")],
+            )?,
+        ),
+        panel(
+            'E',
+            results(
+                cases,
+                found,
+                LOSS,
+                &[
+                    Measured { name: "dissipated_unloading", text: "lost on unloading", hue: UNLOADING, stroke: Stroke::Solid },
+                    Measured { name: "dissipated_loading", text: "lost on loading", hue: LOADING, stroke: Stroke::Dashed },
+                ],
+                &[],
             )?,
         ),
     ])

@@ -19,6 +19,8 @@ const TICK: u32 = 14;
 pub(super) const NOTE: u32 = 13;
 /// How much a band covers: several lie over one another.
 const BAND_OPACITY: f64 = 0.13;
+/// Radius of a point without a line.
+pub(super) const SPECK: f64 = 1.8;
 /// Least distance of two notes beside the plot, in pixels.
 pub(super) const NOTE_PITCH: f64 = 17.0;
 
@@ -31,12 +33,14 @@ pub enum Stroke {
     Dashed,
     /// Dots.
     Dotted,
+    /// No line: the points alone, small.
+    Points,
 }
 
 impl Stroke {
     pub(super) fn dashes(self) -> Option<&'static str> {
         match self {
-            Self::Solid => None,
+            Self::Solid | Self::Points => None,
             Self::Dashed => Some("7 4"),
             Self::Dotted => Some("1.5 3.5"),
         }
@@ -93,7 +97,7 @@ pub struct Note {
 pub struct XyPlot {
     /// Prefix of all identifiers inside the picture, so that many can stand in one page.
     pub stem: String,
-    /// The panel's letter, in bold at its upper left corner.
+    /// The panel's letter, in bold at its upper left corner; a space for none.
     pub letter: char,
     /// Heading, with markup; may be empty.
     pub title: String,
@@ -127,7 +131,9 @@ pub fn plot_xy(plot: &XyPlot) -> String {
         bold: true,
         color: None,
     };
-    scene.add(letter);
+    if !plot.letter.is_whitespace() {
+        scene.add(letter);
+    }
     add_notes(&mut scene, &frame, plot);
     key::add(&mut scene, &frame, plot);
     // A view box lets a page scale the picture; the backend gives a width and a height only.
@@ -205,6 +211,10 @@ fn drawn(curve: &Curve, plot: &XyPlot) -> Vec<Plot> {
         None => kuva::plot::line::LineStyle::Solid,
         Some(dashes) => kuva::plot::line::LineStyle::Custom(dashes.to_owned()),
     };
+    if curve.stroke == Stroke::Points {
+        let marks = ScatterPlot::new().with_data(points).with_color(curve.colour.clone()).with_size(SPECK);
+        return vec![Plot::Scatter(marks.with_marker(MarkerShape::Circle))];
+    }
     let line = LinePlot::new().with_data(points.clone()).with_color(curve.colour.clone()).with_stroke_width(2.0).with_line_style(style);
     let mut plots = vec![Plot::Line(line)];
     let bars = if curve.band { &[][..] } else { &curve.errors };

@@ -74,6 +74,22 @@ impl Sweep {
         let axis = axis(&differing, words, &members);
         Ok(Self { members, differing, many_loads, axis })
     }
+
+    /// One case in several campaigns: a row for each, in the order of their names.
+    pub(super) fn side_by_side(cases: &Frame, labels: &[String]) -> Result<Self, FigureError> {
+        let (ids, loads) = (cases.text("case_id")?, cases.f64("max_load")?);
+        let member = |(row, label): (usize, &String)| Member {
+            row,
+            case_id: ids.get(row).copied().unwrap_or_default().to_owned(),
+            max_load: loads.get(row).copied().unwrap_or_default(),
+            x: row as f64,
+            label: label.clone(),
+            series: String::new(),
+        };
+        let differing = vec![Varying { name: "campaign", symbol: "campaign", label: "campaign", values: Values::Words(labels.to_vec()) }];
+        let members: Vec<Member> = labels.iter().enumerate().map(member).collect();
+        Ok(Self { members, differing, many_loads: false, axis: Axis::of_words("campaign", labels.to_vec()) })
+    }
 }
 
 fn named(parameter: &Varying, place: usize) -> String {

@@ -32,7 +32,7 @@ pub fn table(panels: &[(String, Panel)]) -> Result<Frame, FrameError> {
     }
     Frame::of(&PANELS)
         .text("sweep", rows.iter().map(|row| row.sweep))
-        .text("panel", rows.iter().map(|row| row.panel.plot.letter.to_string()))
+        .text("panel", rows.iter().map(|row| row.panel.name.as_str()))
         .i64("curve", rows.iter().map(|row| row.curve as i64))
         .text("name", rows.iter().map(|row| row.curve().name.as_str()))
         .text("of", rows.iter().map(|row| row.curve().of.as_str()))

@@ -162,7 +162,8 @@ impl Path<'_> {
         let (mut taken, mut absorbed) = (0, 0);
         let mut all = true;
         loop {
-            open.sort_unstable();
+            // Most of them are in order: only a stable sort makes use of it.
+            open.sort();
             open.dedup();
             let due = self.due(&open, &open);
             let next = due

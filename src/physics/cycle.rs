@@ -317,7 +317,13 @@ fn unload(
         }
         Ok(if settings.rests(path, from) { Next::Rest } else { Next::On })
     })?;
-    Ok(left.map(|carried| Leg { recorder, carried }))
+    match left {
+        Some(carried) => Ok(Some(Leg { recorder, carried })),
+        None => {
+            recorder.end(cycle);
+            Ok(None)
+        }
+    }
 }
 
 /// What is to be done after a look at a path.

@@ -23,6 +23,7 @@ mod neighbours;
 mod outside;
 mod patch;
 pub mod path;
+pub mod periodogram;
 mod places;
 mod recorder;
 mod relax;

@@ -1,6 +1,6 @@
 //! Which asperities lie near which: a grid of cells.
 
-use super::interaction::ewald::IMAGES;
+use super::interaction::ewald::ROUGH_IMAGES;
 use std::f64::consts::PI;
 
 /// The shortest of the ways that differ by whole sides, from one between two places on the square: no rounding, which is a call of a function.
@@ -94,18 +94,18 @@ impl Neighbours {
         })
     }
 
-    /// What a load at `q` does at `p`, `1/r` and the same of all images \[1/m\].
+    /// What a load at `q` does at `p`, `1/r` and the same of all images \[1/m\], of which some digits are enough.
     pub(crate) fn kernel(&self, p: &[f64; 2], q: &[f64; 2]) -> f64 {
         1.0 / self.distance(p, q) + self.image_kernel(p, q)
     }
 
-    /// The part of the images but the nearest \[1/m\].
+    /// The part of the images but the nearest \[1/m\], with some digits.
     pub(crate) fn image_kernel(&self, p: &[f64; 2], q: &[f64; 2]) -> f64 {
         if !self.periodic {
             return 0.0;
         }
         let [x, y] = [0, 1].map(|k| nearest_image((p[k] - q[k]) / self.length, 1.0));
-        IMAGES.at(x, y) / self.length
+        ROUGH_IMAGES.at(x, y) / self.length
     }
 
     /// Rows or columns of cells that a circle may meet.

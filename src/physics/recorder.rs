@@ -22,13 +22,27 @@ pub(super) struct Recorder {
     ways_before: usize,
     merged_before: usize,
     effort_before: Effort,
+    /// Load at the last record \[N\], and the greatest tension of all records so far with its spots, while these are to be kept.
+    load_before: Option<f64>,
+    pulled: Option<(f64, Vec<Contact>)>,
 }
 
 impl Recorder {
     /// Of a branch that begins at a point of the grid, `number`, or between it and the next one, with so many merged spots.
     pub(super) fn new(branch: Branch, max_load: Option<f64>, number: f64, merged_before: usize) -> Self {
         let effort_before = Effort::default();
-        Self { branch, max_load, number, begun: false, events_before: 0, ways_before: 0, merged_before, effort_before }
+        Self {
+            branch,
+            max_load,
+            number,
+            begun: false,
+            events_before: 0,
+            ways_before: 0,
+            merged_before,
+            effort_before,
+            load_before: None,
+            pulled: None,
+        }
     }
 
     /// Whether events have happened since the last record.
@@ -61,6 +75,20 @@ impl Recorder {
                 self.record(settings, path, Some(&excursion), cycle, false);
             }
         }
+    }
+
+    /// Whether the load has come to half that of a turning point since the last record, or to none on the way back.
+    fn passes_landmark(&self, settings: &Settings, problem: &Problem, load: f64) -> bool {
+        let Some(before) = self.load_before else { return false };
+        match self.branch {
+            Branch::Loading => settings.max_loads.iter().any(|most| (before..load).contains(&(0.5 * most * problem.load_unit_n()))),
+            Branch::Unloading => before > 0.0 && load <= 0.0,
+        }
+    }
+
+    /// Ends the branch: the spots at its greatest tension are kept.
+    pub(super) fn end(self, cycle: &mut Cycle) {
+        cycle.contacts.extend(self.pulled.map(|pulled| pulled.1).unwrap_or_default());
     }
 
     /// Records a turning point, where the path is or on an excursion from it, and the points of the grid before it.
@@ -122,12 +150,19 @@ impl Recorder {
         cycle.events.extend(recent.into_iter().map(|event| (number, Event { asperity: problem.number(event.asperity), ..event })));
         let keep = match settings.contacts {
             KeptContacts::All => true,
-            KeptContacts::Turning => turning,
+            KeptContacts::Turning => turning || self.passes_landmark(settings, problem, at.totals.load_n),
             KeptContacts::None => false,
         };
         if keep {
             cycle.contacts.extend(spots_of(problem, state, number));
         }
+        let load = at.totals.load_n;
+        let pulls = load < self.pulled.as_ref().map_or(0.0, |pulled| pulled.0);
+        if settings.contacts == KeptContacts::Turning && self.branch == Branch::Unloading && pulls {
+            // A step that is kept already need not be kept twice.
+            self.pulled = Some((load, if keep { Vec::new() } else { spots_of(problem, state, number) }));
+        }
+        self.load_before = Some(load);
         let merged = state.merged.iter().enumerate().skip(self.merged_before);
         cycle.merged.extend(merged.map(|(k, spot)| MergedAt { step: number, asperity: problem.summits + k, spot: problem.outward(spot) }));
         self.merged_before = state.merged.len();

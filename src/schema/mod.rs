@@ -4,11 +4,13 @@
 //! room knows a file format.
 
 mod avalanches;
+mod comparison;
 mod render;
 mod run;
 mod statistics;
 
 pub use avalanches::{AVALANCHES, EVENT_KINDS};
+pub use comparison::COMPARISON;
 pub use render::{DIRECTORY, OWN_KEYS, SchemaFile, files, metadata_json, readme_markdown, schema_file_name, schema_json};
 pub use run::{ASPERITIES, CONTACTS, EVENTS, MERGED, STEPS, TURNING};
 pub use statistics::{CASES, CURVES, PANELS, REALIZATIONS};
@@ -82,7 +84,7 @@ impl Table {
 
 /// Every table that the program writes.
 pub static TABLES: &[&Table] =
-    &[&ASPERITIES, &STEPS, &CONTACTS, &TURNING, &MERGED, &EVENTS, &REALIZATIONS, &CASES, &CURVES, &AVALANCHES, &PANELS];
+    &[&ASPERITIES, &STEPS, &CONTACTS, &TURNING, &MERGED, &EVENTS, &REALIZATIONS, &CASES, &CURVES, &AVALANCHES, &PANELS, &COMPARISON];
 
 impl Column {
     /// The same column, whose values may be missing.

@@ -53,6 +53,7 @@ const MAX_LOAD: &[Column] = &[real("max_load", "1", "F/(E* A0) at which loading 
 
 const RESULTS: &[Column] = &[
     index("realization", "Number of the surface among those that share its spectrum, from 0"),
+    text("surface_id", "Identity of the surface: what it is made from, its seed included"),
     MAX_LOAD[0],
     real("pull_off_load", "1", "Pull-off load over E* A0: the greatest tension while unloading"),
     real("pull_off_load_n", "N", "Pull-off load: the greatest tension while unloading"),
@@ -271,10 +272,10 @@ pub static PANELS: Table = Table {
     file: "statistics/panels.parquet",
     doc: "One row per point of a curve of a panel of the figures, in the order of drawing.",
     columns: &[
-        text("sweep", "The sweep that the panel is of"),
-        text("panel", "Its letter: A area, B pull-off load, C penetration, D loss"),
+        text("sweep", "The sweep that the panel is of; empty for the closer look at one cycle"),
+        text("panel", "Its letter: A area, B pull-off load, C penetration, D loss, E loss by branches; a word in the closer look"),
         index("curve", "Number of the curve in the panel, from 0"),
-        text("name", "What it shows: a branch, or a column of the table cases without _mean"),
+        text("name", "What it shows: a branch, a column of the table cases without _mean, or a word"),
         text("of", "Of what of the sweep, as the panel names it; empty if there is no choice"),
         index("point", "Number of the point on its curve, from 0"),
         real("x", "1", "Horizontal value, as x_label says; in units of the data, which for a swept parameter are its own"),

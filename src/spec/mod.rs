@@ -8,6 +8,7 @@ mod grid;
 mod keys;
 mod nearest;
 mod number;
+mod realizations;
 mod sweep;
 mod top;
 mod value;
@@ -22,6 +23,7 @@ use serde::{Deserialize, Serialize};
 use crate::model::{Amplitudes, Boundary, Coalescence, Interaction, JumpIn, KeptContacts, Material, Normalization, Slip, Slips};
 
 pub use fault::{Fault, Place, SpecErrors};
+pub use realizations::{Realizations, Until};
 
 /// The greatest number of cases that one spec may make.
 pub const MAX_CASES: u32 = 10_000;
@@ -43,7 +45,7 @@ pub struct Spec {
     /// Seed of the whole campaign.
     pub seed: u64,
     /// Realisations of each surface.
-    pub realizations: u32,
+    pub realizations: Realizations,
     /// The cases: every different one once, in the order in which the sweeps first ask for it.
     pub cases: Vec<Case>,
     /// What the sweeps override; itself a case only if there is no sweep.

@@ -2,7 +2,6 @@
 
 use toml::de::DeValue;
 
-use super::MAX_REALIZATIONS;
 use super::fault::Faults;
 use super::number::integer;
 use super::value::{Written, wrong_type};
@@ -16,17 +15,6 @@ pub(super) fn seed(value: &Written<'_>, faults: &mut Faults<'_>) -> Option<u64> 
         faults.add(&value.span(), message, None);
     }
     seed
-}
-
-/// The number of realisations.
-pub(super) fn realizations(value: &Written<'_>, faults: &mut Faults<'_>) -> Option<u32> {
-    let found = integer("realizations", value, faults)?;
-    let count = u32::try_from(found).ok().filter(|count| (1..=MAX_REALIZATIONS).contains(count));
-    if count.is_none() {
-        let message = format!("`realizations` cannot be {found}: it must be from 1 to {MAX_REALIZATIONS}");
-        faults.add(&value.span(), message, None);
-    }
-    count
 }
 
 /// A name that can name a folder on every system.

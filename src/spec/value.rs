@@ -36,12 +36,12 @@ pub(super) fn read(key: &Key, value: &Written<'_>, faults: &mut Faults<'_>) -> O
                 None
             }
         },
-        Kind::Word(words) => word(key, &words(), value, faults).map(Value::Word),
+        Kind::Word(words) => word(key.path, &words(), value, faults).map(Value::Word),
         Kind::Numbers(limits, most) => numbers(key, limits, *most, value, faults).map(Value::Numbers),
         Kind::Words(words) => {
             let words = words();
             let elements = array(key.path, "words", value, faults)?;
-            let read: Vec<_> = elements.iter().map(|element| word(key, &words, element, faults)).collect();
+            let read: Vec<_> = elements.iter().map(|element| word(key.path, &words, element, faults)).collect();
             let said: Vec<_> = read.into_iter().collect::<Option<_>>()?;
             // In the order of the choice, so that two orders of writing are one case.
             Some(Value::Words(words.into_iter().filter(|word| said.contains(word)).collect()))
@@ -63,11 +63,11 @@ pub(super) fn array<'v, 't>(path: &str, of: &str, value: &'v Written<'t>, faults
 }
 
 /// One of the words of a key.
-fn word(key: &Key, words: &[&'static str], value: &Written<'_>, faults: &mut Faults<'_>) -> Option<&'static str> {
+pub(super) fn word(path: &str, words: &[&'static str], value: &Written<'_>, faults: &mut Faults<'_>) -> Option<&'static str> {
     let span = value.span();
     let listed = format!("allowed: {}", words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", "));
     let DeValue::String(found) = value.get_ref() else {
-        wrong_type(key.path, "a word in quotes", value.get_ref(), &span, listed, faults);
+        wrong_type(path, "a word in quotes", value.get_ref(), &span, listed, faults);
         return None;
     };
     let Some(known) = words.iter().find(|word| **word == found.as_ref()) else {
@@ -75,7 +75,7 @@ fn word(key: &Key, words: &[&'static str], value: &Written<'_>, faults: &mut Fau
             Some(near) => format!("did you mean \"{near}\"? {listed}"),
             None => listed,
         };
-        faults.add(&span, format!("`{}` does not know the word {}", key.path, faults.written(&span)), help);
+        faults.add(&span, format!("`{}` does not know the word {}", path, faults.written(&span)), help);
         return None;
     };
     Some(known)

@@ -8,6 +8,7 @@ use toml::de::{DeTable, DeValue};
 use super::fault::Faults;
 use super::keys::{KEYS, MEASURED, TABLES, find, names};
 use super::nearest::nearest;
+use super::realizations::{Realizations, realizations};
 use super::sweep::{SweepDraft, sweeps};
 use super::{CaseParams, top, value};
 
@@ -15,7 +16,7 @@ use super::{CaseParams, top, value};
 pub(super) struct Draft {
     pub(super) name: Option<String>,
     pub(super) seed: u64,
-    pub(super) realizations: u32,
+    pub(super) realizations: Realizations,
     pub(super) base: CaseParams,
     /// Where the base's value of each key comes from, in the order of [`KEYS`].
     pub(super) origins: Vec<Origin>,
@@ -66,7 +67,7 @@ pub(super) fn document(text: &str, faults: &mut Faults<'_>) -> Option<Draft> {
     let mut draft = Draft {
         name: None,
         seed: 2021,
-        realizations: 6,
+        realizations: Realizations::Exactly(6),
         base: CaseParams::default(),
         origins: vec![Origin::Default; KEYS.len()],
         sweeps: Vec::new(),
@@ -81,7 +82,7 @@ pub(super) fn document(text: &str, faults: &mut Faults<'_>) -> Option<Draft> {
             "name" => draft.name = top::name("name", written, faults),
             "seed" => draft.seed = top::seed(written, faults).unwrap_or(draft.seed),
             "realizations" => {
-                draft.realizations = top::realizations(written, faults).unwrap_or(draft.realizations);
+                draft.realizations = realizations(written, faults).unwrap_or(draft.realizations);
             }
             "sweep" => sweeps(written, &span, &mut draft.sweeps, faults),
             table if TABLES.contains(&table) => base(table, written, &span, &mut draft, faults),

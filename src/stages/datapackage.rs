@@ -15,6 +15,8 @@ pub(super) fn text(campaign: &Campaign, done: &[bool]) -> String {
     let surfaces: Vec<&str> = campaign.surfaces.iter().map(|unit| unit.id.as_str()).collect();
     let mut resources: Vec<Value> = TABLES
         .iter()
+        // What stands in no folder of a run is no part of one.
+        .filter(|table| table.file.contains('/'))
         .filter_map(|table| {
             let ids = match table.file.split('/').next() {
                 Some("cycles") => &cycles,

@@ -1,15 +1,21 @@
 //! The stages: read, compute, commit. This room alone joins the physics and the files, and it alone knows the order of the stages.
 
+mod closer;
+mod comparison;
 mod cycle;
 mod datapackage;
 mod done;
+mod reading;
 mod report;
+mod sampling;
 mod statistics;
 mod surface;
 mod theories;
 mod trust;
 
+pub use comparison::compare;
 pub use cycle::unload_again;
+pub use sampling::sampled;
 
 use crate::campaign::{Campaign, CycleUnit, Shard, Stage, Standing, SurfaceUnit, Unit};
 use crate::physics::PhysicsError;
@@ -59,6 +65,14 @@ pub enum StageError {
         /// What it has.
         kept: String,
     },
+    /// Campaigns without a case in common.
+    #[error(
+        "cannot compare {folders}: no case is in all of them; allowed: campaigns with a case that is the same but for what tells the campaigns apart"
+    )]
+    NothingInCommon {
+        /// Their folders.
+        folders: String,
+    },
     /// A stage lacks what an earlier one writes.
     #[error(
         "cannot {stage}: {missing} of {all} units of the stage before it are missing or damaged ({example}); run `hysteron run SPEC` or the stage before first"
@@ -102,6 +116,15 @@ pub struct Tally {
     pub failed: usize,
 }
 
+impl Tally {
+    /// After more units were added: those that were done now were not done before.
+    fn go_on(&mut self, next: Self) {
+        self.planned = next.planned;
+        self.computed += next.computed;
+        self.failed = self.failed.max(next.failed);
+    }
+}
+
 /// What of a campaign is to be done.
 #[derive(Debug, Clone)]
 pub struct Task {
@@ -134,25 +157,45 @@ struct Job<'a, T> {
     preimages: Box<dyn Fn() -> Map<String, Value> + Send + Sync + 'a>,
 }
 
-/// Runs the stages of a task, in order. Failed units do not stop the others.
+/// Runs the stages of a task, in order. Failed units do not stop the others. Where the spec asks for a precision, realizations are added until it is reached;
+/// what is returned has all of them.
 ///
 /// # Errors
 /// A folder or file that cannot be written; for a single stage: what that stage reads is not there.
-pub fn run(campaign: &Campaign, task: &Task, watch: &dyn Watch) -> Result<Vec<(Stage, Tally)>, StageError> {
-    prepare(campaign)?;
+pub fn run(campaign: Campaign, task: &Task, watch: &dyn Watch) -> Result<(Campaign, Vec<(Stage, Tally)>), StageError> {
+    prepare(&campaign)?;
+    let mut campaign = campaign;
     // What an earlier stage of this run has looked at is not read again.
     let cycles_check = if task.from <= Stage::Cycle { Check::Sizes } else { task.check };
-    let mut tallies = Vec::new();
-    for stage in Stage::ALL.into_iter().filter(|stage| (task.from..=task.until).contains(stage)) {
-        let tally = match stage {
-            Stage::Generate | Stage::Extract => surfaces(campaign, task, stage, watch)?,
-            Stage::Cycle => cycles(campaign, task, watch)?,
-            Stage::Aggregate => statistics::run(campaign, task.partial || task.from != task.until, (cycles_check, task.check), watch)?,
-            Stage::Report => report::run(campaign, (cycles_check, task.check), watch)?,
+    let mut tallies: Vec<(Stage, Tally)> = Vec::new();
+    let wanted = |stages: &[Stage]| stages.iter().copied().filter(|stage| (task.from..=task.until).contains(stage)).collect::<Vec<_>>();
+    loop {
+        for stage in wanted(&[Stage::Generate, Stage::Extract, Stage::Cycle]) {
+            let tally = if stage == Stage::Cycle { cycles(&campaign, task, watch)? } else { surfaces(&campaign, task, stage, watch)? };
+            match tallies.iter_mut().find(|(known, _)| *known == stage) {
+                Some((_, known)) => known.go_on(tally),
+                None => tallies.push((stage, tally)),
+            }
+        }
+        let before = campaign.counts.clone();
+        if task.from == Stage::Generate && task.until >= Stage::Cycle && task.shard.is_whole() {
+            campaign = sampled(campaign)?;
+        }
+        if campaign.counts == before {
+            break;
+        }
+        let more: u32 = campaign.counts.iter().zip(&before).map(|(now, before)| now - before).sum();
+        watch.notice(&format!("the means are not known as well as the spec asks: {more} more realizations"));
+    }
+    for stage in wanted(&[Stage::Aggregate, Stage::Report]) {
+        let tally = if stage == Stage::Aggregate {
+            statistics::run(&campaign, task.partial || task.from != task.until, (cycles_check, task.check), watch)?
+        } else {
+            report::run(&campaign, (cycles_check, task.check), watch)?
         };
         tallies.push((stage, tally));
     }
-    Ok(tallies)
+    Ok((campaign, tallies))
 }
 
 /// Makes the folders and writes the resolved spec.

@@ -1,19 +1,24 @@
 //! report: figures of every sweep, and one page that holds them.
 
+use super::closer::{self, Look};
 use super::done::{Clock, Outcome};
+use super::reading;
 use super::theories::theories;
 use super::trust::{split, trust};
 use super::{StageError, Tally, Watch};
 use crate::campaign::{Campaign, REPORT_PAGE, STATISTICS, Stage, Standing, Unit};
-use crate::figures::{Panel, panels, table};
+use crate::figures::{Panel, panels, pdf, png, table};
 use crate::schema;
 use crate::stats::summary;
+use crate::store::commit::Written;
 use crate::store::{Check, Frame, commit, parquet};
 use std::fmt::Write as _;
+use std::path::Path;
 
 pub(super) fn run(campaign: &Campaign, (cycles_check, check): (Check, Check), watch: &dyn Watch) -> Result<Tally, StageError> {
     let clock = Clock::start();
-    let statistics = campaign.statistics_key(&campaign.cycle_standings(cycles_check));
+    let standings = campaign.cycle_standings(cycles_check);
+    let statistics = campaign.statistics_key(&standings);
     let key = campaign.report_key(&statistics);
     let unit = Unit { stage: Stage::Report, id: REPORT_PAGE, key: &key };
     let mut tally = Tally { planned: 1, ..Tally::default() };
@@ -34,13 +39,20 @@ pub(super) fn run(campaign: &Campaign, (cycles_check, check): (Check, Check), wa
     let (mut drawings, mut files) = (Vec::new(), Vec::new());
     for sweep in sweeps(campaign) {
         for panel in panels(&cases, &curves, &sweep)? {
-            let path = campaign.dir.join("figures").join(format!("{}.svg", panel.stem));
-            files.push(commit::commit_bytes("write a figure", &path, panel.svg.as_bytes())?);
             drawings.push((sweep.clone(), panel));
         }
     }
+    let look = closer::look(campaign, &standings)?;
+    let close = look.iter().flat_map(|look| &look.panels);
+    for panel in drawings.iter().map(|(_, panel)| panel).chain(close.clone()) {
+        files.extend(write_picture(&campaign.dir, &panel.stem, &panel.svg)?);
+    }
+    if let Some(map) = look.as_ref().and_then(|look| look.map.as_ref()) {
+        files.extend(write_picture(&campaign.dir, "closer_map", map)?);
+    }
+    let page = page(campaign, &key, &cases, &drawings, look.as_ref())?;
+    drawings.extend(close.map(|panel| (String::new(), panel.clone())).collect::<Vec<_>>());
     files.push(parquet::write_table(&campaign.statistics_path("panels"), &table(&drawings)?, &[("key", key.clone())])?);
-    let page = page(campaign, &key, &cases, &drawings)?;
     files.push(commit::commit_bytes("write the report", &campaign.dir.join("report.html"), page.as_bytes())?);
     clock.receipt(campaign, &unit, campaign.report_preimages(&statistics), &Outcome::of(files))?;
     watch.progress(Stage::Report, 1.0);
@@ -48,6 +60,13 @@ pub(super) fn run(campaign: &Campaign, (cycles_check, check): (Check, Check), wa
     watch.end(Stage::Report);
     tally.computed = 1;
     Ok(tally)
+}
+
+/// A picture in `figures/` of a folder, in every format.
+pub(super) fn write_picture(dir: &Path, stem: &str, svg: &str) -> Result<[Written; 3], StageError> {
+    let write =
+        |ending: &str, bytes: &[u8]| commit::commit_bytes("write a figure", &dir.join("figures").join(format!("{stem}.{ending}")), bytes);
+    Ok([write("svg", svg.as_bytes())?, write("png", &png(svg)?)?, write("pdf", &pdf(svg)?)?])
 }
 
 fn sweeps(campaign: &Campaign) -> Vec<String> {
@@ -60,17 +79,17 @@ fn sweeps(campaign: &Campaign) -> Vec<String> {
     names
 }
 
-const STYLE: &str = "body{font:16px/1.5 system-ui,sans-serif;max-width:60rem;margin:2rem auto;padding:0 1rem;color:#1a1a1a;background:#fff}\
+pub(super) const STYLE: &str = "body{font:16px/1.5 system-ui,sans-serif;max-width:60rem;margin:2rem auto;padding:0 1rem;color:#1a1a1a;background:#fff}\
 h1,h2{line-height:1.2}pre{overflow-x:auto;background:#f4f4f2;padding:1rem;font-size:.85rem}\
 .panels{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(24rem,100%),1fr));gap:1rem}\
-.panels svg{width:100%;height:auto;background:#fff}table{border-collapse:collapse;font-size:.9rem}\
+.panels svg,.map svg{width:100%;height:auto;background:#fff}.map{max-width:48rem}table{border-collapse:collapse;font-size:.9rem}\
 td,th{padding:.2rem .7rem;border-bottom:1px solid #ccc;text-align:left;vertical-align:top}\
 .wide{overflow-x:auto}.wide table{font-size:.82rem}.wide td{white-space:nowrap}.wide td,.wide th{padding:.2rem .45rem}\
-.wide :is(td,th):nth-child(n+2){text-align:right}.beyond{font-weight:700;color:#b3261e}\
+.wide :is(td,th):nth-child(n+2){text-align:right}.clear{font-weight:700}.beyond{font-weight:700;color:#b3261e}\
 @media(prefers-color-scheme:dark){body{color:#e6e6e6;background:#161616}pre{background:#242424}.beyond{color:#ff8a80}}\
 @media print{body{max-width:none}}";
 
-fn page(campaign: &Campaign, key: &str, cases: &Frame, drawings: &[(String, Panel)]) -> Result<String, StageError> {
+fn page(campaign: &Campaign, key: &str, cases: &Frame, drawings: &[(String, Panel)], look: Option<&Look>) -> Result<String, StageError> {
     let name = escape(&campaign.spec.name);
     let mut html = String::new();
     // Writing to a string cannot fail.
@@ -78,12 +97,13 @@ fn page(campaign: &Campaign, key: &str, cases: &Frame, drawings: &[(String, Pane
         html,
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width\">\n\
          <meta name=\"hysteron-key\" content=\"{key}\">\n<title>{name}: adhesive hysteresis</title>\n<style>{STYLE}</style>\n</head>\n<body>\n\
-         <h1>{name}</h1>\n<p>Adhesive hysteresis of rough surfaces: {} cases, {} realizations each. Interacting JKR asperities after Violano and \
+         <h1>{name}</h1>\n<p>Adhesive hysteresis of rough surfaces: {} cases, {} each. Interacting JKR asperities after Violano and \
          Afferrante, Lubricants 9(1):7 (2021), with its slips corrected. Mean ± one standard deviation.</p>\n<pre>{}</pre>\n",
         campaign.cases.len(),
-        campaign.spec.realizations,
+        campaign.realizations_in_words(),
         escape(&summary(cases)?)
     );
+    reading::results(&mut html, cases)?;
     for sweep in sweeps(campaign) {
         let _ = write!(html, "<h2>Sweep {}</h2>\n<div class=\"panels\">\n", escape(&sweep));
         for (_, panel) in drawings.iter().filter(|(of, _)| *of == sweep) {
@@ -93,9 +113,13 @@ fn page(campaign: &Campaign, key: &str, cases: &Frame, drawings: &[(String, Pane
         }
         html.push_str("</div>\n");
     }
+    if let Some(look) = look {
+        closer::section(&mut html, look);
+    }
     theories(&mut html, cases)?;
     split(&mut html, cases)?;
     trust(&mut html, cases)?;
+    reading::usage(&mut html);
     let spec = escape(&campaign.spec.to_toml());
     let _ = write!(html, "<h2>The spec, with every default</h2>\n<pre>{spec}</pre>\n</body>\n</html>\n");
     Ok(html)

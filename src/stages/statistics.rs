@@ -116,12 +116,13 @@ fn case_input(campaign: &Campaign, number: usize, unit: &CaseUnit, standings: &[
         sweep: unit.case.sweeps.join("+"),
         parameters: named(parameters),
         max_loads: params.cycle.max_load.clone(),
-        planned_count: campaign.spec.realizations as usize,
+        precision: campaign.spec.realizations.until().map(|until| (until.of.word().to_owned(), until.until_relative_ci)),
+        planned_count: campaign.counts[number] as usize,
         failed_count: campaign.cycles.iter().zip(standings).filter(|pair| failed(*pair)).count(),
     }
 }
 
-fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<CycleInput, StageError> {
+pub(super) fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<CycleInput, StageError> {
     let case = &campaign.cases[unit.case];
     let params = &case.case.params;
     let surface = &campaign.surfaces[unit.surface];
@@ -152,7 +153,8 @@ fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<CycleInput, Stag
     let seed = realization_seed(campaign.spec.seed, u64::from(surface.realization));
     let continuous = flattening(&asked, params.material.contact_modulus_pa);
     let of_modes = realised_flattening(&asked, &seed, params.material.contact_modulus_pa);
-    let numbers: [(&str, Value); 16] = [
+    let numbers: [(&str, Value); 17] = [
+        ("surface_id", surface.id.as_str().into()),
         ("summit_count", summits.len().into()),
         ("summit_density_1_m2", (summits.len() as f64 / area).into()),
         ("nayak_density_1_m2", realised.summit_density_1_m2().into()),

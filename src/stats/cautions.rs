@@ -4,9 +4,10 @@ use super::rows::Value;
 use super::{CaseInput, Given};
 
 /// The words of the column `caution`, in the order in which they are joined, each with what it says.
-pub const CAUTIONS: [(&str, &str); 11] = [
+pub const CAUTIONS: [(&str, &str); 12] = [
     ("incomplete", "fewer realizations are in the means than the spec asks for"),
     ("failed", "a realization failed"),
+    ("imprecise", "the mean is not known as well as the spec asks: there are as many realizations as it allows, or too many failed"),
     ("single", "one realization: no spread"),
     ("unconverged", "a step's residual stayed above the tolerance"),
     ("audit", "the loop's work and the sum over its events differ by more than 1 % in a realization"),
@@ -77,6 +78,10 @@ pub(super) fn caution(row: &Given, case: &CaseInput, done_count: usize, unconver
     let holds = |word: &str| match word {
         "incomplete" => done_count < case.planned_count,
         "failed" => case.failed_count > 0,
+        "imprecise" => case.precision.as_ref().is_some_and(|(name, share)| {
+            let [mean, high] = ["mean", "ci95_high"].map(|end| number(&format!("{name}_{end}")));
+            mean.zip(high).is_none_or(|(mean, high)| high - mean > share * mean.abs())
+        }),
         "single" => done_count == 1,
         "unconverged" => unconverged,
         "tabor" => wu && passed(word),

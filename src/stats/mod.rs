@@ -6,6 +6,7 @@
 mod avalanches;
 mod cases;
 mod cautions;
+mod compare;
 mod curves;
 mod cycle;
 mod events;
@@ -21,11 +22,13 @@ use std::path::PathBuf;
 pub use avalanches::avalanches;
 pub use cases::cases;
 pub use cautions::{CAUTIONS, LIMITS, Limit};
+pub use compare::{Group, Matched, Side, comparison, matched, together};
 pub use curves::curves;
-pub use realizations::realizations;
+pub use realizations::{realizations, results};
 pub use rows::Value;
 pub use student::{Sample, t_quantile};
 pub use summary::summary;
+use varying::PARAMETERS;
 pub use varying::{Values, Varying, varying};
 pub use walk::{COMPRESSION_STATIONS, Point, STATIONS, TENSION_STATIONS, Walk};
 
@@ -45,6 +48,8 @@ pub struct CaseInput {
     pub parameters: Given,
     /// Its turning points, as `F/(E* A0)`.
     pub max_loads: Vec<f64>,
+    /// A column of the table `realizations` whose mean is to be known to such a share of itself.
+    pub precision: Option<(String, f64)>,
     /// How many realizations the spec asks for.
     pub planned_count: usize,
     /// How many of them failed.
@@ -113,6 +118,19 @@ pub enum StatsError {
         path: PathBuf,
         /// What is wrong, as in "hold the kind ...".
         problem: String,
+    },
+    /// Campaigns cannot be compared.
+    #[error(
+        "cannot compare {label}: its case {case_id} is the same as another one of it but for what tells the campaigns apart ({differing}); allowed: campaigns of \
+         which each has one value of that, or all the same ones"
+    )]
+    Ambiguous {
+        /// The campaign.
+        label: String,
+        /// The case.
+        case_id: String,
+        /// The parameters that tell the campaigns apart.
+        differing: String,
     },
     /// A cycle names a case that was not given.
     #[error("realization {realization} belongs to the case {case_id:?}, which was not given")]

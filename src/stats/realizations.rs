@@ -41,6 +41,19 @@ pub fn realizations(cases: &[CaseInput], cycles: &[CycleInput]) -> Result<Frame,
     rows.build()
 }
 
+/// What the steps of one cycle come to at each of its turning points, ascending.
+///
+/// # Errors
+/// If the table of steps cannot be read or holds no such branch.
+pub fn results(input: &CycleInput) -> Result<Vec<(f64, Given)>, StatsError> {
+    let cycle = Cycle::read(&input.steps)?;
+    let of = |(max_load, unloading): &(f64, Branch)| {
+        let turning = cycle.turning_row(input, *max_load)?;
+        Ok((*max_load, reduce(&cycle.loading, turning, unloading, *max_load, input)?))
+    };
+    cycle.unloading.iter().map(of).collect()
+}
+
 /// The case that a cycle names.
 pub(super) fn case_of<'a>(cases: &'a [CaseInput], input: &CycleInput) -> Result<&'a CaseInput, StatsError> {
     let unknown = || StatsError::UnknownCase { case_id: input.case_id.clone(), realization: input.realization };

@@ -344,6 +344,30 @@ fn law_a_cycle_goes_on_from_where_it_rested_as_if_nothing_had_been() {
 }
 
 #[test]
+fn law_the_spots_are_kept_at_the_landmarks_of_the_loop() {
+    let problem = Problem::new(&paper_summits(16, 0), LENGTH, RMS, PAPER, DEFAULT).unwrap();
+    let loads = [0.002, 0.004];
+    let all = run(&problem, &loads, 0.04, KeptContacts::All);
+    let kept = run(&problem, &loads, 0.04, KeptContacts::Turning);
+    assert_eq!(all.steps, kept.steps);
+    let unit = problem.load_unit_n();
+    let mut wanted: Vec<usize> = kept.turning.iter().map(|(step, _)| *step).collect();
+    let branch = |of: Option<f64>| (0..all.steps.len()).filter(|k| all.steps[*k].max_load == of).collect::<Vec<usize>>();
+    let load = |k: usize| kept.steps[k].load_n;
+    for max_load in loads {
+        wanted.extend(branch(None).into_iter().find(|k| load(*k) > 0.5 * max_load * unit));
+        let back = branch(Some(max_load));
+        wanted.extend(back.iter().copied().find(|k| load(*k) <= 0.0));
+        wanted.extend(back.into_iter().min_by(|u, v| load(*u).total_cmp(&load(*v))));
+    }
+    wanted.sort_unstable();
+    wanted.dedup();
+    assert!(wanted.len() >= 7, "{wanted:?}");
+    let expected: Vec<_> = all.contacts.iter().filter(|spot| wanted.contains(&spot.step)).copied().collect();
+    assert_eq!(kept.contacts, expected);
+}
+
+#[test]
 fn law_nobody_is_covered_where_nobody_touches() {
     for realization in [0, 1] {
         let cycle = paper_cycle(&paper_summits(64, realization), DEFAULT, &[0.002], 0.04);

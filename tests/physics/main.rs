@@ -17,6 +17,7 @@ mod ledger;
 mod merge;
 mod pair;
 mod path;
+mod periodogram;
 mod printed;
 mod reciprocal;
 mod spectrum;

@@ -6,6 +6,8 @@ mod faults;
 mod fields;
 mod fuzz;
 mod kills;
+mod sampling;
+mod signals;
 
 /// Two surfaces and two cycles, of which one load each: half a second of work.
 const SMALL: &str =

@@ -2,9 +2,9 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Command;
 
-use crate::bench::{Bench, SPEC, code, files, paths, stderr, stdout};
+use crate::bench::{Bench, SPEC, code, files, stderr, stdout};
 use hysteron::campaign::Campaign;
 use hysteron::schema;
 use hysteron::spec::Spec;
@@ -321,43 +321,4 @@ fn unload_from_files(spec: &str) {
         assert!(told.contains("0.003") && told.contains("[0.001, 0.002]"), "{told}");
     }
     assert!(compared > 50, "{compared}");
-}
-
-#[test]
-fn e2e_an_interrupt_loses_no_file_and_the_same_command_goes_on() {
-    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:")).and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
-    if ignored.is_some_and(|mask| mask & 1 != 0) {
-        eprintln!("skipped: hang-ups are ignored here, as under nohup, and signals are left as they are then");
-        return;
-    }
-    let undisturbed = Bench::new(SPEC);
-    assert_eq!(code(&undisturbed.verb("run", &[])), 0);
-    let bench = Bench::new(SPEC);
-    let mut interrupts = 0;
-    for signal in ["-INT", "-TERM"] {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_hysteron"));
-        command.args(["run", "--jobs", "1", "--out"]).arg(bench.out()).arg(bench.folder.path().join("spec.toml"));
-        let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
-        // Once a file is there that was not there before, it is at work.
-        let count = || if bench.out().exists() { paths(&bench.out()).len() } else { 0 };
-        let before = count();
-        while child.try_wait().unwrap().is_none() && count() <= before + 2 {
-            std::thread::yield_now();
-        }
-        Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
-        let ended = child.wait_with_output().unwrap();
-        let said = stderr(&ended);
-        if ended.status.code() == Some(130) {
-            interrupts += 1;
-            assert!(said.contains("interrupted: ") && said.contains("campaign.toml --out"), "{said}");
-        } else {
-            // It was done before the signal came.
-            assert_eq!(code(&ended), 0, "{said}");
-        }
-        assert!(files(&bench.out()).keys().all(|path| !path.to_string_lossy().contains(".tmp")), "a temporary file was left");
-    }
-    assert!(interrupts > 0);
-    assert_eq!(code(&bench.verb("run", &[])), 0);
-    assert!(files(&bench.out()) == files(&undisturbed.out()), "other bytes than without an interrupt");
 }

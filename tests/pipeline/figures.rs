@@ -118,14 +118,17 @@ fn e2e_every_panel_is_drawn_again_from_its_table() {
         assert!(plot_xy(&plot) == panel.svg, "{} is another picture", panel.stem);
     }
     let names: std::collections::BTreeSet<&str> = frame.text("name").unwrap().into_iter().collect();
-    assert_eq!(names.into_iter().collect::<Vec<_>>(), ["loading", "loss", "loss_dk", "loss_dk_realised", "pull_off_load", "unloading"]);
+    assert_eq!(
+        names.into_iter().collect::<Vec<_>>(),
+        ["dissipated_loading", "dissipated_unloading", "loading", "loss", "loss_dk", "loss_dk_realised", "pull_off_load", "unloading"]
+    );
 }
 
 #[test]
-fn e2e_magnification_sweep_has_four_panels() {
+fn e2e_magnification_sweep_has_five_panels() {
     let drawn = draw(&fig4(), "fig4");
     let stems: Vec<&str> = drawn.iter().map(|(stem, _)| stem.as_str()).collect();
-    assert_eq!(stems, ["fig4_A", "fig4_B", "fig4_C", "fig4_D"]);
+    assert_eq!(stems, ["fig4_A", "fig4_B", "fig4_C", "fig4_D", "fig4_E"]);
     for (at, label) in [(0, "A/A0"), (1, "Fpo/(E*A0)"), (2, "Δ/hrms"), (3, "Θ/(E*A0hrms)")] {
         let text = read(&drawn[at].1);
         assert!(text.contains(label) && text.contains("mean of 6 surfaces"), "{text}");
@@ -153,7 +156,7 @@ fn e2e_load_sweep_stands_over_area() {
     let text = read(&drawn[0].1);
     assert!(["0.004", "0.0071", "0.012", "0.015", "Fmax/(E*A0)"].iter().all(|label| text.contains(label)), "{text}");
     assert!(read(&drawn[3].1).contains("A/A0"));
-    assert_eq!(panels(&tables.0, &tables.1, "other").unwrap().len(), 4);
+    assert_eq!(panels(&tables.0, &tables.1, "other").unwrap().len(), 5);
 }
 
 #[test]
@@ -213,7 +216,7 @@ fn e2e_words_stand_on_an_axis() {
 fn law_nothing_finished_draws_empty_axes() {
     let input = case("a", "empty", 0.8, 128.0, &[0.0071]);
     let drawn = draw(&tables(&[(input, (0.1, 1e-4, 1e-4, 2.0))], 0), "empty");
-    assert_eq!(drawn.len(), 4);
+    assert_eq!(drawn.len(), 5);
     assert_eq!(paths(&drawn[0].1, None), 0);
 }
 

@@ -1,7 +1,9 @@
 //! The keys of a spec's units: what of a case changes which.
 
-use hysteron::campaign::{Campaign, Standing};
+use hysteron::campaign::{Campaign, Stage, Standing};
+use hysteron::keys::canonical;
 use hysteron::spec::Spec;
+use serde_json::{Map, Value};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
@@ -42,6 +44,23 @@ fn law_a_slip_changes_the_keys_of_what_reads_it() {
     }
     // Of two slips together the cycle reads one.
     assert_eq!(keys(&campaign("as_printed = [\"a3\", \"eq9\"]")).1, keys(&campaign("as_printed = [\"eq9\"]")).1);
+}
+
+#[test]
+fn law_a_key_is_the_hash_of_what_a_receipt_says_of_it() {
+    let campaign = campaign("");
+    let hash = |preimages: &Map<String, Value>, stage: &str| blake3::hash(canonical(&preimages[stage]).as_bytes()).to_hex().to_string();
+    for unit in &campaign.surfaces {
+        let preimages = campaign.surface_preimages(unit, Stage::Extract);
+        assert_eq!((hash(&preimages, "generate"), hash(&preimages, "extract")), (unit.key.clone(), unit.asperities_key.clone()));
+    }
+    for unit in &campaign.cycles {
+        assert_eq!(hash(&campaign.cycle_preimages(unit), "cycle"), unit.key);
+    }
+    let standings = [Standing::Done, Standing::Failed("why".to_owned())];
+    let statistics = campaign.statistics_key(&standings);
+    assert_eq!(hash(&campaign.statistics_preimages(&standings), "aggregate"), statistics);
+    assert_eq!(hash(&campaign.report_preimages(&statistics), "report"), campaign.report_key(&statistics));
 }
 
 #[test]

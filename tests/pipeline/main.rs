@@ -13,6 +13,10 @@ mod figures;
 mod keys;
 #[cfg(feature = "stats")]
 mod losses;
+#[cfg(feature = "stats")]
+mod python;
+#[cfg(feature = "stats")]
+mod report;
 mod schema;
 mod spec;
 #[cfg(feature = "stats")]

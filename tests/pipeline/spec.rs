@@ -6,7 +6,7 @@ mod rules;
 
 use std::path::{Path, PathBuf};
 
-use hysteron::spec::{CaseParams, Spec};
+use hysteron::spec::{CaseParams, Realizations, Spec};
 
 /// The files of a folder of the package, with their names and texts, sorted.
 fn specs(folder: &str) -> Vec<(String, String)> {
@@ -116,7 +116,7 @@ fn law_case_parameters_survive_json() {
 fn val_the_paper_is_eight_cases() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("pipelines/paper.toml");
     let spec = Spec::read(path).unwrap_or_else(|errors| panic!("{errors}"));
-    assert_eq!((spec.name.as_str(), spec.realizations), ("paper", 6));
+    assert_eq!((spec.name.as_str(), spec.realizations), ("paper", Realizations::Exactly(6)));
     let told: Vec<_> = spec
         .cases
         .iter()
@@ -147,7 +147,7 @@ fn val_the_paper_is_eight_cases() {
 fn val_the_quickstart_is_two_small_cases() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("pipelines/quickstart.toml");
     let spec = Spec::read(path).unwrap_or_else(|errors| panic!("{errors}"));
-    assert_eq!((spec.name.as_str(), spec.realizations, spec.cases.len()), ("quickstart", 3, 2));
+    assert_eq!((spec.name.as_str(), spec.realizations, spec.cases.len()), ("quickstart", Realizations::Exactly(3), 2));
     assert_eq!(spec.cases.iter().map(|case| case.params.surface.grid()).collect::<Vec<_>>(), [256, 512]);
     assert!(spec.cases.iter().all(|case| case.params.cycle.max_load == [0.002, 0.004]));
 }

@@ -122,6 +122,7 @@ pub fn case(id: &str, sweep: &str, hurst: f64, magnification: f64, max_loads: &[
             ("approach_step", 0.01.into()),
         ]),
         max_loads: max_loads.to_vec(),
+        precision: None,
         planned_count: 6,
         failed_count: 0,
     }
@@ -143,6 +144,7 @@ pub fn cycle(case_id: &str, realization: i64, steps: &Path, dk_per_area_j: f64) 
             .map(|load| (load, given(&[("area_adhesionless", (5.0 * load).into()), ("area_adhesionless_small", (6.0 * load).into())])))
             .to_vec(),
         surface: given(&[
+            ("surface_id", format!("surface-{realization}").as_str().into()),
             ("summit_count", Value::Whole(4000)),
             ("summit_density_1_m2", 4e9.into()),
             ("nayak_density_1_m2", 4.1e9.into()),

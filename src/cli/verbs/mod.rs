@@ -6,10 +6,11 @@ mod submit;
 mod survey;
 mod work;
 
-use super::{EngineArgument, ExportVerb, OutputArguments, StageArgument, Verb};
+use super::{CampaignArguments, EngineArgument, ExportVerb, OutputArguments, StageArgument, Verb};
 use crate::campaign::{Campaign, Stage};
 use crate::schema;
 use crate::spec::Spec;
+use crate::stages;
 use crate::store::commit;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -43,8 +44,9 @@ pub(super) fn perform(verb: &Verb) -> ExitCode {
 /// How many threads are asked for.
 fn jobs(verb: &Verb) -> Option<u16> {
     match verb {
-        Verb::Run { campaign, .. } | Verb::Aggregate { campaign, .. } => campaign.jobs.jobs,
-        Verb::Generate(campaign) | Verb::Extract(campaign) | Verb::Cycle(campaign) | Verb::Report(campaign) => campaign.jobs.jobs,
+        Verb::Run { campaign, .. } | Verb::Aggregate { campaign, .. } => campaign.how.jobs.jobs,
+        Verb::Generate(campaign) | Verb::Extract(campaign) | Verb::Cycle(campaign) => campaign.how.jobs.jobs,
+        Verb::Report { campaign, .. } => campaign.jobs.jobs,
         Verb::Retry { jobs, .. } => jobs.jobs,
         _ => None,
     }
@@ -52,12 +54,13 @@ fn jobs(verb: &Verb) -> Option<u16> {
 
 fn performed(verb: &Verb) -> Result<u8, Fault> {
     match verb {
-        Verb::Run { campaign, until } => work::stages(campaign, Stage::Generate, stage(*until), false),
-        Verb::Generate(campaign) => work::stages(campaign, Stage::Generate, Stage::Generate, false),
-        Verb::Extract(campaign) => work::stages(campaign, Stage::Extract, Stage::Extract, false),
-        Verb::Cycle(campaign) => work::stages(campaign, Stage::Cycle, Stage::Cycle, false),
-        Verb::Aggregate { campaign, partial } => work::stages(campaign, Stage::Aggregate, Stage::Aggregate, *partial),
-        Verb::Report(campaign) => work::stages(campaign, Stage::Report, Stage::Report, false),
+        Verb::Run { campaign, until } => of_spec(campaign, (Stage::Generate, stage(*until)), false),
+        Verb::Generate(campaign) => of_spec(campaign, (Stage::Generate, Stage::Generate), false),
+        Verb::Extract(campaign) => of_spec(campaign, (Stage::Extract, Stage::Extract), false),
+        Verb::Cycle(campaign) => of_spec(campaign, (Stage::Cycle, Stage::Cycle), false),
+        Verb::Aggregate { campaign, partial } => of_spec(campaign, (Stage::Aggregate, Stage::Aggregate), *partial),
+        Verb::Report { spec: Some(spec), campaign, .. } => work::stages(spec, campaign, (Stage::Report, Stage::Report), false),
+        Verb::Report { compare, campaign, .. } => work::compare(compare, campaign),
         Verb::Plan { spec, output } => survey::plan(spec, output),
         Verb::Status { folder, watch } => survey::status(folder, *watch),
         Verb::Explain { folder, id, spec } => care::explain(folder, id, spec.as_deref()),
@@ -71,6 +74,10 @@ fn performed(verb: &Verb) -> Result<u8, Fault> {
         Verb::Export { what: ExportVerb::RoCrate { folder, license } } => export::ro_crate(folder, license.as_deref()),
         Verb::Schema { write } => schemas(*write),
     }
+}
+
+fn of_spec(campaign: &CampaignArguments, stages: (Stage, Stage), partial: bool) -> Result<u8, Fault> {
+    work::stages(&campaign.spec, &campaign.how, stages, partial)
 }
 
 fn stage(argument: StageArgument) -> Stage {
@@ -102,7 +109,7 @@ fn threads(count: Option<u16>) -> Result<(), Fault> {
 fn open(spec: &Path, output: &OutputArguments) -> Result<Campaign, Fault> {
     let spec = Spec::read(spec).map_err(|errors| Fault { code: BAD_SPEC, text: errors.to_string() })?;
     let dir = output.out.clone().unwrap_or_else(|| PathBuf::from("data/runs").join(&spec.name));
-    Ok(Campaign::new(spec, dir))
+    stages::sampled(Campaign::new(spec, dir)).map_err(failed)
 }
 
 /// A folder by its whole name, as other programs are to be told of it: they read it as text.

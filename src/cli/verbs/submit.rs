@@ -92,7 +92,7 @@ fn send(campaign: &Campaign, order: &Order, mut sent: Vec<Sent>, json: bool) -> 
         // After each, so that none that was sent is forgotten.
         remember(campaign, &sent)?;
         if !json {
-            let tasks = if job.tasks.is_empty() { "one task".to_owned() } else { format!("{} tasks", job.tasks.len()) };
+            let tasks = if job.tasks.len() < 2 { "one task".to_owned() } else { format!("{} tasks", job.tasks.len()) };
             say(&format!("{:9} job {number}, {tasks}\n", job.stage.word()))?;
         }
         numbers.push(number.to_string());

@@ -4,7 +4,7 @@ use super::{Fault, open, open_dir, say, submit};
 use crate::campaign::{Campaign, REPORT_PAGE, STATISTICS, Stage, Standing};
 use crate::cli::{FolderArguments, OutputArguments};
 use crate::store::Check;
-use serde_json::json;
+use serde_json::{Value, json};
 use std::io::IsTerminal;
 use std::path::Path;
 use std::time::Duration;
@@ -19,7 +19,7 @@ pub(super) fn plan(spec: &Path, output: &OutputArguments) -> Result<u8, Fault> {
     let campaign = open(spec, output)?;
     let units = units(&campaign);
     let text = if output.json {
-        answer(&campaign, &units)
+        format!("{:#}\n", answer(&campaign, &units))
     } else {
         describe(&campaign, &units) + &remaining(&units, &campaign, |open| format!("`run` would compute {open} units.\n"))
     };
@@ -31,7 +31,8 @@ pub(super) fn status(folder: &FolderArguments, watch: bool) -> Result<u8, Fault>
     loop {
         let campaign = open_dir("tell the status of", &folder.dir)?;
         let units = units(&campaign);
-        let mut text = if folder.json { answer(&campaign, &units) } else { describe(&campaign, &units) };
+        let mut text =
+            if folder.json { format!("{:#}\n", queued(answer(&campaign, &units), &campaign)) } else { describe(&campaign, &units) };
         if !folder.json {
             if let Some(why) = campaign.spec_fault() {
                 text += &format!("caution: {why}; the spec of this folder may be another one than was run\n");
@@ -97,7 +98,7 @@ fn left(units: &Units) -> usize {
     units.iter().flat_map(|(_, units)| units).filter(|(_, standing)| !matches!(standing, Standing::Done | Standing::Failed(_))).count()
 }
 
-fn answer(campaign: &Campaign, units: &Units) -> String {
+fn answer(campaign: &Campaign, units: &Units) -> Value {
     let stages: Vec<_> = units
         .iter()
         .map(|(stage, units)| {
@@ -106,12 +107,23 @@ fn answer(campaign: &Campaign, units: &Units) -> String {
             json!({ "stage": stage.word(), "units": units })
         })
         .collect();
-    format!("{:#}\n", json!({ "name": campaign.spec.name, "dir": campaign.dir.display().to_string(), "stages": stages }))
+    json!({ "name": campaign.spec.name, "dir": campaign.dir.display().to_string(), "stages": stages })
+}
+
+/// The same with Slurm's words on the jobs that were sent, if any were: how many tasks are in which state, or null where the queue cannot be asked.
+fn queued(mut answer: Value, campaign: &Campaign) -> Value {
+    if let Ok(sent) = submit::sent(campaign)
+        && !sent.is_empty()
+    {
+        let states = submit::queue(&sent).map(|queue| queue.states);
+        answer["slurm"] = json!({ "job_count": sent.len(), "tasks": states });
+    }
+    answer
 }
 
 fn describe(campaign: &Campaign, units: &Units) -> String {
     let (name, dir) = (&campaign.spec.name, campaign.dir.display());
-    let mut text = format!("{name} in {dir}: {} cases, {} realizations\n", campaign.cases.len(), campaign.spec.realizations);
+    let mut text = format!("{name} in {dir}: {} cases, {}\n", campaign.cases.len(), campaign.realizations_in_words());
     for (stage, units) in units {
         let counted: Vec<String> = Standing::WORDS
             .iter()

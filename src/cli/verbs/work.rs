@@ -3,17 +3,18 @@
 use super::{BAD_SPEC, FAILED_CASES, Fault, failed, open, open_dir, say};
 use crate::campaign::{Campaign, Shard, Stage, Standing};
 use crate::cli::progress::Teller;
-use crate::cli::{CampaignArguments, FolderArguments, interrupt};
+use crate::cli::{FolderArguments, HowArguments, interrupt};
 use crate::schema;
 use crate::stages::{self, Tally, Task};
 use crate::stats::summary;
 use crate::store::{Check, parquet};
 use serde_json::json;
 use std::collections::HashSet;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-pub(super) fn stages(arguments: &CampaignArguments, from: Stage, until: Stage, partial: bool) -> Result<u8, Fault> {
-    let campaign = open(&arguments.spec, &arguments.output)?;
+pub(super) fn stages(spec: &Path, arguments: &HowArguments, (from, until): (Stage, Stage), partial: bool) -> Result<u8, Fault> {
+    let campaign = open(spec, &arguments.output)?;
     let shard = arguments.shard.unwrap_or_default();
     if !shard.is_whole() && until > Stage::Cycle {
         let stage = until.word();
@@ -23,7 +24,19 @@ pub(super) fn stages(arguments: &CampaignArguments, from: Stage, until: Stage, p
         });
     }
     let check = if arguments.quick { Check::Sizes } else { Check::Contents };
-    perform(&campaign, &Task { shard, partial, check, ..Task::new(from, until) }, arguments.output.json)
+    perform(campaign, &Task { shard, partial, check, ..Task::new(from, until) }, arguments.output.json)
+}
+
+/// `report --compare`.
+pub(super) fn compare(folders: &[PathBuf], arguments: &HowArguments) -> Result<u8, Fault> {
+    let out = arguments.output.out.clone().unwrap_or_else(|| PathBuf::from("data/runs/comparison"));
+    let page = stages::compare(folders, &out).map_err(failed)?;
+    say(&if arguments.output.json {
+        format!("{:#}\n", json!({ "report": page.display().to_string(), "table": out.join(schema::COMPARISON.file).display().to_string() }))
+    } else {
+        format!("Report: {}\nTable: {}\n", page.display(), out.join(schema::COMPARISON.file).display())
+    })?;
+    Ok(0)
 }
 
 pub(super) fn retry(folder: &FolderArguments, ids: &[String]) -> Result<u8, Fault> {
@@ -47,18 +60,18 @@ pub(super) fn retry(folder: &FolderArguments, ids: &[String]) -> Result<u8, Faul
     }
     let retried = if ids.is_empty() { failures } else { ids.iter().cloned().collect() };
     let task = Task { retried, shard: Shard::default(), ..Task::new(Stage::Generate, Stage::Report) };
-    perform(&campaign, &task, folder.json)
+    perform(campaign, &task, folder.json)
 }
 
-fn perform(campaign: &Campaign, task: &Task, json: bool) -> Result<u8, Fault> {
+fn perform(campaign: Campaign, task: &Task, json: bool) -> Result<u8, Fault> {
     let teller = Arc::new(Teller::new());
     interrupt::expect(teller.clone(), &campaign.dir).map_err(failed)?;
-    let tallies = rayon::scope(|_| stages::run(campaign, task, &*teller)).map_err(failed)?;
+    let (campaign, tallies) = rayon::scope(|_| stages::run(campaign, task, &*teller)).map_err(failed)?;
     let failures: usize = tallies.iter().map(|(_, tally)| tally.failed).sum();
     if json {
-        say(&tally_json(campaign, &tallies))?;
+        say(&tally_json(&campaign, &tallies))?;
     } else {
-        say(&conclusion(campaign, &tallies, task.until)?)?;
+        say(&conclusion(&campaign, &tallies, task.until)?)?;
     }
     Ok(if failures > 0 { FAILED_CASES } else { 0 })
 }

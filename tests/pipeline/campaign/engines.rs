@@ -2,6 +2,7 @@
 
 use super::SMALL;
 use crate::bench::{Bench, SPEC, code, files, stderr, stdout};
+use crate::python;
 use hysteron::campaign::{Campaign, Stage};
 use hysteron::engines::slurm::{Order, Queue, Sent, jobs, script};
 use hysteron::spec::Spec;
@@ -182,30 +183,9 @@ fn e2e_slurm_does_what_run_does() {
     assert!(stdout(&nothing).contains("everything is done"), "{}", stdout(&nothing));
 }
 
-/// A Snakemake of its own below the target directory; nothing where it cannot be had.
-fn snakemake() -> Option<PathBuf> {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("snakemake");
-    let program = folder.join("bin/snakemake");
-    if !program.is_file() {
-        let made = Command::new("python3").args(["-m", "venv"]).arg(&folder).output().ok()?;
-        let filled = made
-            .status
-            .success()
-            .then(|| Command::new(folder.join("bin/pip")).args(["install", "-q", "snakemake==9.*"]).output().ok())??;
-        if !filled.status.success() {
-            eprintln!("skipped: Snakemake cannot be installed: {}", stderr(&filled).trim());
-            return None;
-        }
-    }
-    program.is_file().then_some(program)
-}
-
 #[test]
 fn e2e_snakemake_does_what_run_does() {
-    let Some(program) = snakemake() else {
-        eprintln!("skipped: there is no Python with venv and pip to install Snakemake with");
-        return;
-    };
+    let Some(program) = python::environment("snakemake", &["snakemake==9.*"]).map(|folder| folder.join("bin/snakemake")) else { return };
     let alone = Bench::new(SPEC);
     assert_eq!(code(&alone.verb("run", &[])), 0);
     let bench = Bench::new(SPEC);

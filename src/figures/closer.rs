@@ -1,0 +1,262 @@
+//! A closer look at one cycle: what no mean shows.
+
+use super::FigureError;
+use super::axis::Axis;
+use super::panels::Panel;
+use super::plot::{Curve, Stroke, XyPlot, plot_xy};
+use super::style::{LOADING, THEORY, UNLOADING, curve, entry, shade};
+use crate::store::Frame;
+use std::collections::BTreeMap;
+
+/// Points of one scatter, at most: the greatest are drawn.
+const MOST_POINTS: usize = 2000;
+
+/// Points of a distribution, at most.
+const MOST_RANKS: usize = 300;
+
+/// Bars of the histogram of curvatures.
+const BARS: usize = 40;
+
+/// One cycle with what it is compared to.
+#[derive(Debug, Clone, Copy)]
+pub struct Closer<'a> {
+    /// Its id.
+    pub id: &'a str,
+    /// The turning point that is looked at, `F/(E* A0)`.
+    pub max_load: f64,
+    /// Its steps.
+    pub steps: &'a Frame,
+    /// Its events.
+    pub events: &'a Frame,
+    /// Its spots at the steps that were kept.
+    pub contacts: &'a Frame,
+    /// The asperities of its surface.
+    pub asperities: &'a Frame,
+    /// `E* A0 h_rms` \[J\].
+    pub energy_j: f64,
+    /// Rms height \[m\].
+    pub rms_height_m: f64,
+    /// Side of the square \[m\].
+    pub length_m: f64,
+    /// Pull-off load of a JKR asperity over its radius, `(3/2)πΔγ` \[N/m\].
+    pub pull_off_n_m: f64,
+    /// Spectrum that the surface has: wavenumber q/qL and `C qL²/h_rms²`.
+    pub found: &'a [(f64, f64)],
+    /// Spectrum that was asked for, likewise; nothing for a measured surface.
+    pub asked: &'a [(f64, f64)],
+    /// Unit of curvature, `sqrt(m4/3)` \[1/m\], of the moments that the surface has.
+    pub curvature_1_m: f64,
+    /// Nayak's density of the curvature of summits, both in that unit.
+    pub nayak: &'a [(f64, f64)],
+    /// Summits per area: found, and Nayak's for the moments of the surface \[1/m²\].
+    pub densities_1_m2: [f64; 2],
+}
+
+/// The four points of a loop whose spots are shown, by their steps: on loading, at the turning point, back at no load, at the pull-off.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Landmark {
+    pub(super) what: &'static str,
+    pub(super) step: i64,
+}
+
+impl Closer<'_> {
+    /// The landmarks whose spots were kept.
+    pub(super) fn landmarks(&self) -> Result<Vec<Landmark>, FigureError> {
+        let mut kept = self.contacts.i64("step")?;
+        kept.dedup();
+        let (branches, of, loads) = (self.steps.text("branch")?, self.steps.f64_or_null("max_load")?, self.steps.f64("load")?);
+        let load = |step: &i64| usize::try_from(*step).ok().and_then(|k| loads.get(k).copied()).unwrap_or(f64::NAN);
+        let on = |branch: &str, max_load: Option<f64>| -> Vec<i64> {
+            let fits = |step: &&i64| {
+                let k = usize::try_from(**step).unwrap_or(usize::MAX);
+                branches.get(k) == Some(&branch) && of.get(k) == Some(&max_load)
+            };
+            kept.iter().filter(fits).copied().collect()
+        };
+        let (loading, unloading) = (on("loading", None), on("unloading", Some(self.max_load)));
+        let nearest = |wanted: f64| loading.iter().min_by(|u, v| (load(u) - wanted).abs().total_cmp(&(load(v) - wanted).abs())).copied();
+        let found = [
+            ("loading, at F_{max}/2", nearest(0.5 * self.max_load)),
+            ("at F_{max}", nearest(self.max_load)),
+            ("unloading, at no load", unloading.iter().find(|step| load(step) <= 0.0).copied()),
+            ("at the pull-off", unloading.iter().min_by(|u, v| load(u).total_cmp(&load(v))).filter(|step| load(step) < 0.0).copied()),
+        ];
+        Ok(found.into_iter().filter_map(|(what, step)| step.map(|step| Landmark { what, step })).collect())
+    }
+
+    /// The landmarks with distributions: the turning point and the pull-off.
+    fn ends(&self) -> Result<Vec<(Landmark, [u8; 3], Stroke)>, FigureError> {
+        let styles = [("at F_{max}", LOADING, Stroke::Solid), ("at the pull-off", UNLOADING, Stroke::Dashed)];
+        let landmarks = self.landmarks()?;
+        let of = |(what, hue, stroke)| landmarks.iter().find(|landmark| landmark.what == what).map(|landmark| (*landmark, hue, stroke));
+        Ok(styles.into_iter().filter_map(of).collect())
+    }
+}
+
+/// The panels of a closer look; those whose spots were not kept are left out.
+///
+/// # Errors
+/// If a table lacks a column.
+pub fn closer(of: &Closer<'_>) -> Result<Vec<Panel>, FigureError> {
+    let mut panels = vec![panel("events", events(of)?), panel("avalanches", avalanches(of)?)];
+    if !of.ends()?.is_empty() {
+        panels.push(panel("radii", radii(of)?));
+        panels.push(panel("loads", loads(of)?));
+    }
+    panels.push(panel("spectrum", spectrum(of)));
+    panels.push(panel("summits", summits(of)?));
+    Ok(panels)
+}
+
+fn panel(name: &str, plot: XyPlot) -> Panel {
+    let stem = format!("closer_{name}");
+    let plot = XyPlot { stem: stem.clone(), ..plot };
+    Panel { stem, name: name.to_owned(), svg: plot_xy(&plot), plot }
+}
+
+fn plot(title: String, x: Axis, y: Axis, curves: Vec<Curve>, key: &[(&str, [u8; 3], Stroke)]) -> XyPlot {
+    let key = key.iter().map(|(text, hue, stroke)| entry(text, *hue, Some(*stroke), false)).collect();
+    XyPlot { stem: String::new(), letter: ' ', title, x, y, curves, key, notes: Vec::new() }
+}
+
+/// Events of the loop: places in their table, by branch.
+fn branches(of: &Closer<'_>) -> Result<[(&'static str, [u8; 3], Vec<usize>); 2], FigureError> {
+    let (branches, max_loads, steps) = (of.events.text("branch")?, of.events.f64_or_null("max_load")?, of.events.i64("step")?);
+    // Loading goes on beyond a turning point that is not the last one.
+    let turning = of.landmarks()?.iter().find(|landmark| landmark.what == "at F_{max}").map_or(i64::MAX, |landmark| landmark.step);
+    let all = || 0..of.events.row_count();
+    let loading = all().filter(|k| branches[*k] == "loading" && steps[*k] <= turning).collect();
+    let unloading = all().filter(|k| branches[*k] == "unloading" && max_loads[*k] == Some(of.max_load)).collect();
+    Ok([("loading", LOADING, loading), ("unloading", UNLOADING, unloading)])
+}
+
+/// Energy that each event lost, over the approach.
+fn events(of: &Closer<'_>) -> Result<XyPlot, FigureError> {
+    let (approaches, energies) = (of.events.f64("approach_m")?, of.events.f64("energy_lost_j")?);
+    let (mut curves, mut all, mut drawn) = (Vec::new(), 0, 0);
+    for (name, hue, rows) in branches(of)? {
+        let mut lost: Vec<(f64, f64)> =
+            rows.iter().map(|k| (approaches[*k] / of.rms_height_m, energies[*k] / of.energy_j)).filter(|point| point.1 > 0.0).collect();
+        all += lost.len();
+        lost.sort_by(|u, v| v.1.total_cmp(&u.1).then(u.0.total_cmp(&v.0)));
+        lost.truncate(MOST_POINTS);
+        drawn += lost.len();
+        curves.push(curve((name, ""), lost, shade(hue, 0, 1), Stroke::Points));
+    }
+    let points = || curves.iter().flat_map(|curve: &Curve| curve.points.iter());
+    let (x, y) = (
+        Axis::holding("Δ/h_{rms}", points().map(|point| point.0), false),
+        Axis::of_decades("energy lost/(E^{*}A_{0}h_{rms})", points().map(|point| point.1)).with_headroom(0.12),
+    );
+    let title = if drawn < all { format!("the greatest {drawn} of {all} events") } else { format!("{all} events that lost energy") };
+    Ok(plot(title, x, y, curves, &[("loading", LOADING, Stroke::Points), ("unloading", UNLOADING, Stroke::Points)]))
+}
+
+/// How many avalanches have so many events or more.
+fn avalanches(of: &Closer<'_>) -> Result<XyPlot, FigureError> {
+    let ids = of.events.i64("avalanche_id")?;
+    let mut curves = Vec::new();
+    let mut total = 0;
+    for (name, hue, rows) in branches(of)? {
+        let mut sizes: BTreeMap<i64, usize> = BTreeMap::new();
+        for k in rows {
+            *sizes.entry(ids[k]).or_default() += 1;
+        }
+        let mut sizes: Vec<usize> = sizes.into_values().collect();
+        sizes.sort_unstable();
+        total += sizes.len();
+        let mut points: Vec<(f64, f64)> = sizes.iter().enumerate().map(|(k, size)| (*size as f64, (sizes.len() - k) as f64)).collect();
+        points.dedup_by_key(|point| point.0);
+        let stroke = if hue == LOADING { Stroke::Dashed } else { Stroke::Solid };
+        curves.push(Curve { marked: true, ..curve((name, ""), points, shade(hue, 0, 1), stroke) });
+    }
+    let points = || curves.iter().flat_map(|curve: &Curve| curve.points.iter());
+    let (x, y) = (
+        Axis::of_decades("events in an avalanche, s", points().map(|point| point.0)),
+        Axis::of_decades("avalanches of s or more", points().map(|point| point.1)),
+    );
+    Ok(plot(format!("{total} avalanches"), x, y, curves, &[("loading", LOADING, Stroke::Dashed), ("unloading", UNLOADING, Stroke::Solid)]))
+}
+
+/// The cumulative distribution of a value of each spot at the turning point and at the pull-off.
+fn distribution(of: &Closer<'_>, label: &str, value: impl Fn(usize) -> Option<f64>) -> Result<XyPlot, FigureError> {
+    let (steps, states) = (of.contacts.i64("step")?, of.contacts.text("state")?);
+    let (mut curves, mut key) = (Vec::new(), Vec::new());
+    for (landmark, hue, stroke) in of.ends()? {
+        let mut values: Vec<f64> =
+            (0..steps.len()).filter(|k| steps[*k] == landmark.step && states[*k] == "contact").filter_map(&value).collect();
+        values.sort_by(f64::total_cmp);
+        let count = values.len();
+        let ranks = count.min(MOST_RANKS);
+        let points = (0..ranks).map(|rank| {
+            let at = (2 * rank + 1) * count / (2 * ranks);
+            (values[at], (at as f64 + 0.5) / count as f64)
+        });
+        curves.push(curve((landmark.what, ""), points.collect(), shade(hue, 0, 1), stroke));
+        key.push((format!("{}: {count} spots", landmark.what), hue, stroke));
+    }
+    let points = || curves.iter().flat_map(|curve: &Curve| curve.points.iter());
+    let (x, y) = (
+        Axis::holding(label, points().map(|point| point.0), false),
+        Axis::holding("share of the spots below", [0.0, 1.0], true).with_headroom(0.16),
+    );
+    let key: Vec<(&str, [u8; 3], Stroke)> = key.iter().map(|(text, hue, stroke)| (text.as_str(), *hue, *stroke)).collect();
+    Ok(plot(String::new(), x, y, curves, &key))
+}
+
+fn radii(of: &Closer<'_>) -> Result<XyPlot, FigureError> {
+    let radii = of.contacts.f64("contact_radius_m")?;
+    distribution(of, "contact radius/L", |k| Some(radii[k] / of.length_m))
+}
+
+fn loads(of: &Closer<'_>) -> Result<XyPlot, FigureError> {
+    let (loads, asperities, radii) = (of.contacts.f64("load_n")?, of.contacts.i64("asperity_id")?, of.asperities.f64("radius_m")?);
+    // Spots that have become one have numbers beyond those of the asperities, and no pull-off load of one.
+    let own = |k: usize| usize::try_from(asperities[k]).ok().and_then(|id| radii.get(id)).map(|radius| of.pull_off_n_m * radius);
+    distribution(of, "load of a spot/its own pull-off load", |k| own(k).map(|own| loads[k] / own))
+}
+
+/// The spectrum that the surface has, and the one that was asked for.
+fn spectrum(of: &Closer<'_>) -> XyPlot {
+    // Beyond the shortest waves there is rounding alone.
+    let most = of.found.iter().map(|point| point.1).fold(0.0, f64::max);
+    let found: Vec<(f64, f64)> = of.found.iter().filter(|point| point.1 > 1e-14 * most).copied().collect();
+    let mut curves = vec![curve(("asked for", ""), of.asked.to_vec(), shade(THEORY, 0, 1), Stroke::Dashed)];
+    curves.push(Curve { marked: true, ..curve(("found", ""), found, shade(UNLOADING, 0, 1), Stroke::Solid) });
+    let points = || curves.iter().flat_map(|curve: &Curve| curve.points.iter());
+    let (x, y) = (
+        Axis::of_decades("q/q_{L}", points().map(|point| point.0)),
+        Axis::of_decades("C q_{L}^{2}/h_{rms}^{2}", points().map(|point| point.1)),
+    );
+    let mut key = vec![("of this surface", UNLOADING, Stroke::Solid)];
+    if !of.asked.is_empty() {
+        key.push(("asked for, Eq 10", THEORY, Stroke::Dashed));
+    }
+    plot("spectrum of the heights".to_owned(), x, y, curves, &key)
+}
+
+/// Curvatures of the summits over Nayak's density.
+fn summits(of: &Closer<'_>) -> Result<XyPlot, FigureError> {
+    let curvatures: Vec<f64> = of.asperities.f64("curvature_1_m")?.iter().map(|k| k / of.curvature_1_m).collect();
+    let most = curvatures.iter().copied().fold(0.0, f64::max).max(1.0);
+    let width = most / BARS as f64;
+    let mut counts = [0usize; BARS];
+    for curvature in &curvatures {
+        counts[((curvature / width) as usize).min(BARS - 1)] += 1;
+    }
+    let unit = 1.0 / (width * curvatures.len().max(1) as f64);
+    // Its outline: each bar from its left to its right end.
+    let bars = counts.iter().enumerate().flat_map(|(k, count)| [k, k + 1].map(|at| (at as f64 * width, *count as f64 * unit)));
+    let curves = vec![
+        curve(("nayak", ""), of.nayak.to_vec(), shade(THEORY, 0, 1), Stroke::Dashed),
+        curve(("found", ""), bars.collect(), shade(UNLOADING, 0, 1), Stroke::Solid),
+    ];
+    let points = || curves.iter().flat_map(|curve: &Curve| curve.points.iter());
+    let (x, y) = (
+        Axis::holding("curvature of a summit/(m_{4}/3)^{1/2}", points().map(|point| point.0), true),
+        Axis::holding("density", points().map(|point| point.1), true).with_headroom(0.1),
+    );
+    let [found, nayak] = of.densities_1_m2.map(|density| density * of.length_m * of.length_m);
+    let title = format!("{found:.0} summits; Nayak: {nayak:.0}");
+    Ok(plot(title, x, y, curves, &[("of this surface", UNLOADING, Stroke::Solid), ("Nayak, Eq A2", THEORY, Stroke::Dashed)]))
+}

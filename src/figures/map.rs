@@ -1,0 +1,149 @@
+//! Maps of the contact spots over the surface, at four points of the loop.
+
+use super::closer::Closer;
+use super::{FigureError, markup};
+use ndarray::ArrayView2;
+use std::fmt::Write as _;
+
+/// Side of one map, what is between two, and room above each for its words \[pixels\].
+const SIDE: f64 = 300.0;
+const GAP: f64 = 16.0;
+const ABOVE: f64 = 42.0;
+
+/// Cells of the heights along a side, and shades of grey.
+const CELLS: usize = 75;
+const SHADES: usize = 7;
+
+/// Spots on one map, at most: the largest are drawn.
+const MOST_SPOTS: usize = 4000;
+
+const PUSHED: &str = "#0077bb";
+const PULLED: &str = "#cc3311";
+
+/// The spots at each landmark whose spots were kept, over the heights as shades of grey, the lower the darker; nothing where none were kept.
+///
+/// # Errors
+/// If a table lacks a column.
+pub fn map(of: &Closer<'_>, heights_m: ArrayView2<'_, f64>) -> Result<Option<String>, FigureError> {
+    let landmarks = of.landmarks()?;
+    if landmarks.is_empty() {
+        return Ok(None);
+    }
+    let (loads, penetrations) = (of.steps.f64("load")?, of.steps.f64("penetration")?);
+    let rows = landmarks.len().div_ceil(2) as f64;
+    let (width, height) = (2.0 * SIDE + 3.0 * GAP, rows * (SIDE + ABOVE) + GAP + 20.0);
+    let mut svg = format!(
+        "<svg viewBox=\"0 0 {width} {height}\" xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" width=\"{width}\" \
+         height=\"{height}\" font-family=\"DejaVu Sans, Verdana, Liberation Sans, Arial, sans-serif\" fill=\"black\">\
+         <rect width=\"100%\" height=\"100%\" fill=\"white\"/><defs><g id=\"map-heights\">{}</g><clipPath id=\"map-edge\">\
+         <rect x=\"0\" y=\"0\" width=\"{SIDE}\" height=\"{SIDE}\"/></clipPath></defs>",
+        ground(heights_m)
+    );
+    for (k, landmark) in landmarks.iter().enumerate() {
+        let (left, top) = (GAP + (k % 2) as f64 * (SIDE + GAP), ABOVE + (k / 2) as f64 * (SIDE + ABOVE));
+        let at = usize::try_from(landmark.step).unwrap_or_default();
+        let number = |values: &[f64]| values.get(at).copied().unwrap_or(f64::NAN);
+        let (spots, count) = spots(of, landmark.step)?;
+        // Writing to a string cannot fail.
+        let _ = write!(
+            svg,
+            "<text x=\"{left}\" y=\"{}\" font-size=\"14\">{}: {count} spots</text>\
+             <text x=\"{left}\" y=\"{}\" font-size=\"13\">F/(E^{{*}}A_{{0}}) = {}, Δ/h_{{rms}} = {:.2}</text>\
+             <g transform=\"translate({left} {top})\"><g clip-path=\"url(#map-edge)\"><use xlink:href=\"#map-heights\"/>{spots}</g>\
+             <rect x=\"0\" y=\"0\" width=\"{SIDE}\" height=\"{SIDE}\" fill=\"none\" stroke=\"black\"/></g>",
+            top - 23.0,
+            landmark.what,
+            top - 6.0,
+            format!("{:.5}", number(&loads)).replace('-', "−"),
+            number(&penetrations)
+        );
+    }
+    let foot = height - 12.0;
+    let _ = write!(
+        svg,
+        "<circle cx=\"{}\" cy=\"{}\" r=\"5\" fill=\"{PUSHED}\"/><text x=\"{}\" y=\"{foot}\" font-size=\"13\">pushed</text>\
+         <circle cx=\"{}\" cy=\"{}\" r=\"5\" fill=\"{PULLED}\"/><text x=\"{}\" y=\"{foot}\" font-size=\"13\">pulled; lower ground is darker</text></svg>",
+        GAP + 5.0,
+        foot - 4.5,
+        GAP + 15.0,
+        GAP + 95.0,
+        foot - 4.5,
+        GAP + 105.0
+    );
+    Ok(Some(markup::render(&svg)))
+}
+
+/// The heights in shades of grey, a path for each shade.
+fn ground(heights: ArrayView2<'_, f64>) -> String {
+    let (rows, columns) = heights.dim();
+    let cells = CELLS.min(rows).min(columns);
+    if cells == 0 {
+        return String::new();
+    }
+    // Measured surfaces may lack points.
+    let known = || heights.iter().copied().filter(|height| height.is_finite());
+    let (low, high) = known().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), h| (low.min(h), high.max(h)));
+    let shade = |i: usize, j: usize| {
+        // The middle of the cell stands for it.
+        let height = heights[[(2 * i + 1) * rows / (2 * cells), (2 * j + 1) * columns / (2 * cells)]];
+        (((height - low) / (high - low) * SHADES as f64) as usize).min(SHADES - 1)
+    };
+    let size = SIDE / cells as f64;
+    let mut paths = vec![String::new(); SHADES];
+    for j in 0..cells {
+        let mut i = 0;
+        while i < cells {
+            let from = i;
+            let own = shade(i, j);
+            while i < cells && shade(i, j) == own {
+                i += 1;
+            }
+            // x to the right, y upwards, as the maps of surfaces are drawn.
+            let top = SIDE - (j + 1) as f64 * size;
+            let _ = write!(
+                paths[own],
+                "M{:.2} {top:.2}h{:.2}v{size:.2}h-{:.2}z",
+                from as f64 * size,
+                (i - from) as f64 * size,
+                (i - from) as f64 * size
+            );
+        }
+    }
+    let fill = |(k, path): (usize, String)| {
+        let grey = 150 + 105 * k / SHADES;
+        format!("<path fill=\"#{grey:02x}{grey:02x}{grey:02x}\" d=\"{path}\"/>")
+    };
+    paths.into_iter().enumerate().map(fill).collect()
+}
+
+/// The spots at a step as circles, with their images across the edges; and how many there are.
+fn spots(of: &Closer<'_>, step: i64) -> Result<(String, usize), FigureError> {
+    let (steps, states, ids) = (of.contacts.i64("step")?, of.contacts.text("state")?, of.contacts.i64("asperity_id")?);
+    let (radii, loads) = (of.contacts.f64("contact_radius_m")?, of.contacts.f64("load_n")?);
+    let (x, y) = (of.asperities.f64("x_m")?, of.asperities.f64("y_m")?);
+    let unit = SIDE / of.length_m;
+    let mut spots: Vec<(f64, f64, f64, bool)> = Vec::new();
+    let mut count = 0;
+    for k in (0..steps.len()).filter(|k| steps[*k] == step && states[*k] == "contact") {
+        count += 1;
+        // Spots that have become one have no asperity of their own; they are where their parts are.
+        let Some(id) = usize::try_from(ids[k]).ok().filter(|id| *id < x.len()) else { continue };
+        spots.push((x[id] * unit, SIDE - y[id] * unit, radii[k] * unit, loads[k] < 0.0));
+    }
+    spots.sort_by(|u, v| v.2.total_cmp(&u.2));
+    spots.truncate(MOST_SPOTS);
+    let mut svg = String::new();
+    for (hue, wanted) in [(PUSHED, false), (PULLED, true)] {
+        let _ = write!(svg, "<g fill=\"{hue}\" fill-opacity=\"0.85\">");
+        for (x, y, r, _) in spots.iter().filter(|spot| spot.3 == wanted) {
+            for (dx, dy) in [-SIDE, 0.0, SIDE].into_iter().flat_map(|dx| [-SIDE, 0.0, SIDE].map(|dy| (dx, dy))) {
+                let (x, y) = (x + dx, y + dy);
+                if (-r..SIDE + r).contains(&x) && (-r..SIDE + r).contains(&y) {
+                    let _ = write!(svg, "<circle cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"{r:.2}\"/>");
+                }
+            }
+        }
+        svg.push_str("</g>");
+    }
+    Ok((svg, count))
+}

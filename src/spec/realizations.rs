@@ -1,0 +1,141 @@
+//! How many realizations: a number, or as many as the precision of a mean asks for.
+
+use std::fmt;
+
+use serde::Serialize;
+use toml::de::DeValue;
+
+use super::MAX_REALIZATIONS;
+use super::fault::Faults;
+use super::keys::Limits;
+use super::nearest::nearest;
+use super::number::{integer, number};
+use super::value::{Written, word, wrong_type};
+use super::walk::{entries, shown};
+use crate::model::{Choice, Goal};
+
+/// How many realizations each surface has.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Realizations {
+    /// So many.
+    Exactly(u32),
+    /// As many as a precision asks for, case by case.
+    Until(Until),
+}
+
+/// Realizations are added until the 95 % interval of a mean is narrow enough at every turning point of the case.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Until {
+    /// Half the interval over the mean.
+    pub until_relative_ci: f64,
+    /// Of what.
+    pub of: Goal,
+    /// With how many it begins.
+    pub min: u32,
+    /// How many there are at most.
+    pub max: u32,
+}
+
+impl Realizations {
+    /// How many there are in any case.
+    #[must_use]
+    pub fn least(self) -> u32 {
+        match self {
+            Self::Exactly(count) => count,
+            Self::Until(until) => until.min,
+        }
+    }
+
+    /// The precision that is asked for, if one is.
+    #[must_use]
+    pub fn until(self) -> Option<Until> {
+        match self {
+            Self::Exactly(_) => None,
+            Self::Until(until) => Some(until),
+        }
+    }
+}
+
+/// As a spec has it.
+impl fmt::Display for Realizations {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Exactly(count) => write!(f, "{count}"),
+            Self::Until(Until { until_relative_ci, of, min, max }) => {
+                write!(f, "{{ until_relative_ci = {until_relative_ci:?}, of = \"{}\", min = {min}, max = {max} }}", of.word())
+            }
+        }
+    }
+}
+
+/// What the table takes.
+const TAKES: [&str; 4] = ["until_relative_ci", "of", "min", "max"];
+
+const PRECISION: Limits = Limits {
+    low: 1e-3,
+    above: false,
+    high: 1.0,
+    unit: "",
+    unit_name: "",
+    slip: None,
+    note: "half the 95 % interval over the mean: 0.05 is 5 %, and takes some hundred surfaces where results scatter by 25 %",
+};
+
+/// A number of realizations, or a table that says until when.
+pub(super) fn realizations(value: &Written<'_>, faults: &mut Faults<'_>) -> Option<Realizations> {
+    match value.get_ref() {
+        DeValue::Table(_) => until(value, faults).map(Realizations::Until),
+        DeValue::Integer(_) => count("realizations", 1, value, faults).map(Realizations::Exactly),
+        other => {
+            let help = "write a number, or { until_relative_ci = 0.05, of = \"loss\" }".to_owned();
+            wrong_type("realizations", "an integer or a table", other, &value.span(), help, faults);
+            None
+        }
+    }
+}
+
+fn count(path: &str, least: u32, value: &Written<'_>, faults: &mut Faults<'_>) -> Option<u32> {
+    let found = integer(path, value, faults)?;
+    let count = u32::try_from(found).ok().filter(|count| (least..=MAX_REALIZATIONS).contains(count));
+    if count.is_none() {
+        let message = format!("`{path}` cannot be {found}: it must be from {least} to {MAX_REALIZATIONS}");
+        // One has no spread.
+        faults.add(&value.span(), message, (least > 1).then(|| "two are the fewest that have a spread".to_owned()));
+    }
+    count
+}
+
+fn until(value: &Written<'_>, faults: &mut Faults<'_>) -> Option<Until> {
+    let DeValue::Table(table) = value.get_ref() else { return None };
+    let before = faults.count();
+    let (mut precision, mut of, mut min, mut max) = (None, Goal::Loss, 6, 200);
+    let mut limits = value.span();
+    for (name, span, written) in entries(table) {
+        match name {
+            "until_relative_ci" => precision = number("realizations.until_relative_ci", &PRECISION, written, faults),
+            "of" => {
+                let words: Vec<&'static str> = Goal::WORDS.iter().map(|(word, _)| *word).collect();
+                of = word("realizations.of", &words, written, faults).and_then(Goal::from_word).unwrap_or(of);
+            }
+            "min" => min = count("realizations.min", 2, written, faults).unwrap_or(min),
+            "max" => {
+                limits = written.span();
+                max = count("realizations.max", 2, written, faults).unwrap_or(max);
+            }
+            unknown => {
+                let listed = format!("it takes: {}", TAKES.join(", "));
+                let help = nearest(unknown, TAKES).map_or_else(|| listed.clone(), |near| format!("did you mean `{near}`? {listed}"));
+                faults.add(&span, format!("unknown key `{}` in `realizations`", shown(unknown)), help);
+            }
+        }
+    }
+    if !table.contains_key("until_relative_ci") {
+        let help = "add until_relative_ci = 0.05, or write the number of realizations alone".to_owned();
+        faults.add(&value.span(), "`realizations` has no `until_relative_ci`".to_owned(), help);
+    }
+    if faults.count() == before && min > max {
+        faults.add(&limits, format!("`realizations.max` cannot be {max}: it must be at least `min`, which is {min}"), None);
+    }
+    (faults.count() == before).then_some(Until { until_relative_ci: precision?, of, min, max })
+}

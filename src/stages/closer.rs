@@ -1,0 +1,102 @@
+//! The part of the report that looks closely at one cycle.
+
+use super::StageError;
+use super::report::escape;
+use super::statistics::moments;
+use super::surface::spectrum;
+use crate::campaign::{Campaign, CycleUnit, Standing};
+use crate::figures::{Closer, Panel, closer, map};
+use crate::physics::periodogram::periodogram;
+use crate::physics::theory::curvature_density;
+use crate::schema;
+use crate::spec::SurfaceParams;
+use crate::store::hdf5::read_surface;
+use crate::store::parquet::read_table;
+use std::f64::consts::{PI, TAU};
+use std::fmt::Write as _;
+
+/// Points along one side of a surface, at most: a closer look at a greater one would take more memory than its cycle.
+const GREATEST: u64 = 8192;
+
+/// Points of a curve of a theory.
+const POINTS: usize = 120;
+
+/// What is drawn of one cycle.
+pub(super) struct Look {
+    /// The id of the cycle, and the turning point.
+    pub(super) id: String,
+    pub(super) max_load: f64,
+    pub(super) panels: Vec<Panel>,
+    /// The maps of the spots, if these were kept.
+    pub(super) map: Option<String>,
+}
+
+/// A closer look at the first cycle that is done, at the turning point that is nearest to the spec's first one; nothing if none is, or if all surfaces are
+/// too great for it.
+pub(super) fn look(campaign: &Campaign, standings: &[Standing]) -> Result<Option<Look>, StageError> {
+    let params = |unit: &CycleUnit| &campaign.surfaces[unit.surface].params;
+    let done = campaign.cycles.iter().zip(standings).filter(|(_, standing)| **standing == Standing::Done).map(|(unit, _)| unit);
+    let Some(unit) = done.into_iter().find(|unit| params(unit).grid() <= GREATEST) else { return Ok(None) };
+    let case = &campaign.cases[unit.case].case.params;
+    let first = campaign.spec.base.cycle.max_load.first().copied().unwrap_or_default();
+    let nearest = case.cycle.max_load.iter().min_by(|u, v| (*u - first).abs().total_cmp(&(*v - first).abs()));
+    let Some(max_load) = nearest.copied() else { return Ok(None) };
+    let surface = &campaign.surfaces[unit.surface];
+    let (header, heights) = read_surface(&campaign.surface_path(surface))?;
+    let asperities = read_table(&campaign.asperities_path(surface), &schema::ASPERITIES)?;
+    let table = |table: &'static schema::Table| read_table(&campaign.cycle_dir(unit).join(format!("{}.parquet", table.name)), table);
+    let (steps, events, contacts) = (table(&schema::STEPS)?, table(&schema::EVENTS)?, table(&schema::CONTACTS)?);
+    let realised = moments(&header);
+    let (lowest, variance) = (TAU / header.length_m, header.rms_height_m.powi(2));
+    let found: Vec<(f64, f64)> = periodogram(heights.view(), header.length_m)
+        .iter()
+        .map(|ring| (ring.wavenumber_1_m / lowest, ring.density_m4 * lowest * lowest / variance))
+        .collect();
+    let nayak: Vec<(f64, f64)> = (0..=POINTS).map(|k| 8.0 * k as f64 / POINTS as f64).map(|t| (t, curvature_density(-t))).collect();
+    let area = header.length_m * header.length_m;
+    let of = Closer {
+        id: &unit.id,
+        max_load,
+        steps: &steps,
+        events: &events,
+        contacts: &contacts,
+        asperities: &asperities,
+        energy_j: case.material.contact_modulus_pa * area * case.surface.rms_height_m,
+        rms_height_m: case.surface.rms_height_m,
+        length_m: header.length_m,
+        pull_off_n_m: 1.5 * PI * case.material.work_of_adhesion_j_m2,
+        found: &found,
+        asked: &asked(&case.surface),
+        curvature_1_m: (realised.m4_1_m2 / 3.0).sqrt(),
+        nayak: &nayak,
+        densities_1_m2: [asperities.row_count() as f64 / area, realised.summit_density_1_m2()],
+    };
+    Ok(Some(Look { id: unit.id.clone(), max_load, panels: closer(&of)?, map: map(&of, heights.view())? }))
+}
+
+/// The spectrum that was asked for: `C qL²/h_rms²` over q/qL, from the longest to the shortest waves.
+fn asked(params: &SurfaceParams) -> Vec<(f64, f64)> {
+    let of = spectrum(params);
+    let unit = of.prefactor() * (of.lowest_wavenumber() / params.rms_height_m).powi(2);
+    let at = |k: usize| f64::from(params.magnification).powf(k as f64 / POINTS as f64);
+    (0..=POINTS).map(at).map(|q| (q, unit * q.powf(-2.0 * (params.hurst + 1.0)))).collect()
+}
+
+/// The closer look on the page.
+pub(super) fn section(html: &mut String, look: &Look) {
+    // Writing to a string cannot fail.
+    let _ = write!(
+        html,
+        "<h2>A closer look</h2>\n<p>One cycle, {}, to F/(E*A<sub>0</sub>) = {}. Every event is in its table <code>events</code>, and its spots are in \
+         <code>contacts</code>.</p>\n<div class=\"panels\">\n",
+        escape(&look.id),
+        look.max_load
+    );
+    for panel in &look.panels {
+        let _ = writeln!(html, "<div>{}</div>", panel.svg);
+    }
+    html.push_str("</div>\n");
+    if let Some(map) = &look.map {
+        let _ = writeln!(html, "<div class=\"map\">{map}</div>");
+    }
+}

@@ -1,0 +1,149 @@
+//! `report --compare`: campaigns side by side, from their tables over realizations.
+
+use super::StageError;
+use super::report::{STYLE, escape, write_picture};
+use super::trust::{Shown, shown};
+use crate::figures::{Panel, compared};
+use crate::schema::{self, COMPARISON};
+use crate::stats::{self, Group, Matched, Side, varying};
+use crate::store::{Frame, commit, parquet};
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+/// Compares the campaigns in `folders` with the first one, and writes `comparison.parquet`, `comparison.html` and `figures/` into `out`. The page's path is returned.
+///
+/// # Errors
+/// If a folder lacks its tables over realizations; if cases cannot be told apart; if no case is in all campaigns; a file that cannot be written.
+pub fn compare(folders: &[PathBuf], out: &Path) -> Result<PathBuf, StageError> {
+    let sides: Vec<Side> = labels(folders).into_iter().zip(folders).map(|(label, folder)| side(label, folder)).collect::<Result<_, _>>()?;
+    let matched = stats::matched(&sides)?;
+    if matched.groups.is_empty() {
+        let folders = folders.iter().map(|folder| folder.display().to_string()).collect::<Vec<_>>().join(", ");
+        return Err(StageError::NothingInCommon { folders });
+    }
+    let table = stats::comparison(&sides, &matched)?;
+    for path in [out.to_owned(), out.join("figures")] {
+        std::fs::create_dir_all(&path).map_err(|source| StageError::Folder { path, source })?;
+    }
+    let names = names(&sides, &matched)?;
+    let mut drawings: Vec<(String, Vec<Panel>)> = Vec::new();
+    for (number, (group, name)) in matched.groups.iter().zip(&names).enumerate() {
+        drawings.push((name.clone(), panels(&sides, group, (name, &format!("compare{number}")))?));
+    }
+    for panel in drawings.iter().flat_map(|(_, panels)| panels) {
+        write_picture(out, &panel.stem, &panel.svg)?;
+    }
+    parquet::write_table(&out.join(COMPARISON.file), &table, &[])?;
+    let path = out.join("comparison.html");
+    commit::commit_bytes("write the comparison", &path, page(&sides, &matched, &names, &drawings, &table)?.as_bytes())?;
+    Ok(path)
+}
+
+/// What campaigns are called: the names of their folders, or their whole paths where two have one name.
+fn labels(folders: &[PathBuf]) -> Vec<String> {
+    let name =
+        |folder: &PathBuf| folder.file_name().map_or_else(|| folder.display().to_string(), |name| name.to_string_lossy().into_owned());
+    let names: Vec<String> = folders.iter().map(name).collect();
+    let alone = |name: &String| names.iter().filter(|other| *other == name).count() == 1;
+    if names.iter().all(alone) { names } else { folders.iter().map(|folder| folder.display().to_string()).collect() }
+}
+
+fn side(label: String, folder: &Path) -> Result<Side, StageError> {
+    let read = |table: &'static schema::Table| parquet::read_table(&folder.join(table.file), table);
+    Ok(Side { label, cases: read(&schema::CASES)?, realizations: read(&schema::REALIZATIONS)?, curves: read(&schema::CURVES)? })
+}
+
+/// What each group is called: what tells the cases of the first campaign apart, and the load.
+fn names(sides: &[Side], matched: &Matched) -> Result<Vec<String>, StageError> {
+    let Some(first) = sides.first() else { return Ok(Vec::new()) };
+    let rows: Vec<usize> = matched.groups.iter().map(|group| group.rows[0]).collect();
+    let differing = varying(&first.cases, &rows)?;
+    let loads = first.cases.f64("max_load")?;
+    let name = |(place, row): (usize, &usize)| {
+        let parts = differing.iter().map(|parameter| format!("{} = {}", parameter.symbol, parameter.text(place)));
+        parts.chain([format!("F = {}", loads[*row])]).collect::<Vec<_>>().join(", ")
+    };
+    Ok(rows.iter().enumerate().map(name).collect())
+}
+
+/// The panels of one group, its campaigns over one another.
+fn panels(sides: &[Side], group: &Group, (name, stem): (&str, &str)) -> Result<Vec<Panel>, StageError> {
+    let (mut cases, mut curves) = (Vec::new(), Vec::new());
+    for (number, (side, row)) in sides.iter().zip(&group.rows).enumerate() {
+        let id = side.cases.text("case_id")?[*row];
+        // Two campaigns may have one case, and it is to have a path in each.
+        let own = format!("{number}-{id}");
+        let ids = side.curves.text("case_id")?;
+        cases.push((&side.cases, vec![*row], own.clone()));
+        curves.push((&side.curves, (0..ids.len()).filter(|k| ids[*k] == id).collect(), own));
+    }
+    let labels: Vec<String> = sides.iter().map(|side| side.label.clone()).collect();
+    Ok(compared(&stats::together(&cases)?, &stats::together(&curves)?, &labels, (name, stem))?)
+}
+
+fn page(
+    sides: &[Side],
+    matched: &Matched,
+    names: &[String],
+    drawings: &[(String, Vec<Panel>)],
+    table: &Frame,
+) -> Result<String, StageError> {
+    let labels: Vec<String> = sides.iter().map(|side| escape(&side.label)).collect();
+    let title = labels.join(", ");
+    let told = if matched.differing.is_empty() { "nothing but their realizations".to_owned() } else { matched.differing.join(", ") };
+    let left: Vec<String> = labels
+        .iter()
+        .zip(&matched.left_over)
+        .filter(|(_, count)| **count > 0)
+        .map(|(label, count)| format!("{count} of {label}"))
+        .collect();
+    let left = if left.is_empty() { String::new() } else { format!(" Cases without a counterpart are left out: {}.", left.join(", ")) };
+    let mut html = String::new();
+    // Writing to a string cannot fail.
+    let _ = write!(
+        html,
+        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width\">\n\
+         <title>{title}: compared</title>\n<style>{STYLE}</style>\n</head>\n<body>\n<h1>Compared: {title}</h1>\n<p>The campaigns differ in {}. Each case of {} is \
+         compared with the same one of the others.{left} In brackets half the 95 % interval of a difference: surface by surface where both have the same ones, else \
+         of two independent means (Welch).</p>\n<div class=\"wide\"><table>\n<tr><th>case</th><th>quantity</th><th>campaign</th><th>mean</th><th>{}</th>\
+         <th>difference</th><th>relative</th><th>realizations</th></tr>\n",
+        escape(&told),
+        labels[0],
+        labels[0]
+    );
+    let (groups, campaigns, quantities) = (table.i64("group")?, table.text("campaign")?, table.text("quantity")?);
+    let (means, references, differences) = (table.f64("mean")?, table.f64("reference_mean")?, table.f64("difference")?);
+    let (intervals, shares) = (table.f64_or_null("difference_ci95")?, table.f64_or_null("relative_difference")?);
+    let (paired, counts, others) = (table.bool("paired")?, table.i64("realization_count")?, table.i64("reference_realization_count")?);
+    for row in 0..table.row_count() {
+        let number = |value: f64| shown(Some(value), Shown::Plain);
+        let interval = intervals[row].map_or_else(String::new, |half| format!(" (±{})", number(half)));
+        // What the interval does not let pass for chance.
+        let clear = intervals[row].is_some_and(|half| differences[row].abs() > half);
+        let of = if paired[row] { format!("{} pairs", counts[row]) } else { format!("{} and {}", counts[row], others[row]) };
+        let _ = writeln!(
+            html,
+            "<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td{}>{}{interval}</td><td>{}</td><td>{of}</td></tr>",
+            escape(&names[groups[row] as usize]),
+            quantities[row],
+            escape(campaigns[row]),
+            number(means[row]),
+            number(references[row]),
+            if clear { " class=\"clear\"" } else { "" },
+            number(differences[row]),
+            shown(shares[row], Shown::Percent)
+        );
+    }
+    html.push_str(
+        "</table></div>\n<p>Differences beyond their interval are bold. The numbers are in <code>comparison.parquet</code>.</p>\n",
+    );
+    for (name, panels) in drawings {
+        let _ = write!(html, "<h2>{}</h2>\n<div class=\"panels\">\n", escape(name));
+        for panel in panels {
+            let _ = writeln!(html, "<div>{}</div>", panel.svg);
+        }
+        html.push_str("</div>\n");
+    }
+    html.push_str("</body>\n</html>\n");
+    Ok(html)
+}

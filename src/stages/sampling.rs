@@ -1,0 +1,83 @@
+//! Realizations until a mean is known well enough: how many a campaign has, told from the cycles that are done.
+//!
+//! Nothing of it is stored. The number of realizations of a case follows from the results of the first ones, step by step, so whoever looks at
+//! the same results finds the same number: a run that was killed, another one with more threads, and `status`.
+
+use super::StageError;
+use super::statistics::cycle_input;
+use crate::campaign::{Campaign, CycleUnit, Standing};
+use crate::model::Choice;
+use crate::spec::Until;
+use crate::stats::{self, Sample, Value};
+use crate::store::Check;
+use rayon::prelude::*;
+
+/// What one realization of a case comes to at each turning point; nothing if it failed.
+type Outcome = Option<Vec<f64>>;
+
+/// How many realizations a case is to have, of which `outcomes` are known: those, if its means are known well enough, or it has as many as it may.
+///
+/// Half the 95 % interval falls as `1/√n`, so from its present share `h` of the mean `n (h/wanted)²` are expected to be enough; no more than twice as many as
+/// there are, since a spread of few is known badly. Where half of them failed, more would fail, and none is added.
+fn enough(outcomes: &[Outcome], until: &Until) -> u32 {
+    let now = outcomes.len() as u32;
+    let done: Vec<&Vec<f64>> = outcomes.iter().flatten().collect();
+    if now >= until.max || done.len() < 2 || 2 * done.len() < outcomes.len() {
+        return now;
+    }
+    let loads = done.first().map_or(0, |values| values.len());
+    let shares = (0..loads).map(|load| {
+        let sample = Sample::of(&done.iter().filter_map(|values| values.get(load).copied()).collect::<Vec<f64>>());
+        match (sample.mean, sample.ci95) {
+            (Some(mean), Some(half)) if mean != 0.0 => half / mean.abs(),
+            _ => f64::INFINITY,
+        }
+    });
+    let widest = shares.fold(0.0, f64::max);
+    if widest <= until.until_relative_ci {
+        return now;
+    }
+    let expected = f64::from(now) * (widest / until.until_relative_ci).powi(2);
+    (expected.min(2.0 * f64::from(now)).ceil() as u32).clamp(now + 1, until.max)
+}
+
+/// The campaign with as many realizations of each case as its precision asks for, as far as that is known: up to the first that are not done.
+///
+/// # Errors
+/// If the tables of a finished cycle cannot be read.
+pub fn sampled(campaign: Campaign) -> Result<Campaign, StageError> {
+    let Some(until) = campaign.spec.realizations.until() else { return Ok(campaign) };
+    let mut campaign = campaign;
+    loop {
+        let standings = campaign.cycle_standings(Check::Sizes);
+        let counts: Vec<u32> =
+            (0..campaign.cases.len()).into_par_iter().map(|case| count(&campaign, case, &standings, &until)).collect::<Result<_, _>>()?;
+        if counts == campaign.counts {
+            return Ok(campaign);
+        }
+        campaign = Campaign::with_counts(campaign.spec, campaign.dir, counts);
+    }
+}
+
+fn count(campaign: &Campaign, case: usize, standings: &[Standing], until: &Until) -> Result<u32, StageError> {
+    let units = campaign.cycles.iter().zip(standings).filter(|(unit, _)| unit.case == case);
+    let outcomes: Vec<Option<Outcome>> = units
+        .map(|(unit, standing)| match standing {
+            Standing::Done => outcome(campaign, unit, until).map(|values| Some(Some(values))),
+            Standing::Failed(_) => Ok(Some(None)),
+            _ => Ok(None),
+        })
+        .collect::<Result<_, StageError>>()?;
+    let known: Option<Vec<Outcome>> = outcomes.into_iter().collect();
+    Ok(known.map_or(campaign.counts[case], |known| enough(&known, until)))
+}
+
+/// The chosen statistic of a finished cycle, at each turning point.
+fn outcome(campaign: &Campaign, unit: &CycleUnit, until: &Until) -> Result<Vec<f64>, StageError> {
+    let results = stats::results(&cycle_input(campaign, unit)?)?;
+    let value = |(name, value): &(String, Value)| match value {
+        Value::Real(value) if name == until.of.word() => Some(*value),
+        _ => None,
+    };
+    Ok(results.iter().filter_map(|(_, columns)| columns.iter().find_map(value)).collect())
+}

@@ -1,0 +1,69 @@
+//! Python with what a test needs, and what other programs find in a run.
+
+use crate::bench::{Bench, SPEC, code, stderr};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::{Mutex, PoisonError};
+
+static MAKING: Mutex<()> = Mutex::new(());
+
+/// An environment of its own below the target directory with these packages of PyPI; nothing, and a line that says why, where it cannot be had.
+pub fn environment(name: &str, packages: &[&str]) -> Option<PathBuf> {
+    // Tests that run at once are not to fill one folder twice.
+    let _alone = MAKING.lock().unwrap_or_else(PoisonError::into_inner);
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    // Written when all is there: what was begun and not ended is done again.
+    let complete = folder.join(format!("complete-{}", blake3::hash(packages.join(" ").as_bytes()).to_hex().get(..8)?));
+    if complete.is_file() {
+        return Some(folder);
+    }
+    let skipped = |why: &str| {
+        eprintln!("skipped: {name}: {why}");
+        None
+    };
+    let ran = |command: &mut Command| -> Option<Output> { command.output().ok().filter(|output| output.status.success()) };
+    if ran(Command::new("python3").args(["-m", "venv", "--clear"]).arg(&folder)).is_none() {
+        return skipped("there is no Python 3 with venv");
+    }
+    let filled = Command::new(folder.join("bin/pip")).args(["install", "-q"]).args(packages).output().ok()?;
+    if !filled.status.success() {
+        return skipped(&format!("{} cannot be installed: {}", packages.join(", "), stderr(&filled).trim()));
+    }
+    std::fs::write(&complete, "").ok()?;
+    Some(folder)
+}
+
+/// Runs a script of `tests/python` on the output of a run; what it says.
+fn script(name: &str, bench: &Bench) -> Option<String> {
+    let tests = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/python");
+    let packages = std::fs::read_to_string(tests.join("requirements.txt")).unwrap();
+    let folder = environment("readers", &packages.lines().collect::<Vec<_>>())?;
+    let output = Command::new(folder.join("bin/python")).arg(tests.join(name)).arg(bench.out()).output().unwrap();
+    assert!(output.status.success(), "{name}: {}", stderr(&output));
+    Some(String::from_utf8(output.stdout).unwrap())
+}
+
+/// The first number of a text.
+fn first_number(text: &str) -> usize {
+    text.split_whitespace().find_map(|word| word.parse().ok()).unwrap()
+}
+
+#[test]
+fn e2e_other_programs_read_the_same_values() {
+    let bench = Bench::new(SPEC);
+    assert_eq!(code(&bench.verb("run", &[])), 0);
+    if let Some(said) = script("readers.py", &bench) {
+        // Of each of the four cycles five tables, one of each surface, and five over realizations.
+        assert_eq!(first_number(&said), 4 * 5 + 4 + 5, "{said}");
+    }
+}
+
+#[test]
+fn e2e_plain_python_finds_the_same_means() {
+    let bench = Bench::new(&SPEC.replace("realizations = 2", "realizations = 3"));
+    assert_eq!(code(&bench.verb("run", &["--until", "aggregate"])), 0);
+    if let Some(said) = script("aggregates.py", &bench) {
+        // Five numbers of each of 12 rows, and four of the mean of each of these in 4 cases.
+        assert_eq!(first_number(&said), 5 * 12 + 4 * 5 * 4, "{said}");
+    }
+}

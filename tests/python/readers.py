@@ -1,0 +1,102 @@
+"""Every table of a run, read by the programs that people read tables with: the same columns, types, values and nulls in all of them.
+
+    python readers.py DIR
+
+Says how many tables and values were compared; the first difference ends it.
+"""
+
+import json
+import math
+import sys
+from pathlib import Path
+
+import duckdb
+import h5py
+import numpy
+import pandas
+import polars
+import pyarrow
+import pyarrow.parquet
+import xarray
+
+KINDS = {
+    pyarrow.float64(): (polars.Float64, "Float64", "DOUBLE"),
+    pyarrow.int64(): (polars.Int64, "Int64", "BIGINT"),
+    pyarrow.bool_(): (polars.Boolean, "boolean", "BOOLEAN"),
+    pyarrow.string(): (polars.String, "string", "VARCHAR"),
+}
+
+
+def plain(kind):
+    """A column's type, whether its words stand in a dictionary or not."""
+    return kind.value_type if pyarrow.types.is_dictionary(kind) else kind
+
+
+def table(path):
+    """Compares one table; the number of its values."""
+    arrow = pyarrow.parquet.read_table(path)
+    names = arrow.schema.names
+    columns = {name: arrow.column(name).to_pylist() for name in names}
+    kinds = {name: KINDS[plain(arrow.schema.field(name).type)] for name in names}
+
+    frame = polars.read_parquet(path)
+    assert frame.columns == names, path
+    for name in names:
+        own = frame[name].dtype
+        own = polars.String if own in (polars.Categorical, polars.Enum) else own
+        assert own == kinds[name][0], (path, name, frame[name].dtype)
+        assert frame[name].cast(kinds[name][0]).to_list() == columns[name], (path, name, "polars")
+
+    panda = pandas.read_parquet(path, dtype_backend="numpy_nullable")
+    assert list(panda.columns) == names, path
+    for name in names:
+        values = [None if value is pandas.NA or value is None else value for value in panda[name].astype(object)]
+        assert values == columns[name], (path, name, "pandas")
+
+    answer = duckdb.sql(f"select * from read_parquet('{path}')")
+    assert answer.columns == names, path
+    assert [str(kind) for kind in answer.types] == [kinds[name][2] for name in names], (path, answer.types)
+    rows = answer.fetchall()
+    for at, name in enumerate(names):
+        assert [row[at] for row in rows] == columns[name], (path, name, "duckdb")
+
+    # What each column means travels with it, and once more with the file, for those who do not see the first.
+    described = json.loads(pyarrow.parquet.read_metadata(path).metadata[b"hysteron"])
+    for field in arrow.schema:
+        told = {key.decode(): value.decode() for key, value in field.metadata.items()}
+        assert told["description"], (path, field.name)
+        assert field.nullable or None not in columns[field.name], (path, field.name)
+        if plain(field.type) == pyarrow.float64():
+            assert "unit" in told, (path, field.name)
+    assert described, path
+    # No number is not one: what is missing is null.
+    for name in names:
+        assert all(not isinstance(value, float) or math.isfinite(value) for value in columns[name]), (path, name)
+    return arrow.num_rows * arrow.num_columns
+
+
+def surface(path):
+    """A surface by h5py and by xarray; the number of its heights."""
+    with h5py.File(path) as file:
+        heights = file["height_m"][:]
+        told = dict(file.attrs)
+    assert heights.dtype == numpy.float64 and heights.shape[0] == heights.shape[1], path
+    rms = float(numpy.sqrt(numpy.mean((heights - heights.mean()) ** 2)))
+    assert abs(rms - told["rms_height_m"]) < 1e-9 * rms, (path, rms, told["rms_height_m"])
+    with xarray.open_dataset(path, engine="h5netcdf", phony_dims="access") as dataset:
+        assert numpy.array_equal(dataset["height_m"].values, heights), path
+        assert dataset.attrs["rms_height_m"] == told["rms_height_m"], path
+    return heights.size
+
+
+def main():
+    folder = Path(sys.argv[1])
+    tables = sorted(folder.rglob("*.parquet"))
+    surfaces = sorted(folder.rglob("*.h5"))
+    assert tables and surfaces, folder
+    values = sum(table(path) for path in tables)
+    heights = sum(surface(path) for path in surfaces)
+    print(f"{len(tables)} tables, {values} values; {len(surfaces)} surfaces, {heights} heights")
+
+
+main()
