@@ -12,7 +12,7 @@ use crate::model::Interaction;
 /// Greatest relative change of a radius in one iteration, here as in Newton's method.
 pub(crate) const STRIDE: f64 = 0.2;
 
-/// Steps at most.
+/// Steps at most since a spot was taken out last: however many go, each is a step towards rest.
 const STEPS: usize = 1000;
 
 /// Steps without rest after which a spot at the edge of another is covered.
@@ -58,7 +58,9 @@ pub(crate) fn relax(contact: &mut impl Relaxing, problem: &Problem, uncovered: O
     let mut way: Option<(Vec<f64>, f64)> = None;
     let (mut time, mut finish) = (1.0, NEARLY);
     let mut last = Unsettled { residual_m: f64::NAN, asperity: 0 };
-    for round in 1..=STEPS {
+    let mut round = 0;
+    while round < STEPS {
+        round += 1;
         last = contact.evaluate();
         if last.residual_m <= problem.tolerance_m() {
             return Ok(changes);
@@ -92,7 +94,7 @@ pub(crate) fn relax(contact: &mut impl Relaxing, problem: &Problem, uncovered: O
             if uncovered.is_some_and(|earlier| change.undoes(earlier)) {
                 return Ok(changes);
             }
-            (time, finish) = (1.0, NEARLY);
+            (round, time, finish) = (0, 1.0, NEARLY);
             continue;
         }
         if time > finish {

@@ -20,8 +20,10 @@ fn cycle_to(summits: &[Summit], rules: Rules, turn: f64, contacts: KeptContacts)
 /// The spots at an approach \[m\], while loading.
 fn spots(summits: &[Summit], rules: Rules, approach: f64) -> Vec<Contact> {
     let cycle = cycle_to(summits, rules, approach, KeptContacts::Turning);
-    assert_eq!(cycle.contacts.len(), summits.len(), "all in contact");
-    cycle.contacts
+    let turning = cycle.turning[0].0;
+    let spots: Vec<Contact> = cycle.contacts.into_iter().filter(|spot| spot.step == turning).collect();
+    assert_eq!(spots.len(), summits.len(), "all in contact");
+    spots
 }
 
 #[test]

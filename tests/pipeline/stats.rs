@@ -269,7 +269,7 @@ fn law_faults_are_sentences() {
     let mut bench = bench(&[1.0]);
     bench.cycles[0].surface.clear();
     let lacking = realizations(&bench.cases, &bench.cycles).unwrap_err().to_string();
-    assert!(lacking.contains("realizations") && lacking.contains("summit_count"), "{lacking}");
+    assert!(lacking.contains("realizations") && lacking.contains("surface_id"), "{lacking}");
     bench.cycles[0].case_id = "c9".to_owned();
     assert!(matches!(realizations(&bench.cases, &bench.cycles), Err(StatsError::UnknownCase { .. })));
     bench.cycles[0].case_id = "c1".to_owned();
