@@ -119,8 +119,11 @@ fn plot(title: String, x: Axis, y: Axis, curves: Vec<Curve>, key: &[(&str, [u8; 
     XyPlot { stem: String::new(), letter: ' ', title, x, y, curves, key, notes: Vec::new() }
 }
 
-/// Events of the loop: places in their table, by branch.
-fn branches(of: &Closer<'_>) -> Result<[(&'static str, [u8; 3], Vec<usize>); 2], FigureError> {
+/// A branch, its hue, and its events as places in their table.
+type OfBranch = (&'static str, [u8; 3], Vec<usize>);
+
+/// Events of the loop, by branch.
+fn branches(of: &Closer<'_>) -> Result<[OfBranch; 2], FigureError> {
     let (branches, max_loads, steps) = (of.events.text("branch")?, of.events.f64_or_null("max_load")?, of.events.i64("step")?);
     // Loading goes on beyond a turning point that is not the last one.
     let turning = of.landmarks()?.iter().find(|landmark| landmark.what == "at F_{max}").map_or(i64::MAX, |landmark| landmark.step);
