@@ -33,12 +33,12 @@ pub fn environment(name: &str, packages: &[&str]) -> Option<PathBuf> {
     Some(folder)
 }
 
-/// Runs a script of `tests/python` on the output of a run; what it says.
-fn script(name: &str, bench: &Bench) -> Option<String> {
-    let tests = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/python");
-    let packages = std::fs::read_to_string(tests.join("requirements.txt")).unwrap();
+/// Runs a script of the repository on the output of a run; what it says.
+fn script(name: &str, bench: &Bench, more: &[&Path]) -> Option<String> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let packages = std::fs::read_to_string(root.join("tests/python/requirements.txt")).unwrap();
     let folder = environment("readers", &packages.lines().collect::<Vec<_>>())?;
-    let output = Command::new(folder.join("bin/python")).arg(tests.join(name)).arg(bench.out()).output().unwrap();
+    let output = Command::new(folder.join("bin/python")).arg(root.join(name)).arg(bench.out()).args(more).output().unwrap();
     assert!(output.status.success(), "{name}: {}", stderr(&output));
     Some(String::from_utf8(output.stdout).unwrap())
 }
@@ -52,7 +52,7 @@ fn first_number(text: &str) -> usize {
 fn e2e_other_programs_read_the_same_values() {
     let bench = Bench::new(SPEC);
     assert_eq!(code(&bench.verb("run", &[])), 0);
-    if let Some(said) = script("readers.py", &bench) {
+    if let Some(said) = script("tests/python/readers.py", &bench, &[]) {
         // Of each of the four cycles five tables, one of each surface, and five over realizations.
         assert_eq!(first_number(&said), 4 * 5 + 4 + 5, "{said}");
     }
@@ -62,8 +62,19 @@ fn e2e_other_programs_read_the_same_values() {
 fn e2e_plain_python_finds_the_same_means() {
     let bench = Bench::new(&SPEC.replace("realizations = 2", "realizations = 3"));
     assert_eq!(code(&bench.verb("run", &["--until", "aggregate"])), 0);
-    if let Some(said) = script("aggregates.py", &bench) {
+    if let Some(said) = script("tests/python/aggregates.py", &bench, &[]) {
         // Five numbers of each of 12 rows, and four of the mean of each of these in 4 cases.
         assert_eq!(first_number(&said), 5 * 12 + 4 * 5 * 4, "{said}");
+    }
+}
+
+#[test]
+fn e2e_the_worked_example_ends_at_a_figure() {
+    let bench = Bench::new(SPEC);
+    assert_eq!(code(&bench.verb("run", &["--until", "aggregate"])), 0);
+    let figure = bench.folder.path().join("hysteresis.png");
+    if let Some(said) = script("data/examples/hysteresis.py", &bench, &[&figure]) {
+        assert!(said.contains("loss ") && said.trim_end().ends_with(" J"), "{said}");
+        assert!(std::fs::read(figure).unwrap().starts_with(b"\x89PNG"));
     }
 }
