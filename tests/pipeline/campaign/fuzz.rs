@@ -104,7 +104,9 @@ fn law_no_bytes_end_a_reader() {
     assert_eq!(code(&bench.verb("run", &[])), 0);
     let all = paths(&bench.out());
     let of = |ending: &str| -> Vec<PathBuf> { all.iter().filter(|path| path.to_string_lossy().ends_with(ending)).cloned().collect() };
-    let tables: Vec<(PathBuf, &'static schema::Table)> = schema::TABLES
+    // All but the one that stands in no run: it is of several.
+    let known: Vec<&'static schema::Table> = schema::TABLES.iter().copied().filter(|table| table.file.contains('/')).collect();
+    let tables: Vec<(PathBuf, &'static schema::Table)> = known
         .iter()
         .filter_map(|table| {
             let name = format!("{}.parquet", table.name);
@@ -115,7 +117,8 @@ fn law_no_bytes_end_a_reader() {
                 .map(|path| (path, *table))
         })
         .collect();
-    assert_eq!(tables.len(), schema::TABLES.len());
+    assert_eq!(tables.len(), known.len());
+    assert_eq!(known.len(), schema::TABLES.len() - 1);
     let victim = bench.folder.path().join("victim");
     let mut random = ChaCha8Rng::seed_from_u64(6);
     let mut whole = 0;
