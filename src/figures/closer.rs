@@ -20,8 +20,6 @@ const BARS: usize = 40;
 /// One cycle with what it is compared to.
 #[derive(Debug, Clone, Copy)]
 pub struct Closer<'a> {
-    /// Its id.
-    pub id: &'a str,
     /// The turning point that is looked at, `F/(E* A0)`.
     pub max_load: f64,
     /// Its steps.

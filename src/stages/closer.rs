@@ -55,7 +55,6 @@ pub(super) fn look(campaign: &Campaign, standings: &[Standing]) -> Result<Option
     let nayak: Vec<(f64, f64)> = (0..=POINTS).map(|k| 8.0 * k as f64 / POINTS as f64).map(|t| (t, curvature_density(-t))).collect();
     let area = header.length_m * header.length_m;
     let of = Closer {
-        id: &unit.id,
         max_load,
         steps: &steps,
         events: &events,
