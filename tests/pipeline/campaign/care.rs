@@ -81,7 +81,11 @@ fn e2e_a_receipt_tells_what_when_and_with_what() {
         assert!(cycle["preimages"][stage]["meaning"].as_u64().unwrap() > 0, "{stage}");
     }
     assert_eq!(cycle["files"].as_array().unwrap().len(), 5);
-    assert_eq!(of("report")["files"].as_array().unwrap().len(), (5 + 7) * 3 + 2, "panels and pictures of a cycle in three formats, their table and the page");
+    assert_eq!(
+        of("report")["files"].as_array().unwrap().len(),
+        (5 + 7) * 3 + 2,
+        "panels and pictures of a cycle in three formats, their table and the page"
+    );
     // No data file tells any of that.
     let host = cycle["made"]["host"].as_str().unwrap();
     for (path, bytes) in files(&bench.out()) {
