@@ -4,6 +4,7 @@
 
 mod audit;
 mod compare;
+mod hashed;
 mod leftover;
 mod shard;
 mod standing;
@@ -16,7 +17,7 @@ pub use standing::{Standing, Survey};
 
 use crate::keys::{canonical, key, key_of_text, preimage, short};
 use crate::spec::{Case, ModelParams, Spec, SurfaceParams};
-use rayon::prelude::*;
+use hashed::Hashed;
 use serde_json::{Map, Value, json};
 use std::collections::{HashMap, HashSet};
 use std::path::PathBuf;
@@ -164,30 +165,26 @@ impl Campaign {
     #[must_use]
     pub fn with_counts(spec: Spec, dir: PathBuf, counts: Vec<u32>) -> Self {
         let mut campaign = Self { dir, cases: Vec::new(), surfaces: Vec::new(), cycles: Vec::new(), counts, spec };
-        let mut known: HashMap<String, usize> = HashMap::new();
-        // All of the hashing, in parallel: what follows is a few look-ups for each unit.
-        let hashed: Vec<Hashed> = campaign
-            .spec
-            .cases
-            .par_iter()
-            .zip(&campaign.counts)
-            .map(|(case, count)| Hashed::new(case, campaign.spec.seed, *count))
-            .collect();
-        for (number, (case, Hashed { name, whole, realizations })) in campaign.spec.cases.iter().zip(hashed).enumerate() {
-            campaign.cases.push(CaseUnit { id: format!("{name}-{}", short(&whole)), case: case.clone() });
-            for (realization, keys) in (0..).zip(realizations) {
-                let place = *known.entry(keys.surface).or_insert_with_key(|key| {
+        let hashed = Hashed::all(&campaign.spec, &campaign.counts);
+        // Of each kind of surface, the places of its realizations.
+        let mut places: Vec<Vec<usize>> = vec![Vec::new(); hashed.surfaces.len()];
+        for (number, (case, of)) in campaign.spec.cases.iter().zip(hashed.cases).enumerate() {
+            campaign.cases.push(CaseUnit { id: format!("{}-{}", of.name, short(&of.whole)), case: case.clone() });
+            let (known, surfaces) = (&mut places[of.surface], &hashed.surfaces[of.surface]);
+            for (realization, cycle) in of.cycles.into_iter().enumerate() {
+                if known.len() == realization {
+                    let (key, asperities_key) = surfaces[realization].clone();
+                    known.push(campaign.surfaces.len());
                     campaign.surfaces.push(SurfaceUnit {
-                        id: format!("{name}_r{realization:02}-{}", short(key)),
-                        asperities_key: keys.asperities,
-                        key: key.clone(),
+                        id: format!("{}_r{realization:02}-{}", of.name, short(&key)),
+                        asperities_key,
+                        key,
                         params: case.params.surface.clone(),
-                        realization,
+                        realization: realization as u32,
                     });
-                    campaign.surfaces.len() - 1
-                });
-                let id = format!("{name}_r{realization:02}-{}", short(&keys.cycle));
-                campaign.cycles.push(CycleUnit { id, key: keys.cycle, case: number, surface: place });
+                }
+                let id = format!("{}_r{realization:02}-{}", of.name, short(&cycle));
+                campaign.cycles.push(CycleUnit { id, key: cycle, case: number, surface: known[realization] });
             }
         }
         let surfaces = campaign.surfaces.iter_mut().map(|unit| (&mut unit.id, unit.key.as_str())).collect();
@@ -209,8 +206,21 @@ impl Campaign {
     /// The cycles to be computed: each once, however many cases share it.
     #[must_use]
     pub fn distinct_cycles(&self) -> Vec<CycleUnit> {
-        let mut known = HashSet::new();
-        self.cycles.iter().filter(|unit| known.insert(unit.key.as_str())).cloned().collect()
+        self.distinct().0.into_iter().map(|place| self.cycles[place].clone()).collect()
+    }
+
+    /// The places of the different cycles among [`Self::cycles`]; and for each of these, which of the different ones it is.
+    fn distinct(&self) -> (Vec<usize>, Vec<usize>) {
+        let mut known: HashMap<&str, usize> = HashMap::with_capacity(self.cycles.len());
+        let mut firsts = Vec::new();
+        let which = self.cycles.iter().enumerate().map(|(place, unit)| {
+            *known.entry(unit.key.as_str()).or_insert_with(|| {
+                firsts.push(place);
+                firsts.len() - 1
+            })
+        });
+        let which = which.collect();
+        (firsts, which)
     }
 
     /// `surfaces/<id>.h5`.
@@ -348,50 +358,12 @@ impl Campaign {
     }
 }
 
-/// The keys of a case.
-struct Hashed {
-    /// The readable part of its ids.
-    name: String,
-    /// Of all its parameters.
-    whole: String,
-    realizations: Vec<Keys>,
-}
-
-/// The keys of one realization of a case.
-struct Keys {
-    surface: String,
-    asperities: String,
-    cycle: String,
-}
-
-impl Hashed {
-    fn new(case: &Case, seed: u64, count: u32) -> Self {
-        let params = &case.params;
-        // Whatever the realizations have in common is put into words once.
-        let surface = canonical(&plain(&params.surface));
-        let [material, model, cycle] = [plain(&params.material), plain(&read_by_cycle(&params.model)), plain(&params.cycle)];
-        let rest = format!("\"cycle\":{},\"material\":{},\"model\":{}", canonical(&cycle), canonical(&material), canonical(&model));
-        let keys = |realization: u32| {
-            let reads = format!("{{\"realization\":{realization},\"seed\":{seed},\"surface\":{surface}}}");
-            let surface = key_of_text(Stage::Generate.word(), GENERATE, &reads);
-            let asperities = key_of_text(Stage::Extract.word(), EXTRACT, &format!("{{\"surface\":\"{surface}\"}}"));
-            let cycle = key_of_text(Stage::Cycle.word(), CYCLE, &format!("{{\"asperities\":\"{asperities}\",{rest}}}"));
-            Keys { surface, asperities, cycle }
-        };
-        Self {
-            name: format!("H{:.2}_z{}", params.surface.hurst, params.surface.magnification),
-            whole: key_of_text("case", 1, &canonical(&plain(params))),
-            realizations: (0..count).into_par_iter().map(keys).collect(),
-        }
-    }
-}
-
 /// Ids end in the first digits of keys; where two keys share these, both ids end in as many again.
 fn tell_apart(mut units: Vec<(&mut String, &str)>) {
-    let mut first: HashMap<String, &str> = HashMap::new();
+    let mut first: HashMap<&str, &str> = HashMap::with_capacity(units.len());
     let mut shared: HashSet<String> = HashSet::new();
     for (id, key) in &units {
-        if *first.entry((*id).clone()).or_insert(key) != *key {
+        if *first.entry(id.as_str()).or_insert(key) != *key {
             shared.insert((*id).clone());
         }
     }

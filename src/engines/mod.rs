@@ -20,7 +20,7 @@ pub fn usual_shards(campaign: &Campaign) -> usize {
 
 /// The shards that have units of a stage which are not done; failed cases are not open. Stages beyond the cycles have no shards.
 #[must_use]
-pub fn open_shards(survey: &Survey, stage: Stage, count: usize) -> Vec<usize> {
+pub fn open_shards(campaign: &Campaign, survey: &Survey, stage: Stage, count: usize) -> Vec<usize> {
     let mut open = vec![false; count];
     let mut enter = |surface: usize, standing: &Standing| {
         if !matches!(standing, Standing::Done | Standing::Failed(_)) {
@@ -30,7 +30,7 @@ pub fn open_shards(survey: &Survey, stage: Stage, count: usize) -> Vec<usize> {
     match stage {
         Stage::Generate => survey.surfaces.iter().enumerate().for_each(|(surface, standing)| enter(surface, standing)),
         Stage::Extract => survey.asperities.iter().enumerate().for_each(|(surface, standing)| enter(surface, standing)),
-        Stage::Cycle => survey.cycles.iter().for_each(|(unit, standing)| enter(unit.surface, standing)),
+        Stage::Cycle => survey.cycles.iter().for_each(|(place, standing)| enter(campaign.cycles[*place].surface, standing)),
         Stage::Aggregate | Stage::Report => {}
     }
     (0..count).filter(|shard| open[*shard]).collect()

@@ -2,10 +2,12 @@
 
 use super::FigureError;
 use super::axis::Axis;
+use super::map::map;
 use super::panels::Panel;
 use super::plot::{Curve, Stroke, XyPlot, plot_xy};
 use super::style::{LOADING, THEORY, UNLOADING, curve, entry, shade};
 use crate::store::Frame;
+use ndarray::ArrayView2;
 use std::collections::BTreeMap;
 
 /// Points of one scatter, at most: the greatest are drawn.
@@ -50,16 +52,37 @@ pub struct Closer<'a> {
     pub densities_1_m2: [f64; 2],
 }
 
-/// The four points of a loop whose spots are shown, by their steps: on loading, at the turning point, back at no load, at the pull-off.
+/// The four points of a loop whose spots are shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Landmark {
-    pub(super) what: &'static str,
-    pub(super) step: i64,
+pub(super) enum Landmark {
+    /// On loading, at half the load of the turning point.
+    Half,
+    /// The turning point.
+    Turning,
+    /// On unloading, back at no load.
+    NoLoad,
+    /// The greatest tension.
+    PullOff,
 }
+
+impl Landmark {
+    /// What it is called.
+    pub(super) fn words(self) -> &'static str {
+        match self {
+            Self::Half => "loading, at F_{max}/2",
+            Self::Turning => "at F_{max}",
+            Self::NoLoad => "unloading, at no load",
+            Self::PullOff => "at the pull-off",
+        }
+    }
+}
+
+/// A landmark whose spots were kept, and its step.
+pub(super) type Kept = (Landmark, i64);
 
 impl Closer<'_> {
     /// The landmarks whose spots were kept.
-    pub(super) fn landmarks(&self) -> Result<Vec<Landmark>, FigureError> {
+    fn landmarks(&self) -> Result<Vec<Kept>, FigureError> {
         let mut kept = self.contacts.i64("step")?;
         kept.dedup();
         let (branches, of, loads) = (self.steps.text("branch")?, self.steps.f64_or_null("max_load")?, self.steps.f64("load")?);
@@ -74,37 +97,42 @@ impl Closer<'_> {
         let (loading, unloading) = (on("loading", None), on("unloading", Some(self.max_load)));
         let nearest = |wanted: f64| loading.iter().min_by(|u, v| (load(u) - wanted).abs().total_cmp(&(load(v) - wanted).abs())).copied();
         let found = [
-            ("loading, at F_{max}/2", nearest(0.5 * self.max_load)),
-            ("at F_{max}", nearest(self.max_load)),
-            ("unloading, at no load", unloading.iter().find(|step| load(step) <= 0.0).copied()),
-            ("at the pull-off", unloading.iter().min_by(|u, v| load(u).total_cmp(&load(v))).filter(|step| load(step) < 0.0).copied()),
+            (Landmark::Half, nearest(0.5 * self.max_load)),
+            (Landmark::Turning, nearest(self.max_load)),
+            (Landmark::NoLoad, unloading.iter().find(|step| load(step) <= 0.0).copied()),
+            (Landmark::PullOff, unloading.iter().min_by(|u, v| load(u).total_cmp(&load(v))).filter(|step| load(step) < 0.0).copied()),
         ];
-        Ok(found.into_iter().filter_map(|(what, step)| step.map(|step| Landmark { what, step })).collect())
-    }
-
-    /// The landmarks with distributions: the turning point and the pull-off.
-    fn ends(&self) -> Result<Vec<(Landmark, [u8; 3], Stroke)>, FigureError> {
-        let styles = [("at F_{max}", LOADING, Stroke::Solid), ("at the pull-off", UNLOADING, Stroke::Dashed)];
-        let landmarks = self.landmarks()?;
-        let of = |(what, hue, stroke)| landmarks.iter().find(|landmark| landmark.what == what).map(|landmark| (*landmark, hue, stroke));
-        Ok(styles.into_iter().filter_map(of).collect())
+        Ok(found.into_iter().filter_map(|(landmark, step)| step.map(|step| (landmark, step))).collect())
     }
 }
 
-/// The panels of a closer look; those whose spots were not kept are left out.
+/// The step of a landmark.
+fn step_of(kept: &[Kept], wanted: Landmark) -> Option<i64> {
+    kept.iter().find(|(landmark, _)| *landmark == wanted).map(|(_, step)| *step)
+}
+
+/// The panels of a closer look, and the maps of its spots; what needs spots that were not kept is left out.
 ///
 /// # Errors
 /// If a table lacks a column.
-pub fn closer(of: &Closer<'_>) -> Result<Vec<Panel>, FigureError> {
-    let mut panels = vec![panel("events", events(of)?), panel("avalanches", avalanches(of)?)];
-    if !of.ends()?.is_empty() {
-        panels.push(panel("radii", radii(of)?));
-        panels.push(panel("loads", loads(of)?));
+pub fn closer(of: &Closer<'_>, heights_m: ArrayView2<'_, f64>) -> Result<(Vec<Panel>, Option<String>), FigureError> {
+    let kept = of.landmarks()?;
+    let branches = branches(of, step_of(&kept, Landmark::Turning))?;
+    let mut panels = vec![panel("events", events(of, &branches)?), panel("avalanches", avalanches(of, &branches)?)];
+    let styles = [(Landmark::Turning, LOADING, Stroke::Solid), (Landmark::PullOff, UNLOADING, Stroke::Dashed)];
+    let end = |(landmark, hue, stroke)| step_of(&kept, landmark).map(|step| (landmark, step, hue, stroke));
+    let ends: Vec<End> = styles.into_iter().filter_map(end).collect();
+    if !ends.is_empty() {
+        panels.push(panel("radii", radii(of, &ends)?));
+        panels.push(panel("loads", loads(of, &ends)?));
     }
     panels.push(panel("spectrum", spectrum(of)));
     panels.push(panel("summits", summits(of)?));
-    Ok(panels)
+    Ok((panels, map(of, &kept, heights_m)?))
 }
+
+/// A landmark with distributions, its step and how it is drawn.
+type End = (Landmark, i64, [u8; 3], Stroke);
 
 fn panel(name: &str, plot: XyPlot) -> Panel {
     let stem = format!("closer_{name}");
@@ -121,10 +149,10 @@ fn plot(title: String, x: Axis, y: Axis, curves: Vec<Curve>, key: &[(&str, [u8; 
 type OfBranch = (&'static str, [u8; 3], Vec<usize>);
 
 /// Events of the loop, by branch.
-fn branches(of: &Closer<'_>) -> Result<[OfBranch; 2], FigureError> {
+fn branches(of: &Closer<'_>, turning: Option<i64>) -> Result<[OfBranch; 2], FigureError> {
     let (branches, max_loads, steps) = (of.events.text("branch")?, of.events.f64_or_null("max_load")?, of.events.i64("step")?);
     // Loading goes on beyond a turning point that is not the last one.
-    let turning = of.landmarks()?.iter().find(|landmark| landmark.what == "at F_{max}").map_or(i64::MAX, |landmark| landmark.step);
+    let turning = turning.unwrap_or(i64::MAX);
     let all = || 0..of.events.row_count();
     let loading = all().filter(|k| branches[*k] == "loading" && steps[*k] <= turning).collect();
     let unloading = all().filter(|k| branches[*k] == "unloading" && max_loads[*k] == Some(of.max_load)).collect();
@@ -132,17 +160,17 @@ fn branches(of: &Closer<'_>) -> Result<[OfBranch; 2], FigureError> {
 }
 
 /// Energy that each event lost, over the approach.
-fn events(of: &Closer<'_>) -> Result<XyPlot, FigureError> {
+fn events(of: &Closer<'_>, branches: &[OfBranch; 2]) -> Result<XyPlot, FigureError> {
     let (approaches, energies) = (of.events.f64("approach_m")?, of.events.f64("energy_lost_j")?);
     let (mut curves, mut all, mut drawn) = (Vec::new(), 0, 0);
-    for (name, hue, rows) in branches(of)? {
+    for (name, hue, rows) in branches {
         let mut lost: Vec<(f64, f64)> =
             rows.iter().map(|k| (approaches[*k] / of.rms_height_m, energies[*k] / of.energy_j)).filter(|point| point.1 > 0.0).collect();
         all += lost.len();
         lost.sort_by(|u, v| v.1.total_cmp(&u.1).then(u.0.total_cmp(&v.0)));
         lost.truncate(MOST_POINTS);
         drawn += lost.len();
-        curves.push(curve((name, ""), lost, shade(hue, 0, 1), Stroke::Points));
+        curves.push(curve((name, ""), lost, shade(*hue, 0, 1), Stroke::Points));
     }
     let points = || curves.iter().flat_map(|curve: &Curve| curve.points.iter());
     let (x, y) = (
@@ -154,22 +182,22 @@ fn events(of: &Closer<'_>) -> Result<XyPlot, FigureError> {
 }
 
 /// How many avalanches have so many events or more.
-fn avalanches(of: &Closer<'_>) -> Result<XyPlot, FigureError> {
+fn avalanches(of: &Closer<'_>, branches: &[OfBranch; 2]) -> Result<XyPlot, FigureError> {
     let ids = of.events.i64("avalanche_id")?;
     let mut curves = Vec::new();
     let mut total = 0;
-    for (name, hue, rows) in branches(of)? {
+    for (name, hue, rows) in branches {
         let mut sizes: BTreeMap<i64, usize> = BTreeMap::new();
         for k in rows {
-            *sizes.entry(ids[k]).or_default() += 1;
+            *sizes.entry(ids[*k]).or_default() += 1;
         }
         let mut sizes: Vec<usize> = sizes.into_values().collect();
         sizes.sort_unstable();
         total += sizes.len();
         let mut points: Vec<(f64, f64)> = sizes.iter().enumerate().map(|(k, size)| (*size as f64, (sizes.len() - k) as f64)).collect();
         points.dedup_by_key(|point| point.0);
-        let stroke = if hue == LOADING { Stroke::Dashed } else { Stroke::Solid };
-        curves.push(Curve { marked: true, ..curve((name, ""), points, shade(hue, 0, 1), stroke) });
+        let stroke = if *hue == LOADING { Stroke::Dashed } else { Stroke::Solid };
+        curves.push(Curve { marked: true, ..curve((name, ""), points, shade(*hue, 0, 1), stroke) });
     }
     let points = || curves.iter().flat_map(|curve: &Curve| curve.points.iter());
     let (x, y) = (
@@ -180,12 +208,11 @@ fn avalanches(of: &Closer<'_>) -> Result<XyPlot, FigureError> {
 }
 
 /// The cumulative distribution of a value of each spot at the turning point and at the pull-off.
-fn distribution(of: &Closer<'_>, label: &str, value: impl Fn(usize) -> Option<f64>) -> Result<XyPlot, FigureError> {
+fn distribution(of: &Closer<'_>, ends: &[End], label: &str, value: impl Fn(usize) -> Option<f64>) -> Result<XyPlot, FigureError> {
     let (steps, states) = (of.contacts.i64("step")?, of.contacts.text("state")?);
     let (mut curves, mut key) = (Vec::new(), Vec::new());
-    for (landmark, hue, stroke) in of.ends()? {
-        let mut values: Vec<f64> =
-            (0..steps.len()).filter(|k| steps[*k] == landmark.step && states[*k] == "contact").filter_map(&value).collect();
+    for (landmark, step, hue, stroke) in ends.iter().copied() {
+        let mut values: Vec<f64> = (0..steps.len()).filter(|k| steps[*k] == step && states[*k] == "contact").filter_map(&value).collect();
         values.sort_by(f64::total_cmp);
         let count = values.len();
         let ranks = count.min(MOST_RANKS);
@@ -193,8 +220,8 @@ fn distribution(of: &Closer<'_>, label: &str, value: impl Fn(usize) -> Option<f6
             let at = (2 * rank + 1) * count / (2 * ranks);
             (values[at], (at as f64 + 0.5) / count as f64)
         });
-        curves.push(curve((landmark.what, ""), points.collect(), shade(hue, 0, 1), stroke));
-        key.push((format!("{}: {count} spots", landmark.what), hue, stroke));
+        curves.push(curve((landmark.words(), ""), points.collect(), shade(hue, 0, 1), stroke));
+        key.push((format!("{}: {count} spots", landmark.words()), hue, stroke));
     }
     let points = || curves.iter().flat_map(|curve: &Curve| curve.points.iter());
     let (x, y) = (
@@ -205,16 +232,16 @@ fn distribution(of: &Closer<'_>, label: &str, value: impl Fn(usize) -> Option<f6
     Ok(plot(String::new(), x, y, curves, &key))
 }
 
-fn radii(of: &Closer<'_>) -> Result<XyPlot, FigureError> {
+fn radii(of: &Closer<'_>, ends: &[End]) -> Result<XyPlot, FigureError> {
     let radii = of.contacts.f64("contact_radius_m")?;
-    distribution(of, "contact radius/L", |k| Some(radii[k] / of.length_m))
+    distribution(of, ends, "contact radius/L", |k| Some(radii[k] / of.length_m))
 }
 
-fn loads(of: &Closer<'_>) -> Result<XyPlot, FigureError> {
+fn loads(of: &Closer<'_>, ends: &[End]) -> Result<XyPlot, FigureError> {
     let (loads, asperities, radii) = (of.contacts.f64("load_n")?, of.contacts.i64("asperity_id")?, of.asperities.f64("radius_m")?);
     // Spots that have become one have numbers beyond those of the asperities, and no pull-off load of one.
     let own = |k: usize| usize::try_from(asperities[k]).ok().and_then(|id| radii.get(id)).map(|radius| of.pull_off_n_m * radius);
-    distribution(of, "load of a spot/its own pull-off load", |k| own(k).map(|own| loads[k] / own))
+    distribution(of, ends, "load of a spot/its own pull-off load", |k| own(k).map(|own| loads[k] / own))
 }
 
 /// The spectrum that the surface has, and the one that was asked for.

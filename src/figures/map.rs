@@ -1,6 +1,6 @@
 //! Maps of the contact spots over the surface, at four points of the loop.
 
-use super::closer::Closer;
+use super::closer::{Closer, Kept};
 use super::{FigureError, markup};
 use ndarray::ArrayView2;
 use std::fmt::Write as _;
@@ -24,8 +24,7 @@ const PULLED: &str = "#cc3311";
 ///
 /// # Errors
 /// If a table lacks a column.
-pub fn map(of: &Closer<'_>, heights_m: ArrayView2<'_, f64>) -> Result<Option<String>, FigureError> {
-    let landmarks = of.landmarks()?;
+pub(super) fn map(of: &Closer<'_>, landmarks: &[Kept], heights_m: ArrayView2<'_, f64>) -> Result<Option<String>, FigureError> {
     if landmarks.is_empty() {
         return Ok(None);
     }
@@ -39,11 +38,11 @@ pub fn map(of: &Closer<'_>, heights_m: ArrayView2<'_, f64>) -> Result<Option<Str
          <rect x=\"0\" y=\"0\" width=\"{SIDE}\" height=\"{SIDE}\"/></clipPath></defs>",
         ground(heights_m)
     );
-    for (k, landmark) in landmarks.iter().enumerate() {
+    for (k, (landmark, step)) in landmarks.iter().enumerate() {
         let (left, top) = (GAP + (k % 2) as f64 * (SIDE + GAP), ABOVE + (k / 2) as f64 * (SIDE + ABOVE));
-        let at = usize::try_from(landmark.step).unwrap_or_default();
+        let at = usize::try_from(*step).unwrap_or_default();
         let number = |values: &[f64]| values.get(at).copied().unwrap_or(f64::NAN);
-        let (spots, count) = spots(of, landmark.step)?;
+        let (spots, count) = spots(of, *step)?;
         // Writing to a string cannot fail.
         let _ = write!(
             svg,
@@ -52,7 +51,7 @@ pub fn map(of: &Closer<'_>, heights_m: ArrayView2<'_, f64>) -> Result<Option<Str
              <g transform=\"translate({left} {top})\"><g clip-path=\"url(#map-edge)\"><use xlink:href=\"#map-heights\"/>{spots}</g>\
              <rect x=\"0\" y=\"0\" width=\"{SIDE}\" height=\"{SIDE}\" fill=\"none\" stroke=\"black\"/></g>",
             top - 23.0,
-            landmark.what,
+            landmark.words(),
             top - 6.0,
             format!("{:.5}", number(&loads)).replace('-', "−"),
             number(&penetrations)

@@ -20,7 +20,6 @@ mod table;
 pub use axis::Axis;
 pub use closer::{Closer, closer};
 pub use formats::{pdf, png};
-pub use map::map;
 pub use panels::{Panel, compared, panels};
 pub use plot::{Curve, KeyEntry, Note, Stroke, XyPlot, plot_xy};
 pub use table::table;

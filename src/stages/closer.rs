@@ -1,11 +1,11 @@
 //! The part of the report that looks closely at one cycle.
 
 use super::StageError;
-use super::report::escape;
+use super::page::{escape, grid};
 use super::statistics::moments;
 use super::surface::spectrum;
 use crate::campaign::{Campaign, CycleUnit, Standing};
-use crate::figures::{Closer, Panel, closer, map};
+use crate::figures::{Closer, Panel, closer};
 use crate::physics::periodogram::periodogram;
 use crate::physics::theory::curvature_density;
 use crate::schema;
@@ -70,7 +70,8 @@ pub(super) fn look(campaign: &Campaign, standings: &[Standing]) -> Result<Option
         nayak: &nayak,
         densities_1_m2: [asperities.row_count() as f64 / area, realised.summit_density_1_m2()],
     };
-    Ok(Some(Look { id: unit.id.clone(), max_load, panels: closer(&of)?, map: map(&of, heights.view())? }))
+    let (panels, map) = closer(&of, heights.view())?;
+    Ok(Some(Look { id: unit.id.clone(), max_load, panels, map }))
 }
 
 /// The spectrum that was asked for: `C qL²/h_rms²` over q/qL, from the longest to the shortest waves.
@@ -87,14 +88,11 @@ pub(super) fn section(html: &mut String, look: &Look) {
     let _ = write!(
         html,
         "<h2>A closer look</h2>\n<p>One cycle, {}, to F/(E*A<sub>0</sub>) = {}. Every event is in its table <code>events</code>, and its spots are in \
-         <code>contacts</code>.</p>\n<div class=\"panels\">\n",
+         <code>contacts</code>.</p>\n",
         escape(&look.id),
         look.max_load
     );
-    for panel in &look.panels {
-        let _ = writeln!(html, "<div>{}</div>", panel.svg);
-    }
-    html.push_str("</div>\n");
+    grid(html, &look.panels);
     if let Some(map) = &look.map {
         let _ = writeln!(html, "<div class=\"map\">{map}</div>");
     }

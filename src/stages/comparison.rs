@@ -1,7 +1,8 @@
 //! `report --compare`: campaigns side by side, from their tables over realizations.
 
 use super::StageError;
-use super::report::{STYLE, escape, write_picture};
+use super::page::{escape, grid, head};
+use super::report::write_picture;
 use super::trust::{Shown, shown};
 use crate::figures::{Panel, compared};
 use crate::schema::{self, COMPARISON};
@@ -98,12 +99,11 @@ fn page(
         .map(|(label, count)| format!("{count} of {label}"))
         .collect();
     let left = if left.is_empty() { String::new() } else { format!(" Cases without a counterpart are left out: {}.", left.join(", ")) };
-    let mut html = String::new();
+    let mut html = head(&format!("{title}: compared"), "");
     // Writing to a string cannot fail.
     let _ = write!(
         html,
-        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width\">\n\
-         <title>{title}: compared</title>\n<style>{STYLE}</style>\n</head>\n<body>\n<h1>Compared: {title}</h1>\n<p>The campaigns differ in {}. Each case of {} is \
+        "<h1>Compared: {title}</h1>\n<p>The campaigns differ in {}. Each case of {} is \
          compared with the same one of the others.{left} In brackets half the 95 % interval of a difference: surface by surface where both have the same ones, else \
          of two independent means (Welch).</p>\n<div class=\"wide\"><table>\n<tr><th>case</th><th>quantity</th><th>campaign</th><th>mean</th><th>{}</th>\
          <th>difference</th><th>relative</th><th>realizations</th></tr>\n",
@@ -138,11 +138,8 @@ fn page(
         "</table></div>\n<p>Differences beyond their interval are bold. The numbers are in <code>comparison.parquet</code>.</p>\n",
     );
     for (name, panels) in drawings {
-        let _ = write!(html, "<h2>{}</h2>\n<div class=\"panels\">\n", escape(name));
-        for panel in panels {
-            let _ = writeln!(html, "<div>{}</div>", panel.svg);
-        }
-        html.push_str("</div>\n");
+        let _ = writeln!(html, "<h2>{}</h2>", escape(name));
+        grid(&mut html, panels);
     }
     html.push_str("</body>\n</html>\n");
     Ok(html)

@@ -5,6 +5,7 @@ mod comparison;
 mod cycle;
 mod datapackage;
 mod done;
+mod page;
 mod reading;
 mod report;
 mod sampling;

@@ -2,6 +2,7 @@
 
 use super::closer::{self, Look};
 use super::done::{Clock, Outcome};
+use super::page::{escape, grid, head};
 use super::reading;
 use super::theories::theories;
 use super::trust::{split, trust};
@@ -79,26 +80,13 @@ fn sweeps(campaign: &Campaign) -> Vec<String> {
     names
 }
 
-pub(super) const STYLE: &str = "body{font:16px/1.5 system-ui,sans-serif;max-width:72rem;margin:2rem auto;padding:0 1rem;color:#1a1a1a;background:#fff}\
-h1,h2{line-height:1.2}pre{overflow-x:auto;background:#f4f4f2;padding:1rem;font-size:.85rem}\
-.panels{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(24rem,100%),1fr));gap:1rem}\
-.panels svg,.map svg{width:100%;height:auto;background:#fff}.map{max-width:48rem}table{border-collapse:collapse;font-size:.9rem}\
-td,th{padding:.2rem .7rem;border-bottom:1px solid #ccc;text-align:left;vertical-align:top}\
-.wide{overflow-x:auto}.wide table{font-size:.82rem}.wide td{white-space:nowrap}.wide td,.wide th{padding:.2rem .45rem}\
-.wide :is(td,th):nth-child(n+2){text-align:right}.clear{font-weight:700}.beyond{font-weight:700;color:#b3261e}\
-@media(prefers-color-scheme:dark){body{color:#e6e6e6;background:#161616}pre{background:#242424}.beyond{color:#ff8a80}}\
-@media print{body{max-width:none;margin:0;font-size:11pt}.wide{overflow:visible}.wide table{font-size:6.5pt}\
-.wide td{white-space:normal}.panels{grid-template-columns:1fr 1fr}.panels>div,.map,tr{break-inside:avoid}}";
-
 fn page(campaign: &Campaign, key: &str, cases: &Frame, drawings: &[(String, Panel)], look: Option<&Look>) -> Result<String, StageError> {
     let name = escape(&campaign.spec.name);
-    let mut html = String::new();
+    let mut html = head(&format!("{name}: adhesive hysteresis"), &format!("<meta name=\"hysteron-key\" content=\"{key}\">\n"));
     // Writing to a string cannot fail.
     let _ = write!(
         html,
-        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width\">\n\
-         <meta name=\"hysteron-key\" content=\"{key}\">\n<title>{name}: adhesive hysteresis</title>\n<style>{STYLE}</style>\n</head>\n<body>\n\
-         <h1>{name}</h1>\n<p>Adhesive hysteresis of rough surfaces: {} cases, {} each. Interacting JKR asperities after Violano and \
+        "<h1>{name}</h1>\n<p>Adhesive hysteresis of rough surfaces: {} cases, {} each. Interacting JKR asperities after Violano and \
          Afferrante, Lubricants 9(1):7 (2021), with its slips corrected. Mean ± one standard deviation.</p>\n<pre>{}</pre>\n",
         campaign.cases.len(),
         campaign.realizations_in_words(),
@@ -106,13 +94,8 @@ fn page(campaign: &Campaign, key: &str, cases: &Frame, drawings: &[(String, Pane
     );
     reading::results(&mut html, cases)?;
     for sweep in sweeps(campaign) {
-        let _ = write!(html, "<h2>Sweep {}</h2>\n<div class=\"panels\">\n", escape(&sweep));
-        for (_, panel) in drawings.iter().filter(|(of, _)| *of == sweep) {
-            // Inline SVG stands without its XML declaration.
-            let start = panel.svg.find("<svg").unwrap_or(0);
-            let _ = writeln!(html, "<div>{}</div>", &panel.svg[start..]);
-        }
-        html.push_str("</div>\n");
+        let _ = writeln!(html, "<h2>Sweep {}</h2>", escape(&sweep));
+        grid(&mut html, drawings.iter().filter(|(of, _)| *of == sweep).map(|(_, panel)| panel));
     }
     if let Some(look) = look {
         closer::section(&mut html, look);
@@ -124,9 +107,4 @@ fn page(campaign: &Campaign, key: &str, cases: &Frame, drawings: &[(String, Pane
     let spec = escape(&campaign.spec.to_toml());
     let _ = write!(html, "<h2>The spec, with every default</h2>\n<pre>{spec}</pre>\n</body>\n</html>\n");
     Ok(html)
-}
-
-/// A text as it stands in HTML.
-pub(super) fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

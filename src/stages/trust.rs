@@ -1,7 +1,7 @@
 //! The parts of the report that say how far to trust it: where the loss goes, and what is beyond the limits of the model.
 
 use super::StageError;
-use super::report::escape;
+use super::page::escape;
 use crate::schema::EVENT_KINDS;
 use crate::stats::{CAUTIONS, LIMITS, Limit};
 use crate::store::Frame;

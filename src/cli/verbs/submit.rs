@@ -28,7 +28,7 @@ pub(super) fn slurm(spec: &Path, output: &OutputArguments, shards: Option<u32>, 
     }
     let survey = campaign.survey(Check::Sizes);
     let open = |stage: Stage| {
-        let mut open = open_shards(&survey, stage, shards);
+        let mut open = open_shards(&campaign, &survey, stage, shards);
         // What is in the queue is on its way.
         open.retain(|shard| !queue.shards.contains(&(stage.word().to_owned(), shards, *shard)));
         (stage, open)

@@ -73,7 +73,7 @@ fn units(campaign: &Campaign) -> Units {
     vec![
         (Stage::Generate, ids().zip(survey.surfaces).collect()),
         (Stage::Extract, ids().zip(survey.asperities).collect()),
-        (Stage::Cycle, survey.cycles.into_iter().map(|(unit, standing)| (unit.id, standing)).collect()),
+        (Stage::Cycle, survey.cycles.into_iter().map(|(place, standing)| (campaign.cycles[place].id.clone(), standing)).collect()),
         (Stage::Aggregate, vec![(STATISTICS.to_owned(), survey.statistics)]),
         (Stage::Report, vec![(REPORT_PAGE.to_owned(), survey.report)]),
     ]

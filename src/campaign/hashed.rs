@@ -1,0 +1,76 @@
+//! The keys of all units of a spec.
+
+use super::{CYCLE, EXTRACT, GENERATE, Stage, plain, read_by_cycle};
+use crate::keys::{canonical, key_of_text};
+use crate::spec::{Case, Spec};
+use rayon::prelude::*;
+use std::collections::HashMap;
+
+/// The keys of all units, each of which is hashed once, in parallel.
+pub(super) struct Hashed {
+    /// Of each kind of surface, the keys of its realizations and of their asperities.
+    pub(super) surfaces: Vec<Vec<(String, String)>>,
+    pub(super) cases: Vec<HashedCase>,
+}
+
+/// The keys of a case.
+pub(super) struct HashedCase {
+    /// The readable part of its ids.
+    pub(super) name: String,
+    /// Of all its parameters.
+    pub(super) whole: String,
+    /// Which kind of surface it has.
+    pub(super) surface: usize,
+    /// Of its cycles.
+    pub(super) cycles: Vec<String>,
+}
+
+impl Hashed {
+    pub(super) fn all(spec: &Spec, counts: &[u32]) -> Self {
+        let mut kinds: HashMap<String, usize> = HashMap::new();
+        let mut most: Vec<u32> = Vec::new();
+        let of_case: Vec<usize> = spec
+            .cases
+            .iter()
+            .zip(counts)
+            .map(|(case, count)| {
+                let kind = *kinds.entry(canonical(&plain(&case.params.surface))).or_insert(most.len());
+                most.resize(most.len().max(kind + 1), 0);
+                most[kind] = most[kind].max(*count);
+                kind
+            })
+            .collect();
+        let mut texts: Vec<&str> = vec![""; most.len()];
+        kinds.iter().for_each(|(text, kind)| texts[*kind] = text);
+        let surfaces: Vec<Vec<(String, String)>> = texts
+            .par_iter()
+            .zip(&most)
+            .map(|(surface, count)| {
+                let keys = |realization: u32| {
+                    let reads = format!("{{\"realization\":{realization},\"seed\":{},\"surface\":{surface}}}", spec.seed);
+                    let surface = key_of_text(Stage::Generate.word(), GENERATE, &reads);
+                    let asperities = key_of_text(Stage::Extract.word(), EXTRACT, &format!("{{\"surface\":\"{surface}\"}}"));
+                    (surface, asperities)
+                };
+                (0..*count).into_par_iter().map(keys).collect()
+            })
+            .collect();
+        let hash = |((case, kind), count): ((&Case, &usize), &u32)| {
+            let params = &case.params;
+            // Whatever the realizations have in common is put into words once.
+            let [material, model, cycle] = [plain(&params.material), plain(&read_by_cycle(&params.model)), plain(&params.cycle)];
+            let rest = format!("\"cycle\":{},\"material\":{},\"model\":{}", canonical(&cycle), canonical(&material), canonical(&model));
+            let key = |(_, asperities): &(String, String)| {
+                key_of_text(Stage::Cycle.word(), CYCLE, &format!("{{\"asperities\":\"{asperities}\",{rest}}}"))
+            };
+            HashedCase {
+                name: format!("H{:.2}_z{}", params.surface.hurst, params.surface.magnification),
+                whole: key_of_text("case", 1, &canonical(&plain(params))),
+                surface: *kind,
+                cycles: surfaces[*kind].par_iter().take(*count as usize).map(key).collect(),
+            }
+        };
+        let cases = spec.cases.par_iter().zip(&of_case).zip(counts).map(hash).collect();
+        Self { surfaces, cases }
+    }
+}
