@@ -77,6 +77,26 @@ choice! {
     }
 }
 choice! {
+    /// What becomes of the missing points of a measured surface.
+    Missing {
+        /// A surface with missing points is refused.
+        Refuse = "refuse",
+        /// The heights around them are continued, as a membrane is.
+        Fill = "fill",
+    }
+}
+choice! {
+    /// What is taken off the heights of a measured surface, by least squares.
+    Detrend {
+        /// Their mean.
+        Mean = "mean",
+        /// A plane: the tilt of the sample.
+        Plane = "plane",
+        /// A surface of second order: tilt and bow.
+        Quadratic = "quadratic",
+    }
+}
+choice! {
     /// How contact spots act on one another.
     Interaction {
         /// The displacement field of a JKR spot outside its contact (Eqs 6 and 7).

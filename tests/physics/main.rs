@@ -14,6 +14,7 @@ mod isolated;
 mod jkr;
 mod kernel;
 mod ledger;
+mod measured;
 mod merge;
 mod pair;
 mod path;

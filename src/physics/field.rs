@@ -1,0 +1,170 @@
+//! The modes of a height field: its transform, and what is told from it.
+
+use super::measured::mirrored;
+use super::periodogram::Ring;
+use super::spectrum::Moments;
+use ndarray::{Array2, ArrayView2};
+use rayon::prelude::*;
+use realfft::RealFftPlanner;
+use rustfft::FftPlanner;
+use rustfft::num_complex::Complex64;
+use std::f64::consts::TAU;
+
+/// Rings to a doubling of the wavenumber.
+const RINGS: f64 = 4.0;
+
+/// The modes `c_k` of `h(x) = Σ_k c_k exp(i k·x)` on a square grid, half of them: the other half are their conjugates.
+pub(super) struct Field {
+    /// Points along a side.
+    n: usize,
+    /// Its wavenumber of the longest waves, `2π/L` \[1/m\].
+    lowest: f64,
+    /// By columns of ky, kx running fastest: n² times the modes.
+    columns: Vec<Complex64>,
+}
+
+impl Field {
+    /// The modes of a square field of side L \[m\] as it is, if it is periodic, and else of its continuation by mirror images, of side 2 L.
+    pub(super) fn of(heights_m: ArrayView2<'_, f64>, length_m: f64, periodic: bool) -> Self {
+        if periodic { Self::periodic(heights_m, length_m) } else { Self::periodic(mirrored(heights_m).view(), 2.0 * length_m) }
+    }
+
+    fn periodic(heights_m: ArrayView2<'_, f64>, length_m: f64) -> Self {
+        let n = heights_m.nrows();
+        let half = n / 2 + 1;
+        let along_y = RealFftPlanner::<f64>::new().plan_fft_forward(n);
+        let mut columns = vec![Complex64::ZERO; half * n];
+        let rows: Vec<Vec<Complex64>> = (0..n)
+            .into_par_iter()
+            .map_init(
+                || (along_y.make_input_vec(), along_y.make_scratch_vec()),
+                |(row, scratch), x| {
+                    row.iter_mut().zip(heights_m.row(x)).for_each(|(to, from)| *to = *from);
+                    let mut waves = along_y.make_output_vec();
+                    let outcome = along_y.process_with_scratch(row, &mut waves, scratch);
+                    debug_assert!(outcome.is_ok(), "lengths are those of the plan");
+                    waves
+                },
+            )
+            .collect();
+        columns.par_chunks_mut(n).enumerate().for_each(|(ky, column)| {
+            for (value, row) in column.iter_mut().zip(&rows) {
+                *value = row[ky];
+            }
+        });
+        drop(rows);
+        let along_x = FftPlanner::<f64>::new().plan_fft_forward(n);
+        columns.par_chunks_mut(n).for_each_init(
+            || vec![Complex64::ZERO; along_x.get_inplace_scratch_len()],
+            |scratch, column| along_x.process_with_scratch(column, scratch),
+        );
+        Self { n, lowest: TAU / length_m, columns }
+    }
+
+    /// Sums over the modes of each column, added up in their order, so that they do not depend on the threads: `add` is given the sum so far, the squared mode
+    /// number, how many modes of the whole plane this one stands for, and `|c_k|²` \[m²\].
+    fn sum<T: Clone + Send + Sync>(&self, zero: &T, add: impl Fn(&mut T, f64, f64, f64) + Sync, join: impl Fn(&mut T, &T)) -> T {
+        let n = self.n;
+        let unit = 1.0 / (n as f64).powi(4);
+        let sums: Vec<T> = self
+            .columns
+            .par_chunks(n)
+            .enumerate()
+            .map(|(ky, column)| {
+                // Every column but the first, and the last of an even number of points, stands for its mirror image too.
+                let times = if ky == 0 || 2 * ky == n { 1.0 } else { 2.0 };
+                let mut sum = zero.clone();
+                for (place, value) in column.iter().enumerate() {
+                    let kx = place.min(n - place);
+                    add(&mut sum, (kx * kx + ky * ky) as f64, times, unit * value.norm_sqr());
+                }
+                sum
+            })
+            .collect();
+        let mut total = zero.clone();
+        sums.iter().for_each(|sum| join(&mut total, sum));
+        total
+    }
+
+    /// Its moments, the mean left out: `m0 = Σ|c|²`, `m2 = ½ Σ q²|c|²`, `m4 = ⅜ Σ q⁴|c|²`.
+    pub(super) fn moments(&self) -> Moments {
+        let add = |sums: &mut [f64; 3], squared: f64, times: f64, power: f64| {
+            if squared > 0.0 {
+                sums[0] += times * power;
+                sums[1] += times * power * squared;
+                sums[2] += times * power * squared * squared;
+            }
+        };
+        let sums = self.sum(&[0.0; 3], add, |total, sum| total.iter_mut().zip(sum).for_each(|(t, s)| *t += s));
+        let q2 = self.lowest * self.lowest;
+        Moments { m0_m2: sums[0], m2: 0.5 * q2 * sums[1], m4_1_m2: 0.375 * q2 * q2 * sums[2] }
+    }
+
+    /// Its spectrum in rings of wavevectors; see [`super::periodogram::periodogram`].
+    pub(super) fn rings(&self) -> Vec<Ring> {
+        let reach = self.n as f64 / 2.0;
+        let count = (RINGS * reach.log2()).round() as usize + 1;
+        let add = |rings: &mut Vec<(f64, f64, f64)>, squared: f64, times: f64, power: f64| {
+            let mode = squared.sqrt();
+            // The wavevectors of a disc: corners of the grid have no whole rings.
+            if mode > 0.0 && mode < reach {
+                let ring = &mut rings[(RINGS * mode.log2()).round() as usize];
+                *ring = (ring.0 + times * mode, ring.1 + times * power, ring.2 + times);
+            }
+        };
+        let join = |total: &mut Vec<(f64, f64, f64)>, sum: &Vec<(f64, f64, f64)>| {
+            total.iter_mut().zip(sum).for_each(|(t, s)| *t = (t.0 + s.0, t.1 + s.1, t.2 + s.2));
+        };
+        let rings = self.sum(&vec![(0.0, 0.0, 0.0); count], add, join);
+        let mean = |(modes, power, count): (f64, f64, f64)| Ring {
+            wavenumber_1_m: self.lowest * modes / count,
+            density_m4: power / (count * self.lowest * self.lowest),
+            mode_count: count as u64,
+        };
+        rings.into_iter().filter(|ring| ring.2 > 0.0).map(mean).collect()
+    }
+
+    /// Takes off the mean and every wave that is not longer than so many points.
+    pub(super) fn cut(&mut self, points: f64) {
+        let n = self.n;
+        let most = n as f64 / points;
+        self.columns.par_chunks_mut(n).enumerate().for_each(|(ky, column)| {
+            for (place, value) in column.iter_mut().enumerate() {
+                let kx = place.min(n - place);
+                let squared = (kx * kx + ky * ky) as f64;
+                if squared == 0.0 || squared >= most * most {
+                    *value = Complex64::ZERO;
+                }
+            }
+        });
+    }
+
+    /// Writes the field, or the part of it that is no mirror image.
+    pub(super) fn write(mut self, heights_m: &mut Array2<f64>) {
+        let n = self.n;
+        let along_x = FftPlanner::<f64>::new().plan_fft_inverse(n);
+        self.columns.par_chunks_mut(n).for_each_init(
+            || vec![Complex64::ZERO; along_x.get_inplace_scratch_len()],
+            |scratch, column| along_x.process_with_scratch(column, scratch),
+        );
+        let along_y = RealFftPlanner::<f64>::new().plan_fft_inverse(n);
+        let unit = 1.0 / (n as f64 * n as f64);
+        let columns = &self.columns;
+        let across = heights_m.ncols();
+        let Some(rows) = heights_m.as_slice_mut() else { return };
+        rows.par_chunks_mut(across).enumerate().for_each_init(
+            || (along_y.make_input_vec(), along_y.make_output_vec(), along_y.make_scratch_vec()),
+            |(half, line, scratch), (x, row)| {
+                half.iter_mut().enumerate().for_each(|(ky, value)| *value = columns[ky * n + x]);
+                // The first and, of an even number, the last line of a real field are real, but for rounding.
+                half[0].im = 0.0;
+                if n.is_multiple_of(2) {
+                    half[n / 2].im = 0.0;
+                }
+                let outcome = along_y.process_with_scratch(half, line, scratch);
+                debug_assert!(outcome.is_ok(), "lengths and the real lines are set above");
+                row.iter_mut().zip(line.iter()).for_each(|(to, from)| *to = unit * from);
+            },
+        );
+    }
+}

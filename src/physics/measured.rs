@@ -1,0 +1,233 @@
+//! A measured surface made fit for the model: a square of it, missing points, its trend, and the waves that are kept.
+//!
+//! The model wants what a generated surface is: a band-limited field on a square grid. A scan has noise down to its points, so waves shorter than
+//! `points_per_shortest_wavelength` of them are taken off (sharply, on a disc of wavevectors); what is left determines the summits as on a generated surface.
+//!
+//! A field that does not continue periodically is continued by its mirror images for this: heights stay continuous, where periodic images would jump. Summits nearer
+//! to an edge than half a shortest wavelength are left out, since there the mirror makes ridges of slopes.
+
+use super::PhysicsError;
+
+use super::field::Field;
+use super::periodogram::{Ring, windowed_periodogram};
+use super::spectrum::Moments;
+use super::summits::{Summits, find_summits};
+use crate::model::{Detrend, Missing};
+use ndarray::{Array2, ArrayView2, s};
+
+/// Points along a side, at least and at most.
+pub const FEWEST_POINTS: usize = 16;
+/// 1 GiB of heights; the mirror images make four of them while they are filtered.
+pub const MOST_POINTS: usize = 8192;
+
+/// The greatest share of points that may be missing.
+const MOST_MISSING: f64 = 0.5;
+/// How far the distances of points along the two directions may differ.
+const SQUARE: f64 = 1e-3;
+
+/// What is done to a measured surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Treatment {
+    /// What becomes of missing points.
+    pub missing: Missing,
+    /// What is taken off the heights.
+    pub detrend: Detrend,
+    /// Whether the field continues periodically.
+    pub periodic: bool,
+    /// Shorter waves than so many points are taken off.
+    pub points_per_shortest_wavelength: f64,
+}
+
+/// A measured surface that is fit for the model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Prepared {
+    /// Heights from their mean \[m\], on a square.
+    pub heights_m: Array2<f64>,
+    /// Side of the square \[m\].
+    pub length_m: f64,
+    /// Its moments, from its modes.
+    pub moments: Moments,
+    /// Its spectrum before short waves were taken off, in rings.
+    pub rings: Vec<Ring>,
+    /// How many points were missing, in the square.
+    pub missing_count: usize,
+    /// Rms height of what was taken off as trend \[m\].
+    pub trend_m: f64,
+    /// Rms height of the short waves that were taken off \[m\].
+    pub noise_m: f64,
+}
+
+/// Prepares heights \[m\], missing ones not a number, whose points are `spacing_m` apart along rows and along columns.
+///
+/// Of a field that is no square the middle one is taken; a periodic one must be square.
+///
+/// # Errors
+/// Too few or too many points, unequal distances, too many missing points or any that are to be refused, constant heights; the sentence says what is allowed.
+pub fn prepare(heights_m: Array2<f64>, spacing_m: [f64; 2], treatment: &Treatment) -> Result<Prepared, PhysicsError> {
+    let (rows, columns) = heights_m.dim();
+    let side = rows.min(columns);
+    let domain = |quantity, value, allowed| PhysicsError::Domain { action: "the measured surface", quantity, value, allowed };
+    if side < FEWEST_POINTS {
+        return Err(domain("the number of points along its shorter side", side as f64, "16 and more"));
+    }
+    if side > MOST_POINTS {
+        return Err(domain(
+            "the number of points along its shorter side",
+            side as f64,
+            "up to 8192; take a part of it, or every other point",
+        ));
+    }
+    if !(spacing_m.iter().all(|d| *d > 0.0 && d.is_finite())) {
+        let wrong = spacing_m.into_iter().find(|d| !(*d > 0.0 && d.is_finite())).unwrap_or(f64::NAN);
+        return Err(domain("the distance of its points [m]", wrong, "a positive number"));
+    }
+    if (spacing_m[0] / spacing_m[1] - 1.0).abs() > SQUARE {
+        let allowed = "a ratio within 0.1 % of 1: points on squares; resample it first";
+        return Err(domain("the distance of points along rows over that along columns", spacing_m[0] / spacing_m[1], allowed));
+    }
+    if treatment.periodic && rows != columns {
+        let allowed = "a square of as many columns, since a part of a periodic surface is not periodic; or periodic = false";
+        return Err(domain("the number of its rows", rows as f64, allowed));
+    }
+    let (top, left) = ((rows - side) / 2, (columns - side) / 2);
+    let mut heights = if rows == columns { heights_m } else { heights_m.slice(s![top..top + side, left..left + side]).to_owned() };
+    let missing_count = heights.iter().filter(|h| !h.is_finite()).count();
+    let share = missing_count as f64 / heights.len() as f64;
+    if missing_count > 0 && treatment.missing == Missing::Refuse {
+        return Err(domain("the share of missing points", share, "none; or missing = \"fill\", which continues the heights around them"));
+    }
+    if share > MOST_MISSING {
+        return Err(domain("the share of missing points", share, "up to half of them"));
+    }
+    fill(&mut heights, treatment.periodic);
+    let trend_m = detrend(&mut heights, treatment.detrend);
+    let length_m = side as f64 * spacing_m[0];
+    let mut field = Field::of(heights.view(), length_m, treatment.periodic);
+    let rings = if treatment.periodic { field.rings() } else { windowed_periodogram(heights.view(), length_m) };
+    let before = field.moments().m0_m2;
+    field.cut(treatment.points_per_shortest_wavelength);
+    let moments = field.moments();
+    // Heights that differ by no more than rounding are constant.
+    let scale = heights.iter().fold(0.0_f64, |most, h| most.max(h.abs())).max(trend_m);
+    if !(moments.rms_height_m() > 1e-12 * scale) {
+        return Err(domain(
+            "the rms height without trend and short waves [m]",
+            moments.rms_height_m(),
+            "more than 0: its heights are constant",
+        ));
+    }
+    let noise_m = (before - moments.m0_m2).max(0.0).sqrt();
+    field.write(&mut heights);
+    Ok(Prepared { heights_m: heights, length_m, moments, rings, missing_count, trend_m, noise_m })
+}
+
+/// Continues the heights into missing points: their discrete Laplacian vanishes there, as of a membrane that is held at the edges of the hole. At the edges of the
+/// field its slope vanishes, or it continues periodically.
+fn fill(heights: &mut Array2<f64>, periodic: bool) {
+    let (rows, columns) = heights.dim();
+    let holes: Vec<(usize, usize)> = heights.indexed_iter().filter(|(_, h)| !h.is_finite()).map(|(place, _)| place).collect();
+    if holes.is_empty() {
+        return;
+    }
+    let step = |at: usize, by: isize, n: usize| -> usize {
+        let to = at as isize + by;
+        if periodic { to.rem_euclid(n as isize) as usize } else { to.clamp(0, n as isize - 1) as usize }
+    };
+    let around =
+        |(i, j): (usize, usize)| [(step(i, -1, rows), j), (step(i, 1, rows), j), (i, step(j, -1, columns)), (i, step(j, 1, columns))];
+    // From the edges of the holes inwards, each point the mean of the known ones around it: a start.
+    let mut open = holes.clone();
+    while !open.is_empty() {
+        let found: Vec<((usize, usize), f64)> = open
+            .iter()
+            .filter_map(|place| {
+                let known: Vec<f64> = around(*place).into_iter().map(|at| heights[at]).filter(|h| h.is_finite()).collect();
+                (!known.is_empty()).then(|| (*place, known.iter().sum::<f64>() / known.len() as f64))
+            })
+            .collect();
+        if found.is_empty() {
+            return;
+        }
+        found.iter().for_each(|(place, h)| heights[*place] = *h);
+        open.retain(|place| !heights[*place].is_finite());
+    }
+    // Then successive over-relaxation, until nothing moves by more than a millionth of the range: far below what a measurement is good for.
+    let (low, high) = heights.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), h| (low.min(*h), high.max(*h)));
+    let width = (holes.len() as f64).sqrt().min(rows as f64);
+    let over = 2.0 / (1.0 + (std::f64::consts::PI / (width + 1.0)).sin());
+    for _ in 0..MOST_SWEEPS {
+        let mut moved = 0.0_f64;
+        for place in &holes {
+            let mean = around(*place).into_iter().map(|at| heights[at]).sum::<f64>() / 4.0;
+            let by = over * (mean - heights[*place]);
+            heights[*place] += by;
+            moved = moved.max(by.abs());
+        }
+        if moved <= 1e-6 * (high - low) {
+            return;
+        }
+    }
+}
+
+/// Sweeps over the missing points, at most.
+const MOST_SWEEPS: usize = 3000;
+
+/// Takes a trend off, by least squares, and gives its rms height \[m\] about its mean. The mean goes in any case.
+fn detrend(heights: &mut Array2<f64>, kind: Detrend) -> f64 {
+    let n = heights.nrows();
+    let count = heights.len() as f64;
+    // On a whole square grid these are orthogonal, so that each coefficient stands by itself.
+    let at = |k: usize| (2 * k + 1) as f64 / n as f64 - 1.0;
+    let mean_square = (0..n).map(|k| at(k).powi(2)).sum::<f64>() / n as f64;
+    type Shape<'a> = Box<dyn Fn(f64, f64) -> f64 + 'a>;
+    let plane: [Shape<'_>; 2] = [Box::new(|x, _| x), Box::new(|_, y| y)];
+    let curved: [Shape<'_>; 3] =
+        [Box::new(|x, y| x * y), Box::new(move |x, _| x * x - mean_square), Box::new(move |_, y| y * y - mean_square)];
+    let mean = heights.sum() / count;
+    heights.mapv_inplace(|h| h - mean);
+    let mut squares = 0.0;
+    let shapes = plane.iter().filter(|_| kind != Detrend::Mean).chain(curved.iter().filter(|_| kind == Detrend::Quadratic));
+    for shape in shapes {
+        let (mut product, mut norm) = (0.0, 0.0);
+        for ((i, j), h) in heights.indexed_iter() {
+            let value = shape(at(i), at(j));
+            product += value * h;
+            norm += value * value;
+        }
+        let coefficient = product / norm;
+        heights.indexed_iter_mut().for_each(|((i, j), h)| *h -= coefficient * shape(at(i), at(j)));
+        squares += coefficient * coefficient * norm / count;
+    }
+    squares.sqrt()
+}
+
+/// Summits of a prepared surface.
+///
+/// # Errors
+/// As [`find_summits`].
+pub fn find_measured(heights_m: ArrayView2<'_, f64>, length_m: f64, treatment: (bool, f64)) -> Result<(Summits, usize), PhysicsError> {
+    let (periodic, points) = treatment;
+    if periodic {
+        return Ok((find_summits(heights_m, length_m, points)?, 0));
+    }
+    let n = heights_m.nrows();
+    let mut found = find_summits(mirrored(heights_m).view(), 2.0 * length_m, points)?;
+    let margin = (0.5 * points).ceil() as usize;
+    let inside = |k: usize| k < n;
+    found.list.retain(|summit| inside(summit.grid_row) && inside(summit.grid_col));
+    let all = found.list.len();
+    let clear = |k: usize| (margin..n - margin).contains(&k);
+    found.list.retain(|summit| clear(summit.grid_row) && clear(summit.grid_col));
+    let edge = all - found.list.len();
+    found.unrefined = found.list.iter().filter(|summit| !summit.refined).count();
+    // Each of the four images has them.
+    found.rejected /= 4;
+    Ok((found, edge))
+}
+
+/// A field with its mirror images: twice the side, and periodic.
+pub(super) fn mirrored(heights: ArrayView2<'_, f64>) -> Array2<f64> {
+    let n = heights.nrows();
+    let fold = |k: usize| if k < n { k } else { 2 * n - 1 - k };
+    Array2::from_shape_fn((2 * n, 2 * n), |(i, j)| heights[[fold(i), fold(j)]])
+}

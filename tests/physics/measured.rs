@@ -1,0 +1,230 @@
+//! Measured surfaces: what is done to them, and what is told of them.
+
+use hysteron::model::{Amplitudes, Detrend, Missing, Normalization};
+use hysteron::physics::PhysicsError;
+use hysteron::physics::measured::{Prepared, Treatment, find_measured, prepare};
+use hysteron::physics::periodogram::{periodogram, windowed_periodogram};
+use hysteron::physics::selfaffine::fit_self_affine;
+use hysteron::physics::spectrum::Spectrum;
+use hysteron::physics::summits::find_summits;
+use hysteron::physics::synthesis::{Surface, realization_seed, synthesize};
+use ndarray::{Array2, s};
+use std::f64::consts::{PI, TAU};
+
+const PLAIN: Treatment =
+    Treatment { missing: Missing::Refuse, detrend: Detrend::Mean, periodic: false, points_per_shortest_wavelength: 8.0 };
+
+fn generated(magnification: u32, hurst: f64, realization: u64) -> Surface {
+    let spectrum = Spectrum {
+        length_m: 1e-3,
+        rms_height_m: 5e-6,
+        hurst,
+        magnification,
+        normalization: Normalization::Spectrum,
+        amplitudes: Amplitudes::Fixed,
+    };
+    synthesize(&spectrum, &realization_seed(11, realization), 8 * magnification as usize)
+}
+
+/// Points of unit distance.
+fn unit(heights: &Array2<f64>, treatment: &Treatment) -> Prepared {
+    prepare(heights.clone(), [1.0, 1.0], treatment).unwrap()
+}
+
+fn most(heights: &Array2<f64>) -> f64 {
+    heights.iter().fold(0.0, |most, h| most.max(h.abs()))
+}
+
+#[test]
+fn law_a_band_limited_periodic_surface_is_left_as_it_is() {
+    let surface = generated(16, 0.8, 0);
+    let n = surface.heights_m.nrows();
+    let spacing = surface.length_m / n as f64;
+    let treatment = Treatment { periodic: true, ..PLAIN };
+    let prepared = prepare(surface.heights_m.clone(), [spacing; 2], &treatment).unwrap();
+    // Rounding of two transforms.
+    assert!(most(&(&prepared.heights_m - &surface.heights_m)) < 1e-12 * most(&surface.heights_m));
+    let [mine, theirs] = [prepared.moments, surface.moments];
+    for (a, b) in [(mine.m0_m2, theirs.m0_m2), (mine.m2, theirs.m2), (mine.m4_1_m2, theirs.m4_1_m2)] {
+        assert!((a / b - 1.0).abs() < 1e-10, "{a} {b}");
+    }
+    assert!(prepared.noise_m < 1e-6 * theirs.rms_height_m());
+    let (found, edge) = find_measured(prepared.heights_m.view(), prepared.length_m, (true, 8.0)).unwrap();
+    let plain = find_summits(surface.heights_m.view(), surface.length_m, 8.0).unwrap();
+    assert_eq!((found.list.len(), edge), (plain.list.len(), 0));
+}
+
+#[test]
+fn law_short_waves_are_taken_off_and_counted() {
+    let n = 64;
+    let wave = |modes: f64, amplitude: f64| Array2::from_shape_fn((n, n), |(i, _)| amplitude * (TAU * modes * i as f64 / n as f64).cos());
+    // Waves of 16 points stay, those of 8 and of 4 go.
+    let heights = wave(4.0, 1.0) + wave(8.0, 0.5) + wave(16.0, 0.25);
+    let prepared = unit(&heights, &Treatment { periodic: true, ..PLAIN });
+    assert!(most(&(&prepared.heights_m - &wave(4.0, 1.0))) < 1e-12);
+    let noise = (0.5f64 * (0.25 + 0.0625)).sqrt();
+    assert!((prepared.noise_m - noise).abs() < 1e-9, "{} {noise}", prepared.noise_m);
+}
+
+#[test]
+fn law_mirror_images_continue_a_surface_without_a_jump() {
+    let n = 96;
+    // Cosines of whole half waves are their own mirror images.
+    let (a, b) = (3.0, 4.0);
+    let at = |k: usize| PI * (k as f64 + 0.5) / n as f64;
+    let heights = Array2::from_shape_fn((n, n), |(i, j)| (a * at(i)).cos() * (b * at(j)).cos());
+    let prepared = unit(&heights, &PLAIN);
+    assert!(most(&(&prepared.heights_m - &heights)) < 1e-12);
+    let q2 = (a * a + b * b) * (PI / n as f64).powi(2);
+    let moments = prepared.moments;
+    for (found, expected) in [(moments.m0_m2, 0.25), (moments.m2, 0.125 * q2), (moments.m4_1_m2, 0.375 * 0.25 * q2 * q2)] {
+        assert!((found / expected - 1.0).abs() < 1e-10, "{found} {expected}");
+    }
+    // Summits where both cosines are 1 or both are −1; those on the edges are the mirror's.
+    let (found, edge) = find_measured(prepared.heights_m.view(), prepared.length_m, (false, 8.0)).unwrap();
+    let mut inside: Vec<[f64; 2]> = Vec::new();
+    for i in 1..3 {
+        for j in 1..4 {
+            if (i + j) % 2 == 0 {
+                inside.push([i as f64 / a * n as f64 - 0.5, j as f64 / b * n as f64 - 0.5]);
+            }
+        }
+    }
+    assert_eq!(found.list.len(), inside.len());
+    for (summit, expected) in found.list.iter().zip(&inside) {
+        assert!((summit.x_m - expected[0]).abs() < 1e-6 && (summit.y_m - expected[1]).abs() < 1e-6, "{summit:?} {expected:?}");
+        assert!((summit.height_m - 1.0).abs() < 1e-10);
+        assert!((summit.curvature_1_m / (0.5 * q2) - 1.0).abs() < 1e-9);
+    }
+    assert!(edge > 0);
+}
+
+#[test]
+fn law_a_trend_goes_and_nothing_else() {
+    let n = 80;
+    let at = |k: usize| (2 * k + 1) as f64 / n as f64 - 1.0;
+    // A product of cosines over whole half waves, even ones, which no plane has a part of.
+    let rough = Array2::from_shape_fn((n, n), |(i, j)| (4.0 * PI * at(i)).cos() * (3.0 * PI * at(j)).cos());
+    let plane = Array2::from_shape_fn((n, n), |(i, j)| 7.0 + 3.0 * at(i) - 2.0 * at(j));
+    let bow = Array2::from_shape_fn((n, n), |(i, j)| at(i) * at(i) - 0.5 * at(i) * at(j));
+    let tilted = unit(&(&rough + &plane), &Treatment { detrend: Detrend::Plane, ..PLAIN });
+    let bowed = unit(&(&rough + &plane + &bow), &Treatment { detrend: Detrend::Quadratic, ..PLAIN });
+    let alone = unit(&rough, &PLAIN);
+    assert!(most(&(&tilted.heights_m - &alone.heights_m)) < 1e-11);
+    let curved = unit(&rough, &Treatment { detrend: Detrend::Quadratic, ..PLAIN });
+    assert!(most(&(&bowed.heights_m - &curved.heights_m)) < 1e-11);
+    let rms = |field: Array2<f64>| {
+        let mean = field.mean().unwrap();
+        field.mapv(|h| (h - mean).powi(2)).mean().unwrap().sqrt()
+    };
+    assert!((tilted.trend_m / rms(plane) - 1.0).abs() < 1e-10);
+    assert_eq!(alone.trend_m, 0.0);
+}
+
+#[test]
+fn law_missing_points_continue_what_is_around_them() {
+    let n = 48;
+    // Without a discrete Laplacian, so that the membrane is this very field.
+    let heights = Array2::from_shape_fn((n, n), |(i, j)| {
+        let (x, y) = (i as f64 - 20.0, j as f64 - 25.0);
+        x * x - y * y + 3.0 * x * y
+    });
+    let mut holed = heights.clone();
+    holed.slice_mut(s![10..22, 15..23]).fill(f64::NAN);
+    holed[[30, 40]] = f64::NAN;
+    let treatment = Treatment { missing: Missing::Fill, points_per_shortest_wavelength: 2.0, ..PLAIN };
+    let (filled, whole) = (unit(&holed, &treatment), unit(&heights, &treatment));
+    assert_eq!(filled.missing_count, 12 * 8 + 1);
+    // It stops where nothing moves by a millionth of the range; what is left to move is a few times that.
+    let range = 2.0 * most(&heights);
+    assert!(most(&(&filled.heights_m - &whole.heights_m)) < 1e-4 * range);
+    let refused = prepare(holed, [1.0; 2], &PLAIN);
+    assert!(matches!(&refused, Err(PhysicsError::Domain { quantity: "the share of missing points", .. })), "{refused:?}");
+}
+
+#[test]
+fn law_the_middle_of_an_oblong_field_is_taken() {
+    let oblong = Array2::from_shape_fn((40, 60), |(i, j)| (0.3 * i as f64).sin() + (0.2 * j as f64).cos());
+    let prepared = unit(&oblong, &PLAIN);
+    assert_eq!(prepared.length_m, 40.0);
+    let middle = unit(&oblong.slice(s![.., 10..50]).to_owned(), &PLAIN);
+    assert_eq!(prepared.heights_m, middle.heights_m);
+}
+
+#[test]
+fn law_what_is_no_surface_is_refused_with_a_sentence() {
+    let fine = Array2::from_shape_fn((32, 32), |(i, j)| (0.3 * i as f64).sin() + (0.2 * j as f64).cos());
+    let nan = |h: f64| if h > 0.0 { f64::NAN } else { h };
+    let cases: [(Array2<f64>, [f64; 2], Treatment, &str); 7] = [
+        (Array2::zeros((1, 500)), [1.0; 2], PLAIN, "16 and more"),
+        (Array2::zeros((0, 0)), [1.0; 2], PLAIN, "16 and more"),
+        (Array2::from_elem((32, 32), 5e-6), [1.0; 2], PLAIN, "constant"),
+        (fine.clone(), [1.0, 1.1], PLAIN, "resample"),
+        (fine.clone(), [0.0, 0.0], PLAIN, "positive"),
+        (fine.slice(s![.., 2..]).to_owned(), [1.0; 2], Treatment { periodic: true, ..PLAIN }, "square"),
+        (fine.mapv(nan), [1.0; 2], Treatment { missing: Missing::Fill, ..PLAIN }, "half"),
+    ];
+    for (heights, spacing, treatment, words) in cases {
+        let told = prepare(heights, spacing, &treatment).unwrap_err().to_string();
+        assert!(told.contains(words), "{told}");
+    }
+    // A plane without anything on it is constant once its tilt is gone.
+    let tilted = Array2::from_shape_fn((32, 32), |(i, j)| 1e-6 * (i as f64 + 2.0 * j as f64));
+    let told = prepare(tilted, [1e-6; 2], &Treatment { detrend: Detrend::Plane, ..PLAIN }).unwrap_err().to_string();
+    assert!(told.contains("constant"), "{told}");
+}
+
+#[test]
+fn val_the_window_shows_the_spectrum_of_a_part_of_a_surface() {
+    // A quarter of a periodic surface does not continue periodically: without a window the slopes at its edges make a spectrum of their own.
+    let surface = generated(64, 0.8, 3);
+    let n = surface.heights_m.nrows();
+    let part = surface.heights_m.slice(s![..n / 2, ..n / 2]).to_owned();
+    let length = 0.5 * surface.length_m;
+    let whole = periodogram(surface.heights_m.view(), surface.length_m);
+    let mean = part.mean().unwrap();
+    let part = part.mapv(|h| h - mean);
+    let [windowed, bare] = [windowed_periodogram(part.view(), length), periodogram(part.view(), length)];
+    let (low, high) = (8.0 * TAU / surface.length_m, 48.0 * TAU / surface.length_m);
+    let far = |rings: &[hysteron::physics::periodogram::Ring]| -> f64 {
+        let inside = rings.iter().filter(|ring| (low..high).contains(&ring.wavenumber_1_m));
+        let near = |q: f64| whole.iter().min_by(|a, b| (a.wavenumber_1_m - q).abs().total_cmp(&(b.wavenumber_1_m - q).abs())).unwrap();
+        let off = inside.map(|ring| {
+            let known = near(ring.wavenumber_1_m);
+            // At the same wavenumber, by the slope of the spectrum.
+            let density = known.density_m4 * (ring.wavenumber_1_m / known.wavenumber_1_m).powf(-3.6);
+            (ring.density_m4 / density).ln().abs()
+        });
+        off.fold(0.0, f64::max)
+    };
+    // A ring of m modes under a window that makes some two of them one scatters by sqrt(2/m): at 8 modes, 0.3.
+    assert!(far(&windowed) < 0.5, "{}", far(&windowed));
+    assert!(far(&bare) > 1.5 * far(&windowed), "{} {}", far(&bare), far(&windowed));
+}
+
+#[test]
+fn val_the_fit_finds_the_spectrum_that_a_surface_was_made_from() {
+    for (hurst, realization) in [(0.5, 0), (0.8, 1)] {
+        let surface = generated(64, hurst, realization);
+        let rings = periodogram(surface.heights_m.view(), surface.length_m);
+        let highest = 60.0 * TAU / surface.length_m;
+        // With fixed amplitudes the rings are Eq 10 but for how wavenumbers lie in them: the widest, of few modes, are some per cent off.
+        let fit = fit_self_affine(&rings, highest).unwrap();
+        assert!((fit.hurst - hurst).abs() < 0.03, "{fit:?}");
+        assert!(!fit.rolls_off && fit.scatter < 0.05, "{fit:?}");
+        // A roll-off at eight times the longest waves' wavenumber.
+        let from = 8.0 * TAU / surface.length_m;
+        let plateau = rings.iter().find(|ring| ring.wavenumber_1_m >= from).unwrap().density_m4;
+        let rolled: Vec<_> = rings
+            .iter()
+            .map(|ring| hysteron::physics::periodogram::Ring {
+                density_m4: if ring.wavenumber_1_m < from { plateau } else { ring.density_m4 },
+                ..*ring
+            })
+            .collect();
+        let fit = fit_self_affine(&rolled, highest).unwrap();
+        assert!(fit.rolls_off && (fit.hurst - hurst).abs() < 0.05, "{fit:?}");
+        assert!((fit.roll_off_1_m / from).ln().abs() < 0.2, "{fit:?}");
+        assert!((fit.plateau_m4 / plateau).ln().abs() < 0.1, "{fit:?}");
+    }
+}
