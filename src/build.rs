@@ -4,7 +4,10 @@ use std::path::Path;
 use std::process::Command;
 
 fn main() {
-    println!("cargo:rerun-if-changed=src");
+    // Of `src` all but the Python package, which is a crate of its own.
+    for entry in std::fs::read_dir("src").into_iter().flatten().flatten().filter(|entry| entry.file_name() != "python") {
+        println!("cargo:rerun-if-changed={}", entry.path().display());
+    }
     for path in [".git/HEAD", ".git/logs/HEAD", ".cargo_vcs_info.json"] {
         // A file that is not there would have this run every time.
         if Path::new(path).exists() {

@@ -28,6 +28,20 @@ pub fn key_of_text(stage: &str, meaning: u32, reads: &str) -> String {
     blake3::hash(text.as_bytes()).to_hex().to_string()
 }
 
+/// BLAKE3 of a regular file's contents, 64 hexadecimal digits.
+///
+/// # Errors
+/// What the system says; that it is no regular file.
+pub fn digest_of_file(path: &std::path::Path) -> std::io::Result<String> {
+    // What is no file, such as a pipe or a device, might not end.
+    if !std::fs::metadata(path)?.is_file() {
+        return Err(std::io::Error::other("it is no regular file"));
+    }
+    let mut hasher = blake3::Hasher::new();
+    hasher.update_reader(std::fs::File::open(path)?)?;
+    Ok(hasher.finalize().to_hex().to_string())
+}
+
 /// The first digits of a key, as they stand in ids.
 #[must_use]
 pub fn short(key: &str) -> &str {

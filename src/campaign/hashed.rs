@@ -1,10 +1,12 @@
 //! The keys of all units of a spec.
 
-use super::{CYCLE, EXTRACT, GENERATE, Stage, plain, read_by_cycle};
+use super::{CYCLE, EXTRACT, GENERATE, Stage, plain, read_by_cycle, surface_reads};
 use crate::keys::{canonical, key_of_text};
-use crate::spec::{Case, Spec};
+use crate::spec::{Case, CaseParams, Spec, SurfaceParams};
 use rayon::prelude::*;
+use serde_json::Value;
 use std::collections::HashMap;
+use std::path::Path;
 
 /// The keys of all units, each of which is hashed once, in parallel.
 pub(super) struct Hashed {
@@ -34,7 +36,7 @@ impl Hashed {
             .iter()
             .zip(counts)
             .map(|(case, count)| {
-                let kind = *kinds.entry(canonical(&plain(&case.params.surface))).or_insert(most.len());
+                let kind = *kinds.entry(canonical(&surface_reads(spec, &case.params.surface))).or_insert(most.len());
                 most.resize(most.len().max(kind + 1), 0);
                 most[kind] = most[kind].max(*count);
                 kind
@@ -64,8 +66,8 @@ impl Hashed {
                 key_of_text(Stage::Cycle.word(), CYCLE, &format!("{{\"asperities\":\"{asperities}\",{rest}}}"))
             };
             HashedCase {
-                name: format!("H{:.2}_z{}", params.surface.hurst, params.surface.magnification),
-                whole: key_of_text("case", 1, &canonical(&plain(params))),
+                name: readable(&params.surface),
+                whole: key_of_text("case", 1, &canonical(&case_reads(spec, params))),
                 surface: *kind,
                 cycles: surfaces[*kind].par_iter().take(*count as usize).map(key).collect(),
             }
@@ -73,4 +75,22 @@ impl Hashed {
         let cases = spec.cases.par_iter().zip(&of_case).zip(counts).map(hash).collect();
         Self { surfaces, cases }
     }
+}
+
+/// All parameters of a case.
+fn case_reads(spec: &Spec, params: &CaseParams) -> Value {
+    let mut reads = plain(params);
+    reads["surface"] = surface_reads(spec, &params.surface);
+    reads
+}
+
+/// The readable part of ids: of a measured surface the name of its file, without its folder and its ending.
+fn readable(params: &SurfaceParams) -> String {
+    if !params.is_measured() {
+        return format!("H{:.2}_z{}", params.hurst, params.magnification);
+    }
+    let stem = Path::new(&params.file).file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    let plain = |c: char| if c.is_ascii_alphanumeric() || c == '-' { c } else { '_' };
+    let name: String = stem.chars().map(plain).take(32).collect();
+    if name.is_empty() { "surface".to_owned() } else { name }
 }

@@ -16,7 +16,7 @@ pub use shard::Shard;
 pub use standing::{Standing, Survey};
 
 use crate::keys::{canonical, key, key_of_text, preimage, short};
-use crate::spec::{Case, ModelParams, Spec, SurfaceParams};
+use crate::spec::{Case, MEASURED, ModelParams, Spec, SurfaceParams};
 use hashed::Hashed;
 use serde_json::{Map, Value, json};
 use std::collections::{HashMap, HashSet};
@@ -157,7 +157,9 @@ impl Campaign {
     /// All units of a spec; of one that asks for a precision, those that it begins with.
     #[must_use]
     pub fn new(spec: Spec, dir: PathBuf) -> Self {
-        let counts = vec![spec.realizations.least(); spec.cases.len()];
+        // A measured surface is one surface.
+        let count = |case: &Case| if case.params.surface.is_measured() { 1 } else { spec.realizations.least() };
+        let counts = spec.cases.iter().map(count).collect();
         Self::with_counts(spec, dir, counts)
     }
 
@@ -317,7 +319,7 @@ impl Campaign {
     /// What the keys of a surface's units are hashes of, by stage, up to and with `stage`.
     #[must_use]
     pub fn surface_preimages(&self, unit: &SurfaceUnit, stage: Stage) -> Map<String, Value> {
-        let reads = json!({ "surface": plain(&unit.params), "seed": self.spec.seed, "realization": unit.realization });
+        let reads = json!({ "surface": surface_reads(&self.spec, &unit.params), "seed": self.spec.seed, "realization": unit.realization });
         let mut preimages = Map::new();
         enter(&mut preimages, Stage::Generate, GENERATE, &reads);
         if stage >= Stage::Extract {
@@ -391,6 +393,22 @@ fn read_by_cycle(model: &ModelParams) -> ModelParams {
     let mut model = model.clone();
     model.as_printed.retain(|slip| slip.in_contact());
     model
+}
+
+/// What a surface is made from: of a measured one the contents of its file, and what is done to it.
+fn surface_reads(spec: &Spec, params: &SurfaceParams) -> Value {
+    let SurfaceParams { file, dataset, periodic, pixel_m, unit, missing, detrend, points_per_shortest_wavelength, .. } = params;
+    if params.is_measured() {
+        return json!({
+            "blake3": spec.files.get(file), "dataset": dataset, "periodic": periodic, "pixel_m": pixel_m, "unit": unit, "missing": missing, "detrend": detrend,
+            "points_per_shortest_wavelength": points_per_shortest_wavelength,
+        });
+    }
+    let mut reads = plain(params);
+    if let Some(members) = reads.as_object_mut() {
+        members.retain(|name, _| !MEASURED.contains(&name.as_str()));
+    }
+    reads
 }
 
 /// A parameter set as JSON; a number that JSON cannot hold is refused by the spec long before.

@@ -22,8 +22,10 @@ pub const MOST_POINTS: usize = 8192;
 
 /// The greatest share of points that may be missing.
 const MOST_MISSING: f64 = 0.5;
-/// How far the distances of points along the two directions may differ.
+/// How far the distances of points along the two directions may differ and count as one.
 const SQUARE: f64 = 1e-3;
+/// The greatest ratio of the two that is resampled.
+const MOST_OBLONG: f64 = 16.0;
 
 /// What is done to a measured surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,18 +57,47 @@ pub struct Prepared {
     pub trend_m: f64,
     /// Rms height of the short waves that were taken off \[m\].
     pub noise_m: f64,
+    /// The wavelength below which they were \[m\].
+    pub shortest_wavelength_m: f64,
 }
 
 /// Prepares heights \[m\], missing ones not a number, whose points are `spacing_m` apart along rows and along columns.
 ///
-/// Of a field that is no square the middle one is taken; a periodic one must be square.
+/// Of a field that is no square the middle one is taken; a periodic one must be square. Where points lie farther apart along one direction, heights between them are
+/// interpolated (polynomials of the fifth degree), and the short waves are those of the greater distance.
 ///
 /// # Errors
-/// Too few or too many points, unequal distances, too many missing points or any that are to be refused, constant heights; the sentence says what is allowed.
+/// Too few or too many points, distances that are not positive or too unequal, too many missing points or any that are to be refused, constant heights; the sentence says what is allowed.
 pub fn prepare(heights_m: Array2<f64>, spacing_m: [f64; 2], treatment: &Treatment) -> Result<Prepared, PhysicsError> {
+    let domain = |quantity, value, allowed| PhysicsError::Domain { action: "the measured surface", quantity, value, allowed };
+    if !(spacing_m.iter().all(|d| *d > 0.0 && d.is_finite())) {
+        let wrong = spacing_m.into_iter().find(|d| !(*d > 0.0 && d.is_finite())).unwrap_or(f64::NAN);
+        return Err(domain("the distance of its points [m]", wrong, "a positive number"));
+    }
+    let fine = spacing_m[0].min(spacing_m[1]);
+    let ratio = spacing_m[0].max(spacing_m[1]) / fine;
+    if ratio > MOST_OBLONG {
+        return Err(domain("the greater distance of its points over the smaller one", ratio, "up to 16"));
+    }
+    let oblong = ratio > 1.0 + SQUARE;
+    if oblong && treatment.periodic {
+        return Err(domain(
+            "the greater distance of its points over the smaller one",
+            ratio,
+            "1 where a surface is periodic; or periodic = false",
+        ));
+    }
+    let largest = heights_m.len() as f64 * if oblong { ratio } else { 1.0 };
+    if largest > MOST_AT_ALL {
+        return Err(domain("the number of its points", largest, "up to 2^28"));
+    }
+    let heights_m = match oblong {
+        true if spacing_m[0] > spacing_m[1] => resampled(heights_m.t(), ratio).reversed_axes(),
+        true => resampled(heights_m.view(), ratio),
+        false => heights_m,
+    };
     let (rows, columns) = heights_m.dim();
     let side = rows.min(columns);
-    let domain = |quantity, value, allowed| PhysicsError::Domain { action: "the measured surface", quantity, value, allowed };
     if side < FEWEST_POINTS {
         return Err(domain("the number of points along its shorter side", side as f64, "16 and more"));
     }
@@ -77,20 +108,16 @@ pub fn prepare(heights_m: Array2<f64>, spacing_m: [f64; 2], treatment: &Treatmen
             "up to 8192; take a part of it, or every other point",
         ));
     }
-    if !(spacing_m.iter().all(|d| *d > 0.0 && d.is_finite())) {
-        let wrong = spacing_m.into_iter().find(|d| !(*d > 0.0 && d.is_finite())).unwrap_or(f64::NAN);
-        return Err(domain("the distance of its points [m]", wrong, "a positive number"));
-    }
-    if (spacing_m[0] / spacing_m[1] - 1.0).abs() > SQUARE {
-        let allowed = "a ratio within 0.1 % of 1: points on squares; resample it first";
-        return Err(domain("the distance of points along rows over that along columns", spacing_m[0] / spacing_m[1], allowed));
-    }
     if treatment.periodic && rows != columns {
         let allowed = "a square of as many columns, since a part of a periodic surface is not periodic; or periodic = false";
         return Err(domain("the number of its rows", rows as f64, allowed));
     }
     let (top, left) = ((rows - side) / 2, (columns - side) / 2);
-    let mut heights = if rows == columns { heights_m } else { heights_m.slice(s![top..top + side, left..left + side]).to_owned() };
+    let mut heights = if rows == columns {
+        heights_m.as_standard_layout().into_owned()
+    } else {
+        heights_m.slice(s![top..top + side, left..left + side]).to_owned()
+    };
     let missing_count = heights.iter().filter(|h| !h.is_finite()).count();
     let share = missing_count as f64 / heights.len() as f64;
     if missing_count > 0 && treatment.missing == Missing::Refuse {
@@ -101,11 +128,12 @@ pub fn prepare(heights_m: Array2<f64>, spacing_m: [f64; 2], treatment: &Treatmen
     }
     fill(&mut heights, treatment.periodic);
     let trend_m = detrend(&mut heights, treatment.detrend);
-    let length_m = side as f64 * spacing_m[0];
+    let length_m = side as f64 * fine;
+    let points = treatment.points_per_shortest_wavelength * if oblong { ratio } else { 1.0 };
     let mut field = Field::of(heights.view(), length_m, treatment.periodic);
     let rings = if treatment.periodic { field.rings() } else { windowed_periodogram(heights.view(), length_m) };
     let before = field.moments().m0_m2;
-    field.cut(treatment.points_per_shortest_wavelength);
+    field.cut(points);
     let moments = field.moments();
     // Heights that differ by no more than rounding are constant.
     let scale = heights.iter().fold(0.0_f64, |most, h| most.max(h.abs())).max(trend_m);
@@ -118,8 +146,39 @@ pub fn prepare(heights_m: Array2<f64>, spacing_m: [f64; 2], treatment: &Treatmen
     }
     let noise_m = (before - moments.m0_m2).max(0.0).sqrt();
     field.write(&mut heights);
-    Ok(Prepared { heights_m: heights, length_m, moments, rings, missing_count, trend_m, noise_m })
+    Ok(Prepared { heights_m: heights, length_m, moments, rings, missing_count, trend_m, noise_m, shortest_wavelength_m: points * fine })
 }
+
+/// Points between those of each row, `ratio` times as close, from the first on to the last: Lagrange's polynomials through six points. Where one of these is missing, so is
+/// what lies between them.
+fn resampled(heights: ArrayView2<'_, f64>, ratio: f64) -> Array2<f64> {
+    let (rows, columns) = heights.dim();
+    if columns < TAPS {
+        return Array2::zeros((rows, columns));
+    }
+    let count = ((columns - 1) as f64 * ratio).floor() as usize + 1;
+    let mut fine = Array2::zeros((rows, count));
+    for k in 0..count {
+        let place = k as f64 / ratio;
+        let first = (place.floor() as usize).saturating_sub(TAPS / 2 - 1).min(columns - TAPS);
+        let weight = |tap: usize| {
+            let others = (0..TAPS).filter(|other| *other != tap);
+            others.map(|other| (place - (first + other) as f64) / (tap as f64 - other as f64)).product::<f64>()
+        };
+        let weights: [f64; TAPS] = std::array::from_fn(weight);
+        for row in 0..rows {
+            // A weight of zero takes nothing, not even what is missing.
+            let near = weights.iter().enumerate().filter(|(_, w)| **w != 0.0);
+            fine[[row, k]] = near.map(|(tap, w)| w * heights[[row, first + tap]]).sum();
+        }
+    }
+    fine
+}
+
+/// Points that a value between them is made of.
+const TAPS: usize = 6;
+/// Points at most, before a square is taken of them.
+const MOST_AT_ALL: f64 = (1u64 << 28) as f64;
 
 /// Continues the heights into missing points: their discrete Laplacian vanishes there, as of a membrane that is held at the edges of the hole. At the edges of the
 /// field its slope vanishes, or it continues periodically.
@@ -201,12 +260,15 @@ fn detrend(heights: &mut Array2<f64>, kind: Detrend) -> f64 {
     squares.sqrt()
 }
 
-/// Summits of a prepared surface.
+/// Summits of a prepared surface with so many points to its shortest wavelength, and how many were left out at the edges of one that is not periodic.
 ///
 /// # Errors
 /// As [`find_summits`].
-pub fn find_measured(heights_m: ArrayView2<'_, f64>, length_m: f64, treatment: (bool, f64)) -> Result<(Summits, usize), PhysicsError> {
-    let (periodic, points) = treatment;
+pub fn find_measured(
+    heights_m: ArrayView2<'_, f64>,
+    length_m: f64,
+    (periodic, points): (bool, f64),
+) -> Result<(Summits, usize), PhysicsError> {
     if periodic {
         return Ok((find_summits(heights_m, length_m, points)?, 0));
     }

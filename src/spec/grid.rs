@@ -6,10 +6,12 @@ use std::ops::Range;
 use toml::Spanned;
 
 use super::fault::Faults;
-use super::keys::{KEYS, find};
+use super::keys::{GENERATED, KEYS, find};
 use super::number::short;
 use super::sweep::{AxisDraft, SweepDraft};
 use super::walk::{Draft, Origin};
+use crate::model::Boundary;
+
 use super::{Axis, Case, CaseParams, MAX_CASES, MAX_GRID, Spec, Sweep, Value};
 
 /// The sweep that a case without sweeps belongs to.
@@ -17,17 +19,18 @@ const BASE: &str = "base";
 
 /// Multiplies the sweeps out. Nothing, with the faults added, if there are too many cases or the draft has no name.
 pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
-    let Draft { name, seed, realizations, base, origins, sweeps } = draft;
+    let Draft { name, seed, realizations, base, origins, sweeps, files } = draft;
     let read: Vec<&SweepDraft> = sweeps.iter().flatten().collect();
     if too_many(&read, faults) {
         return None;
     }
     let mut cases = Cases::default();
     if sweeps.is_empty() {
-        check(&base, &origins, faults);
+        check(&base, &origins, &[], faults);
         cases.add(BASE, base.clone());
     }
     for sweep in &read {
+        let swept: Vec<usize> = sweep.axes.iter().map(|axis| axis.key).collect();
         for point in points(&sweep.axes) {
             let mut params = base.clone();
             let mut origins = origins.clone();
@@ -35,12 +38,12 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
                 (KEYS[axis.key].set)(&mut params, value.get_ref());
                 origins[axis.key] = Origin::Written(value.span());
             }
-            check(&params, &origins, faults);
+            check(&params, &origins, &swept, faults);
             cases.add(&sweep.name, params);
         }
     }
     let sweeps = read.into_iter().map(sweep).collect();
-    Some(Spec { name: name?, seed, realizations, cases: cases.list, base, sweeps })
+    Some(Spec { name: name?, seed, realizations, cases: cases.list, base, sweeps, files })
 }
 
 /// Whether the sweeps make more cases than allowed, found without making them.
@@ -101,9 +104,43 @@ impl Cases {
     }
 }
 
+/// Checks what a measured surface asks of the other values of its case; `swept` are the keys of its sweep.
+fn check_measured(case: &CaseParams, origins: &[Origin], swept: &[usize], faults: &mut Faults<'_>) {
+    let of_sweep = |name: &str| find("surface", name).is_some_and(|key| swept.contains(&key));
+    for name in GENERATED {
+        // Where one of the two stands in the base and the other in a sweep, both kinds of surface are meant.
+        if of_sweep(name) == of_sweep("file")
+            && let Some(span) = written(find("surface", name), origins)
+        {
+            let message = format!("`surface.{name}` describes a generated surface, and `surface.file` names a measured one");
+            faults.add(&span, message, "a measured surface has its own; leave one of the two out".to_owned());
+        }
+    }
+    if !case.surface.periodic && case.model.boundary == Boundary::Periodic {
+        let boundary = written(find("model", "boundary"), origins);
+        let span = boundary.or_else(|| written(find("surface", "periodic"), origins)).or_else(|| written(find("surface", "file"), origins));
+        if let Some(span) = span {
+            let message = "a measured surface that does not continue periodically cannot have its own images around it".to_owned();
+            faults.add(&span, message, "write model.boundary = \"isolated\", or surface.periodic = true if it does".to_owned());
+        }
+    }
+}
+
+/// Where a value is written, if it is.
+fn written(key: Option<usize>, origins: &[Origin]) -> Option<Range<usize>> {
+    match &origins[key?] {
+        Origin::Written(span) => Some(span.clone()),
+        Origin::Default | Origin::Faulty => None,
+    }
+}
+
 /// Checks what depends on two values of a case.
-fn check(case: &CaseParams, origins: &[Origin], faults: &mut Faults<'_>) {
+fn check(case: &CaseParams, origins: &[Origin], swept: &[usize], faults: &mut Faults<'_>) {
     let surface = &case.surface;
+    if surface.is_measured() {
+        check_measured(case, origins, swept, faults);
+        return;
+    }
     if surface.rms_height_m >= surface.length_m
         && let Some(span) = blamed(["rms_height_m", "length_m"], origins)
     {

@@ -1,7 +1,7 @@
 //! The keys: what each takes, and where its value goes.
 
 use super::{CaseParams, Value};
-use crate::model::{Amplitudes, Boundary, Choice, Coalescence, Interaction, JumpIn, KeptContacts, Normalization, Slip};
+use crate::model::{Amplitudes, Boundary, Choice, Coalescence, Detrend, Interaction, JumpIn, KeptContacts, Missing, Normalization, Slip};
 
 /// One key of a table.
 pub(super) struct Key {
@@ -33,6 +33,8 @@ pub(super) enum Kind {
     Numbers(Limits, usize),
     /// An array of words.
     Words(fn() -> Vec<&'static str>),
+    /// A text of so many bytes at most, and what it is.
+    Text(usize, &'static str),
 }
 
 impl Kind {
@@ -104,6 +106,12 @@ macro_rules! key {
         key!($table.$name, Kind::Word(words::<$choice>), |w: &$choice| Value::Word(w.word()),
             Word(w) => <$choice>::from_word(w))
     };
+    ($table:ident . $name:ident: text $most:literal, $note:literal) => {
+        key!($table.$name, Kind::Text($most, $note), |text: &String| Value::Text(text.clone()), Text(text) => Some(text.clone()))
+    };
+    ($table:ident . $name:ident: flag) => {
+        key!($table.$name, Kind::Flag, |flag: &bool| Value::Flag(*flag), Flag(flag) => Some(*flag))
+    };
 }
 
 /// Every key of every table, in the order in which they are shown.
@@ -126,6 +134,16 @@ pub(super) static KEYS: &[Key] = &[
     ], "8 is usual"),
     key!(surface.normalization: word Normalization),
     key!(surface.amplitudes: word Amplitudes),
+    key!(surface.file: text 4096, "the file of a measured surface, from the folder where the command is run"),
+    key!(surface.dataset: text 256, "which field of the file it is"),
+    key!(surface.periodic: flag),
+    key!(surface.pixel_m: number Limits {
+        low: 0.0, above: false, high: 0.1, unit: " m", unit_name: "metres", slip: Some((1e-6, "micrometres")),
+        note: "the distance of neighbouring points; 0 where the file tells it",
+    }),
+    key!(surface.unit: text 16, "the unit of the heights, such as \"nm\""),
+    key!(surface.missing: word Missing),
+    key!(surface.detrend: word Detrend),
     key!(material.contact_modulus_pa: number Limits {
         low: 1.0, above: false, high: 1e13, unit: " Pa", unit_name: "pascals", slip: Some((1e6, "megapascals")), note: "",
     }),
@@ -144,7 +162,7 @@ pub(super) static KEYS: &[Key] = &[
     key!(model.as_printed, Kind::Words(words::<Slip>),
         |slips: &Vec<Slip>| Value::Words(slips.iter().map(|slip| slip.word()).collect()),
         Words(w) => w.iter().map(|word| Slip::from_word(word)).collect::<Option<Vec<_>>>()),
-    key!(model.allow_low_tabor, Kind::Flag, |flag: &bool| Value::Flag(*flag), Flag(flag) => Some(*flag)),
+    key!(model.allow_low_tabor: flag),
     key!(cycle.max_load, Kind::Numbers(Limits {
         low: 0.0, above: true, high: 0.2, unit: "", unit_name: "", slip: None,
         note: "max_load is F/(E* A0), without unit: 0.004 to 0.015 is usual, and contact is nearly full from 0.07 on",
@@ -160,7 +178,9 @@ pub(super) static KEYS: &[Key] = &[
 pub(super) const TABLES: [&str; 4] = ["surface", "material", "model", "cycle"];
 
 /// Keys of `[surface]` that describe a measured surface.
-pub(super) const MEASURED: [&str; 3] = ["file", "dataset", "periodic"];
+pub const MEASURED: [&str; 7] = ["file", "dataset", "periodic", "pixel_m", "unit", "missing", "detrend"];
+/// Keys of `[surface]` that describe a generated one.
+pub(super) const GENERATED: [&str; 6] = ["length_m", "rms_height_m", "hurst", "magnification", "normalization", "amplitudes"];
 
 /// The place in [`KEYS`] of a key of a table.
 pub(super) fn find(table: &str, name: &str) -> Option<usize> {

@@ -4,6 +4,7 @@
 //! refuses what no row names, and collects every fault with its place, so that one reading of the answer mends the whole file.
 
 mod fault;
+mod files;
 mod grid;
 mod keys;
 mod nearest;
@@ -15,14 +16,18 @@ mod value;
 mod walk;
 mod write;
 
+use std::collections::BTreeMap;
 use std::io::Read as _;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::model::{Amplitudes, Boundary, Coalescence, Interaction, JumpIn, KeptContacts, Material, Normalization, Slip, Slips};
+use crate::model::{
+    Amplitudes, Boundary, Coalescence, Detrend, Interaction, JumpIn, KeptContacts, Material, Missing, Normalization, Slip, Slips,
+};
 
 pub use fault::{Fault, Place, SpecErrors};
+pub use keys::MEASURED;
 pub use realizations::{Realizations, Until};
 
 /// The greatest number of cases that one spec may make.
@@ -52,6 +57,8 @@ pub struct Spec {
     pub base: CaseParams,
     /// The sweeps as written, each value checked.
     pub sweeps: Vec<Sweep>,
+    /// BLAKE3 of the files of measured surfaces, by their names as written.
+    pub files: BTreeMap<String, String>,
 }
 
 /// One point of the campaign.
@@ -77,7 +84,7 @@ pub struct CaseParams {
     pub cycle: CycleParams,
 }
 
-/// A self-affine surface on a square.
+/// A self-affine surface on a square, or a measured one.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SurfaceParams {
@@ -95,9 +102,29 @@ pub struct SurfaceParams {
     pub normalization: Normalization,
     /// The moduli of the Fourier modes.
     pub amplitudes: Amplitudes,
+    /// The file of a measured surface; empty for a generated one. Of the parameters above a measured one reads the points per shortest wavelength alone.
+    pub file: String,
+    /// Which of the file's fields it is; empty for the only one.
+    pub dataset: String,
+    /// Whether it continues periodically.
+    pub periodic: bool,
+    /// Distance of its points \[m\], where the file does not tell it; else 0.
+    pub pixel_m: f64,
+    /// Unit of its heights, where the file does not tell it.
+    pub unit: String,
+    /// What becomes of its missing points.
+    pub missing: Missing,
+    /// What is taken off its heights.
+    pub detrend: Detrend,
 }
 
 impl SurfaceParams {
+    /// Whether it is a measured surface.
+    #[must_use]
+    pub fn is_measured(&self) -> bool {
+        !self.file.is_empty()
+    }
+
     /// Grid points along one side: ζ times the points per shortest wavelength. A validated spec has it at most [`MAX_GRID`].
     #[must_use]
     pub fn grid(&self) -> u64 {
@@ -173,6 +200,8 @@ pub enum Value {
     Flag(bool),
     /// One of the words of a choice.
     Word(&'static str),
+    /// A text, such as the name of a file.
+    Text(String),
     /// Real numbers, ascending, each once.
     Numbers(Vec<f64>),
     /// Words of a choice, in the order of the choice, each once.
@@ -190,6 +219,13 @@ impl Default for SurfaceParams {
             points_per_shortest_wavelength: 8,
             normalization: Normalization::Sample,
             amplitudes: Amplitudes::Fixed,
+            file: String::new(),
+            dataset: String::new(),
+            periodic: false,
+            pixel_m: 0.0,
+            unit: String::new(),
+            missing: Missing::Refuse,
+            detrend: Detrend::Plane,
         }
     }
 }
@@ -230,10 +266,10 @@ impl Spec {
         faults.finish(spec)
     }
 
-    /// Reads a spec from a file.
+    /// Reads a spec from a file, and looks at the files of measured surfaces that it names.
     ///
     /// # Errors
-    /// Why the file cannot be read, or every fault of its text.
+    /// Why the file cannot be read, or every fault of its text, or which of the files that it names cannot be read.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, SpecErrors> {
         let path = path.as_ref();
         let file = path.display().to_string();
@@ -255,7 +291,7 @@ impl Spec {
             Ok(_) => {}
         }
         match std::str::from_utf8(&bytes) {
-            Ok(text) => Self::parse(text, &file),
+            Ok(text) => files::digested(Self::parse(text, &file)?, text, &file),
             Err(error) => Err(SpecErrors::not_utf8(&bytes, error.valid_up_to(), &file)),
         }
     }

@@ -38,6 +38,7 @@ pub(super) fn read(key: &Key, value: &Written<'_>, faults: &mut Faults<'_>) -> O
         },
         Kind::Word(words) => word(key.path, &words(), value, faults).map(Value::Word),
         Kind::Numbers(limits, most) => numbers(key, limits, *most, value, faults).map(Value::Numbers),
+        Kind::Text(most, note) => text(key.path, *most, note, value, faults).map(Value::Text),
         Kind::Words(words) => {
             let words = words();
             let elements = array(key.path, "words", value, faults)?;
@@ -60,6 +61,21 @@ pub(super) fn array<'v, 't>(path: &str, of: &str, value: &'v Written<'t>, faults
             None
         }
     }
+}
+
+/// A text on one line.
+fn text(path: &str, most: usize, note: &str, value: &Written<'_>, faults: &mut Faults<'_>) -> Option<String> {
+    let span = value.span();
+    let DeValue::String(found) = value.get_ref() else {
+        wrong_type(path, "a text in quotes", value.get_ref(), &span, format!("it is {note}"), faults);
+        return None;
+    };
+    if found.len() > most || found.chars().any(char::is_control) {
+        let message = format!("`{path}` cannot be {}: it is {note}", faults.written(&span));
+        faults.add(&span, message, format!("up to {most} bytes without control characters are allowed"));
+        return None;
+    }
+    Some(found.to_string())
 }
 
 /// One of the words of a key.

@@ -1,12 +1,14 @@
 //! From the text to a draft: every key looked up, every value checked by itself.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::fault::Faults;
-use super::keys::{KEYS, MEASURED, TABLES, find, names};
+use super::files::files;
+use super::keys::{KEYS, TABLES, find, names};
 use super::nearest::nearest;
 use super::realizations::{Realizations, realizations};
 use super::sweep::{SweepDraft, sweeps};
@@ -22,6 +24,8 @@ pub(super) struct Draft {
     pub(super) origins: Vec<Origin>,
     /// The sweeps; nothing for one that has a fault, of which the cases are unknown.
     pub(super) sweeps: Vec<Option<SweepDraft>>,
+    /// BLAKE3 of the files that are named.
+    pub(super) files: BTreeMap<String, String>,
 }
 
 /// Where a value of the base comes from.
@@ -39,7 +43,7 @@ pub(super) enum Origin {
 type Entry<'a, 't> = (&'a str, Range<usize>, &'a Spanned<DeValue<'t>>);
 
 /// What the top of a spec takes.
-const TOP: [&str; 8] = ["name", "seed", "realizations", "surface", "material", "model", "cycle", "sweep"];
+const TOP: [&str; 9] = ["name", "seed", "realizations", "surface", "material", "model", "cycle", "sweep", "files"];
 
 /// The entries of a table in the order written.
 pub(super) fn entries<'a, 't>(table: &'a DeTable<'t>) -> Vec<Entry<'a, 't>> {
@@ -71,6 +75,7 @@ pub(super) fn document(text: &str, faults: &mut Faults<'_>) -> Option<Draft> {
         base: CaseParams::default(),
         origins: vec![Origin::Default; KEYS.len()],
         sweeps: Vec::new(),
+        files: BTreeMap::new(),
     };
     let entries = entries(root.get_ref());
     if !entries.iter().any(|(key, ..)| *key == "name") {
@@ -84,6 +89,7 @@ pub(super) fn document(text: &str, faults: &mut Faults<'_>) -> Option<Draft> {
             "realizations" => {
                 draft.realizations = realizations(written, faults).unwrap_or(draft.realizations);
             }
+            "files" => draft.files = files(written, &span, faults),
             "sweep" => sweeps(written, &span, &mut draft.sweeps, faults),
             table if TABLES.contains(&table) => base(table, written, &span, &mut draft, faults),
             unknown => {
@@ -131,17 +137,9 @@ pub(super) fn keys<'a, 't>(
         return Vec::new();
     };
     let mut known = Vec::new();
-    let mut measured = false;
     for (name, span, written) in entries(found) {
         if let Some(place) = find(table, name) {
             known.push((place, span, written));
-        } else if table == "surface" && MEASURED.contains(&name) {
-            // `file`, `dataset` and `periodic` go together: one answer is enough.
-            if !measured {
-                let message = format!("`surface.{name}` describes a measured surface, which this version cannot run");
-                faults.add(&span, message, "give the parameters of a self-affine surface instead".to_owned());
-            }
-            measured = true;
         } else {
             let own: Vec<_> = names(table).collect();
             let takes = format!("[{table}] takes");

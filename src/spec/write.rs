@@ -2,8 +2,8 @@
 
 use std::fmt::{Error, Write as _};
 
-use super::keys::{KEYS, TABLES};
-use super::{Spec, Value};
+use super::keys::{GENERATED, KEYS, Key, MEASURED, TABLES};
+use super::{CaseParams, Spec, Value};
 
 /// The text of a spec.
 pub(super) fn toml(spec: &Spec) -> String {
@@ -20,7 +20,7 @@ fn write(spec: &Spec, text: &mut String) -> Result<(), Error> {
     writeln!(text, "realizations = {}", spec.realizations)?;
     for table in TABLES {
         writeln!(text, "\n[{table}]")?;
-        for key in KEYS.iter().filter(|key| key.table == table) {
+        for key in KEYS.iter().filter(|key| key.table == table && is_read(key, &spec.base)) {
             writeln!(text, "{} = {}", key.name, value(&(key.get)(&spec.base)))?;
         }
     }
@@ -33,7 +33,24 @@ fn write(spec: &Spec, text: &mut String) -> Result<(), Error> {
             }
         }
     }
+    if !spec.files.is_empty() {
+        writeln!(text, "\n[files]")?;
+    }
+    for (name, digest) in &spec.files {
+        writeln!(text, "{} = \"{digest}\"", quoted(name))?;
+    }
     Ok(())
+}
+
+/// Whether the base's kind of surface reads a key, or it says something other than its default.
+fn is_read(key: &Key, base: &CaseParams) -> bool {
+    let others: &[&str] = if base.surface.is_measured() { &GENERATED } else { &MEASURED };
+    key.table != "surface" || !others.contains(&key.name) || (key.get)(base) != (key.get)(&CaseParams::default())
+}
+
+/// A text as TOML has it. There are no control characters in it.
+fn quoted(text: &str) -> String {
+    format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\""))
 }
 
 /// A value as TOML. Rust's shortest form of a float is also TOML's, and reads back to the same bits.
@@ -43,6 +60,7 @@ fn value(value: &Value) -> String {
         Value::Count(count) => count.to_string(),
         Value::Flag(flag) => flag.to_string(),
         Value::Word(word) => format!("\"{word}\""),
+        Value::Text(text) => quoted(text),
         Value::Numbers(numbers) => format!("[{}]", list(numbers.iter().map(|number| format!("{number:?}")))),
         Value::Words(words) => {
             format!("[{}]", list(words.iter().map(|word| format!("\"{word}\""))))

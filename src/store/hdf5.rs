@@ -125,6 +125,8 @@ fn write_all(path: &Path, header: &SurfaceHeader, heights: ArrayView2<'_, f64>) 
         let values = heights.slice(s![band.clone(), ..]);
         data.write_slice(values.as_standard_layout().view(), s![band, ..])?;
     }
+    // While the dataset is open: closing it writes what is left of it too, and tells nobody if that fails.
+    file.flush()?;
     drop(data);
     file.close()?;
     Ok(())

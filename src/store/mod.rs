@@ -12,6 +12,7 @@ mod halfway;
 pub mod hdf5;
 pub mod parquet;
 mod receipt;
+pub mod scan;
 mod surface_header;
 
 pub use builder::FrameBuilder;

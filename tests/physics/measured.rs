@@ -152,14 +152,42 @@ fn law_the_middle_of_an_oblong_field_is_taken() {
 }
 
 #[test]
+fn val_points_that_lie_farther_apart_one_way_are_interpolated() {
+    // Waves of some twenty of the coarser points.
+    let height = |x: f64, y: f64| (0.11 * x + 0.3).sin() * (0.09 * y).cos() + 0.5 * (0.07 * (x - y)).sin();
+    let square = Array2::from_shape_fn((160, 160), |(i, j)| height(i as f64, j as f64));
+    let whole = unit(&square, &PLAIN);
+    for coarse in [2.0, 2.5] {
+        let count = (160.0 / coarse) as usize + 8;
+        let oblong = Array2::from_shape_fn((160, count), |(i, j)| height(i as f64, coarse * j as f64));
+        for field in [oblong.clone(), oblong.t().to_owned()] {
+            let spacing = if field.nrows() == 160 { [1.0, coarse] } else { [coarse, 1.0] };
+            let prepared = prepare(field, spacing, &PLAIN).unwrap();
+            assert_eq!((prepared.heights_m.dim(), prepared.length_m), ((160, 160), 160.0));
+            assert_eq!(prepared.shortest_wavelength_m, 8.0 * coarse);
+            // The middle of the longer side is taken, some points on; its rms slope is the same but for that.
+            let ratio = prepared.moments.rms_slope() / whole.moments.rms_slope();
+            assert!((ratio - 1.0).abs() < 0.1, "{ratio}");
+        }
+    }
+    // Where both squares begin at one place, the heights are the same but for the interpolation: (2π/20)⁶/924 of them, and what the cut-off makes of it.
+    let oblong = Array2::from_shape_fn((160, 80), |(i, j)| height(i as f64, 2.0 * j as f64));
+    let prepared = prepare(oblong, [1.0, 2.0], &PLAIN).unwrap();
+    let part = unit(&square.slice(s![..159, ..159]).to_owned(), &Treatment { points_per_shortest_wavelength: 16.0, ..PLAIN });
+    assert_eq!(prepared.heights_m.dim(), (159, 159));
+    assert!(most(&(&prepared.heights_m - &part.heights_m)) < 1e-3, "{}", most(&(&prepared.heights_m - &part.heights_m)));
+}
+
+#[test]
 fn law_what_is_no_surface_is_refused_with_a_sentence() {
     let fine = Array2::from_shape_fn((32, 32), |(i, j)| (0.3 * i as f64).sin() + (0.2 * j as f64).cos());
     let nan = |h: f64| if h > 0.0 { f64::NAN } else { h };
-    let cases: [(Array2<f64>, [f64; 2], Treatment, &str); 7] = [
+    let cases: [(Array2<f64>, [f64; 2], Treatment, &str); 8] = [
         (Array2::zeros((1, 500)), [1.0; 2], PLAIN, "16 and more"),
         (Array2::zeros((0, 0)), [1.0; 2], PLAIN, "16 and more"),
         (Array2::from_elem((32, 32), 5e-6), [1.0; 2], PLAIN, "constant"),
-        (fine.clone(), [1.0, 1.1], PLAIN, "resample"),
+        (fine.clone(), [1.0, 20.0], PLAIN, "up to 16"),
+        (fine.clone(), [1.0, 1.1], Treatment { periodic: true, ..PLAIN }, "1 where"),
         (fine.clone(), [0.0, 0.0], PLAIN, "positive"),
         (fine.slice(s![.., 2..]).to_owned(), [1.0; 2], Treatment { periodic: true, ..PLAIN }, "square"),
         (fine.mapv(nan), [1.0; 2], Treatment { missing: Missing::Fill, ..PLAIN }, "half"),

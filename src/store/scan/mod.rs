@@ -1,0 +1,133 @@
+//! Measured surfaces, in the files that instruments and other programs write.
+//!
+//! A reader takes a file for what its first bytes say, believes none of its numbers before comparing them with the
+//! length of the file, and gives heights, or a sentence that says why there are none. What a file does not say, of its
+//! size or its unit for instance, is not guessed.
+
+pub mod export;
+mod netcdf;
+mod netcdf_header;
+mod npy;
+mod numbers;
+mod text;
+mod text_heading;
+mod units;
+mod x3p;
+
+use std::fs::{self, File};
+use std::io::BufReader;
+use std::path::Path;
+
+use ndarray::Array2;
+
+pub use units::{LENGTHS, metres};
+
+use super::error::{Cause, StoreError, fenced};
+
+/// Points that a scan may have: as many heights take 2 GiB of memory.
+pub const MOST_POINTS: u64 = 1 << 28;
+
+/// A height field as a file has it.
+#[derive(Debug, Clone)]
+pub struct Scan {
+    /// Heights \[m\] where [`unit`](Self::unit) is there, in the file's own numbers where it is not; NaN where a point
+    /// is missing. The row index runs along x, the column index along y.
+    pub heights: Array2<f64>,
+    /// Size along the row index and along the column index \[m\], points times distance of points, if the file says.
+    pub size_m: Option<[f64; 2]>,
+    /// The unit of length that the file gives its heights in, and from which they have been taken to metres.
+    pub unit: Option<String>,
+    /// Whether the surface continues periodically, if the file says.
+    pub periodic: Option<bool>,
+}
+
+/// What a file with a scan can be. HDF5 is read by [`hdf5`](super::hdf5).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// One array of NumPy.
+    Npy,
+    /// The classic NetCDF formats: CDF-1, CDF-2 and CDF-5.
+    NetCdf3,
+    /// ISO 25178-72, a zip archive.
+    X3p,
+    /// A matrix of numbers as text.
+    Text,
+}
+
+impl Format {
+    /// How people call it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Npy => "npy",
+            Self::NetCdf3 => "NetCDF-3",
+            Self::X3p => "X3P",
+            Self::Text => "text",
+        }
+    }
+}
+
+/// What the first bytes of a file say that it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Found {
+    /// HDF5, as which NetCDF-4 counts too.
+    Hdf5,
+    /// A scan that [`read`] reads.
+    Scan(Format),
+}
+
+/// Tells formats apart by the first bytes of a file, of which 512 are plenty; nothing, if they are none of these.
+#[must_use]
+pub fn detect(first_bytes: &[u8]) -> Option<Found> {
+    // What no text has: control signs other than tabs and the ends of lines and pages. UTF-16 has its zeros.
+    let binary = |byte: &u8| *byte < 0x20 && !matches!(byte, b'\t' | b'\n' | b'\r' | 0x0c);
+    match first_bytes {
+        [0x89, b'H', b'D', b'F', b'\r', b'\n', 0x1a, b'\n', ..] => Some(Found::Hdf5),
+        [0x93, b'N', b'U', b'M', b'P', b'Y', ..] => Some(Found::Scan(Format::Npy)),
+        [b'C', b'D', b'F', 1 | 2 | 5, ..] => Some(Found::Scan(Format::NetCdf3)),
+        [b'P', b'K', 3, 4, ..] => Some(Found::Scan(Format::X3p)),
+        [] | [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => None,
+        bytes if bytes.iter().any(binary) => None,
+        _ => Some(Found::Scan(Format::Text)),
+    }
+}
+
+/// Reads a scan. `variable` is the name of the height field where a format has names, which is NetCDF; without it,
+/// the field is called `heights`.
+///
+/// # Errors
+/// If the file cannot be read, is damaged, or holds no field of heights, or one of more than [`MOST_POINTS`].
+pub fn read(path: &Path, format: Format, variable: Option<&str>) -> Result<Scan, StoreError> {
+    fenced(|| {
+        if let Some(name) = variable.filter(|_| format != Format::NetCdf3) {
+            return Err(format!("a file in the format {} has one field without a name, and {name:?} was asked for", format.name()).into());
+        }
+        let source = Source::open(path)?;
+        match format {
+            Format::Npy => npy::read(source),
+            Format::NetCdf3 => netcdf::read(source, variable),
+            Format::X3p => x3p::read(source),
+            Format::Text => text::read(source),
+        }
+    })
+    .map_err(|cause| StoreError::new("read the surface from", path, cause))
+}
+
+/// An open file and its length, which bounds whatever it says of itself.
+struct Source {
+    file: BufReader<File>,
+    length: u64,
+}
+
+impl Source {
+    fn open(path: &Path) -> Result<Self, Cause> {
+        let about = fs::metadata(path)?;
+        if about.is_dir() {
+            return Err("it is a directory".into());
+        }
+        if !about.is_file() {
+            return Err("it is no ordinary file".into());
+        }
+        Ok(Self { file: BufReader::with_capacity(1 << 16, File::open(path)?), length: about.len() })
+    }
+}

@@ -1,0 +1,188 @@
+//! A matrix of numbers as text: every line a row.
+//!
+//! What separates the numbers is decided by the first line of them, and holds for the file. Lines that begin with a
+//! comment sign may say sizes and units; so may lines before the first numbers that say something of the form
+//! "width = 10 µm", as some instruments write it without a sign.
+
+use std::io::{BufRead, Read};
+
+use super::numbers::{points, shaped};
+use super::text_heading::Heading;
+use super::{Cause, MOST_POINTS, Scan, Source};
+
+/// How a comment begins.
+const COMMENTS: [&str; 3] = ["#", "%", "//"];
+/// What stands for a missing point, whatever the size of its letters.
+const MISSING: [&str; 9] = ["nan", "+nan", "-nan", "bad", "--", "---", "inf", "-inf", "infinite"];
+/// Bytes of a cell that an error shows.
+const SHOWN: usize = 24;
+
+/// What separates numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Separator {
+    /// As many spaces and tabs as you like.
+    Blank,
+    /// This sign, once: nothing between two of them is a missing point.
+    Sign(char),
+}
+
+/// Reads the matrix.
+pub(super) fn read(source: Source) -> Result<Scan, Cause> {
+    let mut matrix = Matrix::default();
+    let (mut file, mut line, mut number) = (source.file, Vec::new(), 0_u64);
+    // No line is longer than the file was when it was opened, even if it grows.
+    let mut left = source.length;
+    loop {
+        line.clear();
+        let read = file.by_ref().take(left).read_until(b'\n', &mut line)?;
+        if read == 0 {
+            break;
+        }
+        left = left.saturating_sub(read as u64);
+        number += 1;
+        let text = decoded(&line);
+        let text = if number == 1 { text.strip_prefix('\u{feff}').unwrap_or(&text) } else { &text };
+        let text = text.strip_suffix('\n').unwrap_or(text);
+        matrix.line(text.strip_suffix('\r').unwrap_or(text)).map_err(|cause| format!("its line {number}: {cause}"))?;
+    }
+    matrix.finish()
+}
+
+/// Bytes as text: UTF-8, or else Latin-1, in which instruments write their µ.
+fn decoded(bytes: &[u8]) -> String {
+    match std::str::from_utf8(bytes) {
+        Ok(text) => text.to_owned(),
+        Err(_) => bytes.iter().copied().map(char::from).collect(),
+    }
+}
+
+/// What has been read of a matrix.
+struct Matrix {
+    heading: Heading,
+    separator: Option<Separator>,
+    values: Vec<f64>,
+    rows: u64,
+    columns: u64,
+    /// Whether all rows so far end with a separator.
+    open: bool,
+}
+
+impl Default for Matrix {
+    fn default() -> Self {
+        Self { heading: Heading::default(), separator: None, values: Vec::new(), rows: 0, columns: 0, open: true }
+    }
+}
+
+impl Matrix {
+    fn line(&mut self, line: &str) -> Result<(), Cause> {
+        let text = line.trim();
+        if text.is_empty() && !self.is_row_of_tabs(line) {
+            return Ok(());
+        }
+        if let Some(comment) = COMMENTS.iter().find_map(|sign| text.strip_prefix(sign)) {
+            return self.heading.line(comment);
+        }
+        if self.rows == 0 && text.starts_with(char::is_alphabetic) && text.contains(['=', ':']) {
+            return self.heading.line(text);
+        }
+        if text.contains('\r') {
+            return Err("it has line ends of a kind (CR alone) that is not supported; allowed: LF, CR LF".into());
+        }
+        self.row(line)
+    }
+
+    /// Whether a line of nothing but blanks is a row of which every point is missing.
+    fn is_row_of_tabs(&self, line: &str) -> bool {
+        line.contains('\t') && matches!(self.separator, None | Some(Separator::Sign('\t')))
+    }
+
+    fn row(&mut self, line: &str) -> Result<(), Cause> {
+        let separator = *self.separator.get_or_insert_with(|| separator(line));
+        let before = self.values.len();
+        match separator {
+            Separator::Blank => self.cells(line.split_whitespace())?,
+            Separator::Sign(sign) => self.cells(line.split(sign).map(str::trim))?,
+        }
+        let count = (self.values.len() - before) as u64;
+        if self.rows == 0 {
+            self.columns = count;
+        } else if count != self.columns {
+            return Err(format!("it has {count} numbers, and the lines before it have {}", self.columns).into());
+        }
+        self.rows += 1;
+        self.open &= matches!(separator, Separator::Sign(sign) if line.trim_matches(' ').ends_with(sign));
+        Ok(())
+    }
+
+    fn cells<'a>(&mut self, cells: impl Iterator<Item = &'a str>) -> Result<(), Cause> {
+        for (at, cell) in cells.enumerate() {
+            let value = number(cell).map_err(|cause| format!("column {}: {cause}", at + 1))?;
+            if self.values.len() as u64 >= MOST_POINTS {
+                return Err(format!("with it the file has more than {MOST_POINTS} points, and a surface may have no more").into());
+            }
+            if self.values.len() == self.values.capacity() {
+                let more = self.values.len().max(1 << 12);
+                self.values.try_reserve(more).map_err(|_| "its heights do not fit into the memory of this machine")?;
+            }
+            self.values.push(value);
+        }
+        Ok(())
+    }
+
+    fn finish(mut self) -> Result<Scan, Cause> {
+        if self.rows == 0 {
+            return Err("it has no line of numbers".into());
+        }
+        // A separator behind the last number of every line is not one more column.
+        if self.open && self.columns > 1 {
+            let (columns, mut at) = (self.columns, 0);
+            self.values.retain(|_| {
+                at += 1;
+                at % columns != 0
+            });
+            self.columns -= 1;
+        }
+        let extent = [self.rows, self.columns];
+        points(self.rows, self.columns)?;
+        let meaning = self.heading.meaning(extent)?;
+        let mut heights = shaped(extent, self.values)?;
+        heights *= meaning.factor;
+        Ok(Scan { heights, size_m: meaning.size_m, unit: meaning.unit, periodic: None })
+    }
+}
+
+/// What separates the numbers of this line.
+fn separator(line: &str) -> Separator {
+    let one_each = |sign: char| line.split(sign).all(|cell| !cell.trim().contains(char::is_whitespace));
+    if line.contains(';') {
+        Separator::Sign(';')
+    } else if line.contains('\t') && one_each('\t') {
+        Separator::Sign('\t')
+    } else if line.contains(',') && !has_decimal_commas(line) {
+        Separator::Sign(',')
+    } else {
+        Separator::Blank
+    }
+}
+
+/// Whether a line is several numbers between blanks, each with a comma inside.
+fn has_decimal_commas(line: &str) -> bool {
+    let mut cells = line.split_whitespace().map(|cell| cell.trim_matches(',').contains(',') && !cell.ends_with(','));
+    line.split_whitespace().nth(1).is_some() && cells.all(|inside| inside)
+}
+
+/// A height; NaN where a point is missing.
+fn number(cell: &str) -> Result<f64, Cause> {
+    if cell.is_empty() || MISSING.iter().any(|word| cell.eq_ignore_ascii_case(word)) {
+        return Ok(f64::NAN);
+    }
+    let shown: String = cell.chars().take(SHOWN).collect();
+    match cell.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        Ok(_) => Err(format!("{shown:?} is no finite number").into()),
+        Err(_) if cell.matches(',').count() == 1 && cell.replace(',', ".").parse::<f64>().is_ok() => {
+            Err(format!("{shown:?} has a decimal comma, which is not supported; write a point").into())
+        }
+        Err(_) => Err(format!("{shown:?} is no number; allowed: numbers, and nan, bad, -- or nothing for missing points").into()),
+    }
+}

@@ -1,0 +1,209 @@
+//! X3P (ISO 25178-72, before that ISO 5436-2): a zip archive of a description in XML and the numbers.
+//!
+//! Lengths are in metres, always. The first point of the data is followed by its neighbour along x, so that a column of
+//! heights here is a line of the file.
+
+use std::fs::File;
+use std::io::{BufReader, Read};
+
+use ndarray::Array2;
+use roxmltree::{Document, Node, ParsingOptions};
+use zip::ZipArchive;
+use zip::read::ZipFile;
+use zip::result::ZipError;
+
+use super::numbers::{Layout, Number, Order, field, points};
+use super::{Cause, Scan, Source};
+
+/// The description.
+const MAIN: &str = "main.xml";
+/// Bytes that the description may have: some kilobytes is what it has.
+const MOST_XML: u64 = 1 << 24;
+/// Elements that it may have. They are read by a function that calls itself for what is inside, and as many of them, one
+/// inside the other, leave room on the stack of a thread.
+const MOST_ELEMENTS: usize = 1000;
+/// Nodes that it may have, remarks and the blanks between elements among them.
+const MOST_NODES: u32 = 1 << 16;
+/// What deflate reaches on zeros: a part of an archive is at most this many times larger than what it takes there.
+const MOST_PACKED: u64 = 1100;
+
+/// An archive on the disk.
+type Archive = ZipArchive<BufReader<File>>;
+
+/// Reads the surface.
+pub(super) fn read(source: Source) -> Result<Scan, Cause> {
+    let length = source.length;
+    let mut archive = ZipArchive::new(source.file).map_err(|error| damaged(&error))?;
+    let text = description(&mut archive)?;
+    let options = ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() };
+    let document = Document::parse_with_options(&text, options).map_err(|error| format!("its {MAIN} is damaged: {error}"))?;
+    let about = About::of(document.root_element())?;
+    // Of at most 2^28 points, so that nothing overflows.
+    let count = about.shape[0] * about.shape[1];
+
+    let mut data = part(&mut archive, &about.data, count * about.kind.width() as u64, length)?;
+    // Heights are left to the bit where there is nothing to turn them by.
+    let turn = |value: f64| match (about.increment, about.offset) {
+        (None, None) => value,
+        (increment, offset) => value * increment.unwrap_or(1.0) + offset.unwrap_or(0.0),
+    };
+    let mut heights = field(&mut data, (about.kind, Order::Little), about.shape, Layout::Columns, turn)?;
+    ends(data, &about.data)?;
+    if let Some(name) = &about.valid {
+        let mut bits = part(&mut archive, name, count.div_ceil(8), length)?;
+        remove(&mut heights, &mut bits)?;
+        ends(bits, name)?;
+    }
+    Ok(Scan { heights, size_m: about.size_m, unit: Some("m".to_owned()), periodic: None })
+}
+
+/// Takes out the points whose bit is 0; the lowest bit of a byte comes first.
+fn remove(heights: &mut Array2<f64>, bits: &mut impl Read) -> Result<(), Cause> {
+    let mut byte = [0];
+    for (at, height) in heights.view_mut().reversed_axes().iter_mut().enumerate() {
+        if at % 8 == 0 {
+            bits.read_exact(&mut byte)?;
+        }
+        if byte.iter().all(|byte| byte >> (at % 8) & 1 == 0) {
+            *height = f64::NAN;
+        }
+    }
+    Ok(())
+}
+
+fn damaged(error: &ZipError) -> Cause {
+    format!("it is damaged as a zip archive: {error}").into()
+}
+
+/// The description as text.
+fn description(archive: &mut Archive) -> Result<String, Cause> {
+    let main = match archive.by_name(MAIN) {
+        Err(ZipError::FileNotFound) => return Err(format!("it is a zip archive without {MAIN}, and so no X3P").into()),
+        other => other.map_err(|error| damaged(&error))?,
+    };
+    let mut bytes = Vec::new();
+    main.take(MOST_XML + 1).read_to_end(&mut bytes).map_err(|error| format!("its {MAIN} is damaged: {error}"))?;
+    if bytes.len() as u64 > MOST_XML {
+        return Err(format!("its {MAIN} has more than {MOST_XML} bytes").into());
+    }
+    let text = String::from_utf8(bytes).map_err(|_| format!("its {MAIN} is not in UTF-8"))?;
+    let opens = |pair: &&[u8]| matches!(pair, [b'<', next] if !matches!(next, b'/' | b'!' | b'?'));
+    if text.as_bytes().windows(2).filter(opens).count() > MOST_ELEMENTS {
+        return Err(format!("its {MAIN} has more than {MOST_ELEMENTS} elements, as no surface with binary data needs").into());
+    }
+    Ok(text.strip_prefix('\u{feff}').map(ToOwned::to_owned).unwrap_or(text))
+}
+
+/// A part of the archive that has so many bytes.
+fn part<'a>(archive: &'a mut Archive, name: &str, bytes: u64, length: u64) -> Result<ZipFile<'a, BufReader<File>>, Cause> {
+    // Paths are relative to the archive, and not everyone writes them so.
+    let plain = name.trim().replace('\\', "/");
+    let plain = plain.trim_start_matches("./").trim_start_matches('/');
+    let file = match archive.by_name(plain) {
+        Err(ZipError::FileNotFound) => return Err(format!("its {MAIN} names {name:?}, which is not there").into()),
+        other => other.map_err(|error| damaged(&error))?,
+    };
+    if file.size() != bytes {
+        return Err(format!("its {name:?} has {} bytes, and by its {MAIN} it has {bytes}", file.size()).into());
+    }
+    if bytes > file.compressed_size().min(length).saturating_mul(MOST_PACKED) {
+        return Err(format!("its {name:?} claims {bytes} bytes, which a file of its size cannot hold").into());
+    }
+    Ok(file)
+}
+
+/// Makes sure that a part ends here, at which its checksum is compared too.
+fn ends(mut part: impl Read, name: &str) -> Result<(), Cause> {
+    let more = part.read(&mut [0]).map_err(|error| format!("its {name:?} is damaged: {error}"))?;
+    if more == 0 { Ok(()) } else { Err(format!("its {name:?} has more bytes than it says").into()) }
+}
+
+/// What the description says.
+struct About {
+    /// Points along x and along y.
+    shape: [u64; 2],
+    size_m: Option<[f64; 2]>,
+    kind: Number,
+    increment: Option<f64>,
+    offset: Option<f64>,
+    /// Where the numbers are.
+    data: String,
+    /// Where it is said which of them are valid.
+    valid: Option<String>,
+}
+
+impl About {
+    fn of(root: Node<'_, '_>) -> Result<Self, Cause> {
+        let axes = inside(root, &["Record1", "Axes"]).ok_or_else(|| format!("its {MAIN} describes no axes"))?;
+        let matrix = inside(root, &["Record3", "MatrixDimension"])
+            .ok_or_else(|| format!("its {MAIN} describes no matrix: profiles and clouds of points are not supported"))?;
+        let [rows, columns, layers] = ["SizeX", "SizeY", "SizeZ"].map(|name| whole(matrix, name));
+        let (shape, layers) = ([rows?, columns?], layers?);
+        points(shape[0], shape[1])?;
+        if layers != 1 {
+            return Err(format!("it has {layers} layers, and a surface has 1").into());
+        }
+        if inside(root, &["Record3", "DataList"]).is_some() {
+            return Err("its heights are listed in XML, which is not supported; save it with binary data".into());
+        }
+        let link = |name| word(inside(root, &["Record3", "DataLink"])?, name);
+        let data = link("PointDataLink").ok_or_else(|| format!("its {MAIN} does not say where the heights are"))?;
+        let height = inside(axes, &["CZ"]).ok_or_else(|| format!("its {MAIN} describes no axis CZ"))?;
+        let kind = match word(height, "DataType").as_deref() {
+            Some("I") => Number::I16,
+            Some("L") => Number::I32,
+            Some("F") => Number::F32,
+            Some("D") => Number::F64,
+            other => return Err(format!("its heights are of the kind {:?}; allowed: I, L, F, D", other.unwrap_or("")).into()),
+        };
+        let (increment, offset) = (number(height, "Increment")?, number(height, "Offset")?);
+        let [x, y] = [("CX", shape[0]), ("CY", shape[1])].map(|(name, points)| size(axes, name, points));
+        let size_m = x?.zip(y?).map(|(x, y)| [x, y]);
+        Ok(Self { shape, size_m, kind, increment, offset, data, valid: link("ValidPointsLink") })
+    }
+}
+
+/// Size along an axis \[m\], if it is said how far apart the points are.
+fn size(axes: Node<'_, '_>, name: &str, points: u64) -> Result<Option<f64>, Cause> {
+    let axis = inside(axes, &[name]).ok_or_else(|| format!("its {MAIN} describes no axis {name}"))?;
+    match word(axis, "AxisType").as_deref() {
+        None | Some("I") => {}
+        Some("A") => return Err(format!("the points along its axis {name} are not evenly spaced, which is not supported").into()),
+        Some(other) => return Err(format!("its axis {name} is of the kind {other:?}; allowed: I").into()),
+    }
+    let Some(increment) = number(axis, "Increment")? else {
+        return Ok(None);
+    };
+    let size = increment * points as f64;
+    if size.is_finite() && size > 0.0 {
+        Ok(Some(size))
+    } else {
+        Err(format!("the points along its axis {name} are {increment} m apart, which must be positive").into())
+    }
+}
+
+/// The node that these names lead to, whatever namespace they are in.
+fn inside<'a, 'input>(node: Node<'a, 'input>, names: &[&str]) -> Option<Node<'a, 'input>> {
+    names.iter().try_fold(node, |node, name| node.children().find(|child| child.is_element() && child.tag_name().name() == *name))
+}
+
+/// The text of a node inside another, if it is there and not empty.
+fn word(node: Node<'_, '_>, name: &str) -> Option<String> {
+    let text = inside(node, &[name])?.text()?.trim();
+    (!text.is_empty()).then(|| text.to_owned())
+}
+
+fn number(node: Node<'_, '_>, name: &str) -> Result<Option<f64>, Cause> {
+    let Some(text) = word(node, name) else {
+        return Ok(None);
+    };
+    match text.parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(Some(number)),
+        _ => Err(format!("its {name} of {} is {text:?}, and must be a number", node.tag_name().name()).into()),
+    }
+}
+
+fn whole(node: Node<'_, '_>, name: &str) -> Result<u64, Cause> {
+    let text = word(node, name).ok_or_else(|| format!("its {MAIN} does not say its {name}"))?;
+    text.parse().map_err(|_| format!("its {name} is {text:?}, and must be a number of points").into())
+}
