@@ -86,6 +86,11 @@ enum Verb {
         #[arg(long)]
         delete: bool,
     },
+    /// Take a measured surface: make it fit for the model, say what it is like, and write it
+    ///
+    /// Reads HDF5, NetCDF-3 as SurfaceTopography writes it, X3P (ISO 25178-72), NumPy's .npy, and text, a line for each row. Of an oblong field the middle square is
+    /// taken. What is written here is named in a spec as surface.file; a spec may name the original as well, with the same choices.
+    Import(ImportArguments),
     /// Make the surfaces
     Generate(CampaignArguments),
     /// Find the summits of the surfaces
@@ -143,6 +148,18 @@ enum Verb {
         #[arg(long)]
         write: bool,
     },
+    /// Print what a shell completes the program's verbs and options with
+    Completions {
+        /// The shell
+        #[arg(value_enum)]
+        shell: clap_complete::Shell,
+    },
+    /// Print the manual page
+    Man {
+        /// Write the pages of the program and of every verb into this folder instead
+        #[arg(long, value_name = "DIR")]
+        dir: Option<PathBuf>,
+    },
 }
 
 #[derive(Debug, Args)]
@@ -195,6 +212,10 @@ struct OutputArguments {
 
 #[derive(Debug, Subcommand)]
 enum ExportVerb {
+    /// A surface as NetCDF-3, to be opened with SurfaceTopography
+    Netcdf(ExportArguments),
+    /// A surface as HDF5 in the layout of Tamaas' H5Dumper
+    Tamaas(ExportArguments),
     /// A Snakefile with one rule for each stage
     Snakemake {
         /// The spec, a TOML file
@@ -212,6 +233,54 @@ enum ExportVerb {
         #[arg(long, value_name = "ADDRESS")]
         license: Option<String>,
     },
+}
+
+#[derive(Debug, Args)]
+struct ExportArguments {
+    /// The surface: surfaces/<id>.h5 of a run, or what `import` has written
+    surface: PathBuf,
+    /// The file to be written
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+}
+
+#[derive(Debug, Args)]
+struct ImportArguments {
+    /// The measured surface
+    file: PathBuf,
+    /// The file to be written [default: <name of FILE>.h5 in the present folder]
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Which field of the file it is, where it has several: a dataset of HDF5, a variable of NetCDF
+    #[arg(long, value_name = "NAME")]
+    dataset: Option<String>,
+    /// Distance of its points [m], where the file does not tell it: the size of the scan over its number of points
+    #[arg(long, value_name = "METRES")]
+    pixel_m: Option<f64>,
+    /// Unit of its heights, where the file does not tell it, such as nm
+    #[arg(long)]
+    unit: Option<String>,
+    /// Fill missing points in as a membrane would, instead of refusing them
+    #[arg(long)]
+    fill: bool,
+    /// What is taken off the heights by least squares
+    #[arg(long, value_name = "WHAT", default_value = "plane", value_parser = ["mean", "plane", "quadratic"])]
+    detrend: String,
+    /// It continues periodically
+    #[arg(long)]
+    periodic: bool,
+    /// Take off waves shorter than so many points, the noise of the instrument among them
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u8).range(4..=64))]
+    points: u8,
+    /// Say what it is like, and write nothing
+    #[arg(long)]
+    dry_run: bool,
+    /// Write over a file that is there
+    #[arg(long)]
+    force: bool,
+    /// Answer in JSON, with the spectrum
+    #[arg(long)]
+    json: bool,
 }
 
 #[derive(Debug, Args)]

@@ -3,10 +3,10 @@
 use super::StageError;
 use super::page::{escape, grid};
 use super::statistics::moments;
-use super::surface::spectrum;
+use super::surface::{scale, spectrum};
 use crate::campaign::{Campaign, CycleUnit, Standing};
 use crate::figures::{Closer, Panel, closer};
-use crate::physics::periodogram::periodogram;
+use crate::physics::periodogram::{periodogram, windowed_periodogram};
 use crate::physics::theory::curvature_density;
 use crate::schema;
 use crate::spec::SurfaceParams;
@@ -46,9 +46,10 @@ pub(super) fn look(campaign: &Campaign, standings: &[Standing]) -> Result<Option
     let asperities = read_table(&campaign.asperities_path(surface), &schema::ASPERITIES)?;
     let table = |table: &'static schema::Table| read_table(&campaign.cycle_dir(unit).join(format!("{}.parquet", table.name)), table);
     let (steps, events, contacts) = (table(&schema::STEPS)?, table(&schema::EVENTS)?, table(&schema::CONTACTS)?);
-    let realised = moments(&header);
+    let (realised, scale) = (moments(&header), scale(campaign, surface)?);
     let (lowest, variance) = (TAU / header.length_m, header.rms_height_m.powi(2));
-    let found: Vec<(f64, f64)> = periodogram(heights.view(), header.length_m)
+    let spectrum_of = if header.periodic { periodogram } else { windowed_periodogram };
+    let found: Vec<(f64, f64)> = spectrum_of(heights.view(), header.length_m)
         .iter()
         .map(|ring| (ring.wavenumber_1_m / lowest, ring.density_m4 * lowest * lowest / variance))
         .collect();
@@ -60,8 +61,8 @@ pub(super) fn look(campaign: &Campaign, standings: &[Standing]) -> Result<Option
         events: &events,
         contacts: &contacts,
         asperities: &asperities,
-        energy_j: case.material.contact_modulus_pa * area * case.surface.rms_height_m,
-        rms_height_m: case.surface.rms_height_m,
+        energy_j: case.material.contact_modulus_pa * area * scale.rms_height_m,
+        rms_height_m: scale.rms_height_m,
         length_m: header.length_m,
         pull_off_n_m: 1.5 * PI * case.material.work_of_adhesion_j_m2,
         found: &found,
@@ -74,8 +75,11 @@ pub(super) fn look(campaign: &Campaign, standings: &[Standing]) -> Result<Option
     Ok(Some(Look { id: unit.id.clone(), max_load, panels, map }))
 }
 
-/// The spectrum that was asked for: `C qL²/h_rms²` over q/qL, from the longest to the shortest waves.
+/// The spectrum that was asked for, if one was: `C qL²/h_rms²` over q/qL, from the longest to the shortest waves.
 fn asked(params: &SurfaceParams) -> Vec<(f64, f64)> {
+    if params.is_measured() {
+        return Vec::new();
+    }
     let of = spectrum(params);
     let unit = of.prefactor() * (of.lowest_wavenumber() / params.rms_height_m).powi(2);
     let at = |k: usize| f64::from(params.magnification).powf(k as f64 / POINTS as f64);

@@ -1,7 +1,7 @@
 //! cycle: load and unload one case on one surface, and write every step.
 
 use super::done::Outcome;
-use super::surface::read_summits;
+use super::surface::{Scale, read_summits, scale};
 use super::{StageError, Watch};
 use crate::campaign::{Campaign, CycleUnit, Stage};
 use crate::physics::cycle::{self, Cycle, Halfway, Settings, Step};
@@ -9,6 +9,7 @@ use crate::physics::interaction::Effort;
 use crate::physics::merge::Merged;
 use crate::physics::restart::Kept;
 use crate::physics::state::{Problem, Rules, State, Status};
+use crate::physics::summits::Summit;
 use crate::schema;
 use crate::spec::CaseParams;
 use crate::store::{Frame, parquet, read_halfway, write_halfway};
@@ -20,7 +21,7 @@ use std::time::{Duration, Instant};
 const CONVERGED: f64 = 1e-8;
 
 /// The contact problem of a case on the asperities of a table.
-pub(super) fn problem(params: &CaseParams, summits: &[crate::physics::summits::Summit]) -> Result<Problem, StageError> {
+pub(super) fn problem(params: &CaseParams, scale: Scale, summits: &[Summit]) -> Result<Problem, StageError> {
     let rules = Rules {
         interaction: params.model.interaction,
         boundary: params.model.boundary,
@@ -29,7 +30,7 @@ pub(super) fn problem(params: &CaseParams, summits: &[crate::physics::summits::S
         allow_low_tabor: params.model.allow_low_tabor,
         slips: params.model.slips(),
     };
-    Ok(Problem::new(summits, params.surface.length_m, params.surface.rms_height_m, params.material, rules)?)
+    Ok(Problem::new(summits, scale.length_m, scale.rms_height_m, params.material, rules)?)
 }
 
 /// Asperities from which on a cycle takes so long that what is needed to go on is kept on the way; where it rests for that, of the rms height; and how
@@ -43,7 +44,7 @@ pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> R
     let summits = read_summits(&campaign.asperities_path(&campaign.surfaces[unit.surface]))?;
     let dir = campaign.cycle_dir(unit);
     std::fs::create_dir_all(&dir).map_err(|source| StageError::Folder { path: dir.clone(), source })?;
-    let problem = problem(params, &summits)?;
+    let problem = problem(params, scale(campaign, &campaign.surfaces[unit.surface])?, &summits)?;
     let settings = settings(params, summits.len());
     // The physics tells how far it is; the watch wants what was added.
     let reached = std::cell::Cell::new(0.0);
@@ -100,7 +101,7 @@ fn effort(cycle: &Cycle, problem: &Problem) -> Map<String, Value> {
 pub fn unload_again(campaign: &Campaign, unit: &CycleUnit, max_load: f64) -> Result<Cycle, StageError> {
     let params = &campaign.cases[unit.case].case.params;
     let summits = read_summits(&campaign.asperities_path(&campaign.surfaces[unit.surface]))?;
-    let problem = problem(params, &summits)?;
+    let problem = problem(params, scale(campaign, &campaign.surfaces[unit.surface])?, &summits)?;
     let path = campaign.cycle_dir(unit).join("turning.parquet");
     let frame = parquet::read_table(&path, &schema::TURNING)?;
     let (loads, approaches) = (frame.f64("max_load")?, frame.f64("approach_m")?);

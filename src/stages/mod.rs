@@ -5,6 +5,7 @@ mod comparison;
 mod cycle;
 mod datapackage;
 mod done;
+mod measure;
 mod page;
 mod reading;
 mod report;
@@ -16,6 +17,7 @@ mod trust;
 
 pub use comparison::compare;
 pub use cycle::unload_again;
+pub use measure::measure;
 pub use sampling::sampled;
 
 use crate::campaign::{Campaign, CycleUnit, Shard, Stage, Standing, SurfaceUnit, Unit};
@@ -55,6 +57,14 @@ pub enum StageError {
         path: PathBuf,
         /// What the system says.
         source: std::io::Error,
+    },
+    /// A measured surface.
+    #[error("cannot take the surface {}: {why}", path.display())]
+    Measured {
+        /// Its file.
+        path: PathBuf,
+        /// Why, and what is allowed.
+        why: String,
     },
     /// A turning point that was not kept.
     #[error("cannot unload from F/(E* A0) = {max_load}: {} holds {kept}; allowed: one of these", path.display())]

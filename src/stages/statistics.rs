@@ -1,7 +1,7 @@
 //! aggregate: from the steps of all cycles to the tables over realisations.
 
 use super::done::{Clock, Outcome};
-use super::surface::{read_summits, spectrum};
+use super::surface::{read_summits, scale, spectrum};
 use super::{StageError, Tally, Watch, datapackage};
 use crate::campaign::{Campaign, CaseUnit, CycleUnit, STATISTICS, Stage, Standing, Unit};
 use crate::model::Choice;
@@ -18,6 +18,7 @@ use crate::stats::{self, CaseInput, CycleInput, Given, Sample, Value};
 use crate::store::hdf5::{SurfaceHeader, read_header};
 use crate::store::{Check, commit, parquet};
 use rayon::prelude::*;
+use std::path::Path;
 
 /// Which cycles are done.
 fn done(standings: &[Standing]) -> Vec<bool> {
@@ -63,7 +64,8 @@ pub(super) fn run(
         return Ok(tally);
     }
     watch.begin(Stage::Aggregate, 0, 1);
-    let cases: Vec<CaseInput> = campaign.cases.iter().enumerate().map(|(k, unit)| case_input(campaign, k, unit, &standings)).collect();
+    let cases: Vec<CaseInput> =
+        campaign.cases.iter().enumerate().map(|(k, unit)| case_input(campaign, k, unit, &standings)).collect::<Result<_, _>>()?;
     let cycles: Vec<CycleInput> = campaign
         .cycles
         .par_iter()
@@ -88,18 +90,23 @@ pub(super) fn run(
     Ok(tally)
 }
 
-fn case_input(campaign: &Campaign, number: usize, unit: &CaseUnit, standings: &[Standing]) -> CaseInput {
+fn case_input(campaign: &Campaign, number: usize, unit: &CaseUnit, standings: &[Standing]) -> Result<CaseInput, StageError> {
     let params = &unit.case.params;
     let (surface, material, model) = (&params.surface, &params.material, &params.model);
     let slips: Vec<&str> = model.as_printed.iter().map(|slip| slip.word()).collect();
-    let parameters: [(&str, Value); 16] = [
-        ("hurst", surface.hurst.into()),
-        ("magnification", f64::from(surface.magnification).into()),
-        ("length_m", surface.length_m.into()),
-        ("rms_height_m", surface.rms_height_m.into()),
+    let of_case = campaign.cycles.iter().find(|cycle| cycle.case == number);
+    let scale = of_case.map(|cycle| scale(campaign, &campaign.surfaces[cycle.surface])).transpose()?;
+    let generated = (!surface.is_measured()).then_some(surface);
+    let file = Path::new(&surface.file).file_name().map(|name| name.to_string_lossy().into_owned());
+    let parameters: [(&str, Value); 17] = [
+        ("surface_file", file.as_deref().into()),
+        ("hurst", generated.map(|surface| surface.hurst).into()),
+        ("magnification", generated.map(|surface| f64::from(surface.magnification)).into()),
+        ("length_m", scale.map(|scale| scale.length_m).into()),
+        ("rms_height_m", scale.map(|scale| scale.rms_height_m).into()),
         ("points_per_shortest_wavelength", f64::from(surface.points_per_shortest_wavelength).into()),
-        ("normalization", surface.normalization.word().into()),
-        ("amplitudes", surface.amplitudes.word().into()),
+        ("normalization", generated.map(|surface| surface.normalization.word()).into()),
+        ("amplitudes", generated.map(|surface| surface.amplitudes.word()).into()),
         ("contact_modulus_pa", material.contact_modulus_pa.into()),
         ("work_of_adhesion_j_m2", material.work_of_adhesion_j_m2.into()),
         ("interaction_range_m", material.interaction_range_m.into()),
@@ -111,7 +118,7 @@ fn case_input(campaign: &Campaign, number: usize, unit: &CaseUnit, standings: &[
         ("approach_step", params.cycle.approach_step.into()),
     ];
     let failed = |(cycle, standing): (&CycleUnit, &Standing)| cycle.case == number && matches!(standing, Standing::Failed(_));
-    CaseInput {
+    Ok(CaseInput {
         case_id: unit.id.clone(),
         sweep: unit.case.sweeps.join("+"),
         parameters: named(parameters),
@@ -119,7 +126,7 @@ fn case_input(campaign: &Campaign, number: usize, unit: &CaseUnit, standings: &[
         precision: campaign.spec.realizations.until().map(|until| (until.of.word().to_owned(), until.until_relative_ci)),
         planned_count: campaign.counts[number] as usize,
         failed_count: campaign.cycles.iter().zip(standings).filter(|pair| failed(*pair)).count(),
-    }
+    })
 }
 
 pub(super) fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<CycleInput, StageError> {
@@ -137,7 +144,10 @@ pub(super) fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<Cycle
     tabor.sort_by(f64::total_cmp);
     let low = tabor.iter().filter(|number| **number < LEAST_TABOR).count();
     let over_all = |sum: f64| (!tabor.is_empty()).then(|| sum / tabor.len() as f64);
-    let (asked, adhesion) = (spectrum(&params.surface), params.material.work_of_adhesion_j_m2);
+    let scale = scale(campaign, surface)?;
+    // Nobody asked for the spectrum of a measured surface.
+    let asked = (!params.surface.is_measured()).then(|| spectrum(&params.surface));
+    let adhesion = params.material.work_of_adhesion_j_m2;
     let losses =
         summits.iter().map(|s| Ok(Asperity::new(s.radius_m(), &params.material)?.loop_loss())).collect::<Result<Vec<f64>, StageError>>()?;
     let heights: Vec<f64> = summits.iter().map(|s| s.height_m).collect();
@@ -151,8 +161,8 @@ pub(super) fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<Cycle
         (*load, named(columns))
     };
     let seed = realization_seed(campaign.spec.seed, u64::from(surface.realization));
-    let continuous = flattening(&asked, params.material.contact_modulus_pa);
-    let of_modes = realised_flattening(&asked, &seed, params.material.contact_modulus_pa);
+    let continuous = asked.as_ref().map(|asked| flattening(asked, params.material.contact_modulus_pa));
+    let of_modes = asked.as_ref().map(|asked| realised_flattening(asked, &seed, params.material.contact_modulus_pa));
     let numbers: [(&str, Value); 17] = [
         ("surface_id", surface.id.as_str().into()),
         ("summit_count", summits.len().into()),
@@ -163,10 +173,10 @@ pub(super) fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<Cycle
         ("tabor_max", tabor.last().copied().into()),
         ("tabor_mean", over_all(tabor.iter().sum()).into()),
         ("low_tabor_share", over_all(low as f64).into()),
-        ("conformity", continuous.conformity(adhesion).into()),
-        ("conformity_realised", of_modes.conformity(adhesion).into()),
-        ("persson_tosatti", continuous.persson_tosatti(adhesion).into()),
-        ("persson_tosatti_realised", of_modes.persson_tosatti(adhesion).into()),
+        ("conformity", continuous.as_ref().map(|of| of.conformity(adhesion)).into()),
+        ("conformity_realised", of_modes.as_ref().map(|of| of.conformity(adhesion)).into()),
+        ("persson_tosatti", continuous.as_ref().map(|of| of.persson_tosatti(adhesion)).into()),
+        ("persson_tosatti_realised", of_modes.as_ref().map(|of| of.persson_tosatti(adhesion)).into()),
         ("fuller_tabor", spread.into()),
         ("rms_slope", header.rms_slope.into()),
         ("rms_curvature_1_m", header.rms_curvature_1_m.into()),
@@ -177,8 +187,11 @@ pub(super) fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<Cycle
         realization: i64::from(surface.realization),
         steps: campaign.cycle_dir(unit).join("steps.parquet"),
         events: campaign.cycle_dir(unit).join("events.parquet"),
-        energy_scale_j: params.material.contact_modulus_pa * area * params.surface.rms_height_m,
-        loss_dk_per_area_j: deng_kesari(&asked.moments(), params, area)?,
+        energy_scale_j: params.material.contact_modulus_pa * area * scale.rms_height_m,
+        loss_dk_per_area_j: match &asked {
+            Some(asked) => deng_kesari(&asked.moments(), params, area)?,
+            None => None,
+        },
         loss_dk_realised_per_area_j: deng_kesari(&realised, params, area)?,
         loss_dalvi_per_area_j: dalvi_loss(&params.material, area),
         asperity_loss_j: losses,

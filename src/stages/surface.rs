@@ -2,13 +2,16 @@
 
 use super::StageError;
 use super::done::Outcome;
+use super::measure::measure;
 use crate::campaign::{Campaign, SurfaceUnit};
+use crate::keys::digest_of_file;
+use crate::physics::measured::find_measured;
 use crate::physics::spectrum::Spectrum;
 use crate::physics::summits::{Summit, find_summits};
 use crate::physics::synthesis::{realization_seed, synthesize};
 use crate::schema;
 use crate::spec::SurfaceParams;
-use crate::store::hdf5::{read_surface, write_surface};
+use crate::store::hdf5::{Generated, SurfaceHeader, read_header, read_surface, write_surface};
 use crate::store::{Frame, parquet};
 use std::path::Path;
 
@@ -24,9 +27,43 @@ pub(super) fn spectrum(params: &SurfaceParams) -> Spectrum {
     }
 }
 
+/// What lengths and heights of a surface are measured by.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Scale {
+    /// Side of the square \[m\].
+    pub(super) length_m: f64,
+    /// Rms height: the one that was asked for, or that a measured surface has \[m\].
+    pub(super) rms_height_m: f64,
+}
+
+/// The scale of a surface, which of a measured one its file tells.
+pub(super) fn scale(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Scale, StageError> {
+    if unit.params.is_measured() {
+        let SurfaceHeader { length_m, rms_height_m, .. } = read_header(&campaign.surface_path(unit))?;
+        return Ok(Scale { length_m, rms_height_m });
+    }
+    Ok(Scale { length_m: unit.params.length_m, rms_height_m: unit.params.rms_height_m })
+}
+
+/// Takes a measured surface into the run.
+fn take(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Outcome, StageError> {
+    let path = Path::new(&unit.params.file);
+    let refuse = |why: String| StageError::Measured { path: path.to_owned(), why };
+    let digest = digest_of_file(path).map_err(|error| refuse(error.to_string()))?;
+    if campaign.spec.files.get(&unit.params.file) != Some(&digest) {
+        return Err(refuse(
+            "it is another file than [files] of the spec says; take that line out, and what is made of it is computed anew".to_owned(),
+        ));
+    }
+    let (prepared, header) = measure(&unit.params, &digest, &unit.key)?;
+    Ok(Outcome::of(vec![write_surface(&campaign.surface_path(unit), &header, prepared.heights_m.view())?]))
+}
+
 pub(super) fn generate(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Outcome, StageError> {
-    use crate::store::hdf5::{Generated, SurfaceHeader};
     let params = &unit.params;
+    if params.is_measured() {
+        return take(campaign, unit);
+    }
     let seed = realization_seed(campaign.spec.seed, u64::from(unit.realization));
     let surface = synthesize(&spectrum(params), &seed, params.grid() as usize);
     let header = SurfaceHeader {
@@ -47,13 +84,20 @@ pub(super) fn generate(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Outcom
             normalization: params.normalization,
             amplitudes: params.amplitudes,
         }),
+        measured: None,
     };
     Ok(Outcome::of(vec![write_surface(&campaign.surface_path(unit), &header, surface.heights_m.view())?]))
 }
 
 pub(super) fn extract(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Outcome, StageError> {
     let (header, heights) = read_surface(&campaign.surface_path(unit))?;
-    let found = find_summits(heights.view(), header.length_m, f64::from(unit.params.points_per_shortest_wavelength))?;
+    let (found, edge) = match &header.measured {
+        Some(measured) => {
+            let points = measured.shortest_wavelength_m * heights.nrows() as f64 / header.length_m;
+            find_measured(heights.view(), header.length_m, (header.periodic, points))?
+        }
+        None => (find_summits(heights.view(), header.length_m, f64::from(unit.params.points_per_shortest_wavelength))?, 0),
+    };
     let list = &found.list;
     let frame = Frame::of(&schema::ASPERITIES)
         .i64("asperity_id", (0..list.len()).map(|k| k as i64))
@@ -70,7 +114,7 @@ pub(super) fn extract(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Outcome
         .build()?;
     let area = header.length_m * header.length_m;
     let moments = super::statistics::moments(&header);
-    let keys = [
+    let mut keys = vec![
         ("key", unit.asperities_key.clone()),
         // Nayak's density of the realised moments beside the one that was found.
         ("nayak_density_1_m2", moments.summit_density_1_m2().to_string()),
@@ -78,6 +122,9 @@ pub(super) fn extract(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Outcome
         ("rejected_count", found.rejected.to_string()),
         ("unrefined_count", found.unrefined.to_string()),
     ];
+    if header.measured.is_some() {
+        keys.push(("edge_count", edge.to_string()));
+    }
     Ok(Outcome::of(vec![parquet::write_table(&campaign.asperities_path(unit), &frame, &keys)?]))
 }
 

@@ -4,7 +4,8 @@ use super::StatsError;
 use crate::store::{ColumnData, Frame};
 
 /// Columns that may define a case, with the symbol and the axis label of each; labels have the markup of the figures.
-pub(super) const PARAMETERS: [(&str, &str, &str); 16] = [
+pub(super) const PARAMETERS: [(&str, &str, &str); 17] = [
+    ("surface_file", "surface", "surface"),
     ("magnification", "ζ", "magnification ζ"),
     ("hurst", "H", "Hurst exponent H"),
     ("rms_height_m", "h", "h_{rms} [m]"),

@@ -4,13 +4,15 @@ use std::fs;
 use std::path::Path;
 
 use hdf5_metno::file::LibraryVersion;
+use hdf5_metno::types::VarLenUnicode;
 use hdf5_metno::{Dataset, File, FileBuilder};
 use ndarray::{Array2, ArrayView2, s};
 
 use super::commit::{Written, commit};
 use super::error::{Cause, StoreError, fenced};
+use super::scan::MOST_POINTS;
 use super::surface_header;
-pub use super::surface_header::{Generated, SURFACE_VERSION, SurfaceHeader};
+pub use super::surface_header::{Generated, Measured, SURFACE_VERSION, SpectrumFit, SurfaceHeader};
 
 /// Does something while no other thread is in the HDF5 library, which ends with the program and must not be in use then.
 pub fn alone<T>(act: impl FnOnce() -> T) -> T {
@@ -64,18 +66,83 @@ pub fn read_header(path: &Path) -> Result<SurfaceHeader, StoreError> {
     .map_err(|cause| StoreError::new("read the header of the surface", path, cause))
 }
 
-/// Reads a height field from any HDF5 file, a measured one for instance.
+/// Reads a height field from any HDF5 file, a measured one for instance, where missing points may be no numbers. Without a name it is the only field in the root.
 ///
 /// # Errors
-/// If the file cannot be read, or has no two-dimensional dataset of finite numbers by that name.
-pub fn read_heights(path: &Path, dataset: &str) -> Result<Array2<f64>, StoreError> {
+/// If the file cannot be read, or has no two-dimensional dataset of numbers by that name.
+pub fn read_heights(path: &Path, dataset: Option<&str>) -> Result<Array2<f64>, StoreError> {
     library(|| {
-        let data = open(path)?.dataset(dataset)?;
-        check_extent(path, &data, dataset, MOST_PACKED)?;
-        field(&data, dataset)
+        let file = open(path)?;
+        let name = match dataset {
+            Some(name) => name.to_owned(),
+            None => only_field(&file)?,
+        };
+        let data = file.dataset(&name)?;
+        let (rows, columns) = check_extent(path, &data, &name, MOST_PACKED)?;
+        if (rows as u64).saturating_mul(columns as u64) > MOST_POINTS {
+            return Err(format!("its dataset {name:?} has {rows} by {columns} values, and 2^28 are the most that are read").into());
+        }
+        Ok(data.read_2d::<f64>()?)
     })
-    .map_err(|cause| StoreError::new(&format!("read the dataset {dataset:?} from"), path, cause))
+    .map_err(|cause| StoreError::new("read the surface from", path, cause))
 }
+
+/// The name of the one two-dimensional dataset in the root.
+fn only_field(file: &File) -> Result<String, Cause> {
+    let mut names = Vec::new();
+    for name in file.member_names()? {
+        if file.dataset(&name).is_ok_and(|data| data.ndim() == 2) {
+            names.push(name);
+        }
+    }
+    match &names[..] {
+        [name] => Ok(name.clone()),
+        [] => Err("it has no two-dimensional dataset in its root; name one in another group as \"group/dataset\"".into()),
+        many => Err(format!("it has several fields: {}; name one of them as the dataset", many.join(", ")).into()),
+    }
+}
+
+/// Whether a file is a surface of this program, by its attributes.
+#[must_use]
+pub fn is_own_surface(path: &Path) -> bool {
+    library(|| Ok(open(path)?.attr_names()?.iter().any(|name| name == "schema_version"))).unwrap_or(false)
+}
+
+/// Writes a height field \[m\] as Tamaas' `H5Dumper` does, to be opened with its `read`: the field `surface` of a model of the type `basic_2d`.
+///
+/// # Errors
+/// If the file cannot be written whole.
+pub fn write_tamaas(path: &Path, heights: ArrayView2<'_, f64>, size_m: [f64; 2]) -> Result<Written, StoreError> {
+    commit(
+        "write the surface to",
+        path,
+        |temporary| {
+            library(|| {
+                let file = options().create(temporary)?;
+                // Tamaas wants a string of variable length here, and nothing but fields in the root.
+                let kind: VarLenUnicode = "model_type.basic_2d".parse()?;
+                file.new_attr::<VarLenUnicode>().create("model_type")?.write_scalar(&kind)?;
+                file.new_attr::<f64>().shape(2).create("system_size")?.write(&size_m)?;
+                let points = [heights.nrows() as i64, heights.ncols() as i64];
+                file.new_attr::<i64>().shape(2).create("discretization")?.write(&points)?;
+                let data = file.new_dataset::<f64>().shape(heights.dim()).create(TAMAAS_FIELD)?;
+                data.write(heights.as_standard_layout().view())?;
+                file.flush()?;
+                drop(data);
+                Ok(file.close()?)
+            })
+        },
+        |temporary| {
+            library(|| {
+                let same = open(temporary)?.dataset(TAMAAS_FIELD)?.read_2d::<f64>()? == heights;
+                if same { Ok(()) } else { Err("what was read back is not what was written".into()) }
+            })
+        },
+    )
+}
+
+/// Name of the height field in a file for Tamaas.
+const TAMAAS_FIELD: &str = "surface";
 
 /// Runs code of the HDF5 library and puts its error into words at once, while its error stack still exists.
 fn library<T>(work: impl FnOnce() -> Result<T, Cause>) -> Result<T, Cause> {

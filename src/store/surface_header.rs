@@ -3,7 +3,7 @@
 use hdf5_metno::types::{FixedUnicode, TypeDescriptor};
 use hdf5_metno::{File, H5Type, Location};
 
-use crate::model::{Amplitudes, Choice, Normalization};
+use crate::model::{Amplitudes, Choice, Detrend, Normalization};
 
 use super::error::Cause;
 
@@ -33,6 +33,42 @@ pub struct SurfaceHeader {
     pub nayak_parameter: f64,
     /// How it was made; nothing for a measured surface, whose file then lacks these attributes.
     pub generated: Option<Generated>,
+    /// What it was measured from; nothing for a generated one.
+    pub measured: Option<Measured>,
+}
+
+/// What a measured surface was made of.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measured {
+    /// Name of the file, without its folder.
+    pub source: String,
+    /// BLAKE3 of that file.
+    pub source_blake3: String,
+    /// Points that were missing and are filled in.
+    pub missing_count: u64,
+    /// What was taken off its heights.
+    pub detrend: Detrend,
+    /// Rms height of that \[m\].
+    pub trend_m: f64,
+    /// Shorter waves were taken off \[m\].
+    pub shortest_wavelength_m: f64,
+    /// Rms height of these \[m\].
+    pub noise_m: f64,
+    /// The self-affine spectrum that fits its own; nothing where it has too few modes.
+    pub fit: Option<SpectrumFit>,
+}
+
+/// A self-affine spectrum with a roll-off.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SpectrumFit {
+    /// Hurst exponent H.
+    pub hurst: f64,
+    /// C0 \[m⁴\].
+    pub plateau_m4: f64,
+    /// Wavenumber of the roll-off \[1/m\]; that of the longest waves, if there is none.
+    pub roll_off_1_m: f64,
+    /// Rms deviation of log10 C.
+    pub scatter: f64,
 }
 
 /// How a surface was made.
@@ -65,6 +101,9 @@ pub(super) fn write(file: &File, header: &SurfaceHeader) -> Result<(), Cause> {
     write_finite(file, "rms_slope", header.rms_slope)?;
     write_finite(file, "rms_curvature_1_m", header.rms_curvature_1_m)?;
     write_finite(file, "nayak_parameter", header.nayak_parameter)?;
+    if let Some(measured) = &header.measured {
+        write_measured(file, measured)?;
+    }
     let Some(generated) = &header.generated else {
         return Ok(());
     };
@@ -75,6 +114,42 @@ pub(super) fn write(file: &File, header: &SurfaceHeader) -> Result<(), Cause> {
     write_finite(file, "points_per_shortest_wavelength", generated.points_per_shortest_wavelength)?;
     write_word(file, "normalization", generated.normalization.word())?;
     write_word(file, "amplitudes", generated.amplitudes.word())
+}
+
+fn write_measured(file: &File, measured: &Measured) -> Result<(), Cause> {
+    write_word(file, "source", &measured.source)?;
+    write_word(file, "source_blake3", &measured.source_blake3)?;
+    write_number(file, "missing_count", measured.missing_count)?;
+    write_word(file, "detrend", measured.detrend.word())?;
+    write_finite(file, "trend_m", measured.trend_m)?;
+    write_finite(file, "shortest_wavelength_m", measured.shortest_wavelength_m)?;
+    write_finite(file, "noise_m", measured.noise_m)?;
+    let Some(fit) = &measured.fit else { return Ok(()) };
+    write_finite(file, "fit_hurst", fit.hurst)?;
+    write_finite(file, "fit_plateau_m4", fit.plateau_m4)?;
+    write_finite(file, "fit_roll_off_1_m", fit.roll_off_1_m)?;
+    write_finite(file, "fit_scatter", fit.scatter)
+}
+
+fn read_measured(file: &File, names: &[String]) -> Result<Measured, Cause> {
+    let fit = || -> Result<SpectrumFit, Cause> {
+        Ok(SpectrumFit {
+            hurst: finite(file, "fit_hurst")?,
+            plateau_m4: finite(file, "fit_plateau_m4")?,
+            roll_off_1_m: finite(file, "fit_roll_off_1_m")?,
+            scatter: finite(file, "fit_scatter")?,
+        })
+    };
+    Ok(Measured {
+        source: word(file, "source")?,
+        source_blake3: word(file, "source_blake3")?,
+        missing_count: number(file, "missing_count")?,
+        detrend: choice(file, "detrend")?,
+        trend_m: finite(file, "trend_m")?,
+        shortest_wavelength_m: finite(file, "shortest_wavelength_m")?,
+        noise_m: finite(file, "noise_m")?,
+        fit: if names.iter().any(|name| name == "fit_hurst") { Some(fit()?) } else { None },
+    })
 }
 
 /// Reads the header from the attributes of the root.
@@ -110,6 +185,7 @@ pub(super) fn read(file: &File) -> Result<SurfaceHeader, Cause> {
         rms_curvature_1_m: finite(file, "rms_curvature_1_m")?,
         nayak_parameter: finite(file, "nayak_parameter")?,
         generated,
+        measured: if names.iter().any(|name| name == "source") { Some(read_measured(file, &names)?) } else { None },
     })
 }
 

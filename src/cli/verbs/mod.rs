@@ -1,7 +1,9 @@
 //! One function for each verb.
 
+mod about;
 mod care;
 mod export;
+mod measured;
 mod submit;
 mod survey;
 mod work;
@@ -72,7 +74,12 @@ fn performed(verb: &Verb) -> Result<u8, Fault> {
         }
         Verb::Export { what: ExportVerb::Snakemake { spec, output, shards } } => export::snakemake(spec, output, shards.shards),
         Verb::Export { what: ExportVerb::RoCrate { folder, license } } => export::ro_crate(folder, license.as_deref()),
+        Verb::Export { what: ExportVerb::Netcdf(asked) } => measured::export(asked, &measured::Layout::NetCdf),
+        Verb::Export { what: ExportVerb::Tamaas(asked) } => measured::export(asked, &measured::Layout::Tamaas),
+        Verb::Import(asked) => measured::import(asked),
         Verb::Schema { write } => schemas(*write),
+        Verb::Completions { shell } => about::completions(*shell),
+        Verb::Man { dir } => about::man(dir.as_deref()),
     }
 }
 
