@@ -77,7 +77,9 @@ pub fn read_heights(path: &Path, dataset: Option<&str>) -> Result<Array2<f64>, S
             Some(name) => name.to_owned(),
             None => only_field(&file)?,
         };
-        let data = file.dataset(&name)?;
+        let Ok(data) = file.dataset(&name) else {
+            return Err(format!("it has no dataset {name:?}; its root has: {}", file.member_names()?.join(", ")).into());
+        };
         let (rows, columns) = check_extent(path, &data, &name, MOST_PACKED)?;
         if (rows as u64).saturating_mul(columns as u64) > MOST_POINTS {
             return Err(format!("its dataset {name:?} has {rows} by {columns} values, and 2^28 are the most that are read").into());

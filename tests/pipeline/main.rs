@@ -17,6 +17,8 @@ mod losses;
 mod python;
 #[cfg(feature = "stats")]
 mod report;
+#[cfg(feature = "store")]
+mod scan;
 mod schema;
 mod spec;
 #[cfg(feature = "stats")]

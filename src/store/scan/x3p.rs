@@ -19,9 +19,9 @@ use super::{Cause, Scan, Source};
 const MAIN: &str = "main.xml";
 /// Bytes that the description may have: some kilobytes is what it has.
 const MOST_XML: u64 = 1 << 24;
-/// Elements that it may have. They are read by a function that calls itself for what is inside, and as many of them, one
+/// Elements that it may have; those of instruments have some forty. They are read by a function that calls itself for what is inside, and as many of them, one
 /// inside the other, leave room on the stack of a thread.
-const MOST_ELEMENTS: usize = 1000;
+const MOST_ELEMENTS: usize = 256;
 /// Nodes that it may have, remarks and the blanks between elements among them.
 const MOST_NODES: u32 = 1 << 16;
 /// What deflate reaches on zeros: a part of an archive is at most this many times larger than what it takes there.

@@ -78,6 +78,37 @@ fn law_every_key_reruns_exactly_the_stages_that_read_it() {
 }
 
 #[test]
+fn law_a_measured_surface_is_known_by_what_its_file_holds_and_what_is_done_to_it() {
+    let text = |lines: &str, digest: char| {
+        let digest: String = std::iter::repeat_n(digest, 64).collect();
+        format!(
+            "name = \"x\"\nrealizations = 2\n[surface]\nfile = \"a/scan.x3p\"\n{lines}\n[model]\nboundary = \"isolated\"\n[files]\n\"a/scan.x3p\" = \"{digest}\"\n"
+        )
+    };
+    let base = campaign(&text("", '0'));
+    assert_eq!((base.surfaces.len(), base.counts[0]), (1, 1), "a measured surface is one surface");
+    assert!(base.surfaces[0].id.starts_with("scan_r00-"), "{}", base.surfaces[0].id);
+    let first = |campaign: &Campaign| keys(campaign)[0][0].clone();
+    let mut seen = BTreeSet::from([first(&base)]);
+    let others = ["dataset = \"b\"", "periodic = true", "pixel_m = 1e-9", "unit = \"nm\"", "missing = \"fill\"", "detrend = \"mean\""];
+    for line in others.into_iter().chain(["points_per_shortest_wavelength = 16"]) {
+        let other = campaign(&text(line, '0'));
+        assert!(seen.insert(first(&other)), "{line}: a surface of its own");
+        // The spec that is written out asks for the same.
+        assert_eq!(keys(&campaign(&other.spec.to_toml())), keys(&other), "{line}");
+    }
+    assert!(seen.insert(first(&campaign(&text("", '1')))), "another file");
+    let moved = campaign(&text("", '0').replace("a/scan", "b/scan"));
+    assert_eq!(first(&moved), first(&base), "the same file at another place");
+    // One sweep over files, another over generated surfaces.
+    let both = "name = \"x\"\n[model]\nboundary = \"isolated\"\n[[sweep]]\nname = \"files\"\nsurface.file = [\"a.h5\", \"b.h5\"]\n\
+                [[sweep]]\nname = \"made\"\nsurface.hurst = [0.7, 0.8]\n";
+    let both = campaign(both);
+    assert_eq!((both.cases.len(), both.counts.clone()), (4, vec![1, 1, 6, 6]));
+    assert_eq!(keys(&campaign(&both.spec.to_toml())), keys(&both));
+}
+
+#[test]
 fn law_ids_stay_when_a_campaign_grows() {
     let text = |sweep: &str, realizations: u32| {
         format!(

@@ -134,7 +134,7 @@ fn law_no_bytes_end_a_reader() {
         let (path, table) = &tables[number % tables.len()];
         attempt(path, &mut random, &|path| parquet::read_table(path, table).map(drop).map_err(|error| error.to_string()));
         attempt(&surfaces[0], &mut random, &|path| hdf5::read_surface(path).map(drop).map_err(|error| error.to_string()));
-        attempt(&surfaces[0], &mut random, &|path| hdf5::read_heights(path, "height_m").map(drop).map_err(|error| error.to_string()));
+        attempt(&surfaces[0], &mut random, &|path| hdf5::read_heights(path, Some("height_m")).map(drop).map_err(|error| error.to_string()));
         let receipt = &receipts[number % receipts.len()];
         attempt(receipt, &mut random, &|path| match read_receipt(path) {
             Found::Whole(_) => panic!("a receipt was changed, and read as one"),

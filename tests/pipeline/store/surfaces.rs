@@ -4,8 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use hdf5_metno::File;
-use hysteron::model::{Amplitudes, Normalization};
-use hysteron::store::hdf5::{Generated, SurfaceHeader, read_header, read_heights, read_surface, write_surface};
+use hysteron::model::{Amplitudes, Detrend, Normalization};
+use hysteron::store::hdf5::{Generated, Measured, SpectrumFit, SurfaceHeader, read_header, read_heights, read_surface, write_surface};
 use ndarray::{Array2, s};
 use tempfile::{TempDir, tempdir};
 
@@ -30,6 +30,7 @@ fn header() -> SurfaceHeader {
             normalization: Normalization::Spectrum,
             amplitudes: Amplitudes::Gaussian,
         }),
+        measured: None,
     }
 }
 
@@ -52,7 +53,7 @@ fn e2e_a_surface_comes_back_bit_by_bit() {
         assert_eq!(back, header());
         assert_eq!(read_header(&path).unwrap(), header());
         assert_eq!(field, heights(size));
-        assert_eq!(read_heights(&path, "height_m").unwrap(), field);
+        assert_eq!(read_heights(&path, Some("height_m")).unwrap(), field);
         assert_eq!(names(directory.path()), ["surface.h5"]);
     }
 }
@@ -61,9 +62,23 @@ fn e2e_a_surface_comes_back_bit_by_bit() {
 fn e2e_a_measured_surface_lacks_what_nobody_knows() {
     let directory = tempdir().unwrap();
     let path = directory.path().join("surface.h5");
-    let measured = SurfaceHeader { generated: None, periodic: false, realization: 0, key: String::new(), ..header() };
-    write_surface(&path, &measured, heights(8).view()).unwrap();
-    assert_eq!(read_header(&path).unwrap(), measured);
+    let mut about = Measured {
+        source: "a scan.x3p".to_owned(),
+        source_blake3: "0".repeat(64),
+        missing_count: 3,
+        detrend: Detrend::Quadratic,
+        trend_m: 1e-7,
+        shortest_wavelength_m: 2e-6,
+        noise_m: 3e-9,
+        fit: Some(SpectrumFit { hurst: 0.7, plateau_m4: 1e-30, roll_off_1_m: 1e5, scatter: 0.1 }),
+    };
+    for fit in [about.fit, None] {
+        about.fit = fit;
+        let measured = Some(about.clone());
+        let measured = SurfaceHeader { generated: None, measured, periodic: false, realization: 0, key: String::new(), ..header() };
+        write_surface(&path, &measured, heights(8).view()).unwrap();
+        assert_eq!(read_header(&path).unwrap(), measured);
+    }
     let names = File::open(&path).unwrap().attr_names().unwrap();
     assert!(!names.iter().any(|name| name == "hurst" || name == "seed"), "{names:?}");
 }
@@ -174,7 +189,7 @@ fn e2e_truncated_surfaces_are_refused() {
         fs::write(&short, &whole[..length]).unwrap();
         let message = read_surface(&short).unwrap_err().to_string();
         says(&message, &short, &["cannot read the surface from"]);
-        assert!(read_header(&short).is_err() && read_heights(&short, "height_m").is_err(), "{length}");
+        assert!(read_header(&short).is_err() && read_heights(&short, Some("height_m")).is_err(), "{length}");
     }
 }
 
@@ -257,10 +272,11 @@ fn e2e_a_measured_field_of_another_type_is_read() {
     let packed = Array2::<i32>::zeros((500, 400));
     file.new_dataset_builder().with_data(packed.view()).chunk((500, 400)).deflate(9).create("flat").unwrap();
     file.close().unwrap();
-    assert_eq!(read_heights(&path, "scan/z").unwrap(), field.mapv(f64::from));
-    assert_eq!(read_heights(&path, "flat").unwrap(), Array2::<f64>::zeros((500, 400)));
-    let message = read_heights(&path, "nothing").unwrap_err().to_string();
-    says(&message, &path, &["cannot read the dataset \"nothing\" from"]);
+    assert_eq!(read_heights(&path, Some("scan/z")).unwrap(), field.mapv(f64::from));
+    assert_eq!(read_heights(&path, Some("flat")).unwrap(), Array2::<f64>::zeros((500, 400)));
+    assert_eq!(read_heights(&path, None).unwrap(), Array2::<f64>::zeros((500, 400)), "the only field in the root");
+    let message = read_heights(&path, Some("nothing")).unwrap_err().to_string();
+    says(&message, &path, &["it has no dataset \"nothing\"", "flat"]);
     says(&read_surface(&path).unwrap_err().to_string(), &path, &["it is no surface of this program"]);
     says(&read_surface(directory.path()).unwrap_err().to_string(), directory.path(), &["it is a directory"]);
     let absent = directory.path().join("absent.h5");

@@ -1,0 +1,213 @@
+//! A measured surface from its file to the loss of its contact, as a user takes it there.
+
+use crate::bench::{Bench, code, paths, stderr, stdout};
+use hysteron::model::{Amplitudes, Normalization};
+use hysteron::physics::spectrum::Spectrum;
+use hysteron::physics::synthesis::{realization_seed, synthesize};
+use hysteron::schema;
+use hysteron::store::hdf5::{read_header, read_surface};
+use hysteron::store::parquet::read_table;
+use ndarray::{Array2, s};
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use super::make::{npy, npy_line};
+
+/// A part of a rough surface, which does not continue periodically: heights in nanometres, points 12.5 nm apart.
+fn part() -> Array2<f64> {
+    cut(16, 96)
+}
+
+fn cut(magnification: u32, rows: usize) -> Array2<f64> {
+    let spectrum = Spectrum {
+        length_m: f64::from(magnification) * 1e-7,
+        rms_height_m: 20e-9,
+        hurst: 0.8,
+        magnification,
+        normalization: Normalization::Sample,
+        amplitudes: Amplitudes::Fixed,
+    };
+    let surface = synthesize(&spectrum, &realization_seed(5, 0), 8 * magnification as usize);
+    surface.heights_m.slice(s![..rows, ..rows + 4]).mapv(|h| 1e9 * h)
+}
+
+fn bytes(heights: &Array2<f64>) -> Vec<u8> {
+    let data: Vec<u8> = heights.iter().flat_map(|h| h.to_le_bytes()).collect();
+    npy(1, &npy_line("<f8", "False", &format!("({}, {})", heights.nrows(), heights.ncols())), &data)
+}
+
+/// Runs `import` in a folder.
+fn import(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_hysteron")).arg("import").args(arguments).current_dir(folder).output().unwrap()
+}
+
+const TOLD: [&str; 4] = ["--pixel-m", "12.5e-9", "--unit", "nm"];
+
+/// A spec on a surface in a file.
+fn spec(surface: &str) -> String {
+    format!(
+        "name = \"measured\"\n[surface]\n{surface}\n[model]\nboundary = \"isolated\"\njump_in = \"jkr\"\n\
+         [material]\ncontact_modulus_pa = 1e8\n[cycle]\nmax_load = [0.002]\napproach_step = 0.05\n"
+    )
+}
+
+#[test]
+fn e2e_a_scan_is_taken_and_told() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("scan.npy"), bytes(&part())).unwrap();
+    let output = import(folder.path(), &[&["scan.npy", "--json"], &TOLD[..]].concat());
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let told: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    let (header, heights) = read_surface(&folder.path().join("scan.h5")).unwrap();
+    // The middle square of 96 by 100 points.
+    assert_eq!((heights.dim(), header.periodic), ((96, 96), false));
+    assert!((header.length_m / (96.0 * 12.5e-9) - 1.0).abs() < 1e-12);
+    let measured = header.measured.unwrap();
+    assert_eq!((measured.source.as_str(), measured.missing_count), ("scan.npy", 0));
+    assert_eq!(measured.source_blake3, blake3::hash(&bytes(&part())).to_hex().to_string());
+    // The moments are those of the heights that were written.
+    let rms = heights.mapv(|h| h * h).mean().unwrap().sqrt();
+    assert!((header.rms_height_m / rms - 1.0).abs() < 1e-9);
+    for (name, value) in [
+        ("length_m", header.length_m),
+        ("rms_height_m", header.rms_height_m),
+        ("rms_slope", header.rms_slope),
+        ("nayak_parameter", header.nayak_parameter),
+    ] {
+        // The last digit is that of the reader of JSON.
+        assert!((told[name].as_f64().unwrap() / value - 1.0).abs() < 1e-14, "{name}");
+    }
+    // H, of a part large enough to have a spectrum, its shortest waves 38 to its side. Six such parts gave 0.82 ± 0.08: rings of long waves have few modes.
+    fs::write(folder.path().join("large.npy"), bytes(&cut(64, 304))).unwrap();
+    let large = import(folder.path(), &[&["large.npy", "--json"], &TOLD[..]].concat());
+    let large: Value = serde_json::from_str(&stdout(&large)).unwrap();
+    let hurst = large["self_affine"]["hurst"].as_f64().unwrap();
+    assert!((hurst - 0.8).abs() < 0.2, "{hurst}");
+    assert!(told["spectrum"].as_array().unwrap().len() > 10 && told["summit_count"].as_u64().unwrap() > 5);
+    // In words, in eighty columns; nothing is written over, and a dry run writes nothing.
+    let before = fs::read(folder.path().join("scan.h5")).unwrap();
+    let refused = import(folder.path(), &[&["scan.npy"], &TOLD[..]].concat());
+    assert!(code(&refused) == 1 && stderr(&refused).contains("it is there already; allowed: another --out, or --force"));
+    let dry = import(folder.path(), &[&["scan.npy", "--dry-run", "--out", "other.h5"], &TOLD[..]].concat());
+    assert!(code(&dry) == 0 && stdout(&dry).lines().all(|line| line.chars().count() <= 80), "{}", stdout(&dry));
+    assert!(!folder.path().join("other.h5").exists());
+    assert_eq!(fs::read(folder.path().join("scan.h5")).unwrap(), before);
+    // What was written is taken again without being told anything.
+    let again = import(folder.path(), &["scan.h5", "--out", "again.h5"]);
+    assert_eq!(code(&again), 0, "{}", stderr(&again));
+    let second = read_header(&folder.path().join("again.h5")).unwrap();
+    // Another plane goes off, of what the cut-off left of the first one.
+    assert!((second.rms_height_m / header.rms_height_m - 1.0).abs() < 0.01);
+}
+
+#[test]
+fn e2e_a_scan_goes_through_all_stages() {
+    let bench = Bench::new("");
+    let scan = bench.folder.path().join("a scan.npy");
+    fs::write(&scan, bytes(&part())).unwrap();
+    let surface = |file: &Path| format!("file = {:?}\npixel_m = 12.5e-9\nunit = \"nm\"", file.to_str().unwrap());
+    fs::write(bench.spec(), spec(&surface(&scan))).unwrap();
+    let output = bench.verb("run", &[]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let cases = read_table(&bench.out().join("statistics/cases.parquet"), &schema::CASES).unwrap();
+    assert_eq!(cases.text_or_null("surface_file").unwrap(), [Some("a scan.npy".to_owned())]);
+    assert_eq!(cases.f64_or_null("hurst").unwrap(), [None]);
+    assert_eq!(cases.f64_or_null("loss_dk_mean").unwrap(), [None]);
+    assert!(cases.f64_or_null("loss_dk_realised_mean").unwrap()[0].unwrap() > 0.0);
+    assert_eq!(cases.i64("planned_count").unwrap(), [1], "a measured surface is one surface");
+    let header = read_header(&paths(&bench.out().join("surfaces"))[0]).unwrap();
+    assert_eq!(cases.f64("rms_height_m").unwrap(), [header.rms_height_m]);
+    assert_eq!(cases.f64("length_m").unwrap(), [header.length_m]);
+    // Energy by the areas of the loop is that of its events.
+    let loss = cases.f64_or_null("loss_mean").unwrap()[0].unwrap();
+    assert!(loss > 0.0 && cases.f64_or_null("audit_gap_mean").unwrap()[0].unwrap() < 0.05);
+    assert!(fs::read_to_string(bench.out().join("report.html")).unwrap().contains("a scan.npy"));
+    assert!(stdout(&bench.look("status", &[])).contains("Nothing is left to do."));
+    // Its units are known by what the file holds: another name computes nothing, and a finished run does not need the file.
+    let renamed = bench.folder.path().join("renamed").join("a scan.npy");
+    fs::create_dir(renamed.parent().unwrap()).unwrap();
+    fs::rename(&scan, &renamed).unwrap();
+    assert!(stdout(&bench.look("status", &[])).contains("Nothing is left to do."));
+    fs::write(bench.spec(), spec(&surface(&renamed))).unwrap();
+    let planned = stdout(&bench.verb("plan", &[]));
+    assert!(planned.contains("generate  1 done") && planned.contains("cycle     1 done"), "{planned}");
+    // Other heights do.
+    fs::write(&renamed, bytes(&part().mapv(|h| 1.1 * h))).unwrap();
+    let planned = stdout(&bench.verb("plan", &[]));
+    assert!(planned.contains("generate  1 planned") && planned.contains("cycle     1 planned"), "{planned}");
+    // A file that is not what [files] says is not taken for it.
+    let text = fs::read_to_string(bench.out().join("campaign.toml")).unwrap().replace(scan.to_str().unwrap(), renamed.to_str().unwrap());
+    fs::write(bench.spec(), text).unwrap();
+    fs::remove_dir_all(bench.out()).unwrap();
+    let output = bench.verb("run", &[]);
+    assert!(code(&output) == 1 && stderr(&output).contains("it is another file than [files] of the spec says"), "{}", stderr(&output));
+    // And one that is not there is told with its place in the spec.
+    fs::write(bench.spec(), spec("file = \"no such scan.npy\"")).unwrap();
+    let output = bench.verb("plan", &[]);
+    assert_eq!(code(&output), 2);
+    for words in ["the measured surface \"no such scan.npy\" cannot be read", "spec.toml:3:", "^", "where the command is run"] {
+        assert!(stderr(&output).contains(words), "{}", stderr(&output));
+    }
+}
+
+#[test]
+fn e2e_what_is_no_surface_is_refused_and_writes_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let fine = part();
+    let mut holed = fine.clone();
+    holed[[50, 50]] = f64::NAN;
+    let lying = npy(1, &npy_line("<f8", "False", "(40000, 40000)"), &[0; 800]);
+    let endless = npy(1, &npy_line("<f8", "False", "(0, 96)"), &[]);
+    let cases: [(&str, Vec<u8>, &[&str], &str); 12] = [
+        ("holed", bytes(&holed), &TOLD, "the share of missing points"),
+        ("constant", bytes(&Array2::from_elem((64, 64), 5.0)), &TOLD, "its heights are constant"),
+        ("tilted", bytes(&Array2::from_shape_fn((64, 64), |(i, j)| (i + 2 * j) as f64)), &TOLD, "its heights are constant"),
+        ("line", bytes(&Array2::zeros((1, 500))), &TOLD, "16 and more"),
+        ("empty", endless, &TOLD, "zero|no points|empty|0 by"),
+        ("lying", lying, &TOLD, "40000"),
+        ("sizeless", bytes(&fine), &["--unit", "nm"], "how far apart its points are"),
+        ("unitless", bytes(&fine), &["--pixel-m", "1e-9"], "the unit of its heights"),
+        ("volts", bytes(&fine), &["--pixel-m", "1e-9", "--unit", "V"], "is no length; allowed: "),
+        ("point", bytes(&fine), &["--pixel-m", "0", "--unit", "nm"], "how far apart its points are"),
+        ("periodic", bytes(&fine), &["--pixel-m", "1e-9", "--unit", "nm", "--periodic"], "square"),
+        ("noise", b"\x7fELF\x02\x01\x01".to_vec(), &[], "in no format that is read here"),
+    ];
+    for (name, bytes, arguments, words) in cases {
+        fs::write(folder.path().join(name), bytes).unwrap();
+        let output = import(folder.path(), &[&[name], arguments].concat());
+        let said = stderr(&output);
+        assert_eq!(code(&output), 1, "{name}: {said}");
+        assert!(said.starts_with("error: cannot ") && said.lines().count() == 1, "{name}: {said}");
+        assert!(words.split('|').any(|words| said.contains(words)), "{name}: {said}");
+        assert!(!folder.path().join(name).with_extension("h5").exists(), "{name}");
+    }
+    let filled = import(folder.path(), &[&["holed", "--fill", "--dry-run"], &TOLD[..]].concat());
+    assert!(stdout(&filled).contains("1 points, filled in"), "{}", stdout(&filled));
+}
+
+/// A lying header and a zip bomb, with less memory than they ask for.
+#[cfg(target_os = "linux")]
+#[test]
+fn e2e_no_file_fills_the_memory() {
+    use super::make::{archive, main_xml};
+    let folder = tempfile::tempdir().unwrap();
+    let bomb = vec![0; 64 << 20];
+    let xml = main_xml(["8", "8", "1"], "<DataType>D</DataType>", "");
+    let parts = [("main.xml", xml.as_bytes()), ("bindata/data.bin", &bomb[..])];
+    fs::write(folder.path().join("bomb.x3p"), archive(&parts, zip::CompressionMethod::Deflated)).unwrap();
+    let xml = main_xml(["31623", "31623", "1"], "<DataType>D</DataType>", "");
+    let parts = [("main.xml", xml.as_bytes()), ("bindata/data.bin", &bomb[..1000])];
+    fs::write(folder.path().join("billion.x3p"), archive(&parts, zip::CompressionMethod::Deflated)).unwrap();
+    fs::write(folder.path().join("billion.npy"), npy(1, &npy_line("<f8", "False", "(31623, 31623)"), &[0; 64])).unwrap();
+    for name in ["bomb.x3p", "billion.x3p", "billion.npy"] {
+        // Address space for the program and its threads, and far less than a billion heights.
+        let script = "ulimit -v 2000000; exec \"$0\" import \"$1\" --unit m --pixel-m 1e-9";
+        let output =
+            Command::new("sh").args(["-c", script, env!("CARGO_BIN_EXE_hysteron"), name]).current_dir(folder.path()).output().unwrap();
+        let said = stderr(&output);
+        assert!(output.status.code() == Some(1) && said.starts_with("error: cannot "), "{name}: {:?} {said}", output.status);
+        assert!(!said.contains("memory"), "{name}: {said}");
+    }
+}

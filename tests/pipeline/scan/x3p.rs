@@ -1,0 +1,150 @@
+//! X3P.
+
+use hysteron::store::scan::Format;
+use ndarray::{Array2, array};
+use zip::CompressionMethod::{Deflated, Stored};
+
+use super::make::{archive, little, main_xml};
+use super::{awkward, refused, same, scan_of};
+
+const DOUBLE: &str = "<DataType>D</DataType>";
+
+/// A file with this description and these numbers.
+fn x3p(xml: &str, data: &[u8]) -> Vec<u8> {
+    archive(&[("bindata/data.bin", data), ("main.xml", xml.as_bytes())], Deflated)
+}
+
+#[test]
+fn law_lines_along_x_become_columns() {
+    let heights = awkward();
+    let xml = main_xml(["3", "5", "1"], DOUBLE, "");
+    for method in [Stored, Deflated] {
+        let bytes = archive(&[("main.xml", xml.as_bytes()), ("bindata/data.bin", &little(heights.t()))], method);
+        let scan = scan_of(&bytes, Format::X3p, None).unwrap();
+        same(&scan.heights, &heights);
+        assert_eq!(scan.size_m, Some([3.0 * 1.25e-7, 5.0 * 2.5e-7]));
+        assert_eq!((scan.unit.as_deref(), scan.periodic), (Some("m"), None));
+    }
+}
+
+#[test]
+fn val_every_kind_of_number() {
+    let size = ["1", "3", "1"];
+    let short: Vec<u8> = [-32768_i16, 5, 32767].iter().flat_map(|value| value.to_le_bytes()).collect();
+    let long: Vec<u8> = [i32::MIN, 5, i32::MAX].iter().flat_map(|value| value.to_le_bytes()).collect();
+    let float: Vec<u8> = [0.1_f32, f32::NAN, -5.0].iter().flat_map(|value| value.to_le_bytes()).collect();
+    let heights = |kind: &str, more: &str, data: &[u8]| {
+        let xml = main_xml(size, &format!("<DataType>{kind}</DataType>{more}"), "");
+        scan_of(&x3p(&xml, data), Format::X3p, None).unwrap().heights
+    };
+    same(&heights("I", "", &short), &array![[-32768.0, 5.0, 32767.0]]);
+    same(&heights("I", "<Increment>0.5</Increment><Offset>2</Offset>", &short), &array![[-16382.0, 4.5, 16385.5]]);
+    same(&heights("L", "<Increment>2</Increment>", &long), &array![[-4_294_967_296.0, 10.0, 4_294_967_294.0]]);
+    same(&heights("F", "", &float), &array![[f64::from(0.1_f32), f64::NAN, -5.0]]);
+    same(&heights("D", "<Offset> 1e-6 </Offset>", &little(&[0.0, f64::NAN, 1.0])), &array![[1e-6, f64::NAN, 1.000_001]]);
+}
+
+#[test]
+fn law_points_that_are_not_valid_are_missing() {
+    let heights = Array2::from_shape_fn((3, 4), |(row, column)| (10 * row + column) as f64);
+    // The points 0, 4 and 9, along x first.
+    let bits = [0b1110_1110_u8, 0b1111_1101];
+    let xml = main_xml(["3", "4", "1"], DOUBLE, "<ValidPointsLink>bindata/valid.bin</ValidPointsLink>");
+    let parts = |bits: &[u8]| {
+        let data = little(heights.t());
+        archive(&[("main.xml", xml.as_bytes()), ("bindata/data.bin", &data), ("bindata/valid.bin", bits)], Deflated)
+    };
+    let mut expected = heights.clone();
+    for place in [0, 4, 9] {
+        expected[[place % 3, place / 3]] = f64::NAN;
+    }
+    same(&scan_of(&parts(&bits), Format::X3p, None).unwrap().heights, &expected);
+    refused(&parts(&bits[..1]), Format::X3p, &["\"bindata/valid.bin\" has 1 bytes", "it has 2"]);
+    refused(&x3p(&xml, &little(heights.t())), Format::X3p, &["names \"bindata/valid.bin\", which is not there"]);
+}
+
+#[test]
+fn law_what_is_not_needed_may_lack_or_differ() {
+    let heights = array![[1.0, 2.0], [3.0, 4.0]];
+    let good = main_xml(["2", "2", "1"], DOUBLE, "");
+    for xml in [
+        good.replace("p:", ""),
+        good.replace("xmlns:p", "xmlns:iso").replace("p:ISO", "iso:ISO"),
+        good.replace("<ISO5436_2 ", "<ISO5436_2 xmlns=\"http://x.org\" "),
+        good.replace("<AxisType>A</AxisType>", ""),
+        good.replace("<Revision>ISO5436 - 2000</Revision>", ""),
+        good.replace("bindata/data.bin", "./bindata/data.bin"),
+        good.replace("bindata/data.bin", "\\bindata\\data.bin"),
+        good.replace("<SizeX>2<", "<SizeX>\n 2 <"),
+        format!("\u{feff}{good}"),
+    ] {
+        same(&scan_of(&x3p(&xml, &little(heights.t())), Format::X3p, None).unwrap().heights, &heights);
+    }
+    let unsized_ = good.replace("<Increment>2.5E-7</Increment>", "");
+    assert_eq!(scan_of(&x3p(&unsized_, &little(heights.t())), Format::X3p, None).unwrap().size_m, None);
+}
+
+#[test]
+fn law_every_bad_description_has_its_sentence() {
+    let data = little(&[1.0, 2.0, 3.0, 4.0]);
+    let good = main_xml(["2", "2", "1"], DOUBLE, "");
+    for (from, to, parts) in [
+        ("<SizeZ>1<", "<SizeZ>2<", vec!["it has 2 layers"]),
+        ("<SizeX>2<", "<SizeX>3<", vec!["has 32 bytes, and by its main.xml it has 48"]),
+        ("<SizeX>2<", "<SizeX>0<", vec!["0 by 2 points"]),
+        ("<SizeX>2<", "<SizeX>-2<", vec!["SizeX is \"-2\""]),
+        ("<SizeX>2<", "<SizeX>1000000000<", vec!["1000000000 by 2 points"]),
+        ("<SizeX>2<", "<SizeX>18446744073709551615<", vec!["a surface may have 268435456"]),
+        ("<SizeX>2<", "<SizeX>99999999999999999999<", vec!["must be a number of points"]),
+        ("<SizeX>2</SizeX>", "", vec!["does not say its SizeX"]),
+        ("MatrixDimension", "ListDimension", vec!["describes no matrix"]),
+        ("DataLink>", "DataList>", vec!["listed in XML, which is not supported"]),
+        ("bindata/data.bin", "bindata/other.bin", vec!["\"bindata/other.bin\", which is not there"]),
+        ("bindata/data.bin", "", vec!["does not say where"]),
+        (">D<", ">X<", vec!["of the kind \"X\"; allowed: I, L, F, D"]),
+        ("<DataType>D</DataType>", "", vec!["allowed: I, L, F, D"]),
+        ("<CX><AxisType>I<", "<CX><AxisType>A<", vec!["axis CX are not evenly spaced"]),
+        ("<CX><AxisType>I<", "<CX><AxisType>Q<", vec!["of the kind \"Q\"; allowed: I"]),
+        ("1.25e-007", "0", vec!["axis CX are 0 m apart"]),
+        ("1.25e-007", "1,25e-7", vec!["Increment of CX is \"1,25e-7\""]),
+        ("CZ>", "CW>", vec!["no axis CZ"]),
+        ("CY>", "CW>", vec!["no axis CY"]),
+        ("Axes>", "Axis>", vec!["describes no axes"]),
+        ("</Record3>", "", vec!["its main.xml is damaged"]),
+    ] {
+        assert!(good.contains(from), "{from}");
+        refused(&x3p(&good.replace(from, to), &data), Format::X3p, &parts);
+    }
+    refused(&archive(&[("heights.npy", &data)], Stored), Format::X3p, &["a zip archive without main.xml"]);
+    refused(&archive(&[("main.xml", b"\xff\xfe")], Stored), Format::X3p, &["not in UTF-8"]);
+    refused(b"PK\x03\x04 and nothing", Format::X3p, &["damaged as a zip archive"]);
+    let entity = good.replace("<p:ISO", "<!DOCTYPE a [<!ENTITY b \"c\">]><p:ISO");
+    refused(&x3p(&entity, &data), Format::X3p, &["its main.xml is damaged"]);
+}
+
+#[test]
+fn law_bombs_do_not_go_off() {
+    // A description of 32 MiB, one of many elements, one of many remarks, and some that are deep.
+    let described = |xml: &str| archive(&[("main.xml", xml.as_bytes())], Deflated);
+    refused(&described(&" ".repeat(1 << 25)), Format::X3p, &["its main.xml has more than 16777216 bytes"]);
+    refused(&described(&format!("<a>{}</a>", "<b/>".repeat(1 << 20))), Format::X3p, &["more than 256 elements"]);
+    refused(&described(&format!("<a>{}</a>", "<!---->".repeat(1 << 20))), Format::X3p, &["its main.xml is damaged: nodes limit reached"]);
+    let deep = |depth: usize| described(&format!("{}{}", "<a>".repeat(depth), "</a>".repeat(depth)));
+    refused(&deep(1 << 20), Format::X3p, &["more than 256 elements"]);
+    refused(&deep(256), Format::X3p, &["describes no axes"]);
+    // Numbers of which the archive says that there are more than what takes their place can make.
+    let xml = main_xml(["16384", "16384", "1"], DOUBLE, "");
+    let mut bytes = archive(&[("main.xml", xml.as_bytes()), ("bindata/data.bin", &[0; 32])], Deflated);
+    refused(&bytes, Format::X3p, &["has 32 bytes, and by its main.xml it has 2147483648"]);
+    // The size stands in the directory at the end.
+    let place = bytes.windows(4).rposition(|window| window == b"PK\x01\x02").unwrap() + 24;
+    assert_eq!(bytes[place], 32);
+    bytes[place..place + 4].copy_from_slice(&0x8000_0000_u32.to_le_bytes());
+    refused(&bytes, Format::X3p, &["claims 2147483648 bytes, which a file of its size cannot hold"]);
+    // And of which it says that there are fewer.
+    let xml = main_xml(["2", "2", "1"], DOUBLE, "");
+    let mut bytes = archive(&[("main.xml", xml.as_bytes()), ("bindata/data.bin", &[0; 40])], Deflated);
+    let place = bytes.windows(4).rposition(|window| window == b"PK\x01\x02").unwrap() + 24;
+    bytes[place] = 32;
+    refused(&bytes, Format::X3p, &["its \"bindata/data.bin\""]);
+}
