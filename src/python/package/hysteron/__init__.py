@@ -1,12 +1,12 @@
 """hysteron: the adhesive hysteresis of rough surfaces.
 
-`run(spec)` has the program `hysteron` compute a campaign, and `load(dir)` opens what a campaign has left: its tables as Arrow tables, which Polars, DuckDB
+`run(spec)` has the program `hysteron` compute a campaign, `take(file)` take a measured surface, and `load(dir)` opens what a campaign has left: its tables as Arrow tables, which Polars, DuckDB
 and pandas take as they are. `jkr`, `theory` and `spectrum` are the program's own single-asperity functions, theories and spectrum for NumPy arrays.
 """
 
 from . import jkr, spectrum, theory
 from ._hysteron import __version__
-from ._program import Failed, FailedCases, Interrupted, run
+from ._program import Failed, FailedCases, Interrupted, run, take
 from ._run import Description, Run, describe, load
 
 __all__ = [
@@ -21,5 +21,6 @@ __all__ = [
     "load",
     "run",
     "spectrum",
+    "take",
     "theory",
 ]

@@ -109,9 +109,38 @@ def run(
     return result
 
 
+def take(
+    file: str | os.PathLike[str],
+    out: str | os.PathLike[str] | None = None,
+    *,
+    dataset: str | None = None,
+    pixel_m: float | None = None,
+    unit: str | None = None,
+    fill: bool = False,
+    detrend: str = "plane",
+    periodic: bool = False,
+    points: int = 8,
+) -> dict[str, Any]:
+    """Takes a measured surface, as `hysteron import` does, and says what it is like: its moments, its spectrum, the self-affine spectrum that fits it.
+
+    `file` is HDF5 (`dataset` names the field), NetCDF-3, X3P, .npy or text. `pixel_m` is the distance of its points [m] and `unit` the unit of its heights, where
+    the file does not tell them; `fill` continues the heights into missing points; `detrend` is mean, plane or quadratic; waves shorter than so many `points` are
+    taken off. With `out` the surface is written there, over what is there, to be named in a spec as `surface.file`; without it nothing is written.
+    """
+    command = [str(find()), "import", "--json", f"--detrend={detrend}", f"--points={points}"]
+    command += ["--dry-run"] if out is None else [f"--out={os.fspath(out)}", "--force"]
+    command += [f"--{name}={value}" for name, value in (("dataset", dataset), ("pixel-m", pixel_m), ("unit", unit)) if value is not None]
+    command += [f"--{name}" for name, asked in (("fill", fill), ("periodic", periodic)) if asked]
+    return _answered([*command, "--", os.fspath(file)])
+
+
 def status(dir: Path) -> dict[str, Any]:
     """The answer of `hysteron status DIR --json`."""
-    command = [str(find()), "status", "--json", "--", str(dir)]
+    return _answered([str(find()), "status", "--json", "--", str(dir)])
+
+
+def _answered(command: list[str]) -> dict[str, Any]:
+    """What a command answers in JSON."""
     answer = subprocess.run(command, check=False, capture_output=True, encoding="utf-8", errors="replace")
     if answer.returncode not in (0, _FAILED_CASES):
         raise Failed(_words(answer.stderr), answer.returncode)

@@ -1,0 +1,78 @@
+# %% [markdown]
+# From a scan to the hysteresis curve of its contact. The cells of this script open as a notebook in Jupyter (jupytext) and VS Code.
+#
+#     pip install . matplotlib h5py && cargo install --path .
+#     python data/examples/own_scan.py my_scan.x3p curve.png
+#
+# Without a file it measures a surface that it makes itself.
+
+# %%
+import sys
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+
+import hysteron
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+
+given = [Path(word) for word in sys.argv[1:]]
+scan = given[0] if given else Path("made_up.npy")
+figure = given[1] if len(given) > 1 else Path("own_scan.png")
+told = {}
+if not given or (scan.name == "made_up.npy" and not scan.exists()):
+    # A rough square of 128 x 128 points, 50 nm apart, that does not continue periodically: heights in nanometres, with a tilt.
+    random = np.random.default_rng(1)
+    q = np.hypot(*np.meshgrid(np.fft.fftfreq(256), np.fft.rfftfreq(256), indexing="ij"))
+    modes = np.where((q > 0) & (q < 1 / 8), np.maximum(q, 1 / 256) ** -1.8, 0) * np.exp(2j * np.pi * random.random(q.shape))
+    heights = np.fft.irfft2(modes, s=(256, 256))[:128, :128]
+    np.save(scan, 20 * heights / heights.std() + 0.3 * np.arange(128)[:, None])
+    # A .npy file does not tell these; X3P and NetCDF do.
+    told = {"pixel_m": 50e-9, "unit": "nm"}
+
+# %% What the surface is like: its moments, its spectrum and a self-affine one that fits it.
+surface = Path(figure).with_suffix(".h5")
+about = hysteron.take(scan, surface, **told)
+fit = about["self_affine"]
+print(f"{about['point_count']} points, {about['length_m']:.3e} m: rms height {about['rms_height_m']:.3e} m, rms slope {about['rms_slope']:.3f}")
+print(f"H = {fit['hurst']:.2f} with a scatter of {fit['scatter']:.2f} decades; {about['summit_count']} summits" if fit else "no fit")
+
+# %% Its contact with a soft elastic: a patch by itself, since the scan does not continue periodically. What is done already is not done again.
+# Put your own numbers here. Those that stand here let adhesion and roughness compete: to flatten roughness costs some E* h_rms h'_rms for each area, and contact
+# wins Δγ. Much softer surfaces simply stick, and for much stiffer ones JKR does not hold.
+work_of_adhesion = 0.07
+modulus = work_of_adhesion / (about["rms_slope"] * about["rms_height_m"])
+run = hysteron.run(
+    {
+        "name": surface.stem,
+        "surface": {"file": str(surface)},
+        "material": {"contact_modulus_pa": float(f"{modulus:.1e}"), "work_of_adhesion_j_m2": work_of_adhesion},
+        "model": {"boundary": "isolated"},
+        "cycle": {"max_load": [0.004]},
+    },
+    out=surface.with_suffix(""),
+)
+
+# %% The curve, and the spectrum beside its fit.
+table = run.steps(run.cycle_ids[0])
+steps = {name: table[name].to_numpy() for name in ("branch", "penetration", "load")}
+left, right = plt.subplots(1, 2, figsize=(9, 3.6), layout="constrained")[1]
+for branch, style, colour in [("loading", "--", "#008a5e"), ("unloading", "-", "#cc3311")]:
+    some = steps["branch"] == branch
+    left.plot(steps["penetration"][some], steps["load"][some], style, color=colour, label=branch)
+left.axhline(0, color="grey", lw=0.5)
+case = run.cases.to_pylist()[0]
+left.set(xlabel="Δ/h_rms", ylabel="F/(E* A₀)", title=f"Θ = {case['loss_mean']:.2e} E* A₀ h_rms")
+left.legend()
+q, density = np.array([(ring["wavenumber_1_m"], ring["density_m4"]) for ring in about["spectrum"]]).T
+right.loglog(q, density, "o", ms=3, color="#cc3311", label="of the scan")
+if fit:
+    line = fit["plateau_m4"] * np.maximum(q / fit["roll_off_1_m"], 1.0) ** (-2 * (fit["hurst"] + 1))
+    right.loglog(q, line, "--", color="#0077bb", label=f"self-affine, H = {fit['hurst']:.2f}")
+right.axvline(2 * np.pi / about["shortest_wavelength_m"], color="grey", lw=0.5)
+right.set(xlabel="q [1/m]", ylabel="C(q) [m⁴]")
+right.legend()
+plt.savefig(figure, dpi=150)
+print(f"{figure}: {case['caution'] or 'nothing'} speaks against trusting it")
