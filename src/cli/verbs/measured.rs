@@ -118,8 +118,10 @@ fn told(file: &Path, header: &SurfaceHeader, [points, summits, edge]: [usize; 3]
     }
     match header.measured.as_ref().and_then(|of| of.fit) {
         Some(fit) => {
-            let own = if (0.0..=1.0).contains(&fit.hurst) { "" } else { "; beyond 0 to 1 it is not self-affine" };
-            line("self-affine", format!("H = {:.3}, C0 = {:.3e} m⁴, scatter {:.2} decades{own}", fit.hurst, fit.plateau_m4, fit.scatter));
+            line("self-affine", format!("H = {:.3}, C0 = {:.3e} m⁴, scatter {:.2} decades", fit.hurst, fit.plateau_m4, fit.scatter));
+            if !(0.0..=1.0).contains(&fit.hurst) {
+                line("", "H beyond 0 to 1: in this band it is not self-affine".to_owned());
+            }
             let longest = TAU / fit.roll_off_1_m;
             let rolls = if longest < 0.7 * length { format!("at {longest:.3e} m") } else { "none within the scan".to_owned() };
             line("roll-off", rolls);
