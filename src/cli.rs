@@ -254,7 +254,7 @@ struct ImportArguments {
     /// Which field of the file it is, where it has several: a dataset of HDF5, a variable of NetCDF
     #[arg(long, value_name = "NAME")]
     dataset: Option<String>,
-    /// Distance of its points [m], where the file does not tell it: the size of the scan over its number of points
+    /// Distance of its points in metres, where the file does not tell it: the size of the scan over its number of points
     #[arg(long, value_name = "METRES")]
     pixel_m: Option<f64>,
     /// Unit of its heights, where the file does not tell it, such as nm

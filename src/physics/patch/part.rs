@@ -8,7 +8,7 @@ use super::super::state::Problem;
 use super::{Hold, Patch};
 
 impl Patch {
-    /// Relaxes at the present approach ([`super::relax`]). Spots that leave or are covered on the way are taken out, and returned.
+    /// Relaxes at the present approach ([`super::super::relax`]). Spots that leave or are covered on the way are taken out, and returned.
     pub(crate) fn relax(&mut self, problem: &Problem, uncovered: Option<&Change>, effort: &mut Effort) -> Result<Vec<Change>, Unsettled> {
         relax(&mut Part { patch: self, problem, effort }, problem, uncovered)
     }
