@@ -1,13 +1,13 @@
 # %% [markdown]
 # From a scan to the hysteresis curve of its contact. The cells of this script open as a notebook in Jupyter (jupytext) and VS Code.
 #
-#     pip install . matplotlib h5py && cargo install --path .
-#     python data/examples/own_scan.py my_scan.x3p curve.png
+#     pip install . matplotlib && cargo install --path .
+#     python data/examples/own_scan.py my_scan.x3p --figure curve.png --modulus 1e8
 #
-# Without a file it measures a surface that it makes itself.
+# Without a file it measures a surface that it makes itself. What a file does not tell is told by --pixel-m, --unit and --dataset.
 
 # %%
-import sys
+import argparse
 from pathlib import Path
 
 import matplotlib
@@ -18,11 +18,18 @@ import hysteron
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-given = [Path(word) for word in sys.argv[1:]]
-scan = given[0] if given else Path("made_up.npy")
-figure = given[1] if len(given) > 1 else Path("own_scan.png")
-told = {}
-if not given or (scan.name == "made_up.npy" and not scan.exists()):
+words = argparse.ArgumentParser()
+words.add_argument("scan", nargs="?", type=Path)
+words.add_argument("--figure", type=Path, default=Path("own_scan.png"))
+words.add_argument("--pixel-m", type=float)
+words.add_argument("--unit")
+words.add_argument("--dataset")
+words.add_argument("--modulus", type=float, help="contact modulus [Pa]")
+words.add_argument("--adhesion", type=float, default=0.05, help="work of adhesion [J/m²]")
+asked = words.parse_args()  # in a notebook: parse_args(["my_scan.x3p"])
+scan, told = asked.scan, {"pixel_m": asked.pixel_m, "unit": asked.unit, "dataset": asked.dataset}
+if scan is None:
+    scan = Path("made_up.npy")
     # A rough square of 128 x 128 points, 50 nm apart, that does not continue periodically: heights in nanometres, with a tilt.
     random = np.random.default_rng(1)
     q = np.hypot(*np.meshgrid(np.fft.fftfreq(256), np.fft.rfftfreq(256), indexing="ij"))
@@ -33,29 +40,31 @@ if not given or (scan.name == "made_up.npy" and not scan.exists()):
     told = {"pixel_m": 50e-9, "unit": "nm"}
 
 # %% What the surface is like: its moments, its spectrum and a self-affine one that fits it.
-surface = Path(figure).with_suffix(".h5")
+figure = asked.figure
+surface = figure.with_suffix(".surface.h5")
 about = hysteron.take(scan, surface, **told)
 fit = about["self_affine"]
 print(f"{about['point_count']} points, {about['length_m']:.3e} m: rms height {about['rms_height_m']:.3e} m, rms slope {about['rms_slope']:.3f}")
 print(f"H = {fit['hurst']:.2f} with a scatter of {fit['scatter']:.2f} decades; {about['summit_count']} summits" if fit else "no fit")
 
 # %% Its contact with a soft elastic: a patch by itself, since the scan does not continue periodically. What is done already is not done again.
-# Put your own numbers here. Those that stand here let adhesion and roughness compete: to flatten roughness costs some E* h_rms h'_rms for each area, and contact
-# wins Δγ. Much softer surfaces simply stick, and for much stiffer ones JKR does not hold.
-work_of_adhesion = 0.07
-modulus = work_of_adhesion / (about["rms_slope"] * about["rms_height_m"])
+# Without a modulus, one that lets adhesion and roughness compete: to flatten roughness costs some E* h_rms h'_rms for each area, and contact wins Δγ. Much softer
+# surfaces simply stick, and for much stiffer ones JKR does not hold.
+modulus = asked.modulus or float(f"{3 * asked.adhesion / (about['rms_slope'] * about['rms_height_m']):.1e}")
 run = hysteron.run(
     {
-        "name": surface.stem,
+        "name": figure.stem,
         "surface": {"file": str(surface)},
-        "material": {"contact_modulus_pa": float(f"{modulus:.1e}"), "work_of_adhesion_j_m2": work_of_adhesion},
+        "material": {"contact_modulus_pa": modulus, "work_of_adhesion_j_m2": asked.adhesion},
         "model": {"boundary": "isolated"},
         "cycle": {"max_load": [0.004]},
     },
-    out=surface.with_suffix(""),
+    out=figure.with_suffix(""),
 )
 
 # %% The curve, and the spectrum beside its fit.
+if not run.cycle_ids:
+    raise SystemExit("the contact could not be computed: the program has said why")
 table = run.steps(run.cycle_ids[0])
 steps = {name: table[name].to_numpy() for name in ("branch", "penetration", "load")}
 left, right = plt.subplots(1, 2, figsize=(9, 3.6), layout="constrained")[1]
@@ -75,4 +84,6 @@ right.axvline(2 * np.pi / about["shortest_wavelength_m"], color="grey", lw=0.5)
 right.set(xlabel="q [1/m]", ylabel="C(q) [m⁴]")
 right.legend()
 plt.savefig(figure, dpi=150)
-print(f"{figure}: {case['caution'] or 'nothing'} speaks against trusting it")
+print(f"{figure}: E* = {modulus:.1e} Pa, A/A0 = {case['area_at_max_load_mean']:.2f} at F/(E* A0) = 0.004")
+if case["caution"]:
+    print(f"what speaks against trusting it: {case['caution'].replace('+', ', ')} (the report says what each means: {run.dir / 'report.html'})")

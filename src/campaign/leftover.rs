@@ -88,16 +88,16 @@ fn unnamed(folder: &Path, extension: Option<&str>, known: &HashSet<&str>, found:
     }
 }
 
-/// Whether a name is that of a surface or a cycle, as `H0.80_z128_r03-1a2b3c4d`: nothing else may be taken for one, since it may be somebody's own.
+/// Whether a name is that of a surface or a cycle, as `H0.80_z128_r03-1a2b3c4d` or `scan_r00-1a2b3c4d`: nothing else may be taken for one, since it may be
+/// somebody's own.
 pub(super) fn is_id(name: &str) -> bool {
-    let digits = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
+    let digits = |text: &str| text.len() >= 2 && text.bytes().all(|b| b.is_ascii_digit());
     let key = |text: &str| matches!(text.len(), 8 | 16) && text.bytes().all(|b| matches!(b, b'0'..=b'9' | b'a'..=b'f'));
+    let plain = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_alphanumeric() || matches!(b, b'.' | b'_' | b'-'));
     let parts = || {
         let (readable, end) = name.rsplit_once('-')?;
-        let (hurst, rest) = readable.strip_prefix('H')?.split_once("_z")?;
-        let (zeta, realization) = rest.split_once("_r")?;
-        let (whole, part) = hurst.split_once('.')?;
-        Some(digits(whole) && digits(part) && digits(zeta) && digits(realization) && key(end))
+        let (kind, realization) = readable.rsplit_once("_r")?;
+        Some(plain(kind) && digits(realization) && key(end))
     };
     parts().unwrap_or(false)
 }

@@ -26,7 +26,7 @@ use std::path::PathBuf;
 const GENERATE: u32 = 1;
 const EXTRACT: u32 = 1;
 const CYCLE: u32 = 12;
-const AGGREGATE: u32 = 4;
+const AGGREGATE: u32 = 5;
 const REPORT: u32 = 6;
 
 /// The stages, in their order.

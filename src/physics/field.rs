@@ -86,18 +86,19 @@ impl Field {
         total
     }
 
+    /// `Σ w(q)|c|²` over all modes but the mean, of weights of the wavenumber q \[1/m\].
+    pub(super) fn weighted<const N: usize>(&self, weights: impl Fn(f64) -> [f64; N] + Sync) -> [f64; N] {
+        let add = |sums: &mut [f64; N], squared: f64, times: f64, power: f64| {
+            let of_mode = weights(self.lowest * squared.sqrt());
+            sums.iter_mut().zip(of_mode).for_each(|(sum, weight)| *sum += times * power * weight);
+        };
+        self.sum(&[0.0; N], add, |total, sum| total.iter_mut().zip(sum).for_each(|(t, s)| *t += s))
+    }
+
     /// Its moments, the mean left out: `m0 = Σ|c|²`, `m2 = ½ Σ q²|c|²`, `m4 = ⅜ Σ q⁴|c|²`.
     pub(super) fn moments(&self) -> Moments {
-        let add = |sums: &mut [f64; 3], squared: f64, times: f64, power: f64| {
-            if squared > 0.0 {
-                sums[0] += times * power;
-                sums[1] += times * power * squared;
-                sums[2] += times * power * squared * squared;
-            }
-        };
-        let sums = self.sum(&[0.0; 3], add, |total, sum| total.iter_mut().zip(sum).for_each(|(t, s)| *t += s));
-        let q2 = self.lowest * self.lowest;
-        Moments { m0_m2: sums[0], m2: 0.5 * q2 * sums[1], m4_1_m2: 0.375 * q2 * q2 * sums[2] }
+        let [m0, slope, laplacian] = self.weighted(|q| [if q > 0.0 { 1.0 } else { 0.0 }, q * q, q.powi(4)]);
+        Moments { m0_m2: m0, m2: 0.5 * slope, m4_1_m2: 0.375 * laplacian }
     }
 
     /// Its spectrum in rings of wavevectors; see [`super::periodogram::periodogram`].

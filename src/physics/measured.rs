@@ -121,7 +121,11 @@ pub fn prepare(heights_m: Array2<f64>, spacing_m: [f64; 2], treatment: &Treatmen
     let missing_count = heights.iter().filter(|h| !h.is_finite()).count();
     let share = missing_count as f64 / heights.len() as f64;
     if missing_count > 0 && treatment.missing == Missing::Refuse {
-        return Err(domain("the share of missing points", share, "none; or missing = \"fill\", which continues the heights around them"));
+        return Err(domain(
+            "the share of missing points",
+            share,
+            "none; or missing = \"fill\" (--fill), which continues the heights around them",
+        ));
     }
     if share > MOST_MISSING {
         return Err(domain("the share of missing points", share, "up to half of them"));

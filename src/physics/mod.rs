@@ -121,7 +121,9 @@ pub enum PhysicsError {
         share: f64,
     },
     /// The greatest load is not reached.
-    #[error("cannot reach the load F/(E* A0) = {wanted}: at the approach {approach_m:e} m it is {reached}; allowed: a smaller max_load")]
+    #[error(
+        "cannot reach the load F/(E* A0) = {wanted}: at the approach {approach_m:e} m it is {reached}; allowed: a smaller max_load, or, where the contact is pulled on, a stiffer or rougher surface: this one sticks"
+    )]
     LoadNotReached {
         /// The load asked for.
         wanted: f64,

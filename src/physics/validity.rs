@@ -2,9 +2,11 @@
 //!
 //! Where flattening costs less than adhesion gains, the half-space conforms to the roughness, and summits are no separate spots any more.
 
+use super::field::Field;
 use super::spectrum::Spectrum;
 use super::synthesis::mode_sums;
-use std::f64::consts::PI;
+use ndarray::ArrayView2;
+use std::f64::consts::{PI, TAU};
 
 /// Smallest Tabor number at which Wu's jump-in distance (Eq 3) holds.
 pub const LEAST_TABOR: f64 = 2.0;
@@ -63,4 +65,18 @@ pub fn realised_flattening(spectrum: &Spectrum, seed: &[u8; 32], contact_modulus
         [wavenumber, if 4 * mode_squared >= edge { wavenumber } else { 0.0 }]
     });
     Flattening { whole_j_m2: unit * whole, octave_j_m2: unit * octave }
+}
+
+/// The same of heights \[m\] on a square of side L \[m\] whose shortest waves are so long \[m\], with E* \[Pa\]. One that does not continue periodically is taken with
+/// its mirror images.
+#[must_use]
+pub fn measured_flattening(
+    heights_m: ArrayView2<'_, f64>,
+    (length_m, periodic): (f64, bool),
+    shortest_wavelength_m: f64,
+    contact_modulus_pa: f64,
+) -> Flattening {
+    let edge = TAU / shortest_wavelength_m;
+    let [whole, octave] = Field::of(heights_m, length_m, periodic).weighted(|q| [q, if 2.0 * q >= edge { q } else { 0.0 }]);
+    Flattening { whole_j_m2: 0.25 * contact_modulus_pa * whole, octave_j_m2: 0.25 * contact_modulus_pa * octave }
 }

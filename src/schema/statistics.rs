@@ -10,6 +10,8 @@ pub(super) const CASE: &[Column] = &[
 /// What defines a case, a column each.
 const PARAMETERS: &[Column] = &[
     text("surface_file", "File of a measured surface, without its folder; null for a generated one").or_null(),
+    text("surface_dataset", "Which field of that file; null for the only one, and for a generated surface").or_null(),
+    text("detrend", "What was taken off a measured surface: \"mean\", \"plane\" or \"quadratic\"; null for a generated one").or_null(),
     real("hurst", "1", "Hurst exponent H; null for a measured surface").or_null().from("Eq 10"),
     real("magnification", "1", "Magnification, longest over shortest wavelength; null for a measured surface").or_null().from("Eq 10"),
     real("length_m", "m", "Side of the square, L").from("Eq 10"),

@@ -29,6 +29,7 @@ use crate::model::{
 pub use fault::{Fault, Place, SpecErrors};
 pub use keys::MEASURED;
 pub use realizations::{Realizations, Until};
+pub use write::quoted;
 
 /// The greatest number of cases that one spec may make.
 pub const MAX_CASES: u32 = 10_000;

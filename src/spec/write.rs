@@ -48,9 +48,19 @@ fn is_read(key: &Key, base: &CaseParams) -> bool {
     key.table != "surface" || !others.contains(&key.name) || (key.get)(base) != (key.get)(&CaseParams::default())
 }
 
-/// A text as TOML has it. There are no control characters in it.
-fn quoted(text: &str) -> String {
-    format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\""))
+/// A text as TOML has it.
+#[must_use]
+pub fn quoted(text: &str) -> String {
+    let mut quoted = String::from('"');
+    for c in text.chars() {
+        match c {
+            '"' | '\\' => quoted.extend(['\\', c]),
+            c if c.is_control() => quoted += &format!("\\u{:04x}", c as u32),
+            c => quoted.push(c),
+        }
+    }
+    quoted.push('"');
+    quoted
 }
 
 /// A value as TOML. Rust's shortest form of a float is also TOML's, and reads back to the same bits.

@@ -1,11 +1,15 @@
 //! A measured surface: read, made fit for the model, and put into words.
 
 use super::StageError;
+use super::statistics::moments;
+use crate::model::Detrend;
 use crate::physics::measured::{Prepared, Treatment, prepare};
+use crate::physics::periodogram::{Ring, periodogram, windowed_periodogram};
 use crate::physics::selfaffine::fit_self_affine;
 use crate::spec::SurfaceParams;
 use crate::store::hdf5::{Measured, SpectrumFit, SurfaceHeader, is_own_surface, read_heights, read_surface};
 use crate::store::scan::{Format, Found, LENGTHS, Scan, detect, metres, read};
+use ndarray::Array2;
 use std::f64::consts::TAU;
 use std::io::Read as _;
 use std::path::Path;
@@ -13,43 +17,21 @@ use std::path::Path;
 /// How far a distance of points that is given may be from that of the file.
 const SAME: f64 = 1e-3;
 
-/// A measured surface as the spec's parameters ask for it, with what its file in a run says of it. `digest` is the BLAKE3 of its file.
+/// A measured surface as the spec's parameters ask for it, with what its file in a run says of it. `digest` is the BLAKE3 of its file. A surface of this program, which
+/// `import` may have written, is taken as it is.
 ///
 /// # Errors
 /// A file that cannot be read or does not say what is needed; what [`prepare`] refuses.
 pub fn measure(params: &SurfaceParams, digest: &str, key: &str) -> Result<(Prepared, SurfaceHeader), StageError> {
     let path = Path::new(&params.file);
-    let scan = scanned(path, &params.dataset)?;
-    let refuse = |why: String| StageError::Measured { path: path.to_owned(), why };
+    let scan = match source(path, &params.dataset)? {
+        Source::Own(header, heights) => return own(params, *header, heights, digest, key),
+        Source::Scan(scan) => scan,
+    };
     let (rows, columns) = scan.heights.dim();
-    let pixel = match (scan.size_m, params.pixel_m > 0.0) {
-        (None, false) => {
-            return Err(refuse(
-                "it does not say how far apart its points are; give pixel_m, the size of the scan over its number of points".to_owned(),
-            ));
-        }
-        (None, true) => [params.pixel_m; 2],
-        (Some(size), given) => {
-            let own = [size[0] / rows as f64, size[1] / columns as f64];
-            if given && own.iter().any(|own| (params.pixel_m / own - 1.0).abs() > SAME) {
-                let (given, [a, b]) = (params.pixel_m, own);
-                return Err(refuse(format!("its points are {a:.4e} m and {b:.4e} m apart, and pixel_m is {given:e} m; leave pixel_m out")));
-            }
-            own
-        }
-    };
-    let unit = match (&scan.unit, params.unit.is_empty()) {
-        (Some(_), true) => 1.0,
-        (Some(unit), false) if metres(&params.unit) == metres(unit) => 1.0,
-        (Some(unit), false) => {
-            return Err(refuse(format!("its heights are in {unit}, and the unit {:?} was given; leave it out", params.unit)));
-        }
-        (None, true) => return Err(refuse("it does not say the unit of its heights; give the unit, such as \"nm\"".to_owned())),
-        (None, false) => metres(&params.unit)
-            .ok_or_else(|| refuse(format!("the unit {:?} that was given for its heights is no length; allowed: {LENGTHS}", params.unit)))?,
-    };
+    let (spacing, unit) = (spacing(params, &scan)?, unit(params, &scan)?);
     if scan.periodic == Some(false) && params.periodic {
-        return Err(refuse("it says that it is not periodic, and periodic = true was given".to_owned()));
+        return Err(refused(path, "it says that it is not periodic, and periodic = true was given"));
     }
     let treatment = Treatment {
         missing: params.missing,
@@ -57,9 +39,19 @@ pub fn measure(params: &SurfaceParams, digest: &str, key: &str) -> Result<(Prepa
         periodic: params.periodic,
         points_per_shortest_wavelength: f64::from(params.points_per_shortest_wavelength),
     };
-    let prepared = prepare(scan.heights.mapv(|h| unit * h), pixel, &treatment).map_err(|error| refuse(error.to_string()))?;
-    // Where short waves go and noise begins the fit ends, too.
-    let fit = fit_self_affine(&prepared.rings, TAU / prepared.shortest_wavelength_m);
+    let prepared = prepare(scan.heights.mapv(|h| unit * h), spacing, &treatment).map_err(|error| refused(path, &error.to_string()))?;
+    let measured = Measured {
+        source: path.file_name().map(|name| name.to_string_lossy().chars().take(60).collect()).unwrap_or_default(),
+        source_blake3: digest.to_owned(),
+        source_point_counts: [rows as u64, columns as u64],
+        source_spacings_m: spacing,
+        missing_count: prepared.missing_count as u64,
+        detrend: params.detrend,
+        trend_m: prepared.trend_m,
+        shortest_wavelength_m: prepared.shortest_wavelength_m,
+        noise_m: prepared.noise_m,
+        fit: fit(&prepared.rings, prepared.shortest_wavelength_m),
+    };
     let moments = &prepared.moments;
     let header = SurfaceHeader {
         length_m: prepared.length_m,
@@ -71,42 +63,130 @@ pub fn measure(params: &SurfaceParams, digest: &str, key: &str) -> Result<(Prepa
         rms_curvature_1_m: moments.rms_curvature_1_m(),
         nayak_parameter: moments.nayak_parameter(),
         generated: None,
-        measured: Some(Measured {
-            source: path.file_name().map(|name| name.to_string_lossy().chars().take(60).collect()).unwrap_or_default(),
-            source_blake3: digest.to_owned(),
-            missing_count: prepared.missing_count as u64,
-            detrend: params.detrend,
-            trend_m: prepared.trend_m,
-            shortest_wavelength_m: prepared.shortest_wavelength_m,
-            noise_m: prepared.noise_m,
-            fit: fit.map(|fit| SpectrumFit {
-                hurst: fit.hurst,
-                plateau_m4: fit.plateau_m4,
-                roll_off_1_m: fit.roll_off_1_m,
-                scatter: fit.scatter,
-            }),
-        }),
+        measured: Some(measured),
     };
     Ok((prepared, header))
 }
 
+/// A surface of this program, which has been treated already.
+fn own(
+    params: &SurfaceParams,
+    header: SurfaceHeader,
+    heights_m: Array2<f64>,
+    digest: &str,
+    key: &str,
+) -> Result<(Prepared, SurfaceHeader), StageError> {
+    let path = Path::new(&params.file);
+    if header.periodic != params.periodic {
+        let (is, write) = if header.periodic { ("continues", "true") } else { ("does not continue", "false") };
+        return Err(refused(path, &format!("it {is} periodically; allowed: periodic = {write} (surface.periodic in a spec)")));
+    }
+    let points = heights_m.nrows();
+    let spacing = header.length_m / points as f64;
+    // A generated surface has no waves below those that it was made of.
+    let shortest = header.generated.map_or(0.0, |of| of.points_per_shortest_wavelength * spacing);
+    let of_rings = if header.periodic { periodogram } else { windowed_periodogram };
+    let rings = of_rings(heights_m.view(), header.length_m);
+    let measured = header.measured.clone().unwrap_or_else(|| Measured {
+        source: path.file_name().map(|name| name.to_string_lossy().chars().take(60).collect()).unwrap_or_default(),
+        source_blake3: digest.to_owned(),
+        source_point_counts: [points as u64; 2],
+        source_spacings_m: [spacing; 2],
+        missing_count: 0,
+        detrend: Detrend::Mean,
+        trend_m: 0.0,
+        shortest_wavelength_m: shortest,
+        noise_m: 0.0,
+        fit: fit(&rings, shortest),
+    });
+    let prepared = Prepared {
+        heights_m,
+        length_m: header.length_m,
+        moments: moments(&header),
+        rings,
+        missing_count: measured.missing_count as usize,
+        trend_m: measured.trend_m,
+        noise_m: measured.noise_m,
+        shortest_wavelength_m: measured.shortest_wavelength_m,
+    };
+    Ok((prepared, SurfaceHeader { realization: 0, key: key.to_owned(), generated: None, measured: Some(measured), ..header }))
+}
+
+fn refused(path: &Path, why: &str) -> StageError {
+    StageError::Measured { path: path.to_owned(), why: why.to_owned() }
+}
+
+/// The self-affine spectrum that fits; where short waves go and noise begins, the fit ends.
+fn fit(rings: &[Ring], shortest_wavelength_m: f64) -> Option<SpectrumFit> {
+    fit_self_affine(rings, TAU / shortest_wavelength_m).map(|fit| SpectrumFit {
+        hurst: fit.hurst,
+        plateau_m4: fit.plateau_m4,
+        roll_off_1_m: fit.roll_off_1_m,
+        scatter: fit.scatter,
+    })
+}
+
+/// How far apart the points of a scan are along rows and along columns \[m\].
+fn spacing(params: &SurfaceParams, scan: &Scan) -> Result<[f64; 2], StageError> {
+    let path = Path::new(&params.file);
+    let (rows, columns) = scan.heights.dim();
+    let given = params.pixel_m;
+    match scan.size_m {
+        None if given > 0.0 => Ok([given; 2]),
+        None => {
+            let why =
+                "it does not say how far apart its points are; give pixel_m (--pixel-m), the size of the scan over its number of points";
+            Err(refused(path, why))
+        }
+        Some(size) => {
+            let [a, b] = [size[0] / rows as f64, size[1] / columns as f64];
+            if given > 0.0 && [a, b].iter().any(|own| (given / own - 1.0).abs() > SAME) {
+                return Err(refused(
+                    path,
+                    &format!("its points are {a:.4e} m and {b:.4e} m apart, and pixel_m is {given:e} m; leave pixel_m out"),
+                ));
+            }
+            Ok([a, b])
+        }
+    }
+}
+
+/// What the heights of a scan are to be multiplied by, to be metres.
+fn unit(params: &SurfaceParams, scan: &Scan) -> Result<f64, StageError> {
+    let path = Path::new(&params.file);
+    let given = &params.unit;
+    match &scan.unit {
+        Some(own) if !given.is_empty() && metres(given) != metres(own) => {
+            Err(refused(path, &format!("its heights are in {own}, and the unit {given:?} was given; leave it out")))
+        }
+        Some(_) => Ok(1.0),
+        None if given.is_empty() => Err(refused(path, "it does not say the unit of its heights; give the unit (--unit), such as \"nm\"")),
+        None => metres(given)
+            .ok_or_else(|| refused(path, &format!("the unit {given:?} that was given for its heights is no length; allowed: {LENGTHS}"))),
+    }
+}
+
+/// A file's heights: those of a surface of this program, which says all of it, or a scan.
+enum Source {
+    Own(Box<SurfaceHeader>, Array2<f64>),
+    Scan(Scan),
+}
+
 /// The height field of a file, in whatever format it is.
-fn scanned(path: &Path, dataset: &str) -> Result<Scan, StageError> {
+fn source(path: &Path, dataset: &str) -> Result<Source, StageError> {
     let dataset = (!dataset.is_empty()).then_some(dataset);
-    let refuse = |why: String| StageError::Measured { path: path.to_owned(), why };
     let mut first = Vec::new();
-    std::fs::File::open(path).and_then(|file| file.take(512).read_to_end(&mut first)).map_err(|error| refuse(error.to_string()))?;
+    std::fs::File::open(path).and_then(|file| file.take(512).read_to_end(&mut first)).map_err(|error| refused(path, &error.to_string()))?;
     match detect(&first) {
-        // A surface of this program says all of it.
         Some(Found::Hdf5) if dataset.is_none() && is_own_surface(path) => {
             let (header, heights) = read_surface(path)?;
-            Ok(Scan { heights, size_m: Some([header.length_m; 2]), unit: Some("m".to_owned()), periodic: Some(header.periodic) })
+            Ok(Source::Own(Box::new(header), heights))
         }
-        Some(Found::Hdf5) => Ok(Scan { heights: read_heights(path, dataset)?, size_m: None, unit: None, periodic: None }),
-        Some(Found::Scan(format)) => Ok(read(path, format, dataset)?),
+        Some(Found::Hdf5) => Ok(Source::Scan(Scan { heights: read_heights(path, dataset)?, size_m: None, unit: None, periodic: None })),
+        Some(Found::Scan(format)) => Ok(Source::Scan(read(path, format, dataset)?)),
         None => {
             let known = [Format::NetCdf3, Format::X3p, Format::Npy, Format::Text].map(Format::name).join(", ");
-            Err(refuse(format!("it is in no format that is read here: HDF5, {known}")))
+            Err(refused(path, &format!("it is in no format that is read here: HDF5, {known}")))
         }
     }
 }

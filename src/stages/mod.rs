@@ -10,6 +10,7 @@ mod page;
 mod reading;
 mod report;
 mod sampling;
+mod scans;
 mod statistics;
 mod surface;
 mod theories;

@@ -4,6 +4,7 @@ use super::closer::{self, Look};
 use super::done::{Clock, Outcome};
 use super::page::{escape, grid, head};
 use super::reading;
+use super::scans::scans;
 use super::theories::theories;
 use super::trust::{split, trust};
 use super::{StageError, Tally, Watch};
@@ -93,6 +94,7 @@ fn page(campaign: &Campaign, key: &str, cases: &Frame, drawings: &[(String, Pane
         escape(&summary(cases)?)
     );
     reading::results(&mut html, cases)?;
+    scans(&mut html, campaign)?;
     for sweep in sweeps(campaign) {
         let _ = writeln!(html, "<h2>Sweep {}</h2>", escape(&sweep));
         grid(&mut html, drawings.iter().filter(|(of, _)| *of == sweep).map(|(_, panel)| panel));

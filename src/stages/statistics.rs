@@ -12,10 +12,10 @@ use crate::physics::synthesis::realization_seed;
 use crate::physics::theory::{
     adhesionless_area, adhesionless_area_small, curvature_decay, dalvi_loss, deng_kesari_loss_as_printed, fuller_tabor,
 };
-use crate::physics::validity::{LEAST_TABOR, flattening, realised_flattening};
+use crate::physics::validity::{LEAST_TABOR, flattening, measured_flattening, realised_flattening};
 use crate::spec::CaseParams;
 use crate::stats::{self, CaseInput, CycleInput, Given, Sample, Value};
-use crate::store::hdf5::{SurfaceHeader, read_header};
+use crate::store::hdf5::{SurfaceHeader, read_header, read_surface};
 use crate::store::{Check, commit, parquet};
 use rayon::prelude::*;
 use std::path::Path;
@@ -98,8 +98,10 @@ fn case_input(campaign: &Campaign, number: usize, unit: &CaseUnit, standings: &[
     let scale = of_case.map(|cycle| scale(campaign, &campaign.surfaces[cycle.surface])).transpose()?;
     let generated = (!surface.is_measured()).then_some(surface);
     let file = Path::new(&surface.file).file_name().map(|name| name.to_string_lossy().into_owned());
-    let parameters: [(&str, Value); 17] = [
+    let parameters: [(&str, Value); 19] = [
         ("surface_file", file.as_deref().into()),
+        ("surface_dataset", (surface.is_measured() && !surface.dataset.is_empty()).then_some(surface.dataset.as_str()).into()),
+        ("detrend", surface.is_measured().then(|| surface.detrend.word()).into()),
         ("hurst", generated.map(|surface| surface.hurst).into()),
         ("magnification", generated.map(|surface| f64::from(surface.magnification)).into()),
         ("length_m", scale.map(|scale| scale.length_m).into()),
@@ -162,7 +164,15 @@ pub(super) fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<Cycle
     };
     let seed = realization_seed(campaign.spec.seed, u64::from(surface.realization));
     let continuous = asked.as_ref().map(|asked| flattening(asked, params.material.contact_modulus_pa));
-    let of_modes = asked.as_ref().map(|asked| realised_flattening(asked, &seed, params.material.contact_modulus_pa));
+    let modulus = params.material.contact_modulus_pa;
+    let of_modes = match (&asked, &header.measured) {
+        (Some(asked), _) => Some(realised_flattening(asked, &seed, modulus)),
+        (None, Some(measured)) => {
+            let (_, heights) = read_surface(&campaign.surface_path(surface))?;
+            Some(measured_flattening(heights.view(), (header.length_m, header.periodic), measured.shortest_wavelength_m, modulus))
+        }
+        (None, None) => None,
+    };
     let numbers: [(&str, Value); 17] = [
         ("surface_id", surface.id.as_str().into()),
         ("summit_count", summits.len().into()),

@@ -4,8 +4,10 @@ use super::StatsError;
 use crate::store::{ColumnData, Frame};
 
 /// Columns that may define a case, with the symbol and the axis label of each; labels have the markup of the figures.
-pub(super) const PARAMETERS: [(&str, &str, &str); 17] = [
+pub(super) const PARAMETERS: [(&str, &str, &str); 19] = [
     ("surface_file", "surface", "surface"),
+    ("surface_dataset", "dataset", "dataset"),
+    ("detrend", "detrend", "trend taken off"),
     ("magnification", "ζ", "magnification ζ"),
     ("hurst", "H", "Hurst exponent H"),
     ("rms_height_m", "h", "h_{rms} [m]"),
@@ -67,7 +69,10 @@ impl Varying {
 /// If the table lacks one of the columns.
 pub fn varying(cases: &Frame, rows: &[usize]) -> Result<Vec<Varying>, StatsError> {
     let mut found = Vec::new();
-    for (name, symbol, label) in PARAMETERS {
+    let files = cases.text_or_null("surface_file")?;
+    let measured = rows.iter().any(|row| files.get(*row).is_some_and(Option::is_some));
+    // What a measured surface is as large and rough as follows from which it is, and names none.
+    for (name, symbol, label) in PARAMETERS.into_iter().filter(|(name, ..)| !measured || !matches!(*name, "rms_height_m" | "length_m")) {
         let values = match cases.column(name)? {
             ColumnData::F64(all) => {
                 let picked: Vec<Option<f64>> = rows.iter().map(|row| all.get(*row).copied().flatten()).collect();

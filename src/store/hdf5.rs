@@ -100,7 +100,7 @@ fn only_field(file: &File) -> Result<String, Cause> {
     match &names[..] {
         [name] => Ok(name.clone()),
         [] => Err("it has no two-dimensional dataset in its root; name one in another group as \"group/dataset\"".into()),
-        many => Err(format!("it has several fields: {}; name one of them as the dataset", many.join(", ")).into()),
+        many => Err(format!("it has several fields: {}; name one of them as the dataset (--dataset)", many.join(", ")).into()),
     }
 }
 

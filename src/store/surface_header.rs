@@ -44,6 +44,10 @@ pub struct Measured {
     pub source: String,
     /// BLAKE3 of that file.
     pub source_blake3: String,
+    /// Points of that file along rows and along columns.
+    pub source_point_counts: [u64; 2],
+    /// How far apart they are along each \[m\].
+    pub source_spacings_m: [f64; 2],
     /// Points that were missing and are filled in.
     pub missing_count: u64,
     /// What was taken off its heights.
@@ -119,6 +123,12 @@ pub(super) fn write(file: &File, header: &SurfaceHeader) -> Result<(), Cause> {
 fn write_measured(file: &File, measured: &Measured) -> Result<(), Cause> {
     write_word(file, "source", &measured.source)?;
     write_word(file, "source_blake3", &measured.source_blake3)?;
+    let [rows, columns] = measured.source_point_counts;
+    write_number(file, "source_row_count", rows)?;
+    write_number(file, "source_column_count", columns)?;
+    let [along_rows, along_columns] = measured.source_spacings_m;
+    write_finite(file, "source_row_spacing_m", along_rows)?;
+    write_finite(file, "source_column_spacing_m", along_columns)?;
     write_number(file, "missing_count", measured.missing_count)?;
     write_word(file, "detrend", measured.detrend.word())?;
     write_finite(file, "trend_m", measured.trend_m)?;
@@ -143,6 +153,8 @@ fn read_measured(file: &File, names: &[String]) -> Result<Measured, Cause> {
     Ok(Measured {
         source: word(file, "source")?,
         source_blake3: word(file, "source_blake3")?,
+        source_point_counts: [number(file, "source_row_count")?, number(file, "source_column_count")?],
+        source_spacings_m: [finite(file, "source_row_spacing_m")?, finite(file, "source_column_spacing_m")?],
         missing_count: number(file, "missing_count")?,
         detrend: choice(file, "detrend")?,
         trend_m: finite(file, "trend_m")?,

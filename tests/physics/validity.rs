@@ -4,8 +4,8 @@ use crate::reference::table;
 use crate::support::{LENGTH, PAPER, RMS, close, near, paper_spectrum, surface};
 use hysteron::model::{Amplitudes, Normalization};
 use hysteron::physics::spectrum::Spectrum;
-use hysteron::physics::synthesis::{mode_sums, realization_seed};
-use hysteron::physics::validity::{Flattening, flattening, realised_flattening};
+use hysteron::physics::synthesis::{mode_sums, realization_seed, synthesize};
+use hysteron::physics::validity::{Flattening, flattening, measured_flattening, realised_flattening};
 use std::f64::consts::PI;
 
 const MODULUS: f64 = PAPER.contact_modulus_pa;
@@ -32,6 +32,18 @@ fn val_the_printed_energies_hold_to_their_digits() {
     near("U_el/dgamma", found.persson_tosatti(ADHESION), 1.4, 0.05);
     let realised = realised_flattening(&spectrum, &realization_seed(1, 0), MODULUS);
     near("U_el/dgamma, realised", realised.persson_tosatti(ADHESION), 1.02, 0.005);
+}
+
+#[test]
+fn law_energies_of_heights_are_those_of_the_modes_that_made_them() {
+    let spectrum = paper_spectrum(0.8, 32);
+    let seed = realization_seed(5, 1);
+    let heights = synthesize(&spectrum, &seed, 256).heights_m;
+    let wanted = realised_flattening(&spectrum, &seed, MODULUS);
+    // Eight points to the shortest wave. A little below the edge, so that no rounding puts the first modes of the octave out of it.
+    let found = measured_flattening(heights.view(), (LENGTH, true), LENGTH / 32.0 * (1.0 + 1e-12), MODULUS);
+    close("whole", found.whole_j_m2, wanted.whole_j_m2, 1e-10);
+    close("octave", found.octave_j_m2, wanted.octave_j_m2, 1e-10);
 }
 
 #[test]

@@ -5,7 +5,7 @@ use crate::cli::{ExportArguments, ImportArguments};
 use crate::keys::digest_of_file;
 use crate::model::{Choice, Detrend, Missing};
 use crate::physics::measured::find_measured;
-use crate::spec::SurfaceParams;
+use crate::spec::{SurfaceParams, quoted};
 use crate::stages::measure;
 use crate::store::hdf5::{SurfaceHeader, read_surface, write_surface, write_tamaas};
 use crate::store::scan::export::write_netcdf3;
@@ -17,8 +17,14 @@ pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
     let digest =
         digest_of_file(&asked.file).map_err(|error| failed(format!("cannot take the surface {}: {error}", asked.file.display())))?;
     let params = params(asked);
+    if asked.pixel_m.is_some_and(|pixel| !(pixel > 0.0 && pixel.is_finite())) {
+        return Err(failed(format!("cannot take the surface {}: --pixel-m is no positive number of metres", asked.file.display())));
+    }
     let (prepared, header) = measure(&params, &digest, "").map_err(failed)?;
     let out = asked.out.clone().unwrap_or_else(|| named_after(&asked.file));
+    if !asked.dry_run {
+        may_be_written(&asked.file, &out)?;
+    }
     if !asked.dry_run && out.exists() && !asked.force {
         return Err(failed(format!(
             "cannot write the surface to {}: it is there already; allowed: another --out, or --force",
@@ -59,9 +65,23 @@ fn params(asked: &ImportArguments) -> SurfaceParams {
     }
 }
 
-/// `<name of the file>.h5` in the present folder.
+/// `<name of the file>.h5` in the present folder, and of one in HDF5 `<name of the file>_taken.h5`, which is not the file itself.
 fn named_after(file: &Path) -> PathBuf {
-    PathBuf::from(file.file_stem().unwrap_or(file.as_os_str())).with_extension("h5")
+    let mut name = file.file_stem().unwrap_or(file.as_os_str()).to_owned();
+    let own = file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("h5"));
+    name.push(if own { "_taken.h5" } else { ".h5" });
+    PathBuf::from(name)
+}
+
+/// Refuses to write over the scan itself, and over what is no file, whatever is asked for.
+fn may_be_written(scan: &Path, out: &Path) -> Result<(), Fault> {
+    let refused = |why: &str| failed(format!("cannot write the surface to {}: {why}; allowed: another --out", out.display()));
+    let Ok(there) = std::fs::metadata(out) else { return Ok(()) };
+    if !there.is_file() {
+        return Err(refused("it is no regular file"));
+    }
+    let same = |a: &Path, b: &Path| matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b);
+    if same(scan, out) { Err(refused("it is the measured surface itself")) } else { Ok(()) }
 }
 
 /// What is known of a surface, as JSON.
@@ -81,6 +101,9 @@ fn answer(header: &SurfaceHeader, [points, summits, edge]: [usize; 3], rings: Ve
         "nayak_parameter": header.nayak_parameter,
         "summit_count": summits,
         "edge_count": edge,
+        "source_point_counts": measured.map(|of| of.source_point_counts),
+        "source_spacings_m": measured.map(|of| of.source_spacings_m),
+        "cautions": cautions(header),
         "missing_count": measured.map(|of| of.missing_count),
         "trend_m": measured.map(|of| of.trend_m),
         "noise_m": measured.map(|of| of.noise_m),
@@ -100,6 +123,13 @@ fn told(file: &Path, header: &SurfaceHeader, [points, summits, edge]: [usize; 3]
     let mut text = format!("{}\n", file.display());
     let mut line = |what: &str, value: String| text += &format!("  {what:<14}{value}\n");
     let continued = if header.periodic { "continues periodically" } else { "does not continue periodically" };
+    if let Some(of) = &header.measured {
+        let ([rows, columns], [a, b]) = (of.source_point_counts, of.source_spacings_m);
+        line("file", format!("{rows} x {columns} points, {a:.4e} m by {b:.4e} m apart"));
+        if (a / b - 1.0).abs() > 1e-3 {
+            line("", format!("interpolated to points {:.4e} m apart both ways", a.min(b)));
+        }
+    }
     line("square", format!("{points} x {points} points, {length:.4e} m, {continued}"));
     if let Some(of) = &header.measured {
         line(
@@ -128,14 +158,40 @@ fn told(file: &Path, header: &SurfaceHeader, [points, summits, edge]: [usize; 3]
         }
         None => line("self-affine", "too few waves for a fit".to_owned()),
     }
+    for caution in cautions(header) {
+        text += &format!("Caution: {caution}.\n");
+    }
     match written {
         Some(path) => {
-            let boundary = if header.periodic { "periodic = true" } else { "[model]\nboundary = \"isolated\"" };
-            text += &format!("Written: {}. In a spec:\n\n[surface]\nfile = \"{}\"\n{boundary}\n", path.display(), path.display());
+            let boundary = if header.periodic { "periodic = true\n" } else { "[model]\nboundary = \"isolated\"\n" };
+            let stem: String =
+                path.file_stem().unwrap_or_default().to_string_lossy().chars().filter(|c| c.is_ascii_alphanumeric()).take(32).collect();
+            let file = quoted(&path.to_string_lossy());
+            text += &format!("Written: {}. A spec with it, with the material's own numbers in place of these:\n\n", path.display());
+            text += &format!("name = \"of_{stem}\"\n[surface]\nfile = {file}\n{boundary}[material]\ncontact_modulus_pa = 1e8\n");
+            text += "work_of_adhesion_j_m2 = 0.05\n[cycle]\nmax_load = [0.004]       # F/(E* A0)\n";
         }
         None => text += "Nothing was written.\n",
     }
     text
+}
+
+/// What makes one doubt the units or the scan itself.
+fn cautions(header: &SurfaceHeader) -> Vec<String> {
+    let mut cautions = Vec::new();
+    if header.rms_slope > 1.0 {
+        cautions.push(format!(
+            "an rms slope of {:.3} is steeper than 45 degrees; are the units right, and is no point a sentinel?",
+            header.rms_slope
+        ));
+    }
+    if header.rms_slope < 1e-5 {
+        cautions.push(format!("an rms slope of {:.1e} is flatter than any measured surface; are the units right?", header.rms_slope));
+    }
+    if header.rms_height_m < 1e-10 {
+        cautions.push(format!("{:.1e} m rms is less than an atom; are the units right?", header.rms_height_m));
+    }
+    cautions
 }
 
 fn shape(detrend: Detrend) -> &'static str {

@@ -98,8 +98,22 @@ fn e2e_a_scan_is_taken_and_told() {
     let again = import(folder.path(), &["scan.h5", "--out", "again.h5"]);
     assert_eq!(code(&again), 0, "{}", stderr(&again));
     let second = read_header(&folder.path().join("again.h5")).unwrap();
-    // Another plane goes off, of what the cut-off left of the first one.
-    assert!((second.rms_height_m / header.rms_height_m - 1.0).abs() < 0.01);
+    assert_eq!(second, read_header(&folder.path().join("scan.h5")).unwrap(), "it is taken as it is");
+    // The scan itself is never written over, by whatever name, and what is no file is not either.
+    fs::copy(folder.path().join("scan.h5"), folder.path().join("raw.h5")).unwrap();
+    for arguments in [["raw.h5", "--out", "raw.h5", "--force"], ["raw.h5", "--out", "./raw.h5", "--force"]] {
+        let output = import(folder.path(), &arguments);
+        assert!(code(&output) == 1 && stderr(&output).contains("it is the measured surface itself"), "{}", stderr(&output));
+    }
+    assert_eq!(fs::read(folder.path().join("raw.h5")).unwrap(), before);
+    assert_eq!(code(&import(folder.path(), &["raw.h5"])), 0);
+    assert!(folder.path().join("raw_taken.h5").exists());
+    fs::create_dir(folder.path().join("folder")).unwrap();
+    let output = import(folder.path(), &["raw.h5", "--out", "folder", "--force"]);
+    assert!(code(&output) == 1 && stderr(&output).contains("it is no regular file"), "{}", stderr(&output));
+    // Units that cannot be right are doubted.
+    let steep = import(folder.path(), &["scan.npy", "--dry-run", "--pixel-m", "1e-9", "--unit", "um"]);
+    assert!(stdout(&steep).contains("Caution: an rms slope of "), "{}", stdout(&steep));
 }
 
 #[test]
@@ -123,7 +137,15 @@ fn e2e_a_scan_goes_through_all_stages() {
     // Energy by the areas of the loop is that of its events.
     let loss = cases.f64_or_null("loss_mean").unwrap()[0].unwrap();
     assert!(loss > 0.0 && cases.f64_or_null("audit_gap_mean").unwrap()[0].unwrap() < 0.05);
-    assert!(fs::read_to_string(bench.out().join("report.html")).unwrap().contains("a scan.npy"));
+    assert!(fs::read_to_string(bench.out().join("report.html")).unwrap().contains("<h2>Measured surfaces</h2>"));
+    // What flattens the roughness is summed over the modes that the surface has.
+    let realizations = read_table(&bench.out().join("statistics/realizations.parquet"), &schema::REALIZATIONS).unwrap();
+    let energy = |column: &str| realizations.f64_or_null(column).unwrap()[0];
+    assert!(energy("persson_tosatti").is_none());
+    assert!(
+        energy("persson_tosatti_realised").unwrap() > energy("conformity_realised").unwrap()
+            && energy("conformity_realised").unwrap() > 0.0
+    );
     assert!(stdout(&bench.look("status", &[])).contains("Nothing is left to do."));
     // Its units are known by what the file holds: another name computes nothing, and a finished run does not need the file.
     let renamed = bench.folder.path().join("renamed").join("a scan.npy");
@@ -133,6 +155,11 @@ fn e2e_a_scan_goes_through_all_stages() {
     fs::write(bench.spec(), spec(&surface(&renamed))).unwrap();
     let planned = stdout(&bench.verb("plan", &[]));
     assert!(planned.contains("generate  1 done") && planned.contains("cycle     1 done"), "{planned}");
+    // What was made of another file is left over when it is not asked for any more.
+    let stale = bench.out().join("surfaces").join("scan_r00-0123abcd.h5");
+    fs::copy(&paths(&bench.out().join("surfaces"))[0], &stale).unwrap();
+    assert!(stdout(&bench.look("gc", &[])).contains("scan_r00-0123abcd.h5"));
+    fs::remove_file(stale).unwrap();
     // Other heights do.
     fs::write(&renamed, bytes(&part().mapv(|h| 1.1 * h))).unwrap();
     let planned = stdout(&bench.verb("plan", &[]));

@@ -65,6 +65,8 @@ fn e2e_a_measured_surface_lacks_what_nobody_knows() {
     let mut about = Measured {
         source: "a scan.x3p".to_owned(),
         source_blake3: "0".repeat(64),
+        source_point_counts: [650, 300],
+        source_spacings_m: [1e-7, 2e-7],
         missing_count: 3,
         detrend: Detrend::Quadratic,
         trend_m: 1e-7,

@@ -12,6 +12,7 @@ use parquet::arrow::ArrowWriter;
 use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
+use parquet::file::statistics::Statistics;
 use tempfile::{TempDir, tempdir};
 
 use super::{names, sample, says};
@@ -63,6 +64,18 @@ fn e2e_a_table_of_several_row_groups_comes_back() {
     assert_eq!(read_table(&path, &CONTACTS).unwrap(), frame);
     let reader = ParquetRecordBatchReaderBuilder::try_new(File::open(&path).unwrap()).unwrap();
     assert_eq!(reader.metadata().num_row_groups(), 3);
+    // Steps ascend, so that what each group says of its steps lets a reader of one step pass the others by.
+    let bounds: Vec<[i64; 2]> = reader
+        .metadata()
+        .row_groups()
+        .iter()
+        .map(|group| match group.column(0).statistics() {
+            Some(Statistics::Int64(steps)) => [*steps.min_opt().unwrap(), *steps.max_opt().unwrap()],
+            other => panic!("{other:?}"),
+        })
+        .collect();
+    assert_eq!((bounds[0][0], bounds[2][1]), (0, (rows as i64 - 1) / 700));
+    assert!(bounds.windows(2).all(|pair| pair[0][1] <= pair[1][0]), "{bounds:?}");
 }
 
 #[test]

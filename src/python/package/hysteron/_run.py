@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import json
 import os
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -86,8 +87,17 @@ class Run(Mapping[str, pa.Table]):
 
     @property
     def cycle_ids(self) -> list[str]:
-        """The cycles that have been computed."""
-        return sorted(path.parent.name for path in self.dir.glob("cycles/*/steps.parquet"))
+        """The cycles of the campaign that have been computed.
+
+        A folder may hold those of earlier specs too, until `hysteron gc` takes them away: they are left out where the campaign has been aggregated.
+        """
+        there = {path.parent.name for path in self.dir.glob("cycles/*/steps.parquet")}
+        try:
+            described = json.loads((self.dir / "datapackage.json").read_text(encoding="utf-8"))
+        except FileNotFoundError:
+            return sorted(there)
+        paths = next((resource["path"] for resource in described["resources"] if resource["name"] == "steps"), [])
+        return sorted(there.intersection(path.split("/")[1] for path in paths))
 
     @property
     def surface_ids(self) -> list[str]:
