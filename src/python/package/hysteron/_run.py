@@ -96,7 +96,7 @@ class Run(Mapping[str, pa.Table]):
             described = json.loads((self.dir / "datapackage.json").read_text(encoding="utf-8"))
         except FileNotFoundError:
             return sorted(there)
-        paths = next((resource["path"] for resource in described["resources"] if resource["name"] == "steps"), [])
+        paths: list[str] = next((resource["path"] for resource in described["resources"] if resource["name"] == "steps"), [])
         return sorted(there.intersection(path.split("/")[1] for path in paths))
 
     @property
