@@ -140,8 +140,8 @@ impl Field {
         });
     }
 
-    /// Writes the field, or the part of it that is no mirror image.
-    pub(super) fn write(mut self, heights_m: &mut Array2<f64>) {
+    /// The heights \[m\] of its first `side` points along each direction: of the part that is no mirror image.
+    pub(super) fn heights(mut self, side: usize) -> Array2<f64> {
         let n = self.n;
         let along_x = FftPlanner::<f64>::new().plan_fft_inverse(n);
         self.columns.par_chunks_mut(n).for_each_init(
@@ -151,9 +151,9 @@ impl Field {
         let along_y = RealFftPlanner::<f64>::new().plan_fft_inverse(n);
         let unit = 1.0 / (n as f64 * n as f64);
         let columns = &self.columns;
-        let across = heights_m.ncols();
-        let Some(rows) = heights_m.as_slice_mut() else { return };
-        rows.par_chunks_mut(across).enumerate().for_each_init(
+        let mut heights = Array2::zeros((side, side));
+        let Some(field) = heights.as_slice_mut() else { return heights };
+        field.par_chunks_mut(side).enumerate().for_each_init(
             || (along_y.make_input_vec(), along_y.make_output_vec(), along_y.make_scratch_vec()),
             |(half, line, scratch), (x, row)| {
                 half.iter_mut().enumerate().for_each(|(ky, value)| *value = columns[ky * n + x]);
@@ -167,5 +167,6 @@ impl Field {
                 row.iter_mut().zip(line.iter()).for_each(|(to, from)| *to = unit * from);
             },
         );
+        heights
     }
 }

@@ -113,11 +113,8 @@ pub fn prepare(heights_m: Array2<f64>, spacing_m: [f64; 2], treatment: &Treatmen
         return Err(domain("the number of its rows", rows as f64, allowed));
     }
     let (top, left) = ((rows - side) / 2, (columns - side) / 2);
-    let mut heights = if rows == columns {
-        heights_m.as_standard_layout().into_owned()
-    } else {
-        heights_m.slice(s![top..top + side, left..left + side]).to_owned()
-    };
+    // In one order in memory, in which sums are then made.
+    let mut heights = heights_m.slice(s![top..top + side, left..left + side]).as_standard_layout().into_owned();
     let missing_count = heights.iter().filter(|h| !h.is_finite()).count();
     let share = missing_count as f64 / heights.len() as f64;
     if missing_count > 0 && treatment.missing == Missing::Refuse {
@@ -141,7 +138,8 @@ pub fn prepare(heights_m: Array2<f64>, spacing_m: [f64; 2], treatment: &Treatmen
     let moments = field.moments();
     // Heights that differ by no more than rounding are constant.
     let scale = heights.iter().fold(0.0_f64, |most, h| most.max(h.abs())).max(trend_m);
-    if !(moments.rms_height_m() > 1e-12 * scale) {
+    let constant = moments.rms_height_m() <= 1e-12 * scale;
+    if constant || !moments.rms_height_m().is_finite() {
         return Err(domain(
             "the rms height without trend and short waves [m]",
             moments.rms_height_m(),
@@ -149,8 +147,16 @@ pub fn prepare(heights_m: Array2<f64>, spacing_m: [f64; 2], treatment: &Treatmen
         ));
     }
     let noise_m = (before - moments.m0_m2).max(0.0).sqrt();
-    field.write(&mut heights);
-    Ok(Prepared { heights_m: heights, length_m, moments, rings, missing_count, trend_m, noise_m, shortest_wavelength_m: points * fine })
+    Ok(Prepared {
+        heights_m: field.heights(side),
+        length_m,
+        moments,
+        rings,
+        missing_count,
+        trend_m,
+        noise_m,
+        shortest_wavelength_m: points * fine,
+    })
 }
 
 /// Points between those of each row, `ratio` times as close, from the first on to the last: Lagrange's polynomials through six points. Where one of these is missing, so is

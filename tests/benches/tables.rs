@@ -41,6 +41,7 @@ pub fn run() {
         rms_curvature_1_m: surface.moments.rms_curvature_1_m(),
         nayak_parameter: surface.moments.nayak_parameter(),
         generated: None,
+        measured: None,
     };
     let bytes: Vec<u8> = surface.heights_m.iter().flat_map(|height| height.to_ne_bytes()).collect();
     let compare = |what: &str, bytes: &[u8], work: &mut dyn FnMut()| {

@@ -86,7 +86,7 @@ fn law_mirror_images_continue_a_surface_without_a_jump() {
     for i in 1..3 {
         for j in 1..4 {
             if (i + j) % 2 == 0 {
-                inside.push([i as f64 / a * n as f64 - 0.5, j as f64 / b * n as f64 - 0.5]);
+                inside.push([f64::from(i) / a * n as f64 - 0.5, f64::from(j) / b * n as f64 - 0.5]);
             }
         }
     }
@@ -169,6 +169,17 @@ fn val_points_that_lie_farther_apart_one_way_are_interpolated() {
             let ratio = prepared.moments.rms_slope() / whole.moments.rms_slope();
             assert!((ratio - 1.0).abs() < 0.1, "{ratio}");
         }
+    }
+    // In whatever order the heights lie in memory, short waves go: a wave of four points is all that they have here.
+    let short = Array2::from_shape_fn((80, 400), |(_, j)| (TAU * j as f64 / 4.0).cos())
+        + Array2::from_shape_fn((80, 400), |(i, _)| (0.1 * i as f64).sin());
+    for (field, spacing) in
+        [(short.clone(), [2.0, 1.0]), (short.t().to_owned(), [1.0, 2.0]), (short.t().reversed_axes().to_owned(), [2.0, 1.0])]
+    {
+        let prepared = prepare(field, spacing, &PLAIN).unwrap();
+        assert!((prepared.noise_m - 0.5f64.sqrt()).abs() < 0.01, "{}", prepared.noise_m);
+        let rms = prepared.heights_m.mapv(|h| h * h).mean().unwrap().sqrt();
+        assert!((rms / prepared.moments.rms_height_m() - 1.0).abs() < 1e-9, "what is told is what is left");
     }
     // Where both squares begin at one place, the heights are the same but for the interpolation: (2π/20)⁶/924 of them, and what the cut-off makes of it.
     let oblong = Array2::from_shape_fn((160, 80), |(i, j)| height(i as f64, 2.0 * j as f64));

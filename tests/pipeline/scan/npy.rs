@@ -1,4 +1,6 @@
 //! Arrays of NumPy.
+// One macro reads every kind of number, and of some a cast loses nothing.
+#![allow(clippy::cast_lossless)]
 
 use hysteron::store::scan::{Format, MOST_POINTS};
 use ndarray::{Array2, ShapeBuilder, array};
