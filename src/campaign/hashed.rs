@@ -1,6 +1,6 @@
 //! The keys of all units of a spec.
 
-use super::{CYCLE, EXTRACT, GENERATE, Stage, plain, read_by_cycle, surface_reads};
+use super::{CYCLE, EXTRACT, GENERATE, Stage, plain, read_by_cycle, seed_of, surface_reads};
 use crate::keys::{canonical, key_of_text};
 use crate::spec::{Case, CaseParams, Spec, SurfaceParams};
 use rayon::prelude::*;
@@ -30,15 +30,16 @@ pub(super) struct HashedCase {
 impl Hashed {
     pub(super) fn all(spec: &Spec, counts: &[u32]) -> Self {
         let mut kinds: HashMap<String, usize> = HashMap::new();
-        let mut most: Vec<u32> = Vec::new();
+        // Of each kind, its seed and its greatest number of realizations.
+        let mut most: Vec<(u64, u32)> = Vec::new();
         let of_case: Vec<usize> = spec
             .cases
             .iter()
             .zip(counts)
             .map(|(case, count)| {
                 let kind = *kinds.entry(canonical(&surface_reads(spec, &case.params.surface))).or_insert(most.len());
-                most.resize(most.len().max(kind + 1), 0);
-                most[kind] = most[kind].max(*count);
+                most.resize(most.len().max(kind + 1), (seed_of(spec, &case.params.surface), 0));
+                most[kind].1 = most[kind].1.max(*count);
                 kind
             })
             .collect();
@@ -47,9 +48,9 @@ impl Hashed {
         let surfaces: Vec<Vec<(String, String)>> = texts
             .par_iter()
             .zip(&most)
-            .map(|(surface, count)| {
+            .map(|(surface, (seed, count))| {
                 let keys = |realization: u32| {
-                    let reads = format!("{{\"realization\":{realization},\"seed\":{},\"surface\":{surface}}}", spec.seed);
+                    let reads = format!("{{\"realization\":{realization},\"seed\":{seed},\"surface\":{surface}}}");
                     let surface = key_of_text(Stage::Generate.word(), GENERATE, &reads);
                     let asperities = key_of_text(Stage::Extract.word(), EXTRACT, &format!("{{\"surface\":\"{surface}\"}}"));
                     (surface, asperities)

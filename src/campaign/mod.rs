@@ -27,7 +27,7 @@ const GENERATE: u32 = 1;
 const EXTRACT: u32 = 1;
 const CYCLE: u32 = 12;
 const AGGREGATE: u32 = 5;
-const REPORT: u32 = 6;
+const REPORT: u32 = 7;
 
 /// The stages, in their order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -319,7 +319,7 @@ impl Campaign {
     /// What the keys of a surface's units are hashes of, by stage, up to and with `stage`.
     #[must_use]
     pub fn surface_preimages(&self, unit: &SurfaceUnit, stage: Stage) -> Map<String, Value> {
-        let reads = json!({ "surface": surface_reads(&self.spec, &unit.params), "seed": self.spec.seed, "realization": unit.realization });
+        let reads = json!({ "surface": surface_reads(&self.spec, &unit.params), "seed": seed_of(&self.spec, &unit.params), "realization": unit.realization });
         let mut preimages = Map::new();
         enter(&mut preimages, Stage::Generate, GENERATE, &reads);
         if stage >= Stage::Extract {
@@ -393,6 +393,11 @@ fn read_by_cycle(model: &ModelParams) -> ModelParams {
     let mut model = model.clone();
     model.as_printed.retain(|slip| slip.in_contact());
     model
+}
+
+/// The seed that a surface reads: a measured one reads none.
+fn seed_of(spec: &Spec, params: &SurfaceParams) -> u64 {
+    if params.is_measured() { 0 } else { spec.seed }
 }
 
 /// What a surface is made from: of a measured one the contents of its file, and what is done to it.

@@ -118,7 +118,8 @@ fn step_of(kept: &[Kept], wanted: Landmark) -> Option<i64> {
 pub fn closer(of: &Closer<'_>, heights_m: ArrayView2<'_, f64>) -> Result<(Vec<Panel>, Option<String>), FigureError> {
     let kept = of.landmarks()?;
     let branches = branches(of, step_of(&kept, Landmark::Turning))?;
-    let mut panels = vec![panel("events", events(of, &branches)?), panel("avalanches", avalanches(of, &branches)?)];
+    let mut panels =
+        vec![panel("loop", of_loop(of)?), panel("events", events(of, &branches)?), panel("avalanches", avalanches(of, &branches)?)];
     let styles = [(Landmark::Turning, LOADING, Stroke::Solid), (Landmark::PullOff, UNLOADING, Stroke::Dashed)];
     let end = |(landmark, hue, stroke)| step_of(&kept, landmark).map(|step| (landmark, step, hue, stroke));
     let ends: Vec<End> = styles.into_iter().filter_map(end).collect();
@@ -157,6 +158,35 @@ fn branches(of: &Closer<'_>, turning: Option<i64>) -> Result<[OfBranch; 2], Figu
     let loading = all().filter(|k| branches[*k] == "loading" && steps[*k] <= turning).collect();
     let unloading = all().filter(|k| branches[*k] == "unloading" && max_loads[*k] == Some(of.max_load)).collect();
     Ok([("loading", LOADING, loading), ("unloading", UNLOADING, unloading)])
+}
+
+/// The loop itself: the load over the approach, up to the turning point and back.
+fn of_loop(of: &Closer<'_>) -> Result<XyPlot, FigureError> {
+    let (branches, max_loads) = (of.steps.text("branch")?, of.steps.f64_or_null("max_load")?);
+    let (approaches, loads) = (of.steps.f64("penetration")?, of.steps.f64("load")?);
+    let points = |fits: &dyn Fn(usize) -> bool| -> Vec<(f64, f64)> {
+        (0..branches.len()).filter(|k| fits(*k)).map(|k| (approaches[k], loads[k])).collect()
+    };
+    let unloading = points(&|k| branches[k] == "unloading" && max_loads[k] == Some(of.max_load));
+    // Loading goes on beyond a turning point that is not the last one.
+    let most = unloading.iter().map(|point| point.0).fold(f64::NEG_INFINITY, f64::max);
+    let loading = points(&|k| branches[k] == "loading" && approaches[k] <= most);
+    let all = || loading.iter().chain(&unloading);
+    let (x, y) = (
+        Axis::holding("Δ/h_{rms}", all().map(|point| point.0), false),
+        Axis::holding("F/(E^{*}A_{0})", all().map(|point| point.1), true).with_headroom(0.1),
+    );
+    let curves = vec![
+        curve(("loading", ""), loading.clone(), shade(LOADING, 0, 1), Stroke::Dashed),
+        curve(("unloading", ""), unloading.clone(), shade(UNLOADING, 0, 1), Stroke::Solid),
+    ];
+    Ok(plot(
+        "load over approach".to_owned(),
+        x,
+        y,
+        curves,
+        &[("loading", LOADING, Stroke::Dashed), ("unloading", UNLOADING, Stroke::Solid)],
+    ))
 }
 
 /// Energy that each event lost, over the approach.

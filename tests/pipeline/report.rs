@@ -31,7 +31,7 @@ fn e2e_every_figure_is_there_in_three_formats() {
     let folder = bench.out().join("figures");
     let stems: BTreeSet<String> =
         fs::read_dir(&folder).unwrap().map(|e| e.unwrap().path().file_stem().unwrap().to_str().unwrap().to_owned()).collect();
-    let closer = ["avalanches", "events", "loads", "map", "radii", "spectrum", "summits"].map(|name| format!("closer_{name}"));
+    let closer = ["avalanches", "events", "loads", "loop", "map", "radii", "spectrum", "summits"].map(|name| format!("closer_{name}"));
     let wanted: BTreeSet<String> = closer.into_iter().chain(["A", "B", "C", "D", "E"].map(|panel| format!("zeta_{panel}"))).collect();
     assert_eq!(stems, wanted);
     let page = fs::read_to_string(bench.out().join("report.html")).unwrap();
@@ -66,6 +66,11 @@ fn e2e_the_closer_look_is_in_the_table_of_panels() {
     let of = |panel: &str, curve: &str| -> Vec<(f64, f64)> {
         (0..x.len()).filter(|k| sweeps[*k].is_empty() && names[*k] == panel && curves[*k] == curve).map(|k| (x[k], y[k])).collect()
     };
+    // The loop is closed at its turning point, from where the load falls below none.
+    let (up, down) = (of("loop", "loading"), of("loop", "unloading"));
+    assert!(up.len() > 5 && down.len() > 5 && down.iter().any(|point| point.1 < 0.0));
+    let turning = up.last().unwrap();
+    assert!((turning.1 - 0.001).abs() < 1e-9 && down[0].0 <= turning.0, "{turning:?} {:?}", down[0]);
     // The spectrum of the surface is the one that was asked for, but for the rings' scatter: fixed amplitudes, scaled to the rms height.
     let (found, asked) = (of("spectrum", "found"), of("spectrum", "asked for"));
     assert!(found.len() > 4 && asked.len() > 50);

@@ -98,6 +98,8 @@ fn law_a_measured_surface_is_known_by_what_its_file_holds_and_what_is_done_to_it
         assert_eq!(keys(&campaign(&other.spec.to_toml())), keys(&other), "{line}");
     }
     assert!(seen.insert(first(&campaign(&text("", '1')))), "another file");
+    let other_seed = campaign(&text("", '0').replace("realizations = 2", "seed = 5"));
+    assert_eq!(keys(&other_seed)[2], keys(&base)[2], "a measured surface reads no seed");
     let moved = campaign(&text("", '0').replace("a/scan", "b/scan"));
     assert_eq!(first(&moved), first(&base), "the same file at another place");
     // One sweep over files, another over generated surfaces.
