@@ -17,8 +17,11 @@ pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
     let digest =
         digest_of_file(&asked.file).map_err(|error| failed(format!("cannot take the surface {}: {error}", asked.file.display())))?;
     let params = params(asked);
-    if asked.pixel_m.is_some_and(|pixel| !(pixel > 0.0 && pixel.is_finite())) {
-        return Err(failed(format!("cannot take the surface {}: --pixel-m is no positive number of metres", asked.file.display())));
+    if let Some(pixel_m) = asked.pixel_m.filter(|pixel| !(*pixel > 0.0 && pixel.is_finite())) {
+        return Err(failed(format!(
+            "cannot take the surface {}: --pixel-m is {pixel_m}; allowed: positive numbers of metres",
+            asked.file.display()
+        )));
     }
     let (prepared, header) = measure(&params, &digest, "").map_err(failed)?;
     let out = asked.out.clone().unwrap_or_else(|| named_after(&asked.file));

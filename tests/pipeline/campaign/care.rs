@@ -83,7 +83,7 @@ fn e2e_a_receipt_tells_what_when_and_with_what() {
     assert_eq!(cycle["files"].as_array().unwrap().len(), 5);
     assert_eq!(
         of("report")["files"].as_array().unwrap().len(),
-        (5 + 7) * 3 + 2,
+        (5 + 8) * 3 + 2,
         "panels and pictures of a cycle in three formats, their table and the page"
     );
     // No data file tells any of that.

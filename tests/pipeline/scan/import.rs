@@ -197,7 +197,7 @@ fn e2e_what_is_no_surface_is_refused_and_writes_nothing() {
         ("sizeless", bytes(&fine), &["--unit", "nm"], "how far apart its points are"),
         ("unitless", bytes(&fine), &["--pixel-m", "1e-9"], "the unit of its heights"),
         ("volts", bytes(&fine), &["--pixel-m", "1e-9", "--unit", "V"], "is no length; allowed: "),
-        ("point", bytes(&fine), &["--pixel-m", "0", "--unit", "nm"], "how far apart its points are"),
+        ("point", bytes(&fine), &["--pixel-m", "0", "--unit", "nm"], "--pixel-m is 0; allowed: positive numbers of metres"),
         ("periodic", bytes(&fine), &["--pixel-m", "1e-9", "--unit", "nm", "--periodic"], "square"),
         ("noise", b"\x7fELF\x02\x01\x01".to_vec(), &[], "in no format that is read here"),
     ];
