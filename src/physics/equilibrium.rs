@@ -9,7 +9,7 @@
 
 use super::events::{Change, Moving};
 use super::interaction::{Effort, Interaction as _, Spots, Tangent};
-use super::krylov::{Matrix, alone, gmres, gmres_and_least};
+use super::krylov::{Matrix, alone, dot, gmres, gmres_and_least};
 use super::local::LocalInverse;
 use super::patch::{Hold, Patch, Trace};
 use super::relax::{Relaxing, STRIDE, relax};
@@ -28,7 +28,12 @@ const WORTH: f64 = 0.03;
 const MOST: f64 = 3e-3;
 const LEAST: f64 = 1e-5;
 
-/// The same where the whole contact is solved well enough to go on.
+/// The relative residual of rates where the whole contact is solved to the last digits, and where it is solved well enough to go on. What is next to happen is
+/// told by them.
+const RATES: f64 = 1e-6;
+const ROUGH_RATES: f64 = 3e-4;
+
+/// The same where it is solved well enough to go on.
 const ROUGH: f64 = 3e-2;
 
 /// Solutions that one approximate inverse serves.
@@ -275,19 +280,38 @@ impl<'p> Solver<'p> {
 
     /// `da_i/dδ` of the spots at the equilibrium that was evaluated last. Its stability is entered into the state.
     pub(crate) fn rates(&mut self, state: &mut State) -> Vec<f64> {
-        if !self.fresh && self.tangent.is_exact() {
-            // Where the tangent is exact, neighbourhoods that hold all spots are to find nothing outside them.
+        if !self.fresh {
+            // At the edge of a spot the slope of its field is without bound, and the tangent of one step before is none.
             self.evaluate(state);
         }
-        // No better than the tangent.
-        let wanted = if self.tangent.is_exact() { 1e-6 } else { LEAST };
-        self.rates_to(wanted, false, state)
+        if self.tangent.is_exact() {
+            return self.rates_to(RATES, false, state);
+        }
+        let mut rates = self.rates_to(LEAST, false, state);
+        // Solved for once more, with what those products lack of digits.
+        let mut left = vec![0.0; rates.len()];
+        self.tangent.fine_product(&rates, &mut left);
+        self.effort.products += 1;
+        self.effort.transforms += self.tangent.transforms();
+        for ((left, rate), own) in left.iter_mut().zip(&rates).zip(&self.diagonal) {
+            *left = 1.0 - (*left + own * rate);
+        }
+        let share = (dot(&left, &left) / left.len().max(1) as f64).sqrt();
+        let Self { tangent, diagonal, effort, .. } = self;
+        let more = gmres(Matrix { tangent, diagonal, inverse: None }, &left, (RATES / share).clamp(LEAST, 0.5), PRODUCTS, effort);
+        for (rate, more) in rates.iter_mut().zip(more) {
+            *rate += more;
+        }
+        rates
     }
 
     /// The same with fewer digits. Of the stability the sign is known: where the least eigenvalue is small, it is in the space of the solution.
     pub(crate) fn rough_rates(&mut self, state: &mut State) -> Vec<f64> {
+        if !self.fresh {
+            self.evaluate(state);
+        }
         self.invert(state);
-        self.rates_to(MOST, true, state)
+        self.rates_to(ROUGH_RATES, true, state)
     }
 
     /// Both, to a relative residual; `short` with the approximate inverse.

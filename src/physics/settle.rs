@@ -11,7 +11,7 @@ use super::state::{Status, Totals};
 use crate::model::Interaction;
 
 /// Residual of the whole contact where its state is not asked for, of the mean jump-off penetration.
-const ENOUGH: f64 = 2e-4;
+const ENOUGH: f64 = 2e-5;
 
 /// What has led the whole contact away from its traces since it was solved last.
 #[derive(Debug, Clone, Copy, PartialEq)]

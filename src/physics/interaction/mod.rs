@@ -68,6 +68,14 @@ impl Tangent {
         }
     }
 
+    /// The same with all digits that it has: made fast, a product has five, and this seven.
+    pub fn fine_product(&mut self, x: &[f64], y: &mut [f64]) {
+        match &mut self.0 {
+            Form::Sparse(sparse) => sparse.fine_product(x, y),
+            Form::Dense(..) | Form::Mutual(_) => self.product(x, y),
+        }
+    }
+
     /// Transforms of a mesh in one product.
     #[must_use]
     pub fn transforms(&self) -> u64 {

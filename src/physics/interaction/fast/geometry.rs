@@ -173,7 +173,14 @@ impl Geometry {
         self.fine.add(Loads { moments: &sources.moments.value, factors: None }, work, values);
     }
 
-    /// Derivatives times a vector, the factors of the loads.
+    /// Derivatives times a vector, the factors of the loads, with the digits of displacements but for near pairs, whose derivatives have seven.
+    pub(super) fn fine_product(&self, loads: Loads<'_>, work: &mut Work<f64>, values: &mut [f64]) {
+        let Some(x) = loads.factors else { return };
+        self.pairs.par_iter().zip(values.par_chunks_mut(TOGETHER)).for_each(|(pairs, values)| pairs.product(x, values));
+        self.fine.add(loads, work, values);
+    }
+
+    /// The same with the digits that a linear solve needs.
     pub(super) fn product(&self, loads: Loads<'_>, work: &mut Work<f32>, values: &mut [f64]) {
         let Some(x) = loads.factors else { return };
         self.pairs.par_iter().zip(values.par_chunks_mut(TOGETHER)).for_each(|(pairs, values)| pairs.product(x, values));

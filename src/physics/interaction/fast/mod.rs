@@ -224,13 +224,13 @@ impl Interaction for FastSum {
             self.place(&spots, &targets.ranks, &mut sparse.geometry);
             let sources = self.sources(&spots);
             let Sparse { geometry, fine, rough, .. } = &mut *sparse;
-            let Rough { work, x, .. } = rough.get_mut();
+            let x = &mut rough.get_mut().x;
             inward(&from, rates, x);
             let mut values = vec![0.0; targets.ranks.len()];
             geometry.linearise(&sources, fine, &mut values, effort);
             outward(&targets.from, &values, displacements);
             values.fill(0.0);
-            geometry.product(Loads { moments: &sources.moments.slope, factors: Some(x) }, work, &mut values);
+            geometry.fine_product(Loads { moments: &sources.moments.slope, factors: Some(x) }, fine, &mut values);
             outward(&targets.from, &values, slopes);
             kept.set_sparse(sparse);
         }
@@ -308,6 +308,16 @@ impl Sparse {
         rough.y.clear();
         rough.y.resize(x.len(), 0.0);
         self.geometry.product(Loads { moments: &self.slopes, factors: Some(&rough.x) }, &mut rough.work, &mut rough.y);
+        outward(&self.from, &rough.y, y);
+    }
+
+    /// The same with more digits.
+    pub(super) fn fine_product(&mut self, x: &[f64], y: &mut [f64]) {
+        let rough = self.rough.get_mut();
+        inward(&self.from, x, &mut rough.x);
+        rough.y.clear();
+        rough.y.resize(x.len(), 0.0);
+        self.geometry.fine_product(Loads { moments: &self.slopes, factors: Some(&rough.x) }, &mut self.fine, &mut rough.y);
         outward(&self.from, &rough.y, y);
     }
 
