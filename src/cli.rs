@@ -154,10 +154,12 @@ enum Verb {
         #[arg(value_enum)]
         shell: clap_complete::Shell,
     },
-    /// Print the manual page
+    /// Print the manual page, of the program or of one verb
     Man {
+        /// The verb
+        verb: Option<String>,
         /// Write the pages of the program and of every verb into this folder instead
-        #[arg(long, value_name = "DIR")]
+        #[arg(long, value_name = "DIR", conflicts_with = "verb")]
         dir: Option<PathBuf>,
     },
 }

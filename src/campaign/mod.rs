@@ -20,7 +20,7 @@ use crate::spec::{Case, MEASURED, ModelParams, Spec, SurfaceParams};
 use hashed::Hashed;
 use serde_json::{Map, Value, json};
 use std::collections::{HashMap, HashSet};
-use std::path::PathBuf;
+use std::path::{Component, Path, PathBuf};
 
 /// A stage's meaning: raised by hand when what it writes changes for the same parameters.
 const GENERATE: u32 = 1;
@@ -205,6 +205,19 @@ impl Campaign {
         }
     }
 
+    /// What the file of a measured surface is called in tables: its name, and as many of the folders that it lies in as tell it from the others.
+    #[must_use]
+    pub fn file_label(&self, file: &str) -> String {
+        let last = |of: &str, count: usize| -> PathBuf {
+            let parts: Vec<Component<'_>> = Path::new(of).components().collect();
+            parts[parts.len().saturating_sub(count)..].iter().collect()
+        };
+        let others = || self.spec.files.keys().filter(|other| *other != file);
+        let most = Path::new(file).components().count().max(1);
+        let count = (1..most).find(|count| others().all(|other| last(other, *count) != last(file, *count))).unwrap_or(most);
+        last(file, count).to_string_lossy().into_owned()
+    }
+
     /// The cycles to be computed: each once, however many cases share it.
     #[must_use]
     pub fn distinct_cycles(&self) -> Vec<CycleUnit> {
@@ -286,7 +299,12 @@ impl Campaign {
     }
 
     fn statistics_cases(&self) -> Value {
-        self.cases.iter().map(|unit| json!([unit.id, unit.case.sweeps])).collect()
+        let label = |case: &Case| case.params.surface.is_measured().then(|| self.file_label(&case.params.surface.file));
+        let words = |unit: &CaseUnit| match label(&unit.case) {
+            Some(label) => json!([unit.id, unit.case.sweeps, label]),
+            None => json!([unit.id, unit.case.sweeps]),
+        };
+        self.cases.iter().map(words).collect()
     }
 
     /// Key of the tables over realisations, where the cycles stand so.

@@ -118,9 +118,21 @@ impl Campaign {
 
     /// The recorded failure of a cycle with the present key.
     fn failure(&self, unit: &CycleUnit) -> Option<String> {
+        self.failure_record(unit)?.get("error").and_then(Value::as_str).map(str::to_owned)
+    }
+
+    /// The stage at which a cycle failed, or what it is made of.
+    #[must_use]
+    pub fn failed_at(&self, unit: &CycleUnit) -> Option<Stage> {
+        let record = self.failure_record(unit)?;
+        let word = record.get("stage").and_then(Value::as_str);
+        Stage::ALL.into_iter().find(|stage| Some(stage.word()) == word)
+    }
+
+    fn failure_record(&self, unit: &CycleUnit) -> Option<Value> {
         let text = std::fs::read_to_string(self.failure_path(unit)).ok()?;
         let record: Value = serde_json::from_str(&text).ok()?;
-        (record.get("key")?.as_str()? == unit.key).then(|| record.get("error").and_then(Value::as_str).map(str::to_owned))?
+        (record.get("key")?.as_str()? == unit.key).then_some(record)
     }
 
     /// How all cycles stand, in the order of [`Campaign::cycles`]; those that cases share are looked at once.

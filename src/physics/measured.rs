@@ -119,13 +119,13 @@ pub fn prepare(heights_m: Array2<f64>, spacing_m: [f64; 2], treatment: &Treatmen
     let share = missing_count as f64 / heights.len() as f64;
     if missing_count > 0 && treatment.missing == Missing::Refuse {
         return Err(domain(
-            "the share of missing points",
-            share,
+            "the number of missing points",
+            missing_count as f64,
             "none; or missing = \"fill\" (--fill), which continues the heights around them",
         ));
     }
     if share > MOST_MISSING {
-        return Err(domain("the share of missing points", share, "up to half of them"));
+        return Err(domain("the number of missing points", missing_count as f64, "up to half of all"));
     }
     fill(&mut heights, treatment.periodic);
     let trend_m = detrend(&mut heights, treatment.detrend);

@@ -9,13 +9,15 @@ pub(super) const CASE: &[Column] = &[
 
 /// What defines a case, a column each.
 const PARAMETERS: &[Column] = &[
-    text("surface_file", "File of a measured surface, without its folder; null for a generated one").or_null(),
+    text("surface_file", "File of a measured surface, with as many of its folders as tell it from the others; null for a generated one")
+        .or_null(),
     text("surface_dataset", "Which field of that file; null for the only one, and for a generated surface").or_null(),
     text("detrend", "What was taken off a measured surface: \"mean\", \"plane\" or \"quadratic\"; null for a generated one").or_null(),
     real("hurst", "1", "Hurst exponent H; null for a measured surface").or_null().from("Eq 10"),
     real("magnification", "1", "Magnification, longest over shortest wavelength; null for a measured surface").or_null().from("Eq 10"),
-    real("length_m", "m", "Side of the square, L").from("Eq 10"),
-    real("rms_height_m", "m", "Rms height: the one asked for, or that of the measured surface"),
+    real("length_m", "m", "Side of the square, L; null for a measured surface that could not be taken").or_null().from("Eq 10"),
+    real("rms_height_m", "m", "Rms height: the one asked for, or that of the measured surface; null where that could not be taken")
+        .or_null(),
     real("points_per_shortest_wavelength", "1", "Grid points per shortest wavelength; of a measured surface, shorter waves were taken off")
         .or_null(),
     text("normalization", "How the surface got its rms height: \"sample\" or \"spectrum\"; null for a measured surface").or_null(),

@@ -35,6 +35,8 @@ pub(super) enum Kind {
     Words(fn() -> Vec<&'static str>),
     /// A text of so many bytes at most, and what it is.
     Text(usize, &'static str),
+    /// A unit of length, or no text where a file says it.
+    Length(&'static str),
 }
 
 impl Kind {
@@ -109,6 +111,9 @@ macro_rules! key {
     ($table:ident . $name:ident: text $most:literal, $note:literal) => {
         key!($table.$name, Kind::Text($most, $note), |text: &String| Value::Text(text.clone()), Text(text) => Some(text.clone()))
     };
+    ($table:ident . $name:ident: length $note:literal) => {
+        key!($table.$name, Kind::Length($note), |text: &String| Value::Text(text.clone()), Text(text) => Some(text.clone()))
+    };
     ($table:ident . $name:ident: flag) => {
         key!($table.$name, Kind::Flag, |flag: &bool| Value::Flag(*flag), Flag(flag) => Some(*flag))
     };
@@ -141,7 +146,7 @@ pub(super) static KEYS: &[Key] = &[
         low: 0.0, above: false, high: 0.1, unit: " m", unit_name: "metres", slip: Some((1e-6, "micrometres")),
         note: "the distance of neighbouring points; 0 where the file tells it",
     }),
-    key!(surface.unit: text 16, "the unit of the heights, such as \"nm\""),
+    key!(surface.unit: length "the unit of the heights, such as \"nm\""),
     key!(surface.missing: word Missing),
     key!(surface.detrend: word Detrend),
     key!(material.contact_modulus_pa: number Limits {

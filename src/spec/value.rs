@@ -10,6 +10,7 @@ use super::fault::Faults;
 use super::keys::{Key, Kind};
 use super::nearest::nearest;
 use super::number::{integer, number, numbers};
+use crate::lengths::{LENGTHS, metres};
 
 /// A value and where it stands.
 pub(super) type Written<'t> = Spanned<DeValue<'t>>;
@@ -39,6 +40,7 @@ pub(super) fn read(key: &Key, value: &Written<'_>, faults: &mut Faults<'_>) -> O
         Kind::Word(words) => word(key.path, &words(), value, faults).map(Value::Word),
         Kind::Numbers(limits, most) => numbers(key, limits, *most, value, faults).map(Value::Numbers),
         Kind::Text(most, note) => text(key.path, *most, note, value, faults).map(Value::Text),
+        Kind::Length(note) => length(key.path, note, value, faults).map(Value::Text),
         Kind::Words(words) => {
             let words = words();
             let elements = array(key.path, "words", value, faults)?;
@@ -76,6 +78,17 @@ fn text(path: &str, most: usize, note: &str, value: &Written<'_>, faults: &mut F
         return None;
     }
     Some(found.to_string())
+}
+
+/// A unit of length, or none.
+fn length(path: &str, note: &str, value: &Written<'_>, faults: &mut Faults<'_>) -> Option<String> {
+    let found = text(path, 16, note, value, faults)?;
+    if found.is_empty() || metres(&found).is_some() {
+        return Some(found);
+    }
+    let span = value.span();
+    faults.add(&span, format!("`{path}` cannot be {}: it is no unit of length", faults.written(&span)), format!("allowed: {LENGTHS}"));
+    None
 }
 
 /// One of the words of a key.

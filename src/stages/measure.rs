@@ -2,13 +2,14 @@
 
 use super::StageError;
 use super::statistics::moments;
+use crate::lengths::{LENGTHS, metres};
 use crate::model::Detrend;
 use crate::physics::measured::{Prepared, Treatment, prepare};
 use crate::physics::periodogram::{Ring, periodogram, windowed_periodogram};
 use crate::physics::selfaffine::fit_self_affine;
 use crate::spec::SurfaceParams;
 use crate::store::hdf5::{Measured, SpectrumFit, SurfaceHeader, is_own_surface, read_heights, read_surface};
-use crate::store::scan::{Format, Found, LENGTHS, Scan, detect, metres, read};
+use crate::store::scan::{Format, Found, Scan, detect, read};
 use ndarray::Array2;
 use std::f64::consts::TAU;
 use std::io::Read as _;

@@ -5,6 +5,7 @@ mod comparison;
 mod cycle;
 mod datapackage;
 mod done;
+mod failure;
 mod measure;
 mod page;
 mod reading;
@@ -27,7 +28,7 @@ use crate::stats::StatsError;
 use crate::store::{Check, FrameError, StoreError, commit};
 use done::{Clock, Outcome};
 use rayon::prelude::*;
-use serde_json::{Map, Value, json};
+use serde_json::{Map, Value};
 use std::collections::HashSet;
 use std::path::PathBuf;
 use thiserror::Error;
@@ -62,6 +63,14 @@ pub enum StageError {
     /// A measured surface.
     #[error("cannot take the surface {}: {why}", path.display())]
     Measured {
+        /// Its file.
+        path: PathBuf,
+        /// Why, and what is allowed.
+        why: String,
+    },
+    /// A measured surface that is no longer what the spec was read with: nobody's case, since its keys tell of another file.
+    #[error("cannot take the surface {}: {why}", path.display())]
+    Changed {
         /// Its file.
         path: PathBuf,
         /// Why, and what is allowed.
@@ -263,16 +272,30 @@ fn surfaces(campaign: &Campaign, task: &Task, stage: Stage, watch: &dyn Watch) -
     let work: OfSurface = if stage == Stage::Generate { surface::generate } else { surface::extract };
     let jobs = surface_jobs(campaign, task, stage);
     let planned = jobs.len();
-    let wanted = due(jobs, |job| campaign.standing(&job.unit, task.check), watch);
+    let mut wanted = due(jobs, |job| campaign.standing(&job.unit, task.check), watch);
+    let open: Vec<&SurfaceUnit> = wanted.iter().map(|(job, _)| job.of).collect();
+    let given_up = failure::given_up(campaign, &open, &task.retried);
+    wanted.retain(|(job, _)| !given_up.contains(&job.of.id));
     if stage == Stage::Extract {
         require(stage, &wanted, |unit| campaign.standing(&unit.surface(), task.check), |unit| unit.id.clone())?;
     }
     let work = |unit: &SurfaceUnit| {
-        let outcome = work(campaign, unit)?;
+        let outcome = work(campaign, unit);
         watch.progress(stage, 1.0);
-        Ok(outcome)
+        if let Err(error) = &outcome
+            && failure::is_of_a_case(error)
+        {
+            for cycle in failure::cycles_of(campaign, unit) {
+                failure::record(campaign, cycle, stage, error)?;
+            }
+            watch.notice(&format!("{} failed: {error}", unit.id));
+        }
+        outcome
     };
-    each(campaign, (stage, planned), &wanted, watch, work, |_| ())
+    let mut tally = each(campaign, (stage, planned - given_up.len()), &wanted, watch, work, |_| ())?;
+    tally.planned = planned;
+    tally.failed += given_up.len();
+    Ok(tally)
 }
 
 /// Cycles all cases. One that the physics refuses is recorded as failed, and the others go on; it is not tried again unless that is asked for, since it would
@@ -298,16 +321,15 @@ fn cycles(campaign: &Campaign, task: &Task, watch: &dyn Watch) -> Result<Tally, 
         (Stage::Cycle, planned - failed),
         &wanted,
         watch,
-        |unit| match cycle::run(campaign, unit, watch) {
-            Err(StageError::Physics(error)) => {
-                let again = format!("hysteron retry {} {}", campaign.dir.display(), unit.id);
-                let record = json!({ "key": unit.key, "error": error.to_string(), "again": again });
-                let text = format!("{record:#}\n");
-                commit::commit_bytes("record a failed case", &campaign.failure_path(unit), text.as_bytes())?;
+        |unit| {
+            let outcome = cycle::run(campaign, unit, watch);
+            if let Err(error) = &outcome
+                && failure::is_of_a_case(error)
+            {
+                failure::record(campaign, unit, Stage::Cycle, error)?;
                 watch.notice(&format!("{} failed: {error}", unit.id));
-                Err(StageError::Physics(error))
             }
-            other => other,
+            outcome
         },
         |unit| {
             for left in [campaign.failure_path(unit), campaign.halfway_path(unit)] {
@@ -342,7 +364,7 @@ fn require<T: Sync>(
     }
 }
 
-/// Runs units in parallel, in their order, and writes the receipt of each; `then` is what is left to do. Failures of the physics are counted; another error ends
+/// Runs units in parallel, in their order, and writes the receipt of each; `then` is what is left to do. Failures of one case are counted; another error ends
 /// the stage when all have been tried.
 fn each<T: Sync>(
     campaign: &Campaign,
@@ -371,7 +393,7 @@ fn each<T: Sync>(
     for outcome in outcomes {
         match outcome {
             Ok(()) => tally.computed += 1,
-            Err(StageError::Physics(_)) => tally.failed += 1,
+            Err(error) if failure::is_of_a_case(&error) => tally.failed += 1,
             Err(other) => return Err(other),
         }
     }

@@ -6,13 +6,14 @@ use crate::store::Frame;
 use std::fmt::Write as _;
 
 /// Heading, column of the table `cases` without its ending, and what numbers are multiplied by.
-const RESULTS: [(&str, &str, f64); 6] = [
+const RESULTS: [(&str, &str, f64); 7] = [
     ("A/A<sub>0</sub>", "area_at_max_load", 1.0),
     ("Δ/h<sub>rms</sub>", "penetration_at_max_load", 1.0),
     ("F<sub>po</sub>/(E*A<sub>0</sub>), 1e-3", "pull_off_load", 1e3),
     ("Θ/(E*A<sub>0</sub>h<sub>rms</sub>), 1e-3", "loss", 1e3),
     ("Θ<sub>DK</sub>, 1e-3", "loss_dk", 1e3),
     ("Θ/Θ<sub>DK</sub>", "loss_ratio_dk", 1.0),
+    ("Θ<sub>DK</sub> with the surfaces’ own moments, 1e-3", "loss_dk_realised", 1e3),
 ];
 
 /// The results with the 95 % intervals of their means, and how many realizations they are of.

@@ -18,7 +18,6 @@ use crate::stats::{self, CaseInput, CycleInput, Given, Sample, Value};
 use crate::store::hdf5::{SurfaceHeader, read_header, read_surface};
 use crate::store::{Check, commit, parquet};
 use rayon::prelude::*;
-use std::path::Path;
 
 /// Which cycles are done.
 fn done(standings: &[Standing]) -> Vec<bool> {
@@ -94,10 +93,12 @@ fn case_input(campaign: &Campaign, number: usize, unit: &CaseUnit, standings: &[
     let params = &unit.case.params;
     let (surface, material, model) = (&params.surface, &params.material, &params.model);
     let slips: Vec<&str> = model.as_printed.iter().map(|slip| slip.word()).collect();
-    let of_case = campaign.cycles.iter().find(|cycle| cycle.case == number);
+    // Of a measured surface that could not be taken nothing is known.
+    let is_there = |cycle: &&CycleUnit| !surface.is_measured() || campaign.surface_path(&campaign.surfaces[cycle.surface]).is_file();
+    let of_case = campaign.cycles.iter().find(|cycle| cycle.case == number).filter(is_there);
     let scale = of_case.map(|cycle| scale(campaign, &campaign.surfaces[cycle.surface])).transpose()?;
     let generated = (!surface.is_measured()).then_some(surface);
-    let file = Path::new(&surface.file).file_name().map(|name| name.to_string_lossy().into_owned());
+    let file = surface.is_measured().then(|| campaign.file_label(&surface.file));
     let parameters: [(&str, Value); 19] = [
         ("surface_file", file.as_deref().into()),
         ("surface_dataset", (surface.is_measured() && !surface.dataset.is_empty()).then_some(surface.dataset.as_str()).into()),

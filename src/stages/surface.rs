@@ -48,7 +48,7 @@ pub(super) fn scale(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Scale, St
 /// Takes a measured surface into the run.
 fn take(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Outcome, StageError> {
     let path = Path::new(&unit.params.file);
-    let refuse = |why: String| StageError::Measured { path: path.to_owned(), why };
+    let refuse = |why: String| StageError::Changed { path: path.to_owned(), why };
     let digest = digest_of_file(path).map_err(|error| refuse(error.to_string()))?;
     if campaign.spec.files.get(&unit.params.file) != Some(&digest) {
         return Err(refuse(

@@ -139,7 +139,7 @@ fn law_missing_points_continue_what_is_around_them() {
     let range = 2.0 * most(&heights);
     assert!(most(&(&filled.heights_m - &whole.heights_m)) < 1e-4 * range);
     let refused = prepare(holed, [1.0; 2], &PLAIN);
-    assert!(matches!(&refused, Err(PhysicsError::Domain { quantity: "the share of missing points", .. })), "{refused:?}");
+    assert!(matches!(&refused, Err(PhysicsError::Domain { quantity: "the number of missing points", .. })), "{refused:?}");
 }
 
 #[test]

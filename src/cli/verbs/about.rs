@@ -13,8 +13,8 @@ pub(super) fn completions(shell: Shell) -> Result<u8, Fault> {
     Ok(0)
 }
 
-/// The page of the program, or those of it and of every verb in a folder.
-pub(super) fn man(folder: Option<&Path>) -> Result<u8, Fault> {
+/// The page of the program or of a verb, or all of them in a folder.
+pub(super) fn man(verb: Option<&str>, folder: Option<&Path>) -> Result<u8, Fault> {
     let refused = |error: std::io::Error| failed(format!("cannot write the manual: {error}"));
     if let Some(folder) = folder {
         make_folder(folder)?;
@@ -22,8 +22,19 @@ pub(super) fn man(folder: Option<&Path>) -> Result<u8, Fault> {
         say(&format!("Written: {}\n", folder.display()))?;
         return Ok(0);
     }
+    let mut all = Arguments::command();
+    all.build();
+    let of = match verb {
+        None => all,
+        Some(verb) => {
+            let verbs: Vec<&str> = all.get_subcommands().map(clap::Command::get_name).collect();
+            let allowed = verbs.join(", ");
+            let found = all.find_subcommand(verb).cloned();
+            found.ok_or_else(|| failed(format!("cannot print the manual of {verb}: it is no verb; allowed: {allowed}")))?
+        }
+    };
     let mut page = Vec::new();
-    clap_mangen::Man::new(Arguments::command()).render(&mut page).map_err(refused)?;
+    clap_mangen::Man::new(of).render(&mut page).map_err(refused)?;
     say(&String::from_utf8_lossy(&page))?;
     Ok(0)
 }

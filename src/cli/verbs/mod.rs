@@ -79,7 +79,7 @@ fn performed(verb: &Verb) -> Result<u8, Fault> {
         Verb::Import(asked) => measured::import(asked),
         Verb::Schema { write } => schemas(*write),
         Verb::Completions { shell } => about::completions(*shell),
-        Verb::Man { dir } => about::man(dir.as_deref()),
+        Verb::Man { verb, dir } => about::man(verb.as_deref(), dir.as_deref()),
     }
 }
 

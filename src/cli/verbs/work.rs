@@ -67,13 +67,18 @@ fn perform(campaign: Campaign, task: &Task, json: bool) -> Result<u8, Fault> {
     let teller = Arc::new(Teller::new());
     interrupt::expect(teller.clone(), &campaign.dir).map_err(failed)?;
     let (campaign, tallies) = rayon::scope(|_| stages::run(campaign, task, &*teller)).map_err(failed)?;
-    let failures: usize = tallies.iter().map(|(_, tally)| tally.failed).sum();
+    let failures = failures(&tallies);
     if json {
         say(&tally_json(&campaign, &tallies))?;
     } else {
         say(&conclusion(&campaign, &tallies, task.until)?)?;
     }
     Ok(if failures > 0 { FAILED_CASES } else { 0 })
+}
+
+/// Cases that failed: where a surface did, its cycles did too.
+fn failures(tallies: &[(Stage, Tally)]) -> usize {
+    tallies.iter().map(|(_, tally)| tally.failed).max().unwrap_or(0)
 }
 
 fn tally_json(campaign: &Campaign, tallies: &[(Stage, Tally)]) -> String {
@@ -90,7 +95,7 @@ fn tally_json(campaign: &Campaign, tallies: &[(Stage, Tally)]) -> String {
 fn conclusion(campaign: &Campaign, tallies: &[(Stage, Tally)], until: Stage) -> Result<String, Fault> {
     let mut text = String::new();
     let computed: usize = tallies.iter().map(|(_, t)| t.computed).sum();
-    let failures: usize = tallies.iter().map(|(_, t)| t.failed).sum();
+    let failures = failures(tallies);
     if until >= Stage::Aggregate {
         let cases = parquet::read_table(&campaign.statistics_path("cases"), &schema::CASES).map_err(failed)?;
         text += &summary(&cases).map_err(failed)?;

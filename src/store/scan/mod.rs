@@ -20,8 +20,6 @@ use std::path::Path;
 
 use ndarray::Array2;
 
-pub use units::{LENGTHS, metres};
-
 use super::error::{Cause, StoreError, fenced};
 
 /// Points that a scan may have: as many heights take 2 GiB of memory.

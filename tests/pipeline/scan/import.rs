@@ -188,7 +188,7 @@ fn e2e_what_is_no_surface_is_refused_and_writes_nothing() {
     let lying = npy(1, &npy_line("<f8", "False", "(40000, 40000)"), &[0; 800]);
     let endless = npy(1, &npy_line("<f8", "False", "(0, 96)"), &[]);
     let cases: [(&str, Vec<u8>, &[&str], &str); 12] = [
-        ("holed", bytes(&holed), &TOLD, "the share of missing points"),
+        ("holed", bytes(&holed), &TOLD, "the number of missing points"),
         ("constant", bytes(&Array2::from_elem((64, 64), 5.0)), &TOLD, "its heights are constant"),
         ("tilted", bytes(&Array2::from_shape_fn((64, 64), |(i, j)| (i + 2 * j) as f64)), &TOLD, "its heights are constant"),
         ("line", bytes(&Array2::zeros((1, 500))), &TOLD, "16 and more"),
@@ -237,4 +237,54 @@ fn e2e_no_file_fills_the_memory() {
         assert!(output.status.code() == Some(1) && said.starts_with("error: cannot "), "{name}: {:?} {said}", output.status);
         assert!(!said.contains("memory"), "{name}: {said}");
     }
+}
+
+#[test]
+fn e2e_a_scan_that_cannot_be_taken_fails_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let there = |name: &str| folder.path().join(name).display().to_string();
+    let mut holed = part();
+    holed[[50, 50]] = f64::NAN;
+    fs::write(there("holed.npy"), bytes(&holed)).unwrap();
+    fs::write(there("scan.npy"), bytes(&part())).unwrap();
+    let [bad, good] = ["holed.npy", "scan.npy"].map(there);
+    let text = spec(&format!("unit = \"nm\"\npixel_m = 12.5e-9\nfile = {bad:?}"));
+    let bench = Bench::new(&format!("{text}[[sweep]]\nname = \"scans\"\nsurface.file = [{bad:?}, {good:?}]\n"));
+    for _ in 0..2 {
+        let run = bench.verb("run", &[]);
+        assert_eq!(code(&run), 3, "{}", stderr(&run));
+        assert!(stdout(&run).contains("1 cases failed"), "{}", stdout(&run));
+        assert!(stdout(&run).contains("0/1") && stdout(&run).contains("1/1"), "{}", stdout(&run));
+    }
+    let cases = read_table(&bench.out().join("statistics/cases.parquet"), &schema::CASES).unwrap();
+    assert_eq!(cases.row_count(), 2);
+    let status = bench.look("status", &[]);
+    assert!(stdout(&status).contains("1 failed") && stdout(&status).contains("missing points"), "{}", stdout(&status));
+    // The file is put right: it is another one, and computed.
+    fs::write(there("holed.npy"), bytes(&cut(8, 60))).unwrap();
+    let run = bench.verb("run", &[]);
+    assert_eq!(code(&run), 0, "{}{}", stdout(&run), stderr(&run));
+    assert!(bench.out().join("report.html").is_file());
+}
+
+/// Two scans of one name are told apart by the folders that they lie in.
+#[test]
+fn e2e_files_of_one_name_have_labels_of_their_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let paths = ["old", "new"].map(|name| {
+        let place = folder.path().join(name);
+        fs::create_dir(&place).unwrap();
+        place.join("scan.npy").display().to_string()
+    });
+    fs::write(&paths[0], bytes(&part())).unwrap();
+    fs::write(&paths[1], bytes(&cut(8, 60))).unwrap();
+    let text = spec(&format!("unit = \"nm\"\npixel_m = 12.5e-9\nfile = {:?}", paths[0]));
+    let bench = Bench::new(&format!("{text}[[sweep]]\nname = \"scans\"\nsurface.file = [{:?}, {:?}]\n", paths[0], paths[1]));
+    let run = bench.verb("run", &[]);
+    assert_eq!(code(&run), 0, "{}", stderr(&run));
+    assert!(stdout(&run).contains("old/scan.npy") && stdout(&run).contains("new/scan.npy"), "{}", stdout(&run));
+    let cases = read_table(&bench.out().join("statistics/cases.parquet"), &schema::CASES).unwrap();
+    let mut labels = cases.text("surface_file").unwrap();
+    labels.sort_unstable();
+    assert_eq!(labels, ["new/scan.npy", "old/scan.npy"]);
 }

@@ -14,7 +14,8 @@ mod x3p;
 use std::fs;
 use std::path::Path;
 
-use hysteron::store::scan::{Format, Found, LENGTHS, Scan, detect, metres, read};
+use hysteron::lengths::{LENGTHS, metres};
+use hysteron::store::scan::{Format, Found, Scan, detect, read};
 use ndarray::Array2;
 
 /// Reads bytes as a file of this format; a failure as its sentence.
