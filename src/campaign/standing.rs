@@ -151,6 +151,19 @@ impl Campaign {
         (found, all)
     }
 
+    /// Marks the surfaces that failed, which their cycles tell.
+    fn mark_failed(&self, cycles: &[(usize, Standing)], surfaces: &mut [Standing], asperities: &mut [Standing]) {
+        for (place, standing) in cycles.iter().filter(|(_, standing)| matches!(standing, Standing::Failed(_))) {
+            let cycle = &self.cycles[*place];
+            let at = self.failed_at(cycle);
+            for (stage, standings) in [(Stage::Generate, &mut *surfaces), (Stage::Extract, &mut *asperities)] {
+                if at.is_some_and(|at| at <= stage) && standings[cycle.surface] == Standing::Planned {
+                    standings[cycle.surface] = standing.clone();
+                }
+            }
+        }
+    }
+
     /// How everything stands.
     #[must_use]
     pub fn survey(&self, check: Check) -> Survey {
@@ -160,9 +173,10 @@ impl Campaign {
             }
             self.surfaces.par_iter().map(|surface| self.standing(&unit(surface), check)).collect()
         };
-        let surfaces = of_surfaces(Stage::Generate, SurfaceUnit::surface);
-        let asperities = of_surfaces(Stage::Extract, SurfaceUnit::asperities);
+        let mut surfaces = of_surfaces(Stage::Generate, SurfaceUnit::surface);
+        let mut asperities = of_surfaces(Stage::Extract, SurfaceUnit::asperities);
         let (cycles, standings) = self.distinct_standings(check);
+        self.mark_failed(&cycles, &mut surfaces, &mut asperities);
         let statistics_key = self.statistics_key(&standings);
         let statistics = self.standing(&Unit { stage: Stage::Aggregate, id: STATISTICS, key: &statistics_key }, check);
         let report_key = self.report_key(&statistics_key);

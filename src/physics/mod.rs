@@ -47,7 +47,7 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum PhysicsError {
     /// A quantity lies outside the domain of the equation that reads it.
-    #[error("cannot evaluate {action}: {quantity} is {value:e}; allowed: {allowed}")]
+    #[error("cannot evaluate {action}: {quantity} is {}; allowed: {allowed}", short(*value))]
     Domain {
         /// What was to be evaluated.
         action: &'static str,
@@ -132,4 +132,9 @@ pub enum PhysicsError {
         /// The approach at which the search ended \[m\].
         approach_m: f64,
     },
+}
+
+/// A number as a sentence has it: a count by its digits.
+fn short(value: f64) -> String {
+    if value.fract() == 0.0 && value.abs() < 1e6 { format!("{value}") } else { format!("{value:e}") }
 }

@@ -1,7 +1,7 @@
 //! What failed: a record in the place of the cycle that is not there, and what is not tried again for it.
 
 use super::StageError;
-use crate::campaign::{Campaign, CycleUnit, Stage, SurfaceUnit};
+use crate::campaign::{Campaign, CycleUnit, Stage};
 use crate::store::commit;
 use serde_json::json;
 use std::collections::{HashMap, HashSet};
@@ -21,20 +21,28 @@ pub(super) fn record(campaign: &Campaign, unit: &CycleUnit, stage: Stage, error:
     Ok(())
 }
 
-/// The cycles of a surface.
-pub(super) fn cycles_of<'a>(campaign: &'a Campaign, surface: &'a SurfaceUnit) -> impl Iterator<Item = &'a CycleUnit> {
-    campaign.cycles.iter().filter(|cycle| campaign.surfaces[cycle.surface].id == surface.id)
+/// The cycles of each surface, by its id.
+pub(super) fn by_surface(campaign: &Campaign) -> HashMap<&str, Vec<&CycleUnit>> {
+    let mut found: HashMap<&str, Vec<&CycleUnit>> = HashMap::new();
+    for cycle in &campaign.cycles {
+        found.entry(&campaign.surfaces[cycle.surface].id).or_default().push(cycle);
+    }
+    found
 }
 
-/// Which of these surfaces are not tried again: what should have been made of each failed before its cycles, and none of them is to be `retried`.
-pub(super) fn given_up(campaign: &Campaign, surfaces: &[&SurfaceUnit], retried: &HashSet<String>) -> HashSet<String> {
-    let mut failed: HashMap<&str, Option<bool>> = surfaces.iter().map(|surface| (surface.id.as_str(), None)).collect();
-    for cycle in &campaign.cycles {
-        let Some(all) = failed.get_mut(campaign.surfaces[cycle.surface].id.as_str()) else { continue };
-        if *all != Some(false) {
-            let before = campaign.failed_at(cycle).is_some_and(|stage| stage < Stage::Cycle);
-            *all = Some(before && !retried.contains(&cycle.id));
-        }
+/// Whether a stage is not tried for a surface: for all of its `cycles` it failed before and is not to be `retried`, or an earlier one did.
+pub(super) fn given_up(campaign: &Campaign, cycles: &[&CycleUnit], stage: Stage, retried: &HashSet<String>) -> bool {
+    let failed = |cycle: &&CycleUnit| match campaign.failed_at(cycle) {
+        Some(at) if at == stage => !retried.contains(&cycle.id),
+        Some(at) => at < stage,
+        None => false,
+    };
+    !cycles.is_empty() && cycles.iter().all(failed)
+}
+
+/// What is recorded of a failure at a stage that has been done since is taken away.
+pub(super) fn forget(campaign: &Campaign, cycles: &[&CycleUnit], stage: Stage) {
+    for cycle in cycles.iter().filter(|cycle| campaign.failed_at(cycle) == Some(stage)) {
+        let _ = std::fs::remove_file(campaign.failure_path(cycle));
     }
-    failed.into_iter().filter(|(_, all)| *all == Some(true)).map(|(id, _)| id.to_owned()).collect()
 }

@@ -273,9 +273,11 @@ fn surfaces(campaign: &Campaign, task: &Task, stage: Stage, watch: &dyn Watch) -
     let jobs = surface_jobs(campaign, task, stage);
     let planned = jobs.len();
     let mut wanted = due(jobs, |job| campaign.standing(&job.unit, task.check), watch);
-    let open: Vec<&SurfaceUnit> = wanted.iter().map(|(job, _)| job.of).collect();
-    let given_up = failure::given_up(campaign, &open, &task.retried);
-    wanted.retain(|(job, _)| !given_up.contains(&job.of.id));
+    let cycles = failure::by_surface(campaign);
+    let cycles_of = |unit: &SurfaceUnit| cycles.get(unit.id.as_str()).map_or(&[][..], Vec::as_slice);
+    let open = wanted.len();
+    wanted.retain(|(job, _)| !failure::given_up(campaign, cycles_of(job.of), stage, &task.retried));
+    let given_up = open - wanted.len();
     if stage == Stage::Extract {
         require(stage, &wanted, |unit| campaign.standing(&unit.surface(), task.check), |unit| unit.id.clone())?;
     }
@@ -285,16 +287,17 @@ fn surfaces(campaign: &Campaign, task: &Task, stage: Stage, watch: &dyn Watch) -
         if let Err(error) = &outcome
             && failure::is_of_a_case(error)
         {
-            for cycle in failure::cycles_of(campaign, unit) {
+            for cycle in cycles_of(unit) {
                 failure::record(campaign, cycle, stage, error)?;
             }
             watch.notice(&format!("{} failed: {error}", unit.id));
         }
         outcome
     };
-    let mut tally = each(campaign, (stage, planned - given_up.len()), &wanted, watch, work, |_| ())?;
+    let then = |unit: &SurfaceUnit| failure::forget(campaign, cycles_of(unit), stage);
+    let mut tally = each(campaign, (stage, planned - given_up), &wanted, watch, work, then)?;
     tally.planned = planned;
-    tally.failed += given_up.len();
+    tally.failed += given_up;
     Ok(tally)
 }
 
@@ -310,7 +313,8 @@ fn cycles(campaign: &Campaign, task: &Task, watch: &dyn Watch) -> Result<Tally, 
     let planned = jobs.len();
     let mut wanted = due(jobs, |job| campaign.cycle_standing(job.of, task.check), watch);
     let before = wanted.len();
-    wanted.retain(|(job, standing)| !matches!(standing, Standing::Failed(_)) || task.retried.contains(job.unit.id));
+    let again = |unit: &CycleUnit| task.retried.contains(&unit.id) && campaign.failed_at(unit).is_none_or(|stage| stage == Stage::Cycle);
+    wanted.retain(|(job, standing)| !matches!(standing, Standing::Failed(_)) || again(job.of));
     let failed = before - wanted.len();
     let surface = |unit: &CycleUnit| &campaign.surfaces[unit.surface];
     require(Stage::Cycle, &wanted, |unit| campaign.standing(&surface(unit).asperities(), task.check), |unit| surface(unit).id.clone())?;

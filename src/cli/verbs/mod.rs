@@ -87,6 +87,11 @@ fn of_spec(campaign: &CampaignArguments, stages: (Stage, Stage), partial: bool) 
     work::stages(&campaign.spec, &campaign.how, stages, partial)
 }
 
+/// How many cases failed, and what they are called after that.
+fn counted(failures: usize) -> (String, &'static str) {
+    if failures == 1 { ("1 case".to_owned(), "it") } else { (format!("{failures} cases"), "them") }
+}
+
 fn stage(argument: StageArgument) -> Stage {
     match argument {
         StageArgument::Generate => Stage::Generate,

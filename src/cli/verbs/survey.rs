@@ -1,6 +1,6 @@
 //! The verbs that say how a campaign stands: `plan` and `status`. They write nothing.
 
-use super::{Fault, open, open_dir, say, submit};
+use super::{Fault, counted, open, open_dir, say, submit};
 use crate::campaign::{Campaign, REPORT_PAGE, STATISTICS, Stage, Standing};
 use crate::cli::{FolderArguments, OutputArguments};
 use crate::store::Check;
@@ -60,9 +60,12 @@ fn remaining(units: &Units, campaign: &Campaign, does: impl Fn(usize) -> String)
         0 => "Nothing is left to do.\n".to_owned(),
         open => does(open),
     };
-    let failed = units.iter().flat_map(|(_, units)| units).filter(|(_, s)| matches!(s, Standing::Failed(_))).count();
+    // Where a surface failed, its cycles did too.
+    let of_stage = |units: &[(String, Standing)]| units.iter().filter(|(_, s)| matches!(s, Standing::Failed(_))).count();
+    let failed = units.iter().map(|(_, units)| of_stage(units)).max().unwrap_or(0);
     if failed > 0 {
-        text += &format!("{failed} cases failed; `hysteron retry {}` tries them again.\n", campaign.dir.display());
+        let (cases, them) = counted(failed);
+        text += &format!("{cases} failed; `hysteron retry {}` tries {them} again.\n", campaign.dir.display());
     }
     text
 }

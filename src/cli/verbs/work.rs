@@ -1,6 +1,6 @@
 //! The verbs that compute: `run`, one for each stage, and `retry`.
 
-use super::{BAD_SPEC, FAILED_CASES, Fault, failed, open, open_dir, say};
+use super::{BAD_SPEC, FAILED_CASES, Fault, counted, failed, open, open_dir, say};
 use crate::campaign::{Campaign, Shard, Stage, Standing};
 use crate::cli::progress::Teller;
 use crate::cli::{FolderArguments, HowArguments, interrupt};
@@ -111,7 +111,8 @@ fn conclusion(campaign: &Campaign, tallies: &[(Stage, Tally)], until: Stage) -> 
     }
     let dir = campaign.dir.display();
     if failures > 0 {
-        text += &format!("{failures} cases failed; why is in {dir}/cycles/*/failed.json. `hysteron retry {dir}` tries them again.\n");
+        let (cases, them) = counted(failures);
+        text += &format!("{cases} failed; why is in {dir}/cycles/*/failed.json. `hysteron retry {dir}` tries {them} again.\n");
     }
     text += &match until {
         Stage::Report => format!("Report: {dir}/report.html\nTables: {dir}/statistics/*.parquet\n"),

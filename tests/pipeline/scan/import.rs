@@ -253,13 +253,16 @@ fn e2e_a_scan_that_cannot_be_taken_fails_alone() {
     for _ in 0..2 {
         let run = bench.verb("run", &[]);
         assert_eq!(code(&run), 3, "{}", stderr(&run));
-        assert!(stdout(&run).contains("1 cases failed"), "{}", stdout(&run));
+        assert!(stdout(&run).contains("1 case failed"), "{}", stdout(&run));
         assert!(stdout(&run).contains("0/1") && stdout(&run).contains("1/1"), "{}", stdout(&run));
     }
     let cases = read_table(&bench.out().join("statistics/cases.parquet"), &schema::CASES).unwrap();
     assert_eq!(cases.row_count(), 2);
     let status = bench.look("status", &[]);
     assert!(stdout(&status).contains("1 failed") && stdout(&status).contains("missing points"), "{}", stdout(&status));
+    assert!(stdout(&status).contains("Nothing is left to do"), "{}", stdout(&status));
+    let retried = bench.look("retry", &[]);
+    assert!(code(&retried) == 3 && stderr(&retried).matches(" failed: ").count() == 1, "{}", stderr(&retried));
     // The file is put right: it is another one, and computed.
     fs::write(there("holed.npy"), bytes(&cut(8, 60))).unwrap();
     let run = bench.verb("run", &[]);

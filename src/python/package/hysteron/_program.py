@@ -103,8 +103,10 @@ def run(
 
     result = load(answer["dir"])
     if code == _FAILED_CASES:
-        failed = sum(stage["failed_count"] for stage in answer["stages"])
-        text = f"{failed} cases failed; why is in {result.dir}/cycles/*/failed.json. `hysteron retry {result.dir}` tries them again."
+        # Where a surface failed, its cycles did too.
+        failed = max(stage["failed_count"] for stage in answer["stages"])
+        cases, them = ("1 case", "it") if failed == 1 else (f"{failed} cases", "them")
+        text = f"{cases} failed; why is in {result.dir}/cycles/*/failed.json. `hysteron retry {result.dir}` tries {them} again."
         warnings.warn(text, FailedCases, stacklevel=2)
     return result
 
