@@ -8,6 +8,7 @@
 
 # %%
 import argparse
+import re
 from pathlib import Path
 
 import matplotlib
@@ -24,10 +25,11 @@ words.add_argument("--figure", type=Path, default=Path("own_scan.png"))
 words.add_argument("--pixel-m", type=float)
 words.add_argument("--unit")
 words.add_argument("--dataset")
+words.add_argument("--fill", action="store_true", help="continue the heights into missing points")
 words.add_argument("--modulus", type=float, help="contact modulus [Pa]")
 words.add_argument("--adhesion", type=float, default=0.05, help="work of adhesion [J/m²]")
 asked = words.parse_args()  # in a notebook: parse_args(["my_scan.x3p"])
-scan, told = asked.scan, {"pixel_m": asked.pixel_m, "unit": asked.unit, "dataset": asked.dataset}
+scan, told = asked.scan, {"pixel_m": asked.pixel_m, "unit": asked.unit, "dataset": asked.dataset, "fill": asked.fill}
 if scan is None:
     scan = Path("made_up.npy")
     # A rough square of 128 x 128 points, 50 nm apart, that does not continue periodically: heights in nanometres, with a tilt.
@@ -37,7 +39,7 @@ if scan is None:
     heights = np.fft.irfft2(modes, s=(256, 256))[:128, :128]
     np.save(scan, 20 * heights / heights.std() + 0.3 * np.arange(128)[:, None])
     # A .npy file does not tell these; X3P and NetCDF do.
-    told = {"pixel_m": 50e-9, "unit": "nm"}
+    told |= {"pixel_m": 50e-9, "unit": "nm"}
 
 # %% What the surface is like: its moments, its spectrum and a self-affine one that fits it.
 figure = asked.figure
@@ -53,7 +55,7 @@ print(f"H = {fit['hurst']:.2f} with a scatter of {fit['scatter']:.2f} decades; {
 modulus = asked.modulus or float(f"{3 * asked.adhesion / (about['rms_slope'] * about['rms_height_m']):.1e}")
 run = hysteron.run(
     {
-        "name": figure.stem,
+        "name": re.sub(r"[^A-Za-z0-9_-]+", "_", figure.stem),
         "surface": {"file": str(surface)},
         "material": {"contact_modulus_pa": modulus, "work_of_adhesion_j_m2": asked.adhesion},
         "model": {"boundary": "isolated"},

@@ -121,7 +121,7 @@ pub fn prepare(heights_m: Array2<f64>, spacing_m: [f64; 2], treatment: &Treatmen
         return Err(domain(
             "the number of missing points",
             missing_count as f64,
-            "none; or missing = \"fill\" (--fill), which continues the heights around them",
+            "none; or missing = \"fill\" (--fill; fill=True in Python), which continues the heights around them",
         ));
     }
     if share > MOST_MISSING {

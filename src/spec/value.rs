@@ -72,6 +72,10 @@ fn text(path: &str, most: usize, note: &str, value: &Written<'_>, faults: &mut F
         wrong_type(path, "a text in quotes", value.get_ref(), &span, format!("it is {note}"), faults);
         return None;
     };
+    if found.is_empty() && path == "surface.file" {
+        faults.add(&span, format!("`{path}` is empty: it is {note}"), "leave the key out for a generated surface".to_owned());
+        return None;
+    }
     if found.len() > most || found.chars().any(char::is_control) {
         let message = format!("`{path}` cannot be {}: it is {note}", faults.written(&span));
         faults.add(&span, message, format!("up to {most} bytes without control characters are allowed"));

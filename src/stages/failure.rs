@@ -8,7 +8,7 @@ use std::collections::{HashMap, HashSet};
 
 /// Whether an error is one case's own: the others go on.
 pub(super) fn is_of_a_case(error: &StageError) -> bool {
-    matches!(error, StageError::Physics(_) | StageError::Measured { .. })
+    matches!(error, StageError::Physics(_) | StageError::Measured { .. } | StageError::Scan(_))
 }
 
 /// Records that a cycle failed, at which stage and why.

@@ -180,11 +180,16 @@ fn source(path: &Path, dataset: &str) -> Result<Source, StageError> {
     std::fs::File::open(path).and_then(|file| file.take(512).read_to_end(&mut first)).map_err(|error| refused(path, &error.to_string()))?;
     match detect(&first) {
         Some(Found::Hdf5) if dataset.is_none() && is_own_surface(path) => {
-            let (header, heights) = read_surface(path)?;
+            let (header, heights) = read_surface(path).map_err(StageError::Scan)?;
             Ok(Source::Own(Box::new(header), heights))
         }
-        Some(Found::Hdf5) => Ok(Source::Scan(Scan { heights: read_heights(path, dataset)?, size_m: None, unit: None, periodic: None })),
-        Some(Found::Scan(format)) => Ok(Source::Scan(read(path, format, dataset)?)),
+        Some(Found::Hdf5) => Ok(Source::Scan(Scan {
+            heights: read_heights(path, dataset).map_err(StageError::Scan)?,
+            size_m: None,
+            unit: None,
+            periodic: None,
+        })),
+        Some(Found::Scan(format)) => Ok(Source::Scan(read(path, format, dataset).map_err(StageError::Scan)?)),
         None => {
             let known = [Format::NetCdf3, Format::X3p, Format::Npy, Format::Text].map(Format::name).join(", ");
             Err(refused(path, &format!("it is in no format that is read here: HDF5, {known}")))

@@ -68,6 +68,9 @@ pub enum StageError {
         /// Why, and what is allowed.
         why: String,
     },
+    /// The file of a measured surface, which is not in the form that it seems to be in.
+    #[error(transparent)]
+    Scan(StoreError),
     /// A measured surface that is no longer what the spec was read with: nobody's case, since its keys tell of another file.
     #[error("cannot take the surface {}: {why}", path.display())]
     Changed {

@@ -162,7 +162,7 @@ fn told(file: &Path, header: &SurfaceHeader, [points, summits, edge]: [usize; 3]
         None => line("self-affine", "too few waves for a fit".to_owned()),
     }
     for caution in cautions(header) {
-        text += &format!("Caution: {caution}.\n");
+        text += &format!("Caution: {caution}\n");
     }
     match written {
         Some(path) => {

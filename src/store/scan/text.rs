@@ -183,6 +183,6 @@ fn number(cell: &str) -> Result<f64, Cause> {
         Err(_) if cell.matches(',').count() == 1 && cell.replace(',', ".").parse::<f64>().is_ok() => {
             Err(format!("{shown:?} has a decimal comma, which is not supported; write a point").into())
         }
-        Err(_) => Err(format!("{shown:?} is no number; allowed: numbers, and nan, bad, -- or nothing for missing points").into()),
+        Err(_) => Err(format!("{shown:?} is no number; allowed: numbers, and nan, bad, -- or nothing for missing points; and lines that begin with # as a heading").into()),
     }
 }

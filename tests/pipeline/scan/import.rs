@@ -246,25 +246,34 @@ fn e2e_a_scan_that_cannot_be_taken_fails_alone() {
     let mut holed = part();
     holed[[50, 50]] = f64::NAN;
     fs::write(there("holed.npy"), bytes(&holed)).unwrap();
+    fs::write(there("words.csv"), "height,height\n1.0,2.0\n").unwrap();
     fs::write(there("scan.npy"), bytes(&part())).unwrap();
-    let [bad, good] = ["holed.npy", "scan.npy"].map(there);
+    let [bad, worse, good] = ["holed.npy", "words.csv", "scan.npy"].map(there);
     let text = spec(&format!("unit = \"nm\"\npixel_m = 12.5e-9\nfile = {bad:?}"));
-    let bench = Bench::new(&format!("{text}[[sweep]]\nname = \"scans\"\nsurface.file = [{bad:?}, {good:?}]\n"));
+    let bench = Bench::new(&format!("{text}[[sweep]]\nname = \"scans\"\nsurface.file = [{bad:?}, {worse:?}, {good:?}]\n"));
     for _ in 0..2 {
         let run = bench.verb("run", &[]);
         assert_eq!(code(&run), 3, "{}", stderr(&run));
-        assert!(stdout(&run).contains("1 case failed"), "{}", stdout(&run));
+        assert!(stdout(&run).contains("2 cases failed"), "{}", stdout(&run));
         assert!(stdout(&run).contains("0/1") && stdout(&run).contains("1/1"), "{}", stdout(&run));
     }
     let cases = read_table(&bench.out().join("statistics/cases.parquet"), &schema::CASES).unwrap();
-    assert_eq!(cases.row_count(), 2);
+    assert_eq!(cases.row_count(), 3);
     let status = bench.look("status", &[]);
-    assert!(stdout(&status).contains("1 failed") && stdout(&status).contains("missing points"), "{}", stdout(&status));
+    assert!(
+        stdout(&status).contains("2 failed")
+            && stdout(&status).contains("missing points")
+            && stdout(&status).contains("begin with # as a heading"),
+        "{}",
+        stdout(&status)
+    );
     assert!(stdout(&status).contains("Nothing is left to do"), "{}", stdout(&status));
     let retried = bench.look("retry", &[]);
-    assert!(code(&retried) == 3 && stderr(&retried).matches(" failed: ").count() == 1, "{}", stderr(&retried));
-    // The file is put right: it is another one, and computed.
+    assert!(code(&retried) == 3 && stderr(&retried).matches(" failed: ").count() == 2, "{}", stderr(&retried));
+    // The files are put right: they are other ones, and computed.
     fs::write(there("holed.npy"), bytes(&cut(8, 60))).unwrap();
+    let rows: Vec<String> = part().rows().into_iter().map(|row| row.iter().map(f64::to_string).collect::<Vec<_>>().join(",")).collect();
+    fs::write(there("words.csv"), format!("# heights\n{}\n", rows.join("\n"))).unwrap();
     let run = bench.verb("run", &[]);
     assert_eq!(code(&run), 0, "{}{}", stdout(&run), stderr(&run));
     assert!(bench.out().join("report.html").is_file());

@@ -24,6 +24,28 @@ def test_a_scan_is_taken(program, tmp_path):
         hysteron.take(tmp_path / "scan.npy")
 
 
+def test_an_array_is_taken_as_its_file_is(program, tmp_path):
+    i, j = np.mgrid[:64, :72]
+    heights = np.cos(0.3 * i) * np.sin(0.25 * j)
+    np.save(tmp_path / "scan.npy", heights)
+    told = {"pixel_m": 1e-8, "unit": "nm"}
+    of_file, of_array = (hysteron.take(scan, **told) for scan in (tmp_path / "scan.npy", heights))
+    assert {key: of_file[key] for key in ("rms_height_m", "rms_slope", "spectrum")} == {
+        key: of_array[key] for key in ("rms_height_m", "rms_slope", "spectrum")
+    }
+    masked = np.ma.masked_where(np.hypot(i - 32, j - 36) < 2, heights)
+    with pytest.raises(hysteron.Failed, match="the number of missing points is 9; allowed: none"):
+        hysteron.take(masked, **told)
+    assert hysteron.take(masked, **told, fill=True)["missing_count"] == 9
+
+
+def test_a_surface_that_was_not_written_is_no_generated_one(program, tmp_path):
+    with pytest.raises(ValueError, match="surface.file is None; allowed: a file, which `take` writes where it is given `out`"):
+        hysteron.run({"name": "x", "surface": {"file": None}}, out=tmp_path / "run")
+    with pytest.raises(hysteron.Failed, match="cannot be read"):
+        hysteron.run({"name": "x", "surface": {"file": tmp_path / "gone.npy", "periodic": True}}, out=tmp_path / "run")
+
+
 def test_the_example_ends_at_a_figure(program, root, tmp_path):
     pytest.importorskip("matplotlib")
     environment = dict(os.environ, PYTHONDONTWRITEBYTECODE="1")

@@ -15,9 +15,13 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from . import _toml
 
 if TYPE_CHECKING:
+    import numpy.typing as npt
+
     from ._run import Run
 
 _FAILED_CASES = 3
@@ -112,7 +116,7 @@ def run(
 
 
 def take(
-    file: str | os.PathLike[str],
+    file: str | os.PathLike[str] | npt.NDArray[Any],
     out: str | os.PathLike[str] | None = None,
     *,
     dataset: str | None = None,
@@ -125,7 +129,7 @@ def take(
 ) -> dict[str, Any]:
     """Takes a measured surface, as `hysteron import` does, and says what it is like: its moments, its spectrum, the self-affine spectrum that fits it.
 
-    `file` is HDF5 (`dataset` names the field), NetCDF-3, X3P, .npy or text. `pixel_m` is the distance of its points [m] and `unit` the unit of its heights, where
+    `file` is HDF5 (`dataset` names the field), NetCDF-3, X3P, .npy or text; or an array of heights, in which what is masked or no number is missing. `pixel_m` is the distance of its points [m] and `unit` the unit of its heights, where
     the file does not tell them; `fill` continues the heights into missing points; `detrend` is mean, plane or quadratic; waves shorter than so many `points` are
     taken off. With `out` the surface is written there, over what is there, to be named in a spec as `surface.file`; without it nothing is written.
     """
@@ -133,7 +137,8 @@ def take(
     command += ["--dry-run"] if out is None else [f"--out={os.fspath(out)}", "--force"]
     command += [f"--{name}={value}" for name, value in (("dataset", dataset), ("pixel-m", pixel_m), ("unit", unit)) if value is not None]
     command += [f"--{name}" for name, asked in (("fill", fill), ("periodic", periodic)) if asked]
-    return _answered([*command, "--", os.fspath(file)])
+    with _scan(file) as path:
+        return _answered([*command, "--", path])
 
 
 def status(dir: Path) -> dict[str, Any]:
@@ -151,9 +156,25 @@ def _answered(command: list[str]) -> dict[str, Any]:
 
 
 @contextmanager
+def _scan(file: str | os.PathLike[str] | npt.NDArray[Any]) -> Iterator[str]:
+    """A scan as a file."""
+    if isinstance(file, (str, os.PathLike)):
+        yield os.fspath(file)
+        return
+    heights = np.ma.filled(np.ma.asarray(file, dtype=np.float64), np.nan)
+    with tempfile.TemporaryDirectory(prefix="hysteron-") as folder:
+        path = Path(folder) / "array.npy"
+        np.save(path, heights)
+        yield str(path)
+
+
+@contextmanager
 def _file(spec: str | os.PathLike[str] | Mapping[str, Any]) -> Iterator[str]:
     """The spec as a file."""
     if isinstance(spec, Mapping):
+        surface = spec.get("surface")
+        if isinstance(surface, Mapping) and surface.get("file", "") is None:
+            raise ValueError("cannot write the spec: surface.file is None; allowed: a file, which `take` writes where it is given `out`; or no such key")
         text = _toml.dumps(spec)
     elif isinstance(spec, str) and ("\n" in spec or ("=" in spec and not os.path.isfile(spec))):
         text = spec
