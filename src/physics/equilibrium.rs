@@ -28,13 +28,13 @@ const WORTH: f64 = 0.03;
 const MOST: f64 = 3e-3;
 const LEAST: f64 = 1e-5;
 
+/// The same where the whole contact is solved well enough to go on.
+const ROUGH: f64 = 3e-2;
+
 /// The relative residual of rates where the whole contact is solved to the last digits, and where it is solved well enough to go on. What is next to happen is
 /// told by them.
 const RATES: f64 = 1e-6;
 const ROUGH_RATES: f64 = 3e-4;
-
-/// The same where it is solved well enough to go on.
-const ROUGH: f64 = 3e-2;
 
 /// Solutions that one approximate inverse serves.
 const OLD: usize = 4;
