@@ -8,6 +8,7 @@
 mod coupled;
 mod cycle;
 mod fast;
+mod golden;
 mod homogeneity;
 mod invariance;
 mod isolated;

@@ -1,0 +1,58 @@
+//! Whole cycles, pinned: a change of the solver that moves a result shows here first.
+//!
+//! With `HYSTERON_DIGESTS=1` and `--nocapture` the test also prints the BLAKE3 digest of every cycle, to compare two builds on one machine byte by byte.
+
+use crate::support::{DEFAULT, LENGTH, PAPER, RMS, close, loop_of, paper_summits, run};
+use hysteron::model::{Boundary, Coalescence, Interaction, JumpIn, KeptContacts, Material};
+use hysteron::physics::state::{Problem, Rules};
+
+/// Magnification, realization, rules, work of adhesion \[J/m²\], contacts in a local problem.
+type Setup = (u32, u64, Rules, f64, usize);
+
+/// Number of events, A/A0 at the load reversal, F_po/(E* A0) and Θ/(E* A0 h_rms).
+type Pinned = (usize, f64, f64, f64);
+
+fn setups() -> Vec<(&'static str, Setup, Pinned)> {
+    let merge = Rules { coalescence: Coalescence::Merge, ..DEFAULT };
+    let alone = Rules { interaction: Interaction::None, ..DEFAULT };
+    let point = Rules { interaction: Interaction::Point, ..DEFAULT };
+    let isolated = Rules { boundary: Boundary::Isolated, ..DEFAULT };
+    let jkr = Rules { jump_in: JumpIn::Jkr, ..DEFAULT };
+    vec![
+        ("cover, zeta 16", (16, 0, DEFAULT, 0.07, 24), (94, 3.677862353902e-1, 1.183319520590e-3, 1.571030260368e-3)),
+        ("cover, zeta 32", (32, 1, DEFAULT, 0.07, 24), (331, 3.694690189638e-1, 7.631878441501e-4, 1.978508572429e-3)),
+        ("cover, local problems of 3", (16, 1, DEFAULT, 0.07, 3), (96, 4.059902235198e-1, 8.521168830823e-4, 1.710849332221e-3)),
+        (
+            "cover, all contacts in one problem",
+            (16, 1, DEFAULT, 0.07, usize::MAX),
+            (96, 4.059902235198e-1, 8.499241918691e-4, 1.710097405786e-3),
+        ),
+        ("cover, weak adhesion", (16, 0, DEFAULT, 1e-3, 24), (82, 1.557304951904e-1, 1.271672677095e-6, 1.085022312793e-6)),
+        ("merge", (16, 0, merge, 0.07, 24), (210, 5.467996697049e-1, 1.200344010658e-3, 1.587960526279e-3)),
+        ("no interaction", (16, 0, alone, 0.07, 24), (96, 3.485415168642e-1, 1.209450779577e-3, 1.539783209210e-3)),
+        ("point loads", (16, 0, point, 0.07, 24), (94, 3.677670707883e-1, 1.198677882806e-3, 1.547585202508e-3)),
+        ("isolated", (16, 0, isolated, 0.07, 24), (90, 3.855806283037e-1, 1.031359464757e-3, 1.682534727925e-3)),
+        ("jump-in of JKR", (16, 0, jkr, 0.07, 24), (94, 3.677862353902e-1, 1.183319520590e-3, 1.612698303180e-3)),
+    ]
+}
+
+#[test]
+fn reg_whole_cycles() {
+    for (what, (zeta, realization, rules, adhesion, patch), (events, area, pull_off, loss)) in setups() {
+        let material = Material { work_of_adhesion_j_m2: adhesion, ..PAPER };
+        let problem = Problem::new(&paper_summits(zeta, realization), LENGTH, RMS, material, rules).unwrap().with_patches_of(patch);
+        let cycle = run(&problem, &[0.0071], 0.04, KeptContacts::Turning);
+        let (load_unit, found) = (problem.load_unit_n(), loop_of(&cycle, 0));
+        let (found_area, found_pull_off, found_loss) =
+            (found.area / (LENGTH * LENGTH), found.pull_off / load_unit, found.loss / (load_unit * RMS));
+        if std::env::var_os("HYSTERON_DIGESTS").is_some() {
+            let digest = blake3::hash(&postcard::to_stdvec(&cycle).unwrap()).to_hex();
+            println!("{what}: {} {found_area:.12e} {found_pull_off:.12e} {found_loss:.12e} {digest}", cycle.events.len());
+        }
+        // The order of sums differs between processors in the last digits only; a change of one event moves the last result by 1e-4 and more.
+        assert_eq!(cycle.events.len(), events, "{what}: number of events");
+        close(&format!("{what}: area"), found_area, area, 1e-7);
+        close(&format!("{what}: pull-off force"), found_pull_off, pull_off, 1e-7);
+        close(&format!("{what}: dissipated energy"), found_loss, loss, 1e-7);
+    }
+}
