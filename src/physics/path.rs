@@ -473,10 +473,10 @@ impl<'p> Path<'p> {
     }
 }
 
-/// Whether it is one, but for rounding.
+/// Whether `value` is a multiple of `size` to rounding, which grows with their ratio.
 pub(crate) fn is_multiple(value: f64, size: f64) -> bool {
     let count = value / size;
-    (count - count.round()).abs() < 1e-9
+    (count - count.round()).abs() < 1e-9 + 4.0 * f64::EPSILON * count.abs()
 }
 
 /// The next multiple of `size` after `here` in the sense `sign`.

@@ -56,6 +56,10 @@ pub struct Problem {
     pub rms_height_m: f64,
 }
 
+/// Limit of Wu's jump-in penetration, as a fraction of the jump-off penetration. Wu's criterion (Eq 3) is beyond the end of the JKR branch at Tabor
+/// parameters from 0.2 to 1: an asperity that formed a contact there would leave at once. At its lower bound, μ = 2, the criterion gives 0.79.
+const DEEPEST_JUMP_IN: f64 = 0.95;
+
 /// Spots that are solved together at an event, with all others held to first order: some five screening lengths around it.
 const SPOTS_IN_PATCH: usize = 24;
 
@@ -98,7 +102,7 @@ impl Problem {
             .iter()
             .map(|a| match rules.jump_in {
                 JumpIn::Jkr => 0.0,
-                JumpIn::Wu => a.wu_jump_in_penetration(range).min(0.0).max(a.jump_off_penetration()),
+                JumpIn::Wu => a.wu_jump_in_penetration(range).min(0.0).max(DEEPEST_JUMP_IN * a.jump_off_penetration()),
             })
             .collect();
         let positions: Vec<[f64; 2]> = summits.iter().map(|s| places.inward([s.x_m, s.y_m])).collect();

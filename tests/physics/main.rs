@@ -7,6 +7,7 @@
 
 mod coupled;
 mod cycle;
+mod extremes;
 mod fast;
 mod golden;
 mod homogeneity;
