@@ -1,6 +1,5 @@
 //! The events of a stretch: each is located in its neighbourhood, taken, and followed by all that it brings about.
 
-use super::PhysicsError;
 use super::equilibrium::Unsettled;
 use super::events::{Change, Kind, Trigger};
 use super::front::Due;
@@ -8,6 +7,7 @@ use super::locate::Found;
 use super::patch::Hold;
 use super::path::{EVENT_TOLERANCE, FLIPS, Halt, Path};
 use super::state::Status;
+use super::{PhysicsError, Reason};
 
 /// Share of its radius by which a spot is moved over a fold.
 const NUDGE: f64 = 1e-3;
@@ -43,8 +43,9 @@ impl Path<'_> {
             let due = self.queue.swap_remove(at);
             looks += 1;
             if looks > 100 * (problem.len() + 100) {
-                return Err(Unsettled { residual_m: f64::NAN, asperity: due.change.asperity }.into());
+                return Err(Unsettled::because(Reason::EndlessEvents, due.change.asperity).into());
             }
+            self.check_event_count(due.approach, due.change.asperity)?;
             self.gather(&due.change, None);
             let (mut moved, mut open) = (Vec::new(), Vec::new());
             self.log.begin_avalanche();
@@ -174,6 +175,7 @@ impl Path<'_> {
             let lagging = |asperity| Change { kind: Kind::Snap, asperity, by: None };
             let Some(change) = next.or_else(|| self.most_lagging().map(lagging)) else { break };
             taken += 1;
+            self.check_event_count(approach, change.asperity)?;
             if taken > bound {
                 return Err(Halt::Error(PhysicsError::EndlessAvalanche {
                     approach_m: approach,

@@ -9,6 +9,8 @@ use super::log::Event;
 use super::merge::Merged;
 use super::path::{Carried, Depth, Path, is_multiple};
 use super::recorder::Recorder;
+use super::reversal::retrace;
+use super::soundness::check_energy;
 use super::state::{Problem, State};
 use crate::model::KeptContacts;
 use serde::{Deserialize, Serialize};
@@ -178,6 +180,10 @@ pub fn run_from(
                 let leg = leg.take().unwrap_or_else(|| Leg::loading(problem, settings));
                 load(problem, settings, leg, cycle, &|done| progress(0.5 * done))?
             }
+            Some(k) if problem.is_adhesionless() => {
+                retrace(cycle, k, Some(settings.max_loads[k]), settings.contacts);
+                None
+            }
             Some(k) => {
                 let max_load = settings.max_loads[k];
                 let leg = leg.take().unwrap_or_else(|| Leg::unloading(problem, settings, Some(max_load), cycle.turning[k].1.clone()));
@@ -188,6 +194,9 @@ pub fn run_from(
         if leg.is_some() {
             keep(&halfway);
         } else {
+            if let Some(k) = branches.checked_sub(1) {
+                check_energy(cycle, k)?;
+            }
             *branches += 1;
         }
     }
@@ -200,6 +209,11 @@ pub fn run_from(
 /// An approach without an equilibrium.
 pub fn unload_from(problem: &Problem, settings: &Settings, max_load: f64, state: State) -> Result<Cycle, PhysicsError> {
     let mut cycle = Cycle::default();
+    if problem.is_adhesionless() {
+        // The state at the reversal does not hold the loading path, which the unloading repeats.
+        let settings = Settings { max_loads: vec![max_load], ..settings.clone() };
+        return Ok(run(problem, &settings, &|_| {})?.unloading_alone());
+    }
     unload_through(problem, settings, Some(max_load), state, &mut cycle)?;
     Ok(cycle)
 }
@@ -220,6 +234,10 @@ pub fn run_to(problem: &Problem, settings: &Settings, turn: f64) -> Result<Cycle
         recorder.turn(settings, path, None, &mut cycle)?;
         Ok(Next::End)
     })?;
+    if problem.is_adhesionless() {
+        retrace(&mut cycle, 0, None, settings.contacts);
+        return Ok(cycle);
+    }
     let state = cycle.turning[0].1.clone();
     unload_through(problem, settings, None, state, &mut cycle)?;
     Ok(cycle)
@@ -238,6 +256,21 @@ fn unload_through(
         leg = unload(problem, settings, rests, cycle, &|_| {})?;
     }
     Ok(())
+}
+
+impl Cycle {
+    /// The unloading branch of a cycle with one load reversal, numbered from its first step.
+    fn unloading_alone(self) -> Self {
+        let loading = self.steps.iter().take_while(|step| step.branch == Branch::Loading).count();
+        let rest = |step: usize| step.checked_sub(loading);
+        Self {
+            steps: self.steps[loading..].to_vec(),
+            contacts: self.contacts.into_iter().filter_map(|c| Some(Contact { step: rest(c.step)?, ..c })).collect(),
+            events: self.events.into_iter().filter_map(|(step, event)| Some((rest(step)?, event))).collect(),
+            merged: self.merged.into_iter().filter_map(|m| Some(MergedAt { step: rest(m.step)?, ..m })).collect(),
+            turning: Vec::new(),
+        }
+    }
 }
 
 impl Settings {
@@ -311,7 +344,7 @@ fn unload(
         if path.state().contacts.is_empty() {
             if recorder.lacks_events(path) {
                 // The last spot has gone between two points of the grid.
-                recorder.record(settings, path, None, cycle, false);
+                recorder.record(settings, path, None, cycle, false)?;
             }
             return Ok(Next::End);
         }

@@ -7,6 +7,7 @@
 //!   themselves with dense matrices, and the whole goes on from there (nonlinear elimination, Lanzkron, Rose & Wilkes, SIAM J. Sci. Comput. 17:538, 1996);
 //! - [`Solver::relax`]: where Newton finds nothing (a fold, or after a jump), overdamped relaxation ([`super::relax`]).
 
+use super::Reason;
 use super::events::{Change, Moving};
 use super::interaction::{Effort, Interaction as _, Spots, Tangent};
 use super::krylov::{Matrix, alone, dot, gmres, gmres_and_least};
@@ -39,11 +40,24 @@ const ROUGH_RATES: f64 = 3e-4;
 /// Solutions that one approximate inverse serves.
 const OLD: usize = 4;
 
-/// Why an iteration ended without an equilibrium: the worst residual and its asperity.
+/// A state that is not in equilibrium: the worst residual and its asperity, and what else prevents an equilibrium.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Unsettled {
     pub(crate) residual_m: f64,
     pub(crate) asperity: usize,
+    pub(crate) reason: Reason,
+}
+
+impl Unsettled {
+    /// The worst residual \[m\] and its asperity.
+    pub(crate) fn residual(residual_m: f64, asperity: usize) -> Self {
+        Self { residual_m, asperity, reason: Reason::Residual }
+    }
+
+    /// Another reason, at an asperity.
+    pub(crate) fn because(reason: Reason, asperity: usize) -> Self {
+        Self { residual_m: f64::NAN, asperity, reason }
+    }
 }
 
 /// Solves for the radii of a state; keeps its work space from one solve to the next.
@@ -141,7 +155,7 @@ impl<'p> Solver<'p> {
         let problem = self.problem;
         self.residual.clear();
         self.diagonal.clear();
-        let mut worst = Unsettled { residual_m: 0.0, asperity: state.contacts.first().copied().unwrap_or(0) };
+        let mut worst = Unsettled::residual(0.0, state.contacts.first().copied().unwrap_or(0));
         for (&i, w) in state.contacts.iter().zip(&state.displacement) {
             let (asperity, a) = (state.asperity(problem, i), state.radius[i]);
             let residual = state.approach_m + problem.heights[i] - w - asperity.penetration(a);
@@ -149,7 +163,7 @@ impl<'p> Solver<'p> {
             self.diagonal.push(asperity.penetration_slope(a));
             // A residual that is not a number must not pass as a small one.
             if residual.is_nan() || residual.abs() > worst.residual_m {
-                worst = Unsettled { residual_m: residual.abs(), asperity: i };
+                worst = Unsettled::residual(residual.abs(), i);
             }
         }
         state.residual_m = worst.residual_m;

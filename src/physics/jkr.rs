@@ -6,6 +6,10 @@
 //!
 //! In units `a: (R²Δγ/E*)^⅓`, `δ: (RΔγ²/E*²)^⅓`, `F: RΔγ` every asperity is the same one.
 //!
+//! # Without adhesion
+//! At `Δγ = 0` Eqs 1 and 2 are those of Hertz. The branch then ends at `a = 0`, where `dδ/da` vanishes and no Newton step has a direction: contact is taken to
+//! begin and end at `a_off =` [`HERTZ_EDGE`] `R`, where the penetration is `1e-10 R` and the load `(4/3)·1e-15 E*R²`.
+//!
 //! # The slip in Eq 9
 //! The denominator of Eq 9 is the slope dδ/da of Eq 2, printed as `2a/R − sqrt(πΔγ/(E*a))`. The equilibrium does not know it: Eq 9 is a
 //! way to get there. What does is the end of the branch, which is where this slope vanishes: printed, at
@@ -18,6 +22,9 @@ use std::f64::consts::PI;
 
 /// Least share of its adhesive load that a spot is given: without any it would have no end of its branch.
 const LEAST_GRIP: f64 = 1e-6;
+
+/// Contact radius over the radius of curvature at which a contact without adhesion begins and ends.
+pub const HERTZ_EDGE: f64 = 1e-5;
 
 /// One asperity with its material.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,7 +47,7 @@ impl Asperity {
     /// An asperity of radius of curvature `radius_m` \[m\] on `material`.
     ///
     /// # Errors
-    /// Radius, modulus and work of adhesion must be positive and finite.
+    /// Radius and modulus must be positive and finite, the work of adhesion zero or positive and finite.
     pub fn new(radius_m: f64, material: &Material) -> Result<Self, PhysicsError> {
         Self::as_printed(radius_m, material, Slips::NONE)
     }
@@ -53,12 +60,17 @@ impl Asperity {
     /// As [`Self::new`].
     pub fn as_printed(radius_m: f64, material: &Material, slips: Slips) -> Result<Self, PhysicsError> {
         let (modulus, adhesion) = (material.contact_modulus_pa, material.work_of_adhesion_j_m2);
-        for (quantity, value) in
-            [("the radius of curvature [m]", radius_m), ("the contact modulus [Pa]", modulus), ("the work of adhesion [J/m2]", adhesion)]
-        {
+        let refused = |quantity, value, allowed| PhysicsError::Domain { action: "a JKR asperity", quantity, value, allowed };
+        for (quantity, value) in [("the radius of curvature [m]", radius_m), ("the contact modulus [Pa]", modulus)] {
             if !(value > 0.0 && value.is_finite()) {
-                return Err(PhysicsError::Domain { action: "a JKR asperity", quantity, value, allowed: "a positive, finite number" });
+                return Err(refused(quantity, value, "a positive, finite number"));
             }
+        }
+        if !(adhesion >= 0.0 && adhesion.is_finite()) {
+            return Err(refused("the work of adhesion [J/m2]", adhesion, "zero or a positive, finite number"));
+        }
+        if adhesion == 0.0 {
+            return Ok(Self::hertz(radius_m, modulus));
         }
         let pull_squared = 2.0 * PI * adhesion / modulus;
         let fold_radius = (pull_squared * radius_m * radius_m / 16.0).cbrt();
@@ -76,11 +88,18 @@ impl Asperity {
         })
     }
 
+    /// The limit `Δγ = 0`; see the head of this module.
+    fn hertz(radius: f64, modulus: f64) -> Self {
+        let jump_off_radius = HERTZ_EDGE * radius;
+        let jump_off_penetration = jump_off_radius * HERTZ_EDGE;
+        Self { radius, modulus, adhesion: 0.0, grip: 1.0, pull: 0.0, fold_radius: 0.0, jump_off_radius, jump_off_penetration }
+    }
+
     /// The same where loads around it change the pull at its edge: of the load `sqrt(8πE*Δγa³)` that adhesion takes off, the share `τ > 0`
     /// (dimensionless) is left, as if the work of adhesion were `Δγτ²`. So the end of its branch is at `τ^⅔ a_off`. At `τ = 1` nothing is changed.
     #[must_use]
     pub fn gripping(&self, grip: f64) -> Self {
-        if grip == self.grip {
+        if grip == self.grip || self.adhesion == 0.0 {
             return *self;
         }
         let more = grip.max(LEAST_GRIP) / self.grip;
@@ -184,6 +203,9 @@ impl Asperity {
     #[must_use]
     pub fn radius_at_penetration(&self, penetration: f64) -> Option<f64> {
         let off = self.fold_radius;
+        if off == 0.0 {
+            return (penetration >= self.jump_off_penetration && penetration.is_finite()).then(|| (self.radius * penetration).sqrt());
+        }
         let excess = (penetration + 3.0 * off * off / self.radius) * self.radius / (off * off);
         if !(penetration >= self.jump_off_penetration && excess.is_finite()) {
             return None;

@@ -4,6 +4,7 @@
 //! reaches the centre of another the field has an infinite slope in that radius alone. So events of a spot are found by holding its
 //! radius and solving for the approach; a fold is where `dδ/da` of a spot that moves with it vanishes.
 
+use super::Reason;
 use super::equilibrium::Unsettled;
 use super::illinois::{End, Illinois};
 use super::interaction::Effort;
@@ -53,7 +54,7 @@ impl Patch {
             // Where the field itself jumps, as with the printed Eq 8, ever shorter parts lead to the jump and not beyond.
             parts += 1;
             if parts > STATIONS {
-                return Err(Unsettled { residual_m: f64::NAN, asperity: self.members[at].asperity });
+                return Err(Unsettled::because(Reason::EndlessPath, self.members[at].asperity));
             }
             let from = (self.radius.clone(), self.approach);
             let (direction, rate) = self.along(problem, at);

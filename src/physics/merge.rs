@@ -106,12 +106,12 @@ impl Problem {
         Ok(())
     }
 
-    /// Load over `sqrt(8πE*Δγa³)` of what two spots would be, and that root \[N\].
-    fn tension(&self, state: &State, i: usize, j: usize) -> (f64, f64) {
+    /// Load of the contact that two contacts would become, and its adhesive part `sqrt(8πE*Δγa³)` \[N\].
+    fn joint_load(&self, state: &State, i: usize, j: usize) -> (f64, f64) {
         let [a, b] = [state.radius[i], state.radius[j]];
         let area_radius = a.hypot(b);
         let root = 2.0 * self.material.contact_modulus_pa * self.material.pull() * area_radius * area_radius.sqrt();
-        ((state.asperity(self, i).load(a) + state.asperity(self, j).load(b)) / root, root)
+        (state.asperity(self, i).load(a) + state.asperity(self, j).load(b), root)
     }
 
     /// A merged spot by the caller's numbers and places.
@@ -124,7 +124,8 @@ impl Problem {
         match meeting {
             Meeting::Touch(i, j) if state.radius[i] > 0.0 && state.radius[j] > 0.0 => {
                 let overlap = (state.radius[i] + state.radius[j]) / self.neighbours.distance(&self.positions[i], &self.positions[j]) - 1.0;
-                overlap.min(self.tension(state, i, j).0 + TENSEST)
+                let (load, root) = self.joint_load(state, i, j);
+                if root > 0.0 { overlap.min(load / root + TENSEST) } else { overlap }
             }
             Meeting::Part(m) if state.radius[m] > 0.0 => NEARER * (1.0 - state.radius[m] / state.merged[m - self.summits].release_m),
             _ => -1.0,
@@ -161,7 +162,7 @@ impl Problem {
     pub(crate) fn join(&mut self, state: &mut State, i: usize, j: usize) -> Result<usize, PhysicsError> {
         let [a, b] = [state.radius[i], state.radius[j]];
         let radius = a.hypot(b);
-        let (tension, root) = self.tension(state, i, j);
+        let (load, root) = self.joint_load(state, i, j);
         let number = self.len();
         let (from, way) = (self.positions[i], self.neighbours.apart(&self.positions[j], &self.positions[i]));
         let between = [0, 1].map(|k| from[k] + b * b / (radius * radius) * way[k]);
@@ -170,7 +171,7 @@ impl Problem {
             radii_m: [a, b],
             // As it will be when it has been written down and read again.
             place_m: self.places.inward(self.places.outward(between)),
-            radius_m: 4.0 / 3.0 * self.material.contact_modulus_pa * radius.powi(3) / ((tension + 1.0) * root),
+            radius_m: 4.0 / 3.0 * self.material.contact_modulus_pa * radius.powi(3) / (load + root),
             height_m: 0.0,
             release_m: radius,
             approach_m: state.approach_m,

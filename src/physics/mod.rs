@@ -30,8 +30,10 @@ mod places;
 mod recorder;
 mod relax;
 pub mod restart;
+mod reversal;
 pub mod selfaffine;
 mod settle;
+pub mod soundness;
 pub mod spectrum;
 pub mod state;
 pub mod summits;
@@ -76,13 +78,16 @@ pub enum PhysicsError {
     },
     /// No equilibrium was found near the last one, not even by relaxation.
     #[error(
-        "cannot find an equilibrium at the approach {approach_m:e} m: after {iterations} iterations the worst residual is {residual_m:e} m, \
-         at asperity {asperity}; the contact may have none here (coalescing spots), or the step may be too long: try a smaller approach_step"
+        "no equilibrium at the mean penetration {approach_m:e} m after {iterations} iterations: {} (asperity {asperity})\nhelp: contacts that \
+         grow together may have none: reduce cycle.max_load, or set model.coalescence = \"cover\"",
+        reason.sentence(*residual_m)
     )]
     NoEquilibrium {
-        /// Approach δ \[m\].
+        /// Mean penetration Δ \[m\].
         approach_m: f64,
-        /// The worst residual \[m\].
+        /// What prevents it.
+        reason: Reason,
+        /// The largest residual \[m\]; not a number for another reason.
         residual_m: f64,
         /// The asperity that has it.
         asperity: usize,
@@ -97,12 +102,13 @@ pub enum PhysicsError {
         /// How many asperities there are.
         count: usize,
     },
-    /// An avalanche did not end.
+    /// Events go on without end within one increment of the approach.
     #[error(
-        "cannot end the avalanche at the approach {approach_m:e} m: {events} changes of state and still not at rest (asperity {asperity} last)"
+        "no stable state at the mean penetration {approach_m:e} m after {events} changes of state (asperity {asperity} last)\nhelp: reduce \
+         cycle.max_load, or set model.coalescence = \"none\""
     )]
     EndlessAvalanche {
-        /// Approach δ \[m\].
+        /// Mean penetration Δ \[m\].
         approach_m: f64,
         /// Changes of state so far.
         events: usize,
@@ -120,6 +126,43 @@ pub enum PhysicsError {
         /// Area over that of the square.
         share: f64,
     },
+    /// The contacts have a larger area than the nominal one.
+    #[error(
+        "the contact area {share:.3} A0 exceeds the nominal area at the mean penetration {approach_m:e} m: the contacts have grown together, and the \
+         asperity model does not hold\nhelp: reduce cycle.max_load; a contact that fills the area under tension is in full contact and outside this model"
+    )]
+    ExcessArea {
+        /// Mean penetration Δ \[m\].
+        approach_m: f64,
+        /// Contact area Σπa² over A0.
+        share: f64,
+    },
+    /// A loop gives more energy than it takes.
+    #[error(
+        "the loop to F/(E* A0) = {max_load} has the negative dissipated energy Θ = {loss_j:e} J ({fraction:.1e} of the work of loading): this is no \
+         result\nhelp: reduce cycle.max_load, or set model.coalescence = \"merge\" or \"none\": absorbing contacts does not conserve energy"
+    )]
+    NegativeDissipation {
+        /// F/(E* A0) at the load reversal; not a number under displacement control.
+        max_load: f64,
+        /// Dissipated energy Θ \[J\].
+        loss_j: f64,
+        /// Its magnitude over the work of loading.
+        fraction: f64,
+    },
+    /// The energies of the events are not those of the loop.
+    #[error(
+        "the loop to F/(E* A0) = {max_load} dissipates Θ = {loss_j:e} J, its events {events_j:e} J: an energy-balance error above half of Θ is no \
+         result\nhelp: reduce cycle.max_load, or set model.coalescence = \"merge\" or \"none\": absorbing contacts does not conserve energy"
+    )]
+    EnergyImbalance {
+        /// F/(E* A0) at the load reversal; not a number under displacement control.
+        max_load: f64,
+        /// Dissipated energy Θ \[J\].
+        loss_j: f64,
+        /// Energy dissipated in the events \[J\].
+        events_j: f64,
+    },
     /// The greatest load is not reached.
     #[error(
         "cannot reach the load F/(E* A0) = {wanted}: at the approach {approach_m:e} m it is {reached}; allowed: a smaller max_load, or, where the contact is pulled on, a stiffer or rougher surface: this one sticks"
@@ -132,6 +175,35 @@ pub enum PhysicsError {
         /// The approach at which the search ended \[m\].
         approach_m: f64,
     },
+}
+
+/// Why no equilibrium was found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Reason {
+    /// A residual stays above the tolerance.
+    Residual,
+    /// The equilibrium that was found is unstable.
+    Unstable,
+    /// A load or an energy is not a number.
+    NotANumber,
+    /// The search for the next event does not end.
+    EndlessEvents,
+    /// The solution curve to the next event does not end.
+    EndlessPath,
+}
+
+impl Reason {
+    /// The reason in words, with the largest residual \[m\].
+    fn sentence(self, residual_m: f64) -> String {
+        match self {
+            Self::Residual => format!("the largest residual stays at {residual_m:e} m"),
+            Self::Unstable => "the equilibrium found is unstable".to_owned(),
+            Self::NotANumber => "a load or an energy is not a number".to_owned(),
+            Self::EndlessEvents => "the search for the next event does not end".to_owned(),
+            Self::EndlessPath => "the solution curve to the next event does not end".to_owned(),
+        }
+    }
 }
 
 /// A number as a sentence has it: a count by its digits.

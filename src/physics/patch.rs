@@ -7,6 +7,7 @@
 
 mod part;
 
+use super::Reason;
 use super::dense::Lu;
 use super::equilibrium::Unsettled;
 use super::interaction::{Effort, PairTable, Spots};
@@ -252,7 +253,7 @@ impl Patch {
         self.field.clear();
         self.slopes.clear();
         self.residual.clear();
-        let mut worst = Unsettled { residual_m: 0.0, asperity: self.members.first().map_or(0, |m| m.asperity) };
+        let mut worst = Unsettled::residual(0.0, self.members.first().map_or(0, |m| m.asperity));
         if self.local && !couples {
             problem.field.among(&self.spots, &mut self.pairs, &mut self.field, &mut self.slopes, effort);
         } else {
@@ -271,7 +272,7 @@ impl Patch {
             self.residual.push(residual);
             // A residual that is not a number must not pass as a small one.
             if residual.is_nan() || residual.abs() > worst.residual_m {
-                worst = Unsettled { residual_m: residual.abs(), asperity: i };
+                worst = Unsettled::residual(residual.abs(), i);
             }
         }
         worst
@@ -346,7 +347,7 @@ impl Patch {
         let mut step = (Vec::new(), 0.0);
         let mut before = f64::INFINITY;
         let mut share = 1.0;
-        let mut last = Unsettled { residual_m: f64::NAN, asperity: 0 };
+        let mut last = Unsettled::because(Reason::NotANumber, 0);
         for _ in 0..most {
             effort.iterations += 1;
             last = self.evaluate(problem, effort);

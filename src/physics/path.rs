@@ -13,7 +13,6 @@ mod carried;
 
 pub(crate) use carried::Carried;
 
-use super::PhysicsError;
 use super::equilibrium::{Solver, Unsettled};
 use super::events::{Change, Kind};
 use super::front::{Due, Front};
@@ -23,6 +22,7 @@ use super::log::Log;
 use super::neighbourhood::Ripple;
 use super::patch::{Patch, Trace};
 use super::state::{Problem, State, Status, Totals};
+use super::{PhysicsError, Reason};
 
 /// Greatest root mean square of the residuals at the end of a stretch, before the whole contact is solved; of the mean jump-off penetration.
 pub const DRIFT: f64 = 1e-2;
@@ -56,6 +56,9 @@ const RETRY: f64 = 0.97;
 
 /// Changes other than leaving that one asperity takes in one longest stretch.
 pub(crate) const FLIPS: u8 = 3;
+
+/// Changes of state within one increment of the approach, per asperity, beyond which the events have no end: [`FLIPS`] allows each asperity a few.
+const MOST_EVENTS: usize = 20;
 
 /// How well the whole contact is solved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -133,6 +136,8 @@ pub(crate) struct Path<'p> {
     pub(crate) held: Vec<usize>,
     /// How well the whole contact is solved where the path is.
     pub(crate) solved: Depth,
+    /// Number of events at which the present increment of the approach ends with an error.
+    event_limit: usize,
     /// Before the last stretch.
     mark: Option<Box<Mark>>,
 }
@@ -191,8 +196,24 @@ impl<'p> Path<'p> {
             flips: vec![0; n],
             held: Vec::new(),
             solved: Depth::Whole,
+            event_limit: usize::MAX,
             mark: None,
         }
+    }
+
+    /// Begins an increment of the approach: its events are counted from here.
+    fn limit_events(&mut self) {
+        self.event_limit = self.log.events.len() + MOST_EVENTS * (self.problem().len() + 10);
+    }
+
+    /// Ends an increment of the approach whose events go on without end.
+    pub(crate) fn check_event_count(&self, approach_m: f64, asperity: usize) -> Result<(), Halt> {
+        let count = self.log.events.len();
+        if count <= self.event_limit {
+            return Ok(());
+        }
+        let events = MOST_EVENTS * (self.problem().len() + 10);
+        Err(Halt::Error(PhysicsError::EndlessAvalanche { approach_m, events, asperity: self.problem().number(asperity) }))
     }
 
     pub(crate) fn problem(&self) -> &'p Problem {
@@ -242,6 +263,7 @@ impl<'p> Path<'p> {
     /// Goes on by one stretch, but not beyond `bound` \[m\].
     pub(crate) fn stretch(&mut self, bound: Option<f64>) -> Result<(), PhysicsError> {
         let mut mark = self.mark();
+        self.limit_events();
         loop {
             let here = self.front.state.approach_m;
             let size = self.longest * 0.5f64.powi(self.halvings as i32);
@@ -289,7 +311,10 @@ impl<'p> Path<'p> {
                 mark = self.mark();
                 self.halvings = 0;
             } else if self.halvings >= HALVINGS {
-                self.collapse(target).and_then(|()| self.sound(mark.events)).map_err(|_| self.stuck(unsettled))?;
+                self.collapse(target).and_then(|()| self.sound(mark.events)).map_err(|halt| match halt {
+                    Halt::Error(error) => error,
+                    Halt::Unsettled(_) | Halt::Late(..) => self.stuck(unsettled),
+                })?;
                 self.halvings = HALVINGS / 2;
                 self.mark = Some(Box::new(mark));
                 return Ok(());
@@ -335,7 +360,7 @@ impl<'p> Path<'p> {
             return Ok(());
         }
         let asperity = self.front.state.contacts.first().copied().unwrap_or(0);
-        Err(Unsettled { residual_m: f64::NAN, asperity }.into())
+        Err(Unsettled::because(Reason::NotANumber, asperity).into())
     }
 
     /// Another path, from before the last stretch to `target` within it.
@@ -466,6 +491,7 @@ impl<'p> Path<'p> {
     pub(crate) fn stuck(&self, unsettled: Unsettled) -> PhysicsError {
         PhysicsError::NoEquilibrium {
             approach_m: self.front.state.approach_m,
+            reason: unsettled.reason,
             residual_m: unsettled.residual_m,
             asperity: self.problem().number(unsettled.asperity),
             iterations: self.solver.effort.iterations,

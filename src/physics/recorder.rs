@@ -6,6 +6,7 @@ use super::events::Kind;
 use super::interaction::Effort;
 use super::log::Event;
 use super::path::{Depth, Path};
+use super::soundness::check_area;
 use super::state::{Problem, State, Status};
 use crate::model::KeptContacts;
 use serde::{Deserialize, Serialize};
@@ -58,7 +59,7 @@ impl Recorder {
 
     fn grid_points_until(&mut self, end: f64, settings: &Settings, path: &mut Path<'_>, cycle: &mut Cycle) -> Result<(), PhysicsError> {
         if !std::mem::replace(&mut self.begun, true) {
-            self.record(settings, path, None, cycle, false);
+            self.record(settings, path, None, cycle, false)?;
         }
         let spacing = settings.grid(path.problem());
         loop {
@@ -68,11 +69,11 @@ impl Recorder {
             }
             self.number += 1.0;
             if path.solved == Depth::Whole && (next - path.state().approach_m).abs() <= 1e-9 * spacing {
-                self.record(settings, path, None, cycle, false);
+                self.record(settings, path, None, cycle, false)?;
             } else {
                 let excursion = path.excursion(next)?;
                 path.solver.effort += excursion.effort();
-                self.record(settings, path, Some(&excursion), cycle, false);
+                self.record(settings, path, Some(&excursion), cycle, false)?;
             }
         }
     }
@@ -101,12 +102,15 @@ impl Recorder {
     ) -> Result<(), PhysicsError> {
         let state = excursion.map_or_else(|| path.state().clone(), |at| at.state().clone());
         self.grid_points_until(state.approach_m, settings, path, cycle)?;
-        self.record(settings, path, excursion, cycle, true);
+        self.record(settings, path, excursion, cycle, true)?;
         cycle.turning.push((cycle.steps.len() - 1, state));
         Ok(())
     }
 
     /// Records the state of the path, or that of an excursion from it.
+    ///
+    /// # Errors
+    /// A contact area above the nominal one.
     pub(super) fn record(
         &mut self,
         settings: &Settings,
@@ -114,7 +118,7 @@ impl Recorder {
         excursion: Option<&Path<'_>>,
         cycle: &mut Cycle,
         turning: bool,
-    ) {
+    ) -> Result<(), PhysicsError> {
         let (number, problem) = (cycle.steps.len(), path.problem());
         let at = excursion.unwrap_or(path);
         let state = at.state();
@@ -168,6 +172,7 @@ impl Recorder {
         self.merged_before = state.merged.len();
         path.log.drift_m = 0.0;
         path.held.clear();
+        check_area(problem, &cycle.steps[number])
     }
 }
 

@@ -3,6 +3,7 @@
 //! Implicit Euler steps, that grow as the contact comes to rest. On the way a spot whose own branch has ended leaves, and one that a greater spot has
 //! reached is covered: the flow decides who, without reference to the step of the approach. For `point` it is a gradient flow of the potential.
 
+use super::Reason;
 use super::equilibrium::Unsettled;
 use super::events::{Change, Moving};
 use super::krylov::dot;
@@ -57,7 +58,7 @@ pub(crate) fn relax(contact: &mut impl Relaxing, problem: &Problem, uncovered: O
     let reciprocal = problem.rules.interaction == Interaction::Reciprocal;
     let mut way: Option<(Vec<f64>, f64)> = None;
     let (mut time, mut finish) = (1.0, NEARLY);
-    let mut last = Unsettled { residual_m: f64::NAN, asperity: 0 };
+    let mut last = Unsettled::because(Reason::NotANumber, 0);
     let mut round = 0;
     while round < STEPS {
         round += 1;

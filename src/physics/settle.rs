@@ -1,6 +1,5 @@
 //! The whole contact, solved at the end of every stretch: the traces begin anew.
 
-use super::PhysicsError;
 use super::equilibrium::Unsettled;
 use super::events::{Change, Kind};
 use super::front::work;
@@ -8,6 +7,7 @@ use super::krylov::dot;
 use super::patch::Trace;
 use super::path::{DRIFT, Depth, Halt, LATE, Mark, Path, WORST};
 use super::state::{Status, Totals};
+use super::{PhysicsError, Reason};
 use crate::model::Interaction;
 
 /// Residual of the whole contact where its state is not asked for, of the mean jump-off penetration.
@@ -56,7 +56,7 @@ impl Path<'_> {
             let found = self.solver.newton(&mut self.front.state, first, !strict, tolerance).and_then(|()| {
                 let rates = self.finite_rates(first)?;
                 let stable = self.front.state.stability > 0.0;
-                if stable { Ok(rates) } else { Err(Unsettled { residual_m: f64::NAN, ..first }) }
+                if stable { Ok(rates) } else { Err(Unsettled::because(Reason::Unstable, first.asperity)) }
             });
             let rates = match found {
                 Ok(rates) => rates,
@@ -91,10 +91,11 @@ impl Path<'_> {
             if strict && rounds == 0 {
                 let late: Vec<Change> = due.iter().filter(|(late, _)| *late > LATE * self.scale()).map(|(_, change)| *change).collect();
                 if !late.is_empty() {
-                    return Err(Halt::Late(late, Unsettled { residual_m: first.0, asperity: first.1.asperity }));
+                    return Err(Halt::Late(late, Unsettled::residual(first.0, first.1.asperity)));
                 }
             }
             rounds += 1;
+            self.check_event_count(target, first.1.asperity)?;
             if rounds > 10 * problem.len() + 100 {
                 let asperity = problem.number(first.1.asperity);
                 return Err(Halt::Error(PhysicsError::EndlessAvalanche { approach_m: target, events: rounds, asperity }));

@@ -39,7 +39,7 @@ pub struct Problem {
     /// Heights over the highest summit \[m\]: zero or negative.
     pub(crate) heights: Vec<f64>,
     pub(crate) positions: Vec<[f64; 2]>,
-    /// Jump-in penetrations \[m\]: zero or negative, never below the end of the branch.
+    /// Jump-in penetrations \[m\]: zero or negative (without adhesion, next to zero), never below the end of the branch.
     pub(crate) jump_in: Vec<f64>,
     pub(crate) tabor: Vec<f64>,
     pub(crate) material: Material,
@@ -94,13 +94,16 @@ impl Problem {
         let range = material.interaction_range_m;
         let tabor: Vec<f64> = asperities.iter().map(|a| a.tabor(range)).collect();
         let below = tabor.iter().filter(|mu| **mu < LEAST_TABOR).count();
-        if rules.jump_in == JumpIn::Wu && below > 0 && !rules.allow_low_tabor {
+        let adhesive = material.work_of_adhesion_j_m2 > 0.0;
+        if adhesive && rules.jump_in == JumpIn::Wu && below > 0 && !rules.allow_low_tabor {
             let smallest = tabor.iter().copied().fold(f64::INFINITY, f64::min);
             return Err(PhysicsError::LowTabor { smallest, below, all: tabor.len() });
         }
         let jump_in = asperities
             .iter()
             .map(|a| match rules.jump_in {
+                // Without adhesion nothing jumps: contact begins beyond the radius at which it ends, so that rounding takes no part.
+                _ if !adhesive => 4.0 * a.jump_off_penetration(),
                 JumpIn::Jkr => 0.0,
                 JumpIn::Wu => a.wu_jump_in_penetration(range).min(0.0).max(DEEPEST_JUMP_IN * a.jump_off_penetration()),
             })
@@ -123,6 +126,12 @@ impl Problem {
             length_m,
             rms_height_m,
         })
+    }
+
+    /// Whether there is no adhesion: the half-space is elastic, and its contact has no memory.
+    #[must_use]
+    pub fn is_adhesionless(&self) -> bool {
+        self.material.work_of_adhesion_j_m2 == 0.0
     }
 
     /// Whether neighbourhoods hold all summits.

@@ -77,6 +77,7 @@ impl<'p> Path<'p> {
         (path.log, path.totals, path.balance) = (carried.log, carried.totals, carried.balance);
         (path.halvings, path.settled, path.unbalanced) = (carried.halvings, carried.settled, carried.settled < path.log.events.len());
         path.held = carried.held;
+        path.limit_events();
         for (mine, flips) in path.flips.iter_mut().zip(carried.flips) {
             *mine = flips;
         }
