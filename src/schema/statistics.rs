@@ -82,6 +82,8 @@ const RESULTS: &[Column] = &[
     real("dissipated", "1", "Energy lost in the loop over E* A0 h_rms, the sum over its events"),
     real("dissipated_j", "J", "Energy lost in the loop, the sum over its events"),
     real("audit_gap", "1", "|loss_j - dissipated_j| / loss_j; null where nothing was lost").or_null(),
+    real("absorption_share", "1", "Energy exchanged where contacts meet and part (cover, uncover, merge and split events), the sum of the magnitudes of the four totals, over the dissipated energy Θ; null where Θ = 0").or_null(),
+    real("loss_uncertainty", "1", "Numerical resolution of Θ, 1e-7 of the largest work along the loop, over Θ; null where Θ = 0").or_null(),
     count("summit_count", "Asperities of the surface"),
     real("summit_density_1_m2", "1/m^2", "Asperities per area"),
     real("nayak_density_1_m2", "1/m^2", "Density of summits of a Gaussian surface with the moments that this surface has")
@@ -98,16 +100,16 @@ const RESULTS: &[Column] = &[
     real("rms_slope", "1", "Rms of the gradient that this surface has"),
     real("rms_curvature_1_m", "1/m", "Rms of the Laplacian that this surface has"),
     real("nayak_parameter", "1", "m0 m4 / m2^2 that this surface has").from("Nayak 1971"),
-    real("fuller_tabor", "1", "Adhesion parameter E* sd(height)^(3/2)/(mean(radius)^(1/2) work of adhesion) of the summits; above some 10 adhesion is lost; null where there are fewer than two").or_null().from("Fuller and Tabor 1975"),
+    real("fuller_tabor", "1", "Adhesion parameter E* sd(height)^(3/2)/(mean(radius)^(1/2) work of adhesion) of the summits; above about 10 adhesion is lost; null for fewer than two summits and without adhesion").or_null().from("Fuller and Tabor 1975"),
     real("touching_share", "1", "Share of contact spots that touch another one at the end of loading; null without contact").or_null(),
     real("covered_share", "1", "Share of asperities in contact or covered that are covered, at the end of loading; null without contact").or_null(),
-    real("conformity", "1", "Elastic energy that flattens the shortest octave of the roughness over the work of adhesion, of the continuous spectrum; below 1 adhesion conforms to the summits; null for a measured surface")
+    real("conformity", "1", "Elastic energy that flattens the shortest octave of the roughness over the work of adhesion, of the continuous spectrum; below 1 adhesion conforms to the summits; null for a measured surface and without adhesion")
         .or_null()
         .from("Persson and Tosatti 2001"),
     real("conformity_realised", "1", "The same of the modes that this surface has; null where they are not known")
         .or_null()
         .from("Persson and Tosatti 2001"),
-    real("persson_tosatti", "1", "Elastic energy that flattens all the roughness over the work of adhesion, of the continuous spectrum; below 1 the surface is sticky; null for a measured surface")
+    real("persson_tosatti", "1", "Elastic energy that flattens all the roughness over the work of adhesion, of the continuous spectrum; below 1 the surface is sticky; null for a measured surface and without adhesion")
         .or_null()
         .from("Persson and Tosatti 2001"),
     real("persson_tosatti_realised", "1", "The same of the modes that this surface has; null where they are not known")
@@ -178,6 +180,14 @@ const VALIDITY: &[&[Column]] = &[
     mean_and_worst!("tabor_min", "min", "Least", "smallest Tabor number of the asperities", "Eq 3"),
     mean_and_worst!("tabor_mean", "min", "Least", "mean Tabor number of the asperities", "Eq 3"),
     mean_and_worst!("low_tabor_share", "max", "Greatest", "share of the asperities whose Tabor number is below 2", "Eq 3"),
+    mean_and_worst!(
+        "absorption_share",
+        "max",
+        "Largest",
+        "energy of cover, uncover, merge and split events over the dissipated energy",
+        ""
+    ),
+    mean_and_worst!("loss_uncertainty", "max", "Largest", "numerical resolution of the dissipated energy over the dissipated energy", ""),
     mean_and_worst!("touching_share", "max", "Greatest", "share of contact spots that touch another one at the end of loading", ""),
     mean_and_worst!(
         "covered_share",

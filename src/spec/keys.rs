@@ -153,9 +153,9 @@ pub(super) static KEYS: &[Key] = &[
         low: 1.0, above: false, high: 1e13, unit: " Pa", unit_name: "pascals", slip: Some((1e6, "megapascals")), note: "",
     }),
     key!(material.work_of_adhesion_j_m2: number Limits {
-        low: 0.0, above: true, high: 1e3, unit: " J/m²", unit_name: "joules per square metre",
+        low: 0.0, above: false, high: 1e3, unit: " J/m²", unit_name: "joules per square metre",
         slip: Some((1e-3, "millijoules per square metre")),
-        note: "the limit of Hertz, without adhesion, wants a small positive value such as 1e-6",
+        note: "0 is the adhesionless limit: Hertzian asperities, which dissipate nothing",
     }),
     key!(material.interaction_range_m: number Limits {
         low: 1e-12, above: false, high: 1e-5, unit: " m", unit_name: "metres", slip: Some((1e-9, "nanometres")), note: "",

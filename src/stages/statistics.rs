@@ -12,7 +12,7 @@ use crate::physics::synthesis::realization_seed;
 use crate::physics::theory::{
     adhesionless_area, adhesionless_area_small, curvature_decay, dalvi_loss, deng_kesari_loss_as_printed, fuller_tabor,
 };
-use crate::physics::validity::{LEAST_TABOR, flattening, measured_flattening, realised_flattening};
+use crate::physics::validity::{Flattening, LEAST_TABOR, flattening, measured_flattening, realised_flattening};
 use crate::spec::CaseParams;
 use crate::stats::{self, CaseInput, CycleInput, Given, Sample, Value};
 use crate::store::hdf5::{SurfaceHeader, read_header, read_surface};
@@ -174,6 +174,8 @@ pub(super) fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<Cycle
         }
         (None, None) => None,
     };
+    // Without adhesion the ratios to it are infinite, and missing in the table.
+    let ratio = |of: Option<&Flattening>, ratio: fn(&Flattening, f64) -> f64| of.filter(|_| adhesion > 0.0).map(|of| ratio(of, adhesion));
     let numbers: [(&str, Value); 17] = [
         ("surface_id", surface.id.as_str().into()),
         ("summit_count", summits.len().into()),
@@ -184,11 +186,11 @@ pub(super) fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<Cycle
         ("tabor_max", tabor.last().copied().into()),
         ("tabor_mean", over_all(tabor.iter().sum()).into()),
         ("low_tabor_share", over_all(low as f64).into()),
-        ("conformity", continuous.as_ref().map(|of| of.conformity(adhesion)).into()),
-        ("conformity_realised", of_modes.as_ref().map(|of| of.conformity(adhesion)).into()),
-        ("persson_tosatti", continuous.as_ref().map(|of| of.persson_tosatti(adhesion)).into()),
-        ("persson_tosatti_realised", of_modes.as_ref().map(|of| of.persson_tosatti(adhesion)).into()),
-        ("fuller_tabor", spread.into()),
+        ("conformity", ratio(continuous.as_ref(), Flattening::conformity).into()),
+        ("conformity_realised", ratio(of_modes.as_ref(), Flattening::conformity).into()),
+        ("persson_tosatti", ratio(continuous.as_ref(), Flattening::persson_tosatti).into()),
+        ("persson_tosatti_realised", ratio(of_modes.as_ref(), Flattening::persson_tosatti).into()),
+        ("fuller_tabor", spread.filter(|_| adhesion > 0.0).into()),
         ("rms_slope", header.rms_slope.into()),
         ("rms_curvature_1_m", header.rms_curvature_1_m.into()),
         ("nayak_parameter", header.nayak_parameter.into()),

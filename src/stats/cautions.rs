@@ -4,13 +4,22 @@ use super::rows::Value;
 use super::{CaseInput, Given};
 
 /// The words of the column `caution`, in the order in which they are joined, each with what it says.
-pub const CAUTIONS: [(&str, &str); 12] = [
+pub const CAUTIONS: [(&str, &str); 14] = [
     ("incomplete", "fewer realizations are in the means than the spec asks for"),
     ("failed", "a realization failed"),
     ("imprecise", "the mean is not known as well as the spec asks: there are as many realizations as it allows, or too many failed"),
     ("single", "one realization: no spread"),
     ("unconverged", "a step's residual stayed above the tolerance"),
     ("audit", "the loop's work and the sum over its events differ by more than 1 % in a realization"),
+    (
+        "absorption",
+        "energy balance of coalescence: contacts that meet and part (cover, uncover, merge, split events) exchange more than 10 % of the dissipated energy in \
+         a realization; that part of Θ is an artefact of the coalescence rule",
+    ),
+    (
+        "unresolved",
+        "dissipated energy not resolved: Θ is less than ten times the numerical resolution of the loop in a realization, 1e-7 of the work of loading",
+    ),
     ("touching", "more than a tenth of the contact spots touch another one, on average"),
     ("covered", "more than a tenth of the asperities in contact are covered, on average"),
     ("tabor", "an asperity's Tabor number is below 2, where Wu's jump-in does not hold"),
@@ -56,9 +65,11 @@ impl Limit {
     }
 }
 
-/// What is compared with a bound. The Tabor number matters to Wu's jump-in alone.
-pub const LIMITS: [Limit; 7] = [
+/// What is compared with a bound. The Tabor parameter matters to Wu's jump-in alone, and only with adhesion.
+pub const LIMITS: [Limit; 9] = [
     Limit::at_most("audit", "audit_gap_max", 0.01),
+    Limit::at_most("absorption", "absorption_share_max", 0.1),
+    Limit::at_most("unresolved", "loss_uncertainty_max", 0.1),
     Limit::at_most("touching", "touching_share_mean", 0.1),
     Limit::at_most("covered", "covered_share_mean", 0.1),
     Limit::at_least("tabor", "tabor_min_min", 2.0),
@@ -69,7 +80,8 @@ pub const LIMITS: [Limit; 7] = [
 
 /// The cautions of a row whose other columns are given, joined by `+`.
 pub(super) fn caution(row: &Given, case: &CaseInput, done_count: usize, unconverged: bool) -> String {
-    let wu = case.parameters.iter().any(|(name, value)| name == "jump_in" && *value == Value::from("wu"));
+    let is = |column: &str, value: Value| case.parameters.iter().any(|(name, known)| name == column && *known == value);
+    let wu = is("jump_in", Value::from("wu")) && !is("work_of_adhesion_j_m2", Value::from(0.0));
     let number = |column: &str| match row.iter().find(|(name, _)| name == column) {
         Some((_, Value::Real(number))) => Some(*number),
         _ => None,

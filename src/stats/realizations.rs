@@ -4,6 +4,7 @@ use super::cycle::{Branch, Cycle, fault};
 use super::events::{Events, Lost};
 use super::rows::{Rows, Value};
 use super::{CaseInput, CycleInput, Given, StatsError};
+use crate::physics::soundness::RESOLUTION;
 use crate::schema::{EVENT_KINDS, REALIZATIONS};
 use crate::store::Frame;
 
@@ -26,7 +27,9 @@ pub fn realizations(cases: &[CaseInput], cycles: &[CycleInput]) -> Result<Frame,
             let turning = cycle.turning_row(input, *max_load)?;
             let mut results = reduce(&cycle.loading, turning, unloading, *max_load, input)?;
             let step = cycle.loading.step.get(turning).copied().unwrap_or_default();
-            results.extend(parts(&events.lost(step, *max_load), input));
+            let lost = events.lost(step, *max_load);
+            results.push(("absorption_share".to_owned(), absorption_share(&lost, &results).into()));
+            results.extend(parts(&lost, input));
             results.push(("loss_touched".to_owned(), touched(&events.touched(step, *max_load), input).into()));
             let given = input.at_max_load.iter().find(|(load, _)| load == max_load);
             results.extend(given.map(|(_, given)| given.clone()).unwrap_or_default());
@@ -75,6 +78,19 @@ fn parts(lost: &Lost, input: &CycleInput) -> Given {
     branches.into_iter().chain(kinds).flat_map(both).collect()
 }
 
+/// Kinds of events in which contacts meet and part.
+const COALESCENCE: [&str; 4] = ["cover", "uncover", "merge", "split"];
+
+/// Energy exchanged where contacts meet and part, over the dissipated energy; nothing where that is zero.
+fn absorption_share(lost: &Lost, results: &Given) -> Option<f64> {
+    let loss = results.iter().find_map(|(name, value)| match value {
+        Value::Real(loss) if name == "loss_j" => Some(*loss),
+        _ => None,
+    })?;
+    let exchanged = EVENT_KINDS.iter().zip(lost.kinds).filter(|(kind, _)| COALESCENCE.contains(kind));
+    (loss != 0.0).then(|| exchanged.map(|(_, energy)| energy.abs()).sum::<f64>() / loss.abs())
+}
+
 /// What the asperities that touched lose by themselves, over the scale of energies.
 fn touched(asperities: &[i64], input: &CycleInput) -> f64 {
     // Spots that have become one have numbers beyond those of the asperities.
@@ -89,7 +105,10 @@ fn reduce(loading: &Branch, turning: usize, unloading: &Branch, max_load: f64, i
     let Some(work_back) = unloading.work_j.last() else {
         return Err(lacking("an unloading branch"));
     };
-    let loss_j = at(&loading.work_j)? + work_back;
+    let at_reversal = at(&loading.work_j)?;
+    let loss_j = at_reversal + work_back;
+    let works = loading.work_j.iter().take(turning + 1).copied().chain(unloading.work_j.iter().map(|work| at_reversal + work));
+    let resolution_j = RESOLUTION * works.map(f64::abs).fold(0.0, f64::max);
     let loss = loss_j / input.energy_scale_j;
     let area = at(&loading.area)?;
     let discs = at(&loading.area_m2)?;
@@ -104,7 +123,7 @@ fn reduce(loading: &Branch, turning: usize, unloading: &Branch, max_load: f64, i
     let pull_off = |loads: &[f64]| tension(loads) + 0.0;
     let touching = count_at(&loading.touching_count);
     let held: i64 = loading.held_count.iter().take(turning + 1).chain(&unloading.held_count).sum();
-    let columns: [(&str, Value); 22] = [
+    let columns: [(&str, Value); 23] = [
         ("realization", input.realization.into()),
         ("max_load", max_load.into()),
         // The turning step has the unit of load, as the quotient of its two columns.
@@ -123,6 +142,7 @@ fn reduce(loading: &Branch, turning: usize, unloading: &Branch, max_load: f64, i
         ("dissipated", (dissipated_j / input.energy_scale_j).into()),
         ("dissipated_j", dissipated_j.into()),
         ("audit_gap", (loss_j != 0.0).then(|| (loss_j - dissipated_j).abs() / loss_j.abs()).into()),
+        ("loss_uncertainty", (loss_j != 0.0).then(|| resolution_j / loss_j.abs()).into()),
         ("contact_count_at_max_load", contacts.into()),
         ("step_count", (turning + 1 + unloading.step.len()).into()),
         ("unconverged_count", converged.filter(|converged| !**converged).count().into()),

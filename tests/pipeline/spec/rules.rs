@@ -17,7 +17,7 @@ fn val_bounds_are_where_the_message_says() {
         ("surface", "magnification", "1", "2", "8192", "16385", "points_per_shortest_wavelength = 4"),
         ("surface", "points_per_shortest_wavelength", "3", "4", "64", "65", ""),
         ("material", "contact_modulus_pa", "0.999", "1", "1e13", "1.0001e13", ""),
-        ("material", "work_of_adhesion_j_m2", "0", "1e-300", "1e3", "1000.001", ""),
+        ("material", "work_of_adhesion_j_m2", "-1e-300", "0", "1e3", "1000.001", ""),
         ("material", "interaction_range_m", "9.99e-13", "1e-12", "1e-5", "1.001e-5", ""),
         ("cycle", "max_load", "[0.0]", "[1e-300]", "[0.2]", "[0.2000001]", ""),
         ("cycle", "approach_step", "9.99e-7", "1e-6", "1", "1.0000001", ""),
