@@ -8,6 +8,8 @@ mod campaign;
 #[cfg(feature = "stats")]
 mod e2e;
 #[cfg(feature = "stats")]
+mod extremes;
+#[cfg(feature = "stats")]
 mod figures;
 #[cfg(feature = "stats")]
 mod keys;

@@ -1,0 +1,89 @@
+//! The program at the ends of the range of inputs: no adhesion, weak adhesion, and contacts that are none.
+
+use std::path::Path;
+
+use crate::bench::{Bench, code, stderr, stdout};
+use hysteron::schema;
+use hysteron::store::Frame;
+use hysteron::store::parquet::read_table;
+
+fn spec(surface: &str, material: &str, max_load: &str) -> String {
+    format!(
+        "name = \"x\"\nseed = 3\nrealizations = 2\n[surface]\nmagnification = 8\n{surface}\n[material]\n{material}\n[model]\n\
+         allow_low_tabor = true\n[cycle]\nmax_load = [{max_load}]\napproach_step = 0.05\n"
+    )
+}
+
+fn cases(out: &Path) -> Frame {
+    read_table(&out.join("statistics/cases.parquet"), &schema::CASES).unwrap()
+}
+
+fn number(frame: &Frame, column: &str) -> Option<f64> {
+    frame.f64_or_null(column).unwrap()[0]
+}
+
+/// Version 0.1.0 gave areas of 5 to 23 A0 and negative dissipated energies here, with exit code 0.
+#[test]
+fn e2e_a_contact_beyond_full_contact_fails_in_a_sentence() {
+    for (surface, material, load) in [
+        ("", "contact_modulus_pa = 1e3", "0.002"),
+        ("", "work_of_adhesion_j_m2 = 100", "0.002"),
+        ("", "", "0.2"),
+        ("length_m = 1.0", "", "0.002"),
+    ] {
+        let bench = Bench::new(&spec(surface, material, load));
+        let run = bench.verb("run", &[]);
+        assert_eq!(code(&run), 3, "{surface} {material} {load}: {}", stderr(&run));
+        assert!(stderr(&run).contains("help: reduce cycle.max_load"), "{}", stderr(&run));
+        let frame = cases(&bench.out());
+        assert_eq!((frame.i64("done_count").unwrap()[0], frame.i64("failed_count").unwrap()[0]), (0, 2));
+        for column in ["loss_mean", "pull_off_load_mean", "area_at_max_load_mean", "audit_gap_max"] {
+            assert_eq!(number(&frame, column), None, "{column}");
+        }
+        let folders: Vec<_> = std::fs::read_dir(bench.out().join("cycles")).unwrap().map(|entry| entry.unwrap().path()).collect();
+        assert_eq!(folders.len(), 2);
+        for folder in folders {
+            assert!(!folder.join("steps.parquet").exists(), "tables of a failed cycle");
+            assert!(std::fs::read_to_string(folder.join("failed.json")).unwrap().contains("help: "));
+        }
+    }
+}
+
+#[test]
+fn e2e_without_adhesion_nothing_is_dissipated() {
+    let bench = Bench::new(&spec("", "work_of_adhesion_j_m2 = 0", "0.001, 0.004"));
+    let run = bench.verb("run", &[]);
+    assert_eq!(code(&run), 0, "{}", stderr(&run));
+    let realizations = read_table(&bench.out().join("statistics/realizations.parquet"), &schema::REALIZATIONS).unwrap();
+    assert_eq!(realizations.f64("loss").unwrap(), [0.0; 4]);
+    assert_eq!(realizations.f64("pull_off_load").unwrap(), [0.0; 4]);
+    assert!(realizations.f64("area_at_max_load").unwrap().iter().all(|area| (0.01..0.2).contains(area)));
+    let frame = cases(&bench.out());
+    for column in ["persson_tosatti_mean", "conformity_realised_mean", "fuller_tabor_mean", "loss_ratio_dk_mean", "absorption_share_mean"] {
+        assert_eq!(number(&frame, column), None, "{column}");
+    }
+    assert!(!frame.text("caution").unwrap()[0].contains("tabor"));
+    let page = std::fs::read_to_string(bench.out().join("report.html")).unwrap();
+    assert!(!page.contains("NaN") && !page.contains(">inf"), "a number of the report is none");
+}
+
+/// Version 0.1.0 did not warn of this: 92 % of the dissipated energy of the second surface is absorption and release.
+#[test]
+fn e2e_a_dissipated_energy_of_absorption_is_a_warning() {
+    let text = spec("", "work_of_adhesion_j_m2 = 1e-3", "0.002").replace("magnification = 8", "magnification = 16");
+    let bench = Bench::new(&text);
+    let run = bench.verb("run", &[]);
+    assert_eq!(code(&run), 0, "{}", stderr(&run));
+    let frame = cases(&bench.out());
+    assert!(number(&frame, "absorption_share_max").unwrap() > 0.9, "{:?}", number(&frame, "absorption_share_max"));
+    assert!(frame.text("caution").unwrap()[0].contains("absorption"));
+    assert!(stdout(&run).contains("absorption"), "{}", stdout(&run));
+}
+
+/// Version 0.1.0 did not end here, and its memory grew.
+#[test]
+fn e2e_a_low_tabor_parameter_ends() {
+    let bench = Bench::new(&spec("", "work_of_adhesion_j_m2 = 1e-6", "0.002"));
+    let run = bench.verb("run", &["--until", "cycle"]);
+    assert_eq!(code(&run), 0, "{}", stderr(&run));
+}
