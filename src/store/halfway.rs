@@ -9,12 +9,21 @@ use std::path::Path;
 /// Length of a key and of a hash, as hexadecimal digits.
 const DIGITS: usize = 64;
 
+/// Version of the layout of the bytes. A checkpoint of another version does not match its hash, and the unit starts again. Raise it with every change of a type
+/// that a checkpoint holds.
+const CHECKPOINT_VERSION: u8 = 1;
+
+/// Hash of a checkpoint and its version, as hexadecimal digits.
+fn seal(bytes: &[u8]) -> blake3::Hash {
+    blake3::Hasher::new().update(&[CHECKPOINT_VERSION]).update(bytes).finalize()
+}
+
 /// Puts the bytes of the unit `key` in place of `path`.
 ///
 /// # Errors
 /// As [`commit_bytes`].
 pub fn write_halfway(path: &Path, key: &str, bytes: &[u8]) -> Result<(), StoreError> {
-    let whole = [key.as_bytes(), blake3::hash(bytes).to_hex().as_bytes(), bytes].concat();
+    let whole = [key.as_bytes(), seal(bytes).to_hex().as_bytes(), bytes].concat();
     commit_bytes("keep what is needed to go on in", path, &whole).map(drop)
 }
 
@@ -30,6 +39,6 @@ pub fn is_halfway(path: &Path, key: &str) -> bool {
 pub fn read_halfway(path: &Path, key: &str) -> Option<Vec<u8>> {
     let whole = std::fs::read(path).ok()?;
     let (head, bytes) = whole.split_at_checked(2 * DIGITS)?;
-    let is_its = head[..DIGITS] == *key.as_bytes() && head[DIGITS..] == *blake3::hash(bytes).to_hex().as_bytes();
+    let is_its = head[..DIGITS] == *key.as_bytes() && head[DIGITS..] == *seal(bytes).to_hex().as_bytes();
     is_its.then(|| bytes.to_vec())
 }

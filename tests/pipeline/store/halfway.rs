@@ -25,6 +25,11 @@ fn law_a_unit_on_its_way_is_read_whole_or_not_at_all() {
         fs::write(&path, &flipped).unwrap();
         assert_eq!(read_halfway(&path, &key), None, "bit {bit}");
     }
+    // Written by version 0.1.0, whose hash was of the bytes alone: another layout may decode into a wrong state.
+    let bytes: Vec<u8> = (0..=255).collect();
+    let earlier = [key.as_bytes(), blake3::hash(&bytes).to_hex().as_bytes(), &bytes].concat();
+    fs::write(&path, earlier).unwrap();
+    assert_eq!(read_halfway(&path, &key), None);
     write_halfway(&path, &key, &[]).unwrap();
     assert_eq!(read_halfway(&path, &key), Some(Vec::new()));
 }
