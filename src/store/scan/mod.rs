@@ -21,6 +21,7 @@ use std::path::Path;
 use ndarray::Array2;
 
 use super::error::{Cause, StoreError, fenced};
+pub(super) use numbers::room;
 
 /// Points that a scan may have: as many heights take 2 GiB of memory.
 pub const MOST_POINTS: u64 = 1 << 28;
