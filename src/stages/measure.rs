@@ -2,6 +2,7 @@
 
 use super::StageError;
 use super::statistics::moments;
+use crate::formats::recognize;
 use crate::lengths::{LENGTHS, metres};
 use crate::model::Detrend;
 use crate::physics::measured::{Prepared, Treatment, prepare};
@@ -9,10 +10,9 @@ use crate::physics::periodogram::{Ring, periodogram, windowed_periodogram};
 use crate::physics::selfaffine::fit_self_affine;
 use crate::spec::SurfaceParams;
 use crate::store::hdf5::{Measured, SpectrumFit, SurfaceHeader, is_own_surface, read_heights, read_surface};
-use crate::store::scan::{Format, Found, Scan, detect, read};
+use crate::store::scan::{Found, Scan, read};
 use ndarray::Array2;
 use std::f64::consts::TAU;
-use std::io::Read as _;
 use std::path::Path;
 
 /// How far a distance of points that is given may be from that of the file.
@@ -31,9 +31,7 @@ pub fn measure(params: &SurfaceParams, digest: &str, key: &str) -> Result<(Prepa
     };
     let (rows, columns) = scan.heights.dim();
     let (spacing, unit) = (spacing(params, &scan)?, unit(params, &scan)?);
-    if scan.periodic == Some(false) && params.periodic {
-        return Err(refused(path, "it says that it is not periodic, and periodic = true was given"));
-    }
+    agree(path, scan.periodic, params.periodic)?;
     let treatment = Treatment {
         missing: params.missing,
         detrend: params.detrend,
@@ -78,10 +76,7 @@ fn own(
     key: &str,
 ) -> Result<(Prepared, SurfaceHeader), StageError> {
     let path = Path::new(&params.file);
-    if header.periodic != params.periodic {
-        let (is, write) = if header.periodic { ("continues", "true") } else { ("does not continue", "false") };
-        return Err(refused(path, &format!("it {is} periodically; allowed: periodic = {write} (surface.periodic in a spec)")));
-    }
+    agree(path, Some(header.periodic), params.periodic)?;
     let points = heights_m.nrows();
     let spacing = header.length_m / points as f64;
     // A generated surface has no waves below those that it was made of.
@@ -111,6 +106,21 @@ fn own(
         shortest_wavelength_m: measured.shortest_wavelength_m,
     };
     Ok((prepared, SurfaceHeader { realization: 0, key: key.to_owned(), generated: None, measured: Some(measured), ..header }))
+}
+
+/// Checks that a file which says whether its surface is periodic agrees with what was given.
+fn agree(path: &Path, own: Option<bool>, given: bool) -> Result<(), StageError> {
+    match own {
+        Some(true) if !given => Err(refused(
+            path,
+            "the file says that the surface is periodic, and periodic = false was given\nhelp: set surface.periodic = true in a spec, or --periodic on the command line",
+        )),
+        Some(false) if given => Err(refused(
+            path,
+            "the file says that the surface is not periodic, and periodic = true was given\nhelp: leave out surface.periodic in a spec, or --periodic on the command line",
+        )),
+        _ => Ok(()),
+    }
 }
 
 fn refused(path: &Path, why: &str) -> StageError {
@@ -176,23 +186,19 @@ enum Source {
 /// The height field of a file, in whatever format it is.
 fn source(path: &Path, dataset: &str) -> Result<Source, StageError> {
     let dataset = (!dataset.is_empty()).then_some(dataset);
-    let mut first = Vec::new();
-    std::fs::File::open(path).and_then(|file| file.take(512).read_to_end(&mut first)).map_err(|error| refused(path, &error.to_string()))?;
-    match detect(&first) {
-        Some(Found::Hdf5) if dataset.is_none() && is_own_surface(path) => {
+    let found = recognize(path).map_err(|error| refused(path, &error.to_string()))?;
+    match found.map_err(|refusal| refused(path, &refusal.to_string()))? {
+        Found::Hdf5 if dataset.is_none() && is_own_surface(path) => {
             let (header, heights) = read_surface(path).map_err(StageError::Scan)?;
             Ok(Source::Own(Box::new(header), heights))
         }
-        Some(Found::Hdf5) => Ok(Source::Scan(Scan {
+        Found::Hdf5 => Ok(Source::Scan(Scan {
             heights: read_heights(path, dataset).map_err(StageError::Scan)?,
             size_m: None,
             unit: None,
             periodic: None,
         })),
-        Some(Found::Scan(format)) => Ok(Source::Scan(read(path, format, dataset).map_err(StageError::Scan)?)),
-        None => {
-            let known = [Format::NetCdf3, Format::X3p, Format::Npy, Format::Text].map(Format::name).join(", ");
-            Err(refused(path, &format!("it is in no format that is read here: HDF5, {known}")))
-        }
+        Found::Scan(format) => Ok(Source::Scan(read(path, format, dataset).map_err(StageError::Scan)?)),
+        Found::Foreign(foreign) => Err(refused(path, foreign.name)),
     }
 }

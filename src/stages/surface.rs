@@ -4,6 +4,7 @@ use super::StageError;
 use super::done::Outcome;
 use super::measure::measure;
 use crate::campaign::{Campaign, SurfaceUnit};
+use crate::formats::recognize;
 use crate::keys::digest_of_file;
 use crate::physics::measured::find_measured;
 use crate::physics::spectrum::Spectrum;
@@ -49,6 +50,10 @@ pub(super) fn scale(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Scale, St
 fn take(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Outcome, StageError> {
     let path = Path::new(&unit.params.file);
     let refuse = |why: String| StageError::Changed { path: path.to_owned(), why };
+    // A file in an unknown format may be too large to be hashed for nothing.
+    recognize(path)
+        .map_err(|error| refuse(error.to_string()))?
+        .map_err(|refusal| StageError::Measured { path: path.to_owned(), why: refusal.to_string() })?;
     let digest = digest_of_file(path).map_err(|error| refuse(error.to_string()))?;
     if campaign.spec.files.get(&unit.params.file) != Some(&digest) {
         return Err(refuse(

@@ -1,7 +1,8 @@
 //! `import`: a measured surface as the model takes it, and what its spectrum says; and `export` of surfaces to other programs.
 
-use super::{Fault, failed, say};
+use super::{BAD_SPEC, Fault, failed, say};
 use crate::cli::{ExportArguments, ImportArguments};
+use crate::formats::recognize;
 use crate::keys::digest_of_file;
 use crate::model::{Choice, Detrend, Missing};
 use crate::physics::measured::find_measured;
@@ -14,9 +15,15 @@ use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
 pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
-    let digest =
-        digest_of_file(&asked.file).map_err(|error| failed(format!("cannot take the surface {}: {error}", asked.file.display())))?;
+    let refused = |why: &dyn std::fmt::Display| failed(format!("cannot take the surface {}: {why}", asked.file.display()));
+    recognize(&asked.file).map_err(|error| refused(&error))?.map_err(|refusal| refused(&refusal))?;
+    let digest = digest_of_file(&asked.file).map_err(|error| refused(&error))?;
     let params = params(asked);
+    if params.periodic && params.detrend != Detrend::Mean {
+        let shape = params.detrend.word();
+        let text = format!("error: --detrend {shape} with --periodic: the removed shape is not periodic\nhelp: leave --detrend out, or --periodic");
+        return Err(Fault { code: BAD_SPEC, text });
+    }
     if let Some(pixel_m) = asked.pixel_m.filter(|pixel| !(*pixel > 0.0 && pixel.is_finite())) {
         return Err(failed(format!(
             "cannot take the surface {}: --pixel-m is {pixel_m}; allowed: positive numbers of metres",
@@ -55,6 +62,7 @@ pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
 }
 
 fn params(asked: &ImportArguments) -> SurfaceParams {
+    let default = if asked.periodic { Detrend::Mean } else { Detrend::Plane };
     SurfaceParams {
         file: asked.file.to_string_lossy().into_owned(),
         dataset: asked.dataset.clone().unwrap_or_default(),
@@ -62,7 +70,7 @@ fn params(asked: &ImportArguments) -> SurfaceParams {
         pixel_m: asked.pixel_m.unwrap_or_default(),
         unit: asked.unit.clone().unwrap_or_default(),
         missing: if asked.fill { Missing::Fill } else { Missing::Refuse },
-        detrend: Detrend::from_word(&asked.detrend).unwrap_or(Detrend::Plane),
+        detrend: asked.detrend.as_deref().and_then(Detrend::from_word).unwrap_or(default),
         points_per_shortest_wavelength: u32::from(asked.points),
         ..SurfaceParams::default()
     }
