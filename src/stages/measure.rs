@@ -30,7 +30,8 @@ pub fn measure(params: &SurfaceParams, digest: &str, key: &str) -> Result<(Prepa
         Source::Scan(scan) => scan,
     };
     let (rows, columns) = scan.heights.dim();
-    let (spacing, unit) = (spacing(params, &scan)?, unit(params, &scan)?);
+    let unit = unit(params, &scan)?;
+    let spacing = spacing(params, &scan)?;
     agree(path, scan.periodic, params.periodic)?;
     let treatment = Treatment {
         missing: params.missing,
@@ -143,12 +144,19 @@ fn spacing(params: &SurfaceParams, scan: &Scan) -> Result<[f64; 2], StageError> 
     let (rows, columns) = scan.heights.dim();
     let given = params.pixel_m;
     match scan.size_m {
-        None if given > 0.0 => Ok([given; 2]),
-        None => {
-            let why =
-                "it does not say how far apart its points are; give pixel_m (--pixel-m), the size of the scan over its number of points";
-            Err(refused(path, why))
-        }
+        None if given > 0.0 && scan.spacing.is_none_or(|[a, b]| (a / b - 1.0).abs() <= SAME) => Ok([given; 2]),
+        None => match scan.spacing {
+            Some(_) if given > 0.0 => {
+                Err(refused(path, "its points are not as far apart along x as along y, and pixel_m was given\nhelp: leave pixel_m (--pixel-m) out"))
+            }
+            // Without a unit of its own the file has one for all columns.
+            Some(own) => metres(&params.unit).map(|unit| own.map(|spacing| unit * spacing)).ok_or_else(|| unitless(path)),
+            None => {
+                let why =
+                    "it does not say how far apart its points are; give pixel_m (--pixel-m), the size of the scan over its number of points";
+                Err(refused(path, why))
+            }
+        },
         Some(size) => {
             let [a, b] = [size[0] / rows as f64, size[1] / columns as f64];
             if given > 0.0 && [a, b].iter().any(|own| (given / own - 1.0).abs() > SAME) {
@@ -171,10 +179,14 @@ fn unit(params: &SurfaceParams, scan: &Scan) -> Result<f64, StageError> {
             Err(refused(path, &format!("its heights are in {own}, and the unit {given:?} was given; leave it out")))
         }
         Some(_) => Ok(1.0),
-        None if given.is_empty() => Err(refused(path, "it does not say the unit of its heights; give the unit (--unit), such as \"nm\"")),
+        None if given.is_empty() => Err(unitless(path)),
         None => metres(given)
             .ok_or_else(|| refused(path, &format!("the unit {given:?} that was given for its heights is no length; allowed: {LENGTHS}"))),
     }
+}
+
+fn unitless(path: &Path) -> StageError {
+    refused(path, "it does not say the unit of its heights; give the unit (--unit), such as \"nm\"")
 }
 
 /// A file's heights: those of a surface of this program, which says all of it, or a scan.
@@ -197,6 +209,7 @@ fn source(path: &Path, dataset: &str) -> Result<Source, StageError> {
             size_m: None,
             unit: None,
             periodic: None,
+            spacing: None,
         })),
         Found::Scan(format) => Ok(Source::Scan(read(path, format, dataset).map_err(StageError::Scan)?)),
         Found::Foreign(foreign) => Err(refused(path, foreign.name)),

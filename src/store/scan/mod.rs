@@ -11,6 +11,7 @@ mod npy;
 mod numbers;
 mod text;
 mod text_heading;
+mod text_points;
 mod units;
 mod x3p;
 
@@ -39,6 +40,9 @@ pub struct Scan {
     pub unit: Option<String>,
     /// Whether the surface continues periodically, if the file says.
     pub periodic: Option<bool>,
+    /// Distance of points along the row index and along the column index in the file's own numbers, if it has positions; their unit is that of the heights where
+    /// [`size_m`](Self::size_m) is unknown.
+    pub spacing: Option<[f64; 2]>,
 }
 
 /// Reads a scan. `variable` is the name of the height field where a format has names, which is NetCDF; without it,
