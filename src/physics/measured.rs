@@ -9,6 +9,7 @@
 use super::PhysicsError;
 
 use super::field::Field;
+use super::memory::zeros;
 use super::periodogram::{Ring, windowed_periodogram};
 use super::spectrum::Moments;
 use super::summits::{Summits, find_summits};
@@ -67,7 +68,7 @@ pub struct Prepared {
 /// interpolated (polynomials of the fifth degree), and the short waves are those of the greater distance.
 ///
 /// # Errors
-/// Too few or too many points, distances that are not positive or too unequal, too many missing points or any that are to be refused, constant heights; the sentence says what is allowed.
+/// Too few or too many points, distances that are not positive or too unequal, too many missing points or any that are to be refused, constant heights, too little memory; the sentence says what is allowed.
 pub fn prepare(heights_m: Array2<f64>, spacing_m: [f64; 2], treatment: &Treatment) -> Result<Prepared, PhysicsError> {
     let domain = |quantity, value, allowed| PhysicsError::Domain { action: "the measured surface", quantity, value, allowed };
     if !(spacing_m.iter().all(|d| *d > 0.0 && d.is_finite())) {
@@ -92,8 +93,8 @@ pub fn prepare(heights_m: Array2<f64>, spacing_m: [f64; 2], treatment: &Treatmen
         return Err(domain("the number of its points", largest, "up to 2^28"));
     }
     let heights_m = match oblong {
-        true if spacing_m[0] > spacing_m[1] => resampled(heights_m.t(), ratio).reversed_axes(),
-        true => resampled(heights_m.view(), ratio),
+        true if spacing_m[0] > spacing_m[1] => resampled(heights_m.t(), ratio)?.reversed_axes(),
+        true => resampled(heights_m.view(), ratio)?,
         false => heights_m,
     };
     let (rows, columns) = heights_m.dim();
@@ -112,9 +113,7 @@ pub fn prepare(heights_m: Array2<f64>, spacing_m: [f64; 2], treatment: &Treatmen
         let allowed = "a square of as many columns, since a part of a periodic surface is not periodic; or periodic = false";
         return Err(domain("the number of its rows", rows as f64, allowed));
     }
-    let (top, left) = ((rows - side) / 2, (columns - side) / 2);
-    // In one order in memory, in which sums are then made.
-    let mut heights = heights_m.slice(s![top..top + side, left..left + side]).as_standard_layout().into_owned();
+    let mut heights = middle(heights_m, side)?;
     let missing_count = heights.iter().filter(|h| !h.is_finite()).count();
     let share = missing_count as f64 / heights.len() as f64;
     if missing_count > 0 && treatment.missing == Missing::Refuse {
@@ -128,27 +127,28 @@ pub fn prepare(heights_m: Array2<f64>, spacing_m: [f64; 2], treatment: &Treatmen
         return Err(domain("the number of missing points", missing_count as f64, "up to half of all"));
     }
     fill(&mut heights, treatment.periodic);
+    let before = range(&heights)?;
     let trend_m = detrend(&mut heights, treatment.detrend);
+    left_over(&heights, &before, trend_m)?;
     let length_m = side as f64 * fine;
     let points = treatment.points_per_shortest_wavelength * if oblong { ratio } else { 1.0 };
-    let mut field = Field::of(heights.view(), length_m, treatment.periodic);
-    let rings = if treatment.periodic { field.rings() } else { windowed_periodogram(heights.view(), length_m) };
-    let before = field.moments().m0_m2;
+    let rings = if treatment.periodic { None } else { Some(windowed_periodogram(heights.view(), length_m)?) };
+    let mut field = Field::of(heights.view(), length_m, treatment.periodic)?;
+    drop(heights);
+    let rings = rings.unwrap_or_else(|| field.rings());
+    let before = field.moments();
     field.cut(points);
     let moments = field.moments();
-    // Heights that differ by no more than rounding are constant.
-    let scale = heights.iter().fold(0.0_f64, |most, h| most.max(h.abs())).max(trend_m);
-    let constant = moments.rms_height_m() <= 1e-12 * scale;
-    if constant || !moments.rms_height_m().is_finite() {
-        return Err(domain(
-            "the rms height without trend and short waves [m]",
-            moments.rms_height_m(),
-            "more than 0: its heights are constant",
-        ));
+    if moments.rms_height_m() <= ROUNDING * before.rms_height_m() {
+        let shortest = points * fine;
+        return Err(PhysicsError::Surface {
+            problem: format!("nothing is left of its heights but wavelengths below the cut-off, {shortest:.3e} m"),
+            help: "lower the cut-off (--points, points_per_shortest_wavelength)",
+        });
     }
-    let noise_m = (before - moments.m0_m2).max(0.0).sqrt();
+    let noise_m = (before.m0_m2 - moments.m0_m2).max(0.0).sqrt();
     Ok(Prepared {
-        heights_m: field.heights(side),
+        heights_m: field.heights(side)?,
         length_m,
         moments,
         rings,
@@ -159,15 +159,75 @@ pub fn prepare(heights_m: Array2<f64>, spacing_m: [f64; 2], treatment: &Treatmen
     })
 }
 
+/// The central square, in one order in memory, in which sums are then made.
+fn middle(heights_m: Array2<f64>, side: usize) -> Result<Array2<f64>, PhysicsError> {
+    let (rows, columns) = heights_m.dim();
+    if rows == side && columns == side && heights_m.is_standard_layout() {
+        return Ok(heights_m);
+    }
+    let (top, left) = ((rows - side) / 2, (columns - side) / 2);
+    let mut square = zeros((side, side))?;
+    square.assign(&heights_m.slice(s![top..top + side, left..left + side]));
+    Ok(square)
+}
+
+/// What heights are before they are levelled \[m\].
+struct Range {
+    mean: f64,
+    /// Largest distance from the mean.
+    deviation: f64,
+}
+
+/// The range of heights, whose squares must be numbers.
+fn range(heights: &Array2<f64>) -> Result<Range, PhysicsError> {
+    let (low, high) = heights.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), h| (low.min(*h), high.max(*h)));
+    let largest = high.max(-low);
+    if largest > HIGHEST {
+        return Err(PhysicsError::Surface {
+            problem: format!("its heights are too large: up to {largest:.1e} m, and no surface is higher than {HIGHEST:e} m"),
+            help: "check the unit of the heights (--unit, surface.unit), and that no value marks missing points",
+        });
+    }
+    let mean = heights.sum() / heights.len() as f64;
+    let deviation = (high - mean).max(mean - low);
+    if low < high && deviation < LOWEST {
+        return Err(PhysicsError::Surface {
+            problem: format!("its heights differ by {:.1e} m only, which is too little to compute with", high - low),
+            help: "check the unit of the heights (--unit, surface.unit)",
+        });
+    }
+    if low < high { Ok(Range { mean, deviation }) } else { Err(flat(format!("its heights are constant: all are {low:e} m"))) }
+}
+
+/// Checks that levelled heights are more than what rounding has left.
+fn left_over(heights: &Array2<f64>, before: &Range, trend_m: f64) -> Result<(), PhysicsError> {
+    let most = heights.iter().fold(0.0_f64, |most, h| most.max(h.abs()));
+    if most > ROUNDING * before.deviation + OF_MEAN * before.mean.abs() {
+        return Ok(());
+    }
+    Err(flat(format!("it is flat to rounding: nothing is left after levelling, which removed {trend_m:.3e} m rms")))
+}
+
+fn flat(problem: String) -> PhysicsError {
+    PhysicsError::Surface { problem, help: "a rough surface is needed: check which field of the file is read, and its units" }
+}
+
+/// Part of the heights that rounding can make of nothing: of their range, and of their mean.
+const ROUNDING: f64 = 1e-12;
+const OF_MEAN: f64 = 1e-15;
+/// Heights of a surface at most, and deviations at least \[m\]: their squares are far from the ends of what numbers can be.
+const HIGHEST: f64 = 1e9;
+const LOWEST: f64 = 1e-60;
+
 /// Points between those of each row, `ratio` times as close, from the first on to the last: Lagrange's polynomials through six points. Where one of these is missing, so is
 /// what lies between them.
-fn resampled(heights: ArrayView2<'_, f64>, ratio: f64) -> Array2<f64> {
+fn resampled(heights: ArrayView2<'_, f64>, ratio: f64) -> Result<Array2<f64>, PhysicsError> {
     let (rows, columns) = heights.dim();
     if columns < TAPS {
-        return Array2::zeros((rows, columns));
+        return zeros((rows, columns));
     }
     let count = ((columns - 1) as f64 * ratio).floor() as usize + 1;
-    let mut fine = Array2::zeros((rows, count));
+    let mut fine = zeros((rows, count))?;
     for k in 0..count {
         let place = k as f64 / ratio;
         let first = (place.floor() as usize).saturating_sub(TAPS / 2 - 1).min(columns - TAPS);
@@ -182,7 +242,7 @@ fn resampled(heights: ArrayView2<'_, f64>, ratio: f64) -> Array2<f64> {
             fine[[row, k]] = near.map(|(tap, w)| w * heights[[row, first + tap]]).sum();
         }
     }
-    fine
+    Ok(fine)
 }
 
 /// Points that a value between them is made of.
@@ -283,7 +343,7 @@ pub fn find_measured(
         return Ok((find_summits(heights_m, length_m, points)?, 0));
     }
     let n = heights_m.nrows();
-    let mut found = find_summits(mirrored(heights_m).view(), 2.0 * length_m, points)?;
+    let mut found = find_summits(mirrored(heights_m)?.view(), 2.0 * length_m, points)?;
     let margin = (0.5 * points).ceil() as usize;
     let inside = |k: usize| k < n;
     found.list.retain(|summit| inside(summit.grid_row) && inside(summit.grid_col));
@@ -298,8 +358,10 @@ pub fn find_measured(
 }
 
 /// A field with its mirror images: twice the side, and periodic.
-pub(super) fn mirrored(heights: ArrayView2<'_, f64>) -> Array2<f64> {
+pub(super) fn mirrored(heights: ArrayView2<'_, f64>) -> Result<Array2<f64>, PhysicsError> {
     let n = heights.nrows();
     let fold = |k: usize| if k < n { k } else { 2 * n - 1 - k };
-    Array2::from_shape_fn((2 * n, 2 * n), |(i, j)| heights[[fold(i), fold(j)]])
+    let mut whole = zeros((2 * n, 2 * n))?;
+    whole.indexed_iter_mut().for_each(|((i, j), h)| *h = heights[[fold(i), fold(j)]]);
+    Ok(whole)
 }

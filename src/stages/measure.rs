@@ -39,7 +39,7 @@ pub fn measure(params: &SurfaceParams, digest: &str, key: &str) -> Result<(Prepa
         periodic: params.periodic,
         points_per_shortest_wavelength: f64::from(params.points_per_shortest_wavelength),
     };
-    let prepared = prepare(scan.heights.mapv(|h| unit * h), spacing, &treatment).map_err(|error| refused(path, &error.to_string()))?;
+    let prepared = prepare(in_metres(path, scan.heights, unit)?, spacing, &treatment).map_err(|error| refused(path, &error.to_string()))?;
     let measured = Measured {
         source: path.file_name().map(|name| name.to_string_lossy().chars().take(60).collect()).unwrap_or_default(),
         source_blake3: digest.to_owned(),
@@ -83,7 +83,7 @@ fn own(
     // A generated surface has no waves below those that it was made of.
     let shortest = header.generated.map_or(0.0, |of| of.points_per_shortest_wavelength * spacing);
     let of_rings = if header.periodic { periodogram } else { windowed_periodogram };
-    let rings = of_rings(heights_m.view(), header.length_m);
+    let rings = of_rings(heights_m.view(), header.length_m)?;
     let measured = header.measured.clone().unwrap_or_else(|| Measured {
         source: path.file_name().map(|name| name.to_string_lossy().chars().take(60).collect()).unwrap_or_default(),
         source_blake3: digest.to_owned(),
@@ -107,6 +107,17 @@ fn own(
         shortest_wavelength_m: measured.shortest_wavelength_m,
     };
     Ok((prepared, SurfaceHeader { realization: 0, key: key.to_owned(), generated: None, measured: Some(measured), ..header }))
+}
+
+/// Heights times their unit, in the same memory; infinite ones are missing, as NaN is.
+fn in_metres(path: &Path, mut heights: Array2<f64>, unit: f64) -> Result<Array2<f64>, StageError> {
+    let too_large = heights.iter().find(|h| h.is_finite() && !(unit * **h).is_finite());
+    if let Some(height) = too_large {
+        let why = format!("its heights are too large: {height:e} in the unit {unit:e} m\nhelp: check the unit of the heights (--unit, surface.unit)");
+        return Err(refused(path, &why));
+    }
+    heights *= unit;
+    Ok(heights)
 }
 
 /// Checks that a file which says whether its surface is periodic agrees with what was given.
