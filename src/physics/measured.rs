@@ -75,6 +75,14 @@ pub fn prepare(heights_m: Array2<f64>, spacing_m: [f64; 2], treatment: &Treatmen
         let wrong = spacing_m.into_iter().find(|d| !(*d > 0.0 && d.is_finite())).unwrap_or(f64::NAN);
         return Err(domain("the distance of its points [m]", wrong, "a positive number"));
     }
+    // Before anything is made of them: infinite ones are missing.
+    let largest = heights_m.iter().filter(|h| h.is_finite()).fold(0.0_f64, |most, h| most.max(h.abs()));
+    if largest > HIGHEST {
+        return Err(PhysicsError::Surface {
+            problem: format!("its heights are too large: up to {largest:.1e} m, and no surface is higher than {HIGHEST:e} m"),
+            help: "check the unit of the heights (--unit, surface.unit), and that no value marks missing points",
+        });
+    }
     let fine = spacing_m[0].min(spacing_m[1]);
     let ratio = spacing_m[0].max(spacing_m[1]) / fine;
     if ratio > MOST_OBLONG {
@@ -178,16 +186,9 @@ struct Range {
     deviation: f64,
 }
 
-/// The range of heights, whose squares must be numbers.
+/// The range of heights, the squares of which must not vanish.
 fn range(heights: &Array2<f64>) -> Result<Range, PhysicsError> {
     let (low, high) = heights.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), h| (low.min(*h), high.max(*h)));
-    let largest = high.max(-low);
-    if largest > HIGHEST {
-        return Err(PhysicsError::Surface {
-            problem: format!("its heights are too large: up to {largest:.1e} m, and no surface is higher than {HIGHEST:e} m"),
-            help: "check the unit of the heights (--unit, surface.unit), and that no value marks missing points",
-        });
-    }
     let mean = heights.sum() / heights.len() as f64;
     let deviation = (high - mean).max(mean - low);
     if low < high && deviation < LOWEST {

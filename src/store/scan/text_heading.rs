@@ -53,6 +53,9 @@ impl Heading {
 
     fn entry(&mut self, key: &str, value: &str) -> Result<(), Cause> {
         let twice = || -> Cause { format!("{key:?} is said twice: a file may have one surface").into() };
+        if SIZES.contains(&key.to_lowercase().as_str()) && has_decimal_comma(value) {
+            return Err(format!("its {key:?} of {value:?} has a decimal comma, which is not supported\nhelp: write a decimal point, or export in English").into());
+        }
         let word = || Some(value.trim_matches(['[', ']', '(', ')', ' ']).to_owned()).filter(|word| !word.is_empty());
         match key.to_lowercase().as_str() {
             "width" | "breite" | "x-length" => put(&mut self.width, quantity(value)),
@@ -116,6 +119,15 @@ impl Heading {
         let width = size(self.width.as_ref().or(by_values.as_ref()), lateral)?;
         Ok(Meaning { factor, unit: unit.cloned(), size_m: height.zip(width).map(|(height, width)| [height, width]) })
     }
+}
+
+/// Entries that are a number with a unit.
+const SIZES: [&str; 7] = ["width", "breite", "x-length", "height", "h\u{f6}he", "y-length", "pixel size"];
+
+/// Whether a text begins with a number that has a comma in it.
+fn has_decimal_comma(text: &str) -> bool {
+    let rest = text.trim_start_matches(|sign: char| sign.is_ascii_digit() || matches!(sign, '+' | '-'));
+    rest.len() < text.len() && rest.strip_prefix(',').is_some_and(|rest| rest.starts_with(|sign: char| sign.is_ascii_digit()))
 }
 
 /// Puts an entry in its place; nothing, if the place is taken.
