@@ -2,10 +2,18 @@
 
 mod damage;
 #[cfg(feature = "stats")]
+mod formats;
+#[cfg(feature = "stats")]
 mod import;
+#[cfg(feature = "stats")]
+mod limits;
 mod make;
 mod netcdf;
 mod npy;
+mod outside;
+#[cfg(feature = "stats")]
+mod periodic;
+mod points;
 #[cfg(feature = "stats")]
 mod python;
 mod text;
