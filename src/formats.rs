@@ -161,7 +161,13 @@ const MAGIC: [(&[u8], Foreign); 48] = [
     (b"\x89PNG", IMAGE),
     (b"\xff\xd8\xff", IMAGE),
     (b"%PDF", IMAGE),
-    (b"ncols", said("an ESRI ASCII grid", "delete its heading lines and give cellsize as pixel_m (--pixel-m) and the unit of its heights (--unit)")),
+    (
+        b"ncols",
+        said(
+            "an ESRI ASCII grid",
+            "delete its heading lines and give cellsize as pixel_m (--pixel-m) and the unit of its heights (--unit)",
+        ),
+    ),
 ];
 
 /// Extensions of formats that are not read and have no first bytes of their own, or share them with others.

@@ -9,6 +9,7 @@
 use super::PhysicsError;
 
 use super::field::Field;
+use super::levelling::{ROUNDING, check_size, level};
 use super::memory::zeros;
 use super::periodogram::{Ring, windowed_periodogram};
 use super::spectrum::Moments;
@@ -70,33 +71,84 @@ pub struct Prepared {
 /// # Errors
 /// Too few or too many points, distances that are not positive or too unequal, too many missing points or any that are to be refused, constant heights, too little memory; the sentence says what is allowed.
 pub fn prepare(heights_m: Array2<f64>, spacing_m: [f64; 2], treatment: &Treatment) -> Result<Prepared, PhysicsError> {
-    let domain = |quantity, value, allowed| PhysicsError::Domain { action: "the measured surface", quantity, value, allowed };
+    let Square { mut heights, fine, coarsening } = square(heights_m, spacing_m, treatment.periodic)?;
+    let side = heights.nrows();
+    let missing_count = heights.iter().filter(|h| !h.is_finite()).count();
+    let share = missing_count as f64 / heights.len() as f64;
+    if missing_count > 0 && treatment.missing == Missing::Refuse {
+        return Err(domain(
+            "the number of missing points",
+            missing_count as f64,
+            "none; or missing = \"fill\" (--fill; fill=True in Python), which continues the heights around them",
+        ));
+    }
+    if share > MOST_MISSING {
+        return Err(domain("the number of missing points", missing_count as f64, "up to half of all"));
+    }
+    fill(&mut heights, treatment.periodic);
+    let trend_m = level(&mut heights, treatment.detrend)?;
+    let length_m = side as f64 * fine;
+    let points = treatment.points_per_shortest_wavelength * coarsening;
+    let rings = if treatment.periodic { None } else { Some(windowed_periodogram(heights.view(), length_m)?) };
+    let mut field = Field::of(heights.view(), length_m, treatment.periodic)?;
+    drop(heights);
+    let rings = rings.unwrap_or_else(|| field.rings());
+    let before = field.moments();
+    field.cut(points);
+    let moments = field.moments();
+    if moments.rms_height_m() <= ROUNDING * before.rms_height_m() {
+        return Err(PhysicsError::Surface {
+            problem: format!("nothing is left of its heights but wavelengths below the cut-off, {:.3e} m", points * fine),
+            help: "lower the cut-off (--points, points_per_shortest_wavelength)",
+        });
+    }
+    let noise_m = (before.m0_m2 - moments.m0_m2).max(0.0).sqrt();
+    Ok(Prepared {
+        heights_m: field.heights(side)?,
+        length_m,
+        moments,
+        rings,
+        missing_count,
+        trend_m,
+        noise_m,
+        shortest_wavelength_m: points * fine,
+    })
+}
+
+fn domain(quantity: &'static str, value: f64, allowed: &'static str) -> PhysicsError {
+    PhysicsError::Domain { action: "the measured surface", quantity, value, allowed }
+}
+
+/// The central square of a scan, its points as far apart along both directions.
+struct Square {
+    heights: Array2<f64>,
+    /// Distance of points \[m\].
+    fine: f64,
+    /// The larger distance of points of the scan over the smaller one; 1 where they count as equal.
+    coarsening: f64,
+}
+
+fn square(heights_m: Array2<f64>, spacing_m: [f64; 2], periodic: bool) -> Result<Square, PhysicsError> {
     if !(spacing_m.iter().all(|d| *d > 0.0 && d.is_finite())) {
         let wrong = spacing_m.into_iter().find(|d| !(*d > 0.0 && d.is_finite())).unwrap_or(f64::NAN);
         return Err(domain("the distance of its points [m]", wrong, "a positive number"));
     }
-    // Before anything is made of them: infinite ones are missing.
-    let largest = heights_m.iter().filter(|h| h.is_finite()).fold(0.0_f64, |most, h| most.max(h.abs()));
-    if largest > HIGHEST {
-        return Err(PhysicsError::Surface {
-            problem: format!("its heights are too large: up to {largest:.1e} m, and no surface is higher than {HIGHEST:e} m"),
-            help: "check the unit of the heights (--unit, surface.unit), and that no value marks missing points",
-        });
-    }
+    check_size(&heights_m)?;
     let fine = spacing_m[0].min(spacing_m[1]);
     let ratio = spacing_m[0].max(spacing_m[1]) / fine;
     if ratio > MOST_OBLONG {
         return Err(domain("the greater distance of its points over the smaller one", ratio, "up to 16"));
     }
     let oblong = ratio > 1.0 + SQUARE;
-    if oblong && treatment.periodic {
+    let coarsening = if oblong { ratio } else { 1.0 };
+    if oblong && periodic {
         return Err(domain(
             "the greater distance of its points over the smaller one",
             ratio,
             "1 where a surface is periodic; or periodic = false",
         ));
     }
-    let largest = heights_m.len() as f64 * if oblong { ratio } else { 1.0 };
+    let largest = heights_m.len() as f64 * coarsening;
     if largest > MOST_AT_ALL {
         return Err(domain("the number of its points", largest, "up to 2^28"));
     }
@@ -117,54 +169,11 @@ pub fn prepare(heights_m: Array2<f64>, spacing_m: [f64; 2], treatment: &Treatmen
             "up to 8192; take a part of it, or every other point",
         ));
     }
-    if treatment.periodic && rows != columns {
+    if periodic && rows != columns {
         let allowed = "a square of as many columns, since a part of a periodic surface is not periodic; or periodic = false";
         return Err(domain("the number of its rows", rows as f64, allowed));
     }
-    let mut heights = middle(heights_m, side)?;
-    let missing_count = heights.iter().filter(|h| !h.is_finite()).count();
-    let share = missing_count as f64 / heights.len() as f64;
-    if missing_count > 0 && treatment.missing == Missing::Refuse {
-        return Err(domain(
-            "the number of missing points",
-            missing_count as f64,
-            "none; or missing = \"fill\" (--fill; fill=True in Python), which continues the heights around them",
-        ));
-    }
-    if share > MOST_MISSING {
-        return Err(domain("the number of missing points", missing_count as f64, "up to half of all"));
-    }
-    fill(&mut heights, treatment.periodic);
-    let before = range(&heights)?;
-    let trend_m = detrend(&mut heights, treatment.detrend);
-    left_over(&heights, &before, trend_m)?;
-    let length_m = side as f64 * fine;
-    let points = treatment.points_per_shortest_wavelength * if oblong { ratio } else { 1.0 };
-    let rings = if treatment.periodic { None } else { Some(windowed_periodogram(heights.view(), length_m)?) };
-    let mut field = Field::of(heights.view(), length_m, treatment.periodic)?;
-    drop(heights);
-    let rings = rings.unwrap_or_else(|| field.rings());
-    let before = field.moments();
-    field.cut(points);
-    let moments = field.moments();
-    if moments.rms_height_m() <= ROUNDING * before.rms_height_m() {
-        let shortest = points * fine;
-        return Err(PhysicsError::Surface {
-            problem: format!("nothing is left of its heights but wavelengths below the cut-off, {shortest:.3e} m"),
-            help: "lower the cut-off (--points, points_per_shortest_wavelength)",
-        });
-    }
-    let noise_m = (before.m0_m2 - moments.m0_m2).max(0.0).sqrt();
-    Ok(Prepared {
-        heights_m: field.heights(side)?,
-        length_m,
-        moments,
-        rings,
-        missing_count,
-        trend_m,
-        noise_m,
-        shortest_wavelength_m: points * fine,
-    })
+    Ok(Square { heights: middle(heights_m, side)?, fine, coarsening })
 }
 
 /// The central square, in one order in memory, in which sums are then made.
@@ -178,47 +187,6 @@ fn middle(heights_m: Array2<f64>, side: usize) -> Result<Array2<f64>, PhysicsErr
     square.assign(&heights_m.slice(s![top..top + side, left..left + side]));
     Ok(square)
 }
-
-/// What heights are before they are levelled \[m\].
-struct Range {
-    mean: f64,
-    /// Largest distance from the mean.
-    deviation: f64,
-}
-
-/// The range of heights, the squares of which must not vanish.
-fn range(heights: &Array2<f64>) -> Result<Range, PhysicsError> {
-    let (low, high) = heights.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), h| (low.min(*h), high.max(*h)));
-    let mean = heights.sum() / heights.len() as f64;
-    let deviation = (high - mean).max(mean - low);
-    if low < high && deviation < LOWEST {
-        return Err(PhysicsError::Surface {
-            problem: format!("its heights differ by {:.1e} m only, which is too little to compute with", high - low),
-            help: "check the unit of the heights (--unit, surface.unit)",
-        });
-    }
-    if low < high { Ok(Range { mean, deviation }) } else { Err(flat(format!("its heights are constant: all are {low:e} m"))) }
-}
-
-/// Checks that levelled heights are more than what rounding has left.
-fn left_over(heights: &Array2<f64>, before: &Range, trend_m: f64) -> Result<(), PhysicsError> {
-    let most = heights.iter().fold(0.0_f64, |most, h| most.max(h.abs()));
-    if most > ROUNDING * before.deviation + OF_MEAN * before.mean.abs() {
-        return Ok(());
-    }
-    Err(flat(format!("it is flat to rounding: nothing is left after levelling, which removed {trend_m:.3e} m rms")))
-}
-
-fn flat(problem: String) -> PhysicsError {
-    PhysicsError::Surface { problem, help: "a rough surface is needed: check which field of the file is read, and its units" }
-}
-
-/// Part of the heights that rounding can make of nothing: of their range, and of their mean.
-const ROUNDING: f64 = 1e-12;
-const OF_MEAN: f64 = 1e-15;
-/// Heights of a surface at most, and deviations at least \[m\]: their squares are far from the ends of what numbers can be.
-const HIGHEST: f64 = 1e9;
-const LOWEST: f64 = 1e-60;
 
 /// Points between those of each row, `ratio` times as close, from the first on to the last: Lagrange's polynomials through six points. Where one of these is missing, so is
 /// what lies between them.
@@ -301,35 +269,6 @@ fn fill(heights: &mut Array2<f64>, periodic: bool) {
 
 /// Sweeps over the missing points, at most.
 const MOST_SWEEPS: usize = 3000;
-
-/// Takes a trend off, by least squares, and gives its rms height \[m\] about its mean. The mean goes in any case.
-fn detrend(heights: &mut Array2<f64>, kind: Detrend) -> f64 {
-    let n = heights.nrows();
-    let count = heights.len() as f64;
-    // On a whole square grid these are orthogonal, so that each coefficient stands by itself.
-    let at = |k: usize| (2 * k + 1) as f64 / n as f64 - 1.0;
-    let mean_square = (0..n).map(|k| at(k).powi(2)).sum::<f64>() / n as f64;
-    type Shape<'a> = Box<dyn Fn(f64, f64) -> f64 + 'a>;
-    let plane: [Shape<'_>; 2] = [Box::new(|x, _| x), Box::new(|_, y| y)];
-    let curved: [Shape<'_>; 3] =
-        [Box::new(|x, y| x * y), Box::new(move |x, _| x * x - mean_square), Box::new(move |_, y| y * y - mean_square)];
-    let mean = heights.sum() / count;
-    heights.mapv_inplace(|h| h - mean);
-    let mut squares = 0.0;
-    let shapes = plane.iter().filter(|_| kind != Detrend::Mean).chain(curved.iter().filter(|_| kind == Detrend::Quadratic));
-    for shape in shapes {
-        let (mut product, mut norm) = (0.0, 0.0);
-        for ((i, j), h) in heights.indexed_iter() {
-            let value = shape(at(i), at(j));
-            product += value * h;
-            norm += value * value;
-        }
-        let coefficient = product / norm;
-        heights.indexed_iter_mut().for_each(|((i, j), h)| *h -= coefficient * shape(at(i), at(j)));
-        squares += coefficient * coefficient * norm / count;
-    }
-    squares.sqrt()
-}
 
 /// Summits of a prepared surface with so many points to its shortest wavelength, and how many were left out at the edges of one that is not periodic.
 ///

@@ -15,6 +15,7 @@ mod illinois;
 pub mod interaction;
 pub mod jkr;
 mod krylov;
+mod levelling;
 mod local;
 mod locate;
 pub mod log;

@@ -113,7 +113,9 @@ fn own(
 fn in_metres(path: &Path, mut heights: Array2<f64>, unit: f64) -> Result<Array2<f64>, StageError> {
     let too_large = heights.iter().find(|h| h.is_finite() && !(unit * **h).is_finite());
     if let Some(height) = too_large {
-        let why = format!("its heights are too large: {height:e} in the unit {unit:e} m\nhelp: check the unit of the heights (--unit, surface.unit)");
+        let why = format!(
+            "its heights are too large: {height:e} in the unit {unit:e} m\nhelp: check the unit of the heights (--unit, surface.unit)"
+        );
         return Err(refused(path, &why));
     }
     heights *= unit;
@@ -157,14 +159,14 @@ fn spacing(params: &SurfaceParams, scan: &Scan) -> Result<[f64; 2], StageError> 
     match scan.size_m {
         None if given > 0.0 && scan.spacing.is_none_or(|[a, b]| (a / b - 1.0).abs() <= SAME) => Ok([given; 2]),
         None => match scan.spacing {
-            Some(_) if given > 0.0 => {
-                Err(refused(path, "its points are not as far apart along x as along y, and pixel_m was given\nhelp: leave pixel_m (--pixel-m) out"))
-            }
+            Some(_) if given > 0.0 => Err(refused(
+                path,
+                "its points are not as far apart along x as along y, and pixel_m was given\nhelp: leave pixel_m (--pixel-m) out",
+            )),
             // Without a unit of its own the file has one for all columns.
             Some(own) => metres(&params.unit).map(|unit| own.map(|spacing| unit * spacing)).ok_or_else(|| unitless(path)),
             None => {
-                let why =
-                    "it does not say how far apart its points are; give pixel_m (--pixel-m), the size of the scan over its number of points";
+                let why = "it does not say how far apart its points are; give pixel_m (--pixel-m), the size of the scan over its number of points";
                 Err(refused(path, why))
             }
         },

@@ -9,8 +9,8 @@ use hdf5_metno::{Dataset, File, FileBuilder};
 use ndarray::{Array2, ArrayView2, s};
 
 use super::commit::{Written, commit};
-use super::error::{Cause, StoreError, fenced};
 use super::dataset::{Outside, dataset};
+use super::error::{Cause, StoreError, fenced};
 use super::scan::{MOST_POINTS, room};
 use super::surface_header;
 pub use super::surface_header::{Generated, Measured, SURFACE_VERSION, SpectrumFit, SurfaceHeader};

@@ -21,7 +21,9 @@ pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
     let params = params(asked);
     if params.periodic && params.detrend != Detrend::Mean {
         let shape = params.detrend.word();
-        let text = format!("error: --detrend {shape} with --periodic: the removed shape is not periodic\nhelp: leave --detrend out, or --periodic");
+        let text = format!(
+            "error: --detrend {shape} with --periodic: the removed shape is not periodic\nhelp: leave --detrend out, or --periodic"
+        );
         return Err(Fault { code: BAD_SPEC, text });
     }
     if let Some(pixel_m) = asked.pixel_m.filter(|pixel| !(*pixel > 0.0 && pixel.is_finite())) {
@@ -137,7 +139,7 @@ fn told(file: &Path, header: &SurfaceHeader, [points, summits, edge]: [usize; 3]
     if let Some(of) = &header.measured {
         let ([rows, columns], [a, b]) = (of.source_point_counts, of.source_spacings_m);
         line("file", format!("{rows} x {columns} points, {a:.4e} m by {b:.4e} m apart"));
-        line("", "rows x columns: the row index runs along x, the column index along y".to_owned());
+        line("", "rows x columns; the row index runs along x".to_owned());
         if (a / b - 1.0).abs() > 1e-3 {
             line("", format!("interpolated to points {:.4e} m apart both ways", a.min(b)));
         }
@@ -213,9 +215,10 @@ fn cautions(header: &SurfaceHeader) -> Vec<String> {
         let ([rows, columns], dropped) = (of.source_point_counts, of.dropped(header.length_m));
         if dropped > DROPPED {
             let points = (header.length_m / of.source_spacings_m[0].min(of.source_spacings_m[1])).round();
+            let [a, b] = [rows as f64 * of.source_spacings_m[0], columns as f64 * of.source_spacings_m[1]];
             cautions.push(format!(
-                "crop: {:.0} % of the scan ({rows} x {columns} points) is outside the central square and dropped (limit {:.0} %); {points} x {points} points remain, \
-                 and all results are of these",
+                "crop: {:.0} % of the scan ({rows} x {columns} points, {a:.3e} m x {b:.3e} m) is outside the central square and dropped (limit {:.0} %); \
+                 {points} x {points} points remain, and all results are of these",
                 100.0 * dropped,
                 100.0 * DROPPED
             ));

@@ -54,7 +54,10 @@ impl Heading {
     fn entry(&mut self, key: &str, value: &str) -> Result<(), Cause> {
         let twice = || -> Cause { format!("{key:?} is said twice: a file may have one surface").into() };
         if SIZES.contains(&key.to_lowercase().as_str()) && has_decimal_comma(value) {
-            return Err(format!("its {key:?} of {value:?} has a decimal comma, which is not supported\nhelp: write a decimal point, or export in English").into());
+            return Err(format!(
+                "its {key:?} of {value:?} has a decimal comma, which is not supported\nhelp: write a decimal point, or export in English"
+            )
+            .into());
         }
         let word = || Some(value.trim_matches(['[', ']', '(', ')', ' ']).to_owned()).filter(|word| !word.is_empty());
         match key.to_lowercase().as_str() {
@@ -82,9 +85,7 @@ impl Heading {
         let (factor, unit) = self.scale()?;
         let of_x = self.width_unit.as_ref().or(unit);
         let of_y = self.height_unit.as_ref().or(of_x);
-        let along = |spacing: f64, points: u64, unit| {
-            size(Some(&Quantity { value: spacing * points as f64, unit: None }), unit)
-        };
+        let along = |spacing: f64, points: u64, unit| size(Some(&Quantity { value: spacing * points as f64, unit: None }), unit);
         let size_m = along(spacing[0], x, of_x)?.zip(along(spacing[1], y, of_y)?).map(|(x, y)| [x, y]);
         Ok(Meaning { factor, unit: unit.cloned(), size_m })
     }

@@ -40,7 +40,10 @@ pub(super) fn grid(values: &[f64]) -> Result<Grid, Cause> {
     for point in values.chunks_exact(3) {
         let place = x.place(point[0])? * y.count + y.place(point[1])?;
         if std::mem::replace(&mut taken[place], true) {
-            return Err(refused(format!("three columns are read as x, y and z: the point x = {}, y = {} is there twice", point[0], point[1])));
+            return Err(refused(format!(
+                "three columns are read as x, y and z: the point x = {}, y = {} is there twice",
+                point[0], point[1]
+            )));
         }
         heights[place] = point[2];
     }
@@ -106,6 +109,10 @@ impl Axis {
     /// The place of a coordinate, which is one of those that the axis was made of.
     fn place(&self, value: f64) -> Result<usize, Cause> {
         let place = ((value - self.first) / self.spacing).round();
-        if (0.0..self.count as f64).contains(&place) { Ok(place as usize) } else { Err(format!("its {} of {value} is off the grid", self.name).into()) }
+        if (0.0..self.count as f64).contains(&place) {
+            Ok(place as usize)
+        } else {
+            Err(format!("its {} of {value} is off the grid", self.name).into())
+        }
     }
 }

@@ -107,7 +107,11 @@ impl Names {
         match &found[..] {
             [one] => Ok(Self { folder: one.trim_end_matches(MAIN).to_owned(), parts }),
             [] => Err(format!("it is a zip archive without {MAIN}, and so no X3P").into()),
-            many => Err(format!("it is a zip archive of {} X3P folders, and one is read\nhelp: unpack it, and zip one of the folders", many.len()).into()),
+            many => Err(format!(
+                "it is a zip archive of {} X3P folders, and one is read\nhelp: unpack it, and zip one of the folders",
+                many.len()
+            )
+            .into()),
         }
     }
 

@@ -23,7 +23,10 @@ fn e2e_heights_that_are_too_large_are_told_as_such() {
     for (factor, unit) in [(1e200, "m"), (1e307, "m"), (1e307, "km"), (1e12, "m")] {
         let output = imported(folder.path(), &heights.mapv(|h| factor * h), &["--pixel-m", "1e-6", "--unit", unit]);
         let said = stderr(&output);
-        assert!(code(&output) == 1 && said.contains("its heights are too large") && said.contains("help: check the unit"), "{factor}: {said}");
+        assert!(
+            code(&output) == 1 && said.contains("its heights are too large") && said.contains("help: check the unit"),
+            "{factor}: {said}"
+        );
         assert!(!said.contains("constant"), "{said}");
     }
 }
@@ -43,11 +46,15 @@ fn e2e_a_crop_and_a_bad_fit_are_cautions() {
     let (found, fit) = cautions(&whole);
     assert!(found.is_empty() && (0.0..=1.0).contains(&fit["hurst"].as_f64().unwrap()), "{found:?} {fit}");
     let (found, _) = cautions(&whole.slice(s![..270, ..]).to_owned());
-    assert!(found.iter().any(|text| text.starts_with("crop: 12 % of the scan (270 x 308 points)") && text.contains("270 x 270 points remain")), "{found:?}");
+    assert!(
+        found.iter().any(|text| text.starts_with("crop: 12 % of the scan (270 x 308 points, 3.375e-6 m x 3.850e-6 m)")
+            && text.contains("270 x 270 points remain")),
+        "{found:?}"
+    );
     // In words too, in eighty columns.
     let output = imported(folder.path(), &whole.slice(s![..100, ..]).to_owned(), &TOLD);
     let words = stdout(&output);
-    assert!(words.contains("Caution: crop: 68 % of the scan") && words.contains("rows x columns: the row index runs along x"), "{words}");
+    assert!(words.contains("Caution: crop: 68 % of the scan") && words.contains("rows x columns; the row index runs along x"), "{words}");
     assert!(words.lines().all(|line| line.chars().count() <= 80), "{words}");
     // White noise has C(q) constant: H = -1.
     let mut state = 1_u64;
@@ -74,11 +81,19 @@ fn e2e_little_memory_is_a_sentence() {
     let row: Vec<u8> = (0..side).map(|k| (k * k % 251) as u8).collect();
     let data: Vec<u8> = (0..side).flat_map(|k| row.iter().map(move |byte| byte.wrapping_add((k % 7) as u8))).collect();
     fs::write(folder.path().join("large.npy"), npy(1, &npy_line("|u1", "False", &format!("({side}, {side})")), &data)).unwrap();
-    fs::write(folder.path().join("large.toml"), "name = \"x\"\nrealizations = 1\n[surface]\nmagnification = 1024\npoints_per_shortest_wavelength = 8\n").unwrap();
+    fs::write(
+        folder.path().join("large.toml"),
+        "name = \"x\"\nrealizations = 1\n[surface]\nmagnification = 1024\npoints_per_shortest_wavelength = 8\n",
+    )
+    .unwrap();
     let limited = |kilobytes: u32, arguments: &[&str]| {
         let script = format!("ulimit -v {kilobytes}; exec \"$0\" \"$@\"");
-        let output =
-            Command::new("sh").args(["-c", &script, env!("CARGO_BIN_EXE_hysteron")]).args(arguments).current_dir(folder.path()).output().unwrap();
+        let output = Command::new("sh")
+            .args(["-c", &script, env!("CARGO_BIN_EXE_hysteron")])
+            .args(arguments)
+            .current_dir(folder.path())
+            .output()
+            .unwrap();
         (output.status.code(), stderr(&output))
     };
     let import = ["import", "large.npy", "--pixel-m", "1e-9", "--unit", "nm", "--dry-run"];

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-use hdf5_metno::plist::dataset_create::Layout;
 use hdf5_metno::File;
-use hysteron::store::hdf5::{check_inside, read_header, read_heights, read_surface};
+use hdf5_metno::plist::dataset_create::Layout;
+use hysteron::store::hdf5::{SurfaceHeader, check_inside, read_header, read_heights, read_surface, write_surface};
 use ndarray::{Array2, s};
 
 /// Points along a side.
@@ -124,14 +124,29 @@ fn law_heights_in_the_file_itself_are_read() {
 #[test]
 fn law_own_surfaces_have_their_heights_inside() {
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("own.h5");
-    fs::write(folder.path().join("raw.bin"), vec![0; 8 * N * N]).unwrap();
-    let file = File::create(&path).unwrap();
-    file.new_attr::<u32>().create("schema_version").unwrap().write_scalar(&1_u32).unwrap();
-    let raw = folder.path().join("raw.bin");
+    let (path, raw) = (folder.path().join("own.h5"), folder.path().join("raw.bin"));
+    let header = SurfaceHeader {
+        length_m: 1e-3,
+        realization: 0,
+        periodic: true,
+        key: "k".to_owned(),
+        rms_height_m: 1e-6,
+        rms_slope: 0.1,
+        rms_curvature_1_m: 1e4,
+        nayak_parameter: 5.0,
+        generated: None,
+        measured: None,
+    };
+    write_surface(&path, &header, heights().view()).unwrap();
+    assert_eq!((read_header(&path).unwrap(), check_inside(&path, None)), (header, Ok(())));
+    fs::write(&raw, vec![0; 8 * N * N]).unwrap();
+    let file = File::open_rw(&path).unwrap();
+    file.unlink("height_m").unwrap();
     file.new_dataset::<f64>().no_chunk().shape((N, N)).external(raw.to_str().unwrap(), 0, 8 * N * N).create("height_m").unwrap();
     file.close().unwrap();
-    for said in [read_surface(&path).unwrap_err().to_string(), read_header(&path).unwrap_err().to_string(), check_inside(&path, None).unwrap_err()] {
+    for said in
+        [read_surface(&path).unwrap_err().to_string(), read_header(&path).unwrap_err().to_string(), check_inside(&path, None).unwrap_err()]
+    {
         assert!(said.contains("external storage"), "{said}");
     }
 }
@@ -178,7 +193,10 @@ fn e2e_no_command_follows_heights_to_another_file() {
             let output = ends(&mut bench.command(verb));
             assert_eq!(code(&output), 2, "{verb} {}: {}", path.display(), stderr(&output));
             let said = stderr(&output);
-            assert!(said.contains(words) && said.contains("spec.toml:3:") && said.contains("copy the heights into one file"), "{verb}: {said}");
+            assert!(
+                said.contains(words) && said.contains("spec.toml:3:") && said.contains("copy the heights into one file"),
+                "{verb}: {said}"
+            );
         }
     }
     assert!(!bench.out().exists(), "nothing is begun");

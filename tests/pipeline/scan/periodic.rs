@@ -48,12 +48,19 @@ fn e2e_a_periodic_surface_survives_export_and_import() {
     // What is not periodic is not removed from it, and the file's own word counts.
     let refused = import(folder, &["s.nc", "--periodic", "--detrend", "plane", "--dry-run"]);
     assert_eq!(code(&refused), 2);
-    assert!(stderr(&refused).starts_with("error: --detrend plane with --periodic") && stderr(&refused).contains("\nhelp: "), "{}", stderr(&refused));
+    assert!(
+        stderr(&refused).starts_with("error: --detrend plane with --periodic") && stderr(&refused).contains("\nhelp: "),
+        "{}",
+        stderr(&refused)
+    );
     assert_eq!(code(&import(folder, &["s.nc", "--periodic", "--detrend", "mean", "--dry-run"])), 0);
     for file in ["s.nc", own.to_str().unwrap()] {
         let refused = import(folder, &[file, "--dry-run"]);
         let said = stderr(&refused);
-        assert!(code(&refused) == 1 && said.contains("the file says that the surface is periodic") && said.contains("\nhelp: set"), "{said}");
+        assert!(
+            code(&refused) == 1 && said.contains("the file says that the surface is periodic") && said.contains("\nhelp: set"),
+            "{said}"
+        );
     }
 }
 
@@ -71,7 +78,9 @@ fn e2e_a_file_that_is_not_periodic_is_not_taken_for_periodic() {
 
 #[test]
 fn law_the_default_of_detrend_follows_periodic() {
-    let text = |surface: &str, rest: &str| format!("name = \"x\"\n[surface]\nfile = \"a.npy\"\n{surface}\n[model]\nboundary = \"isolated\"\n{rest}");
+    let text = |surface: &str, rest: &str| {
+        format!("name = \"x\"\n[surface]\nfile = \"a.npy\"\n{surface}\n[model]\nboundary = \"isolated\"\n{rest}")
+    };
     let parsed = |text: &str| Spec::parse(text, "x.toml").unwrap_or_else(|errors| panic!("{errors}"));
     let shapes = |text: &str| {
         let spec = parsed(text);

@@ -63,7 +63,10 @@ fn law_points_off_a_grid_are_told() {
         (changed(&|lines| drop(lines.remove(9))), vec!["5 by 7 places of a grid need 35 lines, and it has 34"]),
         (changed(&|lines| lines[9] = lines[8].clone()), vec!["x = -1.5, y = 10.25 is there twice"]),
         (changed(&|lines| lines.push(lines[0].clone())), vec!["x = -2, y = 10 is there twice"]),
-        (changed(&|lines| drop(lines.drain(14..21))), vec!["values of x are not evenly spaced", "5.000e-1 to 1.000e0 apart (from -1.5 to -0.5)"]),
+        (
+            changed(&|lines| drop(lines.drain(14..21))),
+            vec!["values of x are not evenly spaced", "5.000e-1 to 1.000e0 apart (from -1.5 to -0.5)"],
+        ),
         (changed(&|lines| lines[3] = "nan 10 1".to_owned()), vec!["a value of x is missing"]),
         ((0..40).map(|k| format!("{k} 1 {k}\n")).collect(), vec!["all values of y are 1"]),
         ((0..40).map(|k| format!("{} {} {k}\n", (k * k) as f64, (7 * k % 40) as f64)).collect(), vec!["not evenly spaced"]),
