@@ -265,9 +265,9 @@ struct ImportArguments {
     /// Fill missing points in as a membrane would, instead of refusing them
     #[arg(long)]
     fill: bool,
-    /// What is taken off the heights by least squares
-    #[arg(long, value_name = "WHAT", default_value = "plane", value_parser = ["mean", "plane", "quadratic"])]
-    detrend: String,
+    /// Shape removed from the heights by least squares [default: plane, or mean with --periodic]
+    #[arg(long, value_name = "SHAPE", value_parser = ["mean", "plane", "quadratic"])]
+    detrend: Option<String>,
     /// It continues periodically
     #[arg(long)]
     periodic: bool,

@@ -11,6 +11,7 @@ pub mod cli;
 pub mod engines;
 #[cfg(feature = "stats")]
 pub mod figures;
+pub mod formats;
 pub mod keys;
 pub mod lengths;
 pub mod model;

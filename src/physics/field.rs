@@ -1,6 +1,8 @@
 //! The modes of a height field: its transform, and what is told from it.
 
+use super::PhysicsError;
 use super::measured::mirrored;
+use super::memory::{filled, zeros};
 use super::periodogram::Ring;
 use super::spectrum::Moments;
 use ndarray::{Array2, ArrayView2};
@@ -10,6 +12,8 @@ use rustfft::FftPlanner;
 use rustfft::num_complex::Complex64;
 use std::f64::consts::TAU;
 
+/// Rows that are transformed at a time.
+const ROWS: usize = 256;
 /// Rings to a doubling of the wavenumber.
 const RINGS: f64 = 4.0;
 
@@ -25,40 +29,39 @@ pub(super) struct Field {
 
 impl Field {
     /// The modes of a square field of side L \[m\] as it is, if it is periodic, and else of its continuation by mirror images, of side 2 L.
-    pub(super) fn of(heights_m: ArrayView2<'_, f64>, length_m: f64, periodic: bool) -> Self {
-        if periodic { Self::periodic(heights_m, length_m) } else { Self::periodic(mirrored(heights_m).view(), 2.0 * length_m) }
+    pub(super) fn of(heights_m: ArrayView2<'_, f64>, length_m: f64, periodic: bool) -> Result<Self, PhysicsError> {
+        if periodic { Self::periodic(heights_m, length_m) } else { Self::periodic(mirrored(heights_m)?.view(), 2.0 * length_m) }
     }
 
-    fn periodic(heights_m: ArrayView2<'_, f64>, length_m: f64) -> Self {
+    fn periodic(heights_m: ArrayView2<'_, f64>, length_m: f64) -> Result<Self, PhysicsError> {
         let n = heights_m.nrows();
         let half = n / 2 + 1;
         let along_y = RealFftPlanner::<f64>::new().plan_fft_forward(n);
-        let mut columns = vec![Complex64::ZERO; half * n];
-        let rows: Vec<Vec<Complex64>> = (0..n)
-            .into_par_iter()
-            .map_init(
+        let mut columns = filled(half * n, Complex64::ZERO)?;
+        // Some rows at a time, so that no second field is in memory.
+        let mut rows = filled(half * ROWS.min(n), Complex64::ZERO)?;
+        for first in (0..n).step_by(ROWS) {
+            let count = ROWS.min(n - first);
+            rows.par_chunks_mut(half).take(count).enumerate().for_each_init(
                 || (along_y.make_input_vec(), along_y.make_scratch_vec()),
-                |(row, scratch), x| {
-                    row.iter_mut().zip(heights_m.row(x)).for_each(|(to, from)| *to = *from);
-                    let mut waves = along_y.make_output_vec();
-                    let outcome = along_y.process_with_scratch(row, &mut waves, scratch);
+                |(row, scratch), (k, waves)| {
+                    row.iter_mut().zip(heights_m.row(first + k)).for_each(|(to, from)| *to = *from);
+                    let outcome = along_y.process_with_scratch(row, waves, scratch);
                     debug_assert!(outcome.is_ok(), "lengths are those of the plan");
-                    waves
                 },
-            )
-            .collect();
-        columns.par_chunks_mut(n).enumerate().for_each(|(ky, column)| {
-            for (value, row) in column.iter_mut().zip(&rows) {
-                *value = row[ky];
-            }
-        });
-        drop(rows);
+            );
+            columns.par_chunks_mut(n).enumerate().for_each(|(ky, column)| {
+                for (value, row) in column[first..first + count].iter_mut().zip(rows.chunks(half)) {
+                    *value = row[ky];
+                }
+            });
+        }
         let along_x = FftPlanner::<f64>::new().plan_fft_forward(n);
         columns.par_chunks_mut(n).for_each_init(
             || vec![Complex64::ZERO; along_x.get_inplace_scratch_len()],
             |scratch, column| along_x.process_with_scratch(column, scratch),
         );
-        Self { n, lowest: TAU / length_m, columns }
+        Ok(Self { n, lowest: TAU / length_m, columns })
     }
 
     /// Sums over the modes of each column, added up in their order, so that they do not depend on the threads: `add` is given the sum so far, the squared mode
@@ -141,8 +144,9 @@ impl Field {
     }
 
     /// The heights \[m\] of its first `side` points along each direction: of the part that is no mirror image.
-    pub(super) fn heights(mut self, side: usize) -> Array2<f64> {
+    pub(super) fn heights(mut self, side: usize) -> Result<Array2<f64>, PhysicsError> {
         let n = self.n;
+        let mut heights = zeros((side, side))?;
         let along_x = FftPlanner::<f64>::new().plan_fft_inverse(n);
         self.columns.par_chunks_mut(n).for_each_init(
             || vec![Complex64::ZERO; along_x.get_inplace_scratch_len()],
@@ -151,8 +155,7 @@ impl Field {
         let along_y = RealFftPlanner::<f64>::new().plan_fft_inverse(n);
         let unit = 1.0 / (n as f64 * n as f64);
         let columns = &self.columns;
-        let mut heights = Array2::zeros((side, side));
-        let Some(field) = heights.as_slice_mut() else { return heights };
+        let Some(field) = heights.as_slice_mut() else { return Ok(heights) };
         field.par_chunks_mut(side).enumerate().for_each_init(
             || (along_y.make_input_vec(), along_y.make_output_vec(), along_y.make_scratch_vec()),
             |(half, line, scratch), (x, row)| {
@@ -167,6 +170,6 @@ impl Field {
                 row.iter_mut().zip(line.iter()).for_each(|(to, from)| *to = unit * from);
             },
         );
-        heights
+        Ok(heights)
     }
 }

@@ -9,6 +9,8 @@
 use super::PhysicsError;
 
 use super::field::Field;
+use super::levelling::{ROUNDING, check_size, level};
+use super::memory::zeros;
 use super::periodogram::{Ring, windowed_periodogram};
 use super::spectrum::Moments;
 use super::summits::{Summits, find_summits};
@@ -67,33 +69,92 @@ pub struct Prepared {
 /// interpolated (polynomials of the fifth degree), and the short waves are those of the greater distance.
 ///
 /// # Errors
-/// Too few or too many points, distances that are not positive or too unequal, too many missing points or any that are to be refused, constant heights; the sentence says what is allowed.
+/// Too few or too many points, distances that are not positive or too unequal, too many missing points or any that are to be refused, constant heights, too little memory; the sentence says what is allowed.
 pub fn prepare(heights_m: Array2<f64>, spacing_m: [f64; 2], treatment: &Treatment) -> Result<Prepared, PhysicsError> {
-    let domain = |quantity, value, allowed| PhysicsError::Domain { action: "the measured surface", quantity, value, allowed };
+    let Square { mut heights, fine, coarsening } = square(heights_m, spacing_m, treatment.periodic)?;
+    let side = heights.nrows();
+    let missing_count = heights.iter().filter(|h| !h.is_finite()).count();
+    let share = missing_count as f64 / heights.len() as f64;
+    if missing_count > 0 && treatment.missing == Missing::Refuse {
+        return Err(domain(
+            "the number of missing points",
+            missing_count as f64,
+            "none; or missing = \"fill\" (--fill; fill=True in Python), which continues the heights around them",
+        ));
+    }
+    if share > MOST_MISSING {
+        return Err(domain("the number of missing points", missing_count as f64, "up to half of all"));
+    }
+    fill(&mut heights, treatment.periodic);
+    let trend_m = level(&mut heights, treatment.detrend)?;
+    let length_m = side as f64 * fine;
+    let points = treatment.points_per_shortest_wavelength * coarsening;
+    let rings = if treatment.periodic { None } else { Some(windowed_periodogram(heights.view(), length_m)?) };
+    let mut field = Field::of(heights.view(), length_m, treatment.periodic)?;
+    drop(heights);
+    let rings = rings.unwrap_or_else(|| field.rings());
+    let before = field.moments();
+    field.cut(points);
+    let moments = field.moments();
+    if moments.rms_height_m() <= ROUNDING * before.rms_height_m() {
+        return Err(PhysicsError::Surface {
+            problem: format!("nothing is left of its heights but wavelengths below the cut-off, {:.3e} m", points * fine),
+            help: "lower the cut-off (--points, points_per_shortest_wavelength)",
+        });
+    }
+    let noise_m = (before.m0_m2 - moments.m0_m2).max(0.0).sqrt();
+    Ok(Prepared {
+        heights_m: field.heights(side)?,
+        length_m,
+        moments,
+        rings,
+        missing_count,
+        trend_m,
+        noise_m,
+        shortest_wavelength_m: points * fine,
+    })
+}
+
+fn domain(quantity: &'static str, value: f64, allowed: &'static str) -> PhysicsError {
+    PhysicsError::Domain { action: "the measured surface", quantity, value, allowed }
+}
+
+/// The central square of a scan, its points as far apart along both directions.
+struct Square {
+    heights: Array2<f64>,
+    /// Distance of points \[m\].
+    fine: f64,
+    /// The larger distance of points of the scan over the smaller one; 1 where they count as equal.
+    coarsening: f64,
+}
+
+fn square(heights_m: Array2<f64>, spacing_m: [f64; 2], periodic: bool) -> Result<Square, PhysicsError> {
     if !(spacing_m.iter().all(|d| *d > 0.0 && d.is_finite())) {
         let wrong = spacing_m.into_iter().find(|d| !(*d > 0.0 && d.is_finite())).unwrap_or(f64::NAN);
         return Err(domain("the distance of its points [m]", wrong, "a positive number"));
     }
+    check_size(&heights_m)?;
     let fine = spacing_m[0].min(spacing_m[1]);
     let ratio = spacing_m[0].max(spacing_m[1]) / fine;
     if ratio > MOST_OBLONG {
         return Err(domain("the greater distance of its points over the smaller one", ratio, "up to 16"));
     }
     let oblong = ratio > 1.0 + SQUARE;
-    if oblong && treatment.periodic {
+    let coarsening = if oblong { ratio } else { 1.0 };
+    if oblong && periodic {
         return Err(domain(
             "the greater distance of its points over the smaller one",
             ratio,
             "1 where a surface is periodic; or periodic = false",
         ));
     }
-    let largest = heights_m.len() as f64 * if oblong { ratio } else { 1.0 };
+    let largest = heights_m.len() as f64 * coarsening;
     if largest > MOST_AT_ALL {
         return Err(domain("the number of its points", largest, "up to 2^28"));
     }
     let heights_m = match oblong {
-        true if spacing_m[0] > spacing_m[1] => resampled(heights_m.t(), ratio).reversed_axes(),
-        true => resampled(heights_m.view(), ratio),
+        true if spacing_m[0] > spacing_m[1] => resampled(heights_m.t(), ratio)?.reversed_axes(),
+        true => resampled(heights_m.view(), ratio)?,
         false => heights_m,
     };
     let (rows, columns) = heights_m.dim();
@@ -108,66 +169,34 @@ pub fn prepare(heights_m: Array2<f64>, spacing_m: [f64; 2], treatment: &Treatmen
             "up to 8192; take a part of it, or every other point",
         ));
     }
-    if treatment.periodic && rows != columns {
+    if periodic && rows != columns {
         let allowed = "a square of as many columns, since a part of a periodic surface is not periodic; or periodic = false";
         return Err(domain("the number of its rows", rows as f64, allowed));
     }
+    Ok(Square { heights: middle(heights_m, side)?, fine, coarsening })
+}
+
+/// The central square, in one order in memory, in which sums are then made.
+fn middle(heights_m: Array2<f64>, side: usize) -> Result<Array2<f64>, PhysicsError> {
+    let (rows, columns) = heights_m.dim();
+    if rows == side && columns == side && heights_m.is_standard_layout() {
+        return Ok(heights_m);
+    }
     let (top, left) = ((rows - side) / 2, (columns - side) / 2);
-    // In one order in memory, in which sums are then made.
-    let mut heights = heights_m.slice(s![top..top + side, left..left + side]).as_standard_layout().into_owned();
-    let missing_count = heights.iter().filter(|h| !h.is_finite()).count();
-    let share = missing_count as f64 / heights.len() as f64;
-    if missing_count > 0 && treatment.missing == Missing::Refuse {
-        return Err(domain(
-            "the number of missing points",
-            missing_count as f64,
-            "none; or missing = \"fill\" (--fill; fill=True in Python), which continues the heights around them",
-        ));
-    }
-    if share > MOST_MISSING {
-        return Err(domain("the number of missing points", missing_count as f64, "up to half of all"));
-    }
-    fill(&mut heights, treatment.periodic);
-    let trend_m = detrend(&mut heights, treatment.detrend);
-    let length_m = side as f64 * fine;
-    let points = treatment.points_per_shortest_wavelength * if oblong { ratio } else { 1.0 };
-    let mut field = Field::of(heights.view(), length_m, treatment.periodic);
-    let rings = if treatment.periodic { field.rings() } else { windowed_periodogram(heights.view(), length_m) };
-    let before = field.moments().m0_m2;
-    field.cut(points);
-    let moments = field.moments();
-    // Heights that differ by no more than rounding are constant.
-    let scale = heights.iter().fold(0.0_f64, |most, h| most.max(h.abs())).max(trend_m);
-    let constant = moments.rms_height_m() <= 1e-12 * scale;
-    if constant || !moments.rms_height_m().is_finite() {
-        return Err(domain(
-            "the rms height without trend and short waves [m]",
-            moments.rms_height_m(),
-            "more than 0: its heights are constant",
-        ));
-    }
-    let noise_m = (before - moments.m0_m2).max(0.0).sqrt();
-    Ok(Prepared {
-        heights_m: field.heights(side),
-        length_m,
-        moments,
-        rings,
-        missing_count,
-        trend_m,
-        noise_m,
-        shortest_wavelength_m: points * fine,
-    })
+    let mut square = zeros((side, side))?;
+    square.assign(&heights_m.slice(s![top..top + side, left..left + side]));
+    Ok(square)
 }
 
 /// Points between those of each row, `ratio` times as close, from the first on to the last: Lagrange's polynomials through six points. Where one of these is missing, so is
 /// what lies between them.
-fn resampled(heights: ArrayView2<'_, f64>, ratio: f64) -> Array2<f64> {
+fn resampled(heights: ArrayView2<'_, f64>, ratio: f64) -> Result<Array2<f64>, PhysicsError> {
     let (rows, columns) = heights.dim();
     if columns < TAPS {
-        return Array2::zeros((rows, columns));
+        return zeros((rows, columns));
     }
     let count = ((columns - 1) as f64 * ratio).floor() as usize + 1;
-    let mut fine = Array2::zeros((rows, count));
+    let mut fine = zeros((rows, count))?;
     for k in 0..count {
         let place = k as f64 / ratio;
         let first = (place.floor() as usize).saturating_sub(TAPS / 2 - 1).min(columns - TAPS);
@@ -182,7 +211,7 @@ fn resampled(heights: ArrayView2<'_, f64>, ratio: f64) -> Array2<f64> {
             fine[[row, k]] = near.map(|(tap, w)| w * heights[[row, first + tap]]).sum();
         }
     }
-    fine
+    Ok(fine)
 }
 
 /// Points that a value between them is made of.
@@ -241,35 +270,6 @@ fn fill(heights: &mut Array2<f64>, periodic: bool) {
 /// Sweeps over the missing points, at most.
 const MOST_SWEEPS: usize = 3000;
 
-/// Takes a trend off, by least squares, and gives its rms height \[m\] about its mean. The mean goes in any case.
-fn detrend(heights: &mut Array2<f64>, kind: Detrend) -> f64 {
-    let n = heights.nrows();
-    let count = heights.len() as f64;
-    // On a whole square grid these are orthogonal, so that each coefficient stands by itself.
-    let at = |k: usize| (2 * k + 1) as f64 / n as f64 - 1.0;
-    let mean_square = (0..n).map(|k| at(k).powi(2)).sum::<f64>() / n as f64;
-    type Shape<'a> = Box<dyn Fn(f64, f64) -> f64 + 'a>;
-    let plane: [Shape<'_>; 2] = [Box::new(|x, _| x), Box::new(|_, y| y)];
-    let curved: [Shape<'_>; 3] =
-        [Box::new(|x, y| x * y), Box::new(move |x, _| x * x - mean_square), Box::new(move |_, y| y * y - mean_square)];
-    let mean = heights.sum() / count;
-    heights.mapv_inplace(|h| h - mean);
-    let mut squares = 0.0;
-    let shapes = plane.iter().filter(|_| kind != Detrend::Mean).chain(curved.iter().filter(|_| kind == Detrend::Quadratic));
-    for shape in shapes {
-        let (mut product, mut norm) = (0.0, 0.0);
-        for ((i, j), h) in heights.indexed_iter() {
-            let value = shape(at(i), at(j));
-            product += value * h;
-            norm += value * value;
-        }
-        let coefficient = product / norm;
-        heights.indexed_iter_mut().for_each(|((i, j), h)| *h -= coefficient * shape(at(i), at(j)));
-        squares += coefficient * coefficient * norm / count;
-    }
-    squares.sqrt()
-}
-
 /// Summits of a prepared surface with so many points to its shortest wavelength, and how many were left out at the edges of one that is not periodic.
 ///
 /// # Errors
@@ -283,7 +283,7 @@ pub fn find_measured(
         return Ok((find_summits(heights_m, length_m, points)?, 0));
     }
     let n = heights_m.nrows();
-    let mut found = find_summits(mirrored(heights_m).view(), 2.0 * length_m, points)?;
+    let mut found = find_summits(mirrored(heights_m)?.view(), 2.0 * length_m, points)?;
     let margin = (0.5 * points).ceil() as usize;
     let inside = |k: usize| k < n;
     found.list.retain(|summit| inside(summit.grid_row) && inside(summit.grid_col));
@@ -298,8 +298,10 @@ pub fn find_measured(
 }
 
 /// A field with its mirror images: twice the side, and periodic.
-pub(super) fn mirrored(heights: ArrayView2<'_, f64>) -> Array2<f64> {
+pub(super) fn mirrored(heights: ArrayView2<'_, f64>) -> Result<Array2<f64>, PhysicsError> {
     let n = heights.nrows();
     let fold = |k: usize| if k < n { k } else { 2 * n - 1 - k };
-    Array2::from_shape_fn((2 * n, 2 * n), |(i, j)| heights[[fold(i), fold(j)]])
+    let mut whole = zeros((2 * n, 2 * n))?;
+    whole.indexed_iter_mut().for_each(|((i, j), h)| *h = heights[[fold(i), fold(j)]]);
+    Ok(whole)
 }

@@ -15,10 +15,12 @@ mod illinois;
 pub mod interaction;
 pub mod jkr;
 mod krylov;
+mod levelling;
 mod local;
 mod locate;
 pub mod log;
 pub mod measured;
+pub mod memory;
 pub mod merge;
 mod neighbourhood;
 mod neighbours;
@@ -59,6 +61,14 @@ pub enum PhysicsError {
         value: f64,
         /// What the equation allows.
         allowed: &'static str,
+    },
+    /// A surface that cannot be used.
+    #[error("{problem}\nhelp: {help}")]
+    Surface {
+        /// What is wrong with it, with its numbers.
+        problem: String,
+        /// What to do.
+        help: &'static str,
     },
     /// A surface without a summit carries nothing.
     #[error("cannot cycle the contact: the surface has no summit")]

@@ -106,6 +106,16 @@ pub fn synthesize(spectrum: &Spectrum, seed: &[u8; 32], n: usize) -> Surface {
     Surface { length_m: spectrum.length_m, heights_m: heights, moments: sums.moments(spectrum) }
 }
 
+/// Memory that [`synthesize`] needs at once on a grid of `n × n` points \[bytes\].
+#[must_use]
+pub fn synthesis_bytes(spectrum: &Spectrum, n: usize) -> usize {
+    let zeta = (spectrum.magnification as usize).min(n.div_ceil(2));
+    let columns = n.saturating_mul(zeta).saturating_mul(size_of::<Complex64>());
+    let rows = (2 * zeta).saturating_mul(zeta).saturating_mul(size_of::<Complex64>());
+    let heights = n.saturating_mul(n).saturating_mul(size_of::<f64>());
+    columns.saturating_add(rows.max(heights))
+}
+
 /// Weighted sums `Σ_k w(k²)|c_k|²` \[m²\] over all modes of the surface that [`synthesize`] makes, `k²` the squared mode number: 1 for a weight gives `h_rms²`.
 #[must_use]
 pub fn mode_sums<const N: usize>(spectrum: &Spectrum, seed: &[u8; 32], weights: impl Fn(u64) -> [f64; N]) -> [f64; N] {

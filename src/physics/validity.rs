@@ -2,6 +2,7 @@
 //!
 //! Where flattening costs less than adhesion gains, the half-space conforms to the roughness, and summits are no separate spots any more.
 
+use super::PhysicsError;
 use super::field::Field;
 use super::spectrum::Spectrum;
 use super::synthesis::mode_sums;
@@ -69,14 +70,16 @@ pub fn realised_flattening(spectrum: &Spectrum, seed: &[u8; 32], contact_modulus
 
 /// The same of heights \[m\] on a square of side L \[m\] whose shortest waves are so long \[m\], with E* \[Pa\]. One that does not continue periodically is taken with
 /// its mirror images.
-#[must_use]
+///
+/// # Errors
+/// Too little memory.
 pub fn measured_flattening(
     heights_m: ArrayView2<'_, f64>,
     (length_m, periodic): (f64, bool),
     shortest_wavelength_m: f64,
     contact_modulus_pa: f64,
-) -> Flattening {
+) -> Result<Flattening, PhysicsError> {
     let edge = TAU / shortest_wavelength_m;
-    let [whole, octave] = Field::of(heights_m, length_m, periodic).weighted(|q| [q, if 2.0 * q >= edge { q } else { 0.0 }]);
-    Flattening { whole_j_m2: 0.25 * contact_modulus_pa * whole, octave_j_m2: 0.25 * contact_modulus_pa * octave }
+    let [whole, octave] = Field::of(heights_m, length_m, periodic)?.weighted(|q| [q, if 2.0 * q >= edge { q } else { 0.0 }]);
+    Ok(Flattening { whole_j_m2: 0.25 * contact_modulus_pa * whole, octave_j_m2: 0.25 * contact_modulus_pa * octave })
 }

@@ -3,7 +3,7 @@
 //! Units are keyed by what a file holds and not by its name. A spec that was resolved has the hashes in its table `[files]`, so that a finished run tells how it stands
 //! without the files; where they are not written, the files are read.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::ops::Range;
 use std::path::Path;
 
@@ -13,6 +13,7 @@ use super::fault::Faults;
 use super::value::{Written, wrong_type};
 use super::walk::entries;
 use super::{Spec, SpecErrors};
+use crate::formats::{Found, Refusal, recognize};
 use crate::keys::digest_of_file;
 
 /// Reads the table `[files]`.
@@ -40,28 +41,59 @@ pub(super) fn files(written: &Written<'_>, span: &Range<usize>, faults: &mut Fau
 pub(super) fn digested(mut spec: Spec, text: &str, file: &str) -> Result<Spec, SpecErrors> {
     let known = std::mem::take(&mut spec.files);
     let mut faults = Faults::new(text, file);
+    let mut seen = HashSet::new();
     for case in &spec.cases {
-        let name = &case.params.surface.file;
-        if name.is_empty() || spec.files.contains_key(name) {
+        let surface = &case.params.surface;
+        let name = &surface.file;
+        if name.is_empty() || !seen.insert((name, &surface.dataset)) {
             continue;
         }
-        let digest = known.get(name).cloned().map_or_else(|| digest_of_file(Path::new(name)), Ok);
-        match digest {
+        let checked = match known.get(name) {
+            Some(digest) => Ok(digest.clone()),
+            None => look(Path::new(name), &surface.dataset, spec.files.get(name)),
+        };
+        match checked {
             Ok(digest) => {
                 spec.files.insert(name.clone(), digest);
             }
-            Err(why) => {
+            Err(Refusal { problem, help }) => {
                 let at = text.find(name.as_str()).unwrap_or_default();
-                let help = match std::env::current_dir() {
-                    Ok(here) if Path::new(name).is_relative() => {
-                        format!("it was looked for from {}, where the command is run", here.display())
-                    }
-                    _ => "a file in a format that `hysteron import` reads is wanted".to_owned(),
-                };
-                let message = format!("the measured surface \"{name}\" cannot be read: {why}");
+                let message = format!("the measured surface \"{name}\" cannot be read: {problem}");
                 faults.add(&(at..at + name.len().min(text.len() - at)), message, help);
             }
         }
     }
     faults.finish(Some(spec))
+}
+
+/// The hash of a file in a format that is read, `hashed` if it is known. The format comes first: a file in another one is not read to its end.
+fn look(path: &Path, dataset: &str, hashed: Option<&String>) -> Result<String, Refusal> {
+    let unreadable = |error: std::io::Error| {
+        let help = match std::env::current_dir() {
+            Ok(here) if path.is_relative() => format!("it was looked for from {}, where the command is run", here.display()),
+            _ => "a file in a format that `hysteron import` reads is wanted".to_owned(),
+        };
+        Refusal { problem: error.to_string(), help }
+    };
+    let found = recognize(path).map_err(unreadable)??;
+    if found == Found::Hdf5 {
+        inside(path, dataset)?;
+    }
+    hashed.cloned().map_or_else(|| digest_of_file(path).map_err(unreadable), Ok)
+}
+
+/// Checks that the heights of an HDF5 file lie in the file, of which alone the hash is taken.
+#[cfg(feature = "store")]
+fn inside(path: &Path, dataset: &str) -> Result<(), Refusal> {
+    let checked = crate::store::hdf5::check_inside(path, (!dataset.is_empty()).then_some(dataset));
+    checked.map_err(|why| {
+        let (problem, help) = why.split_once("\nhelp: ").unwrap_or((why.as_str(), ""));
+        Refusal { problem: problem.to_owned(), help: help.to_owned() }
+    })
+}
+
+/// Without the library for HDF5 no such file is read.
+#[cfg(not(feature = "store"))]
+fn inside(_: &Path, _: &str) -> Result<(), Refusal> {
+    Ok(())
 }

@@ -10,7 +10,7 @@ use super::keys::{GENERATED, KEYS, find};
 use super::number::short;
 use super::sweep::{AxisDraft, SweepDraft};
 use super::walk::{Draft, Origin};
-use crate::model::Boundary;
+use crate::model::{Boundary, Choice, Detrend};
 
 use super::{Axis, Case, CaseParams, MAX_CASES, MAX_GRID, Spec, Sweep, Value};
 
@@ -24,8 +24,10 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
     if too_many(&read, faults) {
         return None;
     }
+    let mut base = base;
     let mut cases = Cases::default();
     if sweeps.is_empty() {
+        complete(&mut base, &origins);
         check(&base, &origins, &[], faults);
         cases.add(BASE, base.clone());
     }
@@ -38,10 +40,12 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
                 (KEYS[axis.key].set)(&mut params, value.get_ref());
                 origins[axis.key] = Origin::Written(value.span());
             }
+            complete(&mut params, &origins);
             check(&params, &origins, &swept, faults);
             cases.add(&sweep.name, params);
         }
     }
+    complete(&mut base, &origins);
     let sweeps = read.into_iter().map(sweep).collect();
     Some(Spec { name: name?, seed, realizations, cases: cases.list, base, sweeps, files })
 }
@@ -104,6 +108,14 @@ impl Cases {
     }
 }
 
+/// Sets the default that depends on another value: of a periodic surface the mean alone is removed, since a plane breaks its periodicity.
+fn complete(case: &mut CaseParams, origins: &[Origin]) {
+    let unwritten = |key: usize| matches!(origins[key], Origin::Default);
+    if case.surface.periodic && find("surface", "detrend").is_some_and(unwritten) {
+        case.surface.detrend = Detrend::Mean;
+    }
+}
+
 /// Checks what a measured surface asks of the other values of its case; `swept` are the keys of its sweep.
 fn check_measured(case: &CaseParams, origins: &[Origin], swept: &[usize], faults: &mut Faults<'_>) {
     let of_sweep = |name: &str| find("surface", name).is_some_and(|key| swept.contains(&key));
@@ -115,6 +127,14 @@ fn check_measured(case: &CaseParams, origins: &[Origin], swept: &[usize], faults
             let message = format!("`surface.{name}` describes a generated surface, and `surface.file` names a measured one");
             faults.add(&span, message, "a measured surface has its own; leave one of the two out".to_owned());
         }
+    }
+    if case.surface.periodic
+        && case.surface.detrend != Detrend::Mean
+        && let Some(span) = written(find("surface", "detrend"), origins)
+    {
+        let word = case.surface.detrend.word();
+        let message = format!("`surface.detrend` is \"{word}\", and `surface.periodic` is true: the removed shape is not periodic");
+        faults.add(&span, message, "write detrend = \"mean\" (the default of a periodic surface), or periodic = false".to_owned());
     }
     if !case.surface.periodic && case.model.boundary == Boundary::Periodic {
         let boundary = written(find("model", "boundary"), origins);

@@ -115,7 +115,7 @@ pub struct SurfaceParams {
     pub unit: String,
     /// What becomes of its missing points.
     pub missing: Missing,
-    /// What is taken off its heights.
+    /// Shape that is removed from its heights by least squares; the mean alone if it is periodic.
     pub detrend: Detrend,
 }
 

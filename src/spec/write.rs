@@ -3,7 +3,7 @@
 use std::fmt::{Error, Write as _};
 
 use super::keys::{GENERATED, KEYS, Key, MEASURED, TABLES};
-use super::{CaseParams, Spec, Value};
+use super::{Case, CaseParams, Spec, Value};
 
 /// The text of a spec.
 pub(super) fn toml(spec: &Spec) -> String {
@@ -20,7 +20,7 @@ fn write(spec: &Spec, text: &mut String) -> Result<(), Error> {
     writeln!(text, "realizations = {}", spec.realizations)?;
     for table in TABLES {
         writeln!(text, "\n[{table}]")?;
-        for key in KEYS.iter().filter(|key| key.table == table && is_read(key, &spec.base)) {
+        for key in KEYS.iter().filter(|key| key.table == table && is_read(key, &spec.base) && !follows(key, spec)) {
             writeln!(text, "{} = {}", key.name, value(&(key.get)(&spec.base)))?;
         }
     }
@@ -46,6 +46,13 @@ fn write(spec: &Spec, text: &mut String) -> Result<(), Error> {
 fn is_read(key: &Key, base: &CaseParams) -> bool {
     let others: &[&str] = if base.surface.is_measured() { &GENERATED } else { &MEASURED };
     key.table != "surface" || !others.contains(&key.name) || (key.get)(base) != (key.get)(&CaseParams::default())
+}
+
+/// Whether a value was left to its default, which differs between the cases of a sweep that does not set it: written out, it would hold for all of them.
+fn follows(key: &Key, spec: &Spec) -> bool {
+    let set = |name: &str| spec.sweeps.iter().any(|sweep| sweep.name == name && sweep.axes.iter().any(|axis| axis.key == key.path));
+    let differs = |case: &Case| (key.get)(&case.params) != (key.get)(&spec.base);
+    key.path == "surface.detrend" && spec.cases.iter().any(|case| differs(case) && !case.sweeps.iter().all(|name| set(name)))
 }
 
 /// A text as TOML has it.

@@ -49,7 +49,7 @@ pub(super) fn look(campaign: &Campaign, standings: &[Standing]) -> Result<Option
     let (realised, scale) = (moments(&header), scale(campaign, surface)?);
     let (lowest, variance) = (TAU / header.length_m, header.rms_height_m.powi(2));
     let spectrum_of = if header.periodic { periodogram } else { windowed_periodogram };
-    let found: Vec<(f64, f64)> = spectrum_of(heights.view(), header.length_m)
+    let found: Vec<(f64, f64)> = spectrum_of(heights.view(), header.length_m)?
         .iter()
         .map(|ring| (ring.wavenumber_1_m / lowest, ring.density_m4 * lowest * lowest / variance))
         .collect();

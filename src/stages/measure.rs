@@ -2,6 +2,7 @@
 
 use super::StageError;
 use super::statistics::moments;
+use crate::formats::recognize;
 use crate::lengths::{LENGTHS, metres};
 use crate::model::Detrend;
 use crate::physics::measured::{Prepared, Treatment, prepare};
@@ -9,10 +10,9 @@ use crate::physics::periodogram::{Ring, periodogram, windowed_periodogram};
 use crate::physics::selfaffine::fit_self_affine;
 use crate::spec::SurfaceParams;
 use crate::store::hdf5::{Measured, SpectrumFit, SurfaceHeader, is_own_surface, read_heights, read_surface};
-use crate::store::scan::{Format, Found, Scan, detect, read};
+use crate::store::scan::{Found, Scan, read};
 use ndarray::Array2;
 use std::f64::consts::TAU;
-use std::io::Read as _;
 use std::path::Path;
 
 /// How far a distance of points that is given may be from that of the file.
@@ -30,17 +30,16 @@ pub fn measure(params: &SurfaceParams, digest: &str, key: &str) -> Result<(Prepa
         Source::Scan(scan) => scan,
     };
     let (rows, columns) = scan.heights.dim();
-    let (spacing, unit) = (spacing(params, &scan)?, unit(params, &scan)?);
-    if scan.periodic == Some(false) && params.periodic {
-        return Err(refused(path, "it says that it is not periodic, and periodic = true was given"));
-    }
+    let unit = unit(params, &scan)?;
+    let spacing = spacing(params, &scan)?;
+    agree(path, scan.periodic, params.periodic)?;
     let treatment = Treatment {
         missing: params.missing,
         detrend: params.detrend,
         periodic: params.periodic,
         points_per_shortest_wavelength: f64::from(params.points_per_shortest_wavelength),
     };
-    let prepared = prepare(scan.heights.mapv(|h| unit * h), spacing, &treatment).map_err(|error| refused(path, &error.to_string()))?;
+    let prepared = prepare(in_metres(path, scan.heights, unit)?, spacing, &treatment).map_err(|error| refused(path, &error.to_string()))?;
     let measured = Measured {
         source: path.file_name().map(|name| name.to_string_lossy().chars().take(60).collect()).unwrap_or_default(),
         source_blake3: digest.to_owned(),
@@ -78,16 +77,13 @@ fn own(
     key: &str,
 ) -> Result<(Prepared, SurfaceHeader), StageError> {
     let path = Path::new(&params.file);
-    if header.periodic != params.periodic {
-        let (is, write) = if header.periodic { ("continues", "true") } else { ("does not continue", "false") };
-        return Err(refused(path, &format!("it {is} periodically; allowed: periodic = {write} (surface.periodic in a spec)")));
-    }
+    agree(path, Some(header.periodic), params.periodic)?;
     let points = heights_m.nrows();
     let spacing = header.length_m / points as f64;
     // A generated surface has no waves below those that it was made of.
     let shortest = header.generated.map_or(0.0, |of| of.points_per_shortest_wavelength * spacing);
     let of_rings = if header.periodic { periodogram } else { windowed_periodogram };
-    let rings = of_rings(heights_m.view(), header.length_m);
+    let rings = of_rings(heights_m.view(), header.length_m)?;
     let measured = header.measured.clone().unwrap_or_else(|| Measured {
         source: path.file_name().map(|name| name.to_string_lossy().chars().take(60).collect()).unwrap_or_default(),
         source_blake3: digest.to_owned(),
@@ -113,6 +109,34 @@ fn own(
     Ok((prepared, SurfaceHeader { realization: 0, key: key.to_owned(), generated: None, measured: Some(measured), ..header }))
 }
 
+/// Heights times their unit, in the same memory; infinite ones are missing, as NaN is.
+fn in_metres(path: &Path, mut heights: Array2<f64>, unit: f64) -> Result<Array2<f64>, StageError> {
+    let too_large = heights.iter().find(|h| h.is_finite() && !(unit * **h).is_finite());
+    if let Some(height) = too_large {
+        let why = format!(
+            "its heights are too large: {height:e} in the unit {unit:e} m\nhelp: check the unit of the heights (--unit, surface.unit)"
+        );
+        return Err(refused(path, &why));
+    }
+    heights *= unit;
+    Ok(heights)
+}
+
+/// Checks that a file which says whether its surface is periodic agrees with what was given.
+fn agree(path: &Path, own: Option<bool>, given: bool) -> Result<(), StageError> {
+    match own {
+        Some(true) if !given => Err(refused(
+            path,
+            "the file says that the surface is periodic, and periodic = false was given\nhelp: set surface.periodic = true in a spec, or --periodic on the command line",
+        )),
+        Some(false) if given => Err(refused(
+            path,
+            "the file says that the surface is not periodic, and periodic = true was given\nhelp: leave out surface.periodic in a spec, or --periodic on the command line",
+        )),
+        _ => Ok(()),
+    }
+}
+
 fn refused(path: &Path, why: &str) -> StageError {
     StageError::Measured { path: path.to_owned(), why: why.to_owned() }
 }
@@ -133,12 +157,19 @@ fn spacing(params: &SurfaceParams, scan: &Scan) -> Result<[f64; 2], StageError> 
     let (rows, columns) = scan.heights.dim();
     let given = params.pixel_m;
     match scan.size_m {
-        None if given > 0.0 => Ok([given; 2]),
-        None => {
-            let why =
-                "it does not say how far apart its points are; give pixel_m (--pixel-m), the size of the scan over its number of points";
-            Err(refused(path, why))
-        }
+        None if given > 0.0 && scan.spacing.is_none_or(|[a, b]| (a / b - 1.0).abs() <= SAME) => Ok([given; 2]),
+        None => match scan.spacing {
+            Some(_) if given > 0.0 => Err(refused(
+                path,
+                "its points are not as far apart along x as along y, and pixel_m was given\nhelp: leave pixel_m (--pixel-m) out",
+            )),
+            // Without a unit of its own the file has one for all columns.
+            Some(own) => metres(&params.unit).map(|unit| own.map(|spacing| unit * spacing)).ok_or_else(|| unitless(path)),
+            None => {
+                let why = "it does not say how far apart its points are; give pixel_m (--pixel-m), the size of the scan over its number of points";
+                Err(refused(path, why))
+            }
+        },
         Some(size) => {
             let [a, b] = [size[0] / rows as f64, size[1] / columns as f64];
             if given > 0.0 && [a, b].iter().any(|own| (given / own - 1.0).abs() > SAME) {
@@ -161,10 +192,14 @@ fn unit(params: &SurfaceParams, scan: &Scan) -> Result<f64, StageError> {
             Err(refused(path, &format!("its heights are in {own}, and the unit {given:?} was given; leave it out")))
         }
         Some(_) => Ok(1.0),
-        None if given.is_empty() => Err(refused(path, "it does not say the unit of its heights; give the unit (--unit), such as \"nm\"")),
+        None if given.is_empty() => Err(unitless(path)),
         None => metres(given)
             .ok_or_else(|| refused(path, &format!("the unit {given:?} that was given for its heights is no length; allowed: {LENGTHS}"))),
     }
+}
+
+fn unitless(path: &Path) -> StageError {
+    refused(path, "it does not say the unit of its heights; give the unit (--unit), such as \"nm\"")
 }
 
 /// A file's heights: those of a surface of this program, which says all of it, or a scan.
@@ -176,23 +211,20 @@ enum Source {
 /// The height field of a file, in whatever format it is.
 fn source(path: &Path, dataset: &str) -> Result<Source, StageError> {
     let dataset = (!dataset.is_empty()).then_some(dataset);
-    let mut first = Vec::new();
-    std::fs::File::open(path).and_then(|file| file.take(512).read_to_end(&mut first)).map_err(|error| refused(path, &error.to_string()))?;
-    match detect(&first) {
-        Some(Found::Hdf5) if dataset.is_none() && is_own_surface(path) => {
+    let found = recognize(path).map_err(|error| refused(path, &error.to_string()))?;
+    match found.map_err(|refusal| refused(path, &refusal.to_string()))? {
+        Found::Hdf5 if dataset.is_none() && is_own_surface(path) => {
             let (header, heights) = read_surface(path).map_err(StageError::Scan)?;
             Ok(Source::Own(Box::new(header), heights))
         }
-        Some(Found::Hdf5) => Ok(Source::Scan(Scan {
+        Found::Hdf5 => Ok(Source::Scan(Scan {
             heights: read_heights(path, dataset).map_err(StageError::Scan)?,
             size_m: None,
             unit: None,
             periodic: None,
+            spacing: None,
         })),
-        Some(Found::Scan(format)) => Ok(Source::Scan(read(path, format, dataset).map_err(StageError::Scan)?)),
-        None => {
-            let known = [Format::NetCdf3, Format::X3p, Format::Npy, Format::Text].map(Format::name).join(", ");
-            Err(refused(path, &format!("it is in no format that is read here: HDF5, {known}")))
-        }
+        Found::Scan(format) => Ok(Source::Scan(read(path, format, dataset).map_err(StageError::Scan)?)),
+        Found::Foreign(foreign) => Err(refused(path, foreign.name)),
     }
 }

@@ -170,7 +170,7 @@ pub(super) fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<Cycle
         (Some(asked), _) => Some(realised_flattening(asked, &seed, modulus)),
         (None, Some(measured)) => {
             let (_, heights) = read_surface(&campaign.surface_path(surface))?;
-            Some(measured_flattening(heights.view(), (header.length_m, header.periodic), measured.shortest_wavelength_m, modulus))
+            Some(measured_flattening(heights.view(), (header.length_m, header.periodic), measured.shortest_wavelength_m, modulus)?)
         }
         (None, None) => None,
     };

@@ -4,11 +4,13 @@ use super::StageError;
 use super::done::Outcome;
 use super::measure::measure;
 use crate::campaign::{Campaign, SurfaceUnit};
+use crate::formats::recognize;
 use crate::keys::digest_of_file;
 use crate::physics::measured::find_measured;
+use crate::physics::memory;
 use crate::physics::spectrum::Spectrum;
 use crate::physics::summits::{Summit, find_summits};
-use crate::physics::synthesis::{realization_seed, synthesize};
+use crate::physics::synthesis::{realization_seed, synthesis_bytes, synthesize};
 use crate::schema;
 use crate::spec::SurfaceParams;
 use crate::store::hdf5::{Generated, SurfaceHeader, read_header, read_surface, write_surface};
@@ -49,6 +51,10 @@ pub(super) fn scale(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Scale, St
 fn take(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Outcome, StageError> {
     let path = Path::new(&unit.params.file);
     let refuse = |why: String| StageError::Changed { path: path.to_owned(), why };
+    // A file in an unknown format may be too large to be hashed for nothing.
+    recognize(path)
+        .map_err(|error| refuse(error.to_string()))?
+        .map_err(|refusal| StageError::Measured { path: path.to_owned(), why: refusal.to_string() })?;
     let digest = digest_of_file(path).map_err(|error| refuse(error.to_string()))?;
     if campaign.spec.files.get(&unit.params.file) != Some(&digest) {
         return Err(refuse(
@@ -65,7 +71,9 @@ pub(super) fn generate(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Outcom
         return take(campaign, unit);
     }
     let seed = realization_seed(campaign.spec.seed, u64::from(unit.realization));
-    let surface = synthesize(&spectrum(params), &seed, params.grid() as usize);
+    let (spectrum, grid) = (spectrum(params), params.grid() as usize);
+    memory::check(synthesis_bytes(&spectrum, grid))?;
+    let surface = synthesize(&spectrum, &seed, grid);
     let header = SurfaceHeader {
         length_m: params.length_m,
         realization: u64::from(unit.realization),

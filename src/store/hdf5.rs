@@ -9,8 +9,9 @@ use hdf5_metno::{Dataset, File, FileBuilder};
 use ndarray::{Array2, ArrayView2, s};
 
 use super::commit::{Written, commit};
+use super::dataset::{Outside, dataset};
 use super::error::{Cause, StoreError, fenced};
-use super::scan::MOST_POINTS;
+use super::scan::{MOST_POINTS, room};
 use super::surface_header;
 pub use super::surface_header::{Generated, Measured, SURFACE_VERSION, SpectrumFit, SurfaceHeader};
 
@@ -48,7 +49,8 @@ pub fn read_surface(path: &Path) -> Result<(SurfaceHeader, Array2<f64>), StoreEr
     library(|| {
         let file = open(path)?;
         let header = surface_header::read(&file)?;
-        Ok((header, field(&heights_of(path, &file)?, HEIGHT)?))
+        let data = heights_of(path, &file)?;
+        Ok((header, field(&data, HEIGHT)?))
     })
     .map_err(|cause| StoreError::new("read the surface from", path, cause))
 }
@@ -70,44 +72,68 @@ pub fn read_header(path: &Path) -> Result<SurfaceHeader, StoreError> {
 ///
 /// # Errors
 /// If the file cannot be read, or has no two-dimensional dataset of numbers by that name.
-pub fn read_heights(path: &Path, dataset: Option<&str>) -> Result<Array2<f64>, StoreError> {
+pub fn read_heights(path: &Path, name: Option<&str>) -> Result<Array2<f64>, StoreError> {
     library(|| {
         let file = open(path)?;
-        let name = match dataset {
+        let name = match name {
             Some(name) => name.to_owned(),
             None => only_field(&file)?,
         };
-        let Ok(data) = file.dataset(&name) else {
+        let Some(data) = dataset(&file, &name)? else {
             return Err(format!("it has no dataset {name:?}; its root has: {}", file.member_names()?.join(", ")).into());
         };
         let (rows, columns) = check_extent(path, &data, &name, MOST_PACKED)?;
         if (rows as u64).saturating_mul(columns as u64) > MOST_POINTS {
             return Err(format!("its dataset {name:?} has {rows} by {columns} values, and 2^28 are the most that are read").into());
         }
-        Ok(data.read_2d::<f64>()?)
+        values(&data, [rows, columns])
     })
     .map_err(|cause| StoreError::new("read the surface from", path, cause))
 }
 
-/// The name of the one two-dimensional dataset in the root.
+/// Checks that the heights [`read_heights`] or [`read_surface`] would read lie in the file itself.
+///
+/// # Errors
+/// Where else they are, and what to do. A file that cannot be opened, or has no such dataset, is no error here.
+pub fn check_inside(path: &Path, name: Option<&str>) -> Result<(), String> {
+    let refusal = library(|| {
+        let file = open(path)?;
+        let read = match name {
+            Some(name) => dataset(&file, name).map(drop),
+            None if is_own(&file)? => dataset(&file, HEIGHT).map(drop),
+            None => only_field(&file).map(drop),
+        };
+        Ok(read.err().filter(|cause| cause.is::<Outside>()).map(|cause| cause.to_string()))
+    });
+    refusal.ok().flatten().map_or(Ok(()), Err)
+}
+
+/// The name of the one two-dimensional dataset in the root. What leaves the file does not count, unless there is nothing else.
 fn only_field(file: &File) -> Result<String, Cause> {
-    let mut names = Vec::new();
+    let (mut names, mut outside) = (Vec::new(), None);
     for name in file.member_names()? {
-        if file.dataset(&name).is_ok_and(|data| data.ndim() == 2) {
-            names.push(name);
+        match dataset(file, &name) {
+            Ok(Some(data)) if data.ndim() == 2 => names.push(name),
+            Ok(_) => {}
+            Err(cause) => outside = Some(cause),
         }
     }
-    match &names[..] {
-        [name] => Ok(name.clone()),
-        [] => Err("it has no two-dimensional dataset in its root; name one in another group as \"group/dataset\"".into()),
-        many => Err(format!("it has several fields: {}; name one of them as the dataset (--dataset)", many.join(", ")).into()),
+    match (&names[..], outside) {
+        ([name], _) => Ok(name.clone()),
+        ([], Some(cause)) => Err(cause),
+        ([], None) => Err("it has no two-dimensional dataset in its root; name one in another group as \"group/dataset\"".into()),
+        (many, _) => Err(format!("it has several fields: {}; name one of them as the dataset (--dataset)", many.join(", ")).into()),
     }
 }
 
 /// Whether a file is a surface of this program, by its attributes.
 #[must_use]
 pub fn is_own_surface(path: &Path) -> bool {
-    library(|| Ok(open(path)?.attr_names()?.iter().any(|name| name == "schema_version"))).unwrap_or(false)
+    library(|| is_own(&open(path)?)).unwrap_or(false)
+}
+
+fn is_own(file: &File) -> Result<bool, Cause> {
+    Ok(file.attr_names()?.iter().any(|name| name == "schema_version"))
 }
 
 /// Writes a height field \[m\] as Tamaas' `H5Dumper` does, to be opened with its `read`: the field `surface` of a model of the type `basic_2d`.
@@ -168,8 +194,12 @@ fn options() -> FileBuilder {
 
 fn open(path: &Path) -> Result<File, Cause> {
     // HDF5 says "unable to open file" of whatever is wrong; the operating system knows better.
-    if fs::metadata(path)?.is_dir() {
+    let about = fs::metadata(path)?;
+    if about.is_dir() {
         return Err("it is a directory".into());
+    }
+    if !about.is_file() {
+        return Err("it is not a regular file".into());
     }
     fs::File::open(path)?;
     Ok(options().open(path)?)
@@ -214,7 +244,7 @@ fn check_all(path: &Path, header: &SurfaceHeader, heights: ArrayView2<'_, f64>) 
 
 /// The height field of a surface file, square and no larger than the file.
 fn heights_of(path: &Path, file: &File) -> Result<Dataset, Cause> {
-    let data = file.dataset(HEIGHT)?;
+    let data = dataset(file, HEIGHT)?.ok_or_else(|| format!("it has no dataset {HEIGHT:?}"))?;
     let (rows, columns) = check_extent(path, &data, HEIGHT, 1)?;
     if rows == columns { Ok(data) } else { Err(format!("its field has {rows} by {columns} heights, and must be square").into()) }
 }
@@ -235,9 +265,19 @@ fn check_extent(path: &Path, data: &Dataset, name: &str, packed: u64) -> Result<
 
 /// A whole two-dimensional dataset, every value of which must be finite.
 fn field(data: &Dataset, name: &str) -> Result<Array2<f64>, Cause> {
-    let values = data.read_2d::<f64>()?;
+    let [rows, columns] = data.get_shape()?[..] else { return Err(format!("its dataset {name:?} is not two-dimensional").into()) };
+    let values = values(data, [rows, columns])?;
     match values.indexed_iter().find(|(_, value)| !value.is_finite()) {
         None => Ok(values),
         Some(((row, column), value)) => Err(format!("its dataset {name:?} has {value} in row {row}, column {column}").into()),
     }
+}
+
+/// The values of a two-dimensional dataset of this extent.
+fn values(data: &Dataset, [rows, columns]: [usize; 2]) -> Result<Array2<f64>, Cause> {
+    let count = rows.checked_mul(columns).ok_or("its extent is too large")?;
+    let mut values = room(count as u64)?;
+    values.resize(count, 0.0);
+    data.read_into_raw(&mut values)?;
+    Ok(Array2::from_shape_vec((rows, columns), values)?)
 }

@@ -6,6 +6,7 @@
 
 mod builder;
 pub mod commit;
+mod dataset;
 mod error;
 mod frame;
 mod halfway;

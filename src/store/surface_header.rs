@@ -62,6 +62,16 @@ pub struct Measured {
     pub fit: Option<SpectrumFit>,
 }
 
+impl Measured {
+    /// Fraction of the scan's area that is outside the square of side `length_m` \[m\] that was made of it.
+    #[must_use]
+    pub fn dropped(&self, length_m: f64) -> f64 {
+        let [rows, columns] = self.source_point_counts.map(|count| count as f64);
+        let [along_rows, along_columns] = self.source_spacings_m;
+        (1.0 - length_m * length_m / (rows * along_rows * columns * along_columns)).max(0.0)
+    }
+}
+
 /// A self-affine spectrum with a roll-off.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SpectrumFit {

@@ -207,10 +207,34 @@ fn law_what_is_no_surface_is_refused_with_a_sentence() {
         let told = prepare(heights, spacing, &treatment).unwrap_err().to_string();
         assert!(told.contains(words), "{told}");
     }
-    // A plane without anything on it is constant once its tilt is gone.
+    // A plane without anything on it is flat once its tilt is gone.
     let tilted = Array2::from_shape_fn((32, 32), |(i, j)| 1e-6 * (i as f64 + 2.0 * j as f64));
     let told = prepare(tilted, [1e-6; 2], &Treatment { detrend: Detrend::Plane, ..PLAIN }).unwrap_err().to_string();
-    assert!(told.contains("constant"), "{told}");
+    assert!(told.contains("flat to rounding: nothing is left after levelling") && told.contains("\nhelp: "), "{told}");
+}
+
+/// Heights whose squares are no numbers are told by their values, and not as constant.
+#[test]
+fn law_heights_beyond_numbers_are_told_as_what_they_are() {
+    let wave = Array2::from_shape_fn((32, 32), |(i, j)| (0.3 * i as f64).sin() + (0.2 * j as f64).cos());
+    let told = |heights: Array2<f64>, treatment: Treatment| prepare(heights, [1.0; 2], &treatment).unwrap_err().to_string();
+    for factor in [1e10, 1e150, 1e200, 1e307] {
+        let told = told(wave.mapv(|h| factor * h), PLAIN);
+        assert!(told.contains("its heights are too large: up to ") && told.contains("check the unit"), "{told}");
+    }
+    assert!(told(wave.mapv(|h| 1e-170 * h), PLAIN).contains("too little to compute with"));
+    // Heights that can be squared, and those whose mean is far larger than they are, are fine.
+    for (factor, mean) in [(1e8, 0.0), (1e-50, 0.0), (1e-9, 1.0)] {
+        let prepared = unit(&wave.mapv(|h| factor * h + mean), &PLAIN);
+        let plain = unit(&wave, &PLAIN);
+        // The mean takes digits: 1e-16 of 1 m is 1e-7 of 1 nm.
+        assert!((prepared.moments.rms_height_m() / (factor * plain.moments.rms_height_m()) - 1.0).abs() < 1e-6, "{factor}");
+    }
+    // A plane with an offset, and what has short wavelengths only.
+    let plane = Array2::from_shape_fn((64, 64), |(i, j)| 1.0 + 1e-6 * (i as f64 - 3.0 * j as f64));
+    assert!(told(plane, Treatment { detrend: Detrend::Plane, ..PLAIN }).contains("flat to rounding"));
+    let short = Array2::from_shape_fn((64, 64), |(i, _)| (TAU * i as f64 / 4.0).cos());
+    assert!(told(short, Treatment { periodic: true, ..PLAIN }).contains("below the cut-off, 8.000e0 m"));
 }
 
 #[test]
@@ -220,10 +244,10 @@ fn val_the_window_shows_the_spectrum_of_a_part_of_a_surface() {
     let n = surface.heights_m.nrows();
     let part = surface.heights_m.slice(s![..n / 2, ..n / 2]).to_owned();
     let length = 0.5 * surface.length_m;
-    let whole = periodogram(surface.heights_m.view(), surface.length_m);
+    let whole = periodogram(surface.heights_m.view(), surface.length_m).unwrap();
     let mean = part.mean().unwrap();
     let part = part.mapv(|h| h - mean);
-    let [windowed, bare] = [windowed_periodogram(part.view(), length), periodogram(part.view(), length)];
+    let [windowed, bare] = [windowed_periodogram(part.view(), length).unwrap(), periodogram(part.view(), length).unwrap()];
     let (low, high) = (8.0 * TAU / surface.length_m, 48.0 * TAU / surface.length_m);
     let far = |rings: &[hysteron::physics::periodogram::Ring]| -> f64 {
         let inside = rings.iter().filter(|ring| (low..high).contains(&ring.wavenumber_1_m));
@@ -245,7 +269,7 @@ fn val_the_window_shows_the_spectrum_of_a_part_of_a_surface() {
 fn val_the_fit_finds_the_spectrum_that_a_surface_was_made_from() {
     for (hurst, realization) in [(0.5, 0), (0.8, 1)] {
         let surface = generated(64, hurst, realization);
-        let rings = periodogram(surface.heights_m.view(), surface.length_m);
+        let rings = periodogram(surface.heights_m.view(), surface.length_m).unwrap();
         let highest = 60.0 * TAU / surface.length_m;
         // With fixed amplitudes the rings are Eq 10 but for how wavenumbers lie in them: the widest, of few modes, are some per cent off.
         let fit = fit_self_affine(&rings, highest).unwrap();

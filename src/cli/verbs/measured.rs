@@ -1,7 +1,8 @@
 //! `import`: a measured surface as the model takes it, and what its spectrum says; and `export` of surfaces to other programs.
 
-use super::{Fault, failed, say};
+use super::{BAD_SPEC, Fault, failed, say};
 use crate::cli::{ExportArguments, ImportArguments};
+use crate::formats::recognize;
 use crate::keys::digest_of_file;
 use crate::model::{Choice, Detrend, Missing};
 use crate::physics::measured::find_measured;
@@ -14,9 +15,17 @@ use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
 pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
-    let digest =
-        digest_of_file(&asked.file).map_err(|error| failed(format!("cannot take the surface {}: {error}", asked.file.display())))?;
+    let refused = |why: &dyn std::fmt::Display| failed(format!("cannot take the surface {}: {why}", asked.file.display()));
+    recognize(&asked.file).map_err(|error| refused(&error))?.map_err(|refusal| refused(&refusal))?;
+    let digest = digest_of_file(&asked.file).map_err(|error| refused(&error))?;
     let params = params(asked);
+    if params.periodic && params.detrend != Detrend::Mean {
+        let shape = params.detrend.word();
+        let text = format!(
+            "error: --detrend {shape} with --periodic: the removed shape is not periodic\nhelp: leave --detrend out, or --periodic"
+        );
+        return Err(Fault { code: BAD_SPEC, text });
+    }
     if let Some(pixel_m) = asked.pixel_m.filter(|pixel| !(*pixel > 0.0 && pixel.is_finite())) {
         return Err(failed(format!(
             "cannot take the surface {}: --pixel-m is {pixel_m}; allowed: positive numbers of metres",
@@ -55,6 +64,7 @@ pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
 }
 
 fn params(asked: &ImportArguments) -> SurfaceParams {
+    let default = if asked.periodic { Detrend::Mean } else { Detrend::Plane };
     SurfaceParams {
         file: asked.file.to_string_lossy().into_owned(),
         dataset: asked.dataset.clone().unwrap_or_default(),
@@ -62,7 +72,7 @@ fn params(asked: &ImportArguments) -> SurfaceParams {
         pixel_m: asked.pixel_m.unwrap_or_default(),
         unit: asked.unit.clone().unwrap_or_default(),
         missing: if asked.fill { Missing::Fill } else { Missing::Refuse },
-        detrend: Detrend::from_word(&asked.detrend).unwrap_or(Detrend::Plane),
+        detrend: asked.detrend.as_deref().and_then(Detrend::from_word).unwrap_or(default),
         points_per_shortest_wavelength: u32::from(asked.points),
         ..SurfaceParams::default()
     }
@@ -129,6 +139,7 @@ fn told(file: &Path, header: &SurfaceHeader, [points, summits, edge]: [usize; 3]
     if let Some(of) = &header.measured {
         let ([rows, columns], [a, b]) = (of.source_point_counts, of.source_spacings_m);
         line("file", format!("{rows} x {columns} points, {a:.4e} m by {b:.4e} m apart"));
+        line("", "rows x columns; the row index runs along x".to_owned());
         if (a / b - 1.0).abs() > 1e-3 {
             line("", format!("interpolated to points {:.4e} m apart both ways", a.min(b)));
         }
@@ -152,17 +163,14 @@ fn told(file: &Path, header: &SurfaceHeader, [points, summits, edge]: [usize; 3]
     match header.measured.as_ref().and_then(|of| of.fit) {
         Some(fit) => {
             line("self-affine", format!("H = {:.3}, C0 = {:.3e} m⁴, scatter {:.2} decades", fit.hurst, fit.plateau_m4, fit.scatter));
-            if !(0.0..=1.0).contains(&fit.hurst) {
-                line("", "H beyond 0 to 1: in this band it is not self-affine".to_owned());
-            }
             let longest = TAU / fit.roll_off_1_m;
             let rolls = if longest < 0.7 * length { format!("at {longest:.3e} m") } else { "none within the scan".to_owned() };
             line("roll-off", rolls);
         }
-        None => line("self-affine", "too few waves for a fit".to_owned()),
+        None => line("self-affine", "no fit".to_owned()),
     }
     for caution in cautions(header) {
-        text += &format!("Caution: {caution}\n");
+        text += &wrapped(&format!("Caution: {caution}"));
     }
     match written {
         Some(path) => {
@@ -179,9 +187,51 @@ fn told(file: &Path, header: &SurfaceHeader, [points, summits, edge]: [usize; 3]
     text
 }
 
-/// What makes one doubt the units or the scan itself.
+/// A paragraph of lines of at most eighty columns, the second and later ones indented.
+fn wrapped(paragraph: &str) -> String {
+    let (mut text, mut width) = (String::new(), 0);
+    for word in paragraph.split(' ') {
+        let more = word.chars().count() + 1;
+        if width > 0 && width + more > 80 {
+            text += "\n ";
+            width = 1;
+        }
+        if width > 0 {
+            text.push(' ');
+        }
+        text += word;
+        width += more;
+    }
+    text + "\n"
+}
+
+/// Fraction of a scan that the central crop may drop without a warning.
+const DROPPED: f64 = 0.1;
+
+/// Warnings: what the central square leaves out, units or values that are unlikely, and a spectrum that is not self-affine.
 fn cautions(header: &SurfaceHeader) -> Vec<String> {
     let mut cautions = Vec::new();
+    if let Some(of) = &header.measured {
+        let ([rows, columns], dropped) = (of.source_point_counts, of.dropped(header.length_m));
+        if dropped > DROPPED {
+            let points = (header.length_m / of.source_spacings_m[0].min(of.source_spacings_m[1])).round();
+            let [a, b] = [rows as f64 * of.source_spacings_m[0], columns as f64 * of.source_spacings_m[1]];
+            cautions.push(format!(
+                "crop: {:.0} % of the scan ({rows} x {columns} points, {a:.3e} m x {b:.3e} m) is outside the central square and dropped (limit {:.0} %); \
+                 {points} x {points} points remain, and all results are of these",
+                100.0 * dropped,
+                100.0 * DROPPED
+            ));
+        }
+        match of.fit {
+            Some(fit) if !(0.0..=1.0).contains(&fit.hurst) => cautions.push(format!(
+                "fit: H = {:.2} is outside 0 to 1, so that the spectrum is not self-affine between the longest wavelength and the cut-off; do not use H",
+                fit.hurst
+            )),
+            Some(_) => {}
+            None => cautions.push("fit: too few wavelengths above the cut-off for a self-affine fit; use a larger scan, or a lower cut-off (--points)".to_owned()),
+        }
+    }
     if header.rms_slope > 1.0 {
         cautions.push(format!(
             "an rms slope of {:.3} is steeper than 45 degrees; are the units right, and is no point a sentinel?",

@@ -11,6 +11,7 @@ mod npy;
 mod numbers;
 mod text;
 mod text_heading;
+mod text_points;
 mod units;
 mod x3p;
 
@@ -21,6 +22,8 @@ use std::path::Path;
 use ndarray::Array2;
 
 use super::error::{Cause, StoreError, fenced};
+pub use crate::formats::{Format, Found, detect};
+pub(super) use numbers::room;
 
 /// Points that a scan may have: as many heights take 2 GiB of memory.
 pub const MOST_POINTS: u64 = 1 << 28;
@@ -37,57 +40,9 @@ pub struct Scan {
     pub unit: Option<String>,
     /// Whether the surface continues periodically, if the file says.
     pub periodic: Option<bool>,
-}
-
-/// What a file with a scan can be. HDF5 is read by [`hdf5`](super::hdf5).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Format {
-    /// One array of NumPy.
-    Npy,
-    /// The classic NetCDF formats: CDF-1, CDF-2 and CDF-5.
-    NetCdf3,
-    /// ISO 25178-72, a zip archive.
-    X3p,
-    /// A matrix of numbers as text.
-    Text,
-}
-
-impl Format {
-    /// How people call it.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Npy => "npy",
-            Self::NetCdf3 => "NetCDF-3",
-            Self::X3p => "X3P",
-            Self::Text => "text",
-        }
-    }
-}
-
-/// What the first bytes of a file say that it is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Found {
-    /// HDF5, as which NetCDF-4 counts too.
-    Hdf5,
-    /// A scan that [`read`] reads.
-    Scan(Format),
-}
-
-/// Tells formats apart by the first bytes of a file, of which 512 are plenty; nothing, if they are none of these.
-#[must_use]
-pub fn detect(first_bytes: &[u8]) -> Option<Found> {
-    // What no text has: control signs other than tabs and the ends of lines and pages. UTF-16 has its zeros.
-    let binary = |byte: &u8| *byte < 0x20 && !matches!(byte, b'\t' | b'\n' | b'\r' | 0x0c);
-    match first_bytes {
-        [0x89, b'H', b'D', b'F', b'\r', b'\n', 0x1a, b'\n', ..] => Some(Found::Hdf5),
-        [0x93, b'N', b'U', b'M', b'P', b'Y', ..] => Some(Found::Scan(Format::Npy)),
-        [b'C', b'D', b'F', 1 | 2 | 5, ..] => Some(Found::Scan(Format::NetCdf3)),
-        [b'P', b'K', 3, 4, ..] => Some(Found::Scan(Format::X3p)),
-        [] | [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => None,
-        bytes if bytes.iter().any(binary) => None,
-        _ => Some(Found::Scan(Format::Text)),
-    }
+    /// Distance of points along the row index and along the column index in the file's own numbers, if it has positions; their unit is that of the heights where
+    /// [`size_m`](Self::size_m) is unknown.
+    pub spacing: Option<[f64; 2]>,
 }
 
 /// Reads a scan. `variable` is the name of the height field where a format has names, which is NetCDF; without it,

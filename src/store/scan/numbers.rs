@@ -81,7 +81,7 @@ pub(super) fn points(rows: u64, columns: u64) -> Result<u64, Cause> {
 }
 
 /// Room for so many heights, or a sentence instead of an end of the program.
-pub(super) fn room(count: u64) -> Result<Vec<f64>, Cause> {
+pub(in crate::store) fn room(count: u64) -> Result<Vec<f64>, Cause> {
     let mut values = Vec::new();
     usize::try_from(count)
         .ok()

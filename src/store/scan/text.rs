@@ -3,17 +3,22 @@
 //! What separates the numbers is decided by the first line of them, and holds for the file. Lines that begin with a
 //! comment sign may say sizes and units; so may lines before the first numbers that say something of the form
 //! "width = 10 µm", as some instruments write it without a sign.
+//!
+//! Three columns of many lines are points x, y, z on a grid, and not a matrix.
 
 use std::io::{BufRead, Read};
 
 use super::numbers::{points, shaped};
 use super::text_heading::Heading;
+use super::text_points::grid;
 use super::{Cause, MOST_POINTS, Scan, Source};
 
 /// How a comment begins.
 const COMMENTS: [&str; 3] = ["#", "%", "//"];
 /// What stands for a missing point, whatever the size of its letters.
 const MISSING: [&str; 9] = ["nan", "+nan", "-nan", "bad", "--", "---", "inf", "-inf", "infinite"];
+/// Lines from which on few columns are coordinates: a matrix needs as many columns as that to be of use.
+const MANY: u64 = 16;
 /// Bytes of a cell that an error shows.
 const SHOWN: usize = 24;
 
@@ -65,11 +70,13 @@ struct Matrix {
     columns: u64,
     /// Whether all rows so far end with a separator.
     open: bool,
+    /// Whether a line of words says that the columns are x, y and z.
+    points: bool,
 }
 
 impl Default for Matrix {
     fn default() -> Self {
-        Self { heading: Heading::default(), separator: None, values: Vec::new(), rows: 0, columns: 0, open: true }
+        Self { heading: Heading::default(), separator: None, values: Vec::new(), rows: 0, columns: 0, open: true, points: false }
     }
 }
 
@@ -87,6 +94,10 @@ impl Matrix {
         }
         if text.contains('\r') {
             return Err("it has line ends of a kind (CR alone) that is not supported; allowed: LF, CR LF".into());
+        }
+        if self.rows == 0 && names_points(text) {
+            self.points = true;
+            return Ok(());
         }
         self.row(line)
     }
@@ -142,13 +153,37 @@ impl Matrix {
             });
             self.columns -= 1;
         }
+        if self.columns == 3 && (self.points || self.rows >= MANY) {
+            return self.positions();
+        }
+        if self.columns < 3 && self.rows >= MANY {
+            let what = if self.columns == 2 { "two columns are a line scan (x and height)" } else { "one column is a line of heights" };
+            return Err(format!("{what}\nhelp: give a matrix of heights, or three columns x, y and z").into());
+        }
         let extent = [self.rows, self.columns];
         points(self.rows, self.columns)?;
         let meaning = self.heading.meaning(extent)?;
         let mut heights = shaped(extent, self.values)?;
         heights *= meaning.factor;
-        Ok(Scan { heights, size_m: meaning.size_m, unit: meaning.unit, periodic: None })
+        Ok(Scan { heights, size_m: meaning.size_m, unit: meaning.unit, periodic: None, spacing: None })
     }
+
+    /// The heights of points. Where the file says a unit of the heights, it holds for x and y, unless these have their own.
+    fn positions(self) -> Result<Scan, Cause> {
+        let found = grid(&self.values)?;
+        drop(self.values);
+        let extent = [found.heights.nrows() as u64, found.heights.ncols() as u64];
+        let meaning = self.heading.of_points(found.spacing, extent)?;
+        let mut heights = found.heights;
+        heights *= meaning.factor;
+        Ok(Scan { heights, size_m: meaning.size_m, unit: meaning.unit, periodic: None, spacing: Some(found.spacing) })
+    }
+}
+
+/// Whether a line is the words x, y and z, as a heading of columns.
+fn names_points(line: &str) -> bool {
+    let words = line.split(|sign: char| sign.is_whitespace() || matches!(sign, ',' | ';')).filter(|word| !word.is_empty());
+    words.map(|word| word.trim_matches('"').to_ascii_lowercase()).eq(["x", "y", "z"])
 }
 
 /// What separates the numbers of this line.

@@ -53,17 +53,23 @@ impl Heading {
 
     fn entry(&mut self, key: &str, value: &str) -> Result<(), Cause> {
         let twice = || -> Cause { format!("{key:?} is said twice: a file may have one surface").into() };
+        if SIZES.contains(&key.to_lowercase().as_str()) && has_decimal_comma(value) {
+            return Err(format!(
+                "its {key:?} of {value:?} has a decimal comma, which is not supported\nhelp: write a decimal point, or export in English"
+            )
+            .into());
+        }
         let word = || Some(value.trim_matches(['[', ']', '(', ')', ' ']).to_owned()).filter(|word| !word.is_empty());
-        match key.to_ascii_lowercase().as_str() {
-            "width" | "x-length" => put(&mut self.width, quantity(value)),
-            "height" | "y-length" => put(&mut self.height, quantity(value)),
+        match key.to_lowercase().as_str() {
+            "width" | "breite" | "x-length" => put(&mut self.width, quantity(value)),
+            "height" | "h\u{f6}he" | "y-length" => put(&mut self.height, quantity(value)),
             "pixel size" => put(&mut self.pixel, quantity(value)),
             "x-unit" | "unit x" => put(&mut self.width_unit, word()),
             "y-unit" | "unit y" => put(&mut self.height_unit, word()),
-            "z-unit" | "value units" | "data unit" | "unit data" => put(&mut self.value_unit, word()),
+            "z-unit" | "value units" | "werteinheiten" | "werteinheit" | "data unit" | "unit data" => put(&mut self.value_unit, word()),
             "w" | "x-pixels" | "nx" => put(&mut self.values_in_line, value.parse().ok()),
             "h" | "y-pixels" | "ny" => put(&mut self.lines, value.parse().ok()),
-            "channel" => put(&mut self.channel, word()),
+            "channel" | "kanal" => put(&mut self.channel, word()),
             small if small.starts_with("height conversion factor") => {
                 // The unit stands behind an arrow, as in "height conversion factor (-> m)".
                 let unit = key.split_once("->").map_or("", |(_, unit)| unit);
@@ -74,13 +80,18 @@ impl Heading {
         .ok_or_else(twice)
     }
 
-    /// What it comes to for a matrix of this extent.
-    pub(super) fn meaning(&self, [rows, columns]: [u64; 2]) -> Result<Meaning, Cause> {
-        for (said, found, what) in [(self.lines, rows, "lines"), (self.values_in_line, columns, "values in a line")] {
-            if let Some(said) = said.filter(|said| *said != found) {
-                return Err(format!("its heading says that it has {said} {what}, and it has {found}").into());
-            }
-        }
+    /// What it comes to for points on a grid with these spacings along x and y, in the numbers of the file.
+    pub(super) fn of_points(&self, spacing: [f64; 2], [x, y]: [u64; 2]) -> Result<Meaning, Cause> {
+        let (factor, unit) = self.scale()?;
+        let of_x = self.width_unit.as_ref().or(unit);
+        let of_y = self.height_unit.as_ref().or(of_x);
+        let along = |spacing: f64, points: u64, unit| size(Some(&Quantity { value: spacing * points as f64, unit: None }), unit);
+        let size_m = along(spacing[0], x, of_x)?.zip(along(spacing[1], y, of_y)?).map(|(x, y)| [x, y]);
+        Ok(Meaning { factor, unit: unit.cloned(), size_m })
+    }
+
+    /// The factor that takes the heights to metres, where their unit is known, and that unit.
+    fn scale(&self) -> Result<(f64, Option<&String>), Cause> {
         let conversion = self.conversion.as_ref();
         let unit = conversion.map_or(self.value_unit.as_ref(), |conversion| conversion.unit.as_ref());
         let metres = unit.map_or(Ok(1.0), |unit| units::length("its heights are", unit))?;
@@ -88,6 +99,17 @@ impl Heading {
         if !factor.is_finite() || factor.abs() < f64::MIN_POSITIVE {
             return Err(format!("its heading says that its heights are to be multiplied by {factor}").into());
         }
+        Ok((factor, unit))
+    }
+
+    /// What it comes to for a matrix of this extent.
+    pub(super) fn meaning(&self, [rows, columns]: [u64; 2]) -> Result<Meaning, Cause> {
+        for (said, found, what) in [(self.lines, rows, "lines"), (self.values_in_line, columns, "values in a line")] {
+            if let Some(said) = said.filter(|said| *said != found) {
+                return Err(format!("its heading says that it has {said} {what}, and it has {found}").into());
+            }
+        }
+        let (factor, unit) = self.scale()?;
         // A unit that is said once for both directions, or for the heights alone, holds for all.
         let lateral = self.width_unit.as_ref().or(unit);
         let across = self.height_unit.as_ref().or(lateral);
@@ -98,6 +120,15 @@ impl Heading {
         let width = size(self.width.as_ref().or(by_values.as_ref()), lateral)?;
         Ok(Meaning { factor, unit: unit.cloned(), size_m: height.zip(width).map(|(height, width)| [height, width]) })
     }
+}
+
+/// Entries that are a number with a unit.
+const SIZES: [&str; 7] = ["width", "breite", "x-length", "height", "h\u{f6}he", "y-length", "pixel size"];
+
+/// Whether a text begins with a number that has a comma in it.
+fn has_decimal_comma(text: &str) -> bool {
+    let rest = text.trim_start_matches(|sign: char| sign.is_ascii_digit() || matches!(sign, '+' | '-'));
+    rest.len() < text.len() && rest.strip_prefix(',').is_some_and(|rest| rest.starts_with(|sign: char| sign.is_ascii_digit()))
 }
 
 /// Puts an entry in its place; nothing, if the place is taken.

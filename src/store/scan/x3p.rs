@@ -3,6 +3,7 @@
 //! Lengths are in metres, always. The first point of the data is followed by its neighbour along x, so that a column of
 //! heights here is a line of the file.
 
+use std::collections::HashMap;
 use std::fs::File;
 use std::io::{BufReader, Read};
 
@@ -24,6 +25,8 @@ const MOST_XML: u64 = 1 << 24;
 const MOST_ELEMENTS: usize = 256;
 /// Nodes that it may have, remarks and the blanks between elements among them.
 const MOST_NODES: u32 = 1 << 16;
+/// Attributes that all of them may have together; those of instruments have one or two. The parser compares the attributes of an element with one another.
+const MOST_ATTRIBUTES: usize = 1024;
 /// What deflate reaches on zeros: a part of an archive is at most this many times larger than what it takes there.
 const MOST_PACKED: u64 = 1100;
 
@@ -34,14 +37,15 @@ type Archive = ZipArchive<BufReader<File>>;
 pub(super) fn read(source: Source) -> Result<Scan, Cause> {
     let length = source.length;
     let mut archive = ZipArchive::new(source.file).map_err(|error| damaged(&error))?;
-    let text = description(&mut archive)?;
+    let names = Names::of(&archive)?;
+    let text = description(&mut archive, &names)?;
     let options = ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() };
     let document = Document::parse_with_options(&text, options).map_err(|error| format!("its {MAIN} is damaged: {error}"))?;
     let about = About::of(document.root_element())?;
     // Of at most 2^28 points, so that nothing overflows.
     let count = about.shape[0] * about.shape[1];
 
-    let mut data = part(&mut archive, &about.data, count * about.kind.width() as u64, length)?;
+    let mut data = part((&mut archive, &names), &about.data, count * about.kind.width() as u64, length)?;
     // Heights are left to the bit where there is nothing to turn them by.
     let turn = |value: f64| match (about.increment, about.offset) {
         (None, None) => value,
@@ -50,11 +54,11 @@ pub(super) fn read(source: Source) -> Result<Scan, Cause> {
     let mut heights = field(&mut data, (about.kind, Order::Little), about.shape, Layout::Columns, turn)?;
     ends(data, &about.data)?;
     if let Some(name) = &about.valid {
-        let mut bits = part(&mut archive, name, count.div_ceil(8), length)?;
+        let mut bits = part((&mut archive, &names), name, count.div_ceil(8), length)?;
         remove(&mut heights, &mut bits)?;
         ends(bits, name)?;
     }
-    Ok(Scan { heights, size_m: about.size_m, unit: Some("m".to_owned()), periodic: None })
+    Ok(Scan { heights, size_m: about.size_m, unit: Some("m".to_owned()), periodic: None, spacing: None })
 }
 
 /// Takes out the points whose bit is 0; the lowest bit of a byte comes first.
@@ -75,12 +79,63 @@ fn damaged(error: &ZipError) -> Cause {
     format!("it is damaged as a zip archive: {error}").into()
 }
 
+/// The parts of an archive by their paths from the folder that has the description, which is the root or one folder in it.
+struct Names {
+    parts: HashMap<String, usize>,
+    folder: String,
+}
+
+impl Names {
+    fn of(archive: &Archive) -> Result<Self, Cause> {
+        let twice = |name: &str| -> Cause { format!("its zip archive has two parts named {name:?}\nhelp: save the scan again").into() };
+        let mut parts = HashMap::new();
+        for (place, name) in archive.file_names().enumerate() {
+            let name = plain(&name.map_err(|error| damaged(&error))?);
+            if parts.insert(name.clone(), place).is_some() {
+                return Err(twice(&name));
+            }
+        }
+        // The library keeps the last one of parts with equal names.
+        if archive.has_duplicate_names() {
+            return Err("its zip archive has two parts of one name\nhelp: save the scan again".into());
+        }
+        if parts.contains_key(MAIN) {
+            return Ok(Self { parts, folder: String::new() });
+        }
+        let in_folder = |name: &str| matches!(name.split_once('/'), Some((folder, MAIN)) if folder != "__MACOSX");
+        let found: Vec<String> = parts.keys().filter(|name| in_folder(name)).cloned().collect();
+        match &found[..] {
+            [one] => Ok(Self { folder: one.trim_end_matches(MAIN).to_owned(), parts }),
+            [] => Err(format!("it is a zip archive without {MAIN}, and so no X3P").into()),
+            many => Err(format!(
+                "it is a zip archive of {} X3P folders, and one is read\nhelp: unpack it, and zip one of the folders",
+                many.len()
+            )
+            .into()),
+        }
+    }
+
+    /// The place of a part, by its path from the description.
+    fn place(&self, name: &str) -> Option<usize> {
+        self.parts.get(&format!("{}{}", self.folder, plain(name))).copied()
+    }
+}
+
+/// A path in an archive as it should be: not everyone writes them so.
+fn plain(name: &str) -> String {
+    let name = name.trim().replace('\\', "/");
+    name.trim_start_matches("./").trim_start_matches('/').to_owned()
+}
+
+/// How many attributes a text has, from above: signs of equality before a quotation mark.
+fn attributes(text: &str) -> usize {
+    text.split('=').skip(1).filter(|rest| rest.trim_start().starts_with(['"', '\''])).count()
+}
+
 /// The description as text.
-fn description(archive: &mut Archive) -> Result<String, Cause> {
-    let main = match archive.by_name(MAIN) {
-        Err(ZipError::FileNotFound) => return Err(format!("it is a zip archive without {MAIN}, and so no X3P").into()),
-        other => other.map_err(|error| damaged(&error))?,
-    };
+fn description(archive: &mut Archive, names: &Names) -> Result<String, Cause> {
+    let place = names.place(MAIN).ok_or_else(|| format!("it has no {MAIN}"))?;
+    let main = archive.by_index(place).map_err(|error| damaged(&error))?;
     let mut bytes = Vec::new();
     main.take(MOST_XML + 1).read_to_end(&mut bytes).map_err(|error| format!("its {MAIN} is damaged: {error}"))?;
     if bytes.len() as u64 > MOST_XML {
@@ -91,18 +146,21 @@ fn description(archive: &mut Archive) -> Result<String, Cause> {
     if text.as_bytes().windows(2).filter(opens).count() > MOST_ELEMENTS {
         return Err(format!("its {MAIN} has more than {MOST_ELEMENTS} elements, as no surface with binary data needs").into());
     }
+    if attributes(&text) > MOST_ATTRIBUTES {
+        return Err(format!("its {MAIN} has more than {MOST_ATTRIBUTES} attributes, as no surface needs").into());
+    }
     Ok(text.strip_prefix('\u{feff}').map(ToOwned::to_owned).unwrap_or(text))
 }
 
 /// A part of the archive that has so many bytes.
-fn part<'a>(archive: &'a mut Archive, name: &str, bytes: u64, length: u64) -> Result<ZipFile<'a, BufReader<File>>, Cause> {
-    // Paths are relative to the archive, and not everyone writes them so.
-    let plain = name.trim().replace('\\', "/");
-    let plain = plain.trim_start_matches("./").trim_start_matches('/');
-    let file = match archive.by_name(plain) {
-        Err(ZipError::FileNotFound) => return Err(format!("its {MAIN} names {name:?}, which is not there").into()),
-        other => other.map_err(|error| damaged(&error))?,
-    };
+fn part<'a>(
+    (archive, names): (&'a mut Archive, &Names),
+    name: &str,
+    bytes: u64,
+    length: u64,
+) -> Result<ZipFile<'a, BufReader<File>>, Cause> {
+    let place = names.place(name).ok_or_else(|| format!("its {MAIN} names {name:?}, which is not there"))?;
+    let file = archive.by_index(place).map_err(|error| damaged(&error))?;
     if file.size() != bytes {
         return Err(format!("its {name:?} has {} bytes, and by its {MAIN} it has {bytes}", file.size()).into());
     }

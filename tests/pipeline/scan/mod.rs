@@ -2,10 +2,18 @@
 
 mod damage;
 #[cfg(feature = "stats")]
+mod formats;
+#[cfg(feature = "stats")]
 mod import;
+#[cfg(feature = "stats")]
+mod limits;
 mod make;
 mod netcdf;
 mod npy;
+mod outside;
+#[cfg(feature = "stats")]
+mod periodic;
+mod points;
 #[cfg(feature = "stats")]
 mod python;
 mod text;
@@ -71,13 +79,15 @@ fn law_first_bytes_tell_formats_apart() {
         (b"1.0 2.0\r\n", Some(Found::Scan(Format::Text))),
         ("# Width: 10 µm\n".as_bytes(), Some(Found::Scan(Format::Text))),
         (b"# Width: 10 \xb5m\n", Some(Found::Scan(Format::Text))),
-        (b"\xff\xfe1\0 \x002\0", None),
-        (b"\xfe\xff\x001", None),
         (b"1\0 \x002\0", None),
         (b"\x7fELF\x02\x01", None),
         (b"", None),
     ] {
         assert_eq!(detect(bytes), found, "{bytes:?}");
+    }
+    // UTF-16 is known, and not read.
+    for bytes in [&b"\xff\xfe1\0 \x002\0"[..], b"\xfe\xff\x001"] {
+        assert!(matches!(detect(bytes), Some(Found::Foreign(_))), "{bytes:?}");
     }
 }
 

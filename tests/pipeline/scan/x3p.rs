@@ -148,3 +148,55 @@ fn law_bombs_do_not_go_off() {
     bytes[place] = 32;
     refused(&bytes, Format::X3p, &["its \"bindata/data.bin\""]);
 }
+
+#[test]
+fn law_one_top_folder_is_read() {
+    let heights = array![[1.0, 2.0], [3.0, 4.0]];
+    let (xml, data) = (main_xml(["2", "2", "1"], DOUBLE, ""), little(heights.t()));
+    for folder in ["logo/", "./logo/", "a b/", "logo\\"] {
+        let [main, numbers, other] = ["main.xml", "bindata/data.bin", "md5checksum.hex"].map(|name| format!("{folder}{name}"));
+        let parts: [(&str, &[u8]); 4] = [(folder.trim_end_matches('\\'), b""), (&numbers, &data), (&main, xml.as_bytes()), (&other, b"0")];
+        same(&scan_of(&archive(&parts, Deflated), Format::X3p, None).unwrap().heights, &heights);
+    }
+    // What macOS puts beside it, and a description deeper down, are none.
+    let parts: [(&str, &[u8]); 4] =
+        [("__MACOSX/main.xml", b"x"), ("logo/main.xml", xml.as_bytes()), ("logo/bindata/data.bin", &data), ("logo/old/main.xml", b"x")];
+    same(&scan_of(&archive(&parts, Stored), Format::X3p, None).unwrap().heights, &heights);
+    // The root comes before a folder; two folders are two surfaces; a part of another folder is not there.
+    let parts: [(&str, &[u8]); 3] = [("main.xml", xml.as_bytes()), ("bindata/data.bin", &data), ("b/main.xml", b"x")];
+    same(&scan_of(&archive(&parts, Stored), Format::X3p, None).unwrap().heights, &heights);
+    let two: [(&str, &[u8]); 2] = [("a/main.xml", xml.as_bytes()), ("b/main.xml", xml.as_bytes())];
+    refused(&archive(&two, Stored), Format::X3p, &["2 X3P folders, and one is read"]);
+    let apart: [(&str, &[u8]); 2] = [("a/main.xml", xml.as_bytes()), ("bindata/data.bin", &data)];
+    refused(&archive(&apart, Stored), Format::X3p, &["\"bindata/data.bin\", which is not there"]);
+    refused(&archive(&[("a/b/main.xml", xml.as_bytes())], Stored), Format::X3p, &["a zip archive without main.xml"]);
+}
+
+#[test]
+fn law_parts_of_one_name_are_refused() {
+    let (xml, data) = (main_xml(["2", "2", "1"], DOUBLE, ""), little(&[1.0, 2.0, 3.0, 4.0]));
+    let other = little(&[4.0, 3.0, 2.0, 1.0]);
+    // The writer refuses equal names, so that they are made equal afterwards, in the local headers and in the directory.
+    let parts: [(&str, &[u8]); 3] = [("main.xml", xml.as_bytes()), ("bindata/data.bin", &data), ("bindata/datb.bin", &other)];
+    let mut bytes = archive(&parts, Stored);
+    while let Some(place) = bytes.windows(16).position(|window| window == b"bindata/datb.bin") {
+        bytes[place + 11] = b'a';
+    }
+    refused(&bytes, Format::X3p, &["two parts"]);
+    // Names that are the same path count as equal too.
+    let parts: [(&str, &[u8]); 3] = [("main.xml", xml.as_bytes()), ("bindata/data.bin", &data), ("./bindata/data.bin", &other)];
+    refused(&archive(&parts, Stored), Format::X3p, &["two parts named \"bindata/data.bin\""]);
+}
+
+/// The parser compares the attributes of an element with one another: these would take it hours.
+#[test]
+fn law_many_attributes_are_refused_before_parsing() {
+    for count in [1025, 200_000, 1_000_000] {
+        let mut xml = "<a".to_owned();
+        (0..count).for_each(|k| xml += &format!(" a{k} =\n'>'"));
+        refused(&archive(&[("main.xml", format!("{xml}/>").as_bytes())], Deflated), Format::X3p, &["more than 1024 attributes"]);
+    }
+    // Signs of equality in texts are none.
+    let text = main_xml(["1", "1", "1"], DOUBLE, "").replace("<FeatureType>", &format!("<!-- {} --><FeatureType>", "= ".repeat(5000)));
+    assert!(scan_of(&x3p(&text, &little(&[1.0])), Format::X3p, None).is_ok());
+}

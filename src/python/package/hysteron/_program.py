@@ -123,19 +123,19 @@ def take(
     pixel_m: float | None = None,
     unit: str | None = None,
     fill: bool = False,
-    detrend: str = "plane",
+    detrend: str | None = None,
     periodic: bool = False,
     points: int = 8,
 ) -> dict[str, Any]:
     """Takes a measured surface, as `hysteron import` does, and says what it is like: its moments, its spectrum, the self-affine spectrum that fits it.
 
     `file` is HDF5 (`dataset` names the field), NetCDF-3, X3P, .npy or text; or an array of heights, in which what is masked or no number is missing. `pixel_m` is the distance of its points [m] and `unit` the unit of its heights, where
-    the file does not tell them; `fill` continues the heights into missing points; `detrend` is mean, plane or quadratic; waves shorter than so many `points` are
+    the file does not tell them; `fill` continues the heights into missing points; `detrend` is mean, plane (the default) or quadratic, of a periodic surface mean alone; waves shorter than so many `points` are
     taken off. With `out` the surface is written there, over what is there, to be named in a spec as `surface.file`; without it nothing is written.
     """
-    command = [str(find()), "import", "--json", f"--detrend={detrend}", f"--points={points}"]
+    command = [str(find()), "import", "--json", f"--points={points}"]
     command += ["--dry-run"] if out is None else [f"--out={os.fspath(out)}", "--force"]
-    command += [f"--{name}={value}" for name, value in (("dataset", dataset), ("pixel-m", pixel_m), ("unit", unit)) if value is not None]
+    command += [f"--{name}={value}" for name, value in (("dataset", dataset), ("pixel-m", pixel_m), ("unit", unit), ("detrend", detrend)) if value is not None]
     command += [f"--{name}" for name, asked in (("fill", fill), ("periodic", periodic)) if asked]
     with _scan(file) as path:
         return _answered([*command, "--", path])

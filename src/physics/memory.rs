@@ -1,0 +1,33 @@
+//! Memory for whole fields: too little of it is an error and does not abort the program.
+
+use super::PhysicsError;
+use ndarray::Array2;
+
+/// As many copies of a value.
+pub(super) fn filled<T: Clone>(count: usize, value: T) -> Result<Vec<T>, PhysicsError> {
+    let mut values = Vec::new();
+    values.try_reserve_exact(count).map_err(|_| short(count.saturating_mul(size_of::<T>())))?;
+    values.resize(count, value);
+    Ok(values)
+}
+
+/// A field of zeros.
+pub(super) fn zeros((rows, columns): (usize, usize)) -> Result<Array2<f64>, PhysicsError> {
+    let values = filled(rows.saturating_mul(columns), 0.0)?;
+    Array2::from_shape_vec((rows, columns), values).map_err(|_| short(usize::MAX))
+}
+
+/// Checks that so many bytes can be had at this moment.
+///
+/// # Errors
+/// If they cannot.
+pub fn check(bytes: usize) -> Result<(), PhysicsError> {
+    Vec::<u8>::new().try_reserve_exact(bytes).map_err(|_| short(bytes))
+}
+
+fn short(bytes: usize) -> PhysicsError {
+    PhysicsError::Surface {
+        problem: format!("a surface of this size needs another {:.2} GB of memory, which are not free", bytes as f64 / 1e9),
+        help: "run fewer tasks at once (--jobs 1), raise the memory limit (ulimit -v, h_vmem), or use fewer points",
+    }
+}
