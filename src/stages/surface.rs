@@ -5,6 +5,7 @@ use super::done::Outcome;
 use super::measure::measure;
 use crate::campaign::{Campaign, SurfaceUnit};
 use crate::keys::digest_of_file;
+use crate::physics::PhysicsError;
 use crate::physics::measured::find_measured;
 use crate::physics::spectrum::Spectrum;
 use crate::physics::summits::{Summit, find_summits};
@@ -66,6 +67,11 @@ pub(super) fn generate(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Outcom
     }
     let seed = realization_seed(campaign.spec.seed, u64::from(unit.realization));
     let surface = synthesize(&spectrum(params), &seed, params.grid() as usize);
+    // One that no file may hold is the failure of this surface.
+    if let Some(value) = surface.heights_m.iter().copied().find(|height| !height.is_finite()) {
+        let [action, quantity, allowed] = ["the heights of the surface", "a height [m]", "finite heights"];
+        return Err(PhysicsError::Domain { action, quantity, value, allowed }.into());
+    }
     let header = SurfaceHeader {
         length_m: params.length_m,
         realization: u64::from(unit.realization),
