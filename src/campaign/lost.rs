@@ -55,8 +55,7 @@ impl Campaign {
         let sound = |owner: Owner<'_>| key(owner).and_then(Option::as_ref);
         let standings = self.cycle_standings(Check::Sizes);
         // Cycles that have left nothing but the tables that were made of them.
-        let all_done: Vec<Standing> =
-            standings.iter().map(|s| if *s == Standing::Planned { Standing::Done } else { s.clone() }).collect();
+        let all_done: Vec<Standing> = standings.iter().map(|s| if *s == Standing::Planned { Standing::Done } else { s.clone() }).collect();
         let averaged = sound((Stage::Aggregate, STATISTICS)).is_some_and(|key| *key == self.statistics_key(&all_done));
         for (cycle, standing) in self.cycles.iter().zip(&standings) {
             let surface = self.surfaces[cycle.surface].id.as_str();
@@ -84,7 +83,9 @@ impl Campaign {
         folders.extend(entries(&self.dir.join("cycles")).into_iter().filter(|path| path.is_dir()));
         let mut files: Vec<PathBuf> = folders.iter().flat_map(|folder| entries(folder)).filter(|path| !path.is_dir()).collect();
         files.retain(|path| !is_temporary(path) && path.file_name().is_none_or(|name| name != "failed.json" && name != "halfway.bin"));
-        files.extend(["campaign.toml", "datapackage.json", "report.html"].map(|name| self.dir.join(name)).into_iter().filter(|path| path.exists()));
+        files.extend(
+            ["campaign.toml", "datapackage.json", "report.html"].map(|name| self.dir.join(name)).into_iter().filter(|path| path.exists()),
+        );
         let place = |path: PathBuf| {
             let parts = path.strip_prefix(&self.dir).unwrap_or(&path).components();
             parts.map(|part| part.as_os_str().to_string_lossy().into_owned()).collect::<Vec<_>>().join("/")

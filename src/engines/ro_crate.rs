@@ -32,7 +32,9 @@ pub fn licence(text: &str) -> Result<String, String> {
     {
         return Ok(format!("https://spdx.org/licenses/{text}"));
     }
-    Err(format!("--license {text:?} is no address and no SPDX identifier\nhelp: write an http(s) address, or an identifier such as CC-BY-4.0"))
+    Err(format!(
+        "--license {text:?} is no address and no SPDX identifier\nhelp: write an http(s) address, or an identifier such as CC-BY-4.0"
+    ))
 }
 
 /// `ro-crate-metadata.json` of a folder with these receipts, published on a day (`2026-01-31`), under a licence if one is told.

@@ -64,7 +64,8 @@ pub fn folder(campaign: &Campaign) -> PathBuf {
 #[must_use]
 pub fn script(campaign: &Campaign, stage: Stage, order: &Order) -> String {
     let (name, word) = (&campaign.spec.name, stage.word());
-    let [program, dir, spec] = [order.program.clone(), campaign.dir.clone(), campaign.dir.join("campaign.toml")].map(|path| shell_path(&path));
+    let [program, dir, spec] =
+        [order.program.clone(), campaign.dir.clone(), campaign.dir.join("campaign.toml")].map(|path| shell_path(&path));
     let log = folder(campaign).join("log");
     let array = stage <= Stage::Cycle;
     let mut text = format!("#!/bin/bash\n# {word} of the campaign {name}. `hysteron submit` wrote this file, and writes it anew.\n");

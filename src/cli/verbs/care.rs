@@ -75,7 +75,10 @@ pub(super) fn verify(folder: &FolderArguments, deep: bool) -> Result<u8, Fault> 
         say(&format!("{}, {}: {compared} compared, ", counts.join(", "), HumanBytes(audit.size_bytes)))?;
         say(&match faults {
             0 => "all as they were written.\n".to_owned(),
-            faults => format!("{}. `hysteron run` with the spec computes what it names again; `gc` lists files that nothing names.\n", counted(faults, "fault")),
+            faults => format!(
+                "{}. `hysteron run` with the spec computes what it names again; `gc` lists files that nothing names.\n",
+                counted(faults, "fault")
+            ),
         })?;
     }
     Ok(if faults == 0 { 0 } else { FAILED })

@@ -139,7 +139,8 @@ fn open(spec: &Path, output: &OutputArguments) -> Result<Campaign, Fault> {
 fn not_the_root(dir: &Path) -> Result<(), Fault> {
     match dir.canonicalize() {
         Ok(found) if found.parent().is_none() => {
-            let text = format!("error: the output folder cannot be {}, the root folder\nhelp: name a folder of its own (--out DIR)", shown(dir));
+            let text =
+                format!("error: the output folder cannot be {}, the root folder\nhelp: name a folder of its own (--out DIR)", shown(dir));
             Err(Fault { code: BAD_SPEC, text })
         }
         _ => Ok(()),

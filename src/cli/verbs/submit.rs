@@ -9,8 +9,8 @@ use crate::stages;
 use crate::store::{Check, commit};
 use crate::text::{counted, shell_path, shell_quote, shown as path_shown};
 use serde_json::{Value, json};
-use std::path::{Path, PathBuf};
 use std::io::Read as _;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
@@ -19,7 +19,8 @@ const USUAL_MOST: usize = 1001;
 
 pub(super) fn slurm(spec: &Path, output: &OutputArguments, shards: Option<u32>, task: (u16, &[String]), dry: bool) -> Result<u8, Fault> {
     if let Some(option) = task.1.iter().find(|option| option.chars().any(char::is_control)) {
-        let text = format!("error: --option {option:?} has a control character\nhelp: give one option of sbatch for each --option, on one line");
+        let text =
+            format!("error: --option {option:?} has a control character\nhelp: give one option of sbatch for each --option, on one line");
         return Err(Fault { code: BAD_SPEC, text });
     }
     let mut campaign = open(spec, output)?;
