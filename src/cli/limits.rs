@@ -12,11 +12,11 @@ const OF_POLARS: &str = "POLARS_MAX_THREADS";
 /// Address space without which a computation ends in the middle of an allocation \[bytes\].
 const LEAST_SPACE: u64 = 384 << 20;
 
-/// A number of threads from the environment, within 1 to [`MOST_THREADS`]; nothing where none is set. What is no number, or 0, is the number of cores.
+/// A number of threads from the environment; nothing where none is set. One that is not within 1 to [`MOST_THREADS`] is the number of cores.
 fn of_environment(name: &str) -> Option<usize> {
     let text = std::env::var_os(name)?;
-    let count = text.to_str().and_then(|text| text.trim().parse::<u64>().ok()).filter(|count| *count > 0);
-    Some(count.map_or_else(cores, |count| usize::try_from(count).unwrap_or(MOST_THREADS).min(MOST_THREADS)))
+    let count = text.to_str().and_then(|text| text.trim().parse().ok()).filter(|count| (1..=MOST_THREADS).contains(count));
+    Some(count.unwrap_or_else(cores))
 }
 
 fn cores() -> usize {
