@@ -1,6 +1,7 @@
 //! The command line: verbs, progress, and what is said at the end.
 
 mod interrupt;
+mod limits;
 mod progress;
 mod verbs;
 
@@ -48,11 +49,11 @@ enum Verb {
         #[arg(long)]
         watch: bool,
     },
-    /// Say why a unit is to be computed, field by field
+    /// Explain why a task is pending, field by field
     Explain {
         #[command(flatten)]
         folder: FolderArguments,
-        /// The unit, as `status --json` and the file names have it; or `statistics`, or `report`
+        /// The task, as `status --json` and the file names have it; or `statistics`, or `report`
         id: String,
         /// The spec that names it [default: the one of the last run]
         #[arg(long)]
@@ -178,7 +179,7 @@ struct HowArguments {
     output: OutputArguments,
     #[command(flatten)]
     jobs: JobsArguments,
-    /// Only part K of N of the surfaces, and what is done with them (K from 0)
+    /// Only part K of N of the surfaces, and what is done with them (K from 0, N up to 1000000)
     #[arg(long, value_name = "K/N")]
     shard: Option<Shard>,
     /// Take what is done for whole if its files are as long as they were, and do not compare contents
@@ -231,8 +232,8 @@ enum ExportVerb {
     RoCrate {
         #[command(flatten)]
         folder: FolderArguments,
-        /// The licence of the data, as the address of its text
-        #[arg(long, value_name = "ADDRESS")]
+        /// The licence of the data: an SPDX identifier such as CC-BY-4.0, or the http(s) address of its text
+        #[arg(long, value_name = "LICENCE")]
         license: Option<String>,
     },
 }

@@ -24,3 +24,4 @@ pub mod stages;
 pub mod stats;
 #[cfg(feature = "store")]
 pub mod store;
+pub mod text;

@@ -1,5 +1,6 @@
 //! All receipts of a folder against the files that they name, whatever spec they are of.
 
+use super::lost::Sound;
 use super::{Campaign, Stage};
 use crate::store::{Check, Fault, Found, Receipt, read_receipt};
 use rayon::prelude::*;
@@ -17,23 +18,48 @@ pub struct Audit {
     pub size_bytes: u64,
     /// Whether contents were compared, and not lengths alone.
     pub deep: bool,
-    /// What is wrong: a sentence for each file.
+    /// Files and receipts that are not as they were written: a sentence for each.
     pub faults: Vec<String>,
+    /// Tasks of the spec that have no receipt, although files of theirs or results built on them are there: `cycle H0.80_z8_r00-1a2b3c4d`.
+    pub unreceipted: Vec<String>,
+    /// Other files in the program's own folders that no receipt names, by their places.
+    pub unnamed: Vec<String>,
+}
+
+impl Audit {
+    /// How many faults of all kinds there are.
+    #[must_use]
+    pub fn fault_count(&self) -> usize {
+        self.faults.len() + self.unreceipted.len() + self.unnamed.len()
+    }
+
+    /// One of them, as a sentence.
+    #[must_use]
+    pub fn first_fault(&self) -> Option<String> {
+        let unreceipted = || self.unreceipted.first().map(|task| format!("{task} has results and no receipt"));
+        let unnamed = || self.unnamed.first().map(|file| format!("no receipt names {file}"));
+        self.faults.first().cloned().or_else(unreceipted).or_else(unnamed)
+    }
 }
 
 impl Campaign {
-    /// Compares every file of the folder that a receipt names with it.
+    /// Compares every file of the folder that a receipt names with it, and looks for what has no receipt.
     #[must_use]
     pub fn audit(&self, check: Check) -> Audit {
         let (paths, faults) = self.receipt_paths();
-        let parts: Vec<Audit> = paths.par_iter().map(|path| self.audit_one(path, check)).collect();
+        let parts: Vec<(Audit, Option<Receipt>)> = paths.par_iter().map(|path| self.audit_one(path, check)).collect();
         let mut whole = Audit { deep: check == Check::Contents, faults, ..Audit::default() };
-        for part in parts {
+        let mut sound = Sound::default();
+        for (path, (part, receipt)) in paths.into_iter().zip(parts) {
             whole.receipt_count += part.receipt_count;
             whole.file_count += part.file_count;
             whole.size_bytes = whole.size_bytes.saturating_add(part.size_bytes);
             whole.faults.extend(part.faults);
+            if part.receipt_count > 0 {
+                sound.enter(path, receipt);
+            }
         }
+        (whole.unreceipted, whole.unnamed) = self.lost(&sound);
         whole
     }
 
@@ -48,9 +74,11 @@ impl Campaign {
         readable(&self.receipts_of(stage).unwrap_or_default())
     }
 
-    fn audit_one(&self, path: &Path, check: Check) -> Audit {
+    /// A receipt against its files; and itself, if it can be read.
+    fn audit_one(&self, path: &Path, check: Check) -> (Audit, Option<Receipt>) {
         let name = path.strip_prefix(&self.dir).unwrap_or(path).display();
         let mut audit = Audit { receipt_count: 1, ..Audit::default() };
+        let mut sound = None;
         match read_receipt(path) {
             // It has gone since the folder was listed.
             Found::Nothing => audit.receipt_count = 0,
@@ -60,9 +88,10 @@ impl Campaign {
                 audit.faults.extend(faults.map(Fault::sentence));
                 audit.file_count = receipt.files.len();
                 audit.size_bytes = receipt.files.iter().fold(0, |sum, file| sum.saturating_add(file.size_bytes));
+                sound = Some(*receipt);
             }
         }
-        audit
+        (audit, sound)
     }
 
     /// Where receipts are: the spec's, then those of each stage in the order of their names; and what could not be listed.

@@ -40,7 +40,7 @@ impl Campaign {
         unnamed(&self.dir.join("surfaces"), Some("h5"), &surfaces, &mut found);
         if let Found::Whole(receipt) = read_receipt(&self.receipts_dir(Stage::Report).join(format!("{REPORT_PAGE}.json"))) {
             let kept: HashSet<PathBuf> = receipt.files.iter().map(|file| self.dir.join(&file.path)).collect();
-            let pictures = entries(&self.dir.join("figures")).into_iter().filter(|path| path.extension().is_some_and(|e| e == "svg"));
+            let pictures = entries(&self.dir.join("figures")).into_iter().filter(|path| is_picture(path));
             found.extend(pictures.filter(|path| !kept.contains(path)).map(|path| Leftover { size_bytes: size(&path), path, why: UNSHOWN }));
         }
         for campaign in all() {
@@ -88,6 +88,15 @@ fn unnamed(folder: &Path, extension: Option<&str>, known: &HashSet<&str>, found:
     }
 }
 
+/// Whether a file has the name of a figure that the program draws, as `zeta_A.svg` or `closer_loop.png`, in one of its formats.
+fn is_picture(path: &Path) -> bool {
+    let stem = path.file_stem().and_then(|stem| stem.to_str()).and_then(|stem| stem.rsplit_once('_'));
+    let drawn = |(sweep, panel): (&str, &str)| {
+        sweep == "closer" || (!sweep.is_empty() && panel.len() == 1 && panel.bytes().all(|letter| letter.is_ascii_uppercase()))
+    };
+    path.extension().and_then(|e| e.to_str()).is_some_and(|e| matches!(e, "svg" | "png" | "pdf")) && stem.is_some_and(drawn)
+}
+
 /// Whether a name is that of a surface or a cycle, as `H0.80_z128_r03-1a2b3c4d` or `scan_r00-1a2b3c4d`: nothing else may be taken for one, since it may be
 /// somebody's own.
 pub(super) fn is_id(name: &str) -> bool {
@@ -103,7 +112,7 @@ pub(super) fn is_id(name: &str) -> bool {
 }
 
 /// What is in a folder, by name; nothing if it cannot be read.
-fn entries(folder: &Path) -> Vec<PathBuf> {
+pub(super) fn entries(folder: &Path) -> Vec<PathBuf> {
     let mut paths: Vec<PathBuf> =
         std::fs::read_dir(folder).map(|all| all.flatten().map(|entry| entry.path()).collect()).unwrap_or_default();
     paths.sort();

@@ -6,6 +6,7 @@ mod audit;
 mod compare;
 mod hashed;
 mod leftover;
+mod lost;
 mod shard;
 mod standing;
 
@@ -30,7 +31,7 @@ const AGGREGATE: u32 = 5;
 const REPORT: u32 = 8;
 
 /// The stages, in their order.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Stage {
     /// Surfaces.
     Generate,

@@ -2,6 +2,9 @@
 
 use std::str::FromStr;
 
+/// Parts at most.
+const MOST: usize = 1_000_000;
+
 /// The part `index` of `count`, counted from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shard {
@@ -36,8 +39,8 @@ impl FromStr for Shard {
     fn from_str(text: &str) -> Result<Self, String> {
         let parts = text.split_once('/').and_then(|(index, count)| Some((index.parse().ok()?, count.parse().ok()?)));
         match parts {
-            Some((index, count)) if index < count => Ok(Self { index, count }),
-            _ => Err("allowed: K/N, two whole numbers with K from 0 to N - 1, as 0/4".to_owned()),
+            Some((index, count)) if index < count && count <= MOST => Ok(Self { index, count }),
+            _ => Err(format!("allowed: K/N, two whole numbers with K from 0 to N - 1 and N up to {MOST}, as 0/4")),
         }
     }
 }

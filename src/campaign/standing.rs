@@ -130,8 +130,14 @@ impl Campaign {
     }
 
     fn failure_record(&self, unit: &CycleUnit) -> Option<Value> {
-        let text = std::fs::read_to_string(self.failure_path(unit)).ok()?;
+        let path = self.failure_path(unit);
+        // A pipe in its place would be waited for.
+        let text = path.is_file().then(|| std::fs::read_to_string(path).ok())??;
         let record: Value = serde_json::from_str(&text).ok()?;
+        // A folder stood in the place of a file, and is gone.
+        if record.get("in_the_way").and_then(Value::as_str).is_some_and(|place| !self.dir.join(place).is_dir()) {
+            return None;
+        }
         (record.get("key")?.as_str()? == unit.key).then_some(record)
     }
 

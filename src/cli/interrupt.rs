@@ -1,18 +1,27 @@
-//! Ctrl-C and SIGTERM: what is being written is finished, what is being computed is dropped, and it is said how to go on.
+//! Ctrl-C and SIGTERM: files that are being written are finished, running tasks are dropped, and the command that continues is printed.
 
 use super::progress::Teller;
 use crate::stages::Watch as _;
 use crate::store::{commit, hdf5};
+use crate::text::shell_path;
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
 use signal_hook::iterator::Signals;
+use signal_hook::low_level;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
 
 /// Exit code of the contract.
 const INTERRUPTED: i32 = 130;
 
-/// From now on an interrupt ends the program between two files. All it costs are the units at hand, of which long ones are kept on their way.
+/// How long an interrupt waits for files that are being written; a read or write that is stuck (a dead network disk) takes for ever.
+const PATIENCE: Duration = Duration::from_secs(5);
+/// How often a second signal is looked for meanwhile.
+const EVERY: Duration = Duration::from_millis(50);
+
+/// From now on an interrupt ends the program between two files, at a second signal or after [`PATIENCE`] at once. All it costs are the running tasks, of which
+/// long ones are checkpointed.
 ///
 /// Where hang-ups are ignored, as under `nohup`, they stay so. A limit on the size of files (`ulimit -f`) is no longer deadly: it is an error of the write
 /// that meets it.
@@ -27,20 +36,32 @@ pub(super) fn expect(teller: Arc<Teller>, dir: &Path) -> std::io::Result<()> {
     }
     signal_hook::flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false)))?;
     let mut signals = Signals::new(waited)?;
-    let dir = dir.display().to_string();
+    let notice = format!(
+        "interrupted: completed tasks are kept, running tasks are dropped. Continue with the same command, or with `hysteron run {} --out {}`",
+        shell_path(&dir.join("campaign.toml")),
+        shell_path(dir)
+    );
     let wait = move || {
         if signals.forever().next().is_none() {
             return;
         }
-        let _still = commit::quiet();
-        teller.clear();
-        teller.notice(&format!(
-            "interrupted: what was finished is kept, what was begun is dropped. The same command goes on, and so does \
-             `hysteron run {dir}/campaign.toml --out {dir}`"
-        ));
-        hdf5::alone(|| std::process::exit(INTERRUPTED));
+        let ending = std::thread::Builder::new().name("ending".to_owned()).spawn(move || end(&teller, &notice));
+        let since = Instant::now();
+        while ending.is_ok() && since.elapsed() < PATIENCE && signals.pending().next().is_none() {
+            std::thread::sleep(EVERY);
+        }
+        // Whatever is stuck may hold any lock: nothing is printed, no exit handler runs. Files are put in place whole, so that none is lost.
+        low_level::exit(INTERRUPTED);
     };
     std::thread::Builder::new().name("signals".to_owned()).spawn(wait).map(drop)
+}
+
+/// Ends the program as soon as no file is being read or written.
+fn end(teller: &Teller, notice: &str) {
+    teller.clear();
+    teller.notice(notice);
+    let _still = commit::quiet();
+    hdf5::alone(|| std::process::exit(INTERRUPTED));
 }
 
 /// Whether the system's words on this process say so.

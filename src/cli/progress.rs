@@ -2,6 +2,7 @@
 
 use crate::campaign::Stage;
 use crate::stages::Watch;
+use crate::text::{counted, printable};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, Write};
 use std::sync::Mutex;
@@ -43,7 +44,7 @@ impl Teller {
 
     fn line(text: &str) {
         // Nobody is left to be told if standard error is closed.
-        let _ = writeln!(std::io::stderr().lock(), "{text}");
+        let _ = writeln!(std::io::stderr().lock(), "{}", printable(text));
     }
 }
 
@@ -61,7 +62,7 @@ impl Watch for Teller {
             bar.enable_steady_tick(std::time::Duration::from_millis(200));
         }
         if !self.terminal {
-            Self::line(&format!("{}: {all} units, {done} done before", stage.word()));
+            Self::line(&format!("{}: {}, {done} done before", stage.word(), counted(all, "task")));
         }
         *self.now.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(Now { bar, parts: 0.0, units: done, all });
     }

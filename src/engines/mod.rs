@@ -7,7 +7,6 @@ pub mod slurm;
 pub mod snakemake;
 
 use crate::campaign::{Campaign, Stage, Standing, Survey};
-use std::path::Path;
 
 /// Shards at most, unless more are asked for: a scheduler takes about a second for each.
 const MOST_SHARDS: usize = 1000;
@@ -34,9 +33,4 @@ pub fn open_shards(campaign: &Campaign, survey: &Survey, stage: Stage, count: us
         Stage::Aggregate | Stage::Report => {}
     }
     (0..count).filter(|shard| open[*shard]).collect()
-}
-
-/// A path as one word of a shell.
-pub(crate) fn quoted(path: &Path) -> String {
-    format!("'{}'", path.display().to_string().replace('\'', "'\\''"))
 }

@@ -15,6 +15,28 @@ const TYPES: [(&str, &str); 6] = [
     (".toml", "application/toml"),
 ];
 
+/// The address of a licence: itself, or the page of an SPDX identifier.
+///
+/// # Errors
+/// If it is neither: problem and help.
+pub fn licence(text: &str) -> Result<String, String> {
+    let lower = text.to_ascii_lowercase();
+    let strange = |c: char| c.is_whitespace() || c.is_control() || matches!(c, '<' | '>' | '"' | '\\' | '^' | '`' | '{' | '|' | '}');
+    if ["https://", "http://"].iter().any(|scheme| lower.strip_prefix(scheme).is_some_and(|rest| rest.starts_with(char::is_alphanumeric))) {
+        if !text.contains(strange) {
+            return Ok(text.to_owned());
+        }
+    } else if text.starts_with(|c: char| c.is_ascii_alphanumeric())
+        && text.len() <= 64
+        && text.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '.' | '-' | '+'))
+    {
+        return Ok(format!("https://spdx.org/licenses/{text}"));
+    }
+    Err(format!(
+        "--license {text:?} is no address and no SPDX identifier\nhelp: write an http(s) address, or an identifier such as CC-BY-4.0"
+    ))
+}
+
 /// `ro-crate-metadata.json` of a folder with these receipts, published on a day (`2026-01-31`), under a licence if one is told.
 #[must_use]
 pub fn metadata(campaign: &Campaign, receipts: &[Receipt], day: &str, licence: Option<&str>) -> String {

@@ -3,8 +3,8 @@
 //! Task k of a stage waits for task k of the stage before it (`aftercorr`), and is cancelled where that has failed (`--kill-on-invalid-dep`), so that nothing
 //! waits for ever. Aggregation waits until all cycles have ended, however they ended, and checks for itself what there is.
 
-use super::quoted;
 use crate::campaign::{Campaign, Stage};
+use crate::text::shell_path;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -64,7 +64,8 @@ pub fn folder(campaign: &Campaign) -> PathBuf {
 #[must_use]
 pub fn script(campaign: &Campaign, stage: Stage, order: &Order) -> String {
     let (name, word) = (&campaign.spec.name, stage.word());
-    let [program, dir, spec] = [order.program.clone(), campaign.dir.clone(), campaign.dir.join("campaign.toml")].map(|path| quoted(&path));
+    let [program, dir, spec] =
+        [order.program.clone(), campaign.dir.clone(), campaign.dir.join("campaign.toml")].map(|path| shell_path(&path));
     let log = folder(campaign).join("log");
     let array = stage <= Stage::Cycle;
     let mut text = format!("#!/bin/bash\n# {word} of the campaign {name}. `hysteron submit` wrote this file, and writes it anew.\n");

@@ -1,6 +1,8 @@
 //! What is wrong with a spec, and where.
 
+use std::collections::HashSet;
 use std::fmt;
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::ops::Range;
 
 use serde::Serialize;
@@ -61,7 +63,7 @@ impl SpecErrors {
         let message = "the spec cannot be read: this is not UTF-8 text".to_owned();
         let help = Some("save the file as UTF-8".to_owned());
         let text = String::from_utf8_lossy(bytes);
-        let place = Some(Place::new(&text, &(valid..valid + char::REPLACEMENT_CHARACTER.len_utf8())));
+        let place = Some(Place::new(&text, &line_starts(&text), &(valid..valid + char::REPLACEMENT_CHARACTER.len_utf8())));
         Self { file: file.to_owned(), faults: vec![Fault { message, help, place }], more: 0 }
     }
 }
@@ -97,23 +99,23 @@ impl fmt::Display for SpecErrors {
     }
 }
 
-/// Faults that are kept; a file with more is no spec, and nobody reads on.
-const MOST: usize = 200;
+/// Faults that are kept and shown; the others are counted.
+const MOST: usize = 20;
 
 /// Characters of a line that are shown, and how many of them before the place.
 const WINDOW: usize = 100;
 const BEFORE: usize = 40;
 
 impl Place {
-    /// The place of a range of bytes, which need not lie within the text nor on the bounds of characters.
-    fn new(text: &str, span: &Range<usize>) -> Self {
+    /// The place of a range of bytes, which need not lie within the text nor on the bounds of characters. `starts` are those of the text's lines.
+    fn new(text: &str, starts: &[usize], span: &Range<usize>) -> Self {
         let start = boundary(text, span.start);
         let end = boundary(text, span.end).max(start);
-        let head = text.get(..start).unwrap_or_default();
-        let line_start = head.rfind('\n').map_or(0, |newline| newline + 1);
+        let line = line_of(starts, start);
+        let line_start = starts[line - 1];
         let source = text.get(line_start..).and_then(|rest| rest.split('\n').next()).unwrap_or_default();
         let line_text = source.strip_suffix('\r').unwrap_or(source);
-        let before = head.get(line_start..).unwrap_or_default();
+        let before = text.get(line_start..start).unwrap_or_default();
         // A byte order mark is no character that an editor shows or counts.
         let hidden = usize::from(line_text.starts_with('\u{feff}'));
         let column = before.chars().count().saturating_sub(hidden);
@@ -130,7 +132,7 @@ impl Place {
         let pad: String = shown.iter().take(offset).map(|&c| if c == '\t' { '\t' } else { ' ' }).collect();
         let width = marked.chars().count().min(shown.len().saturating_sub(offset)).max(1);
         Self {
-            line: head.matches('\n').count() + 1,
+            line,
             column: column + 1,
             excerpt: format!("{lead}{excerpt}{tail}"),
             carets: format!("{}{pad}{}", if from > 0 { " " } else { "" }, "^".repeat(width)),
@@ -147,29 +149,62 @@ fn boundary(text: &str, at: usize) -> usize {
     at
 }
 
-/// Collects the faults of one text.
+/// Where the lines of a text begin \[bytes\]; the first one at 0.
+fn line_starts(text: &str) -> Vec<usize> {
+    std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect()
+}
+
+/// The number of the line of a place, from 1.
+fn line_of(starts: &[usize], at: usize) -> usize {
+    starts.partition_point(|start| *start <= at)
+}
+
+/// Collects the faults of one text, in a time that grows as the text does.
 pub(super) struct Faults<'t> {
     text: &'t str,
     file: String,
+    /// Where the lines begin.
+    starts: Vec<usize>,
     found: Vec<(Range<usize>, Fault)>,
+    /// Hashes of all faults, so that each is counted once.
+    seen: HashSet<u64>,
     more: usize,
 }
 
 impl<'t> Faults<'t> {
     /// No fault yet.
     pub(super) fn new(text: &'t str, file: &str) -> Self {
-        Self { text, file: file.to_owned(), found: Vec::new(), more: 0 }
+        Self { text, file: file.to_owned(), starts: line_starts(text), found: Vec::new(), seen: HashSet::new(), more: 0 }
     }
 
     /// Adds a fault; a second one with the same words at the same place says nothing new.
     pub(super) fn add(&mut self, span: &Range<usize>, message: String, help: impl Into<Option<String>>) {
-        let help = help.into();
-        if self.found.len() >= MOST {
-            self.more += 1;
-        } else if !self.found.iter().any(|(known, fault)| known == span && fault.message == message) {
-            let place = Some(Place::new(self.text, span));
-            self.found.push((span.clone(), Fault { message, help, place }));
+        let mut hasher = DefaultHasher::new();
+        (span, &message).hash(&mut hasher);
+        if !self.seen.insert(hasher.finish()) {
+            return;
         }
+        if self.is_full() {
+            self.more += 1;
+            return;
+        }
+        let place = Some(Place::new(self.text, &self.starts, span));
+        self.found.push((span.clone(), Fault { message, help: help.into(), place }));
+    }
+
+    /// Adds a fault of its own place. Its message and help are made only if it is shown.
+    pub(super) fn add_with(&mut self, span: &Range<usize>, words: impl FnOnce() -> (String, Option<String>)) {
+        if self.is_full() {
+            self.more += 1;
+            return;
+        }
+        let (message, help) = words();
+        self.add(span, message, help);
+    }
+
+    /// Whether further faults are only counted.
+    pub(super) fn is_full(&self) -> bool {
+        self.found.len() >= MOST
     }
 
     /// How many faults there are.
@@ -179,7 +214,7 @@ impl<'t> Faults<'t> {
 
     /// Line of a place, from 1.
     pub(super) fn line(&self, span: &Range<usize>) -> usize {
-        Place::new(self.text, span).line
+        line_of(&self.starts, boundary(self.text, span.start))
     }
 
     /// What is written at a place, on one line and not too long.

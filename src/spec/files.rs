@@ -11,13 +11,13 @@ use toml::de::DeValue;
 
 use super::fault::Faults;
 use super::value::{Written, wrong_type};
-use super::walk::entries;
-use super::{Spec, SpecErrors};
+use super::walk::{entries, shown};
+use super::{Case, Spec, SpecErrors};
 use crate::formats::{Found, Refusal, recognize};
 use crate::keys::digest_of_file;
 
 /// Reads the table `[files]`.
-pub(super) fn files(written: &Written<'_>, span: &Range<usize>, faults: &mut Faults<'_>) -> BTreeMap<String, String> {
+pub(super) fn files(written: &Written<'_>, span: &Range<usize>, faults: &mut Faults<'_>) -> BTreeMap<String, (String, Range<usize>)> {
     let mut found = BTreeMap::new();
     let DeValue::Table(table) = written.get_ref() else {
         wrong_type("files", "a table", written.get_ref(), span, "write [files] on a line of its own".to_owned(), faults);
@@ -26,7 +26,7 @@ pub(super) fn files(written: &Written<'_>, span: &Range<usize>, faults: &mut Fau
     for (name, span, value) in entries(table) {
         match value.get_ref() {
             DeValue::String(digest) if digest.len() == 64 && digest.bytes().all(|c| matches!(c, b'0'..=b'9' | b'a'..=b'f')) => {
-                found.insert(name.to_owned(), digest.to_string());
+                found.insert(name.to_owned(), (digest.to_string(), span));
             }
             _ => {
                 let help = "64 hexadecimal digits, as `b3sum` tells them; leave the line out, and the file is read".to_owned();
@@ -35,6 +35,16 @@ pub(super) fn files(written: &Written<'_>, span: &Range<usize>, faults: &mut Fau
         }
     }
     found
+}
+
+/// Refuses the hash of a file that no case names, and gives the others.
+pub(super) fn named(files: BTreeMap<String, (String, Range<usize>)>, cases: &[Case], faults: &mut Faults<'_>) -> BTreeMap<String, String> {
+    let wanted: HashSet<&str> = cases.iter().map(|case| case.params.surface.file.as_str()).collect();
+    for (name, (_, span)) in files.iter().filter(|(name, _)| !wanted.contains(name.as_str())) {
+        let message = format!("[files] has the hash of \"{}\", which no case reads", shown(name));
+        faults.add(span, message, "remove the line, or name the file as surface.file exactly as it is written here".to_owned());
+    }
+    files.into_iter().map(|(name, (digest, _))| (name, digest)).collect()
 }
 
 /// The spec with the hashes of all files that it names, and of no others.
@@ -57,7 +67,7 @@ pub(super) fn digested(mut spec: Spec, text: &str, file: &str) -> Result<Spec, S
                 spec.files.insert(name.clone(), digest);
             }
             Err(Refusal { problem, help }) => {
-                let at = text.find(name.as_str()).unwrap_or_default();
+                let at = if faults.is_full() { 0 } else { text.find(name.as_str()).unwrap_or_default() };
                 let message = format!("the measured surface \"{name}\" cannot be read: {problem}");
                 faults.add(&(at..at + name.len().min(text.len() - at)), message, help);
             }

@@ -1,25 +1,26 @@
 //! From a draft to the cases: sweeps multiplied out, equal cases joined, and what no single value shows checked.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::ops::Range;
 
 use toml::Spanned;
 
 use super::fault::Faults;
+use super::files::named;
 use super::keys::{GENERATED, KEYS, find};
 use super::number::short;
 use super::sweep::{AxisDraft, SweepDraft};
 use super::walk::{Draft, Origin};
 use crate::model::{Boundary, Choice, Detrend};
 
-use super::{Axis, Case, CaseParams, MAX_CASES, MAX_GRID, Spec, Sweep, Value};
+use super::{Axis, Case, CaseParams, MAX_CASES, MAX_GRID, MAX_TASKS, Realizations, Spec, SurfaceParams, Sweep, Value};
 
 /// The sweep that a case without sweeps belongs to.
 const BASE: &str = "base";
 
 /// Multiplies the sweeps out. Nothing, with the faults added, if there are too many cases or the draft has no name.
 pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
-    let Draft { name, seed, realizations, base, origins, sweeps, files } = draft;
+    let Draft { name, seed, realizations, realizations_at, base, origins, sweeps, files } = draft;
     let read: Vec<&SweepDraft> = sweeps.iter().flatten().collect();
     if too_many(&read, faults) {
         return None;
@@ -46,6 +47,10 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
         }
     }
     complete(&mut base, &origins);
+    // Of a sweep with a fault the cases are unknown.
+    let files = if faults.count() == 0 { named(files, &cases.list, faults) } else { BTreeMap::new() };
+    let first = read.first().map(|sweep| &sweep.span);
+    bound_tasks(&cases.list, realizations, realizations_at.as_ref().or(first), faults);
     let sweeps = read.into_iter().map(sweep).collect();
     Some(Spec { name: name?, seed, realizations, cases: cases.list, base, sweeps, files })
 }
@@ -67,6 +72,24 @@ fn too_many(sweeps: &[&SweepDraft], faults: &mut Faults<'_>) -> bool {
         faults.add(span, message, help);
     }
     first_beyond.is_some()
+}
+
+/// Refuses more tasks than allowed: what is looked at of each must fit into memory.
+fn bound_tasks(cases: &[Case], realizations: Realizations, at: Option<&Range<usize>>, faults: &mut Faults<'_>) {
+    let most = realizations.most();
+    let count = |surface: &SurfaceParams| if surface.is_measured() { 1 } else { u64::from(most) };
+    let mut surfaces: HashSet<String> = HashSet::new();
+    let mut tasks = 0;
+    for Case { params: CaseParams { surface, .. }, .. } in cases {
+        tasks += count(surface) * if surfaces.insert(format!("{surface:?}")) { 3 } else { 1 };
+    }
+    if tasks > MAX_TASKS {
+        let message = format!(
+            "{} cases x {most} realizations make {tasks} tasks (cycles, and two for each surface): at most {MAX_TASKS} are allowed",
+            cases.len()
+        );
+        faults.add(at.unwrap_or(&(0..0)), message, "lower `realizations`, or split the sweeps over several specs".to_owned());
+    }
 }
 
 /// Every point of the grid of some axes, the last one running fastest; one empty point if there is no axis.

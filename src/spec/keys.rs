@@ -128,8 +128,8 @@ pub(super) static KEYS: &[Key] = &[
         low: 1e-12, above: false, high: 0.1, unit: " m", unit_name: "metres", slip: Some((1e-6, "micrometres")), note: "",
     }),
     key!(surface.hurst: number Limits {
-        low: 0.0, above: true, high: 1.0, unit: "", unit_name: "", slip: None,
-        note: "the Hurst exponent of a self-affine surface lies between 0 and 1",
+        low: 0.01, above: false, high: 1.0, unit: "", unit_name: "", slip: None,
+        note: "H, Hurst exponent of a self-affine surface, 0.01 <= H <= 1; default 0.8",
     }),
     key!(surface.magnification: count 2 to 16384, &[],
         "the magnification ζ is the longest over the shortest wavelength of the roughness; 128 is usual"),
@@ -173,8 +173,8 @@ pub(super) static KEYS: &[Key] = &[
         note: "max_load is F/(E* A0), without unit: 0.004 to 0.015 is usual, and contact is nearly full from 0.07 on",
     }, 64), |loads: &Vec<f64>| Value::Numbers(loads.clone()), Numbers(loads) => Some(loads.clone())),
     key!(cycle.approach_step: number Limits {
-        low: 1e-6, above: false, high: 1.0, unit: "", unit_name: "", slip: None,
-        note: "approach_step is a part of the rms height, without unit: 0.01 is usual",
+        low: 1e-5, above: false, high: 1.0, unit: "", unit_name: "", slip: None,
+        note: "approach_step is in rms heights: default 0.01; 1e-5 gives some 500 000 steps per branch, which span about 5 rms heights",
     }),
     key!(cycle.contacts: word KeptContacts),
 ];

@@ -37,6 +37,9 @@ pub const MAX_CASES: u32 = 10_000;
 /// The greatest number of realisations of each surface.
 pub const MAX_REALIZATIONS: u32 = 10_000;
 
+/// The greatest number of tasks of one campaign: two for each surface, one for each cycle.
+pub const MAX_TASKS: u64 = 10_000_000;
+
 /// The greatest number of grid points along one side of a surface: 8 GiB of heights.
 pub const MAX_GRID: u32 = 32_768;
 
@@ -93,7 +96,7 @@ pub struct SurfaceParams {
     pub length_m: f64,
     /// Root mean square height \[m\].
     pub rms_height_m: f64,
-    /// Hurst exponent H.
+    /// Hurst exponent H, from 0.01 to 1.
     pub hurst: f64,
     /// Magnification ζ: the longest over the shortest wavelength.
     pub magnification: u32,

@@ -47,6 +47,15 @@ impl Realizations {
         }
     }
 
+    /// How many there are at most in any case.
+    #[must_use]
+    pub fn most(self) -> u32 {
+        match self {
+            Self::Exactly(count) => count,
+            Self::Until(until) => until.max,
+        }
+    }
+
     /// The precision that is asked for, if one is.
     #[must_use]
     pub fn until(self) -> Option<Until> {

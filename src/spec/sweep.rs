@@ -1,5 +1,6 @@
 //! The `[[sweep]]`s: what each overrides, every value checked by itself.
 
+use std::collections::HashSet;
 use std::ops::Range;
 
 use toml::Spanned;
@@ -35,7 +36,7 @@ pub(super) fn sweeps(written: &Spanned<DeValue<'_>>, span: &Range<usize>, read: 
         faults.add(span, "`sweep` must be an array of tables".to_owned(), help);
         return;
     };
-    let mut names: Vec<String> = Vec::new();
+    let mut names: HashSet<String> = HashSet::new();
     for table in tables.iter() {
         let DeValue::Table(found) = table.get_ref() else {
             let help = "a sweep begins with [[sweep]], in double brackets".to_owned();
@@ -47,7 +48,7 @@ pub(super) fn sweeps(written: &Spanned<DeValue<'_>>, span: &Range<usize>, read: 
 }
 
 /// Reads one sweep.
-fn sweep(found: &DeTable<'_>, at: Range<usize>, known: &mut Vec<String>, faults: &mut Faults<'_>) -> Option<SweepDraft> {
+fn sweep(found: &DeTable<'_>, at: Range<usize>, known: &mut HashSet<String>, faults: &mut Faults<'_>) -> Option<SweepDraft> {
     let before = faults.count();
     let mut name = None;
     let mut overrides = Vec::new();
@@ -60,24 +61,23 @@ fn sweep(found: &DeTable<'_>, at: Range<usize>, known: &mut Vec<String>, faults:
             "name" => {
                 name = top::name("sweep.name", written, faults);
                 if let Some(name) = &name {
-                    if known.contains(name) {
+                    if !known.insert(name.clone()) {
                         let message = format!("two sweeps have the name \"{name}\"");
                         faults.add(&written.span(), message, "each sweep needs a name of its own".to_owned());
                     }
-                    known.push(name.clone());
                 }
             }
             table if TABLES.contains(&table) => {
                 overrides.extend(keys(table, written, &span, faults));
             }
-            unknown => {
+            unknown => faults.add_with(&span, || {
                 let help = if unknown == "seed" || unknown == "realizations" {
                     format!("`{unknown}` is the same for all sweeps: it stands at the top of the spec")
                 } else {
                     lost(unknown, &IN_SWEEP, |table| format!("write {table}.{unknown}"), "[[sweep]] takes")
                 };
-                faults.add(&span, format!("unknown key `{}` in [[sweep]]", shown(unknown)), help);
-            }
+                (format!("unknown key `{}` in [[sweep]]", shown(unknown)), Some(help))
+            }),
         }
     }
     // Keys of different tables may alternate; the grid follows the order written.

@@ -98,17 +98,20 @@ fn length(path: &str, note: &str, value: &Written<'_>, faults: &mut Faults<'_>) 
 /// One of the words of a key.
 pub(super) fn word(path: &str, words: &[&'static str], value: &Written<'_>, faults: &mut Faults<'_>) -> Option<&'static str> {
     let span = value.span();
-    let listed = format!("allowed: {}", words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", "));
+    let listed = || format!("allowed: {}", words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", "));
     let DeValue::String(found) = value.get_ref() else {
-        wrong_type(path, "a word in quotes", value.get_ref(), &span, listed, faults);
+        wrong_type(path, "a word in quotes", value.get_ref(), &span, listed(), faults);
         return None;
     };
     let Some(known) = words.iter().find(|word| **word == found.as_ref()) else {
-        let help = match nearest(found, words.iter().copied()) {
-            Some(near) => format!("did you mean \"{near}\"? {listed}"),
-            None => listed,
-        };
-        faults.add(&span, format!("`{}` does not know the word {}", path, faults.written(&span)), help);
+        let written = faults.written(&span);
+        faults.add_with(&span, || {
+            let help = match nearest(found, words.iter().copied()) {
+                Some(near) => format!("did you mean \"{near}\"? {}", listed()),
+                None => listed(),
+            };
+            (format!("`{path}` does not know the word {written}"), Some(help))
+        });
         return None;
     };
     Some(known)

@@ -1,6 +1,6 @@
 //! From the text to a draft: every key looked up, every value checked by itself.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::ops::Range;
 
 use toml::Spanned;
@@ -24,8 +24,10 @@ pub(super) struct Draft {
     pub(super) origins: Vec<Origin>,
     /// The sweeps; nothing for one that has a fault, of which the cases are unknown.
     pub(super) sweeps: Vec<Option<SweepDraft>>,
-    /// BLAKE3 of the files that are named.
-    pub(super) files: BTreeMap<String, String>,
+    /// Where the number of realizations is written.
+    pub(super) realizations_at: Option<Range<usize>>,
+    /// BLAKE3 of the files that are named, and where it is written.
+    pub(super) files: BTreeMap<String, (String, Range<usize>)>,
 }
 
 /// Where a value of the base comes from.
@@ -56,14 +58,13 @@ pub(super) fn entries<'a, 't>(table: &'a DeTable<'t>) -> Vec<Entry<'a, 't>> {
 pub(super) fn document(text: &str, faults: &mut Faults<'_>) -> Option<Draft> {
     let (root, broken) = DeTable::parse_recoverable(text);
     if !broken.is_empty() {
-        let mut lines = Vec::new();
+        let mut lines = HashSet::new();
         for error in broken {
             let span = error.span().unwrap_or(text.len()..text.len());
             let line = faults.line(&span);
             // A parser that recovers stumbles over the rest of the same line.
-            if !lines.contains(&line) {
-                lines.push(line);
-                faults.add(&span, format!("the spec is not valid TOML: {}", error.message()), None);
+            if lines.insert(line) {
+                faults.add_with(&span, || (format!("the spec is not valid TOML: {}", error.message()), None));
             }
         }
         return None;
@@ -72,6 +73,7 @@ pub(super) fn document(text: &str, faults: &mut Faults<'_>) -> Option<Draft> {
         name: None,
         seed: 2021,
         realizations: Realizations::Exactly(6),
+        realizations_at: None,
         base: CaseParams::default(),
         origins: vec![Origin::Default; KEYS.len()],
         sweeps: Vec::new(),
@@ -87,15 +89,16 @@ pub(super) fn document(text: &str, faults: &mut Faults<'_>) -> Option<Draft> {
             "name" => draft.name = top::name("name", written, faults),
             "seed" => draft.seed = top::seed(written, faults).unwrap_or(draft.seed),
             "realizations" => {
+                draft.realizations_at = Some(written.span());
                 draft.realizations = realizations(written, faults).unwrap_or(draft.realizations);
             }
             "files" => draft.files = files(written, &span, faults),
             "sweep" => sweeps(written, &span, &mut draft.sweeps, faults),
             table if TABLES.contains(&table) => base(table, written, &span, &mut draft, faults),
-            unknown => {
+            unknown => faults.add_with(&span, || {
                 let help = lost(unknown, &TOP, |table| format!("`{unknown}` belongs in [{table}]"), "a spec takes");
-                faults.add(&span, format!("unknown key `{}` at the top of the spec", shown(unknown)), help);
-            }
+                (format!("unknown key `{}` at the top of the spec", shown(unknown)), Some(help))
+            }),
         }
     }
     Some(draft)
@@ -141,10 +144,11 @@ pub(super) fn keys<'a, 't>(
         if let Some(place) = find(table, name) {
             known.push((place, span, written));
         } else {
-            let own: Vec<_> = names(table).collect();
-            let takes = format!("[{table}] takes");
-            let help = lost(name, &own, |other| format!("`{name}` belongs in [{other}]"), &takes);
-            faults.add(&span, format!("unknown key `{}` in [{table}]", shown(name)), help);
+            faults.add_with(&span, || {
+                let own: Vec<_> = names(table).collect();
+                let help = lost(name, &own, |other| format!("`{name}` belongs in [{other}]"), &format!("[{table}] takes"));
+                (format!("unknown key `{}` in [{table}]", shown(name)), Some(help))
+            });
         }
     }
     known

@@ -2,7 +2,7 @@
 
 use super::done::Outcome;
 use super::surface::{Scale, read_summits, scale};
-use super::{StageError, Watch};
+use super::{StageError, Watch, step_count};
 use crate::campaign::{Campaign, CycleUnit, Stage};
 use crate::physics::cycle::{self, Cycle, Halfway, Settings, Step};
 use crate::physics::interaction::Effort;
@@ -45,6 +45,7 @@ pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> R
     let dir = campaign.cycle_dir(unit);
     std::fs::create_dir_all(&dir).map_err(|source| StageError::Folder { path: dir.clone(), source })?;
     let problem = problem(params, scale(campaign, &campaign.surfaces[unit.surface])?, &summits)?;
+    step_count::bound(&problem, &summits, params)?;
     let settings = settings(params, summits.len());
     // The physics tells how far it is; the watch wants what was added.
     let reached = std::cell::Cell::new(0.0);

@@ -1,23 +1,89 @@
 //! What failed: a record in the place of the cycle that is not there, and what is not tried again for it.
 
-use super::StageError;
-use crate::campaign::{Campaign, CycleUnit, Stage};
+use super::{StageError, Watch};
+use crate::campaign::{Campaign, CycleUnit, Stage, Unit};
 use crate::store::commit;
+use crate::text::shell_path;
 use serde_json::json;
 use std::collections::{HashMap, HashSet};
+use std::path::{Path, PathBuf};
 
-/// Whether an error is one case's own: the others go on.
+/// Whether an error is one case's own: the others go on. What the system says of a file (a full disk) is not.
 pub(super) fn is_of_a_case(error: &StageError) -> bool {
-    matches!(error, StageError::Physics(_) | StageError::Measured { .. } | StageError::Scan(_))
+    matches!(
+        error,
+        StageError::Physics(_)
+            | StageError::Measured { .. }
+            | StageError::Scan(_)
+            | StageError::Frame(_)
+            | StageError::InTheWay { .. }
+            | StageError::TooManySteps { .. }
+    )
 }
 
-/// Records that a cycle failed, at which stage and why.
-pub(super) fn record(campaign: &Campaign, unit: &CycleUnit, stage: Stage, error: &StageError) -> Result<(), StageError> {
-    let again = format!("hysteron retry {} {}", campaign.dir.display(), unit.id);
-    let record = json!({ "key": unit.key, "stage": stage.word(), "error": error.to_string(), "again": again });
+/// Refuses a task whose files cannot be put in place, before it is computed: a folder has the name of one, or a file that of their folder.
+pub(super) fn in_the_way(campaign: &Campaign, task: &Unit<'_>) -> Result<(), StageError> {
+    let file = |folder: &str, ending: &str| campaign.dir.join(folder).join(format!("{}.{ending}", task.id));
+    let mut files = vec![campaign.receipt_path(task)];
+    match task.stage {
+        Stage::Generate => files.push(file("surfaces", "h5")),
+        Stage::Extract => files.push(file("asperities", "parquet")),
+        Stage::Cycle => {
+            let folder = campaign.dir.join("cycles").join(task.id);
+            if std::fs::symlink_metadata(&folder).is_ok() && !folder.is_dir() {
+                return Err(StageError::InTheWay { path: folder, what: "something that is no folder" });
+            }
+            let inside = std::fs::read_dir(&folder).map(|all| all.flatten().map(|entry| entry.path()).collect::<Vec<PathBuf>>());
+            files.extend(inside.unwrap_or_default().into_iter().filter(|path| path.extension().is_some_and(|e| e == "parquet")));
+        }
+        Stage::Aggregate | Stage::Report => {}
+    }
+    match files.into_iter().find(|path| path.is_dir()) {
+        Some(path) => Err(StageError::InTheWay { path, what: "a folder" }),
+        None => Ok(()),
+    }
+}
+
+/// Prints and records that a task failed by an error of its own, in the place of every cycle that needs it.
+pub(super) fn report(
+    campaign: &Campaign,
+    (id, cycles): (&str, &[&CycleUnit]),
+    stage: Stage,
+    error: &StageError,
+    watch: &dyn Watch,
+) -> Result<(), StageError> {
+    if !is_of_a_case(error) {
+        return Ok(());
+    }
+    watch.notice(&format!("{id} failed: {error}"));
+    for cycle in cycles {
+        match record(campaign, cycle, stage, error) {
+            Err(why @ StageError::InTheWay { .. }) => watch.notice(&format!("{}: the failure is not recorded: {why}", cycle.id)),
+            recorded => recorded?,
+        }
+    }
+    Ok(())
+}
+
+/// Records that a cycle failed, at which stage and why; of a folder in the way also where it is, since without it nothing has failed.
+fn record(campaign: &Campaign, unit: &CycleUnit, stage: Stage, error: &StageError) -> Result<(), StageError> {
+    in_the_way(campaign, &unit.cycle()).or_else(|why| match &why {
+        StageError::InTheWay { path, .. } if *path != campaign.cycle_dir(unit) => Ok(()),
+        _ => Err(why),
+    })?;
+    let file = campaign.failure_path(unit);
+    if file.is_dir() {
+        return Err(StageError::InTheWay { path: file, what: "a folder" });
+    }
+    let again = format!("hysteron retry {} {}", shell_path(&campaign.dir), unit.id);
+    let mut record = json!({ "key": unit.key, "stage": stage.word(), "error": error.to_string(), "again": again });
+    if let StageError::InTheWay { path, .. } = error {
+        let place: &Path = path.strip_prefix(&campaign.dir).unwrap_or(path);
+        record["in_the_way"] = place.to_string_lossy().into();
+    }
     let path = campaign.cycle_dir(unit);
     std::fs::create_dir_all(&path).map_err(|source| StageError::Folder { path, source })?;
-    commit::commit_bytes("record a failed case", &campaign.failure_path(unit), format!("{record:#}\n").as_bytes())?;
+    commit::commit_bytes("record a failed case", &file, format!("{record:#}\n").as_bytes())?;
     Ok(())
 }
 

@@ -13,6 +13,7 @@ mod report;
 mod sampling;
 mod scans;
 mod statistics;
+mod step_count;
 mod surface;
 mod theories;
 mod trust;
@@ -26,6 +27,7 @@ use crate::campaign::{Campaign, CycleUnit, Shard, Stage, Standing, SurfaceUnit, 
 use crate::physics::PhysicsError;
 use crate::stats::StatsError;
 use crate::store::{Check, FrameError, StoreError, commit};
+use crate::text::{counted, shown};
 use done::{Clock, Outcome};
 use rayon::prelude::*;
 use serde_json::{Map, Value};
@@ -53,7 +55,7 @@ pub enum StageError {
     #[error(transparent)]
     Figure(#[from] crate::figures::FigureError),
     /// The output folder.
-    #[error("cannot make the folder {}: {source}; allowed: a folder that can be written to (--out DIR)", path.display())]
+    #[error("cannot make the folder {}: {source}; allowed: a folder that can be written to (--out DIR)", shown(path))]
     Folder {
         /// The folder.
         path: PathBuf,
@@ -61,7 +63,7 @@ pub enum StageError {
         source: std::io::Error,
     },
     /// A measured surface.
-    #[error("cannot take the surface {}: {why}", path.display())]
+    #[error("cannot take the surface {}: {why}", shown(path))]
     Measured {
         /// Its file.
         path: PathBuf,
@@ -72,15 +74,36 @@ pub enum StageError {
     #[error(transparent)]
     Scan(StoreError),
     /// A measured surface that is no longer what the spec was read with: nobody's case, since its keys tell of another file.
-    #[error("cannot take the surface {}: {why}", path.display())]
+    #[error("cannot take the surface {}: {why}", shown(path))]
     Changed {
         /// Its file.
         path: PathBuf,
         /// Why, and what is allowed.
         why: String,
     },
+    /// A folder in the place of a file that a task writes, or a file in the place of its folder.
+    #[error("cannot write {}: {what} has this name\nhelp: remove or rename it; the next run computes the task", shown(path))]
+    InTheWay {
+        /// The place.
+        path: PathBuf,
+        /// What is there.
+        what: &'static str,
+    },
+    /// Steps that would fill the memory.
+    #[error(
+        "cycle.approach_step = {approach_step:?} makes at least {steps:.0} steps of loading and unloading (limit {limit})\n\
+         help: use a larger approach_step (default 0.01); it does not change results, which are located between the steps"
+    )]
+    TooManySteps {
+        /// Step of the approach, in rms heights.
+        approach_step: f64,
+        /// Steps of all branches, estimated from below.
+        steps: f64,
+        /// How many are allowed.
+        limit: u64,
+    },
     /// A turning point that was not kept.
-    #[error("cannot unload from F/(E* A0) = {max_load}: {} holds {kept}; allowed: one of these", path.display())]
+    #[error("cannot unload from F/(E* A0) = {max_load}: {} holds {kept}; allowed: one of these", shown(path))]
     NoTurning {
         /// The load asked for.
         max_load: f64,
@@ -99,7 +122,8 @@ pub enum StageError {
     },
     /// A stage lacks what an earlier one writes.
     #[error(
-        "cannot {stage}: {missing} of {all} units of the stage before it are missing or damaged ({example}); run `hysteron run SPEC` or the stage before first"
+        "cannot {stage}: {missing} of {} of the stage before it are missing or damaged ({example}); run `hysteron run SPEC` or the stage before first",
+        counted(*all, "task")
     )]
     Incomplete {
         /// The stage.
@@ -233,7 +257,8 @@ pub fn prepare(campaign: &Campaign) -> Result<(), StageError> {
     }
     let path = campaign.dir.join("campaign.toml");
     let text = campaign.spec.to_toml();
-    if std::fs::read_to_string(&path).is_ok_and(|present| present == text) && campaign.spec_fault().is_none() {
+    // A pipe in its place would be waited for.
+    if path.is_file() && std::fs::read_to_string(&path).is_ok_and(|present| present == text) && campaign.spec_fault().is_none() {
         return Ok(());
     }
     let clock = Clock::start();
@@ -285,15 +310,11 @@ fn surfaces(campaign: &Campaign, task: &Task, stage: Stage, watch: &dyn Watch) -
         require(stage, &wanted, |unit| campaign.standing(&unit.surface(), task.check), |unit| unit.id.clone())?;
     }
     let work = |unit: &SurfaceUnit| {
-        let outcome = work(campaign, unit);
+        let task = if stage == Stage::Generate { unit.surface() } else { unit.asperities() };
+        let outcome = failure::in_the_way(campaign, &task).and_then(|()| work(campaign, unit));
         watch.progress(stage, 1.0);
-        if let Err(error) = &outcome
-            && failure::is_of_a_case(error)
-        {
-            for cycle in cycles_of(unit) {
-                failure::record(campaign, cycle, stage, error)?;
-            }
-            watch.notice(&format!("{} failed: {error}", unit.id));
+        if let Err(error) = &outcome {
+            failure::report(campaign, (&unit.id, cycles_of(unit)), stage, error, watch)?;
         }
         outcome
     };
@@ -329,12 +350,9 @@ fn cycles(campaign: &Campaign, task: &Task, watch: &dyn Watch) -> Result<Tally, 
         &wanted,
         watch,
         |unit| {
-            let outcome = cycle::run(campaign, unit, watch);
-            if let Err(error) = &outcome
-                && failure::is_of_a_case(error)
-            {
-                failure::record(campaign, unit, Stage::Cycle, error)?;
-                watch.notice(&format!("{} failed: {error}", unit.id));
+            let outcome = failure::in_the_way(campaign, &unit.cycle()).and_then(|()| cycle::run(campaign, unit, watch));
+            if let Err(error) = &outcome {
+                failure::report(campaign, (&unit.id, &[unit]), Stage::Cycle, error, watch)?;
             }
             outcome
         },

@@ -6,6 +6,7 @@ use super::measure::measure;
 use crate::campaign::{Campaign, SurfaceUnit};
 use crate::formats::recognize;
 use crate::keys::digest_of_file;
+use crate::physics::PhysicsError;
 use crate::physics::measured::find_measured;
 use crate::physics::memory;
 use crate::physics::spectrum::Spectrum;
@@ -74,6 +75,11 @@ pub(super) fn generate(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Outcom
     let (spectrum, grid) = (spectrum(params), params.grid() as usize);
     memory::check(synthesis_bytes(&spectrum, grid))?;
     let surface = synthesize(&spectrum, &seed, grid);
+    // One that no file may hold is the failure of this surface.
+    if let Some(value) = surface.heights_m.iter().copied().find(|height| !height.is_finite()) {
+        let [action, quantity, allowed] = ["the heights of the surface", "a height [m]", "finite heights"];
+        return Err(PhysicsError::Domain { action, quantity, value, allowed }.into());
+    }
     let header = SurfaceHeader {
         length_m: params.length_m,
         realization: u64::from(unit.realization),

@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{PoisonError, RwLock, RwLockWriteGuard};
 
 use super::error::{Cause, StoreError};
+use crate::text::shown;
 
 /// How the name of a file that is still being written begins.
 pub const TEMPORARY_PREFIX: &str = ".hysteron-";
@@ -54,7 +55,7 @@ pub fn is_temporary(path: &Path) -> bool {
 /// Whether nobody is writing this temporary file any more.
 #[must_use]
 pub fn is_abandoned(path: &Path) -> bool {
-    is_temporary(path) && File::open(path).is_ok_and(|file| file.try_lock().is_ok())
+    is_temporary(path) && path.is_file() && File::open(path).is_ok_and(|file| file.try_lock().is_ok())
 }
 
 /// Writes a file with `write`, checks with `check` what can be read back, and puts it in place of `path`.
@@ -102,7 +103,7 @@ fn commit_inner(
     };
     if !directory.is_dir() {
         let state = if directory.exists() { "is not a directory" } else { "does not exist" };
-        return Err(format!("{} {state}", directory.display()).into());
+        return Err(format!("{} {state}", shown(directory)).into());
     }
     if path.is_dir() {
         return Err("there is a directory of that name".into());

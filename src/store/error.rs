@@ -5,12 +5,14 @@ use std::error::Error;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 
+use crate::text::shown;
+
 /// Any reason for a failure.
 pub(super) type Cause = Box<dyn Error + Send + Sync + 'static>;
 
 /// Something that could not be done with a file.
 #[derive(Debug, thiserror::Error)]
-#[error("cannot {action} {}: {source}", path.display())]
+#[error("cannot {action} {}: {source}", shown(path))]
 pub struct StoreError {
     /// What was tried, as in "write the table steps to".
     pub action: String,

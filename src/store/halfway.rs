@@ -31,13 +31,14 @@ pub fn write_halfway(path: &Path, key: &str, bytes: &[u8]) -> Result<(), StoreEr
 #[must_use]
 pub fn is_halfway(path: &Path, key: &str) -> bool {
     let mut head = [0; DIGITS];
-    std::fs::File::open(path).and_then(|mut file| file.read_exact(&mut head)).is_ok() && head == *key.as_bytes()
+    path.is_file() && std::fs::File::open(path).and_then(|mut file| file.read_exact(&mut head)).is_ok() && head == *key.as_bytes()
 }
 
 /// The bytes at `path`, if they are whole and of the unit `key`.
 #[must_use]
 pub fn read_halfway(path: &Path, key: &str) -> Option<Vec<u8>> {
-    let whole = std::fs::read(path).ok()?;
+    // A pipe in its place would be waited for.
+    let whole = path.is_file().then(|| std::fs::read(path).ok())??;
     let (head, bytes) = whole.split_at_checked(2 * DIGITS)?;
     let is_its = head[..DIGITS] == *key.as_bytes() && head[DIGITS..] == *seal(bytes).to_hex().as_bytes();
     is_its.then(|| bytes.to_vec())

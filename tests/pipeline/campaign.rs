@@ -6,8 +6,11 @@ mod faults;
 mod fields;
 mod fuzz;
 mod kills;
+mod limits;
+mod lost;
 mod sampling;
 mod signals;
+mod tasks;
 
 /// Two surfaces and two cycles, of which one load each: half a second of work.
 const SMALL: &str =

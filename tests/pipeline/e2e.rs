@@ -162,7 +162,7 @@ fn e2e_a_stage_alone_refuses_what_it_cannot_read() {
     fs::write(&path, &bytes[..bytes.len() / 3]).unwrap();
     let extract = bench.verb("extract", &[]);
     assert_eq!(code(&extract), 1);
-    assert!(stderr(&extract).contains("1 of 4 units"), "{}", stderr(&extract));
+    assert!(stderr(&extract).contains("1 of 4 tasks"), "{}", stderr(&extract));
     let aggregate = bench.verb("aggregate", &[]);
     assert_eq!(code(&aggregate), 1);
     assert!(stderr(&aggregate).contains("--partial"), "{}", stderr(&aggregate));
@@ -238,7 +238,7 @@ fn e2e_plan_and_bad_specs_write_nothing() {
     let bench = Bench::new(SPEC);
     let plan = bench.verb("plan", &[]);
     assert_eq!(code(&plan), 0);
-    assert!(stdout(&plan).contains("14 units"), "{}", stdout(&plan));
+    assert!(stdout(&plan).contains("`run` would compute 14 tasks."), "{}", stdout(&plan));
     assert!(!bench.out().exists());
     let bad = Bench::new(&SPEC.replace("seed", "sed"));
     let run = bad.verb("run", &[]);

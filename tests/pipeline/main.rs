@@ -29,5 +29,6 @@ mod stats;
 mod steps;
 #[cfg(feature = "store")]
 mod store;
+mod text;
 #[cfg(feature = "stats")]
 mod validity;

@@ -2,6 +2,7 @@
 
 use super::{Fault, failed, make_folder, say};
 use crate::cli::Arguments;
+use crate::text::shown;
 use clap::CommandFactory;
 use clap_complete::Shell;
 use std::path::Path;
@@ -19,7 +20,7 @@ pub(super) fn man(verb: Option<&str>, folder: Option<&Path>) -> Result<u8, Fault
     if let Some(folder) = folder {
         make_folder(folder)?;
         clap_mangen::generate_to(Arguments::command(), folder).map_err(refused)?;
-        say(&format!("Written: {}\n", folder.display()))?;
+        say(&format!("Written: {}\n", shown(folder)))?;
         return Ok(0);
     }
     let mut all = Arguments::command();

@@ -1,11 +1,12 @@
 //! `export`: files that other programs run or publish a campaign with.
 
-use super::{Fault, failed, make_folder, open, open_dir, own_file, say, told};
+use super::{BAD_SPEC, Fault, failed, make_folder, open, open_dir, own_file, say, told};
 use crate::campaign::Standing;
 use crate::cli::{FolderArguments, OutputArguments};
 use crate::engines::{ro_crate as description, snakemake as rules, usual_shards};
 use crate::stages;
 use crate::store::{Check, commit};
+use crate::text::{counted, shell_path, shown};
 use serde_json::json;
 use std::path::Path;
 use std::time::SystemTime;
@@ -23,34 +24,35 @@ pub(super) fn snakemake(spec: &Path, output: &OutputArguments, shards: Option<u3
     if output.json {
         say(&format!("{:#}\n", json!({ "file": path.display().to_string(), "shard_count": shards })))?;
     } else {
-        say(&format!("Written: {}\nRun it with `snakemake --snakefile {} --cores 2`\n", path.display(), path.display()))?;
+        say(&format!("Written: {}\nRun it with `snakemake --snakefile {} --cores 2`\n", shown(&path), shell_path(&path)))?;
     }
     Ok(0)
 }
 
 pub(super) fn ro_crate(folder: &FolderArguments, license: Option<&str>) -> Result<u8, Fault> {
+    let license = license.map(description::licence).transpose().map_err(|text| Fault { code: BAD_SPEC, text: format!("error: {text}") })?;
     let campaign = open_dir("describe", &folder.dir)?;
     let audit = campaign.audit(Check::Sizes);
-    if let Some(fault) = audit.faults.first() {
+    if let Some(fault) = audit.first_fault() {
         return Err(failed(format!(
-            "cannot describe {}: {fault}; allowed: a run whose files are as they were written",
-            folder.dir.display()
+            "cannot describe {}: {fault}; allowed: a run whose files are as they were written (`hysteron verify`)",
+            shown(&folder.dir)
         )));
     }
     let day: String = humantime::format_rfc3339_seconds(SystemTime::now()).to_string().chars().take(10).collect();
-    let text = description::metadata(&campaign, &campaign.all_receipts(), &day, license);
+    let text = description::metadata(&campaign, &campaign.all_receipts(), &day, license.as_deref());
     let path = folder.dir.join("ro-crate-metadata.json");
     commit::commit_bytes("write the description", &path, text.as_bytes()).map_err(failed)?;
     if folder.json {
         say(&format!("{:#}\n", json!({ "file": path.display().to_string(), "file_count": audit.file_count })))?;
         return Ok(0);
     }
-    say(&format!("Written: {}, which describes {} files.\n", path.display(), audit.file_count))?;
+    say(&format!("Written: {}, which describes {}.\n", shown(&path), counted(audit.file_count, "file")))?;
     if campaign.survey(Check::Sizes).report != Standing::Done {
         say("Caution: this run is not finished, or its report is not of what is there now.\n")?;
     }
     if license.is_none() {
-        say("A crate that is published needs a licence: --license ADDRESS states it.\n")?;
+        say("A crate that is published needs a licence: --license states it, as in --license CC-BY-4.0.\n")?;
     }
     Ok(0)
 }

@@ -8,12 +8,14 @@ mod submit;
 mod survey;
 mod work;
 
-use super::{CampaignArguments, EngineArgument, ExportVerb, OutputArguments, StageArgument, Verb};
+use super::limits;
+use super::{CampaignArguments, EngineArgument, ExportVerb, JobsArguments, OutputArguments, StageArgument, Verb};
 use crate::campaign::{Campaign, Stage};
 use crate::schema;
 use crate::spec::Spec;
 use crate::stages;
 use crate::store::commit;
+use crate::text::{counted, printable, shell_path, shown};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -34,24 +36,37 @@ fn failed(error: impl std::fmt::Display) -> Fault {
 }
 
 pub(super) fn perform(verb: &Verb) -> ExitCode {
-    match threads(jobs(verb)).and_then(|()| performed(verb)) {
+    match started(verb).and_then(|()| performed(verb)) {
         Ok(code) => ExitCode::from(code),
         Err(fault) => {
-            let _ = writeln!(std::io::stderr().lock(), "{}", fault.text);
+            let _ = writeln!(std::io::stderr().lock(), "{}", printable(&fault.text));
             ExitCode::from(fault.code)
         }
     }
 }
 
-/// How many threads are asked for.
-fn jobs(verb: &Verb) -> Option<u16> {
+/// The threads of a command that computes; nothing for one that does not.
+fn jobs(verb: &Verb) -> Option<&JobsArguments> {
     match verb {
-        Verb::Run { campaign, .. } | Verb::Aggregate { campaign, .. } => campaign.how.jobs.jobs,
-        Verb::Generate(campaign) | Verb::Extract(campaign) | Verb::Cycle(campaign) => campaign.how.jobs.jobs,
-        Verb::Report { campaign, .. } => campaign.jobs.jobs,
-        Verb::Retry { jobs, .. } => jobs.jobs,
+        Verb::Run { campaign, .. } | Verb::Aggregate { campaign, .. } => Some(&campaign.how.jobs),
+        Verb::Generate(campaign) | Verb::Extract(campaign) | Verb::Cycle(campaign) => Some(&campaign.how.jobs),
+        Verb::Report { campaign, .. } => Some(&campaign.jobs),
+        Verb::Retry { jobs, .. } => Some(jobs),
         _ => None,
     }
+}
+
+/// Starts the threads, and looks at the limits of the process where it is to compute.
+fn started(verb: &Verb) -> Result<(), Fault> {
+    let jobs = jobs(verb);
+    if let Some(jobs) = jobs {
+        limits::bound_polars(jobs.jobs);
+        if let Some(why) = limits::too_little_space() {
+            return Err(failed(why));
+        }
+    }
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(limits::threads(jobs.and_then(|jobs| jobs.jobs)));
+    pool.build_global().map_err(|error| failed(format!("cannot start the threads: {error}\nhelp: ask for fewer of them (--jobs N)")))
 }
 
 fn performed(verb: &Verb) -> Result<u8, Fault> {
@@ -87,9 +102,10 @@ fn of_spec(campaign: &CampaignArguments, stages: (Stage, Stage), partial: bool) 
     work::stages(&campaign.spec, &campaign.how, stages, partial)
 }
 
-/// How many cases failed, and what they are called after that.
-fn counted(failures: usize) -> (String, &'static str) {
-    if failures == 1 { ("1 case".to_owned(), "it") } else { (format!("{failures} cases"), "them") }
+/// A sentence on cases that failed, and the command that runs them again.
+fn failed_cases(failures: usize, dir: &Path) -> String {
+    let them = if failures == 1 { "it" } else { "them" };
+    format!("{} failed; `hysteron retry {}` tries {them} again.\n", counted(failures, "case"), shell_path(dir))
 }
 
 fn stage(argument: StageArgument) -> Stage {
@@ -102,31 +118,38 @@ fn stage(argument: StageArgument) -> Stage {
     }
 }
 
-/// Prints to standard output, and says whether somebody reads it: one who has gone away (`| head`) is no fault.
+/// Prints to standard output, control characters as escapes, and says whether somebody reads it: one who has gone away (`| head`) is no fault.
 fn say(text: &str) -> Result<bool, Fault> {
     let mut output = std::io::stdout().lock();
-    match output.write_all(text.as_bytes()).and_then(|()| output.flush()) {
+    match output.write_all(printable(text).as_bytes()).and_then(|()| output.flush()) {
         Ok(()) => Ok(true),
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(false),
         Err(error) => Err(failed(format!("cannot write to standard output: {error}"))),
     }
 }
 
-/// The threads of everything that follows: as many as there are cores, unless it is said.
-fn threads(count: Option<u16>) -> Result<(), Fault> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(count.map_or(0, usize::from));
-    pool.build_global().map_err(|error| failed(format!("cannot start the threads: {error}; allowed: fewer of them (--jobs N)")))
-}
-
 fn open(spec: &Path, output: &OutputArguments) -> Result<Campaign, Fault> {
     let spec = Spec::read(spec).map_err(|errors| Fault { code: BAD_SPEC, text: errors.to_string() })?;
     let dir = output.out.clone().unwrap_or_else(|| PathBuf::from("data/runs").join(&spec.name));
+    not_the_root(&dir)?;
     stages::sampled(Campaign::new(spec, dir)).map_err(failed)
+}
+
+/// Refuses the root folder, which is nobody's output folder.
+fn not_the_root(dir: &Path) -> Result<(), Fault> {
+    match dir.canonicalize() {
+        Ok(found) if found.parent().is_none() => {
+            let text =
+                format!("error: the output folder cannot be {}, the root folder\nhelp: name a folder of its own (--out DIR)", shown(dir));
+            Err(Fault { code: BAD_SPEC, text })
+        }
+        _ => Ok(()),
+    }
 }
 
 /// A folder by its whole name, as other programs are to be told of it: they read it as text.
 fn told(dir: &Path) -> Result<PathBuf, Fault> {
-    let refused = |why: String| failed(format!("cannot tell other programs of {}: {why}", dir.display()));
+    let refused = |why: String| failed(format!("cannot tell other programs of {}: {why}", shown(dir)));
     let dir = std::path::absolute(dir).map_err(|error| refused(error.to_string()))?;
     let strange = |c: char| c.is_control() || matches!(c, '{' | '}' | '%' | '"' | '\\');
     match dir.to_str().map(|name| name.chars().find(|c| strange(*c))) {
@@ -137,7 +160,7 @@ fn told(dir: &Path) -> Result<PathBuf, Fault> {
 }
 
 fn make_folder(folder: &Path) -> Result<(), Fault> {
-    std::fs::create_dir_all(folder).map_err(|error| failed(format!("cannot make the folder {}: {error}", folder.display())))
+    std::fs::create_dir_all(folder).map_err(|error| failed(format!("cannot make the folder {}: {error}", shown(folder))))
 }
 
 /// The program itself, as another one is to start it.
@@ -149,7 +172,7 @@ fn own_file() -> Result<PathBuf, Fault> {
 fn open_dir(action: &str, dir: &Path) -> Result<Campaign, Fault> {
     let path = dir.join("campaign.toml");
     if !path.is_file() {
-        let dir = dir.display();
+        let dir = shown(dir);
         return Err(failed(format!("cannot {action} {dir}: it has no campaign.toml; allowed: the output folder of a run")));
     }
     open(&path, &OutputArguments { out: Some(dir.to_owned()), json: false })

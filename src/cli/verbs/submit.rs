@@ -1,20 +1,28 @@
 //! `submit`: what is not done yet goes to Slurm; and what `status` says of its queue.
 
-use super::{Fault, failed, make_folder, open, own_file, say, told};
+use super::{BAD_SPEC, Fault, failed, make_folder, open, own_file, say, told};
 use crate::campaign::{Campaign, Stage, Standing};
 use crate::cli::OutputArguments;
 use crate::engines::slurm::{Job, Order, Queue, Sent, folder, jobs, script};
-use crate::engines::{open_shards, quoted, usual_shards};
+use crate::engines::{open_shards, usual_shards};
 use crate::stages;
 use crate::store::{Check, commit};
+use crate::text::{counted, shell_path, shell_quote, shown as path_shown};
 use serde_json::{Value, json};
+use std::io::Read as _;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
+use std::time::Duration;
 
 /// What Slurm lets array indices go up to where it does not say.
 const USUAL_MOST: usize = 1001;
 
 pub(super) fn slurm(spec: &Path, output: &OutputArguments, shards: Option<u32>, task: (u16, &[String]), dry: bool) -> Result<u8, Fault> {
+    if let Some(option) = task.1.iter().find(|option| option.chars().any(char::is_control)) {
+        let text =
+            format!("error: --option {option:?} has a control character\nhelp: give one option of sbatch for each --option, on one line");
+        return Err(Fault { code: BAD_SPEC, text });
+    }
     let mut campaign = open(spec, output)?;
     campaign.dir = told(&campaign.dir)?;
     let shards = shards.map_or_else(|| usual_shards(&campaign), |count| count as usize);
@@ -68,7 +76,7 @@ fn show(campaign: &Campaign, order: &Order, json: bool) -> Result<u8, Fault> {
         return Ok(0);
     }
     for (path, text) in scripts {
-        say(&format!("# {}\n{text}\n", path.display()))?;
+        say(&format!("# {}\n{text}\n", path_shown(&path)))?;
     }
     for (command, name) in commands.iter().zip(&names) {
         say(&format!("{name} = sbatch {}\n", shown(command)))?;
@@ -92,12 +100,12 @@ fn send(campaign: &Campaign, order: &Order, mut sent: Vec<Sent>, json: bool) -> 
         // After each, so that none that was sent is forgotten.
         remember(campaign, &sent)?;
         if !json {
-            let tasks = if job.tasks.len() < 2 { "one task".to_owned() } else { format!("{} tasks", job.tasks.len()) };
+            let tasks = counted(job.tasks.len().max(1), "task");
             say(&format!("{:9} job {number}, {tasks}\n", job.stage.word()))?;
         }
         numbers.push(number.to_string());
     }
-    let (dir, log) = (campaign.dir.display(), log.display());
+    let (dir, log) = (shell_path(&campaign.dir), path_shown(&log));
     say(&if json {
         jobs_json(campaign, &jobs, &numbers)
     } else {
@@ -118,8 +126,7 @@ fn jobs_json(campaign: &Campaign, jobs: &[Job], numbers: &[String]) -> String {
 
 /// Arguments as a shell takes them.
 fn shown(arguments: &[String]) -> String {
-    let word = |word: &String| if word.contains([' ', '\'']) { quoted(Path::new(word)) } else { word.clone() };
-    arguments.iter().map(word).collect::<Vec<_>>().join(" ")
+    arguments.iter().map(|word| shell_quote(word)).collect::<Vec<_>>().join(" ")
 }
 
 fn sbatch(arguments: &[String]) -> Result<u64, Fault> {
@@ -142,10 +149,31 @@ fn sbatch(arguments: &[String]) -> Result<u64, Fault> {
     })
 }
 
+/// How long Slurm's commands may take to answer a question.
+const PATIENCE: Duration = Duration::from_secs(5);
+
+/// What a command prints, if it succeeds in time. One that does not answer is killed.
+fn answer(command: &str, arguments: &[&str]) -> Option<String> {
+    let mut child = Command::new(command).args(arguments).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().ok()?;
+    let mut output = child.stdout.take()?;
+    let (tell, told) = std::sync::mpsc::channel();
+    // A thread of its own: what the command has started may hold its output open, and is not waited for.
+    let read = move || {
+        let mut text = Vec::new();
+        tell.send(output.read_to_end(&mut text).map(|_| String::from_utf8_lossy(&text).into_owned()))
+    };
+    std::thread::Builder::new().name(command.to_owned()).spawn(read).ok()?;
+    let text = told.recv_timeout(PATIENCE).ok().and_then(Result::ok);
+    if text.is_none() {
+        let _ = child.kill();
+    }
+    let status = child.wait().ok()?;
+    text.filter(|_| status.success())
+}
+
 /// How far array indices may go here.
 fn most() -> usize {
-    let output = Command::new("scontrol").args(["show", "config"]).output().ok().filter(|output| output.status.success());
-    let text = output.map(|output| String::from_utf8_lossy(&output.stdout).into_owned()).unwrap_or_default();
+    let text = answer("scontrol", &["show", "config"]).unwrap_or_default();
     let line = text.lines().find(|line| line.trim_start().starts_with("MaxArraySize"));
     line.and_then(|line| line.split('=').nth(1)?.trim().parse().ok()).filter(|most| *most > 0).unwrap_or(USUAL_MOST)
 }
@@ -154,7 +182,7 @@ fn most() -> usize {
 pub(super) fn sent(campaign: &Campaign) -> Result<Vec<Sent>, Fault> {
     let path = folder(campaign).join("jobs.json");
     let refused = |why: String| {
-        let path = path.display();
+        let path = path_shown(&path);
         failed(format!("cannot read the jobs that were sent from {path}: {why}; allowed: to delete it, once none of them is in the queue"))
     };
     match std::fs::read(&path) {
@@ -169,11 +197,10 @@ fn remember(campaign: &Campaign, sent: &[Sent]) -> Result<(), Fault> {
     commit::commit_bytes("write down the jobs in", &folder(campaign).join("jobs.json"), text.as_bytes()).map(drop).map_err(failed)
 }
 
-/// What the queue has of some jobs; nothing where there is none to ask.
+/// What the queue has of some jobs; nothing where there is none to ask, or none that answers.
 pub(super) fn queue(sent: &[Sent]) -> Option<Queue> {
     if sent.is_empty() {
         return Some(Queue::default());
     }
-    let output = Command::new("squeue").args(["--me", "-h", "-r", "-o", "%F %K %T"]).output().ok()?;
-    output.status.success().then(|| Queue::parse(&String::from_utf8_lossy(&output.stdout), sent))
+    answer("squeue", &["--me", "-h", "-r", "-o", "%F %K %T"]).map(|text| Queue::parse(&text, sent))
 }

@@ -1,11 +1,12 @@
 //! The verbs that say how a campaign stands: `plan` and `status`. They write nothing.
 
-use super::{Fault, counted, open, open_dir, say, submit};
+use super::{Fault, failed_cases, open, open_dir, say, submit};
 use crate::campaign::{Campaign, REPORT_PAGE, STATISTICS, Stage, Standing};
 use crate::cli::{FolderArguments, OutputArguments};
 use crate::store::Check;
+use crate::text::{counted, shell_path, shown, visible};
 use serde_json::{Value, json};
-use std::io::IsTerminal;
+use std::io::{IsTerminal, Write as _};
 use std::path::Path;
 use std::time::Duration;
 
@@ -21,7 +22,7 @@ pub(super) fn plan(spec: &Path, output: &OutputArguments) -> Result<u8, Fault> {
     let text = if output.json {
         format!("{:#}\n", answer(&campaign, &units))
     } else {
-        describe(&campaign, &units) + &remaining(&units, &campaign, |open| format!("`run` would compute {open} units.\n"))
+        describe(&campaign, &units) + &remaining(&units, &campaign, |open| format!("`run` would compute {}.\n", counted(open, "task")))
     };
     say(&text)?;
     Ok(0)
@@ -38,13 +39,13 @@ pub(super) fn status(folder: &FolderArguments, watch: bool) -> Result<u8, Fault>
                 text += &format!("caution: {why}; the spec of this folder may be another one than was run\n");
             }
             text += &in_queue(&campaign);
-            let dir = campaign.dir.display();
-            let does = |open| format!("{open} units are left; `hysteron run {dir}/campaign.toml --out {dir}` does them.\n");
+            let (spec, dir) = (shell_path(&campaign.dir.join("campaign.toml")), shell_path(&campaign.dir));
+            let are = |open| if open == 1 { "is" } else { "are" };
+            let does = |open| format!("{} {} left; continue with `hysteron run {spec} --out {dir}`.\n", counted(open, "task"), are(open));
             text += &remaining(&units, &campaign, does);
         }
         if watch && !folder.json && std::io::stdout().is_terminal() {
-            // What was said before goes off the screen.
-            text.insert_str(0, "\x1b[H\x1b[2J");
+            clear_screen();
         }
         let heard = say(&text)?;
         if !watch || !heard || left(&units) == 0 {
@@ -56,18 +57,20 @@ pub(super) fn status(folder: &FolderArguments, watch: bool) -> Result<u8, Fault>
 
 /// What is left to do, as a sentence; and what only `retry` does.
 fn remaining(units: &Units, campaign: &Campaign, does: impl Fn(usize) -> String) -> String {
-    let mut text = match left(units) {
-        0 => "Nothing is left to do.\n".to_owned(),
-        open => does(open),
-    };
     // Where a surface failed, its cycles did too.
     let of_stage = |units: &[(String, Standing)]| units.iter().filter(|(_, s)| matches!(s, Standing::Failed(_))).count();
     let failed = units.iter().map(|(_, units)| of_stage(units)).max().unwrap_or(0);
-    if failed > 0 {
-        let (cases, them) = counted(failed);
-        text += &format!("{cases} failed; `hysteron retry {}` tries {them} again.\n", campaign.dir.display());
+    match (left(units), failed) {
+        (0, 0) => "Nothing is left to do.\n".to_owned(),
+        (0, failed) => format!("All other tasks are done. {}", failed_cases(failed, &campaign.dir)),
+        (open, 0) => does(open),
+        (open, failed) => does(open) + &failed_cases(failed, &campaign.dir),
     }
-    text
+}
+
+/// Takes what was printed before off the terminal.
+fn clear_screen() {
+    let _ = std::io::stdout().lock().write_all(b"\x1b[H\x1b[2J");
 }
 
 fn units(campaign: &Campaign) -> Units {
@@ -90,13 +93,13 @@ fn in_queue(campaign: &Campaign) -> String {
         Err(fault) => return format!("slurm     {}\n", fault.text),
     };
     let Some(queue) = submit::queue(&sent) else {
-        return format!("slurm     {} jobs were sent; the queue cannot be asked here\n", sent.len());
+        return format!("slurm     {} submitted; the queue cannot be asked here\n", counted(sent.len(), "job"));
     };
     let counted: Vec<String> = queue.states.iter().map(|(state, count)| format!("{count} {state}")).collect();
     format!("slurm     {}\n", if counted.is_empty() { "nothing in the queue".to_owned() } else { counted.join(", ") })
 }
 
-/// How many units a run would do.
+/// How many tasks a run would do.
 fn left(units: &Units) -> usize {
     units.iter().flat_map(|(_, units)| units).filter(|(_, standing)| !matches!(standing, Standing::Done | Standing::Failed(_))).count()
 }
@@ -125,8 +128,8 @@ fn queued(mut answer: Value, campaign: &Campaign) -> Value {
 }
 
 fn describe(campaign: &Campaign, units: &Units) -> String {
-    let (name, dir) = (&campaign.spec.name, campaign.dir.display());
-    let mut text = format!("{name} in {dir}: {} cases, {}\n", campaign.cases.len(), campaign.realizations_in_words());
+    let (name, dir) = (&campaign.spec.name, shown(&campaign.dir));
+    let mut text = format!("{name} in {dir}: {}, {}\n", counted(campaign.cases.len(), "case"), campaign.realizations_in_words());
     for (stage, units) in units {
         let counted: Vec<String> = Standing::WORDS
             .iter()
@@ -136,8 +139,9 @@ fn describe(campaign: &Campaign, units: &Units) -> String {
             .collect();
         text += &format!("{:9} {}\n", stage.word(), counted.join(", "));
         for (id, standing) in units.iter().filter(|(_, s)| s.why().is_some() || *s == Standing::Stale) {
-            let why = standing.why().map_or_else(String::new, |why| format!(": {why}"));
-            text += &format!("  {id} is {}{why}\n", standing.word());
+            let why = standing.why().map_or_else(String::new, |why| format!(": {}", visible(&why.replace('\n', "; "))));
+            let verb = if matches!(standing, Standing::Failed(_)) { "failed" } else { &format!("is {}", standing.word()) };
+            text += &format!("  {id} {verb}{why}\n");
         }
     }
     text

@@ -1,6 +1,6 @@
 //! The verbs that compute: `run`, one for each stage, and `retry`.
 
-use super::{BAD_SPEC, FAILED_CASES, Fault, counted, failed, open, open_dir, say};
+use super::{BAD_SPEC, FAILED_CASES, Fault, failed, failed_cases, not_the_root, open, open_dir, say};
 use crate::campaign::{Campaign, Shard, Stage, Standing};
 use crate::cli::progress::Teller;
 use crate::cli::{FolderArguments, HowArguments, interrupt};
@@ -8,6 +8,7 @@ use crate::schema;
 use crate::stages::{self, Tally, Task};
 use crate::stats::summary;
 use crate::store::{Check, parquet};
+use crate::text::shown;
 use serde_json::json;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -30,11 +31,12 @@ pub(super) fn stages(spec: &Path, arguments: &HowArguments, (from, until): (Stag
 /// `report --compare`.
 pub(super) fn compare(folders: &[PathBuf], arguments: &HowArguments) -> Result<u8, Fault> {
     let out = arguments.output.out.clone().unwrap_or_else(|| PathBuf::from("data/runs/comparison"));
+    not_the_root(&out)?;
     let page = stages::compare(folders, &out).map_err(failed)?;
     say(&if arguments.output.json {
         format!("{:#}\n", json!({ "report": page.display().to_string(), "table": out.join(schema::COMPARISON.file).display().to_string() }))
     } else {
-        format!("Report: {}\nTable: {}\n", page.display(), out.join(schema::COMPARISON.file).display())
+        format!("Report: {}\nTable: {}\n", shown(&page), shown(&out.join(schema::COMPARISON.file)))
     })?;
     Ok(0)
 }
@@ -42,7 +44,7 @@ pub(super) fn compare(folders: &[PathBuf], arguments: &HowArguments) -> Result<u
 pub(super) fn retry(folder: &FolderArguments, ids: &[String]) -> Result<u8, Fault> {
     let campaign = open_dir("retry the failed cases of", &folder.dir)?;
     if let Some(why) = campaign.spec_fault() {
-        let dir = folder.dir.display();
+        let dir = shown(&folder.dir);
         return Err(failed(format!("cannot retry the failed cases of {dir}: {why}; allowed: after a `hysteron run` of the spec")));
     }
     let standings = campaign.cycle_standings(Check::Sizes);
@@ -52,7 +54,7 @@ pub(super) fn retry(folder: &FolderArguments, ids: &[String]) -> Result<u8, Faul
         let mut known: Vec<&str> = failures.iter().map(String::as_str).collect();
         known.sort_unstable();
         let known = if known.is_empty() { "none, since no case has failed".to_owned() } else { known.join(", ") };
-        return Err(failed(format!("cannot retry {strange}: it is no failed case of {}; allowed: {known}", folder.dir.display())));
+        return Err(failed(format!("cannot retry {strange}: it is no failed case of {}; allowed: {known}", shown(&folder.dir))));
     }
     if failures.is_empty() {
         say("Nothing to retry: no case has failed.\n")?;
@@ -112,10 +114,10 @@ fn conclusion(campaign: &Campaign, tallies: &[(Stage, Tally)], until: Stage) -> 
             text += &format!("{:9} {} of {} computed, {} done before{lost}\n", stage.word(), t.computed, t.planned, t.before);
         }
     }
-    let dir = campaign.dir.display();
+    let dir = shown(&campaign.dir);
     if failures > 0 {
-        let (cases, them) = counted(failures);
-        text += &format!("{cases} failed; why is in {dir}/cycles/*/failed.json. `hysteron retry {dir}` tries {them} again.\n");
+        text += &failed_cases(failures, &campaign.dir);
+        text += &format!("Reasons: {dir}/cycles/*/failed.json\n");
     }
     text += &match until {
         Stage::Report => format!("Report: {dir}/report.html\nTables: {dir}/statistics/*.parquet\n"),

@@ -4,6 +4,7 @@ use super::SMALL;
 use crate::bench::{Bench, SPEC, code, files, stderr, stdout};
 use crate::python;
 use hysteron::campaign::{Campaign, Stage};
+use hysteron::engines::ro_crate::licence;
 use hysteron::engines::slurm::{Order, Queue, Sent, jobs, script};
 use hysteron::spec::Spec;
 use serde_json::Value;
@@ -85,7 +86,7 @@ fn val_the_arguments_of_sbatch() {
     let campaign = Campaign::new(Spec::parse(SMALL, "x.toml").unwrap(), PathBuf::from("/data/run"));
     let text = script(&campaign, Stage::Cycle, &order);
     assert!(text.contains("#SBATCH --time=1:00:00\n") && text.contains("#SBATCH --cpus-per-task=3\n"), "{text}");
-    assert!(text.contains("'/opt/it'\\''s/hysteron' cycle '/data/run/campaign.toml' --out '/data/run'"), "{text}");
+    assert!(text.contains("'/opt/it'\\''s/hysteron' cycle /data/run/campaign.toml --out /data/run"), "{text}");
     let checked = Command::new("sh").args(["-n", "-c", &text]).output().unwrap();
     assert!(checked.status.success(), "{}", stderr(&checked));
 }
@@ -117,6 +118,68 @@ fn e2e_a_dry_run_shows_and_does_nothing() {
     let without = bench.command("submit").args(["--engine", "slurm"]).env("PATH", "/nowhere").output().unwrap();
     assert_eq!(code(&without), 1);
     assert!(stderr(&without).contains("--dry-run"), "{}", stderr(&without));
+}
+
+#[test]
+fn e2e_an_option_of_several_lines_is_refused() {
+    let bench = Bench::new(SMALL);
+    for option in ["--time=1\ntouch pwned", "--time=1\rtouch pwned", "--comment=\u{1b}[2J"] {
+        let refused = bench.verb("submit", &["--engine", "slurm", "--dry-run", &format!("--option={option}")]);
+        assert_eq!(code(&refused), 2, "{option:?}: {}", stdout(&refused));
+        assert!(stderr(&refused).contains("has a control character\nhelp: ") && stdout(&refused).is_empty(), "{}", stderr(&refused));
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn e2e_status_does_not_wait_for_a_queue_that_is_silent() {
+    use std::os::unix::fs::PermissionsExt as _;
+    let bench = Bench::new(SMALL);
+    assert_eq!(code(&bench.verb("run", &["--until", "generate"])), 0);
+    let commands = bench.folder.path().join("bin");
+    std::fs::create_dir(&commands).unwrap();
+    // Its child holds the output open, whatever becomes of the command.
+    std::fs::write(commands.join("squeue"), "#!/bin/sh\nsleep 100\necho 1 2 RUNNING\n").unwrap();
+    std::fs::set_permissions(commands.join("squeue"), std::fs::Permissions::from_mode(0o755)).unwrap();
+    std::fs::create_dir(bench.out().join("slurm")).unwrap();
+    std::fs::write(bench.out().join("slurm/jobs.json"), r#"[{"job":1,"stage":"cycle","first":0,"shards":2}]"#).unwrap();
+    let path = format!("{}:{}", commands.display(), std::env::var("PATH").unwrap_or_default());
+    for more in [&[][..], &["--json"]] {
+        let mut command = Command::new("timeout");
+        command.args(["60", env!("CARGO_BIN_EXE_hysteron"), "status"]).arg(bench.out()).args(more).env("PATH", &path);
+        let status = command.output().unwrap();
+        assert_eq!(code(&status), 0, "{}", stderr(&status));
+        let said = stdout(&status);
+        assert!(said.contains("1 job submitted; the queue cannot be asked here\n") || said.contains("\"tasks\": null"), "{said}");
+    }
+}
+
+#[test]
+fn val_a_licence_is_an_address_or_an_identifier() {
+    for (text, address) in [
+        ("https://creativecommons.org/licenses/by/4.0/", "https://creativecommons.org/licenses/by/4.0/"),
+        ("HTTP://example.org/licence", "HTTP://example.org/licence"),
+        ("CC-BY-4.0", "https://spdx.org/licenses/CC-BY-4.0"),
+        ("0BSD", "https://spdx.org/licenses/0BSD"),
+        ("GPL-2.0+", "https://spdx.org/licenses/GPL-2.0+"),
+    ] {
+        assert_eq!(licence(text), Ok(address.to_owned()));
+    }
+    for wrong in [
+        "javascript:alert(1)",
+        "data:text/html,x",
+        "https://",
+        "https:///x",
+        "https://a b",
+        "https://a\nb",
+        "file:///etc/passwd",
+        "",
+        "-x",
+        "MIT OR Apache-2.0",
+        "a/b",
+    ] {
+        assert!(licence(wrong).unwrap_err().contains("\nhelp: "), "{wrong}");
+    }
 }
 
 /// A Slurm that ends with the test.

@@ -88,7 +88,7 @@ fn e2e_a_shard_is_a_part_and_says_what_it_cannot_be() {
     let report = bench.verb("run", &["--shard", "0/2"]);
     assert_eq!(code(&report), 2);
     assert!(stderr(&report).contains("--until cycle"), "{}", stderr(&report));
-    for wrong in ["2/2", "0/0", "1", "a/b", "-1/2"] {
+    for wrong in ["2/2", "0/0", "1", "a/b", "-1/2", "0/1000001", "0/18446744073709551615"] {
         let refused = bench.verb("cycle", &[&format!("--shard={wrong}")]);
         assert_eq!(code(&refused), 2, "{wrong}");
         assert!(stderr(&refused).contains("K from 0 to N - 1"), "{wrong}: {}", stderr(&refused));

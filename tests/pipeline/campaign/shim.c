@@ -1,6 +1,7 @@
 /* Between the program and the system: the k-th call that writes to a file, or makes one, goes wrong.
  *
- * FAULT_AT is k, counted from 1; 0 for none. FAULT_KIND is an errno, or 0: then that write is short, by half. FAULT_COUNT is a file for the number of calls.
+ * FAULT_AT is k, counted from 1; 0 for none. FAULT_KIND is an errno, or 0: then that write is short, by half; or -1: then the call never returns. FAULT_COUNT is a
+ * file for the number of calls.
  */
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -19,8 +20,14 @@ static atomic_long calls;
 static long at(void) { const char *text = getenv("FAULT_AT"); return text ? atol(text) : 0; }
 static int kind(void) { const char *text = getenv("FAULT_KIND"); return text ? atoi(text) : 0; }
 
+static void tell(void);
+
 /* Whether this call is the one. */
-static int chosen(void) { return atomic_fetch_add(&calls, 1) + 1 == at(); }
+static int chosen(void) {
+    if (atomic_fetch_add(&calls, 1) + 1 != at()) return 0;
+    if (kind() == -1) { tell(); for (;;) pause(); }
+    return 1;
+}
 
 static int is_file(int fd) { struct stat found; return fstat(fd, &found) == 0 && S_ISREG(found.st_mode); }
 

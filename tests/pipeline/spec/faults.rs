@@ -61,8 +61,79 @@ fn val_an_empty_spec_says_so() {
 fn val_very_many_faults_are_counted_and_not_all_shown() {
     let text: String = (0..1000).map(|number| format!("x{number} = 1\n")).collect();
     let rendered = Spec::parse(&format!("name = \"x\"\n{text}"), "x.toml").unwrap_err().to_string();
-    assert_eq!(errors_in(&rendered), 200);
-    assert!(rendered.ends_with("… and 800 more\n"), "{rendered}");
+    assert_eq!(errors_in(&rendered), 20);
+    assert!(rendered.ends_with("… and 980 more\n"), "{rendered}");
+    assert!(rendered.contains("--> x.toml:2:1\n") && rendered.contains("--> x.toml:21:1\n"), "the first ones: {rendered}");
+}
+
+#[test]
+fn val_a_sweep_of_bad_values_is_answered_in_a_screenful() {
+    let values: Vec<String> = (0..1000).map(|number| format!("{number}.5")).collect();
+    let text = format!("name = \"x\"\n[[sweep]]\nname = \"s\"\nsurface.hurst = [{}]\n", values.join(", "));
+    let rendered = Spec::parse(&text, "x.toml").unwrap_err().to_string();
+    // 0.5 is allowed.
+    assert!(rendered.ends_with("… and 979 more\n"), "{rendered}");
+    // Twenty faults of four lines with an excerpt of 100 characters each.
+    assert!(rendered.len() < 20 * 4 * 130, "{} bytes", rendered.len());
+}
+
+/// Reads a text in a thread of its own. A reader whose time grows as the square of the text takes minutes to hours for these; this one takes seconds.
+fn answered(text: String) -> String {
+    let (tell, told) = std::sync::mpsc::channel();
+    std::thread::spawn(move || tell.send(Spec::parse(&text, "x.toml").map_or_else(|errors| errors.to_string(), |_| String::new())));
+    told.recv_timeout(std::time::Duration::from_secs(100)).expect("no answer after 100 s")
+}
+
+#[test]
+fn law_the_time_of_the_answer_grows_as_the_text_does() {
+    let lines = |count: usize, line: &dyn Fn(usize) -> String| "name = \"x\"\n".to_owned() + &(0..count).map(line).collect::<String>();
+    let tried: [(&str, String, &str); 6] = [
+        ("one key 300 000 times", lines(300_000, &|_| "bogus=1\n".to_owned()), "error: the spec is not valid TOML: duplicate key"),
+        ("table headers", lines(300_000, &|k| format!("[a{k}]\n")), "error: unknown key `a0` at the top of the spec"),
+        ("unknown keys", lines(300_000, &|k| format!("k{k}=1\n")), "error: unknown key `k0` at the top of the spec"),
+        ("broken lines", lines(300_000, &|k| format!("k{k}=\n")), "error: the spec is not valid TOML"),
+        ("sweeps", lines(150_000, &|k| format!("[[sweep]]\nname=\"s{k}\"\n")), "error: the sweeps make 150000 cases"),
+        ("words", lines(1, &|_| format!("model.as_printed=[{}]\n", "\"x\",".repeat(300_000))), "does not know the word \"x\""),
+    ];
+    for (what, text, begins) in tried {
+        let rendered = answered(text);
+        assert!(rendered.contains(begins), "{what}: {}", &rendered[..rendered.len().min(300)]);
+        assert!(errors_in(&rendered) <= 20, "{what}: {} errors", errors_in(&rendered));
+    }
+}
+
+#[test]
+fn val_a_hash_of_a_file_that_no_case_reads_is_refused() {
+    let digest = "0".repeat(64);
+    let text = |name: &str| {
+        format!("name = \"x\"\n[surface]\nfile = \"a.x3p\"\n[model]\nboundary = \"isolated\"\n[files]\n\"{name}\" = \"{digest}\"\n")
+    };
+    assert_eq!(Spec::parse(&text("a.x3p"), "x.toml").unwrap().files.len(), 1);
+    let rendered = refused(&text("b.x3p"));
+    assert!(rendered.contains("[files] has the hash of \"b.x3p\", which no case reads\n  --> x.toml:7:1"), "{rendered}");
+}
+
+#[test]
+fn val_a_campaign_has_ten_million_tasks_at_most() {
+    let text = |magnifications: usize, realizations: usize| {
+        let values: Vec<String> = (0..magnifications).map(|k| (2 + 2 * k).to_string()).collect();
+        format!("name = \"x\"\nrealizations = {realizations}\n[[sweep]]\nname = \"s\"\nsurface.magnification = [{}]\n", values.join(", "))
+    };
+    // 3 tasks for each of 400 surfaces: 9 999 600 and 10 000 800.
+    assert!(Spec::parse(&text(400, 8333), "x.toml").is_ok());
+    let rendered = refused(&text(400, 8334));
+    assert!(rendered.contains("400 cases x 8334 realizations make 10000800 tasks"), "{rendered}");
+    assert!(rendered.contains("--> x.toml:2:16\n") && rendered.contains("at most 10000000 are allowed"), "{rendered}");
+    // Cases that share their surfaces have one task more each; and what a precision may ask for at most counts.
+    let adhesion: Vec<String> = (1..=1000).map(|k| format!("{k}e-4")).collect();
+    let swept = |most: usize| {
+        format!(
+            "name = \"x\"\nrealizations = {{ until_relative_ci = 0.1, max = {most} }}\n[[sweep]]\nname = \"s\"\nmaterial.work_of_adhesion_j_m2 = [{}]\n",
+            adhesion.join(", ")
+        )
+    };
+    assert!(Spec::parse(&swept(9980), "x.toml").is_ok());
+    assert!(refused(&swept(9981)).contains("1000 cases x 9981 realizations make 10000962 tasks"));
 }
 
 #[test]

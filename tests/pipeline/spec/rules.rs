@@ -12,7 +12,7 @@ fn val_bounds_are_where_the_message_says() {
     let bounds = [
         ("surface", "length_m", "9.99e-10", "1e-9", "1", "1.0000001", "rms_height_m = 1e-12"),
         ("surface", "rms_height_m", "9.99e-13", "1e-12", "0.1", "0.1000001", "length_m = 1"),
-        ("surface", "hurst", "0.0", "1e-300", "1.0", "1.0000001", ""),
+        ("surface", "hurst", "0.00999", "0.01", "1.0", "1.0000001", ""),
         ("surface", "magnification", "1", "2", "4096", "4097", ""),
         ("surface", "magnification", "1", "2", "8192", "16385", "points_per_shortest_wavelength = 4"),
         ("surface", "points_per_shortest_wavelength", "3", "4", "64", "65", ""),
@@ -20,7 +20,7 @@ fn val_bounds_are_where_the_message_says() {
         ("material", "work_of_adhesion_j_m2", "-1e-300", "0", "1e3", "1000.001", ""),
         ("material", "interaction_range_m", "9.99e-13", "1e-12", "1e-5", "1.001e-5", ""),
         ("cycle", "max_load", "[0.0]", "[1e-300]", "[0.2]", "[0.2000001]", ""),
-        ("cycle", "approach_step", "9.99e-7", "1e-6", "1", "1.0000001", ""),
+        ("cycle", "approach_step", "9.99e-6", "1e-5", "1", "1.0000001", ""),
     ];
     for (table, key, below, least, greatest, above, also) in bounds {
         let text = |value: &str| format!("name = \"x\"\n[{table}]\n{also}\n{key} = {value}\n");

@@ -1,0 +1,69 @@
+//! Text for people and for shells: counted nouns, visible names, quoted words.
+
+use std::borrow::Cow;
+use std::path::Path;
+
+/// A count with its noun: "1 task", "20 tasks".
+#[must_use]
+pub fn counted(count: usize, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}
+
+/// A name on one line: control characters and marks that reorder text are written as escapes.
+#[must_use]
+pub fn visible(name: &str) -> String {
+    escaped(name, hides)
+}
+
+/// A path as it appears in a message.
+#[must_use]
+pub fn shown(path: &Path) -> String {
+    visible(&path.to_string_lossy())
+}
+
+/// A text of several lines, with escapes as [`visible`] has them. Line ends and tabs remain.
+#[must_use]
+pub fn printable(text: &str) -> Cow<'_, str> {
+    let hides = |c: char| hides(c) && !matches!(c, '\n' | '\t');
+    if text.chars().any(hides) { escaped(text, hides).into() } else { text.into() }
+}
+
+/// One word of a command that is meant to be pasted into a POSIX shell; `$'…'` for control characters, as bash, zsh and ksh have it.
+#[must_use]
+pub fn shell_quote(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "_@%+=:,./-".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        return word.to_owned();
+    }
+    if word.chars().any(hides) {
+        let word = word.replace('\\', "\\\\").replace('\'', "\\'");
+        return format!("$'{}'", escaped(&word, hides));
+    }
+    format!("'{}'", word.replace('\'', "'\\''"))
+}
+
+/// A path as one word of a shell.
+#[must_use]
+pub fn shell_path(path: &Path) -> String {
+    shell_quote(&path.to_string_lossy())
+}
+
+/// Whether a character could move a cursor, end a line, or reorder what is around it.
+fn hides(c: char) -> bool {
+    c.is_control() || matches!(c, '\u{2028}' | '\u{2029}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+}
+
+/// The escapes are those of JSON, so that JSON text stays valid; bash reads the same ones.
+fn escaped(text: &str, hides: impl Fn(char) -> bool) -> String {
+    let mut shown = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '\n' if hides(c) => shown.push_str("\\n"),
+            '\r' if hides(c) => shown.push_str("\\r"),
+            '\t' if hides(c) => shown.push_str("\\t"),
+            c if hides(c) => shown.push_str(&format!("\\u{:04x}", c as u32)),
+            c => shown.push(c),
+        }
+    }
+    shown
+}

@@ -1,0 +1,51 @@
+//! Texts for people and for shells.
+
+use hysteron::text::{counted, printable, shell_quote, visible};
+
+#[test]
+fn val_counts_have_their_plural() {
+    assert_eq!([0, 1, 2].map(|count| counted(count, "task")), ["0 tasks", "1 task", "2 tasks"]);
+}
+
+#[test]
+fn val_control_characters_are_written_out() {
+    assert_eq!(visible("a\u{1b}[2J\n\t\u{9b}\u{202e}é"), "a\\u001b[2J\\n\\t\\u009b\\u202eé");
+    assert_eq!(printable("a\n\tb\r\u{7}"), "a\n\tb\\r\\u0007");
+    // What is JSON stays the same JSON.
+    let text = serde_json::json!({ "name": "a\u{1b}\u{9b}\u{2028}" }).to_string();
+    assert_eq!(serde_json::from_str::<serde_json::Value>(&printable(&text)).unwrap()["name"], "a\u{1b}\u{9b}\u{2028}");
+}
+
+#[test]
+fn law_a_shell_reads_a_quoted_word_as_it_was() {
+    assert_eq!(shell_quote("data/runs/H0.80_z8-x"), "data/runs/H0.80_z8-x", "what needs no quotes has none");
+    let bash = |word: &str| {
+        std::process::Command::new("bash").args(["-c", &format!("printf %s {}", shell_quote(word))]).env("LC_ALL", "C.UTF-8").output()
+    };
+    for word in [
+        "",
+        "sp ace",
+        "it's",
+        "$(touch x)",
+        "`x`",
+        "a;b",
+        "~",
+        "*",
+        "!x",
+        "\\",
+        "a\\n",
+        "é",
+        "a\nb",
+        "a\u{1b}'\\b",
+        "\"",
+        "-x",
+        "a&b|c<d>e#f",
+        "{a,b}",
+    ] {
+        let Ok(output) = bash(word) else {
+            eprintln!("skipped: there is no bash");
+            return;
+        };
+        assert_eq!(String::from_utf8_lossy(&output.stdout), word, "{}", shell_quote(word));
+    }
+}
