@@ -8,6 +8,7 @@ mod closer;
 mod formats;
 mod key;
 mod map;
+mod marks;
 mod markup;
 mod panels;
 mod paths;
@@ -20,7 +21,7 @@ mod table;
 pub use axis::Axis;
 pub use closer::{Closer, closer};
 pub use formats::{pdf, png};
-pub use panels::{Panel, compared, panels};
+pub use panels::{Panel, Tables, compared, panels};
 pub use plot::{Curve, KeyEntry, Note, Stroke, XyPlot, plot_xy};
 pub use table::table;
 

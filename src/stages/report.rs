@@ -9,7 +9,7 @@ use super::theories::theories;
 use super::trust::{split, trust};
 use super::{StageError, Tally, Watch};
 use crate::campaign::{Campaign, REPORT_PAGE, STATISTICS, Stage, Standing, Unit};
-use crate::figures::{Panel, panels, pdf, png, table};
+use crate::figures::{Panel, Tables, panels, pdf, png, table};
 use crate::schema;
 use crate::stats::summary;
 use crate::store::commit::Written;
@@ -38,9 +38,11 @@ pub(super) fn run(campaign: &Campaign, (cycles_check, check): (Check, Check), wa
     watch.begin(Stage::Report, 0, 1);
     let cases = parquet::read_table(&campaign.statistics_path("cases"), &schema::CASES)?;
     let curves = parquet::read_table(&campaign.statistics_path("curves"), &schema::CURVES)?;
+    let realizations = parquet::read_table(&campaign.statistics_path("realizations"), &schema::REALIZATIONS)?;
+    let tables = Tables { cases: &cases, curves: &curves, realizations: &realizations };
     let (mut drawings, mut files) = (Vec::new(), Vec::new());
     for sweep in sweeps(campaign) {
-        for panel in panels(&cases, &curves, &sweep)? {
+        for panel in panels(&tables, &sweep)? {
             drawings.push((sweep.clone(), panel));
         }
     }
