@@ -27,7 +27,7 @@ const GENERATE: u32 = 1;
 const EXTRACT: u32 = 1;
 const CYCLE: u32 = 13;
 const AGGREGATE: u32 = 5;
-const REPORT: u32 = 7;
+const REPORT: u32 = 8;
 
 /// The stages, in their order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
