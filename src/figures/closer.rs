@@ -2,6 +2,7 @@
 
 use super::FigureError;
 use super::axis::Axis;
+use super::captions::of_cycle;
 use super::map::map;
 use super::panels::Panel;
 use super::plot::{Curve, Stroke, XyPlot, plot_xy};
@@ -121,6 +122,7 @@ fn step_of(kept: &[Kept], wanted: Landmark) -> Option<i64> {
 pub fn closer(of: &Closer<'_>, heights_m: ArrayView2<'_, f64>) -> Result<(Vec<Panel>, Option<String>), FigureError> {
     let kept = of.landmarks()?;
     let branches = branches(of, step_of(&kept, Landmark::Turning))?;
+    let panel = |name: &str, plot: XyPlot| panel(name, of_cycle(name, of), plot);
     let mut panels =
         vec![panel("loop", of_loop(of)?), panel("events", events(of, &branches)?), panel("avalanches", avalanches(of, &branches)?)];
     let styles = [(Landmark::Turning, LOADING, Stroke::Solid), (Landmark::PullOff, UNLOADING, Stroke::Dashed)];
@@ -138,10 +140,10 @@ pub fn closer(of: &Closer<'_>, heights_m: ArrayView2<'_, f64>) -> Result<(Vec<Pa
 /// A landmark with distributions, its step and how it is drawn.
 type End = (Landmark, i64, [u8; 3], Stroke);
 
-fn panel(name: &str, plot: XyPlot) -> Panel {
+fn panel(name: &str, caption: String, plot: XyPlot) -> Panel {
     let stem = format!("closer_{name}");
     let plot = XyPlot { stem: stem.clone(), ..plot };
-    Panel { stem, name: name.to_owned(), svg: plot_xy(&plot), plot }
+    Panel { stem, name: name.to_owned(), caption, svg: plot_xy(&plot), plot }
 }
 
 fn plot(title: String, x: Axis, y: Axis, curves: Vec<Curve>, key: &[(&str, [u8; 3], Stroke)]) -> XyPlot {

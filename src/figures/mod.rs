@@ -4,6 +4,7 @@
 //! colour vision, and the strokes without colour. Where the cases of a sweep differ, later ones are darker and each is named at its end.
 
 mod axis;
+mod captions;
 mod closer;
 mod formats;
 mod key;

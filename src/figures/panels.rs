@@ -1,6 +1,7 @@
 //! The five panels of a sweep: the paper's four, and the loss by branches.
 
 use super::FigureError;
+use super::captions::of_sweep;
 use super::paths::paths;
 use super::plot::{Stroke, XyPlot, plot_xy};
 use super::results::{Measured, results};
@@ -28,6 +29,8 @@ pub struct Panel {
     pub stem: String,
     /// Its letter, or its word.
     pub name: String,
+    /// Its caption.
+    pub caption: String,
     /// The drawing.
     pub svg: String,
     /// What was drawn.
@@ -64,10 +67,12 @@ pub fn compared(tables: &Tables<'_>, labels: &[String], (heading, stem): (&str, 
 }
 
 fn drawn(tables: &Tables<'_>, found: &Sweep, (heading, stem): (&str, &str)) -> Result<Vec<Panel>, FigureError> {
+    let surfaces = surfaces(tables.cases, found)?;
     let panel = |letter: char, plot: XyPlot| {
         let stem = format!("{stem}_{letter}");
         let plot = XyPlot { letter, title: heading.to_owned(), stem: stem.clone(), ..plot };
-        Panel { stem, name: letter.to_string(), svg: plot_xy(&plot), plot }
+        let caption = of_sweep(letter, found, &surfaces, &plot);
+        Panel { stem, name: letter.to_string(), caption, svg: plot_xy(&plot), plot }
     };
     // Releasing absorbed asperities has no potential, so that one branch may gain energy.
     let branch = |name, text, hue, stroke| Measured { name, text, hue, stroke, positive: false };
@@ -102,18 +107,23 @@ fn drawn(tables: &Tables<'_>, found: &Sweep, (heading, stem): (&str, &str)) -> R
     ])
 }
 
-fn heading(cases: &Frame, sweep: &Sweep, name: &str) -> Result<String, FigureError> {
+/// How many surfaces the means of a sweep are of.
+fn surfaces(cases: &Frame, sweep: &Sweep) -> Result<String, FigureError> {
     let done = cases.i64("done_count")?;
     let counts = || sweep.members.iter().filter_map(|member| done.get(member.row));
     let (least, most) = (counts().min().copied().unwrap_or_default(), counts().max().copied().unwrap_or_default());
-    let surfaces = match (least, most) {
+    Ok(match (least, most) {
         (_, 0) => "no surface finished".to_owned(),
         (1, 1) => "one surface".to_owned(),
         (0, 1) => "at most one surface".to_owned(),
         (0, _) => format!("mean of up to {most} surfaces"),
         _ if least == most => format!("mean of {most} surfaces"),
         _ => format!("mean of {least} to {most} surfaces"),
-    };
+    })
+}
+
+fn heading(cases: &Frame, sweep: &Sweep, name: &str) -> Result<String, FigureError> {
+    let surfaces = surfaces(cases, sweep)?;
     let mut others: Vec<&str> = sweep.differing.iter().skip(1).map(|parameter| parameter.symbol).collect();
     if sweep.many_loads && !sweep.differing.is_empty() {
         others.push("F_{max}");

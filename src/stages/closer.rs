@@ -119,7 +119,7 @@ fn eq10_variance(params: &SurfaceParams) -> f64 {
 }
 
 /// The closer look on the page.
-pub(super) fn section(html: &mut String, look: &Look) {
+pub(super) fn section(html: &mut String, number: usize, look: &Look) {
     // Writing to a string cannot fail.
     let _ = write!(
         html,
@@ -128,7 +128,7 @@ pub(super) fn section(html: &mut String, look: &Look) {
         escape(&look.id),
         significant(look.max_load, 4)
     );
-    grid(html, &look.panels);
+    grid(html, number, &look.panels);
     if let Some(map) = &look.map {
         let _ = writeln!(html, "<div class=\"map\">{map}</div>");
     }

@@ -143,9 +143,9 @@ fn page(
     html.push_str(
         "</table></div>\n<p>Differences beyond their interval are bold. The numbers are in <code>comparison.parquet</code>.</p>\n",
     );
-    for (name, panels) in drawings {
+    for (number, (name, panels)) in drawings.iter().enumerate() {
         let _ = writeln!(html, "<h2>{}</h2>", escape(name));
-        grid(&mut html, panels);
+        grid(&mut html, number + 1, panels);
     }
     html.push_str("</body>\n</html>\n");
     Ok(html)

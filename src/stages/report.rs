@@ -103,12 +103,14 @@ fn page(
     );
     reading::results(&mut html, cases)?;
     scans(&mut html, campaign)?;
-    for sweep in sweeps(campaign) {
-        let _ = writeln!(html, "<h2>Sweep {}</h2>", escape(&sweep));
-        grid(&mut html, drawings.iter().filter(|(of, _)| *of == sweep).map(|(_, panel)| panel));
+    let sweeps = sweeps(campaign);
+    for (number, sweep) in sweeps.iter().enumerate() {
+        let title = if sweep.is_empty() { "Results of the cycle".to_owned() } else { format!("Sweep {}", escape(sweep)) };
+        let _ = writeln!(html, "<h2>{title}</h2>");
+        grid(&mut html, number + 1, drawings.iter().filter(|(of, _)| of == sweep).map(|(_, panel)| panel));
     }
     if let Some(look) = look {
-        closer::section(&mut html, look);
+        closer::section(&mut html, sweeps.len() + 1, look);
     }
     theories(&mut html, cases)?;
     split(&mut html, cases)?;
