@@ -20,7 +20,9 @@ pub(super) fn of_sweep(letter: char, sweep: &Sweep, surfaces: &str, plot: &XyPlo
     let mut parts = vec![format!("{what}{}; {surfaces}", cases(sweep))];
     if matches!(letter, 'A' | 'C') {
         parts.push("loading dashed, unloading solid".to_owned());
-        parts.push("below zero load, averaged at equal fractions of each surface's own pull-off force".to_owned());
+        if surfaces.starts_with("mean") {
+            parts.push("below zero load, averaged at equal fractions of each surface's own pull-off force".to_owned());
+        }
     }
     let curves = || plot.curves.iter();
     if curves().any(|curve| curve.errors.iter().any(Option::is_some)) {
@@ -59,10 +61,15 @@ fn cases(sweep: &Sweep) -> String {
 pub(super) fn of_cycle(name: &str, of: &Closer<'_>) -> String {
     let text = match name {
         "loop" => "Normal force F/(E*A₀) against mean penetration Δ/h_rms up to the load reversal and back".to_owned(),
-        "events" => "Energy dissipated by each event; events that release energy to the contact are not drawn on the logarithmic axis".to_owned(),
+        "events" => {
+            "Energy dissipated by each event; events that release energy to the contact are not drawn on the logarithmic axis".to_owned()
+        }
         "avalanches" => "Number of avalanches with at least s events".to_owned(),
         "radii" => "Cumulative distribution of contact radii over the side L".to_owned(),
-        "loads" => "Cumulative distribution of the load of each contact spot over the pull-off force of its asperity; positive in compression".to_owned(),
+        "loads" => {
+            "Cumulative distribution of the load of each contact spot over the pull-off force of its asperity; positive in compression"
+                .to_owned()
+        }
         "spectrum" => spectrum(of),
         _ => "Curvatures of the asperity summits beside Nayak's distribution for the realised spectral moments".to_owned(),
     };

@@ -291,14 +291,17 @@ fn spectrum(of: &Closer<'_>) -> XyPlot {
     // Below the resolution of the transform there is rounding alone.
     let most = of.found.iter().map(|point| point.1).fold(0.0, f64::max);
     let found: Vec<(f64, f64)> = of.found.iter().filter(|point| point.1 > 1e-14 * most).copied().collect();
-    let mut curves = vec![curve(("asked for", ""), of.asked.to_vec(), shade(THEORY, 0, 1), Stroke::Dashed)];
-    curves.push(Curve { marked: true, ..curve(("found", ""), found, shade(UNLOADING, 0, 1), Stroke::Solid) });
+    // The target lies on the realised spectrum, and is painted over it.
+    let curves = vec![
+        Curve { marked: true, ..curve(("found", ""), found, shade(UNLOADING, 0, 1), Stroke::Solid) },
+        curve(("asked for", ""), of.asked.to_vec(), shade(THEORY, 0, 1), Stroke::Dashed),
+    ];
     let points = || curves.iter().flat_map(|curve: &Curve| curve.points.iter());
     let (x, y) = (
         Axis::of_decades("q/q_{L}", points().map(|point| point.0)),
         Axis::of_decades("C q_{L}^{2}/h_{rms}^{2}", points().map(|point| point.1)).with_headroom(0.06),
     );
-    let target = of.asked_factor.map(|factor| format!("{} × Eq 10", significant(factor, 3)));
+    let target = of.asked_factor.map(|factor| format!("target: {} × Eq 10", significant(factor, 3)));
     let mut key = vec![("realised", UNLOADING, Stroke::Solid)];
     key.extend(target.as_deref().map(|text| (text, THEORY, Stroke::Dashed)));
     plot("spectrum of the heights".to_owned(), x, y, curves, &key)

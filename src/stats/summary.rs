@@ -17,7 +17,7 @@ over E* A0. A: contact area over A0. Θ: dissipated energy over E* A0 h_rms.";
 
 const EXPONENTS: &str = "Numbers with an exponent are absolute, whatever the scale of their column.";
 
-const REFERENCE: &str = "*: reference case. Δ: difference of the mean from that of the reference case.";
+const REFERENCE: &str = "*: reference case. change: of the mean against it, where all surfaces finished.";
 
 /// Heading, column of the table `cases` without its ending, and the scale.
 const RESULTS: [(&str, &str, f64); 4] =
@@ -36,7 +36,7 @@ pub fn summary(cases: &Frame) -> Result<String, StatsError> {
         let headings = RESULTS.map(|(heading, ..)| heading.to_owned());
         lines.extend(labelled(&title, ["F_max".to_owned(), "n".to_owned()], headings));
         for listed in listing_of(cases, &name)? {
-            compared |= listed.reference.is_some();
+            compared |= listed.is_reference;
             lines.extend(case_lines(cases, &listed)?);
         }
     }
@@ -55,21 +55,27 @@ fn has_exponent(line: &str) -> bool {
 fn case_lines(cases: &Frame, listed: &Listed) -> Result<Vec<String>, StatsError> {
     let value = |name: String, row: usize| -> Result<Option<f64>, StatsError> { Ok(cases.f64_or_null(&name)?.get(row).copied().flatten()) };
     let mean = |name: &str, row: usize| value(format!("{name}_mean"), row);
-    let count = |name: &str| -> Result<i64, StatsError> { Ok(cases.i64(name)?.get(listed.row).copied().unwrap_or_default()) };
+    let count = |name: &str, row: usize| -> Result<i64, StatsError> { Ok(cases.i64(name)?.get(row).copied().unwrap_or_default()) };
+    let counts = |row: usize| -> Result<[i64; 2], StatsError> { Ok([count("done_count", row)?, count("planned_count", row)?]) };
     let load = value("max_load".to_owned(), listed.row)?.map_or_else(String::new, |load| significant(load, 4));
-    let counts = format!("{}/{}", count("done_count")?, count("planned_count")?);
+    let [done, planned] = counts(listed.row)?;
+    // Means of different surfaces differ by the surfaces too.
+    let reference = match listed.reference {
+        Some(row) if counts(row)? == [done; 2] && done == planned => Some(row),
+        _ => None,
+    };
     let (mut results, mut changes) = (Vec::new(), Vec::new());
     for ((_, name, scale), width) in RESULTS.into_iter().zip(&WIDTHS[3..]) {
         let own = mean(name, listed.row)?;
         results.push(mean_and_sd(own, value(format!("{name}_sd"), listed.row)?, scale, width - 1));
-        let other = listed.reference.map(|row| mean(name, row)).transpose()?.flatten();
+        let other = reference.map(|row| mean(name, row)).transpose()?.flatten();
         changes.push(own.zip(other).and_then(|(own, other)| change(own, other)));
     }
     let label = listed.label.replace(" = ", "=") + if listed.is_reference { "*" } else { "" };
-    let mut lines = labelled(&label, [load, counts], four(results));
+    let mut lines = labelled(&label, [load, format!("{done}/{planned}")], four(results));
     if changes.iter().any(Option::is_some) {
         let cells = changes.into_iter().map(|change| change.unwrap_or_else(|| "-".to_owned())).collect();
-        lines.extend(labelled("  Δ [%]", [String::new(), String::new()], four(cells)));
+        lines.extend(labelled("  change [%]", [String::new(), String::new()], four(cells)));
     }
     let caution = cases.text("caution")?.get(listed.row).copied().unwrap_or_default();
     if !caution.is_empty() {
@@ -118,6 +124,7 @@ fn mean_and_sd(mean: Option<f64>, sd: Option<f64>, scale: f64, width: usize) -> 
     let largest = mean.abs().max(sd.unwrap_or_default().abs());
     let digits = match largest / scale {
         0.0 => 0,
+        _ if mean != 0.0 && mean.abs() < 5e-4 * scale => return fitting(mean, sd, width),
         size if size < 0.01 => return fitting(mean, sd, width),
         size if size < 10.0 => 3,
         size if size < 100.0 => 2,
@@ -153,8 +160,9 @@ fn labelled(label: &str, [load, count]: [String; 2], [area, pull_off, loss, rati
             None => lines.push(word.to_owned()),
         }
     }
+    let mut lines: Vec<String> = lines.into_iter().map(|line| cut(line.trim_end(), LINE)).collect();
     lines.push(cells(String::new()));
-    lines.into_iter().map(|line| cut(line.trim_end(), LINE)).collect()
+    lines
 }
 
 fn line(cells: [String; 7]) -> String {
