@@ -55,7 +55,9 @@ pub(super) fn paths(table: &Frame, sweep: &Sweep, (column, label): (&str, &str),
     let all = || curves.iter().flat_map(|curve: &Curve| curve.points.iter());
     // Numbers at the ends need room to the right of the last one.
     let room = if beside || notes.is_empty() { 0.0 } else { 0.1 };
-    let (x, y) =
-        (Axis::holding(LOAD, all().map(|point| point.0), true).with_headroom(room), Axis::holding(label, all().map(|point| point.1), true));
+    let (x, y) = (
+        Axis::holding(LOAD, all().map(|point| point.0), true).with_headroom(room),
+        Axis::holding(label, curves.iter().flat_map(Curve::heights), true),
+    );
     Ok(XyPlot { stem: String::new(), letter: ' ', title: String::new(), x, y, curves, key, notes })
 }

@@ -90,6 +90,12 @@ impl Curve {
         Some((if self.positive && y >= 0.0 { low.max(0.0) } else { low }, y + error))
     }
 
+    /// Its vertical values, with the ends of bars and bands.
+    pub(super) fn heights(&self) -> Vec<f64> {
+        let ends = |place: usize| self.ends(place).map_or_else(Vec::new, |(low, high)| vec![low, high]);
+        (0..self.points.len()).flat_map(|place| [vec![self.points[place].1], ends(place)].concat()).collect()
+    }
+
     /// Whether a bar or the band ends at zero for that reason.
     pub(super) fn is_cut(&self) -> bool {
         let cut = |((_, y), error): (&(f64, f64), &Option<f64>)| *y >= 0.0 && error.is_some_and(|error| error > *y);

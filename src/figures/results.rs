@@ -63,12 +63,8 @@ pub(super) fn results(
     }
     key.extend(predicted.key);
     let curves: Vec<Curve> = predicted.curves.into_iter().chain(computed.curves).collect();
-    let ends = |curve: &Curve| -> Vec<f64> {
-        let bar = |place: usize| curve.ends(place).map_or_else(Vec::new, |(low, high)| vec![low, high]);
-        (0..curve.points.len()).flat_map(|place| [vec![curve.points[place].1], bar(place)].concat()).collect()
-    };
     let room = 0.07 * key.len() as f64 + 0.04;
-    let y = Axis::holding(label, curves.iter().flat_map(ends), true).with_headroom(room);
+    let y = Axis::holding(label, curves.iter().flat_map(Curve::heights), true).with_headroom(room);
     let x = sweep.axis.clone();
     Ok(XyPlot { stem: String::new(), letter: ' ', title: String::new(), x, y, curves, key, notes: computed.notes })
 }

@@ -79,6 +79,29 @@ fn law_bars_and_bands_of_positive_quantities_end_at_zero() {
     assert!(read(&drawn[1].svg).contains("bars end at 0") && drawn[1].caption.contains("ending at 0"));
 }
 
+#[test]
+fn law_bands_are_inside_their_panel() {
+    let drawn = panels_of(&tables(&[(case("a", "one", 0.8, 128.0, &[0.0071]), (0.133, 5e-4, 4.9e-4, 2.5))], 6), "one").unwrap();
+    for panel in [&drawn[0], &drawn[2]] {
+        let (low, high) = panel.plot.y.drawn_range();
+        for curve in &panel.plot.curves {
+            assert!(curve.band && curve.errors.iter().flatten().any(|error| *error > 0.0));
+            for ((_, y), error) in curve.points.iter().zip(&curve.errors) {
+                let top = panel.plot.y.drawn(y + error.unwrap());
+                assert!((low..=high).contains(&top), "{top} is not within {low} and {high}");
+            }
+        }
+    }
+}
+
+#[test]
+fn law_the_power_of_ten_of_an_axis_joins_its_unit() {
+    let label = |label: &str, most: f64| Axis::holding(label, [0.0, most], true).full_label();
+    assert_eq!(label("Δγ [J/m^{2}]", 0.07), "Δγ [10^{−3} J/m^{2}]");
+    assert_eq!(label("A/A_{0}", 0.07), "A/A_{0}  [10^{−3}]");
+    assert_eq!(label("ε [m]", 5.0), "ε [m]");
+}
+
 /// The table with another number in one row of a column.
 pub fn replaced(frame: &Frame, name: &str, row: usize, value: f64) -> Frame {
     let mut builder = Frame::of(frame.table());
