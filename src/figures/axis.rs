@@ -128,9 +128,14 @@ impl Axis {
         if zero { "0".to_owned() } else { text.replace('-', "−") }
     }
 
-    /// The label with the power of ten that the ticks leave out.
+    /// The label with the power of ten that the ticks leave out, before the unit if there is one.
     pub fn full_label(&self) -> String {
-        if self.exponent == 0 { self.label.clone() } else { format!("{}  [10^{{{}}}]", self.label, self.exponent).replace("{-", "{−") }
+        let power = format!("10^{{{}}}", self.exponent).replace("{-", "{−");
+        match self.label.strip_suffix(']').and_then(|label| label.split_once(" [")) {
+            _ if self.exponent == 0 => self.label.clone(),
+            Some((label, unit)) => format!("{label} [{power} {unit}]"),
+            None => format!("{}  [{power}]", self.label),
+        }
     }
 }
 

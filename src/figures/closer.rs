@@ -2,10 +2,12 @@
 
 use super::FigureError;
 use super::axis::Axis;
+use super::captions::of_cycle;
 use super::map::map;
 use super::panels::Panel;
 use super::plot::{Curve, Stroke, XyPlot, plot_xy};
 use super::style::{LOADING, THEORY, UNLOADING, curve, entry, shade};
+use crate::stats::{counted, significant};
 use crate::store::Frame;
 use ndarray::ArrayView2;
 use std::collections::BTreeMap;
@@ -42,8 +44,10 @@ pub struct Closer<'a> {
     pub pull_off_n_m: f64,
     /// Spectrum that the surface has: wavenumber q/qL and `C qL²/h_rms²`.
     pub found: &'a [(f64, f64)],
-    /// Spectrum that was asked for, likewise; nothing for a measured surface.
+    /// Target spectrum (Eq 10) at the realised rms height, likewise; nothing for a measured surface.
     pub asked: &'a [(f64, f64)],
+    /// Realised density over that of Eq 10 at the target rms height; nothing for a measured surface.
+    pub asked_factor: Option<f64>,
     /// Unit of curvature, `sqrt(m4/3)` \[1/m\], of the moments that the surface has.
     pub curvature_1_m: f64,
     /// Nayak's density of the curvature of summits, both in that unit.
@@ -118,6 +122,7 @@ fn step_of(kept: &[Kept], wanted: Landmark) -> Option<i64> {
 pub fn closer(of: &Closer<'_>, heights_m: ArrayView2<'_, f64>) -> Result<(Vec<Panel>, Option<String>), FigureError> {
     let kept = of.landmarks()?;
     let branches = branches(of, step_of(&kept, Landmark::Turning))?;
+    let panel = |name: &str, plot: XyPlot| panel(name, of_cycle(name, of), plot);
     let mut panels =
         vec![panel("loop", of_loop(of)?), panel("events", events(of, &branches)?), panel("avalanches", avalanches(of, &branches)?)];
     let styles = [(Landmark::Turning, LOADING, Stroke::Solid), (Landmark::PullOff, UNLOADING, Stroke::Dashed)];
@@ -135,14 +140,15 @@ pub fn closer(of: &Closer<'_>, heights_m: ArrayView2<'_, f64>) -> Result<(Vec<Pa
 /// A landmark with distributions, its step and how it is drawn.
 type End = (Landmark, i64, [u8; 3], Stroke);
 
-fn panel(name: &str, plot: XyPlot) -> Panel {
+fn panel(name: &str, caption: String, plot: XyPlot) -> Panel {
     let stem = format!("closer_{name}");
     let plot = XyPlot { stem: stem.clone(), ..plot };
-    Panel { stem, name: name.to_owned(), svg: plot_xy(&plot), plot }
+    Panel { stem, name: name.to_owned(), caption, svg: plot_xy(&plot), plot }
 }
 
 fn plot(title: String, x: Axis, y: Axis, curves: Vec<Curve>, key: &[(&str, [u8; 3], Stroke)]) -> XyPlot {
-    let key = key.iter().map(|(text, hue, stroke)| entry(text, *hue, Some(*stroke), false)).collect();
+    let marked = |colour: &str, stroke: Stroke| curves.iter().any(|of| of.colour == colour && of.stroke == stroke && of.is_marked());
+    let key = key.iter().map(|(text, hue, stroke)| entry(text, *hue, Some(*stroke), marked(&shade(*hue, 0, 1), *stroke))).collect();
     XyPlot { stem: String::new(), letter: ' ', title, x, y, curves, key, notes: Vec::new() }
 }
 
@@ -207,7 +213,7 @@ fn events(of: &Closer<'_>, branches: &[OfBranch; 2]) -> Result<XyPlot, FigureErr
         Axis::holding("Δ/h_{rms}", points().map(|point| point.0), false),
         Axis::of_decades("energy lost/(E^{*}A_{0}h_{rms})", points().map(|point| point.1)).with_headroom(0.12),
     );
-    let title = if drawn < all { format!("the greatest {drawn} of {all} events") } else { format!("{all} events that lost energy") };
+    let title = if drawn < all { format!("the largest {drawn} of {all} dissipative events") } else { counted(all, "dissipative event") };
     Ok(plot(title, x, y, curves, &[("loading", LOADING, Stroke::Points), ("unloading", UNLOADING, Stroke::Points)]))
 }
 
@@ -234,7 +240,7 @@ fn avalanches(of: &Closer<'_>, branches: &[OfBranch; 2]) -> Result<XyPlot, Figur
         Axis::of_decades("events in an avalanche, s", points().map(|point| point.0)),
         Axis::of_decades("avalanches of s or more", points().map(|point| point.1)),
     );
-    Ok(plot(format!("{total} avalanches"), x, y, curves, &[("loading", LOADING, Stroke::Dashed), ("unloading", UNLOADING, Stroke::Solid)]))
+    Ok(plot(counted(total, "avalanche"), x, y, curves, &[("loading", LOADING, Stroke::Dashed), ("unloading", UNLOADING, Stroke::Solid)]))
 }
 
 /// The cumulative distribution of a value of each spot at the turning point and at the pull-off.
@@ -245,13 +251,8 @@ fn distribution(of: &Closer<'_>, ends: &[End], label: &str, value: impl Fn(usize
         let mut values: Vec<f64> = (0..steps.len()).filter(|k| steps[*k] == step && states[*k] == "contact").filter_map(&value).collect();
         values.sort_by(f64::total_cmp);
         let count = values.len();
-        let ranks = count.min(MOST_RANKS);
-        let points = (0..ranks).map(|rank| {
-            let at = (2 * rank + 1) * count / (2 * ranks);
-            (values[at], (at as f64 + 0.5) / count as f64)
-        });
-        curves.push(curve((landmark.words(), ""), points.collect(), shade(hue, 0, 1), stroke));
-        key.push((format!("{}: {count} spots", landmark.words()), hue, stroke));
+        curves.push(curve((landmark.words(), ""), cumulative(&values), shade(hue, 0, 1), stroke));
+        key.push((format!("{}: {}", landmark.words(), counted(count, "spot")), hue, stroke));
     }
     let points = || curves.iter().flat_map(|curve: &Curve| curve.points.iter());
     let (x, y) = (
@@ -260,6 +261,17 @@ fn distribution(of: &Closer<'_>, ends: &[End], label: &str, value: impl Fn(usize
     );
     let key: Vec<(&str, [u8; 3], Stroke)> = key.iter().map(|(text, hue, stroke)| (text.as_str(), *hue, *stroke)).collect();
     Ok(plot(String::new(), x, y, curves, &key))
+}
+
+/// The share of values below: a step at each of them, or, of many, a line through evenly spaced ranks.
+fn cumulative(ordered: &[f64]) -> Vec<(f64, f64)> {
+    let count = ordered.len();
+    if count <= MOST_RANKS {
+        let share = |rank: usize| rank as f64 / count as f64;
+        return ordered.iter().enumerate().flat_map(|(rank, value)| [(*value, share(rank)), (*value, share(rank + 1))]).collect();
+    }
+    let rank = |k: usize| (2 * k + 1) * count / (2 * MOST_RANKS);
+    (0..MOST_RANKS).map(rank).map(|at| (ordered[at], (at as f64 + 0.5) / count as f64)).collect()
 }
 
 fn radii(of: &Closer<'_>, ends: &[End]) -> Result<XyPlot, FigureError> {
@@ -274,22 +286,24 @@ fn loads(of: &Closer<'_>, ends: &[End]) -> Result<XyPlot, FigureError> {
     distribution(of, ends, "load of a spot/its own pull-off load", |k| own(k).map(|own| loads[k] / own))
 }
 
-/// The spectrum that the surface has, and the one that was asked for.
+/// The realised spectrum, and the target at the same rms height.
 fn spectrum(of: &Closer<'_>) -> XyPlot {
-    // Beyond the shortest waves there is rounding alone.
+    // Below the resolution of the transform there is rounding alone.
     let most = of.found.iter().map(|point| point.1).fold(0.0, f64::max);
     let found: Vec<(f64, f64)> = of.found.iter().filter(|point| point.1 > 1e-14 * most).copied().collect();
-    let mut curves = vec![curve(("asked for", ""), of.asked.to_vec(), shade(THEORY, 0, 1), Stroke::Dashed)];
-    curves.push(Curve { marked: true, ..curve(("found", ""), found, shade(UNLOADING, 0, 1), Stroke::Solid) });
+    // The target lies on the realised spectrum, and is painted over it.
+    let curves = vec![
+        Curve { marked: true, ..curve(("found", ""), found, shade(UNLOADING, 0, 1), Stroke::Solid) },
+        curve(("asked for", ""), of.asked.to_vec(), shade(THEORY, 0, 1), Stroke::Dashed),
+    ];
     let points = || curves.iter().flat_map(|curve: &Curve| curve.points.iter());
     let (x, y) = (
         Axis::of_decades("q/q_{L}", points().map(|point| point.0)),
-        Axis::of_decades("C q_{L}^{2}/h_{rms}^{2}", points().map(|point| point.1)),
+        Axis::of_decades("C q_{L}^{2}/h_{rms}^{2}", points().map(|point| point.1)).with_headroom(0.06),
     );
-    let mut key = vec![("of this surface", UNLOADING, Stroke::Solid)];
-    if !of.asked.is_empty() {
-        key.push(("asked for, Eq 10", THEORY, Stroke::Dashed));
-    }
+    let target = of.asked_factor.map(|factor| format!("target: {} × Eq 10", significant(factor, 3)));
+    let mut key = vec![("realised", UNLOADING, Stroke::Solid)];
+    key.extend(target.as_deref().map(|text| (text, THEORY, Stroke::Dashed)));
     plot("spectrum of the heights".to_owned(), x, y, curves, &key)
 }
 
@@ -315,6 +329,6 @@ fn summits(of: &Closer<'_>) -> Result<XyPlot, FigureError> {
         Axis::holding("density", points().map(|point| point.1), true).with_headroom(0.1),
     );
     let [found, nayak] = of.densities_1_m2.map(|density| density * of.length_m * of.length_m);
-    let title = format!("{found:.0} summits; Nayak: {nayak:.0}");
+    let title = format!("{}; Nayak: {nayak:.0}", counted(found.round() as usize, "summit"));
     Ok(plot(title, x, y, curves, &[("of this surface", UNLOADING, Stroke::Solid), ("Nayak, Eq A2", THEORY, Stroke::Dashed)]))
 }

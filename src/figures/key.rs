@@ -3,8 +3,8 @@
 use kuva::render::layout::ComputedLayout;
 use kuva::render::render::{Primitive, Scene, TextAnchor};
 
-use super::markup;
-use super::plot::{NOTE, NOTE_PITCH, SPECK, Stroke, XyPlot, text};
+use super::plot::{NOTE, NOTE_PITCH, XyPlot, text};
+use super::{marks, markup};
 
 /// Length of a line's sample.
 const SAMPLE: f64 = 30.0;
@@ -21,8 +21,7 @@ pub(super) fn add(scene: &mut Scene, frame: &ComputedLayout, plot: &XyPlot) {
             text(scene, (left, y + 4.5), &entry.text, TextAnchor::Start);
             continue;
         };
-        let speck = stroke == Stroke::Points;
-        if !speck {
+        if stroke.is_line() {
             scene.add(Primitive::Line {
                 x1: left,
                 y1: y,
@@ -33,16 +32,8 @@ pub(super) fn add(scene: &mut Scene, frame: &ComputedLayout, plot: &XyPlot) {
                 stroke_dasharray: stroke.dashes().map(str::to_owned),
             });
         }
-        if entry.marked || speck {
-            scene.add(Primitive::Circle {
-                cx: left + SAMPLE / 2.0,
-                cy: y,
-                r: if speck { SPECK } else { 4.5 },
-                fill: entry.colour.as_str().into(),
-                fill_opacity: None,
-                stroke: None,
-                stroke_width: None,
-            });
+        if entry.marked || !stroke.is_line() {
+            marks::sample(scene, (left + SAMPLE / 2.0, y), stroke, &entry.colour);
         }
         text(scene, (left + SAMPLE + 8.0, y + 4.5), &entry.text, TextAnchor::Start);
     }
@@ -80,9 +71,9 @@ fn inked(frame: &ComputedLayout, plot: &XyPlot) -> Vec<(f64, f64)> {
                 );
             }
         }
-        for ((x, y), error) in curve.points.iter().zip(&curve.errors) {
-            let half = error.unwrap_or_default();
-            points.extend((-4..=4).map(|step| pixel(*x, y + half * f64::from(step) / 4.0)));
+        for (place, (x, y)) in curve.points.iter().enumerate() {
+            let (low, high) = curve.ends(place).unwrap_or((*y, *y));
+            points.extend((0..=8).map(|step| pixel(*x, low + (high - low) * f64::from(step) / 8.0)));
         }
     }
     points.extend(

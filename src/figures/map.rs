@@ -2,6 +2,7 @@
 
 use super::closer::{Closer, Kept};
 use super::{FigureError, markup};
+use crate::stats::{counted, significant};
 use ndarray::ArrayView2;
 use std::fmt::Write as _;
 
@@ -46,14 +47,15 @@ pub(super) fn map(of: &Closer<'_>, landmarks: &[Kept], heights_m: ArrayView2<'_,
         // Writing to a string cannot fail.
         let _ = write!(
             svg,
-            "<text x=\"{left}\" y=\"{}\" font-size=\"14\">{}: {count} spots</text>\
+            "<text x=\"{left}\" y=\"{}\" font-size=\"14\">{}: {}</text>\
              <text x=\"{left}\" y=\"{}\" font-size=\"13\">F/(E^{{*}}A_{{0}}) = {}, Δ/h_{{rms}} = {:.2}</text>\
              <g transform=\"translate({left} {top})\"><g clip-path=\"url(#map-edge)\"><use xlink:href=\"#map-heights\"/>{spots}</g>\
              <rect x=\"0\" y=\"0\" width=\"{SIDE}\" height=\"{SIDE}\" fill=\"none\" stroke=\"black\"/></g>",
             top - 23.0,
             landmark.words(),
+            counted(count, "spot"),
             top - 6.0,
-            format!("{:.5}", number(&loads)).replace('-', "−"),
+            significant(number(&loads), 3).replace('-', "−"),
             number(&penetrations)
         );
     }

@@ -4,10 +4,12 @@
 //! colour vision, and the strokes without colour. Where the cases of a sweep differ, later ones are darker and each is named at its end.
 
 mod axis;
+mod captions;
 mod closer;
 mod formats;
 mod key;
 mod map;
+mod marks;
 mod markup;
 mod panels;
 mod paths;
@@ -20,7 +22,7 @@ mod table;
 pub use axis::Axis;
 pub use closer::{Closer, closer};
 pub use formats::{pdf, png};
-pub use panels::{Panel, compared, panels};
+pub use panels::{Panel, Tables, compared, panels};
 pub use plot::{Curve, KeyEntry, Note, Stroke, XyPlot, plot_xy};
 pub use table::table;
 

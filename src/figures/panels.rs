@@ -1,6 +1,7 @@
 //! The five panels of a sweep: the paper's four, and the loss by branches.
 
 use super::FigureError;
+use super::captions::of_sweep;
 use super::paths::paths;
 use super::plot::{Stroke, XyPlot, plot_xy};
 use super::results::{Measured, results};
@@ -10,6 +11,17 @@ use crate::store::Frame;
 
 const LOSS: &str = "Θ/(E^{*}A_{0}h_{rms})";
 
+/// What panels are drawn from.
+#[derive(Debug, Clone, Copy)]
+pub struct Tables<'a> {
+    /// The table `cases`.
+    pub cases: &'a Frame,
+    /// The table `curves`.
+    pub curves: &'a Frame,
+    /// The table `realizations`.
+    pub realizations: &'a Frame,
+}
+
 /// A panel that has been drawn.
 #[derive(Debug, Clone)]
 pub struct Panel {
@@ -17,6 +29,8 @@ pub struct Panel {
     pub stem: String,
     /// Its letter, or its word.
     pub name: String,
+    /// Its caption.
+    pub caption: String,
     /// The drawing.
     pub svg: String,
     /// What was drawn.
@@ -28,18 +42,19 @@ pub struct Panel {
 ///
 /// B, D and E stand over the parameter that varies; over the area at the end of loading if only the turning point varies. If several
 /// parameters vary, the first one is the axis, the title names the others, and only cases that differ in nothing else are joined. A case without
-/// finished realizations has no curve and no point. Error bars and bands are one standard deviation.
+/// finished realizations has no curve and no point. Error bars and bands are one standard deviation; those of quantities that cannot be negative end at 0. Results of
+/// fewer than five surfaces have crosses at the single surfaces instead of bars.
 ///
 /// # Errors
 /// If no case belongs to the sweep, or a table lacks a column.
-pub fn panels(cases: &Frame, curves: &Frame, sweep: &str) -> Result<Vec<Panel>, FigureError> {
-    let found = Sweep::find(cases, sweep)?;
-    let heading = heading(cases, &found, sweep)?;
+pub fn panels(tables: &Tables<'_>, sweep: &str) -> Result<Vec<Panel>, FigureError> {
+    let found = Sweep::find(tables.cases, sweep)?;
+    let heading = heading(tables.cases, &found, sweep)?;
     let stem: String = if sweep.is_empty() { "run" } else { sweep }
         .chars()
         .map(|letter| if letter.is_ascii_alphanumeric() || letter == '-' { letter } else { '_' })
         .collect();
-    drawn(cases, curves, &found, (&heading, &stem))
+    drawn(tables, &found, (&heading, &stem))
 }
 
 /// Draws the same panels of one case in several campaigns: the tables hold a row of it, and its paths, for each, and `labels` are what the campaigns are called, in the
@@ -47,25 +62,29 @@ pub fn panels(cases: &Frame, curves: &Frame, sweep: &str) -> Result<Vec<Panel>, 
 ///
 /// # Errors
 /// If a table lacks a column.
-pub fn compared(cases: &Frame, curves: &Frame, labels: &[String], (heading, stem): (&str, &str)) -> Result<Vec<Panel>, FigureError> {
-    drawn(cases, curves, &Sweep::side_by_side(cases, labels)?, (heading, stem))
+pub fn compared(tables: &Tables<'_>, labels: &[String], (heading, stem): (&str, &str)) -> Result<Vec<Panel>, FigureError> {
+    drawn(tables, &Sweep::side_by_side(tables.cases, labels)?, (heading, stem))
 }
 
-fn drawn(cases: &Frame, curves: &Frame, found: &Sweep, (heading, stem): (&str, &str)) -> Result<Vec<Panel>, FigureError> {
+fn drawn(tables: &Tables<'_>, found: &Sweep, (heading, stem): (&str, &str)) -> Result<Vec<Panel>, FigureError> {
+    let surfaces = surfaces(tables.cases, found)?;
     let panel = |letter: char, plot: XyPlot| {
         let stem = format!("{stem}_{letter}");
         let plot = XyPlot { letter, title: heading.to_owned(), stem: stem.clone(), ..plot };
-        Panel { stem, name: letter.to_string(), svg: plot_xy(&plot), plot }
+        let caption = of_sweep(letter, found, &surfaces, &plot);
+        Panel { stem, name: letter.to_string(), caption, svg: plot_xy(&plot), plot }
     };
-    let computed = |name: &'static str| Measured { name, text: "computed", hue: UNLOADING, stroke: Stroke::Solid };
+    // Releasing absorbed asperities has no potential, so that one branch may gain energy.
+    let branch = |name, text, hue, stroke| Measured { name, text, hue, stroke, positive: false };
+    let computed = |name: &'static str| Measured { name, text: "computed", hue: UNLOADING, stroke: Stroke::Solid, positive: true };
     Ok(vec![
-        panel('A', paths(curves, found, "area", "A/A_{0}")?),
-        panel('B', results(cases, found, "F_{po}/(E^{*}A_{0})", &[computed("pull_off_load")], &[])?),
-        panel('C', paths(curves, found, "penetration", "Δ/h_{rms}")?),
+        panel('A', paths(tables.curves, found, ("area", "A/A_{0}"), true)?),
+        panel('B', results(tables, found, "F_{po}/(E^{*}A_{0})", &[computed("pull_off_load")], &[])?),
+        panel('C', paths(tables.curves, found, ("penetration", "Δ/h_{rms}"), false)?),
         panel(
             'D',
             results(
-                cases,
+                tables,
                 found,
                 LOSS,
                 &[computed("loss")],
@@ -75,12 +94,12 @@ fn drawn(cases: &Frame, curves: &Frame, found: &Sweep, (heading, stem): (&str, &
         panel(
             'E',
             results(
-                cases,
+                tables,
                 found,
                 LOSS,
                 &[
-                    Measured { name: "dissipated_unloading", text: "lost on unloading", hue: UNLOADING, stroke: Stroke::Solid },
-                    Measured { name: "dissipated_loading", text: "lost on loading", hue: LOADING, stroke: Stroke::Dashed },
+                    branch("dissipated_unloading", "lost on unloading", UNLOADING, Stroke::Solid),
+                    branch("dissipated_loading", "lost on loading", LOADING, Stroke::Dashed),
                 ],
                 &[],
             )?,
@@ -88,16 +107,23 @@ fn drawn(cases: &Frame, curves: &Frame, found: &Sweep, (heading, stem): (&str, &
     ])
 }
 
-fn heading(cases: &Frame, sweep: &Sweep, name: &str) -> Result<String, FigureError> {
+/// How many surfaces the means of a sweep are of.
+fn surfaces(cases: &Frame, sweep: &Sweep) -> Result<String, FigureError> {
     let done = cases.i64("done_count")?;
     let counts = || sweep.members.iter().filter_map(|member| done.get(member.row));
     let (least, most) = (counts().min().copied().unwrap_or_default(), counts().max().copied().unwrap_or_default());
-    let surfaces = match (least, most) {
+    Ok(match (least, most) {
         (_, 0) => "no surface finished".to_owned(),
         (1, 1) => "one surface".to_owned(),
+        (0, 1) => "at most one surface".to_owned(),
+        (0, _) => format!("mean of up to {most} surfaces"),
         _ if least == most => format!("mean of {most} surfaces"),
         _ => format!("mean of {least} to {most} surfaces"),
-    };
+    })
+}
+
+fn heading(cases: &Frame, sweep: &Sweep, name: &str) -> Result<String, FigureError> {
+    let surfaces = surfaces(cases, sweep)?;
     let mut others: Vec<&str> = sweep.differing.iter().skip(1).map(|parameter| parameter.symbol).collect();
     if sweep.many_loads && !sweep.differing.is_empty() {
         others.push("F_{max}");

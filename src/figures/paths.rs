@@ -9,8 +9,8 @@ use crate::store::Frame;
 
 const LOAD: &str = "F/(E^{*}A_{0})";
 
-/// Loading and unloading paths of every member.
-pub(super) fn paths(table: &Frame, sweep: &Sweep, column: &str, label: &str) -> Result<XyPlot, FigureError> {
+/// Loading and unloading paths of every member, of a quantity that may be one that cannot be negative.
+pub(super) fn paths(table: &Frame, sweep: &Sweep, (column, label): (&str, &str), positive: bool) -> Result<XyPlot, FigureError> {
     let (ids, branches) = (table.text("case_id")?, table.text("branch")?);
     let (max_loads, loads, values) = (table.f64_or_null("max_load")?, table.f64("load")?, table.f64(&format!("{column}_mean"))?);
     let spreads = table.f64_or_null(&format!("{column}_sd"))?;
@@ -22,7 +22,7 @@ pub(super) fn paths(table: &Frame, sweep: &Sweep, column: &str, label: &str) -> 
         let points = rows.iter().filter_map(|row| loads.get(*row).copied().zip(values.get(*row).copied())).collect();
         let errors: Vec<Option<f64>> = rows.iter().map(|row| spreads.get(*row).copied().flatten()).collect();
         let band = errors.iter().any(Option::is_some);
-        Curve { errors, band, ..curve((branch, &member.label), points, colour, stroke) }
+        Curve { errors, band, positive, ..curve((branch, &member.label), points, colour, stroke) }
     };
     let (mut curves, mut notes, mut drawn) = (Vec::new(), Vec::new(), Vec::new());
     let beside = !sweep.differing.is_empty();
@@ -46,7 +46,8 @@ pub(super) fn paths(table: &Frame, sweep: &Sweep, column: &str, label: &str) -> 
     }
     let mut key = vec![entry("loading", LOADING, Some(Stroke::Dashed), false), entry("unloading", UNLOADING, Some(Stroke::Solid), false)];
     if curves.iter().any(|curve| curve.band) {
-        key.push(entry("bands: ± one standard deviation", LOADING, None, false));
+        let cut = if curves.iter().any(Curve::is_cut) { ", end at 0" } else { "" };
+        key.push(entry(&format!("bands: ± one standard deviation{cut}"), LOADING, None, false));
     }
     if !beside && !notes.is_empty() {
         key.push(entry("numbers: F_{max}/(E^{*}A_{0})", LOADING, None, false));
@@ -54,7 +55,9 @@ pub(super) fn paths(table: &Frame, sweep: &Sweep, column: &str, label: &str) -> 
     let all = || curves.iter().flat_map(|curve: &Curve| curve.points.iter());
     // Numbers at the ends need room to the right of the last one.
     let room = if beside || notes.is_empty() { 0.0 } else { 0.1 };
-    let (x, y) =
-        (Axis::holding(LOAD, all().map(|point| point.0), true).with_headroom(room), Axis::holding(label, all().map(|point| point.1), true));
+    let (x, y) = (
+        Axis::holding(LOAD, all().map(|point| point.0), true).with_headroom(room),
+        Axis::holding(label, curves.iter().flat_map(Curve::heights), true),
+    );
     Ok(XyPlot { stem: String::new(), letter: ' ', title: String::new(), x, y, curves, key, notes })
 }

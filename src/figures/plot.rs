@@ -3,13 +3,13 @@
 use kuva::backend::svg::SvgBackend;
 use kuva::plot::band::BandPlot;
 use kuva::plot::line::LinePlot;
-use kuva::plot::scatter::{MarkerShape, ScatterPlot};
 use kuva::render::layout::{ComputedLayout, Layout, TickFormat};
 use kuva::render::plots::Plot;
 use kuva::render::render::{Primitive, Scene, TextAnchor, render_multiple};
 use std::sync::Arc;
 
 use super::axis::Axis;
+use super::marks::marks;
 use super::{key, markup};
 
 /// Size of a panel in pixels; at one column of a journal, 88 mm, a pixel is 0.18 mm and the smallest text 6.8 points.
@@ -35,15 +35,22 @@ pub enum Stroke {
     Dotted,
     /// No line: the points alone, small.
     Points,
+    /// No line: a cross at each point.
+    Crosses,
 }
 
 impl Stroke {
     pub(super) fn dashes(self) -> Option<&'static str> {
         match self {
-            Self::Solid | Self::Points => None,
+            Self::Solid | Self::Points | Self::Crosses => None,
             Self::Dashed => Some("7 4"),
             Self::Dotted => Some("1.5 3.5"),
         }
+    }
+
+    /// Whether its points are joined.
+    pub(super) fn is_line(self) -> bool {
+        !matches!(self, Self::Points | Self::Crosses)
     }
 }
 
@@ -60,12 +67,40 @@ pub struct Curve {
     pub errors: Vec<Option<f64>>,
     /// Whether the errors are a band.
     pub band: bool,
+    /// Whether the quantity cannot be negative: bars and bands end at zero.
+    pub positive: bool,
     /// A CSS colour.
     pub colour: String,
     /// Its stroke.
     pub stroke: Stroke,
     /// Whether each point has a marker.
     pub marked: bool,
+}
+
+impl Curve {
+    /// Whether each point is drawn with a mark: a line of one point would not be seen.
+    pub(super) fn is_marked(&self) -> bool {
+        self.marked || self.points.len() == 1 || !self.stroke.is_line()
+    }
+
+    /// The ends of a point's error bar, or the edges of the band there.
+    pub(super) fn ends(&self, place: usize) -> Option<(f64, f64)> {
+        let ((_, y), error) = (*self.points.get(place)?, (*self.errors.get(place)?)?);
+        let low = y - error;
+        Some((if self.positive && y >= 0.0 { low.max(0.0) } else { low }, y + error))
+    }
+
+    /// Its vertical values, with the ends of bars and bands.
+    pub(super) fn heights(&self) -> Vec<f64> {
+        let ends = |place: usize| self.ends(place).map_or_else(Vec::new, |(low, high)| vec![low, high]);
+        (0..self.points.len()).flat_map(|place| [vec![self.points[place].1], ends(place)].concat()).collect()
+    }
+
+    /// Whether a bar or the band ends at zero for that reason.
+    pub(super) fn is_cut(&self) -> bool {
+        let cut = |((_, y), error): (&(f64, f64), &Option<f64>)| *y >= 0.0 && error.is_some_and(|error| error > *y);
+        self.positive && self.points.iter().zip(&self.errors).any(cut)
+    }
 }
 
 /// A line of the key: what a colour and a stroke mean.
@@ -192,15 +227,14 @@ fn layout(plot: &XyPlot) -> Layout {
 
 /// What lies within the errors of a curve.
 fn band(curve: &Curve, plot: &XyPlot) -> Plot {
-    let points = curve.points.iter().zip(&curve.errors);
     let (mut at, mut low, mut high) = (Vec::new(), Vec::new(), Vec::new());
-    for ((x, y), error) in points {
-        let error = error.unwrap_or_default();
+    for (place, (x, y)) in curve.points.iter().enumerate() {
+        let ends = curve.ends(place).unwrap_or((*y, *y));
         at.push(plot.x.drawn(*x));
         // The band is cut off where the panel ends.
         let inside = |value: f64| plot.y.drawn(value).clamp(plot.y.drawn_range().0, plot.y.drawn_range().1);
-        low.push(inside(y - error));
-        high.push(inside(y + error));
+        low.push(inside(ends.0));
+        high.push(inside(ends.1));
     }
     Plot::Band(BandPlot::new(at, low, high).with_color(curve.colour.clone()).with_opacity(BAND_OPACITY))
 }
@@ -211,22 +245,21 @@ fn drawn(curve: &Curve, plot: &XyPlot) -> Vec<Plot> {
         None => kuva::plot::line::LineStyle::Solid,
         Some(dashes) => kuva::plot::line::LineStyle::Custom(dashes.to_owned()),
     };
-    if curve.stroke == Stroke::Points {
-        let marks = ScatterPlot::new().with_data(points).with_color(curve.colour.clone()).with_size(SPECK);
-        return vec![Plot::Scatter(marks.with_marker(MarkerShape::Circle))];
+    let mut plots = Vec::new();
+    if curve.stroke.is_line() {
+        let line = LinePlot::new().with_data(points.clone()).with_color(curve.colour.clone()).with_stroke_width(2.0).with_line_style(style);
+        plots.push(Plot::Line(line));
     }
-    let line = LinePlot::new().with_data(points.clone()).with_color(curve.colour.clone()).with_stroke_width(2.0).with_line_style(style);
-    let mut plots = vec![Plot::Line(line)];
-    let bars = if curve.band { &[][..] } else { &curve.errors };
-    for (point, error) in points.iter().zip(bars) {
-        if let Some(error) = error {
+    for (place, point) in points.iter().enumerate().filter(|_| !curve.band) {
+        if let Some((low, high)) = curve.ends(place) {
+            let y = curve.points[place].1;
+            let arms = (plot.y.drawn_length(y - low), plot.y.drawn_length(high - y));
             let bar = LinePlot::new().with_data([*point]).with_color(curve.colour.clone());
-            plots.push(Plot::Line(bar.with_y_err([plot.y.drawn_length(*error)])));
+            plots.push(Plot::Line(bar.with_y_err_asymmetric([arms])));
         }
     }
-    if curve.marked {
-        let marks = ScatterPlot::new().with_data(points).with_color(curve.colour.clone()).with_size(4.5);
-        plots.push(Plot::Scatter(marks.with_marker(MarkerShape::Circle)));
+    if curve.is_marked() {
+        plots.push(marks(curve, points));
     }
     plots
 }

@@ -2,10 +2,11 @@
 
 use super::FigureError;
 use super::axis::Axis;
-use super::plot::{Curve, Note, Stroke, XyPlot};
+use super::panels::Tables;
+use super::plot::{Curve, KeyEntry, Note, Stroke, XyPlot};
 use super::style::{MOST_NOTES, THEORY, curve, entry, shade};
 use super::sweep::{Member, Sweep};
-use crate::store::Frame;
+use crate::stats::{FEW, singles};
 
 /// A result to be drawn, and how.
 #[derive(Debug, Clone, Copy)]
@@ -15,11 +16,21 @@ pub(super) struct Measured {
     pub(super) text: &'static str,
     pub(super) hue: [u8; 3],
     pub(super) stroke: Stroke,
+    /// Whether it cannot be negative.
+    pub(super) positive: bool,
 }
 
-/// Results of every member with their error bars, and predictions of them.
+/// Curves with their entries of the key and the notes at their ends.
+#[derive(Default)]
+struct Drawn {
+    curves: Vec<Curve>,
+    key: Vec<KeyEntry>,
+    notes: Vec<Note>,
+}
+
+/// Results of every member, with the single surfaces or error bars, and predictions of them.
 pub(super) fn results(
-    table: &Frame,
+    tables: &Tables<'_>,
     sweep: &Sweep,
     label: &str,
     measured: &[Measured],
@@ -29,62 +40,97 @@ pub(super) fn results(
     series.sort_unstable();
     series.dedup();
     // If only the turning point varies, it is what is joined, and no other line.
-    let joined = |member: &Member, name: &str| sweep.differing.is_empty() || member.series == name;
     if sweep.differing.is_empty() {
         series.truncate(1);
     }
-    let (mut curves, mut key, mut notes) = (Vec::new(), Vec::new(), Vec::new());
-    for (theory, stroke, text) in theories {
-        let (means, mut any) = (table.f64_or_null(&format!("{theory}_mean"))?, false);
-        for (at, name) in series.iter().enumerate() {
-            let points: Vec<(f64, f64)> =
-                sweep.members.iter().filter(|member| joined(member, name)).filter_map(|member| point(means, member)).collect();
-            any |= !points.is_empty();
-            curves.push(curve((theory, name), points, shade(THEORY, at, series.len()), *stroke));
-        }
-        if any {
-            key.push(entry(text, THEORY, Some(*stroke), false));
-        }
+    let mut predicted = Drawn::default();
+    for theory in theories {
+        predict(tables, sweep, &series, *theory, &mut predicted)?;
     }
-    let mut samples = Vec::new();
-    for Measured { name, text, hue, stroke } in measured {
-        let (means, sds) = (table.f64_or_null(&format!("{name}_mean"))?, table.f64_or_null(&format!("{name}_sd"))?);
-        let mut spread = false;
-        for (at, of) in series.iter().enumerate() {
-            let members: Vec<&Member> =
-                sweep.members.iter().filter(|member| joined(member, of) && point(means, member).is_some()).collect();
-            let points: Vec<(f64, f64)> = members.iter().filter_map(|member| point(means, member)).collect();
-            if let Some(end) = points.last()
-                && series.len() > 1
-                && at % series.len().div_ceil(MOST_NOTES) == 0
-            {
-                notes.push(Note { at: *end, text: (*of).to_owned(), beside: true });
-            }
-            let errors: Vec<Option<f64>> = members.iter().map(|member| sds.get(member.row).copied().flatten()).collect();
-            spread |= errors.iter().any(Option::is_some);
-            let (name, of) = ((*name).to_owned(), (*of).to_owned());
-            curves.push(Curve {
-                name,
-                of,
-                band: false,
-                points,
-                errors,
-                colour: shade(*hue, at, series.len()),
-                stroke: *stroke,
-                marked: true,
-            });
-        }
-        let text = if spread { format!("{text}, ± one standard deviation") } else { (*text).to_owned() };
-        samples.push(entry(&text, *hue, Some(*stroke), true));
+    let mut computed = Drawn::default();
+    for of in measured {
+        measure(tables, sweep, &series, of, &mut computed)?;
     }
-    key.splice(0..0, samples);
-    let ends = |curve: &Curve| -> Vec<f64> {
-        let bars = curve.points.iter().zip(curve.errors.iter().copied().chain(std::iter::repeat(None)));
-        bars.flat_map(|((_, y), error)| [y - error.unwrap_or_default(), y + error.unwrap_or_default()]).collect()
-    };
+    let crosses = computed.curves.iter().any(|curve| curve.stroke == Stroke::Crosses);
+    let cut = computed.curves.iter().any(Curve::is_cut);
+    let mut key = computed.key;
+    if crosses {
+        // The crosses have the hues of their means.
+        key.push(KeyEntry { colour: "#555555".to_owned(), ..entry("single surfaces", THEORY, Some(Stroke::Crosses), true) });
+    }
+    if cut {
+        key.push(entry("bars end at 0", THEORY, None, false));
+    }
+    key.extend(predicted.key);
+    let curves: Vec<Curve> = predicted.curves.into_iter().chain(computed.curves).collect();
     let room = 0.07 * key.len() as f64 + 0.04;
-    let y = Axis::holding(label, curves.iter().flat_map(ends), true).with_headroom(room);
-    Ok(XyPlot { stem: String::new(), letter: ' ', title: String::new(), x: sweep.axis.clone(), y, curves, key, notes })
+    let y = Axis::holding(label, curves.iter().flat_map(Curve::heights), true).with_headroom(room);
+    let x = sweep.axis.clone();
+    Ok(XyPlot { stem: String::new(), letter: ' ', title: String::new(), x, y, curves, key, notes: computed.notes })
+}
+
+/// The members that one line joins.
+fn joined<'a>(sweep: &'a Sweep, series: &'a str) -> impl Iterator<Item = &'a Member> {
+    sweep.members.iter().filter(move |member| sweep.differing.is_empty() || member.series == series)
+}
+
+/// Lines of a prediction.
+fn predict(
+    tables: &Tables<'_>,
+    sweep: &Sweep,
+    series: &[&str],
+    (theory, stroke, text): (&str, Stroke, &str),
+    drawn: &mut Drawn,
+) -> Result<(), FigureError> {
+    let means = tables.cases.f64_or_null(&format!("{theory}_mean"))?;
+    let (mut any, mut marked) = (false, false);
+    for (at, name) in series.iter().enumerate() {
+        let points: Vec<(f64, f64)> = joined(sweep, name).filter_map(|member| point(means, member)).collect();
+        let line = curve((theory, name), points, shade(THEORY, at, series.len()), stroke);
+        any |= !line.points.is_empty();
+        marked |= line.is_marked();
+        drawn.curves.push(line);
+    }
+    if any {
+        drawn.key.push(entry(text, THEORY, Some(stroke), marked));
+    }
+    Ok(())
+}
+
+/// Means of a result with error bars, or with crosses where there are too few surfaces for these.
+fn measure(tables: &Tables<'_>, sweep: &Sweep, series: &[&str], of: &Measured, drawn: &mut Drawn) -> Result<(), FigureError> {
+    let Measured { name, text, hue, stroke, positive } = *of;
+    let column = |end: &str| tables.cases.f64_or_null(&format!("{name}_{end}"));
+    let (means, sds) = (column("mean")?, column("sd")?);
+    let mut spread = false;
+    for (at, series_name) in series.iter().enumerate() {
+        let members: Vec<&Member> = joined(sweep, series_name).filter(|member| point(means, member).is_some()).collect();
+        let points: Vec<(f64, f64)> = members.iter().filter_map(|member| point(means, member)).collect();
+        if let Some(end) = points.last()
+            && series.len() > 1
+            && at % series.len().div_ceil(MOST_NOTES) == 0
+        {
+            drawn.notes.push(Note { at: *end, text: (*series_name).to_owned(), beside: true });
+        }
+        let (mut errors, mut crosses) = (Vec::new(), Vec::new());
+        for member in &members {
+            let values = singles(tables.cases, tables.realizations, member.row, name)?;
+            let few = values.len() < FEW;
+            errors.push(sds.get(member.row).copied().flatten().filter(|_| !few));
+            // The mark of one surface is its mean.
+            crosses.extend(values.iter().filter(|_| few && values.len() > 1).map(|value| (member.x, *value)));
+        }
+        spread |= errors.iter().any(Option::is_some);
+        let colour = shade(hue, at, series.len());
+        let mean = curve((name, series_name), points, colour.clone(), stroke);
+        drawn.curves.push(Curve { errors, positive, marked: true, ..mean });
+        if !crosses.is_empty() {
+            drawn.curves.push(curve((&format!("{name}_single"), series_name), crosses, colour, Stroke::Crosses));
+        }
+    }
+    let text = if spread { format!("{text}, ± one standard deviation") } else { text.to_owned() };
+    drawn.key.push(entry(&text, hue, Some(stroke), true));
+    Ok(())
 }
 
 fn point(means: &[Option<f64>], member: &Member) -> Option<(f64, f64)> {

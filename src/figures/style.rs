@@ -18,7 +18,7 @@ pub(super) fn shade(hue: [u8; 3], at: usize, of: usize) -> String {
 /// A curve without errors, of something and by its name.
 pub(super) fn curve((name, of): (&str, &str), points: Vec<(f64, f64)>, colour: String, stroke: Stroke) -> Curve {
     let [name, of] = [name, of].map(str::to_owned);
-    Curve { name, of, points, errors: Vec::new(), band: false, colour, stroke, marked: false }
+    Curve { name, of, points, errors: Vec::new(), band: false, positive: false, colour, stroke, marked: false }
 }
 
 pub(super) fn entry(text: &str, hue: [u8; 3], stroke: Option<Stroke>, marked: bool) -> KeyEntry {

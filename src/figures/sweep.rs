@@ -2,7 +2,7 @@
 
 use super::FigureError;
 use super::axis::Axis;
-use crate::stats::{Values, Varying, varying};
+use crate::stats::{Values, Varying, labels, varying};
 use crate::store::Frame;
 
 /// A row of the table `cases` that belongs to the sweep.
@@ -49,6 +49,7 @@ impl Sweep {
         let many_loads = rows.windows(2).any(|pair| pair.first().map(|row| load_of(*row)) != pair.last().map(|row| load_of(*row)));
         let words = words(&differing);
         let mut members = Vec::new();
+        let load_labels = labels(&rows.iter().map(|row| load_of(*row)).collect::<Vec<f64>>());
         for (place, row) in rows.iter().enumerate() {
             let load = load_of(*row);
             let x = match differing.first().map(|first| &first.values) {
@@ -58,9 +59,10 @@ impl Sweep {
                 }
                 None => area.get(*row).copied().flatten(),
             };
-            let mut parts: Vec<String> = differing.iter().map(|parameter| named(parameter, place)).collect();
+            let mut parts: Vec<String> = differing.iter().map(|parameter| parameter.named(place)).collect();
             if many_loads {
-                parts.push(if differing.is_empty() { format!("{load}") } else { format!("F = {load}") });
+                let load = load_labels.get(place).map_or("", String::as_str);
+                parts.push(if differing.is_empty() { load.to_owned() } else { format!("F_{{max}} = {load}") });
             }
             let case_id = ids.get(*row).copied().unwrap_or_default().to_owned();
             let series = parts.get(1..).unwrap_or_default().join(", ");
@@ -86,16 +88,9 @@ impl Sweep {
             label: label.clone(),
             series: String::new(),
         };
-        let differing = vec![Varying { name: "campaign", symbol: "campaign", label: "campaign", values: Values::Words(labels.to_vec()) }];
+        let differing = vec![Varying::new(("campaign", "campaign", "campaign"), Values::Words(labels.to_vec()))];
         let members: Vec<Member> = labels.iter().enumerate().map(member).collect();
         Ok(Self { members, differing, many_loads: false, axis: Axis::of_words("campaign", labels.to_vec()) })
-    }
-}
-
-fn named(parameter: &Varying, place: usize) -> String {
-    match parameter.values {
-        Values::Numbers(_) => format!("{} = {}", parameter.symbol, parameter.text(place)),
-        Values::Words(_) => parameter.text(place),
     }
 }
 

@@ -6,11 +6,14 @@ use super::statistics::moments;
 use super::surface::{scale, spectrum};
 use crate::campaign::{Campaign, CycleUnit, Standing};
 use crate::figures::{Closer, Panel, closer};
+use crate::model::Normalization;
 use crate::physics::periodogram::{periodogram, windowed_periodogram};
+use crate::physics::spectrum::Spectrum;
 use crate::physics::theory::curvature_density;
 use crate::schema;
 use crate::spec::SurfaceParams;
-use crate::store::hdf5::read_surface;
+use crate::stats::significant;
+use crate::store::hdf5::{SurfaceHeader, read_surface};
 use crate::store::parquet::read_table;
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
@@ -49,8 +52,10 @@ pub(super) fn look(campaign: &Campaign, standings: &[Standing]) -> Result<Option
     let (realised, scale) = (moments(&header), scale(campaign, surface)?);
     let (lowest, variance) = (TAU / header.length_m, header.rms_height_m.powi(2));
     let spectrum_of = if header.periodic { periodogram } else { windowed_periodogram };
+    let highest = highest_whole_ring(&header, &surface.params);
     let found: Vec<(f64, f64)> = spectrum_of(heights.view(), header.length_m)?
         .iter()
+        .filter(|ring| ring.wavenumber_1_m < highest * lowest)
         .map(|ring| (ring.wavenumber_1_m / lowest, ring.density_m4 * lowest * lowest / variance))
         .collect();
     let nayak: Vec<(f64, f64)> = (0..=POINTS).map(|k| 8.0 * k as f64 / POINTS as f64).map(|t| (t, curvature_density(-t))).collect();
@@ -67,6 +72,7 @@ pub(super) fn look(campaign: &Campaign, standings: &[Standing]) -> Result<Option
         pull_off_n_m: 1.5 * PI * case.material.work_of_adhesion_j_m2,
         found: &found,
         asked: &asked(&case.surface),
+        asked_factor: asked_factor(&case.surface, variance),
         curvature_1_m: (realised.m4_1_m2 / 3.0).sqrt(),
         nayak: &nayak,
         densities_1_m2: [asperities.row_count() as f64 / area, realised.summit_density_1_m2()],
@@ -75,28 +81,54 @@ pub(super) fn look(campaign: &Campaign, standings: &[Standing]) -> Result<Option
     Ok(Some(Look { id: unit.id.clone(), max_load, panels, map }))
 }
 
-/// The spectrum that was asked for, if one was: `C qL²/h_rms²` over q/qL, from the longest to the shortest waves.
+/// The wavenumber q/qL up to which rings of the spectrum have all their modes below the cut-off: the mean of a ring that it divides has modes without amplitude.
+fn highest_whole_ring(header: &SurfaceHeader, params: &SurfaceParams) -> f64 {
+    match &header.measured {
+        Some(measured) if measured.shortest_wavelength_m > 0.0 => header.length_m / measured.shortest_wavelength_m,
+        Some(_) => f64::INFINITY,
+        // Ring j has the modes from 2^((j - 1/2)/4) to 2^((j + 1/2)/4), four rings to a doubling.
+        None => (((4.0 * f64::from(params.magnification).log2() - 0.5).floor() + 0.5) / 4.0).exp2(),
+    }
+}
+
+/// The target spectrum of a generated surface at the realised rms height: `C qL²/h_rms²` over q/qL, from the longest to the shortest waves, such that the sum over
+/// the lattice of modes is 1, as it is for the surface.
 fn asked(params: &SurfaceParams) -> Vec<(f64, f64)> {
     if params.is_measured() {
         return Vec::new();
     }
-    let of = spectrum(params);
-    let unit = of.prefactor() * (of.lowest_wavenumber() / params.rms_height_m).powi(2);
+    let unit = eq10_unit(params) / eq10_variance(params);
     let at = |k: usize| f64::from(params.magnification).powf(k as f64 / POINTS as f64);
     (0..=POINTS).map(at).map(|q| (q, unit * q.powf(-2.0 * (params.hurst + 1.0)))).collect()
 }
 
+/// Realised density over that of Eq 10 at the target rms height. The sum of Eq 10 over the lattice of modes exceeds its integral, which defines the rms height.
+fn asked_factor(params: &SurfaceParams, variance_m2: f64) -> Option<f64> {
+    (!params.is_measured()).then(|| variance_m2 / eq10_variance(params))
+}
+
+/// `C qL²` of Eq 10 at qL \[m²\].
+fn eq10_unit(params: &SurfaceParams) -> f64 {
+    let of = spectrum(params);
+    of.prefactor() * of.lowest_wavenumber().powi(2)
+}
+
+/// The sum of Eq 10 over the lattice of modes \[m²\].
+fn eq10_variance(params: &SurfaceParams) -> f64 {
+    Spectrum { normalization: Normalization::Spectrum, ..spectrum(params) }.lattice_moments().m0_m2
+}
+
 /// The closer look on the page.
-pub(super) fn section(html: &mut String, look: &Look) {
+pub(super) fn section(html: &mut String, number: usize, look: &Look) {
     // Writing to a string cannot fail.
     let _ = write!(
         html,
         "<h2>A closer look</h2>\n<p>One cycle, {}, to F/(E*A<sub>0</sub>) = {}. Every event is in its table <code>events</code>, and its spots are in \
          <code>contacts</code>.</p>\n",
         escape(&look.id),
-        look.max_load
+        significant(look.max_load, 4)
     );
-    grid(html, &look.panels);
+    grid(html, number, &look.panels);
     if let Some(map) = &look.map {
         let _ = writeln!(html, "<div class=\"map\">{map}</div>");
     }

@@ -4,7 +4,7 @@ use super::StageError;
 use super::page::{escape, grid, head};
 use super::report::write_picture;
 use super::trust::{Shown, shown};
-use crate::figures::{Panel, compared};
+use crate::figures::{Panel, Tables, compared};
 use crate::schema::{self, COMPARISON};
 use crate::stats::{self, Group, Matched, Side, varying};
 use crate::store::{Frame, commit, parquet};
@@ -60,26 +60,32 @@ fn names(sides: &[Side], matched: &Matched) -> Result<Vec<String>, StageError> {
     let rows: Vec<usize> = matched.groups.iter().map(|group| group.rows[0]).collect();
     let differing = varying(&first.cases, &rows)?;
     let loads = first.cases.f64("max_load")?;
-    let name = |(place, row): (usize, &usize)| {
-        let parts = differing.iter().map(|parameter| format!("{} = {}", parameter.symbol, parameter.text(place)));
-        parts.chain([format!("F = {}", loads[*row])]).collect::<Vec<_>>().join(", ")
+    let loads = stats::labels(&rows.iter().map(|row| loads[*row]).collect::<Vec<f64>>());
+    let name = |place: usize| {
+        let parts = differing.iter().map(|parameter| parameter.assigned(place));
+        parts.chain([format!("F_max = {}", loads[place])]).collect::<Vec<_>>().join(", ")
     };
-    Ok(rows.iter().enumerate().map(name).collect())
+    Ok((0..rows.len()).map(name).collect())
 }
 
 /// The panels of one group, its campaigns over one another.
 fn panels(sides: &[Side], group: &Group, (name, stem): (&str, &str)) -> Result<Vec<Panel>, StageError> {
-    let (mut cases, mut curves) = (Vec::new(), Vec::new());
+    let (mut cases, mut curves, mut realizations) = (Vec::new(), Vec::new(), Vec::new());
     for (number, (side, row)) in sides.iter().zip(&group.rows).enumerate() {
         let id = side.cases.text("case_id")?[*row];
         // Two campaigns may have one case, and it is to have a path in each.
         let own = format!("{number}-{id}");
-        let ids = side.curves.text("case_id")?;
+        let of_case = |frame: &Frame| -> Result<Vec<usize>, StageError> {
+            let ids = frame.text("case_id")?;
+            Ok((0..ids.len()).filter(|k| ids[*k] == id).collect())
+        };
         cases.push((&side.cases, vec![*row], own.clone()));
-        curves.push((&side.curves, (0..ids.len()).filter(|k| ids[*k] == id).collect(), own));
+        curves.push((&side.curves, of_case(&side.curves)?, own.clone()));
+        realizations.push((&side.realizations, of_case(&side.realizations)?, own));
     }
     let labels: Vec<String> = sides.iter().map(|side| side.label.clone()).collect();
-    Ok(compared(&stats::together(&cases)?, &stats::together(&curves)?, &labels, (name, stem))?)
+    let (cases, curves, realizations) = (stats::together(&cases)?, stats::together(&curves)?, stats::together(&realizations)?);
+    Ok(compared(&Tables { cases: &cases, curves: &curves, realizations: &realizations }, &labels, (name, stem))?)
 }
 
 fn page(
@@ -137,9 +143,9 @@ fn page(
     html.push_str(
         "</table></div>\n<p>Differences beyond their interval are bold. The numbers are in <code>comparison.parquet</code>.</p>\n",
     );
-    for (name, panels) in drawings {
+    for (number, (name, panels)) in drawings.iter().enumerate() {
         let _ = writeln!(html, "<h2>{}</h2>", escape(name));
-        grid(&mut html, panels);
+        grid(&mut html, number + 1, panels);
     }
     html.push_str("</body>\n</html>\n");
     Ok(html)

@@ -1,42 +1,109 @@
 //! The parts of the report that are about the report: the numbers with their intervals, how to load them, how to cite them.
 
 use super::StageError;
-use super::trust::{Cases, Shown, shown};
-use crate::store::Frame;
+use super::page::escape;
+use super::trust::{Cases, NAME_HEADS, Shown, scaled, shown};
+use crate::stats::{Difference, FEW, difference_of, singles};
 use std::fmt::Write as _;
 
-/// Heading, column of the table `cases` without its ending, and what numbers are multiplied by.
-const RESULTS: [(&str, &str, f64); 7] = [
-    ("A/A<sub>0</sub>", "area_at_max_load", 1.0),
-    ("Δ/h<sub>rms</sub>", "penetration_at_max_load", 1.0),
-    ("F<sub>po</sub>/(E*A<sub>0</sub>), 1e-3", "pull_off_load", 1e3),
-    ("Θ/(E*A<sub>0</sub>h<sub>rms</sub>), 1e-3", "loss", 1e3),
-    ("Θ<sub>DK</sub>, 1e-3", "loss_dk", 1e3),
-    ("Θ/Θ<sub>DK</sub>", "loss_ratio_dk", 1.0),
-    ("Θ<sub>DK</sub> with the surfaces’ own moments, 1e-3", "loss_dk_realised", 1e3),
+/// Heading, column of the table `cases` without its ending, the scale, and whether the quantity cannot be negative.
+const RESULTS: [(&str, &str, f64, bool); 7] = [
+    ("A/A<sub>0</sub>", "area_at_max_load", 1.0, true),
+    ("Δ/h<sub>rms</sub>", "penetration_at_max_load", 1.0, false),
+    ("F<sub>po</sub>/(E*A<sub>0</sub>) [10<sup>−3</sup>]", "pull_off_load", 1e-3, true),
+    ("Θ/(E*A<sub>0</sub>h<sub>rms</sub>) [10<sup>−3</sup>]", "loss", 1e-3, true),
+    ("Θ<sub>DK</sub> [10<sup>−3</sup>]", "loss_dk", 1e-3, true),
+    ("Θ/Θ<sub>DK</sub>", "loss_ratio_dk", 1.0, true),
+    ("Θ<sub>DK</sub>, realised moments [10<sup>−3</sup>]", "loss_dk_realised", 1e-3, true),
 ];
 
-/// The results with the 95 % intervals of their means, and how many realizations they are of.
-pub(super) fn results(html: &mut String, cases: &Frame) -> Result<(), StageError> {
-    let (done, planned, failed) = (cases.i64("done_count")?, cases.i64("planned_count")?, cases.i64("failed_count")?);
-    let cases = Cases::of(cases)?;
-    html.push_str(
-        "<h2>Results</h2>\n<p>Means over realizations at the end of loading, F<sub>po</sub> while unloading, and Θ of the whole loop; in brackets the 95 % \
-         interval of the mean (Student), which takes two realizations.</p>\n<div class=\"wide\"><table>\n<tr><th>case</th><th>max load</th><th>done of planned</th>",
+/// What is compared with the reference case.
+const CHANGES: [(&str, &str); 5] = [
+    ("A/A<sub>0</sub>", "area_at_max_load"),
+    ("Δ/h<sub>rms</sub>", "penetration_at_max_load"),
+    ("F<sub>po</sub>", "pull_off_load"),
+    ("Θ", "loss"),
+    ("Θ/Θ<sub>DK</sub>", "loss_ratio_dk"),
+];
+
+/// The results with their confidence intervals or single surfaces, and how many realizations they are of.
+pub(super) fn results(html: &mut String, cases: &Cases<'_>) -> Result<(), StageError> {
+    let count = |name: &str| cases.frame.i64(name);
+    let (done, planned, failed) = (count("done_count")?, count("planned_count")?, count("failed_count")?);
+    let _ = write!(
+        html,
+        "<h2>Results</h2>\n<p>Means over realizations: A and Δ at maximum load, F<sub>po</sub> of the unloading branch, Θ of the whole loop. In brackets: \
+         95 % confidence interval of the mean (Student). A lower limit below 0 of a quantity that cannot be negative is replaced by 0 and marked with †. In \
+         braces: the values of the single surfaces, where there are fewer than {FEW}. Numbers with a power of ten are absolute, whatever the scale of their \
+         column.{}</p>\n<div class=\"wide\"><table>\n{NAME_HEADS}<th>done of planned</th>",
+        cases.reference().map_or_else(String::new, |of| format!(
+            " Reference case: {}. It belongs to the most sweeps; the other cases are named by the parameters that differ from it.",
+            escape(of)
+        ))
     );
     for (heading, ..) in RESULTS {
         let _ = write!(html, "<th>{heading}</th>");
     }
     html.push_str("</tr>\n");
-    for row in cases.rows() {
+    for listed in cases.rows() {
+        let row = listed.row;
         let lost = if failed[row] > 0 { format!(", {} failed", failed[row]) } else { String::new() };
-        let _ = write!(html, "<tr>{}<td>{} of {}{lost}</td>", cases.name(row), done[row], planned[row]);
-        for (_, column, unit) in RESULTS {
-            let number = |end: &str| Ok::<_, StageError>(cases.number(&format!("{column}_{end}"), row)?.map(|number| unit * number));
-            let text = |number: Option<f64>| shown(number, Shown::Plain);
-            let (mean, low, high) = (number("mean")?, number("ci95_low")?, number("ci95_high")?);
-            let interval = if low.is_some() { format!(" [{}, {}]", text(low), text(high)) } else { String::new() };
-            let _ = write!(html, "<td>{}{interval}</td>", text(mean));
+        let _ = write!(html, "<tr>{}<td>{} of {}{lost}</td>", cases.name(listed), done[row], planned[row]);
+        for (_, column, scale, positive) in RESULTS {
+            let _ = write!(html, "<td>{}</td>", result(cases, row, column, (scale, positive))?);
+        }
+        html.push_str("</tr>\n");
+    }
+    html.push_str("</table></div>\n");
+    changes(html, cases)
+}
+
+/// A mean with its confidence interval, or with the values of the single surfaces.
+fn result(cases: &Cases<'_>, row: usize, column: &str, (scale, positive): (f64, bool)) -> Result<String, StageError> {
+    let number = |end: &str| cases.number(&format!("{column}_{end}"), row);
+    let (mean, low, high) = (number("mean")?, number("ci95_low")?, number("ci95_high")?);
+    let text = |number: f64| scaled(Some(number), scale);
+    let values = singles(cases.frame, cases.realizations, row, column)?;
+    let spread = match (low, high) {
+        (Some(_), Some(_)) if values.len() < FEW => {
+            format!(" {{{}}}", values.iter().map(|value| text(*value)).collect::<Vec<_>>().join("; "))
+        }
+        (Some(low), Some(high)) => {
+            let cut = positive && low < 0.0 && mean.is_some_and(|mean| mean >= 0.0);
+            format!(" [{}, {}]", if cut { "0†".to_owned() } else { text(low) }, text(high))
+        }
+        _ => String::new(),
+    };
+    Ok(format!("{}{spread}", scaled(mean, scale)))
+}
+
+/// How far the means of each case are from those of the reference case at the same load; nothing without such a case.
+fn changes(html: &mut String, cases: &Cases<'_>) -> Result<(), StageError> {
+    let compared = || cases.rows().iter().filter_map(|listed| listed.reference.map(|reference| (listed, reference)));
+    if compared().next().is_none() {
+        return Ok(());
+    }
+    let _ = write!(
+        html,
+        "<h2>Differences from the reference case</h2>\n<p>Difference of the means from the reference case at the same load, as a fraction of its mean, with the \
+         half-width of the 95 % confidence interval: surface by surface where both cases have the same surfaces, otherwise of two independent means \
+         (Welch). Differences larger than their half-width are bold.</p>\n<div class=\"wide\"><table>\n{NAME_HEADS}"
+    );
+    for (heading, _) in CHANGES {
+        let _ = write!(html, "<th>{heading}</th>");
+    }
+    html.push_str("</tr>\n");
+    for (listed, reference) in compared() {
+        let _ = write!(html, "<tr>{}", cases.name(listed));
+        for (_, column) in CHANGES {
+            let found = difference_of(cases.frame, cases.realizations, [listed.row, reference], column)?;
+            let clear = found.is_some_and(|found| found.ci95.is_some_and(|half| found.of.abs() > half));
+            let share = |found: Difference, part: f64| Some(part / found.means[1].abs()).filter(|share| share.is_finite());
+            let change = found.and_then(|found| share(found, found.of));
+            let half = found.and_then(|found| found.ci95.and_then(|half| share(found, half)));
+            let half = half.map_or_else(String::new, |half| format!(" (±\u{a0}{})", shown(Some(half), Shown::Percent)));
+            let class = if clear { " class=\"clear\"" } else { "" };
+            let _ = write!(html, "<td{class}>{}{half}</td>", shown(change, Shown::Percent));
         }
         html.push_str("</tr>\n");
     }

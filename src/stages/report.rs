@@ -6,14 +6,14 @@ use super::page::{escape, grid, head};
 use super::reading;
 use super::scans::scans;
 use super::theories::theories;
-use super::trust::{split, trust};
+use super::trust::{Cases, split, trust};
 use super::{StageError, Tally, Watch};
 use crate::campaign::{Campaign, REPORT_PAGE, STATISTICS, Stage, Standing, Unit};
-use crate::figures::{Panel, panels, pdf, png, table};
+use crate::figures::{Panel, Tables, panels, pdf, png, table};
 use crate::schema;
-use crate::stats::summary;
+use crate::stats::{counted, summary};
 use crate::store::commit::Written;
-use crate::store::{Check, Frame, commit, parquet};
+use crate::store::{Check, commit, parquet};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -38,9 +38,11 @@ pub(super) fn run(campaign: &Campaign, (cycles_check, check): (Check, Check), wa
     watch.begin(Stage::Report, 0, 1);
     let cases = parquet::read_table(&campaign.statistics_path("cases"), &schema::CASES)?;
     let curves = parquet::read_table(&campaign.statistics_path("curves"), &schema::CURVES)?;
+    let realizations = parquet::read_table(&campaign.statistics_path("realizations"), &schema::REALIZATIONS)?;
+    let tables = Tables { cases: &cases, curves: &curves, realizations: &realizations };
     let (mut drawings, mut files) = (Vec::new(), Vec::new());
     for sweep in sweeps(campaign) {
-        for panel in panels(&cases, &curves, &sweep)? {
+        for panel in panels(&tables, &sweep)? {
             drawings.push((sweep.clone(), panel));
         }
     }
@@ -52,7 +54,7 @@ pub(super) fn run(campaign: &Campaign, (cycles_check, check): (Check, Check), wa
     if let Some(map) = look.as_ref().and_then(|look| look.map.as_ref()) {
         files.extend(write_picture(&campaign.dir, "closer_map", map)?);
     }
-    let page = page(campaign, &key, &cases, &drawings, look.as_ref())?;
+    let page = page(campaign, &key, &Cases::of(&cases, &realizations)?, &drawings, look.as_ref())?;
     drawings.extend(close.map(|panel| (String::new(), panel.clone())).collect::<Vec<_>>());
     files.push(parquet::write_table(&campaign.statistics_path("panels"), &table(&drawings)?, &[("key", key.clone())])?);
     files.push(commit::commit_bytes("write the report", &campaign.dir.join("report.html"), page.as_bytes())?);
@@ -81,26 +83,34 @@ fn sweeps(campaign: &Campaign) -> Vec<String> {
     names
 }
 
-fn page(campaign: &Campaign, key: &str, cases: &Frame, drawings: &[(String, Panel)], look: Option<&Look>) -> Result<String, StageError> {
+fn page(
+    campaign: &Campaign,
+    key: &str,
+    cases: &Cases<'_>,
+    drawings: &[(String, Panel)],
+    look: Option<&Look>,
+) -> Result<String, StageError> {
     let name = escape(&campaign.spec.name);
     let mut html = head(&format!("{name}: adhesive hysteresis"), &format!("<meta name=\"hysteron-key\" content=\"{key}\">\n"));
     // Writing to a string cannot fail.
     let _ = write!(
         html,
-        "<h1>{name}</h1>\n<p>Adhesive hysteresis of rough surfaces: {} cases, {} each. Interacting JKR asperities after Violano and \
+        "<h1>{name}</h1>\n<p>Adhesive hysteresis of rough surfaces: {}, {} each. Interacting JKR asperities after Violano and \
          Afferrante, Lubricants 9(1):7 (2021), with its slips corrected. Mean ± one standard deviation.</p>\n<pre>{}</pre>\n",
-        campaign.cases.len(),
+        counted(campaign.cases.len(), "case"),
         campaign.realizations_in_words(),
-        escape(&summary(cases)?)
+        escape(&summary(cases.frame)?)
     );
     reading::results(&mut html, cases)?;
     scans(&mut html, campaign)?;
-    for sweep in sweeps(campaign) {
-        let _ = writeln!(html, "<h2>Sweep {}</h2>", escape(&sweep));
-        grid(&mut html, drawings.iter().filter(|(of, _)| *of == sweep).map(|(_, panel)| panel));
+    let sweeps = sweeps(campaign);
+    for (number, sweep) in sweeps.iter().enumerate() {
+        let title = if sweep.is_empty() { "Results of the cycle".to_owned() } else { format!("Sweep {}", escape(sweep)) };
+        let _ = writeln!(html, "<h2>{title}</h2>");
+        grid(&mut html, number + 1, drawings.iter().filter(|(of, _)| of == sweep).map(|(_, panel)| panel));
     }
     if let Some(look) = look {
-        closer::section(&mut html, look);
+        closer::section(&mut html, sweeps.len() + 1, look);
     }
     theories(&mut html, cases)?;
     split(&mut html, cases)?;

@@ -88,30 +88,51 @@ pub fn matched(sides: &[Side]) -> Result<Matched, StatsError> {
     Ok(Matched { differing, groups, left_over })
 }
 
-/// A quantity of a case, realization by realization, each with its surface.
-fn samples(side: &Side, row: usize, quantity: &str) -> Result<Vec<(String, f64)>, StatsError> {
-    let (case, load) = (written(&side.cases, "case_id", row)?, written(&side.cases, "max_load", row)?);
-    let all = &side.realizations;
+/// A quantity of a row of the table `cases`, realization by realization, each with its surface.
+fn samples(cases: &Frame, all: &Frame, row: usize, quantity: &str) -> Result<Vec<(String, f64)>, StatsError> {
+    let of = |column: &str| -> Result<String, StatsError> { written(cases, column, row) };
+    let (case, load) = (of("case_id")?, cases.f64_or_null("max_load")?.get(row).copied().flatten());
+    let (ids, loads, surfaces) = (all.text_or_null("case_id")?, all.f64_or_null("max_load")?, all.text_or_null("surface_id")?);
     let values = all.f64_or_null(quantity)?;
-    let mut found = Vec::new();
-    for (k, value) in values.iter().enumerate() {
-        if written(all, "case_id", k)? == case
-            && written(all, "max_load", k)? == load
-            && let Some(value) = value
-        {
-            found.push((written(all, "surface_id", k)?, *value));
-        }
-    }
-    Ok(found)
+    let of_row = |k: &usize| ids[*k].as_deref() == Some(case.as_str()) && loads[*k] == load;
+    let sample = |k: usize| values[k].map(|value| (surfaces[k].clone().unwrap_or_default(), value));
+    Ok((0..values.len()).filter(of_row).filter_map(sample).collect())
 }
 
-/// The difference of two means: itself, half its 95 % interval, and of how many realizations each is.
-struct Difference {
-    means: [f64; 2],
-    of: f64,
-    ci95: Option<f64>,
-    paired: bool,
-    counts: [usize; 2],
+/// The values of a quantity for the single realizations of a row of the table `cases`, in their order.
+///
+/// # Errors
+/// If a table lacks a column.
+pub fn singles(cases: &Frame, realizations: &Frame, row: usize, quantity: &str) -> Result<Vec<f64>, StatsError> {
+    Ok(samples(cases, realizations, row, quantity)?.into_iter().map(|(_, value)| value).collect())
+}
+
+/// The difference of a quantity between two rows of the table `cases`, the second of which is the reference; nothing if one of them has no realization.
+///
+/// # Errors
+/// If a table lacks a column.
+pub fn difference_of(
+    cases: &Frame,
+    realizations: &Frame,
+    [row, reference]: [usize; 2],
+    quantity: &str,
+) -> Result<Option<Difference>, StatsError> {
+    Ok(difference(&samples(cases, realizations, row, quantity)?, &samples(cases, realizations, reference, quantity)?))
+}
+
+/// The difference of two means.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Difference {
+    /// The two means, the second of the reference; of the pairs alone where they are paired.
+    pub means: [f64; 2],
+    /// The first mean less the second.
+    pub of: f64,
+    /// Half-width of its 95 % confidence interval; nothing where it takes more realizations.
+    pub ci95: Option<f64>,
+    /// Whether realizations are compared surface by surface.
+    pub paired: bool,
+    /// How many realizations each mean is of.
+    pub counts: [usize; 2],
 }
 
 /// Of two samples, the second of which is the reference; surface by surface, where all surfaces of one are surfaces of the other.
@@ -151,7 +172,10 @@ pub fn comparison(sides: &[Side], matched: &Matched) -> Result<Frame, StatsError
             let ids = [written(&side.cases, "case_id", *row)?, written(&reference.cases, "case_id", base)?];
             let load = side.cases.f64("max_load")?[*row];
             for quantity in QUANTITIES {
-                let found = difference(&samples(side, *row, quantity)?, &samples(reference, base, quantity)?);
+                let found = difference(
+                    &samples(&side.cases, &side.realizations, *row, quantity)?,
+                    &samples(&reference.cases, &reference.realizations, base, quantity)?,
+                );
                 rows.extend(found.map(|found| (number, side, ids.clone(), load, quantity, found)));
             }
         }

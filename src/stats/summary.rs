@@ -1,90 +1,98 @@
 //! The table that a person reads at the end of a run.
 
 use super::StatsError;
-use super::varying::{Values, Varying, varying};
+use super::digits::significant;
+use super::listed::{Listed, listing_of, sweeps};
 use crate::store::Frame;
 
-/// Widths of the columns: case, max load, realizations, and four results; 80 letters together.
-const WIDTHS: [usize; 7] = [18, 8, 6, 12, 12, 12, 12];
+/// Widths of the columns: case, maximum load, realizations, and four results; 80 columns together.
+const WIDTHS: [usize; 7] = [14, 8, 6, 12, 14, 14, 12];
+
+/// Columns that a caption or a long label may take.
+const LINE: usize = 79;
 
 const HEADER: &str = "\
-Mean ± standard deviation over realizations. F_max, F_po: loads over E* A0; Θ:
-loss over E* A0 h_rms; all in 1e-3. A: contact area over A0. n: done/planned.";
+Mean ± standard deviation over surfaces; n: done/planned. F_max, F_po: forces
+over E* A0. A: contact area over A0. Θ: dissipated energy over E* A0 h_rms.";
 
-/// The results of every case as lines of at most 80 letters, grouped by sweep and ordered by what varies.
+const EXPONENTS: &str = "Numbers with an exponent are absolute, whatever the scale of their column.";
+
+const REFERENCE: &str = "*: reference case. change: of the mean against it, where all surfaces finished.";
+
+/// Heading, column of the table `cases` without its ending, and the scale.
+const RESULTS: [(&str, &str, f64); 4] =
+    [("A", "area_at_max_load", 1.0), ("F_po [1e-3]", "pull_off_load", 1e-3), ("Θ [1e-3]", "loss", 1e-3), ("Θ/Θ_DK", "loss_ratio_dk", 1.0)];
+
+/// The results of every case as lines of at most 80 columns. Each sweep lists all of its cases: the reference case first, the others ordered by what varies.
 ///
 /// # Errors
 /// If the table lacks one of its columns.
 pub fn summary(cases: &Frame) -> Result<String, StatsError> {
-    let sweeps = cases.text("sweep")?;
-    let max_loads = cases.f64("max_load")?;
-    let mut names = sweeps.clone();
-    names.sort_unstable();
-    names.dedup();
-    let mut lines = vec![HEADER.to_owned()];
-    for name in names {
-        let mut rows: Vec<usize> = (0..sweeps.len()).filter(|row| sweeps.get(*row) == Some(&name)).collect();
-        let differing = varying(cases, &rows)?;
-        let places: Vec<usize> = {
-            let mut places: Vec<usize> = (0..rows.len()).collect();
-            let load = |place: &usize| rows.get(*place).and_then(|row| max_loads.get(*row)).copied().unwrap_or_default();
-            places.sort_by(|a, b| order(&differing, *a, *b).then(load(a).total_cmp(&load(b))));
-            places
-        };
-        let labels: Vec<String> = places.iter().map(|place| label(cases, &differing, &rows, *place)).collect::<Result<_, _>>()?;
-        rows = places.iter().filter_map(|place| rows.get(*place).copied()).collect();
+    let mut lines = Vec::new();
+    let mut compared = false;
+    for name in sweeps(cases)? {
         lines.push(String::new());
-        let title = if name.is_empty() { "case" } else { name };
-        lines.push(line([title, "F_max", "n", "A", "F_po", "Θ", "Θ/Θ_DK"].map(str::to_owned)));
-        for (row, label) in rows.into_iter().zip(labels) {
-            lines.extend(case_lines(cases, row, label)?);
+        let title = if name.is_empty() { "case".to_owned() } else { name.clone() };
+        let headings = RESULTS.map(|(heading, ..)| heading.to_owned());
+        lines.extend(labelled(&title, ["F_max".to_owned(), "n".to_owned()], headings));
+        for listed in listing_of(cases, &name)? {
+            compared |= listed.is_reference;
+            lines.extend(case_lines(cases, &listed)?);
         }
     }
+    let mut head = vec![HEADER];
+    head.extend(lines.iter().any(|line| has_exponent(line)).then_some(EXPONENTS));
+    head.extend(compared.then_some(REFERENCE));
     lines.push(String::new());
-    Ok(lines.join("\n"))
+    Ok(format!("{}\n{}", head.join("\n"), lines.join("\n")))
 }
 
-fn order(differing: &[Varying], a: usize, b: usize) -> std::cmp::Ordering {
-    let compared = differing.iter().map(|parameter| match &parameter.values {
-        Values::Numbers(numbers) => {
-            let number = |at: usize| numbers.get(at).copied().flatten().unwrap_or(f64::INFINITY);
-            number(a).total_cmp(&number(b))
-        }
-        Values::Words(words) => words.get(a).cmp(&words.get(b)),
-    });
-    compared.fold(std::cmp::Ordering::Equal, std::cmp::Ordering::then)
+/// Whether a line of results has a number that [`fitting`] has written with an exponent.
+fn has_exponent(line: &str) -> bool {
+    line.split_whitespace().any(|cell| cell.split('±').all(|number| number.contains('e') && number.parse::<f64>().is_ok()))
 }
 
-/// What tells the case from the others of its sweep; its identity, shortened, if nothing does.
-fn label(cases: &Frame, differing: &[Varying], rows: &[usize], place: usize) -> Result<String, StatsError> {
-    if differing.is_empty() {
-        let ids = cases.text("case_id")?;
-        return Ok(rows.get(place).and_then(|row| ids.get(*row)).map_or_else(String::new, |id| id.chars().take(12).collect()));
+fn case_lines(cases: &Frame, listed: &Listed) -> Result<Vec<String>, StatsError> {
+    let value = |name: String, row: usize| -> Result<Option<f64>, StatsError> { Ok(cases.f64_or_null(&name)?.get(row).copied().flatten()) };
+    let mean = |name: &str, row: usize| value(format!("{name}_mean"), row);
+    let count = |name: &str, row: usize| -> Result<i64, StatsError> { Ok(cases.i64(name)?.get(row).copied().unwrap_or_default()) };
+    let counts = |row: usize| -> Result<[i64; 2], StatsError> { Ok([count("done_count", row)?, count("planned_count", row)?]) };
+    let load = value("max_load".to_owned(), listed.row)?.map_or_else(String::new, |load| significant(load, 4));
+    let [done, planned] = counts(listed.row)?;
+    // Means of different surfaces differ by the surfaces too.
+    let reference = match listed.reference {
+        Some(row) if counts(row)? == [done; 2] && done == planned => Some(row),
+        _ => None,
+    };
+    let (mut results, mut changes) = (Vec::new(), Vec::new());
+    for ((_, name, scale), width) in RESULTS.into_iter().zip(&WIDTHS[3..]) {
+        let own = mean(name, listed.row)?;
+        results.push(mean_and_sd(own, value(format!("{name}_sd"), listed.row)?, scale, width - 1));
+        let other = reference.map(|row| mean(name, row)).transpose()?.flatten();
+        changes.push(own.zip(other).and_then(|(own, other)| change(own, other)));
     }
-    let shown = |parameter: &Varying| match parameter.values {
-        Values::Numbers(_) => format!("{}={}", parameter.symbol, parameter.text(place)),
-        Values::Words(_) => parameter.text(place),
-    };
-    Ok(differing.iter().map(shown).collect::<Vec<_>>().join(" "))
-}
-
-fn case_lines(cases: &Frame, row: usize, label: String) -> Result<Vec<String>, StatsError> {
-    let value = |name: &str| -> Result<Option<f64>, StatsError> { Ok(cases.f64_or_null(name)?.get(row).copied().flatten()) };
-    let pair = |name: &str, unit: f64| -> Result<String, StatsError> {
-        let (mean, sd) = (value(&format!("{name}_mean"))?, value(&format!("{name}_sd"))?);
-        Ok(mean_and_sd(mean.map(|mean| mean / unit), sd.map(|sd| sd / unit)))
-    };
-    let count = |name: &str| -> Result<i64, StatsError> { Ok(cases.i64(name)?.get(row).copied().unwrap_or_default()) };
-    let load = value("max_load")?.map_or_else(String::new, |load| plain(load * 1e3));
-    let counts = format!("{}/{}", count("done_count")?, count("planned_count")?);
-    let results = [pair("area_at_max_load", 1.0)?, pair("pull_off_load", 1e-3)?, pair("loss", 1e-3)?, pair("loss_ratio_dk", 1.0)?];
-    let [area, pull_off, loss, ratio] = results;
-    let mut lines = vec![line([label, load, counts, area, pull_off, loss, ratio])];
-    let caution = cases.text("caution")?.get(row).copied().unwrap_or_default();
+    let label = listed.label.replace(" = ", "=") + if listed.is_reference { "*" } else { "" };
+    let mut lines = labelled(&label, [load, format!("{done}/{planned}")], four(results));
+    if changes.iter().any(Option::is_some) {
+        let cells = changes.into_iter().map(|change| change.unwrap_or_else(|| "-".to_owned())).collect();
+        lines.extend(labelled("  change [%]", [String::new(), String::new()], four(cells)));
+    }
+    let caution = cases.text("caution")?.get(listed.row).copied().unwrap_or_default();
     if !caution.is_empty() {
         lines.extend(caution_lines(caution));
     }
     Ok(lines)
+}
+
+fn four(cells: Vec<String>) -> [String; 4] {
+    cells.try_into().unwrap_or_default()
+}
+
+/// The relative difference of a mean from that of the reference case, in percent; nothing where the latter is zero.
+fn change(own: f64, reference: f64) -> Option<String> {
+    let percent = 100.0 * (own - reference) / reference.abs();
+    let text = if percent.abs() < 1e4 { format!("{percent:+.1}") } else { format!("{percent:+.1e}") };
+    percent.is_finite().then(|| if text == "-0.0" || text == "+0.0" { "0.0".to_owned() } else { text })
 }
 
 /// The cautions of a row, as many on a line as fit.
@@ -108,29 +116,53 @@ fn caution_lines(joined: &str) -> Vec<String> {
     lines
 }
 
-/// A load in thousandths, with as many digits as it has.
-fn plain(value: f64) -> String {
-    let text = format!("{value:.4}");
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
-}
-
-fn mean_and_sd(mean: Option<f64>, sd: Option<f64>) -> String {
+/// A mean with its standard deviation over a scale, in so many columns. Numbers that the scale cannot show are written with exponents, and without the scale.
+fn mean_and_sd(mean: Option<f64>, sd: Option<f64>, scale: f64, width: usize) -> String {
     let Some(mean) = mean else {
         return "-".to_owned();
     };
-    let greatest = mean.abs().max(sd.unwrap_or_default().abs());
-    // Five letters for each number, so that both fit their column; numbers beyond are written with an exponent, without spread.
-    let digits = match greatest {
+    let largest = mean.abs().max(sd.unwrap_or_default().abs());
+    let digits = match largest / scale {
+        0.0 => 0,
+        _ if mean != 0.0 && mean.abs() < 5e-4 * scale => return fitting(mean, sd, width),
+        size if size < 0.01 => return fitting(mean, sd, width),
         size if size < 10.0 => 3,
         size if size < 100.0 => 2,
         size if size < 1000.0 => 1,
-        size if size < 1e5 => 0,
-        _ => return format!("{mean:.2e}"),
+        _ => return fitting(mean, sd, width),
     };
     match sd {
-        Some(sd) => format!("{mean:.digits$}±{sd:.digits$}"),
-        None => format!("{mean:.digits$}"),
+        Some(sd) => format!("{:.digits$}±{:.digits$}", mean / scale, sd / scale),
+        None => format!("{:.digits$}", mean / scale),
     }
+}
+
+/// A mean with its standard deviation, with exponents of their own and as many digits, two at most, as fit.
+fn fitting(mean: f64, sd: Option<f64>, width: usize) -> String {
+    let Some(sd) = sd else {
+        return format!("{mean:.2e}");
+    };
+    let texts = [(1, 1), (1, 0), (0, 0)].map(|(a, b)| format!("{mean:.a$e}±{sd:.b$e}"));
+    let [.., shortest] = &texts;
+    texts.iter().find(|text| text.chars().count() <= width).unwrap_or(shortest).clone()
+}
+
+/// Cells below the headings, after a label; a label that is too long for its column has lines of its own.
+fn labelled(label: &str, [load, count]: [String; 2], [area, pull_off, loss, ratio]: [String; 4]) -> Vec<String> {
+    let cells = |label: String| line([label, load, count, area, pull_off, loss, ratio]);
+    if label.chars().count() < WIDTHS[0] {
+        return vec![cells(label.to_owned())];
+    }
+    let mut lines: Vec<String> = Vec::new();
+    for word in label.split_inclusive(", ") {
+        match lines.last_mut().filter(|line| line.chars().count() + word.chars().count() <= LINE) {
+            Some(line) => line.push_str(word),
+            None => lines.push(word.to_owned()),
+        }
+    }
+    let mut lines: Vec<String> = lines.into_iter().map(|line| cut(line.trim_end(), LINE)).collect();
+    lines.push(cells(String::new()));
+    lines
 }
 
 fn line(cells: [String; 7]) -> String {

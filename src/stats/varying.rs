@@ -1,6 +1,7 @@
 //! Which parameters tell the cases of a table apart.
 
 use super::StatsError;
+use super::digits::labels_with_unit;
 use crate::store::{ColumnData, Frame};
 
 /// Columns that may define a case, with the symbol and the axis label of each; labels have the markup of the figures.
@@ -46,20 +47,40 @@ pub struct Varying {
     pub label: &'static str,
     /// Its values, in the order of the rows that were asked for.
     pub values: Values,
+    /// The values as labels.
+    texts: Vec<String>,
 }
 
 impl Varying {
-    /// The value of a row as text: `64`, `0.45`, `spots`, or `?` where it is missing.
-    pub fn text(&self, row: usize) -> String {
-        match &self.values {
-            Values::Numbers(numbers) => numbers.get(row).copied().flatten().map_or_else(|| "?".to_owned(), |number| format!("{number}")),
-            Values::Words(words) => words.get(row).map_or_else(
-                || "?".to_owned(),
-                |word| {
-                    if word.is_empty() { "none".to_owned() } else { word.clone() }
-                },
-            ),
+    /// A parameter with its values.
+    pub fn new((name, symbol, label): (&'static str, &'static str, &'static str), values: Values) -> Self {
+        let texts = match &values {
+            Values::Numbers(numbers) => {
+                let known: Vec<f64> = numbers.iter().flatten().copied().collect();
+                let mut texts = labels_with_unit(name, &known).into_iter();
+                numbers.iter().map(|number| number.and_then(|_| texts.next()).unwrap_or_else(|| "?".to_owned())).collect()
+            }
+            Values::Words(words) => words.iter().map(|word| if word.is_empty() { "none".to_owned() } else { word.clone() }).collect(),
+        };
+        Self { name, symbol, label, values, texts }
+    }
+
+    /// The value of a row as a label: `64`, `0.5 nm`, `spots`, or `?` where it is missing.
+    pub fn text(&self, row: usize) -> &str {
+        self.texts.get(row).map_or("?", String::as_str)
+    }
+
+    /// The value of a row with the symbol before it: `ζ = 64`, `interaction = none`; a word that names its parameter stands alone.
+    pub fn named(&self, row: usize) -> String {
+        match self.values {
+            Values::Words(_) if self.text(row) != "none" => self.text(row).to_owned(),
+            _ => self.assigned(row),
         }
+    }
+
+    /// The value of a row with the symbol before it, whatever the value is: `interaction = point`.
+    pub fn assigned(&self, row: usize) -> String {
+        format!("{} = {}", self.symbol, self.text(row))
     }
 }
 
@@ -84,7 +105,7 @@ pub fn varying(cases: &Frame, rows: &[usize]) -> Result<Vec<Varying>, StatsError
             }
             ColumnData::I64(_) | ColumnData::Bool(_) => None,
         };
-        found.extend(values.map(|values| Varying { name, symbol, label, values }));
+        found.extend(values.map(|values| Varying::new((name, symbol, label), values)));
     }
     Ok(found)
 }

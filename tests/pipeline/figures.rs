@@ -2,16 +2,23 @@
 
 use std::path::Path;
 
-use hysteron::figures::{FigureError, panels, plot_xy, table};
+use hysteron::figures::{FigureError, Panel, Tables, panels, plot_xy, table};
 use hysteron::stats::{CaseInput, cases, curves, realizations};
 use hysteron::store::Frame;
 
 use crate::steps::{case, cycle, realistic};
 
 /// What a synthetic case comes to: area, pull-off, loss and depth at the greatest load, dimensionless.
-type Result = (f64, f64, f64, f64);
+pub type Result = (f64, f64, f64, f64);
 
-fn tables(inputs: &[(CaseInput, Result)], realization_count: i32) -> (Frame, Frame) {
+/// The tables `cases`, `curves` and `realizations`.
+pub type Made = (Frame, Frame, Frame);
+
+pub fn panels_of((cases, curves, realizations): &Made, sweep: &str) -> std::result::Result<Vec<Panel>, FigureError> {
+    panels(&Tables { cases, curves, realizations }, sweep)
+}
+
+pub fn tables(inputs: &[(CaseInput, Result)], realization_count: i32) -> Made {
     let directory = tempfile::tempdir().unwrap();
     let mut cycles = Vec::new();
     for (at, (input, (area, pull_off, loss, depth))) in inputs.iter().enumerate() {
@@ -32,13 +39,12 @@ fn tables(inputs: &[(CaseInput, Result)], realization_count: i32) -> (Frame, Fra
     }
     let inputs: Vec<CaseInput> = inputs.iter().map(|(input, _)| input.clone()).collect();
     let rows = realizations(&inputs, &cycles).unwrap();
-    (cases(&rows, &inputs).unwrap(), curves(&inputs, &cycles).unwrap())
+    (cases(&rows, &inputs).unwrap(), curves(&inputs, &cycles).unwrap(), rows)
 }
 
 /// Panels of a sweep, each checked to be well formed, and left where a person can look at them.
-fn draw(tables: &(Frame, Frame), sweep: &str) -> Vec<(String, String)> {
-    let drawn: Vec<(String, String)> =
-        panels(&tables.0, &tables.1, sweep).unwrap().into_iter().map(|panel| (panel.stem, panel.svg)).collect();
+fn draw(tables: &Made, sweep: &str) -> Vec<(String, String)> {
+    let drawn: Vec<(String, String)> = panels_of(tables, sweep).unwrap().into_iter().map(|panel| (panel.stem, panel.svg)).collect();
     let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join("figures");
     std::fs::create_dir_all(&directory).unwrap();
     for (stem, svg) in &drawn {
@@ -49,7 +55,7 @@ fn draw(tables: &(Frame, Frame), sweep: &str) -> Vec<(String, String)> {
 }
 
 /// Every tag is closed in order, every attribute is quoted, every identifier occurs once.
-fn well_formed(svg: &str) {
+pub fn well_formed(svg: &str) {
     let mut open = Vec::new();
     for piece in svg.split('<').skip(1) {
         let (tag, text) = piece.split_once('>').expect("a tag ends");
@@ -70,7 +76,7 @@ fn well_formed(svg: &str) {
 }
 
 /// The text that a reader sees, markup and spans removed.
-fn read(svg: &str) -> String {
+pub fn read(svg: &str) -> String {
     svg.split('<').filter_map(|piece| piece.split_once('>')).map(|(_, text)| text).collect()
 }
 
@@ -85,7 +91,7 @@ fn paths(svg: &str, dashes: Option<&str>) -> usize {
         .count()
 }
 
-fn fig4() -> (Frame, Frame) {
+fn fig4() -> Made {
     let result = [(0.186, 6.7e-4, 6.9e-4, 2.6), (0.133, 5.0e-4, 4.9e-4, 2.5), (0.098, 3.9e-4, 3.7e-4, 2.45), (0.071, 3.2e-4, 2.9e-4, 2.4)];
     let zetas = [64.0, 128.0, 256.0, 512.0];
     let inputs: Vec<_> =
@@ -96,7 +102,7 @@ fn fig4() -> (Frame, Frame) {
 #[test]
 fn e2e_every_panel_is_drawn_again_from_its_table() {
     let tables = fig4();
-    let drawn: Vec<_> = panels(&tables.0, &tables.1, "fig4").unwrap().into_iter().map(|panel| ("fig4".to_owned(), panel)).collect();
+    let drawn: Vec<_> = panels_of(&tables, "fig4").unwrap().into_iter().map(|panel| ("fig4".to_owned(), panel)).collect();
     let frame = table(&drawn).unwrap();
     let (letters, curves) = (frame.text("panel").unwrap(), frame.i64("curve").unwrap());
     let (x, y, spread) = (frame.f64("x").unwrap(), frame.f64("y").unwrap(), frame.f64_or_null("y_sd").unwrap());
@@ -156,7 +162,7 @@ fn e2e_load_sweep_stands_over_area() {
     let text = read(&drawn[0].1);
     assert!(["0.004", "0.0071", "0.012", "0.015", "Fmax/(E*A0)"].iter().all(|label| text.contains(label)), "{text}");
     assert!(read(&drawn[3].1).contains("A/A0"));
-    assert_eq!(panels(&tables.0, &tables.1, "other").unwrap().len(), 5);
+    assert_eq!(panels_of(&tables, "other").unwrap().len(), 5);
 }
 
 #[test]
@@ -223,6 +229,6 @@ fn law_nothing_finished_draws_empty_axes() {
 #[test]
 fn law_unknown_sweep_is_a_sentence() {
     let tables = fig4();
-    let error = panels(&tables.0, &tables.1, "fig9").unwrap_err();
+    let error = panels_of(&tables, "fig9").unwrap_err();
     assert!(matches!(error, FigureError::UnknownSweep { .. }) && error.to_string().contains("fig4"));
 }

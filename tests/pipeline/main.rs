@@ -14,7 +14,11 @@ mod figures;
 #[cfg(feature = "stats")]
 mod keys;
 #[cfg(feature = "stats")]
+mod labels;
+#[cfg(feature = "stats")]
 mod losses;
+#[cfg(feature = "stats")]
+mod panels;
 #[cfg(feature = "stats")]
 mod python;
 #[cfg(feature = "stats")]

@@ -1,0 +1,91 @@
+//! Captions of the panels: quantity, cases, statistics, strokes and data.
+
+use super::closer::Closer;
+use super::plot::{Curve, Stroke, XyPlot};
+use super::sweep::Sweep;
+use crate::stats::{Values, significant};
+
+/// Values of one parameter that a caption lists; of more, it states the range.
+const MOST_VALUES: usize = 8;
+
+/// The caption of a panel of a sweep, by its letter.
+pub(super) fn of_sweep(letter: char, sweep: &Sweep, surfaces: &str, plot: &XyPlot) -> String {
+    let what = match letter {
+        'A' => "Real contact area A/A₀ against normal force F/(E*A₀)",
+        'B' => "Pull-off force F_po/(E*A₀)",
+        'C' => "Mean penetration Δ/h_rms against normal force F/(E*A₀)",
+        'D' => "Dissipated energy Θ/(E*A₀h_rms) with the estimates of Deng and Kesari",
+        _ => "Energy dissipated by the events of each branch, over E*A₀h_rms",
+    };
+    let mut parts = vec![format!("{what}{}; {surfaces}", cases(sweep))];
+    if matches!(letter, 'A' | 'C') {
+        parts.push("loading dashed, unloading solid".to_owned());
+        if surfaces.starts_with("mean") {
+            parts.push("below zero load, averaged at equal fractions of each surface's own pull-off force".to_owned());
+        }
+    }
+    let curves = || plot.curves.iter();
+    if curves().any(|curve| curve.errors.iter().any(Option::is_some)) {
+        let what = if matches!(letter, 'A' | 'C') { "bands" } else { "bars" };
+        let cut = if curves().any(Curve::is_cut) { ", ending at 0" } else { "" };
+        parts.push(format!("{what}: ± one standard deviation{cut}"));
+    }
+    if curves().any(|curve| curve.stroke == Stroke::Crosses) {
+        parts.push("crosses: single surfaces, where there are fewer than five".to_owned());
+    }
+    format!("{}. Data: statistics/panels.parquet (panel {letter}).", parts.join("; "))
+}
+
+/// The cases of a sweep: `, for ζ = 32, 64`.
+fn cases(sweep: &Sweep) -> String {
+    let mut parts = Vec::new();
+    for parameter in &sweep.differing {
+        let mut places: Vec<usize> = (0..sweep.members.len()).collect();
+        match &parameter.values {
+            Values::Numbers(numbers) => places.sort_by(|a, b| numbers[*a].unwrap_or(f64::NAN).total_cmp(&numbers[*b].unwrap_or(f64::NAN))),
+            Values::Words(words) => places.sort_by(|a, b| words[*a].cmp(&words[*b])),
+        }
+        let mut texts: Vec<&str> = places.into_iter().map(|place| parameter.text(place)).collect();
+        texts.dedup();
+        parts.push(match texts[..] {
+            [first, .., last] if texts.len() > MOST_VALUES => {
+                format!("{} = {first} to {last} ({} values)", parameter.symbol, texts.len())
+            }
+            _ => format!("{} = {}", parameter.symbol, texts.join(", ")),
+        });
+    }
+    if parts.is_empty() { String::new() } else { format!(", for {}", parts.join("; ")) }
+}
+
+/// The caption of a panel of the closer look at one cycle, by its name.
+pub(super) fn of_cycle(name: &str, of: &Closer<'_>) -> String {
+    let text = match name {
+        "loop" => "Normal force F/(E*A₀) against mean penetration Δ/h_rms up to the load reversal and back".to_owned(),
+        "events" => {
+            "Energy dissipated by each event; events that release energy to the contact are not drawn on the logarithmic axis".to_owned()
+        }
+        "avalanches" => "Number of avalanches with at least s events".to_owned(),
+        "radii" => "Cumulative distribution of contact radii over the side L".to_owned(),
+        "loads" => {
+            "Cumulative distribution of the load of each contact spot over the pull-off force of its asperity; positive in compression"
+                .to_owned()
+        }
+        "spectrum" => spectrum(of),
+        _ => "Curvatures of the asperity summits beside Nayak's distribution for the realised spectral moments".to_owned(),
+    };
+    format!("{text}. Data: statistics/panels.parquet (panel {name}).")
+}
+
+fn spectrum(of: &Closer<'_>) -> String {
+    let rings = "Radially averaged power spectral density of the heights over rings of wavevectors below the cut-off";
+    match of.asked_factor {
+        Some(factor) if (factor - 1.0).abs() > 1e-6 => format!(
+            "{rings}. The sum of Eq 10 over the discrete wavevectors is {} times the target variance, and the heights are scaled to the target rms height. \
+             The realised density therefore follows {} times Eq 10",
+            significant(1.0 / factor, 3),
+            significant(factor, 3)
+        ),
+        Some(_) => format!("{rings}, with Eq 10"),
+        None => rings.to_owned(),
+    }
+}

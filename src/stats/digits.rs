@@ -1,0 +1,63 @@
+//! Numbers in labels: as many digits as tell them apart, and no more.
+
+/// Significant digits of a label, unless more are needed to tell two values apart.
+const DIGITS: usize = 4;
+
+/// Digits that tell any two different doubles apart.
+const ALL_DIGITS: usize = 17;
+
+/// SI prefixes with their powers of ten.
+const PREFIXES: [(i32, &str); 8] = [(-12, "p"), (-9, "n"), (-6, "µ"), (-3, "m"), (0, ""), (3, "k"), (6, "M"), (9, "G")];
+
+/// A number with at most so many significant digits and no zeros at its end: `0.055`, `5e-10`.
+#[must_use]
+pub fn significant(value: f64, digits: usize) -> String {
+    let rounded: f64 = format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value);
+    let size = rounded.abs();
+    if rounded == 0.0 {
+        "0".to_owned()
+    } else if (1e-4..1e6).contains(&size) {
+        format!("{rounded}")
+    } else {
+        format!("{rounded:e}")
+    }
+}
+
+/// Numbers as labels: four significant digits each, more where two different numbers would have one label.
+#[must_use]
+pub fn labels(values: &[f64]) -> Vec<String> {
+    let mut ordered = values.to_vec();
+    ordered.sort_by(f64::total_cmp);
+    ordered.dedup();
+    // Rounding keeps the order, so that only neighbours can coincide.
+    let apart = |digits: &usize| {
+        let texts: Vec<String> = ordered.iter().map(|value| significant(*value, *digits)).collect();
+        texts.windows(2).all(|pair| pair.first() != pair.last())
+    };
+    let digits = (DIGITS..ALL_DIGITS).find(apart).unwrap_or(ALL_DIGITS);
+    values.iter().map(|value| significant(*value, digits)).collect()
+}
+
+/// Values of a column as labels with its unit, all with one SI prefix: `0.5 nm`, `1 MPa`, `0.055 J/m²`. The unit follows from the column's name.
+#[must_use]
+pub fn labels_with_unit(column: &str, values: &[f64]) -> Vec<String> {
+    let (unit, prefixed) = match column {
+        name if name.ends_with("_j_m2") => ("J/m²", false),
+        name if name.ends_with("_pa") => ("Pa", true),
+        name if name.ends_with("_m") => ("m", true),
+        _ => return labels(values),
+    };
+    let least = values.iter().map(|value| value.abs()).filter(|size| *size > 0.0).fold(f64::INFINITY, f64::min);
+    // The smallest value is written as 0.1 to 100 units.
+    let wanted = if prefixed && least.is_finite() { ((least.log10() + 1.0) / 3.0 + 1e-9).floor() as i32 * 3 } else { 0 };
+    let nearest = PREFIXES.iter().min_by_key(|(power, _)| (power - wanted).abs()).copied();
+    let (power, prefix) = nearest.unwrap_or((0, ""));
+    let scaled: Vec<f64> = values.iter().map(|value| value / 10f64.powi(power)).collect();
+    labels(&scaled).into_iter().map(|text| format!("{text} {prefix}{unit}")).collect()
+}
+
+/// A count with its noun in the right number: `1 spot`, `2 spots`.
+#[must_use]
+pub fn counted(count: usize, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}

@@ -1,0 +1,147 @@
+//! Rows of the table `cases` as tables and reports list them: labelled by the parameters that vary, the reference case first.
+
+use super::varying::{Values, Varying, varying};
+use super::{StatsError, digits};
+use crate::store::Frame;
+use std::cmp::Ordering;
+
+/// A row of the table `cases` in a list.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Listed {
+    /// The row.
+    pub row: usize,
+    /// The parameters that vary in the list, with the values of this row.
+    pub label: String,
+    /// Whether the row is of the reference case.
+    pub is_reference: bool,
+    /// The row of the reference case at the same load; nothing for the reference case itself, and where there is none.
+    pub reference: Option<usize>,
+}
+
+/// All rows of the table `cases`, in order.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Listing {
+    /// The rows.
+    pub rows: Vec<Listed>,
+    /// The parameters of the reference case that vary in the campaign; nothing without such a case.
+    pub reference: Option<String>,
+}
+
+/// The names of all sweeps, each once: the column `sweep` joins those of a case by `+`.
+///
+/// # Errors
+/// If the table lacks the column.
+pub fn sweeps(cases: &Frame) -> Result<Vec<String>, StatsError> {
+    let mut names: Vec<String> = cases.text("sweep")?.iter().flat_map(|joined| joined.split('+')).map(str::to_owned).collect();
+    names.sort_unstable();
+    names.dedup();
+    Ok(names)
+}
+
+/// The rows of one sweep: the reference case first, the others ordered by the parameters that vary within the sweep, which are their labels.
+///
+/// # Errors
+/// If the table lacks a column.
+pub fn listing_of(cases: &Frame, sweep: &str) -> Result<Vec<Listed>, StatsError> {
+    let joined = cases.text("sweep")?;
+    let rows: Vec<usize> = (0..joined.len()).filter(|row| joined[*row].split('+').any(|name| name == sweep)).collect();
+    let list = List::of(cases, rows)?;
+    let label = |place: usize| list.differing.iter().map(|parameter| parameter.named(place)).collect::<Vec<_>>().join(", ");
+    list.listed(cases, None, label)
+}
+
+/// All rows: the reference case first. With a reference case, the label of another case has the parameters that differ from it; otherwise those that vary in
+/// the campaign.
+///
+/// # Errors
+/// If the table lacks a column.
+pub fn listing(cases: &Frame) -> Result<Listing, StatsError> {
+    let list = List::of(cases, (0..cases.row_count()).collect())?;
+    let all = |place: usize| list.differing.iter().map(|parameter| parameter.assigned(place)).collect::<Vec<_>>().join(", ");
+    let base = list.references.iter().position(|is| *is);
+    let label = |place: usize| match base {
+        Some(base) => {
+            let own = list.differing.iter().filter(|parameter| parameter.text(place) != parameter.text(base));
+            let parts: Vec<String> = own.map(|parameter| parameter.assigned(place)).collect();
+            if parts.is_empty() { "reference".to_owned() } else { parts.join(", ") }
+        }
+        None => all(place),
+    };
+    Ok(Listing { rows: list.listed(cases, base, label)?, reference: base.map(all) })
+}
+
+/// The reference case: the one that belongs to more sweeps than every other.
+fn reference_case(cases: &Frame) -> Result<Option<String>, StatsError> {
+    let (ids, joined) = (cases.text("case_id")?, cases.text("sweep")?);
+    let count = |row: usize| joined[row].split('+').count();
+    let most = (0..ids.len()).map(count).max().unwrap_or_default();
+    let mut found: Vec<&str> = (0..ids.len()).filter(|row| count(*row) == most).map(|row| ids[row]).collect();
+    found.sort_unstable();
+    found.dedup();
+    Ok(match found[..] {
+        [id] if most > 1 => Some(id.to_owned()),
+        _ => None,
+    })
+}
+
+/// Rows with what varies among them.
+struct List {
+    rows: Vec<usize>,
+    differing: Vec<Varying>,
+    loads: Vec<f64>,
+    /// Whether each row is of the reference case.
+    references: Vec<bool>,
+}
+
+impl List {
+    fn of(cases: &Frame, rows: Vec<usize>) -> Result<Self, StatsError> {
+        let (ids, loads, reference) = (cases.text("case_id")?, cases.f64("max_load")?, reference_case(cases)?);
+        let references = rows.iter().map(|row| reference.as_deref() == Some(ids[*row])).collect();
+        Ok(Self { differing: varying(cases, &rows)?, loads: rows.iter().map(|row| loads[*row]).collect(), rows, references })
+    }
+
+    fn listed(&self, cases: &Frame, base: Option<usize>, label: impl Fn(usize) -> String) -> Result<Vec<Listed>, StatsError> {
+        let mut places: Vec<usize> = (0..self.rows.len()).collect();
+        places.sort_by(|a, b| {
+            let first = self.references[*b].cmp(&self.references[*a]);
+            first.then(self.order(base, *a, *b)).then(self.loads[*a].total_cmp(&self.loads[*b]))
+        });
+        let same_load = |place: usize| (0..self.rows.len()).find(|k| self.references[*k] && self.loads[*k] == self.loads[place]);
+        let one = |place: usize| -> Result<Listed, StatsError> {
+            let is_reference = self.references[place];
+            let label = if self.differing.is_empty() { case_label(cases, self.rows[place])? } else { label(place) };
+            let reference = same_load(place).filter(|_| !is_reference).map(|k| self.rows[k]);
+            Ok(Listed { row: self.rows[place], label, is_reference, reference })
+        };
+        places.into_iter().map(one).collect()
+    }
+
+    /// By the values; where a base is given, cases that differ from it in the same parameters are neighbours.
+    fn order(&self, base: Option<usize>, a: usize, b: usize) -> Ordering {
+        let differs = |place: usize| {
+            let own = move |base: usize| self.differing.iter().map(move |parameter| parameter.text(place) == parameter.text(base));
+            base.map(|base| own(base).collect::<Vec<bool>>())
+        };
+        let compared = self.differing.iter().map(|parameter| match &parameter.values {
+            Values::Numbers(numbers) => {
+                let number = |at: usize| numbers[at].unwrap_or(f64::INFINITY);
+                number(a).total_cmp(&number(b))
+            }
+            Values::Words(words) => words[a].cmp(&words[b]),
+        });
+        differs(a).cmp(&differs(b)).then(compared.fold(Ordering::Equal, Ordering::then))
+    }
+}
+
+/// The label of a case where nothing varies: the file of a measured surface, or ζ and H.
+fn case_label(cases: &Frame, row: usize) -> Result<String, StatsError> {
+    if let Some(file) = cases.text_or_null("surface_file")?.get(row).cloned().flatten() {
+        return Ok(file);
+    }
+    let mut parts = Vec::new();
+    for (symbol, column) in [("ζ", "magnification"), ("H", "hurst")] {
+        let value = cases.f64_or_null(column)?.get(row).copied().flatten();
+        parts.extend(value.map(|value| format!("{symbol} = {}", digits::significant(value, 4))));
+    }
+    Ok(parts.join(", "))
+}

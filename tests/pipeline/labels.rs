@@ -1,0 +1,121 @@
+//! Numbers and names in tables that people read.
+
+use hysteron::stats::{CaseInput, cases, counted, labels, realizations, significant, summary};
+use hysteron::store::Frame;
+
+use crate::panels::replaced;
+use crate::steps::{case, cycle, realistic};
+
+#[test]
+fn law_labels_have_four_digits_unless_more_tell_them_apart() {
+    assert_eq!(labels(&[0.05500000000000001, 0.1, 0.30000000000000004]), ["0.055", "0.1", "0.3"]);
+    assert_eq!(labels(&[0.12341, 0.12342]), ["0.12341", "0.12342"]);
+    assert_eq!(labels(&[5e-10, 512.0, 0.0071, -0.0]), ["5e-10", "512", "0.0071", "0"]);
+    // The next double is another label, at whatever cost.
+    let next = f64::from_bits(0.055_f64.to_bits() + 1);
+    assert_eq!(labels(&[0.055, next]), ["0.055", "0.05500000000000001"]);
+    let many: Vec<f64> = (0..1000).map(|k| 1.0 + f64::from(k) * 1e-7).collect();
+    let mut texts = labels(&many);
+    texts.sort_unstable();
+    texts.dedup();
+    assert_eq!(texts.len(), many.len());
+    assert_eq!((significant(f64::NAN, 4).as_str(), significant(123_456.0, 3).as_str()), ("NaN", "123000"));
+}
+
+#[test]
+fn law_one_is_no_plural() {
+    assert_eq!([0, 1, 2].map(|count| counted(count, "spot")), ["0 spots", "1 spot", "2 spots"]);
+}
+
+/// The reference case, which three sweeps share, and the others of these.
+fn sensitivity() -> Vec<CaseInput> {
+    let with = |id: &str, sweep: &str, name: &str, value: &str| {
+        let mut input = case(id, sweep, 0.8, 128.0, &[0.0071]);
+        for (known, own) in &mut input.parameters {
+            if known == name {
+                *own = value.into();
+            }
+        }
+        input
+    };
+    let all = vec![
+        with("H0.80_z128-0a", "boundary", "boundary", "isolated"),
+        with("H0.80_z128-0b", "coalescence", "coalescence", "merge"),
+        with("H0.80_z128-0c", "coalescence", "coalescence", "none"),
+        with("H0.80_z128-0d", "coalescence+boundary+normalization", "", ""),
+        with("H0.80_z128-0e", "normalization", "normalization", "spectrum"),
+    ];
+    all.into_iter().map(|input| CaseInput { planned_count: 3, ..input }).collect()
+}
+
+/// The table of these cases, of `count` surfaces; the loss of a case is that of the first plus a tenth for each.
+fn table(inputs: &[CaseInput], count: i32) -> Frame {
+    let directory = tempfile::tempdir().unwrap();
+    let mut cycles = Vec::new();
+    for (at, input) in inputs.iter().enumerate() {
+        for realization in 0..count {
+            let path = directory.path().join(format!("{at}-{realization}.parquet"));
+            let factor = 1.0 + 0.1 * f64::from(realization);
+            realistic(&path, &input.max_loads, 0.1 * factor, 5e-4 * factor, 5e-4 * factor * (1.0 + 0.1 * at as f64), 2.5);
+            cycles.push(cycle(&input.case_id, i64::from(realization), &path, 2e-8));
+        }
+    }
+    cases(&realizations(inputs, &cycles).unwrap(), inputs).unwrap()
+}
+
+#[test]
+fn law_every_sweep_lists_its_cases_by_what_varies_the_reference_first() {
+    let text = summary(&table(&sensitivity(), 3)).unwrap();
+    assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
+    assert!(!text.contains("H0.80") && !text.contains("coalescence+"), "{text}");
+    let block = |sweep: &str| -> Vec<&str> {
+        let lines = text.lines().skip_while(move |line| !line.starts_with(sweep)).skip(1).take_while(|line| !line.is_empty());
+        lines.filter(|line| !line.starts_with(' ')).map(|line| line.split_whitespace().next().unwrap()).collect()
+    };
+    assert_eq!(block("boundary "), ["periodic*", "isolated"], "{text}");
+    assert_eq!(block("coalescence "), ["cover*", "merge", "coalescence=none"], "{text}");
+    assert_eq!(block("normalization"), ["sample*", "spectrum"], "{text}");
+    // The loss of "isolated" is 1.0 to the 1.3 of the reference case, all else is the same.
+    let change = text.lines().skip_while(|line| !line.starts_with("isolated")).find(|line| line.starts_with("  change [%]")).unwrap();
+    let numbers: Vec<&str> = change.split_whitespace().skip(2).collect();
+    assert_eq!(numbers, ["0.0", "0.0", "-23.1", "-23.1"], "{text}");
+    assert!(text.contains("*: reference case"));
+    // Of fewer surfaces than the spec asks for, means differ by the surfaces too.
+    let partial = summary(&table(&sensitivity(), 2)).unwrap();
+    assert!(partial.contains("cover*") && !partial.contains("change [%]"), "{partial}");
+}
+
+#[test]
+fn law_a_campaign_without_a_shared_case_has_no_reference() {
+    let mut inputs = sensitivity();
+    inputs.iter_mut().for_each(|input| input.sweep = "all".to_owned());
+    let text = summary(&table(&inputs, 2)).unwrap();
+    assert!(!text.contains("reference") && !text.contains("change [%]"), "{text}");
+    assert!(text.contains("\nisolated, cover, sample\n") && text.contains("\nperiodic, cover, spectrum\n"), "{text}");
+}
+
+#[test]
+fn law_one_case_is_named_by_its_surface() {
+    let text = summary(&table(&[case("H0.80_z128-0a", "", 0.8, 128.0, &[0.0071])], 2)).unwrap();
+    assert!(text.contains("ζ=128, H=0.8") && !text.contains("H0.80"), "{text}");
+}
+
+#[test]
+fn law_no_number_vanishes_in_the_scale_of_its_column() {
+    let whole = table(&[case("a", "", 0.8, 128.0, &[0.0071])], 3);
+    let row = |columns: &[(&str, f64)]| {
+        let frame = columns.iter().fold(whole.clone(), |frame, (name, value)| replaced(&frame, name, 0, *value));
+        let text = summary(&frame).unwrap();
+        assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
+        text
+    };
+    let text = row(&[("loss_mean", -1.84e-11), ("loss_sd", 2.96e-11), ("loss_ratio_dk_mean", 51245.0), ("loss_ratio_dk_sd", 67298.0)]);
+    assert!(text.contains("-2e-11±3e-11") && text.contains("5.1e4±6.7e4"), "{text}");
+    assert!(!text.contains("0.000") && !text.contains("51245") && text.contains("Numbers with an exponent are absolute"), "{text}");
+    let text = row(&[("loss_mean", 5.43e-12), ("loss_sd", 2.11e-12), ("area_at_max_load_mean", 1.24e-5), ("area_at_max_load_sd", 2e-6)]);
+    assert!(text.contains("5.4e-12±2e-12") && text.contains("1.2e-5±2e-6"), "{text}");
+    let text = row(&[("loss_mean", 1e-7), ("loss_sd", 2e-4)]);
+    assert!(text.contains("1.0e-7±2.0e-4"), "{text}");
+    let text = row(&[("loss_mean", 0.0), ("loss_sd", 0.0)]);
+    assert!(text.contains("0±0"), "{text}");
+}
