@@ -69,6 +69,10 @@ fn field(column: &Column) -> Value {
         "description": column.doc,
         "constraints": { "required": !column.nullable },
     });
+    // Parquet stores nulls as such; frictionless reads them as "nan" from columns of numbers.
+    if column.nullable && column.kind != Kind::Text {
+        field["missingValues"] = json!(["nan"]);
+    }
     // The standard has no place of its own for units and sources, and lets publishers add some.
     for (name, value) in [("unit", column.unit), ("source", column.source)] {
         if !value.is_empty() {
