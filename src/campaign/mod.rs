@@ -172,6 +172,8 @@ impl Campaign {
         let hashed = Hashed::all(&campaign.spec, &campaign.counts);
         // Of each kind of surface, the places of its realizations.
         let mut places: Vec<Vec<usize>> = vec![Vec::new(); hashed.surfaces.len()];
+        // Files of different names with the same content have the same cycles: one key, one id.
+        let mut ids: HashMap<String, String> = HashMap::new();
         for (number, (case, of)) in campaign.spec.cases.iter().zip(hashed.cases).enumerate() {
             let [id, cycle_case_id] = [&of.whole, &of.in_cycle].map(|key| format!("{}-{}", of.name, short(key)));
             campaign.cases.push(CaseUnit { id, cycle_case_id, case: case.clone() });
@@ -188,7 +190,8 @@ impl Campaign {
                         realization: realization as u32,
                     });
                 }
-                let id = format!("{}_r{realization:02}-{}", of.name, short(&cycle));
+                let id = || format!("{}_r{realization:02}-{}", of.name, short(&cycle));
+                let id = ids.entry(cycle.clone()).or_insert_with(id).clone();
                 campaign.cycles.push(CycleUnit { id, key: cycle, case: number, surface: known[realization] });
             }
         }
