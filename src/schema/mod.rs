@@ -87,11 +87,25 @@ impl Table {
 const CYCLE_ID: Column = text("cycle_id", "Identity of the cycle: name of its directory below cycles/");
 const REALIZATION: Column = index("realization", "Number of the surface among those that share its spectrum, from 0");
 const SURFACE_ID: Column = text("surface_id", "Identity of the surface: name of its file below surfaces/, without extension");
-const ASPERITIES_ID: Column = text("asperities_id", "Identity of the asperity table: name of its file below asperities/; equal to surface_id");
+const ASPERITIES_ID: Column =
+    text("asperities_id", "Identity of the asperity table: name of its file below asperities/; equal to surface_id");
 
 /// Every table that the program writes.
-pub static TABLES: &[&Table] =
-    &[&ASPERITIES, &STEPS, &CONTACTS, &TURNING, &MERGED, &EVENTS, &REALIZATIONS, &CASES, &CURVES, &AVALANCHES, &CYCLES, &PANELS, &COMPARISON];
+pub static TABLES: &[&Table] = &[
+    &ASPERITIES,
+    &STEPS,
+    &CONTACTS,
+    &TURNING,
+    &MERGED,
+    &EVENTS,
+    &REALIZATIONS,
+    &CASES,
+    &CURVES,
+    &AVALANCHES,
+    &CYCLES,
+    &PANELS,
+    &COMPARISON,
+];
 
 impl Column {
     /// The same column, whose values may be missing.

@@ -269,11 +269,20 @@ pub static CURVES: Table = Table {
             "station",
             "Rule of the station: \"load\" (the same load in every realization) or \"tension_fraction\" (the same fraction of each realization's own maximum tensile load)",
         ),
-        real("tension_fraction", "1", "Tensile load of each realization over its own maximum tensile load on this branch; null if station is \"load\"").or_null(),
+        real(
+            "tension_fraction",
+            "1",
+            "Tensile load of each realization over its own maximum tensile load on this branch; null if station is \"load\"",
+        )
+        .or_null(),
         real("load", "1", "F/(E* A0): the common load, or the mean of the realizations' own loads if station is \"tension_fraction\""),
         real("area_mean", "1", "Mean of A/A0 over the realizations, each at its own load if station is \"tension_fraction\""),
         real("area_sd", "1", "Standard deviation of A/A0 (n - 1); null for fewer than two").or_null(),
-        real("penetration_mean", "1", "Mean of approach over rms height over the realizations, each at its own load if station is \"tension_fraction\""),
+        real(
+            "penetration_mean",
+            "1",
+            "Mean of approach over rms height over the realizations, each at its own load if station is \"tension_fraction\"",
+        ),
         real("penetration_sd", "1", "Standard deviation of approach over rms height (n - 1); null for fewer than two").or_null(),
         count(
             "realization_count",

@@ -171,7 +171,8 @@ fn turning(of: Identity<'_>, cycle: &Cycle, problem: &Problem, loads: &[f64]) ->
         Status::Covered { by, release_m } => Some((by, release_m)),
         _ => None,
     };
-    Ok(of.begin(&schema::TURNING, rows.len())
+    Ok(of
+        .begin(&schema::TURNING, rows.len())
         .f64("max_load", rows.iter().map(|row| row.0))
         .f64("approach_m", rows.iter().map(|row| row.1))
         .i64("asperity_id", rows.iter().map(|row| row.2.asperity as i64))
@@ -199,7 +200,8 @@ fn merged(of: Identity<'_>, cycle: &Cycle) -> Result<Frame, StageError> {
     let spots = &cycle.merged;
     let step = |k: usize| &cycle.steps[k];
     let each = |value: fn(&Merged) -> f64| spots.iter().map(move |s| value(&s.spot));
-    Ok(of.begin(&schema::MERGED, spots.len())
+    Ok(of
+        .begin(&schema::MERGED, spots.len())
         .i64("step", spots.iter().map(|s| s.step as i64))
         .text("branch", spots.iter().map(|s| step(s.step).branch.word()))
         .f64("max_load", spots.iter().map(|s| step(s.step).max_load))
@@ -223,7 +225,8 @@ fn steps(of: Identity<'_>, cycle: &Cycle, problem: &Problem) -> Result<Frame, St
     let count = |value: fn(&Step) -> usize| steps.iter().map(value);
     let area_unit = problem.length_m * problem.length_m;
     let tolerance = CONVERGED * problem.rms_height_m;
-    Ok(of.begin(&schema::STEPS, steps.len())
+    Ok(of
+        .begin(&schema::STEPS, steps.len())
         .i64("step", (0..steps.len()).map(|k| k as i64))
         .text("branch", steps.iter().map(|s| s.branch.word()))
         .f64("max_load", steps.iter().map(|s| s.max_load))
@@ -262,7 +265,8 @@ fn steps(of: Identity<'_>, cycle: &Cycle, problem: &Problem) -> Result<Frame, St
 fn contacts(of: Identity<'_>, cycle: &Cycle) -> Result<Frame, StageError> {
     let spots = &cycle.contacts;
     let step = |k: usize| &cycle.steps[k];
-    Ok(of.begin(&schema::CONTACTS, spots.len())
+    Ok(of
+        .begin(&schema::CONTACTS, spots.len())
         .i64("step", spots.iter().map(|s| s.step as i64))
         .text("branch", spots.iter().map(|s| step(s.step).branch.word()))
         .f64("max_load", spots.iter().map(|s| step(s.step).max_load))
@@ -291,7 +295,8 @@ fn events(of: Identity<'_>, cycle: &Cycle) -> Result<Frame, StageError> {
         }
         numbers.push(number);
     }
-    Ok(of.begin(&schema::EVENTS, events.len())
+    Ok(of
+        .begin(&schema::EVENTS, events.len())
         .i64("step", events.iter().map(|(at, _)| *at as i64))
         .text("branch", events.iter().map(|(at, _)| step(*at).branch.word()))
         .f64("max_load", events.iter().map(|(at, _)| step(*at).max_load))

@@ -32,7 +32,7 @@ pub(super) fn text(campaign: &Campaign, done: &[bool]) -> String {
         "path": surfaces.iter().map(|id| format!("surfaces/{id}.h5")).collect::<Vec<_>>(),
         "format": "hdf5",
         "mediatype": "application/x-hdf5",
-        "description": "Height fields: the dataset /height_m (f64, N x N, rows along x), with what they were made from as attributes.",
+        "description": "Height fields: the dataset /height_m (f64, N x N, rows along x) with its coordinates /x_m and /y_m; parameters of the surface as attributes.",
     }));
     let package = json!({
         "$schema": "https://datapackage.org/profiles/2.0/datapackage.json",

@@ -252,7 +252,7 @@ fn e2e_one_scan_under_two_names_is_one_cycle() {
     for name in &names {
         fs::copy(&scan, name).unwrap();
     }
-    let sweep = format!("surface.file = {names:?}");
+    let sweep = format!("surface.periodic = true\nsurface.file = {names:?}");
     let bench = Bench::new(&SPEC.replace("realizations = 2\n", "").replace("surface.magnification = [6, 8]", &sweep));
     let run = bench.verb("run", &["--until", "aggregate"]);
     assert_eq!(code(&run), 0, "{}", stderr(&run));

@@ -5,8 +5,8 @@ use std::fs;
 use std::path::Path;
 
 use hysteron::schema::{
-    ASPERITIES, AVALANCHES, CASES, CONTACTS, CURVES, CYCLES, DIRECTORY, EVENT_KINDS, EVENTS, Kind, PANELS, REALIZATIONS, STEPS, TABLES, Table, files,
-    metadata_json, readme_markdown, schema_json,
+    ASPERITIES, AVALANCHES, CASES, CONTACTS, CURVES, CYCLES, DIRECTORY, EVENT_KINDS, EVENTS, Kind, PANELS, REALIZATIONS, STEPS, TABLES,
+    Table, files, metadata_json, readme_markdown, schema_json,
 };
 
 /// The unit that a column's name promises: suffixes from the longest, as the contract has them.
@@ -57,12 +57,18 @@ fn law_names_are_unique_plain_words_and_documented() {
 #[test]
 fn val_columns_are_those_of_the_contract() {
     let contract: [(_, &str); 8] = [
-        (&ASPERITIES, "surface_id realization asperity_id x_m y_m height_m radius_m curvature_1_m curvature_min_1_m curvature_max_1_m grid_row grid_col refined"),
+        (
+            &ASPERITIES,
+            "surface_id realization asperity_id x_m y_m height_m radius_m curvature_1_m curvature_min_1_m curvature_max_1_m grid_row grid_col refined",
+        ),
         (
             &STEPS,
             "cycle_id case_id realization step branch max_load approach_m load_n least_load_n area_m2 area_union_m2 contact_count covered_count jump_in_count jump_off_count cover_count uncover_count snap_count merge_count split_count held_count touching_count dissipated_j work_j residual_m drift_m stability converged iteration_count pair_evaluation_count product_count transform_count load area penetration",
         ),
-        (&CONTACTS, "cycle_id case_id realization step branch max_load asperity_id state contact_radius_m load_n penetration_m interaction_m"),
+        (
+            &CONTACTS,
+            "cycle_id case_id realization step branch max_load asperity_id state contact_radius_m load_n penetration_m interaction_m",
+        ),
         (
             &EVENTS,
             "cycle_id case_id realization step branch max_load kind asperity_id approach_m avalanche_id load_before_n load_after_n area_before_m2 area_after_m2 energy_lost_j",
@@ -75,7 +81,10 @@ fn val_columns_are_those_of_the_contract() {
             &CASES,
             "case_id sweep hurst jump_in max_load pull_off_load_mean pull_off_load_sd pull_off_load_ci95_low pull_off_load_ci95_high area_at_max_load_mean penetration_at_max_load_sd loss_mean loss_dk_mean loss_dk_realised_ci95_low loss_ratio_dk_ci95_high planned_count done_count failed_count caution dissipated_mean dissipated_j_mean dissipated_loading_sd dissipated_unloading_j_ci95_low dissipated_merge_ci95_high audit_gap_mean audit_gap_max tabor_min_min tabor_mean_mean low_tabor_share_mean touching_share_mean touching_share_max covered_share_mean conformity_mean conformity_realised_min persson_tosatti_realised_mean",
         ),
-        (&CURVES, "case_id sweep max_load branch grid_index station tension_fraction load area_mean area_sd penetration_mean penetration_sd realization_count"),
+        (
+            &CURVES,
+            "case_id sweep max_load branch grid_index station tension_fraction load area_mean area_sd penetration_mean penetration_sd realization_count",
+        ),
         (
             &AVALANCHES,
             "cycle_id surface_id asperities_id case_id sweep realization branch max_load avalanche_id step approach_m event_count jump_in_count jump_off_count cover_count uncover_count snap_count merge_count split_count energy_lost_j energy_lost load_drop_n area_change_m2",

@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use hysteron::stats::{
-    CaseInput, Planned, Point, STATIONS, Sample, StatsError, TENSION_STATIONS, Value, Walk, avalanches, cases, curves, planned, realizations, summary, t_quantile,
+    CaseInput, Planned, Point, STATIONS, Sample, StatsError, TENSION_STATIONS, Value, Walk, avalanches, cases, curves, planned,
+    realizations, summary, t_quantile,
 };
 use hysteron::store::Frame;
 use hysteron::store::parquet::{read_table, write_table};
@@ -307,7 +308,10 @@ fn law_cycles_are_joined_to_their_cases() {
         assert!(table.row_count() > 0);
         let (cycles, surfaces) = (table.text("cycle_id").unwrap(), table.text("surface_id").unwrap());
         for (at, realization) in table.i64("realization").unwrap().into_iter().enumerate() {
-            assert_eq!((cycles[at].to_owned(), surfaces[at].to_owned()), (format!("c1-cycle-{realization}"), format!("surface-{realization}")));
+            assert_eq!(
+                (cycles[at].to_owned(), surfaces[at].to_owned()),
+                (format!("c1-cycle-{realization}"), format!("surface-{realization}"))
+            );
         }
         assert_eq!(surfaces, table.text("asperities_id").unwrap());
     }
@@ -344,7 +348,7 @@ fn law_faults_are_sentences() {
     let mut bench = bench(&[1.0]);
     bench.cycles[0].surface.clear();
     let lacking = realizations(&bench.cases, &bench.cycles).unwrap_err().to_string();
-    assert!(lacking.contains("realizations") && lacking.contains("surface_id"), "{lacking}");
+    assert!(lacking.contains("realizations") && lacking.contains("summit_count"), "{lacking}");
     bench.cycles[0].case_id = "c9".to_owned();
     assert!(matches!(realizations(&bench.cases, &bench.cycles), Err(StatsError::UnknownCase { .. })));
     bench.cycles[0].case_id = "c1".to_owned();

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use hysteron::schema::{EVENTS, STEPS, Table};
 use hysteron::stats::{CaseInput, CycleInput, Given, Value};
-use hysteron::store::{Frame, FrameBuilder};
 use hysteron::store::parquet::write_table;
+use hysteron::store::{Frame, FrameBuilder};
 
 /// One step: branch, max_load, load, area, penetration, work_j.
 pub type Step = (&'static str, Option<f64>, f64, f64, f64, f64);

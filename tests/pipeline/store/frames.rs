@@ -41,7 +41,9 @@ fn law_a_frame_names_what_is_asked_wrongly() {
         "the table contacts has missing values in the column \"max_load\", where none were expected"
     );
     assert_eq!(message(frame.i64("load_n").map(drop)), "the table contacts holds f64 in the column \"load_n\", not i64");
-    assert!(message(frame.bool("loud_n").map(drop)).starts_with("the table contacts has no column \"loud_n\"; allowed: cycle_id, case_id,"));
+    assert!(
+        message(frame.bool("loud_n").map(drop)).starts_with("the table contacts has no column \"loud_n\"; allowed: cycle_id, case_id,")
+    );
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use arrow::array::{ArrayRef, Float64Array, Int64Array, RecordBatch, StringArray};
-use hysteron::schema::{Kind, ASPERITIES, CONTACTS, CURVES, STEPS, TABLES, Table};
+use hysteron::schema::{ASPERITIES, CONTACTS, CURVES, Kind, STEPS, TABLES, Table};
 use hysteron::store::Frame;
 use hysteron::store::parquet::{METADATA_KEY, read_key, read_metadata, read_table, write_table};
 use parquet::arrow::ArrowWriter;
