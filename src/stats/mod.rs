@@ -12,6 +12,7 @@ mod cycle;
 mod digits;
 mod events;
 mod listed;
+mod planned;
 mod realizations;
 mod rows;
 mod student;
@@ -28,6 +29,7 @@ pub use compare::{Difference, Group, Matched, Side, comparison, difference_of, m
 pub use curves::curves;
 pub use digits::{counted, labels, significant};
 pub use listed::{Listed, Listing, listing, listing_of, sweeps};
+pub use planned::{Planned, planned};
 pub use realizations::{realizations, results};
 pub use rows::Value;
 pub use student::{FEW, Sample, t_quantile};
@@ -67,6 +69,10 @@ pub struct CycleInput {
     pub case_id: String,
     /// Number of the surface.
     pub realization: i64,
+    /// Identity of the cycle.
+    pub cycle_id: String,
+    /// Identity of the surface.
+    pub surface_id: String,
     /// The table of its steps.
     pub steps: PathBuf,
     /// The table of its events.
