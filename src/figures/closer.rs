@@ -281,7 +281,10 @@ fn radii(of: &Closer<'_>, ends: &[End]) -> Result<XyPlot, FigureError> {
 
 fn loads(of: &Closer<'_>, ends: &[End]) -> Result<XyPlot, FigureError> {
     let (loads, asperities, radii) = (of.contacts.f64("load_n")?, of.contacts.i64("asperity_id")?, of.asperities.f64("radius_m")?);
-    // Spots that have become one have numbers beyond those of the asperities, and no pull-off load of one.
+    if of.pull_off_n_m == 0.0 {
+        return distribution(of, ends, "load of a contact [N]", |k| Some(loads[k]));
+    }
+    // Merged contacts have numbers beyond those of the asperities, and no pull-off force of one asperity.
     let own = |k: usize| usize::try_from(asperities[k]).ok().and_then(|id| radii.get(id)).map(|radius| of.pull_off_n_m * radius);
     distribution(of, ends, "load of a spot/its own pull-off load", |k| own(k).map(|own| loads[k] / own))
 }
