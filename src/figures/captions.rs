@@ -33,7 +33,12 @@ pub(super) fn of_sweep(letter: char, sweep: &Sweep, surfaces: &str, plot: &XyPlo
     if curves().any(|curve| curve.stroke == Stroke::Crosses) {
         parts.push("crosses: single surfaces, where there are fewer than five".to_owned());
     }
-    format!("{}. Data: statistics/panels.parquet (panel {letter}).", parts.join("; "))
+    format!("{}.", parts.join("; "))
+}
+
+/// Where the points of a panel of a report are.
+pub(super) fn data(name: &str) -> String {
+    format!(" Data: statistics/panels.parquet (panel {name}).")
 }
 
 /// The cases of a sweep: `, for ζ = 32, 64`.
@@ -73,7 +78,7 @@ pub(super) fn of_cycle(name: &str, of: &Closer<'_>) -> String {
         "spectrum" => spectrum(of),
         _ => "Curvatures of the asperity summits beside Nayak's distribution for the realised spectral moments".to_owned(),
     };
-    format!("{text}. Data: statistics/panels.parquet (panel {name}).")
+    format!("{text}.{}", data(name))
 }
 
 fn spectrum(of: &Closer<'_>) -> String {

@@ -1,7 +1,7 @@
 //! The five panels of a sweep: the paper's four, and the loss by branches.
 
 use super::FigureError;
-use super::captions::of_sweep;
+use super::captions::{data, of_sweep};
 use super::paths::paths;
 use super::plot::{Stroke, XyPlot, plot_xy};
 use super::results::{Measured, results};
@@ -54,7 +54,9 @@ pub fn panels(tables: &Tables<'_>, sweep: &str) -> Result<Vec<Panel>, FigureErro
         .chars()
         .map(|letter| if letter.is_ascii_alphanumeric() || letter == '-' { letter } else { '_' })
         .collect();
-    drawn(tables, &found, (&heading, &stem))
+    let mut panels = drawn(tables, &found, (&heading, &stem))?;
+    panels.iter_mut().for_each(|panel| panel.caption += &data(&panel.name));
+    Ok(panels)
 }
 
 /// Draws the same panels of one case in several campaigns: the tables hold a row of it, and its paths, for each, and `labels` are what the campaigns are called, in the

@@ -259,6 +259,7 @@ fn e2e_campaigns_are_compared_case_by_case() {
     }
     let page = fs::read_to_string(out.join("comparison.html")).unwrap();
     assert!(page.contains("differ in interaction") && page.contains("3 pairs") && !page.contains("NaN"));
+    assert!(page.contains("<figcaption>") && !page.contains("panels.parquet"), "a comparison has no table of panels");
     assert!(out.join("figures/compare0_A.png").is_file() && out.join("figures/compare3_E.pdf").is_file());
 
     // Other surfaces: two independent means.
