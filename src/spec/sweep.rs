@@ -60,11 +60,11 @@ fn sweep(found: &DeTable<'_>, at: Range<usize>, known: &mut HashSet<String>, fau
         match key {
             "name" => {
                 name = top::name("sweep.name", written, faults);
-                if let Some(name) = &name {
-                    if !known.insert(name.clone()) {
-                        let message = format!("two sweeps have the name \"{name}\"");
-                        faults.add(&written.span(), message, "each sweep needs a name of its own".to_owned());
-                    }
+                if let Some(name) = &name
+                    && !known.insert(name.clone())
+                {
+                    let message = format!("two sweeps have the name \"{name}\"");
+                    faults.add(&written.span(), message, "each sweep needs a name of its own".to_owned());
                 }
             }
             table if TABLES.contains(&table) => {

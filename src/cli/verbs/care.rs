@@ -76,7 +76,7 @@ pub(super) fn verify(folder: &FolderArguments, deep: bool) -> Result<u8, Fault> 
         say(&match faults {
             0 => "all as they were written.\n".to_owned(),
             faults => format!(
-                "{}. `hysteron run` with the spec computes what it names again; `gc` lists files that nothing names.\n",
+                "{}. `hysteron run` with the spec repairs its own tasks; remove other files by hand or with `hysteron gc`.\n",
                 counted(faults, "fault")
             ),
         })?;
