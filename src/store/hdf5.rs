@@ -8,6 +8,7 @@ use hdf5_metno::types::VarLenUnicode;
 use hdf5_metno::{Dataset, File, FileBuilder};
 use ndarray::{Array2, ArrayView2, s};
 
+use super::axes;
 use super::commit::{Written, commit};
 use super::error::{Cause, StoreError, fenced};
 use super::scan::MOST_POINTS;
@@ -183,11 +184,12 @@ fn write_all(path: &Path, header: &SurfaceHeader, heights: ArrayView2<'_, f64>) 
     if let Some(((row, column), height)) = heights.indexed_iter().find(|(_, height)| !height.is_finite()) {
         return Err(format!("its height in row {row}, column {column} is {height}, and must be finite").into());
     }
-    let file = options().create(path)?;
+    let (file, kind) = axes::start(path, &options())?;
     surface_header::write(&file, header)?;
     let chunk = CHUNK.min(rows);
     let data = file.new_dataset::<f64>().shape((rows, rows)).chunk((chunk, chunk)).create(HEIGHT)?;
-    surface_header::write_word(&data, "unit", "m")?;
+    surface_header::write_text(&data, "unit", "m")?;
+    axes::write(&file, &kind, &data, header.length_m)?;
     for first in (0..rows).step_by(chunk) {
         let band = first..rows.min(first + chunk);
         // HDF5 wants a contiguous band; where the field is not, this copy is the one extra chunk row.
@@ -205,6 +207,7 @@ fn check_all(path: &Path, header: &SurfaceHeader, heights: ArrayView2<'_, f64>) 
     let file = open(path)?;
     let data = heights_of(path, &file)?;
     let mut same = surface_header::read(&file)? == *header && data.get_shape()? == heights.shape();
+    same = same && axes::are_as_written(&file, heights.nrows(), header.length_m)?;
     for first in (0..heights.nrows()).step_by(CHUNK) {
         let band = first..heights.nrows().min(first + CHUNK);
         same = same && data.read_slice_2d::<f64, _>(s![band.clone(), ..])? == heights.slice(s![band, ..]);

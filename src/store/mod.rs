@@ -4,6 +4,7 @@
 //! and equal arguments give equal bytes. What it reads it does not trust: whatever the bytes of a file are, the answer
 //! is its content or a sentence.
 
+mod axes;
 mod builder;
 pub mod commit;
 mod error;

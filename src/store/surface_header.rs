@@ -1,7 +1,7 @@
 //! What a surface file says of its surface: the attributes of its root.
 
-use hdf5_metno::types::{FixedUnicode, TypeDescriptor};
-use hdf5_metno::{File, H5Type, Location};
+use hdf5_metno::types::{FixedUnicode, TypeDescriptor, VarLenUnicode};
+use hdf5_metno::{File, Group, H5Type, Location};
 
 use crate::model::{Amplitudes, Choice, Detrend, Normalization};
 
@@ -9,6 +9,8 @@ use super::error::Cause;
 
 /// Version of the layout of a surface file, raised whenever an attribute is renamed, removed, or changes its meaning.
 pub const SURFACE_VERSION: u32 = 1;
+/// Group with a copy of every text attribute of the root, as strings of fixed length. Files of earlier versions have these strings in the root.
+const COPIES: &str = "header";
 /// Bytes that a word may have: a key is the longest.
 const LONGEST_WORD: usize = 256;
 
@@ -96,6 +98,7 @@ pub struct Generated {
 
 /// Writes a header as attributes of the root.
 pub(super) fn write(file: &File, header: &SurfaceHeader) -> Result<(), Cause> {
+    file.create_group_builder().obj_track_times(false).create(COPIES)?;
     write_number(file, "schema_version", SURFACE_VERSION)?;
     write_word(file, "key", &header.key)?;
     write_finite(file, "length_m", header.length_m)?;
@@ -141,7 +144,7 @@ fn write_measured(file: &File, measured: &Measured) -> Result<(), Cause> {
     write_finite(file, "fit_scatter", fit.scatter)
 }
 
-fn read_measured(file: &File, names: &[String]) -> Result<Measured, Cause> {
+fn read_measured(file: &File, words: &Group, names: &[String]) -> Result<Measured, Cause> {
     let fit = || -> Result<SpectrumFit, Cause> {
         Ok(SpectrumFit {
             hurst: finite(file, "fit_hurst")?,
@@ -151,12 +154,12 @@ fn read_measured(file: &File, names: &[String]) -> Result<Measured, Cause> {
         })
     };
     Ok(Measured {
-        source: word(file, "source")?,
-        source_blake3: word(file, "source_blake3")?,
+        source: word(words, "source")?,
+        source_blake3: word(words, "source_blake3")?,
         source_point_counts: [number(file, "source_row_count")?, number(file, "source_column_count")?],
         source_spacings_m: [finite(file, "source_row_spacing_m")?, finite(file, "source_column_spacing_m")?],
         missing_count: number(file, "missing_count")?,
-        detrend: choice(file, "detrend")?,
+        detrend: choice(words, "detrend")?,
         trend_m: finite(file, "trend_m")?,
         shortest_wavelength_m: finite(file, "shortest_wavelength_m")?,
         noise_m: finite(file, "noise_m")?,
@@ -174,6 +177,7 @@ pub(super) fn read(file: &File) -> Result<SurfaceHeader, Cause> {
     if version != SURFACE_VERSION {
         return Err(format!("it has version {version} of this layout, and this program reads version {SURFACE_VERSION}").into());
     }
+    let words = &file.group(if file.link_exists(COPIES) { COPIES } else { "/" })?;
     let generated = if names.iter().any(|name| name == "hurst") {
         Some(Generated {
             target_rms_height_m: finite(file, "target_rms_height_m")?,
@@ -181,8 +185,8 @@ pub(super) fn read(file: &File) -> Result<SurfaceHeader, Cause> {
             magnification: finite(file, "magnification")?,
             seed: number(file, "seed")?,
             points_per_shortest_wavelength: finite(file, "points_per_shortest_wavelength")?,
-            normalization: choice(file, "normalization")?,
-            amplitudes: choice(file, "amplitudes")?,
+            normalization: choice(words, "normalization")?,
+            amplitudes: choice(words, "amplitudes")?,
         })
     } else {
         None
@@ -191,13 +195,13 @@ pub(super) fn read(file: &File) -> Result<SurfaceHeader, Cause> {
         length_m: finite(file, "length_m")?,
         realization: number(file, "realization")?,
         periodic: truth(file, "periodic")?,
-        key: word(file, "key")?,
+        key: word(words, "key")?,
         rms_height_m: finite(file, "rms_height_m")?,
         rms_slope: finite(file, "rms_slope")?,
         rms_curvature_1_m: finite(file, "rms_curvature_1_m")?,
         nayak_parameter: finite(file, "nayak_parameter")?,
         generated,
-        measured: if names.iter().any(|name| name == "source") { Some(read_measured(file, &names)?) } else { None },
+        measured: if names.iter().any(|name| name == "source") { Some(read_measured(file, words, &names)?) } else { None },
     })
 }
 
@@ -209,19 +213,25 @@ fn write_finite(place: &Location, name: &str, value: f64) -> Result<(), Cause> {
     if value.is_finite() { write_number(place, name, value) } else { Err(format!("its {name} is {value}, and must be finite").into()) }
 }
 
-/// Writes a word as an attribute, as a string of fixed length.
+/// Writes a text as an attribute of variable length, which h5py reads as `str`. It must not contain the character 0.
+pub(super) fn write_text(place: &Location, name: &str, value: &str) -> Result<(), Cause> {
+    let text: VarLenUnicode = value.parse()?;
+    Ok(place.new_attr::<VarLenUnicode>().create(name)?.write_scalar(&text)?)
+}
+
+/// Writes a word as an attribute of the root, and a copy of it as a string of fixed length.
 ///
-/// Strings of variable length would be nicer to read for h5py, but HDF5 keeps them in a heap that has no checksum, and
-/// a single changed byte there was seen to keep the library busy for ever.
-pub(super) fn write_word(place: &Location, name: &str, value: &str) -> Result<(), Cause> {
+/// HDF5 keeps strings of variable length in a heap without a checksum, and a single changed byte in the heap can make the library
+/// loop for ever. This program therefore reads only the copies.
+fn write_word(file: &File, name: &str, value: &str) -> Result<(), Cause> {
     if value.len() > LONGEST_WORD || value.contains('\0') {
         return Err(format!("its {name} {value:?} cannot be stored: it may have {LONGEST_WORD} bytes, none of them 0").into());
     }
     let word: FixedUnicode<LONGEST_WORD> = value.parse()?;
     // HDF5 knows no string of length 0; an empty word is one zero byte.
     let stored = TypeDescriptor::FixedUnicode(value.len().max(1));
-    let attribute = place.new_attr_builder().empty_as(&stored).create(name)?;
-    Ok(attribute.write_scalar(&word)?)
+    file.group(COPIES)?.new_attr_builder().empty_as(&stored).create(name)?.write_scalar(&word)?;
+    write_text(file, name, value)
 }
 
 fn number<T: H5Type>(place: &Location, name: &str) -> Result<T, Cause> {

@@ -3,7 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use hdf5_metno::File;
+use hdf5_metno::types::{FixedUnicode, VarLenArray, VarLenUnicode};
+use hdf5_metno::{File, ObjectReference, ObjectReference1, ReferencedObject};
 use hysteron::model::{Amplitudes, Detrend, Normalization};
 use hysteron::store::hdf5::{Generated, Measured, SpectrumFit, SurfaceHeader, read_header, read_heights, read_surface, write_surface};
 use ndarray::{Array2, s};
@@ -126,7 +127,22 @@ fn val_the_file_is_as_the_contract_says() {
     assert_eq!(data.shape(), [600, 600]);
     assert_eq!(data.chunk(), Some(vec![256, 256]));
     assert!(data.filters().is_empty());
-    assert_eq!(data.attr("unit").unwrap().read_scalar::<hdf5_metno::types::FixedUnicode<16>>().unwrap().as_str(), "m");
+    assert_eq!(data.attr("unit").unwrap().read_scalar::<VarLenUnicode>().unwrap().as_str(), "m");
+    assert_eq!(file.attr("normalization").unwrap().read_scalar::<VarLenUnicode>().unwrap().as_str(), "spectrum");
+    for name in ["x_m", "y_m"] {
+        let axis = file.dataset(name).unwrap().read_1d::<f64>().unwrap();
+        assert_eq!((axis.len(), axis[0]), (600, 0.0));
+        // Points are length_m / N apart, and the last one is that far from the next period.
+        assert!((axis[599] + 1e-3 / 600.0 - 1e-3).abs() < 1e-18, "{}", axis[599]);
+    }
+    let labels = data.attr("DIMENSION_LABELS").unwrap().read_1d::<VarLenUnicode>().unwrap();
+    assert_eq!(labels.iter().map(|label| label.as_str()).collect::<Vec<_>>(), ["x_m", "y_m"]);
+    let scales = data.attr("DIMENSION_LIST").unwrap().read_1d::<VarLenArray<ObjectReference1>>().unwrap();
+    for (scales, name) in scales.iter().zip(["x_m", "y_m"]) {
+        let [scale] = scales.as_slice() else { panic!("{} scales", scales.len()) };
+        let ReferencedObject::Dataset(axis) = scale.dereference(&file).unwrap() else { panic!("{name}") };
+        assert_eq!(axis.name(), format!("/{name}"));
+    }
     let mut names = file.attr_names().unwrap();
     names.sort();
     assert_eq!(
@@ -209,6 +225,43 @@ fn e2e_no_changed_byte_ends_the_program() {
     }
 }
 
+/// Texts and references lie in a heap without a checksum; a changed byte there could make the library loop for ever, so it is not read.
+#[test]
+fn law_the_heap_of_texts_is_not_read() {
+    let (directory, path) = written(4);
+    let whole = fs::read(&path).unwrap();
+    let heap = whole.windows(4).position(|bytes| bytes == b"GCOL").unwrap();
+    let text = "blake3:0123456789abcdef".as_bytes();
+    assert!(whole[heap..].windows(text.len()).any(|bytes| bytes == text));
+    let other = directory.path().join("other.h5");
+    for at in heap..heap + 512 {
+        let mut bytes = whole.clone();
+        bytes[at] = !bytes[at];
+        fs::write(&other, &bytes).unwrap();
+        assert_eq!(read_surface(&other).unwrap(), (header(), heights(4)), "byte {at}");
+    }
+}
+
+/// Files of earlier versions: texts of fixed length in the root, no coordinates.
+#[test]
+fn e2e_a_surface_without_coordinates_is_read() {
+    let (_directory, path) = written(5);
+    let file = File::open_rw(&path).unwrap();
+    for name in ["x_m", "y_m", "header"] {
+        file.unlink(name).unwrap();
+    }
+    for name in ["DIMENSION_LIST", "DIMENSION_LABELS"] {
+        file.dataset("height_m").unwrap().delete_attr(name).unwrap();
+    }
+    for (name, text) in [("key", header().key.as_str()), ("normalization", "spectrum"), ("amplitudes", "gaussian")] {
+        file.delete_attr(name).unwrap();
+        let text: FixedUnicode<32> = text.parse().unwrap();
+        file.new_attr::<FixedUnicode<32>>().create(name).unwrap().write_scalar(&text).unwrap();
+    }
+    file.close().unwrap();
+    assert_eq!(read_surface(&path).unwrap(), (header(), heights(5)));
+}
+
 fn foreign(path: &Path, change: impl FnOnce(&File)) {
     let _ = fs::remove_file(path);
     write_surface(path, &header(), heights(4).view()).unwrap();
@@ -236,8 +289,8 @@ fn e2e_another_files_faults_are_named() {
             .contains("its attribute \"hurst\" cannot be read: it is NaN")
     );
     let word = |file: &File| {
-        let word: hdf5_metno::types::FixedUnicode<16> = "guess".parse().unwrap();
-        file.attr("normalization").unwrap().write_scalar(&word).unwrap();
+        let word: FixedUnicode<16> = "guess".parse().unwrap();
+        file.group("header").unwrap().attr("normalization").unwrap().write_scalar(&word).unwrap();
     };
     assert!(refusal(&word).contains("it is \"guess\"; allowed: sample, spectrum"));
     assert!(refusal(&|file| file.unlink("height_m").unwrap()).contains("height_m"));
