@@ -2,9 +2,8 @@
 
 use super::{CYCLE, EXTRACT, GENERATE, Stage, plain, read_by_cycle, seed_of, surface_reads};
 use crate::keys::{canonical, key_of_text};
-use crate::spec::{Case, CaseParams, Spec, SurfaceParams};
+use crate::spec::{Case, CaseParams, ModelParams, Spec, SurfaceParams};
 use rayon::prelude::*;
-use serde_json::Value;
 use std::collections::HashMap;
 use std::path::Path;
 
@@ -21,6 +20,8 @@ pub(super) struct HashedCase {
     pub(super) name: String,
     /// Of all its parameters.
     pub(super) whole: String,
+    /// Of the parameters that its cycles read.
+    pub(super) in_cycle: String,
     /// Which kind of surface it has.
     pub(super) surface: usize,
     /// Of its cycles.
@@ -61,14 +62,16 @@ impl Hashed {
         let hash = |((case, kind), count): ((&Case, &usize), &u32)| {
             let params = &case.params;
             // Whatever the realizations have in common is put into words once.
-            let [material, model, cycle] = [plain(&params.material), plain(&read_by_cycle(&params.model)), plain(&params.cycle)];
+            let read = read_by_cycle(&params.model);
+            let [material, model, cycle] = [plain(&params.material), plain(&read), plain(&params.cycle)];
             let rest = format!("\"cycle\":{},\"material\":{},\"model\":{}", canonical(&cycle), canonical(&material), canonical(&model));
             let key = |(_, asperities): &(String, String)| {
                 key_of_text(Stage::Cycle.word(), CYCLE, &format!("{{\"asperities\":\"{asperities}\",{rest}}}"))
             };
             HashedCase {
                 name: readable(&params.surface),
-                whole: key_of_text("case", 1, &canonical(&case_reads(spec, params))),
+                whole: case_key(spec, params, &params.model),
+                in_cycle: case_key(spec, params, &read),
                 surface: *kind,
                 cycles: surfaces[*kind].par_iter().take(*count as usize).map(key).collect(),
             }
@@ -78,11 +81,12 @@ impl Hashed {
     }
 }
 
-/// All parameters of a case.
-fn case_reads(spec: &Spec, params: &CaseParams) -> Value {
+/// Key of the parameters of a case, with this model.
+fn case_key(spec: &Spec, params: &CaseParams, model: &ModelParams) -> String {
     let mut reads = plain(params);
     reads["surface"] = surface_reads(spec, &params.surface);
-    reads
+    reads["model"] = plain(model);
+    key_of_text("case", 1, &canonical(&reads))
 }
 
 /// The readable part of ids: of a measured surface the name of its file, without its folder and its ending.

@@ -23,10 +23,10 @@ use std::collections::{HashMap, HashSet};
 use std::path::{Component, Path, PathBuf};
 
 /// A stage's meaning: raised by hand when what it writes changes for the same parameters.
-const GENERATE: u32 = 1;
-const EXTRACT: u32 = 1;
-const CYCLE: u32 = 13;
-const AGGREGATE: u32 = 5;
+const GENERATE: u32 = 2;
+const EXTRACT: u32 = 2;
+const CYCLE: u32 = 14;
+const AGGREGATE: u32 = 6;
 const REPORT: u32 = 7;
 
 /// The stages, in their order.
@@ -94,6 +94,8 @@ pub struct CycleUnit {
 pub struct CaseUnit {
     /// Readable first, then a hash of all its parameters.
     pub id: String,
+    /// Id in the tables of its cycles: that of the case without the errata that only analytical estimates read.
+    pub cycle_case_id: String,
     /// The case.
     pub case: Case,
 }
@@ -170,8 +172,11 @@ impl Campaign {
         let hashed = Hashed::all(&campaign.spec, &campaign.counts);
         // Of each kind of surface, the places of its realizations.
         let mut places: Vec<Vec<usize>> = vec![Vec::new(); hashed.surfaces.len()];
+        // Files of different names with the same content have the same cycles: one key, one id.
+        let mut ids: HashMap<String, String> = HashMap::new();
         for (number, (case, of)) in campaign.spec.cases.iter().zip(hashed.cases).enumerate() {
-            campaign.cases.push(CaseUnit { id: format!("{}-{}", of.name, short(&of.whole)), case: case.clone() });
+            let [id, cycle_case_id] = [&of.whole, &of.in_cycle].map(|key| format!("{}-{}", of.name, short(key)));
+            campaign.cases.push(CaseUnit { id, cycle_case_id, case: case.clone() });
             let (known, surfaces) = (&mut places[of.surface], &hashed.surfaces[of.surface]);
             for (realization, cycle) in of.cycles.into_iter().enumerate() {
                 if known.len() == realization {
@@ -185,7 +190,8 @@ impl Campaign {
                         realization: realization as u32,
                     });
                 }
-                let id = format!("{}_r{realization:02}-{}", of.name, short(&cycle));
+                let id = || format!("{}_r{realization:02}-{}", of.name, short(&cycle));
+                let id = ids.entry(cycle.clone()).or_insert_with(id).clone();
                 campaign.cycles.push(CycleUnit { id, key: cycle, case: number, surface: known[realization] });
             }
         }
@@ -292,9 +298,14 @@ impl Campaign {
         self.dir.join("receipts").join(stage.word())
     }
 
-    /// What the key of the tables over realisations is made of: the cycles that are in them, and those that failed; and the name, which their description has.
+    /// What the key of the tables over realisations is made of: the cycles that are in them, and those that failed with their error messages; and the name,
+    /// which their description has.
     fn statistics_reads(&self, cycles: &[Standing]) -> Value {
-        let cycles: Vec<Value> = self.cycles.iter().zip(cycles).map(|(unit, standing)| json!([unit.key, state(standing)])).collect();
+        let words = |(unit, standing): (&CycleUnit, &Standing)| match self.failure_in_tables(standing) {
+            Some(failure) => json!([unit.key, state(standing), failure]),
+            None => json!([unit.key, state(standing)]),
+        };
+        let cycles: Vec<Value> = self.cycles.iter().zip(cycles).map(words).collect();
         json!({ "name": self.spec.name, "cases": self.statistics_cases(), "cycles": cycles })
     }
 
@@ -314,7 +325,8 @@ impl Campaign {
         let mut reads = format!("{{\"cases\":{},\"cycles\":[", canonical(&self.statistics_cases()));
         for (k, (unit, standing)) in self.cycles.iter().zip(cycles).enumerate() {
             let comma = if k > 0 { "," } else { "" };
-            for part in [comma, "[\"", &unit.key, "\",\"", state(standing), "\"]"] {
+            let failure = self.failure_in_tables(standing).map(|failure| format!(",{}", canonical(&json!(failure)))).unwrap_or_default();
+            for part in [comma, "[\"", &unit.key, "\",\"", state(standing), "\"", &failure, "]"] {
                 reads.push_str(part);
             }
         }
@@ -397,7 +409,7 @@ fn enter(preimages: &mut Map<String, Value>, stage: Stage, meaning: u32, reads: 
     preimages.insert(stage.word().to_owned(), preimage(stage.word(), meaning, reads));
 }
 
-/// What of a cycle's standing the tables over realizations depend on.
+/// What of a cycle's standing the tables over realizations depend on, beside the error message.
 fn state(standing: &Standing) -> &'static str {
     match standing {
         Standing::Done => "done",

@@ -121,6 +121,15 @@ impl Campaign {
         self.failure_record(unit)?.get("error").and_then(Value::as_str).map(str::to_owned)
     }
 
+    /// Error message of a failed cycle as tables hold it: the problem without the help, and without paths of the machine.
+    #[must_use]
+    pub fn failure_in_tables(&self, standing: &Standing) -> Option<String> {
+        let Standing::Failed(why) = standing else { return None };
+        let problem = why.split_once("\nhelp:").map_or(why.as_str(), |(problem, _)| problem);
+        // Only measured surfaces are named by their paths.
+        Some(self.spec.files.keys().fold(problem.to_owned(), |text, file| text.replace(file.as_str(), &self.file_label(file))))
+    }
+
     /// The stage at which a cycle failed, or what it is made of.
     #[must_use]
     pub fn failed_at(&self, unit: &CycleUnit) -> Option<Stage> {

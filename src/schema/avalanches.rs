@@ -1,13 +1,16 @@
 //! The table of avalanches, and the kinds of events that it counts.
 
 use super::statistics::CASE;
-use super::{Column, Table, count, index, join, real, text};
+use super::{ASPERITIES_ID, CYCLE_ID, Column, REALIZATION, SURFACE_ID, Table, count, index, join, real, text};
 
 /// Every kind of event that the tables `events` may hold, in the order in which the tables over realizations have them.
 pub const EVENT_KINDS: [&str; 7] = ["jump_in", "jump_off", "cover", "uncover", "snap", "merge", "split"];
 
 const AVALANCHE: &[Column] = &[
-    index("realization", "Number of the surface among those that share its spectrum, from 0"),
+    REALIZATION,
+    CYCLE_ID,
+    SURFACE_ID,
+    ASPERITIES_ID,
     text("branch", "\"loading\" or \"unloading\""),
     real(
         "max_load",

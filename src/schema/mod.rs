@@ -5,12 +5,14 @@
 
 mod avalanches;
 mod comparison;
+mod cycles;
 mod render;
 mod run;
 mod statistics;
 
 pub use avalanches::{AVALANCHES, EVENT_KINDS};
 pub use comparison::COMPARISON;
+pub use cycles::CYCLES;
 pub use render::{DIRECTORY, OWN_KEYS, SchemaFile, files, metadata_json, readme_markdown, schema_file_name, schema_json};
 pub use run::{ASPERITIES, CONTACTS, EVENTS, MERGED, STEPS, TURNING};
 pub use statistics::{CASES, CURVES, PANELS, REALIZATIONS};
@@ -82,9 +84,28 @@ impl Table {
     }
 }
 
+const CYCLE_ID: Column = text("cycle_id", "Identity of the cycle: name of its directory below cycles/");
+const REALIZATION: Column = index("realization", "Number of the surface among those that share its spectrum, from 0");
+const SURFACE_ID: Column = text("surface_id", "Identity of the surface: name of its file below surfaces/, without extension");
+const ASPERITIES_ID: Column =
+    text("asperities_id", "Identity of the asperity table: name of its file below asperities/; equal to surface_id");
+
 /// Every table that the program writes.
-pub static TABLES: &[&Table] =
-    &[&ASPERITIES, &STEPS, &CONTACTS, &TURNING, &MERGED, &EVENTS, &REALIZATIONS, &CASES, &CURVES, &AVALANCHES, &PANELS, &COMPARISON];
+pub static TABLES: &[&Table] = &[
+    &ASPERITIES,
+    &STEPS,
+    &CONTACTS,
+    &TURNING,
+    &MERGED,
+    &EVENTS,
+    &REALIZATIONS,
+    &CASES,
+    &CURVES,
+    &AVALANCHES,
+    &CYCLES,
+    &PANELS,
+    &COMPARISON,
+];
 
 impl Column {
     /// The same column, whose values may be missing.

@@ -1,7 +1,11 @@
 //! The tables of one surface and of one of its cycles.
 
-use super::{Column, Table, count, flag, index, real, text};
+use super::{CYCLE_ID, Column, REALIZATION, SURFACE_ID, Table, count, flag, index, real, text};
 
+const CYCLE_CASE_ID: Column = text(
+    "case_id",
+    "Identity of the case, without the entries of as_printed that only analytical estimates read; the table cycles lists every case of the cycle",
+);
 const BRANCH: Column = text("branch", "\"loading\" or \"unloading\"");
 const MAX_LOAD: Column = real(
     "max_load",
@@ -20,6 +24,8 @@ pub static ASPERITIES: Table = Table {
     file: "asperities/<id>.parquet",
     doc: "One row per summit of a surface that can come into contact.",
     columns: &[
+        SURFACE_ID,
+        REALIZATION,
         index("asperity_id", "Number of the asperity on its surface, from 0"),
         real("x_m", "m", "x of the apex; the rows of the height field count along x"),
         real("y_m", "m", "y of the apex; the columns of the height field count along y"),
@@ -42,6 +48,9 @@ pub static STEPS: Table = Table {
     file: "cycles/<id>/steps.parquet",
     doc: "One row per step of loading, and of unloading from each turning point.",
     columns: &[
+        CYCLE_ID,
+        CYCLE_CASE_ID,
+        REALIZATION,
         STEP,
         BRANCH,
         MAX_LOAD,
@@ -104,6 +113,9 @@ pub static CONTACTS: Table = Table {
     file: "cycles/<id>/contacts.parquet",
     doc: "One row per asperity in contact or covered, at each step that the spec keeps.",
     columns: &[
+        CYCLE_ID,
+        CYCLE_CASE_ID,
+        REALIZATION,
         STEP,
         BRANCH,
         MAX_LOAD,
@@ -123,6 +135,9 @@ pub static TURNING: Table = Table {
     file: "cycles/<id>/turning.parquet",
     doc: "One row per asperity that is not simply free, at each turning point: all that is needed to unload from there again.",
     columns: &[
+        CYCLE_ID,
+        CYCLE_CASE_ID,
+        REALIZATION,
         real("max_load", "1", "F/(E* A0) at which the path turns"),
         real("approach_m", "m", "Approach of the surface at the turning point, zero as in the table steps"),
         ASPERITY,
@@ -143,6 +158,9 @@ pub static MERGED: Table = Table {
     file: "cycles/<id>/merged.parquet",
     doc: "One row per spot that two touching ones became (coalescence \"merge\"), in the order in which they did.",
     columns: &[
+        CYCLE_ID,
+        CYCLE_CASE_ID,
+        REALIZATION,
         STEP,
         BRANCH,
         MAX_LOAD,
@@ -167,6 +185,9 @@ pub static EVENTS: Table = Table {
     file: "cycles/<id>/events.parquet",
     doc: "One row per asperity that changed its state.",
     columns: &[
+        CYCLE_ID,
+        CYCLE_CASE_ID,
+        REALIZATION,
         STEP,
         BRANCH,
         MAX_LOAD,

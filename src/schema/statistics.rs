@@ -1,6 +1,6 @@
 //! The tables over realizations.
 
-use super::{Column, Table, count, index, join, real, text};
+use super::{ASPERITIES_ID, CYCLE_ID, Column, REALIZATION, SURFACE_ID, Table, count, index, join, real, text};
 
 pub(super) const CASE: &[Column] = &[
     text("case_id", "Identity of the case: a hash of everything that defines it"),
@@ -8,7 +8,7 @@ pub(super) const CASE: &[Column] = &[
 ];
 
 /// What defines a case, a column each.
-const PARAMETERS: &[Column] = &[
+pub(super) const PARAMETERS: &[Column] = &[
     text("surface_file", "File of a measured surface, with as many of its folders as tell it from the others; null for a generated one")
         .or_null(),
     text("surface_dataset", "Which field of that file; null for the only one, and for a generated surface").or_null(),
@@ -58,8 +58,10 @@ macro_rules! mean_and_worst {
 const MAX_LOAD: &[Column] = &[real("max_load", "1", "F/(E* A0) at which loading turned to unloading")];
 
 const RESULTS: &[Column] = &[
-    index("realization", "Number of the surface among those that share its spectrum, from 0"),
-    text("surface_id", "Identity of the surface: what it is made from, its seed included"),
+    REALIZATION,
+    CYCLE_ID,
+    SURFACE_ID,
+    ASPERITIES_ID,
     MAX_LOAD[0],
     real("pull_off_load", "1", "Pull-off load over E* A0: the greatest tension while unloading"),
     real("pull_off_load_n", "N", "Pull-off load: the greatest tension while unloading"),
@@ -250,7 +252,8 @@ pub static CURVES: Table = Table {
     name: "curves",
     version: 1,
     file: "statistics/curves.parquet",
-    doc: "One row per case, branch and point of a common grid of loads, averaged over realizations.",
+    doc: "One row per case, branch and station, averaged over realizations. From the load reversal to zero load the stations are loads common to all \
+          realizations; below zero load they are equal fractions of the maximum tensile load of each realization on the branch.",
     columns: &[
         CASE[0],
         CASE[1],
@@ -261,13 +264,30 @@ pub static CURVES: Table = Table {
         )
         .or_null(),
         text("branch", "\"loading\" or \"unloading\""),
-        index("grid_index", "Number of the point on the common grid, from 0"),
-        real("load", "1", "F/(E* A0) of the point"),
-        real("area_mean", "1", "Mean of A/A0 over the realizations that reach this load"),
+        index("grid_index", "Number of the station along the branch, from 0; a station without realizations has no row"),
+        text(
+            "station",
+            "Rule of the station: \"load\" (the same load in every realization) or \"tension_fraction\" (the same fraction of each realization's own maximum tensile load)",
+        ),
+        real(
+            "tension_fraction",
+            "1",
+            "Tensile load of each realization over its own maximum tensile load on this branch; null if station is \"load\"",
+        )
+        .or_null(),
+        real("load", "1", "F/(E* A0): the common load, or the mean of the realizations' own loads if station is \"tension_fraction\""),
+        real("area_mean", "1", "Mean of A/A0 over the realizations, each at its own load if station is \"tension_fraction\""),
         real("area_sd", "1", "Standard deviation of A/A0 (n - 1); null for fewer than two").or_null(),
-        real("penetration_mean", "1", "Mean of approach over rms height over the realizations that reach this load"),
+        real(
+            "penetration_mean",
+            "1",
+            "Mean of approach over rms height over the realizations, each at its own load if station is \"tension_fraction\"",
+        ),
         real("penetration_sd", "1", "Standard deviation of approach over rms height (n - 1); null for fewer than two").or_null(),
-        count("realization_count", "Realizations that reach this load on this branch"),
+        count(
+            "realization_count",
+            "Realizations in the means: those that reach the load if station is \"load\"; otherwise all, and one without tension is taken at zero load",
+        ),
     ],
 };
 

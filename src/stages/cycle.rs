@@ -1,6 +1,7 @@
 //! cycle: load and unload one case on one surface, and write every step.
 
 use super::done::Outcome;
+use super::identity::Identity;
 use super::surface::{Scale, read_summits, scale};
 use super::{StageError, Watch};
 use crate::campaign::{Campaign, CycleUnit, Stage};
@@ -69,8 +70,14 @@ pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> R
     watch.progress(Stage::Cycle, 1.0 - reached.get());
     let cycle = outcome?;
     let keys = [("key", unit.key.clone())];
-    let tables =
-        [contacts(&cycle)?, turning(&cycle, &problem, &settings.max_loads)?, merged(&cycle)?, events(&cycle)?, steps(&cycle, &problem)?];
+    let of = Identity::of(campaign, unit);
+    let tables = [
+        contacts(of, &cycle)?,
+        turning(of, &cycle, &problem, &settings.max_loads)?,
+        merged(of, &cycle)?,
+        events(of, &cycle)?,
+        steps(of, &cycle, &problem)?,
+    ];
     let write = |frame: &Frame| Ok(parquet::write_table(&dir.join(format!("{}.parquet", frame.table().name)), frame, &keys)?);
     let files = tables.iter().map(write).collect::<Result<_, StageError>>()?;
     Ok(Outcome { files, effort: effort(&cycle, &problem) })
@@ -155,7 +162,7 @@ fn settings(params: &CaseParams, asperities: usize) -> Settings {
     }
 }
 
-fn turning(cycle: &Cycle, problem: &Problem, loads: &[f64]) -> Result<Frame, StageError> {
+fn turning(of: Identity<'_>, cycle: &Cycle, problem: &Problem, loads: &[f64]) -> Result<Frame, StageError> {
     let states = loads.iter().zip(&cycle.turning);
     let rows: Vec<(f64, f64, Kept, usize)> = states
         .flat_map(|(load, (_, state))| state.kept(problem).into_iter().map(|kept| (*load, state.approach_m, kept, state.merged.len())))
@@ -164,7 +171,8 @@ fn turning(cycle: &Cycle, problem: &Problem, loads: &[f64]) -> Result<Frame, Sta
         Status::Covered { by, release_m } => Some((by, release_m)),
         _ => None,
     };
-    Ok(Frame::of(&schema::TURNING)
+    Ok(of
+        .begin(&schema::TURNING, rows.len())
         .f64("max_load", rows.iter().map(|row| row.0))
         .f64("approach_m", rows.iter().map(|row| row.1))
         .i64("asperity_id", rows.iter().map(|row| row.2.asperity as i64))
@@ -188,11 +196,12 @@ fn word(status: Status) -> &'static str {
     }
 }
 
-fn merged(cycle: &Cycle) -> Result<Frame, StageError> {
+fn merged(of: Identity<'_>, cycle: &Cycle) -> Result<Frame, StageError> {
     let spots = &cycle.merged;
     let step = |k: usize| &cycle.steps[k];
     let each = |value: fn(&Merged) -> f64| spots.iter().map(move |s| value(&s.spot));
-    Ok(Frame::of(&schema::MERGED)
+    Ok(of
+        .begin(&schema::MERGED, spots.len())
         .i64("step", spots.iter().map(|s| s.step as i64))
         .text("branch", spots.iter().map(|s| step(s.step).branch.word()))
         .f64("max_load", spots.iter().map(|s| step(s.step).max_load))
@@ -210,13 +219,14 @@ fn merged(cycle: &Cycle) -> Result<Frame, StageError> {
         .build()?)
 }
 
-fn steps(cycle: &Cycle, problem: &Problem) -> Result<Frame, StageError> {
+fn steps(of: Identity<'_>, cycle: &Cycle, problem: &Problem) -> Result<Frame, StageError> {
     let steps = &cycle.steps;
     let each = |value: fn(&Step) -> f64| steps.iter().map(value);
     let count = |value: fn(&Step) -> usize| steps.iter().map(value);
     let area_unit = problem.length_m * problem.length_m;
     let tolerance = CONVERGED * problem.rms_height_m;
-    Ok(Frame::of(&schema::STEPS)
+    Ok(of
+        .begin(&schema::STEPS, steps.len())
         .i64("step", (0..steps.len()).map(|k| k as i64))
         .text("branch", steps.iter().map(|s| s.branch.word()))
         .f64("max_load", steps.iter().map(|s| s.max_load))
@@ -252,10 +262,11 @@ fn steps(cycle: &Cycle, problem: &Problem) -> Result<Frame, StageError> {
         .build()?)
 }
 
-fn contacts(cycle: &Cycle) -> Result<Frame, StageError> {
+fn contacts(of: Identity<'_>, cycle: &Cycle) -> Result<Frame, StageError> {
     let spots = &cycle.contacts;
     let step = |k: usize| &cycle.steps[k];
-    Ok(Frame::of(&schema::CONTACTS)
+    Ok(of
+        .begin(&schema::CONTACTS, spots.len())
         .i64("step", spots.iter().map(|s| s.step as i64))
         .text("branch", spots.iter().map(|s| step(s.step).branch.word()))
         .f64("max_load", spots.iter().map(|s| step(s.step).max_load))
@@ -268,7 +279,7 @@ fn contacts(cycle: &Cycle) -> Result<Frame, StageError> {
         .build()?)
 }
 
-fn events(cycle: &Cycle) -> Result<Frame, StageError> {
+fn events(of: Identity<'_>, cycle: &Cycle) -> Result<Frame, StageError> {
     let events = &cycle.events;
     let step = |k: usize| &cycle.steps[k];
     // Avalanches are counted along each branch; in the table their numbers go on along the whole path.
@@ -284,7 +295,8 @@ fn events(cycle: &Cycle) -> Result<Frame, StageError> {
         }
         numbers.push(number);
     }
-    Ok(Frame::of(&schema::EVENTS)
+    Ok(of
+        .begin(&schema::EVENTS, events.len())
         .i64("step", events.iter().map(|(at, _)| *at as i64))
         .text("branch", events.iter().map(|(at, _)| step(*at).branch.word()))
         .f64("max_load", events.iter().map(|(at, _)| step(*at).max_load))

@@ -32,7 +32,7 @@ pub(super) fn text(campaign: &Campaign, done: &[bool]) -> String {
         "path": surfaces.iter().map(|id| format!("surfaces/{id}.h5")).collect::<Vec<_>>(),
         "format": "hdf5",
         "mediatype": "application/x-hdf5",
-        "description": "Height fields: the dataset /height_m (f64, N x N, rows along x), with what they were made from as attributes.",
+        "description": "Height fields: the dataset /height_m (f64, N x N, rows along x) with its coordinates /x_m and /y_m; parameters of the surface as attributes.",
     }));
     let package = json!({
         "$schema": "https://datapackage.org/profiles/2.0/datapackage.json",
@@ -69,6 +69,10 @@ fn field(column: &Column) -> Value {
         "description": column.doc,
         "constraints": { "required": !column.nullable },
     });
+    // Parquet stores nulls as such; frictionless reads them as "nan" from columns of numbers.
+    if column.nullable && column.kind != Kind::Text {
+        field["missingValues"] = json!(["nan"]);
+    }
     // The standard has no place of its own for units and sources, and lets publishers add some.
     for (name, value) in [("unit", column.unit), ("source", column.source)] {
         if !value.is_empty() {

@@ -6,6 +6,7 @@ mod cycle;
 mod datapackage;
 mod done;
 mod failure;
+mod identity;
 mod measure;
 mod page;
 mod reading;

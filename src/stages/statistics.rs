@@ -14,9 +14,9 @@ use crate::physics::theory::{
 };
 use crate::physics::validity::{LEAST_TABOR, flattening, measured_flattening, realised_flattening};
 use crate::spec::CaseParams;
-use crate::stats::{self, CaseInput, CycleInput, Given, Sample, Value};
+use crate::stats::{self, CaseInput, CycleInput, Given, Planned, Sample, Value};
 use crate::store::hdf5::{SurfaceHeader, read_header, read_surface};
-use crate::store::{Check, commit, parquet};
+use crate::store::{Check, Frame, commit, parquet};
 use rayon::prelude::*;
 
 /// Which cycles are done.
@@ -76,9 +76,10 @@ pub(super) fn run(
     let averaged = stats::cases(&realizations, &cases)?;
     let curves = stats::curves(&cases, &cycles)?;
     let avalanches = stats::avalanches(&cases, &cycles)?;
-    let tables = [("realizations", &realizations), ("curves", &curves), ("avalanches", &avalanches), ("cases", &averaged)];
-    let write = |(name, frame)| Ok(parquet::write_table(&campaign.statistics_path(name), frame, &[("key", key.clone())])?);
-    let mut files = tables.into_iter().map(write).collect::<Result<Vec<_>, StageError>>()?;
+    let planned = stats::planned(&cases, &planned_cycles(campaign, &standings))?;
+    let write = |frame: &Frame| Ok(parquet::write_table(&campaign.statistics_path(frame.table().name), frame, &[("key", key.clone())])?);
+    let tables = [realizations, curves, avalanches, planned, averaged];
+    let mut files = tables.iter().map(write).collect::<Result<Vec<_>, StageError>>()?;
     let described = datapackage::text(campaign, &finished);
     files.push(commit::commit_bytes("describe the tables in", &campaign.dir.join("datapackage.json"), described.as_bytes())?);
     clock.receipt(campaign, &unit, campaign.statistics_preimages(&standings), &Outcome::of(files))?;
@@ -87,6 +88,23 @@ pub(super) fn run(
     watch.end(Stage::Aggregate);
     tally.computed = 1;
     Ok(tally)
+}
+
+/// Every cycle of every case with its status.
+fn planned_cycles(campaign: &Campaign, standings: &[Standing]) -> Vec<Planned> {
+    let row = |(unit, standing): (&CycleUnit, &Standing)| Planned {
+        case_id: campaign.cases[unit.case].id.clone(),
+        realization: i64::from(campaign.surfaces[unit.surface].realization),
+        cycle_id: unit.id.clone(),
+        surface_id: campaign.surfaces[unit.surface].id.clone(),
+        status: match standing {
+            Standing::Done => "done",
+            Standing::Failed(_) => "failed",
+            _ => "planned",
+        },
+        failure: campaign.failure_in_tables(standing),
+    };
+    campaign.cycles.iter().zip(standings).map(row).collect()
 }
 
 fn case_input(campaign: &Campaign, number: usize, unit: &CaseUnit, standings: &[Standing]) -> Result<CaseInput, StageError> {
@@ -174,8 +192,7 @@ pub(super) fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<Cycle
         }
         (None, None) => None,
     };
-    let numbers: [(&str, Value); 17] = [
-        ("surface_id", surface.id.as_str().into()),
+    let numbers: [(&str, Value); 16] = [
         ("summit_count", summits.len().into()),
         ("summit_density_1_m2", (summits.len() as f64 / area).into()),
         ("nayak_density_1_m2", realised.summit_density_1_m2().into()),
@@ -196,6 +213,8 @@ pub(super) fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<Cycle
     Ok(CycleInput {
         case_id: case.id.clone(),
         realization: i64::from(surface.realization),
+        cycle_id: unit.id.clone(),
+        surface_id: surface.id.clone(),
         steps: campaign.cycle_dir(unit).join("steps.parquet"),
         events: campaign.cycle_dir(unit).join("events.parquet"),
         energy_scale_j: params.material.contact_modulus_pa * area * scale.rms_height_m,

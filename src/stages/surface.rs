@@ -13,6 +13,7 @@ use crate::schema;
 use crate::spec::SurfaceParams;
 use crate::store::hdf5::{Generated, SurfaceHeader, read_header, read_surface, write_surface};
 use crate::store::{Frame, parquet};
+use std::iter::repeat_n;
 use std::path::Path;
 
 /// The spectrum that a spec asks for.
@@ -100,6 +101,8 @@ pub(super) fn extract(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Outcome
     };
     let list = &found.list;
     let frame = Frame::of(&schema::ASPERITIES)
+        .text("surface_id", repeat_n(unit.id.as_str(), list.len()))
+        .i64("realization", repeat_n(i64::from(unit.realization), list.len()))
         .i64("asperity_id", (0..list.len()).map(|k| k as i64))
         .f64("x_m", list.iter().map(|s| s.x_m))
         .f64("y_m", list.iter().map(|s| s.y_m))

@@ -4,7 +4,7 @@ use super::cycle::Cycle;
 use super::realizations::{case_of, identity};
 use super::rows::{Rows, Value};
 use super::student::Sample;
-use super::walk::{COMPRESSION_STATIONS, Point, STATIONS, Walk};
+use super::walk::{COMPRESSION_STATIONS, Point, STATIONS, Walk, tension_fraction};
 use super::{CaseInput, CycleInput, Given, StatsError};
 use crate::schema::CURVES;
 use crate::store::Frame;
@@ -96,10 +96,13 @@ fn push_bundle(rows: &mut Rows, identity: &Given, bundle: &Bundle) {
         // A mean of equal numbers need not be that number to the last bit.
         let common = points.iter().all(|point| point.load == first.load);
         let load = if common { Some(first.load) } else { over(|point| point.load).mean };
-        let columns: [(&str, Value); 9] = [
+        let fraction = tension_fraction(station);
+        let columns: [(&str, Value); 11] = [
             ("max_load", bundle.max_load.into()),
             ("branch", if loading { "loading" } else { "unloading" }.into()),
             ("grid_index", index.into()),
+            ("station", if fraction.is_some() { "tension_fraction" } else { "load" }.into()),
+            ("tension_fraction", fraction.into()),
             ("load", load.into()),
             ("area_mean", area.mean.into()),
             ("area_sd", area.sd.into()),

@@ -10,6 +10,7 @@ mod compare;
 mod curves;
 mod cycle;
 mod events;
+mod planned;
 mod realizations;
 mod rows;
 mod student;
@@ -24,6 +25,7 @@ pub use cases::cases;
 pub use cautions::{CAUTIONS, LIMITS, Limit};
 pub use compare::{Group, Matched, Side, comparison, matched, together};
 pub use curves::curves;
+pub use planned::{Planned, planned};
 pub use realizations::{realizations, results};
 pub use rows::Value;
 pub use student::{Sample, t_quantile};
@@ -63,6 +65,10 @@ pub struct CycleInput {
     pub case_id: String,
     /// Number of the surface.
     pub realization: i64,
+    /// Identity of the cycle.
+    pub cycle_id: String,
+    /// Identity of the surface.
+    pub surface_id: String,
     /// The table of its steps.
     pub steps: PathBuf,
     /// The table of its events.

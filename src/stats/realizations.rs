@@ -104,8 +104,11 @@ fn reduce(loading: &Branch, turning: usize, unloading: &Branch, max_load: f64, i
     let pull_off = |loads: &[f64]| tension(loads) + 0.0;
     let touching = count_at(&loading.touching_count);
     let held: i64 = loading.held_count.iter().take(turning + 1).chain(&unloading.held_count).sum();
-    let columns: [(&str, Value); 22] = [
+    let columns: [(&str, Value); 25] = [
         ("realization", input.realization.into()),
+        ("cycle_id", input.cycle_id.as_str().into()),
+        ("surface_id", input.surface_id.as_str().into()),
+        ("asperities_id", input.surface_id.as_str().into()),
         ("max_load", max_load.into()),
         // The turning step has the unit of load, as the quotient of its two columns.
         ("pull_off_load", (pull_off(&unloading.least_load_n) * at(&loading.load)? / at(&loading.load_n)?).into()),

@@ -59,11 +59,17 @@ impl Walk {
         let tension = self.greatest_tension();
         let steps = (COMPRESSION_STATIONS - 1) as f64;
         (0..STATIONS)
-            .map(|index| match (index + 1).checked_sub(COMPRESSION_STATIONS) {
+            .map(|index| match tension_fraction(index) {
                 // The share is rounded first, so that it is exactly one at the turning point and never more.
-                None | Some(0) => self.at(max_load * ((steps - index as f64) / steps)),
-                Some(below) => self.at(tension * (below as f64 / TENSION_STATIONS as f64)),
+                None => self.at(max_load * ((steps - index as f64) / steps)),
+                Some(fraction) => self.at(tension * fraction),
             })
             .collect()
     }
+}
+
+/// Fraction of each walk's own maximum tensile load at a station below zero load; nothing where the load is common to all walks.
+pub(super) fn tension_fraction(station: usize) -> Option<f64> {
+    let below = (station + 1).checked_sub(COMPRESSION_STATIONS).filter(|below| *below > 0);
+    below.map(|below| below as f64 / TENSION_STATIONS as f64)
 }

@@ -14,6 +14,9 @@ const ROWS: usize = 400_000;
 
 fn contacts(spots: &[f64]) -> FrameBuilder {
     Frame::of(&CONTACTS)
+        .text("cycle_id", vec!["H0.80_z256_r00-0123abcd"; ROWS])
+        .text("case_id", vec!["H0.80_z256-0123abcd"; ROWS])
+        .i64("realization", vec![0; ROWS])
         .i64("step", (0..ROWS).map(|k| (k / 2000) as i64))
         .text("branch", (0..ROWS).map(|k| if k < ROWS / 2 { "loading" } else { "unloading" }))
         .f64("max_load", (0..ROWS).map(|k| (k >= ROWS / 2).then_some(0.0071)))

@@ -22,7 +22,7 @@ fn e2e_a_spec_becomes_tables_figures_and_a_page() {
     for name in ["campaign.toml", "report.html"] {
         assert!(written.contains_key(Path::new(name)), "{name} is missing");
     }
-    for name in ["realizations", "cases", "curves", "avalanches"] {
+    for name in ["realizations", "cases", "curves", "avalanches", "cycles"] {
         assert!(written.contains_key(&PathBuf::from(format!("statistics/{name}.parquet"))), "{name} is missing");
     }
     for panel in ["A", "B", "C", "D"] {
@@ -180,7 +180,87 @@ fn e2e_a_failed_case_is_counted_and_the_others_go_on() {
     let mut counts: Vec<(i64, i64)> = cases.i64("done_count").unwrap().into_iter().zip(cases.i64("failed_count").unwrap()).collect();
     counts.sort_unstable();
     assert_eq!(counts, [(0, 2), (0, 2), (2, 0), (2, 0)]);
+    let cycles = read_table(&bench.out().join("statistics/cycles.parquet"), &schema::CYCLES).unwrap();
+    let (status, failures) = (cycles.text("status").unwrap(), cycles.text_or_null("failure").unwrap());
+    let ranges = cycles.f64("interaction_range_m").unwrap();
+    assert_eq!(cycles.row_count(), 4);
+    for k in 0..4 {
+        assert_eq!(status[k], if ranges[k] > 1e-8 { "failed" } else { "done" });
+        // The sentence, without the help and without a path of this machine.
+        let said = |failure: &String| failure.contains("Tabor") && !failure.contains('\n') && !failure.contains("/tmp");
+        assert_eq!(failures[k].as_ref().is_some_and(said), status[k] == "failed", "{failures:?}");
+    }
     assert!(bench.out().join("report.html").is_file());
+}
+
+#[test]
+fn e2e_cycles_that_are_not_done_are_planned() {
+    let bench = Bench::new(SPEC);
+    assert_eq!(code(&bench.verb("run", &["--until", "extract"])), 0);
+    assert_eq!(code(&bench.verb("aggregate", &["--partial"])), 0);
+    let cycles = read_table(&bench.out().join("statistics/cycles.parquet"), &schema::CYCLES).unwrap();
+    assert_eq!(cycles.text("status").unwrap(), ["planned"; 4]);
+    assert_eq!(cycles.text_or_null("failure").unwrap(), [const { None }; 4]);
+}
+
+/// Cases that differ only in what estimates read share a cycle. Its tables carry the case without that, whether the spec has it or not.
+#[test]
+fn e2e_tables_of_a_shared_cycle_do_not_depend_on_the_other_cases() {
+    let spec = |errata: &str| {
+        let sweep = format!("model.as_printed = {errata}\nsurface.magnification = 6");
+        Bench::new(&SPEC.replace("surface.magnification = [6, 8]", &sweep).replace("[0.001, 0.002]", "[0.001]"))
+    };
+    let (all, one) = (spec("[[\"a2\"], [], [\"eq8\", \"a2\"]]"), spec("[[\"a2\"]]"));
+    for bench in [&all, &one] {
+        assert_eq!(code(&bench.verb("run", &["--until", "aggregate"])), 0);
+    }
+    let cycles = read_table(&all.out().join("statistics/cycles.parquet"), &schema::CYCLES).unwrap();
+    let (ids, cases) = (cycles.text("cycle_id").unwrap(), cycles.text("case_id").unwrap());
+    let (printed, realizations) = (cycles.text("as_printed").unwrap(), cycles.i64("realization").unwrap());
+    assert_eq!(cycles.row_count(), 6);
+    let mut shared = 0;
+    for k in 0..6 {
+        let steps = read_table(&all.out().join("cycles").join(ids[k]).join("steps.parquet"), &schema::STEPS).unwrap();
+        let plain = (0..6).find(|other| printed[*other].is_empty() && realizations[*other] == realizations[k]).unwrap();
+        assert_eq!(ids[k] == ids[plain], printed[k] != "eq8+a2", "{printed:?}");
+        assert!(steps.text("cycle_id").unwrap().iter().all(|id| *id == ids[k]));
+        assert!(steps.i64("realization").unwrap().iter().all(|number| *number == realizations[k]));
+        let of = steps.text("case_id").unwrap()[0].to_owned();
+        match printed[k] {
+            "eq8+a2" => assert!(!cases.contains(&of.as_str()), "the case with eq8 alone is not in the spec"),
+            _ => assert_eq!(of, cases[plain]),
+        }
+        let alone = one.out().join("cycles").join(ids[k]);
+        if printed[k] == "a2" {
+            for name in ["steps", "contacts", "events", "turning", "merged"] {
+                let file = format!("{name}.parquet");
+                let shared = all.out().join("cycles").join(ids[k]).join(&file);
+                assert_eq!(fs::read(alone.join(&file)).unwrap(), fs::read(shared).unwrap(), "{name}");
+            }
+            shared += 1;
+        }
+    }
+    assert_eq!(shared, 2);
+}
+
+#[test]
+fn e2e_one_scan_under_two_names_is_one_cycle() {
+    let made = Bench::new(SPEC);
+    assert_eq!(code(&made.verb("run", &["--until", "generate"])), 0);
+    let scan = fs::read_dir(made.out().join("surfaces")).unwrap().next().unwrap().unwrap().path();
+    let names = ["a.h5", "b.h5"].map(|name| made.folder.path().join(name));
+    for name in &names {
+        fs::copy(&scan, name).unwrap();
+    }
+    let sweep = format!("surface.periodic = true\nsurface.file = {names:?}");
+    let bench = Bench::new(&SPEC.replace("realizations = 2\n", "").replace("surface.magnification = [6, 8]", &sweep));
+    let run = bench.verb("run", &["--until", "aggregate"]);
+    assert_eq!(code(&run), 0, "{}", stderr(&run));
+    let cycles = read_table(&bench.out().join("statistics/cycles.parquet"), &schema::CYCLES).unwrap();
+    let ids = cycles.text("cycle_id").unwrap();
+    assert_eq!(cycles.text_or_null("surface_file").unwrap(), ["a.h5", "b.h5"].map(|name| Some(name.to_owned())));
+    assert_eq!((ids.len(), ids[0]), (2, ids[1]));
+    assert_eq!(cycles.text("status").unwrap(), ["done"; 2]);
 }
 
 #[test]

@@ -53,8 +53,8 @@ fn e2e_other_programs_read_the_same_values() {
     let bench = Bench::new(SPEC);
     assert_eq!(code(&bench.verb("run", &[])), 0);
     if let Some(said) = script("tests/python/readers.py", &bench, &[]) {
-        // Of each of the four cycles five tables, one of each surface, and five over realizations.
-        assert_eq!(first_number(&said), 4 * 5 + 4 + 5, "{said}");
+        // Of each of the four cycles five tables, one of each surface, and six over realizations.
+        assert_eq!(first_number(&said), 4 * 5 + 4 + 6, "{said}");
     }
 }
 
@@ -65,6 +65,28 @@ fn e2e_plain_python_finds_the_same_means() {
     if let Some(said) = script("tests/python/aggregates.py", &bench, &[]) {
         // Five numbers of each of 12 rows, and four of the mean of each of these in 4 cases.
         assert_eq!(first_number(&said), 5 * 12 + 4 * 5 * 4, "{said}");
+    }
+}
+
+#[test]
+fn e2e_tables_join_and_their_description_is_valid() {
+    let bench = Bench::new(SPEC);
+    assert_eq!(code(&bench.verb("run", &[])), 0);
+    if let Some(said) = script("tests/python/joins.py", &bench, &[]) {
+        // Two numbers of each of two magnifications and two realizations, by three joins.
+        assert_eq!(first_number(&said), 2 * 4 * 3, "{said}");
+    }
+    if let Some(said) = script("tests/python/package.py", &bench, &[]) {
+        assert_eq!(first_number(&said), 4 * 5 + 4 + 6, "{said}");
+    }
+}
+
+#[test]
+fn e2e_every_surface_begins_from_what_h5py_makes() {
+    let bench = Bench::new(SPEC);
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    if script("tests/python/start.py", &bench, &[]).is_some() {
+        assert_eq!(std::fs::read(bench.out()).unwrap(), std::fs::read(root.join("src/store/start.h5")).unwrap());
     }
 }
 

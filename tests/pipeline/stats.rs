@@ -2,11 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use hysteron::stats::{CaseInput, Point, STATIONS, Sample, StatsError, Value, Walk, cases, curves, realizations, summary, t_quantile};
+use hysteron::stats::{
+    CaseInput, Planned, Point, STATIONS, Sample, StatsError, TENSION_STATIONS, Value, Walk, avalanches, cases, curves, planned,
+    realizations, summary, t_quantile,
+};
 use hysteron::store::Frame;
 use hysteron::store::parquet::{read_table, write_table};
 
-use crate::steps::{Bench, ENERGY_J, Step, case, cycle, realistic, write};
+use crate::steps::{Bench, ENERGY_J, Step, case, cycle, realistic, write, write_events};
 
 /// Probability, degrees of freedom, quantile.
 const KNOWN_T: [(f64, usize, f64); 9] = [
@@ -238,6 +241,82 @@ fn val_curves_read_jumps_from_the_turning_point() {
     assert!(frame.i64("realization_count").unwrap().iter().all(|count| *count == 2));
 }
 
+/// Three unloading branches of which one ends without tension: each is read at fractions of its own maximum tensile load.
+#[test]
+fn val_curves_below_zero_load_are_read_at_fractions_of_each_own_tension() {
+    let directory = tempfile::tempdir().unwrap();
+    let tensions = [0.001, 0.004, 0.0];
+    let cycles = tensions.iter().enumerate().map(|(at, tension)| {
+        let path = directory.path().join(format!("{at}.parquet"));
+        let steps: [Step; 4] = [
+            ("loading", None, 0.0, 0.0, 0.0, 0.0),
+            ("loading", None, 0.002, 0.1, 1.0, 1e-9),
+            ("unloading", Some(0.002), 0.0, 0.06, 0.5, -1e-9),
+            ("unloading", Some(0.002), -tension, 0.02, 0.1, -1e-9),
+        ];
+        write(&path, if *tension > 0.0 { &steps } else { &steps[..3] });
+        cycle("c1", at as i64, &path, 2e-8)
+    });
+    let frame = curves(&[case("c1", "", 0.8, 128.0, &[0.002])], &cycles.collect::<Vec<_>>()).unwrap();
+    let unloading = frame.row_count() - STATIONS..frame.row_count();
+    let rules = frame.text("station").unwrap();
+    for at in unloading.clone() {
+        let fraction = row(&frame, "tension_fraction", at);
+        assert_eq!(rules[at], if fraction.is_some() { "tension_fraction" } else { "load" });
+        let load = row(&frame, "load", at).unwrap();
+        match fraction {
+            None => assert!(load >= 0.0),
+            // The mean of the three own loads, and of the areas at these; the one without tension stays at its area of zero load.
+            Some(fraction) => {
+                close(load, -fraction * 0.005 / 3.0, 1e-12);
+                close(row(&frame, "area_mean", at).unwrap(), (2.0 * (0.06 - 0.04 * fraction) + 0.06) / 3.0, 1e-12);
+            }
+        }
+    }
+    let fractions = rules[unloading.clone()].iter().filter(|rule| **rule == "tension_fraction").count();
+    assert_eq!(fractions, TENSION_STATIONS);
+    close(row(&frame, "tension_fraction", unloading.end - 1).unwrap(), 1.0, 0.0);
+    assert!(frame.i64("realization_count").unwrap().iter().all(|count| *count == 3));
+    // While loading there is no tension, and thus no such station.
+    assert!((0..unloading.start).all(|at| rules[at] == "load"));
+}
+
+#[test]
+fn law_cycles_are_joined_to_their_cases() {
+    let bench = bench(&[1.0, 3.0]);
+    let row = |case_id: &str, realization: i64, status: &'static str, failure: Option<&str>| Planned {
+        case_id: case_id.to_owned(),
+        realization,
+        cycle_id: format!("cycle-{case_id}-{realization}"),
+        surface_id: format!("surface-{realization}"),
+        status,
+        failure: failure.map(str::to_owned),
+    };
+    let rows = [row("c1", 1, "failed", Some("no equilibrium")), row("c0", 0, "planned", None), row("c1", 0, "done", None)];
+    let table = planned(&bench.cases, &rows).unwrap();
+    assert_eq!(table.text("cycle_id").unwrap(), ["cycle-c0-0", "cycle-c1-0", "cycle-c1-1"]);
+    assert_eq!(table.text("surface_id").unwrap(), table.text("asperities_id").unwrap());
+    assert_eq!(table.text("status").unwrap(), ["planned", "done", "failed"]);
+    assert_eq!(table.text_or_null("failure").unwrap(), [None, None, Some("no equilibrium".to_owned())]);
+    assert_eq!(table.f64("magnification").unwrap(), [64.0, 128.0, 128.0]);
+    assert_eq!(table.text("sweep").unwrap(), ["fig4", "fig3", "fig3"]);
+    let unknown = planned(&bench.cases, &[row("c2", 0, "done", None)]).unwrap_err();
+    assert!(matches!(unknown, StatsError::UnknownCase { case_id, realization: 0 } if case_id == "c2"));
+
+    write_events(&bench.cycles[0].steps, &[(1, "loading", None, "jump_in", 0, [0.0, -1e-3, 0.0, 1e-8, 1e-12])]);
+    for table in [realizations(&bench.cases, &bench.cycles).unwrap(), avalanches(&bench.cases, &bench.cycles).unwrap()] {
+        assert!(table.row_count() > 0);
+        let (cycles, surfaces) = (table.text("cycle_id").unwrap(), table.text("surface_id").unwrap());
+        for (at, realization) in table.i64("realization").unwrap().into_iter().enumerate() {
+            assert_eq!(
+                (cycles[at].to_owned(), surfaces[at].to_owned()),
+                (format!("c1-cycle-{realization}"), format!("surface-{realization}"))
+            );
+        }
+        assert_eq!(surfaces, table.text("asperities_id").unwrap());
+    }
+}
+
 #[test]
 fn e2e_tables_go_through_the_one_writer() {
     let bench = bench(&[1.0, 1.2]);
@@ -269,7 +348,7 @@ fn law_faults_are_sentences() {
     let mut bench = bench(&[1.0]);
     bench.cycles[0].surface.clear();
     let lacking = realizations(&bench.cases, &bench.cycles).unwrap_err().to_string();
-    assert!(lacking.contains("realizations") && lacking.contains("surface_id"), "{lacking}");
+    assert!(lacking.contains("realizations") && lacking.contains("summit_count"), "{lacking}");
     bench.cycles[0].case_id = "c9".to_owned();
     assert!(matches!(realizations(&bench.cases, &bench.cycles), Err(StatsError::UnknownCase { .. })));
     bench.cycles[0].case_id = "c1".to_owned();

@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use hysteron::schema::{EVENTS, STEPS};
+use hysteron::schema::{EVENTS, STEPS, Table};
 use hysteron::stats::{CaseInput, CycleInput, Given, Value};
-use hysteron::store::Frame;
 use hysteron::store::parquet::write_table;
+use hysteron::store::{Frame, FrameBuilder};
 
 /// One step: branch, max_load, load, area, penetration, work_j.
 pub type Step = (&'static str, Option<f64>, f64, f64, f64, f64);
@@ -30,10 +30,15 @@ pub fn events_path(steps: &Path) -> PathBuf {
     steps.with_extension("events.parquet")
 }
 
+/// A table of a cycle with the columns that identify it.
+fn named(table: &'static Table, rows: usize) -> FrameBuilder {
+    Frame::of(table).text("cycle_id", vec!["a-cycle"; rows]).text("case_id", vec!["a-case"; rows]).i64("realization", vec![0; rows])
+}
+
 /// Writes the table of events that belongs to a table of steps.
 pub fn write_events(steps: &Path, events: &[Event]) {
     let reals = |at: usize| events.iter().map(move |event| event.5[at]);
-    let frame = Frame::of(&EVENTS)
+    let frame = named(&EVENTS, events.len())
         .i64("step", events.iter().map(|event| event.0))
         .text("branch", events.iter().map(|event| event.1))
         .f64("max_load", events.iter().map(|event| event.2))
@@ -55,7 +60,7 @@ pub fn write_events(steps: &Path, events: &[Event]) {
 pub fn write(path: &Path, steps: &[Step]) {
     let reals = |value: fn(&Step) -> f64| steps.iter().map(value).collect::<Vec<f64>>();
     let zeros = || vec![0_usize; steps.len()];
-    let frame = Frame::of(&STEPS)
+    let frame = named(&STEPS, steps.len())
         .count("step", 0..steps.len())
         .text("branch", steps.iter().map(|step| step.0))
         .f64("max_load", steps.iter().map(|step| step.1))
@@ -133,6 +138,8 @@ pub fn cycle(case_id: &str, realization: i64, steps: &Path, dk_per_area_j: f64) 
     CycleInput {
         case_id: case_id.to_owned(),
         realization,
+        cycle_id: format!("{case_id}-cycle-{realization}"),
+        surface_id: format!("surface-{realization}"),
         steps: steps.to_owned(),
         events: events_path(steps),
         energy_scale_j: ENERGY_J,
@@ -144,7 +151,6 @@ pub fn cycle(case_id: &str, realization: i64, steps: &Path, dk_per_area_j: f64) 
             .map(|load| (load, given(&[("area_adhesionless", (5.0 * load).into()), ("area_adhesionless_small", (6.0 * load).into())])))
             .to_vec(),
         surface: given(&[
-            ("surface_id", format!("surface-{realization}").as_str().into()),
             ("summit_count", Value::Whole(4000)),
             ("summit_density_1_m2", 4e9.into()),
             ("nayak_density_1_m2", 4.1e9.into()),

@@ -46,19 +46,16 @@ def main():
     folder = Path(sys.argv[1])
     realizations = rows(folder / "statistics/realizations.parquet")
     cases = {(case["case_id"], case["max_load"]): case for case in rows(folder / "statistics/cases.parquet")}
-    # A cycle is known by its realization and by what its case has: here by the areas that it has at its turning points.
-    cycles = [rows(path) for path in sorted(folder.glob("cycles/*/steps.parquet"))]
+    cycles = {path.parent.name: rows(path) for path in sorted(folder.glob("cycles/*/steps.parquet"))}
     compared = 0
     groups = {}
     for row in realizations:
         energy_j = row["contact_modulus_pa"] * row["length_m"] ** 2 * row["rms_height_m"]
-        found = [results(steps, row["max_load"], energy_j) for steps in cycles if any(s["max_load"] == row["max_load"] for s in steps)]
-        own = [result for result in found if result["area_at_max_load"] == row["area_at_max_load"]]
-        assert len(own) == 1, (row["case_id"], row["realization"], len(own))
-        for name, value in own[0].items():
+        own = results(cycles[row["cycle_id"]], row["max_load"], energy_j)
+        for name, value in own.items():
             close(row[name], value, (row["case_id"], row["realization"], name))
             compared += 1
-        groups.setdefault((row["case_id"], row["max_load"]), []).append(own[0])
+        groups.setdefault((row["case_id"], row["max_load"]), []).append(own)
     assert groups.keys() == cases.keys()
     for key, group in groups.items():
         case = cases[key]

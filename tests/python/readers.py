@@ -62,6 +62,9 @@ def table(path):
 
     # What each column means travels with it, and once more with the file, for those who do not see the first.
     described = json.loads(pyarrow.parquet.read_metadata(path).metadata[b"hysteron"])
+    for schema in [arrow.schema, pyarrow.parquet.read_schema(path)]:
+        assert json.loads(schema.metadata[b"hysteron"]) == described, path
+    assert described["key"] and described["version"] == 1, path
     for field in arrow.schema:
         told = {key.decode(): value.decode() for key, value in field.metadata.items()}
         assert told["description"], (path, field.name)
@@ -80,12 +83,23 @@ def surface(path):
     with h5py.File(path) as file:
         heights = file["height_m"][:]
         told = dict(file.attrs)
+        # Texts are str, and the axes have their coordinates.
+        assert [type(told[name]) for name in ["key", "normalization", "amplitudes"]] == [str] * 3, told
+        assert file["height_m"].attrs["unit"] == "m", path
+        points = numpy.arange(len(heights)) * told["length_m"] / len(heights)
+        for name, axis in zip(["x_m", "y_m"], file["height_m"].dims):
+            assert axis.label == name and axis.keys() == [name] and file[name].is_scale, (path, name)
+            assert numpy.allclose(axis[name][:], points, rtol=1e-15, atol=0), (path, name)
     assert heights.dtype == numpy.float64 and heights.shape[0] == heights.shape[1], path
     rms = float(numpy.sqrt(numpy.mean((heights - heights.mean()) ** 2)))
     assert abs(rms - told["rms_height_m"]) < 1e-9 * rms, (path, rms, told["rms_height_m"])
-    with xarray.open_dataset(path, engine="h5netcdf", phony_dims="access") as dataset:
-        assert numpy.array_equal(dataset["height_m"].values, heights), path
-        assert dataset.attrs["rms_height_m"] == told["rms_height_m"], path
+    for engine in ["h5netcdf", "netcdf4"]:
+        with xarray.open_dataset(path, engine=engine) as dataset:
+            assert dataset["height_m"].dims == ("x_m", "y_m") and list(dataset.coords) == ["x_m", "y_m"], (path, engine)
+            assert numpy.array_equal(dataset["height_m"].values, heights), (path, engine)
+            assert numpy.allclose(dataset["x_m"].values, points, rtol=1e-15, atol=0), (path, engine)
+            assert dataset.attrs["rms_height_m"] == told["rms_height_m"], (path, engine)
+            assert dataset.attrs["normalization"] == told["normalization"], (path, engine)
     return heights.size
 
 

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fs::File;
+use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -22,8 +23,8 @@ use super::{METADATA_KEY, data_type};
 /// Rows of a row group: some megabytes, so that a reader can skip and a writer stays small.
 const ROW_GROUP: usize = 1 << 17;
 
-/// The Arrow schema of a table, with unit, description and source at every field.
-fn arrow_schema(table: &Table) -> Arc<Schema> {
+/// The Arrow schema of a table: unit, description and source at every field, and the file-level metadata once more for readers of the Arrow schema.
+fn arrow_schema(table: &Table, own: &str) -> Arc<Schema> {
     let fields: Vec<Field> = table
         .columns
         .iter()
@@ -34,7 +35,7 @@ fn arrow_schema(table: &Table) -> Arc<Schema> {
             Field::new(column.name, data_type(column.kind), column.nullable).with_metadata(known)
         })
         .collect();
-    Arc::new(Schema::new(fields))
+    Arc::new(Schema::new_with_metadata(fields, [(METADATA_KEY.to_owned(), own.to_owned())]))
 }
 
 fn own_json(table: &Table, keys: &[(&str, String)]) -> Result<String, Cause> {
@@ -47,14 +48,14 @@ fn own_json(table: &Table, keys: &[(&str, String)]) -> Result<String, Cause> {
     Ok(metadata_json(table, &given))
 }
 
-fn writer_properties(table: &Table, keys: &[(&str, String)]) -> Result<WriterProperties, Cause> {
+fn writer_properties(table: &Table, own: String) -> Result<WriterProperties, Cause> {
     let mut properties = WriterProperties::builder()
         // The same words whatever version wrote the file: versions are recorded beside the data, not in it.
         .set_created_by("hysteron".to_owned())
         .set_compression(Compression::ZSTD(ZstdLevel::try_new(3)?))
         .set_max_row_group_row_count(Some(ROW_GROUP))
         .set_statistics_enabled(EnabledStatistics::Chunk)
-        .set_key_value_metadata(Some(vec![KeyValue::new(METADATA_KEY.to_owned(), own_json(table, keys)?)]));
+        .set_key_value_metadata(Some(vec![KeyValue::new(METADATA_KEY.to_owned(), own)]));
     for column in table.columns.iter().filter(|column| column.kind == Kind::F64) {
         // Real numbers hardly repeat: a dictionary of them is larger than they are.
         properties = properties.set_column_dictionary_enabled(ColumnPath::from(column.name), false);
@@ -64,21 +65,27 @@ fn writer_properties(table: &Table, keys: &[(&str, String)]) -> Result<WriterPro
 
 /// Writes a frame into the file at `path`, which is there already.
 pub(super) fn rows(path: &Path, frame: &Frame, keys: &[(&str, String)]) -> Result<(), Cause> {
-    let schema = arrow_schema(frame.table());
-    let properties = writer_properties(frame.table(), keys)?;
+    let own = own_json(frame.table(), keys)?;
+    let schema = arrow_schema(frame.table(), &own);
+    let properties = writer_properties(frame.table(), own)?;
     let file = File::options().write(true).open(path)?;
     let mut writer = ArrowWriter::try_new(file, Arc::clone(&schema), Some(properties))?;
-    let arrays = frame.columns().map(|(_, data)| array(data)).collect();
-    writer.write(&RecordBatch::try_new(schema, arrays)?)?;
+    // Batch by batch: a column of repeated identities is large in memory, though not in the file.
+    for first in (0..frame.row_count().max(1)).step_by(ROW_GROUP) {
+        let rows = first..frame.row_count().min(first + ROW_GROUP);
+        let arrays = frame.columns().map(|(_, data)| array(data, rows.clone())).collect();
+        writer.write(&RecordBatch::try_new(Arc::clone(&schema), arrays)?)?;
+    }
     writer.close()?;
     Ok(())
 }
 
-fn array(data: &ColumnData) -> ArrayRef {
+/// These rows of a column.
+fn array(data: &ColumnData, rows: Range<usize>) -> ArrayRef {
     match data {
-        ColumnData::F64(values) => Arc::new(Float64Array::from(values.clone())),
-        ColumnData::I64(values) => Arc::new(Int64Array::from(values.clone())),
-        ColumnData::Bool(values) => Arc::new(BooleanArray::from(values.clone())),
-        ColumnData::Text(values) => Arc::new(values.iter().map(Option::as_deref).collect::<StringArray>()),
+        ColumnData::F64(values) => Arc::new(Float64Array::from(values[rows].to_vec())),
+        ColumnData::I64(values) => Arc::new(Int64Array::from(values[rows].to_vec())),
+        ColumnData::Bool(values) => Arc::new(BooleanArray::from(values[rows].to_vec())),
+        ColumnData::Text(values) => Arc::new(values[rows].iter().map(Option::as_deref).collect::<StringArray>()),
     }
 }

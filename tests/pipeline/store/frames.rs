@@ -7,6 +7,9 @@ use super::sample;
 
 fn contacts() -> FrameBuilder {
     Frame::of(&CONTACTS)
+        .text("cycle_id", ["a-cycle"; 2])
+        .text("case_id", ["a-case"; 2])
+        .i64("realization", [0, 0])
         .count("step", [0, 7])
         .text("branch", ["loading", "unloading"])
         .f64("max_load", [None, Some(0.0071)])
@@ -38,7 +41,9 @@ fn law_a_frame_names_what_is_asked_wrongly() {
         "the table contacts has missing values in the column \"max_load\", where none were expected"
     );
     assert_eq!(message(frame.i64("load_n").map(drop)), "the table contacts holds f64 in the column \"load_n\", not i64");
-    assert!(message(frame.bool("loud_n").map(drop)).starts_with("the table contacts has no column \"loud_n\"; allowed: step, branch,"));
+    assert!(
+        message(frame.bool("loud_n").map(drop)).starts_with("the table contacts has no column \"loud_n\"; allowed: cycle_id, case_id,")
+    );
 }
 
 #[test]
@@ -46,10 +51,10 @@ fn law_a_frame_that_does_not_fit_is_refused() {
     let refusal = |builder: FrameBuilder| builder.build().unwrap_err().to_string();
     let full = || contacts().f64("interaction_m", [2e-9, 3e-9]);
     assert_eq!(refusal(contacts()), "the table contacts was not given: interaction_m");
-    assert!(refusal(full().f64("interaction", [1.0, 2.0])).contains("has no column \"interaction\"; allowed: step"));
+    assert!(refusal(full().f64("interaction", [1.0, 2.0])).contains("has no column \"interaction\"; allowed: cycle_id"));
     assert!(refusal(full().f64("load_n", [1.0, 2.0])).contains("was given the column \"load_n\" twice"));
     assert!(refusal(contacts().i64("interaction_m", [1, 2])).contains("holds f64 in the column \"interaction_m\", not i64"));
-    assert!(refusal(contacts().f64("interaction_m", [1.0])).contains("different length: 1 values in \"interaction_m\", 2 in \"step\""));
+    assert!(refusal(contacts().f64("interaction_m", [1.0])).contains("different length: 1 values in \"interaction_m\", 2 in \"cycle_id\""));
     let whole = sample(&CONTACTS, 2);
     let holed = whole.columns().fold(Frame::of(&CONTACTS), |builder, (column, data)| match column.name {
         "load_n" => builder.f64("load_n", [Some(1.0), None]),

@@ -4,8 +4,8 @@ use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use arrow::array::{ArrayRef, Float64Array, Int64Array, RecordBatch};
-use hysteron::schema::{ASPERITIES, CONTACTS, CURVES, STEPS, TABLES, Table};
+use arrow::array::{ArrayRef, Float64Array, Int64Array, RecordBatch, StringArray};
+use hysteron::schema::{ASPERITIES, CONTACTS, CURVES, Kind, STEPS, TABLES, Table};
 use hysteron::store::Frame;
 use hysteron::store::parquet::{METADATA_KEY, read_key, read_metadata, read_table, write_table};
 use parquet::arrow::ArrowWriter;
@@ -49,6 +49,9 @@ fn e2e_a_table_of_several_row_groups_comes_back() {
     let rows = 300_000;
     let at = |row: usize| row as f64 * 1e-9;
     let frame = Frame::of(&CONTACTS)
+        .text("cycle_id", vec!["H0.80_z256_r00-0123abcd"; rows])
+        .text("case_id", vec!["H0.80_z256-0123abcd"; rows])
+        .i64("realization", vec![0; rows])
         .count("step", (0..rows).map(|row| row / 700))
         .text("branch", (0..rows).map(|row| if row < 9 { "loading" } else { "unloading" }))
         .f64("max_load", (0..rows).map(|row| (row % 2 == 0).then_some(0.0071)))
@@ -69,11 +72,16 @@ fn e2e_a_table_of_several_row_groups_comes_back() {
         .metadata()
         .row_groups()
         .iter()
-        .map(|group| match group.column(0).statistics() {
+        .map(|group| match group.column(3).statistics() {
             Some(Statistics::Int64(steps)) => [*steps.min_opt().unwrap(), *steps.max_opt().unwrap()],
             other => panic!("{other:?}"),
         })
         .collect();
+    // A column with one value is a dictionary of one entry, and one run per page.
+    for group in reader.metadata().row_groups() {
+        let identities: i64 = (0..3).map(|column| group.column(column).compressed_size()).sum();
+        assert!(identities * 2000 < group.compressed_size(), "{identities} of {} bytes", group.compressed_size());
+    }
     assert_eq!((bounds[0][0], bounds[2][1]), (0, (rows as i64 - 1) / 700));
     assert!(bounds.windows(2).all(|pair| pair[0][1] <= pair[1][0]), "{bounds:?}");
 }
@@ -103,7 +111,10 @@ fn e2e_units_meanings_and_sources_travel_with_the_file() {
         let file = reader.metadata().file_metadata();
         assert_eq!(file.created_by(), Some("hysteron"));
         let own = file.key_value_metadata().unwrap().iter().find(|entry| entry.key == METADATA_KEY);
-        let own: serde_json::Value = serde_json::from_str(own.unwrap().value.as_deref().unwrap()).unwrap();
+        let own = own.unwrap().value.as_deref().unwrap();
+        // Readers of the Arrow schema see the same.
+        assert_eq!(reader.schema().metadata().get(METADATA_KEY).map(|text| text.as_str()), Some(own));
+        let own: serde_json::Value = serde_json::from_str(own).unwrap();
         assert_eq!(own["table"], table.name);
         assert_eq!(own["key"], "0123abcd");
         assert_eq!(own["columns"][0]["description"], table.columns[0].doc);
@@ -191,14 +202,18 @@ fn e2e_another_table_is_told_from_this_one() {
         message(Some(identity(&ASPERITIES, 2)), vec![("x_m", reals())])
             .contains("it has version 2 of this table, and this program reads version 1")
     );
-    assert!(message(good(), vec![("x_m", reals())]).contains("it lacks the column \"asperity_id\""));
-    assert!(message(good(), vec![("asperity_id", reals())]).contains("its column \"asperity_id\" holds Float64, not i64"));
+    assert!(message(good(), vec![("x_m", reals())]).contains("it lacks the column \"surface_id\""));
+    assert!(message(good(), vec![("surface_id", reals())]).contains("its column \"surface_id\" holds Float64, not text"));
     let all = |last: Option<&'static str>| {
         let mut columns: Vec<(&str, ArrayRef)> = ASPERITIES
             .columns
             .iter()
             .filter(|column| column.name != "refined")
-            .map(|column| (column.name, if column.name.ends_with("_m") { reals() } else { whole() }))
+            .map(|column| match column.kind {
+                Kind::F64 => (column.name, reals()),
+                Kind::Text => (column.name, Arc::new(StringArray::from(vec!["a"])) as ArrayRef),
+                _ => (column.name, whole()),
+            })
             .collect();
         columns.push(("refined", Arc::new(arrow::array::BooleanArray::from(vec![true]))));
         columns.extend(last.map(|name| (name, reals())));
@@ -208,11 +223,12 @@ fn e2e_another_table_is_told_from_this_one() {
     let mut swapped = all(None);
     swapped.swap(0, 1);
     assert!(message(good(), swapped).contains("its columns are repeated or in another order"));
+    let x = ASPERITIES.columns.iter().position(|column| column.name == "x_m").unwrap();
     let mut holed = all(None);
-    holed[1].1 = Arc::new(Float64Array::from(vec![None]));
+    holed[x].1 = Arc::new(Float64Array::from(vec![None]));
     assert!(message(good(), holed).contains("lacks a value in the column \"x_m\", row 0"));
     let mut endless = all(None);
-    endless[1].1 = Arc::new(Float64Array::from(vec![f64::NAN]));
+    endless[x].1 = Arc::new(Float64Array::from(vec![f64::NAN]));
     assert!(message(good(), endless).contains("was given NaN in the column \"x_m\", row 0"));
 }
 
