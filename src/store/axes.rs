@@ -43,6 +43,8 @@ pub(super) fn write(file: &File, kind: &Datatype, heights: &Dataset, length_m: f
         write_text(&axis, "unit", "m")?;
         write_short(&axis, kind, CLASS.0, CLASS.1)?;
         write_short(&axis, kind, "NAME", name)?;
+        // While the dataset is open: closing it writes what is buffered, and reports no error.
+        file.flush()?;
     }
     let scales = AXES.map(|name| ObjectReference1::create(file, name).map(|scale| VarLenArray::from_slice(&[scale])));
     let [x, y] = scales;

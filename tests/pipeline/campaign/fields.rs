@@ -162,7 +162,7 @@ fn law_two_units_never_share_an_id() {
 
 #[test]
 fn law_what_failed_is_another_table_than_what_was_not_tried() {
-    let one = campaign("name = \"x\"\n[surface]\nmagnification = 8\n");
+    let mut one = campaign("name = \"x\"\n[surface]\nmagnification = 8\n");
     let failed = Standing::Failed("no equilibrium".to_owned());
     let why = Standing::Failed("a \"quoted\" reason\nhelp: nothing".to_owned());
     let keys: BTreeSet<String> = [Standing::Done, Standing::Planned, failed, why.clone()]
@@ -175,4 +175,8 @@ fn law_what_failed_is_another_table_than_what_was_not_tried() {
         .into();
     assert_eq!(keys.len(), 4, "the table cycles holds the error message");
     assert_eq!(one.failure_in_tables(&why).as_deref(), Some("a \"quoted\" reason"));
+    // A table holds no path of the machine.
+    one.spec.files.insert("/data/here/a scan.npy".to_owned(), "0".repeat(64));
+    let unread = Standing::Failed("cannot take the surface /data/here/a scan.npy: it is empty".to_owned());
+    assert_eq!(one.failure_in_tables(&unread).as_deref(), Some("cannot take the surface a scan.npy: it is empty"));
 }
