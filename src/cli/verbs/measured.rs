@@ -111,6 +111,7 @@ fn answer(header: &SurfaceHeader, [points, summits, edge]: [usize; 3], rings: Ve
         "rms_height_m": header.rms_height_m,
         "rms_slope": header.rms_slope,
         "rms_curvature_1_m": header.rms_curvature_1_m,
+        "rms_laplacian_1_m": header.rms_curvature_1_m,
         "nayak_parameter": header.nayak_parameter,
         "summit_count": summits,
         "edge_count": edge,
@@ -155,7 +156,8 @@ fn told(file: &Path, header: &SurfaceHeader, [points, summits, edge]: [usize; 3]
         line("taken off", what);
         line("", format!("waves below {:.3e} m: {:.3e} m rms", of.shortest_wavelength_m, of.noise_m));
     }
-    line("heights", format!("{rms:.4e} m rms, slope {:.4} rms, curvature {:.3e} 1/m rms", header.rms_slope, header.rms_curvature_1_m));
+    line("heights", format!("{rms:.4e} m rms, slope {:.4} rms, Laplacian {:.3e} 1/m rms", header.rms_slope, header.rms_curvature_1_m));
+    line("", format!("mean curvature {:.3e} 1/m rms: half the Laplacian", 0.5 * header.rms_curvature_1_m));
     line("summits", format!("{summits}, and {nayak:.0} after Nayak (his parameter: {:.2})", header.nayak_parameter));
     if edge > 0 {
         line("", format!("{edge} more are too near to the edge and left out"));

@@ -69,7 +69,7 @@ fn law_points_off_a_grid_are_told() {
         ),
         (changed(&|lines| lines[3] = "nan 10 1".to_owned()), vec!["a value of x is missing"]),
         ((0..40).map(|k| format!("{k} 1 {k}\n")).collect(), vec!["all values of y are 1"]),
-        ((0..40).map(|k| format!("{} {} {k}\n", (k * k) as f64, (7 * k % 40) as f64)).collect(), vec!["not evenly spaced"]),
+        ((0..40).map(|k| format!("{} {} {k}\n", k * k, 7 * k % 40)).collect(), vec!["not evenly spaced"]),
         ((0..40).map(|k| format!("{k} {} {k}\n", 7 * k % 40)).collect(), vec!["40 by 40 places of a grid need 1600 lines, and it has 40"]),
         ((0..40).map(|k| format!("{k} {k}\n")).collect(), vec!["two columns are a line scan"]),
         ((0..40).map(|k| format!("{k}\n")).collect(), vec!["one column is a line of heights"]),
