@@ -84,7 +84,7 @@ const RESULTS: &[Column] = &[
     real("dissipated", "1", "Energy lost in the loop over E* A0 h_rms, the sum over its events"),
     real("dissipated_j", "J", "Energy lost in the loop, the sum over its events"),
     real("audit_gap", "1", "|loss_j - dissipated_j| / loss_j; null where nothing was lost").or_null(),
-    real("absorption_share", "1", "Energy exchanged where contacts meet and part (cover, uncover, merge and split events), the sum of the magnitudes of the four totals, over the dissipated energy Θ; null where Θ = 0").or_null(),
+    real("absorption_share", "1", "Part of the dissipated energy Θ from contacts that meet and part: |cover + uncover| + |merge + split| of the energies of these events, over Θ; null where Θ = 0").or_null(),
     real("loss_uncertainty", "1", "Numerical resolution of Θ, 1e-7 of the largest work along the loop, over Θ; null where Θ = 0").or_null(),
     count("summit_count", "Asperities of the surface"),
     real("summit_density_1_m2", "1/m^2", "Asperities per area"),
@@ -186,7 +186,7 @@ const VALIDITY: &[&[Column]] = &[
         "absorption_share",
         "max",
         "Largest",
-        "energy of cover, uncover, merge and split events over the dissipated energy",
+        "net energy of cover and uncover, and of merge and split events, over the dissipated energy",
         ""
     ),
     mean_and_worst!("loss_uncertainty", "max", "Largest", "numerical resolution of the dissipated energy over the dissipated energy", ""),

@@ -13,8 +13,8 @@ pub const CAUTIONS: [(&str, &str); 14] = [
     ("audit", "the loop's work and the sum over its events differ by more than 1 % in a realization"),
     (
         "absorption",
-        "energy balance of coalescence: contacts that meet and part (cover, uncover, merge, split events) exchange more than 10 % of the dissipated energy in \
-         a realization; that part of Θ is an artefact of the coalescence rule",
+        "absorption and release: contacts that meet and part (cover, uncover, merge, split events) make up more than 10 % of the dissipated energy in a \
+         realization; that part of Θ is an artefact of the coalescence rule",
     ),
     (
         "unresolved",

@@ -78,17 +78,19 @@ fn parts(lost: &Lost, input: &CycleInput) -> Given {
     branches.into_iter().chain(kinds).flat_map(both).collect()
 }
 
-/// Kinds of events in which contacts meet and part.
-const COALESCENCE: [&str; 4] = ["cover", "uncover", "merge", "split"];
+/// Kinds of events in which contacts meet and part: of each pair the second undoes the first, and gives back what it took.
+const COALESCENCE: [[&str; 2]; 2] = [["cover", "uncover"], ["merge", "split"]];
 
-/// Energy exchanged where contacts meet and part, over the dissipated energy; nothing where that is zero.
+/// Part of the dissipated energy from contacts that meet and part; nothing where that energy is zero.
 fn absorption_share(lost: &Lost, results: &Given) -> Option<f64> {
     let loss = results.iter().find_map(|(name, value)| match value {
         Value::Real(loss) if name == "loss_j" => Some(*loss),
         _ => None,
     })?;
-    let exchanged = EVENT_KINDS.iter().zip(lost.kinds).filter(|(kind, _)| COALESCENCE.contains(kind));
-    (loss != 0.0).then(|| exchanged.map(|(_, energy)| energy.abs()).sum::<f64>() / loss.abs())
+    let of = |pair: &[&str; 2]| {
+        EVENT_KINDS.iter().zip(lost.kinds).filter(|(kind, _)| pair.contains(kind)).map(|(_, energy)| energy).sum::<f64>()
+    };
+    (loss != 0.0).then(|| COALESCENCE.iter().map(|pair| of(pair).abs()).sum::<f64>() / loss.abs())
 }
 
 /// What the asperities that touched lose by themselves, over the scale of energies.
