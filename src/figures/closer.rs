@@ -7,8 +7,9 @@ use super::map::map;
 use super::panels::Panel;
 use super::plot::{Curve, Stroke, XyPlot, plot_xy};
 use super::style::{LOADING, THEORY, UNLOADING, curve, entry, shade};
-use crate::stats::{counted, significant};
+use crate::stats::significant;
 use crate::store::Frame;
+use crate::text::counted;
 use ndarray::ArrayView2;
 use std::collections::BTreeMap;
 

@@ -2,7 +2,8 @@
 
 use super::closer::{Closer, Kept};
 use super::{FigureError, markup};
-use crate::stats::{counted, significant};
+use crate::stats::significant;
+use crate::text::counted;
 use ndarray::ArrayView2;
 use std::fmt::Write as _;
 

@@ -120,7 +120,9 @@ pub(super) fn usage(html: &mut String) {
          <pre>import polars as pl          # or pandas: pd.read_parquet, or DuckDB: SELECT * FROM 'statistics/cases.parquet'\n\
          cases = pl.read_parquet(\"statistics/cases.parquet\")\n\
          print(cases.select(\"case_id\", \"max_load\", \"loss_mean\", \"loss_ci95_low\", \"loss_ci95_high\"))\n\
-         steps = pl.read_parquet(\"cycles/*/steps.parquet\", include_file_paths=\"file\")   # all cycles, step by step</pre>\n<p>In R:</p>\n\
+         # all events of the run with the parameters of their case\n\
+         cycles = pl.scan_parquet(\"statistics/cycles.parquet\").drop(\"case_id\", \"realization\")\n\
+         events = pl.scan_parquet(\"cycles/*/events.parquet\").join(cycles, on=\"cycle_id\").collect()</pre>\n<p>In R:</p>\n\
          <pre>library(arrow)\ncases &lt;- read_parquet(\"statistics/cases.parquet\")\nplot(cases$area_at_max_load_mean, cases$loss_mean)</pre>\n\
          <h2>How to cite</h2>\n<p>Computed with hysteron {} (Rust; MIT OR Apache-2.0). The model is that of G. Violano and L. Afferrante, \
          “Roughness-induced adhesive hysteresis in self-affine fractal surfaces”, Lubricants 9(1):7, 2021, with its slips corrected as the README of hysteron \

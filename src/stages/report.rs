@@ -11,9 +11,10 @@ use super::{StageError, Tally, Watch};
 use crate::campaign::{Campaign, REPORT_PAGE, STATISTICS, Stage, Standing, Unit};
 use crate::figures::{Panel, Tables, panels, pdf, png, table};
 use crate::schema;
-use crate::stats::{counted, summary};
+use crate::stats::summary;
 use crate::store::commit::Written;
 use crate::store::{Check, commit, parquet};
+use crate::text::counted;
 use std::fmt::Write as _;
 use std::path::Path;
 

@@ -55,9 +55,3 @@ pub fn labels_with_unit(column: &str, values: &[f64]) -> Vec<String> {
     let scaled: Vec<f64> = values.iter().map(|value| value / 10f64.powi(power)).collect();
     labels(&scaled).into_iter().map(|text| format!("{text} {prefix}{unit}")).collect()
 }
-
-/// A count with its noun in the right number: `1 spot`, `2 spots`.
-#[must_use]
-pub fn counted(count: usize, noun: &str) -> String {
-    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
-}

@@ -27,7 +27,7 @@ pub use cases::cases;
 pub use cautions::{CAUTIONS, LIMITS, Limit};
 pub use compare::{Difference, Group, Matched, Side, comparison, difference_of, matched, singles, together};
 pub use curves::curves;
-pub use digits::{counted, labels, significant};
+pub use digits::{labels, significant};
 pub use listed::{Listed, Listing, listing, listing_of, sweeps};
 pub use planned::{Planned, planned};
 pub use realizations::{realizations, results};

@@ -1,7 +1,8 @@
 //! Numbers and names in tables that people read.
 
-use hysteron::stats::{CaseInput, cases, counted, labels, realizations, significant, summary};
+use hysteron::stats::{CaseInput, cases, labels, realizations, significant, summary};
 use hysteron::store::Frame;
+use hysteron::text::counted;
 
 use crate::panels::replaced;
 use crate::steps::{case, cycle, realistic};
