@@ -3,7 +3,10 @@
 mod interrupt;
 mod limits;
 mod progress;
+mod reference;
 mod verbs;
+
+pub use reference::{GUIDE, generated};
 
 use crate::campaign::Shard;
 use clap::{Args, Parser, Subcommand};
@@ -143,9 +146,14 @@ enum Verb {
         #[command(subcommand)]
         what: ExportVerb,
     },
-    /// Print the tables and columns that the program writes
+    /// Print the schemas of the tables and of the spec
+    ///
+    /// Without FILE, all JSON schemas are printed. reference_spec.md and reference_cli.md are the reference pages of the guide.
     Schema {
-        /// Write schemas/*.json into the present folder instead
+        /// Print this file only, such as spec.v1.json or reference_spec.md
+        #[arg(conflicts_with = "write")]
+        file: Option<String>,
+        /// Write schemas/ below the current directory, and the pages of src/guide if it exists
         #[arg(long)]
         write: bool,
     },

@@ -12,6 +12,7 @@ pub mod engines;
 #[cfg(feature = "stats")]
 pub mod figures;
 pub mod formats;
+pub mod guide;
 pub mod keys;
 pub mod lengths;
 pub mod model;

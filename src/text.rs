@@ -9,6 +9,45 @@ pub fn counted(count: usize, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }
 
+/// Columns of a line of Markdown.
+const COLUMNS: usize = 100;
+
+/// A paragraph of Markdown in lines of at most 100 columns; lines after the first begin with `indent`.
+#[must_use]
+pub fn paragraph(text: &str, indent: &str) -> String {
+    let mut filled = String::new();
+    let mut column = 0;
+    for word in text.split_whitespace() {
+        let width = word.chars().count();
+        if column > 0 && column + 1 + width > COLUMNS {
+            filled.push('\n');
+            filled.push_str(indent);
+            column = indent.chars().count();
+        } else if column > 0 {
+            filled.push(' ');
+            column += 1;
+        }
+        filled.push_str(word);
+        column += width;
+    }
+    filled
+}
+
+/// Plain text as Markdown: outside of code spans, characters of links, tags and emphasis are escaped.
+#[must_use]
+pub fn markdown(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    let mut in_code = false;
+    for c in text.chars() {
+        in_code ^= c == '`';
+        if !in_code && "[]<>*|".contains(c) {
+            escaped.push('\\');
+        }
+        escaped.push(c);
+    }
+    escaped
+}
+
 /// A name on one line: control characters and marks that reorder text are written as escapes.
 #[must_use]
 pub fn visible(name: &str) -> String {

@@ -13,7 +13,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 /// Exit code of the contract.
-const INTERRUPTED: i32 = 130;
+const INTERRUPTED: i32 = super::reference::INTERRUPTED as i32;
 
 /// How long an interrupt waits for files that are being written; a read or write that is stuck (a dead network disk) takes for ever.
 const PATIENCE: Duration = Duration::from_secs(5);

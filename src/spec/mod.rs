@@ -6,10 +6,12 @@
 mod fault;
 mod files;
 mod grid;
+mod json_schema;
 mod keys;
 mod nearest;
 mod number;
 mod realizations;
+mod reference;
 mod sweep;
 mod top;
 mod value;
@@ -27,8 +29,10 @@ use crate::model::{
 };
 
 pub use fault::{Fault, Place, SpecErrors};
+pub use json_schema::{SCHEMA_FILE, json_schema};
 pub use keys::MEASURED;
 pub use realizations::{Realizations, Until};
+pub use reference::reference;
 pub use write::quoted;
 
 /// The greatest number of cases that one spec may make.

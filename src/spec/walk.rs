@@ -10,7 +10,7 @@ use super::fault::Faults;
 use super::files::files;
 use super::keys::{KEYS, TABLES, find, names};
 use super::nearest::nearest;
-use super::realizations::{Realizations, realizations};
+use super::realizations::{DEFAULT, Realizations, realizations};
 use super::sweep::{SweepDraft, sweeps};
 use super::{CaseParams, top, value};
 
@@ -71,8 +71,8 @@ pub(super) fn document(text: &str, faults: &mut Faults<'_>) -> Option<Draft> {
     }
     let mut draft = Draft {
         name: None,
-        seed: 2021,
-        realizations: Realizations::Exactly(6),
+        seed: top::DEFAULT_SEED,
+        realizations: Realizations::Exactly(DEFAULT),
         realizations_at: None,
         base: CaseParams::default(),
         origins: vec![Origin::Default; KEYS.len()],

@@ -12,6 +12,8 @@ mod extremes;
 #[cfg(feature = "stats")]
 mod figures;
 #[cfg(feature = "stats")]
+mod guide;
+#[cfg(feature = "stats")]
 mod keys;
 #[cfg(feature = "stats")]
 mod labels;

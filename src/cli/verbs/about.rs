@@ -1,7 +1,8 @@
-//! The program about itself: manual pages, and what shells complete it with.
+//! The program about itself: schemas, manual pages, shell completions.
 
 use super::{Fault, failed, make_folder, say};
-use crate::cli::Arguments;
+use crate::cli::{Arguments, GUIDE, generated};
+use crate::store::commit;
 use crate::text::shown;
 use clap::CommandFactory;
 use clap_complete::Shell;
@@ -11,6 +12,30 @@ pub(super) fn completions(shell: Shell) -> Result<u8, Fault> {
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut Arguments::command(), "hysteron", &mut script);
     say(&String::from_utf8_lossy(&script))?;
+    Ok(0)
+}
+
+/// Prints the schemas or one generated file, or writes all of them.
+pub(super) fn schemas(file: Option<&str>, write: bool) -> Result<u8, Fault> {
+    let files = generated();
+    if write {
+        // Only a clone has pages to renew.
+        let is_kept = |path: &Path| !path.starts_with(GUIDE) || Path::new(GUIDE).is_dir();
+        for (path, content) in files.iter().filter(|(path, _)| is_kept(path)) {
+            make_folder(path.parent().unwrap_or(path))?;
+            commit::commit_bytes("write a schema", path, content.as_bytes()).map_err(failed)?;
+        }
+        return Ok(0);
+    }
+    let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let chosen = |path: &Path| file.map_or_else(|| path.extension().is_some_and(|end| end == "json"), |file| name(path) == file);
+    let chosen: Vec<_> = files.iter().filter(|(path, _)| chosen(path)).map(|(_, content)| content.as_str()).collect();
+    if chosen.is_empty() {
+        let names: Vec<String> = files.iter().map(|(path, _)| name(path)).collect();
+        return Err(failed(format!("unknown file {}\nhelp: one of {}", file.unwrap_or_default(), names.join(", "))));
+    }
+    // A single file is printed with its own bytes.
+    say(&if file.is_some() { chosen.concat() } else { chosen.iter().map(|content| format!("{content}\n")).collect() })?;
     Ok(0)
 }
 

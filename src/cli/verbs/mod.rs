@@ -9,21 +9,15 @@ mod survey;
 mod work;
 
 use super::limits;
+use super::reference::{BAD_SPEC, FAILED, FAILED_CASES};
 use super::{CampaignArguments, EngineArgument, ExportVerb, JobsArguments, OutputArguments, StageArgument, Verb};
 use crate::campaign::{Campaign, Stage};
-use crate::schema;
 use crate::spec::Spec;
 use crate::stages;
-use crate::store::commit;
 use crate::text::{counted, printable, shell_path, shown};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-
-/// Exit codes of the contract.
-const FAILED: u8 = 1;
-const BAD_SPEC: u8 = 2;
-const FAILED_CASES: u8 = 3;
 
 /// What went wrong, with the exit code that says it.
 struct Fault {
@@ -92,7 +86,7 @@ fn performed(verb: &Verb) -> Result<u8, Fault> {
         Verb::Export { what: ExportVerb::Netcdf(asked) } => measured::export(asked, &measured::Layout::NetCdf),
         Verb::Export { what: ExportVerb::Tamaas(asked) } => measured::export(asked, &measured::Layout::Tamaas),
         Verb::Import(asked) => measured::import(asked),
-        Verb::Schema { write } => schemas(*write),
+        Verb::Schema { file, write } => about::schemas(file.as_deref(), *write),
         Verb::Completions { shell } => about::completions(*shell),
         Verb::Man { verb, dir } => about::man(verb.as_deref(), dir.as_deref()),
     }
@@ -176,20 +170,4 @@ fn open_dir(action: &str, dir: &Path) -> Result<Campaign, Fault> {
         return Err(failed(format!("cannot {action} {dir}: it has no campaign.toml; allowed: the output folder of a run")));
     }
     open(&path, &OutputArguments { out: Some(dir.to_owned()), json: false })
-}
-
-fn schemas(write: bool) -> Result<u8, Fault> {
-    let folder = Path::new(schema::DIRECTORY);
-    if write {
-        make_folder(folder)?;
-    }
-    for file in schema::files() {
-        if write {
-            commit::commit_bytes("write a schema", &folder.join(&file.name), file.content.as_bytes()).map_err(failed)?;
-        } else if file.name.ends_with(".json") {
-            say(&file.content)?;
-            say("\n")?;
-        }
-    }
-    Ok(0)
 }
