@@ -39,19 +39,19 @@ fn guide(folder: &Path) -> std::io::Result<()> {
 
 fn linked(page: &str, above: &str) -> String {
     let mut parts = page.split("](");
-    let mut linked = parts.next().unwrap_or_default().to_owned();
-    for part in parts {
-        linked.push_str("](");
-        match part.split_once(')').and_then(|(target, rest)| Some((target.split_once(".md")?, rest))) {
-            Some((("../../schemas/README", anchor), rest)) => linked.push_str(&format!("{above}tables/index.html{anchor}){rest}")),
-            Some((("index", anchor), rest)) => linked.push_str(&format!("{above}index.html{anchor}){rest}")),
-            Some(((module, anchor), rest)) if !module.contains(['/', ':']) => {
-                linked.push_str(&format!("{above}{module}/index.html{anchor}){rest}"))
-            }
-            _ => linked.push_str(part),
-        }
+    let first = parts.next().unwrap_or_default().to_owned();
+    parts.fold(first, |linked, part| linked + "](" + &to_module(part, above))
+}
+
+/// The text after the beginning of a link's target.
+fn to_module(part: &str, above: &str) -> String {
+    let Some((target, rest)) = part.split_once(')') else { return part.to_owned() };
+    match target.split_once(".md") {
+        Some(("../../schemas/README", anchor)) => format!("{above}tables/index.html{anchor}){rest}"),
+        Some(("index", anchor)) => format!("{above}index.html{anchor}){rest}"),
+        Some((page, anchor)) if !page.contains(['/', ':']) => format!("{above}{page}/index.html{anchor}){rest}"),
+        _ => part.to_owned(),
     }
-    linked
 }
 
 /// The commit of this checkout, with a plus where files have been changed since; that of a released package; or none.

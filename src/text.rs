@@ -12,18 +12,19 @@ pub fn counted(count: usize, noun: &str) -> String {
 /// Columns of a line of Markdown.
 const COLUMNS: usize = 100;
 
-/// A paragraph of Markdown in lines of at most 100 columns; lines after the first begin with `indent`.
+/// A paragraph of Markdown in lines of at most 100 columns, or an entry of a list if `marker` is that of one.
 #[must_use]
-pub fn paragraph(text: &str, indent: &str) -> String {
-    let mut filled = String::new();
-    let mut column = 0;
+pub fn paragraph(marker: &str, text: &str) -> String {
+    let indent = marker.chars().count();
+    let mut filled = marker.to_owned();
+    let mut column = indent;
     for word in text.split_whitespace() {
         let width = word.chars().count();
-        if column > 0 && column + 1 + width > COLUMNS {
+        if column > indent && column + 1 + width > COLUMNS {
             filled.push('\n');
-            filled.push_str(indent);
-            column = indent.chars().count();
-        } else if column > 0 {
+            filled.extend(std::iter::repeat_n(' ', indent));
+            column = indent;
+        } else if column > indent {
             filled.push(' ');
             column += 1;
         }

@@ -97,7 +97,7 @@ fn entry(argument: &Arg) -> String {
     let spelling = [short, long].into_iter().flatten().collect::<Vec<_>>().join(", ");
     let spelling = [spelling, if takes_value { names } else { String::new() }].join(" ");
     let help = argument.get_long_help().or(argument.get_help()).map(ToString::to_string).unwrap_or_default();
-    let mut text = format!("- `{}`: {}", spelling.trim(), sentence(&help));
+    let mut text = format!("`{}`: {}", spelling.trim(), sentence(&help));
     let values: Vec<String> = argument.get_possible_values().iter().map(|value| format!("`{}`", value.get_name())).collect();
     if takes_value && !values.is_empty() {
         text += &format!(" Values: {}.", values.join(", "));
@@ -106,11 +106,11 @@ fn entry(argument: &Arg) -> String {
     if takes_value && !defaults.is_empty() {
         text += &format!(" Default: {}.", defaults.join(", "));
     }
-    format!("{}\n", paragraph(&text, "  "))
+    format!("{}\n", paragraph("- ", &text))
 }
 
 /// A text of the command line as a paragraph that ends with a full stop.
 fn sentence(text: &str) -> String {
-    let text = paragraph(&markdown(text.trim()), "");
+    let text = paragraph("", &markdown(text));
     if text.is_empty() || text.ends_with('.') { text } else { text + "." }
 }

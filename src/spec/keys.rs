@@ -185,7 +185,7 @@ pub(super) static KEYS: &[Key] = &[
     key!(model.as_printed, "", "Errata of the paper that are restored: equations used as printed."; Kind::Words(Slip::MEANINGS),
         |slips: &Vec<Slip>| Value::Words(slips.iter().map(|slip| slip.word()).collect()),
         Words(w) => w.iter().map(|word| Slip::from_word(word)).collect::<Option<Vec<_>>>()),
-    key!(model.allow_low_tabor, "", "If true, a Tabor parameter below 2 gives a warning. If false, the cycle fails."; flag),
+    key!(model.allow_low_tabor, "", "With `jump_in = \"wu\"`, a Tabor parameter below 2 is an error. If true, it is a warning."; flag),
     key!(cycle.max_load, "F_max/(E* A0)", "Load reversals. One loading path passes all of them, and one unloading path starts at each."; Kind::Numbers(Limits {
         low: 0.0, above: true, high: 0.2, unit: "", unit_name: "", slip: None,
         note: "max_load is F/(E* A0), without unit: 0.004 to 0.015 is usual, and contact is nearly full from 0.07 on",

@@ -63,7 +63,7 @@ pub fn reference() -> String {
     for name in TABLES {
         page += &section(name);
     }
-    let cases = paragraph(&format!("- The sweeps of a spec make at most {MAX_CASES} cases."), "  ");
+    let cases = paragraph("- ", &format!("The sweeps of a spec make at most {MAX_CASES} cases."));
     page + SWEEP + &cases + "\n" + FILES
 }
 
@@ -71,7 +71,7 @@ pub fn reference() -> String {
 fn top() -> String {
     let seed = i64::MAX;
     let (least, most) = DEFAULT_BOUNDS;
-    let goals: String = Goal::MEANINGS.iter().map(|choice| entry(choice, "  ")).collect();
+    let goals: String = Goal::MEANINGS.iter().map(entry).collect();
     let text = format!(
         "
 ## Top level
@@ -118,25 +118,24 @@ fn section(table: &str) -> String {
             Kind::Length(_) => format!(" Units: {LENGTHS}."),
             _ => String::new(),
         };
-        section += &paragraph(&format!("- `{}`: {}{more}", key.name, key.meaning), "  ");
+        section += &paragraph("- ", &format!("`{}`: {}{more}", key.name, key.meaning));
         section.push('\n');
         if let Kind::Word(choice) | Kind::Words(choice) = &key.kind {
-            section.extend(choice.iter().map(|choice| entry(choice, "  ")));
+            section.extend(choice.iter().map(entry));
         }
     }
     if table == "surface" {
         let names: Vec<String> = MEASURED.iter().map(|name| format!("`{name}`")).collect();
         section.push('\n');
-        section += &paragraph(&format!("Keys of a measured surface: {}.", names.join(", ")), "");
+        section += &paragraph("", &format!("Keys of a measured surface: {}.", names.join(", ")));
         section.push('\n');
     }
     section
 }
 
-/// One word of a choice as an entry of a list.
-fn entry((word, meaning): &(&str, &str), indent: &str) -> String {
-    let entry = paragraph(&format!("- `\"{word}\"`: {}", meaning.trim()), "    ");
-    format!("{indent}{entry}\n")
+/// One word of a choice as an entry of an inner list.
+fn entry((word, meaning): &(&str, &str)) -> String {
+    paragraph("  - ", &format!("`\"{word}\"`: {meaning}")) + "\n"
 }
 
 /// Type, unit and range.

@@ -92,7 +92,8 @@ fn is_accepted(words: &[String], of_text: bool, page: &Page) {
     let Err(error) = Arguments::try_parse_from(words) else { return };
     let kind = error.kind();
     let shown = matches!(kind, ErrorKind::DisplayHelp | ErrorKind::DisplayVersion);
-    assert!(shown || (of_text && kind == ErrorKind::MissingRequiredArgument), "{}: {}: {error}", page.name, words.join(" "));
+    let part = [ErrorKind::MissingRequiredArgument, ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand].contains(&kind);
+    assert!(shown || (of_text && part), "{}: {}: {error}", page.name, words.join(" "));
 }
 
 #[test]
