@@ -2,6 +2,8 @@
 //!
 //! One direction, no way back: `model` and `schema` know nothing; `physics` opens no file; `store` computes nothing; `stages` alone joins them;
 //! `stats` and `figures` read only tables.
+//!
+//! The documentation for users is the [`guide`].
 
 #[cfg(feature = "stats")]
 pub mod campaign;

@@ -4,15 +4,18 @@ mod blocks;
 mod snippets;
 
 use std::collections::BTreeSet;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use clap::Parser;
 use clap::error::ErrorKind;
+use hysteron::campaign::Campaign;
 use hysteron::cli::{Arguments, generated};
 use hysteron::schema::TABLES;
-use hysteron::spec::{CaseParams, Spec};
+use hysteron::spec::{CaseParams, Spec, reference};
 use serde_json::{Value, json};
 
+use crate::bench::{code, stderr, stdout};
 use crate::spec::schema::{root, valid};
 use blocks::{Page, pages};
 
@@ -157,6 +160,66 @@ fn e2e_columns_of_the_guide_exist() {
         }
     }
     assert!(count >= 50, "{count}");
+}
+
+#[test]
+fn law_the_stage_of_a_key_reads_it() {
+    let spec = |text: &str| Spec::parse(text, "x.toml").unwrap_or_else(|errors| panic!("{errors}"));
+    let digest = "0".repeat(64);
+    let measured = format!("name = \"x\"\nsurface.file = \"a.h5\"\nmodel.boundary = \"isolated\"\nfiles = {{ \"a.h5\" = \"{digest}\" }}");
+    let campaigns = ["name = \"x\"", &measured].map(|text| Campaign::new(spec(text), PathBuf::from("x")));
+    let preimages = campaigns.map(|campaign| campaign.cycle_preimages(&campaign.cycles[0]));
+    let page = reference();
+    for path in keys() {
+        let row = page.lines().find(|line| line.starts_with(&format!("| `{path}` |"))).unwrap();
+        let stage = row.trim_end_matches(" |").rsplit(" | ").next().unwrap();
+        // Of a file, its content is read.
+        let pointer =
+            if path == "surface.file" { "/reads/surface/blake3".to_owned() } else { format!("/reads/{}", path.replace('.', "/")) };
+        assert!(preimages.iter().any(|stages| stages[stage].pointer(&pointer).is_some()), "{path} is not read by {stage}");
+    }
+}
+
+#[test]
+fn e2e_schema_prints_one_file_and_writes_schemas_only() {
+    let folder = tempfile::TempDir::new().unwrap();
+    let schema = |arguments: &[&str]| {
+        Command::new(env!("CARGO_BIN_EXE_hysteron")).arg("schema").args(arguments).current_dir(folder.path()).output().unwrap()
+    };
+    for (path, content) in generated() {
+        let name = path.file_name().unwrap().to_str().unwrap();
+        assert_eq!(stdout(&schema(&[name])), content, "{name}");
+    }
+    let unknown = schema(&["spec.json"]);
+    assert_eq!(code(&unknown), 1);
+    assert!(stderr(&unknown).starts_with("error: unknown file spec.json\nhelp: one of asperities.v1.json, "), "{}", stderr(&unknown));
+    assert_eq!(code(&schema(&["--write"])), 0);
+    assert!(folder.path().join("schemas/spec.v1.json").is_file() && !folder.path().join("src").exists());
+    // The standard output is a sequence of JSON values, the last one the schema of specs.
+    let all = stdout(&schema(&[]));
+    let values: Vec<Value> = serde_json::Deserializer::from_str(&all).into_iter().map(Result::unwrap).collect();
+    assert_eq!(values.len(), TABLES.len() + 1);
+    assert_eq!(values.last(), Some(&root()));
+}
+
+/// The pages as the build script hands them to rustdoc.
+#[test]
+fn e2e_links_between_modules_lead_to_modules() {
+    let folder = Path::new(env!("OUT_DIR")).join("guide");
+    let modules = include_str!("../../src/guide.rs");
+    let mut count = 0;
+    for page in pages().iter().filter(|page| page.is_of_guide()) {
+        let above = if page.name == "index.md" { "" } else { "../" };
+        for link in Page::read(&folder.join(&page.name), &folder).links.iter().filter(|link| !link.contains("://")) {
+            let file = link.split('#').next().unwrap();
+            let module = file.strip_prefix(above).and_then(|rest| rest.strip_suffix("index.html"));
+            let is_module =
+                module.is_some_and(|name| name.is_empty() || modules.contains(&format!("    {},\n", name.trim_end_matches('/'))));
+            assert!(is_module || file.is_empty(), "{}: {link}", page.name);
+            count += 1;
+        }
+    }
+    assert!(count >= 60, "{count}");
 }
 
 #[test]
