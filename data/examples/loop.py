@@ -39,10 +39,14 @@ left.plot(unloading["penetration"], 1e3 * unloading["load"], "-", color="#D55E00
 lowest = unloading["load"].arg_min()
 pull_off = (unloading["penetration"][lowest], 1e3 * unloading["load"][lowest])
 left.plot(*pull_off, "o", color="black", ms=4)
-left.annotate("pull-off force $F_{po}$", pull_off, xytext=(6, -9), textcoords="offset points")
-left.annotate("dissipated energy Θ", (0.5, 0.55), xycoords="axes fraction", ha="center", xytext=(0, -42), textcoords="offset points")
+left.annotate("pull-off force $F_{po}$", pull_off, xytext=(4, -11), textcoords="offset points")
+middle = int(0.65 * len(loading))
+inside = (loading["penetration"][middle], 1e3 * (loading["load"][middle] - 0.1 * loading["load"][-1]))
+arrow = {"arrowstyle": "->", "lw": 0.7}
+left.annotate("dissipated energy Θ", inside, xytext=(0.3, 0.6), textcoords="axes fraction", ha="center", arrowprops=arrow)
 left.axhline(0, color="0.6", lw=0.6)
 left.set(xlabel=r"mean penetration $\Delta/h_{rms}$", ylabel=r"load $F/(E^* A_0)$ [$10^{-3}$]")
+left.margins(y=0.1)
 left.legend(frameon=False, loc="upper left")
 
 with h5py.File(run / "surfaces" / f"{case['surface_id']}.h5") as file:
