@@ -210,7 +210,7 @@ fn e2e_links_between_modules_lead_to_modules() {
     let mut count = 0;
     for page in pages().iter().filter(|page| page.is_of_guide()) {
         let above = if page.name == "index.md" { "" } else { "../" };
-        for link in Page::read(&folder.join(&page.name), &folder).links.iter().filter(|link| !link.contains("://")) {
+        for link in Page::read(&folder.join(&page.name)).links.iter().filter(|link| !link.contains("://")) {
             let file = link.split('#').next().unwrap();
             let module = file.strip_prefix(above).and_then(|rest| rest.strip_suffix("index.html"));
             let is_module =
@@ -229,10 +229,10 @@ fn e2e_links_of_the_guide_lead_somewhere() {
         for link in page.links.iter().filter(|link| !link.contains("://")) {
             count += 1;
             let (file, anchor) = link.split_once('#').unwrap_or((link, ""));
-            let target = if file.is_empty() { page.path.clone() } else { page.folder.join(file) };
+            let target = if file.is_empty() { page.path.clone() } else { page.path.with_file_name(file) };
             assert!(target.exists(), "{}: {link}: there is no such file", page.name);
             if !anchor.is_empty() {
-                let headings = Page::read(&target, &page.folder).headings;
+                let headings = Page::read(&target).headings;
                 assert!(headings.iter().any(|heading| heading == anchor), "{}: {link}: no such heading among {headings:?}", page.name);
             }
         }

@@ -12,8 +12,6 @@ pub struct Block {
 pub struct Page {
     pub name: String,
     pub path: PathBuf,
-    /// The folder that its links start from.
-    pub folder: PathBuf,
     pub blocks: Vec<Block>,
     /// Code in the text.
     pub spans: Vec<String>,
@@ -30,14 +28,11 @@ pub fn pages() -> Vec<Page> {
     let mut paths: Vec<PathBuf> = std::fs::read_dir(&guide).unwrap().map(|entry| entry.unwrap().path()).collect();
     paths.push(root.join("README.md"));
     paths.sort();
-    // A draft of the README has the links of the README.
-    let folder =
-        |path: &Path| if path.file_name().unwrap().to_str().unwrap().starts_with("README") { root.to_owned() } else { guide.clone() };
-    paths.iter().map(|path| Page::read(path, &folder(path))).collect()
+    paths.iter().map(|path| Page::read(path)).collect()
 }
 
 impl Page {
-    pub fn read(path: &Path, folder: &Path) -> Self {
+    pub fn read(path: &Path) -> Self {
         let text = std::fs::read_to_string(path).unwrap().replace("\r\n", "\n");
         let (blocks, prose) = split(&text);
         let name = path.file_name().unwrap().to_str().unwrap().to_owned();
@@ -48,12 +43,12 @@ impl Page {
         }
         let links = prose.split("](").skip(1).filter_map(|rest| rest.split_once(')')).map(|(link, _)| link.to_owned()).collect();
         let headings = prose.lines().filter(|line| line.starts_with('#')).map(slug).collect();
-        Self { columns: columns(&prose), name, path: path.to_owned(), folder: folder.to_owned(), blocks, spans, links, headings }
+        Self { columns: columns(&prose), name, path: path.to_owned(), blocks, spans, links, headings }
     }
 
     /// Whether it is a page of the guide.
     pub fn is_of_guide(&self) -> bool {
-        self.path.parent().unwrap().ends_with("src/guide") && !self.name.starts_with("README")
+        self.path.parent().unwrap().ends_with("src/guide")
     }
 
     /// The blocks of a language.
