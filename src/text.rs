@@ -9,6 +9,23 @@ pub fn counted(count: usize, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }
 
+/// A paragraph as lines of at most 80 columns; the second and later ones begin with `indent`.
+#[must_use]
+pub fn wrapped(paragraph: &str, indent: &str) -> String {
+    let mut lines: Vec<String> = Vec::new();
+    for word in paragraph.split(' ') {
+        let start = if lines.is_empty() { "" } else { indent };
+        match lines.last_mut().filter(|line| line.chars().count() + 1 + word.chars().count() <= 80) {
+            Some(line) => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            None => lines.push(format!("{start}{word}")),
+        }
+    }
+    lines.join("\n") + "\n"
+}
+
 /// A name on one line: control characters and marks that reorder text are written as escapes.
 #[must_use]
 pub fn visible(name: &str) -> String {
