@@ -42,9 +42,6 @@ impl<'a> Ended<'a> {
             let cases = parquet::read_table(&self.campaign.statistics_path("cases"), &schema::CASES).map_err(failed)?;
             text += &summary(&cases).map_err(failed)?;
             text += "\n";
-            if until == Stage::Report && cases.text("caution").map_err(failed)?.iter().any(|words| !words.is_empty()) {
-                text += "         The report has limits and consequences of all warnings.\n";
-            }
         }
         for (stage, t) in self.tallies.iter().filter(|_| !self.is_idle()) {
             let lost = if t.failed > 0 { format!(", {} failed", t.failed) } else { String::new() };

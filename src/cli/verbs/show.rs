@@ -6,7 +6,7 @@ use crate::campaign::{Campaign, CaseUnit, CycleUnit, REPORT_PAGE, STATISTICS, St
 use crate::cli::FolderArguments;
 use crate::schema::{self, Table};
 use crate::spec::CaseParams;
-use crate::stats::{CAUTIONS, significant};
+use crate::stats::{significant, warnings_of};
 use crate::store::{Check, ColumnData, Found, Frame, Kept, parquet, read_receipt};
 use crate::text::{shell_path, shown, visible, wrapped};
 use indicatif::HumanBytes;
@@ -68,34 +68,38 @@ fn of_case(campaign: &Campaign, place: usize, case: &CaseUnit) -> Result<Shown, 
     let tasks: Vec<(String, String)> =
         cycles.map(|cycle| (cycle.id.clone(), state(&campaign.cycle_standing(cycle, Check::Sizes)))).collect();
     let done = tasks.iter().filter(|(_, state)| state == Standing::Done.word()).count();
-    let results = rows(campaign, &schema::CASES, "case_id", &case.id)?;
-    let mut warnings: Vec<&str> =
-        results.iter().filter_map(|row| row.get("caution")?.as_str()).flat_map(|words| words.split('+')).collect();
-    warnings.sort_unstable();
-    warnings.dedup();
-    let carried = CAUTIONS.iter().filter(|(word, _)| warnings.contains(word)).map(|(word, text)| format!("{word}: {text}"));
+    let mut found = Shown::default();
+    if let Some(frame) = table(campaign, &schema::CASES)? {
+        let rows = rows(&frame, "case_id", &case.id)?;
+        found.results = rows.iter().map(|row| values(&frame, *row)).collect();
+        let warnings = warnings_of(&frame, &rows).map_err(failed)?;
+        found.warnings =
+            warnings.iter().map(|warning| format!("{}: {}. {}", warning.kind.label, warning.measured, warning.kind.action)).collect();
+    }
     Ok(Shown {
         kind: "case",
         state: format!("{done} of {} cycles done; in sweep {}", tasks.len(), case.case.sweeps.join(", ")),
         parameters: parameters(&case.case.params),
-        warnings: carried.collect(),
-        results,
         tasks,
-        files: Vec::new(),
+        ..found
     })
 }
 
 fn of_cycle(campaign: &Campaign, unit: &CycleUnit) -> Result<Shown, Fault> {
     let standing = campaign.cycle_standing(unit, Check::Sizes);
     let (case, surface) = (&campaign.cases[unit.case], &campaign.surfaces[unit.surface]);
+    let mut results = Vec::new();
+    if let Some(frame) = table(campaign, &schema::REALIZATIONS)? {
+        // Cases that differ only in estimates share a cycle.
+        let cases = frame.text("case_id").map_err(failed)?;
+        let own = rows(&frame, "cycle_id", &unit.id)?.into_iter().filter(|row| cases[*row] == case.id);
+        results = own.map(|row| values(&frame, row)).collect();
+    }
     Ok(Shown {
         kind: Stage::Cycle.word(),
         state: format!("{}; case {}, surface {}", state(&standing), case.id, surface.id),
         parameters: parameters(&case.case.params),
-        results: rows(campaign, &schema::REALIZATIONS, "cycle_id", &unit.id)?
-            .into_iter()
-            .filter(|row| row.get("case_id").and_then(Value::as_str) == Some(&case.id))
-            .collect(),
+        results,
         files: files(campaign, &unit.cycle()),
         ..Shown::default()
     })
@@ -144,15 +148,17 @@ fn flatten(table: &str, values: &Value, all: &mut Map<String, Value>) {
     }
 }
 
-/// The rows of a table of statistics with this id; none if the table is not written yet.
-fn rows(campaign: &Campaign, table: &'static Table, column: &str, id: &str) -> Result<Vec<Map<String, Value>>, Fault> {
+/// A table of statistics, if it is written yet.
+fn table(campaign: &Campaign, table: &'static Table) -> Result<Option<Frame>, Fault> {
     let path = campaign.dir.join(table.file);
-    if !path.is_file() {
-        return Ok(Vec::new());
-    }
-    let frame = parquet::read_table(&path, table).map_err(failed)?;
+    let is_there = path.is_file();
+    is_there.then(|| parquet::read_table(&path, table).map_err(failed)).transpose()
+}
+
+/// The rows with an id.
+fn rows(frame: &Frame, column: &str, id: &str) -> Result<Vec<usize>, Fault> {
     let ids = frame.text(column).map_err(failed)?;
-    Ok((0..frame.row_count()).filter(|row| ids[*row] == id).map(|row| values(&frame, row)).collect())
+    Ok((0..ids.len()).filter(|row| ids[*row] == id).collect())
 }
 
 fn values(frame: &Frame, row: usize) -> Map<String, Value> {
