@@ -19,7 +19,7 @@ use std::process::ExitCode;
 
 /// Simulate adhesion hysteresis of rough surfaces (interacting JKR asperities)
 #[derive(Debug, Parser)]
-#[command(version, about, term_width = 80, help_template = help::template(), after_help = help::EXIT_CODES)]
+#[command(version, term_width = 80, next_line_help = true, help_template = help::template(), after_help = help::EXIT_CODES)]
 pub struct Arguments {
     #[command(subcommand)]
     verb: Verb,
@@ -29,8 +29,8 @@ pub struct Arguments {
 enum Verb {
     /// Print a commented spec to start from
     Init {
-        /// Which one
-        #[arg(value_enum, default_value = "quickstart")]
+        /// Template: quickstart, sweep, scan or full
+        #[arg(value_enum, default_value = "quickstart", hide_possible_values = true)]
         template: templates::Template,
         /// List the templates
         #[arg(long)]
@@ -41,8 +41,7 @@ enum Verb {
     Run {
         #[command(flatten)]
         campaign: CampaignArguments,
-        /// Last stage to run
-        #[arg(long, value_enum, value_name = "STAGE", default_value = "report")]
+        #[arg(long, value_enum, value_name = "STAGE", default_value = "report", hide_possible_values = true, help = help::UNTIL)]
         until: StageArgument,
         /// List pending tasks without running them, as `plan` does
         #[arg(long, short = 'n')]
@@ -51,7 +50,7 @@ enum Verb {
         #[arg(long)]
         open: bool,
     },
-    /// List pending tasks without running them
+    /// List pending tasks and the reasons, without running them
     Plan {
         /// Spec (TOML), or the output folder of a run
         spec: PathBuf,

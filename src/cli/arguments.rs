@@ -1,5 +1,6 @@
 //! Arguments that several commands share, and those of the larger commands.
 
+use super::help;
 use crate::campaign::Shard;
 use clap::Args;
 use std::path::PathBuf;
@@ -126,8 +127,7 @@ pub(super) struct ImportArguments {
     /// Interpolate missing points (harmonic in-fill) instead of failing
     #[arg(long)]
     pub(super) fill: bool,
-    /// Form removed by least squares [default: plane; mean if --periodic]
-    #[arg(long, value_name = "FORM", value_parser = ["mean", "plane", "quadratic"])]
+    #[arg(long, value_name = "FORM", value_parser = ["mean", "plane", "quadratic"], hide_possible_values = true, help = help::DETREND)]
     pub(super) detrend: Option<String>,
     /// The surface is periodic
     #[arg(long)]

@@ -27,6 +27,16 @@ Environment:
   HYSTERON_PROGRESS_SECONDS   seconds between progress lines if standard error
                               is not a terminal; default 30";
 
+/// `--until` of `run`.
+pub(super) const UNTIL: &str = "\
+Last stage to run:
+generate, extract, cycle, aggregate or report";
+
+/// `--detrend` of `import`.
+pub(super) const DETREND: &str = "\
+Form removed by least squares: mean, plane or quadratic
+[default: plane, or mean with --periodic]";
+
 /// The description of `import`.
 pub(super) const IMPORT: &str = "\
 Preprocess a measured surface and report its statistics

@@ -2,6 +2,7 @@
 
 mod about;
 mod care;
+mod causes;
 mod csv;
 mod ending;
 mod export;

@@ -1,5 +1,6 @@
 //! Commands that show the state of a run: `plan` and `status`. They write nothing.
 
+use super::causes::causes;
 use super::ending::failed_cases;
 use super::place::{folder, open, open_dir, resuming};
 use super::{Fault, say, submit};
@@ -24,7 +25,9 @@ pub(super) fn plan(spec: &Path, output: &OutputArguments) -> Result<u8, Fault> {
     let text = if output.json {
         format!("{:#}\n", answer(&campaign, &units))
     } else {
-        describe(&campaign, &units) + &remaining(&units, &campaign, |open| format!("`run` would compute {}.\n", counted(open, "task")))
+        let reasons = |stage: Stage, units: &[(String, Standing)]| causes(&campaign, stage, units);
+        describe(&campaign, &units, reasons)
+            + &remaining(&units, &campaign, |open| format!("`run` would compute {}.\n", counted(open, "task")))
     };
     say(&text)?;
     Ok(0)
@@ -35,8 +38,11 @@ pub(super) fn status(asked: &FolderArguments, watch: bool) -> Result<u8, Fault> 
     loop {
         let campaign = open_dir("show the state of", &dir)?;
         let units = units(&campaign);
-        let mut text =
-            if asked.json { format!("{:#}\n", queued(answer(&campaign, &units), &campaign)) } else { describe(&campaign, &units) };
+        let mut text = if asked.json {
+            format!("{:#}\n", queued(answer(&campaign, &units), &campaign))
+        } else {
+            describe(&campaign, &units, |_, _| String::new())
+        };
         if !asked.json {
             if let Some(why) = campaign.spec_fault() {
                 text += &format!("warning: {why}: the spec of this folder may differ from the one that was run\n");
@@ -128,7 +134,8 @@ fn queued(mut answer: Value, campaign: &Campaign) -> Value {
     answer
 }
 
-fn describe(campaign: &Campaign, units: &Units) -> String {
+/// The number of tasks in each state by stage, with failed and damaged ones, and further lines on the tasks of a stage.
+fn describe(campaign: &Campaign, units: &Units, further: impl Fn(Stage, &[(String, Standing)]) -> String) -> String {
     let (name, dir) = (&campaign.spec.name, shown(&campaign.dir));
     let mut text = format!("{name} in {dir}: {}, {}\n", counted(campaign.cases.len(), "case"), campaign.realizations_in_words());
     for (stage, units) in units {
@@ -144,6 +151,7 @@ fn describe(campaign: &Campaign, units: &Units) -> String {
             let verb = if matches!(standing, Standing::Failed(_)) { "failed" } else { &format!("is {}", standing.word()) };
             text += &format!("  {id} {verb}{why}\n");
         }
+        text += &further(*stage, units);
     }
     text
 }
