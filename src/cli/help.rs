@@ -20,7 +20,9 @@ Exit codes: 0 done, 1 failed, 2 invalid spec or arguments,
             3 finished with failed cases, 130 interrupted (rerun to resume)
 
 --set takes TOML values; quotes around a word may be omitted. Values that a
-[[sweep]] of the spec sets override those of --set.
+[[sweep]] of the spec sets override those of --set. A relative path in
+surface.file is looked for in the working directory, then in the folder of the
+spec.
 
 Environment:
   NO_COLOR                    if set, output is not coloured

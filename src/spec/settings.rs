@@ -62,6 +62,10 @@ fn set(text: &str, draft: &mut Draft, faults: &mut Faults<'_>) {
             faults.add(&span, format!("{OPTION} cannot set `{key}`"), help);
             return;
         }
+        if let Some(table) = TABLES.iter().find(|table| !path.contains('.') && find(table, key).is_some()) {
+            faults.add(&span, format!("{OPTION} needs the table of `{key}`"), format!("write {OPTION} {table}.{key}=VALUE"));
+            return;
+        }
         enter((key, span, written), draft, faults);
     }
     if path == "realizations" {

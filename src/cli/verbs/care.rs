@@ -80,7 +80,7 @@ pub(super) fn verify(asked: &FolderArguments, deep: bool) -> Result<u8, Fault> {
         }
         say(&listed(&audit.unreceipted, "task has results and no receipt", "tasks have results and no receipt"))?;
         say(&listed(&audit.unnamed, "file is named by no receipt", "files are named by no receipt"))?;
-        let compared = if deep { "contents" } else { "sizes (--deep compares contents)" };
+        let compared = if deep { "contents" } else { "sizes" };
         let counts = [(audit.receipt_count, "receipt"), (audit.file_count, "file")].map(|(count, noun)| counted(count, noun));
         say(&format!("{}, {}: {compared} compared, ", counts.join(", "), HumanBytes(audit.size_bytes)))?;
         say(&match faults {

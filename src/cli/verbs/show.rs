@@ -5,7 +5,7 @@ use super::{Fault, failed, say};
 use crate::campaign::{Campaign, CaseUnit, CycleUnit, REPORT_PAGE, STATISTICS, Stage, Standing, SurfaceUnit, Unit};
 use crate::cli::FolderArguments;
 use crate::schema::{self, Table};
-use crate::spec::CaseParams;
+use crate::spec::{CaseParams, MEASURED};
 use crate::stats::{significant, warnings_of};
 use crate::store::{Check, ColumnData, Found, Frame, Kept, parquet, read_receipt};
 use crate::text::{shell_path, shown, visible, wrapped};
@@ -138,6 +138,10 @@ fn parameters(params: &CaseParams) -> Map<String, Value> {
     let mut all = Map::new();
     if let Value::Object(tables) = json!(params) {
         tables.iter().for_each(|(table, values)| flatten(table, values, &mut all));
+    }
+    // A generated surface reads none of the keys of a measured one.
+    if !params.surface.is_measured() {
+        all.retain(|key, _| !MEASURED.iter().any(|name| key.strip_prefix("surface.") == Some(*name)));
     }
     all
 }

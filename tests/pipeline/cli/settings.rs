@@ -37,6 +37,7 @@ fn val_faults_of_a_setting_name_the_option() {
     told(SMALL, "surface.hurst=high", &["--> --set:1:17", "surface.hurst = \"high\""]);
     told(SMALL, "model.interaction=spot", &["did you mean \"spots\"?", "--> --set:1:"]);
     told(SMALL, "surface.hurst", &["a setting has no `=`", "--> --set:1:1", "KEY=VALUE"]);
+    told(SMALL, "hurst=0.7", &["--set needs the table of `hurst`", "write --set surface.hurst=VALUE"]);
     told(SMALL, "=1", &["a setting has no key"]);
     told(SMALL, "seed=1\nname=\"x\"", &["control character"]);
     told(SMALL, "sweep=[]", &["--set cannot set `sweep`"]);
