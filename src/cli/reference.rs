@@ -78,6 +78,9 @@ fn section(command: &Command, parent: &str, page: &mut String) {
     if !arguments.is_empty() {
         *page += &format!("\n{}", arguments.concat());
     }
+    if let Some(notes) = command.get_after_long_help().or(command.get_after_help()) {
+        *page += &format!("\n```text\n{}\n```\n", notes.to_string().trim_end());
+    }
     for inner in commands(command) {
         section(inner, &name, page);
     }

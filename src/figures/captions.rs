@@ -14,14 +14,14 @@ pub(super) fn of_sweep(letter: char, sweep: &Sweep, surfaces: &str, plot: &XyPlo
         'A' => "Real contact area A/A₀ against normal force F/(E*A₀)",
         'B' => "Pull-off force F_po/(E*A₀)",
         'C' => "Mean penetration Δ/h_rms against normal force F/(E*A₀)",
-        'D' => "Dissipated energy Θ/(E*A₀h_rms) with the estimates of Deng and Kesari",
-        _ => "Energy dissipated by the events of each branch, over E*A₀h_rms",
+        'D' => "Dissipated energy Θ/(E*A₀h_rms), with the estimates of Deng and Kesari",
+        _ => "Dissipated energy of the events of each branch, over E*A₀h_rms",
     };
     let mut parts = vec![format!("{what}{}; {surfaces}", cases(sweep))];
     if matches!(letter, 'A' | 'C') {
         parts.push("loading dashed, unloading solid".to_owned());
         if surfaces.starts_with("mean") {
-            parts.push("below zero load, averaged at equal fractions of each surface's own pull-off force".to_owned());
+            parts.push("below zero load, averaged at equal fractions of the pull-off force of each surface".to_owned());
         }
     }
     let curves = || plot.curves.iter();
@@ -67,16 +67,16 @@ pub(super) fn of_cycle(name: &str, of: &Closer<'_>) -> String {
     let text = match name {
         "loop" => "Normal force F/(E*A₀) against mean penetration Δ/h_rms up to the load reversal and back".to_owned(),
         "events" => {
-            "Energy dissipated by each event; events that release energy to the contact are not drawn on the logarithmic axis".to_owned()
+            "Energy dissipated by each event against mean penetration; events of negative dissipated energy are not drawn on the logarithmic axis".to_owned()
         }
         "avalanches" => "Number of avalanches with at least s events".to_owned(),
-        "radii" => "Cumulative distribution of contact radii over the side L".to_owned(),
+        "radii" => "Cumulative distribution of the contact radius over the side L of the square".to_owned(),
         "loads" => {
             "Cumulative distribution of the load of each contact spot over the pull-off force of its asperity; positive in compression"
                 .to_owned()
         }
         "spectrum" => spectrum(of),
-        _ => "Curvatures of the asperity summits beside Nayak's distribution for the realised spectral moments".to_owned(),
+        _ => "Probability density of the summit curvatures, with Nayak's distribution for the realised spectral moments".to_owned(),
     };
     format!("{text}.{}", data(name))
 }

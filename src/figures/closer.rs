@@ -1,4 +1,4 @@
-//! A closer look at one cycle: what no mean shows.
+//! Figures of a single cycle.
 
 use super::FigureError;
 use super::axis::Axis;
@@ -60,13 +60,13 @@ pub struct Closer<'a> {
 /// The four points of a loop whose spots are shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Landmark {
-    /// On loading, at half the load of the turning point.
+    /// On loading, at half the maximum load.
     Half,
-    /// The turning point.
+    /// Load reversal.
     Turning,
-    /// On unloading, back at no load.
+    /// On unloading, at zero load.
     NoLoad,
-    /// The greatest tension.
+    /// Maximum tensile load.
     PullOff,
 }
 
@@ -76,8 +76,8 @@ impl Landmark {
         match self {
             Self::Half => "loading, at F_{max}/2",
             Self::Turning => "at F_{max}",
-            Self::NoLoad => "unloading, at no load",
-            Self::PullOff => "at the pull-off",
+            Self::NoLoad => "unloading, at zero load",
+            Self::PullOff => "at pull-off",
         }
     }
 }
@@ -187,13 +187,7 @@ fn of_loop(of: &Closer<'_>) -> Result<XyPlot, FigureError> {
         curve(("loading", ""), loading.clone(), shade(LOADING, 0, 1), Stroke::Dashed),
         curve(("unloading", ""), unloading.clone(), shade(UNLOADING, 0, 1), Stroke::Solid),
     ];
-    Ok(plot(
-        "load over approach".to_owned(),
-        x,
-        y,
-        curves,
-        &[("loading", LOADING, Stroke::Dashed), ("unloading", UNLOADING, Stroke::Solid)],
-    ))
+    Ok(plot("hysteresis loop".to_owned(), x, y, curves, &[("loading", LOADING, Stroke::Dashed), ("unloading", UNLOADING, Stroke::Solid)]))
 }
 
 /// Energy that each event lost, over the approach.
@@ -212,7 +206,7 @@ fn events(of: &Closer<'_>, branches: &[OfBranch; 2]) -> Result<XyPlot, FigureErr
     let points = || curves.iter().flat_map(|curve: &Curve| curve.points.iter());
     let (x, y) = (
         Axis::holding("Δ/h_{rms}", points().map(|point| point.0), false),
-        Axis::of_decades("energy lost/(E^{*}A_{0}h_{rms})", points().map(|point| point.1)).with_headroom(0.12),
+        Axis::of_decades("dissipated energy/(E^{*}A_{0}h_{rms})", points().map(|point| point.1)).with_headroom(0.12),
     );
     let title = if drawn < all { format!("the largest {drawn} of {all} dissipative events") } else { counted(all, "dissipative event") };
     Ok(plot(title, x, y, curves, &[("loading", LOADING, Stroke::Points), ("unloading", UNLOADING, Stroke::Points)]))
@@ -238,8 +232,8 @@ fn avalanches(of: &Closer<'_>, branches: &[OfBranch; 2]) -> Result<XyPlot, Figur
     }
     let points = || curves.iter().flat_map(|curve: &Curve| curve.points.iter());
     let (x, y) = (
-        Axis::of_decades("events in an avalanche, s", points().map(|point| point.0)),
-        Axis::of_decades("avalanches of s or more", points().map(|point| point.1)),
+        Axis::of_decades("events per avalanche, s", points().map(|point| point.0)),
+        Axis::of_decades("avalanches with at least s events", points().map(|point| point.1)),
     );
     Ok(plot(counted(total, "avalanche"), x, y, curves, &[("loading", LOADING, Stroke::Dashed), ("unloading", UNLOADING, Stroke::Solid)]))
 }
@@ -253,12 +247,12 @@ fn distribution(of: &Closer<'_>, ends: &[End], label: &str, value: impl Fn(usize
         values.sort_by(f64::total_cmp);
         let count = values.len();
         curves.push(curve((landmark.words(), ""), cumulative(&values), shade(hue, 0, 1), stroke));
-        key.push((format!("{}: {}", landmark.words(), counted(count, "spot")), hue, stroke));
+        key.push((format!("{}: {}", landmark.words(), counted(count, "contact spot")), hue, stroke));
     }
     let points = || curves.iter().flat_map(|curve: &Curve| curve.points.iter());
     let (x, y) = (
         Axis::holding(label, points().map(|point| point.0), false),
-        Axis::holding("share of the spots below", [0.0, 1.0], true).with_headroom(0.16),
+        Axis::holding("cumulative fraction of contact spots", [0.0, 1.0], true).with_headroom(0.16),
     );
     let key: Vec<(&str, [u8; 3], Stroke)> = key.iter().map(|(text, hue, stroke)| (text.as_str(), *hue, *stroke)).collect();
     Ok(plot(String::new(), x, y, curves, &key))
@@ -283,11 +277,11 @@ fn radii(of: &Closer<'_>, ends: &[End]) -> Result<XyPlot, FigureError> {
 fn loads(of: &Closer<'_>, ends: &[End]) -> Result<XyPlot, FigureError> {
     let (loads, asperities, radii) = (of.contacts.f64("load_n")?, of.contacts.i64("asperity_id")?, of.asperities.f64("radius_m")?);
     if of.pull_off_n_m == 0.0 {
-        return distribution(of, ends, "load of a contact [N]", |k| Some(loads[k]));
+        return distribution(of, ends, "normal load of a contact spot [N]", |k| Some(loads[k]));
     }
     // Merged contacts have numbers beyond those of the asperities, and no pull-off force of one asperity.
     let own = |k: usize| usize::try_from(asperities[k]).ok().and_then(|id| radii.get(id)).map(|radius| of.pull_off_n_m * radius);
-    distribution(of, ends, "load of a spot/its own pull-off load", |k| own(k).map(|own| loads[k] / own))
+    distribution(of, ends, "normal load/pull-off force of the asperity", |k| own(k).map(|own| loads[k] / own))
 }
 
 /// The realised spectrum, and the target at the same rms height.
@@ -297,8 +291,8 @@ fn spectrum(of: &Closer<'_>) -> XyPlot {
     let found: Vec<(f64, f64)> = of.found.iter().filter(|point| point.1 > 1e-14 * most).copied().collect();
     // The target lies on the realised spectrum, and is painted over it.
     let curves = vec![
-        Curve { marked: true, ..curve(("found", ""), found, shade(UNLOADING, 0, 1), Stroke::Solid) },
-        curve(("asked for", ""), of.asked.to_vec(), shade(THEORY, 0, 1), Stroke::Dashed),
+        Curve { marked: true, ..curve(("realised", ""), found, shade(UNLOADING, 0, 1), Stroke::Solid) },
+        curve(("target", ""), of.asked.to_vec(), shade(THEORY, 0, 1), Stroke::Dashed),
     ];
     let points = || curves.iter().flat_map(|curve: &Curve| curve.points.iter());
     let (x, y) = (
@@ -308,7 +302,7 @@ fn spectrum(of: &Closer<'_>) -> XyPlot {
     let target = of.asked_factor.map(|factor| format!("target: {} × Eq 10", significant(factor, 3)));
     let mut key = vec![("realised", UNLOADING, Stroke::Solid)];
     key.extend(target.as_deref().map(|text| (text, THEORY, Stroke::Dashed)));
-    plot("spectrum of the heights".to_owned(), x, y, curves, &key)
+    plot("power spectral density of the heights".to_owned(), x, y, curves, &key)
 }
 
 /// Curvatures of the summits over Nayak's density.
@@ -325,14 +319,14 @@ fn summits(of: &Closer<'_>) -> Result<XyPlot, FigureError> {
     let bars = counts.iter().enumerate().flat_map(|(k, count)| [k, k + 1].map(|at| (at as f64 * width, *count as f64 * unit)));
     let curves = vec![
         curve(("nayak", ""), of.nayak.to_vec(), shade(THEORY, 0, 1), Stroke::Dashed),
-        curve(("found", ""), bars.collect(), shade(UNLOADING, 0, 1), Stroke::Solid),
+        curve(("realised", ""), bars.collect(), shade(UNLOADING, 0, 1), Stroke::Solid),
     ];
     let points = || curves.iter().flat_map(|curve: &Curve| curve.points.iter());
     let (x, y) = (
-        Axis::holding("curvature of a summit/(m_{4}/3)^{1/2}", points().map(|point| point.0), true),
-        Axis::holding("density", points().map(|point| point.1), true).with_headroom(0.1),
+        Axis::holding("summit curvature/(m_{4}/3)^{1/2}", points().map(|point| point.0), true),
+        Axis::holding("probability density", points().map(|point| point.1), true).with_headroom(0.1),
     );
     let [found, nayak] = of.densities_1_m2.map(|density| density * of.length_m * of.length_m);
     let title = format!("{}; Nayak: {nayak:.0}", counted(found.round() as usize, "summit"));
-    Ok(plot(title, x, y, curves, &[("of this surface", UNLOADING, Stroke::Solid), ("Nayak, Eq A2", THEORY, Stroke::Dashed)]))
+    Ok(plot(title, x, y, curves, &[("this surface", UNLOADING, Stroke::Solid), ("Nayak, Eq A2", THEORY, Stroke::Dashed)]))
 }

@@ -1,4 +1,4 @@
-//! Maps of the contact spots over the surface, at four points of the loop.
+//! Maps of the contact spots on the surface, at four points of the loop.
 
 use super::closer::{Closer, Kept};
 use super::{FigureError, markup};
@@ -54,7 +54,7 @@ pub(super) fn map(of: &Closer<'_>, landmarks: &[Kept], heights_m: ArrayView2<'_,
              <rect x=\"0\" y=\"0\" width=\"{SIDE}\" height=\"{SIDE}\" fill=\"none\" stroke=\"black\"/></g>",
             top - 23.0,
             landmark.words(),
-            counted(count, "spot"),
+            counted(count, "contact spot"),
             top - 6.0,
             significant(number(&loads), 3).replace('-', "−"),
             number(&penetrations)
@@ -63,14 +63,14 @@ pub(super) fn map(of: &Closer<'_>, landmarks: &[Kept], heights_m: ArrayView2<'_,
     let foot = height - 12.0;
     let _ = write!(
         svg,
-        "<circle cx=\"{}\" cy=\"{}\" r=\"5\" fill=\"{PUSHED}\"/><text x=\"{}\" y=\"{foot}\" font-size=\"13\">pushed</text>\
-         <circle cx=\"{}\" cy=\"{}\" r=\"5\" fill=\"{PULLED}\"/><text x=\"{}\" y=\"{foot}\" font-size=\"13\">pulled; lower ground is darker</text></svg>",
+        "<circle cx=\"{}\" cy=\"{}\" r=\"5\" fill=\"{PUSHED}\"/><text x=\"{}\" y=\"{foot}\" font-size=\"13\">compressive</text>\
+         <circle cx=\"{}\" cy=\"{}\" r=\"5\" fill=\"{PULLED}\"/><text x=\"{}\" y=\"{foot}\" font-size=\"13\">tensile; darker grey: lower heights</text></svg>",
         GAP + 5.0,
         foot - 4.5,
         GAP + 15.0,
-        GAP + 95.0,
+        GAP + 115.0,
         foot - 4.5,
-        GAP + 105.0
+        GAP + 125.0
     );
     Ok(Some(markup::render(&svg)))
 }

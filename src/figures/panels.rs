@@ -1,4 +1,4 @@
-//! The five panels of a sweep: the paper's four, and the loss by branches.
+//! The five panels of a sweep: the four of the paper, and the dissipated energy by branch.
 
 use super::FigureError;
 use super::captions::{data, of_sweep};
@@ -78,7 +78,7 @@ fn drawn(tables: &Tables<'_>, found: &Sweep, (heading, stem): (&str, &str)) -> R
     };
     // Releasing absorbed asperities has no potential, so that one branch may gain energy.
     let branch = |name, text, hue, stroke| Measured { name, text, hue, stroke, positive: false };
-    let computed = |name: &'static str| Measured { name, text: "computed", hue: UNLOADING, stroke: Stroke::Solid, positive: true };
+    let computed = |name: &'static str| Measured { name, text: "simulation", hue: UNLOADING, stroke: Stroke::Solid, positive: true };
     Ok(vec![
         panel('A', paths(tables.curves, found, ("area", "A/A_{0}"), true)?),
         panel('B', results(tables, found, "F_{po}/(E^{*}A_{0})", &[computed("pull_off_load")], &[])?),
@@ -90,7 +90,10 @@ fn drawn(tables: &Tables<'_>, found: &Sweep, (heading, stem): (&str, &str)) -> R
                 found,
                 LOSS,
                 &[computed("loss")],
-                &[("loss_dk", Stroke::Dashed, "Deng–Kesari"), ("loss_dk_realised", Stroke::Dotted, "Deng–Kesari, realised moments")],
+                &[
+                    ("loss_dk", Stroke::Dashed, "Deng–Kesari, target spectrum"),
+                    ("loss_dk_realised", Stroke::Dotted, "Deng–Kesari, realised spectrum"),
+                ],
             )?,
         ),
         panel(
@@ -100,8 +103,8 @@ fn drawn(tables: &Tables<'_>, found: &Sweep, (heading, stem): (&str, &str)) -> R
                 found,
                 LOSS,
                 &[
-                    branch("dissipated_unloading", "lost on unloading", UNLOADING, Stroke::Solid),
-                    branch("dissipated_loading", "lost on loading", LOADING, Stroke::Dashed),
+                    branch("dissipated_unloading", "unloading", UNLOADING, Stroke::Solid),
+                    branch("dissipated_loading", "loading", LOADING, Stroke::Dashed),
                 ],
                 &[],
             )?,
@@ -132,7 +135,7 @@ fn heading(cases: &Frame, sweep: &Sweep, name: &str) -> Result<String, FigureErr
     }
     let name = if name.is_empty() { String::new() } else { format!("{name}: ") };
     Ok(match (sweep.differing.first(), others.is_empty()) {
-        (Some(first), false) => format!("{name}{surfaces}, over {}; {} varies too", first.symbol, others.join(", ")),
+        (Some(first), false) => format!("{name}{surfaces}, over {}; varied: {}", first.symbol, others.join(", ")),
         _ => format!("{name}{surfaces}"),
     })
 }

@@ -1,9 +1,9 @@
-//! The table of avalanches, and the kinds of events that it counts.
+//! The table of avalanches, and the kinds of events.
 
 use super::statistics::CASE;
 use super::{ASPERITIES_ID, CYCLE_ID, Column, REALIZATION, SURFACE_ID, Table, count, index, join, real, text};
 
-/// Every kind of event that the tables `events` may hold, in the order in which the tables over realizations have them.
+/// Every kind of event of the tables `events`, in the column order of the tables over realizations.
 pub const EVENT_KINDS: [&str; 7] = ["jump_in", "jump_off", "cover", "uncover", "snap", "merge", "split"];
 
 const AVALANCHE: &[Column] = &[
@@ -15,37 +15,37 @@ const AVALANCHE: &[Column] = &[
     real(
         "max_load",
         "1",
-        "F/(E* A0) from which this unloading began; null while loading, since one loading path serves every turning point",
+        "Normal load F_max/(E* A0) at the load reversal from which this unloading starts; null for loading, which is common to all load reversals",
     )
     .or_null(),
-    index("avalanche_id", "Number of the avalanche in the table events of its cycle"),
-    index("step", "Step of its first event, as in the table steps"),
-    real("approach_m", "m", "Approach of the surface at its first event, zero as in the table steps"),
-    count("event_count", "Its size: how many events it has"),
-    count("jump_in_count", "Asperities that jumped into contact in it"),
-    count("jump_off_count", "Asperities that jumped out of contact in it"),
-    count("cover_count", "Asperities that were covered in it"),
-    count("uncover_count", "Asperities that were uncovered in it"),
-    count("snap_count", "Moves of the contact to another equilibrium with the same spots in it"),
-    count("merge_count", "Spots that became one with another in it"),
-    count("split_count", "Spots that parted again in it"),
+    index("avalanche_id", "Number of the avalanche in the table events of the cycle"),
+    index("step", "Output step of the first event, as in the table steps"),
+    real("approach_m", "m", "Mean penetration Δ at the first event, with the zero of the table steps"),
+    count("event_count", "Size of the avalanche: number of events"),
+    count("jump_in_count", "Asperities that jumped into contact"),
+    count("jump_off_count", "Asperities that jumped out of contact"),
+    count("cover_count", "Asperities absorbed by a larger contact"),
+    count("uncover_count", "Asperities released from absorption"),
+    count("snap_count", "Snap-through events: transitions to another equilibrium with the same contacts"),
+    count("merge_count", "Pairs of contacts merged"),
+    count("split_count", "Merged contacts split"),
     real(
         "energy_lost_j",
         "J",
-        "Energy lost in it, the sum over its events; negative where covering, which has no potential, gained energy",
+        "Dissipated energy, summed over the events; may be negative with absorption, which has no potential",
     ),
-    real("energy_lost", "1", "Energy lost in it over E* A0 h_rms"),
-    real("load_drop_n", "N", "Load before its first event less load after its last one; negative where the load rose"),
-    real("area_change_m2", "m^2", "Area after its last event less area before its first one; negative where area was lost"),
+    real("energy_lost", "1", "Dissipated energy over E* A0 h_rms; sign as energy_lost_j"),
+    real("load_drop_n", "N", "Normal load before the first event minus normal load after the last; negative for an increase"),
+    real("area_change_m2", "m^2", "Contact area after the last event minus contact area before the first; negative for a decrease"),
 ];
 
 const COLUMNS: [Column; CASE.len() + AVALANCHE.len()] = join(&[CASE, AVALANCHE]);
 
-/// What one instability brought about.
+/// Events caused by one instability.
 pub static AVALANCHES: Table = Table {
     name: "avalanches",
     version: 1,
     file: "statistics/avalanches.parquet",
-    doc: "One row per avalanche of each realization; what defines its case stands in the table cases, by case_id.",
+    doc: "One row per avalanche and realization; join the parameters of the case from the table cycles by cycle_id.",
     columns: &COLUMNS,
 };

@@ -1,4 +1,4 @@
-//! The table of cycles, which joins the tables of single cycles to the cases.
+//! The table of cycles, which joins tables of single cycles to cases.
 
 use super::statistics::{CASE, PARAMETERS};
 use super::{ASPERITIES_ID, CYCLE_ID, Column, REALIZATION, SURFACE_ID, Table, join, text};
@@ -8,7 +8,7 @@ const CYCLE: &[Column] = &[
     CYCLE_ID,
     SURFACE_ID,
     ASPERITIES_ID,
-    text("status", "\"done\", \"failed\", or \"planned\" if it was not computed before the tables were written"),
+    text("status", "\"done\", \"failed\", or \"planned\" if not yet computed when this table was written"),
     text("failure", "Error message of a failed cycle; null otherwise").or_null(),
 ];
 
@@ -19,7 +19,7 @@ pub static CYCLES: Table = Table {
     name: "cycles",
     version: 1,
     file: "statistics/cycles.parquet",
-    doc: "One row per case and realization, with the parameters of the case; cycle_id joins it to the tables of the cycle. \
+    doc: "One row per case and realization, with the parameters of the case; join it by cycle_id. \
           Cases that differ only in as_printed may share a cycle.",
     columns: &COLUMNS,
 };

@@ -1,7 +1,7 @@
-//! Every table and every column, once: name, kind, unit, null, meaning, source.
+//! Definitions of all tables and columns: name, kind, unit, null, description, source.
 //!
-//! The writer, the reader's checks, `schemas/*.json` and the tables in the README all come from here. Nothing in this
-//! room knows a file format.
+//! The writer, the checks of the reader, `schemas/*.json` and `schemas/README.md` are derived from it. This module is
+//! independent of file formats.
 
 mod avalanches;
 mod comparison;
@@ -84,11 +84,12 @@ impl Table {
     }
 }
 
-const CYCLE_ID: Column = text("cycle_id", "Identity of the cycle: name of its directory below cycles/");
-const REALIZATION: Column = index("realization", "Number of the surface among those that share its spectrum, from 0");
-const SURFACE_ID: Column = text("surface_id", "Identity of the surface: name of its file below surfaces/, without extension");
+const CYCLE_ID: Column = text("cycle_id", "Identifier of the cycle: name of its directory below cycles/");
+const REALIZATION: Column =
+    index("realization", "Number of the realization, from 0: surfaces of the same parameters that differ in the random numbers");
+const SURFACE_ID: Column = text("surface_id", "Identifier of the surface: name of its file below surfaces/, without extension");
 const ASPERITIES_ID: Column =
-    text("asperities_id", "Identity of the asperity table: name of its file below asperities/; equal to surface_id");
+    text("asperities_id", "Identifier of the asperity table: name of its file below asperities/, without extension; equal to surface_id");
 
 /// Every table that the program writes.
 pub static TABLES: &[&Table] = &[

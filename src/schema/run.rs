@@ -4,40 +4,40 @@ use super::{CYCLE_ID, Column, REALIZATION, SURFACE_ID, Table, count, flag, index
 
 const CYCLE_CASE_ID: Column = text(
     "case_id",
-    "Identity of the case, without the entries of as_printed that only analytical estimates read; the table cycles lists every case of the cycle",
+    "Identifier of the case, computed without the as_printed entries that only the analytical estimates use; the table cycles lists every case of the cycle",
 );
 const BRANCH: Column = text("branch", "\"loading\" or \"unloading\"");
 const MAX_LOAD: Column = real(
     "max_load",
     "1",
-    "F/(E* A0) from which this unloading began; null while loading, since one loading path serves every turning point",
+    "Normal load F_max/(E* A0) at the load reversal from which this unloading starts; null for loading, which is common to all load reversals",
 )
 .or_null();
-const STEP: Column = index("step", "Number of the step along the whole path, from 0");
+const STEP: Column = index("step", "Number of the output step along the path of the cycle, from 0");
 const ASPERITY: Column =
-    index("asperity_id", "The asperity, as in the table asperities; numbers beyond its last are merged spots, as in the table merged");
+    index("asperity_id", "Number of the asperity in the table asperities; larger numbers are merged contacts, listed in the table merged");
 
 /// The summits of one surface.
 pub static ASPERITIES: Table = Table {
     name: "asperities",
     version: 1,
     file: "asperities/<id>.parquet",
-    doc: "One row per summit of a surface that can come into contact.",
+    doc: "One row per asperity: a local maximum of the surface with positive mean curvature.",
     columns: &[
         SURFACE_ID,
         REALIZATION,
         index("asperity_id", "Number of the asperity on its surface, from 0"),
-        real("x_m", "m", "x of the apex; the rows of the height field count along x"),
-        real("y_m", "m", "y of the apex; the columns of the height field count along y"),
-        real("height_m", "m", "Height of the apex above the mean plane of the surface"),
-        real("radius_m", "m", "Radius of the sphere that stands for the summit, the inverse of its mean curvature"),
-        real("curvature_1_m", "1/m", "Mean curvature at the apex, half the negative Laplacian of the height; positive at a summit")
+        real("x_m", "m", "Peak position x; the row index of the height field runs along x"),
+        real("y_m", "m", "Peak position y; the column index of the height field runs along y"),
+        real("height_m", "m", "Peak height above the mean plane of the surface"),
+        real("radius_m", "m", "Radius of curvature R of the asperity, the inverse of its mean curvature"),
+        real("curvature_1_m", "1/m", "Mean curvature at the peak, -1/2 of the Laplacian of the height; positive at a summit")
             .from("Nayak 1971"),
-        real("curvature_min_1_m", "1/m", "Smaller principal curvature at the apex; positive at a summit"),
-        real("curvature_max_1_m", "1/m", "Greater principal curvature at the apex; positive at a summit"),
-        index("grid_row", "Row of the grid point that is the local maximum"),
-        index("grid_col", "Column of the grid point that is the local maximum"),
-        flag("refined", "Whether height and position were refined to the apex between grid points"),
+        real("curvature_min_1_m", "1/m", "Smaller principal curvature at the peak; positive at a summit"),
+        real("curvature_max_1_m", "1/m", "Larger principal curvature at the peak; positive at a summit"),
+        index("grid_row", "Row index of the local maximum in the height field"),
+        index("grid_col", "Column index of the local maximum in the height field"),
+        flag("refined", "True if position and height were interpolated between grid points"),
     ],
 };
 
@@ -46,7 +46,7 @@ pub static STEPS: Table = Table {
     name: "steps",
     version: 1,
     file: "cycles/<id>/steps.parquet",
-    doc: "One row per step of loading, and of unloading from each turning point.",
+    doc: "One row per output step of loading, and of unloading from each load reversal.",
     columns: &[
         CYCLE_ID,
         CYCLE_CASE_ID,
@@ -57,52 +57,58 @@ pub static STEPS: Table = Table {
         real(
             "approach_m",
             "m",
-            "Approach of the rigid rough surface, which is its mean penetration; 0 where the highest summit meets the undeformed half-space",
+            "Mean penetration Δ of the rigid rough surface; 0 where the highest asperity touches the undeformed half-space",
         ),
-        real("load_n", "N", "Normal load, the sum over all contact spots; negative in tension").from("Eq 1"),
+        real("load_n", "N", "Normal load F, summed over all contact spots; positive in compression, negative in tension").from("Eq 1"),
         real(
             "least_load_n",
             "N",
-            "Least load since the step before, events included: the load is a saw-tooth whose teeth stand at the events",
+            "Minimum normal load since the previous step, including the states directly before and after events, where the load is discontinuous",
         ),
-        real("area_m2", "m^2", "Contact area, the sum of the discs of all contact spots"),
-        real("area_union_m2", "m^2", "Contact area, the union of the discs, overlaps counted once; null where it was not computed")
-            .or_null(),
+        real("area_m2", "m^2", "Contact area A, summed over the discs of all contact spots"),
+        real(
+            "area_union_m2",
+            "m^2",
+            "Area of the union of all contact discs, in which overlaps count once; null where it was not computed",
+        )
+        .or_null(),
         count("contact_count", "Asperities in contact"),
-        count("covered_count", "Asperities covered by a greater spot: they carry nothing"),
-        count("jump_in_count", "Asperities that jumped into contact in this step"),
-        count("jump_off_count", "Asperities that jumped out of contact in this step"),
-        count("cover_count", "Asperities that were covered in this step"),
-        count("uncover_count", "Asperities that were uncovered in this step"),
-        count("snap_count", "Moves of the contact to another equilibrium with the same spots in this step"),
-        count("merge_count", "Spots that became one with another in this step"),
-        count("split_count", "Merged spots that parted in this step"),
-        count("held_count", "Asperities held as they are since they flipped between covered and uncovered in this step"),
-        count("touching_count", "Contact spots that touch another one"),
-        real("dissipated_j", "J", "Energy lost in the events of this step"),
-        real("work_j", "J", "Work done on the contact since this branch began, the integral of load over approach"),
-        real("residual_m", "m", "Greatest difference left between local penetration and JKR penetration, over all spots").from("Eqs 2, 5"),
+        count("covered_count", "Asperities absorbed by a larger contact spot, without load and area of their own"),
+        count("jump_in_count", "Asperities that jumped into contact since the previous step"),
+        count("jump_off_count", "Asperities that jumped out of contact since the previous step"),
+        count("cover_count", "Asperities absorbed since the previous step"),
+        count("uncover_count", "Asperities released from absorption since the previous step"),
+        count("snap_count", "Snap-through events since the previous step: transitions to another equilibrium with the same contacts"),
+        count("merge_count", "Pairs of contacts merged since the previous step"),
+        count("split_count", "Merged contacts split since the previous step"),
+        count("held_count", "Frozen asperities: state kept in this step, because it alternated between absorbed and released"),
+        count("touching_count", "Contact spots that overlap a neighbour: distance below the sum of the contact radii"),
+        real("dissipated_j", "J", "Energy dissipated in the events since the previous step"),
+        real(
+            "work_j",
+            "J",
+            "Work done on the contact since the start of the branch: integral of the normal load over the mean penetration",
+        ),
+        real("residual_m", "m", "Residual of the equilibrium: maximum over all contact spots of |local penetration - JKR penetration|")
+            .from("Eqs 2, 5"),
         real(
             "drift_m",
             "m",
-            "Greatest residual that the whole contact had since the step before when it came to be solved: what the neighbourhoods of events had left out",
+            "Predictor residual: maximum residual of the global problem before its solution, since the previous step; the error of the local solutions after events",
         ),
         real(
             "stability",
             "1",
-            "Least eigenvalue of the tangent of penetration to contact radius, each column over its own diagonal element: 1 without coupling, 0 at a fold, negative where the equilibrium repels",
+            "Smallest eigenvalue of the tangent of penetration with respect to contact radius, each column over its diagonal element: 1 without interaction, 0 at a limit point, negative for an unstable equilibrium",
         ),
-        flag("converged", "Whether the residual came below the tolerance"),
-        count(
-            "iteration_count",
-            "Iterations of Newton's method and of relaxations since the step before, of neighbourhoods and of the whole contact",
-        ),
-        count("pair_evaluation_count", "Evaluations of the displacement field of one spot at another since the step before"),
-        count("product_count", "Products of the tangent with a vector since the step before: one for each Krylov iteration"),
-        count("transform_count", "Fourier transforms of a mesh since the step before"),
-        real("load", "1", "F/(E* A0)"),
-        real("area", "1", "A/A0"),
-        real("penetration", "1", "Approach over rms height"),
+        flag("converged", "True if the residual is below the tolerance"),
+        count("iteration_count", "Iterations of Newton's method and of relaxation since the previous step, in local and global problems"),
+        count("pair_evaluation_count", "Evaluations of the displacement of one contact by another since the previous step"),
+        count("product_count", "Matrix-vector products of the tangent since the previous step, one per Krylov iteration"),
+        count("transform_count", "Fourier transforms of a mesh since the previous step"),
+        real("load", "1", "Normal load F/(E* A0); positive in compression"),
+        real("area", "1", "Contact area A/A0, summed over the discs of all contact spots"),
+        real("penetration", "1", "Mean penetration Δ/h_rms"),
     ],
 };
 
@@ -111,7 +117,7 @@ pub static CONTACTS: Table = Table {
     name: "contacts",
     version: 1,
     file: "cycles/<id>/contacts.parquet",
-    doc: "One row per asperity in contact or covered, at each step that the spec keeps.",
+    doc: "One row per asperity in contact or absorbed, at each step selected by cycle.contacts.",
     columns: &[
         CYCLE_ID,
         CYCLE_CASE_ID,
@@ -120,43 +126,51 @@ pub static CONTACTS: Table = Table {
         BRANCH,
         MAX_LOAD,
         ASPERITY,
-        text("state", "\"contact\" or \"covered\"; free asperities have no row"),
-        real("contact_radius_m", "m", "Radius of the contact spot; 0 if covered").from("Eq 2"),
-        real("load_n", "N", "Load of the contact spot; 0 if covered").from("Eq 1"),
-        real("penetration_m", "m", "Local penetration, after the displacement by all other spots; null if covered").or_null().from("Eq 5"),
-        real("interaction_m", "m", "Displacement of the half-space by all other spots; null if covered").or_null().from("Eqs 6-8"),
+        text("state", "\"contact\" or \"covered\" (absorbed); free asperities have no row"),
+        real("contact_radius_m", "m", "Contact radius a; 0 if absorbed").from("Eq 2"),
+        real("load_n", "N", "Normal load of the contact spot; positive in compression, 0 if absorbed").from("Eq 1"),
+        real("penetration_m", "m", "Local penetration δ, including the displacement by all other contacts; null if absorbed")
+            .or_null()
+            .from("Eq 5"),
+        real("interaction_m", "m", "Normal displacement of the half-space by all other contacts; null if absorbed")
+            .or_null()
+            .from("Eqs 6-8"),
     ],
 };
 
-/// The states from which unloading begins.
+/// States at load reversal.
 pub static TURNING: Table = Table {
     name: "turning",
     version: 1,
     file: "cycles/<id>/turning.parquet",
-    doc: "One row per asperity that is not simply free, at each turning point: all that is needed to unload from there again.",
+    doc: "One row per asperity that is in contact, absorbed, merged or blocked from re-contact, at each load reversal; sufficient to restart the unloading.",
     columns: &[
         CYCLE_ID,
         CYCLE_CASE_ID,
         REALIZATION,
-        real("max_load", "1", "F/(E* A0) at which the path turns"),
-        real("approach_m", "m", "Approach of the surface at the turning point, zero as in the table steps"),
+        real("max_load", "1", "Normal load F_max/(E* A0) at the load reversal"),
+        real("approach_m", "m", "Mean penetration Δ at the load reversal, with the zero of the table steps"),
         ASPERITY,
-        text("state", "\"contact\", \"covered\", \"merged\", or \"free\" if it has left and does not return yet"),
-        real("contact_radius_m", "m", "Radius of the contact spot; 0 if there is none").from("Eq 2"),
-        index("covered_by", "The asperity whose spot covers it; null if none does").or_null(),
-        real("release_m", "m", "Radius of the covering spot below which it is uncovered; null if none covers it").or_null(),
-        flag("barred", "Whether it has left and stays free until its penetration falls below its jump-in distance"),
-        index("merged_into", "The merged spot of which it is a part; null if it is none").or_null(),
-        count("merged_count", "How many rows of the table merged, from the first, there were by then"),
+        text("state", "\"contact\", \"covered\" (absorbed), \"merged\", or \"free\" if it is blocked from re-contact"),
+        real("contact_radius_m", "m", "Contact radius a; 0 without contact").from("Eq 2"),
+        index("covered_by", "asperity_id of the absorbing contact; null if not absorbed").or_null(),
+        real("release_m", "m", "Contact radius of the absorbing contact below which this asperity is released; null if not absorbed")
+            .or_null(),
+        flag(
+            "barred",
+            "True if blocked from re-contact after a jump out of contact, until its penetration falls below the jump-in distance",
+        ),
+        index("merged_into", "asperity_id of the merged contact that contains this one; null if there is none").or_null(),
+        count("merged_count", "Number of rows of the table merged at this load reversal, from the first row"),
     ],
 };
 
-/// Spots that stand for two.
+/// Merged contacts.
 pub static MERGED: Table = Table {
     name: "merged",
     version: 1,
     file: "cycles/<id>/merged.parquet",
-    doc: "One row per spot that two touching ones became (coalescence \"merge\"), in the order in which they did.",
+    doc: "One row per merged contact (coalescence \"merge\"), in order of merging.",
     columns: &[
         CYCLE_ID,
         CYCLE_CASE_ID,
@@ -164,26 +178,29 @@ pub static MERGED: Table = Table {
         STEP,
         BRANCH,
         MAX_LOAD,
-        index("asperity_id", "Its number: they follow those of the asperities, and on unloading those of the turning point"),
-        real("approach_m", "m", "Approach of the surface where they merged, zero as in the table steps"),
-        index("first_id", "One of the two, an asperity or a merged spot"),
-        index("second_id", "The other one"),
-        real("first_radius_m", "m", "Contact radius of the first one when they merged"),
-        real("second_radius_m", "m", "Contact radius of the second one when they merged"),
-        real("release_m", "m", "Contact radius of the merged spot at which it parts"),
-        real("x_m", "m", "x of its centre, the area-weighted one of the two"),
-        real("y_m", "m", "y of its centre"),
-        real("height_m", "m", "Height of its apex over the highest summit").from("Eq 5"),
-        real("radius_m", "m", "Radius of the sphere that has its contact radius and its load").from("Eq 1"),
+        index(
+            "asperity_id",
+            "Number of the merged contact; numbers follow those of the asperities and, during unloading, those of the load reversal",
+        ),
+        real("approach_m", "m", "Mean penetration Δ at merging, with the zero of the table steps"),
+        index("first_id", "asperity_id of the first contact, an asperity or a merged contact"),
+        index("second_id", "asperity_id of the second contact, an asperity or a merged contact"),
+        real("first_radius_m", "m", "Contact radius of the first contact at merging"),
+        real("second_radius_m", "m", "Contact radius of the second contact at merging"),
+        real("release_m", "m", "Contact radius at which the merged contact splits"),
+        real("x_m", "m", "Centre x, the area-weighted mean of both contacts"),
+        real("y_m", "m", "Centre y, the area-weighted mean of both contacts"),
+        real("height_m", "m", "Peak height relative to the highest asperity").from("Eq 5"),
+        real("radius_m", "m", "Radius of curvature of the equivalent sphere with the same contact radius and load").from("Eq 1"),
     ],
 };
 
-/// What happened to single asperities.
+/// Changes of state of single asperities.
 pub static EVENTS: Table = Table {
     name: "events",
     version: 1,
     file: "cycles/<id>/events.parquet",
-    doc: "One row per asperity that changed its state.",
+    doc: "One row per change of state of an asperity.",
     columns: &[
         CYCLE_ID,
         CYCLE_CASE_ID,
@@ -193,19 +210,19 @@ pub static EVENTS: Table = Table {
         MAX_LOAD,
         text(
             "kind",
-            "What happened: \"jump_in\", \"jump_off\", \"cover\", \"uncover\", \"merge\", \"split\", and \"snap\" where the contact moves to another equilibrium with the same spots",
+            "Kind of event: \"jump_in\", \"jump_off\" (out of contact), \"cover\" (absorption), \"uncover\" (release), \"merge\", \"split\", or \"snap\" (snap-through: same contacts, new equilibrium)",
         ),
         ASPERITY,
-        real("approach_m", "m", "Approach of the surface at the event, zero as in the table steps").from("Eqs 3, 4"),
-        index("avalanche_id", "Events that one instability brought about have the same number, from 0 along the path"),
-        real("load_before_n", "N", "Load of the whole contact before the event"),
-        real("load_after_n", "N", "Load of the whole contact when the rest has relaxed"),
-        real("area_before_m2", "m^2", "Area of the whole contact before the event"),
-        real("area_after_m2", "m^2", "Area of the whole contact when the rest has relaxed"),
+        real("approach_m", "m", "Mean penetration Δ at the event, with the zero of the table steps").from("Eqs 3, 4"),
+        index("avalanche_id", "Number of the avalanche, from 0 along the path; all events caused by one instability share it"),
+        real("load_before_n", "N", "Normal load before the event, summed over all contact spots"),
+        real("load_after_n", "N", "Normal load in the equilibrium after the event, summed over all contact spots"),
+        real("area_before_m2", "m^2", "Contact area before the event, summed over all contact spots"),
+        real("area_after_m2", "m^2", "Contact area in the equilibrium after the event, summed over all contact spots"),
         real(
             "energy_lost_j",
             "J",
-            "Energy lost in the event and in the relaxation that followed it; 0 for further events of the same relaxation",
+            "Energy dissipated in the event and the relaxation that follows; 0 for further events of the same relaxation",
         ),
     ],
 };

@@ -3,49 +3,61 @@
 use super::{ASPERITIES_ID, CYCLE_ID, Column, REALIZATION, SURFACE_ID, Table, count, index, join, real, text};
 
 pub(super) const CASE: &[Column] = &[
-    text("case_id", "Identity of the case: a hash of everything that defines it"),
-    text("sweep", "The sweeps of the spec that the case belongs to, joined by +; empty for a spec without sweeps"),
+    text("case_id", "Identifier of the case: short name of the surface and a hash of all parameters"),
+    text("sweep", "Names of the sweeps that contain the case, joined by +; empty for a spec without sweeps"),
 ];
 
-/// What defines a case, a column each.
+/// Parameters that define a case, one column each.
 pub(super) const PARAMETERS: &[Column] = &[
-    text("surface_file", "File of a measured surface, with as many of its folders as tell it from the others; null for a generated one")
+    text("surface_file", "File of a measured surface, with enough of its path to be unique; null for a generated surface").or_null(),
+    text("surface_dataset", "Dataset in that file; null for the only one, and for a generated surface").or_null(),
+    text("detrend", "Levelling of a measured surface: \"mean\", \"plane\" or \"quadratic\" was subtracted; null for a generated surface")
         .or_null(),
-    text("surface_dataset", "Which field of that file; null for the only one, and for a generated surface").or_null(),
-    text("detrend", "What was taken off a measured surface: \"mean\", \"plane\" or \"quadratic\"; null for a generated one").or_null(),
     real("hurst", "1", "Hurst exponent H; null for a measured surface").or_null().from("Eq 10"),
-    real("magnification", "1", "Magnification, longest over shortest wavelength; null for a measured surface").or_null().from("Eq 10"),
-    real("length_m", "m", "Side of the square, L; null for a measured surface that could not be taken").or_null().from("Eq 10"),
-    real("rms_height_m", "m", "Rms height: the one asked for, or that of the measured surface; null where that could not be taken")
-        .or_null(),
-    real("points_per_shortest_wavelength", "1", "Grid points per shortest wavelength; of a measured surface, shorter waves were taken off")
-        .or_null(),
-    text("normalization", "How the surface got its rms height: \"sample\" or \"spectrum\"; null for a measured surface").or_null(),
-    text("amplitudes", "The moduli of the Fourier modes: \"fixed\" or \"gaussian\"; null for a measured surface").or_null(),
-    real("contact_modulus_pa", "Pa", "Contact modulus E*").from("Eq 1"),
-    real("work_of_adhesion_j_m2", "J/m^2", "Work of adhesion").from("Eq 1"),
-    real("interaction_range_m", "m", "Range of attraction").from("Eq 3"),
-    text("interaction", "How contact spots act on one another: \"spots\", \"point\", \"reciprocal\" or \"none\"").from("Eqs 6-8"),
-    text("boundary", "What surrounds the square: \"periodic\" or \"isolated\""),
-    text("coalescence", "What happens when a spot grows over another asperity: \"cover\", \"merge\" or \"none\"").from("Eq 8"),
-    text("jump_in", "When a free asperity jumps into contact: \"wu\" or \"jkr\"").from("Eq 3"),
-    text("as_printed", "Slips of the paper that were put back, joined by +; empty if none"),
-    real("approach_step", "1", "Greatest step of the approach, in rms heights"),
+    real("magnification", "1", "Magnification ζ, longest over shortest wavelength; null for a measured surface").or_null().from("Eq 10"),
+    real("length_m", "m", "Side L of the square; null for a measured surface whose import failed").or_null().from("Eq 10"),
+    real(
+        "rms_height_m",
+        "m",
+        "Rms height h_rms: target of a generated surface, or value of a measured one; null for a measured surface whose import failed",
+    )
+    .or_null(),
+    real(
+        "points_per_shortest_wavelength",
+        "1",
+        "Grid points per shortest wavelength; for a measured surface, the S-filter cut-off in pixels",
+    )
+    .or_null(),
+    text(
+        "normalization",
+        "Rule for the rms height: \"sample\" (heights rescaled) or \"spectrum\" (integral of the spectrum); null for a measured surface",
+    )
+    .or_null(),
+    text("amplitudes", "Fourier amplitudes: \"fixed\" or \"gaussian\"; null for a measured surface").or_null(),
+    real("contact_modulus_pa", "Pa", "Reduced modulus E*, 1/E* = sum of (1 - ν²)/E over both bodies").from("Eq 1"),
+    real("work_of_adhesion_j_m2", "J/m^2", "Work of adhesion Δγ").from("Eq 1"),
+    real("interaction_range_m", "m", "Range of attraction ε").from("Eq 3"),
+    text("interaction", "Elastic interaction between contacts: \"spots\", \"point\", \"reciprocal\" or \"none\"").from("Eqs 6-8"),
+    text("boundary", "Boundary condition of the square: \"periodic\" or \"isolated\""),
+    text("coalescence", "Coalescence rule: \"cover\" (absorption), \"merge\" (equal-area merging) or \"none\"").from("Eq 8"),
+    text("jump_in", "Criterion for jump into contact: \"wu\" (at Wu's jump-in distance) or \"jkr\" (at zero penetration)").from("Eq 3"),
+    text("as_printed", "Uncorrected equations of the paper that are in use, joined by +; empty if none"),
+    real("approach_step", "1", "Maximum output step of the mean penetration, over h_rms"),
 ];
 
-/// Mean, spread and interval of one result. All are null where no realization has it; spread and interval need two.
+/// Mean, standard deviation and confidence interval of one result. All are null without a value; the last two require two.
 macro_rules! over_realizations {
     ($($name:literal)+, $unit:literal, $what:expr, $source:literal) => {
         &[
             real(concat!($($name,)+ "_mean"), $unit, concat!("Mean over realizations: ", $what)).or_null().from($source),
             real(concat!($($name,)+ "_sd"), $unit, concat!("Standard deviation over realizations (n - 1): ", $what)).or_null().from($source),
-            real(concat!($($name,)+ "_ci95_low"), $unit, concat!("Lower end of the 95 % interval of the mean: ", $what)).or_null().from($source),
-            real(concat!($($name,)+ "_ci95_high"), $unit, concat!("Upper end of the 95 % interval of the mean: ", $what)).or_null().from($source),
+            real(concat!($($name,)+ "_ci95_low"), $unit, concat!("Lower limit of the 95 % confidence interval of the mean (Student): ", $what)).or_null().from($source),
+            real(concat!($($name,)+ "_ci95_high"), $unit, concat!("Upper limit of the 95 % confidence interval of the mean (Student): ", $what)).or_null().from($source),
         ]
     };
 }
 
-/// Mean over realizations and the worst of them. Both are null where no realization has it.
+/// Mean and extreme value over realizations. Both are null without a value.
 macro_rules! mean_and_worst {
     ($name:literal, $end:literal, $word:literal, $what:literal, $source:literal) => {
         &[
@@ -55,7 +67,7 @@ macro_rules! mean_and_worst {
     };
 }
 
-const MAX_LOAD: &[Column] = &[real("max_load", "1", "F/(E* A0) at which loading turned to unloading")];
+const MAX_LOAD: &[Column] = &[real("max_load", "1", "Normal load F_max/(E* A0) at the load reversal")];
 
 const RESULTS: &[Column] = &[
     REALIZATION,
@@ -63,86 +75,86 @@ const RESULTS: &[Column] = &[
     SURFACE_ID,
     ASPERITIES_ID,
     MAX_LOAD[0],
-    real("pull_off_load", "1", "Pull-off load over E* A0: the greatest tension while unloading"),
-    real("pull_off_load_n", "N", "Pull-off load: the greatest tension while unloading"),
-    real("area_at_max_load", "1", "A/A0 at the end of loading, the sum of the discs"),
-    real("area_union_at_max_load", "1", "A/A0 at the end of loading, the union of the discs; null where it was not computed").or_null(),
-    real("area_adhesionless", "1", "A/A0 at this load without adhesion, erf(sqrt(2) F/(E* A0 rms_slope)), of the gradient that this surface has").from("Persson 2001"),
-    real("area_adhesionless_small", "1", "A/A0 at small loads without adhesion as boundary elements find it, 2 F/(E* A0 rms_slope)").from("Hyun et al. 2004"),
-    real("penetration_at_max_load", "1", "Approach over rms height at the end of loading"),
-    real("loss", "1", "Energy lost in the loop over E* A0 h_rms"),
-    real("loss_j", "J", "Energy lost in the loop, the integral of load over approach around it"),
-    real("loss_dk", "1", "Loss after Deng and Kesari over E* A0 h_rms, at this area, from the moments of the continuous spectrum; null for a measured surface, and where the printed Eq A2 has no integral")
+    real("pull_off_load", "1", "Pull-off force F_po/(E* A0): magnitude of the most negative normal load during unloading"),
+    real("pull_off_load_n", "N", "Pull-off force F_po: magnitude of the most negative normal load during unloading"),
+    real("area_at_max_load", "1", "Contact area A/A0 at load reversal, summed over the contact discs"),
+    real("area_union_at_max_load", "1", "Contact area A/A0 at load reversal, union of the contact discs; null where it was not computed").or_null(),
+    real("area_adhesionless", "1", "Adhesionless contact area A/A0 at F_max, Persson's theory: erf(sqrt(2) F/(E* A0 rms_slope))").from("Persson 2001"),
+    real("area_adhesionless_small", "1", "Adhesionless contact area A/A0 at F_max, small-load limit of boundary-element results: 2 F/(E* A0 rms_slope)").from("Hyun et al. 2004"),
+    real("penetration_at_max_load", "1", "Mean penetration Δ/h_rms at load reversal"),
+    real("loss", "1", "Dissipated energy Θ/(E* A0 h_rms) of the loop"),
+    real("loss_j", "J", "Dissipated energy Θ: area of the loop of normal load over mean penetration"),
+    real("loss_dk", "1", "Deng-Kesari estimate Θ_DK/(E* A0 h_rms) at area_at_max_load, with the moments of the continuous spectrum; null for a measured surface, and where the uncorrected Eq A2 has no integral")
         .or_null()
         .from("Eqs A1-A4"),
-    real("loss_dk_realised", "1", "Loss after Deng and Kesari over E* A0 h_rms, at this area, from the moments that this surface has; null where they do not define one")
+    real("loss_dk_realised", "1", "Deng-Kesari estimate Θ_DK/(E* A0 h_rms) at area_at_max_load, with the moments of the realized surface; null where these define none")
         .or_null()
         .from("Eqs A1-A4"),
-    real("loss_touched", "1", "Sum over the asperities that came into contact of what each loses by itself, over E* A0 h_rms: the loss without interaction, of asperities that jump in at zero penetration").from("Eq A1"),
-    real("loss_dalvi", "1", "Work of adhesion times contact area at the end of loading, over E* A0 h_rms").from("Dalvi et al. 2019"),
-    real("loss_ratio_dk", "1", "Loss over loss_dk; null where either is missing or the latter is 0").or_null(),
-    real("dissipated", "1", "Energy lost in the loop over E* A0 h_rms, the sum over its events"),
-    real("dissipated_j", "J", "Energy lost in the loop, the sum over its events"),
-    real("audit_gap", "1", "|loss_j - dissipated_j| / loss_j; null where nothing was lost").or_null(),
-    real("absorption_share", "1", "Part of the dissipated energy Θ from contacts that meet and part: |cover + uncover| + |merge + split| of the energies of these events, over Θ; null where Θ = 0").or_null(),
-    real("loss_uncertainty", "1", "Numerical resolution of Θ, 1e-7 of the largest work along the loop, over Θ; null where Θ = 0").or_null(),
-    count("summit_count", "Asperities of the surface"),
-    real("summit_density_1_m2", "1/m^2", "Asperities per area"),
-    real("nayak_density_1_m2", "1/m^2", "Density of summits of a Gaussian surface with the moments that this surface has")
+    real("loss_touched", "1", "Sum of the dissipated energies of single isolated asperities over all asperities that came into contact, over E* A0 h_rms: no interaction, jump into contact at zero penetration").from("Eq A1"),
+    real("loss_dalvi", "1", "Work of adhesion times contact area at load reversal, over E* A0 h_rms").from("Dalvi et al. 2019"),
+    real("loss_ratio_dk", "1", "Ratio Θ/Θ_DK, loss over loss_dk; null where either is null or loss_dk is 0").or_null(),
+    real("dissipated", "1", "Dissipated energy over E* A0 h_rms, summed over the events of the loop"),
+    real("dissipated_j", "J", "Dissipated energy, summed over the events of the loop"),
+    real("audit_gap", "1", "Energy-balance error |loss_j - dissipated_j| / |loss_j|; null where loss_j is 0").or_null(),
+    real("absorption_share", "1", "Coalescence energy over dissipated energy: (|cover + uncover| + |merge + split|)/|Θ| of the event energies; null where Θ = 0").or_null(),
+    real("loss_uncertainty", "1", "Numerical resolution of Θ over |Θ|; the resolution is 1e-7 of the maximum work along the loop; null where Θ = 0").or_null(),
+    count("summit_count", "Number of asperities of the surface"),
+    real("summit_density_1_m2", "1/m^2", "Number of asperities per nominal area"),
+    real("nayak_density_1_m2", "1/m^2", "Summit density of a Gaussian surface with the spectral moments of the realized surface")
         .from("Eq A4, Nayak 1971"),
-    count("contact_count_at_max_load", "Asperities in contact at the end of loading"),
-    count("step_count", "Steps of loading and of this unloading"),
-    count("unconverged_count", "Those of them whose residual stayed above the tolerance"),
-    count("held_count", "Asperities held as they are since they flipped between covered and uncovered, summed over the steps"),
-    real("tabor_min", "1", "Smallest Tabor number of the asperities").from("Eq 3"),
-    real("tabor_median", "1", "Median Tabor number of the asperities").from("Eq 3"),
-    real("tabor_max", "1", "Greatest Tabor number of the asperities").from("Eq 3"),
-    real("tabor_mean", "1", "Mean Tabor number of the asperities").from("Eq 3"),
-    real("low_tabor_share", "1", "Share of the asperities whose Tabor number is below 2, where Wu's jump-in does not hold").from("Eq 3"),
-    real("rms_slope", "1", "Rms of the gradient that this surface has"),
-    real("rms_curvature_1_m", "1/m", "Rms of the Laplacian that this surface has"),
-    real("nayak_parameter", "1", "m0 m4 / m2^2 that this surface has").from("Nayak 1971"),
-    real("fuller_tabor", "1", "Adhesion parameter E* sd(height)^(3/2)/(mean(radius)^(1/2) work of adhesion) of the summits; above about 10 adhesion is lost; null for fewer than two summits and without adhesion").or_null().from("Fuller and Tabor 1975"),
-    real("touching_share", "1", "Share of contact spots that touch another one at the end of loading; null without contact").or_null(),
-    real("covered_share", "1", "Share of asperities in contact or covered that are covered, at the end of loading; null without contact").or_null(),
-    real("conformity", "1", "Elastic energy that flattens the shortest octave of the roughness over the work of adhesion, of the continuous spectrum; below 1 adhesion conforms to the summits; null for a measured surface and without adhesion")
+    count("contact_count_at_max_load", "Asperities in contact at load reversal"),
+    count("step_count", "Output steps of loading and of this unloading"),
+    count("unconverged_count", "Output steps with a residual above the tolerance"),
+    count("held_count", "Frozen asperities: state kept, because it alternated between absorbed and released; summed over the steps"),
+    real("tabor_min", "1", "Minimum Tabor parameter μ of the asperities").from("Eq 3"),
+    real("tabor_median", "1", "Median Tabor parameter μ of the asperities").from("Eq 3"),
+    real("tabor_max", "1", "Maximum Tabor parameter μ of the asperities").from("Eq 3"),
+    real("tabor_mean", "1", "Mean Tabor parameter μ of the asperities").from("Eq 3"),
+    real("low_tabor_share", "1", "Fraction of asperities with Tabor parameter μ < 2, where Wu's criterion is invalid").from("Eq 3"),
+    real("rms_slope", "1", "Root-mean-square slope, rms of the gradient of the realized surface"),
+    real("rms_curvature_1_m", "1/m", "Root-mean-square Laplacian of the realized surface, twice the rms mean curvature"),
+    real("nayak_parameter", "1", "Bandwidth (Nayak) parameter m0 m4/m2^2 of the realized surface").from("Nayak 1971"),
+    real("fuller_tabor", "1", "Fuller-Tabor parameter E* sd(height)^(3/2)/(mean(radius)^(1/2) Δγ) of the asperities; adhesion is negligible above about 10; null for fewer than two asperities and without adhesion").or_null().from("Fuller and Tabor 1975"),
+    real("touching_share", "1", "Fraction of contact spots that overlap a neighbour (distance < sum of radii) at load reversal; null without contact").or_null(),
+    real("covered_share", "1", "Absorbed fraction of the asperities in contact or absorbed, at load reversal; null without contact").or_null(),
+    real("conformity", "1", "Ratio U_el/Δγ of the shortest octave: elastic energy per area to flatten it over the work of adhesion, continuous spectrum; below 1 the half-space conforms to it; null for a measured surface and without adhesion")
         .or_null()
         .from("Persson and Tosatti 2001"),
-    real("conformity_realised", "1", "The same of the modes that this surface has; null where they are not known")
+    real("conformity_realised", "1", "Ratio U_el/Δγ of the shortest octave for the realized spectrum of the surface; null where that is unknown and without adhesion")
         .or_null()
         .from("Persson and Tosatti 2001"),
-    real("persson_tosatti", "1", "Elastic energy that flattens all the roughness over the work of adhesion, of the continuous spectrum; below 1 the surface is sticky; null for a measured surface and without adhesion")
+    real("persson_tosatti", "1", "Persson-Tosatti ratio U_el/Δγ: elastic energy per area to flatten all roughness over the work of adhesion, continuous spectrum; below 1 full contact is favoured; null for a measured surface and without adhesion")
         .or_null()
         .from("Persson and Tosatti 2001"),
-    real("persson_tosatti_realised", "1", "The same of the modes that this surface has; null where they are not known")
+    real("persson_tosatti_realised", "1", "Persson-Tosatti ratio U_el/Δγ for the realized spectrum of the surface; null where that is unknown and without adhesion")
         .or_null()
         .from("Persson and Tosatti 2001"),
 ];
 
-/// Where the energy of the events goes: `dissipated` in parts, over E* A0 h_rms and in joule. The first two make the whole, and so do the others.
+/// Parts of `dissipated` by branch and by kind of event, over E* A0 h_rms and in joule. Each of the two groups sums to `dissipated`.
 macro_rules! parts {
     ($($part:literal, $what:literal;)+) => {
         const PARTS: &[&[Column]] = &[$(&[
-            real(concat!("dissipated_", $part), "1", concat!("Energy lost ", $what, " over E* A0 h_rms")),
-            real(concat!("dissipated_", $part, "_j"), "J", concat!("Energy lost ", $what)),
+            real(concat!("dissipated_", $part), "1", concat!("Dissipated energy over E* A0 h_rms ", $what)),
+            real(concat!("dissipated_", $part, "_j"), "J", concat!("Dissipated energy ", $what)),
         ]),+];
         const PART_SPREADS: &[&[Column]] = &[$(
-            over_realizations!("dissipated_" $part, "1", concat!("energy lost ", $what, " over E* A0 h_rms"), ""),
-            over_realizations!("dissipated_" $part "_j", "J", concat!("energy lost ", $what), ""),
+            over_realizations!("dissipated_" $part, "1", concat!("dissipated energy over E* A0 h_rms ", $what), ""),
+            over_realizations!("dissipated_" $part "_j", "J", concat!("dissipated energy ", $what), ""),
         )+];
     };
 }
 
 parts! {
-    "loading", "in events on the way to the turning point";
-    "unloading", "in events on the way back from the turning point";
-    "jump_in", "in asperities' jumps into contact, with what relaxed after them";
-    "jump_off", "in asperities' jumps out of contact, with what relaxed after them";
-    "cover", "in the covering of asperities, with what relaxed after it; negative where energy was gained, since covering has no potential";
-    "uncover", "in the uncovering of asperities, with what relaxed after it; negative where energy was gained, since covering has no potential";
-    "snap", "in moves to another equilibrium with the same spots";
-    "merge", "in spots that become one, with what relaxed after them";
-    "split", "in spots that part again, with what relaxed after them";
+    "loading", "of events during loading";
+    "unloading", "of events during unloading";
+    "jump_in", "of jumps into contact, including the relaxation that follows";
+    "jump_off", "of jumps out of contact, including the relaxation that follows";
+    "cover", "of absorption, including the relaxation that follows; may be negative, since absorption has no potential";
+    "uncover", "of release from absorption, including the relaxation that follows; may be negative, since absorption has no potential";
+    "snap", "of snap-through events: transitions to another equilibrium with the same contacts";
+    "merge", "of merging contacts, including the relaxation that follows";
+    "split", "of splitting contacts, including the relaxation that follows";
 }
 
 const PART_COLUMNS: [Column; 2 * PARTS.len()] = join(PARTS);
@@ -150,89 +162,81 @@ const PART_COLUMNS: [Column; 2 * PARTS.len()] = join(PARTS);
 const REALIZATION_COLUMNS: [Column; CASE.len() + PARAMETERS.len() + RESULTS.len() + PART_COLUMNS.len()] =
     join(&[CASE, PARAMETERS, RESULTS, &PART_COLUMNS]);
 
-/// One cycle, in numbers.
+/// Results of single cycles.
 pub static REALIZATIONS: Table = Table {
     name: "realizations",
     version: 1,
     file: "statistics/realizations.parquet",
-    doc: "One row per case, realization and turning point.",
+    doc: "One row per case, realization and load reversal.",
     columns: &REALIZATION_COLUMNS,
 };
 
 const SPREADS: &[&[Column]] = &[
-    over_realizations!("pull_off_load", "1", "pull-off load over E* A0", ""),
-    over_realizations!("area_at_max_load", "1", "A/A0 at the end of loading", ""),
-    over_realizations!("penetration_at_max_load", "1", "approach over rms height at the end of loading", ""),
-    over_realizations!("loss", "1", "energy lost in the loop over E* A0 h_rms", ""),
-    over_realizations!("loss_dk", "1", "loss after Deng and Kesari, continuous moments", "Eqs A1-A4"),
-    over_realizations!("loss_dk_realised", "1", "loss after Deng and Kesari, realised moments", "Eqs A1-A4"),
-    over_realizations!("loss_touched", "1", "sum of what the asperities that touched lose by themselves over E* A0 h_rms", "Eq A1"),
-    over_realizations!("loss_dalvi", "1", "work of adhesion times contact area over E* A0 h_rms", "Dalvi et al. 2019"),
-    over_realizations!("area_adhesionless", "1", "A/A0 at this load without adhesion", "Persson 2001"),
-    over_realizations!("area_adhesionless_small", "1", "A/A0 at small loads without adhesion, boundary elements", "Hyun et al. 2004"),
-    over_realizations!("fuller_tabor", "1", "adhesion parameter of the summits", "Fuller and Tabor 1975"),
-    over_realizations!("loss_ratio_dk", "1", "loss over loss after Deng and Kesari", ""),
-    over_realizations!("dissipated", "1", "energy lost in the events of the loop over E* A0 h_rms", ""),
-    over_realizations!("dissipated_j", "J", "energy lost in the events of the loop", ""),
+    over_realizations!("pull_off_load", "1", "pull-off force F_po/(E* A0)", ""),
+    over_realizations!("area_at_max_load", "1", "contact area A/A0 at load reversal", ""),
+    over_realizations!("penetration_at_max_load", "1", "mean penetration Δ/h_rms at load reversal", ""),
+    over_realizations!("loss", "1", "dissipated energy Θ/(E* A0 h_rms) of the loop", ""),
+    over_realizations!("loss_dk", "1", "Deng-Kesari estimate Θ_DK/(E* A0 h_rms), moments of the continuous spectrum", "Eqs A1-A4"),
+    over_realizations!("loss_dk_realised", "1", "Deng-Kesari estimate Θ_DK/(E* A0 h_rms), moments of the realized surface", "Eqs A1-A4"),
+    over_realizations!(
+        "loss_touched",
+        "1",
+        "sum of the dissipated energies of single isolated asperities that came into contact, over E* A0 h_rms",
+        "Eq A1"
+    ),
+    over_realizations!("loss_dalvi", "1", "work of adhesion times contact area at load reversal, over E* A0 h_rms", "Dalvi et al. 2019"),
+    over_realizations!("area_adhesionless", "1", "adhesionless contact area A/A0 at F_max, Persson's theory", "Persson 2001"),
+    over_realizations!(
+        "area_adhesionless_small",
+        "1",
+        "adhesionless contact area A/A0 at F_max, small-load limit of boundary-element results",
+        "Hyun et al. 2004"
+    ),
+    over_realizations!("fuller_tabor", "1", "Fuller-Tabor parameter of the asperities", "Fuller and Tabor 1975"),
+    over_realizations!("loss_ratio_dk", "1", "ratio Θ/Θ_DK, loss over loss_dk", ""),
+    over_realizations!("dissipated", "1", "dissipated energy over E* A0 h_rms, summed over the events of the loop", ""),
+    over_realizations!("dissipated_j", "J", "dissipated energy, summed over the events of the loop", ""),
 ];
 
-/// What tells how far a row is to be trusted.
+/// Indicators of validity of a row.
 const VALIDITY: &[&[Column]] = &[
-    mean_and_worst!("audit_gap", "max", "Greatest", "|loss_j - dissipated_j| / |loss_j|", ""),
-    mean_and_worst!("tabor_min", "min", "Least", "smallest Tabor number of the asperities", "Eq 3"),
-    mean_and_worst!("tabor_mean", "min", "Least", "mean Tabor number of the asperities", "Eq 3"),
-    mean_and_worst!("low_tabor_share", "max", "Greatest", "share of the asperities whose Tabor number is below 2", "Eq 3"),
+    mean_and_worst!("audit_gap", "max", "Maximum", "energy-balance error |loss_j - dissipated_j| / |loss_j|", ""),
+    mean_and_worst!("tabor_min", "min", "Minimum", "minimum Tabor parameter of the asperities of a surface", "Eq 3"),
+    mean_and_worst!("tabor_mean", "min", "Minimum", "mean Tabor parameter of the asperities of a surface", "Eq 3"),
+    mean_and_worst!("low_tabor_share", "max", "Maximum", "fraction of asperities with a Tabor parameter below 2", "Eq 3"),
     mean_and_worst!(
         "absorption_share",
         "max",
-        "Largest",
-        "net energy of cover and uncover, and of merge and split events, over the dissipated energy",
+        "Maximum",
+        "coalescence energy over dissipated energy, (|cover + uncover| + |merge + split|)/|Θ|",
         ""
     ),
-    mean_and_worst!("loss_uncertainty", "max", "Largest", "numerical resolution of the dissipated energy over the dissipated energy", ""),
-    mean_and_worst!("touching_share", "max", "Greatest", "share of contact spots that touch another one at the end of loading", ""),
-    mean_and_worst!(
-        "covered_share",
-        "max",
-        "Greatest",
-        "share of asperities in contact or covered that are covered at the end of loading",
-        ""
-    ),
-    mean_and_worst!(
-        "conformity",
-        "min",
-        "Least",
-        "energy of flattening the shortest octave over the work of adhesion, continuous spectrum",
-        "Persson and Tosatti 2001"
-    ),
+    mean_and_worst!("loss_uncertainty", "max", "Maximum", "numerical resolution of Θ over |Θ|", ""),
+    mean_and_worst!("touching_share", "max", "Maximum", "fraction of contact spots that overlap a neighbour at load reversal", ""),
+    mean_and_worst!("covered_share", "max", "Maximum", "absorbed fraction of the asperities in contact or absorbed, at load reversal", ""),
+    mean_and_worst!("conformity", "min", "Minimum", "U_el/Δγ of the shortest octave, continuous spectrum", "Persson and Tosatti 2001"),
     mean_and_worst!(
         "conformity_realised",
         "min",
-        "Least",
-        "energy of flattening the shortest octave over the work of adhesion, realised modes",
+        "Minimum",
+        "U_el/Δγ of the shortest octave, realized spectrum",
         "Persson and Tosatti 2001"
     ),
-    mean_and_worst!(
-        "persson_tosatti",
-        "min",
-        "Least",
-        "energy of flattening all the roughness over the work of adhesion, continuous spectrum",
-        "Persson and Tosatti 2001"
-    ),
+    mean_and_worst!("persson_tosatti", "min", "Minimum", "Persson-Tosatti ratio U_el/Δγ, continuous spectrum", "Persson and Tosatti 2001"),
     mean_and_worst!(
         "persson_tosatti_realised",
         "min",
-        "Least",
-        "energy of flattening all the roughness over the work of adhesion, realised modes",
+        "Minimum",
+        "Persson-Tosatti ratio U_el/Δγ, realized spectrum",
         "Persson and Tosatti 2001"
     ),
 ];
 
 const COUNTS: &[Column] = &[
-    count("planned_count", "Realizations that the spec asks for"),
-    count("done_count", "Realizations that are in the means"),
+    count("planned_count", "Realizations requested by the spec"),
+    count("done_count", "Realizations in the means"),
     count("failed_count", "Realizations that failed"),
-    text("caution", "What speaks against trusting the row, words joined by +; empty if nothing does"),
+    text("caution", "Codes of all warnings of the row, joined by +; empty without warnings"),
 ];
 
 const SPREAD_COLUMNS: [Column; 4 * SPREADS.len()] = join(SPREADS);
@@ -253,7 +257,7 @@ pub static CASES: Table = Table {
     name: "cases",
     version: 1,
     file: "statistics/cases.parquet",
-    doc: "One row per case and turning point, averaged over realizations.",
+    doc: "One row per case and load reversal, averaged over realizations.",
     columns: &CASE_COLUMNS,
 };
 
@@ -270,53 +274,56 @@ pub static CURVES: Table = Table {
         real(
             "max_load",
             "1",
-            "F/(E* A0) from which this unloading began; null while loading, since one loading path serves every turning point",
+            "Normal load F_max/(E* A0) at the load reversal from which this unloading starts; null for loading, which is common to all load reversals",
         )
         .or_null(),
         text("branch", "\"loading\" or \"unloading\""),
         index("grid_index", "Number of the station along the branch, from 0; a station without realizations has no row"),
         text(
             "station",
-            "Rule of the station: \"load\" (the same load in every realization) or \"tension_fraction\" (the same fraction of each realization's own maximum tensile load)",
+            "Rule of the station: \"load\" (same load in all realizations) or \"tension_fraction\" (same fraction of the maximum tensile load of each realization)",
         ),
         real(
             "tension_fraction",
             "1",
-            "Tensile load of each realization over its own maximum tensile load on this branch; null if station is \"load\"",
+            "Tensile load over the maximum tensile load of the realization on this branch; null if station is \"load\"",
         )
         .or_null(),
-        real("load", "1", "F/(E* A0): the common load, or the mean of the realizations' own loads if station is \"tension_fraction\""),
-        real("area_mean", "1", "Mean of A/A0 over the realizations, each at its own load if station is \"tension_fraction\""),
-        real("area_sd", "1", "Standard deviation of A/A0 (n - 1); null for fewer than two").or_null(),
+        real("load", "1", "Normal load F/(E* A0), positive in compression: the common load, or the mean of the loads of the realizations if station is \"tension_fraction\""),
+        real("area_mean", "1", "Mean contact area A/A0 over the realizations, each at its own load if station is \"tension_fraction\""),
+        real("area_sd", "1", "Standard deviation of A/A0 over the realizations (n - 1); null for fewer than two").or_null(),
         real(
             "penetration_mean",
             "1",
-            "Mean of approach over rms height over the realizations, each at its own load if station is \"tension_fraction\"",
+            "Mean of the mean penetration Δ/h_rms over the realizations, each at its own load if station is \"tension_fraction\"",
         ),
-        real("penetration_sd", "1", "Standard deviation of approach over rms height (n - 1); null for fewer than two").or_null(),
+        real("penetration_sd", "1", "Standard deviation of Δ/h_rms over the realizations (n - 1); null for fewer than two").or_null(),
         count(
             "realization_count",
-            "Realizations in the means: those that reach the load if station is \"load\"; otherwise all, and one without tension is taken at zero load",
+            "Realizations in the means: those that reach the load if station is \"load\", otherwise all; a realization without tensile load enters at zero load",
         ),
     ],
 };
 
-/// What the panels of the figures show.
+/// Data of the panels of the figures.
 pub static PANELS: Table = Table {
     name: "panels",
     version: 1,
     file: "statistics/panels.parquet",
-    doc: "One row per point of a curve of a panel of the figures, in the order of drawing.",
+    doc: "One row per point of each curve of each panel of the figures, in drawing order.",
     columns: &[
-        text("sweep", "The sweep that the panel is of; empty for the closer look at one cycle"),
-        text("panel", "Its letter: A area, B pull-off load, C penetration, D loss, E loss by branches; a word in the closer look"),
+        text("sweep", "Name of the sweep; empty for the panels of a single cycle"),
+        text(
+            "panel",
+            "Panel: A contact area, B pull-off force, C mean penetration, D dissipated energy, E dissipated energy by branch; a name for a single cycle",
+        ),
         index("curve", "Number of the curve in the panel, from 0"),
-        text("name", "What it shows: a branch, a column of the table cases without _mean, or a word"),
-        text("of", "Of what of the sweep, as the panel names it; empty if there is no choice"),
-        index("point", "Number of the point on its curve, from 0"),
-        real("x", "1", "Horizontal value, as x_label says; in units of the data, which for a swept parameter are its own"),
-        real("y", "1", "Vertical value, as y_label says"),
-        real("y_sd", "1", "Standard deviation over realizations (n - 1), drawn as a bar or a band; null where there is none").or_null(),
+        text("name", "Quantity of the curve: a branch, a column of the table cases without _mean, or a name"),
+        text("of", "Cases of the curve, as labelled in the panel; empty if the panel has a single series"),
+        index("point", "Number of the point along the curve, from 0"),
+        real("x", "1", "Horizontal value of the quantity x_label; a swept parameter is in the unit of its column in the table cases"),
+        real("y", "1", "Vertical value of the quantity y_label"),
+        real("y_sd", "1", "Standard deviation over realizations (n - 1), drawn as error bar or band; null where none is drawn").or_null(),
         text("x_label", "Label of the horizontal axis, with _{} for subscripts and ^{} for superscripts"),
         text("y_label", "Label of the vertical axis"),
     ],

@@ -1,4 +1,4 @@
-//! The part of the report that looks closely at one cycle.
+//! Part of the report: a single cycle.
 
 use super::StageError;
 use super::page::{escape, grid};
@@ -18,13 +18,13 @@ use crate::store::parquet::read_table;
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
 
-/// Points along one side of a surface, at most: a closer look at a greater one would take more memory than its cycle.
+/// Maximum number of points along a side. For larger surfaces this section would need more memory than the cycle.
 const GREATEST: u64 = 8192;
 
 /// Points of a curve of a theory.
 const POINTS: usize = 120;
 
-/// What is drawn of one cycle.
+/// The figures of one cycle.
 pub(super) struct Look {
     /// The id of the cycle, and the turning point.
     pub(super) id: String,
@@ -34,8 +34,8 @@ pub(super) struct Look {
     pub(super) map: Option<String>,
 }
 
-/// A closer look at the first cycle that is done, at the turning point that is nearest to the spec's first one; nothing if none is, or if all surfaces are
-/// too great for it.
+/// The first finished cycle, at the load reversal nearest to the first one of the spec; `None` without a finished cycle, or if all surfaces are too
+/// large.
 pub(super) fn look(campaign: &Campaign, standings: &[Standing]) -> Result<Option<Look>, StageError> {
     let params = |unit: &CycleUnit| &campaign.surfaces[unit.surface].params;
     let done = campaign.cycles.iter().zip(standings).filter(|(_, standing)| **standing == Standing::Done).map(|(unit, _)| unit);
@@ -118,13 +118,13 @@ fn eq10_variance(params: &SurfaceParams) -> f64 {
     Spectrum { normalization: Normalization::Spectrum, ..spectrum(params) }.lattice_moments().m0_m2
 }
 
-/// The closer look on the page.
+/// The section of the report.
 pub(super) fn section(html: &mut String, number: usize, look: &Look) {
     // Writing to a string cannot fail.
     let _ = write!(
         html,
-        "<h2>A closer look</h2>\n<p>One cycle, {}, to F/(E*A<sub>0</sub>) = {}. Every event is in its table <code>events</code>, and its spots are in \
-         <code>contacts</code>.</p>\n",
+        "<h2>Single cycle</h2>\n<p>Cycle {} with F<sub>max</sub>/(E*A<sub>0</sub>) = {}. The table <code>events</code> of the cycle holds all events, the \
+         table <code>contacts</code> the contact spots.</p>\n",
         escape(&look.id),
         significant(look.max_load, 4)
     );

@@ -1,4 +1,4 @@
-//! `report --compare`: campaigns side by side, from their tables over realizations.
+//! Comparison of finished runs, from their tables over realizations.
 
 use super::StageError;
 use super::page::{escape, grid, head};
@@ -38,6 +38,19 @@ pub fn compare(folders: &[PathBuf], out: &Path) -> Result<PathBuf, StageError> {
     let path = out.join("comparison.html");
     commit::commit_bytes("write the comparison", &path, page(&sides, &matched, &names, &drawings, &table)?.as_bytes())?;
     Ok(path)
+}
+
+/// Symbol and column of a compared quantity.
+fn symbol(column: &str) -> String {
+    let symbol = match column {
+        "area_at_max_load" => "A/A<sub>0</sub>",
+        "penetration_at_max_load" => "Δ/h<sub>rms</sub>",
+        "pull_off_load" => "F<sub>po</sub>/(E*A<sub>0</sub>)",
+        "loss" => "Θ/(E*A<sub>0</sub>h<sub>rms</sub>)",
+        "loss_ratio_dk" => "Θ/Θ<sub>DK</sub>",
+        _ => return column.to_owned(),
+    };
+    format!("{symbol} (<code>{column}</code>)")
 }
 
 /// What campaigns are called: the names of their folders, or their whole paths where two have one name.
@@ -97,22 +110,22 @@ fn page(
 ) -> Result<String, StageError> {
     let labels: Vec<String> = sides.iter().map(|side| escape(&side.label)).collect();
     let title = labels.join(", ");
-    let told = if matched.differing.is_empty() { "nothing but their realizations".to_owned() } else { matched.differing.join(", ") };
+    let told = if matched.differing.is_empty() { "the realizations only".to_owned() } else { matched.differing.join(", ") };
     let left: Vec<String> = labels
         .iter()
         .zip(&matched.left_over)
         .filter(|(_, count)| **count > 0)
         .map(|(label, count)| format!("{count} of {label}"))
         .collect();
-    let left = if left.is_empty() { String::new() } else { format!(" Cases without a counterpart are left out: {}.", left.join(", ")) };
-    let mut html = head(&format!("{title}: compared"), "");
+    let left = if left.is_empty() { String::new() } else { format!(" Cases without a counterpart are omitted: {}.", left.join(", ")) };
+    let mut html = head(&format!("Comparison of {title}"), "");
     // Writing to a string cannot fail.
     let _ = write!(
         html,
-        "<h1>Compared: {title}</h1>\n<p>The campaigns differ in {}. Each case of {} is \
-         compared with the same one of the others.{left} In brackets half the 95 % interval of a difference: surface by surface where both have the same ones, else \
-         of two independent means (Welch).</p>\n<div class=\"wide\"><table>\n<tr><th>case</th><th>quantity</th><th>campaign</th><th>mean</th><th>{}</th>\
-         <th>difference</th><th>relative</th><th>realizations</th></tr>\n",
+        "<h1>Comparison of {title}</h1>\n<p>The runs differ in {}. Reference: {}. Cases with otherwise equal parameters are compared.{left} Quantities are \
+         means over realizations. Parentheses: half-width of the 95 % confidence interval of the difference, surface by surface where both runs have the same \
+         surfaces, otherwise of two independent means (Welch).</p>\n<div class=\"wide\"><table>\n<tr><th>case</th><th>quantity</th><th>run</th><th>mean</th><th>mean of {}</th>\
+         <th>difference</th><th>relative difference</th><th>realizations</th></tr>\n",
         escape(&told),
         labels[0],
         labels[0]
@@ -124,14 +137,14 @@ fn page(
     for row in 0..table.row_count() {
         let number = |value: f64| shown(Some(value), Shown::Plain);
         let interval = intervals[row].map_or_else(String::new, |half| format!(" (±{})", number(half)));
-        // What the interval does not let pass for chance.
+        // Significant at the 95 % level.
         let clear = intervals[row].is_some_and(|half| differences[row].abs() > half);
         let of = if paired[row] { format!("{} pairs", counts[row]) } else { format!("{} and {}", counts[row], others[row]) };
         let _ = writeln!(
             html,
             "<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td{}>{}{interval}</td><td>{}</td><td>{of}</td></tr>",
             escape(&names[groups[row] as usize]),
-            quantities[row],
+            symbol(quantities[row]),
             escape(campaigns[row]),
             number(means[row]),
             number(references[row]),
@@ -140,9 +153,7 @@ fn page(
             shown(shares[row], Shown::Percent)
         );
     }
-    html.push_str(
-        "</table></div>\n<p>Differences beyond their interval are bold. The numbers are in <code>comparison.parquet</code>.</p>\n",
-    );
+    html.push_str("</table></div>\n<p>Differences larger than their half-width are bold. Data: <code>comparison.parquet</code>.</p>\n");
     for (number, (name, panels)) in drawings.iter().enumerate() {
         let _ = writeln!(html, "<h2>{}</h2>", escape(name));
         grid(&mut html, number + 1, panels);

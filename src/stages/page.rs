@@ -1,4 +1,4 @@
-//! What the pages have in common: their head and style, and figures side by side.
+//! Common parts of HTML pages: head, style and grids of figures.
 
 use crate::figures::Panel;
 use std::fmt::Write as _;
@@ -14,7 +14,7 @@ td,th{padding:.2rem .7rem;border-bottom:1px solid #ccc;text-align:left;vertical-
 @media print{body{max-width:none;margin:0;font-size:11pt}.wide{overflow:visible}.wide table{font-size:6.5pt}\
 .wide td{white-space:normal}.panels{grid-template-columns:1fr 1fr}.panels>figure,.map,tr{break-inside:avoid}}";
 
-/// The page up to the beginning of its body; `more` is what else its head has.
+/// The page up to the start of its body; `more` is further content of its head.
 pub(super) fn head(title: &str, more: &str) -> String {
     format!(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width\">\n\
@@ -22,7 +22,7 @@ pub(super) fn head(title: &str, more: &str) -> String {
     )
 }
 
-/// Panels side by side, as many as the page is wide for, each with its number, its caption and its files.
+/// Panels in a grid, each with number, caption and links to its files.
 pub(super) fn grid<'a>(html: &mut String, number: usize, panels: impl IntoIterator<Item = &'a Panel>) {
     html.push_str("<div class=\"panels\">\n");
     for Panel { stem, name, caption, svg, .. } in panels {
@@ -39,7 +39,7 @@ pub(super) fn grid<'a>(html: &mut String, number: usize, panels: impl IntoIterat
     html.push_str("</div>\n");
 }
 
-/// A text as it stands in HTML.
+/// Text escaped for HTML.
 pub(super) fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

@@ -1,4 +1,4 @@
-//! The parts of the report that are about the report: the numbers with their intervals, how to load them, how to cite them.
+//! Parts of the report: results with confidence intervals, data access and citation.
 
 use super::StageError;
 use super::page::escape;
@@ -12,12 +12,12 @@ const RESULTS: [(&str, &str, f64, bool); 7] = [
     ("Δ/h<sub>rms</sub>", "penetration_at_max_load", 1.0, false),
     ("F<sub>po</sub>/(E*A<sub>0</sub>) [10<sup>−3</sup>]", "pull_off_load", 1e-3, true),
     ("Θ/(E*A<sub>0</sub>h<sub>rms</sub>) [10<sup>−3</sup>]", "loss", 1e-3, true),
-    ("Θ<sub>DK</sub> [10<sup>−3</sup>]", "loss_dk", 1e-3, true),
+    ("Θ<sub>DK</sub>, target spectrum [10<sup>−3</sup>]", "loss_dk", 1e-3, true),
     ("Θ/Θ<sub>DK</sub>", "loss_ratio_dk", 1.0, true),
-    ("Θ<sub>DK</sub>, realised moments [10<sup>−3</sup>]", "loss_dk_realised", 1e-3, true),
+    ("Θ<sub>DK</sub>, realised spectrum [10<sup>−3</sup>]", "loss_dk_realised", 1e-3, true),
 ];
 
-/// What is compared with the reference case.
+/// Quantities compared with the reference case.
 const CHANGES: [(&str, &str); 5] = [
     ("A/A<sub>0</sub>", "area_at_max_load"),
     ("Δ/h<sub>rms</sub>", "penetration_at_max_load"),
@@ -26,16 +26,17 @@ const CHANGES: [(&str, &str); 5] = [
     ("Θ/Θ<sub>DK</sub>", "loss_ratio_dk"),
 ];
 
-/// The results with their confidence intervals or single surfaces, and how many realizations they are of.
+/// The results with confidence intervals or values of single surfaces, and the number of realizations.
 pub(super) fn results(html: &mut String, cases: &Cases<'_>) -> Result<(), StageError> {
     let count = |name: &str| cases.frame.i64(name);
     let (done, planned, failed) = (count("done_count")?, count("planned_count")?, count("failed_count")?);
     let _ = write!(
         html,
-        "<h2>Results</h2>\n<p>Means over realizations: A and Δ at maximum load, F<sub>po</sub> of the unloading branch, Θ of the whole loop. In brackets: \
-         95 % confidence interval of the mean (Student). A lower limit below 0 of a quantity that cannot be negative is replaced by 0 and marked with †. In \
-         braces: the values of the single surfaces, where there are fewer than {FEW}. Numbers with a power of ten are absolute, whatever the scale of their \
-         column.{}</p>\n<div class=\"wide\"><table>\n{NAME_HEADS}<th>done of planned</th>",
+        "<h2>Results</h2>\n<p>Means over realizations: contact area A and mean penetration Δ at load reversal, pull-off force F<sub>po</sub> (maximum tensile \
+         load during unloading), dissipated energy Θ (area of the loop), and its estimate Θ<sub>DK</sub> by Deng and Kesari (target spectrum). Brackets: \
+         95 % confidence interval of the mean (Student). A lower limit below 0 of a quantity that cannot be negative is replaced by 0 and marked with †. \
+         Braces: values of the single surfaces, for fewer than {FEW}. Numbers with a power of ten are not scaled by the factor in the column \
+         head.{}</p>\n<div class=\"wide\"><table>\n{NAME_HEADS}<th>finished of planned</th>",
         cases.reference().map_or_else(String::new, |of| format!(
             " Reference case: {}. It belongs to the most sweeps; the other cases are named by the parameters that differ from it.",
             escape(of)
@@ -77,7 +78,7 @@ fn result(cases: &Cases<'_>, row: usize, column: &str, (scale, positive): (f64, 
     Ok(format!("{}{spread}", scaled(mean, scale)))
 }
 
-/// How far the means of each case are from those of the reference case at the same load; nothing without such a case.
+/// Differences of the means of each case from those of the reference case at the same load; empty without such a case.
 fn changes(html: &mut String, cases: &Cases<'_>) -> Result<(), StageError> {
     let compared = || cases.rows().iter().filter_map(|listed| listed.reference.map(|reference| (listed, reference)));
     if compared().next().is_none() {
@@ -111,12 +112,12 @@ fn changes(html: &mut String, cases: &Cases<'_>) -> Result<(), StageError> {
     Ok(())
 }
 
-/// How to load the tables, and how to cite them.
+/// Data access and citation.
 pub(super) fn usage(html: &mut String) {
     let _ = write!(
         html,
-        "<h2>The data</h2>\n<p>Every number of this page stands in a table beside it; <code>datapackage.json</code> says what each column means, in which unit, \
-         and from which equation. What the panels show is in <code>statistics/panels.parquet</code>. In Python, in the folder of this page:</p>\n\
+        "<h2>Data</h2>\n<p>All numbers of this report are in the tables of this folder. <code>datapackage.json</code> describes each column with unit and \
+         equation. <code>statistics/panels.parquet</code> holds the data of the figures. In Python, with the folder of this report as working directory:</p>\n\
          <pre>import polars as pl          # or pandas: pd.read_parquet, or DuckDB: SELECT * FROM 'statistics/cases.parquet'\n\
          cases = pl.read_parquet(\"statistics/cases.parquet\")\n\
          print(cases.select(\"case_id\", \"max_load\", \"loss_mean\", \"loss_ci95_low\", \"loss_ci95_high\"))\n\
@@ -124,9 +125,9 @@ pub(super) fn usage(html: &mut String) {
          cycles = pl.scan_parquet(\"statistics/cycles.parquet\").drop(\"case_id\", \"realization\")\n\
          events = pl.scan_parquet(\"cycles/*/events.parquet\").join(cycles, on=\"cycle_id\").collect()</pre>\n<p>In R:</p>\n\
          <pre>library(arrow)\ncases &lt;- read_parquet(\"statistics/cases.parquet\")\nplot(cases$area_at_max_load_mean, cases$loss_mean)</pre>\n\
-         <h2>How to cite</h2>\n<p>Computed with hysteron {} (Rust; MIT OR Apache-2.0). The model is that of G. Violano and L. Afferrante, \
-         “Roughness-induced adhesive hysteresis in self-affine fractal surfaces”, Lubricants 9(1):7, 2021, with its slips corrected as the README of hysteron \
-         lists them. Which program, commit and compiler made each file is in <code>receipts/</code>.</p>\n",
+         <h2>Citation</h2>\n<p>Computed with hysteron {} (MIT OR Apache-2.0). Model: G. Violano and L. Afferrante, \
+         “Roughness-induced adhesive hysteresis in self-affine fractal surfaces”, Lubricants 9(1):7, 2021, with corrected equations; \
+         the guide of hysteron lists the corrections. The provenance records in <code>receipts/</code> state program, commit and compiler of each file.</p>\n",
         env!("CARGO_PKG_VERSION")
     );
 }

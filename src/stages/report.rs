@@ -1,4 +1,4 @@
-//! report: figures of every sweep, and one page that holds them.
+//! Stage report: the figures of all sweeps and the HTML report.
 
 use super::closer::{self, Look};
 use super::done::{Clock, Outcome};
@@ -67,7 +67,7 @@ pub(super) fn run(campaign: &Campaign, (cycles_check, check): (Check, Check), wa
     Ok(tally)
 }
 
-/// A picture in `figures/` of a folder, in every format.
+/// A figure in `figures/` of a folder, in all formats.
 pub(super) fn write_picture(dir: &Path, stem: &str, svg: &str) -> Result<[Written; 3], StageError> {
     let write =
         |ending: &str, bytes: &[u8]| commit::commit_bytes("write a figure", &dir.join("figures").join(format!("{stem}.{ending}")), bytes);
@@ -96,8 +96,9 @@ fn page(
     // Writing to a string cannot fail.
     let _ = write!(
         html,
-        "<h1>{name}</h1>\n<p>Adhesive hysteresis of rough surfaces: {}, {} each. Interacting JKR asperities after Violano and \
-         Afferrante, Lubricants 9(1):7 (2021), with its slips corrected. Mean ± one standard deviation.</p>\n<pre>{}</pre>\n",
+        "<h1>{name}</h1>\n<p>Adhesive hysteresis of rough surfaces: {}, {} each. Interacting asperities of Johnson, Kendall and \
+         Roberts (JKR) after Violano and Afferrante, Lubricants 9(1):7 (2021), with corrected equations. E*: reduced modulus; A<sub>0</sub>: nominal area; \
+         h<sub>rms</sub>: root-mean-square height; Δγ: work of adhesion; Δ: mean penetration; F: normal load, positive in compression.</p>\n<pre>{}</pre>\n",
         counted(campaign.cases.len(), "case"),
         campaign.realizations_in_words(),
         escape(&summary(cases.frame)?)
@@ -106,7 +107,7 @@ fn page(
     scans(&mut html, campaign)?;
     let sweeps = sweeps(campaign);
     for (number, sweep) in sweeps.iter().enumerate() {
-        let title = if sweep.is_empty() { "Results of the cycle".to_owned() } else { format!("Sweep {}", escape(sweep)) };
+        let title = if sweep.is_empty() { "Figures".to_owned() } else { format!("Sweep {}", escape(sweep)) };
         let _ = writeln!(html, "<h2>{title}</h2>");
         grid(&mut html, number + 1, drawings.iter().filter(|(of, _)| of == sweep).map(|(_, panel)| panel));
     }
@@ -118,6 +119,6 @@ fn page(
     trust(&mut html, cases)?;
     reading::usage(&mut html);
     let spec = escape(&campaign.spec.to_toml());
-    let _ = write!(html, "<h2>The spec, with every default</h2>\n<pre>{spec}</pre>\n</body>\n</html>\n");
+    let _ = write!(html, "<h2>Spec with all defaults</h2>\n<pre>{spec}</pre>\n</body>\n</html>\n");
     Ok(html)
 }

@@ -1,4 +1,4 @@
-//! The part of the report that says what measured surfaces are.
+//! Part of the report: measured surfaces.
 
 use super::StageError;
 use super::page::escape;
@@ -11,7 +11,7 @@ pub(super) fn scans(html: &mut String, campaign: &Campaign) -> Result<(), StageE
     let mut rows = String::new();
     for unit in campaign.surfaces.iter().filter(|unit| unit.params.is_measured()) {
         let path = campaign.surface_path(unit);
-        // Of one that could not be taken, the failure is told elsewhere.
+        // A failed import is reported elsewhere.
         if !path.is_file() {
             continue;
         }
@@ -37,11 +37,12 @@ pub(super) fn scans(html: &mut String, campaign: &Campaign) -> Result<(), StageE
     if !rows.is_empty() {
         let _ = write!(
             html,
-            "<h2>Measured surfaces</h2>\n<p>Each is one realization, so that its results have no spread. The fraction of its area in the central square, of which all results are. Lengths in metres: the side of the square that was taken, rms height and slope \
-             of what is left of its heights, the wavelength below which waves were taken off and their rms height, the rms height of the trend that was taken off; missing \
-             points that were filled in; and the Hurst exponent of the self-affine spectrum that fits, which beyond 0 to 1 says that none does.</p>\n\
-             <div class=\"wide\"><table>\n<tr><th>file</th><th>points</th><th>kept</th><th>L</th><th>h<sub>rms</sub></th><th>slope</th><th>cut-off</th><th>below it</th><th>trend</th>\
-             <th>missing</th><th>H</th></tr>\n{rows}</table></div>\n"
+            "<h2>Measured surfaces</h2>\n<p>Each measured surface is one realization, without a standard deviation. Area kept: fraction of the scan in the \
+             central square of side L. h<sub>rms</sub> and rms slope: after levelling and S-filter. Removed: rms heights below the S-filter cut-off and of \
+             the form subtracted by levelling. Filled: missing points interpolated (harmonic in-fill). H: Hurst exponent of the self-affine fit, with its \
+             standard deviation; outside 0 to 1 the spectrum is not self-affine.</p>\n\
+             <div class=\"wide\"><table>\n<tr><th>file</th><th>points</th><th>area kept</th><th>L [m]</th><th>h<sub>rms</sub> [m]</th><th>rms slope</th>\
+             <th>cut-off [m]</th><th>removed by S-filter [m]</th><th>removed by levelling [m]</th><th>filled</th><th>H</th></tr>\n{rows}</table></div>\n"
         );
     }
     Ok(())

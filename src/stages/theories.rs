@@ -1,4 +1,4 @@
-//! The part of the report that puts theories beside the results.
+//! Part of the report: comparison with analytical models.
 
 use super::StageError;
 use super::trust::{Cases, NAME_HEADS, scaled};
@@ -6,30 +6,31 @@ use std::fmt::Write as _;
 
 /// Heading, and column of the table `cases` without its `_mean`.
 const LOSSES: [(&str, &str); 5] = [
-    ("Θ here [10<sup>−3</sup>]", "loss"),
-    ("Deng–Kesari, spectrum [10<sup>−3</sup>]", "loss_dk"),
-    ("Deng–Kesari, realised [10<sup>−3</sup>]", "loss_dk_realised"),
-    ("Σθ of those that touched [10<sup>−3</sup>]", "loss_touched"),
-    ("Δγ A (Dalvi) [10<sup>−3</sup>]", "loss_dalvi"),
+    ("Θ, this simulation [10<sup>−3</sup>]", "loss"),
+    ("Θ<sub>DK</sub>, target spectrum [10<sup>−3</sup>]", "loss_dk"),
+    ("Θ<sub>DK</sub>, realised spectrum [10<sup>−3</sup>]", "loss_dk_realised"),
+    ("Σθ over contacting asperities [10<sup>−3</sup>]", "loss_touched"),
+    ("Δγ A [10<sup>−3</sup>]", "loss_dalvi"),
 ];
 
 const AREAS: [(&str, &str); 3] = [
-    ("A/A<sub>0</sub> here", "area_at_max_load"),
-    ("Persson, no adhesion", "area_adhesionless"),
-    ("2F/(E*A<sub>0</sub>h′)", "area_adhesionless_small"),
+    ("A/A<sub>0</sub>, this simulation", "area_at_max_load"),
+    ("A/A<sub>0</sub>, Persson, adhesionless", "area_adhesionless"),
+    ("2F/(E*A<sub>0</sub>h′), adhesionless", "area_adhesionless_small"),
 ];
 
-const NUMBERS: [(&str, &str); 2] = [("U<sub>el</sub>/Δγ", "persson_tosatti_realised"), ("Fuller–Tabor", "fuller_tabor")];
+const NUMBERS: [(&str, &str); 2] = [("U<sub>el</sub>/Δγ", "persson_tosatti_realised"), ("Fuller–Tabor parameter", "fuller_tabor")];
 
-/// Losses, areas and numbers of stickiness, each beside what was computed.
+/// Dissipated energies, contact areas and adhesion parameters of analytical models.
 pub(super) fn theories(html: &mut String, cases: &Cases<'_>) -> Result<(), StageError> {
     html.push_str(
-        "<h2>Theories beside it</h2>\n<p>Losses are over E*A<sub>0</sub>h<sub>rms</sub>, at the contact area that was computed here. Deng and Kesari \
-         (Eqs A1–A4, corrected) multiply the mean loss of one asperity by Nayak's density and the contact area; the sum over the asperities that touched is what \
-         they would lose without acting on one another, jumping in at zero penetration; Δγ A is what Dalvi and others found in nearly full contact. Areas without \
-         adhesion are of Persson's theory and of boundary elements at small loads, of the realised gradient h′. U<sub>el</sub>/Δγ (Persson and Tosatti) below 1 and a \
-         Fuller–Tabor number below some 10 mean that the surface sticks. The bearing-area model and the criterion of Pastewka and Robbins are left out, since their \
-         formulae could not be confirmed at their sources.</p>\n<div class=\"wide\"><table>\n",
+        "<h2>Comparison with analytical models</h2>\n<p>Dissipated energies are over E*A<sub>0</sub>h<sub>rms</sub>, at the simulated contact area.</p>\n<ul>\n\
+         <li>Θ<sub>DK</sub>, Deng and Kesari (Eqs A1–A4, corrected): mean dissipated energy of one asperity times Nayak's summit density and the contact area.</li>\n\
+         <li>Σθ: sum over contacting asperities without elastic interaction, with jump into contact at zero penetration.</li>\n\
+         <li>Δγ A: work of adhesion times contact area, an empirical relation near full contact (Dalvi et al. 2019).</li>\n\
+         <li>Adhesionless areas: Persson's theory, and the small-load limit of boundary-element results, with the realised rms slope h′.</li>\n\
+         <li>U<sub>el</sub>/Δγ (Persson and Tosatti) below 1, or a Fuller–Tabor parameter below about 10: adhesion is strong.</li>\n</ul>\n\
+         <div class=\"wide\"><table>\n",
     );
     html.push_str(NAME_HEADS);
     for (heading, _) in LOSSES.iter().chain(&AREAS).chain(&NUMBERS) {

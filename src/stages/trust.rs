@@ -1,9 +1,9 @@
-//! The parts of the report that say how far to trust it: where the loss goes, and what is beyond the limits of the model.
+//! Parts of the report: energy budget, model validity and warnings.
 
 use super::StageError;
 use super::page::escape;
 use crate::schema::EVENT_KINDS;
-use crate::stats::{CAUTIONS, LIMITS, Limit, Listed, Listing, labels, listing};
+use crate::stats::{LIMITS, Limit, Listed, Listing, Warning, labels, listing, warnings};
 use crate::store::Frame;
 use std::fmt::Write as _;
 
@@ -14,21 +14,21 @@ pub(super) enum Shown {
     Percent,
 }
 
-/// The table "How far to trust it": heading, the column that is judged, and another one shown in brackets.
+/// The table of model validity: heading, the column that is compared with a limit, and the column shown in brackets.
 const TRUST: [(&str, &str, Option<&str>, Shown); 7] = [
-    ("Tabor number: least (mean)", "tabor_min_min", Some("tabor_mean_mean"), Shown::Plain),
-    ("share below 2", "low_tabor_share_mean", None, Shown::Percent),
-    ("spots that touch (worst)", "touching_share_mean", Some("touching_share_max"), Shown::Percent),
-    ("asperities covered (worst)", "covered_share_mean", Some("covered_share_max"), Shown::Percent),
+    ("Tabor parameter μ: minimum (mean)", "tabor_min_min", Some("tabor_mean_mean"), Shown::Plain),
+    ("asperities with μ &lt; 2", "low_tabor_share_mean", None, Shown::Percent),
+    ("overlapping contacts: mean (maximum)", "touching_share_mean", Some("touching_share_max"), Shown::Percent),
+    ("absorbed asperities: mean (maximum)", "covered_share_mean", Some("covered_share_max"), Shown::Percent),
     ("A/A<sub>0</sub>", "area_at_max_load_mean", None, Shown::Percent),
-    ("conformity number (spectrum)", "conformity_realised_mean", Some("conformity_mean"), Shown::Plain),
-    ("U<sub>el</sub>/Δγ (spectrum)", "persson_tosatti_realised_mean", Some("persson_tosatti_mean"), Shown::Plain),
+    ("U<sub>el</sub>/Δγ of the shortest octave: realised (target)", "conformity_realised_mean", Some("conformity_mean"), Shown::Plain),
+    ("U<sub>el</sub>/Δγ: realised (target)", "persson_tosatti_realised_mean", Some("persson_tosatti_mean"), Shown::Plain),
 ];
 
 /// The first cells of the heading of every table.
 pub(super) const NAME_HEADS: &str = "<tr><th>case</th><th>F<sub>max</sub>/(E*A<sub>0</sub>)</th>";
 
-/// The rows of the table `cases`, as the tables of the page list and name them.
+/// The rows of the table `cases`, in the order and with the labels of the report.
 pub(super) struct Cases<'a> {
     pub(super) frame: &'a Frame,
     pub(super) realizations: &'a Frame,
@@ -66,20 +66,20 @@ impl<'a> Cases<'a> {
         self.loads.get(row).map_or("", String::as_str)
     }
 
-    /// Whether a row carries a caution.
+    /// Whether a row has a warning.
     fn has(&self, row: usize, word: &str) -> bool {
         self.words.get(row).is_some_and(|said| said.split('+').any(|part| part == word))
     }
 
-    /// A cell, marked if the number of this column is beyond its limit.
+    /// A cell, marked where the number of this column is beyond its limit.
     fn cell(&self, row: usize, column: &str, text: &str) -> String {
-        // The caution decides, not the number: the Tabor number is a limit of one jump-in rule only.
+        // The warning decides, not the number: the limit of the Tabor parameter applies to one criterion only.
         let beyond = limit_of(column).is_some_and(|limit| self.has(row, limit.caution));
         format!("<td{}>{text}</td>", if beyond { " class=\"beyond\"" } else { "" })
     }
 }
 
-/// Where the loss goes: shares of the branches and of the kinds of events. Kinds that lose nothing anywhere have no column.
+/// The energy budget: fractions by branch and by kind of event. Kinds without dissipated energy in all cases have no column.
 pub(super) fn split(html: &mut String, cases: &Cases<'_>) -> Result<(), StageError> {
     let mut kinds = Vec::new();
     for kind in EVENT_KINDS {
@@ -89,17 +89,18 @@ pub(super) fn split(html: &mut String, cases: &Cases<'_>) -> Result<(), StageErr
         }
     }
     html.push_str(
-        "<h2>Where the loss goes</h2>\n<p>Θ is the work around the loop. The sum over its events is a second account of it, and the audit gap is the \
-         difference over Θ; both are over E*A<sub>0</sub>h<sub>rms</sub>. Shares are of that sum: by branch, and by the event that began each \
-         relaxation. Covering has no potential, so its share may be negative.</p>\n<div class=\"wide\"><table>\n",
+        "<h2>Energy budget</h2>\n<p>Θ is the area of the loop. The energies of all events sum to the same value if the energy balance is exact; the \
+         energy-balance error is the difference over Θ. Both are over E*A<sub>0</sub>h<sub>rms</sub>. The percentages are fractions of the sum over events: by \
+         branch, and by the kind of event that triggers each relaxation. Absorption and release have no potential, so their fractions may be \
+         negative.</p>\n<div class=\"wide\"><table>\n",
     );
     let _ = write!(
         html,
-        "{NAME_HEADS}<th>Θ [10<sup>−3</sup>]</th><th>sum over events [10<sup>−3</sup>]</th><th>audit gap: worst (mean){}</th><th>loading</th><th>unloading</th>",
+        "{NAME_HEADS}<th>Θ [10<sup>−3</sup>]</th><th>sum over events [10<sup>−3</sup>]</th><th>energy-balance error: maximum (mean){}</th><th>loading</th><th>unloading</th>",
         bound("audit_gap_max", Shown::Percent)
     );
     for kind in &kinds {
-        let _ = write!(html, "<th>{}</th>", kind.replace('_', " "));
+        let _ = write!(html, "<th>{}</th>", kind_name(kind));
     }
     html.push_str("</tr>\n");
     for listed in cases.rows() {
@@ -122,14 +123,27 @@ pub(super) fn split(html: &mut String, cases: &Cases<'_>) -> Result<(), StageErr
     Ok(())
 }
 
-/// What tells how far the model holds, with what is beyond its limit marked, and the cautions as sentences.
+/// The name of a kind of event.
+fn kind_name(kind: &str) -> &str {
+    match kind {
+        "jump_in" => "jump into contact",
+        "jump_off" => "jump out of contact",
+        "cover" => "absorption",
+        "uncover" => "release",
+        "snap" => "snap-through",
+        "merge" => "merging",
+        "split" => "splitting",
+        _ => kind,
+    }
+}
+
+/// The indicators of model validity with their limits, and the warnings.
 pub(super) fn trust(html: &mut String, cases: &Cases<'_>) -> Result<(), StageError> {
     html.push_str(
-        "<h2>How far to trust it</h2>\n<p>A summit model is outside its range where spots coalesce: a third of the contact area of a \
-         boundary-element solution is then missing even without adhesion. It reproduces the model of the paper; see the limits in the README. \
-         Numbers beyond their limit are bold. The conformity number is the elastic energy that flattens the shortest octave of the roughness over the \
-         work of adhesion, and U<sub>el</sub>/Δγ that of all the roughness: of the modes that the surfaces have, and in brackets of the \
-         continuous spectrum.</p>\n<div class=\"wide\"><table>\n",
+        "<h2 id=\"validity\">Model validity</h2>\n<p>An asperity model is outside its range where contacts coalesce: it then underestimates the contact area \
+         of a boundary-element solution by a third, even without adhesion. Numbers beyond their limit are bold. U<sub>el</sub> is the elastic energy per area \
+         that flattens the roughness, Δγ the work of adhesion: for the realised spectrum of the surfaces, and in brackets for the target \
+         spectrum.</p>\n<div class=\"wide\"><table>\n",
     );
     html.push_str(NAME_HEADS);
     for (heading, column, _, as_what) in TRUST {
@@ -146,38 +160,44 @@ pub(super) fn trust(html: &mut String, cases: &Cases<'_>) -> Result<(), StageErr
         html.push_str("</tr>\n");
     }
     html.push_str("</table></div>\n");
-    cautions(html, cases);
-    Ok(())
+    section(html, cases)
 }
 
-/// Every caution that a row carries, with what it says and which rows carry it.
-fn cautions(html: &mut String, cases: &Cases<'_>) {
-    html.push_str("<h2>Cautions</h2>\n");
-    let carried = |word: &str| cases.rows().iter().filter(|listed| cases.has(listed.row, word)).collect::<Vec<&Listed>>();
-    let found: Vec<(&str, &str, Vec<&Listed>)> =
-        CAUTIONS.iter().map(|(word, meaning)| (*word, *meaning, carried(word))).filter(|(_, _, rows)| !rows.is_empty()).collect();
+/// Every warning with its measured values, consequence, action and rows.
+fn section(html: &mut String, cases: &Cases<'_>) -> Result<(), StageError> {
+    html.push_str("<h2>Warnings</h2>\n");
+    let found = warnings(cases.frame)?;
     if found.is_empty() {
         html.push_str("<p>None.</p>\n");
-        return;
+        return Ok(());
     }
-    html.push_str("<table>\n<tr><th>caution</th><th>what it says</th><th>case, at F<sub>max</sub>/(E*A<sub>0</sub>)</th></tr>\n");
-    for (word, meaning, rows) in found {
+    html.push_str("<table>\n<tr><th>warning (code)</th><th>measured</th><th>consequence and action</th><th>cases, at F<sub>max</sub>/(E*A<sub>0</sub>)</th></tr>\n");
+    for Warning { kind, measured, rows } in found {
         let place = if rows.len() == cases.rows().len() {
             "all".to_owned()
         } else {
-            let name = |listed: &&Listed| format!("{} at {}", escape(&listed.label), cases.load(listed.row));
-            rows.iter().map(name).collect::<Vec<_>>().join("<br>")
+            let name = |listed: &Listed| format!("{} at {}", escape(&listed.label), cases.load(listed.row));
+            cases.rows().iter().filter(|listed| rows.contains(&listed.row)).map(name).collect::<Vec<_>>().join("<br>")
         };
-        let _ = writeln!(html, "<tr><td>{word}</td><td>{}</td><td>{place}</td></tr>", escape(meaning));
+        let _ = writeln!(
+            html,
+            "<tr><td>{} ({})</td><td>{}</td><td>{} {}</td><td>{place}</td></tr>",
+            kind.label,
+            kind.code,
+            escape(&measured),
+            escape(kind.consequence),
+            escape(kind.action)
+        );
     }
     html.push_str("</table>\n");
+    Ok(())
 }
 
 fn limit_of(column: &str) -> Option<&'static Limit> {
     LIMITS.iter().find(|limit| limit.column == column)
 }
 
-/// The limit of a column, as it stands below its heading; nothing if it has none.
+/// The limit of a column, below its heading; empty without a limit.
 fn bound(column: &str, as_what: Shown) -> String {
     let said = |limit: &Limit| format!("<br>{}\u{a0}{}", if limit.at_least { "≥" } else { "≤" }, shown(Some(limit.bound), as_what));
     limit_of(column).map_or_else(String::new, said)
@@ -191,7 +211,7 @@ fn with_aside(number: Option<f64>, aside: Option<f64>, as_what: Shown) -> String
     }
 }
 
-/// What stands for a missing number.
+/// Sign of a missing number.
 const MISSING: &str = "–";
 
 /// A number over the scale of its column; without the scale, and with a power of ten, where the scale cannot show it.

@@ -1,51 +1,139 @@
-//! What speaks against trusting a row of the table `cases`.
+//! Warnings of the rows of the table `cases`: codes, limits and conditions.
 
 use super::rows::Value;
 use super::{CaseInput, Given};
 
-/// The words of the column `caution`, in the order in which they are joined, each with what it says.
-pub const CAUTIONS: [(&str, &str); 14] = [
-    ("incomplete", "fewer realizations are in the means than the spec asks for"),
-    ("failed", "a realization failed"),
-    ("imprecise", "the mean is not known as well as the spec asks: there are as many realizations as it allows, or too many failed"),
-    ("single", "one realization: no spread"),
-    ("unconverged", "a step's residual stayed above the tolerance"),
-    ("audit", "the loop's work and the sum over its events differ by more than 1 % in a realization"),
-    (
+/// A warning that a row of the table `cases` may have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Caution {
+    /// Its code in the column `caution`.
+    pub code: &'static str,
+    /// Short name.
+    pub label: &'static str,
+    /// Statement of the measured value, which replaces `{}`.
+    pub text: &'static str,
+    /// Consequence for the results.
+    pub consequence: &'static str,
+    /// Recommended action.
+    pub action: &'static str,
+}
+
+const fn warning(code: &'static str, label: &'static str, text: &'static str, consequence: &'static str, action: &'static str) -> Caution {
+    Caution { code, label, text, consequence, action }
+}
+
+/// All warnings, in the order of their codes in the column `caution`.
+pub const CAUTIONS: [Caution; 14] = [
+    warning(
+        "incomplete",
+        "incomplete",
+        "{} realizations finished",
+        "The means are of the finished realizations only.",
+        "Rerun the spec with `hysteron run`.",
+    ),
+    warning(
+        "failed",
+        "failed",
+        "{} failed",
+        "Failures depend on the surface, so the means may be biased.",
+        "Read the reasons with `hysteron status`.",
+    ),
+    warning(
+        "imprecise",
+        "confidence interval too wide",
+        "half-width of the 95 % confidence interval of the mean above the requested `until_relative_ci`",
+        "The mean is less precise than requested.",
+        "Increase `max` of `realizations`, or accept the wider interval.",
+    ),
+    warning(
+        "single",
+        "single realization",
+        "one realization finished",
+        "There is no standard deviation and no confidence interval.",
+        "Increase `realizations`; for measured surfaces, compare several scans.",
+    ),
+    warning(
+        "unconverged",
+        "not converged",
+        "output steps with a residual above the tolerance",
+        "These steps are not in equilibrium to the tolerance.",
+        "Check `residual_m` in the table `steps`, or reduce `max_load`.",
+    ),
+    warning(
+        "audit",
+        "energy balance",
+        "loop area and event energies differ by {} of Θ",
+        "The partition of Θ over events, branches and kinds has this error.",
+        "Quote the loop area `loss`; `interaction = \"point\"` has an exact balance.",
+    ),
+    warning(
         "absorption",
-        "absorption and release: contacts that meet and part (cover, uncover, merge, split events) make up more than 10 % of the dissipated energy in a \
-         realization; that part of Θ is an artefact of the coalescence rule",
+        "energy of coalescence",
+        "absorption and merging, net of their reversal, are {} of Θ",
+        "This part of Θ is an artefact of the coalescence rule.",
+        "Compare `coalescence = \"cover\"` and `\"merge\"`; quote the difference.",
     ),
-    (
+    warning(
         "unresolved",
-        "dissipated energy not resolved: Θ is less than ten times the numerical resolution of the loop in a realization, 1e-7 of the work of loading",
+        "energy not resolved",
+        "numerical resolution is {} of Θ",
+        "Θ is zero within the numerical resolution.",
+        "Do not quote Θ and Θ/Θ_DK.",
     ),
-    ("touching", "more than a tenth of the contact spots touch another one, on average"),
-    ("covered", "more than a tenth of the asperities in contact are covered, on average"),
-    ("tabor", "an asperity's Tabor number is below 2, where Wu's jump-in does not hold"),
-    ("area", "more than three tenths of the nominal area are in contact, on average: an asperity model is outside its range"),
-    (
+    warning(
+        "touching",
+        "overlap",
+        "{} of contact spots overlap a neighbour",
+        "Area and pull-off force are outside the validated range.",
+        "Reduce `max_load`, or use a larger reduced modulus.",
+    ),
+    warning(
+        "covered",
+        "coalescence",
+        "{} of asperities are absorbed by larger contacts",
+        "The contact area depends on the coalescence rule.",
+        "Compare `coalescence = \"cover\"` and `\"merge\"`.",
+    ),
+    warning(
+        "tabor",
+        "low Tabor parameter",
+        "minimum Tabor parameter μ = {}",
+        "Wu's criterion for jump into contact is invalid.",
+        "Use `jump_in = \"jkr\"`, or a smaller `interaction_range_m`.",
+    ),
+    warning(
+        "area",
+        "large contact area",
+        "A/A₀ = {}",
+        "The asperity model is outside its range and underestimates the area.",
+        "Reduce `max_load`.",
+    ),
+    warning(
         "conformed",
-        "flattening the shortest octave of the roughness costs less elastic energy than adhesion gains: the half-space conforms to the \
-         summits, and does not bridge them",
+        "conformal contact",
+        "U_el/Δγ of the shortest octave = {}",
+        "The half-space conforms to the shortest wavelengths, so results depend on ζ.",
+        "Use a smaller ζ, or a larger S-filter cut-off.",
     ),
-    (
+    warning(
         "sticky",
-        "flattening all the roughness costs less than twice what adhesion gains (Persson and Tosatti): the true contact may be near full \
-         contact, and an asperity model is outside its range",
+        "near full contact",
+        "U_el/Δγ = {}",
+        "The true contact may be near full contact, outside the range of an asperity model.",
+        "Use a boundary-element method.",
     ),
 ];
 
-/// A number of the table `cases` with the bound beyond which the row carries a caution.
+/// A column of the table `cases` with the limit beyond which the row has a warning.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limit {
-    /// Its word in [`CAUTIONS`].
+    /// Its code in [`CAUTIONS`].
     pub caution: &'static str,
     /// The column.
     pub column: &'static str,
-    /// The bound; the number itself is still within it.
+    /// The limit; the limit itself is within the range.
     pub bound: f64,
-    /// Whether the number is to be at least the bound; else at most.
+    /// True for a minimum, false for a maximum. Maxima are fractions, written in percent; minima are ratios.
     pub at_least: bool,
 }
 
@@ -58,14 +146,14 @@ impl Limit {
         Self { caution, column, bound, at_least: true }
     }
 
-    /// Whether a number is beyond the bound. One that is missing is not.
+    /// Whether a number is beyond the limit. A missing number is not.
     #[must_use]
     pub fn is_passed(&self, number: Option<f64>) -> bool {
         number.is_some_and(|number| if self.at_least { number < self.bound } else { number > self.bound })
     }
 }
 
-/// What is compared with a bound. The Tabor parameter matters to Wu's jump-in alone, and only with adhesion.
+/// All limits. The limit of the Tabor parameter applies to Wu's criterion only, and only with adhesion.
 pub const LIMITS: [Limit; 9] = [
     Limit::at_most("audit", "audit_gap_max", 0.01),
     Limit::at_most("absorption", "absorption_share_max", 0.1),
@@ -78,7 +166,7 @@ pub const LIMITS: [Limit; 9] = [
     Limit::at_least("sticky", "persson_tosatti_realised_mean", 2.0),
 ];
 
-/// The cautions of a row whose other columns are given, joined by `+`.
+/// Codes of the warnings of a row whose other columns are given, joined by `+`.
 pub(super) fn caution(row: &Given, case: &CaseInput, done_count: usize, unconverged: bool) -> String {
     let is = |column: &str, value: Value| case.parameters.iter().any(|(name, known)| name == column && *known == value);
     let wu = is("jump_in", Value::from("wu")) && !is("work_of_adhesion_j_m2", Value::from(0.0));
@@ -99,6 +187,6 @@ pub(super) fn caution(row: &Given, case: &CaseInput, done_count: usize, unconver
         "tabor" => wu && passed(word),
         _ => passed(word),
     };
-    let words: Vec<&str> = CAUTIONS.iter().map(|(word, _)| *word).filter(|word| holds(word)).collect();
-    words.join("+")
+    let codes: Vec<&str> = CAUTIONS.iter().map(|known| known.code).filter(|code| holds(code)).collect();
+    codes.join("+")
 }

@@ -19,12 +19,13 @@ mod student;
 mod summary;
 mod varying;
 mod walk;
+mod warnings;
 
 use std::path::PathBuf;
 
 pub use avalanches::avalanches;
 pub use cases::cases;
-pub use cautions::{CAUTIONS, LIMITS, Limit};
+pub use cautions::{CAUTIONS, Caution, LIMITS, Limit};
 pub use compare::{Difference, Group, Matched, Side, comparison, difference_of, matched, singles, together};
 pub use curves::curves;
 pub use digits::{labels, significant};
@@ -37,6 +38,7 @@ pub use summary::summary;
 use varying::PARAMETERS;
 pub use varying::{Values, Varying, varying};
 pub use walk::{COMPRESSION_STATIONS, Point, STATIONS, TENSION_STATIONS, Walk};
+pub use warnings::{Warning, warnings, warnings_of};
 
 use crate::store::FrameError;
 

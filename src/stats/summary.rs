@@ -1,8 +1,9 @@
-//! The table that a person reads at the end of a run.
+//! The table of results at the end of a run.
 
 use super::StatsError;
-use super::digits::significant;
-use super::listed::{Listed, listing_of, sweeps};
+use super::digits::{labels, significant};
+use super::listed::{Listed, listing, listing_of, sweeps};
+use super::warnings::warnings;
 use crate::store::Frame;
 
 /// Widths of the columns: case, maximum load, realizations, and four results; 80 columns together.
@@ -11,17 +12,22 @@ const WIDTHS: [usize; 7] = [14, 8, 6, 12, 14, 14, 12];
 /// Columns that a caption or a long label may take.
 const LINE: usize = 79;
 
+/// Rows that a warning names; of more, it gives the number.
+const MOST_NAMED: usize = 2;
+
 const HEADER: &str = "\
-Mean ± standard deviation over surfaces; n: done/planned. F_max, F_po: forces
-over E* A0. A: contact area over A0. Θ: dissipated energy over E* A0 h_rms.";
+Mean ± standard deviation over realizations; n: finished/planned.
+F_max: maximum load, F_po: pull-off force, both over E* A0.
+A: contact area at F_max over A0. Θ: dissipated energy over E* A0 h_rms.
+Θ_DK: estimate of Θ by Deng and Kesari.";
 
-const EXPONENTS: &str = "Numbers with an exponent are absolute, whatever the scale of their column.";
+const EXPONENTS: &str = "Numbers with an exponent are not scaled by the factor of their column.";
 
-const REFERENCE: &str = "*: reference case. change: of the mean against it, where all surfaces finished.";
+const REFERENCE: &str = "*: reference case. change: relative to it, where all realizations finished.";
 
 /// Heading, column of the table `cases` without its ending, and the scale.
 const RESULTS: [(&str, &str, f64); 4] =
-    [("A", "area_at_max_load", 1.0), ("F_po [1e-3]", "pull_off_load", 1e-3), ("Θ [1e-3]", "loss", 1e-3), ("Θ/Θ_DK", "loss_ratio_dk", 1.0)];
+    [("A", "area_at_max_load", 1.0), ("F_po [10⁻³]", "pull_off_load", 1e-3), ("Θ [10⁻³]", "loss", 1e-3), ("Θ/Θ_DK", "loss_ratio_dk", 1.0)];
 
 /// The results of every case as lines of at most 80 columns. Each sweep lists all of its cases: the reference case first, the others ordered by what varies.
 ///
@@ -43,6 +49,7 @@ pub fn summary(cases: &Frame) -> Result<String, StatsError> {
     let mut head = vec![HEADER];
     head.extend(lines.iter().any(|line| has_exponent(line)).then_some(EXPONENTS));
     head.extend(compared.then_some(REFERENCE));
+    lines.extend(warning_lines(cases)?);
     lines.push(String::new());
     Ok(format!("{}\n{}", head.join("\n"), lines.join("\n")))
 }
@@ -77,10 +84,6 @@ fn case_lines(cases: &Frame, listed: &Listed) -> Result<Vec<String>, StatsError>
         let cells = changes.into_iter().map(|change| change.unwrap_or_else(|| "-".to_owned())).collect();
         lines.extend(labelled("  change [%]", [String::new(), String::new()], four(cells)));
     }
-    let caution = cases.text("caution")?.get(listed.row).copied().unwrap_or_default();
-    if !caution.is_empty() {
-        lines.extend(caution_lines(caution));
-    }
     Ok(lines)
 }
 
@@ -95,25 +98,43 @@ fn change(own: f64, reference: f64) -> Option<String> {
     percent.is_finite().then(|| if text == "-0.0" || text == "+0.0" { "0.0".to_owned() } else { text })
 }
 
-/// The cautions of a row, as many on a line as fit.
-fn caution_lines(joined: &str) -> Vec<String> {
+/// One paragraph per warning, with its rows.
+fn warning_lines(cases: &Frame) -> Result<Vec<String>, StatsError> {
+    let (all, loads) = (listing(cases)?.rows, labels(&cases.f64("max_load")?));
+    let mut lines = Vec::new();
+    for warning in warnings(cases)? {
+        let place = if warning.rows.len() == all.len() {
+            String::new()
+        } else if warning.rows.len() <= MOST_NAMED {
+            let named = all.iter().filter(|listed| warning.rows.contains(&listed.row));
+            let names: Vec<String> =
+                named.map(|listed| format!("{}, F_max = {}", listed.label, loads[listed.row]).replace(" = ", "\u{a0}=\u{a0}")).collect();
+            format!(" ({})", names.join("; "))
+        } else {
+            format!(" ({} of {} rows)", warning.rows.len(), all.len())
+        };
+        lines.extend(wrapped(&format!("warning[{}]: {}{place}: {}", warning.kind.code, warning.kind.label, warning.measured)));
+    }
+    if !lines.is_empty() {
+        lines.insert(0, String::new());
+        lines.push("Consequence and action of each warning: report.html, \"Model validity\".".to_owned());
+    }
+    Ok(lines)
+}
+
+/// A paragraph as lines; the second and later ones are indented. No-break spaces keep a number with its unit.
+fn wrapped(paragraph: &str) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
-    for word in joined.split('+') {
-        match lines.last_mut().filter(|line| line.chars().count() + 2 + word.chars().count() <= 79) {
+    for word in paragraph.split(' ') {
+        match lines.last_mut().filter(|line| line.chars().count() + 1 + word.chars().count() <= LINE) {
             Some(line) => {
-                line.push_str(", ");
+                line.push(' ');
                 line.push_str(word);
             }
-            None => {
-                // A comma ends each line that another one follows.
-                if let Some(line) = lines.last_mut() {
-                    line.push(',');
-                }
-                lines.push(format!("  {}{word}", if lines.is_empty() { "caution: " } else { "         " }));
-            }
+            None => lines.push(format!("{}{word}", if lines.is_empty() { "" } else { "  " })),
         }
     }
-    lines
+    lines.into_iter().map(|line| cut(&line.replace('\u{a0}', " "), LINE)).collect()
 }
 
 /// A mean with its standard deviation over a scale, in so many columns. Numbers that the scale cannot show are written with exponents, and without the scale.

@@ -8,7 +8,7 @@ use crate::store::{ColumnData, Frame};
 pub(super) const PARAMETERS: [(&str, &str, &str); 19] = [
     ("surface_file", "surface", "surface"),
     ("surface_dataset", "dataset", "dataset"),
-    ("detrend", "detrend", "trend taken off"),
+    ("detrend", "detrend", "levelling"),
     ("magnification", "ζ", "magnification ζ"),
     ("hurst", "H", "Hurst exponent H"),
     ("rms_height_m", "h", "h_{rms} [m]"),
@@ -17,14 +17,14 @@ pub(super) const PARAMETERS: [(&str, &str, &str); 19] = [
     ("contact_modulus_pa", "E*", "E^{*} [Pa]"),
     ("work_of_adhesion_j_m2", "Δγ", "Δγ [J/m^{2}]"),
     ("interaction_range_m", "ε", "ε [m]"),
-    ("approach_step", "step", "approach step / h_{rms}"),
+    ("approach_step", "step", "output step/h_{rms}"),
     ("interaction", "interaction", "interaction"),
     ("boundary", "boundary", "boundary"),
     ("coalescence", "coalescence", "coalescence"),
-    ("jump_in", "jump_in", "jump-in"),
+    ("jump_in", "jump_in", "jump-in criterion"),
     ("normalization", "normalization", "normalization"),
     ("amplitudes", "amplitudes", "amplitudes"),
-    ("as_printed", "as_printed", "as printed"),
+    ("as_printed", "as_printed", "uncorrected equations"),
 ];
 
 /// The values of a parameter, one per row.

@@ -40,7 +40,7 @@ fn e2e_a_spec_becomes_tables_figures_and_a_page() {
     assert_eq!(cases.i64("done_count").unwrap(), [2, 2, 2, 2]);
     assert!(cases.f64("loss_mean").unwrap().iter().all(|loss| *loss > 0.0));
     let page = fs::read_to_string(bench.out().join("report.html")).unwrap();
-    for part in ["Where the loss goes", "How far to trust it", "Cautions", "conformity number", "audit gap", "jump off"] {
+    for part in ["Energy budget", "Model validity", "Warnings", "shortest octave", "energy-balance error", "jump out of contact"] {
         assert!(page.contains(part), "{part} is not on the page");
     }
     assert!(!page.contains("NaN") && !page.contains("inf"), "a number of the page is none");

@@ -198,7 +198,7 @@ fn e2e_two_parameters_are_named() {
         })
         .collect();
     let drawn = draw(&tables(&inputs, 2), "grid");
-    assert!(read(&drawn[1].1).contains("over ζ; H varies too"));
+    assert!(read(&drawn[1].1).contains("over ζ; varied: H"));
     assert_eq!(paths(&drawn[1].1, None), 2);
     assert!(read(&drawn[0].1).contains("ζ = 64, H = 0.6"));
 }

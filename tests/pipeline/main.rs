@@ -6,6 +6,8 @@ mod bench;
 #[cfg(feature = "stats")]
 mod campaign;
 #[cfg(feature = "stats")]
+mod cli;
+#[cfg(feature = "stats")]
 mod e2e;
 #[cfg(feature = "stats")]
 mod extremes;

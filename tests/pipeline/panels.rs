@@ -15,7 +15,7 @@ fn named<'a>(panel: &'a Panel, name: &str) -> Vec<&'a Curve> {
 fn law_a_line_of_one_point_is_a_mark_in_the_panel_and_in_the_key() {
     let drawn = panels_of(&tables(&[(case("a", "one", 0.8, 128.0, &[0.0071]), (0.133, 5e-4, 4.9e-4, 2.5))], 1), "one").unwrap();
     let losses = &drawn[3];
-    for (name, text) in [("loss_dk", "Deng–Kesari"), ("loss_dk_realised", "Deng–Kesari, realised moments")] {
+    for (name, text) in [("loss_dk", "Deng–Kesari, target spectrum"), ("loss_dk_realised", "Deng–Kesari, realised spectrum")] {
         assert_eq!(named(losses, name)[0].points.len(), 1);
         assert!(losses.plot.key.iter().any(|entry| entry.text == text && entry.marked), "{text} has no mark in the key");
     }

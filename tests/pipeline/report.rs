@@ -1,4 +1,4 @@
-//! What a finished run shows: pictures in every format, a closer look at one cycle, and campaigns side by side.
+//! Output of a finished run: figures in all formats, a single cycle, and a comparison of runs.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -73,7 +73,7 @@ fn e2e_the_closer_look_is_in_the_table_of_panels() {
     assert!((turning.1 - 0.001).abs() < 1e-9 && down[0].0 <= turning.0, "{turning:?} {:?}", down[0]);
     // Fixed amplitudes: the points follow the target at the realised rms height up to the last one. Within a ring, the mean of a power law is not its value at the
     // mean wavenumber: 2 % where rings have many modes, 12 % for the few modes of the longest waves.
-    let (found, asked) = (of("spectrum", "found"), of("spectrum", "asked for"));
+    let (found, asked) = (of("spectrum", "realised"), of("spectrum", "target"));
     assert!(found.len() > 4 && asked.len() > 50);
     for point in &found {
         let share = point.1 / (asked[0].1 * point.0.powf(-3.6));
@@ -87,12 +87,12 @@ fn e2e_the_closer_look_is_in_the_table_of_panels() {
     assert!((asked[0].1 / eq10 - factor).abs() < 0.001, "{} for {factor}", asked[0].1 / eq10);
     assert!(page.contains(&format!("The realised density therefore follows {factor} times Eq 10")));
     // The density of curvatures is one: that of the histogram, and Nayak's.
-    let bars = of("summits", "found");
+    let bars = of("summits", "realised");
     let whole: f64 = bars.chunks(2).map(|bar| (bar[1].0 - bar[0].0) * bar[0].1).sum();
     assert!((whole - 1.0).abs() < 1e-12, "{whole}");
     // Distributions rise from 0 to 1.
     for panel in ["radii", "loads"] {
-        for curve in ["at F_{max}", "at the pull-off"] {
+        for curve in ["at F_{max}", "at pull-off"] {
             let points = of(panel, curve);
             assert!(points.len() > 3, "{panel}, {curve}");
             // Steps: up at each value, level between two.
@@ -122,7 +122,7 @@ fn e2e_a_page_without_spots_or_results_is_still_a_page() {
     let report = nothing.verb("report", &[]);
     assert_eq!(code(&report), 0, "{}", stderr(&report));
     let page = fs::read_to_string(nothing.out().join("report.html")).unwrap();
-    assert!(page.contains("0 of 2") && !page.contains("A closer look"));
+    assert!(page.contains("0 of 2") && !page.contains("<h2>Single cycle"));
     assert!(page.contains("no surface finished"));
 }
 
@@ -158,16 +158,16 @@ fn e2e_tables_of_the_report_name_cases_by_what_varies() {
     let ended = bench.verb("run", &[]);
     assert_eq!(code(&ended), 0, "{}", stderr(&ended));
     let page = fs::read_to_string(bench.out().join("report.html")).unwrap();
-    for heading in ["<h2>Results", "<h2>Theories beside it", "<h2>Where the loss goes", "<h2>How far to trust it"] {
+    for heading in ["<h2>Results", "<h2>Comparison with analytical models", "<h2>Energy budget", ">Model validity"] {
         let names: Vec<String> = cells(&page, heading).into_iter().map(|row| row[0].clone()).collect();
         assert_eq!(names, ["reference", "ζ = 6", "ε = 2 nm"], "{heading}");
     }
     assert!(page.contains("Reference case: ζ = 8, ε = 1 nm."), "the reference case is not defined");
     let table = read_table(&bench.out().join("statistics/cases.parquet"), &schema::CASES).unwrap();
-    let body = page.split("<h2>The data").next().unwrap().split("</style>").nth(1).unwrap();
-    let hidden = body.split("<h2>A closer look").next().unwrap();
+    let body = page.split("<h2>Data").next().unwrap().split("</style>").nth(1).unwrap();
+    let hidden = body.split("<h2>Single cycle").next().unwrap();
     for id in table.text("case_id").unwrap() {
-        assert!(!hidden.contains(id) && !page.split("<h2>Theories").nth(1).unwrap().contains(id), "{id} names a row");
+        assert!(!hidden.contains(id) && !page.split("<h2>Comparison with").nth(1).unwrap().contains(id), "{id} names a row");
     }
     // Differences: of the losses, surface by surface.
     let changes = cells(&page, "<h2>Differences from the reference case");
@@ -275,7 +275,7 @@ fn e2e_campaigns_are_compared_case_by_case() {
     let wanted = t_quantile(0.975, freedom.floor() as usize).unwrap() * (parts[0] + parts[1]).sqrt();
     let found = table.f64_or_null("difference_ci95").unwrap()[k].unwrap();
     assert!(!table.bool("paired").unwrap()[k] && (found - wanted).abs() < 1e-12 * wanted, "{found} for {wanted}");
-    assert!(fs::read_to_string(out.join("comparison.html")).unwrap().contains("nothing but their realizations"));
+    assert!(fs::read_to_string(out.join("comparison.html")).unwrap().contains("the realizations only"));
 
     // What cannot be compared is refused with a sentence.
     let none = Bench::new(&spec(7, "spots").replace("max_load = [0.001, 0.002]", "max_load = [0.003]"));

@@ -1,9 +1,10 @@
 //! How far to trust a row: the numbers, their limits, and the cautions.
 
 use hysteron::schema::CASES;
-use hysteron::stats::{CAUTIONS, CaseInput, LIMITS, Value, cases, realizations, summary};
-use hysteron::store::Frame;
+use hysteron::stats::{CAUTIONS, CaseInput, LIMITS, Value, cases, realizations, summary, warnings};
+use hysteron::store::{ColumnData, Frame};
 
+use crate::panels::replaced;
 use crate::steps::{Step, case, cycle, write};
 
 const STEPS: [Step; 3] =
@@ -47,7 +48,7 @@ fn number(frame: &Frame, name: &str) -> Option<f64> {
 fn law_limits_are_columns_and_say_a_sentence() {
     for limit in LIMITS {
         assert!(CASES.column(limit.column).is_some(), "{}", limit.column);
-        assert!(CAUTIONS.iter().any(|(word, _)| *word == limit.caution), "{}", limit.caution);
+        assert!(CAUTIONS.iter().any(|known| known.code == limit.caution && known.text.contains("{}")), "{}", limit.caution);
         assert!(!limit.is_passed(Some(limit.bound)) && !limit.is_passed(None));
         let beyond = limit.bound * if limit.at_least { 0.99 } else { 1.01 };
         assert!(limit.is_passed(Some(beyond)), "{}", limit.caution);
@@ -134,6 +135,61 @@ fn law_no_caution_is_lost_at_the_edge_of_a_terminal() {
     let text = summary(&frame).unwrap();
     assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
     for word in carried.split('+') {
-        assert!(text.contains(word), "{word} is missing in {text}");
+        assert_eq!(text.matches(&format!("warning[{word}]: ")).count(), 1, "{word} in {text}");
     }
+}
+
+#[test]
+fn law_a_warning_has_measured_value_limit_consequence_and_action() {
+    let half: &[(&str, Value)] = &[("persson_tosatti_realised", 0.5.into()), ("tabor_min", 1.25.into())];
+    let found = warnings(&table(&[half, half], 0.32, |_| {})).unwrap();
+    let texts: Vec<(&str, &str, &str)> = found.iter().map(|of| (of.kind.code, of.kind.label, of.measured.as_str())).collect();
+    assert_eq!(
+        texts,
+        [
+            ("tabor", "low Tabor parameter", "minimum Tabor parameter μ = 1.25 (limit ≥ 2)"),
+            ("area", "large contact area", "A/A₀ = 32\u{a0}% (limit 30\u{a0}%)"),
+            ("sticky", "near full contact", "U_el/Δγ = 0.5 (limit ≥ 2)"),
+        ]
+    );
+    for kind in CAUTIONS {
+        assert!(kind.consequence.ends_with('.') && kind.action.ends_with('.') && kind.action.contains(' '), "{}", kind.code);
+    }
+    // Counts: of the worst row.
+    let failed = warnings(&table(&[half], 0.1, |input| {
+        input.planned_count = 3;
+        input.failed_count = 1;
+    }))
+    .unwrap();
+    assert_eq!((failed[0].measured.as_str(), failed[1].measured.as_str()), ("1 of 3 realizations finished", "1 realization failed"));
+}
+
+/// The same table with other codes in the column `caution`.
+fn with_codes(frame: &Frame, codes: &[&str]) -> Frame {
+    let mut builder = Frame::of(frame.table());
+    for column in frame.table().columns {
+        let data = match frame.column(column.name).unwrap() {
+            ColumnData::Text(_) if column.name == "caution" => {
+                ColumnData::Text(codes.iter().map(|code| Some((*code).to_owned())).collect())
+            }
+            other => other.clone(),
+        };
+        builder = builder.with(column.name, data);
+    }
+    builder.build().unwrap()
+}
+
+#[test]
+fn law_the_values_of_several_rows_are_an_interval_and_few_rows_are_named() {
+    let frame = table(&[&[], &[]], 0.1, |input| input.max_loads = vec![0.004, 0.005, 0.006]);
+    let frame =
+        [0.76, 0.87, 0.05].iter().enumerate().fold(frame, |frame, (row, value)| replaced(&frame, "touching_share_mean", row, *value));
+    let frame = with_codes(&frame, &["touching", "touching", ""]);
+    let found = warnings(&frame).unwrap();
+    assert_eq!((found.len(), found[0].rows.as_slice()), (1, &[0, 1][..]));
+    assert_eq!(found[0].measured, "76 to 87\u{a0}% of contact spots overlap a neighbour (limit 10\u{a0}%)");
+    let text = summary(&frame).unwrap();
+    assert!(text.contains("F_max = 0.004") && text.contains("F_max = 0.005") && !text.contains("F_max = 0.006"), "{text}");
+    let all = summary(&with_codes(&frame, &["touching"; 3])).unwrap();
+    assert!(all.contains("warning[touching]: overlap: 5 to 87 % of contact spots overlap") && !all.contains("F_max = 0.004"), "{all}");
 }

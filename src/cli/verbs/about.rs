@@ -1,12 +1,21 @@
-//! The program about itself: schemas, manual pages, shell completions.
+//! Schemas, templates of specs, manual pages and completion scripts.
 
 use super::{Fault, failed, make_folder, say};
+use crate::cli::templates::Template;
 use crate::cli::{Arguments, GUIDE, generated};
 use crate::store::commit;
 use crate::text::shown;
 use clap::CommandFactory;
 use clap_complete::Shell;
 use std::path::Path;
+
+/// Prints a template, or the list of them.
+pub(super) fn init(template: Template, list: bool) -> Result<u8, Fault> {
+    let line = |(_, name, purpose): &(Template, &str, &str)| format!("{name:12} {purpose}\n");
+    let text = if list { Template::ALL.iter().map(line).collect() } else { template.text().to_owned() };
+    say(&text)?;
+    Ok(0)
+}
 
 pub(super) fn completions(shell: Shell) -> Result<u8, Fault> {
     let mut script = Vec::new();
@@ -39,7 +48,7 @@ pub(super) fn schemas(file: Option<&str>, write: bool) -> Result<u8, Fault> {
     Ok(0)
 }
 
-/// The page of the program or of a verb, or all of them in a folder.
+/// The page of the program or of a command, or all of them in a folder.
 pub(super) fn man(verb: Option<&str>, folder: Option<&Path>) -> Result<u8, Fault> {
     let refused = |error: std::io::Error| failed(format!("cannot write the manual: {error}"));
     if let Some(folder) = folder {
@@ -56,7 +65,7 @@ pub(super) fn man(verb: Option<&str>, folder: Option<&Path>) -> Result<u8, Fault
             let verbs: Vec<&str> = all.get_subcommands().map(clap::Command::get_name).collect();
             let allowed = verbs.join(", ");
             let found = all.find_subcommand(verb).cloned();
-            found.ok_or_else(|| failed(format!("cannot print the manual of {verb}: it is no verb; allowed: {allowed}")))?
+            found.ok_or_else(|| failed(format!("unknown command {verb}\nhelp: name one of {allowed}")))?
         }
     };
     let mut page = Vec::new();

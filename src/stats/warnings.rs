@@ -1,0 +1,75 @@
+//! Warnings of a run with measured values, limits and rows.
+
+use super::cautions::{CAUTIONS, Caution, LIMITS, Limit};
+use super::{StatsError, significant};
+use crate::store::Frame;
+use crate::text::counted;
+
+/// A warning of one or more rows of the table `cases`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Warning {
+    /// Code, label, consequence and action.
+    pub kind: Caution,
+    /// Measured values over these rows, and the limit.
+    pub measured: String,
+    /// The rows, in order.
+    pub rows: Vec<usize>,
+}
+
+/// All warnings of the table `cases`, in the order of [`CAUTIONS`].
+///
+/// # Errors
+/// If the table lacks a column.
+pub fn warnings(cases: &Frame) -> Result<Vec<Warning>, StatsError> {
+    let all: Vec<usize> = (0..cases.row_count()).collect();
+    warnings_of(cases, &all)
+}
+
+/// The warnings of some rows of the table `cases`, with the values of these rows.
+///
+/// # Errors
+/// If the table lacks a column.
+pub fn warnings_of(cases: &Frame, among: &[usize]) -> Result<Vec<Warning>, StatsError> {
+    let codes = cases.text("caution")?;
+    let mut found = Vec::new();
+    for kind in CAUTIONS {
+        let has = |row: &usize| codes[*row].split('+').any(|code| code == kind.code);
+        let rows: Vec<usize> = among.iter().copied().filter(has).collect();
+        if !rows.is_empty() {
+            found.push(Warning { kind, measured: measured(cases, &kind, &rows)?, rows });
+        }
+    }
+    Ok(found)
+}
+
+fn measured(cases: &Frame, kind: &Caution, rows: &[usize]) -> Result<String, StatsError> {
+    if let Some(limit) = LIMITS.iter().find(|limit| limit.caution == kind.code) {
+        let numbers = cases.f64_or_null(limit.column)?;
+        let values: Vec<f64> = rows.iter().filter_map(|row| numbers[*row]).collect();
+        return Ok(format!("{} (limit {})", kind.text.replace("{}", &range(*limit, &values)), bound(*limit)));
+    }
+    let (done, planned, failed) = (cases.i64("done_count")?, cases.i64("planned_count")?, cases.i64("failed_count")?);
+    // The row with the smallest finished fraction.
+    let worst = rows.iter().copied().min_by_key(|row| (1000 * done[*row] / planned[*row].max(1), *row)).unwrap_or_default();
+    let most = rows.iter().map(|row| failed[*row]).max().unwrap_or_default();
+    Ok(kind.text.replace(
+        "{}",
+        &match kind.code {
+            "incomplete" => format!("{} of {}", done[worst], planned[worst]),
+            _ => counted(usize::try_from(most).unwrap_or_default(), "realization"),
+        },
+    ))
+}
+
+/// The interval of measured values: `76 %`, `76 to 87 %`, `0.99 to 1.02`.
+fn range(limit: Limit, values: &[f64]) -> String {
+    let number = |value: f64| if limit.at_least { significant(value, 3) } else { significant(100.0 * value, 2) };
+    let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(*value), high.max(*value)));
+    let (low, high) = (number(low), number(high));
+    let text = if low == high { low } else { format!("{low} to {high}") };
+    if limit.at_least { text } else { format!("{text}\u{a0}%") }
+}
+
+fn bound(limit: Limit) -> String {
+    if limit.at_least { format!("≥ {}", limit.bound) } else { format!("{}\u{a0}%", significant(100.0 * limit.bound, 2)) }
+}
