@@ -187,13 +187,7 @@ fn of_loop(of: &Closer<'_>) -> Result<XyPlot, FigureError> {
         curve(("loading", ""), loading.clone(), shade(LOADING, 0, 1), Stroke::Dashed),
         curve(("unloading", ""), unloading.clone(), shade(UNLOADING, 0, 1), Stroke::Solid),
     ];
-    Ok(plot(
-        "hysteresis loop".to_owned(),
-        x,
-        y,
-        curves,
-        &[("loading", LOADING, Stroke::Dashed), ("unloading", UNLOADING, Stroke::Solid)],
-    ))
+    Ok(plot("hysteresis loop".to_owned(), x, y, curves, &[("loading", LOADING, Stroke::Dashed), ("unloading", UNLOADING, Stroke::Solid)]))
 }
 
 /// Energy that each event lost, over the approach.

@@ -90,7 +90,10 @@ fn drawn(tables: &Tables<'_>, found: &Sweep, (heading, stem): (&str, &str)) -> R
                 found,
                 LOSS,
                 &[computed("loss")],
-                &[("loss_dk", Stroke::Dashed, "Deng–Kesari, target spectrum"), ("loss_dk_realised", Stroke::Dotted, "Deng–Kesari, realised spectrum")],
+                &[
+                    ("loss_dk", Stroke::Dashed, "Deng–Kesari, target spectrum"),
+                    ("loss_dk_realised", Stroke::Dotted, "Deng–Kesari, realised spectrum"),
+                ],
             )?,
         ),
         panel(

@@ -85,7 +85,8 @@ impl Table {
 }
 
 const CYCLE_ID: Column = text("cycle_id", "Identifier of the cycle: name of its directory below cycles/");
-const REALIZATION: Column = index("realization", "Number of the realization, from 0: surfaces of the same parameters that differ in the random numbers");
+const REALIZATION: Column =
+    index("realization", "Number of the realization, from 0: surfaces of the same parameters that differ in the random numbers");
 const SURFACE_ID: Column = text("surface_id", "Identifier of the surface: name of its file below surfaces/, without extension");
 const ASPERITIES_ID: Column =
     text("asperities_id", "Identifier of the asperity table: name of its file below asperities/, without extension; equal to surface_id");

@@ -66,8 +66,12 @@ pub static STEPS: Table = Table {
             "Minimum normal load since the previous step, including the states directly before and after events, where the load is discontinuous",
         ),
         real("area_m2", "m^2", "Contact area A, summed over the discs of all contact spots"),
-        real("area_union_m2", "m^2", "Area of the union of all contact discs, in which overlaps count once; null where it was not computed")
-            .or_null(),
+        real(
+            "area_union_m2",
+            "m^2",
+            "Area of the union of all contact discs, in which overlaps count once; null where it was not computed",
+        )
+        .or_null(),
         count("contact_count", "Asperities in contact"),
         count("covered_count", "Asperities absorbed by a larger contact spot, without load and area of their own"),
         count("jump_in_count", "Asperities that jumped into contact since the previous step"),
@@ -80,8 +84,13 @@ pub static STEPS: Table = Table {
         count("held_count", "Frozen asperities: state kept in this step, because it alternated between absorbed and released"),
         count("touching_count", "Contact spots that overlap a neighbour: distance below the sum of the contact radii"),
         real("dissipated_j", "J", "Energy dissipated in the events since the previous step"),
-        real("work_j", "J", "Work done on the contact since the start of the branch: integral of the normal load over the mean penetration"),
-        real("residual_m", "m", "Residual of the equilibrium: maximum over all contact spots of |local penetration - JKR penetration|").from("Eqs 2, 5"),
+        real(
+            "work_j",
+            "J",
+            "Work done on the contact since the start of the branch: integral of the normal load over the mean penetration",
+        ),
+        real("residual_m", "m", "Residual of the equilibrium: maximum over all contact spots of |local penetration - JKR penetration|")
+            .from("Eqs 2, 5"),
         real(
             "drift_m",
             "m",
@@ -93,10 +102,7 @@ pub static STEPS: Table = Table {
             "Smallest eigenvalue of the tangent of penetration with respect to contact radius, each column over its diagonal element: 1 without interaction, 0 at a limit point, negative for an unstable equilibrium",
         ),
         flag("converged", "True if the residual is below the tolerance"),
-        count(
-            "iteration_count",
-            "Iterations of Newton's method and of relaxation since the previous step, in local and global problems",
-        ),
+        count("iteration_count", "Iterations of Newton's method and of relaxation since the previous step, in local and global problems"),
         count("pair_evaluation_count", "Evaluations of the displacement of one contact by another since the previous step"),
         count("product_count", "Matrix-vector products of the tangent since the previous step, one per Krylov iteration"),
         count("transform_count", "Fourier transforms of a mesh since the previous step"),
@@ -123,8 +129,12 @@ pub static CONTACTS: Table = Table {
         text("state", "\"contact\" or \"covered\" (absorbed); free asperities have no row"),
         real("contact_radius_m", "m", "Contact radius a; 0 if absorbed").from("Eq 2"),
         real("load_n", "N", "Normal load of the contact spot; positive in compression, 0 if absorbed").from("Eq 1"),
-        real("penetration_m", "m", "Local penetration δ, including the displacement by all other contacts; null if absorbed").or_null().from("Eq 5"),
-        real("interaction_m", "m", "Normal displacement of the half-space by all other contacts; null if absorbed").or_null().from("Eqs 6-8"),
+        real("penetration_m", "m", "Local penetration δ, including the displacement by all other contacts; null if absorbed")
+            .or_null()
+            .from("Eq 5"),
+        real("interaction_m", "m", "Normal displacement of the half-space by all other contacts; null if absorbed")
+            .or_null()
+            .from("Eqs 6-8"),
     ],
 };
 
@@ -144,8 +154,12 @@ pub static TURNING: Table = Table {
         text("state", "\"contact\", \"covered\" (absorbed), \"merged\", or \"free\" if it is blocked from re-contact"),
         real("contact_radius_m", "m", "Contact radius a; 0 without contact").from("Eq 2"),
         index("covered_by", "asperity_id of the absorbing contact; null if not absorbed").or_null(),
-        real("release_m", "m", "Contact radius of the absorbing contact below which this asperity is released; null if not absorbed").or_null(),
-        flag("barred", "True if blocked from re-contact after a jump out of contact, until its penetration falls below the jump-in distance"),
+        real("release_m", "m", "Contact radius of the absorbing contact below which this asperity is released; null if not absorbed")
+            .or_null(),
+        flag(
+            "barred",
+            "True if blocked from re-contact after a jump out of contact, until its penetration falls below the jump-in distance",
+        ),
         index("merged_into", "asperity_id of the merged contact that contains this one; null if there is none").or_null(),
         count("merged_count", "Number of rows of the table merged at this load reversal, from the first row"),
     ],
@@ -164,7 +178,10 @@ pub static MERGED: Table = Table {
         STEP,
         BRANCH,
         MAX_LOAD,
-        index("asperity_id", "Number of the merged contact; numbers follow those of the asperities and, during unloading, those of the load reversal"),
+        index(
+            "asperity_id",
+            "Number of the merged contact; numbers follow those of the asperities and, during unloading, those of the load reversal",
+        ),
         real("approach_m", "m", "Mean penetration Δ at merging, with the zero of the table steps"),
         index("first_id", "asperity_id of the first contact, an asperity or a merged contact"),
         index("second_id", "asperity_id of the second contact, an asperity or a merged contact"),

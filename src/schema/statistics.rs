@@ -9,18 +9,30 @@ pub(super) const CASE: &[Column] = &[
 
 /// Parameters that define a case, one column each.
 pub(super) const PARAMETERS: &[Column] = &[
-    text("surface_file", "File of a measured surface, with enough of its path to be unique; null for a generated surface")
-        .or_null(),
+    text("surface_file", "File of a measured surface, with enough of its path to be unique; null for a generated surface").or_null(),
     text("surface_dataset", "Dataset in that file; null for the only one, and for a generated surface").or_null(),
-    text("detrend", "Levelling of a measured surface: \"mean\", \"plane\" or \"quadratic\" was subtracted; null for a generated surface").or_null(),
+    text("detrend", "Levelling of a measured surface: \"mean\", \"plane\" or \"quadratic\" was subtracted; null for a generated surface")
+        .or_null(),
     real("hurst", "1", "Hurst exponent H; null for a measured surface").or_null().from("Eq 10"),
     real("magnification", "1", "Magnification ζ, longest over shortest wavelength; null for a measured surface").or_null().from("Eq 10"),
     real("length_m", "m", "Side L of the square; null for a measured surface whose import failed").or_null().from("Eq 10"),
-    real("rms_height_m", "m", "Rms height h_rms: target of a generated surface, or value of a measured one; null for a measured surface whose import failed")
-        .or_null(),
-    real("points_per_shortest_wavelength", "1", "Grid points per shortest wavelength; for a measured surface, the S-filter cut-off in pixels")
-        .or_null(),
-    text("normalization", "Rule for the rms height: \"sample\" (heights rescaled) or \"spectrum\" (integral of the spectrum); null for a measured surface").or_null(),
+    real(
+        "rms_height_m",
+        "m",
+        "Rms height h_rms: target of a generated surface, or value of a measured one; null for a measured surface whose import failed",
+    )
+    .or_null(),
+    real(
+        "points_per_shortest_wavelength",
+        "1",
+        "Grid points per shortest wavelength; for a measured surface, the S-filter cut-off in pixels",
+    )
+    .or_null(),
+    text(
+        "normalization",
+        "Rule for the rms height: \"sample\" (heights rescaled) or \"spectrum\" (integral of the spectrum); null for a measured surface",
+    )
+    .or_null(),
     text("amplitudes", "Fourier amplitudes: \"fixed\" or \"gaussian\"; null for a measured surface").or_null(),
     real("contact_modulus_pa", "Pa", "Reduced modulus E*, 1/E* = sum of (1 - ν²)/E over both bodies").from("Eq 1"),
     real("work_of_adhesion_j_m2", "J/m^2", "Work of adhesion Δγ").from("Eq 1"),
@@ -166,10 +178,20 @@ const SPREADS: &[&[Column]] = &[
     over_realizations!("loss", "1", "dissipated energy Θ/(E* A0 h_rms) of the loop", ""),
     over_realizations!("loss_dk", "1", "Deng-Kesari estimate Θ_DK/(E* A0 h_rms), moments of the continuous spectrum", "Eqs A1-A4"),
     over_realizations!("loss_dk_realised", "1", "Deng-Kesari estimate Θ_DK/(E* A0 h_rms), moments of the realized surface", "Eqs A1-A4"),
-    over_realizations!("loss_touched", "1", "sum of the dissipated energies of single isolated asperities that came into contact, over E* A0 h_rms", "Eq A1"),
+    over_realizations!(
+        "loss_touched",
+        "1",
+        "sum of the dissipated energies of single isolated asperities that came into contact, over E* A0 h_rms",
+        "Eq A1"
+    ),
     over_realizations!("loss_dalvi", "1", "work of adhesion times contact area at load reversal, over E* A0 h_rms", "Dalvi et al. 2019"),
     over_realizations!("area_adhesionless", "1", "adhesionless contact area A/A0 at F_max, Persson's theory", "Persson 2001"),
-    over_realizations!("area_adhesionless_small", "1", "adhesionless contact area A/A0 at F_max, small-load limit of boundary-element results", "Hyun et al. 2004"),
+    over_realizations!(
+        "area_adhesionless_small",
+        "1",
+        "adhesionless contact area A/A0 at F_max, small-load limit of boundary-element results",
+        "Hyun et al. 2004"
+    ),
     over_realizations!("fuller_tabor", "1", "Fuller-Tabor parameter of the asperities", "Fuller and Tabor 1975"),
     over_realizations!("loss_ratio_dk", "1", "ratio Θ/Θ_DK, loss over loss_dk", ""),
     over_realizations!("dissipated", "1", "dissipated energy over E* A0 h_rms, summed over the events of the loop", ""),
@@ -191,20 +213,8 @@ const VALIDITY: &[&[Column]] = &[
     ),
     mean_and_worst!("loss_uncertainty", "max", "Maximum", "numerical resolution of Θ over |Θ|", ""),
     mean_and_worst!("touching_share", "max", "Maximum", "fraction of contact spots that overlap a neighbour at load reversal", ""),
-    mean_and_worst!(
-        "covered_share",
-        "max",
-        "Maximum",
-        "absorbed fraction of the asperities in contact or absorbed, at load reversal",
-        ""
-    ),
-    mean_and_worst!(
-        "conformity",
-        "min",
-        "Minimum",
-        "U_el/Δγ of the shortest octave, continuous spectrum",
-        "Persson and Tosatti 2001"
-    ),
+    mean_and_worst!("covered_share", "max", "Maximum", "absorbed fraction of the asperities in contact or absorbed, at load reversal", ""),
+    mean_and_worst!("conformity", "min", "Minimum", "U_el/Δγ of the shortest octave, continuous spectrum", "Persson and Tosatti 2001"),
     mean_and_worst!(
         "conformity_realised",
         "min",
@@ -212,13 +222,7 @@ const VALIDITY: &[&[Column]] = &[
         "U_el/Δγ of the shortest octave, realized spectrum",
         "Persson and Tosatti 2001"
     ),
-    mean_and_worst!(
-        "persson_tosatti",
-        "min",
-        "Minimum",
-        "Persson-Tosatti ratio U_el/Δγ, continuous spectrum",
-        "Persson and Tosatti 2001"
-    ),
+    mean_and_worst!("persson_tosatti", "min", "Minimum", "Persson-Tosatti ratio U_el/Δγ, continuous spectrum", "Persson and Tosatti 2001"),
     mean_and_worst!(
         "persson_tosatti_realised",
         "min",
@@ -309,7 +313,10 @@ pub static PANELS: Table = Table {
     doc: "One row per point of each curve of each panel of the figures, in drawing order.",
     columns: &[
         text("sweep", "Name of the sweep; empty for the panels of a single cycle"),
-        text("panel", "Panel: A contact area, B pull-off force, C mean penetration, D dissipated energy, E dissipated energy by branch; a name for a single cycle"),
+        text(
+            "panel",
+            "Panel: A contact area, B pull-off force, C mean penetration, D dissipated energy, E dissipated energy by branch; a name for a single cycle",
+        ),
         index("curve", "Number of the curve in the panel, from 0"),
         text("name", "Quantity of the curve: a branch, a column of the table cases without _mean, or a name"),
         text("of", "Cases of the curve, as labelled in the panel; empty if the panel has a single series"),

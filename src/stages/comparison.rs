@@ -153,9 +153,7 @@ fn page(
             shown(shares[row], Shown::Percent)
         );
     }
-    html.push_str(
-        "</table></div>\n<p>Differences larger than their half-width are bold. Data: <code>comparison.parquet</code>.</p>\n",
-    );
+    html.push_str("</table></div>\n<p>Differences larger than their half-width are bold. Data: <code>comparison.parquet</code>.</p>\n");
     for (number, (name, panels)) in drawings.iter().enumerate() {
         let _ = writeln!(html, "<h2>{}</h2>", escape(name));
         grid(&mut html, number + 1, panels);

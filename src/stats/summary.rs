@@ -107,7 +107,8 @@ fn warning_lines(cases: &Frame) -> Result<Vec<String>, StatsError> {
             String::new()
         } else if warning.rows.len() <= MOST_NAMED {
             let named = all.iter().filter(|listed| warning.rows.contains(&listed.row));
-            let names: Vec<String> = named.map(|listed| format!("{}, F_max = {}", listed.label, loads[listed.row]).replace(" = ", "\u{a0}=\u{a0}")).collect();
+            let names: Vec<String> =
+                named.map(|listed| format!("{}, F_max = {}", listed.label, loads[listed.row]).replace(" = ", "\u{a0}=\u{a0}")).collect();
             format!(" ({})", names.join("; "))
         } else {
             format!(" ({} of {} rows)", warning.rows.len(), all.len())

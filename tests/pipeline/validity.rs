@@ -169,7 +169,9 @@ fn with_codes(frame: &Frame, codes: &[&str]) -> Frame {
     let mut builder = Frame::of(frame.table());
     for column in frame.table().columns {
         let data = match frame.column(column.name).unwrap() {
-            ColumnData::Text(_) if column.name == "caution" => ColumnData::Text(codes.iter().map(|code| Some((*code).to_owned())).collect()),
+            ColumnData::Text(_) if column.name == "caution" => {
+                ColumnData::Text(codes.iter().map(|code| Some((*code).to_owned())).collect())
+            }
             other => other.clone(),
         };
         builder = builder.with(column.name, data);
@@ -180,7 +182,8 @@ fn with_codes(frame: &Frame, codes: &[&str]) -> Frame {
 #[test]
 fn law_the_values_of_several_rows_are_an_interval_and_few_rows_are_named() {
     let frame = table(&[&[], &[]], 0.1, |input| input.max_loads = vec![0.004, 0.005, 0.006]);
-    let frame = [0.76, 0.87, 0.05].iter().enumerate().fold(frame, |frame, (row, value)| replaced(&frame, "touching_share_mean", row, *value));
+    let frame =
+        [0.76, 0.87, 0.05].iter().enumerate().fold(frame, |frame, (row, value)| replaced(&frame, "touching_share_mean", row, *value));
     let frame = with_codes(&frame, &["touching", "touching", ""]);
     let found = warnings(&frame).unwrap();
     assert_eq!((found.len(), found[0].rows.as_slice()), (1, &[0, 1][..]));

@@ -255,7 +255,7 @@ fn e2e_a_receipt_belongs_to_its_place_and_names_files_of_its_folder_only() {
     fs::write(&path, &text).unwrap();
     assert_eq!(code(&bench.look("verify", &["--deep"])), 0);
     fs::copy(&path, path.with_file_name("copy.json")).unwrap();
-    assert!(stdout(&bench.look("verify", &[])).contains("it is the receipt of"), "a copy by another name is none");
+    assert!(stdout(&bench.look("verify", &[])).contains("provenance record of another task"), "a copy by another name is none");
 }
 
 #[test]

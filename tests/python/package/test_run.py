@@ -56,8 +56,8 @@ def test_a_dict_is_run(program, tmp_path, monkeypatch, capsys):
 def test_a_bad_spec_fails_with_the_words_of_the_program(program, tmp_path):
     with pytest.raises(hysteron.Failed, match=r"^error: unknown key `surfaces` at the top of the spec") as failed:
         hysteron.run({"name": "x", "surfaces": 1}, out=tmp_path)
-    assert failed.value.exit_code == 2 and "a spec takes: name" in str(failed.value)
-    with pytest.raises(hysteron.Failed, match="there is no such file"):
+    assert failed.value.exit_code == 2 and "keys of a spec: name" in str(failed.value)
+    with pytest.raises(hysteron.Failed, match="no such file"):
         hysteron.run(tmp_path / "nothing.toml", out=tmp_path)
     with pytest.raises(hysteron.Failed, match="--until"):
         hysteron.run(SPEC, out=tmp_path, until="dinner")
