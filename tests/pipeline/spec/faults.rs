@@ -42,8 +42,8 @@ fn val_line_ends_and_byte_order_marks_do_not_shift_a_place() {
 
 #[test]
 fn val_a_fault_looks_like_this() {
-    let wanted = "error: unknown key `hurts` in [surface]\n  --> x.toml:3:1\n   |\n 3 | hurts = 0.8\n   | ^^^^^\n   = \
-                  did you mean `hurst`? [surface] takes: length_m, rms_height_m, hurst, magnification, \
+    let wanted = "error: unknown key `hurts` in [surface]\n  --> x.toml:3:1\n   |\n 3 | hurts = 0.8\n   | ^^^^^\n   = help: \
+                  did you mean `hurst`? keys of [surface]: length_m, rms_height_m, hurst, magnification, \
                   points_per_shortest_wavelength, normalization, amplitudes, file, dataset, periodic, pixel_m, unit, missing, detrend\n";
     assert_eq!(refused("name = \"x\"\n[surface]\nhurts = 0.8\n"), wanted);
 }
