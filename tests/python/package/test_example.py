@@ -40,7 +40,7 @@ def test_an_array_is_taken_as_its_file_is(program, tmp_path):
 
 
 def test_a_surface_that_was_not_written_is_no_generated_one(program, tmp_path):
-    with pytest.raises(ValueError, match="surface.file is None; allowed: a file, which `take` writes where it is given `out`"):
+    with pytest.raises(ValueError, match="surface.file is None\nhelp: give a file, for example from `take` with `out`"):
         hysteron.run({"name": "x", "surface": {"file": None}}, out=tmp_path / "run")
     with pytest.raises(hysteron.Failed, match="cannot be read"):
         hysteron.run({"name": "x", "surface": {"file": tmp_path / "gone.npy", "periodic": True}}, out=tmp_path / "run")

@@ -94,7 +94,7 @@ def test_the_slip_of_eq_9_ends_the_branch_earlier():
     assert math.isnan(jkr.radius_at_penetration(R, 0.99 * jkr.jump_off_penetration(R, **GEL), **printed))
     assert jkr.jump_off_radius(R, **GEL, as_printed="eq9") == jkr.jump_off_radius(R, **printed)
     assert jkr.jump_off_radius(R, **GEL, as_printed=["eq8", "a2", "a3"]) == jkr.jump_off_radius(R, **GEL)
-    with pytest.raises(ValueError, match="cannot put back the slip 'eq5'; allowed: eq8, eq9, a2, a3"):
+    with pytest.raises(ValueError, match="unknown equation 'eq5' in as_printed\nhelp: use one of eq8, eq9, a2, a3"):
         jkr.jump_off_radius(R, **GEL, as_printed=["eq5"])
 
 
