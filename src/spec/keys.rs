@@ -150,21 +150,21 @@ pub(super) static KEYS: &[Key] = &[
         note: "H, Hurst exponent of a self-affine surface, 0.01 <= H <= 1; default 0.8",
     }),
     key!(surface.magnification, "ζ", "Magnification: longest over shortest wavelength of the roughness."; count 2 to 16384, &[],
-        "the magnification ζ is the longest over the shortest wavelength of the roughness; 128 is usual"),
+        "ζ, magnification: longest over shortest wavelength of the roughness, 2 <= ζ <= 16384; default 128"),
     key!(surface.points_per_shortest_wavelength, "", "Grid points per shortest wavelength: ζ times as many along a side. For a measured surface, low-pass (S-filter) cut-off wavelength in pixels."; count 4 to 64, &[
-        (1, "below 2 points ζ lies above the Nyquist wavenumber of the grid, which then cannot hold the shortest waves"),
-        (3, "2 or 3 points hold the heights of the shortest waves, but their derivatives, which give the summits, need 4"),
-    ], "8 is usual"),
+        (1, "1 point is below the Nyquist limit: the grid does not resolve the shortest wavelength"),
+        (3, "2 or 3 points resolve the heights at the shortest wavelength; the derivatives at summits need at least 4"),
+    ], "default 8"),
     key!(surface.normalization, "", "Definition of the rms height."; word Normalization),
     key!(surface.amplitudes, "", "Amplitudes of the Fourier components."; word Amplitudes),
     key!(surface.file, "", "File of a measured surface. With this key, the surface is imported and not generated."; text 4096, "the file of a measured surface, from the folder where the command is run"),
-    key!(surface.dataset, "", "Field of the file, if it has several: a dataset of HDF5, a variable of NetCDF."; text 256, "which field of the file it is"),
+    key!(surface.dataset, "", "Field of the file, if it has several: a dataset of HDF5, a variable of NetCDF."; text 256, "a dataset of the file"),
     key!(surface.periodic, "", "True if the measured surface is periodic."; flag),
     key!(surface.pixel_m, "", "Pixel size of the measured surface. 0: the file states it."; number Limits {
         low: 0.0, above: false, high: 0.1, unit: " m", unit_name: "metres", slip: Some((1e-6, "micrometres")),
-        note: "the distance of neighbouring points; 0 where the file tells it",
+        note: "pixel size; 0 if the file contains it",
     }),
-    key!(surface.unit, "", "Unit of the measured heights. Empty: the file states it."; length "the unit of the heights, such as \"nm\""),
+    key!(surface.unit, "", "Unit of the measured heights. Empty: the file states it."; length "the unit of the heights, for example \"nm\""),
     key!(surface.missing, "", "Treatment of missing points of a measured surface."; word Missing),
     key!(surface.detrend, "", "Form removed from a measured surface (levelling, F-operator). The default of a periodic surface is `mean`."; word Detrend),
     key!(material.contact_modulus_pa, "E*", "Reduced modulus: `1/E* = (1 − ν1²)/E1 + (1 − ν2²)/E2`; `E/(1 − ν²)` against a rigid surface."; number Limits {
@@ -173,7 +173,7 @@ pub(super) static KEYS: &[Key] = &[
     key!(material.work_of_adhesion_j_m2, "Δγ", "Work of adhesion. 0: Hertzian asperities without dissipation."; number Limits {
         low: 0.0, above: false, high: 1e3, unit: " J/m²", unit_name: "joules per square metre",
         slip: Some((1e-3, "millijoules per square metre")),
-        note: "0 is the adhesionless limit: Hertzian asperities, which dissipate nothing",
+        note: "0 is the adhesionless limit: Hertzian asperities without dissipation",
     }),
     key!(material.interaction_range_m, "ε", "Range of adhesion. It enters the Tabor parameter and the jump-in criterion of Wu."; number Limits {
         low: 1e-12, above: false, high: 1e-5, unit: " m", unit_name: "metres", slip: Some((1e-9, "nanometres")), note: "",
@@ -188,11 +188,11 @@ pub(super) static KEYS: &[Key] = &[
     key!(model.allow_low_tabor, "", "With `jump_in = \"wu\"`, a Tabor parameter below 2 is an error. If true, it is a warning."; flag),
     key!(cycle.max_load, "F_max/(E* A0)", "Load reversals. One loading path passes all of them, and one unloading path starts at each."; Kind::Numbers(Limits {
         low: 0.0, above: true, high: 0.2, unit: "", unit_name: "", slip: None,
-        note: "max_load is F/(E* A0), without unit: 0.004 to 0.015 is usual, and contact is nearly full from 0.07 on",
+        note: "F_max/(E* A0), maximum load, dimensionless; typical 0.004 to 0.015; near full contact above about 0.07",
     }, 64), |loads: &Vec<f64>| Value::Numbers(loads.clone()), Numbers(loads) => Some(loads.clone())),
     key!(cycle.approach_step, "", "Interval of the mean penetration between output steps, as a fraction of h_rms."; number Limits {
         low: 1e-5, above: false, high: 1.0, unit: "", unit_name: "", slip: None,
-        note: "approach_step is in rms heights: default 0.01; 1e-5 gives some 500 000 steps per branch, which span about 5 rms heights",
+        note: "maximum output step of Δ/h_rms; default 0.01; 1e-5 gives about 500 000 steps per branch",
     }),
     key!(cycle.contacts, "", "Steps at which contact spots are stored."; word KeptContacts),
 ];
