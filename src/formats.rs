@@ -238,7 +238,7 @@ fn archive(first_bytes: &[u8]) -> Found {
 pub fn recognize(path: &Path) -> io::Result<Result<Found, Refusal>> {
     // What is not a file, such as a pipe or a device, might not end.
     if !std::fs::metadata(path)?.is_file() {
-        return Err(io::Error::other("it is no regular file"));
+        return Err(io::Error::other("not a regular file"));
     }
     let mut first = Vec::new();
     File::open(path)?.take(FIRST).read_to_end(&mut first)?;

@@ -40,7 +40,7 @@ impl FromStr for Shard {
         let parts = text.split_once('/').and_then(|(index, count)| Some((index.parse().ok()?, count.parse().ok()?)));
         match parts {
             Some((index, count)) if index < count && count <= MOST => Ok(Self { index, count }),
-            _ => Err(format!("allowed: K/N, two whole numbers with K from 0 to N - 1 and N up to {MOST}, as 0/4")),
+            _ => Err(format!("expected K/N, two integers with 0 <= K < N <= {MOST}, for example 0/4")),
         }
     }
 }

@@ -1,7 +1,7 @@
-//! Tables in, pictures out: five panels for each sweep, in the style of the paper's Figs 3 to 5, and a closer look at one cycle.
+//! Figures: five panels for each sweep, in the style of Figs 3 to 5 of the paper, and panels of a single cycle.
 //!
-//! Loading is green and dashed, unloading red and solid, the prediction of Deng and Kesari blue and dashed; the hues are told apart with any
-//! colour vision, and the strokes without colour. Where the cases of a sweep differ, later ones are darker and each is named at its end.
+//! Loading is green and dashed, unloading red and solid, the estimate of Deng and Kesari blue and dashed. The hues are distinct with any
+//! colour vision, and the strokes without colour. In a sweep, later cases are darker, and each curve has its label at the end.
 
 mod axis;
 mod captions;
@@ -33,7 +33,7 @@ use crate::store::FrameError;
 #[derive(Debug, thiserror::Error)]
 pub enum FigureError {
     /// No case belongs to the sweep.
-    #[error("no case belongs to the sweep {sweep:?}; there are: {known}")]
+    #[error("unknown sweep {sweep:?}\nhelp: use one of {known}")]
     UnknownSweep {
         /// The sweep.
         sweep: String,
@@ -41,7 +41,7 @@ pub enum FigureError {
         known: String,
     },
     /// A picture could not be made into another format.
-    #[error("cannot make a PNG or a PDF of a figure: {0}")]
+    #[error("cannot convert a figure to PNG or PDF: {0}")]
     Format(String),
     /// A table lacks a column.
     #[error(transparent)]

@@ -18,7 +18,7 @@ pub(super) fn check_size(heights_m: &Array2<f64>) -> Result<(), PhysicsError> {
         return Ok(());
     }
     Err(PhysicsError::Surface {
-        problem: format!("its heights are too large: up to {largest:.1e} m, and no surface is higher than {HIGHEST:e} m"),
+        problem: format!("heights too large: up to {largest:.1e} m (limit {HIGHEST:e} m)"),
         help: "check the unit of the heights (--unit, surface.unit), and that no value marks missing points",
     })
 }
@@ -48,7 +48,7 @@ fn range(heights: &Array2<f64>) -> Result<Range, PhysicsError> {
     let deviation = (high - mean).max(mean - low);
     if low < high && deviation < LOWEST {
         return Err(PhysicsError::Surface {
-            problem: format!("its heights differ by {:.1e} m only, which is too little to compute with", high - low),
+            problem: format!("height range too small: {:.1e} m", high - low),
             help: "check the unit of the heights (--unit, surface.unit)",
         });
     }

@@ -79,7 +79,7 @@ pub fn prepare(heights_m: Array2<f64>, spacing_m: [f64; 2], treatment: &Treatmen
         return Err(domain(
             "the number of missing points",
             missing_count as f64,
-            "none; or missing = \"fill\" (--fill; fill=True in Python), which continues the heights around them",
+            "none, or missing = \"fill\" (--fill; fill=True in Python) for harmonic in-fill",
         ));
     }
     if share > MOST_MISSING {
@@ -98,8 +98,8 @@ pub fn prepare(heights_m: Array2<f64>, spacing_m: [f64; 2], treatment: &Treatmen
     let moments = field.moments();
     if moments.rms_height_m() <= ROUNDING * before.rms_height_m() {
         return Err(PhysicsError::Surface {
-            problem: format!("nothing is left of its heights but wavelengths below the cut-off, {:.3e} m", points * fine),
-            help: "lower the cut-off (--points, points_per_shortest_wavelength)",
+            problem: format!("no wavelengths above the S-filter cut-off, {:.3e} m", points * fine),
+            help: "reduce the cut-off (--points, points_per_shortest_wavelength)",
         });
     }
     let noise_m = (before.m0_m2 - moments.m0_m2).max(0.0).sqrt();
@@ -131,26 +131,22 @@ struct Square {
 fn square(heights_m: Array2<f64>, spacing_m: [f64; 2], periodic: bool) -> Result<Square, PhysicsError> {
     if !(spacing_m.iter().all(|d| *d > 0.0 && d.is_finite())) {
         let wrong = spacing_m.into_iter().find(|d| !(*d > 0.0 && d.is_finite())).unwrap_or(f64::NAN);
-        return Err(domain("the distance of its points [m]", wrong, "a positive number"));
+        return Err(domain("the pixel size [m]", wrong, "a positive number"));
     }
     check_size(&heights_m)?;
     let fine = spacing_m[0].min(spacing_m[1]);
     let ratio = spacing_m[0].max(spacing_m[1]) / fine;
     if ratio > MOST_OBLONG {
-        return Err(domain("the greater distance of its points over the smaller one", ratio, "up to 16"));
+        return Err(domain("the ratio of the pixel sizes along both axes", ratio, "up to 16"));
     }
     let oblong = ratio > 1.0 + SQUARE;
     let coarsening = if oblong { ratio } else { 1.0 };
     if oblong && periodic {
-        return Err(domain(
-            "the greater distance of its points over the smaller one",
-            ratio,
-            "1 where a surface is periodic; or periodic = false",
-        ));
+        return Err(domain("the ratio of the pixel sizes along both axes", ratio, "1 for a periodic surface, or periodic = false"));
     }
     let largest = heights_m.len() as f64 * coarsening;
     if largest > MOST_AT_ALL {
-        return Err(domain("the number of its points", largest, "up to 2^28"));
+        return Err(domain("the number of points", largest, "up to 2^28"));
     }
     let heights_m = match oblong {
         true if spacing_m[0] > spacing_m[1] => resampled(heights_m.t(), ratio)?.reversed_axes(),
@@ -160,18 +156,18 @@ fn square(heights_m: Array2<f64>, spacing_m: [f64; 2], periodic: bool) -> Result
     let (rows, columns) = heights_m.dim();
     let side = rows.min(columns);
     if side < FEWEST_POINTS {
-        return Err(domain("the number of points along its shorter side", side as f64, "16 and more"));
+        return Err(domain("the number of points along its shorter side", side as f64, "16 or more"));
     }
     if side > MOST_POINTS {
         return Err(domain(
             "the number of points along its shorter side",
             side as f64,
-            "up to 8192; take a part of it, or every other point",
+            "up to 8192: use a part of the scan, or every second point",
         ));
     }
     if periodic && rows != columns {
-        let allowed = "a square of as many columns, since a part of a periodic surface is not periodic; or periodic = false";
-        return Err(domain("the number of its rows", rows as f64, allowed));
+        let allowed = "the number of columns for a periodic surface, or periodic = false";
+        return Err(domain("the number of rows", rows as f64, allowed));
     }
     Ok(Square { heights: middle(heights_m, side)?, fine, coarsening })
 }

@@ -1,6 +1,6 @@
-//! The physics: surfaces, one JKR asperity, the field of many, their equilibrium and its path.
+//! Physics: surfaces, JKR asperities, elastic interaction, equilibrium and path of a cycle.
 //!
-//! This room opens no file and knows no stage. SI units inside, everywhere; compression and approach are positive.
+//! This module opens no files and is independent of the stages. All quantities are in SI units; compression and penetration are positive.
 
 mod avalanche;
 pub mod bandlimited;
@@ -46,12 +46,12 @@ pub mod validity;
 
 use thiserror::Error;
 
-/// What can go wrong in the physics: each names the quantity, its value and what is allowed.
+/// Errors of the physics, with quantity, value and action.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum PhysicsError {
-    /// A quantity lies outside the domain of the equation that reads it.
-    #[error("cannot evaluate {action}: {quantity} is {}; allowed: {allowed}", short(*value))]
+    /// A quantity outside the domain of its equation.
+    #[error("cannot evaluate {action}: {quantity} is {}\nhelp: expected {allowed}", short(*value))]
     Domain {
         /// What was to be evaluated.
         action: &'static str,
@@ -70,16 +70,18 @@ pub enum PhysicsError {
         /// What to do.
         help: &'static str,
     },
-    /// A surface without a summit carries nothing.
-    #[error("cannot cycle the contact: the surface has no summit")]
-    NoSummit,
-    /// Some asperities lie below the Tabor number at which Wu's jump-in distance holds.
+    /// A surface without asperities.
     #[error(
-        "cannot use Wu's jump-in distance (Eq 3): the smallest Tabor number is {smallest:.3}, {below} of {all} asperities lie below 2; \
-         allowed: a shorter interaction range, jump_in = \"jkr\", or model.allow_low_tabor = true to go on with a caution"
+        "the surface has no asperity: no local maximum with positive mean curvature\nhelp: use a larger surface or a smaller S-filter cut-off"
+    )]
+    NoSummit,
+    /// Asperities with a Tabor parameter below the limit of Wu's criterion.
+    #[error(
+        "Wu's criterion for jump into contact (Eq 3) is invalid: {below} of {all} asperities have a Tabor parameter below 2 (minimum {smallest:.3})\n\
+         help: reduce material.interaction_range_m, set model.jump_in = \"jkr\", or set model.allow_low_tabor = true for a result with a warning"
     )]
     LowTabor {
-        /// The smallest Tabor number.
+        /// Minimum Tabor parameter.
         smallest: f64,
         /// How many asperities lie below 2.
         below: usize,
@@ -104,8 +106,10 @@ pub enum PhysicsError {
         /// Iterations spent.
         iterations: u64,
     },
-    /// A kept state speaks of an asperity that is not there.
-    #[error("cannot restore a state: it holds asperity {asperity}, and the surface has {count}; allowed: a state of this very surface")]
+    /// A stored state with an asperity that the surface does not have.
+    #[error(
+        "cannot restore the state: it contains asperity {asperity}, but the surface has {count} asperities\nhelp: use a state of the same surface"
+    )]
     UnknownAsperity {
         /// The number of the asperity.
         asperity: usize,
@@ -125,10 +129,10 @@ pub enum PhysicsError {
         /// The asperity that changed last.
         asperity: usize,
     },
-    /// Merged spots fill the square.
+    /// Merged contacts fill the square.
     #[error(
-        "cannot go on at the approach {approach_m:e} m: the merged spots have the area {share:.3} A0, and a spot may not grow over its own image; \
-         allowed: a smaller max_load, or coalescence = \"cover\""
+        "the merged contacts have the area {share:.3} A0 at the mean penetration {approach_m:e} m and overlap their periodic images\n\
+         help: reduce cycle.max_load, or set model.coalescence = \"cover\""
     )]
     FullContact {
         /// Approach δ \[m\].
@@ -139,7 +143,7 @@ pub enum PhysicsError {
     /// The contacts have a larger area than the nominal one.
     #[error(
         "the contact area {share:.3} A0 exceeds the nominal area at the mean penetration {approach_m:e} m: the contacts have grown together, and the \
-         asperity model does not hold\nhelp: reduce cycle.max_load; a contact that fills the area under tension is in full contact and outside this model"
+         asperity model is invalid\nhelp: reduce cycle.max_load; a contact that fills the area under tension is in full contact and outside this model"
     )]
     ExcessArea {
         /// Mean penetration Δ \[m\].
@@ -147,10 +151,10 @@ pub enum PhysicsError {
         /// Contact area Σπa² over A0.
         share: f64,
     },
-    /// A loop gives more energy than it takes.
+    /// A loop with negative dissipated energy.
     #[error(
-        "the loop to F/(E* A0) = {max_load} has the negative dissipated energy Θ = {loss_j:e} J ({fraction:.1e} of the work of loading): this is no \
-         result\nhelp: reduce cycle.max_load, or set model.coalescence = \"merge\" or \"none\": absorbing contacts does not conserve energy"
+        "negative dissipated energy of the loop to F/(E* A0) = {max_load}: Θ = {loss_j:e} J ({fraction:.1e} of the work of loading)\n\
+         help: reduce cycle.max_load, or set model.coalescence = \"merge\" or \"none\": absorbing contacts does not conserve energy"
     )]
     NegativeDissipation {
         /// F/(E* A0) at the load reversal; not a number under displacement control.
@@ -160,10 +164,10 @@ pub enum PhysicsError {
         /// Its magnitude over the work of loading.
         fraction: f64,
     },
-    /// The energies of the events are not those of the loop.
+    /// The sum of the event energies differs from the loop area.
     #[error(
-        "the loop to F/(E* A0) = {max_load} dissipates Θ = {loss_j:e} J, its events {events_j:e} J: an energy-balance error above half of Θ is no \
-         result\nhelp: reduce cycle.max_load, or set model.coalescence = \"merge\" or \"none\": absorbing contacts does not conserve energy"
+        "energy-balance error above half of Θ in the loop to F/(E* A0) = {max_load}: Θ = {loss_j:e} J, sum over events {events_j:e} J\n\
+         help: reduce cycle.max_load, or set model.coalescence = \"merge\" or \"none\": absorbing contacts does not conserve energy"
     )]
     EnergyImbalance {
         /// F/(E* A0) at the load reversal; not a number under displacement control.
@@ -173,16 +177,17 @@ pub enum PhysicsError {
         /// Energy dissipated in the events \[J\].
         events_j: f64,
     },
-    /// The greatest load is not reached.
+    /// The maximum load is not reached.
     #[error(
-        "cannot reach the load F/(E* A0) = {wanted}: at the approach {approach_m:e} m it is {reached}; allowed: a smaller max_load, or, where the contact is pulled on, a stiffer or rougher surface: this one sticks"
+        "load F/(E* A0) = {wanted} not reached: it is {reached} at the mean penetration {approach_m:e} m\n\
+         help: reduce cycle.max_load; if the load is tensile, the surface is near full contact, so increase the modulus or the roughness"
     )]
     LoadNotReached {
-        /// The load asked for.
+        /// The requested load.
         wanted: f64,
         /// The load reached.
         reached: f64,
-        /// The approach at which the search ended \[m\].
+        /// Mean penetration Δ at the end of the search \[m\].
         approach_m: f64,
     },
 }

@@ -67,8 +67,8 @@ impl State {
             }
             if row.status == Status::Contact && !(row.radius_m > 0.0 && row.radius_m.is_finite()) {
                 return Err(PhysicsError::Domain {
-                    action: "a state to unload from",
-                    quantity: "the radius of a contact spot in m",
+                    action: "the state at load reversal",
+                    quantity: "the contact radius [m]",
                     value: row.radius_m,
                     allowed: "a positive number",
                 });

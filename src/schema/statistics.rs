@@ -300,7 +300,7 @@ pub static CURVES: Table = Table {
         real("penetration_sd", "1", "Standard deviation of Δ/h_rms over the realizations (n - 1); null for fewer than two").or_null(),
         count(
             "realization_count",
-            "Realizations in the means: those that reach the load if station is \"load\", otherwise all; a realization without tensile load enters at zero load",
+            "Realizations in the means: all that reach the load if station is \"load\", otherwise all; one without tensile load enters at zero load",
         ),
     ],
 };

@@ -1,4 +1,4 @@
-//! What is wrong with a spec, and where.
+//! Errors in a spec, with their positions.
 
 use std::collections::HashSet;
 use std::fmt;
@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use serde::Serialize;
 
-/// Everything that is wrong with one spec.
+/// All errors of one spec.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SpecErrors {
     file: String,
@@ -18,14 +18,14 @@ pub struct SpecErrors {
     settings: Vec<String>,
 }
 
-/// One thing that is wrong with a spec.
+/// One error of a spec.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Fault {
-    /// What is wrong, as a sentence without its full stop.
+    /// The problem, without a full stop.
     pub message: String,
-    /// What to do about it.
+    /// Recommended action.
     pub help: Option<String>,
-    /// Where; nothing, if the file could not be read, or if the value is one of the command line.
+    /// Position; `None` if the file could not be read, or if the value is one of the command line.
     pub place: Option<Place>,
 }
 
@@ -62,13 +62,13 @@ impl SpecErrors {
 
     /// The file could not be read at all.
     pub(super) fn unreadable(file: &str, cause: &str) -> Self {
-        let message = format!("the spec cannot be read: {cause}");
+        let message = format!("cannot read the spec: {cause}");
         Self { file: file.to_owned(), faults: vec![Fault { message, help: None, place: None }], more: 0, settings: Vec::new() }
     }
 
     /// The file is no text: `valid` bytes of it are.
     pub(super) fn not_utf8(bytes: &[u8], valid: usize, file: &str) -> Self {
-        let message = "the spec cannot be read: this is not UTF-8 text".to_owned();
+        let message = "cannot read the spec: not UTF-8 text".to_owned();
         let help = Some("save the file as UTF-8".to_owned());
         let text = String::from_utf8_lossy(bytes);
         let place = Some(Place::new(&text, &line_starts(&text), &(valid..valid + char::REPLACEMENT_CHARACTER.len_utf8())));
@@ -97,7 +97,7 @@ impl fmt::Display for SpecErrors {
                 }
             }
             if let Some(help) = &fault.help {
-                writeln!(out, "{pad} = {help}")?;
+                writeln!(out, "{pad} = help: {help}")?;
             }
         }
         if self.more > 0 {

@@ -29,8 +29,8 @@ pub(super) fn files(written: &Written<'_>, span: &Range<usize>, faults: &mut Fau
                 found.insert(name.to_owned(), (digest.to_string(), span));
             }
             _ => {
-                let help = "64 hexadecimal digits, as `b3sum` tells them; leave the line out, and the file is read".to_owned();
-                faults.add(&span, "an entry of [files] must be the BLAKE3 of a file".to_owned(), help);
+                let help = "write the 64 hexadecimal digits that `b3sum` prints, or remove the line".to_owned();
+                faults.add(&span, "an entry of [files] must be the BLAKE3 checksum of a file".to_owned(), help);
             }
         }
     }
@@ -41,7 +41,7 @@ pub(super) fn files(written: &Written<'_>, span: &Range<usize>, faults: &mut Fau
 pub(super) fn named(files: BTreeMap<String, (String, Range<usize>)>, cases: &[Case], faults: &mut Faults<'_>) -> BTreeMap<String, String> {
     let wanted: HashSet<&str> = cases.iter().map(|case| case.params.surface.file.as_str()).collect();
     for (name, (_, span)) in files.iter().filter(|(name, _)| !wanted.contains(name.as_str())) {
-        let message = format!("[files] has the hash of \"{}\", which no case reads", shown(name));
+        let message = format!("[files] has a checksum of \"{}\", which is not used by any case", shown(name));
         faults.add(span, message, "remove the line, or name the file as surface.file exactly as it is written here".to_owned());
     }
     files.into_iter().map(|(name, (digest, _))| (name, digest)).collect()
@@ -124,10 +124,14 @@ fn look(name: &str, folder: &Path, dataset: &str, hashed: Option<&String>) -> Re
     let unreadable = |error: std::io::Error| {
         let help = match std::env::current_dir() {
             Ok(here) if path.is_relative() => {
-                let beside = if folder.as_os_str().is_empty() { String::new() } else { format!(" and in {}", folder.display()) };
-                format!("it was looked for from {}, where the command is run{beside}", here.display())
+                let beside = if folder.as_os_str().is_empty() {
+                    String::new()
+                } else {
+                    format!(" and in {} (folder of the spec)", folder.display())
+                };
+                format!("it was looked for in {} (working directory){beside}", here.display())
             }
-            _ => "a file in a format that `hysteron import` reads is wanted".to_owned(),
+            _ => "use a file format that `hysteron import` reads".to_owned(),
         };
         Refusal { problem: error.to_string(), help }
     };

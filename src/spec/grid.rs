@@ -68,7 +68,7 @@ fn too_many(sweeps: &[&SweepDraft], faults: &mut Faults<'_>) -> bool {
     }
     if let Some(span) = first_beyond {
         let message = format!("the sweeps make {total} cases: at most {MAX_CASES} are allowed");
-        let help = "arrays in one sweep multiply; sweep fewer keys at once, or take several sweeps".to_owned();
+        let help = "arrays in one sweep multiply; sweep fewer keys, or use several sweeps".to_owned();
         faults.add(span, message, help);
     }
     first_beyond.is_some()
@@ -88,7 +88,7 @@ fn bound_tasks(cases: &[Case], realizations: Realizations, at: Option<&Range<usi
             "{} cases x {most} realizations make {tasks} tasks (cycles, and two for each surface): at most {MAX_TASKS} are allowed",
             cases.len()
         );
-        faults.add(at.unwrap_or(&(0..0)), message, "lower `realizations`, or split the sweeps over several specs".to_owned());
+        faults.add(at.unwrap_or(&(0..0)), message, "reduce `realizations`, or split the sweeps into several specs".to_owned());
     }
 }
 
@@ -148,7 +148,7 @@ fn check_measured(case: &CaseParams, origins: &[Origin], swept: &[usize], faults
             && let Some(span) = written(find("surface", name), origins)
         {
             let message = format!("`surface.{name}` describes a generated surface, and `surface.file` names a measured one");
-            faults.add(&span, message, "a measured surface has its own; leave one of the two out".to_owned());
+            faults.add(&span, message, "remove one of the two keys".to_owned());
         }
     }
     if case.surface.periodic
@@ -163,8 +163,8 @@ fn check_measured(case: &CaseParams, origins: &[Origin], swept: &[usize], faults
         let boundary = written(find("model", "boundary"), origins);
         let span = boundary.or_else(|| written(find("surface", "periodic"), origins)).or_else(|| written(find("surface", "file"), origins));
         if let Some(span) = span {
-            let message = "a measured surface that does not continue periodically cannot have its own images around it".to_owned();
-            faults.add(&span, message, "write model.boundary = \"isolated\", or surface.periodic = true if it does".to_owned());
+            let message = "a non-periodic measured surface requires model.boundary = \"isolated\"".to_owned();
+            faults.add(&span, message, "write model.boundary = \"isolated\", or surface.periodic = true for a periodic scan".to_owned());
         }
     }
 }
@@ -199,13 +199,13 @@ fn check(case: &CaseParams, origins: &[Origin], swept: &[usize], faults: &mut Fa
         && let Some(span) = blamed(keys, origins)
     {
         let message = format!("{}: at most {MAX_GRID} x {MAX_GRID} are allowed", made());
-        let help = "lower `magnification` or `points_per_shortest_wavelength`".to_owned();
+        let help = "reduce `magnification` or `points_per_shortest_wavelength`".to_owned();
         faults.add(&span, message, help);
     } else if !grid.is_multiple_of(2)
         && let Some(span) = blamed(keys, origins)
     {
         let message = format!("{}: their number along a side must be even", made());
-        let help = "only an even grid has a Nyquist line, which the transforms of a real surface build on".to_owned();
+        let help = "choose an even product of `magnification` and `points_per_shortest_wavelength`".to_owned();
         faults.add(&span, message, help);
     }
 }

@@ -132,21 +132,21 @@ pub(super) static KEYS: &[Key] = &[
         note: "H, Hurst exponent of a self-affine surface, 0.01 <= H <= 1; default 0.8",
     }),
     key!(surface.magnification: count 2 to 16384, &[],
-        "the magnification ζ is the longest over the shortest wavelength of the roughness; 128 is usual"),
+        "ζ, magnification: longest over shortest wavelength of the roughness, 2 <= ζ <= 16384; default 128"),
     key!(surface.points_per_shortest_wavelength: count 4 to 64, &[
-        (1, "below 2 points ζ lies above the Nyquist wavenumber of the grid, which then cannot hold the shortest waves"),
-        (3, "2 or 3 points hold the heights of the shortest waves, but their derivatives, which give the summits, need 4"),
-    ], "8 is usual"),
+        (1, "1 point is below the Nyquist limit: the grid does not resolve the shortest wavelength"),
+        (3, "2 or 3 points resolve the heights at the shortest wavelength; the derivatives at summits need at least 4"),
+    ], "default 8"),
     key!(surface.normalization: word Normalization),
     key!(surface.amplitudes: word Amplitudes),
     key!(surface.file: text 4096, "the file of a measured surface, from the folder where the command is run"),
-    key!(surface.dataset: text 256, "which field of the file it is"),
+    key!(surface.dataset: text 256, "a dataset of the file"),
     key!(surface.periodic: flag),
     key!(surface.pixel_m: number Limits {
         low: 0.0, above: false, high: 0.1, unit: " m", unit_name: "metres", slip: Some((1e-6, "micrometres")),
-        note: "the distance of neighbouring points; 0 where the file tells it",
+        note: "pixel size; 0 if the file contains it",
     }),
-    key!(surface.unit: length "the unit of the heights, such as \"nm\""),
+    key!(surface.unit: length "the unit of the heights, for example \"nm\""),
     key!(surface.missing: word Missing),
     key!(surface.detrend: word Detrend),
     key!(material.contact_modulus_pa: number Limits {
@@ -155,7 +155,7 @@ pub(super) static KEYS: &[Key] = &[
     key!(material.work_of_adhesion_j_m2: number Limits {
         low: 0.0, above: false, high: 1e3, unit: " J/m²", unit_name: "joules per square metre",
         slip: Some((1e-3, "millijoules per square metre")),
-        note: "0 is the adhesionless limit: Hertzian asperities, which dissipate nothing",
+        note: "0 is the adhesionless limit: Hertzian asperities without dissipation",
     }),
     key!(material.interaction_range_m: number Limits {
         low: 1e-12, above: false, high: 1e-5, unit: " m", unit_name: "metres", slip: Some((1e-9, "nanometres")), note: "",
@@ -170,11 +170,11 @@ pub(super) static KEYS: &[Key] = &[
     key!(model.allow_low_tabor: flag),
     key!(cycle.max_load, Kind::Numbers(Limits {
         low: 0.0, above: true, high: 0.2, unit: "", unit_name: "", slip: None,
-        note: "max_load is F/(E* A0), without unit: 0.004 to 0.015 is usual, and contact is nearly full from 0.07 on",
+        note: "F_max/(E* A0), maximum load, dimensionless; typical 0.004 to 0.015; near full contact above about 0.07",
     }, 64), |loads: &Vec<f64>| Value::Numbers(loads.clone()), Numbers(loads) => Some(loads.clone())),
     key!(cycle.approach_step: number Limits {
         low: 1e-5, above: false, high: 1.0, unit: "", unit_name: "", slip: None,
-        note: "approach_step is in rms heights: default 0.01; 1e-5 gives some 500 000 steps per branch, which span about 5 rms heights",
+        note: "maximum output step of Δ/h_rms; default 0.01; 1e-5 gives about 500 000 steps per branch",
     }),
     key!(cycle.contacts: word KeptContacts),
 ];

@@ -301,14 +301,14 @@ impl Spec {
         let file = path.display().to_string();
         // Windows answers "access denied" for a folder; the question is cheap and the answer is the same everywhere.
         if path.is_dir() {
-            return Err(SpecErrors::unreadable(&file, "it is a folder; a spec is a TOML file"));
+            return Err(SpecErrors::unreadable(&file, "it is a directory, not a TOML file"));
         }
         let mut bytes = Vec::new();
         // One byte more than allowed tells a full file from one that is too long, also where a pipe has no length.
         let read = std::fs::File::open(path).and_then(|opened| opened.take(MAX_BYTES + 1).read_to_end(&mut bytes));
         match read {
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-                return Err(SpecErrors::unreadable(&file, "there is no such file"));
+                return Err(SpecErrors::unreadable(&file, "no such file"));
             }
             Err(error) => return Err(SpecErrors::unreadable(&file, &error.to_string())),
             Ok(length) if length as u64 > MAX_BYTES => {

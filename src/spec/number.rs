@@ -61,7 +61,7 @@ pub(super) fn numbers(key: &Key, limits: &Limits, most: usize, value: &Written<'
         if let Some(found) = number(path, limits, element, faults) {
             if seen.contains(&found) {
                 let message = format!("`{path}` has the value {} twice", short(found));
-                faults.add(&element.span(), message, "each turning point must stand once".to_owned());
+                faults.add(&element.span(), message, "list each load reversal once".to_owned());
             }
             seen.push(found);
         }

@@ -88,7 +88,7 @@ const PRECISION: Limits = Limits {
     unit: "",
     unit_name: "",
     slip: None,
-    note: "half the 95 % interval over the mean: 0.05 is 5 %, and takes some hundred surfaces where results scatter by 25 %",
+    note: "half-width of the 95 % confidence interval over the mean; 0.05 takes about 100 surfaces at a standard deviation of 25 %",
 };
 
 /// A number of realizations, or a table that says until when.
@@ -110,7 +110,7 @@ fn count(path: &str, least: u32, value: &Written<'_>, faults: &mut Faults<'_>) -
     if count.is_none() {
         let message = format!("`{path}` cannot be {found}: it must be from {least} to {MAX_REALIZATIONS}");
         // One has no spread.
-        faults.add(&value.span(), message, (least > 1).then(|| "two are the fewest that have a spread".to_owned()));
+        faults.add(&value.span(), message, (least > 1).then(|| "a standard deviation requires at least two realizations".to_owned()));
     }
     count
 }
@@ -133,7 +133,7 @@ fn until(value: &Written<'_>, faults: &mut Faults<'_>) -> Option<Until> {
                 max = count("realizations.max", 2, written, faults).unwrap_or(max);
             }
             unknown => {
-                let listed = format!("it takes: {}", TAKES.join(", "));
+                let listed = format!("keys of `realizations`: {}", TAKES.join(", "));
                 let help = nearest(unknown, TAKES).map_or_else(|| listed.clone(), |near| format!("did you mean `{near}`? {listed}"));
                 faults.add(&span, format!("unknown key `{}` in `realizations`", shown(unknown)), help);
             }

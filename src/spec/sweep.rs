@@ -32,14 +32,14 @@ const IN_SWEEP: [&str; 5] = ["name", "surface", "material", "model", "cycle"];
 /// Reads the sweeps.
 pub(super) fn sweeps(written: &Spanned<DeValue<'_>>, span: &Range<usize>, read: &mut Vec<Option<SweepDraft>>, faults: &mut Faults<'_>) {
     let DeValue::Array(tables) = written.get_ref() else {
-        let help = "a sweep begins with [[sweep]], in double brackets".to_owned();
+        let help = "write [[sweep]], in double brackets".to_owned();
         faults.add(span, "`sweep` must be an array of tables".to_owned(), help);
         return;
     };
     let mut names: HashSet<String> = HashSet::new();
     for table in tables.iter() {
         let DeValue::Table(found) = table.get_ref() else {
-            let help = "a sweep begins with [[sweep]], in double brackets".to_owned();
+            let help = "write [[sweep]], in double brackets".to_owned();
             value::wrong_type("sweep", "an array of tables", table.get_ref(), &table.span(), help, faults);
             continue;
         };
@@ -64,7 +64,7 @@ fn sweep(found: &DeTable<'_>, at: Range<usize>, known: &mut HashSet<String>, fau
                     && !known.insert(name.clone())
                 {
                     let message = format!("two sweeps have the name \"{name}\"");
-                    faults.add(&written.span(), message, "each sweep needs a name of its own".to_owned());
+                    faults.add(&written.span(), message, "give each sweep a different name".to_owned());
                 }
             }
             table if TABLES.contains(&table) => {
@@ -72,9 +72,9 @@ fn sweep(found: &DeTable<'_>, at: Range<usize>, known: &mut HashSet<String>, fau
             }
             unknown => faults.add_with(&span, || {
                 let help = if unknown == "seed" || unknown == "realizations" {
-                    format!("`{unknown}` is the same for all sweeps: it stands at the top of the spec")
+                    format!("`{unknown}` is the same for all sweeps: move it to the top of the spec")
                 } else {
-                    lost(unknown, &IN_SWEEP, |table| format!("write {table}.{unknown}"), "[[sweep]] takes")
+                    lost(unknown, &IN_SWEEP, |table| format!("write {table}.{unknown}"), "keys of [[sweep]]")
                 };
                 (format!("unknown key `{}` in [[sweep]]", shown(unknown)), Some(help))
             }),
@@ -96,8 +96,8 @@ fn axis(place: usize, written: &Spanned<DeValue<'_>>, faults: &mut Faults<'_>) -
     let values = match written.get_ref() {
         DeValue::Array(many) if !key.kind.is_list() || many.first().is_some_and(|first| first.get_ref().is_array()) => {
             if many.is_empty() {
-                let message = format!("the axis `{}` has no value", key.path);
-                faults.add(&written.span(), message, "give at least one value, or leave the key out".to_owned());
+                let message = format!("the sweep of `{}` has no values", key.path);
+                faults.add(&written.span(), message, "give at least one value, or remove the key".to_owned());
                 return None;
             }
             many.iter().map(|value| one(value, faults)).collect::<Vec<_>>()

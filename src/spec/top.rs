@@ -22,7 +22,7 @@ pub(super) fn name(of: &str, value: &Written<'_>, faults: &mut Faults<'_>) -> Op
     let span = value.span();
     let DeValue::String(found) = value.get_ref() else {
         let help = "write it in quotes".to_owned();
-        wrong_type(of, "a name in quotes", value.get_ref(), &span, help, faults);
+        wrong_type(of, "a string", value.get_ref(), &span, help, faults);
         return None;
     };
     let allowed = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
@@ -30,6 +30,6 @@ pub(super) fn name(of: &str, value: &Written<'_>, faults: &mut Faults<'_>) -> Op
         return Some(found.to_string());
     }
     let message = format!("`{of}` cannot be {}: it names a folder or a table row", faults.written(&span));
-    faults.add(&span, message, "1 to 64 of the letters A-Z and a-z, digits, - and _ are allowed".to_owned());
+    faults.add(&span, message, "use 1 to 64 letters A-Z or a-z, digits, - and _".to_owned());
     None
 }

@@ -43,7 +43,7 @@ pub(super) fn read(key: &Key, value: &Written<'_>, faults: &mut Faults<'_>) -> O
         Kind::Length(note) => length(key.path, note, value, faults).map(Value::Text),
         Kind::Words(words) => {
             let words = words();
-            let elements = array(key.path, "words", value, faults)?;
+            let elements = array(key.path, "strings", value, faults)?;
             let read: Vec<_> = elements.iter().map(|element| word(key.path, &words, element, faults)).collect();
             let said: Vec<_> = read.into_iter().collect::<Option<_>>()?;
             // In the order of the choice, so that two orders of writing are one case.
@@ -69,16 +69,16 @@ pub(super) fn array<'v, 't>(path: &str, of: &str, value: &'v Written<'t>, faults
 fn text(path: &str, most: usize, note: &str, value: &Written<'_>, faults: &mut Faults<'_>) -> Option<String> {
     let span = value.span();
     let DeValue::String(found) = value.get_ref() else {
-        wrong_type(path, "a text in quotes", value.get_ref(), &span, format!("it is {note}"), faults);
+        wrong_type(path, "a string", value.get_ref(), &span, format!("it is {note}"), faults);
         return None;
     };
     if found.is_empty() && path == "surface.file" {
-        faults.add(&span, format!("`{path}` is empty: it is {note}"), "leave the key out for a generated surface".to_owned());
+        faults.add(&span, format!("`{path}` is empty: it is {note}"), "remove the key for a generated surface".to_owned());
         return None;
     }
     if found.len() > most || found.chars().any(char::is_control) {
         let message = format!("`{path}` cannot be {}: it is {note}", faults.written(&span));
-        faults.add(&span, message, format!("up to {most} bytes without control characters are allowed"));
+        faults.add(&span, message, format!("use at most {most} bytes without control characters"));
         return None;
     }
     Some(found.to_string())
@@ -91,16 +91,16 @@ fn length(path: &str, note: &str, value: &Written<'_>, faults: &mut Faults<'_>) 
         return Some(found);
     }
     let span = value.span();
-    faults.add(&span, format!("`{path}` cannot be {}: it is no unit of length", faults.written(&span)), format!("allowed: {LENGTHS}"));
+    faults.add(&span, format!("`{path}` cannot be {}: not a unit of length", faults.written(&span)), format!("use one of {LENGTHS}"));
     None
 }
 
 /// One of the words of a key.
 pub(super) fn word(path: &str, words: &[&'static str], value: &Written<'_>, faults: &mut Faults<'_>) -> Option<&'static str> {
     let span = value.span();
-    let listed = || format!("allowed: {}", words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", "));
+    let listed = || format!("use one of {}", words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", "));
     let DeValue::String(found) = value.get_ref() else {
-        wrong_type(path, "a word in quotes", value.get_ref(), &span, listed(), faults);
+        wrong_type(path, "a string", value.get_ref(), &span, listed(), faults);
         return None;
     };
     let Some(known) = words.iter().find(|word| **word == found.as_ref()) else {
@@ -110,7 +110,7 @@ pub(super) fn word(path: &str, words: &[&'static str], value: &Written<'_>, faul
                 Some(near) => format!("did you mean \"{near}\"? {}", listed()),
                 None => listed(),
             };
-            (format!("`{path}` does not know the word {written}"), Some(help))
+            (format!("unknown value {written} of `{path}`"), Some(help))
         });
         return None;
     };

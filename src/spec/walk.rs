@@ -82,7 +82,7 @@ pub(super) fn document(text: &str, faults: &mut Faults<'_>) -> Option<Draft> {
     let entries = entries(root.get_ref());
     if !entries.iter().any(|(key, ..)| *key == "name") {
         let what = if entries.is_empty() { "the spec is empty: it needs a `name`" } else { "the spec has no `name`" };
-        faults.add(&(0..0), what.to_owned(), "begin with a line such as name = \"first\"".to_owned());
+        faults.add(&(0..0), what.to_owned(), "add a first line such as name = \"first\"".to_owned());
     }
     for entry in entries {
         enter(entry, &mut draft, faults);
@@ -103,7 +103,7 @@ pub(super) fn enter((key, span, written): Entry<'_, '_>, draft: &mut Draft, faul
         "sweep" => sweeps(written, &span, &mut draft.sweeps, faults),
         table if TABLES.contains(&table) => base(table, written, &span, draft, faults),
         unknown => faults.add_with(&span, || {
-            let help = lost(unknown, &TOP, |table| format!("`{unknown}` belongs in [{table}]"), "a spec takes");
+            let help = lost(unknown, &TOP, |table| format!("`{unknown}` belongs in [{table}]"), "keys of a spec");
             (format!("unknown key `{}` at the top of the spec", shown(unknown)), Some(help))
         }),
     }
@@ -114,8 +114,8 @@ fn base(table: &str, written: &Spanned<DeValue<'_>>, span: &Range<usize>, draft:
     for (place, _, written) in keys(table, written, span, faults) {
         let key = &KEYS[place];
         let read = if !key.kind.is_list() && written.get_ref().is_array() {
-            let message = format!("`{}` has one value here, not an array", key.path);
-            faults.add(&written.span(), message, "an array makes a grid, and only in a [[sweep]]".to_owned());
+            let message = format!("`{}` must be a single value here, not an array", key.path);
+            faults.add(&written.span(), message, "move the array to a [[sweep]]".to_owned());
             None
         } else {
             value::read(key, written, faults)
@@ -151,7 +151,7 @@ pub(super) fn keys<'a, 't>(
         } else {
             faults.add_with(&span, || {
                 let own: Vec<_> = names(table).collect();
-                let help = lost(name, &own, |other| format!("`{name}` belongs in [{other}]"), &format!("[{table}] takes"));
+                let help = lost(name, &own, |other| format!("`{name}` belongs in [{other}]"), &format!("keys of [{table}]"));
                 (format!("unknown key `{}` in [{table}]", shown(name)), Some(help))
             });
         }

@@ -62,7 +62,7 @@ pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> R
             kept_at = Instant::now();
             let kept = postcard::to_stdvec(halfway).map_err(|error| error.to_string());
             if let Err(why) = kept.and_then(|bytes| write_halfway(&path, &unit.key, &bytes).map_err(|error| error.to_string())) {
-                watch.notice(&format!("{}: {why}; it goes on, and if it is interrupted it begins anew", unit.id));
+                watch.notice(&format!("{}: {why}; continuing without checkpoint, an interrupted cycle restarts", unit.id));
             }
         }
     };

@@ -31,7 +31,7 @@ pub(super) fn in_the_way(campaign: &Campaign, task: &Unit<'_>) -> Result<(), Sta
         Stage::Cycle => {
             let folder = campaign.dir.join("cycles").join(task.id);
             if std::fs::symlink_metadata(&folder).is_ok() && !folder.is_dir() {
-                return Err(StageError::InTheWay { path: folder, what: "something that is no folder" });
+                return Err(StageError::InTheWay { path: folder, what: "a file" });
             }
             let inside = std::fs::read_dir(&folder).map(|all| all.flatten().map(|entry| entry.path()).collect::<Vec<PathBuf>>());
             files.extend(inside.unwrap_or_default().into_iter().filter(|path| path.extension().is_some_and(|e| e == "parquet")));
@@ -58,7 +58,7 @@ pub(super) fn report(
     watch.notice(&format!("{id} failed: {error}"));
     for cycle in cycles {
         match record(campaign, cycle, stage, error) {
-            Err(why @ StageError::InTheWay { .. }) => watch.notice(&format!("{}: the failure is not recorded: {why}", cycle.id)),
+            Err(why @ StageError::InTheWay { .. }) => watch.notice(&format!("{}: cannot record the failure: {why}", cycle.id)),
             recorded => recorded?,
         }
     }

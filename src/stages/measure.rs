@@ -113,9 +113,8 @@ fn own(
 fn in_metres(path: &Path, mut heights: Array2<f64>, unit: f64) -> Result<Array2<f64>, StageError> {
     let too_large = heights.iter().find(|h| h.is_finite() && !(unit * **h).is_finite());
     if let Some(height) = too_large {
-        let why = format!(
-            "its heights are too large: {height:e} in the unit {unit:e} m\nhelp: check the unit of the heights (--unit, surface.unit)"
-        );
+        let why =
+            format!("heights too large: {height:e} in the unit {unit:e} m\nhelp: check the unit of the heights (--unit, surface.unit)");
         return Err(refused(path, &why));
     }
     heights *= unit;
@@ -159,14 +158,13 @@ fn spacing(params: &SurfaceParams, scan: &Scan) -> Result<[f64; 2], StageError> 
     match scan.size_m {
         None if given > 0.0 && scan.spacing.is_none_or(|[a, b]| (a / b - 1.0).abs() <= SAME) => Ok([given; 2]),
         None => match scan.spacing {
-            Some(_) if given > 0.0 => Err(refused(
-                path,
-                "its points are not as far apart along x as along y, and pixel_m was given\nhelp: leave pixel_m (--pixel-m) out",
-            )),
+            Some(_) if given > 0.0 => {
+                Err(refused(path, "the pixel sizes along x and y differ, and pixel_m was given\nhelp: remove pixel_m (--pixel-m)"))
+            }
             // Without a unit of its own the file has one for all columns.
             Some(own) => metres(&params.unit).map(|unit| own.map(|spacing| unit * spacing)).ok_or_else(|| unitless(path)),
             None => {
-                let why = "it does not say how far apart its points are; give pixel_m (--pixel-m), the size of the scan over its number of points";
+                let why = "no pixel size in the file\nhelp: give pixel_m (--pixel-m), the side of the scan over its number of points";
                 Err(refused(path, why))
             }
         },
@@ -175,7 +173,9 @@ fn spacing(params: &SurfaceParams, scan: &Scan) -> Result<[f64; 2], StageError> 
             if given > 0.0 && [a, b].iter().any(|own| (given / own - 1.0).abs() > SAME) {
                 return Err(refused(
                     path,
-                    &format!("its points are {a:.4e} m and {b:.4e} m apart, and pixel_m is {given:e} m; leave pixel_m out"),
+                    &format!(
+                        "the pixel size is {a:.4e} m x {b:.4e} m in the file, but pixel_m is {given:e} m\nhelp: remove pixel_m (--pixel-m)"
+                    ),
                 ));
             }
             Ok([a, b])
@@ -188,18 +188,20 @@ fn unit(params: &SurfaceParams, scan: &Scan) -> Result<f64, StageError> {
     let path = Path::new(&params.file);
     let given = &params.unit;
     match &scan.unit {
-        Some(own) if !given.is_empty() && metres(given) != metres(own) => {
-            Err(refused(path, &format!("its heights are in {own}, and the unit {given:?} was given; leave it out")))
-        }
+        Some(own) if !given.is_empty() && metres(given) != metres(own) => Err(refused(
+            path,
+            &format!("the heights are in {own} in the file, but the unit {given:?} was given\nhelp: remove the unit (--unit)"),
+        )),
         Some(_) => Ok(1.0),
         None if given.is_empty() => Err(unitless(path)),
-        None => metres(given)
-            .ok_or_else(|| refused(path, &format!("the unit {given:?} that was given for its heights is no length; allowed: {LENGTHS}"))),
+        None => metres(given).ok_or_else(|| {
+            refused(path, &format!("the unit of the heights {given:?} is not a unit of length\nhelp: use one of {LENGTHS}"))
+        }),
     }
 }
 
 fn unitless(path: &Path) -> StageError {
-    refused(path, "it does not say the unit of its heights; give the unit (--unit), such as \"nm\"")
+    refused(path, "no unit of the heights in the file\nhelp: give the unit (--unit), for example \"nm\"")
 }
 
 /// A file's heights: those of a surface of this program, which says all of it, or a scan.

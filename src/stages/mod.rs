@@ -56,7 +56,7 @@ pub enum StageError {
     #[error(transparent)]
     Figure(#[from] crate::figures::FigureError),
     /// The output folder.
-    #[error("cannot make the folder {}: {source}; allowed: a folder that can be written to (--out DIR)", shown(path))]
+    #[error("cannot create the directory {}: {source}\nhelp: give a writable directory with --out DIR", shown(path))]
     Folder {
         /// The folder.
         path: PathBuf,
@@ -64,7 +64,7 @@ pub enum StageError {
         source: std::io::Error,
     },
     /// A measured surface.
-    #[error("cannot take the surface {}: {why}", shown(path))]
+    #[error("cannot import the surface {}: {why}", shown(path))]
     Measured {
         /// Its file.
         path: PathBuf,
@@ -74,8 +74,8 @@ pub enum StageError {
     /// The file of a measured surface, which is not in the form that it seems to be in.
     #[error(transparent)]
     Scan(StoreError),
-    /// A measured surface that is no longer what the spec was read with: nobody's case, since its keys tell of another file.
-    #[error("cannot take the surface {}: {why}", shown(path))]
+    /// A measured surface that changed after the spec was read. It is no failure of a case, whose keys refer to the former file.
+    #[error("cannot import the surface {}: {why}", shown(path))]
     Changed {
         /// Its file.
         path: PathBuf,
@@ -83,7 +83,7 @@ pub enum StageError {
         why: String,
     },
     /// A folder in the place of a file that a task writes, or a file in the place of its folder.
-    #[error("cannot write {}: {what} has this name\nhelp: remove or rename it; the next run computes the task", shown(path))]
+    #[error("cannot write {}: {what} of this name exists\nhelp: remove or rename it; the next run computes the task", shown(path))]
     InTheWay {
         /// The place.
         path: PathBuf,
@@ -104,7 +104,7 @@ pub enum StageError {
         limit: u64,
     },
     /// A turning point that was not kept.
-    #[error("cannot unload from F/(E* A0) = {max_load}: {} holds {kept}; allowed: one of these", shown(path))]
+    #[error("no load reversal at F/(E* A0) = {max_load} in {}\nhelp: use one of {kept}", shown(path))]
     NoTurning {
         /// The load asked for.
         max_load: f64,
@@ -115,7 +115,7 @@ pub enum StageError {
     },
     /// Campaigns without a case in common.
     #[error(
-        "cannot compare {folders}: no case is in all of them; allowed: campaigns with a case that is the same but for what tells the campaigns apart"
+        "cannot compare {folders}: no case with otherwise equal parameters is in all runs\nhelp: compare runs that differ in one parameter"
     )]
     NothingInCommon {
         /// Their folders.
@@ -123,7 +123,7 @@ pub enum StageError {
     },
     /// A stage lacks what an earlier one writes.
     #[error(
-        "cannot {stage}: {missing} of {} of the stage before it are missing or damaged ({example}); run `hysteron run SPEC` or the stage before first",
+        "cannot run the stage {stage}: {missing} of {} of the previous stage missing or damaged ({example})\nhelp: run `hysteron run SPEC`, or the previous stage",
         counted(*all, "task")
     )]
     Incomplete {
@@ -234,7 +234,7 @@ pub fn run(campaign: Campaign, task: &Task, watch: &dyn Watch) -> Result<(Campai
             break;
         }
         let more: u32 = campaign.counts.iter().zip(&before).map(|(now, before)| now - before).sum();
-        watch.notice(&format!("the means are not known as well as the spec asks: {more} more realizations"));
+        watch.notice(&format!("confidence interval wider than requested: {more} more realizations"));
     }
     for stage in wanted(&[Stage::Aggregate, Stage::Report]) {
         let tally = if stage == Stage::Aggregate {
@@ -276,8 +276,8 @@ fn due<'a, T: Sync>(
     let standings: Vec<Standing> = jobs.par_iter().map(&standing).collect();
     let open = jobs.into_iter().zip(standings).filter(|(_, standing)| *standing != Standing::Done);
     open.inspect(|(job, standing)| match standing {
-        Standing::Missing(why) | Standing::Corrupt(why) => watch.notice(&format!("{}: {why}; it is computed again", job.unit.id)),
-        Standing::Stale => watch.notice(&format!("{} was written for other parameters; it is computed again", job.unit.id)),
+        Standing::Missing(why) | Standing::Corrupt(why) => watch.notice(&format!("{}: {why}; recomputing", job.unit.id)),
+        Standing::Stale => watch.notice(&format!("{} has other parameters; recomputing", job.unit.id)),
         Standing::Done | Standing::Planned | Standing::Interrupted | Standing::Failed(_) => {}
     })
     .collect()

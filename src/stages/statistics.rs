@@ -49,7 +49,7 @@ pub(super) fn run(
             stage: Stage::Aggregate.word(),
             missing: lacking.len(),
             all: standings.len(),
-            example: format!("{}; --partial aggregates what is there", first.id),
+            example: format!("{}; --partial aggregates the finished ones", first.id),
         });
     }
     let finished = done(&standings);

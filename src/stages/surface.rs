@@ -60,7 +60,8 @@ fn take(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Outcome, StageError> 
     let digest = digest_of_file(path).map_err(|error| refuse(error.to_string()))?;
     if campaign.spec.files.get(&unit.params.file) != Some(&digest) {
         return Err(refuse(
-            "it is another file than [files] of the spec says; take that line out, and what is made of it is computed anew".to_owned(),
+            "the file differs from its checksum in [files] of the spec\nhelp: remove this line to recompute with the present file"
+                .to_owned(),
         ));
     }
     let (prepared, header) = measure(&unit.params, &digest, &unit.key)?;

@@ -1,7 +1,7 @@
-//! Tables in, tables out: from the steps of many cycles to means, spreads and averaged paths.
+//! Statistics: means, standard deviations and mean curves from the steps of many cycles.
 //!
 //! Polars reads, filters, sorts and groups; every sum is taken here, in the order of the realizations, so that the tables
-//! have the same bytes with any number of threads. This room knows no physics: what is not in the steps, it is given as numbers.
+//! have the same bytes with any number of threads. This module is independent of the physics.
 
 mod avalanches;
 mod cases;
@@ -133,8 +133,8 @@ pub enum StatsError {
     },
     /// Campaigns cannot be compared.
     #[error(
-        "cannot compare {label}: its case {case_id} is the same as another one of it but for what tells the campaigns apart ({differing}); allowed: campaigns of \
-         which each has one value of that, or all the same ones"
+        "cannot compare {label}: it varies parameters that also differ between the runs ({differing}); case {case_id} cannot be paired\n\
+         help: compare runs that differ in one fixed parameter, or sweep the same values"
     )]
     Ambiguous {
         /// The campaign.

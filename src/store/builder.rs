@@ -127,6 +127,6 @@ pub(super) fn wrong_kind(table: &'static Table, name: &str, is: Kind, wanted: Ki
 pub(super) fn position(table: &'static Table, name: &str) -> Result<usize, FrameError> {
     table.columns.iter().position(|column| column.name == name).ok_or_else(|| {
         let allowed: Vec<_> = table.columns.iter().map(|column| column.name).collect();
-        FrameError::new(table.name, format!("has no column {name:?}; allowed: {}", allowed.join(", ")))
+        FrameError::new(table.name, format!("has no column {name:?}\nhelp: use one of {}", allowed.join(", ")))
     })
 }

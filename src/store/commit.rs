@@ -85,7 +85,7 @@ pub fn commit_bytes(action: &str, path: &Path, bytes: &[u8]) -> Result<Written, 
         path,
         |temporary| Ok(fs::write(temporary, bytes)?),
         |temporary| {
-            if fs::read(temporary)? == bytes { Ok(()) } else { Err("what was read back is not what was written".into()) }
+            if fs::read(temporary)? == bytes { Ok(()) } else { Err("the content read back differs from the content written".into()) }
         },
     )
 }
@@ -99,14 +99,14 @@ fn commit_inner(
     let directory = match path.parent() {
         Some(parent) if parent.as_os_str().is_empty() => Path::new("."),
         Some(parent) => parent,
-        None => return Err("it is not the path of a file".into()),
+        None => return Err("not a path of a file".into()),
     };
     if !directory.is_dir() {
         let state = if directory.exists() { "is not a directory" } else { "does not exist" };
         return Err(format!("{} {state}", shown(directory)).into());
     }
     if path.is_dir() {
-        return Err("there is a directory of that name".into());
+        return Err("a directory of this name exists".into());
     }
     let mut builder = tempfile::Builder::new();
     builder.prefix(TEMPORARY_PREFIX).suffix(TEMPORARY_SUFFIX);

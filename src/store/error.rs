@@ -1,4 +1,4 @@
-//! What can go wrong with a file, as sentences.
+//! Errors of files and tables.
 
 use std::any::Any;
 use std::error::Error;
@@ -48,9 +48,7 @@ impl FrameError {
 ///
 /// The libraries promise errors, and mostly keep it; a table that someone else damaged must not end the program.
 pub(super) fn fenced<T>(work: impl FnOnce() -> Result<T, Cause>) -> Result<T, Cause> {
-    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| {
-        Err(format!("the file is damaged in a way that its library does not foresee ({})", panic_text(panic.as_ref())).into())
-    })
+    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| Err(format!("the file is damaged ({})", panic_text(panic.as_ref())).into()))
 }
 
 fn panic_text(panic: &(dyn Any + Send)) -> &str {

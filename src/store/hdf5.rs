@@ -81,11 +81,11 @@ pub fn read_heights(path: &Path, name: Option<&str>) -> Result<Array2<f64>, Stor
             None => only_field(&file)?,
         };
         let Some(data) = dataset(&file, &name)? else {
-            return Err(format!("it has no dataset {name:?}; its root has: {}", file.member_names()?.join(", ")).into());
+            return Err(format!("no dataset {name:?}\nhelp: the root contains {}", file.member_names()?.join(", ")).into());
         };
         let (rows, columns) = check_extent(path, &data, &name, MOST_PACKED)?;
         if (rows as u64).saturating_mul(columns as u64) > MOST_POINTS {
-            return Err(format!("its dataset {name:?} has {rows} by {columns} values, and 2^28 are the most that are read").into());
+            return Err(format!("dataset {name:?} has {rows} by {columns} values, more than the limit of 2^28").into());
         }
         values(&data, [rows, columns])
     })
@@ -122,8 +122,10 @@ fn only_field(file: &File) -> Result<String, Cause> {
     match (&names[..], outside) {
         ([name], _) => Ok(name.clone()),
         ([], Some(cause)) => Err(cause),
-        ([], None) => Err("it has no two-dimensional dataset in its root; name one in another group as \"group/dataset\"".into()),
-        (many, _) => Err(format!("it has several fields: {}; name one of them as the dataset (--dataset)", many.join(", ")).into()),
+        ([], None) => Err("no two-dimensional dataset in the root\nhelp: select one of another group as \"group/dataset\"".into()),
+        (many, _) => {
+            Err(format!("several two-dimensional datasets: {}\nhelp: select one with surface.dataset (--dataset)", many.join(", ")).into())
+        }
     }
 }
 
@@ -164,7 +166,7 @@ pub fn write_tamaas(path: &Path, heights: ArrayView2<'_, f64>, size_m: [f64; 2])
         |temporary| {
             library(|| {
                 let same = open(temporary)?.dataset(TAMAAS_FIELD)?.read_2d::<f64>()? == heights;
-                if same { Ok(()) } else { Err("what was read back is not what was written".into()) }
+                if same { Ok(()) } else { Err("the content read back differs from the content written".into()) }
             })
         },
     )
@@ -242,7 +244,7 @@ fn check_all(path: &Path, header: &SurfaceHeader, heights: ArrayView2<'_, f64>) 
         let band = first..heights.nrows().min(first + CHUNK);
         same = same && data.read_slice_2d::<f64, _>(s![band.clone(), ..])? == heights.slice(s![band, ..]);
     }
-    if same { Ok(()) } else { Err("what was read back is not what was written".into()) }
+    if same { Ok(()) } else { Err("the content read back differs from the content written".into()) }
 }
 
 /// The height field of a surface file, square and no larger than the file.

@@ -127,21 +127,21 @@ impl Kept {
     pub fn fault(&self, dir: &Path, check: Check) -> Option<Fault> {
         let path = dir.join(&self.path);
         let size = match std::fs::metadata(&path) {
-            Ok(found) if !found.is_file() => return Some(Fault::Changed(format!("{} is no file any more", self.path))),
+            Ok(found) if !found.is_file() => return Some(Fault::Changed(format!("{} is not a file", self.path))),
             Ok(found) => found.len(),
             Err(error) if error.kind() == ErrorKind::NotFound => return Some(Fault::Missing(format!("{} is missing", self.path))),
-            Err(error) => return Some(Fault::Changed(format!("{} cannot be looked at: {error}", self.path))),
+            Err(error) => return Some(Fault::Changed(format!("cannot access {}: {error}", self.path))),
         };
         if size != self.size_bytes {
-            return Some(Fault::Changed(format!("{} has {size} bytes, and {} were written", self.path, self.size_bytes)));
+            return Some(Fault::Changed(format!("{} has {size} bytes instead of {}", self.path, self.size_bytes)));
         }
         if check == Check::Sizes {
             return None;
         }
         match sum(&path) {
             Ok((_, found)) if found == self.blake3 => None,
-            Ok(_) => Some(Fault::Changed(format!("{} has another content than was written", self.path))),
-            Err(error) => Some(Fault::Changed(format!("{} cannot be read: {error}", self.path))),
+            Ok(_) => Some(Fault::Changed(format!("{} differs from its checksum", self.path))),
+            Err(error) => Some(Fault::Changed(format!("cannot read {}: {error}", self.path))),
         }
     }
 }
@@ -163,7 +163,7 @@ pub fn write_receipt(path: &Path, receipt: &Receipt) -> Result<(), StoreError> {
 pub fn read_receipt(path: &Path) -> Found {
     let bytes = match std::fs::metadata(path).map(|found| found.is_file() && found.len() <= MOST_BYTES) {
         Ok(true) => std::fs::read(path),
-        Ok(false) => return Found::Damaged("it is no file, or longer than any receipt".to_owned()),
+        Ok(false) => return Found::Damaged("not a file, or too long for a provenance record".to_owned()),
         Err(error) => Err(error),
     };
     let text = match bytes {
@@ -180,30 +180,30 @@ pub fn read_receipt(path: &Path) -> Found {
 /// A receipt that is where it belongs, and names files of its folder only.
 fn fits(receipt: Receipt, path: &Path) -> Result<Receipt, String> {
     if path.file_stem().is_none_or(|stem| stem != receipt.id.as_str()) {
-        return Err(format!("it is the receipt of {:?}", receipt.id));
+        return Err(format!("provenance record of another task, {:?}", receipt.id));
     }
     let folder = path.parent().and_then(Path::file_name);
     if receipt.stage != "spec" && folder.is_none_or(|folder| folder != receipt.stage.as_str()) {
-        return Err(format!("it is a receipt of the stage {:?}", receipt.stage));
+        return Err(format!("provenance record of another stage, {:?}", receipt.stage));
     }
     let inside = |path: &str| !path.is_empty() && Path::new(path).components().all(|part| matches!(part, Component::Normal(_)));
     match receipt.files.iter().find(|file| !inside(&file.path)) {
-        _ if receipt.files.is_empty() => Err("it names no file".to_owned()),
-        Some(strange) => Err(format!("it names {:?}, which is no file of its folder", strange.path)),
+        _ if receipt.files.is_empty() => Err("no file in the provenance record".to_owned()),
+        Some(strange) => Err(format!("{:?} is not a file of the directory", strange.path)),
         None => Ok(receipt),
     }
 }
 
 fn parse(bytes: &[u8]) -> Result<Receipt, String> {
     let text = std::str::from_utf8(bytes).map_err(|error| error.to_string())?;
-    let (body, rest) = text.rsplit_once(SEAL).ok_or("it has no seal")?;
+    let (body, rest) = text.rsplit_once(SEAL).ok_or("no checksum of the provenance record")?;
     if rest != format!("{}\"\n}}\n", blake3::hash(body.as_bytes()).to_hex()) {
-        return Err("its seal is not that of its content".to_owned());
+        return Err("wrong checksum of the provenance record".to_owned());
     }
     let receipt: Receipt = serde_json::from_str(&format!("{body}}}")).map_err(|error| error.to_string())?;
     if receipt.receipt == RECEIPT_VERSION {
         Ok(receipt)
     } else {
-        Err(format!("it is a receipt of version {}, and this program reads version {RECEIPT_VERSION}", receipt.receipt))
+        Err(format!("version {} of the provenance record; this program reads version {RECEIPT_VERSION}", receipt.receipt))
     }
 }

@@ -181,11 +181,11 @@ fn read_measured(file: &File, words: &Group, names: &[String]) -> Result<Measure
 pub(super) fn read(file: &File) -> Result<SurfaceHeader, Cause> {
     let names = file.attr_names()?;
     if !names.iter().any(|name| name == "schema_version") {
-        return Err("it is no surface of this program: it has no attribute \"schema_version\"".into());
+        return Err("not a surface file of hysteron: no attribute \"schema_version\"".into());
     }
     let version: u32 = number(file, "schema_version")?;
     if version != SURFACE_VERSION {
-        return Err(format!("it has version {version} of this layout, and this program reads version {SURFACE_VERSION}").into());
+        return Err(format!("unsupported layout version {version}; this program reads version {SURFACE_VERSION}").into());
     }
     let words = &file.group(if file.link_exists(COPIES) { COPIES } else { "/" })?;
     let generated = if names.iter().any(|name| name == "hurst") {
@@ -220,7 +220,7 @@ fn write_number<T: H5Type>(place: &Location, name: &str, value: T) -> Result<(),
 }
 
 fn write_finite(place: &Location, name: &str, value: f64) -> Result<(), Cause> {
-    if value.is_finite() { write_number(place, name, value) } else { Err(format!("its {name} is {value}, and must be finite").into()) }
+    if value.is_finite() { write_number(place, name, value) } else { Err(format!("{name} is {value}, must be finite").into()) }
 }
 
 /// Writes a text as an attribute of variable length, which h5py reads as `str`. It must not contain the character 0.
@@ -277,6 +277,6 @@ fn choice<T: Choice>(place: &Location, name: &str) -> Result<T, Cause> {
     let value = word(place, name)?;
     T::from_word(&value).ok_or_else(|| {
         let allowed: Vec<_> = T::WORDS.iter().map(|(word, _)| *word).collect();
-        bad_attribute(name, &format!("it is {value:?}; allowed: {}", allowed.join(", ")))
+        bad_attribute(name, &format!("unknown value {value:?}\nhelp: expected one of {}", allowed.join(", ")))
     })
 }

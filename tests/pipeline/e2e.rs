@@ -147,7 +147,7 @@ fn e2e_damaged_files_are_named_and_made_again() {
         assert!(stdout(&status).contains("corrupt"), "{}", stdout(&status));
         let again = bench.verb("run", &[]);
         assert_eq!(code(&again), 0, "{}", stderr(&again));
-        assert!(stderr(&again).contains("it is computed again"), "{}", stderr(&again));
+        assert!(stderr(&again).contains("recomputing"), "{}", stderr(&again));
         assert_eq!(files(&bench.out()), whole, "{ending}");
     }
 }
@@ -333,7 +333,7 @@ fn e2e_an_output_folder_that_cannot_be_is_a_sentence() {
     fs::write(bench.out(), "in the way").unwrap();
     let run = bench.verb("run", &[]);
     assert_eq!(code(&run), 1);
-    assert!(stderr(&run).contains("cannot make the folder"), "{}", stderr(&run));
+    assert!(stderr(&run).contains("cannot create the directory"), "{}", stderr(&run));
     assert_eq!(fs::read_to_string(bench.out()).unwrap(), "in the way");
 }
 

@@ -35,6 +35,8 @@ mod stats;
 mod steps;
 #[cfg(feature = "store")]
 mod store;
+#[cfg(feature = "stats")]
+mod style;
 mod text;
 #[cfg(feature = "stats")]
 mod validity;

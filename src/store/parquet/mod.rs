@@ -26,7 +26,11 @@ pub fn write_table(path: &Path, frame: &Frame, keys: &[(&str, String)]) -> Resul
         path,
         |temporary| write::rows(temporary, frame, keys),
         |temporary| {
-            if &read::rows(temporary, frame.table())? == frame { Ok(()) } else { Err("what was read back is not what was written".into()) }
+            if &read::rows(temporary, frame.table())? == frame {
+                Ok(())
+            } else {
+                Err("the content read back differs from the content written".into())
+            }
         },
     )
 }

@@ -58,7 +58,7 @@ pub(super) fn rows(path: &Path, table: &'static Table) -> Result<Frame, Cause> {
         if i64::try_from(frame.row_count()).is_ok_and(|read| read == claimed) {
             Ok(frame)
         } else {
-            Err(format!("it has {} rows and says that it has {claimed}", frame.row_count()).into())
+            Err(format!("{} rows instead of the claimed {claimed}", frame.row_count()).into())
         }
     })
 }
@@ -69,27 +69,27 @@ fn own_metadata(metadata: &ParquetMetaData) -> Result<Value, Cause> {
         .key_value_metadata()
         .and_then(|all| all.iter().find(|entry| entry.key == METADATA_KEY))
         .and_then(|entry| entry.value.as_deref())
-        .ok_or_else(|| format!("it is no table of this program: it has no metadata key {METADATA_KEY:?}"))?;
+        .ok_or_else(|| format!("not a table of hysteron: no metadata key {METADATA_KEY:?}"))?;
     Ok(serde_json::from_str(text)?)
 }
 
 fn check_identity(table: &Table, own: &Value) -> Result<(), Cause> {
     let name = own.get("table").and_then(Value::as_str).unwrap_or_default();
     if name != table.name {
-        return Err(format!("it holds the table {name:?}").into());
+        return Err(format!("the file contains the table {name:?}").into());
     }
     let version = own.get("version").and_then(Value::as_u64);
     if version == Some(u64::from(table.version)) {
         return Ok(());
     }
     let version = version.map_or("no version".to_owned(), |number| format!("version {number}"));
-    Err(format!("it has {version} of this table, and this program reads version {}", table.version).into())
+    Err(format!("{version} of this table; this program reads version {}", table.version).into())
 }
 
 fn check_columns(table: &Table, found: &Schema) -> Result<(), Cause> {
     for column in table.columns {
         let Ok(field) = found.field_with_name(column.name) else {
-            return Err(format!("it lacks the column {:?}", column.name).into());
+            return Err(format!("no column {:?}", column.name).into());
         };
         if *field.data_type() != data_type(column.kind) {
             let (name, kind) = (column.name, column.kind.word());
@@ -98,7 +98,7 @@ fn check_columns(table: &Table, found: &Schema) -> Result<(), Cause> {
     }
     let strange = found.fields().iter().find(|field| table.column(field.name()).is_none());
     if let Some(field) = strange {
-        return Err(format!("it has a column {:?} that version {} does not know", field.name(), table.version).into());
+        return Err(format!("unknown column {:?} in version {}", field.name(), table.version).into());
     }
     let in_order = table.columns.iter().zip(found.fields()).all(|(column, field)| column.name == field.name());
     if in_order && found.fields().len() == table.columns.len() {
@@ -116,7 +116,7 @@ fn check_size(metadata: &ParquetMetaData) -> Result<i64, Cause> {
     if (0..=MOST_ROWS).contains(&rows) && bytes.is_some_and(|bytes| (0..=MOST_BYTES).contains(&bytes)) {
         Ok(rows)
     } else {
-        Err(format!("it says that it has {rows} rows, which no such table has").into())
+        Err(format!("claims {rows} rows, more than any such table").into())
     }
 }
 

@@ -37,7 +37,7 @@ pub fn write_netcdf3(path: &Path, heights: ArrayView2<'_, f64>, size_m: [f64; 2]
         |temporary| {
             let back = netcdf::read(Source::open(temporary)?, None)?;
             let same = back.heights == heights && back.size_m == Some(size_m) && back.periodic == Some(periodic);
-            if same { Ok(()) } else { Err("what was read back is not what was written".into()) }
+            if same { Ok(()) } else { Err("the content read back differs from the content written".into()) }
         },
     )
 }

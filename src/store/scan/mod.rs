@@ -53,7 +53,11 @@ pub struct Scan {
 pub fn read(path: &Path, format: Format, variable: Option<&str>) -> Result<Scan, StoreError> {
     fenced(|| {
         if let Some(name) = variable.filter(|_| format != Format::NetCdf3) {
-            return Err(format!("a file in the format {} has one field without a name, and {name:?} was asked for", format.name()).into());
+            return Err(format!(
+                "no dataset {name:?}: the format {} has one unnamed field\nhelp: remove surface.dataset (--dataset)",
+                format.name()
+            )
+            .into());
         }
         let source = Source::open(path)?;
         match format {
@@ -79,7 +83,7 @@ impl Source {
             return Err("it is a directory".into());
         }
         if !about.is_file() {
-            return Err("it is no ordinary file".into());
+            return Err("not a regular file".into());
         }
         Ok(Self { file: BufReader::with_capacity(1 << 16, File::open(path)?), length: about.len() })
     }

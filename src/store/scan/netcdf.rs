@@ -111,7 +111,7 @@ impl Header {
             let fields: Vec<_> = self.variables.iter().filter(|other| other.dimensions.len() == 2).take(9).collect();
             let names: Vec<_> = fields.iter().map(|field| format!("{:?}", field.name)).collect();
             let there = if names.is_empty() { "no two-dimensional one".to_owned() } else { names.join(", ") };
-            format!("it has no variable {name:?}; there is {there}").into()
+            format!("no variable {name:?}\nhelp: use one of {there}").into()
         })
     }
 

@@ -16,14 +16,14 @@ pub(super) fn read(mut source: Source) -> Result<Scan, Cause> {
     let about = Line { rest: &line }.parse().map_err(|cause| format!("its header is damaged: {cause}"))?;
     let [rows, columns] = about.shape[..] else {
         let many = about.shape.len();
-        return Err(format!("it has {many} dimension{}, and a surface has 2", if many == 1 { "" } else { "s" }).into());
+        return Err(format!("{many} dimension{} instead of 2", if many == 1 { "" } else { "s" }).into());
     };
     let (kind, order) = number(&about.descr)?;
     // Fewer than 2^28 points of 8 bytes at most: nothing overflows.
     let says = start + points(rows, columns)? * kind.width() as u64;
     if says != source.length {
         let length = source.length;
-        return Err(format!("it has {length} bytes, and {rows} by {columns} numbers of the kind {:?} make {says}", about.descr).into());
+        return Err(format!("the file has {length} bytes, but {rows} by {columns} numbers of type {:?} need {says}", about.descr).into());
     }
     let heights = field(&mut source.file, (kind, order), [rows, columns], about.layout, |value| value)?;
     Ok(Scan { heights, size_m: None, unit: None, periodic: None, spacing: None })
@@ -34,12 +34,12 @@ fn line(source: &mut Source) -> Result<(String, u64), Cause> {
     let mut fixed = [0; 8];
     source.file.read_exact(&mut fixed).map_err(|_| "it ends within its header")?;
     let [0x93, b'N', b'U', b'M', b'P', b'Y', version, _] = fixed else {
-        return Err("it does not begin as a file of NumPy does".into());
+        return Err("not a NumPy file: wrong signature".into());
     };
     let width = match version {
         1 => 2,
         2 | 3 => 4,
-        other => return Err(format!("it has version {other} of the npy format; allowed: 1, 2, 3").into()),
+        other => return Err(format!("unsupported version {other} of the npy format\nhelp: use version 1, 2 or 3").into()),
     };
     let mut length = Vec::new();
     source.file.by_ref().take(width).read_to_end(&mut length)?;
@@ -70,13 +70,13 @@ fn number(descr: &str) -> Result<(Number, Order), Cause> {
         "u2" => Number::U16,
         "u4" => Number::U32,
         "u8" => Number::U64,
-        _ => return Err(format!("its numbers are of the kind {descr:?}; allowed: {KINDS}").into()),
+        _ => return Err(format!("unsupported number type {descr:?}\nhelp: use one of {KINDS}").into()),
     };
     match sign {
         "<" => Ok((kind, Order::Little)),
         ">" => Ok((kind, Order::Big)),
         "|" if kind.width() == 1 => Ok((kind, Order::Little)),
-        _ => Err(format!("its numbers are of the kind {descr:?}; allowed: {KINDS}").into()),
+        _ => Err(format!("unsupported number type {descr:?}\nhelp: use one of {KINDS}").into()),
     }
 }
 
@@ -101,12 +101,12 @@ impl Line<'_> {
             self.expect(':')?;
             match key.as_str() {
                 "descr" if self.rest.trim_start().starts_with(['[', '(']) => {
-                    return Err("it is a table with named columns, and not an array of numbers".into());
+                    return Err("structured array with named fields\nhelp: save a two-dimensional array of numbers".into());
                 }
                 "descr" => descr = Some(self.quoted()?),
                 "fortran_order" => layout = Some(self.layout()?),
                 "shape" => shape = Some(self.shape()?),
-                other => return Err(format!("it has an entry {other:?}; allowed: descr, fortran_order, shape").into()),
+                other => return Err(format!("unknown entry {other:?} in the header\nhelp: expected descr, fortran_order, shape").into()),
             }
             if !self.eat(',') {
                 self.expect('}')?;

@@ -93,7 +93,7 @@ impl Matrix {
             return self.heading.line(text);
         }
         if text.contains('\r') {
-            return Err("it has line ends of a kind (CR alone) that is not supported; allowed: LF, CR LF".into());
+            return Err("unsupported line endings (CR only)\nhelp: convert the file to LF or CR LF".into());
         }
         if self.rows == 0 && names_points(text) {
             self.points = true;
@@ -118,7 +118,7 @@ impl Matrix {
         if self.rows == 0 {
             self.columns = count;
         } else if count != self.columns {
-            return Err(format!("it has {count} numbers, and the lines before it have {}", self.columns).into());
+            return Err(format!("{count} numbers, but the previous lines have {}", self.columns).into());
         }
         self.rows += 1;
         self.open &= matches!(separator, Separator::Sign(sign) if line.trim_matches(' ').ends_with(sign));
@@ -129,7 +129,7 @@ impl Matrix {
         for (at, cell) in cells.enumerate() {
             let value = number(cell).map_err(|cause| format!("column {}: {cause}", at + 1))?;
             if self.values.len() as u64 >= MOST_POINTS {
-                return Err(format!("with it the file has more than {MOST_POINTS} points, and a surface may have no more").into());
+                return Err(format!("more than {MOST_POINTS} points, the limit of a surface").into());
             }
             if self.values.len() == self.values.capacity() {
                 let more = self.values.len().max(1 << 12);
@@ -142,7 +142,7 @@ impl Matrix {
 
     fn finish(mut self) -> Result<Scan, Cause> {
         if self.rows == 0 {
-            return Err("it has no line of numbers".into());
+            return Err("no line of numbers".into());
         }
         // A separator behind the last number of every line is not one more column.
         if self.open && self.columns > 1 {
@@ -214,10 +214,13 @@ fn number(cell: &str) -> Result<f64, Cause> {
     let shown: String = cell.chars().take(SHOWN).collect();
     match cell.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),
-        Ok(_) => Err(format!("{shown:?} is no finite number").into()),
+        Ok(_) => Err(format!("{shown:?} is not a finite number").into()),
         Err(_) if cell.matches(',').count() == 1 && cell.replace(',', ".").parse::<f64>().is_ok() => {
-            Err(format!("{shown:?} has a decimal comma, which is not supported; write a point").into())
+            Err(format!("{shown:?} has a decimal comma\nhelp: write a decimal point").into())
         }
-        Err(_) => Err(format!("{shown:?} is no number; allowed: numbers, and nan, bad, -- or nothing for missing points; and lines that begin with # as a heading").into()),
+        Err(_) => Err(format!(
+            "{shown:?} is not a number\nhelp: write numbers, and nan, bad, -- or nothing for missing points; headings start with #"
+        )
+        .into()),
     }
 }

@@ -106,12 +106,11 @@ impl Names {
         let found: Vec<String> = parts.keys().filter(|name| in_folder(name)).cloned().collect();
         match &found[..] {
             [one] => Ok(Self { folder: one.trim_end_matches(MAIN).to_owned(), parts }),
-            [] => Err(format!("it is a zip archive without {MAIN}, and so no X3P").into()),
-            many => Err(format!(
-                "it is a zip archive of {} X3P folders, and one is read\nhelp: unpack it, and zip one of the folders",
-                many.len()
-            )
-            .into()),
+            [] => Err(format!("zip archive without {MAIN}: not an X3P file").into()),
+            many => {
+                Err(format!("zip archive with {} X3P folders instead of one\nhelp: unpack it, and zip one of the folders", many.len())
+                    .into())
+            }
         }
     }
 
@@ -194,15 +193,15 @@ impl About {
     fn of(root: Node<'_, '_>) -> Result<Self, Cause> {
         let axes = inside(root, &["Record1", "Axes"]).ok_or_else(|| format!("its {MAIN} describes no axes"))?;
         let matrix = inside(root, &["Record3", "MatrixDimension"])
-            .ok_or_else(|| format!("its {MAIN} describes no matrix: profiles and clouds of points are not supported"))?;
+            .ok_or_else(|| format!("no matrix in {MAIN}: profiles and point clouds are not supported"))?;
         let [rows, columns, layers] = ["SizeX", "SizeY", "SizeZ"].map(|name| whole(matrix, name));
         let (shape, layers) = ([rows?, columns?], layers?);
         points(shape[0], shape[1])?;
         if layers != 1 {
-            return Err(format!("it has {layers} layers, and a surface has 1").into());
+            return Err(format!("{layers} layers instead of 1").into());
         }
         if inside(root, &["Record3", "DataList"]).is_some() {
-            return Err("its heights are listed in XML, which is not supported; save it with binary data".into());
+            return Err("heights stored in XML are not supported\nhelp: save the scan with binary data".into());
         }
         let link = |name| word(inside(root, &["Record3", "DataLink"])?, name);
         let data = link("PointDataLink").ok_or_else(|| format!("its {MAIN} does not say where the heights are"))?;
@@ -212,7 +211,9 @@ impl About {
             Some("L") => Number::I32,
             Some("F") => Number::F32,
             Some("D") => Number::F64,
-            other => return Err(format!("its heights are of the kind {:?}; allowed: I, L, F, D", other.unwrap_or("")).into()),
+            other => {
+                return Err(format!("unsupported data type {:?} of the heights\nhelp: expected I, L, F or D", other.unwrap_or("")).into());
+            }
         };
         let (increment, offset) = (number(height, "Increment")?, number(height, "Offset")?);
         let [x, y] = [("CX", shape[0]), ("CY", shape[1])].map(|(name, points)| size(axes, name, points));
@@ -227,7 +228,7 @@ fn size(axes: Node<'_, '_>, name: &str, points: u64) -> Result<Option<f64>, Caus
     match word(axis, "AxisType").as_deref() {
         None | Some("I") => {}
         Some("A") => return Err(format!("the points along its axis {name} are not evenly spaced, which is not supported").into()),
-        Some(other) => return Err(format!("its axis {name} is of the kind {other:?}; allowed: I").into()),
+        Some(other) => return Err(format!("unsupported type {other:?} of axis {name}\nhelp: expected I (incremental)").into()),
     }
     let Some(increment) = number(axis, "Increment")? else {
         return Ok(None);

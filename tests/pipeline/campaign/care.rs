@@ -248,14 +248,14 @@ fn e2e_a_receipt_belongs_to_its_place_and_names_files_of_its_folder_only() {
         fs::write(&path, sealed(&body.replace(&own, other))).unwrap();
         let verified = bench.look("verify", &["--deep"]);
         assert_eq!(code(&verified), 1, "{other}: {}", stdout(&verified));
-        assert!(stdout(&verified).contains("no file of its folder"), "{other}: {}", stdout(&verified));
+        assert!(stdout(&verified).contains("is not a file of the directory"), "{other}: {}", stdout(&verified));
     }
     fs::write(&path, sealed(&body.replace("\"generate\",\n  \"id\"", "\"extract\",\n  \"id\""))).unwrap();
-    assert!(stdout(&bench.look("verify", &[])).contains("a receipt of the stage \"extract\""));
+    assert!(stdout(&bench.look("verify", &[])).contains("provenance record of another stage, \"extract\""));
     fs::write(&path, &text).unwrap();
     assert_eq!(code(&bench.look("verify", &["--deep"])), 0);
     fs::copy(&path, path.with_file_name("copy.json")).unwrap();
-    assert!(stdout(&bench.look("verify", &[])).contains("it is the receipt of"), "a copy by another name is none");
+    assert!(stdout(&bench.look("verify", &[])).contains("provenance record of another task"), "a copy by another name is none");
 }
 
 #[test]

@@ -177,6 +177,6 @@ fn law_what_failed_is_another_table_than_what_was_not_tried() {
     assert_eq!(one.failure_in_tables(&why).as_deref(), Some("a \"quoted\" reason"));
     // A table holds no path of the machine.
     one.spec.files.insert("/data/here/a scan.npy".to_owned(), "0".repeat(64));
-    let unread = Standing::Failed("cannot take the surface /data/here/a scan.npy: it is empty".to_owned());
-    assert_eq!(one.failure_in_tables(&unread).as_deref(), Some("cannot take the surface a scan.npy: it is empty"));
+    let unread = Standing::Failed("cannot import the surface /data/here/a scan.npy: it is empty".to_owned());
+    assert_eq!(one.failure_in_tables(&unread).as_deref(), Some("cannot import the surface a scan.npy: it is empty"));
 }

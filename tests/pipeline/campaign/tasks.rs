@@ -40,7 +40,7 @@ fn e2e_a_folder_in_the_place_of_a_file_fails_its_task_alone() {
             fs::create_dir_all(victim.join("inside")).unwrap();
             let run = bench.verb("run", &[]);
             assert_eq!(code(&run), 3, "{name}, fresh {fresh}: {}", stderr(&run));
-            assert!(stderr(&run).contains("a folder has this name\nhelp: remove or rename it"), "{name}: {}", stderr(&run));
+            assert!(stderr(&run).contains("a folder of this name exists\nhelp: remove or rename it"), "{name}: {}", stderr(&run));
             assert!(stdout(&run).contains("1 case failed; "), "{name}: {}", stdout(&run));
             assert!(bench.out().join("report.html").is_file(), "{name}: the others went on");
             assert_eq!(code(&bench.verb("run", &[])), 3, "{name}: it stays failed");
@@ -105,8 +105,8 @@ fn e2e_a_file_in_the_place_of_a_cycles_folder_fails_it_alone() {
         .output()
         .unwrap();
     assert_eq!(code(&run), 3, "{}", stderr(&run));
-    assert!(stderr(&run).contains("something that is no folder has this name"), "{}", stderr(&run));
-    assert!(stderr(&run).contains("the failure is not recorded"), "{}", stderr(&run));
+    assert!(stderr(&run).contains("a file of this name exists"), "{}", stderr(&run));
+    assert!(stderr(&run).contains("cannot record the failure"), "{}", stderr(&run));
     fs::remove_file(&folder).unwrap();
     assert_eq!(code(&bench.verb("run", &[])), 0);
     assert!(files(&bench.out()) == whole);
@@ -136,7 +136,7 @@ fn e2e_heights_that_are_no_numbers_fail_their_surface_alone() {
     let watch = Heard::default();
     let (_, tallies) = run(Campaign::new(spec, folder.path().join("out")), &Task::new(Stage::Generate, Stage::Cycle), &watch).unwrap();
     let heard = watch.0.lock().unwrap().join("\n");
-    assert!(heard.contains("failed: ") && heard.contains("a height [m] is NaN; allowed: finite heights"), "{heard}");
+    assert!(heard.contains("failed: ") && heard.contains("a height [m] is NaN\nhelp: expected finite heights"), "{heard}");
     let counts: Vec<_> = tallies.iter().map(|(stage, tally)| (*stage, tally.computed, tally.failed)).collect();
     assert_eq!(counts, [(Stage::Generate, 1, 1), (Stage::Extract, 1, 1), (Stage::Cycle, 1, 1)]);
 }

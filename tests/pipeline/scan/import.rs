@@ -169,7 +169,7 @@ fn e2e_a_scan_goes_through_all_stages() {
     fs::write(bench.spec(), text).unwrap();
     fs::remove_dir_all(bench.out()).unwrap();
     let output = bench.verb("run", &[]);
-    assert!(code(&output) == 1 && stderr(&output).contains("it is another file than [files] of the spec says"), "{}", stderr(&output));
+    assert!(code(&output) == 1 && stderr(&output).contains("the file differs from its checksum in [files]"), "{}", stderr(&output));
     // And one that is not there is told with its place in the spec.
     fs::write(bench.spec(), spec("file = \"no such scan.npy\"")).unwrap();
     let output = bench.verb("plan", &[]);
@@ -191,12 +191,12 @@ fn e2e_what_is_no_surface_is_refused_and_writes_nothing() {
         ("holed", bytes(&holed), &TOLD, "the number of missing points"),
         ("constant", bytes(&Array2::from_elem((64, 64), 5.0)), &TOLD, "its heights are constant"),
         ("tilted", bytes(&Array2::from_shape_fn((64, 64), |(i, j)| (i + 2 * j) as f64)), &TOLD, "nothing is left after levelling"),
-        ("line", bytes(&Array2::zeros((1, 500))), &TOLD, "16 and more"),
+        ("line", bytes(&Array2::zeros((1, 500))), &TOLD, "16 or more"),
         ("empty", endless, &TOLD, "zero|no points|empty|0 by"),
         ("lying", lying, &TOLD, "40000"),
-        ("sizeless", bytes(&fine), &["--unit", "nm"], "how far apart its points are"),
+        ("sizeless", bytes(&fine), &["--unit", "nm"], "no pixel size in the file"),
         ("unitless", bytes(&fine), &["--pixel-m", "1e-9"], "the unit of its heights"),
-        ("volts", bytes(&fine), &["--pixel-m", "1e-9", "--unit", "V"], "is no length; allowed: "),
+        ("volts", bytes(&fine), &["--pixel-m", "1e-9", "--unit", "V"], "is not a unit of length\nhelp: use one of "),
         ("point", bytes(&fine), &["--pixel-m", "0", "--unit", "nm"], "--pixel-m is 0; allowed: positive numbers of metres"),
         ("periodic", bytes(&fine), &["--pixel-m", "1e-9", "--unit", "nm", "--periodic"], "square"),
         ("noise", b"\x7fELF\x02\x01\x01".to_vec(), &[], "unknown file format"),

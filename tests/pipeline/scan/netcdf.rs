@@ -91,7 +91,7 @@ fn law_units_hold_where_they_are_said() {
     at(&mut cdf, "heights").attributes.clear();
     assert_eq!(scan_of(&cdf.bytes(), Format::NetCdf3, None).unwrap().heights[[0, 0]], 1e-6);
     at(&mut cdf, "heights").attributes = vec![("unit", Said::Text("V"))];
-    refused(&cdf.bytes(), Format::NetCdf3, &["its heights are in \"V\"", "allowed: km, m"]);
+    refused(&cdf.bytes(), Format::NetCdf3, &["its heights are in \"V\"", "use one of km, m"]);
     let mut cdf = surface(2);
     at(&mut cdf, "y").attributes = vec![("length", Said::Double(1.0)), ("unit", Said::Text("s"))];
     refused(&cdf.bytes(), Format::NetCdf3, &["its size along \"y\" is in \"s\""]);
@@ -135,7 +135,7 @@ fn law_any_variable_can_be_asked_for() {
         assert_eq!(scan.size_m, Some([4.0 * 1e-6, 6.0 * 1e-6]));
     }
     let message = scan_of(&cdf.bytes(), Format::NetCdf3, Some("height")).unwrap_err();
-    assert!(message.contains("no variable \"height\"; there is \"heights\", \"bytes\""), "{message}");
+    assert!(message.contains("no variable \"height\"\nhelp: use one of \"heights\", \"bytes\""), "{message}");
     let message = scan_of(&cdf.bytes(), Format::NetCdf3, Some("x")).unwrap_err();
     assert!(message.contains("\"x\" has 1 dimensions, and a surface has 2"), "{message}");
     at(&mut cdf, "heights").name = "z";

@@ -92,17 +92,17 @@ fn val_headings_with_pixels_and_factors() {
 #[test]
 fn law_every_bad_text_has_its_sentence() {
     for (text, parts) in [
-        ("1 2\n3\n", vec!["its line 2: it has 1 numbers, and the lines before it have 2"]),
+        ("1 2\n3\n", vec!["its line 2: 1 numbers, but the previous lines have 2"]),
         ("1 2\n\n# x\n3 4 5\n", vec!["its line 4: it has 3 numbers"]),
-        ("1 2\n3 x\n", vec!["its line 2: column 2: \"x\" is no number", "allowed: numbers, and nan"]),
-        ("x y h\n1 2 3\n", vec!["its line 1: column 1: \"x\" is no number"]),
+        ("1 2\n3 x\n", vec!["its line 2: column 2: \"x\" is not a number", "help: write numbers, and nan"]),
+        ("x y h\n1 2 3\n", vec!["its line 1: column 1: \"x\" is not a number"]),
         ("1,5 2,5\n3,5 4,5\n", vec!["its line 1: column 1: \"1,5\" has a decimal comma"]),
         ("1,5;2,5\n", vec!["decimal comma"]),
         ("1,5\t2,5\n", vec!["decimal comma"]),
-        ("1e999 2\n", vec!["\"1e999\" is no finite number"]),
+        ("1e999 2\n", vec!["\"1e999\" is not a finite number"]),
         ("1 2\r3 4\r", vec!["CR alone"]),
         ("# nothing\n\n", vec!["no line of numbers"]),
-        ("# Value units: V\n1 2\n", vec!["its heights are in \"V\", which is no unit of length", "allowed: km, m, mm, µm or um, nm"]),
+        ("# Value units: V\n1 2\n", vec!["its heights are in \"V\", not a known unit of length", "use one of km, m, mm, µm or um, nm"]),
         ("# Value units: a.u.\n1 2\n", vec!["\"a.u.\""]),
         ("# Width: 10 s\n# Height: 10 s\n1 2\n", vec!["its size is in \"s\""]),
         ("# Width: 0 m\n# Height: 1 m\n1 2\n", vec!["a size of 0 m, which must be positive"]),
@@ -114,7 +114,7 @@ fn law_every_bad_text_has_its_sentence() {
     ] {
         refused(text.as_bytes(), Format::Text, &parts);
     }
-    refused(&[0xff; 50], Format::Text, &["its line 1: column 1", "is no number"]);
+    refused(&[0xff; 50], Format::Text, &["its line 1: column 1", "is not a number"]);
 }
 
 #[test]

@@ -97,14 +97,14 @@ fn law_every_bad_description_has_its_sentence() {
         ("<SizeX>2<", "<SizeX>18446744073709551615<", vec!["a surface may have 268435456"]),
         ("<SizeX>2<", "<SizeX>99999999999999999999<", vec!["must be a number of points"]),
         ("<SizeX>2</SizeX>", "", vec!["does not say its SizeX"]),
-        ("MatrixDimension", "ListDimension", vec!["describes no matrix"]),
+        ("MatrixDimension", "ListDimension", vec!["no matrix in "]),
         ("DataLink>", "DataList>", vec!["listed in XML, which is not supported"]),
         ("bindata/data.bin", "bindata/other.bin", vec!["\"bindata/other.bin\", which is not there"]),
         ("bindata/data.bin", "", vec!["does not say where"]),
-        (">D<", ">X<", vec!["of the kind \"X\"; allowed: I, L, F, D"]),
-        ("<DataType>D</DataType>", "", vec!["allowed: I, L, F, D"]),
+        (">D<", ">X<", vec!["data type \"X\" of the heights\nhelp: expected I, L, F or D"]),
+        ("<DataType>D</DataType>", "", vec!["expected I, L, F or D"]),
         ("<CX><AxisType>I<", "<CX><AxisType>A<", vec!["axis CX are not evenly spaced"]),
-        ("<CX><AxisType>I<", "<CX><AxisType>Q<", vec!["of the kind \"Q\"; allowed: I"]),
+        ("<CX><AxisType>I<", "<CX><AxisType>Q<", vec!["type \"Q\" of axis CX\nhelp: expected I"]),
         ("1.25e-007", "0", vec!["axis CX are 0 m apart"]),
         ("1.25e-007", "1,25e-7", vec!["Increment of CX is \"1,25e-7\""]),
         ("CZ>", "CW>", vec!["no axis CZ"]),
@@ -166,7 +166,7 @@ fn law_one_top_folder_is_read() {
     let parts: [(&str, &[u8]); 3] = [("main.xml", xml.as_bytes()), ("bindata/data.bin", &data), ("b/main.xml", b"x")];
     same(&scan_of(&archive(&parts, Stored), Format::X3p, None).unwrap().heights, &heights);
     let two: [(&str, &[u8]); 2] = [("a/main.xml", xml.as_bytes()), ("b/main.xml", xml.as_bytes())];
-    refused(&archive(&two, Stored), Format::X3p, &["2 X3P folders, and one is read"]);
+    refused(&archive(&two, Stored), Format::X3p, &["2 X3P folders instead of one"]);
     let apart: [(&str, &[u8]); 2] = [("a/main.xml", xml.as_bytes()), ("bindata/data.bin", &data)];
     refused(&archive(&apart, Stored), Format::X3p, &["\"bindata/data.bin\", which is not there"]);
     refused(&archive(&[("a/b/main.xml", xml.as_bytes())], Stored), Format::X3p, &["a zip archive without main.xml"]);

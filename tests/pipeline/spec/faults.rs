@@ -42,8 +42,8 @@ fn val_line_ends_and_byte_order_marks_do_not_shift_a_place() {
 
 #[test]
 fn val_a_fault_looks_like_this() {
-    let wanted = "error: unknown key `hurts` in [surface]\n  --> x.toml:3:1\n   |\n 3 | hurts = 0.8\n   | ^^^^^\n   = \
-                  did you mean `hurst`? [surface] takes: length_m, rms_height_m, hurst, magnification, \
+    let wanted = "error: unknown key `hurts` in [surface]\n  --> x.toml:3:1\n   |\n 3 | hurts = 0.8\n   | ^^^^^\n   = help: \
+                  did you mean `hurst`? keys of [surface]: length_m, rms_height_m, hurst, magnification, \
                   points_per_shortest_wavelength, normalization, amplitudes, file, dataset, periodic, pixel_m, unit, missing, detrend\n";
     assert_eq!(refused("name = \"x\"\n[surface]\nhurts = 0.8\n"), wanted);
 }
@@ -93,7 +93,7 @@ fn law_the_time_of_the_answer_grows_as_the_text_does() {
         ("unknown keys", lines(300_000, &|k| format!("k{k}=1\n")), "error: unknown key `k0` at the top of the spec"),
         ("broken lines", lines(300_000, &|k| format!("k{k}=\n")), "error: the spec is not valid TOML"),
         ("sweeps", lines(150_000, &|k| format!("[[sweep]]\nname=\"s{k}\"\n")), "error: the sweeps make 150000 cases"),
-        ("words", lines(1, &|_| format!("model.as_printed=[{}]\n", "\"x\",".repeat(300_000))), "does not know the word \"x\""),
+        ("words", lines(1, &|_| format!("model.as_printed=[{}]\n", "\"x\",".repeat(300_000))), "unknown value \"x\" of `model.as_printed`"),
     ];
     for (what, text, begins) in tried {
         let rendered = answered(text);
@@ -110,7 +110,7 @@ fn val_a_hash_of_a_file_that_no_case_reads_is_refused() {
     };
     assert_eq!(Spec::parse(&text("a.x3p"), "x.toml").unwrap().files.len(), 1);
     let rendered = refused(&text("b.x3p"));
-    assert!(rendered.contains("[files] has the hash of \"b.x3p\", which no case reads\n  --> x.toml:7:1"), "{rendered}");
+    assert!(rendered.contains("[files] has a checksum of \"b.x3p\", which is not used by any case\n  --> x.toml:7:1"), "{rendered}");
 }
 
 #[test]
@@ -142,16 +142,16 @@ fn e2e_files_that_cannot_be_read_are_named() {
     let message = |path: &Path| Spec::read(path).unwrap_err().to_string();
 
     let missing = folder.path().join("missing.toml");
-    let wanted = format!("error: the spec cannot be read: there is no such file\n  --> {}\n", missing.display());
+    let wanted = format!("error: cannot read the spec: no such file\n  --> {}\n", missing.display());
     assert_eq!(message(&missing), wanted);
 
     let said = message(folder.path());
-    assert!(said.contains("it is a folder; a spec is a TOML file"), "{said}");
+    assert!(said.contains("it is a directory, not a TOML file"), "{said}");
 
     let latin = folder.path().join("latin.toml");
     std::fs::write(&latin, b"name = \"x\"\n# \xb5m: 5 \xe4\n").unwrap();
     let said = message(&latin);
-    assert!(said.contains("error: the spec cannot be read: this is not UTF-8 text"), "{said}");
+    assert!(said.contains("error: cannot read the spec: not UTF-8 text"), "{said}");
     assert!(said.contains("latin.toml:2:3\n") && said.contains("save the file as UTF-8"), "{said}");
 
     let long = folder.path().join("long.toml");

@@ -89,8 +89,8 @@ fn e2e_impossible_places_are_named() {
     for (path, part) in [
         (directory.path().join("absent/events.parquet"), "absent does not exist"),
         (file.join("events.parquet"), "file is not a directory"),
-        (folder, "there is a directory of that name"),
-        (Path::new("/").to_owned(), "it is not the path of a file"),
+        (folder, "a directory of this name exists"),
+        (Path::new("/").to_owned(), "not a path of a file"),
     ] {
         let message = write_table(&path, &frame, &[]).unwrap_err().to_string();
         says(&message, &path, &["cannot write the table events to", part]);

@@ -42,7 +42,8 @@ fn law_a_frame_names_what_is_asked_wrongly() {
     );
     assert_eq!(message(frame.i64("load_n").map(drop)), "the table contacts holds f64 in the column \"load_n\", not i64");
     assert!(
-        message(frame.bool("loud_n").map(drop)).starts_with("the table contacts has no column \"loud_n\"; allowed: cycle_id, case_id,")
+        message(frame.bool("loud_n").map(drop))
+            .starts_with("the table contacts has no column \"loud_n\"\nhelp: use one of cycle_id, case_id,")
     );
 }
 
@@ -51,7 +52,7 @@ fn law_a_frame_that_does_not_fit_is_refused() {
     let refusal = |builder: FrameBuilder| builder.build().unwrap_err().to_string();
     let full = || contacts().f64("interaction_m", [2e-9, 3e-9]);
     assert_eq!(refusal(contacts()), "the table contacts was not given: interaction_m");
-    assert!(refusal(full().f64("interaction", [1.0, 2.0])).contains("has no column \"interaction\"; allowed: cycle_id"));
+    assert!(refusal(full().f64("interaction", [1.0, 2.0])).contains("has no column \"interaction\"\nhelp: use one of cycle_id"));
     assert!(refusal(full().f64("load_n", [1.0, 2.0])).contains("was given the column \"load_n\" twice"));
     assert!(refusal(contacts().i64("interaction_m", [1, 2])).contains("holds f64 in the column \"interaction_m\", not i64"));
     assert!(refusal(contacts().f64("interaction_m", [1.0])).contains("different length: 1 values in \"interaction_m\", 2 in \"cycle_id\""));

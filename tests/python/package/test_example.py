@@ -20,7 +20,7 @@ def test_a_scan_is_taken(program, tmp_path):
     assert (tmp_path / "scan.h5").exists() and about["file"] == str(tmp_path / "scan.h5")
     alone = hysteron.take(tmp_path / "scan.npy", pixel_m=1e-8, unit="nm")
     assert alone["file"] is None and alone["rms_slope"] == about["rms_slope"]
-    with pytest.raises(hysteron.Failed, match="how far apart its points are"):
+    with pytest.raises(hysteron.Failed, match="no pixel size in the file"):
         hysteron.take(tmp_path / "scan.npy")
 
 
@@ -34,13 +34,13 @@ def test_an_array_is_taken_as_its_file_is(program, tmp_path):
         key: of_array[key] for key in ("rms_height_m", "rms_slope", "spectrum")
     }
     masked = np.ma.masked_where(np.hypot(i - 32, j - 36) < 2, heights)
-    with pytest.raises(hysteron.Failed, match="the number of missing points is 9; allowed: none"):
+    with pytest.raises(hysteron.Failed, match="the number of missing points is 9\nhelp: expected none"):
         hysteron.take(masked, **told)
     assert hysteron.take(masked, **told, fill=True)["missing_count"] == 9
 
 
 def test_a_surface_that_was_not_written_is_no_generated_one(program, tmp_path):
-    with pytest.raises(ValueError, match="surface.file is None; allowed: a file, which `take` writes where it is given `out`"):
+    with pytest.raises(ValueError, match="surface.file is None\nhelp: give a file, for example from `take` with `out`"):
         hysteron.run({"name": "x", "surface": {"file": None}}, out=tmp_path / "run")
     with pytest.raises(hysteron.Failed, match="cannot be read"):
         hysteron.run({"name": "x", "surface": {"file": tmp_path / "gone.npy", "periodic": True}}, out=tmp_path / "run")

@@ -1,7 +1,8 @@
-"""hysteron: the adhesive hysteresis of rough surfaces.
+"""hysteron: adhesion hysteresis of rough surfaces.
 
-`run(spec)` has the program `hysteron` compute a campaign, `take(file)` take a measured surface, and `load(dir)` opens what a campaign has left: its tables as Arrow tables, which Polars, DuckDB
-and pandas take as they are. `jkr`, `theory` and `spectrum` are the program's own single-asperity functions, theories and spectrum for NumPy arrays.
+`run(spec)` runs a simulation with the program `hysteron`. `take(file)` imports a measured surface. `load(dir)` opens the output directory of a run, with
+its tables as Arrow tables for Polars, DuckDB and pandas. The modules `jkr`, `theory` and `spectrum` provide the equations of a single asperity, the
+analytical models and the power spectrum for NumPy arrays.
 """
 
 from . import jkr, spectrum, theory

@@ -1,4 +1,4 @@
-"""Broadcasting: from what a user passes to the columns that the extension module takes, and back."""
+"""Broadcasting of arguments to the columns of the extension module, and back."""
 
 from __future__ import annotations
 
@@ -9,37 +9,37 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Column: TypeAlias = NDArray[np.float64]
-#: What a function takes: a number, or anything that NumPy makes an array of real numbers of.
+#: Argument of a function: a number, or anything that NumPy converts to an array of real numbers.
 Reals: TypeAlias = ArrayLike
-#: What a function gives: a `float` of numbers alone, else an `NDArray[np.float64]` of the broadcast shape. As with NumPy's own functions, which of
-#: the two cannot be told from the types of the arguments.
+#: Result of a function: a `float` for scalar arguments, otherwise an `NDArray[np.float64]` of the broadcast shape. As for NumPy functions, the
+#: argument types do not determine which of the two.
 Result: TypeAlias = Any
 
 SLIPS = ("eq8", "eq9", "a2", "a3")
 
 
 def slips(as_printed: Collection[str]) -> frozenset[str]:
-    """The slips of the paper that are put back, by the words that a spec has for them in `model.as_printed`."""
+    """Uncorrected equations of the paper, by their names in `model.as_printed` of a spec."""
     words = frozenset([as_printed] if isinstance(as_printed, str) else as_printed)
     for word in sorted(words - frozenset(SLIPS)):
-        raise ValueError(f"cannot put back the slip {word!r}; allowed: {', '.join(SLIPS)}")
+        raise ValueError(f"unknown equation {word!r} in as_printed\nhelp: use one of {', '.join(SLIPS)}")
     return words
 
 
 def _real(value: Reals) -> NDArray[np.float64]:
     array = np.asarray(value)
-    # A complex number, a date or a text would lose its meaning, and not only digits. Objects are tried: a missing value is NaN.
+    # Complex numbers, dates and text have no real value. Objects are converted: a missing value is NaN.
     if array.dtype.kind not in "fiubO":
-        raise TypeError(f"cannot compute with an array of type {array.dtype}; allowed: real numbers")
+        raise TypeError(f"cannot compute with an array of type {array.dtype}\nhelp: use real numbers")
     return np.asarray(array, dtype=np.float64)
 
 
 def many(kernel: Callable[..., Collection[Column]], *values: Reals, **flags: bool) -> tuple[Result, ...]:
-    """Calls a kernel that gives several columns, once for all elements."""
+    """Calls a kernel with several result columns once for all elements."""
     arrays = [_real(value) for value in values]
     shape = np.broadcast_shapes(*(array.shape for array in arrays))
     size = int(np.prod(shape, dtype=np.int64))
-    # What is one number for all elements stays one.
+    # Scalars remain scalars.
     columns = [
         array.reshape(1) if array.size == 1 and size > 0 else np.ascontiguousarray(np.broadcast_to(array, shape)).reshape(-1) for array in arrays
     ]
@@ -48,5 +48,5 @@ def many(kernel: Callable[..., Collection[Column]], *values: Reals, **flags: boo
 
 
 def one(kernel: Callable[..., Column], *values: Reals, **flags: bool) -> Result:
-    """Calls a kernel that gives one column, once for all elements."""
+    """Calls a kernel with one result column once for all elements."""
     return many(lambda *columns, **told: (kernel(*columns, **told),), *values, **flags)[0]

@@ -1,4 +1,4 @@
-"""The program `hysteron`: where it is, and what it is told and says."""
+"""Interface to the program `hysteron`: location, arguments and output."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _INTERRUPTED = 130
 
 
 class Failed(Exception):
-    """The program could not do it: its own words, and its exit code: 1 failed, 2 bad spec or usage; below 0 the signal that ended it."""
+    """Error of the program, with its message and exit code: 1 error, 2 bad spec or usage, negative for a signal."""
 
     def __init__(self, words: str, exit_code: int) -> None:
         super().__init__(words)
@@ -38,23 +38,23 @@ class Failed(Exception):
 
 
 class Interrupted(KeyboardInterrupt):
-    """The run was interrupted. What was finished is kept, and the same call goes on.
+    """The run was interrupted. Finished tasks are kept; the same call resumes.
 
-    A `KeyboardInterrupt`, so that it ends a loop over specs that goes on after errors.
+    It is a `KeyboardInterrupt`, so it also ends loops that continue after errors.
     """
 
 
 class FailedCases(UserWarning):
-    """Some cases failed, and all others are done."""
+    """Some cases failed; all others are finished."""
 
 
 def find() -> Path:
-    """The program: what the environment variable HYSTERON names, or `hysteron` of PATH, or target/release/hysteron above the working directory."""
+    """Path of the program: environment variable HYSTERON, else `hysteron` on PATH, else target/release/hysteron in the working directory or above."""
     named = os.environ.get("HYSTERON")
     if named:
         path = Path(named).absolute()
         if not os.access(path, os.X_OK) or path.is_dir():
-            raise FileNotFoundError(f"cannot start {path}, which HYSTERON names: it is no program; allowed: the path of the program hysteron")
+            raise FileNotFoundError(f"cannot start {path}: not an executable file\nhelp: set HYSTERON to the path of the program hysteron")
         return path
     found = shutil.which("hysteron")
     if found:
@@ -66,8 +66,8 @@ def find() -> Path:
         if path.is_file():
             return path
     raise FileNotFoundError(
-        "cannot find the program hysteron: HYSTERON names none, there is none on PATH and no target/release/hysteron above the working directory; "
-        "allowed: after `cargo install --path .` in a clone of the repository, which builds it"
+        "cannot find the program hysteron: HYSTERON is not set, and it is neither on PATH nor in target/release above the working directory\n"
+        "help: run `cargo install --path .` in a clone of the repository"
     )
 
 
@@ -77,15 +77,15 @@ def run(
     jobs: int | None = None,
     until: str | None = None,
 ) -> Run:
-    """Computes everything of a campaign that is not done yet, as `hysteron run` does, and opens it.
+    """Runs all pending tasks of a spec, as `hysteron run`, and opens the output directory.
 
     `spec` is the path of a spec, the text of one (a text of more than one line, or with a `=`), or a nested dict of the same keys, such as
-    `{"name": "mine", "surface": {"magnification": 32}, "sweep": [{"surface": {"hurst": [0.7, 0.8]}}]}`. `out` is the output folder; without
-    it that is `data/runs/<name of the spec>` below the working directory, as on the command line. `jobs` is how many threads work, as many as there
-    are cores if it is left out, and `until` the last stage: generate, extract, cycle, aggregate or report.
+    `{"name": "mine", "surface": {"magnification": 32}, "sweep": [{"surface": {"hurst": [0.7, 0.8]}}]}`. `out` is the output directory;
+    the default is `data/runs/<name of the spec>` below the working directory, as on the command line. `jobs` is the number of threads (default: number
+    of cores). `until` is the last stage: generate, extract, cycle, aggregate or report.
 
-    The program's progress goes to `sys.stderr`. Raises `Failed` with the program's words if it cannot do it, and `Interrupted` if it was
-    interrupted; warns with `FailedCases` if some cases failed. The same call again goes on where it stopped.
+    Progress is written to `sys.stderr`. Raises `Failed` with the message of the program after an error, and `Interrupted` after an interrupt; warns
+    with `FailedCases` if some cases failed. The same call resumes the run.
     """
     program = find()
     with _file(spec) as path:
@@ -96,21 +96,21 @@ def run(
             command.append(f"--jobs={jobs}")
         if until is not None:
             command.append(f"--until={until}")
-        # "--" so that no name is taken for an option.
+        # "--": file names are not options.
         code, said, told = _watched([*command, "--", str(path)])
     if code == _INTERRUPTED:
         raise Interrupted(_words(told))
     if code not in (0, _FAILED_CASES):
-        raise Failed(_words(told) or f"{program} ended with the exit code {code} and said nothing", code)
+        raise Failed(_words(told) or f"{program} ended with exit code {code} without a message", code)
     answer = json.loads(said)
     from ._run import load
 
     result = load(answer["dir"])
     if code == _FAILED_CASES:
-        # Where a surface failed, its cycles did too.
+        # The cycles of a failed surface fail too.
         failed = max(stage["failed_count"] for stage in answer["stages"])
         cases, them = ("1 case", "it") if failed == 1 else (f"{failed} cases", "them")
-        text = f"{cases} failed; why is in {result.dir}/cycles/*/failed.json. `hysteron retry {result.dir}` tries {them} again."
+        text = f"{cases} failed; reasons: {result.dir}/cycles/*/failed.json. Rerun {them} with `hysteron retry {result.dir}`."
         warnings.warn(text, FailedCases, stacklevel=2)
     return result
 
@@ -127,11 +127,13 @@ def take(
     periodic: bool = False,
     points: int = 8,
 ) -> dict[str, Any]:
-    """Takes a measured surface, as `hysteron import` does, and says what it is like: its moments, its spectrum, the self-affine spectrum that fits it.
+    """Imports a measured surface, as `hysteron import`, and returns its moments, spectrum and self-affine fit.
 
-    `file` is HDF5 (`dataset` names the field), NetCDF-3, X3P, .npy or text; or an array of heights, in which what is masked or no number is missing. `pixel_m` is the distance of its points [m] and `unit` the unit of its heights, where
-    the file does not tell them; `fill` continues the heights into missing points; `detrend` is mean, plane (the default) or quadratic, of a periodic surface mean alone; waves shorter than so many `points` are
-    taken off. With `out` the surface is written there, over what is there, to be named in a spec as `surface.file`; without it nothing is written.
+    `file` is a path of HDF5 (select the field with `dataset`), NetCDF-3, X3P, .npy or text; or an array of heights, in which masked values and NaN are
+    missing points. `pixel_m` is the pixel size [m] and `unit` the unit of the heights, for files without them. `fill` interpolates missing points
+    (harmonic in-fill). `detrend` selects the levelling: mean, plane (default) or quadratic; mean only for a periodic surface. `points` is the S-filter
+    cut-off in pixels. With `out` the surface is written there, replacing an existing file, for use as `surface.file` in a spec; without it no file is
+    written.
     """
     command = [str(find()), "import", "--json", f"--points={points}"]
     command += ["--dry-run"] if out is None else [f"--out={os.fspath(out)}", "--force"]
@@ -142,12 +144,12 @@ def take(
 
 
 def status(dir: Path) -> dict[str, Any]:
-    """The answer of `hysteron status DIR --json`."""
+    """Output of `hysteron status DIR --json`."""
     return _answered([str(find()), "status", "--json", "--", str(dir)])
 
 
 def _answered(command: list[str]) -> dict[str, Any]:
-    """What a command answers in JSON."""
+    """JSON output of a command."""
     answer = subprocess.run(command, check=False, capture_output=True, encoding="utf-8", errors="replace")
     if answer.returncode not in (0, _FAILED_CASES):
         raise Failed(_words(answer.stderr), answer.returncode)
@@ -174,7 +176,7 @@ def _file(spec: str | os.PathLike[str] | Mapping[str, Any]) -> Iterator[str]:
     if isinstance(spec, Mapping):
         surface = spec.get("surface")
         if isinstance(surface, Mapping) and surface.get("file", "") is None:
-            raise ValueError("cannot write the spec: surface.file is None; allowed: a file, which `take` writes where it is given `out`; or no such key")
+            raise ValueError("cannot write the spec: surface.file is None\nhelp: give a file, for example from `take` with `out`, or remove the key")
         text = _toml.dumps(spec)
     elif isinstance(spec, str) and ("\n" in spec or ("=" in spec and not os.path.isfile(spec))):
         text = spec
@@ -188,7 +190,7 @@ def _file(spec: str | os.PathLike[str] | Mapping[str, Any]) -> Iterator[str]:
 
 
 def _watched(command: list[str]) -> tuple[int, str, str]:
-    """Runs a command whose standard error is passed on line by line; its exit code, output and standard error."""
+    """Runs a command and forwards its standard error line by line; returns exit code, output and standard error."""
     told: list[str] = []
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding="utf-8", errors="replace") as process:
         assert process.stdout is not None and process.stderr is not None
@@ -204,7 +206,7 @@ def _watched(command: list[str]) -> tuple[int, str, str]:
                 code = process.wait()
                 break
             except KeyboardInterrupt:
-                # A terminal tells the program too, a notebook does not. It ends between two files, which is waited for, but not twice.
+                # A terminal interrupts the program too, a notebook does not. Wait for its end after the first interrupt only.
                 process.send_signal(signal.SIGINT)
                 if interrupted:
                     raise
@@ -213,7 +215,7 @@ def _watched(command: list[str]) -> tuple[int, str, str]:
 
 
 def _words(told: str) -> str:
-    """What the program said of an error: from its first line that says so on."""
+    """Error message of the program, from the first line of the error."""
     lines = told.strip().splitlines()
     for k, line in enumerate(lines):
         if line.startswith(("error", "interrupted")):

@@ -1,4 +1,4 @@
-"""What a campaign has left: its tables as Arrow tables, its surfaces as arrays."""
+"""Output of a run: tables as Arrow tables, surfaces as arrays."""
 
 from __future__ import annotations
 
@@ -18,19 +18,18 @@ from . import _program
 
 
 class Description(NamedTuple):
-    """What a column holds, as its file tells it."""
+    """Description of a column, from its file."""
 
-    #: In words.
+    #: Definition of the quantity.
     description: str
     #: SI unit, "1" if it is dimensionless; None if the column holds no quantity.
     unit: str | None
-    #: Where it comes from, as "Eq 2" of Violano and Afferrante; None if that is no equation.
+    #: Equation or publication, for example "Eq 2" of Violano and Afferrante; None without a source.
     source: str | None
 
 
 def describe(table: pa.Table | pa.Schema | pa.RecordBatch) -> dict[str, Description]:
-    """Description, unit and source of each column, from the metadata of the Arrow fields; columns that have none, since they are not the program's,
-    are left out."""
+    """Description, unit and source of each column, from the metadata of the Arrow fields. Columns without metadata are omitted."""
     schema = table if isinstance(table, pa.Schema) else table.schema
     told = {}
     for field in schema:
@@ -41,25 +40,25 @@ def describe(table: pa.Table | pa.Schema | pa.RecordBatch) -> dict[str, Descript
 
 
 def load(dir: str | os.PathLike[str]) -> Run:
-    """Opens the output folder of a run. Nothing is read before it is asked for, and what is still being computed appears when it is there."""
+    """Opens the output directory of a run. Tables are read on access; tables of an unfinished run appear as they are written."""
     path = Path(dir).absolute()
     if not path.is_dir():
-        raise FileNotFoundError(f"cannot load {path}: there is no such folder; allowed: the output folder of a run")
+        raise FileNotFoundError(f"cannot load {path}: no such directory\nhelp: give the output directory of a run")
     if not (path / "campaign.toml").is_file():
-        raise FileNotFoundError(f"cannot load {path}: it has no campaign.toml; allowed: the output folder of a run")
+        raise FileNotFoundError(f"cannot load {path}: no campaign.toml\nhelp: give the output directory of a run")
     return Run(path)
 
 
 class Run(Mapping[str, pa.Table]):
-    """The output folder of a run: a mapping from the names of its tables to `pyarrow.Table`.
+    """The output directory of a run: a mapping from table names to `pyarrow.Table`.
 
-    A name is the path of the Parquet file without its ending: "statistics/cases", "cycles/<id>/steps", "asperities/<id>". A table is read from the mapped
-    file each time that it is asked for: keep it if it is needed again. It exports the Arrow PyCapsule interface (`__arrow_c_stream__`), so that
-    Polars, DuckDB and others take it without copying: `polars.DataFrame(run.cases)`. What its columns mean says `describe(table)`.
+    A table name is the path of the Parquet file without extension: "statistics/cases", "cycles/<id>/steps", "asperities/<id>". Each access reads the
+    memory-mapped file again. Tables export the Arrow PyCapsule interface (`__arrow_c_stream__`), so Polars, DuckDB and others use them without a copy:
+    `polars.DataFrame(run.cases)`. `describe(table)` returns descriptions and units of the columns.
     """
 
     def __init__(self, dir: Path) -> None:
-        #: The folder, by its whole name.
+        #: Absolute path of the directory.
         self.dir = dir
 
     def __repr__(self) -> str:
@@ -72,7 +71,7 @@ class Run(Mapping[str, pa.Table]):
                 return file.read()
         except FileNotFoundError:
             near = difflib.get_close_matches(name, list(self), n=1)
-            hint = f"; the nearest that it has is {near[0]}" if near else ""
+            hint = f"; did you mean {near[0]}?" if near else ""
             raise KeyError(f"{self.dir} has no table {name}{hint}") from None
 
     def __contains__(self, name: object) -> bool:
@@ -87,9 +86,9 @@ class Run(Mapping[str, pa.Table]):
 
     @property
     def cycle_ids(self) -> list[str]:
-        """The cycles of the campaign that have been computed.
+        """Identifiers of the finished cycles.
 
-        A folder may hold those of earlier specs too, until `hysteron gc` takes them away: they are left out where the campaign has been aggregated.
+        After aggregation, cycles of earlier specs in the same directory are omitted; `hysteron gc` deletes them.
         """
         there = {path.parent.name for path in self.dir.glob("cycles/*/steps.parquet")}
         try:
@@ -101,67 +100,67 @@ class Run(Mapping[str, pa.Table]):
 
     @property
     def surface_ids(self) -> list[str]:
-        """The surfaces that have been made."""
+        """Identifiers of the existing surfaces."""
         return sorted(path.name.removesuffix(".h5") for path in self.dir.glob("surfaces/*.h5") if not path.name.startswith("."))
 
     @property
     def cases(self) -> pa.Table:
-        """One row for each case and turning point, averaged over realizations."""
+        """Table of means: one row per case and load reversal, averaged over realizations."""
         return self["statistics/cases"]
 
     @property
     def realizations(self) -> pa.Table:
-        """One row for each realization and turning point."""
+        """Table of results: one row per realization and load reversal."""
         return self["statistics/realizations"]
 
     @property
     def curves(self) -> pa.Table:
-        """The mean paths of each case."""
+        """Mean loading and unloading curves of each case."""
         return self["statistics/curves"]
 
     @property
     def avalanches(self) -> pa.Table:
-        """One row for each avalanche of every cycle."""
+        """Table of avalanches: one row per avalanche of every cycle."""
         return self["statistics/avalanches"]
 
     def steps(self, id: str) -> pa.Table:
-        """One row for each step of loading, and of unloading from each turning point, of the cycle `id`."""
+        """Output steps of the cycle `id`: loading, and unloading from each load reversal."""
         return self[f"cycles/{id}/steps"]
 
     def events(self, id: str) -> pa.Table:
-        """One row for each asperity that changed its state in the cycle `id`."""
+        """Events of the cycle `id`: one row per change of state of an asperity."""
         return self[f"cycles/{id}/events"]
 
     def contacts(self, id: str) -> pa.Table:
-        """One row for each contact spot at each kept step of the cycle `id`."""
+        """Contact spots of the cycle `id` at the steps selected by `cycle.contacts`."""
         return self[f"cycles/{id}/contacts"]
 
     def turning(self, id: str) -> pa.Table:
-        """The contact at each turning point of the cycle `id`: every asperity that is not simply free."""
+        """State of the contact at each load reversal of the cycle `id`."""
         return self[f"cycles/{id}/turning"]
 
     def merged(self, id: str) -> pa.Table:
-        """The merged spots of the cycle `id`."""
+        """Merged contacts of the cycle `id`."""
         return self[f"cycles/{id}/merged"]
 
     def asperities(self, id: str) -> pa.Table:
-        """One row for each summit of the surface `id` that can come into contact."""
+        """Asperities of the surface `id`."""
         return self[f"asperities/{id}"]
 
     def surface(self, id: str) -> NDArray[np.float64]:
-        """The heights of the surface `id` [m], N × N; rows count along x. Needs h5py."""
+        """Heights of the surface `id` [m], an N × N array; the row index runs along x. Requires h5py."""
         path = self.dir / "surfaces" / f"{id}.h5"
         if not path.is_file():
             near = difflib.get_close_matches(id, self.surface_ids, n=1)
-            raise KeyError(f"{self.dir} has no surface {id}" + (f"; the nearest that it has is {near[0]}" if near else ""))
+            raise KeyError(f"{self.dir} has no surface {id}" + (f"; did you mean {near[0]}?" if near else ""))
         try:
             import h5py
         except ImportError:
-            raise ImportError(f"cannot read {path}: surfaces are HDF5, and h5py is not installed; allowed: after `pip install h5py`") from None
+            raise ImportError(f"cannot read {path}: h5py is not installed\nhelp: pip install h5py") from None
         with h5py.File(path) as file:
             heights: NDArray[np.float64] = file["height_m"][:]
             return heights
 
     def status(self) -> dict[str, Any]:
-        """What of the run is done: the answer of `hysteron status DIR --json`."""
+        """State of the run: the output of `hysteron status DIR --json`."""
         return _program.status(self.dir)

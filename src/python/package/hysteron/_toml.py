@@ -1,4 +1,4 @@
-"""A spec as TOML: just what a nested dict of plain values needs."""
+"""Conversion of a nested dict to TOML."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _BARE = re.compile(r"[A-Za-z0-9_-]+")
 
 
 def dumps(table: Mapping[str, Any]) -> str:
-    """The TOML text of a table. A key whose value is None is left out, as TOML has no null; NumPy numbers and arrays are taken as plain ones."""
+    """TOML text of a table. Keys with the value None are omitted, since TOML has no null; NumPy numbers and arrays are converted."""
     return "\n".join(_lines(table, ())) + "\n"
 
 
@@ -37,7 +37,7 @@ def _is_rows(value: Any) -> bool:
 
 
 def _plain(value: Any) -> Any:
-    """What NumPy and other mappings and sequences hold, as Python's own types."""
+    """Values of NumPy and of other mappings and sequences as built-in types."""
     if hasattr(value, "tolist"):
         return value.tolist()
     if isinstance(value, os.PathLike):
@@ -51,7 +51,7 @@ def _plain(value: Any) -> Any:
 
 def _key(key: Any) -> str:
     if not isinstance(key, str):
-        raise TypeError(f"cannot write the key {key!r} as TOML; allowed: a text")
+        raise TypeError(f"cannot write the key {key!r} as TOML\nhelp: use a str")
     return key if _BARE.fullmatch(key) else _text(key)
 
 
@@ -60,7 +60,7 @@ def _dotted(path: tuple[str, ...]) -> str:
 
 
 def _text(text: str) -> str:
-    # JSON's escapes are TOML's, but for the one control character that JSON leaves as it is.
+    # The escapes of JSON are valid TOML, except for DEL, which JSON does not escape.
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
@@ -75,4 +75,4 @@ def _value(value: Any, path: tuple[str, ...]) -> str:
         return "[" + ", ".join(_value(_plain(element), path) for element in value) + "]"
     if isinstance(value, dict):
         return "{ " + ", ".join(f"{_key(key)} = {_value(_plain(entry), (*path, key))}" for key, entry in value.items()) + " }"
-    raise TypeError(f"cannot write {'.'.join(path)} as TOML: it is of type {type(value).__name__}; allowed: bool, int, float, str, lists and dicts")
+    raise TypeError(f"cannot write {'.'.join(path)} as TOML: it is of type {type(value).__name__}\nhelp: use bool, int, float, str, lists and dicts")

@@ -1,18 +1,18 @@
-"""One JKR asperity: a rigid paraboloid of radius R on a soft half-space, one function per equation.
+"""Single JKR (Johnson, Kendall, Roberts) asperity: rigid paraboloid of radius R on an elastic half-space, one function per equation.
 
 Source: Violano & Afferrante, Lubricants 9(1):7 (2021), Eqs 1-4 and A1; Johnson, Kendall & Roberts, Proc. R. Soc. A 324:301 (1971).
 
-Every function takes the radius of curvature `radius_m` R [m] first, then what it is a function of, and the material by keyword:
-`contact_modulus_pa` E* [Pa] and `work_of_adhesion_j_m2` Δγ [J/m2]. Contact radii `a_m` a, penetrations `penetration_m` δ (positive inwards) and
-ranges are in metres, loads F in newtons (positive in compression), energies in joule. Every argument may be an array; they are broadcast against one
-another as NumPy does it. Of numbers alone a `float` comes back, of arrays an array of float64.
+The first argument is the radius of curvature `radius_m` R [m]. Keyword arguments define the material: `contact_modulus_pa` E*, reduced modulus [Pa],
+and `work_of_adhesion_j_m2` Δγ, work of adhesion [J/m2]. Contact radii `a_m` a, penetrations `penetration_m` δ (positive in compression) and ranges are
+in metres, loads F in newtons (positive in compression), energies in joule. All arguments may be arrays and are broadcast as in NumPy. Scalar arguments
+return a `float`, arrays an array of float64.
 
-`grip` is the share τ of the adhesive load that is left where loads around the asperity change the pull at its edge: as if the work of
-adhesion were Δγτ². At `grip=1` nothing is changed, below 1e-6 it is taken for that. `as_printed=["eq9"]` ends the branch where the denominator of
-Eq 9 vanishes as it is printed, `2a/R - sqrt(πΔγ/(E*a))`: at `2^⅓` of the jump-off radius.
+`grip` is the factor τ of the adhesive load for the reciprocal interaction: the effective work of adhesion is Δγτ². The default 1 has no effect; values
+below 1e-6 are replaced by 1e-6. `as_printed=["eq9"]` uses the uncorrected denominator of Eq 9, `2a/R - sqrt(πΔγ/(E*a))`: the stable branch ends at
+`2^⅓` of the jump-off radius.
 
-Outside the domain: R, E*, Δγ and τ that are not positive and finite are an error, a `ValueError` with the sentence of the program. A contact
-radius, penetration or range outside the domain of the equation gives NaN in its place, and so does NaN in any argument.
+Domain: R, E*, Δγ and τ that are not positive and finite raise `ValueError`. A contact radius, penetration or range outside the domain of the equation,
+and NaN in any argument, give NaN.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ from ._arrays import Reals, Result, one, slips
 
 
 def loop_loss_constant() -> float:
-    """The exact constant of Deng and Kesari's loop loss, `2^⅔ (3/10 + (1/5) 16^(-⅔)) = 0.5262203...` (Eq A1 prints 0.5262)."""
+    """Constant of the dissipated energy of one asperity, `2^⅔ (3/10 + (1/5) 16^(-⅔)) = 0.5262203...` (Eq A1 prints 0.5262)."""
     return _hysteron.loop_loss_constant
 
 
 def pull_sqrt_m(radius_m: Reals, *, contact_modulus_pa: Reals, work_of_adhesion_j_m2: Reals, grip: Reals = 1.0) -> Result:
-    """What adhesion takes from the penetration, over `sqrt(a)`: `sqrt(2πΔγ/E*)` [m^½]."""
+    """Adhesive term of the penetration over `sqrt(a)`: `sqrt(2πΔγ/E*)` [m^½]."""
     return one(_hysteron.pull_sqrt_m, radius_m, contact_modulus_pa, work_of_adhesion_j_m2, grip, eq9=False)
 
 
@@ -42,7 +42,7 @@ def load(radius_m: Reals, a_m: Reals, *, contact_modulus_pa: Reals, work_of_adhe
 
 
 def load_slope(radius_m: Reals, a_m: Reals, *, contact_modulus_pa: Reals, work_of_adhesion_j_m2: Reals, grip: Reals = 1.0) -> Result:
-    """`dF/da = 4E*a²/R - (3/2) sqrt(8πE*Δγa)` [N/m] at contact radius a [m]. Derivative of Eq 1.
+    """Derivative of the load `dF/da = 4E*a²/R - (3/2) sqrt(8πE*Δγa)` [N/m] at contact radius a [m]. Derivative of Eq 1.
 
     NaN for a < 0.
     """
@@ -58,9 +58,9 @@ def penetration(radius_m: Reals, a_m: Reals, *, contact_modulus_pa: Reals, work_
 
 
 def penetration_slope(radius_m: Reals, a_m: Reals, *, contact_modulus_pa: Reals, work_of_adhesion_j_m2: Reals, grip: Reals = 1.0) -> Result:
-    """`dδ/da = 2a/R - sqrt(πΔγ/(2E*a))` (dimensionless) at contact radius a [m]. Derivative of Eq 2.
+    """Derivative of the penetration `dδ/da = 2a/R - sqrt(πΔγ/(2E*a))` (dimensionless) at contact radius a [m]. Derivative of Eq 2.
 
-    NaN for a <= 0. The denominator of the paper's Eq 9 is printed as `2a/R - sqrt(πΔγ/(E*a))`, which is not this derivative.
+    NaN for a <= 0. The paper prints the denominator of Eq 9 as `2a/R - sqrt(πΔγ/(E*a))`, which is not this derivative.
     """
     return one(_hysteron.penetration_slope, radius_m, a_m, contact_modulus_pa, work_of_adhesion_j_m2, grip, eq9=False)
 
@@ -68,7 +68,7 @@ def penetration_slope(radius_m: Reals, a_m: Reals, *, contact_modulus_pa: Reals,
 def jump_off_radius(
     radius_m: Reals, *, contact_modulus_pa: Reals, work_of_adhesion_j_m2: Reals, grip: Reals = 1.0, as_printed: Collection[str] = ()
 ) -> Result:
-    """Contact radius at jump-off under displacement control, `(πR²Δγ/(8E*))^⅓` [m], where dδ/da = 0.
+    """Contact radius at the jump out of contact under displacement control, `(πR²Δγ/(8E*))^⅓` [m], where dδ/da = 0.
 
     With `as_printed=["eq9"]` it is `(πR²Δγ/(4E*))^⅓`.
     """
@@ -78,20 +78,20 @@ def jump_off_radius(
 def jump_off_penetration(
     radius_m: Reals, *, contact_modulus_pa: Reals, work_of_adhesion_j_m2: Reals, grip: Reals = 1.0, as_printed: Collection[str] = ()
 ) -> Result:
-    """Penetration at jump-off `δ_off = -(27π²Δγ²R/(64E*²))^⅓` [m]. Eq 4.
+    """Penetration at the jump out of contact `δ_off = -(27π²Δγ²R/(64E*²))^⅓` [m]. Eq 4.
 
-    With `as_printed=["eq9"]` that of Eq 2 at the jump-off radius, 0.9675 of it.
+    With `as_printed=["eq9"]`, Eq 2 at the uncorrected jump-off radius, 0.9675 times this value.
     """
     return one(_hysteron.jump_off_penetration, radius_m, contact_modulus_pa, work_of_adhesion_j_m2, grip, eq9="eq9" in slips(as_printed))
 
 
 def pull_off_radius(radius_m: Reals, *, contact_modulus_pa: Reals, work_of_adhesion_j_m2: Reals, grip: Reals = 1.0) -> Result:
-    """Contact radius at the greatest tension, `(9πR²Δγ/(8E*))^⅓` [m]."""
+    """Contact radius at the maximum tensile load, `(9πR²Δγ/(8E*))^⅓` [m]."""
     return one(_hysteron.pull_off_radius, radius_m, contact_modulus_pa, work_of_adhesion_j_m2, grip, eq9=False)
 
 
 def pull_off_load(radius_m: Reals, *, contact_modulus_pa: Reals, work_of_adhesion_j_m2: Reals, grip: Reals = 1.0) -> Result:
-    """Greatest tension, as a load: `-(3/2)πRΔγ` [N]."""
+    """Pull-off force as a load: `-(3/2)πRΔγ` [N], the most negative load."""
     return one(_hysteron.pull_off_load, radius_m, contact_modulus_pa, work_of_adhesion_j_m2, grip, eq9=False)
 
 
@@ -123,7 +123,7 @@ def stored_energy(
 
 
 def tabor(radius_m: Reals, range_m: Reals, *, contact_modulus_pa: Reals, work_of_adhesion_j_m2: Reals, grip: Reals = 1.0) -> Result:
-    """Tabor number `μ = (RΔγ²/E*²)^⅓ / ε` (dimensionless) of the range of attraction ε [m]. Below Eq 3.
+    """Tabor parameter `μ = (RΔγ²/E*²)^⅓ / ε` (dimensionless) of the range of attraction ε [m]. Below Eq 3.
 
     NaN for ε <= 0.
     """
@@ -135,15 +135,15 @@ def wu_jump_in_penetration(
 ) -> Result:
     """Wu's jump-in penetration `δ_in = (1 - 2.641 μ^(3/7)) ε` [m] of the range of attraction ε [m]. Eq 3.
 
-    Valid where `tabor` is 2 or more, which is left to the caller. Negative: contact forms where the gap falls below |δ_in|. NaN for ε <= 0.
+    Valid for a Tabor parameter of at least 2, which is not checked here. Negative: contact forms at a gap below |δ_in|. NaN for ε <= 0.
     """
     return one(_hysteron.wu_jump_in_penetration, radius_m, range_m, contact_modulus_pa, work_of_adhesion_j_m2, grip, eq9=False)
 
 
 def loop_loss(radius_m: Reals, *, contact_modulus_pa: Reals, work_of_adhesion_j_m2: Reals, grip: Reals = 1.0) -> Result:
-    """Loss of one loop whose jump-in is at δ = 0: `2E*R³ (πΔγ/(E*R))^(5/3) × 0.5262...` [J]. Eq A1.
+    """Dissipated energy of one loop with jump into contact at δ = 0: `2E*R³ (πΔγ/(E*R))^(5/3) × 0.5262...` [J]. Eq A1.
 
-    The constant is exact here, `loop_loss_constant()`.
+    Uses the exact constant `loop_loss_constant()`.
     """
     return one(_hysteron.loop_loss, radius_m, contact_modulus_pa, work_of_adhesion_j_m2, grip, eq9=False)
 
@@ -151,9 +151,9 @@ def loop_loss(radius_m: Reals, *, contact_modulus_pa: Reals, work_of_adhesion_j_
 def loop_loss_from(
     radius_m: Reals, jump_in_m: Reals, *, contact_modulus_pa: Reals, work_of_adhesion_j_m2: Reals, grip: Reals = 1.0, as_printed: Collection[str] = ()
 ) -> Result:
-    """Loss of one loop whose jump-in is at the penetration δ_in [m], δ_off <= δ_in <= 0 [J].
+    """Dissipated energy of one loop with jump into contact at the penetration δ_in [m], δ_off <= δ_in <= 0 [J].
 
-    The release of U - Δγπa² in the two jumps. NaN below the jump-off penetration. With `as_printed=["eq9"]` the loop ends where that branch
-    does.
+    Sum of the decreases of U - Δγπa² in both jumps. NaN below the jump-off penetration. With `as_printed=["eq9"]` the loop ends at the end of the
+    uncorrected branch.
     """
     return one(_hysteron.loop_loss_from, radius_m, jump_in_m, contact_modulus_pa, work_of_adhesion_j_m2, grip, eq9="eq9" in slips(as_printed))

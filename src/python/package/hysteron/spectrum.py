@@ -1,10 +1,10 @@
-"""The power spectrum of a self-affine surface (Eq 10), its moments, and what they say of its summits.
+"""Power spectral density of a self-affine surface (Eq 10), its moments, and summit statistics.
 
-A spectrum is given by keyword: `length_m` L, the side of the periodic square [m]; `rms_height_m` h_rms [m]; `hurst` H, 0 < H <= 1; `magnification`
-ζ = q1/qL, a whole number from 2. Every argument may be an array; they are broadcast against one another as NumPy does it. Of numbers alone a `float` comes
-back, of arrays an array of float64.
+Keyword arguments define the spectrum: `length_m` L, side of the periodic square [m]; `rms_height_m` h_rms [m]; `hurst` H, Hurst exponent, 0 < H <= 1;
+`magnification` ζ = q1/qL, an integer of at least 2. All arguments may be arrays and are broadcast as in NumPy. Scalar arguments return a `float`, arrays
+an array of float64.
 
-What is no spectrum is an error, a `ValueError` with the sentence of the program; NaN in any argument gives NaN in its place.
+Invalid spectra raise `ValueError`. NaN in any argument gives NaN in its place.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from ._arrays import Reals, Result, many, one
 
 
 class Moments(NamedTuple):
-    """Spectral moments of an isotropic surface: mean squares of height, slope and curvature of a profile through it; numbers or arrays."""
+    """Spectral moments of an isotropic surface: mean squares of height, slope and curvature of a profile; numbers or arrays."""
 
     #: m0 [m2].
     m0_m2: Reals
@@ -29,23 +29,23 @@ class Moments(NamedTuple):
     m4_1_m2: Reals
 
     def rms_height_m(self) -> Result:
-        """`h_rms = sqrt(m0)` [m]."""
+        """Root-mean-square height `h_rms = sqrt(m0)` [m]."""
         return many(_hysteron.statistics, *self)[0]
 
     def rms_slope(self) -> Result:
-        """`h'_rms = sqrt(2 m2)` (dimensionless), the rms modulus of the gradient."""
+        """Root-mean-square slope `h'_rms = sqrt(2 m2)` (dimensionless), rms of the gradient."""
         return many(_hysteron.statistics, *self)[1]
 
     def rms_curvature_1_m(self) -> Result:
-        """`h''_rms = sqrt(8 m4/3)` [1/m], the rms of the Laplacian."""
+        """Root-mean-square Laplacian `h''_rms = sqrt(8 m4/3)` [1/m], twice the rms mean curvature."""
         return many(_hysteron.statistics, *self)[2]
 
     def nayak_parameter(self) -> Result:
-        """Nayak's bandwidth parameter `α = m0 m4/m2²` (dimensionless)."""
+        """Bandwidth (Nayak) parameter `α = m0 m4/m2²` (dimensionless)."""
         return many(_hysteron.statistics, *self)[3]
 
     def summit_density_1_m2(self) -> Result:
-        """Nayak's density of summits of a Gaussian surface `η = m4/(6π√3 m2)` [1/m2]. Below Eq A4."""
+        """Summit density of a Gaussian surface (Nayak), `η = m4/(6π√3 m2)` [1/m2]. Below Eq A4."""
         return many(_hysteron.statistics, *self)[4]
 
 
@@ -56,14 +56,14 @@ def lowest_wavenumber(*, length_m: Reals) -> Result:
 
 
 def prefactor(*, length_m: Reals, rms_height_m: Reals, hurst: Reals, magnification: Reals) -> Result:
-    """`C0 = h_rms² H / (π qL² (1 - ζ^(-2H)))` [m4], per d²q, so that the integral of the spectrum is h_rms²."""
+    """Prefactor `C0 = h_rms² H / (π qL² (1 - ζ^(-2H)))` [m4]; the integral of the spectrum over d²q is h_rms²."""
     return one(_hysteron.prefactor, length_m, rms_height_m, hurst, magnification)
 
 
 def density(mode_squared: Reals, *, length_m: Reals, rms_height_m: Reals, hurst: Reals, magnification: Reals) -> Result:
-    """`C(q) = C0 (q/qL)^(-2(H+1))` for `qL <= q < ζ qL`, else 0 [m4], of the squared mode number `k² = (q/qL)²`. Eq 10.
+    """Power spectral density `C(q) = C0 (q/qL)^(-2(H+1))` for `qL <= q < ζ qL`, else 0 [m4]. Eq 10.
 
-    The squared mode number is whole, as those of a periodic square are, so that the edges of the band are exact: q = qL is in, q = q1 is out.
+    `mode_squared` is the squared mode number `k² = (q/qL)²`, an integer for a periodic square. The band includes q = qL and excludes q = q1.
     """
     return one(_hysteron.density, mode_squared, length_m, rms_height_m, hurst, magnification)
 
@@ -76,11 +76,11 @@ def moments(*, length_m: Reals, rms_height_m: Reals, hurst: Reals, magnification
 def lattice_moments(
     *, length_m: Reals, rms_height_m: Reals, hurst: Reals, magnification: Reals, normalization: str = "sample"
 ) -> Moments:
-    """Moments of the lattice of modes that a periodic square has, with fixed amplitudes: sums in place of the integrals of `moments`.
+    """Moments of the discrete spectrum of a periodic square with fixed amplitudes: sums instead of the integrals of `moments`.
 
-    `normalization="sample"`: the surface has the rms height exactly; `"spectrum"`: the integral of the spectrum has. Takes a time that goes as ζ².
+    `normalization="sample"`: the surface has exactly the given rms height. `"spectrum"`: the integral of the spectrum has it. The time scales as ζ².
     """
     if normalization not in ("sample", "spectrum"):
-        raise ValueError(f"cannot normalise by {normalization!r}; allowed: sample, spectrum")
+        raise ValueError(f"unknown normalization {normalization!r}\nhelp: use one of sample, spectrum")
     sample = normalization == "sample"
     return Moments(*many(_hysteron.lattice_moments, length_m, rms_height_m, hurst, magnification, sample=sample))
