@@ -102,9 +102,6 @@ fn conclusion(campaign: &Campaign, tallies: &[(Stage, Tally)], until: Stage) -> 
         let cases = parquet::read_table(&campaign.statistics_path("cases"), &schema::CASES).map_err(failed)?;
         text += &summary(&cases).map_err(failed)?;
         text += "\n";
-        if until == Stage::Report && cases.text("caution").map_err(failed)?.iter().any(|words| !words.is_empty()) {
-            text += "What each caution means is told in the report.\n";
-        }
     }
     if computed == 0 && failures == 0 {
         text += "Nothing to do: everything was done before.\n";
