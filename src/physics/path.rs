@@ -10,6 +10,7 @@
 //! overdue, and the neighbourhood relaxes before the next is looked for. An asperity that left within an avalanche does not return within it.
 
 mod carried;
+mod limit;
 
 pub(crate) use carried::Carried;
 
@@ -56,9 +57,6 @@ const RETRY: f64 = 0.97;
 
 /// Changes other than leaving that one asperity takes in one longest stretch.
 pub(crate) const FLIPS: u8 = 3;
-
-/// Changes of state within one increment of the approach, per asperity, beyond which the events have no end: [`FLIPS`] allows each asperity a few.
-const MOST_EVENTS: usize = 20;
 
 /// How well the whole contact is solved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -199,21 +197,6 @@ impl<'p> Path<'p> {
             event_limit: usize::MAX,
             mark: None,
         }
-    }
-
-    /// Begins an increment of the approach: its events are counted from here.
-    fn limit_events(&mut self) {
-        self.event_limit = self.log.events.len() + MOST_EVENTS * (self.problem().len() + 10);
-    }
-
-    /// Ends an increment of the approach whose events go on without end.
-    pub(crate) fn check_event_count(&self, approach_m: f64, asperity: usize) -> Result<(), Halt> {
-        let count = self.log.events.len();
-        if count <= self.event_limit {
-            return Ok(());
-        }
-        let events = MOST_EVENTS * (self.problem().len() + 10);
-        Err(Halt::Error(PhysicsError::EndlessAvalanche { approach_m, events, asperity: self.problem().number(asperity) }))
     }
 
     pub(crate) fn problem(&self) -> &'p Problem {

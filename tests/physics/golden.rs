@@ -47,7 +47,7 @@ fn reg_whole_cycles() {
             (found.area / (LENGTH * LENGTH), found.pull_off / load_unit, found.loss / (load_unit * RMS));
         if std::env::var_os("HYSTERON_DIGESTS").is_some() {
             let digest = blake3::hash(&postcard::to_stdvec(&cycle).unwrap()).to_hex();
-            println!("{what}: {} {found_area:.12e} {found_pull_off:.12e} {found_loss:.12e} {digest}", cycle.events.len());
+            eprintln!("{what}: {} {found_area:.12e} {found_pull_off:.12e} {found_loss:.12e} {digest}", cycle.events.len());
         }
         // The order of sums differs between processors in the last digits only; a change of one event moves the last result by 1e-4 and more.
         assert_eq!(cycle.events.len(), events, "{what}: number of events");

@@ -87,3 +87,14 @@ fn e2e_a_low_tabor_parameter_ends() {
     let run = bench.verb("run", &["--until", "cycle"]);
     assert_eq!(code(&run), 0, "{}", stderr(&run));
 }
+
+/// The second sweep of the quickstart is inside the range of the model: the first thing that a user sees is not all warnings.
+#[test]
+fn e2e_the_quickstart_has_a_case_without_warnings() {
+    let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("pipelines/quickstart.toml")).unwrap();
+    let (begin, stiff) = (text.find("[[sweep]]").unwrap(), text.rfind("[[sweep]]").unwrap());
+    let bench = Bench::new(&format!("{}{}", &text[..begin], &text[stiff..]));
+    let run = bench.verb("run", &["--until", "aggregate"]);
+    assert_eq!(code(&run), 0, "{}", stderr(&run));
+    assert_eq!(cases(&bench.out()).text("caution").unwrap(), ["", ""]);
+}
