@@ -198,7 +198,12 @@ fn e2e_what_is_no_surface_is_refused_and_writes_nothing() {
         ("unitless", bytes(&fine), &["--pixel-m", "1e-9"], "no unit of the heights in the file"),
         ("volts", bytes(&fine), &["--pixel-m", "1e-9", "--unit", "V"], "is not a unit of length\nhelp: use one of "),
         ("point", bytes(&fine), &["--pixel-m", "0", "--unit", "nm"], "--pixel-m is 0\nhelp: give a positive number of metres"),
-        ("periodic", bytes(&fine), &["--pixel-m", "1e-9", "--unit", "nm", "--periodic"], "expected the number of columns for a periodic surface"),
+        (
+            "periodic",
+            bytes(&fine),
+            &["--pixel-m", "1e-9", "--unit", "nm", "--periodic"],
+            "expected the number of columns for a periodic surface",
+        ),
         ("noise", b"\x7fELF\x02\x01\x01".to_vec(), &[], "unknown file format"),
     ];
     for (name, bytes, arguments, words) in cases {
