@@ -124,8 +124,12 @@ fn look(name: &str, folder: &Path, dataset: &str, hashed: Option<&String>) -> Re
     let unreadable = |error: std::io::Error| {
         let help = match std::env::current_dir() {
             Ok(here) if path.is_relative() => {
-                let beside = if folder.as_os_str().is_empty() { String::new() } else { format!(" and in {}", folder.display()) };
-                format!("it was looked for from {}, where the command is run{beside}", here.display())
+                let beside = if folder.as_os_str().is_empty() {
+                    String::new()
+                } else {
+                    format!(" and in {} (folder of the spec)", folder.display())
+                };
+                format!("it was looked for in {} (working directory){beside}", here.display())
             }
             _ => "use a file format that `hysteron import` reads".to_owned(),
         };

@@ -51,7 +51,7 @@ const BANNED: [(&str, &str); 40] = [
     ("asked for", "requested, target"),
     ("those that", "a noun"),
     ("of those", "a noun"),
-    ("1e-3]", "10⁻³"),
+    ("[1e-3]", "10⁻³"),
 ];
 
 /// Exceptions: a phrase in which a banned word is right.

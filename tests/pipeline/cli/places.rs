@@ -56,7 +56,11 @@ fn e2e_a_path_in_a_spec_is_found_from_its_folder() {
     fs::write(at("specs/x.toml"), SCAN).unwrap();
     let neither = hysteron(&bench, &["plan", "specs/x.toml"]);
     assert_eq!(code(&neither), 2);
-    assert!(stderr(&neither).contains("x.toml:3:") && stderr(&neither).contains(" and in specs"), "{}", stderr(&neither));
+    assert!(
+        stderr(&neither).contains("x.toml:3:") && stderr(&neither).contains(" and in specs (folder of the spec)"),
+        "{}",
+        stderr(&neither)
+    );
 
     fs::write(at("specs/scan.txt"), scan(1)).unwrap();
     let run = hysteron(&bench, &["run", "specs/x.toml", "--until", "generate", "--out", "out"]);

@@ -195,7 +195,7 @@ fn e2e_what_is_no_surface_is_refused_and_writes_nothing() {
         ("empty", endless, &TOLD, "zero|no points|empty|0 by"),
         ("lying", lying, &TOLD, "40000"),
         ("sizeless", bytes(&fine), &["--unit", "nm"], "no pixel size in the file"),
-        ("unitless", bytes(&fine), &["--pixel-m", "1e-9"], "the unit of its heights"),
+        ("unitless", bytes(&fine), &["--pixel-m", "1e-9"], "no unit of the heights in the file"),
         ("volts", bytes(&fine), &["--pixel-m", "1e-9", "--unit", "V"], "is not a unit of length\nhelp: use one of "),
         ("point", bytes(&fine), &["--pixel-m", "0", "--unit", "nm"], "--pixel-m is 0; allowed: positive numbers of metres"),
         ("periodic", bytes(&fine), &["--pixel-m", "1e-9", "--unit", "nm", "--periodic"], "square"),
@@ -263,7 +263,7 @@ fn e2e_a_scan_that_cannot_be_taken_fails_alone() {
     assert!(
         stdout(&status).contains("2 failed")
             && stdout(&status).contains("missing points")
-            && stdout(&status).contains("begin with # as a heading"),
+            && stdout(&status).contains("headings start with #"),
         "{}",
         stdout(&status)
     );

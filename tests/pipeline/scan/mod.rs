@@ -128,7 +128,7 @@ fn val_units_of_length() {
 fn law_only_netcdf_has_names() {
     for format in [Format::Npy, Format::X3p, Format::Text] {
         let message = scan_of(b"1 2\n3 4\n", format, Some("heights")).unwrap_err();
-        assert!(message.contains("one field without a name") && message.contains(format.name()), "{message}");
+        assert!(message.contains("one unnamed field") && message.contains(format.name()), "{message}");
     }
 }
 
@@ -139,7 +139,7 @@ fn law_what_is_no_file_is_refused() {
         assert!(read(folder.path(), format, None).unwrap_err().to_string().contains("it is a directory"));
         assert!(read(&folder.path().join("none"), format, None).unwrap_err().to_string().contains("No such file"));
         #[cfg(unix)]
-        assert!(read("/dev/zero".as_ref(), format, None).unwrap_err().to_string().contains("no ordinary file"));
+        assert!(read("/dev/zero".as_ref(), format, None).unwrap_err().to_string().contains("not a regular file"));
         assert!(scan_of(b"", format, None).is_err());
     }
 }

@@ -93,14 +93,14 @@ fn val_headings_with_pixels_and_factors() {
 fn law_every_bad_text_has_its_sentence() {
     for (text, parts) in [
         ("1 2\n3\n", vec!["its line 2: 1 numbers, but the previous lines have 2"]),
-        ("1 2\n\n# x\n3 4 5\n", vec!["its line 4: it has 3 numbers"]),
+        ("1 2\n\n# x\n3 4 5\n", vec!["its line 4: 3 numbers"]),
         ("1 2\n3 x\n", vec!["its line 2: column 2: \"x\" is not a number", "help: write numbers, and nan"]),
         ("x y h\n1 2 3\n", vec!["its line 1: column 1: \"x\" is not a number"]),
         ("1,5 2,5\n3,5 4,5\n", vec!["its line 1: column 1: \"1,5\" has a decimal comma"]),
         ("1,5;2,5\n", vec!["decimal comma"]),
         ("1,5\t2,5\n", vec!["decimal comma"]),
         ("1e999 2\n", vec!["\"1e999\" is not a finite number"]),
-        ("1 2\r3 4\r", vec!["CR alone"]),
+        ("1 2\r3 4\r", vec!["CR only"]),
         ("# nothing\n\n", vec!["no line of numbers"]),
         ("# Value units: V\n1 2\n", vec!["its heights are in \"V\", not a known unit of length", "use one of km, m, mm, µm or um, nm"]),
         ("# Value units: a.u.\n1 2\n", vec!["\"a.u.\""]),

@@ -89,7 +89,7 @@ fn law_every_bad_description_has_its_sentence() {
     let data = little(&[1.0, 2.0, 3.0, 4.0]);
     let good = main_xml(["2", "2", "1"], DOUBLE, "");
     for (from, to, parts) in [
-        ("<SizeZ>1<", "<SizeZ>2<", vec!["it has 2 layers"]),
+        ("<SizeZ>1<", "<SizeZ>2<", vec!["2 layers instead of 1"]),
         ("<SizeX>2<", "<SizeX>3<", vec!["has 32 bytes, and by its main.xml it has 48"]),
         ("<SizeX>2<", "<SizeX>0<", vec!["0 by 2 points"]),
         ("<SizeX>2<", "<SizeX>-2<", vec!["SizeX is \"-2\""]),
@@ -98,7 +98,7 @@ fn law_every_bad_description_has_its_sentence() {
         ("<SizeX>2<", "<SizeX>99999999999999999999<", vec!["must be a number of points"]),
         ("<SizeX>2</SizeX>", "", vec!["does not say its SizeX"]),
         ("MatrixDimension", "ListDimension", vec!["no matrix in "]),
-        ("DataLink>", "DataList>", vec!["listed in XML, which is not supported"]),
+        ("DataLink>", "DataList>", vec!["heights stored in XML are not supported"]),
         ("bindata/data.bin", "bindata/other.bin", vec!["\"bindata/other.bin\", which is not there"]),
         ("bindata/data.bin", "", vec!["does not say where"]),
         (">D<", ">X<", vec!["data type \"X\" of the heights\nhelp: expected I, L, F or D"]),
@@ -115,7 +115,7 @@ fn law_every_bad_description_has_its_sentence() {
         assert!(good.contains(from), "{from}");
         refused(&x3p(&good.replace(from, to), &data), Format::X3p, &parts);
     }
-    refused(&archive(&[("heights.npy", &data)], Stored), Format::X3p, &["a zip archive without main.xml"]);
+    refused(&archive(&[("heights.npy", &data)], Stored), Format::X3p, &["zip archive without main.xml"]);
     refused(&archive(&[("main.xml", b"\xff\xfe")], Stored), Format::X3p, &["not in UTF-8"]);
     refused(b"PK\x03\x04 and nothing", Format::X3p, &["damaged as a zip archive"]);
     let entity = good.replace("<p:ISO", "<!DOCTYPE a [<!ENTITY b \"c\">]><p:ISO");
@@ -169,7 +169,7 @@ fn law_one_top_folder_is_read() {
     refused(&archive(&two, Stored), Format::X3p, &["2 X3P folders instead of one"]);
     let apart: [(&str, &[u8]); 2] = [("a/main.xml", xml.as_bytes()), ("bindata/data.bin", &data)];
     refused(&archive(&apart, Stored), Format::X3p, &["\"bindata/data.bin\", which is not there"]);
-    refused(&archive(&[("a/b/main.xml", xml.as_bytes())], Stored), Format::X3p, &["a zip archive without main.xml"]);
+    refused(&archive(&[("a/b/main.xml", xml.as_bytes())], Stored), Format::X3p, &["zip archive without main.xml"]);
 }
 
 #[test]
