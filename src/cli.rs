@@ -1,24 +1,28 @@
-//! The command line: verbs, progress, and what is said at the end.
+//! The command line: commands, options and their help.
 
+mod arguments;
+mod colour;
+mod help;
 mod interrupt;
 mod limits;
 mod progress;
+mod reference;
+mod templates;
 mod verbs;
 
-use crate::campaign::Shard;
-use clap::{Args, Parser, Subcommand};
+pub use reference::{GUIDE, generated};
+
+use arguments::{
+    CampaignArguments, CompareArguments, CsvArguments, ExportArguments, FolderArguments, HowArguments, ImportArguments, JobsArguments,
+    OutputArguments, ShardsArguments, TalkArguments,
+};
+use clap::{Parser, Subcommand};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Adhesive hysteresis of rough surfaces: from a self-affine surface to the energy that its contact loses, a table at every step.
+/// Simulate adhesion hysteresis of rough surfaces (interacting JKR asperities)
 #[derive(Debug, Parser)]
-#[command(
-    version,
-    about,
-    max_term_width = 100,
-    after_help = "Exit codes: 0 done, 1 failed, 2 bad spec or usage, 3 finished with failed cases, \
-                  130 interrupted: the same command goes on."
-)]
+#[command(version, term_width = 80, next_line_help = true, help_template = help::template(), after_help = help::EXIT_CODES)]
 pub struct Arguments {
     #[command(subcommand)]
     verb: Verb,
@@ -26,104 +30,132 @@ pub struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Verb {
-    /// Do all of a spec that is not done yet; the same command again goes on where it stopped
+    /// Print a commented spec to start from
+    Init {
+        /// Template: quickstart, sweep, scan or full
+        #[arg(value_enum, default_value = "quickstart", hide_possible_values = true)]
+        template: templates::Template,
+        /// List the templates
+        #[arg(long)]
+        list: bool,
+    },
+    /// Run all pending tasks of a spec; rerun to resume
+    #[command(after_help = help::RUN)]
     Run {
         #[command(flatten)]
         campaign: CampaignArguments,
-        /// Stop after this stage
-        #[arg(long, value_enum, value_name = "STAGE", default_value = "report")]
+        #[arg(long, value_enum, value_name = "STAGE", default_value = "report", hide_possible_values = true, help = help::UNTIL)]
         until: StageArgument,
+        /// List pending tasks without running them, as `plan` does
+        #[arg(long, short = 'n')]
+        dry_run: bool,
+        /// Open report.html when the run has finished
+        #[arg(long)]
+        open: bool,
     },
-    /// Say what `run` would do, and why; writes nothing
+    /// List pending tasks and the reasons, without running them
     Plan {
-        /// The spec, a TOML file
+        /// Spec (TOML), or the output folder of a run
         spec: PathBuf,
         #[command(flatten)]
         output: OutputArguments,
     },
-    /// Say what of a run is done
+    /// Show the state of a run
     Status {
         #[command(flatten)]
         folder: FolderArguments,
-        /// Say it again every two seconds, until nothing is left to do
+        /// Repeat every two seconds until no task is pending
         #[arg(long)]
         watch: bool,
     },
-    /// Explain why a task is pending, field by field
+    /// Explain why a task is pending, parameter by parameter
     Explain {
         #[command(flatten)]
         folder: FolderArguments,
-        /// The task, as `status --json` and the file names have it; or `statistics`, or `report`
+        /// Task id as in `status --json`, or `statistics`, or `report`
         id: String,
-        /// The spec that names it [default: the one of the last run]
+        /// Spec of the task [default: that of the last run]
         #[arg(long)]
         spec: Option<PathBuf>,
     },
-    /// Compare all files of a run with their receipts
+    /// Check all files of a run against their records
     Verify {
         #[command(flatten)]
         folder: FolderArguments,
-        /// Compare contents, and not lengths alone
+        /// Compare checksums of contents, not only sizes
         #[arg(long)]
         deep: bool,
     },
-    /// Try failed cases again
+    /// Rerun failed cases
     Retry {
         #[command(flatten)]
         folder: FolderArguments,
-        /// Which ones [default: all]
+        /// Ids of failed tasks [default: all]
         ids: Vec<String>,
         #[command(flatten)]
         jobs: JobsArguments,
+        #[command(flatten)]
+        talk: TalkArguments,
     },
-    /// List what no spec names any more, and take it away if told to
+    /// List unreferenced files; delete them with --delete
+    #[command(visible_alias = "clean")]
     Gc {
         #[command(flatten)]
         folder: FolderArguments,
-        /// Further specs whose results are to stay, beside that of the last run
+        /// Further spec whose results are kept; may be repeated
         #[arg(long, value_name = "SPEC")]
         keep: Vec<PathBuf>,
-        /// Take it away
+        /// Delete the listed files
         #[arg(long)]
         delete: bool,
     },
-    /// Take a measured surface: make it fit for the model, say what it is like, and write it
-    ///
-    /// Reads HDF5, NetCDF-3 as SurfaceTopography writes it, X3P (ISO 25178-72), NumPy's .npy, and text, a line for each row. Of an oblong field the middle square is
-    /// taken. What is written here is named in a spec as surface.file; a spec may name the original as well, with the same choices.
+    /// Preprocess a measured surface and report its statistics
+    #[command(long_about = help::IMPORT)]
     Import(ImportArguments),
-    /// Make the surfaces
+    /// Stage 1: generate or import the surfaces
     Generate(CampaignArguments),
-    /// Find the summits of the surfaces
+    /// Stage 2: extract the asperities of the surfaces
     Extract(CampaignArguments),
-    /// Load and unload every case
+    /// Stage 3: load and unload each case on each surface
     Cycle(CampaignArguments),
-    /// Average over realizations
+    /// Stage 4: write the tables of statistics
     Aggregate {
         #[command(flatten)]
         campaign: CampaignArguments,
-        /// Aggregate what is there, although cases are missing
+        /// Aggregate finished cases although others are missing
         #[arg(long)]
         partial: bool,
     },
-    /// Draw the figures and write the page; or compare finished campaigns
+    /// Write figures and report.html (stage 5)
     Report {
-        /// The spec, a TOML file
+        /// Spec (TOML), or the output folder of a run
         #[arg(required_unless_present = "compare")]
         spec: Option<PathBuf>,
-        /// Compare the campaigns in these output folders with the first one, instead [default --out: data/runs/comparison]
-        #[arg(long, num_args = 2.., value_name = "DIR", conflicts_with = "spec")]
+        /// Compare these runs with the first one, as `compare` does
+        #[arg(long, num_args = 2.., value_name = "DIR", conflicts_with_all = ["spec", "set"])]
         compare: Vec<PathBuf>,
+        /// Open the report when it is written
+        #[arg(long)]
+        open: bool,
         #[command(flatten)]
         campaign: HowArguments,
     },
-    /// Hand what is not done yet to a scheduler
+    /// Compare finished runs with the first one
+    Compare(CompareArguments),
+    /// Print one case or task: parameters, results, warnings, files
+    Show {
+        #[command(flatten)]
+        folder: FolderArguments,
+        /// Id of a case, cycle or surface; or `statistics`, or `report`
+        id: String,
+    },
+    /// Submit pending tasks to Slurm
     Submit {
-        /// The spec, a TOML file
+        /// Spec (TOML), or the output folder of a run
         spec: PathBuf,
         #[command(flatten)]
         output: OutputArguments,
-        /// The scheduler
+        /// Scheduler
         #[arg(long, value_enum)]
         engine: EngineArgument,
         #[command(flatten)]
@@ -131,166 +163,68 @@ enum Verb {
         /// Threads of each task
         #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
         cpus: u16,
-        /// A further line for the scheduler, as --option=--time=4:00:00; may be given several times
+        /// Further option of sbatch, e.g. --option=--time=4:00:00; repeatable
         #[arg(long, value_name = "LINE", allow_hyphen_values = true)]
         option: Vec<String>,
-        /// Show the scripts and the commands, and do nothing
-        #[arg(long)]
+        /// Show the scripts and commands without submitting
+        #[arg(long, short = 'n')]
         dry_run: bool,
     },
-    /// Write what other programs run or publish a campaign with
+    /// Export tables, surfaces, workflows or metadata
     Export {
         #[command(subcommand)]
         what: ExportVerb,
     },
-    /// Print the tables and columns that the program writes
+    /// Print the schemas of the tables and of the spec
     Schema {
-        /// Write schemas/*.json into the present folder instead
+        /// File to print, e.g. reference_cli.md [default: all *.json]
+        #[arg(conflicts_with = "write")]
+        file: Option<String>,
+        /// Write schemas/, and in a clone the generated pages of src/guide
         #[arg(long)]
         write: bool,
     },
-    /// Print what a shell completes the program's verbs and options with
+    /// Print the completion script of a shell
     Completions {
-        /// The shell
+        /// Shell
         #[arg(value_enum)]
         shell: clap_complete::Shell,
     },
-    /// Print the manual page, of the program or of one verb
+    /// Print the manual page (roff) of the program or a command
     Man {
-        /// The verb
+        /// Command
         verb: Option<String>,
-        /// Write the pages of the program and of every verb into this folder instead
+        /// Write all pages into this folder instead
         #[arg(long, value_name = "DIR", conflicts_with = "verb")]
         dir: Option<PathBuf>,
     },
 }
 
-#[derive(Debug, Args)]
-struct CampaignArguments {
-    /// The spec, a TOML file
-    spec: PathBuf,
-    #[command(flatten)]
-    how: HowArguments,
-}
-
-#[derive(Debug, Args)]
-struct HowArguments {
-    #[command(flatten)]
-    output: OutputArguments,
-    #[command(flatten)]
-    jobs: JobsArguments,
-    /// Only part K of N of the surfaces, and what is done with them (K from 0, N up to 1000000)
-    #[arg(long, value_name = "K/N")]
-    shard: Option<Shard>,
-    /// Take what is done for whole if its files are as long as they were, and do not compare contents
-    #[arg(long)]
-    quick: bool,
-}
-
-#[derive(Debug, Args)]
-struct JobsArguments {
-    /// Threads [default: as many as there are cores]
-    #[arg(long, short = 'j', value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    jobs: Option<u16>,
-}
-
-#[derive(Debug, Args)]
-struct FolderArguments {
-    /// The output folder of a run
-    dir: PathBuf,
-    /// Answer in JSON
-    #[arg(long)]
-    json: bool,
-}
-
-#[derive(Debug, Args)]
-struct OutputArguments {
-    /// The output folder [default: data/runs/<name of the spec>]
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
-    /// Answer in JSON
-    #[arg(long)]
-    json: bool,
-}
-
 #[derive(Debug, Subcommand)]
 enum ExportVerb {
-    /// A surface as NetCDF-3, to be opened with SurfaceTopography
+    /// All tables of statistics as CSV (RFC 4180)
+    Csv(CsvArguments),
+    /// A surface as NetCDF-3, for SurfaceTopography
     Netcdf(ExportArguments),
     /// A surface as HDF5 in the layout of Tamaas' H5Dumper
     Tamaas(ExportArguments),
     /// A Snakefile with one rule for each stage
     Snakemake {
-        /// The spec, a TOML file
+        /// Spec (TOML), or the output folder of a run
         spec: PathBuf,
         #[command(flatten)]
         output: OutputArguments,
         #[command(flatten)]
         shards: ShardsArguments,
     },
-    /// The description of a finished run for a repository of research data (RO-Crate 1.2)
+    /// Metadata of a finished run for a data repository (RO-Crate 1.2)
     RoCrate {
         #[command(flatten)]
         folder: FolderArguments,
-        /// The licence of the data: an SPDX identifier such as CC-BY-4.0, or the http(s) address of its text
+        /// Licence of the data: SPDX identifier (CC-BY-4.0) or http(s) address
         #[arg(long, value_name = "LICENCE")]
         license: Option<String>,
     },
-}
-
-#[derive(Debug, Args)]
-struct ExportArguments {
-    /// The surface: surfaces/<id>.h5 of a run, or what `import` has written
-    surface: PathBuf,
-    /// The file to be written
-    #[arg(long, value_name = "FILE")]
-    out: PathBuf,
-}
-
-#[derive(Debug, Args)]
-struct ImportArguments {
-    /// The measured surface
-    file: PathBuf,
-    /// The file to be written [default: <name of FILE>.h5 in the present folder]
-    #[arg(long, value_name = "FILE")]
-    out: Option<PathBuf>,
-    /// Which field of the file it is, where it has several: a dataset of HDF5, a variable of NetCDF
-    #[arg(long, value_name = "NAME")]
-    dataset: Option<String>,
-    /// Distance of its points in metres, where the file does not tell it: the size of the scan over its number of points
-    #[arg(long, value_name = "METRES")]
-    pixel_m: Option<f64>,
-    /// Unit of its heights, where the file does not tell it, such as nm
-    #[arg(long)]
-    unit: Option<String>,
-    /// Fill missing points in as a membrane would, instead of refusing them
-    #[arg(long)]
-    fill: bool,
-    /// Shape removed from the heights by least squares [default: plane, or mean with --periodic]
-    #[arg(long, value_name = "SHAPE", value_parser = ["mean", "plane", "quadratic"])]
-    detrend: Option<String>,
-    /// It continues periodically
-    #[arg(long)]
-    periodic: bool,
-    /// Take off waves shorter than so many points, the noise of the instrument among them
-    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u8).range(4..=64))]
-    points: u8,
-    /// Say what it is like, and write nothing
-    #[arg(long)]
-    dry_run: bool,
-    /// Write over a file that is there
-    #[arg(long)]
-    force: bool,
-    /// Answer in JSON, with the spectrum
-    #[arg(long)]
-    json: bool,
-}
-
-#[derive(Debug, Args)]
-struct ShardsArguments {
-    /// Parts that are run by themselves [default: one for each surface, up to 1000]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
-    shards: Option<u32>,
 }
 
 #[derive(Debug, Clone, Copy, clap::ValueEnum)]
@@ -298,7 +232,7 @@ enum EngineArgument {
     Slurm,
 }
 
-#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum StageArgument {
     Generate,
     Extract,
@@ -307,7 +241,7 @@ enum StageArgument {
     Report,
 }
 
-/// Does what was asked for, and says how it went.
+/// Runs the command and prints its outcome.
 #[must_use]
 pub fn perform(arguments: &Arguments) -> ExitCode {
     verbs::perform(&arguments.verb)

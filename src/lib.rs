@@ -2,6 +2,8 @@
 //!
 //! One direction, no way back: `model` and `schema` know nothing; `physics` opens no file; `store` computes nothing; `stages` alone joins them;
 //! `stats` and `figures` read only tables.
+//!
+//! The documentation for users is the [`guide`].
 
 #[cfg(feature = "stats")]
 pub mod campaign;
@@ -12,6 +14,7 @@ pub mod engines;
 #[cfg(feature = "stats")]
 pub mod figures;
 pub mod formats;
+pub mod guide;
 pub mod keys;
 pub mod lengths;
 pub mod model;

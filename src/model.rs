@@ -35,6 +35,9 @@ pub trait Choice: Copy + PartialEq + Sized + 'static {
     /// Every value with its word, in the order in which they are shown.
     const WORDS: &'static [(&'static str, Self)];
 
+    /// Every word with its meaning, in the same order.
+    const MEANINGS: &'static [(&'static str, &'static str)];
+
     /// The word of this value.
     fn word(self) -> &'static str {
         Self::WORDS.iter().find(|(_, value)| *value == self).map_or("", |(word, _)| word)
@@ -47,13 +50,14 @@ pub trait Choice: Copy + PartialEq + Sized + 'static {
 }
 
 macro_rules! choice {
-    ($(#[$doc:meta])* $name:ident { $($(#[$variant_doc:meta])* $variant:ident = $word:literal),+ $(,)? }) => {
+    ($(#[$doc:meta])* $name:ident { $(#[doc = $meaning:literal] $variant:ident = $word:literal),+ $(,)? }) => {
         $(#[$doc])*
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-        pub enum $name { $($(#[$variant_doc])* #[serde(rename = $word)] $variant),+ }
+        pub enum $name { $(#[doc = $meaning] #[serde(rename = $word)] $variant),+ }
 
         impl Choice for $name {
             const WORDS: &'static [(&'static str, Self)] = &[$(($word, Self::$variant)),+];
+            const MEANINGS: &'static [(&'static str, &'static str)] = &[$(($word, $meaning)),+];
         }
     };
 }
@@ -61,71 +65,71 @@ macro_rules! choice {
 choice! {
     /// How a surface gets its rms height.
     Normalization {
-        /// The realised surface is scaled to the rms height exactly.
+        /// Each surface is scaled to h_rms exactly.
         Sample = "sample",
-        /// The spectrum's integral is the mean square height; what a realisation has differs.
+        /// The integral of the spectrum is h_rms². The rms height of one surface differs from h_rms.
         Spectrum = "spectrum",
     }
 }
 choice! {
     /// The moduli of the Fourier modes.
     Amplitudes {
-        /// `sqrt(C)`: only the phases are random, as in the paper.
+        /// Square root of the spectral density. Only the phases are random, as in the paper.
         Fixed = "fixed",
-        /// Rayleigh-distributed moduli: a Gaussian surface.
+        /// Rayleigh-distributed amplitudes: a Gaussian surface.
         Gaussian = "gaussian",
     }
 }
 choice! {
     /// What becomes of the missing points of a measured surface.
     Missing {
-        /// A surface with missing points is refused.
+        /// Missing points are an error.
         Refuse = "refuse",
-        /// The heights around them are continued, as a membrane is.
+        /// Harmonic in-fill: the heights solve Laplace's equation.
         Fill = "fill",
     }
 }
 choice! {
     /// What is taken off the heights of a measured surface, by least squares.
     Detrend {
-        /// Their mean.
+        /// The mean height.
         Mean = "mean",
-        /// A plane: the tilt of the sample.
+        /// The least-squares plane.
         Plane = "plane",
-        /// A surface of second order: tilt and bow.
+        /// The least-squares surface of second order.
         Quadratic = "quadratic",
     }
 }
 choice! {
     /// How contact spots act on one another.
     Interaction {
-        /// The displacement field of a JKR spot outside its contact (Eqs 6 and 7).
+        /// Displacement field of a JKR contact spot outside its contact (Eqs 6 and 7).
         Spots = "spots",
-        /// Each spot acts as its load at its centre: the model has an exact potential.
+        /// Each contact spot acts as a point force at its centre. The model has an exact potential.
         Point = "point",
-        /// The mean of a spot's field where another is, and of that one's as a punch in return: one mutual energy for each pair, so an exact potential.
+        /// Mean of the field and its reciprocal. The model has an exact potential; 100 times slower.
         Reciprocal = "reciprocal",
-        /// No interaction: Greenwood and Williamson with JKR.
+        /// No interaction: the Greenwood–Williamson model with JKR asperities.
         None = "none",
     }
 }
 choice! {
     /// What surrounds the square.
     Boundary {
-        /// Its own periodic images, with a self-balanced load.
+        /// Periodic images of the square, with a self-balanced load.
         Periodic = "periodic",
-        /// Nothing: a single patch on a half-space. The approach is measured from where the half-space lies far away, at rest.
+        /// A single patch on a half-space. Δ is measured from the undeformed half-space far away.
         Isolated = "isolated",
     }
 }
 choice! {
     /// What happens when a spot grows over the centre of another asperity.
     Coalescence {
-        /// The smaller one is covered: it rides with the greater spot and carries nothing.
+        /// The asperity is absorbed by the larger contact spot and carries no load.
         Cover = "cover",
-        /// Touching spots become one of the same area.
+        /// Equal-area merging (ICHA): touching contact spots become one spot of the same area.
         Merge = "merge",
-        /// Nothing happens, as the paper's text has it.
+        /// No rule, as in the text of the paper.
         None = "none",
     }
 }
@@ -134,7 +138,7 @@ choice! {
     JumpIn {
         /// Wu's critical gap (Eq 3).
         Wu = "wu",
-        /// At zero penetration, the rule of plain JKR.
+        /// Zero penetration, the criterion of plain JKR.
         Jkr = "jkr",
     }
 }
@@ -143,22 +147,22 @@ choice! {
     KeptContacts {
         /// Every step.
         All = "all",
-        /// The turning points; and on the way the first steps at half their load, back at none, and the one of the greatest tension.
+        /// The load reversals. While unloading, the first steps at half load and at zero load, and the step of maximum tensile load.
         Turning = "turning",
-        /// None.
+        /// No step.
         None = "none",
     }
 }
 choice! {
     /// A slip of the paper that can be put back, to see what it changes.
     Slip {
-        /// Eq 8 without the `r²/(2R)` inside a spot.
+        /// Eq 8 without the term `r²/(2R)` inside a contact spot.
         Eq8 = "eq8",
-        /// Eq 9 with `sqrt(πΔγ/(E*a))` for `sqrt(πΔγ/(2E*a))`.
+        /// Eq 9 with `sqrt(πΔγ/(E*a))` in place of `sqrt(πΔγ/(2E*a))`.
         Eq9 = "eq9",
         /// Eq A2 with the exponent as printed.
         A2 = "a2",
-        /// `sqrt(m4/3t)` for `sqrt(m4/3)·t` below Eq A3.
+        /// `sqrt(m4/3t)` in place of `sqrt(m4/3)·t` below Eq A3.
         A3 = "a3",
     }
 }
@@ -166,11 +170,11 @@ choice! {
 choice! {
     /// A result of a cycle whose mean can be asked for to a given precision.
     Goal {
-        /// The energy lost, Θ.
+        /// Dissipated energy Θ.
         Loss = "loss",
-        /// The greatest tension on unloading.
+        /// Pull-off force F_po.
         PullOff = "pull_off_load",
-        /// The area of contact at the turning point.
+        /// Contact area A at the load reversal.
         Area = "area_at_max_load",
     }
 }

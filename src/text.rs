@@ -9,6 +9,49 @@ pub fn counted(count: usize, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }
 
+/// Lines of at most so many columns: the first begins with `first`, later ones with `indent`.
+fn filled<'a>(first: &str, indent: &str, words: impl Iterator<Item = &'a str>, columns: usize) -> String {
+    let mut lines: Vec<String> = Vec::new();
+    for word in words {
+        let start = if lines.is_empty() { first } else { indent };
+        match lines.last_mut().filter(|line| line.chars().count() + 1 + word.chars().count() <= columns) {
+            Some(line) => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            None => lines.push(format!("{start}{word}")),
+        }
+    }
+    lines.join("\n")
+}
+
+/// A paragraph as lines of at most 80 columns; the second and later ones begin with `indent`.
+#[must_use]
+pub fn wrapped(paragraph: &str, indent: &str) -> String {
+    filled("", indent, paragraph.split(' '), 80) + "\n"
+}
+
+/// A paragraph of Markdown as lines of at most 100 columns, or an entry of a list if `marker` is that of one.
+#[must_use]
+pub fn paragraph(marker: &str, text: &str) -> String {
+    filled(marker, &" ".repeat(marker.len()), text.split_whitespace(), 100)
+}
+
+/// Plain text as Markdown: outside of code spans, characters of links, tags and emphasis are escaped.
+#[must_use]
+pub fn markdown(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    let mut in_code = false;
+    for c in text.chars() {
+        in_code ^= c == '`';
+        if !in_code && "[]<>*|".contains(c) {
+            escaped.push('\\');
+        }
+        escaped.push(c);
+    }
+    escaped
+}
+
 /// A name on one line: control characters and marks that reorder text are written as escapes.
 #[must_use]
 pub fn visible(name: &str) -> String {

@@ -13,7 +13,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 /// Exit code of the contract.
-const INTERRUPTED: i32 = 130;
+const INTERRUPTED: i32 = super::reference::INTERRUPTED as i32;
 
 /// How long an interrupt waits for files that are being written; a read or write that is stuck (a dead network disk) takes for ever.
 const PATIENCE: Duration = Duration::from_secs(5);
@@ -37,7 +37,7 @@ pub(super) fn expect(teller: Arc<Teller>, dir: &Path) -> std::io::Result<()> {
     signal_hook::flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false)))?;
     let mut signals = Signals::new(waited)?;
     let notice = format!(
-        "interrupted: completed tasks are kept, running tasks are dropped. Continue with the same command, or with `hysteron run {} --out {}`",
+        "interrupted: finished tasks are kept, running tasks restart. Resume with the same command, or with `hysteron run {} --out {}`",
         shell_path(&dir.join("campaign.toml")),
         shell_path(dir)
     );

@@ -1,32 +1,54 @@
-//! What is seen while the program works: bars on a terminal, plain lines elsewhere.
+//! Progress: bars on a terminal, plain lines elsewhere.
 
+use super::arguments::TalkArguments;
+use super::colour::painted;
 use crate::campaign::Stage;
 use crate::stages::Watch;
 use crate::text::{counted, printable};
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 use std::io::{IsTerminal, Write};
 use std::sync::Mutex;
+use std::time::{Duration, Instant};
 
-/// Parts of a unit that a bar shows.
+/// Parts of a task that a bar shows.
 const PARTS: f64 = 1000.0;
 
-/// The stage at work: its bar, how much is done in parts, and how many units.
+/// Time between two progress lines where there is no bar, unless [`PERIOD`] sets it.
+const EVERY: Duration = Duration::from_secs(30);
+
+/// Environment variable: seconds between two progress lines.
+const PERIOD: &str = "HYSTERON_PROGRESS_SECONDS";
+
+/// The stage that is running: its bar, the parts that are done, the parts to do, and the finished tasks of all.
 struct Now {
     bar: ProgressBar,
     parts: f64,
+    left: usize,
     units: usize,
     all: usize,
+    /// Time of the last line.
+    line_at: Instant,
 }
 
-/// Tells the terminal, or whatever reads standard error.
+/// Writes progress and notices to standard error.
 pub(super) struct Teller {
     terminal: bool,
+    talk: TalkArguments,
+    every: Duration,
+    began: Instant,
     now: Mutex<Option<Now>>,
 }
 
 impl Teller {
-    pub(super) fn new() -> Self {
-        Self { terminal: std::io::stderr().is_terminal(), now: Mutex::new(None) }
+    pub(super) fn new(talk: TalkArguments) -> Self {
+        let seconds = std::env::var(PERIOD).ok().and_then(|text| text.trim().parse().ok()).filter(|seconds: &f64| *seconds >= 0.0);
+        let every = seconds.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok()).unwrap_or(EVERY);
+        Self { terminal: std::io::stderr().is_terminal(), talk, every, began: Instant::now(), now: Mutex::new(None) }
+    }
+
+    /// Time since the command began.
+    pub(super) fn elapsed(&self) -> Duration {
+        self.began.elapsed()
     }
 
     fn with(&self, act: impl FnOnce(&mut Now)) {
@@ -37,40 +59,79 @@ impl Teller {
         }
     }
 
-    /// Takes the bar away: nothing more is done.
+    /// Removes the bar.
     pub(super) fn clear(&self) {
         self.with(|now| now.bar.finish_and_clear());
     }
 
-    fn line(text: &str) {
-        // Nobody is left to be told if standard error is closed.
-        let _ = writeln!(std::io::stderr().lock(), "{}", printable(text));
+    /// Whether there are lines for tasks and progress: always with --verbose; otherwise where there is no bar, unless --quiet.
+    fn has_lines(&self) -> bool {
+        self.talk.verbose || !self.terminal && !self.talk.quiet
     }
+
+    fn line(&self, text: &str) {
+        // A closed standard error has no reader.
+        let _ = writeln!(std::io::stderr().lock(), "{}", painted(printable(text), self.terminal));
+    }
+
+    /// A line above the bar.
+    fn above(&self, now: &mut Now, text: &str) {
+        now.line_at = Instant::now();
+        let text = if self.talk.verbose { format!("{text} ({})", duration(self.elapsed())) } else { text.to_owned() };
+        now.bar.suspend(|| self.line(&text));
+    }
+}
+
+/// A duration as a person writes it: "5.1 s", "2m 30s".
+pub(super) fn duration(time: Duration) -> String {
+    if time < Duration::from_secs(60) {
+        return format!("{:.1} s", time.as_secs_f64());
+    }
+    humantime::format_duration(Duration::from_secs(time.as_secs())).to_string()
+}
+
+/// The time left, which is unknown before the first progress.
+fn remaining(state: &ProgressState, out: &mut dyn std::fmt::Write) {
+    let text = if state.pos() == 0 { "?".to_owned() } else { duration(state.eta()) };
+    let _ = out.write_str(&text);
+}
+
+/// The style of a bar.
+fn style() -> Option<ProgressStyle> {
+    let style = ProgressStyle::with_template("{prefix:9} [{bar:24}] {msg} {percent:>3} %, {elapsed}, {remaining} left").ok()?;
+    Some(style.with_key("remaining", remaining).progress_chars("=> "))
 }
 
 impl Watch for Teller {
     fn begin(&self, stage: Stage, done: usize, all: usize) {
         let left = all - done;
-        let bar = if self.terminal && left > 0 { ProgressBar::new((left as f64 * PARTS) as u64) } else { ProgressBar::hidden() };
-        let template = "{prefix:9} [{bar:24}] {msg} {percent:>3} %, {elapsed} gone, {eta} left";
-        if let Ok(style) = ProgressStyle::with_template(template) {
-            bar.set_style(style.progress_chars("=> "));
+        let has_bar = self.terminal && !self.talk.quiet && left > 0;
+        let bar = if has_bar { ProgressBar::new((left as f64 * PARTS) as u64) } else { ProgressBar::hidden() };
+        if let Some(style) = style() {
+            bar.set_style(style);
         }
         bar.set_prefix(stage.word());
         bar.set_message(format!("{done}/{all}"));
-        if self.terminal && left > 0 {
-            bar.enable_steady_tick(std::time::Duration::from_millis(200));
+        if has_bar {
+            bar.enable_steady_tick(Duration::from_millis(200));
         }
-        if !self.terminal {
-            Self::line(&format!("{}: {}, {done} done before", stage.word(), counted(all, "task")));
+        let mut now = Now { bar, parts: 0.0, left, units: done, all, line_at: Instant::now() };
+        if self.has_lines() {
+            self.above(&mut now, &format!("{}: {}, {done} done before", stage.word(), counted(all, "task")));
         }
-        *self.now.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(Now { bar, parts: 0.0, units: done, all });
+        *self.now.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(now);
     }
 
-    fn progress(&self, _stage: Stage, part: f64) {
+    fn progress(&self, stage: Stage, part: f64) {
         self.with(|now| {
             now.parts += part * PARTS;
             now.bar.set_position(now.parts as u64);
+            if !self.terminal && !self.talk.quiet && now.line_at.elapsed() >= self.every {
+                let share = 100.0 * now.parts / (now.left.max(1) as f64 * PARTS);
+                let time = duration(self.elapsed());
+                now.line_at = Instant::now();
+                self.line(&format!("{}: {}/{}, {share:.0} % of the pending work after {time}", stage.word(), now.units, now.all));
+            }
         });
     }
 
@@ -79,8 +140,9 @@ impl Watch for Teller {
             now.units += 1;
             let rate = (now.units as f64) / now.bar.elapsed().as_secs_f64().max(1e-3);
             now.bar.set_message(format!("{}/{} ({rate:.2}/s)", now.units, now.all));
-            if !self.terminal {
-                Self::line(&format!("{}: {}/{} {id}", stage.word(), now.units, now.all));
+            if self.has_lines() {
+                let text = format!("{}: {}/{} {id}", stage.word(), now.units, now.all);
+                self.above(now, &text);
             }
         });
     }
@@ -88,8 +150,8 @@ impl Watch for Teller {
     fn notice(&self, text: &str) {
         let held = self.now.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         match held.as_ref() {
-            Some(now) if self.terminal && !now.bar.is_finished() => now.bar.suspend(|| Self::line(text)),
-            _ => Self::line(text),
+            Some(now) if self.terminal && !now.bar.is_finished() => now.bar.suspend(|| self.line(text)),
+            _ => self.line(text),
         }
     }
 

@@ -13,6 +13,9 @@ pub struct SpecErrors {
     file: String,
     faults: Vec<Fault>,
     more: usize,
+    /// The settings (`--set`) with which the file was read.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    settings: Vec<String>,
 }
 
 /// One error of a spec.
@@ -22,7 +25,7 @@ pub struct Fault {
     pub message: String,
     /// Recommended action.
     pub help: Option<String>,
-    /// Position; `None` if the file could not be read.
+    /// Position; `None` if the file could not be read, or if the value is from the command line.
     pub place: Option<Place>,
 }
 
@@ -52,10 +55,15 @@ impl SpecErrors {
         &self.faults
     }
 
+    /// The same errors of a spec that was read with settings.
+    pub(super) fn with(self, settings: &[String]) -> Self {
+        Self { settings: settings.to_vec(), ..self }
+    }
+
     /// The file could not be read at all.
     pub(super) fn unreadable(file: &str, cause: &str) -> Self {
         let message = format!("cannot read the spec: {cause}");
-        Self { file: file.to_owned(), faults: vec![Fault { message, help: None, place: None }], more: 0 }
+        Self { file: file.to_owned(), faults: vec![Fault { message, help: None, place: None }], more: 0, settings: Vec::new() }
     }
 
     /// The file is no text: `valid` bytes of it are.
@@ -64,7 +72,7 @@ impl SpecErrors {
         let help = Some("save the file as UTF-8".to_owned());
         let text = String::from_utf8_lossy(bytes);
         let place = Some(Place::new(&text, &line_starts(&text), &(valid..valid + char::REPLACEMENT_CHARACTER.len_utf8())));
-        Self { file: file.to_owned(), faults: vec![Fault { message, help, place }], more: 0 }
+        Self { file: file.to_owned(), faults: vec![Fault { message, help, place }], more: 0, settings: Vec::new() }
     }
 }
 
@@ -95,9 +103,15 @@ impl fmt::Display for SpecErrors {
         if self.more > 0 {
             writeln!(out, "\n… and {} more", self.more)?;
         }
+        if !self.settings.is_empty() {
+            writeln!(out, "\nThe spec was read with --set {}", self.settings.join(" --set "))?;
+        }
         Ok(())
     }
 }
+
+/// The place of a value that is not in the text: one of the command line.
+pub(super) const NOWHERE: Range<usize> = usize::MAX..usize::MAX;
 
 /// Faults that are kept and shown; the others are counted.
 const MOST: usize = 20;
@@ -188,7 +202,7 @@ impl<'t> Faults<'t> {
             self.more += 1;
             return;
         }
-        let place = Some(Place::new(self.text, &self.starts, span));
+        let place = (*span != NOWHERE).then(|| Place::new(self.text, &self.starts, span));
         self.found.push((span.clone(), Fault { message, help: help.into(), place }));
     }
 
@@ -231,7 +245,7 @@ impl<'t> Faults<'t> {
             _ => {
                 self.found.sort_by_key(|(span, _)| span.start);
                 let faults = self.found.into_iter().map(|(_, fault)| fault).collect();
-                Err(SpecErrors { file: self.file, faults, more: self.more })
+                Err(SpecErrors { file: self.file, faults, more: self.more, settings: Vec::new() })
             }
         }
     }

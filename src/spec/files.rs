@@ -12,7 +12,7 @@ use toml::de::DeValue;
 use super::fault::Faults;
 use super::value::{Written, wrong_type};
 use super::walk::{entries, shown};
-use super::{Case, Spec, SpecErrors};
+use super::{Case, Spec, SpecErrors, Value};
 use crate::formats::{Found, Refusal, recognize};
 use crate::keys::digest_of_file;
 
@@ -47,24 +47,31 @@ pub(super) fn named(files: BTreeMap<String, (String, Range<usize>)>, cases: &[Ca
     files.into_iter().map(|(name, (digest, _))| (name, digest)).collect()
 }
 
-/// The spec with the hashes of all files that it names, and of no others.
-pub(super) fn digested(mut spec: Spec, text: &str, file: &str) -> Result<Spec, SpecErrors> {
+/// The spec with the hashes of all files that it names, and of no others. Files that are only in the spec's `folder` are named with it.
+pub(super) fn digested(mut spec: Spec, (text, file): (&str, &str), folder: &Path) -> Result<Spec, SpecErrors> {
     let known = std::mem::take(&mut spec.files);
     let mut faults = Faults::new(text, file);
     let mut seen = HashSet::new();
+    let mut moved: BTreeMap<String, String> = BTreeMap::new();
     for case in &spec.cases {
         let surface = &case.params.surface;
         let name = &surface.file;
         if name.is_empty() || !seen.insert((name, &surface.dataset)) {
             continue;
         }
-        let checked = match known.get(name) {
-            Some(digest) => Ok(digest.clone()),
-            None => look(Path::new(name), &surface.dataset, spec.files.get(name)),
-        };
+        let checked = located(name, folder, known.contains_key(name)).and_then(|found| {
+            let digest = match known.get(name) {
+                Some(digest) => digest.clone(),
+                None => look(&found, folder, &surface.dataset, spec.files.get(&found))?,
+            };
+            Ok((found, digest))
+        });
         match checked {
-            Ok(digest) => {
-                spec.files.insert(name.clone(), digest);
+            Ok((found, digest)) => {
+                if found != *name {
+                    moved.insert(name.clone(), found.clone());
+                }
+                spec.files.insert(found, digest);
             }
             Err(Refusal { problem, help }) => {
                 let at = if faults.is_full() { 0 } else { text.find(name.as_str()).unwrap_or_default() };
@@ -73,14 +80,57 @@ pub(super) fn digested(mut spec: Spec, text: &str, file: &str) -> Result<Spec, S
             }
         }
     }
+    rename(&mut spec, &moved);
     faults.finish(Some(spec))
 }
 
+/// Gives files the names by which they were found.
+fn rename(spec: &mut Spec, moved: &BTreeMap<String, String>) {
+    let own = spec.cases.iter_mut().map(|case| &mut case.params.surface.file).chain([&mut spec.base.surface.file]);
+    let axes = spec.sweeps.iter_mut().flat_map(|sweep| &mut sweep.axes).filter(|axis| axis.key == "surface.file");
+    let swept = axes.flat_map(|axis| &mut axis.values).filter_map(|value| if let Value::Text(name) = value { Some(name) } else { None });
+    for name in own.chain(swept) {
+        if let Some(found) = moved.get(name) {
+            name.clone_from(found);
+        }
+    }
+}
+
+/// The name by which a file is found: its own from the working directory, or with the spec's folder before it if it is only there. The hash of a file that is
+/// `known` tells which of two is meant.
+fn located(name: &str, folder: &Path, known: bool) -> Result<String, Refusal> {
+    let (here, beside) = (Path::new(name), folder.join(name));
+    if here.is_absolute() || folder.as_os_str().is_empty() || !beside.exists() {
+        return Ok(name.to_owned());
+    }
+    if !here.exists() {
+        // A folder whose name is not Unicode cannot be written into a spec.
+        return Ok(beside.to_str().map_or_else(|| name.to_owned(), str::to_owned));
+    }
+    let same = |a: &Path, b: &Path| match (a.canonicalize(), b.canonicalize()) {
+        (Ok(a), Ok(b)) if a == b => true,
+        _ => matches!((digest_of_file(a), digest_of_file(b)), (Ok(a), Ok(b)) if a == b),
+    };
+    if known || same(here, &beside) {
+        return Ok(name.to_owned());
+    }
+    let problem = "two different files have this name, in the working directory and in the folder of the spec".to_owned();
+    Err(Refusal { problem, help: format!("write {}, or the absolute path of the other one", beside.display()) })
+}
+
 /// The hash of a file in a format that is read, `hashed` if it is known. The format comes first: a file in another one is not read to its end.
-fn look(path: &Path, dataset: &str, hashed: Option<&String>) -> Result<String, Refusal> {
+fn look(name: &str, folder: &Path, dataset: &str, hashed: Option<&String>) -> Result<String, Refusal> {
+    let path = Path::new(name);
     let unreadable = |error: std::io::Error| {
         let help = match std::env::current_dir() {
-            Ok(here) if path.is_relative() => format!("it was looked for from {}, where the command is run", here.display()),
+            Ok(here) if path.is_relative() => {
+                let beside = if folder.as_os_str().is_empty() {
+                    String::new()
+                } else {
+                    format!(" and in {} (folder of the spec)", folder.display())
+                };
+                format!("it was looked for in {} (working directory){beside}", here.display())
+            }
             _ => "use a file format that `hysteron import` reads".to_owned(),
         };
         Refusal { problem: error.to_string(), help }

@@ -11,6 +11,10 @@ pub(super) struct Key {
     pub(super) table: &'static str,
     /// The key in its table.
     pub(super) name: &'static str,
+    /// Symbol of the quantity; empty if it has none.
+    pub(super) symbol: &'static str,
+    /// Meaning, for the reference page and for editors.
+    pub(super) meaning: &'static str,
     /// What it takes.
     pub(super) kind: Kind,
     /// Its value in a case.
@@ -18,6 +22,9 @@ pub(super) struct Key {
     /// Puts a value of the right kind into a case.
     pub(super) set: fn(&mut CaseParams, &Value),
 }
+
+/// The words of a choice, each with its meaning.
+pub(super) type Words = &'static [(&'static str, &'static str)];
 
 /// What a key takes.
 pub(super) enum Kind {
@@ -28,15 +35,22 @@ pub(super) enum Kind {
     /// True or false.
     Flag,
     /// One of some words.
-    Word(fn() -> Vec<&'static str>),
+    Word(Words),
     /// An array of real numbers, as many as stated.
     Numbers(Limits, usize),
     /// An array of words.
-    Words(fn() -> Vec<&'static str>),
+    Words(Words),
     /// A text of so many bytes at most, and what it is.
     Text(usize, &'static str),
     /// A unit of length, or no text where a file says it.
     Length(&'static str),
+}
+
+impl Key {
+    /// The stage that reads it first.
+    pub(super) fn stage(&self) -> &'static str {
+        if self.table == "surface" { "generate" } else { "cycle" }
+    }
 }
 
 impl Kind {
@@ -72,16 +86,40 @@ impl Limits {
 }
 
 /// The words of a choice.
-fn words<T: Choice>() -> Vec<&'static str> {
-    T::WORDS.iter().map(|(word, _)| *word).collect()
+pub(super) fn words(choice: &[(&'static str, &'static str)]) -> Vec<&'static str> {
+    choice.iter().map(|(word, _)| *word).collect()
 }
 
 macro_rules! key {
-    ($table:ident . $name:ident, $kind:expr, $get:expr, $variant:ident($bound:ident) => $value:expr) => {
+    ($table:ident.$name:ident, $symbol:literal, $meaning:literal; number $limits:expr) => {
+        key!($table.$name, $symbol, $meaning; Kind::Number($limits), |x: &f64| Value::Number(*x), Number(x) => Some(*x))
+    };
+    ($table:ident.$name:ident, $symbol:literal, $meaning:literal; count $low:literal to $high:literal, $why:expr, $note:expr) => {
+        key!($table.$name, $symbol, $meaning; Kind::Count { low: $low, high: $high, why: $why, note: $note },
+            |n: &u32| Value::Count(*n), Count(n) => Some(*n))
+    };
+    ($table:ident.$name:ident, $symbol:literal, $meaning:literal; word $choice:ty) => {
+        key!($table.$name, $symbol, $meaning; Kind::Word(<$choice>::MEANINGS),
+            |w: &$choice| Value::Word(w.word()), Word(w) => <$choice>::from_word(w))
+    };
+    ($table:ident.$name:ident, $symbol:literal, $meaning:literal; text $most:literal, $note:literal) => {
+        key!($table.$name, $symbol, $meaning; Kind::Text($most, $note),
+            |text: &String| Value::Text(text.clone()), Text(text) => Some(text.clone()))
+    };
+    ($table:ident.$name:ident, $symbol:literal, $meaning:literal; length $note:literal) => {
+        key!($table.$name, $symbol, $meaning; Kind::Length($note),
+            |text: &String| Value::Text(text.clone()), Text(text) => Some(text.clone()))
+    };
+    ($table:ident.$name:ident, $symbol:literal, $meaning:literal; flag) => {
+        key!($table.$name, $symbol, $meaning; Kind::Flag, |flag: &bool| Value::Flag(*flag), Flag(flag) => Some(*flag))
+    };
+    ($table:ident.$name:ident, $symbol:literal, $meaning:literal; $kind:expr, $get:expr, $variant:ident($bound:ident) => $value:expr) => {
         Key {
             path: concat!(stringify!($table), ".", stringify!($name)),
             table: stringify!($table),
             name: stringify!($name),
+            symbol: $symbol,
+            meaning: $meaning,
             kind: $kind,
             get: |case| {
                 let get: fn(&_) -> Value = $get;
@@ -97,86 +135,66 @@ macro_rules! key {
             },
         }
     };
-    ($table:ident . $name:ident: number $limits:expr) => {
-        key!($table.$name, Kind::Number($limits), |x: &f64| Value::Number(*x), Number(x) => Some(*x))
-    };
-    ($table:ident . $name:ident: count $low:literal to $high:literal, $why:expr, $note:expr) => {
-        key!($table.$name, Kind::Count { low: $low, high: $high, why: $why, note: $note },
-            |n: &u32| Value::Count(*n), Count(n) => Some(*n))
-    };
-    ($table:ident . $name:ident: word $choice:ty) => {
-        key!($table.$name, Kind::Word(words::<$choice>), |w: &$choice| Value::Word(w.word()),
-            Word(w) => <$choice>::from_word(w))
-    };
-    ($table:ident . $name:ident: text $most:literal, $note:literal) => {
-        key!($table.$name, Kind::Text($most, $note), |text: &String| Value::Text(text.clone()), Text(text) => Some(text.clone()))
-    };
-    ($table:ident . $name:ident: length $note:literal) => {
-        key!($table.$name, Kind::Length($note), |text: &String| Value::Text(text.clone()), Text(text) => Some(text.clone()))
-    };
-    ($table:ident . $name:ident: flag) => {
-        key!($table.$name, Kind::Flag, |flag: &bool| Value::Flag(*flag), Flag(flag) => Some(*flag))
-    };
 }
 
 /// Every key of every table, in the order in which they are shown.
 pub(super) static KEYS: &[Key] = &[
-    key!(surface.length_m: number Limits {
+    key!(surface.length_m, "L", "Side of the nominal square."; number Limits {
         low: 1e-9, above: false, high: 1.0, unit: " m", unit_name: "metres", slip: Some((1e-6, "micrometres")), note: "",
     }),
-    key!(surface.rms_height_m: number Limits {
+    key!(surface.rms_height_m, "h_rms", "Root-mean-square (rms) height of a generated surface."; number Limits {
         low: 1e-12, above: false, high: 0.1, unit: " m", unit_name: "metres", slip: Some((1e-6, "micrometres")), note: "",
     }),
-    key!(surface.hurst: number Limits {
+    key!(surface.hurst, "H", "Hurst exponent of the self-affine power spectral density C(q) ∝ q^(−2(H+1))."; number Limits {
         low: 0.01, above: false, high: 1.0, unit: "", unit_name: "", slip: None,
         note: "H, Hurst exponent of a self-affine surface, 0.01 <= H <= 1; default 0.8",
     }),
-    key!(surface.magnification: count 2 to 16384, &[],
+    key!(surface.magnification, "ζ", "Magnification: longest over shortest wavelength of the roughness."; count 2 to 16384, &[],
         "ζ, magnification: longest over shortest wavelength of the roughness, 2 <= ζ <= 16384; default 128"),
-    key!(surface.points_per_shortest_wavelength: count 4 to 64, &[
+    key!(surface.points_per_shortest_wavelength, "", "Grid points per shortest wavelength: ζ times as many along a side. For a measured surface, low-pass (S-filter) cut-off wavelength in pixels."; count 4 to 64, &[
         (1, "1 point is below the Nyquist limit: the grid does not resolve the shortest wavelength"),
         (3, "2 or 3 points resolve the heights at the shortest wavelength; the derivatives at summits need at least 4"),
     ], "default 8"),
-    key!(surface.normalization: word Normalization),
-    key!(surface.amplitudes: word Amplitudes),
-    key!(surface.file: text 4096, "the file of a measured surface, from the folder where the command is run"),
-    key!(surface.dataset: text 256, "a dataset of the file"),
-    key!(surface.periodic: flag),
-    key!(surface.pixel_m: number Limits {
+    key!(surface.normalization, "", "Definition of the rms height."; word Normalization),
+    key!(surface.amplitudes, "", "Amplitudes of the Fourier components."; word Amplitudes),
+    key!(surface.file, "", "File of a measured surface. With this key, the surface is imported and not generated."; text 4096, "the file of a measured surface, from the folder where the command is run"),
+    key!(surface.dataset, "", "Field of the file, if it has several: a dataset of HDF5, a variable of NetCDF."; text 256, "a dataset of the file"),
+    key!(surface.periodic, "", "True if the measured surface is periodic."; flag),
+    key!(surface.pixel_m, "", "Pixel size of the measured surface. 0: the file states it."; number Limits {
         low: 0.0, above: false, high: 0.1, unit: " m", unit_name: "metres", slip: Some((1e-6, "micrometres")),
         note: "pixel size; 0 if the file contains it",
     }),
-    key!(surface.unit: length "the unit of the heights, for example \"nm\""),
-    key!(surface.missing: word Missing),
-    key!(surface.detrend: word Detrend),
-    key!(material.contact_modulus_pa: number Limits {
+    key!(surface.unit, "", "Unit of the measured heights. Empty: the file states it."; length "the unit of the heights, for example \"nm\""),
+    key!(surface.missing, "", "Treatment of missing points of a measured surface."; word Missing),
+    key!(surface.detrend, "", "Form removed from a measured surface (levelling, F-operator). The default of a periodic surface is `mean`."; word Detrend),
+    key!(material.contact_modulus_pa, "E*", "Reduced modulus: `1/E* = (1 − ν1²)/E1 + (1 − ν2²)/E2`; `E/(1 − ν²)` against a rigid surface."; number Limits {
         low: 1.0, above: false, high: 1e13, unit: " Pa", unit_name: "pascals", slip: Some((1e6, "megapascals")), note: "",
     }),
-    key!(material.work_of_adhesion_j_m2: number Limits {
+    key!(material.work_of_adhesion_j_m2, "Δγ", "Work of adhesion. 0: Hertzian asperities without dissipation."; number Limits {
         low: 0.0, above: false, high: 1e3, unit: " J/m²", unit_name: "joules per square metre",
         slip: Some((1e-3, "millijoules per square metre")),
         note: "0 is the adhesionless limit: Hertzian asperities without dissipation",
     }),
-    key!(material.interaction_range_m: number Limits {
+    key!(material.interaction_range_m, "ε", "Range of adhesion. It enters the Tabor parameter and the jump-in criterion of Wu."; number Limits {
         low: 1e-12, above: false, high: 1e-5, unit: " m", unit_name: "metres", slip: Some((1e-9, "nanometres")), note: "",
     }),
-    key!(model.interaction: word Interaction),
-    key!(model.boundary: word Boundary),
-    key!(model.coalescence: word Coalescence),
-    key!(model.jump_in: word JumpIn),
-    key!(model.as_printed, Kind::Words(words::<Slip>),
+    key!(model.interaction, "", "Elastic interaction between contact spots."; word Interaction),
+    key!(model.boundary, "", "Surroundings of the nominal square."; word Boundary),
+    key!(model.coalescence, "", "Rule for a contact spot that grows over the centre of another asperity."; word Coalescence),
+    key!(model.jump_in, "", "Criterion for the jump of a free asperity into contact."; word JumpIn),
+    key!(model.as_printed, "", "Errata of the paper that are restored: equations used as printed."; Kind::Words(Slip::MEANINGS),
         |slips: &Vec<Slip>| Value::Words(slips.iter().map(|slip| slip.word()).collect()),
         Words(w) => w.iter().map(|word| Slip::from_word(word)).collect::<Option<Vec<_>>>()),
-    key!(model.allow_low_tabor: flag),
-    key!(cycle.max_load, Kind::Numbers(Limits {
+    key!(model.allow_low_tabor, "", "With `jump_in = \"wu\"`, a Tabor parameter below 2 is an error. If true, it is a warning."; flag),
+    key!(cycle.max_load, "F_max/(E* A0)", "Load reversals. One loading path passes all of them, and one unloading path starts at each."; Kind::Numbers(Limits {
         low: 0.0, above: true, high: 0.2, unit: "", unit_name: "", slip: None,
         note: "F_max/(E* A0), maximum load, dimensionless; typical 0.004 to 0.015; near full contact above about 0.07",
     }, 64), |loads: &Vec<f64>| Value::Numbers(loads.clone()), Numbers(loads) => Some(loads.clone())),
-    key!(cycle.approach_step: number Limits {
+    key!(cycle.approach_step, "", "Interval of the mean penetration between output steps, as a fraction of h_rms."; number Limits {
         low: 1e-5, above: false, high: 1.0, unit: "", unit_name: "", slip: None,
         note: "maximum output step of Δ/h_rms; default 0.01; 1e-5 gives about 500 000 steps per branch",
     }),
-    key!(cycle.contacts: word KeptContacts),
+    key!(cycle.contacts, "", "Steps at which contact spots are stored."; word KeptContacts),
 ];
 
 /// The tables that hold the keys, in the order in which they are shown.

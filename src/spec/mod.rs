@@ -6,10 +6,13 @@
 mod fault;
 mod files;
 mod grid;
+mod json_schema;
 mod keys;
 mod nearest;
 mod number;
 mod realizations;
+mod reference;
+mod settings;
 mod sweep;
 mod top;
 mod value;
@@ -27,8 +30,10 @@ use crate::model::{
 };
 
 pub use fault::{Fault, Place, SpecErrors};
+pub use json_schema::{SCHEMA_FILE, json_schema};
 pub use keys::MEASURED;
 pub use realizations::{Realizations, Until};
+pub use reference::reference;
 pub use write::quoted;
 
 /// The greatest number of cases that one spec may make.
@@ -265,16 +270,37 @@ impl Spec {
     /// # Errors
     /// Every fault of the text, each with its place.
     pub fn parse(text: &str, file: &str) -> Result<Self, SpecErrors> {
-        let mut faults = fault::Faults::new(text, file);
-        let spec = walk::document(text, &mut faults).and_then(|draft| grid::expand(draft, &mut faults));
-        faults.finish(spec)
+        Self::parse_with(text, file, &[])
     }
 
-    /// Reads a spec from a file, and looks at the files of measured surfaces that it names.
+    /// Reads a spec from its text. `settings` such as `surface.hurst=0.7` replace values outside its sweeps.
+    ///
+    /// # Errors
+    /// Every fault of the first faulty setting, or else of the text with the settings.
+    pub fn parse_with(text: &str, file: &str, settings: &[String]) -> Result<Self, SpecErrors> {
+        let mut faults = fault::Faults::new(text, file);
+        let mut draft = walk::document(text, &mut faults);
+        if let Some(draft) = &mut draft {
+            settings::apply(settings, draft)?;
+        }
+        let spec = draft.and_then(|draft| grid::expand(draft, &mut faults));
+        faults.finish(spec).map_err(|errors| errors.with(settings))
+    }
+
+    /// Reads a spec from a file, and looks at the files of measured surfaces that it names. A relative name is looked for in the working directory, then in the
+    /// folder of the spec; the spec that is returned has the name by which the file was found.
     ///
     /// # Errors
     /// Why the file cannot be read, or every fault of its text, or which of the files that it names cannot be read.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, SpecErrors> {
+        Self::read_with(path, &[])
+    }
+
+    /// Reads a spec from a file as [`Self::read`], with settings as [`Self::parse_with`].
+    ///
+    /// # Errors
+    /// As these two.
+    pub fn read_with(path: impl AsRef<Path>, settings: &[String]) -> Result<Self, SpecErrors> {
         let path = path.as_ref();
         let file = path.display().to_string();
         // Windows answers "access denied" for a folder; the question is cheap and the answer is the same everywhere.
@@ -295,7 +321,11 @@ impl Spec {
             Ok(_) => {}
         }
         match std::str::from_utf8(&bytes) {
-            Ok(text) => files::digested(Self::parse(text, &file)?, text, &file),
+            Ok(text) => {
+                let spec = Self::parse_with(text, &file, settings)?;
+                let folder = path.parent().unwrap_or(Path::new(""));
+                files::digested(spec, (text, &file), folder).map_err(|errors| errors.with(settings))
+            }
             Err(error) => Err(SpecErrors::not_utf8(&bytes, error.valid_up_to(), &file)),
         }
     }

@@ -78,10 +78,20 @@ impl fmt::Display for Realizations {
     }
 }
 
+/// Realizations of a spec that does not state their number.
+pub(super) const DEFAULT: u32 = 6;
+
+/// Fewest and most realizations of a spec that states a precision alone.
+pub(super) const DEFAULT_BOUNDS: (u32, u32) = (6, 200);
+
+/// Fewest realizations of a spec that states a precision: two are the fewest that have a standard deviation.
+pub(super) const LEAST: u32 = 2;
+
 /// What the table takes.
 const TAKES: [&str; 4] = ["until_relative_ci", "of", "min", "max"];
 
-const PRECISION: Limits = Limits {
+/// Bounds of the relative half-width of a confidence interval.
+pub(super) const PRECISION: Limits = Limits {
     low: 1e-3,
     above: false,
     high: 1.0,
@@ -118,7 +128,7 @@ fn count(path: &str, least: u32, value: &Written<'_>, faults: &mut Faults<'_>) -
 fn until(value: &Written<'_>, faults: &mut Faults<'_>) -> Option<Until> {
     let DeValue::Table(table) = value.get_ref() else { return None };
     let before = faults.count();
-    let (mut precision, mut of, mut min, mut max) = (None, Goal::Loss, 6, 200);
+    let (mut precision, mut of, (mut min, mut max)) = (None, Goal::Loss, DEFAULT_BOUNDS);
     let mut limits = value.span();
     for (name, span, written) in entries(table) {
         match name {
@@ -127,10 +137,10 @@ fn until(value: &Written<'_>, faults: &mut Faults<'_>) -> Option<Until> {
                 let words: Vec<&'static str> = Goal::WORDS.iter().map(|(word, _)| *word).collect();
                 of = word("realizations.of", &words, written, faults).and_then(Goal::from_word).unwrap_or(of);
             }
-            "min" => min = count("realizations.min", 2, written, faults).unwrap_or(min),
+            "min" => min = count("realizations.min", LEAST, written, faults).unwrap_or(min),
             "max" => {
                 limits = written.span();
-                max = count("realizations.max", 2, written, faults).unwrap_or(max);
+                max = count("realizations.max", LEAST, written, faults).unwrap_or(max);
             }
             unknown => {
                 let listed = format!("keys of `realizations`: {}", TAKES.join(", "));

@@ -6,6 +6,9 @@ use super::fault::Faults;
 use super::number::integer;
 use super::value::{Written, wrong_type};
 
+/// Seed of a spec that states none.
+pub(super) const DEFAULT_SEED: u64 = 2021;
+
 /// The seed of the campaign.
 pub(super) fn seed(value: &Written<'_>, faults: &mut Faults<'_>) -> Option<u64> {
     let found = integer("seed", value, faults)?;

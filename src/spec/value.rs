@@ -7,7 +7,7 @@ use toml::de::DeValue;
 
 use super::Value;
 use super::fault::Faults;
-use super::keys::{Key, Kind};
+use super::keys::{Key, Kind, words};
 use super::nearest::nearest;
 use super::number::{integer, number, numbers};
 use crate::lengths::{LENGTHS, metres};
@@ -37,12 +37,12 @@ pub(super) fn read(key: &Key, value: &Written<'_>, faults: &mut Faults<'_>) -> O
                 None
             }
         },
-        Kind::Word(words) => word(key.path, &words(), value, faults).map(Value::Word),
+        Kind::Word(choice) => word(key.path, &words(choice), value, faults).map(Value::Word),
         Kind::Numbers(limits, most) => numbers(key, limits, *most, value, faults).map(Value::Numbers),
         Kind::Text(most, note) => text(key.path, *most, note, value, faults).map(Value::Text),
         Kind::Length(note) => length(key.path, note, value, faults).map(Value::Text),
-        Kind::Words(words) => {
-            let words = words();
+        Kind::Words(choice) => {
+            let words = words(choice);
             let elements = array(key.path, "strings", value, faults)?;
             let read: Vec<_> = elements.iter().map(|element| word(key.path, &words, element, faults)).collect();
             let said: Vec<_> = read.into_iter().collect::<Option<_>>()?;

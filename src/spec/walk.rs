@@ -10,7 +10,7 @@ use super::fault::Faults;
 use super::files::files;
 use super::keys::{KEYS, TABLES, find, names};
 use super::nearest::nearest;
-use super::realizations::{Realizations, realizations};
+use super::realizations::{DEFAULT, Realizations, realizations};
 use super::sweep::{SweepDraft, sweeps};
 use super::{CaseParams, top, value};
 
@@ -42,7 +42,7 @@ pub(super) enum Origin {
 }
 
 /// A key, where it stands, and its value.
-type Entry<'a, 't> = (&'a str, Range<usize>, &'a Spanned<DeValue<'t>>);
+pub(super) type Entry<'a, 't> = (&'a str, Range<usize>, &'a Spanned<DeValue<'t>>);
 
 /// What the top of a spec takes.
 const TOP: [&str; 9] = ["name", "seed", "realizations", "surface", "material", "model", "cycle", "sweep", "files"];
@@ -71,8 +71,8 @@ pub(super) fn document(text: &str, faults: &mut Faults<'_>) -> Option<Draft> {
     }
     let mut draft = Draft {
         name: None,
-        seed: 2021,
-        realizations: Realizations::Exactly(6),
+        seed: top::DEFAULT_SEED,
+        realizations: Realizations::Exactly(DEFAULT),
         realizations_at: None,
         base: CaseParams::default(),
         origins: vec![Origin::Default; KEYS.len()],
@@ -84,24 +84,29 @@ pub(super) fn document(text: &str, faults: &mut Faults<'_>) -> Option<Draft> {
         let what = if entries.is_empty() { "the spec is empty: it needs a `name`" } else { "the spec has no `name`" };
         faults.add(&(0..0), what.to_owned(), "add a first line such as name = \"first\"".to_owned());
     }
-    for (key, span, written) in entries {
-        match key {
-            "name" => draft.name = top::name("name", written, faults),
-            "seed" => draft.seed = top::seed(written, faults).unwrap_or(draft.seed),
-            "realizations" => {
-                draft.realizations_at = Some(written.span());
-                draft.realizations = realizations(written, faults).unwrap_or(draft.realizations);
-            }
-            "files" => draft.files = files(written, &span, faults),
-            "sweep" => sweeps(written, &span, &mut draft.sweeps, faults),
-            table if TABLES.contains(&table) => base(table, written, &span, &mut draft, faults),
-            unknown => faults.add_with(&span, || {
-                let help = lost(unknown, &TOP, |table| format!("`{unknown}` belongs in [{table}]"), "keys of a spec");
-                (format!("unknown key `{}` at the top of the spec", shown(unknown)), Some(help))
-            }),
-        }
+    for entry in entries {
+        enter(entry, &mut draft, faults);
     }
     Some(draft)
+}
+
+/// Reads an entry of the top into a draft.
+pub(super) fn enter((key, span, written): Entry<'_, '_>, draft: &mut Draft, faults: &mut Faults<'_>) {
+    match key {
+        "name" => draft.name = top::name("name", written, faults),
+        "seed" => draft.seed = top::seed(written, faults).unwrap_or(draft.seed),
+        "realizations" => {
+            draft.realizations_at = Some(written.span());
+            draft.realizations = realizations(written, faults).unwrap_or(draft.realizations);
+        }
+        "files" => draft.files = files(written, &span, faults),
+        "sweep" => sweeps(written, &span, &mut draft.sweeps, faults),
+        table if TABLES.contains(&table) => base(table, written, &span, draft, faults),
+        unknown => faults.add_with(&span, || {
+            let help = lost(unknown, &TOP, |table| format!("`{unknown}` belongs in [{table}]"), "keys of a spec");
+            (format!("unknown key `{}` at the top of the spec", shown(unknown)), Some(help))
+        }),
+    }
 }
 
 /// Reads a table of the base.

@@ -71,7 +71,7 @@ pub fn quoted(text: &str) -> String {
 }
 
 /// A value as TOML. Rust's shortest form of a float is also TOML's, and reads back to the same bits.
-fn value(value: &Value) -> String {
+pub(super) fn value(value: &Value) -> String {
     match value {
         Value::Number(number) => format!("{number:?}"),
         Value::Count(count) => count.to_string(),

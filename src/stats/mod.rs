@@ -38,7 +38,7 @@ pub use summary::summary;
 use varying::PARAMETERS;
 pub use varying::{Values, Varying, varying};
 pub use walk::{COMPRESSION_STATIONS, Point, STATIONS, TENSION_STATIONS, Walk};
-pub use warnings::{Warning, warnings};
+pub use warnings::{Warning, warnings, warnings_of};
 
 use crate::store::FrameError;
 

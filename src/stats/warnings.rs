@@ -21,11 +21,20 @@ pub struct Warning {
 /// # Errors
 /// If the table lacks a column.
 pub fn warnings(cases: &Frame) -> Result<Vec<Warning>, StatsError> {
+    let all: Vec<usize> = (0..cases.row_count()).collect();
+    warnings_of(cases, &all)
+}
+
+/// The warnings of some rows of the table `cases`, with the values of these rows.
+///
+/// # Errors
+/// If the table lacks a column.
+pub fn warnings_of(cases: &Frame, among: &[usize]) -> Result<Vec<Warning>, StatsError> {
     let codes = cases.text("caution")?;
     let mut found = Vec::new();
     for kind in CAUTIONS {
         let has = |row: &usize| codes[*row].split('+').any(|code| code == kind.code);
-        let rows: Vec<usize> = (0..codes.len()).filter(has).collect();
+        let rows: Vec<usize> = among.iter().copied().filter(has).collect();
         if !rows.is_empty() {
             found.push(Warning { kind, measured: measured(cases, &kind, &rows)?, rows });
         }

@@ -6,11 +6,15 @@ mod bench;
 #[cfg(feature = "stats")]
 mod campaign;
 #[cfg(feature = "stats")]
+mod cli;
+#[cfg(feature = "stats")]
 mod e2e;
 #[cfg(feature = "stats")]
 mod extremes;
 #[cfg(feature = "stats")]
 mod figures;
+#[cfg(feature = "stats")]
+mod guide;
 #[cfg(feature = "stats")]
 mod keys;
 #[cfg(feature = "stats")]

@@ -8,6 +8,7 @@ use hysteron::schema::{
     ASPERITIES, AVALANCHES, CASES, CONTACTS, CURVES, CYCLES, DIRECTORY, EVENT_KINDS, EVENTS, Kind, PANELS, REALIZATIONS, STEPS, TABLES,
     Table, files, metadata_json, readme_markdown, schema_json,
 };
+use hysteron::spec::{SCHEMA_FILE, json_schema};
 
 /// The unit that a column's name promises: suffixes from the longest, as the contract has them.
 fn promised(name: &str) -> &'static str {
@@ -177,7 +178,8 @@ fn law_markdown_has_a_row_for_every_column() {
 #[test]
 fn e2e_schema_files_are_up_to_date() {
     let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join(DIRECTORY);
-    let expected: BTreeMap<_, _> = files().into_iter().map(|file| (file.name, file.content)).collect();
+    let mut expected: BTreeMap<_, _> = files().into_iter().map(|file| (file.name, file.content)).collect();
+    expected.insert(SCHEMA_FILE.to_owned(), json_schema());
     let mut wrong = Vec::new();
     for (name, content) in &expected {
         if fs::read_to_string(directory.join(name)).ok().as_ref() != Some(content) {

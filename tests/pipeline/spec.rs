@@ -3,6 +3,7 @@
 mod faults;
 mod mutations;
 mod rules;
+pub mod schema;
 
 use std::path::{Path, PathBuf};
 

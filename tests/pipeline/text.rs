@@ -1,6 +1,6 @@
 //! Texts for people and for shells.
 
-use hysteron::text::{counted, printable, shell_quote, visible};
+use hysteron::text::{counted, markdown, paragraph, printable, shell_quote, visible};
 
 #[test]
 fn val_counts_have_their_plural() {
@@ -48,4 +48,24 @@ fn law_a_shell_reads_a_quoted_word_as_it_was() {
         };
         assert_eq!(String::from_utf8_lossy(&output.stdout), word, "{}", shell_quote(word));
     }
+}
+
+#[test]
+fn law_a_paragraph_keeps_its_words_within_100_columns() {
+    let text = "Σθ of contact spots ".repeat(30);
+    for marker in ["", "- ", "  - "] {
+        let filled = paragraph(marker, &text);
+        assert!(filled.lines().count() > 1 && filled.lines().all(|line| line.chars().count() <= 100), "{filled}");
+        // No line is shorter than it has to be: the longest word has 7 characters.
+        assert!(filled.lines().rev().skip(1).all(|line| line.chars().count() > 92), "{filled}");
+        let indent = " ".repeat(marker.len());
+        assert!(filled.starts_with(marker) && filled.lines().skip(1).all(|line| line.starts_with(&indent)), "{filled}");
+        let words: Vec<&str> = filled.strip_prefix(marker).unwrap().split_whitespace().collect();
+        assert_eq!(words, text.split_whitespace().collect::<Vec<_>>());
+    }
+}
+
+#[test]
+fn val_marks_of_markdown_are_escaped_outside_of_code() {
+    assert_eq!(markdown("E* of <DIR> [default: `a*<b>`]"), "E\\* of \\<DIR\\> \\[default: `a*<b>`\\]");
 }

@@ -1,11 +1,21 @@
-//! The program about itself: manual pages, and what shells complete it with.
+//! Schemas, templates of specs, manual pages and completion scripts.
 
 use super::{Fault, failed, make_folder, say};
-use crate::cli::Arguments;
+use crate::cli::templates::Template;
+use crate::cli::{Arguments, GUIDE, generated};
+use crate::store::commit;
 use crate::text::shown;
 use clap::CommandFactory;
 use clap_complete::Shell;
 use std::path::Path;
+
+/// Prints a template, or the list of them.
+pub(super) fn init(template: Template, list: bool) -> Result<u8, Fault> {
+    let line = |(_, name, purpose): &(Template, &str, &str)| format!("{name:12} {purpose}\n");
+    let text = if list { Template::ALL.iter().map(line).collect() } else { template.text().to_owned() };
+    say(&text)?;
+    Ok(0)
+}
 
 pub(super) fn completions(shell: Shell) -> Result<u8, Fault> {
     let mut script = Vec::new();
@@ -14,7 +24,31 @@ pub(super) fn completions(shell: Shell) -> Result<u8, Fault> {
     Ok(0)
 }
 
-/// The page of the program or of a verb, or all of them in a folder.
+/// Prints the schemas or one generated file, or writes all of them.
+pub(super) fn schemas(file: Option<&str>, write: bool) -> Result<u8, Fault> {
+    let files = generated();
+    if write {
+        // Only a clone has pages to renew.
+        let is_kept = |path: &Path| !path.starts_with(GUIDE) || Path::new(GUIDE).is_dir();
+        for (path, content) in files.iter().filter(|(path, _)| is_kept(path)) {
+            make_folder(path.parent().unwrap_or(path))?;
+            commit::commit_bytes("write a schema", path, content.as_bytes()).map_err(failed)?;
+        }
+        return Ok(0);
+    }
+    let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let chosen = |path: &Path| file.map_or_else(|| path.extension().is_some_and(|end| end == "json"), |file| name(path) == file);
+    let chosen: Vec<_> = files.iter().filter(|(path, _)| chosen(path)).map(|(_, content)| content.as_str()).collect();
+    if chosen.is_empty() {
+        let names: Vec<String> = files.iter().map(|(path, _)| name(path)).collect();
+        return Err(failed(format!("unknown file {}\nhelp: one of {}", file.unwrap_or_default(), names.join(", "))));
+    }
+    // A single file is printed with its own bytes.
+    say(&if file.is_some() { chosen.concat() } else { chosen.iter().map(|content| format!("{content}\n")).collect() })?;
+    Ok(0)
+}
+
+/// The page of the program or of a command, or all of them in a folder.
 pub(super) fn man(verb: Option<&str>, folder: Option<&Path>) -> Result<u8, Fault> {
     let refused = |error: std::io::Error| failed(format!("cannot write the manual: {error}"));
     if let Some(folder) = folder {
@@ -31,7 +65,7 @@ pub(super) fn man(verb: Option<&str>, folder: Option<&Path>) -> Result<u8, Fault
             let verbs: Vec<&str> = all.get_subcommands().map(clap::Command::get_name).collect();
             let allowed = verbs.join(", ");
             let found = all.find_subcommand(verb).cloned();
-            found.ok_or_else(|| failed(format!("cannot print the manual of {verb}: it is no verb; allowed: {allowed}")))?
+            found.ok_or_else(|| failed(format!("unknown command {verb}\nhelp: name one of {allowed}")))?
         }
     };
     let mut page = Vec::new();

@@ -1,6 +1,7 @@
-//! The verbs that look after what is there: `explain`, `verify`, `gc`.
+//! Maintenance: `explain`, `verify`, `gc`.
 
-use super::{FAILED, Fault, failed, open, open_dir, say};
+use super::place::{folder, open, open_dir};
+use super::{FAILED, Fault, failed, say};
 use crate::campaign::{Campaign, Explanation, Leftover};
 use crate::cli::{FolderArguments, OutputArguments};
 use crate::store::Check;
@@ -9,22 +10,28 @@ use indicatif::HumanBytes;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
-pub(super) fn explain(folder: &FolderArguments, id: &str, spec: Option<&Path>) -> Result<u8, Fault> {
+/// A spec with this output folder.
+fn output(dir: &Path) -> OutputArguments {
+    OutputArguments { out: Some(dir.to_owned()), set: Vec::new(), json: false }
+}
+
+pub(super) fn explain(asked: &FolderArguments, id: &str, spec: Option<&Path>) -> Result<u8, Fault> {
+    let dir = folder(asked)?;
     let campaign = match spec {
-        Some(spec) => open(spec, &OutputArguments { out: Some(folder.dir.clone()), json: false })?,
-        None => open_dir("explain a task of", &folder.dir)?,
+        Some(spec) => open(spec, &output(&dir))?,
+        None => open_dir("explain a task of", &dir)?,
     };
     let explanations = campaign.explain(id);
     if explanations.is_empty() {
         return Err(failed(format!(
-            "cannot explain {id}: neither the spec nor {} has such a task; allowed: `{}`, `{}`, or an id as `hysteron status {} --json` lists them",
-            shown(&folder.dir),
+            "cannot explain {id}: unknown task of the spec and of {}\nhelp: name `{}`, `{}`, or an id listed by `hysteron status {} --json`",
+            shown(&dir),
             crate::campaign::STATISTICS,
             crate::campaign::REPORT_PAGE,
-            shell_path(&folder.dir)
+            shell_path(&dir)
         )));
     }
-    if folder.json {
+    if asked.json {
         say(&format!("{:#}\n", json!(explanations)))?;
     } else {
         for explanation in &explanations {
@@ -39,13 +46,15 @@ fn sentences(explanation: &Explanation) -> String {
     let mut text = format!("{stage} {id} is {state}{}\n", why.as_ref().map_or_else(String::new, |why| format!(": {why}")));
     let Some(nearest) = nearest else {
         if *state == "planned" {
-            text += "  no task of this stage is done, so that there is none to compare it with\n";
+            text += "  no task of this stage is done: there is none to compare it with\n";
         }
         return text;
     };
-    let (role, own) = if *state == "orphan" { ("the spec's nearest is", "orphan") } else { ("the nearest that is done is", "it") };
+    // An unreferenced task exists, and the spec requests another one.
+    let orphan = *state == "orphan";
+    let role = if orphan { "the nearest task of the spec is" } else { "the nearest finished task is" };
     if differences.is_empty() {
-        text += &format!("  {role} {nearest}, which differs in nothing that a stage reads\n");
+        text += &format!("  {role} {nearest}, with the same parameters\n");
         return text;
     }
     text += &format!("  {role} {nearest}, which differs in\n");
@@ -53,16 +62,17 @@ fn sentences(explanation: &Explanation) -> String {
     let value = |value: &Option<Value>| value.as_ref().map_or_else(|| "nothing".to_owned(), ToString::to_string);
     for difference in differences {
         let (here, there) = (value(&difference.here), value(&difference.there));
-        text += &format!("  {:width$}  {own} has {here}, that has {there} (read by {})\n", difference.field, difference.read_by);
+        let (requested, existing) = if orphan { (there, here) } else { (here, there) };
+        text += &format!("  {:width$}  requested {requested}, existing {existing} (read by {})\n", difference.field, difference.read_by);
     }
     text
 }
 
-pub(super) fn verify(folder: &FolderArguments, deep: bool) -> Result<u8, Fault> {
-    let campaign = open_dir("verify", &folder.dir)?;
+pub(super) fn verify(asked: &FolderArguments, deep: bool) -> Result<u8, Fault> {
+    let campaign = open_dir("verify", &folder(asked)?)?;
     let audit = campaign.audit(if deep { Check::Contents } else { Check::Sizes });
     let faults = audit.fault_count();
-    if folder.json {
+    if asked.json {
         say(&format!("{:#}\n", json!(audit)))?;
     } else {
         for fault in &audit.faults {
@@ -70,11 +80,11 @@ pub(super) fn verify(folder: &FolderArguments, deep: bool) -> Result<u8, Fault> 
         }
         say(&listed(&audit.unreceipted, "task has results and no receipt", "tasks have results and no receipt"))?;
         say(&listed(&audit.unnamed, "file is named by no receipt", "files are named by no receipt"))?;
-        let compared = if deep { "contents" } else { "lengths (--deep compares contents)" };
+        let compared = if deep { "contents" } else { "sizes" };
         let counts = [(audit.receipt_count, "receipt"), (audit.file_count, "file")].map(|(count, noun)| counted(count, noun));
         say(&format!("{}, {}: {compared} compared, ", counts.join(", "), HumanBytes(audit.size_bytes)))?;
         say(&match faults {
-            0 => "all as they were written.\n".to_owned(),
+            0 => "no fault.\n".to_owned(),
             faults => format!(
                 "{}. `hysteron run` with the spec repairs its own tasks; remove other files by hand or with `hysteron gc`.\n",
                 counted(faults, "fault")
@@ -84,10 +94,10 @@ pub(super) fn verify(folder: &FolderArguments, deep: bool) -> Result<u8, Fault> 
     Ok(if faults == 0 { 0 } else { FAILED })
 }
 
-/// Names that are listed at most.
+/// Maximum number of listed names.
 const LISTED: usize = 20;
 
-/// Names below their heading, the first ones of many.
+/// The first names below a heading.
 fn listed(names: &[String], one: &str, many: &str) -> String {
     if names.is_empty() {
         return String::new();
@@ -100,26 +110,28 @@ fn listed(names: &[String], one: &str, many: &str) -> String {
     text
 }
 
-pub(super) fn gc(folder: &FolderArguments, keep: &[PathBuf], delete: bool) -> Result<u8, Fault> {
-    let campaign = open_dir("clear up", &folder.dir)?;
+pub(super) fn gc(asked: &FolderArguments, keep: &[PathBuf], delete: bool) -> Result<u8, Fault> {
+    let dir = folder(asked)?;
+    let campaign = open_dir("clean", &dir)?;
     if let Some(why) = campaign.spec_fault().filter(|_| delete) {
-        let dir = shown(&folder.dir);
-        return Err(failed(format!(
-            "cannot clear up {dir}: {why}, so that it does not tell what is to stay; allowed: after a `hysteron run` of the spec"
-        )));
+        let dir = shown(&dir);
+        return Err(failed(format!("cannot clean {dir}: {why}\nhelp: run `hysteron run SPEC` first")));
     }
-    let output = OutputArguments { out: Some(folder.dir.clone()), json: false };
-    let others = keep.iter().map(|spec| open(spec, &output)).collect::<Result<Vec<Campaign>, Fault>>()?;
+    let others = keep.iter().map(|spec| open(spec, &output(&dir))).collect::<Result<Vec<Campaign>, Fault>>()?;
     let leftovers = campaign.leftovers(&others);
     let bytes: u64 = leftovers.iter().map(|left| left.size_bytes).sum();
-    let name = |left: &Leftover| left.path.strip_prefix(&folder.dir).unwrap_or(&left.path).to_string_lossy().into_owned();
+    let name = |left: &Leftover| left.path.strip_prefix(&dir).unwrap_or(&left.path).to_string_lossy().into_owned();
     if delete {
         for left in &leftovers {
-            left.remove()
-                .map_err(|error| failed(format!("cannot delete {}: {error}; what was listed before it is gone", shown(&left.path))))?;
+            left.remove().map_err(|error| {
+                failed(format!(
+                    "cannot delete {}: {error}\nhelp: the files listed before it are deleted; repeat the command for the others",
+                    shown(&left.path)
+                ))
+            })?;
         }
     }
-    if folder.json {
+    if asked.json {
         let units: Vec<Value> =
             leftovers.iter().map(|left| json!({ "path": name(left), "size_bytes": left.size_bytes, "why": left.why })).collect();
         say(&format!("{:#}\n", json!({ "deleted": delete, "size_bytes": bytes, "leftovers": units })))?;
@@ -129,9 +141,9 @@ pub(super) fn gc(folder: &FolderArguments, keep: &[PathBuf], delete: bool) -> Re
         say(&format!("{} ({}): {}\n", visible(&name(left)), HumanBytes(left.size_bytes), left.why))?;
     }
     say(&match (leftovers.len(), delete) {
-        (0, _) => "Nothing is left over.\n".to_owned(),
+        (0, _) => "Nothing is left over: all files are referenced.\n".to_owned(),
         (count, true) => format!("{count} deleted, {}.\n", HumanBytes(bytes)),
-        (count, false) => format!("{count} left over, {}; nothing was deleted: --delete does that.\n", HumanBytes(bytes)),
+        (count, false) => format!("{count} left over, {}; nothing was deleted. Delete with --delete.\n", HumanBytes(bytes)),
     })?;
     Ok(0)
 }

@@ -1,6 +1,7 @@
 //! `export`: files that other programs run or publish a campaign with.
 
-use super::{BAD_SPEC, Fault, failed, make_folder, open, open_dir, own_file, say, told};
+use super::place::{folder, open, open_dir, told};
+use super::{BAD_SPEC, Fault, failed, make_folder, own_file, say};
 use crate::campaign::Standing;
 use crate::cli::{FolderArguments, OutputArguments};
 use crate::engines::{ro_crate as description, snakemake as rules, usual_shards};
@@ -29,21 +30,22 @@ pub(super) fn snakemake(spec: &Path, output: &OutputArguments, shards: Option<u3
     Ok(0)
 }
 
-pub(super) fn ro_crate(folder: &FolderArguments, license: Option<&str>) -> Result<u8, Fault> {
+pub(super) fn ro_crate(asked: &FolderArguments, license: Option<&str>) -> Result<u8, Fault> {
     let license = license.map(description::licence).transpose().map_err(|text| Fault { code: BAD_SPEC, text: format!("error: {text}") })?;
-    let campaign = open_dir("describe", &folder.dir)?;
+    let dir = folder(asked)?;
+    let campaign = open_dir("describe", &dir)?;
     let audit = campaign.audit(Check::Sizes);
     if let Some(fault) = audit.first_fault() {
         return Err(failed(format!(
-            "cannot describe {}: {fault}; allowed: a run whose files are as they were written (`hysteron verify`)",
-            shown(&folder.dir)
+            "cannot describe {}: {fault}\nhelp: `hysteron verify` lists all faults, `hysteron run` repairs them",
+            shown(&dir)
         )));
     }
     let day: String = humantime::format_rfc3339_seconds(SystemTime::now()).to_string().chars().take(10).collect();
     let text = description::metadata(&campaign, &campaign.all_receipts(), &day, license.as_deref());
-    let path = folder.dir.join("ro-crate-metadata.json");
+    let path = dir.join("ro-crate-metadata.json");
     commit::commit_bytes("write the description", &path, text.as_bytes()).map_err(failed)?;
-    if folder.json {
+    if asked.json {
         say(&format!("{:#}\n", json!({ "file": path.display().to_string(), "file_count": audit.file_count })))?;
         return Ok(0);
     }

@@ -10,6 +10,7 @@ use crate::spec::{SurfaceParams, quoted};
 use crate::stages::measure;
 use crate::store::hdf5::{SurfaceHeader, read_surface, write_surface, write_tamaas};
 use crate::store::scan::export::write_netcdf3;
+use crate::text::wrapped;
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
@@ -172,7 +173,7 @@ fn told(file: &Path, header: &SurfaceHeader, [points, summits, edge]: [usize; 3]
         None => line("self-affine", "no fit".to_owned()),
     }
     for caution in cautions(header) {
-        text += &wrapped(&format!("Caution: {caution}"));
+        text += &wrapped(&format!("Caution: {caution}"), "  ");
     }
     match written {
         Some(path) => {
@@ -187,24 +188,6 @@ fn told(file: &Path, header: &SurfaceHeader, [points, summits, edge]: [usize; 3]
         None => text += "Nothing was written.\n",
     }
     text
-}
-
-/// A paragraph of lines of at most eighty columns, the second and later ones indented.
-fn wrapped(paragraph: &str) -> String {
-    let (mut text, mut width) = (String::new(), 0);
-    for word in paragraph.split(' ') {
-        let more = word.chars().count() + 1;
-        if width > 0 && width + more > 80 {
-            text += "\n ";
-            width = 1;
-        }
-        if width > 0 {
-            text.push(' ');
-        }
-        text += word;
-        width += more;
-    }
-    text + "\n"
 }
 
 /// Fraction of a scan that the central crop may drop without a warning.

@@ -1,31 +1,30 @@
-//! One function for each verb.
+//! One function for each command.
 
 mod about;
 mod care;
+mod causes;
+mod csv;
+mod ending;
 mod export;
 mod measured;
+mod place;
+mod show;
 mod submit;
 mod survey;
+mod viewer;
 mod work;
 
+use super::colour::painted;
 use super::limits;
-use super::{CampaignArguments, EngineArgument, ExportVerb, JobsArguments, OutputArguments, StageArgument, Verb};
-use crate::campaign::{Campaign, Stage};
-use crate::schema;
-use crate::spec::Spec;
-use crate::stages;
-use crate::store::commit;
-use crate::text::{counted, printable, shell_path, shown};
-use std::io::Write;
+use super::reference::{BAD_SPEC, FAILED, FAILED_CASES};
+use super::{CampaignArguments, EngineArgument, ExportVerb, JobsArguments, StageArgument, Verb};
+use crate::campaign::Stage;
+use crate::text::{printable, shown};
+use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Exit codes of the contract.
-const FAILED: u8 = 1;
-const BAD_SPEC: u8 = 2;
-const FAILED_CASES: u8 = 3;
-
-/// What went wrong, with the exit code that says it.
+/// An error with its exit code.
 struct Fault {
     code: u8,
     text: String,
@@ -39,7 +38,8 @@ pub(super) fn perform(verb: &Verb) -> ExitCode {
     match started(verb).and_then(|()| performed(verb)) {
         Ok(code) => ExitCode::from(code),
         Err(fault) => {
-            let _ = writeln!(std::io::stderr().lock(), "{}", printable(&fault.text));
+            let mut output = std::io::stderr().lock();
+            let _ = writeln!(output, "{}", painted(printable(&fault.text), output.is_terminal()));
             ExitCode::from(fault.code)
         }
     }
@@ -56,7 +56,7 @@ fn jobs(verb: &Verb) -> Option<&JobsArguments> {
     }
 }
 
-/// Starts the threads, and looks at the limits of the process where it is to compute.
+/// Starts the threads, and checks the limits of the process for a command that computes.
 fn started(verb: &Verb) -> Result<(), Fault> {
     let jobs = jobs(verb);
     if let Some(jobs) = jobs {
@@ -71,41 +71,45 @@ fn started(verb: &Verb) -> Result<(), Fault> {
 
 fn performed(verb: &Verb) -> Result<u8, Fault> {
     match verb {
-        Verb::Run { campaign, until } => of_spec(campaign, (Stage::Generate, stage(*until)), false),
+        Verb::Init { template, list } => about::init(*template, *list),
+        Verb::Run { campaign, dry_run: true, .. } => survey::plan(&campaign.spec, &campaign.how.output),
+        Verb::Run { campaign, until, open, .. } => {
+            viewer::possible(*open, *until == StageArgument::Report)?;
+            work::stages(&campaign.spec, &campaign.how, (Stage::Generate, stage(*until)), (false, *open))
+        }
         Verb::Generate(campaign) => of_spec(campaign, (Stage::Generate, Stage::Generate), false),
         Verb::Extract(campaign) => of_spec(campaign, (Stage::Extract, Stage::Extract), false),
         Verb::Cycle(campaign) => of_spec(campaign, (Stage::Cycle, Stage::Cycle), false),
         Verb::Aggregate { campaign, partial } => of_spec(campaign, (Stage::Aggregate, Stage::Aggregate), *partial),
-        Verb::Report { spec: Some(spec), campaign, .. } => work::stages(spec, campaign, (Stage::Report, Stage::Report), false),
-        Verb::Report { compare, campaign, .. } => work::compare(compare, campaign),
+        Verb::Report { spec: Some(spec), campaign, open, .. } => {
+            work::stages(spec, campaign, (Stage::Report, Stage::Report), (false, *open))
+        }
+        Verb::Report { compare, campaign, open, .. } => work::compare(compare, campaign.output.out.as_deref(), campaign.output.json, *open),
+        Verb::Compare(asked) => work::compare(&asked.runs, asked.out.as_deref(), asked.json, asked.open),
+        Verb::Show { folder, id } => show::show(folder, id),
         Verb::Plan { spec, output } => survey::plan(spec, output),
         Verb::Status { folder, watch } => survey::status(folder, *watch),
         Verb::Explain { folder, id, spec } => care::explain(folder, id, spec.as_deref()),
         Verb::Verify { folder, deep } => care::verify(folder, *deep),
-        Verb::Retry { folder, ids, .. } => work::retry(folder, ids),
+        Verb::Retry { folder, ids, talk, .. } => work::retry(folder, ids, *talk),
         Verb::Gc { folder, keep, delete } => care::gc(folder, keep, *delete),
         Verb::Submit { spec, output, engine: EngineArgument::Slurm, shards, cpus, option, dry_run } => {
             submit::slurm(spec, output, shards.shards, (*cpus, option), *dry_run)
         }
+        Verb::Export { what: ExportVerb::Csv(asked) } => csv::export(asked),
         Verb::Export { what: ExportVerb::Snakemake { spec, output, shards } } => export::snakemake(spec, output, shards.shards),
         Verb::Export { what: ExportVerb::RoCrate { folder, license } } => export::ro_crate(folder, license.as_deref()),
         Verb::Export { what: ExportVerb::Netcdf(asked) } => measured::export(asked, &measured::Layout::NetCdf),
         Verb::Export { what: ExportVerb::Tamaas(asked) } => measured::export(asked, &measured::Layout::Tamaas),
         Verb::Import(asked) => measured::import(asked),
-        Verb::Schema { write } => schemas(*write),
+        Verb::Schema { file, write } => about::schemas(file.as_deref(), *write),
         Verb::Completions { shell } => about::completions(*shell),
         Verb::Man { verb, dir } => about::man(verb.as_deref(), dir.as_deref()),
     }
 }
 
 fn of_spec(campaign: &CampaignArguments, stages: (Stage, Stage), partial: bool) -> Result<u8, Fault> {
-    work::stages(&campaign.spec, &campaign.how, stages, partial)
-}
-
-/// A sentence on cases that failed, and the command that runs them again.
-fn failed_cases(failures: usize, dir: &Path) -> String {
-    let them = if failures == 1 { "it" } else { "them" };
-    format!("{} failed; `hysteron retry {}` tries {them} again.\n", counted(failures, "case"), shell_path(dir))
+    work::stages(&campaign.spec, &campaign.how, stages, (partial, false))
 }
 
 fn stage(argument: StageArgument) -> Stage {
@@ -118,44 +122,14 @@ fn stage(argument: StageArgument) -> Stage {
     }
 }
 
-/// Prints to standard output, control characters as escapes, and says whether somebody reads it: one who has gone away (`| head`) is no fault.
+/// Prints to standard output, control characters as escapes. Returns whether the output is still read: a closed pipe (`| head`) is no error.
 fn say(text: &str) -> Result<bool, Fault> {
     let mut output = std::io::stdout().lock();
-    match output.write_all(printable(text).as_bytes()).and_then(|()| output.flush()) {
+    let text = painted(printable(text), output.is_terminal());
+    match output.write_all(text.as_bytes()).and_then(|()| output.flush()) {
         Ok(()) => Ok(true),
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(false),
         Err(error) => Err(failed(format!("cannot write to standard output: {error}"))),
-    }
-}
-
-fn open(spec: &Path, output: &OutputArguments) -> Result<Campaign, Fault> {
-    let spec = Spec::read(spec).map_err(|errors| Fault { code: BAD_SPEC, text: errors.to_string() })?;
-    let dir = output.out.clone().unwrap_or_else(|| PathBuf::from("data/runs").join(&spec.name));
-    not_the_root(&dir)?;
-    stages::sampled(Campaign::new(spec, dir)).map_err(failed)
-}
-
-/// Refuses the root folder, which is nobody's output folder.
-fn not_the_root(dir: &Path) -> Result<(), Fault> {
-    match dir.canonicalize() {
-        Ok(found) if found.parent().is_none() => {
-            let text =
-                format!("error: the output folder cannot be {}, the root folder\nhelp: name a folder of its own (--out DIR)", shown(dir));
-            Err(Fault { code: BAD_SPEC, text })
-        }
-        _ => Ok(()),
-    }
-}
-
-/// A folder by its whole name, as other programs are to be told of it: they read it as text.
-fn told(dir: &Path) -> Result<PathBuf, Fault> {
-    let refused = |why: String| failed(format!("cannot tell other programs of {}: {why}", shown(dir)));
-    let dir = std::path::absolute(dir).map_err(|error| refused(error.to_string()))?;
-    let strange = |c: char| c.is_control() || matches!(c, '{' | '}' | '%' | '"' | '\\');
-    match dir.to_str().map(|name| name.chars().find(|c| strange(*c))) {
-        Some(None) => Ok(dir),
-        Some(Some(c)) => Err(refused(format!("its name has {c:?}; allowed: no control characters, and none of {{ }} % \" \\"))),
-        None => Err(refused("its name is no Unicode; allowed: a name that is".to_owned())),
     }
 }
 
@@ -163,33 +137,7 @@ fn make_folder(folder: &Path) -> Result<(), Fault> {
     std::fs::create_dir_all(folder).map_err(|error| failed(format!("cannot make the folder {}: {error}", shown(folder))))
 }
 
-/// The program itself, as another one is to start it.
+/// The path of this program, for other programs that start it.
 fn own_file() -> Result<PathBuf, Fault> {
     std::env::current_exe().map_err(|error| failed(format!("cannot find the program's own file: {error}")))
-}
-
-/// The campaign whose results a folder holds.
-fn open_dir(action: &str, dir: &Path) -> Result<Campaign, Fault> {
-    let path = dir.join("campaign.toml");
-    if !path.is_file() {
-        let dir = shown(dir);
-        return Err(failed(format!("cannot {action} {dir}: it has no campaign.toml; allowed: the output folder of a run")));
-    }
-    open(&path, &OutputArguments { out: Some(dir.to_owned()), json: false })
-}
-
-fn schemas(write: bool) -> Result<u8, Fault> {
-    let folder = Path::new(schema::DIRECTORY);
-    if write {
-        make_folder(folder)?;
-    }
-    for file in schema::files() {
-        if write {
-            commit::commit_bytes("write a schema", &folder.join(&file.name), file.content.as_bytes()).map_err(failed)?;
-        } else if file.name.ends_with(".json") {
-            say(&file.content)?;
-            say("\n")?;
-        }
-    }
-    Ok(0)
 }

@@ -1,6 +1,7 @@
 //! `submit`: what is not done yet goes to Slurm; and what `status` says of its queue.
 
-use super::{BAD_SPEC, Fault, failed, make_folder, open, own_file, say, told};
+use super::place::{open, told};
+use super::{BAD_SPEC, Fault, failed, make_folder, own_file, say};
 use crate::campaign::{Campaign, Stage, Standing};
 use crate::cli::OutputArguments;
 use crate::engines::slurm::{Job, Order, Queue, Sent, folder, jobs, script};

@@ -1,19 +1,22 @@
-//! The verbs that say how a campaign stands: `plan` and `status`. They write nothing.
+//! Commands that show the state of a run: `plan` and `status`. They write nothing.
 
-use super::{Fault, failed_cases, open, open_dir, say, submit};
+use super::causes::causes;
+use super::ending::failed_cases;
+use super::place::{folder, open, open_dir, resuming};
+use super::{Fault, say, submit};
 use crate::campaign::{Campaign, REPORT_PAGE, STATISTICS, Stage, Standing};
 use crate::cli::{FolderArguments, OutputArguments};
 use crate::store::Check;
-use crate::text::{counted, shell_path, shown, visible};
+use crate::text::{counted, shown, visible};
 use serde_json::{Value, json};
 use std::io::{IsTerminal, Write as _};
 use std::path::Path;
 use std::time::Duration;
 
-/// How often `status --watch` looks.
+/// Period of `status --watch`.
 const EVERY: Duration = Duration::from_secs(2);
 
-/// How every unit of a campaign stands, by stage.
+/// The state of every task of a campaign, by stage.
 type Units = Vec<(Stage, Vec<(String, Standing)>)>;
 
 pub(super) fn plan(spec: &Path, output: &OutputArguments) -> Result<u8, Fault> {
@@ -22,29 +25,33 @@ pub(super) fn plan(spec: &Path, output: &OutputArguments) -> Result<u8, Fault> {
     let text = if output.json {
         format!("{:#}\n", answer(&campaign, &units))
     } else {
-        describe(&campaign, &units) + &remaining(&units, &campaign, |open| format!("`run` would compute {}.\n", counted(open, "task")))
+        let reasons = |stage: Stage, units: &[(String, Standing)]| causes(&campaign, stage, units);
+        describe(&campaign, &units, reasons)
+            + &remaining(&units, &campaign, |open| format!("`run` would compute {}.\n", counted(open, "task")))
     };
     say(&text)?;
     Ok(0)
 }
 
-pub(super) fn status(folder: &FolderArguments, watch: bool) -> Result<u8, Fault> {
+pub(super) fn status(asked: &FolderArguments, watch: bool) -> Result<u8, Fault> {
+    let dir = folder(asked)?;
     loop {
-        let campaign = open_dir("tell the status of", &folder.dir)?;
+        let campaign = open_dir("show the state of", &dir)?;
         let units = units(&campaign);
-        let mut text =
-            if folder.json { format!("{:#}\n", queued(answer(&campaign, &units), &campaign)) } else { describe(&campaign, &units) };
-        if !folder.json {
+        let mut text = if asked.json {
+            format!("{:#}\n", queued(answer(&campaign, &units), &campaign))
+        } else {
+            describe(&campaign, &units, |_, _| String::new())
+        };
+        if !asked.json {
             if let Some(why) = campaign.spec_fault() {
-                text += &format!("caution: {why}; the spec of this folder may be another one than was run\n");
+                text += &format!("warning: {why}: the spec of this folder may differ from the one that was run\n");
             }
             text += &in_queue(&campaign);
-            let (spec, dir) = (shell_path(&campaign.dir.join("campaign.toml")), shell_path(&campaign.dir));
-            let are = |open| if open == 1 { "is" } else { "are" };
-            let does = |open| format!("{} {} left; continue with `hysteron run {spec} --out {dir}`.\n", counted(open, "task"), are(open));
+            let does = |open| format!("{} pending. Resume with: {}\n", counted(open, "task"), resuming(&campaign.dir));
             text += &remaining(&units, &campaign, does);
         }
-        if watch && !folder.json && std::io::stdout().is_terminal() {
+        if watch && !asked.json && std::io::stdout().is_terminal() {
             clear_screen();
         }
         let heard = say(&text)?;
@@ -55,7 +62,7 @@ pub(super) fn status(folder: &FolderArguments, watch: bool) -> Result<u8, Fault>
     }
 }
 
-/// What is left to do, as a sentence; and what only `retry` does.
+/// Pending tasks in a sentence, and failed ones.
 fn remaining(units: &Units, campaign: &Campaign, does: impl Fn(usize) -> String) -> String {
     // Where a surface failed, its cycles did too.
     let of_stage = |units: &[(String, Standing)]| units.iter().filter(|(_, s)| matches!(s, Standing::Failed(_))).count();
@@ -68,7 +75,7 @@ fn remaining(units: &Units, campaign: &Campaign, does: impl Fn(usize) -> String)
     }
 }
 
-/// Takes what was printed before off the terminal.
+/// Clears the terminal.
 fn clear_screen() {
     let _ = std::io::stdout().lock().write_all(b"\x1b[H\x1b[2J");
 }
@@ -85,7 +92,7 @@ fn units(campaign: &Campaign) -> Units {
     ]
 }
 
-/// What Slurm's queue has of the jobs that were sent. Files are the truth: what it says of finished tasks is not asked for.
+/// The state of submitted jobs in Slurm's queue. Finished tasks are known by their files.
 fn in_queue(campaign: &Campaign) -> String {
     let sent = match submit::sent(campaign) {
         Ok(sent) if sent.is_empty() => return String::new(),
@@ -99,7 +106,7 @@ fn in_queue(campaign: &Campaign) -> String {
     format!("slurm     {}\n", if counted.is_empty() { "nothing in the queue".to_owned() } else { counted.join(", ") })
 }
 
-/// How many tasks a run would do.
+/// The number of pending tasks.
 fn left(units: &Units) -> usize {
     units.iter().flat_map(|(_, units)| units).filter(|(_, standing)| !matches!(standing, Standing::Done | Standing::Failed(_))).count()
 }
@@ -116,7 +123,7 @@ fn answer(campaign: &Campaign, units: &Units) -> Value {
     json!({ "name": campaign.spec.name, "dir": campaign.dir.display().to_string(), "stages": stages })
 }
 
-/// The same with Slurm's words on the jobs that were sent, if any were: how many tasks are in which state, or null where the queue cannot be asked.
+/// The same with the jobs that were submitted, if any: the number of tasks in each state, or null where the queue cannot be asked.
 fn queued(mut answer: Value, campaign: &Campaign) -> Value {
     if let Ok(sent) = submit::sent(campaign)
         && !sent.is_empty()
@@ -127,7 +134,8 @@ fn queued(mut answer: Value, campaign: &Campaign) -> Value {
     answer
 }
 
-fn describe(campaign: &Campaign, units: &Units) -> String {
+/// The number of tasks in each state by stage, with failed and damaged ones, and further lines on the tasks of a stage.
+fn describe(campaign: &Campaign, units: &Units, further: impl Fn(Stage, &[(String, Standing)]) -> String) -> String {
     let (name, dir) = (&campaign.spec.name, shown(&campaign.dir));
     let mut text = format!("{name} in {dir}: {}, {}\n", counted(campaign.cases.len(), "case"), campaign.realizations_in_words());
     for (stage, units) in units {
@@ -143,6 +151,7 @@ fn describe(campaign: &Campaign, units: &Units) -> String {
             let verb = if matches!(standing, Standing::Failed(_)) { "failed" } else { &format!("is {}", standing.word()) };
             text += &format!("  {id} {verb}{why}\n");
         }
+        text += &further(*stage, units);
     }
     text
 }

@@ -1,0 +1,154 @@
+//! Arguments that several commands share, and those of the larger commands.
+
+use super::help;
+use crate::campaign::Shard;
+use clap::Args;
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub(super) struct CampaignArguments {
+    /// Spec (TOML), or the output folder of a run
+    pub(super) spec: PathBuf,
+    #[command(flatten)]
+    pub(super) how: HowArguments,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct HowArguments {
+    #[command(flatten)]
+    pub(super) output: OutputArguments,
+    #[command(flatten)]
+    pub(super) jobs: JobsArguments,
+    /// Process every N-th surface, starting at K (0-based), e.g. 0/4
+    #[arg(long, value_name = "K/N")]
+    pub(super) shard: Option<Shard>,
+    /// Check sizes of finished files only, not checksums
+    #[arg(long)]
+    pub(super) quick: bool,
+    #[command(flatten)]
+    pub(super) talk: TalkArguments,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct JobsArguments {
+    /// Number of threads [default: number of cores]
+    #[arg(long, short = 'j', value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(super) jobs: Option<u16>,
+}
+
+#[derive(Debug, Clone, Copy, Args)]
+pub(super) struct TalkArguments {
+    /// Print warnings and errors only
+    #[arg(long, short = 'q', conflicts_with = "verbose")]
+    pub(super) quiet: bool,
+    /// Print a line with the elapsed time for each finished task
+    #[arg(long, short = 'v')]
+    pub(super) verbose: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct FolderArguments {
+    /// Output folder of a run, or its spec
+    pub(super) dir: PathBuf,
+    /// Output folder of the spec [default: data/runs/<name of the spec>]
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: Option<PathBuf>,
+    /// Print JSON
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct OutputArguments {
+    /// Output folder [default: data/runs/<name of the spec>]
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: Option<PathBuf>,
+    /// Override a value of the spec, e.g. surface.hurst=0.7; repeatable
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub(super) set: Vec<String>,
+    /// Print JSON
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct CompareArguments {
+    /// Output folders of the runs, or their specs
+    #[arg(num_args = 2.., required = true, value_name = "DIR")]
+    pub(super) runs: Vec<PathBuf>,
+    /// Folder of the comparison [default: data/runs/comparison]
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: Option<PathBuf>,
+    /// Print JSON
+    #[arg(long)]
+    pub(super) json: bool,
+    /// Open comparison.html when it is written
+    #[arg(long)]
+    pub(super) open: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct CsvArguments {
+    /// Output folder of a run, or its spec
+    pub(super) dir: PathBuf,
+    /// Folder of the CSV files [default: csv/ in the output folder]
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: Option<PathBuf>,
+    /// Print JSON
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ExportArguments {
+    /// Surface: surfaces/<id>.h5 of a run, or an output of `import`
+    pub(super) surface: PathBuf,
+    /// File to write
+    #[arg(long, value_name = "FILE")]
+    pub(super) out: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ImportArguments {
+    /// Measured surface
+    pub(super) file: PathBuf,
+    /// File to write [default: <name of FILE>.h5]
+    #[arg(long, value_name = "FILE")]
+    pub(super) out: Option<PathBuf>,
+    /// Dataset (HDF5) or variable (NetCDF) of a file with several
+    #[arg(long, value_name = "NAME")]
+    pub(super) dataset: Option<String>,
+    /// Pixel size in metres, if it is not stored in the file
+    #[arg(long, value_name = "METRES")]
+    pub(super) pixel_m: Option<f64>,
+    /// Unit of the heights (e.g. nm), if it is not stored in the file
+    #[arg(long)]
+    pub(super) unit: Option<String>,
+    /// Interpolate missing points (harmonic in-fill) instead of failing
+    #[arg(long)]
+    pub(super) fill: bool,
+    #[arg(long, value_name = "FORM", value_parser = ["mean", "plane", "quadratic"], hide_possible_values = true, help = help::DETREND)]
+    pub(super) detrend: Option<String>,
+    /// The surface is periodic
+    #[arg(long)]
+    pub(super) periodic: bool,
+    /// Low-pass (S-filter) cut-off wavelength in pixels
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u8).range(4..=64))]
+    pub(super) points: u8,
+    /// Report the statistics without writing a file
+    #[arg(long, short = 'n')]
+    pub(super) dry_run: bool,
+    /// Overwrite an existing file
+    #[arg(long)]
+    pub(super) force: bool,
+    /// Print JSON, with the power spectrum
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ShardsArguments {
+    /// Number of parts [default: one for each surface, up to 1000]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(super) shards: Option<u32>,
+}

@@ -1,0 +1,74 @@
+//! `export csv`: the tables of statistics as comma-separated values (RFC 4180).
+
+use super::place::folder_of;
+use super::{Fault, failed, make_folder, say};
+use crate::cli::CsvArguments;
+use crate::schema::{TABLES, Table};
+use crate::store::{ColumnData, Frame, commit, parquet};
+use crate::text::{counted, shown};
+use serde_json::json;
+use std::borrow::Cow;
+use std::path::Path;
+
+pub(super) fn export(asked: &CsvArguments) -> Result<u8, Fault> {
+    let dir = folder_of(&asked.dir)?;
+    let out = asked.out.clone().unwrap_or_else(|| dir.join("csv"));
+    let tables: Vec<&'static Table> = TABLES.iter().copied().filter(|table| has(&dir, table)).collect();
+    if tables.is_empty() {
+        let dir = shown(&dir);
+        return Err(failed(format!(
+            "cannot export the tables of {dir}: it has no statistics/*.parquet\nhelp: run `hysteron run SPEC` first"
+        )));
+    }
+    make_folder(&out)?;
+    let mut files = Vec::new();
+    for table in tables {
+        let frame = parquet::read_table(&dir.join(table.file), table).map_err(failed)?;
+        let path = out.join(format!("{}.csv", table.name));
+        commit::commit_bytes("write the table", &path, text(&frame).as_bytes()).map_err(failed)?;
+        files.push((path, frame.row_count()));
+    }
+    if asked.json {
+        let files: Vec<_> = files.iter().map(|(path, rows)| json!({ "file": path.display().to_string(), "row_count": rows })).collect();
+        say(&format!("{:#}\n", json!({ "files": files })))?;
+        return Ok(0);
+    }
+    for (path, rows) in &files {
+        say(&format!("Written: {}, {}\n", shown(path), counted(*rows, "row")))?;
+    }
+    Ok(0)
+}
+
+/// Whether a table is one of statistics, and in the folder.
+fn has(dir: &Path, table: &Table) -> bool {
+    table.file.starts_with("statistics/") && dir.join(table.file).is_file()
+}
+
+/// A table as CSV: column names, then rows; a null is empty, an empty text is quoted.
+fn text(frame: &Frame) -> String {
+    let names: Vec<&str> = frame.columns().map(|(column, _)| column.name).collect();
+    let mut text = names.join(",") + "\r\n";
+    for row in 0..frame.row_count() {
+        let cells: Vec<Cow<'_, str>> = frame.columns().map(|(_, data)| cell(data, row)).collect();
+        text += &cells.join(",");
+        text += "\r\n";
+    }
+    text
+}
+
+fn cell(data: &ColumnData, row: usize) -> Cow<'_, str> {
+    let or_empty = |text: Option<String>| Cow::from(text.unwrap_or_default());
+    match data {
+        // The shortest form that reads back to the same number.
+        ColumnData::F64(values) => or_empty(values[row].map(|number| format!("{number:?}"))),
+        ColumnData::I64(values) => or_empty(values[row].map(|number| number.to_string())),
+        ColumnData::Bool(values) => or_empty(values[row].map(|flag| flag.to_string().to_uppercase())),
+        ColumnData::Text(values) => match values[row].as_deref() {
+            None => Cow::from(""),
+            Some(word) if word.is_empty() || word.contains([',', '"', '\r', '\n']) => {
+                Cow::from(format!("\"{}\"", word.replace('"', "\"\"")))
+            }
+            Some(word) => Cow::from(word),
+        },
+    }
+}

@@ -1,0 +1,133 @@
+//! The end of a run: results, failures with their reasons, elapsed time and size.
+
+use super::{Fault, failed};
+use crate::campaign::{Campaign, Stage, Standing};
+use crate::cli::progress::duration;
+use crate::schema;
+use crate::stages::Tally;
+use crate::stats::summary;
+use crate::store::{Check, parquet};
+use crate::text::{counted, shell_path, shown, visible, wrapped};
+use indicatif::HumanBytes;
+use serde_json::json;
+use std::path::Path;
+use std::time::Duration;
+
+/// Failures that are listed.
+const LISTED: usize = 10;
+
+/// A run that has ended.
+pub(super) struct Ended<'a> {
+    campaign: &'a Campaign,
+    tallies: &'a [(Stage, Tally)],
+    time: Duration,
+    size_bytes: u64,
+    /// Failed cycles; if a surface failed, all its cycles did.
+    pub(super) failed_count: usize,
+    /// Failed tasks with their reasons.
+    failures: Vec<(String, String)>,
+}
+
+impl<'a> Ended<'a> {
+    pub(super) fn of(campaign: &'a Campaign, tallies: &'a [(Stage, Tally)], time: Duration) -> Self {
+        let failed_count = tallies.iter().map(|(_, tally)| tally.failed).max().unwrap_or(0);
+        let failures = if failed_count > 0 { failures(campaign) } else { Vec::new() };
+        Self { campaign, tallies, time, size_bytes: size(&campaign.dir), failed_count, failures }
+    }
+
+    /// The table of results, failures, counts and places.
+    pub(super) fn conclusion(&self, until: Stage) -> Result<String, Fault> {
+        let mut text = String::new();
+        if until >= Stage::Aggregate {
+            let cases = parquet::read_table(&self.campaign.statistics_path("cases"), &schema::CASES).map_err(failed)?;
+            text += &summary(&cases).map_err(failed)?;
+            text += "\n";
+        }
+        for (stage, t) in self.tallies.iter().filter(|_| !self.is_idle()) {
+            let lost = if t.failed > 0 { format!(", {} failed", t.failed) } else { String::new() };
+            text += &format!("{:9} {} of {} computed, {} done before{lost}\n", stage.word(), t.computed, t.planned, t.before);
+        }
+        if self.failed_count > 0 {
+            text += &failed_cases(self.failed_count, &self.campaign.dir);
+            text += &self.reasons();
+        }
+        let size = HumanBytes(self.size_bytes);
+        let computed: usize = self.tallies.iter().map(|(_, tally)| tally.computed).sum();
+        let planned: usize = self.tallies.iter().map(|(_, tally)| tally.planned).sum();
+        text += &if self.is_idle() {
+            format!("Nothing to do: {} done before. Size of the output folder: {size}\n", counted(planned, "task"))
+        } else {
+            format!("{} in {}. Size of the output folder: {size}\n", counted(computed, "task"), duration(self.time))
+        };
+        let dir = shown(&self.campaign.dir);
+        text += &match until {
+            Stage::Report => format!("Report: {dir}/report.html\nTables: {dir}/statistics/*.parquet\n"),
+            _ => format!("Output: {dir}\n"),
+        };
+        Ok(text)
+    }
+
+    /// Whether nothing was computed, and nothing failed.
+    fn is_idle(&self) -> bool {
+        self.failed_count == 0 && self.tallies.iter().all(|(_, tally)| tally.computed == 0)
+    }
+
+    /// The first failures, each with the first line of its reason; the others are in files.
+    fn reasons(&self) -> String {
+        let mut text = String::new();
+        for (id, why) in self.failures.iter().take(LISTED) {
+            text += &wrapped(&format!("  {id}: {}", visible(why.lines().next().unwrap_or_default())), "    ");
+        }
+        if self.failures.len() > LISTED {
+            text += &format!("  … and {} more\n", self.failures.len() - LISTED);
+        }
+        text + &format!("Reasons with help: {}/cycles/*/failed.json\n", shown(&self.campaign.dir))
+    }
+}
+
+/// The answer of a run in JSON.
+pub(super) fn tally_json(ended: &Ended<'_>) -> String {
+    let stages: Vec<_> = ended
+        .tallies
+        .iter()
+        .map(|(stage, t)| {
+            json!({ "stage": stage.word(), "planned_count": t.planned, "done_before_count": t.before, "computed_count": t.computed, "failed_count": t.failed })
+        })
+        .collect();
+    let failures: Vec<_> = ended.failures.iter().map(|(id, why)| json!({ "id": id, "why": why })).collect();
+    let answer = json!({
+        "name": ended.campaign.spec.name,
+        "dir": ended.campaign.dir.display().to_string(),
+        "stages": stages,
+        "failures": failures,
+        "elapsed_s": ended.time.as_secs_f64(),
+        "size_bytes": ended.size_bytes,
+    });
+    format!("{answer:#}\n")
+}
+
+/// The number of failed cases, and the command that reruns them.
+pub(super) fn failed_cases(failures: usize, dir: &Path) -> String {
+    let them = if failures == 1 { "it" } else { "them" };
+    format!("{} failed; `hysteron retry {}` reruns {them}.\n", counted(failures, "case"), shell_path(dir))
+}
+
+fn failures(campaign: &Campaign) -> Vec<(String, String)> {
+    let cycles = campaign.survey(Check::Sizes).cycles.into_iter();
+    let failed = cycles.filter_map(|(place, standing)| match standing {
+        Standing::Failed(why) => Some((campaign.cycles[place].id.clone(), why)),
+        _ => None,
+    });
+    failed.collect()
+}
+
+/// Bytes of all files below a folder; links are not followed.
+fn size(folder: &Path) -> u64 {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let of_entry = |entry: std::fs::DirEntry| match entry.metadata() {
+        Ok(found) if found.is_dir() => size(&entry.path()),
+        Ok(found) => found.len(),
+        Err(_) => 0,
+    };
+    entries.map(of_entry).sum()
+}

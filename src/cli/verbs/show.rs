@@ -1,0 +1,216 @@
+//! `show`: one case or task with its parameters, results, warnings and files.
+
+use super::place::{folder, open_dir};
+use super::{Fault, failed, say};
+use crate::campaign::{Campaign, CaseUnit, CycleUnit, REPORT_PAGE, STATISTICS, Stage, Standing, SurfaceUnit, Unit};
+use crate::cli::FolderArguments;
+use crate::schema::{self, Table};
+use crate::spec::{CaseParams, MEASURED};
+use crate::stats::{significant, warnings_of};
+use crate::store::{Check, ColumnData, Found, Frame, Kept, parquet, read_receipt};
+use crate::text::{shell_path, shown, visible, wrapped};
+use indicatif::HumanBytes;
+use serde_json::{Map, Value, json};
+
+/// Results in the printed text; JSON has all columns.
+const RESULTS: [&str; 7] = ["pull_off_load", "area_at_max_load", "penetration_at_max_load", "loss", "loss_j", "loss_ratio_dk", "audit_gap"];
+
+/// A case or task.
+#[derive(Default)]
+struct Shown {
+    kind: &'static str,
+    state: String,
+    parameters: Map<String, Value>,
+    /// Rows of a table of statistics.
+    results: Vec<Map<String, Value>>,
+    warnings: Vec<String>,
+    tasks: Vec<(String, String)>,
+    files: Vec<Kept>,
+}
+
+pub(super) fn show(asked: &FolderArguments, id: &str) -> Result<u8, Fault> {
+    let dir = folder(asked)?;
+    let campaign = open_dir("show a task of", &dir)?;
+    let Some(found) = find(&campaign, id)? else {
+        let (dir, listed) = (shown(&dir), shell_path(&dir));
+        return Err(failed(format!(
+            "{dir} has no case or task {}\nhelp: `hysteron status {listed} --json` lists tasks, statistics/cases.parquet lists cases",
+            visible(id)
+        )));
+    };
+    say(&if asked.json { format!("{:#}\n", answer(id, &found)) } else { described(id, &found) })?;
+    Ok(0)
+}
+
+fn find(campaign: &Campaign, id: &str) -> Result<Option<Shown>, Fault> {
+    if let Some(case) = campaign.cases.iter().position(|case| case.id == id) {
+        return of_case(campaign, case, &campaign.cases[case]).map(Some);
+    }
+    if let Some(unit) = campaign.cycles.iter().find(|unit| unit.id == id) {
+        return of_cycle(campaign, unit).map(Some);
+    }
+    if let Some(unit) = campaign.surfaces.iter().find(|unit| unit.id == id) {
+        return Ok(Some(of_surface(campaign, unit)));
+    }
+    let stage = match id {
+        STATISTICS => Stage::Aggregate,
+        REPORT_PAGE => Stage::Report,
+        _ => return Ok(None),
+    };
+    let survey = campaign.survey(Check::Sizes);
+    let standing = if stage == Stage::Aggregate { survey.statistics } else { survey.report };
+    let unit = Unit { stage, id, key: "" };
+    Ok(Some(Shown { kind: stage.word(), state: state(&standing), files: files(campaign, &unit), ..Shown::default() }))
+}
+
+fn of_case(campaign: &Campaign, place: usize, case: &CaseUnit) -> Result<Shown, Fault> {
+    let cycles = campaign.cycles.iter().filter(|cycle| cycle.case == place);
+    let tasks: Vec<(String, String)> =
+        cycles.map(|cycle| (cycle.id.clone(), state(&campaign.cycle_standing(cycle, Check::Sizes)))).collect();
+    let done = tasks.iter().filter(|(_, state)| state == Standing::Done.word()).count();
+    let mut found = Shown::default();
+    if let Some(frame) = table(campaign, &schema::CASES)? {
+        let rows = rows(&frame, "case_id", &case.id)?;
+        found.results = rows.iter().map(|row| values(&frame, *row)).collect();
+        let warnings = warnings_of(&frame, &rows).map_err(failed)?;
+        found.warnings =
+            warnings.iter().map(|warning| format!("{}: {}. {}", warning.kind.label, warning.measured, warning.kind.action)).collect();
+    }
+    Ok(Shown {
+        kind: "case",
+        state: format!("{done} of {} cycles done; in sweep {}", tasks.len(), case.case.sweeps.join(", ")),
+        parameters: parameters(&case.case.params),
+        tasks,
+        ..found
+    })
+}
+
+fn of_cycle(campaign: &Campaign, unit: &CycleUnit) -> Result<Shown, Fault> {
+    let standing = campaign.cycle_standing(unit, Check::Sizes);
+    let (case, surface) = (&campaign.cases[unit.case], &campaign.surfaces[unit.surface]);
+    let mut results = Vec::new();
+    if let Some(frame) = table(campaign, &schema::REALIZATIONS)? {
+        // Cases that differ only in estimates share a cycle.
+        let cases = frame.text("case_id").map_err(failed)?;
+        let own = rows(&frame, "cycle_id", &unit.id)?.into_iter().filter(|row| cases[*row] == case.id);
+        results = own.map(|row| values(&frame, row)).collect();
+    }
+    Ok(Shown {
+        kind: Stage::Cycle.word(),
+        state: format!("{}; case {}, surface {}", state(&standing), case.id, surface.id),
+        parameters: parameters(&case.case.params),
+        results,
+        files: files(campaign, &unit.cycle()),
+        ..Shown::default()
+    })
+}
+
+fn of_surface(campaign: &Campaign, unit: &SurfaceUnit) -> Shown {
+    let word = |unit: &Unit<'_>| state(&campaign.standing(unit, Check::Sizes));
+    let mut parameters = Map::new();
+    flatten("surface", &json!(unit.params), &mut parameters);
+    parameters.insert("realization".to_owned(), unit.realization.into());
+    Shown {
+        kind: "surface",
+        state: format!("generate {}, extract {}", word(&unit.surface()), word(&unit.asperities())),
+        parameters,
+        files: [files(campaign, &unit.surface()), files(campaign, &unit.asperities())].concat(),
+        ..Shown::default()
+    }
+}
+
+/// The state of a task, with the reason if there is one.
+fn state(standing: &Standing) -> String {
+    let why = standing.why().map(|why| format!(": {}", why.lines().next().unwrap_or_default()));
+    format!("{}{}", standing.word(), why.unwrap_or_default())
+}
+
+/// The files of a finished task.
+fn files(campaign: &Campaign, unit: &Unit<'_>) -> Vec<Kept> {
+    match read_receipt(&campaign.receipt_path(unit)) {
+        Found::Whole(receipt) => receipt.files,
+        _ => Vec::new(),
+    }
+}
+
+/// The parameters of a case as keys of a spec.
+fn parameters(params: &CaseParams) -> Map<String, Value> {
+    let mut all = Map::new();
+    if let Value::Object(tables) = json!(params) {
+        tables.iter().for_each(|(table, values)| flatten(table, values, &mut all));
+    }
+    // A generated surface reads none of the keys of a measured one.
+    if !params.surface.is_measured() {
+        all.retain(|key, _| !MEASURED.iter().any(|name| key.strip_prefix("surface.") == Some(*name)));
+    }
+    all
+}
+
+fn flatten(table: &str, values: &Value, all: &mut Map<String, Value>) {
+    for (name, value) in values.as_object().into_iter().flatten() {
+        all.insert(format!("{table}.{name}"), value.clone());
+    }
+}
+
+/// A table of statistics, if it is written yet.
+fn table(campaign: &Campaign, table: &'static Table) -> Result<Option<Frame>, Fault> {
+    let path = campaign.dir.join(table.file);
+    let is_there = path.is_file();
+    is_there.then(|| parquet::read_table(&path, table).map_err(failed)).transpose()
+}
+
+/// The rows with an id.
+fn rows(frame: &Frame, column: &str, id: &str) -> Result<Vec<usize>, Fault> {
+    let ids = frame.text(column).map_err(failed)?;
+    Ok((0..ids.len()).filter(|row| ids[*row] == id).collect())
+}
+
+fn values(frame: &Frame, row: usize) -> Map<String, Value> {
+    let value = |data: &ColumnData| match data {
+        ColumnData::F64(values) => json!(values[row]),
+        ColumnData::I64(values) => json!(values[row]),
+        ColumnData::Bool(values) => json!(values[row]),
+        ColumnData::Text(values) => json!(values[row]),
+    };
+    frame.columns().map(|(column, data)| (column.name.to_owned(), value(data))).collect()
+}
+
+fn answer(id: &str, found: &Shown) -> Value {
+    let tasks: Vec<_> = found.tasks.iter().map(|(id, state)| json!({ "id": id, "state": state })).collect();
+    let Shown { kind, state, parameters, results, warnings, files, .. } = found;
+    json!({
+        "id": id, "kind": kind, "state": state, "parameters": parameters, "results": results, "warnings": warnings, "tasks": tasks, "files": files,
+    })
+}
+
+fn described(id: &str, found: &Shown) -> String {
+    let mut text = wrapped(&format!("{} {id}: {}", found.kind, visible(&found.state)), "  ");
+    let mut section = |heading: &str, lines: Vec<String>| {
+        if !lines.is_empty() {
+            text += &format!("\n{heading}\n");
+            lines.iter().for_each(|line| text += &wrapped(&format!("  {line}"), "    "));
+        }
+    };
+    section("Parameters", found.parameters.iter().map(|(key, value)| format!("{key} = {value}")).collect());
+    for row in &found.results {
+        let load = row.get("max_load").map(ToString::to_string).unwrap_or_default();
+        section(&format!("Results at F_max/(E* A0) = {load}"), RESULTS.iter().filter_map(|name| result(row, name)).collect());
+    }
+    section("Warnings", found.warnings.clone());
+    section("Tasks", found.tasks.iter().map(|(id, state)| format!("{id}: {}", visible(state))).collect());
+    section("Files", found.files.iter().map(|file| format!("{} ({})", visible(&file.path), HumanBytes(file.size_bytes))).collect());
+    text
+}
+
+/// A result, or its mean with its standard deviation, with its unit.
+fn result(row: &Map<String, Value>, name: &str) -> Option<String> {
+    let number = |name: &str| row.get(name).and_then(Value::as_f64).map(|number| significant(number, 4));
+    let unit = schema::REALIZATIONS.column(name).map(|column| column.unit).filter(|unit| *unit != "1");
+    let unit = unit.map(|unit| format!(" {unit}")).unwrap_or_default();
+    if let Some(own) = number(name) {
+        return Some(format!("{name} = {own}{unit}"));
+    }
+    let mean = number(&format!("{name}_mean"))?;
+    let sd = number(&format!("{name}_sd")).map(|sd| format!(" ± {sd}")).unwrap_or_default();
+    Some(format!("{name} = {mean}{sd}{unit}"))
+}

@@ -1,0 +1,31 @@
+// The build script copies the pages and turns links between files into links between modules.
+#![doc = include_str!(concat!(env!("OUT_DIR"), "/guide/index.md"))]
+
+macro_rules! pages {
+    ($($name:ident),+ $(,)?) => {
+        $(
+            #[doc = include_str!(concat!(env!("OUT_DIR"), "/guide/", stringify!($name), ".md"))]
+            pub mod $name {}
+        )+
+    };
+}
+
+pages!(
+    tutorial,
+    howto_scan,
+    howto_sweep,
+    howto_cluster,
+    howto_data,
+    howto_recover,
+    model,
+    numerics,
+    validity,
+    reproduction,
+    reference_spec,
+    reference_cli,
+    tables,
+    python,
+    performance,
+    contributing,
+    glossary,
+);

@@ -1,0 +1,91 @@
+//! `--set KEY=VALUE`: values of the command line that replace values of a spec.
+
+use std::ops::Range;
+
+use toml::de::DeTable;
+
+use super::SpecErrors;
+use super::fault::{Faults, NOWHERE};
+use super::keys::{TABLES, find};
+use super::sweep::SweepDraft;
+use super::walk::{Draft, Origin, enter, entries};
+use super::write::quoted;
+
+/// The option, as errors name it.
+const OPTION: &str = "--set";
+
+/// Puts the settings into a draft, in their order.
+pub(super) fn apply(settings: &[String], draft: &mut Draft) -> Result<(), SpecErrors> {
+    for setting in settings {
+        let text = document(setting)?;
+        let mut faults = Faults::new(&text, OPTION);
+        set(&text, draft, &mut faults);
+        faults.finish(Some(()))?;
+    }
+    Ok(())
+}
+
+/// A setting as TOML. A value that is not TOML is a text without its quotes.
+fn document(setting: &str) -> Result<String, SpecErrors> {
+    let refused = |problem: &str| {
+        let mut faults = Faults::new(setting, OPTION);
+        faults.add(&(0..setting.len()), problem.to_owned(), "write --set KEY=VALUE, e.g. --set surface.hurst=0.7".to_owned());
+        faults.finish::<String>(None)
+    };
+    let Some((key, value)) = setting.split_once('=').map(|(key, value)| (key.trim(), value.trim())) else {
+        return refused("a setting has no `=`");
+    };
+    if setting.chars().any(char::is_control) {
+        return refused("a setting has a control character");
+    }
+    let is_key = |text: &str| !text.is_empty() && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-' || c == '.');
+    if !is_key(key) {
+        return refused("a setting has no key");
+    }
+    let plain = format!("{key} = {value}");
+    let is_toml = DeTable::parse(&plain).is_ok();
+    Ok(if is_toml { plain } else { format!("{key} = {}", quoted(value)) })
+}
+
+/// Puts one setting into a draft.
+fn set(text: &str, draft: &mut Draft, faults: &mut Faults<'_>) {
+    let (root, broken) = DeTable::parse_recoverable(text);
+    if let Some(error) = broken.first() {
+        faults.add(&error.span().unwrap_or(0..text.len()), format!("the setting is not valid TOML: {}", error.message()), None);
+        return;
+    }
+    let path = text.split(" = ").next().unwrap_or_default();
+    let place = path.split_once('.').and_then(|(table, name)| find(table, name));
+    for (key, span, written) in entries(root.get_ref()) {
+        if matches!(key, "sweep" | "files") || TABLES.contains(&key) && !path.contains('.') {
+            let help = "it takes name, seed, realizations, and keys of tables such as surface.hurst".to_owned();
+            faults.add(&span, format!("{OPTION} cannot set `{key}`"), help);
+            return;
+        }
+        if let Some(table) = TABLES.iter().find(|table| !path.contains('.') && find(table, key).is_some()) {
+            faults.add(&span, format!("{OPTION} needs the table of `{key}`"), format!("write {OPTION} {table}.{key}=VALUE"));
+            return;
+        }
+        enter((key, span, written), draft, faults);
+    }
+    if path == "realizations" {
+        draft.realizations_at = Some(NOWHERE);
+    }
+    let Some(place) = place else { return };
+    if matches!(draft.origins[place], Origin::Written(_)) {
+        draft.origins[place] = Origin::Written(NOWHERE);
+    }
+    // The hashes are of the files that the spec names.
+    if path == "surface.file" {
+        draft.files.clear();
+    }
+    let has_axis = |sweep: &Option<SweepDraft>| sweep.as_ref().is_some_and(|sweep| sweep.axes.iter().any(|axis| axis.key == place));
+    if !draft.sweeps.is_empty() && draft.sweeps.iter().all(has_axis) {
+        let at: Range<usize> = 0..path.len();
+        faults.add(
+            &at,
+            format!("every sweep of the spec sets `{path}`: {OPTION} has no effect"),
+            "change the sweeps of the spec".to_owned(),
+        );
+    }
+}

@@ -1,0 +1,124 @@
+//! The command line: help, templates, options, and what is printed at the end.
+
+mod ending;
+mod places;
+mod results;
+mod settings;
+
+use crate::bench::{Bench, code, stderr, stdout};
+use clap::{Command, CommandFactory as _};
+use hysteron::cli::Arguments;
+use hysteron::spec::Spec;
+use std::process::Output;
+
+/// Two surfaces, one load: half a second of work.
+const SMALL: &str =
+    "name = \"small\"\nseed = 7\nrealizations = 2\n[surface]\nmagnification = 6\n[cycle]\nmax_load = [0.001]\napproach_step = 0.05\n";
+
+/// Runs the program in a folder.
+fn hysteron(bench: &Bench, arguments: &[&str]) -> Output {
+    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_hysteron"));
+    command.current_dir(bench.folder.path()).args(arguments).output().unwrap()
+}
+
+fn each(command: &Command, visit: &mut impl FnMut(&Command)) {
+    visit(command);
+    command.get_subcommands().for_each(|inner| each(inner, visit));
+}
+
+#[test]
+fn val_help_has_at_most_80_columns() {
+    let mut program = Arguments::command();
+    program.build();
+    let (mut seen, mut long) = (0, Vec::new());
+    each(&program, &mut |command| {
+        for help in [command.clone().render_help(), command.clone().render_long_help()] {
+            for line in help.to_string().lines() {
+                long.extend((line.chars().count() > 80).then(|| format!("{}: {line}", command.get_name())));
+                seen += 1;
+            }
+        }
+    });
+    assert!(seen > 500 && long.is_empty(), "{seen} lines: {long:#?}");
+}
+
+#[test]
+fn val_help_lists_every_command_once_with_exit_codes() {
+    let mut program = Arguments::command();
+    program.build();
+    let help = program.clone().render_help().to_string();
+    for command in program.get_subcommands().filter(|command| command.get_name() != "help") {
+        let about = command.get_about().unwrap().to_string();
+        let named = |line: &&str| {
+            let (names, text) = line.trim().split_once("  ").unwrap_or_default();
+            names.split(", ").any(|name| name == command.get_name()) && text.trim() == about
+        };
+        assert_eq!(help.lines().filter(named).count(), 1, "{}: {help}", command.get_name());
+        assert!(about.chars().count() <= 64 && !about.ends_with('.'), "{about}");
+    }
+    for line in ["  0    done", "  2    invalid spec or arguments", "  130  interrupted; the same command resumes"] {
+        assert!(help.contains(line), "{help}");
+    }
+    assert!(help.contains("gc, clean "), "{help}");
+}
+
+#[test]
+fn e2e_every_template_is_a_spec() {
+    let bench = Bench::new("");
+    let list = stdout(&hysteron(&bench, &["init", "--list"]));
+    let names: Vec<&str> = list.lines().map(|line| line.split_whitespace().next().unwrap()).collect();
+    assert_eq!(names, ["quickstart", "sweep", "scan", "full"]);
+    for name in names {
+        let printed = hysteron(&bench, &["init", name]);
+        assert_eq!(code(&printed), 0, "{}", stderr(&printed));
+        let text = stdout(&printed);
+        let spec = Spec::parse(&text, name).unwrap_or_else(|errors| panic!("{errors}"));
+        assert_eq!(spec.name, name);
+        for line in text.lines() {
+            assert!(line.chars().count() <= 100, "{line}");
+            // Keys of a sweep were explained above it.
+            let is_key = line.contains(" = ") && !line.starts_with('#') && !line.starts_with("surface.") && !line.starts_with("material.");
+            assert!(!is_key || line.contains("# ") || line.starts_with("name = "), "{line}");
+        }
+    }
+    assert_eq!(stdout(&hysteron(&bench, &["init"])), stdout(&hysteron(&bench, &["init", "quickstart"])));
+    assert_eq!(code(&hysteron(&bench, &["init", "quick"])), 2);
+}
+
+#[test]
+fn val_the_full_template_has_every_key_with_its_default() {
+    let bench = Bench::new("");
+    let text = stdout(&hysteron(&bench, &["init", "full"]));
+    let (full, minimal) = (Spec::parse(&text, "full").unwrap(), Spec::parse("name = \"full\"", "minimal").unwrap());
+    assert_eq!((&full.base, full.seed, &full.cases), (&minimal.base, minimal.seed, &minimal.cases));
+    // Commented keys too: a line of its own for each.
+    let plain = serde_json::to_value(&full.base).unwrap();
+    for (table, keys) in plain.as_object().unwrap() {
+        for key in keys.as_object().unwrap().keys() {
+            let named = |line: &&str| line.trim_start_matches("# ").starts_with(&format!("{key} = "));
+            assert_eq!(text.lines().filter(named).count(), 1, "{table}.{key}");
+        }
+    }
+}
+
+#[test]
+fn e2e_a_dry_run_is_a_plan() {
+    let bench = Bench::new(SMALL);
+    let (dry, plan) = (bench.verb("run", &["-n"]), bench.verb("plan", &[]));
+    assert_eq!((code(&dry), stdout(&dry)), (0, stdout(&plan)));
+    assert_eq!(stdout(&bench.verb("run", &["--dry-run", "--json"])), stdout(&bench.verb("plan", &["--json"])));
+    assert!(!bench.out().exists());
+}
+
+#[test]
+fn e2e_a_plan_has_the_reasons_of_pending_tasks() {
+    let bench = Bench::new(SMALL);
+    assert_eq!(code(&bench.verb("run", &["--until", "cycle"])), 0);
+    let finished = stdout(&bench.verb("plan", &[]));
+    assert!(!finished.contains('→'), "{finished}");
+    let plan = stdout(&bench.verb("plan", &["--set", "cycle.approach_step=0.1"]));
+    assert!(plan.contains("cycle     2 planned\n  2 pending tasks: cycle.approach_step 0.05 → 0.1\n"), "{plan}");
+    assert!(plan.contains("generate  2 done\n") && plan.contains("`run` would compute 4 tasks."), "{plan}");
+    let plan = stdout(&bench.verb("plan", &["--set", "realizations=3"]));
+    assert!(plan.contains("  1 pending task: realization 1 → 2\n") || plan.contains("  1 pending task: realization 0 → 2\n"), "{plan}");
+}
