@@ -184,13 +184,19 @@ fn section(html: &mut String, cases: &Cases<'_>) -> Result<(), StageError> {
             "<tr><td>{} ({})</td><td>{}</td><td>{} {}</td><td>{place}</td></tr>",
             kind.label,
             kind.code,
-            escape(&measured),
-            escape(kind.consequence),
-            escape(kind.action)
+            with_code(&measured),
+            with_code(kind.consequence),
+            with_code(kind.action)
         );
     }
     html.push_str("</table>\n");
     Ok(())
+}
+
+/// Text for HTML, with code between backticks.
+fn with_code(text: &str) -> String {
+    let part = |(k, part): (usize, &str)| if k % 2 == 1 { format!("<code>{part}</code>") } else { part.to_owned() };
+    escape(text).split('`').enumerate().map(part).collect()
 }
 
 fn limit_of(column: &str) -> Option<&'static Limit> {
