@@ -55,10 +55,11 @@ const BANNED: [(&str, &str); 40] = [
 ];
 
 /// Exceptions: a phrase in which a banned word is right.
-const RIGHT: [&str; 4] = [
+const RIGHT: [&str; 5] = [
     "at least",
     // The mathematical term.
     "least squares",
+    "least squares:",
     "least-squares",
     // The status word of `status`, which is part of the contract.
     "is orphan",

@@ -27,6 +27,8 @@ fn tutorial() -> TempDir {
     std::fs::write(folder.path().join("gel.toml"), format!("{}\n{sweep}", spec.replace(old, change.trim()))).unwrap();
     let ran = hysteron(folder.path(), &["run", "gel.toml", "--until", "aggregate"]);
     assert!(ran.status.success(), "{}", stderr(&ran));
+    let exported = hysteron(folder.path(), &["export", "csv", "data/runs/gel"]);
+    assert!(exported.status.success(), "{}", stderr(&exported));
     let mut heights = String::new();
     for row in 0..64 {
         let line: Vec<String> =
@@ -56,10 +58,11 @@ fn script(page: &Page) -> (String, usize) {
         }
         count += 1;
     }
-    for run in OTHER_RUNS {
-        script = script.replace(&format!("data/runs/{run}"), "data/runs/gel");
-    }
-    (script, count)
+    (with_own_run(&script), count)
+}
+
+fn with_own_run(code: &str) -> String {
+    OTHER_RUNS.iter().fold(code.to_owned(), |code, run| code.replace(&format!("data/runs/{run}"), "data/runs/gel"))
 }
 
 #[test]
@@ -80,10 +83,9 @@ fn e2e_snippets_of_the_guide_run() {
     }
     assert!(total >= 10, "{total}");
     assert!(std::fs::read(folder.path().join("gel.png")).unwrap().starts_with(b"\x89PNG"));
-    // The CSV file that the R block reads was written by a Python block.
     for page in pages() {
         for block in page.code("r") {
-            std::fs::write(folder.path().join("block.R"), block).unwrap();
+            std::fs::write(folder.path().join("block.R"), with_own_run(block)).unwrap();
             match Command::new("Rscript").arg("block.R").current_dir(folder.path()).output() {
                 Ok(ran) => assert!(ran.status.success(), "{}: {}", page.name, stderr(&ran)),
                 Err(error) => eprintln!("skipped: Rscript: {error}"),
