@@ -36,7 +36,7 @@ generate, extract, cycle, aggregate or report";
 
 /// `--detrend` of `import`.
 pub(super) const DETREND: &str = "\
-Form removed by least squares: mean, plane or quadratic
+Form removed by a fit: mean, plane or quadratic
 [default: plane, or mean with --periodic]";
 
 /// The description of `import`.

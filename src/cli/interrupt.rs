@@ -37,7 +37,7 @@ pub(super) fn expect(teller: Arc<Teller>, dir: &Path) -> std::io::Result<()> {
     signal_hook::flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false)))?;
     let mut signals = Signals::new(waited)?;
     let notice = format!(
-        "interrupted: finished tasks are kept, running tasks restart. Resume with the same command, or with `hysteron run {} --out {}`",
+        "interrupted: finished tasks are kept, running tasks restart\nhelp: resume with the same command, or with `hysteron run {} --out {}`",
         shell_path(&dir.join("campaign.toml")),
         shell_path(dir)
     );

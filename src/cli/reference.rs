@@ -102,7 +102,8 @@ fn entry(argument: &Arg) -> String {
     let help = argument.get_long_help().or(argument.get_help()).map(ToString::to_string).unwrap_or_default();
     let mut text = format!("`{}`: {}", spelling.trim(), sentence(&help));
     let values: Vec<String> = argument.get_possible_values().iter().map(|value| format!("`{}`", value.get_name())).collect();
-    if takes_value && !values.is_empty() {
+    // A help text that lists the values itself hides them.
+    if takes_value && !values.is_empty() && !argument.is_hide_possible_values_set() {
         text += &format!(" Values: {}.", values.join(", "));
     }
     let defaults: Vec<String> = argument.get_default_values().iter().map(|value| format!("`{}`", value.to_string_lossy())).collect();

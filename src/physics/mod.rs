@@ -212,6 +212,7 @@ impl Reason {
     /// The reason in words, with the largest residual \[m\].
     fn sentence(self, residual_m: f64) -> String {
         match self {
+            Self::Residual if residual_m.is_nan() => Self::NotANumber.sentence(residual_m),
             Self::Residual => format!("the largest residual stays at {residual_m:e} m"),
             Self::Unstable => "the equilibrium found is unstable".to_owned(),
             Self::NotANumber => "a load or an energy is not a number".to_owned(),

@@ -95,6 +95,14 @@ impl Problem {
         let tabor: Vec<f64> = asperities.iter().map(|a| a.tabor(range)).collect();
         let below = tabor.iter().filter(|mu| **mu < LEAST_TABOR).count();
         let adhesive = material.work_of_adhesion_j_m2 > 0.0;
+        if !adhesive && rules.interaction == Kind::Reciprocal {
+            return Err(PhysicsError::Domain {
+                action: "reciprocal interaction",
+                quantity: "the work of adhesion [J/m2]",
+                value: 0.0,
+                allowed: "a positive number; without adhesion use interaction = \"spots\", \"point\" or \"none\"",
+            });
+        }
         if adhesive && rules.jump_in == JumpIn::Wu && below > 0 && !rules.allow_low_tabor {
             let smallest = tabor.iter().copied().fold(f64::INFINITY, f64::min);
             return Err(PhysicsError::LowTabor { smallest, below, all: tabor.len() });

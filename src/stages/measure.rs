@@ -13,6 +13,7 @@ use crate::store::hdf5::{Measured, SpectrumFit, SurfaceHeader, is_own_surface, r
 use crate::store::scan::{Found, Scan, read};
 use ndarray::Array2;
 use std::f64::consts::TAU;
+use std::ops::RangeInclusive;
 use std::path::Path;
 
 /// How far a distance of points that is given may be from that of the file.
@@ -32,6 +33,11 @@ pub fn measure(params: &SurfaceParams, digest: &str, key: &str) -> Result<(Prepa
     let (rows, columns) = scan.heights.dim();
     let unit = unit(params, &scan)?;
     let spacing = spacing(params, &scan)?;
+    if let Some(apart) = spacing.iter().find(|apart| !PIXEL_SIZES.contains(apart)) {
+        let why =
+            format!("its points are {apart:e} m apart\nhelp: check the unit and the pixel size; a scan has points 1e-12 m to 0.1 m apart");
+        return Err(refused(Path::new(&params.file), &why));
+    }
     agree(path, scan.periodic, params.periodic)?;
     let treatment = Treatment {
         missing: params.missing,
@@ -149,6 +155,9 @@ fn fit(rings: &[Ring], shortest_wavelength_m: f64) -> Option<SpectrumFit> {
         scatter: fit.scatter,
     })
 }
+
+/// Distances between the points of a scan \[m\]: from below an atom to the largest `pixel_m` of a spec.
+const PIXEL_SIZES: RangeInclusive<f64> = 1e-12..=0.1;
 
 /// How far apart the points of a scan are along rows and along columns \[m\].
 fn spacing(params: &SurfaceParams, scan: &Scan) -> Result<[f64; 2], StageError> {

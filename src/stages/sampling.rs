@@ -30,6 +30,8 @@ fn enough(outcomes: &[Outcome], until: &Until) -> u32 {
         let sample = Sample::of(&done.iter().filter_map(|values| values.get(load).copied()).collect::<Vec<f64>>());
         match (sample.mean, sample.ci95) {
             (Some(mean), Some(half)) if mean != 0.0 => half / mean.abs(),
+            // All results are zero, as without adhesion: exactly known.
+            (Some(_), Some(0.0)) => 0.0,
             _ => f64::INFINITY,
         }
     });

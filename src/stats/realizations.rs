@@ -117,7 +117,11 @@ fn reduce(loading: &Branch, turning: usize, unloading: &Branch, max_load: f64, i
     let union = loading.area_union_m2.get(turning).copied().flatten();
     let dk = |slope: Option<f64>| slope.map(|slope| slope * area / input.energy_scale_j);
     let loss_dk = dk(input.loss_dk_per_area_j);
-    let dissipated_j: f64 = loading.dissipated_j.iter().take(turning + 1).chain(&unloading.dissipated_j).sum();
+    let on_loading: f64 = loading.dissipated_j.iter().take(turning + 1).sum();
+    // Without adhesion the events of loading are undone on unloading, and nothing but rounding remains.
+    let dissipated_j = if loss_j == 0.0 { 0.0 } else { on_loading + unloading.dissipated_j.iter().sum::<f64>() };
+    let imbalance_j = if loss_j == 0.0 { on_loading.abs() } else { (loss_j - dissipated_j).abs() };
+    let compared_j = if loss_j == 0.0 { resolution_j / RESOLUTION } else { loss_j.abs() };
     let converged = loading.converged.iter().take(turning + 1).chain(&unloading.converged);
     let (contacts, covered) = (count_at(&loading.contact_count), count_at(&loading.covered_count));
     let tension = |loads: &[f64]| -loads.iter().copied().fold(0.0, f64::min);
@@ -146,7 +150,7 @@ fn reduce(loading: &Branch, turning: usize, unloading: &Branch, max_load: f64, i
         ("loss_ratio_dk", loss_dk.filter(|dk| *dk != 0.0).map(|dk| loss / dk).into()),
         ("dissipated", (dissipated_j / input.energy_scale_j).into()),
         ("dissipated_j", dissipated_j.into()),
-        ("audit_gap", (loss_j != 0.0).then(|| (loss_j - dissipated_j).abs() / loss_j.abs()).into()),
+        ("audit_gap", (compared_j > 0.0).then(|| imbalance_j / compared_j).into()),
         ("loss_uncertainty", (loss_j != 0.0).then(|| resolution_j / loss_j.abs()).into()),
         ("contact_count_at_max_load", contacts.into()),
         ("step_count", (turning + 1 + unloading.step.len()).into()),

@@ -58,6 +58,7 @@ fn e2e_without_adhesion_nothing_is_dissipated() {
     assert_eq!(realizations.f64("loss").unwrap(), [0.0; 4]);
     assert_eq!(realizations.f64("pull_off_load").unwrap(), [0.0; 4]);
     assert!(realizations.f64("area_at_max_load").unwrap().iter().all(|area| (0.01..0.2).contains(area)));
+    assert_eq!(realizations.f64("dissipated").unwrap(), [0.0; 4]);
     let frame = cases(&bench.out());
     for column in ["persson_tosatti_mean", "conformity_realised_mean", "fuller_tabor_mean", "loss_ratio_dk_mean", "absorption_share_mean"] {
         assert_eq!(number(&frame, column), None, "{column}");

@@ -51,10 +51,10 @@ pub(super) fn ro_crate(asked: &FolderArguments, license: Option<&str>) -> Result
     }
     say(&format!("Written: {}, which describes {}.\n", shown(&path), counted(audit.file_count, "file")))?;
     if campaign.survey(Check::Sizes).report != Standing::Done {
-        say("Caution: this run is not finished, or its report is not of what is there now.\n")?;
+        say("warning: the run is not finished, or its report is out of date\n")?;
     }
     if license.is_none() {
-        say("A crate that is published needs a licence: --license states it, as in --license CC-BY-4.0.\n")?;
+        say("A published crate needs a licence: --license CC-BY-4.0, for instance.\n")?;
     }
     Ok(0)
 }

@@ -10,13 +10,13 @@ use crate::spec::{SurfaceParams, quoted};
 use crate::stages::measure;
 use crate::store::hdf5::{SurfaceHeader, read_surface, write_surface, write_tamaas};
 use crate::store::scan::export::write_netcdf3;
-use crate::text::wrapped;
+use crate::text::{counted, wrapped};
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
 pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
-    let refused = |why: &dyn std::fmt::Display| failed(format!("cannot take the surface {}: {why}", asked.file.display()));
+    let refused = |why: &dyn std::fmt::Display| failed(format!("cannot import {}: {why}", asked.file.display()));
     recognize(&asked.file).map_err(|error| refused(&error))?.map_err(|refusal| refused(&refusal))?;
     let digest = digest_of_file(&asked.file).map_err(|error| refused(&error))?;
     let params = params(asked);
@@ -29,7 +29,7 @@ pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
     }
     if let Some(pixel_m) = asked.pixel_m.filter(|pixel| !(*pixel > 0.0 && pixel.is_finite())) {
         return Err(failed(format!(
-            "cannot take the surface {}: --pixel-m is {pixel_m}; allowed: positive numbers of metres",
+            "cannot import {}: --pixel-m is {pixel_m}\nhelp: give a positive number of metres",
             asked.file.display()
         )));
     }
@@ -39,10 +39,7 @@ pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
         may_be_written(&asked.file, &out)?;
     }
     if !asked.dry_run && out.exists() && !asked.force {
-        return Err(failed(format!(
-            "cannot write the surface to {}: it is there already; allowed: another --out, or --force",
-            out.display()
-        )));
+        return Err(failed(format!("cannot write the surface to {}: the file exists\nhelp: use another --out, or --force", out.display())));
     }
     let points = header.measured.as_ref().map_or(0.0, |of| of.shortest_wavelength_m) * prepared.heights_m.nrows() as f64 / header.length_m;
     let (summits, edge) = find_measured(prepared.heights_m.view(), header.length_m, (header.periodic, points)).map_err(failed)?;
@@ -87,18 +84,18 @@ fn named_after(file: &Path) -> PathBuf {
     PathBuf::from(name)
 }
 
-/// Refuses to write over the scan itself, and over what is no file, whatever is asked for.
+/// Refuses to overwrite the scan itself, and anything that is not a file.
 fn may_be_written(scan: &Path, out: &Path) -> Result<(), Fault> {
-    let refused = |why: &str| failed(format!("cannot write the surface to {}: {why}; allowed: another --out", out.display()));
+    let refused = |why: &str| failed(format!("cannot write the surface to {}: {why}\nhelp: use another --out", out.display()));
     let Ok(there) = std::fs::metadata(out) else { return Ok(()) };
     if !there.is_file() {
-        return Err(refused("it is no regular file"));
+        return Err(refused("it is not a regular file"));
     }
     let same = |a: &Path, b: &Path| matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b);
     if same(scan, out) { Err(refused("it is the measured surface itself")) } else { Ok(()) }
 }
 
-/// What is known of a surface, as JSON.
+/// The statistics of a surface as JSON.
 fn answer(header: &SurfaceHeader, [points, summits, edge]: [usize; 3], rings: Vec<Value>, written: Option<&Path>) -> Value {
     let measured = header.measured.as_ref();
     let fit = measured
@@ -129,7 +126,7 @@ fn answer(header: &SurfaceHeader, [points, summits, edge]: [usize; 3], rings: Ve
     })
 }
 
-/// The same in words, eighty columns wide.
+/// The same as text of at most 80 columns.
 fn told(file: &Path, header: &SurfaceHeader, [points, summits, edge]: [usize; 3], written: Option<&Path>) -> String {
     let (length, rms) = (header.length_m, header.rms_height_m);
     let area = length * length;
@@ -137,7 +134,7 @@ fn told(file: &Path, header: &SurfaceHeader, [points, summits, edge]: [usize; 3]
     let nayak = m4 / (6.0 * std::f64::consts::PI * 3f64.sqrt() * m2) * area;
     let mut text = format!("{}\n", file.display());
     let mut line = |what: &str, value: String| text += &format!("  {what:<14}{value}\n");
-    let continued = if header.periodic { "continues periodically" } else { "does not continue periodically" };
+    let continued = if header.periodic { "periodic" } else { "not periodic" };
     if let Some(of) = &header.measured {
         let ([rows, columns], [a, b]) = (of.source_point_counts, of.source_spacings_m);
         line("file", format!("{rows} x {columns} points, {a:.4e} m by {b:.4e} m apart"));
@@ -150,18 +147,22 @@ fn told(file: &Path, header: &SurfaceHeader, [points, summits, edge]: [usize; 3]
     if let Some(of) = &header.measured {
         line(
             "missing",
-            format!("{} points{}", of.missing_count, if of.missing_count > 0 { ", filled in as a membrane would be" } else { "" }),
+            format!(
+                "{}{}",
+                counted(usize::try_from(of.missing_count).unwrap_or(usize::MAX), "point"),
+                if of.missing_count > 0 { ", interpolated (harmonic in-fill)" } else { "" }
+            ),
         );
         let what =
             if of.detrend == Detrend::Mean { "the mean".to_owned() } else { format!("a {}: {:.3e} m rms", shape(of.detrend), of.trend_m) };
-        line("taken off", what);
-        line("", format!("waves below {:.3e} m: {:.3e} m rms", of.shortest_wavelength_m, of.noise_m));
+        line("removed", what);
+        line("", format!("wavelengths below {:.3e} m: {:.3e} m rms", of.shortest_wavelength_m, of.noise_m));
     }
     line("heights", format!("{rms:.4e} m rms, slope {:.4} rms, Laplacian {:.3e} 1/m rms", header.rms_slope, header.rms_curvature_1_m));
     line("", format!("mean curvature {:.3e} 1/m rms: half the Laplacian", 0.5 * header.rms_curvature_1_m));
-    line("summits", format!("{summits}, and {nayak:.0} after Nayak (his parameter: {:.2})", header.nayak_parameter));
+    line("summits", format!("{summits}, and {nayak:.0} predicted by Nayak (bandwidth parameter {:.2})", header.nayak_parameter));
     if edge > 0 {
-        line("", format!("{edge} more are too near to the edge and left out"));
+        line("", format!("{edge} more near the edge are excluded"));
     }
     match header.measured.as_ref().and_then(|of| of.fit) {
         Some(fit) => {
@@ -173,7 +174,7 @@ fn told(file: &Path, header: &SurfaceHeader, [points, summits, edge]: [usize; 3]
         None => line("self-affine", "no fit".to_owned()),
     }
     for caution in cautions(header) {
-        text += &wrapped(&format!("Caution: {caution}"), "  ");
+        text += &wrapped(&format!("warning: {caution}"), "  ");
     }
     match written {
         Some(path) => {
@@ -181,11 +182,11 @@ fn told(file: &Path, header: &SurfaceHeader, [points, summits, edge]: [usize; 3]
             let stem: String =
                 path.file_stem().unwrap_or_default().to_string_lossy().chars().filter(|c| c.is_ascii_alphanumeric()).take(32).collect();
             let file = quoted(&path.to_string_lossy());
-            text += &format!("Written: {}. A spec with it, with the material's own numbers in place of these:\n\n", path.display());
+            text += &format!("Written: {}. Spec for this surface; replace the material constants:\n\n", path.display());
             text += &format!("name = \"of_{stem}\"\n[surface]\nfile = {file}\n{boundary}[material]\ncontact_modulus_pa = 1e8\n");
             text += "work_of_adhesion_j_m2 = 0.05\n[cycle]\nmax_load = [0.004]       # F/(E* A0)\n";
         }
-        None => text += "Nothing was written.\n",
+        None => text += "No file was written.\n",
     }
     text
 }
@@ -210,7 +211,7 @@ fn cautions(header: &SurfaceHeader) -> Vec<String> {
         }
         match of.fit {
             Some(fit) if !(0.0..=1.0).contains(&fit.hurst) => cautions.push(format!(
-                "fit: H = {:.2} is outside 0 to 1, so that the spectrum is not self-affine between the longest wavelength and the cut-off; do not use H",
+                "fit: H = {:.2} is outside 0 to 1, so the spectrum is not self-affine between the longest wavelength and the cut-off; do not use H",
                 fit.hurst
             )),
             Some(_) => {}
@@ -219,15 +220,15 @@ fn cautions(header: &SurfaceHeader) -> Vec<String> {
     }
     if header.rms_slope > 1.0 {
         cautions.push(format!(
-            "an rms slope of {:.3} is steeper than 45 degrees; are the units right, and is no point a sentinel?",
+            "an rms slope of {:.3} is steeper than 45 degrees; check the units, and values of missing points",
             header.rms_slope
         ));
     }
     if header.rms_slope < 1e-5 {
-        cautions.push(format!("an rms slope of {:.1e} is flatter than any measured surface; are the units right?", header.rms_slope));
+        cautions.push(format!("an rms slope of {:.1e} is flatter than any measured surface; check the units", header.rms_slope));
     }
     if header.rms_height_m < 1e-10 {
-        cautions.push(format!("{:.1e} m rms is less than an atom; are the units right?", header.rms_height_m));
+        cautions.push(format!("{:.1e} m rms is less than an atom; check the units", header.rms_height_m));
     }
     cautions
 }
@@ -236,7 +237,7 @@ fn shape(detrend: Detrend) -> &'static str {
     match detrend {
         Detrend::Mean => "mean",
         Detrend::Plane => "plane",
-        Detrend::Quadratic => "surface of second order",
+        Detrend::Quadratic => "quadratic surface",
     }
 }
 
@@ -258,7 +259,7 @@ pub(super) fn export(asked: &ExportArguments, layout: &Layout) -> Result<u8, Fau
         }
         Layout::Tamaas => {
             write_tamaas(&asked.out, heights.view(), size).map_err(failed)?;
-            if header.periodic { "" } else { "Caution: Tamaas takes every surface for periodic, and this one is not.\n" }
+            if header.periodic { "" } else { "warning: Tamaas assumes a periodic surface; this one is not periodic\n" }
         }
     };
     say(&format!("Written: {}\n{note}", asked.out.display()))?;

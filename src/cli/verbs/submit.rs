@@ -1,4 +1,4 @@
-//! `submit`: what is not done yet goes to Slurm; and what `status` says of its queue.
+//! `submit`: pending tasks as Slurm jobs; and the state of Slurm's queue for `status`.
 
 use super::place::{open, told};
 use super::{BAD_SPEC, Fault, failed, make_folder, own_file, say};
@@ -31,7 +31,7 @@ pub(super) fn slurm(spec: &Path, output: &OutputArguments, shards: Option<u32>, 
     let queue = queue(&sent).unwrap_or_default();
     if let Some((_, of, _)) = queue.shards.iter().find(|(_, of, _)| *of != shards) {
         return Err(failed(format!(
-            "cannot submit {} in {shards} shards: jobs with {of} shards are in the queue; allowed: --shards {of}, or after they have ended",
+            "cannot submit {} in {shards} shards: jobs with {of} shards are in the queue\nhelp: use --shards {of}, or wait until they have ended",
             campaign.spec.name
         )));
     }
@@ -45,7 +45,7 @@ pub(super) fn slurm(spec: &Path, output: &OutputArguments, shards: Option<u32>, 
     let waiting: Vec<_> =
         [Stage::Generate, Stage::Extract, Stage::Cycle].map(open).into_iter().filter(|(_, open)| !open.is_empty()).collect();
     if waiting.is_empty() && (queue.aggregates || survey.report == Standing::Done) {
-        let why = if queue.aggregates { "all that is missing is in the queue" } else { "everything is done" };
+        let why = if queue.aggregates { "all pending tasks are in the queue" } else { "everything is done" };
         say(&if output.json { jobs_json(&campaign, &[], &[]) } else { format!("Nothing to submit: {why}.\n") })?;
         return Ok(0);
     }
@@ -110,7 +110,7 @@ fn send(campaign: &Campaign, order: &Order, mut sent: Vec<Sent>, json: bool) -> 
     say(&if json {
         jobs_json(campaign, &jobs, &numbers)
     } else {
-        format!("Logs: {log}\n`hysteron status {dir}` tells how far it is; the same command again sends only what is missing.\n")
+        format!("Logs: {log}\n`hysteron status {dir}` shows the state. The same command submits only missing tasks.\n")
     })?;
     Ok(0)
 }
@@ -131,21 +131,16 @@ fn shown(arguments: &[String]) -> String {
 }
 
 fn sbatch(arguments: &[String]) -> Result<u64, Fault> {
-    let refused = |why: &str| {
-        failed(format!(
-            "cannot submit with `sbatch {}`: {why}; what was submitted before stays, and is known to the next `hysteron submit`",
-            shown(arguments)
-        ))
-    };
+    let refused = |why: &str| failed(format!("cannot submit with `sbatch {}` (jobs submitted before are kept): {why}", shown(arguments)));
     let output = Command::new("sbatch")
         .args(arguments)
         .output()
-        .map_err(|error| refused(&format!("{error}; allowed: a machine with Slurm's commands, or --dry-run")))?;
+        .map_err(|error| refused(&format!("{error}\nhelp: use a machine with the commands of Slurm, or --dry-run")))?;
     let said = String::from_utf8_lossy(&output.stdout);
     // `--parsable` says the number, and where there are several clusters a semicolon and which.
     let number = said.trim().split(';').next().and_then(|number| number.parse().ok());
     number.filter(|_| output.status.success()).ok_or_else(|| match String::from_utf8_lossy(&output.stderr).trim() {
-        "" => refused("it told no number of a job"),
+        "" => refused("it returned no job number"),
         why => refused(why),
     })
 }
@@ -184,7 +179,7 @@ pub(super) fn sent(campaign: &Campaign) -> Result<Vec<Sent>, Fault> {
     let path = folder(campaign).join("jobs.json");
     let refused = |why: String| {
         let path = path_shown(&path);
-        failed(format!("cannot read the jobs that were sent from {path}: {why}; allowed: to delete it, once none of them is in the queue"))
+        failed(format!("cannot read the submitted jobs from {path}: {why}\nhelp: delete the file when none of its jobs is in the queue"))
     };
     match std::fs::read(&path) {
         Ok(bytes) => serde_json::from_slice(&bytes).map_err(|error| refused(error.to_string())),

@@ -48,7 +48,7 @@ pub(super) fn status(asked: &FolderArguments, watch: bool) -> Result<u8, Fault> 
                 text += &format!("warning: {why}: the spec of this folder may differ from the one that was run\n");
             }
             text += &in_queue(&campaign);
-            let does = |open| format!("{} pending. Resume with: {}\n", counted(open, "task"), resuming(&campaign.dir));
+            let does = |open| format!("{} pending; resume with `{}`.\n", counted(open, "task"), resuming(&campaign.dir));
             text += &remaining(&units, &campaign, does);
         }
         if watch && !asked.json && std::io::stdout().is_terminal() {

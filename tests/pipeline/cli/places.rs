@@ -23,7 +23,7 @@ fn e2e_a_folder_stands_for_its_spec_and_a_spec_for_its_folder() {
         same(command, more);
     }
     let status = same("status", &[]);
-    assert!(status.contains("small in data/runs/small") && status.contains("Resume with: hysteron run data/runs/small"), "{status}");
+    assert!(status.contains("small in data/runs/small") && status.contains("resume with `hysteron run data/runs/small`"), "{status}");
     // The folder is run where it is, and not in the default folder of its name.
     fs::rename(bench.folder.path().join(dir), bench.out()).unwrap();
     assert_eq!(code(&hysteron(&bench, &["run", "out", "--until", "cycle"])), 0);

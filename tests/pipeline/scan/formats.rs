@@ -116,7 +116,7 @@ fn e2e_commands_name_the_format() {
     assert_eq!(
         lines,
         [
-            "error: cannot take the surface a.gwy: unsupported file format: GWY (Gwyddion)",
+            "error: cannot import a.gwy: unsupported file format: GWY (Gwyddion)",
             "help: convert it in Python (pip install SurfaceTopography) and import the result:",
             "    from SurfaceTopography.IO import open_topography",
             "    open_topography(\"a.gwy\").topography().to_netcdf(\"a.nc\")",

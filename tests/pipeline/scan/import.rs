@@ -89,7 +89,7 @@ fn e2e_a_scan_is_taken_and_told() {
     // In words, in eighty columns; nothing is written over, and a dry run writes nothing.
     let before = fs::read(folder.path().join("scan.h5")).unwrap();
     let refused = import(folder.path(), &[&["scan.npy"], &TOLD[..]].concat());
-    assert!(code(&refused) == 1 && stderr(&refused).contains("it is there already; allowed: another --out, or --force"));
+    assert!(code(&refused) == 1 && stderr(&refused).contains("the file exists\nhelp: use another --out, or --force"));
     let dry = import(folder.path(), &[&["scan.npy", "--dry-run", "--out", "other.h5"], &TOLD[..]].concat());
     assert!(code(&dry) == 0 && stdout(&dry).lines().all(|line| line.chars().count() <= 80), "{}", stdout(&dry));
     assert!(!folder.path().join("other.h5").exists());
@@ -110,10 +110,10 @@ fn e2e_a_scan_is_taken_and_told() {
     assert!(folder.path().join("raw_taken.h5").exists());
     fs::create_dir(folder.path().join("folder")).unwrap();
     let output = import(folder.path(), &["raw.h5", "--out", "folder", "--force"]);
-    assert!(code(&output) == 1 && stderr(&output).contains("it is no regular file"), "{}", stderr(&output));
+    assert!(code(&output) == 1 && stderr(&output).contains("it is not a regular file"), "{}", stderr(&output));
     // Units that cannot be right are doubted.
     let steep = import(folder.path(), &["scan.npy", "--dry-run", "--pixel-m", "1e-9", "--unit", "um"]);
-    assert!(stdout(&steep).contains("Caution: an rms slope of "), "{}", stdout(&steep));
+    assert!(stdout(&steep).contains("warning: an rms slope of "), "{}", stdout(&steep));
 }
 
 #[test]
@@ -174,7 +174,7 @@ fn e2e_a_scan_goes_through_all_stages() {
     fs::write(bench.spec(), spec("file = \"no such scan.npy\"")).unwrap();
     let output = bench.verb("plan", &[]);
     assert_eq!(code(&output), 2);
-    for words in ["the measured surface \"no such scan.npy\" cannot be read", "spec.toml:3:", "^", "where the command is run"] {
+    for words in ["the measured surface \"no such scan.npy\" cannot be read", "spec.toml:3:", "^", "(working directory)"] {
         assert!(stderr(&output).contains(words), "{}", stderr(&output));
     }
 }
@@ -197,8 +197,13 @@ fn e2e_what_is_no_surface_is_refused_and_writes_nothing() {
         ("sizeless", bytes(&fine), &["--unit", "nm"], "no pixel size in the file"),
         ("unitless", bytes(&fine), &["--pixel-m", "1e-9"], "no unit of the heights in the file"),
         ("volts", bytes(&fine), &["--pixel-m", "1e-9", "--unit", "V"], "is not a unit of length\nhelp: use one of "),
-        ("point", bytes(&fine), &["--pixel-m", "0", "--unit", "nm"], "--pixel-m is 0; allowed: positive numbers of metres"),
-        ("periodic", bytes(&fine), &["--pixel-m", "1e-9", "--unit", "nm", "--periodic"], "square"),
+        ("point", bytes(&fine), &["--pixel-m", "0", "--unit", "nm"], "--pixel-m is 0\nhelp: give a positive number of metres"),
+        (
+            "periodic",
+            bytes(&fine),
+            &["--pixel-m", "1e-9", "--unit", "nm", "--periodic"],
+            "expected the number of columns for a periodic surface",
+        ),
         ("noise", b"\x7fELF\x02\x01\x01".to_vec(), &[], "unknown file format"),
     ];
     for (name, bytes, arguments, words) in cases {
@@ -211,7 +216,7 @@ fn e2e_what_is_no_surface_is_refused_and_writes_nothing() {
         assert!(!folder.path().join(name).with_extension("h5").exists(), "{name}");
     }
     let filled = import(folder.path(), &[&["holed", "--fill", "--dry-run"], &TOLD[..]].concat());
-    assert!(stdout(&filled).contains("1 points, filled in"), "{}", stdout(&filled));
+    assert!(stdout(&filled).contains("1 point, interpolated"), "{}", stdout(&filled));
 }
 
 /// A lying header and a zip bomb, with less memory than they ask for.

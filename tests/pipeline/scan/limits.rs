@@ -51,7 +51,7 @@ fn e2e_a_crop_and_a_bad_fit_are_cautions() {
     // In words too, in eighty columns.
     let output = imported(folder.path(), &whole.slice(s![..100, ..]).to_owned(), &TOLD);
     let words = stdout(&output);
-    assert!(words.contains("Caution: crop: 68 % of the scan") && words.contains("rows x columns; the row index runs along x"), "{words}");
+    assert!(words.contains("warning: crop: 68 % of the scan") && words.contains("rows x columns; the row index runs along x"), "{words}");
     assert!(words.lines().all(|line| line.chars().count() <= 80), "{words}");
     // White noise has C(q) constant: H = -1.
     let mut state = 1_u64;
