@@ -80,7 +80,8 @@ fn root() -> PathBuf {
 /// Words in lower case with single spaces, framed by spaces; punctuation other than hyphens and colons is removed.
 fn plain(line: &str) -> String {
     let kept: String = line.to_lowercase().chars().map(|c| if c.is_alphanumeric() || "-:[].'⁻³".contains(c) { c } else { ' ' }).collect();
-    let words: Vec<&str> = kept.split_whitespace().map(|word| word.trim_end_matches('.')).collect();
+    let words: Vec<&str> =
+        kept.split_whitespace().map(|word| if word == "allowed:" { word } else { word.trim_end_matches(['.', ':']) }).collect();
     format!(" {} ", words.join(" "))
 }
 
@@ -89,7 +90,7 @@ fn banned(line: &str) -> Option<(&'static str, &'static str)> {
     let line = RIGHT.iter().fold(plain(line), |line, right| line.replace(&plain(right), " "));
     BANNED.iter().copied().find(|(phrase, _)| {
         let found = |end: &str| line.contains(&format!(" {phrase}{end}"));
-        if phrase.ends_with([':', ']']) { found("") } else { found(" ") || found(": ") }
+        if phrase.ends_with([':', ']']) { found("") } else { found(" ") }
     })
 }
 
