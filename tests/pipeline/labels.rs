@@ -112,7 +112,7 @@ fn law_no_number_vanishes_in_the_scale_of_its_column() {
     };
     let text = row(&[("loss_mean", -1.84e-11), ("loss_sd", 2.96e-11), ("loss_ratio_dk_mean", 51245.0), ("loss_ratio_dk_sd", 67298.0)]);
     assert!(text.contains("-2e-11±3e-11") && text.contains("5.1e4±6.7e4"), "{text}");
-    assert!(!text.contains("0.000") && !text.contains("51245") && text.contains("Numbers with an exponent are absolute"), "{text}");
+    assert!(!text.contains("0.000") && !text.contains("51245") && text.contains("Numbers with an exponent are not scaled"), "{text}");
     let text = row(&[("loss_mean", 5.43e-12), ("loss_sd", 2.11e-12), ("area_at_max_load_mean", 1.24e-5), ("area_at_max_load_sd", 2e-6)]);
     assert!(text.contains("5.4e-12±2e-12") && text.contains("1.2e-5±2e-6"), "{text}");
     let text = row(&[("loss_mean", 1e-7), ("loss_sd", 2e-4)]);

@@ -51,7 +51,7 @@ fn e2e_a_disk_that_fails_at_any_call_tears_nothing() {
             } else if code(&output) != 0 {
                 failed += 1;
                 assert_eq!(code(&output), 1, "call {at}: {said}");
-                let last = said.lines().last().unwrap_or_default();
+                let last = said.lines().rfind(|line| line.starts_with("error: ")).unwrap_or_default();
                 assert!(last.starts_with("error: cannot ") && last.contains(bench.out().to_str().unwrap()), "call {at}: {said}");
                 assert!(last.contains(word), "call {at}: {said}");
             }

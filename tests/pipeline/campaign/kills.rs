@@ -91,6 +91,6 @@ fn e2e_a_shard_is_a_part_and_says_what_it_cannot_be() {
     for wrong in ["2/2", "0/0", "1", "a/b", "-1/2", "0/1000001", "0/18446744073709551615"] {
         let refused = bench.verb("cycle", &[&format!("--shard={wrong}")]);
         assert_eq!(code(&refused), 2, "{wrong}");
-        assert!(stderr(&refused).contains("K from 0 to N - 1"), "{wrong}: {}", stderr(&refused));
+        assert!(stderr(&refused).contains("expected K/N, two integers with 0 <= K < N"), "{wrong}: {}", stderr(&refused));
     }
 }
