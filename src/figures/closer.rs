@@ -41,6 +41,8 @@ pub struct Closer<'a> {
     pub rms_height_m: f64,
     /// Side of the square \[m\].
     pub length_m: f64,
+    /// Whether the square has periodic images.
+    pub periodic: bool,
     /// Pull-off load of a JKR asperity over its radius, `(3/2)πΔγ` \[N/m\].
     pub pull_off_n_m: f64,
     /// Spectrum that the surface has: wavenumber q/qL and `C qL²/h_rms²`.

@@ -118,7 +118,7 @@ fn ground(heights: ArrayView2<'_, f64>) -> String {
     paths.into_iter().enumerate().map(fill).collect()
 }
 
-/// The spots at a step as circles, with their images across the edges; and how many there are.
+/// Contact spots at a step as circles, with the images across the edges of a periodic square, and their number.
 fn spots(of: &Closer<'_>, step: i64) -> Result<(String, usize), FigureError> {
     let (steps, states, ids) = (of.contacts.i64("step")?, of.contacts.text("state")?, of.contacts.i64("asperity_id")?);
     let (radii, loads) = (of.contacts.f64("contact_radius_m")?, of.contacts.f64("load_n")?);
@@ -135,10 +135,11 @@ fn spots(of: &Closer<'_>, step: i64) -> Result<(String, usize), FigureError> {
     spots.sort_by(|u, v| v.2.total_cmp(&u.2));
     spots.truncate(MOST_SPOTS);
     let mut svg = String::new();
+    let shifts: &[f64] = if of.periodic { &[-SIDE, 0.0, SIDE] } else { &[0.0] };
     for (hue, wanted) in [(PUSHED, false), (PULLED, true)] {
         let _ = write!(svg, "<g fill=\"{hue}\" fill-opacity=\"0.85\">");
         for (x, y, r, _) in spots.iter().filter(|spot| spot.3 == wanted) {
-            for (dx, dy) in [-SIDE, 0.0, SIDE].into_iter().flat_map(|dx| [-SIDE, 0.0, SIDE].map(|dy| (dx, dy))) {
+            for (dx, dy) in shifts.iter().flat_map(|dx| shifts.iter().map(move |dy| (dx, dy))) {
                 let (x, y) = (x + dx, y + dy);
                 if (-r..SIDE + r).contains(&x) && (-r..SIDE + r).contains(&y) {
                     let _ = write!(svg, "<circle cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"{r:.2}\"/>");

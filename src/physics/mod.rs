@@ -131,7 +131,7 @@ pub enum PhysicsError {
     },
     /// Merged contacts fill the square.
     #[error(
-        "the merged contacts have the area {share:.3} A0 at the mean penetration {approach_m:e} m and overlap their periodic images\n\
+        "the merged contacts have the area {share:.3} A0 at the mean penetration {approach_m:e} m and leave no gap\n\
          help: reduce cycle.max_load, or set model.coalescence = \"cover\""
     )]
     FullContact {
@@ -143,13 +143,16 @@ pub enum PhysicsError {
     /// The contacts have a larger area than the nominal one.
     #[error(
         "the contact area {share:.3} A0 exceeds the nominal area at the mean penetration {approach_m:e} m: the contacts have grown together, and the \
-         asperity model is invalid\nhelp: reduce cycle.max_load; a contact that fills the area under tension is in full contact and outside this model"
+         asperity model is invalid\nhelp: {}",
+        excess_help(*load_n)
     )]
     ExcessArea {
         /// Mean penetration Δ \[m\].
         approach_m: f64,
         /// Contact area Σπa² over A0.
         share: f64,
+        /// Load there \[N\].
+        load_n: f64,
     },
     /// A loop with negative dissipated energy.
     #[error(
@@ -190,6 +193,15 @@ pub enum PhysicsError {
         /// Mean penetration Δ at the end of the search \[m\].
         approach_m: f64,
     },
+}
+
+/// What helps where the contact area exceeds the nominal one at a load \[N\].
+fn excess_help(load_n: f64) -> &'static str {
+    if load_n > 0.0 {
+        "reduce cycle.max_load, increase the reduced modulus or reduce the work of adhesion"
+    } else {
+        "adhesion alone closes the contact, so a smaller cycle.max_load has no effect: increase the reduced modulus or reduce the work of adhesion"
+    }
 }
 
 /// Why no equilibrium was found.

@@ -24,7 +24,7 @@ pub const LARGEST_IMBALANCE: f64 = 0.5;
 pub(super) fn check_area(problem: &Problem, step: &Step) -> Result<(), PhysicsError> {
     let share = step.area_m2 / (problem.length_m * problem.length_m);
     // Not a number is refused as well.
-    if share <= 1.0 { Ok(()) } else { Err(PhysicsError::ExcessArea { approach_m: step.approach_m, share }) }
+    if share <= 1.0 { Ok(()) } else { Err(PhysicsError::ExcessArea { approach_m: step.approach_m, share, load_n: step.load_n }) }
 }
 
 /// Energies of one loop \[J\].

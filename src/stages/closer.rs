@@ -6,7 +6,7 @@ use super::statistics::moments;
 use super::surface::{scale, spectrum};
 use crate::campaign::{Campaign, CycleUnit, Standing};
 use crate::figures::{Closer, Panel, closer};
-use crate::model::Normalization;
+use crate::model::{Boundary, Normalization};
 use crate::physics::periodogram::{periodogram, windowed_periodogram};
 use crate::physics::spectrum::Spectrum;
 use crate::physics::theory::curvature_density;
@@ -69,6 +69,7 @@ pub(super) fn look(campaign: &Campaign, standings: &[Standing]) -> Result<Option
         energy_j: case.material.contact_modulus_pa * area * scale.rms_height_m,
         rms_height_m: scale.rms_height_m,
         length_m: header.length_m,
+        periodic: case.model.boundary == Boundary::Periodic,
         pull_off_n_m: 1.5 * PI * case.material.work_of_adhesion_j_m2,
         found: &found,
         asked: &asked(&case.surface),

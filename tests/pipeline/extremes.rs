@@ -34,7 +34,8 @@ fn e2e_a_contact_beyond_full_contact_fails_in_a_sentence() {
         let bench = Bench::new(&spec(surface, material, load));
         let run = bench.verb("run", &[]);
         assert_eq!(code(&run), 3, "{surface} {material} {load}: {}", stderr(&run));
-        assert!(stderr(&run).contains("help: reduce cycle.max_load"), "{}", stderr(&run));
+        let help = if load == "0.2" { "help: reduce cycle.max_load" } else { "help: adhesion alone closes the contact" };
+        assert!(stderr(&run).contains(help), "{}", stderr(&run));
         let frame = cases(&bench.out());
         assert_eq!((frame.i64("done_count").unwrap()[0], frame.i64("failed_count").unwrap()[0]), (0, 2));
         for column in ["loss_mean", "pull_off_load_mean", "area_at_max_load_mean", "audit_gap_max"] {

@@ -109,7 +109,11 @@ pub(super) fn tally_json(ended: &Ended<'_>) -> String {
 /// The number of failed cases, and the command that reruns them.
 pub(super) fn failed_cases(failures: usize, dir: &Path) -> String {
     let them = if failures == 1 { "it" } else { "them" };
-    format!("{} failed; `hysteron retry {}` reruns {them}.\n", counted(failures, "case"), shell_path(dir))
+    format!(
+        "{} failed; `hysteron retry {}` reruns {them}.\nThe same spec and program give the same failure: follow the help of the error.\n",
+        counted(failures, "case"),
+        shell_path(dir)
+    )
 }
 
 fn failures(campaign: &Campaign) -> Vec<(String, String)> {
