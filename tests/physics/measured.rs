@@ -198,7 +198,7 @@ fn law_what_is_no_surface_is_refused_with_a_sentence() {
         (Array2::zeros((0, 0)), [1.0; 2], PLAIN, "16 or more"),
         (Array2::from_elem((32, 32), 5e-6), [1.0; 2], PLAIN, "constant"),
         (fine.clone(), [1.0, 20.0], PLAIN, "up to 16"),
-        (fine.clone(), [1.0, 1.1], Treatment { periodic: true, ..PLAIN }, "1 where"),
+        (fine.clone(), [1.0, 1.1], Treatment { periodic: true, ..PLAIN }, "1 for a periodic surface"),
         (fine.clone(), [0.0, 0.0], PLAIN, "positive"),
         (fine.slice(s![.., 2..]).to_owned(), [1.0; 2], Treatment { periodic: true, ..PLAIN }, "square"),
         (fine.mapv(nan), [1.0; 2], Treatment { missing: Missing::Fill, ..PLAIN }, "half"),
@@ -234,7 +234,7 @@ fn law_heights_beyond_numbers_are_told_as_what_they_are() {
     let plane = Array2::from_shape_fn((64, 64), |(i, j)| 1.0 + 1e-6 * (i as f64 - 3.0 * j as f64));
     assert!(told(plane, Treatment { detrend: Detrend::Plane, ..PLAIN }).contains("flat to rounding"));
     let short = Array2::from_shape_fn((64, 64), |(i, _)| (TAU * i as f64 / 4.0).cos());
-    assert!(told(short, Treatment { periodic: true, ..PLAIN }).contains("below the cut-off, 8.000e0 m"));
+    assert!(told(short, Treatment { periodic: true, ..PLAIN }).contains("above the S-filter cut-off, 8.000e0 m"));
 }
 
 #[test]
