@@ -20,7 +20,7 @@ def test_a_scan_is_taken(program, tmp_path):
     assert (tmp_path / "scan.h5").exists() and about["file"] == str(tmp_path / "scan.h5")
     alone = hysteron.take(tmp_path / "scan.npy", pixel_m=1e-8, unit="nm")
     assert alone["file"] is None and alone["rms_slope"] == about["rms_slope"]
-    with pytest.raises(hysteron.Failed, match="no pixel size in the file"):
+    with pytest.raises(hysteron.Failed, match="no unit of the heights in the file"):
         hysteron.take(tmp_path / "scan.npy")
 
 

@@ -48,7 +48,7 @@ def test_a_dict_is_run(program, tmp_path, monkeypatch, capsys):
     assert hysteron.run(text, until="aggregate").dir == run.dir
     (tmp_path / "spec.toml").write_text(text)
     again = hysteron.run("spec.toml", until="aggregate")
-    assert again.dir == run.dir and "cycle: 1 units, 1 done before" in capsys.readouterr().err
+    assert again.dir == run.dir and "cycle: 1 task, 1 done before" in capsys.readouterr().err
     other = hysteron.run(Path("spec.toml"), out="other", until="generate")
     assert other.dir == tmp_path / "other" and len(other.surface_ids) == 1 and len(other) == 0
 
@@ -80,7 +80,7 @@ def test_failed_cases_are_a_warning(said, tmp_path):
         print('{{"dir": "{tmp_path}", "stages": [{{"failed_count": 0}}, {{"failed_count": 2}}]}}')
         sys.exit(3)
     """)
-    with pytest.warns(hysteron.FailedCases, match="^2 cases failed; why is in .*hysteron retry"):
+    with pytest.warns(hysteron.FailedCases, match="^2 cases failed; reasons: .*hysteron retry"):
         assert hysteron.run("spec.toml").dir == tmp_path
 
 

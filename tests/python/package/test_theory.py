@@ -115,7 +115,7 @@ def test_errors():
             spectrum.moments(**{**SURFACE, key: wrong})
     with pytest.raises(ValueError, match="the squared mode number is 1.5e0\nhelp: expected a whole number"):
         spectrum.density(1.5, **SURFACE)
-    with pytest.raises(ValueError, match="cannot normalise by 'rms'"):
+    with pytest.raises(ValueError, match="unknown normalization 'rms'"):
         spectrum.lattice_moments(**SURFACE, normalization="rms")
     with pytest.raises(ValueError, match=r"the energy of flattening: the work of adhesion \[J/m2\] is 0"):
         theory.conformity(**SURFACE, contact_modulus_pa=E, work_of_adhesion_j_m2=0)
