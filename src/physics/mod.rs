@@ -144,15 +144,15 @@ pub enum PhysicsError {
     #[error(
         "the contact area {share:.3} A0 exceeds the nominal area at the mean penetration {approach_m:e} m: the contacts have grown together, and the \
          asperity model is invalid\nhelp: {}",
-        excess_help(*load_n)
+        excess_help(*load_before_n)
     )]
     ExcessArea {
         /// Mean penetration Δ \[m\].
         approach_m: f64,
         /// Contact area Σπa² over A0.
         share: f64,
-        /// Load there \[N\].
-        load_n: f64,
+        /// Load at the step before \[N\].
+        load_before_n: f64,
     },
     /// A loop with negative dissipated energy.
     #[error(
@@ -195,9 +195,9 @@ pub enum PhysicsError {
     },
 }
 
-/// What helps where the contact area exceeds the nominal one at a load \[N\].
-fn excess_help(load_n: f64) -> &'static str {
-    if load_n > 0.0 {
+/// What helps where the contact area exceeds the nominal one after a step at a load \[N\].
+fn excess_help(load_before_n: f64) -> &'static str {
+    if load_before_n > 0.0 {
         "reduce cycle.max_load, increase the reduced modulus or reduce the work of adhesion"
     } else {
         "adhesion alone closes the contact, so a smaller cycle.max_load has no effect: increase the reduced modulus or reduce the work of adhesion"

@@ -161,6 +161,7 @@ impl Recorder {
             cycle.contacts.extend(spots_of(problem, state, number));
         }
         let load = at.totals.load_n;
+        let load_before = self.load_before.unwrap_or(0.0);
         let pulls = load < self.pulled.as_ref().map_or(0.0, |pulled| pulled.0);
         if settings.contacts == KeptContacts::Turning && self.branch == Branch::Unloading && pulls {
             // A step that is kept already need not be kept twice.
@@ -172,7 +173,7 @@ impl Recorder {
         self.merged_before = state.merged.len();
         path.log.drift_m = 0.0;
         path.held.clear();
-        check_area(problem, &cycle.steps[number])
+        check_area(problem, &cycle.steps[number], load_before)
     }
 }
 

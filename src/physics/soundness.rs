@@ -18,13 +18,14 @@ pub const EVENT_ACCURACY: f64 = 1e-5;
 pub const LARGEST_IMBALANCE: f64 = 0.5;
 
 /// Refuses a step whose contact area Σπa² \[m²\] exceeds the nominal area A0. The area of the union of the contacts is smaller than that sum.
+/// `load_before_n` is the load \[N\] at the step before: the load of a contact that fills the area means nothing.
 ///
 /// # Errors
 /// [`PhysicsError::ExcessArea`].
-pub(super) fn check_area(problem: &Problem, step: &Step) -> Result<(), PhysicsError> {
+pub(super) fn check_area(problem: &Problem, step: &Step, load_before_n: f64) -> Result<(), PhysicsError> {
     let share = step.area_m2 / (problem.length_m * problem.length_m);
     // Not a number is refused as well.
-    if share <= 1.0 { Ok(()) } else { Err(PhysicsError::ExcessArea { approach_m: step.approach_m, share, load_n: step.load_n }) }
+    if share <= 1.0 { Ok(()) } else { Err(PhysicsError::ExcessArea { approach_m: step.approach_m, share, load_before_n }) }
 }
 
 /// Energies of one loop \[J\].
