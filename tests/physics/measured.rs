@@ -200,7 +200,7 @@ fn law_what_is_no_surface_is_refused_with_a_sentence() {
         (fine.clone(), [1.0, 20.0], PLAIN, "up to 16"),
         (fine.clone(), [1.0, 1.1], Treatment { periodic: true, ..PLAIN }, "1 for a periodic surface"),
         (fine.clone(), [0.0, 0.0], PLAIN, "positive"),
-        (fine.slice(s![.., 2..]).to_owned(), [1.0; 2], Treatment { periodic: true, ..PLAIN }, "square"),
+        (fine.slice(s![.., 2..]).to_owned(), [1.0; 2], Treatment { periodic: true, ..PLAIN }, "number of columns"),
         (fine.mapv(nan), [1.0; 2], Treatment { missing: Missing::Fill, ..PLAIN }, "half"),
     ];
     for (heights, spacing, treatment, words) in cases {
