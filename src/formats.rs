@@ -288,16 +288,7 @@ impl Foreign {
 
 /// A path as a string literal of Python.
 fn quoted(path: &Path) -> String {
-    let mut text = String::from('"');
-    for sign in path.to_string_lossy().chars() {
-        match sign {
-            '"' | '\\' => text.extend(['\\', sign]),
-            sign if sign.is_control() => text += &format!("\\u{:04x}", sign as u32),
-            sign => text.push(sign),
-        }
-    }
-    text.push('"');
-    text
+    crate::text::quoted(&path.to_string_lossy())
 }
 
 /// A path as one word of a shell, which no character can end.

@@ -71,6 +71,21 @@ pub fn printable(text: &str) -> Cow<'_, str> {
     if text.chars().any(hides) { escaped(text, hides).into() } else { text.into() }
 }
 
+/// A string literal of TOML, which Python reads alike.
+#[must_use]
+pub fn quoted(text: &str) -> String {
+    let mut quoted = String::from('"');
+    for c in text.chars() {
+        match c {
+            '"' | '\\' => quoted.extend(['\\', c]),
+            c if c.is_control() => quoted += &format!("\\u{:04x}", c as u32),
+            c => quoted.push(c),
+        }
+    }
+    quoted.push('"');
+    quoted
+}
+
 /// One word of a command that is meant to be pasted into a POSIX shell; `$'…'` for control characters, as bash, zsh and ksh have it.
 #[must_use]
 pub fn shell_quote(word: &str) -> String {

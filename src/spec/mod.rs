@@ -29,12 +29,12 @@ use crate::model::{
     Amplitudes, Boundary, Coalescence, Detrend, Interaction, JumpIn, KeptContacts, Material, Missing, Normalization, Slip, Slips,
 };
 
+pub use crate::text::quoted;
 pub use fault::{Fault, Place, SpecErrors};
 pub use json_schema::{SCHEMA_FILE, json_schema};
 pub use keys::MEASURED;
 pub use realizations::{Realizations, Until};
 pub use reference::reference;
-pub use write::quoted;
 
 /// The greatest number of cases that one spec may make.
 pub const MAX_CASES: u32 = 10_000;

@@ -9,7 +9,7 @@ use super::fault::{Faults, NOWHERE};
 use super::keys::{TABLES, find};
 use super::sweep::SweepDraft;
 use super::walk::{Draft, Origin, enter, entries};
-use super::write::quoted;
+use crate::text::quoted;
 
 /// The option, as errors name it.
 const OPTION: &str = "--set";

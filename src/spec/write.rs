@@ -4,6 +4,7 @@ use std::fmt::{Error, Write as _};
 
 use super::keys::{GENERATED, KEYS, Key, MEASURED, TABLES};
 use super::{Case, CaseParams, Spec, Value};
+use crate::text::quoted;
 
 /// The text of a spec.
 pub(super) fn toml(spec: &Spec) -> String {
@@ -53,21 +54,6 @@ fn follows(key: &Key, spec: &Spec) -> bool {
     let set = |name: &str| spec.sweeps.iter().any(|sweep| sweep.name == name && sweep.axes.iter().any(|axis| axis.key == key.path));
     let differs = |case: &Case| (key.get)(&case.params) != (key.get)(&spec.base);
     key.path == "surface.detrend" && spec.cases.iter().any(|case| differs(case) && !case.sweeps.iter().all(|name| set(name)))
-}
-
-/// A text as TOML has it.
-#[must_use]
-pub fn quoted(text: &str) -> String {
-    let mut quoted = String::from('"');
-    for c in text.chars() {
-        match c {
-            '"' | '\\' => quoted.extend(['\\', c]),
-            c if c.is_control() => quoted += &format!("\\u{:04x}", c as u32),
-            c => quoted.push(c),
-        }
-    }
-    quoted.push('"');
-    quoted
 }
 
 /// A value as TOML. Rust's shortest form of a float is also TOML's, and reads back to the same bits.

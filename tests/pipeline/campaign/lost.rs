@@ -1,4 +1,4 @@
-//! What `verify` says of lost receipts and of files that nobody's receipt names, and what `gc` takes of figures.
+//! Lost receipts and files that no receipt names in `verify`, and figures that `gc` removes.
 
 use super::SMALL;
 use crate::bench::{Bench, code, files, stderr, stdout};
@@ -80,7 +80,7 @@ fn e2e_lost_folders_are_missed_by_what_was_built_on_them() {
 fn e2e_files_that_no_receipt_names_are_listed_up_to_twenty() {
     let bench = Bench::new(SMALL);
     assert_eq!(code(&bench.verb("run", &[])), 0);
-    // What belongs to nobody's task; and what the program knows without a receipt.
+    // Files of no task, and files that need no receipt.
     fs::write(bench.out().join("notes.txt"), "mine").unwrap();
     fs::write(bench.out().join("surfaces/.hysteron-torn.tmp"), "torn").unwrap();
     assert_eq!(audit(&bench), (Vec::new(), Vec::new()));

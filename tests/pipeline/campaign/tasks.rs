@@ -60,7 +60,7 @@ fn e2e_pipes_and_dangling_links_are_replaced_and_nothing_waits_for_them() {
     assert_eq!(code(&bench.verb("run", &[])), 0);
     let whole = files(&bench.out());
     let folder = victims(&bench)[2].parent().unwrap().to_owned();
-    // What a cycle leaves on its way, and where it fails, is looked for at every run.
+    // Checkpoints and records of failures are read at every run.
     for kept in ["failed.json", "halfway.bin"] {
         assert!(Command::new("mkfifo").arg(folder.join(kept)).status().unwrap().success());
     }
