@@ -4,6 +4,7 @@
 
 mod avalanche;
 pub mod bandlimited;
+pub mod boundary_elements;
 pub mod cycle;
 mod dense;
 pub mod equilibrium;

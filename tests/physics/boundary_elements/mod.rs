@@ -1,0 +1,4 @@
+//! Adhesive boundary elements against exact solutions.
+
+mod johnson;
+mod study;
