@@ -141,6 +141,15 @@ pub enum PhysicsError {
         /// Area over that of the square.
         share: f64,
     },
+    /// Full contact at a load reversal, with bonds that open at edges only.
+    #[error(
+        "full contact at the mean penetration {approach_m:e} m: there is no edge from which the surfaces can separate\n\
+         help: reduce cycle.max_load or the work of adhesion, increase the reduced modulus, or set boundary_elements.attraction = \"range\""
+    )]
+    Closed {
+        /// Mean penetration Δ \[m\].
+        approach_m: f64,
+    },
     /// The contacts have a larger area than the nominal one.
     #[error(
         "the contact area {share:.3} A0 exceeds the nominal area at the mean penetration {approach_m:e} m: the contacts have grown together, and the \

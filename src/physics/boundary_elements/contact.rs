@@ -5,10 +5,11 @@
 
 use super::grid::{HalfSpace, Operator, Waves};
 use super::law::{Bond, Law};
-use super::sums::{PANEL, largest, remove_mean, sums};
+use super::sums::{PANEL, grain, largest, remove_mean, sums};
 use crate::physics::PhysicsError;
 use crate::physics::memory::filled;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 /// A contact problem in units of the grid: lengths in spacings, stresses in E*.
 pub struct Problem {
@@ -39,7 +40,7 @@ pub enum Attraction {
 }
 
 /// A state of the contact.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// Approach Δ, 0 where the undeformed surfaces touch \[dx\].
     pub approach: f64,
@@ -52,7 +53,7 @@ pub struct State {
 }
 
 /// Bond of a point.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Bonding {
     /// None: the wall alone acts.
     Free,
@@ -63,7 +64,7 @@ pub enum Bonding {
 }
 
 /// Sums over a state.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Totals {
     /// Load \[E* dx²\], compression positive.
     pub load: f64,
@@ -144,7 +145,7 @@ impl Problem {
             Bonding::Free => u8::from(nucleate && gap <= nucleation),
             _ => u8::from(self.touches(bonding, gap)),
         });
-        let open: Vec<u8> = touching.par_iter().with_min_len(PANEL).map(|t| 1 - t).collect();
+        let open: Vec<u8> = touching.par_iter().with_min_len(grain(1)).map(|t| 1 - t).collect();
         let (near, edge) = (self.within(&touching, margin), self.within(&open, margin));
         let mut changed = false;
         for (bond, (near, edge)) in state.bonds.iter_mut().zip(near.iter().zip(&edge)) {
@@ -164,7 +165,7 @@ impl Problem {
     pub(super) fn settle_bonds(&self, state: &mut State) {
         let Attraction::Bonded { margin, .. } = self.attraction else { return };
         let touching = self.map(state, |bonding, gap| u8::from(self.touches(bonding, gap)));
-        let open: Vec<u8> = touching.par_iter().with_min_len(PANEL).map(|t| 1 - t).collect();
+        let open: Vec<u8> = touching.par_iter().with_min_len(grain(1)).map(|t| 1 - t).collect();
         let (near, edge) = (self.within(&touching, margin), self.within(&open, margin));
         let (end, spring) = (self.law.end_gap(), self.law.spring_gap());
         for k in 0..near.len() {
@@ -178,14 +179,14 @@ impl Problem {
     }
 
     fn map(&self, state: &State, value: impl Fn(Bonding, f64) -> u8 + Sync) -> Vec<u8> {
-        (0..self.half_space.points()).into_par_iter().with_min_len(PANEL).map(|k| value(state.bonds[k], self.gap(state, k))).collect()
+        (0..self.half_space.points()).into_par_iter().with_min_len(grain(1)).map(|k| value(state.bonds[k], self.gap(state, k))).collect()
     }
 
     /// Points in a square of half side `margin` around marked points, on the periodic grid.
     fn within(&self, marked: &[u8], margin: usize) -> Vec<u8> {
         let (rows, columns) = (self.half_space.rows(), self.half_space.columns());
         let mut along = vec![0; marked.len()];
-        along.par_chunks_mut(columns).zip(marked.par_chunks(columns)).with_min_len(PANEL / columns + 1).for_each(|(to, from)| {
+        along.par_chunks_mut(columns).zip(marked.par_chunks(columns)).with_min_len(grain(columns)).for_each(|(to, from)| {
             for shift in 0..=margin.min(columns - 1) {
                 or(&mut to[shift..], &from[..columns - shift]);
                 or(&mut to[..shift], &from[columns - shift..]);
@@ -194,7 +195,7 @@ impl Problem {
             }
         });
         let mut near = vec![0; marked.len()];
-        near.par_chunks_mut(columns).enumerate().with_min_len(PANEL / columns + 1).for_each(|(row, to)| {
+        near.par_chunks_mut(columns).enumerate().with_min_len(grain(columns)).for_each(|(row, to)| {
             for shift in 0..=2 * margin.min(rows / 2) {
                 let from = (row + rows + shift - margin.min(rows / 2)) % rows;
                 or(to, &along[from * columns..][..columns]);
@@ -205,7 +206,7 @@ impl Problem {
 
     /// Gradient of the energy without its mean, into `residual`, and the slopes of the law into `slopes`: (rms, largest magnitude) \[E*\].
     pub(super) fn residual(&self, state: &State, residual: &mut [f64], slopes: &mut [f64]) -> (f64, f64) {
-        residual.par_chunks_mut(PANEL).zip(slopes.par_chunks_mut(PANEL)).enumerate().for_each(|(panel, (to, slopes))| {
+        residual.par_chunks_mut(PANEL).zip(slopes.par_chunks_mut(PANEL)).enumerate().with_min_len(grain(PANEL)).for_each(|(panel, (to, slopes))| {
             for (k, (value, slope)) in to.iter_mut().zip(slopes).enumerate() {
                 let point = panel * PANEL + k;
                 let bond = self.bond(state.bonds[point], self.gap(state, point));

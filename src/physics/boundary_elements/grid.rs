@@ -3,7 +3,7 @@
 //! The displacement `u` of a half-space under the pressure `p` satisfies `p(q) = (E*/2)|q| u(q)` for every wavevector but zero. Lengths in this module
 //! are in grid spacings and pressures in E*, so the operator is `K = |q|/2` and its elastic energy `½ u·K u` in `E* dx³`.
 
-use super::sums::PANEL;
+use super::sums::grain;
 use crate::physics::PhysicsError;
 use crate::physics::memory::filled;
 use rayon::prelude::*;
@@ -112,7 +112,7 @@ impl HalfSpace {
         let half = self.columns / 2 + 1;
         let Waves { by_row, by_block, transforms } = waves;
         *transforms += 2;
-        by_row.par_chunks_mut(half).zip(field.par_chunks(self.columns)).with_min_len(PANEL / self.columns + 1).for_each_init(
+        by_row.par_chunks_mut(half).zip(field.par_chunks(self.columns)).with_min_len(grain(self.columns)).for_each_init(
             || (self.forward_row.make_input_vec(), self.forward_row.make_scratch_vec()),
             |(input, scratch), (row, values)| {
                 input.copy_from_slice(values);
@@ -122,12 +122,12 @@ impl HalfSpace {
         );
         let by_row: &[Complex64] = by_row;
         let chunks = by_block.par_chunks_mut(self.rows * BLOCK).zip(self.stiffness.par_chunks(self.rows * BLOCK)).enumerate();
-        chunks.for_each_init(
+        chunks.with_min_len(grain(self.rows * BLOCK)).for_each_init(
             || self.column_space(),
             |space, (block, (waves, stiffness))| self.block(operator, by_row, block, waves, stiffness, space),
         );
         let by_block: &[Complex64] = by_block;
-        result.par_chunks_mut(self.columns).enumerate().with_min_len(PANEL / self.columns + 1).for_each_init(
+        result.par_chunks_mut(self.columns).enumerate().with_min_len(grain(self.columns)).for_each_init(
             || (self.inverse_row.make_input_vec(), self.inverse_row.make_scratch_vec()),
             |(input, scratch), (row, values)| {
                 for (block, part) in input.chunks_mut(BLOCK).enumerate() {

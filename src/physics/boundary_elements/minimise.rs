@@ -6,7 +6,7 @@
 
 use super::contact::{Problem, State};
 use super::grid::{Operator, Waves};
-use super::sums::{PANEL, add, dot, largest, remove_mean, sums};
+use super::sums::{PANEL, grain, add, dot, largest, remove_mean, sums};
 use crate::physics::PhysicsError;
 use crate::physics::memory::filled;
 use rayon::prelude::*;
@@ -113,7 +113,7 @@ impl Minimiser {
             add(&mut state.displacement, step, &self.direction);
             add(&mut state.pressure, step, &self.response);
             let scale = step;
-            self.direction.par_chunks_mut(PANEL).for_each(|part| part.iter_mut().for_each(|x| *x *= scale));
+            self.direction.par_chunks_mut(PANEL).with_min_len(grain(PANEL)).for_each(|part| part.iter_mut().for_each(|x| *x *= scale));
             if step == 0.0 {
                 break;
             }
@@ -140,7 +140,7 @@ impl Minimiser {
         }
         pair.step.copy_from_slice(&self.direction);
         let (residual, previous) = (&self.residual, &self.previous);
-        pair.change.par_chunks_mut(PANEL).enumerate().for_each(|(panel, part)| {
+        pair.change.par_chunks_mut(PANEL).enumerate().with_min_len(grain(PANEL)).for_each(|(panel, part)| {
             let from = panel * PANEL;
             part.iter_mut().enumerate().for_each(|(k, x)| *x = residual[from + k] - previous[from + k]);
         });
@@ -161,21 +161,21 @@ impl Minimiser {
             let weight = pair.weight - dot(&pair.change, &self.direction) / pair.curvature;
             add(&mut self.direction, weight, &pair.step);
         }
-        self.direction.par_chunks_mut(PANEL).for_each(|part| part.iter_mut().for_each(|x| *x = -*x));
+        self.direction.par_chunks_mut(PANEL).with_min_len(grain(PANEL)).for_each(|part| part.iter_mut().for_each(|x| *x = -*x));
         remove_mean(&mut self.direction);
     }
 
     /// `direction ← M⁻¹ direction`.
     fn precondition(&mut self, problem: &Problem) {
         let slopes = &self.slopes;
-        self.masked.par_chunks_mut(PANEL).zip(self.direction.par_chunks(PANEL)).enumerate().for_each(|(panel, (to, from))| {
+        self.masked.par_chunks_mut(PANEL).zip(self.direction.par_chunks(PANEL)).enumerate().with_min_len(grain(PANEL)).for_each(|(panel, (to, from))| {
             for (k, (x, y)) in to.iter_mut().zip(from).enumerate() {
                 *x = if slopes[panel * PANEL + k] > STIFF { 0.0 } else { *y };
             }
         });
         problem.half_space.apply(Operator::Compliance, &self.masked, &mut self.response, &mut self.waves);
         let response = &self.response;
-        self.direction.par_chunks_mut(PANEL).enumerate().for_each(|(panel, part)| {
+        self.direction.par_chunks_mut(PANEL).enumerate().with_min_len(grain(PANEL)).for_each(|(panel, part)| {
             for (k, x) in part.iter_mut().enumerate() {
                 let point = panel * PANEL + k;
                 *x = if slopes[point] > STIFF { *x / (slopes[point] + ADDED) } else { response[point] };

@@ -7,4 +7,6 @@ pub mod cycle;
 pub mod grid;
 pub mod law;
 pub mod minimise;
+pub mod regions;
+pub mod resample;
 mod sums;

@@ -29,10 +29,12 @@ fn look() {
             step: step * h,
             halvings: 4,
             accuracy: Accuracy { rms: 1e-4, largest: 1e-2, iterations: 2000 },
+            all_regions: false,
         };
         let start = std::time::Instant::now();
-        let steps = run(&problem, &settings).unwrap();
-        let loss: f64 = steps.iter().map(|s| s.dissipated).sum();
+        let cycle = run(&problem, &settings, None, &mut |_| {}, &|_| {}).unwrap();
+        let steps = &cycle.steps;
+        let loss: f64 = steps.iter().map(|s| s.imbalance).sum();
         let least = steps.iter().map(|s| s.totals.load).fold(0.0, f64::min);
         let unit = full * n as f64; // p_wfc λ
         let last = steps.last().unwrap();
@@ -42,7 +44,7 @@ fn look() {
             least / unit / -0.09594,
             1.0 - last.approach / h,
             steps.len(),
-            steps.iter().map(|s| s.iterations).sum::<usize>(),
+            steps.iter().map(|s| s.iterations as usize).sum::<usize>(),
             steps.iter().map(|s| s.transforms).sum::<u64>(),
             steps.iter().filter(|s| !s.converged).count(),
             start.elapsed()

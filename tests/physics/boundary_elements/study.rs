@@ -42,15 +42,17 @@ fn rough() {
             step: env("HB_STEP", 0.03) * h,
             halvings: env("HB_HALF", 3.0) as u32,
             accuracy: Accuracy { rms: env("HB_TOL", 1e-4), largest: 100.0 * env("HB_TOL", 1e-4), iterations: 3000 },
+            all_regions: false,
         };
         let start = std::time::Instant::now();
-        let steps = run(&problem, &settings).unwrap();
-        let loss: f64 = steps.iter().map(|s| s.dissipated).sum();
+        let cycle = run(&problem, &settings, None, &mut |_| {}, &|_| {}).unwrap();
+        let steps = &cycle.steps;
+        let loss: f64 = steps.iter().map(|s| s.imbalance).sum();
         let total = loss / (points * h);
-        let quiet: f64 = steps.iter().filter(|s| s.dissipated < 1e-3 * loss).map(|s| s.dissipated).sum::<f64>() / loss;
+        let quiet: f64 = steps.iter().filter(|s| s.imbalance < 1e-3 * loss).map(|s| s.imbalance).sum::<f64>() / loss;
         let least = steps.iter().map(|s| s.totals.load).fold(0.0, f64::min) / points;
         let turn = steps.iter().rfind(|s| s.reversal.is_none()).unwrap();
-        let load_loss: f64 = steps.iter().filter(|s| s.reversal.is_none()).map(|s| s.dissipated).sum::<f64>() / (points * h);
+        let load_loss: f64 = steps.iter().filter(|s| s.reversal.is_none()).map(|s| s.imbalance).sum::<f64>() / (points * h);
         println!(
             "n {n}: A {:.4} F {:.5} Fpo {:.4} Theta {:.4} (loading {:.4}) quiet {quiet:.4} steps {} iter/step {:.0} fft/step {:.0} unconv {} {:.1?}",
             turn.totals.contact as f64 / points,
@@ -59,15 +61,15 @@ fn rough() {
             total * 1e3,
             load_loss * 1e3,
             steps.len(),
-            steps.iter().map(|s| s.iterations).sum::<usize>() as f64 / steps.len() as f64,
+            steps.iter().map(|s| s.iterations as usize).sum::<usize>() as f64 / steps.len() as f64,
             steps.iter().map(|s| s.transforms).sum::<u64>() as f64 / steps.len() as f64,
             steps.iter().filter(|s| !s.converged).count(),
             start.elapsed()
         );
         if env("HB_PRINT", 0.0) > 0.0 {
-            for s in &steps {
-                if s.dissipated > 0.005 * loss {
-                    println!("   {} D/h {:.4} F {:.3} A {:.4} E {:.4}", s.reversal.map_or("load", |_| "unload"), s.approach / h, s.totals.load / points * 1e3, s.totals.contact as f64 / points, s.dissipated / (points * h) * 1e3);
+            for s in steps {
+                if s.imbalance > 0.005 * loss {
+                    println!("   {} D/h {:.4} F {:.3} A {:.4} E {:.4}", s.reversal.map_or("load", |_| "unload"), s.approach / h, s.totals.load / points * 1e3, s.totals.contact as f64 / points, s.imbalance / (points * h) * 1e3);
                 }
             }
         }
