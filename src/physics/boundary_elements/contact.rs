@@ -139,7 +139,7 @@ impl Problem {
 
     /// Bonds the free points within the margin of a contact and opens the sealed ones within the margin of an open point; with `nucleate` free points
     /// that touch are a contact too. Neither raises the energy. Whether a bond has changed.
-    pub(super) fn update_bonds(&self, state: &mut State, nucleate: bool) -> bool {
+    pub fn update_bonds(&self, state: &mut State, nucleate: bool) -> bool {
         let Attraction::Bonded { margin, nucleation } = self.attraction else { return false };
         let touching = self.map(state, |bonding, gap| match bonding {
             Bonding::Free => u8::from(nucleate && gap <= nucleation),
@@ -162,7 +162,7 @@ impl Problem {
 
     /// Ends the bonds of points that have separated, beyond the end of the law and of the margin, and seals those inside contacts at which the law is
     /// its spring. Neither changes the energy.
-    pub(super) fn settle_bonds(&self, state: &mut State) {
+    pub fn settle_bonds(&self, state: &mut State) {
         let Attraction::Bonded { margin, .. } = self.attraction else { return };
         let touching = self.map(state, |bonding, gap| u8::from(self.touches(bonding, gap)));
         let open: Vec<u8> = touching.par_iter().with_min_len(grain(1)).map(|t| 1 - t).collect();

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 /// Dissipated energy of an event, and of one that is located by halving the step, of the energy dissipated so far.
 const EVENT: f64 = 3e-4;
-const LARGE: f64 = 1e-2;
+const LARGE: f64 = 3e-3;
 /// Relative accuracy of the load at a reversal.
 const LOAD_ACCURACY: f64 = 1e-6;
 /// Approach at which a load counts as not reached, in ranges of the heights.
@@ -360,7 +360,7 @@ impl<'a> Walk<'a> {
         loop {
             let length = sense * self.settings.step / f64::from(1_u32 << self.at.level);
             let (mut state, mut step) = self.attempt(self.at.state.approach + length)?;
-            let large = step.imbalance > LARGE * self.at.dissipated;
+            let large = step.imbalance.abs() > LARGE * self.at.dissipated;
             if large && self.at.level < self.settings.halvings {
                 (iterations, transforms) = (iterations + step.iterations, transforms + step.transforms);
                 self.at.level += 1;
