@@ -27,6 +27,8 @@ const BARS: usize = 40;
 pub struct Closer<'a> {
     /// The turning point that is looked at, `F/(E* A0)`.
     pub max_load: f64,
+    /// The parameters of the case, for the captions.
+    pub parameters: &'a str,
     /// Its steps.
     pub steps: &'a Frame,
     /// Its events.
