@@ -21,7 +21,7 @@ mod trust;
 
 pub use comparison::compare;
 pub use cycle::unload_again;
-pub use measure::measure;
+pub use measure::{Imported, measure};
 pub use sampling::sampled;
 
 use crate::campaign::{Campaign, CycleUnit, Shard, Stage, Standing, SurfaceUnit, Unit};

@@ -64,7 +64,7 @@ pub(super) fn read(mut source: Source, variable: Option<&str>) -> Result<Scan, C
     };
     let said: Vec<_> = [along_x, along_y].into_iter().flatten().filter_map(|axis| axis.number("periodic")).collect();
     let periodic = (!said.is_empty()).then(|| said.iter().all(|periodic| periodic.abs() > 0.0));
-    Ok(Scan { heights, size_m, unit, periodic, spacing: None })
+    Ok(Scan { heights, size_m, unit, factor: scale * metres, periodic, spacing: None })
 }
 
 fn unit_of(variable: &Variable) -> Option<&str> {

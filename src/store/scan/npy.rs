@@ -26,7 +26,7 @@ pub(super) fn read(mut source: Source) -> Result<Scan, Cause> {
         return Err(format!("the file has {length} bytes, but {rows} by {columns} numbers of type {:?} need {says}", about.descr).into());
     }
     let heights = field(&mut source.file, (kind, order), [rows, columns], about.layout, |value| value)?;
-    Ok(Scan { heights, size_m: None, unit: None, periodic: None, spacing: None })
+    Ok(Scan { heights, size_m: None, unit: None, factor: 1.0, periodic: None, spacing: None })
 }
 
 /// The line, and where the numbers begin.

@@ -165,7 +165,7 @@ impl Matrix {
         let meaning = self.heading.meaning(extent)?;
         let mut heights = shaped(extent, self.values)?;
         heights *= meaning.factor;
-        Ok(Scan { heights, size_m: meaning.size_m, unit: meaning.unit, periodic: None, spacing: None })
+        Ok(Scan { heights, size_m: meaning.size_m, unit: meaning.unit, factor: meaning.factor, periodic: None, spacing: None })
     }
 
     /// The heights of points. Where the file says a unit of the heights, it holds for x and y, unless these have their own.
@@ -176,7 +176,14 @@ impl Matrix {
         let meaning = self.heading.of_points(found.spacing, extent)?;
         let mut heights = found.heights;
         heights *= meaning.factor;
-        Ok(Scan { heights, size_m: meaning.size_m, unit: meaning.unit, periodic: None, spacing: Some(found.spacing) })
+        Ok(Scan {
+            heights,
+            size_m: meaning.size_m,
+            unit: meaning.unit,
+            factor: meaning.factor,
+            periodic: None,
+            spacing: Some(found.spacing),
+        })
     }
 }
 

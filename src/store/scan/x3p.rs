@@ -58,7 +58,14 @@ pub(super) fn read(source: Source) -> Result<Scan, Cause> {
         remove(&mut heights, &mut bits)?;
         ends(bits, name)?;
     }
-    Ok(Scan { heights, size_m: about.size_m, unit: Some("m".to_owned()), periodic: None, spacing: None })
+    Ok(Scan {
+        heights,
+        size_m: about.size_m,
+        unit: Some("m".to_owned()),
+        factor: about.increment.unwrap_or(1.0),
+        periodic: None,
+        spacing: None,
+    })
 }
 
 /// Takes out the points whose bit is 0; the lowest bit of a byte comes first.
