@@ -203,7 +203,7 @@ pub(super) const TABLES: [&str; 4] = ["surface", "material", "model", "cycle"];
 /// Keys of `[surface]` that describe a measured surface.
 pub const MEASURED: [&str; 7] = ["file", "dataset", "periodic", "pixel_m", "unit", "missing", "detrend"];
 /// Keys of `[surface]` that describe a generated one.
-pub(super) const GENERATED: [&str; 6] = ["length_m", "rms_height_m", "hurst", "magnification", "normalization", "amplitudes"];
+pub const GENERATED: [&str; 6] = ["length_m", "rms_height_m", "hurst", "magnification", "normalization", "amplitudes"];
 
 /// The place in [`KEYS`] of a key of a table.
 pub(super) fn find(table: &str, name: &str) -> Option<usize> {

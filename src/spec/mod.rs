@@ -32,7 +32,7 @@ use crate::model::{
 pub use crate::text::quoted;
 pub use fault::{Fault, Place, SpecErrors};
 pub use json_schema::{SCHEMA_FILE, json_schema};
-pub use keys::MEASURED;
+pub use keys::{GENERATED, MEASURED};
 pub use realizations::{Realizations, Until};
 pub use reference::reference;
 
