@@ -40,7 +40,7 @@ pub struct Scan {
     pub unit: Option<String>,
     /// Factor by which the reader multiplied the file's own numbers: unit of length times scale.
     pub factor: f64,
-    /// Whether the surface continues periodically, if the file says.
+    /// True if the surface continues periodically, if the file says.
     pub periodic: Option<bool>,
     /// Distance of points along the row index and along the column index in the file's own numbers, if it has positions; their unit is that of the heights where
     /// [`size_m`](Self::size_m) is unknown.
