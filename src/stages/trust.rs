@@ -75,7 +75,7 @@ impl<'a> Cases<'a> {
         self.loads.get(row).map_or("", String::as_str)
     }
 
-    /// Whether a row has a warning.
+    /// True if a row has a warning.
     fn has(&self, row: usize, word: &str) -> bool {
         self.words.get(row).is_some_and(|said| said.split('+').any(|part| part == word))
     }

@@ -47,7 +47,7 @@ pub(super) fn export(asked: &CsvArguments) -> Result<u8, Fault> {
     Ok(0)
 }
 
-/// Whether a table is one of statistics, and in the folder.
+/// True if a table is one of statistics, and in the folder.
 fn has(dir: &Path, table: &Table) -> bool {
     table.file.starts_with("statistics/") && dir.join(table.file).is_file()
 }
