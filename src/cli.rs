@@ -202,7 +202,7 @@ enum Verb {
 
 #[derive(Debug, Subcommand)]
 enum ExportVerb {
-    /// All tables of statistics as CSV (RFC 4180)
+    /// Tables of statistics as CSV (RFC 4180); with --cycles, of cycles too
     Csv(CsvArguments),
     /// A surface as NetCDF-3, for SurfaceTopography
     Netcdf(ExportArguments),

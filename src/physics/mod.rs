@@ -58,7 +58,7 @@ pub enum PhysicsError {
         action: &'static str,
         /// The quantity, with its unit.
         quantity: &'static str,
-        /// Its value.
+        /// Value.
         value: f64,
         /// What the equation allows.
         allowed: &'static str,
@@ -86,7 +86,7 @@ pub enum PhysicsError {
         smallest: f64,
         /// How many asperities lie below 2.
         below: usize,
-        /// How many asperities there are.
+        /// Number of asperities.
         all: usize,
     },
     /// No equilibrium was found near the last one, not even by relaxation.
@@ -114,7 +114,7 @@ pub enum PhysicsError {
     UnknownAsperity {
         /// The number of the asperity.
         asperity: usize,
-        /// How many asperities there are.
+        /// Number of asperities.
         count: usize,
     },
     /// Events go on without end within one increment of the approach.
@@ -174,7 +174,7 @@ pub enum PhysicsError {
         max_load: f64,
         /// Dissipated energy Θ \[J\].
         loss_j: f64,
-        /// Its magnitude over the work of loading.
+        /// Magnitude over the work of loading.
         fraction: f64,
     },
     /// The sum of the event energies differs from the loop area.

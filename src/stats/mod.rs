@@ -28,7 +28,7 @@ pub use cases::cases;
 pub use cautions::{CAUTIONS, Caution, LIMITS, Limit};
 pub use compare::{Difference, Group, Matched, Side, comparison, difference_of, matched, singles, together};
 pub use curves::curves;
-pub use digits::{labels, significant};
+pub use digits::{column_exponent, decimals, labels, labels_with_unit, significant};
 pub use listed::{Listed, Listing, listing, listing_of, sweeps};
 pub use planned::{Planned, planned};
 pub use realizations::{realizations, results};

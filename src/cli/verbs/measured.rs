@@ -7,7 +7,8 @@ use crate::keys::digest_of_file;
 use crate::model::{Choice, Detrend, Missing};
 use crate::physics::measured::find_measured;
 use crate::spec::{SurfaceParams, quoted};
-use crate::stages::measure;
+use crate::stages::{Imported, measure};
+use crate::stats::significant;
 use crate::store::hdf5::{SurfaceHeader, read_surface, write_surface, write_tamaas};
 use crate::store::scan::export::write_netcdf3;
 use crate::text::{counted, wrapped};
@@ -33,7 +34,7 @@ pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
             asked.file.display()
         )));
     }
-    let (prepared, header) = measure(&params, &digest, "").map_err(failed)?;
+    let Imported { prepared, header, height_factor_m } = measure(&params, &digest, "").map_err(failed)?;
     let out = asked.out.clone().unwrap_or_else(|| named_after(&asked.file));
     if !asked.dry_run {
         may_be_written(&asked.file, &out)?;
@@ -54,9 +55,9 @@ pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
             .iter()
             .map(|ring| json!({ "wavenumber_1_m": ring.wavenumber_1_m, "density_m4": ring.density_m4, "mode_count": ring.mode_count }))
             .collect();
-        say(&format!("{:#}\n", answer(&header, counts, rings, written)))?;
+        say(&format!("{:#}\n", answer((&header, height_factor_m), counts, rings, written)))?;
     } else {
-        say(&told(&asked.file, &header, counts, written))?;
+        say(&told(&asked.file, (&header, height_factor_m), counts, written))?;
     }
     Ok(0)
 }
@@ -96,7 +97,12 @@ fn may_be_written(scan: &Path, out: &Path) -> Result<(), Fault> {
 }
 
 /// The statistics of a surface as JSON.
-fn answer(header: &SurfaceHeader, [points, summits, edge]: [usize; 3], rings: Vec<Value>, written: Option<&Path>) -> Value {
+fn answer(
+    (header, height_factor_m): (&SurfaceHeader, Option<f64>),
+    [points, summits, edge]: [usize; 3],
+    rings: Vec<Value>,
+    written: Option<&Path>,
+) -> Value {
     let measured = header.measured.as_ref();
     let fit = measured
         .and_then(|of| of.fit)
@@ -105,6 +111,7 @@ fn answer(header: &SurfaceHeader, [points, summits, edge]: [usize; 3], rings: Ve
         "file": written.map(|path| path.display().to_string()),
         "point_count": points,
         "length_m": header.length_m,
+        "height_factor_m": height_factor_m,
         "periodic": header.periodic,
         "rms_height_m": header.rms_height_m,
         "rms_slope": header.rms_slope,
@@ -127,7 +134,12 @@ fn answer(header: &SurfaceHeader, [points, summits, edge]: [usize; 3], rings: Ve
 }
 
 /// The same as text of at most 80 columns.
-fn told(file: &Path, header: &SurfaceHeader, [points, summits, edge]: [usize; 3], written: Option<&Path>) -> String {
+fn told(
+    file: &Path,
+    (header, height_factor_m): (&SurfaceHeader, Option<f64>),
+    [points, summits, edge]: [usize; 3],
+    written: Option<&Path>,
+) -> String {
     let (length, rms) = (header.length_m, header.rms_height_m);
     let area = length * length;
     let [m2, m4] = [0.5 * header.rms_slope.powi(2), 0.375 * header.rms_curvature_1_m.powi(2)];
@@ -142,6 +154,10 @@ fn told(file: &Path, header: &SurfaceHeader, [points, summits, edge]: [usize; 3]
         if (a / b - 1.0).abs() > 1e-3 {
             line("", format!("interpolated to points {:.4e} m apart both ways", a.min(b)));
         }
+    }
+    match height_factor_m {
+        Some(factor) => line("height factor", format!("{} m per number of the file", significant(factor, 6))),
+        None => line("height factor", "1 (surface of this program, in metres)".to_owned()),
     }
     line("square", format!("{points} x {points} points, {length:.4e} m, {continued}"));
     if let Some(of) = &header.measured {

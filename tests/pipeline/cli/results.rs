@@ -2,6 +2,7 @@
 
 use super::SMALL;
 use crate::bench::{Bench, SPEC, code, files, stderr, stdout};
+use crate::scan::import::{bytes, part};
 use hysteron::schema::{self, Kind};
 use hysteron::store::parquet::read_table;
 use std::fs;
@@ -125,6 +126,63 @@ fn in_r(bench: &Bench) {
     assert_eq!(rows.parse::<usize>().unwrap(), cases.row_count());
     // Fifteen digits are printed.
     assert!((read.parse::<f64>().unwrap() / sum - 1.0).abs() < 1e-13, "{read} is not {sum}");
+}
+
+#[test]
+fn e2e_csv_of_cycles_holds_the_tables_of_each_cycle() {
+    let bench = Bench::new(SMALL);
+    assert_eq!(code(&bench.verb("run", &["--until", "aggregate"])), 0);
+    let exported = program(&["export", "csv", "--cycles", text(&bench.out())]);
+    assert_eq!(code(&exported), 0, "{}", stderr(&exported));
+    let mut count = 0;
+    for entry in fs::read_dir(bench.out().join("cycles")).unwrap() {
+        let id = entry.unwrap().file_name().into_string().unwrap();
+        for table in schema::TABLES {
+            let Some(name) = table.file.strip_prefix("cycles/<id>/") else { continue };
+            let path = format!("cycles/{id}/{name}");
+            if !bench.out().join(&path).is_file() {
+                continue;
+            }
+            let frame = read_table(&bench.out().join(&path), table).unwrap();
+            let csv = fs::read_to_string(bench.out().join("csv").join(Path::new(&path).with_extension("csv"))).unwrap();
+            assert_eq!(cells(&csv).len(), frame.row_count() + 1, "{path}");
+            count += 1;
+        }
+    }
+    assert!(count >= 8, "{count}");
+    assert_eq!(code(&bench.look("verify", &["--deep"])), 0);
+}
+
+#[test]
+fn e2e_show_lists_the_keys_of_the_kind_of_surface() {
+    let spec = "name = \"measured\"\nsurface.file = \"scan.npy\"\nsurface.pixel_m = 12.5e-9\nsurface.unit = \"nm\"\nmodel.boundary = \"isolated\"\n\
+                model.jump_in = \"jkr\"\ncycle.max_load = [0.001]\n";
+    let bench = Bench::new(spec);
+    fs::write(bench.folder.path().join("scan.npy"), bytes(&part())).unwrap();
+    let run = bench.verb("run", &["--until", "extract"]);
+    assert_eq!(code(&run), 0, "{}", stderr(&run));
+    let plan: serde_json::Value = serde_json::from_slice(&bench.verb("plan", &["--json"]).stdout).unwrap();
+    for stage in [0, 2] {
+        let shown = stdout(&bench.look("show", &[plan["stages"][stage]["units"][0]["id"].as_str().unwrap()]));
+        for part in ["surface.file = ", "surface.unit = ", "surface.points_per_shortest_wavelength = "] {
+            assert!(shown.contains(part), "{part} is missing in {shown}");
+        }
+        for part in [
+            "surface.magnification",
+            "surface.hurst",
+            "surface.length_m",
+            "surface.rms_height_m",
+            "surface.normalization",
+            "surface.amplitudes",
+        ] {
+            assert!(!shown.contains(part), "{part} is in {shown}");
+        }
+    }
+    let generated = Bench::new(SMALL);
+    let plan: serde_json::Value = serde_json::from_slice(&generated.verb("plan", &["--json"]).stdout).unwrap();
+    assert_eq!(code(&generated.verb("run", &["--until", "generate"])), 0);
+    let shown = stdout(&generated.look("show", &[plan["stages"][0]["units"][0]["id"].as_str().unwrap()]));
+    assert!(shown.contains("surface.hurst = ") && !shown.contains("surface.unit") && !shown.contains("surface.detrend"), "{shown}");
 }
 
 #[test]
