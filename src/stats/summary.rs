@@ -29,7 +29,7 @@ const REFERENCE: &str = "*: reference case. change: relative to it, where all re
 const RESULTS: [(&str, &str, f64); 4] =
     [("A", "area_at_max_load", 1.0), ("F_po [10⁻³]", "pull_off_load", 1e-3), ("Θ [10⁻³]", "loss", 1e-3), ("Θ/Θ_DK", "loss_ratio_dk", 1.0)];
 
-/// The results of every case as lines of at most 80 columns. Each sweep lists all of its cases: the reference case first, the others ordered by what varies.
+/// The results of every case as lines of at most 80 columns. Each sweep lists all of its cases: the reference case first, the others in the order of the spec.
 ///
 /// # Errors
 /// If the table lacks one of its columns.
