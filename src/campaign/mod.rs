@@ -27,8 +27,8 @@ use std::path::{Component, Path, PathBuf};
 const GENERATE: u32 = 2;
 const EXTRACT: u32 = 2;
 const CYCLE: u32 = 14;
-const AGGREGATE: u32 = 7;
-const REPORT: u32 = 10;
+const AGGREGATE: u32 = 8;
+const REPORT: u32 = 11;
 
 /// The stages, in their order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]

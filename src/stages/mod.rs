@@ -23,6 +23,7 @@ pub use comparison::compare;
 pub use cycle::unload_again;
 pub use measure::{Imported, measure};
 pub use sampling::sampled;
+pub use statistics::{Outside, foreseen};
 
 use crate::campaign::{Campaign, CycleUnit, Shard, Stage, Standing, SurfaceUnit, Unit};
 use crate::physics::PhysicsError;

@@ -15,11 +15,13 @@ pub(super) enum Shown {
 }
 
 /// The table of model validity: heading, the column that is compared with a limit, and the column shown in brackets.
-const TRUST: [(&str, &str, Option<&str>, Shown); 7] = [
+const TRUST: [(&str, &str, Option<&str>, Shown); 9] = [
     ("Tabor parameter μ: minimum (mean)", "tabor_min_min", Some("tabor_mean_mean"), Shown::Plain),
     ("asperities with μ &lt; 2", "low_tabor_share_mean", None, Shown::Percent),
-    ("overlapping contacts: mean (maximum)", "touching_share_mean", Some("touching_share_max"), Shown::Percent),
-    ("absorbed asperities: mean (maximum)", "covered_share_mean", Some("covered_share_max"), Shown::Percent),
+    ("asperities per surface: mean (minimum)", "summit_count_mean", Some("summit_count_min"), Shown::Plain),
+    ("contacts at F<sub>max</sub>: mean (minimum)", "contact_count_at_max_load_mean", Some("contact_count_at_max_load_min"), Shown::Plain),
+    ("overlapping contacts: pooled (maximum)", "touching_share_mean", Some("touching_share_max"), Shown::Percent),
+    ("absorbed asperities: pooled (maximum)", "covered_share_mean", Some("covered_share_max"), Shown::Percent),
     ("A/A<sub>0</sub>", "area_at_max_load_mean", None, Shown::Percent),
     ("U<sub>el</sub>/Δγ of the shortest octave: realised (target)", "conformity_realised_mean", Some("conformity_mean"), Shown::Plain),
     ("U<sub>el</sub>/Δγ: realised (target)", "persson_tosatti_realised_mean", Some("persson_tosatti_mean"), Shown::Plain),

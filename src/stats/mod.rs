@@ -62,6 +62,9 @@ pub struct CaseInput {
     pub planned_count: usize,
     /// How many of them failed.
     pub failed_count: usize,
+    /// Columns of the table `realizations` that depend on the surface and the material alone: one list per surface whose cycle is done or failed. Empty if
+    /// only finished cycles count.
+    pub surfaces: Vec<Given>,
 }
 
 /// One finished cycle of a case.

@@ -66,7 +66,7 @@ impl Notation {
     }
 }
 
-/// The results of every case as lines of at most 80 columns. Each sweep lists all of its cases: the reference case first, the others ordered by what varies.
+/// The results of every case as lines of at most 80 columns. Each sweep lists all of its cases: the reference case first, the others in the order of the spec.
 ///
 /// # Errors
 /// If the table lacks one of its columns.

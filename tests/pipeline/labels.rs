@@ -87,6 +87,19 @@ fn law_every_sweep_lists_its_cases_by_what_varies_the_reference_first() {
 }
 
 #[test]
+fn law_rows_and_sweeps_have_the_order_of_the_spec() {
+    let with = |id: &str, sweep: &str, zeta: f64, hurst: f64| CaseInput { planned_count: 2, ..case(id, sweep, hurst, zeta, &[0.0071]) };
+    // Neither the ids nor the values ascend.
+    let inputs =
+        [with("c", "rough", 64.0, 0.8), with("a", "rough", 512.0, 0.8), with("b", "rough", 128.0, 0.8), with("d", "hurst", 64.0, 0.7)];
+    let frame = table(&inputs, 2);
+    assert_eq!(frame.text("case_id").unwrap(), ["c", "a", "b", "d"]);
+    let text = summary(&frame).unwrap();
+    let places: Vec<_> = ["\nrough ", "ζ=64", "ζ=512", "ζ=128", "\nhurst "].iter().map(|label| text.find(label).unwrap()).collect();
+    assert!(places.is_sorted(), "{text}");
+}
+
+#[test]
 fn law_a_campaign_without_a_shared_case_has_no_reference() {
     let mut inputs = sensitivity();
     inputs.iter_mut().for_each(|input| input.sweep = "all".to_owned());

@@ -13,7 +13,18 @@ use indicatif::HumanBytes;
 use serde_json::{Map, Value, json};
 
 /// Results in the printed text; JSON has all columns.
-const RESULTS: [&str; 7] = ["pull_off_load", "area_at_max_load", "penetration_at_max_load", "loss", "loss_j", "loss_ratio_dk", "audit_gap"];
+const RESULTS: [&str; 10] = [
+    "pull_off_load",
+    "area_at_max_load",
+    "penetration_at_max_load",
+    "contact_count_at_max_load",
+    "touching_count_at_max_load",
+    "summit_count",
+    "loss",
+    "loss_j",
+    "loss_ratio_dk",
+    "audit_gap",
+];
 
 /// A case or task.
 #[derive(Default)]

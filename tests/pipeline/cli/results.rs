@@ -220,3 +220,30 @@ fn e2e_show_prints_cases_and_tasks() {
     assert_eq!(code(&unknown), 1);
     assert!(stderr(&unknown).contains("\nhelp: "), "{}", stderr(&unknown));
 }
+
+/// What the spec alone decides is said before anything is computed.
+#[test]
+fn e2e_plan_warns_of_cases_outside_the_range() {
+    let spec = SMALL.to_owned() + "[[sweep]]\nname = \"modulus\"\nmaterial.contact_modulus_pa = [1e6, 1e9]\n";
+    let bench = Bench::new(&spec);
+    let planned = bench.verb("plan", &[]);
+    assert_eq!(code(&planned), 0, "{}", stderr(&planned));
+    let text = stdout(&planned);
+    assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
+    for code in ["sticky", "conformed"] {
+        assert!(text.contains(&format!("warning[{code}]: ")), "{text}");
+    }
+    assert_eq!(text.split_whitespace().collect::<Vec<_>>().join(" ").matches("for 1 of 2 cases.").count(), 2, "{text}");
+    let answer: serde_json::Value = serde_json::from_str(&stdout(&bench.verb("plan", &["--json"]))).unwrap();
+    let outside = answer["outside_range"].as_array().unwrap();
+    assert_eq!((outside.len(), &outside[0]["code"], outside[0]["cases"].as_array().unwrap().len()), (2, &"sticky".into(), 1));
+    let value = outside[0]["max"].as_f64().unwrap();
+    assert!(value > 0.0 && value < outside[0]["limit"].as_f64().unwrap());
+    assert!(!bench.out().exists(), "plan writes nothing");
+    // The same number as after the run.
+    assert_eq!(code(&bench.verb("run", &["--until", "aggregate"])), 0);
+    let cases = read_table(&bench.out().join("statistics/cases.parquet"), &schema::CASES).unwrap();
+    assert!((cases.f64("persson_tosatti_mean").unwrap()[0] / value - 1.0).abs() < 1e-12);
+    let stiff = Bench::new(&spec.replace("[1e6, 1e9]", "1e9"));
+    assert!(!stdout(&stiff.verb("plan", &[])).contains("warning["));
+}

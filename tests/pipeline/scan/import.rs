@@ -128,6 +128,40 @@ fn e2e_a_scan_is_taken_and_told() {
     assert!(stdout(&steep).contains("warning: an rms slope of "), "{}", stdout(&steep));
 }
 
+/// The spec that `import` prints runs, inside the range of the model; one a hundred times softer is outside.
+#[test]
+fn e2e_the_printed_spec_is_inside_the_range() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("scan.npy"), bytes(&part())).unwrap();
+    let told = import(folder.path(), &[&["scan.npy"], &TOLD[..]].concat());
+    assert_eq!(code(&told), 0, "{}", stderr(&told));
+    let text = stdout(&told);
+    assert!(text.contains("model range   U_el/Δγ ≥ 2 and U_1/Δγ ≥ 1, that is E*/Δγ ≥ "), "{text}");
+    let printed = &text[text.find("name = ").unwrap()..];
+    let table: toml::Table = printed.parse().unwrap();
+    let modulus = table["material"]["contact_modulus_pa"].as_float().unwrap();
+    let adhesion = table["material"]["work_of_adhesion_j_m2"].as_float().unwrap();
+    let as_json = import(folder.path(), &[&["scan.npy", "--json", "--dry-run"], &TOLD[..]].concat());
+    let answer: Value = serde_json::from_str(&stdout(&as_json)).unwrap();
+    let number = |name: &str| answer[name].as_f64().unwrap();
+    assert!(modulus / adhesion >= 1.5 * number("least_modulus_over_adhesion_1_m"), "{text}");
+    // Cauchy and Schwarz: U_el is at most E* h_rms h'_rms/4.
+    assert!(number("flattening_m") < 0.25 * number("rms_height_m") * number("rms_slope"));
+    fs::write(folder.path().join("spec.toml"), printed).unwrap();
+    let run = |more: &[&str], out: &str| {
+        let arguments = [&["run", "spec.toml", "--until", "aggregate", "--out", out], more].concat();
+        let output = Command::new(env!("CARGO_BIN_EXE_hysteron")).args(arguments).current_dir(folder.path()).output().unwrap();
+        let cases = read_table(&folder.path().join(out).join("statistics/cases.parquet"), &schema::CASES).unwrap();
+        let ratio = cases.f64_or_null("persson_tosatti_realised_mean").unwrap()[0].unwrap();
+        (code(&output), cases.text("caution").unwrap()[0].to_owned(), ratio)
+    };
+    let (status, carried, ratio) = run(&[], "inside");
+    assert!(status == 0 && !carried.contains("sticky") && !carried.contains("conformed"), "{status} {carried}");
+    assert!((ratio * adhesion / (modulus * number("flattening_m")) - 1.0).abs() < 1e-9);
+    let soft = format!("material.contact_modulus_pa={}", 0.01 * modulus);
+    assert!(run(&["--set", &soft], "outside").1.starts_with("sticky"));
+}
+
 #[test]
 fn e2e_a_scan_goes_through_all_stages() {
     let bench = Bench::new("");
