@@ -37,6 +37,8 @@ pub enum Attraction {
     },
     /// All points: the range of the law acts everywhere.
     Range,
+    /// No point: contact without adhesion.
+    None,
 }
 
 /// A state of the contact.
@@ -107,6 +109,28 @@ impl Problem {
             pressure: filled(points, 0.0)?,
             bonds: filled(points, if self.attraction == Attraction::Range { Bonding::Bonded } else { Bonding::Free })?,
         })
+    }
+
+    /// Stress of which the accuracy of an equilibrium is a fraction \[E*\]: the maximum tension; without adhesion, the pressure that flattens the longest
+    /// waves of the heights.
+    pub(super) fn stress(&self) -> f64 {
+        match self.attraction {
+            Attraction::None => self.range() / self.half_space.columns() as f64,
+            _ => self.law.strength(),
+        }
+    }
+
+    /// Largest change of the displacement in one iteration \[dx\]. Without adhesion the energy is convex, and there is no barrier to pass over.
+    pub(super) fn reach(&self) -> f64 {
+        match self.attraction {
+            Attraction::None => self.range(),
+            _ => self.law.reach(),
+        }
+    }
+
+    /// Range of the heights \[dx\].
+    pub(super) fn range(&self) -> f64 {
+        self.heights.iter().fold(0.0, |most: f64, z| most.max(-z))
     }
 
     /// Gap at a point.

@@ -182,6 +182,7 @@ impl<'a> Walk<'a> {
         let start = match problem.attraction {
             Attraction::Bonded { nucleation, .. } => -nucleation,
             Attraction::Range => -problem.law.end_gap(),
+            Attraction::None => 0.0,
         };
         let at = match halfway {
             Some(halfway) => halfway,
@@ -205,7 +206,7 @@ impl<'a> Walk<'a> {
             let (state, step) = self.attempt(self.at.state.approach)?;
             self.accept(state, step);
         }
-        let farthest = FARTHEST * self.problem.heights.iter().fold(0.0, |most: f64, z| most.max(-z));
+        let farthest = FARTHEST * self.problem.range();
         let last = self.settings.max_loads.last().copied().unwrap_or(0.0);
         while let Some(max_load) = self.settings.max_loads.get(self.at.cycle.turning.len()).copied() {
             self.advance(1.0, Some(max_load))?;

@@ -187,7 +187,7 @@ impl Morse {
 }
 
 impl Law {
-    /// Law of the band-limited crack for the work of adhesion `work` \[E* dx\], positive.
+    /// Law of the band-limited crack for the work of adhesion `work` \[E* dx\]; 0 for the wall alone.
     #[must_use]
     pub fn crack(work: f64) -> Self {
         Self::Crack(Crack::new(work))
@@ -238,8 +238,13 @@ impl Law {
         if gap >= 0.0 {
             return Bond::default();
         }
-        let bond = self.bonded(gap);
-        Bond { energy: bond.energy + self.work(), ..bond }
+        match self {
+            Self::Crack(_) => Bond { energy: 0.5 * SPRING * gap * gap, tension: SPRING * gap, slope: SPRING },
+            Self::Morse(law) => {
+                let bond = law.at(gap);
+                Bond { energy: bond.energy + law.work, ..bond }
+            }
+        }
     }
 
     /// Work of adhesion \[E* dx\].

@@ -86,7 +86,7 @@ impl Minimiser {
     /// # Errors
     /// Not enough memory.
     pub fn minimise(&mut self, problem: &Problem, state: &mut State, accuracy: Accuracy) -> Result<Outcome, PhysicsError> {
-        let strength = problem.law.strength();
+        let strength = problem.stress();
         let mut outcome = Outcome::default();
         let mut free: Vec<Pair> = std::mem::take(&mut self.pairs);
         let mut pairs: Vec<Pair> = Vec::new();
@@ -193,7 +193,7 @@ impl Minimiser {
 
     /// Length of the step along the direction: at most the reach of the law, and such that the energy falls.
     pub(super) fn step_length(&self, problem: &Problem, state: &State) -> f64 {
-        let mut step = (problem.law.reach() / largest(&self.direction)).min(1.0);
+        let mut step = (problem.reach() / largest(&self.direction)).min(1.0);
         let [slope, linear, quadratic, start] = sums::<4>(self.direction.len(), |range, sum| {
             for k in range {
                 sum[0] += self.direction[k] * self.residual[k];

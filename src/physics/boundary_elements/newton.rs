@@ -35,7 +35,7 @@ impl Minimiser {
         let field = || filled(problem.half_space.points(), 0.0);
         let mut inner =
             Inner { step: field()?, response: field()?, residual: field()?, search: field()?, stiff: field()?, curved: field()? };
-        let strength = problem.law.strength();
+        let strength = problem.stress();
         let mut outcome = Outcome::default();
         problem.refresh(state, &mut self.waves);
         loop {
@@ -67,7 +67,7 @@ impl Minimiser {
         self.precondition_from(problem, &inner.residual);
         inner.search.copy_from_slice(&self.direction);
         let mut product = dot(&inner.residual, &self.direction);
-        let reach = problem.law.reach();
+        let reach = problem.reach();
         for iteration in 1..=INNER {
             problem.half_space.apply(Operator::Stiffness, &inner.search, &mut inner.stiff, &mut self.waves);
             self.curve(inner);
