@@ -101,6 +101,9 @@ impl Crack {
         // A fixed point: the energy is nearly linear in the factor.
         for _ in 0..40 {
             let energy = -law.nodes[0][2] + 0.5 * SPRING * law.onset * law.onset;
+            if (energy - 1.0_f64).abs() < 1e-13 {
+                break;
+            }
             factor /= energy;
             law = Self::scaled(factor);
         }
