@@ -155,13 +155,19 @@ fn law_a_warning_has_measured_value_limit_consequence_and_action() {
     for kind in CAUTIONS {
         assert!(kind.consequence.ends_with('.') && kind.action.ends_with('.') && kind.action.contains(' '), "{}", kind.code);
     }
-    // Counts: of the worst row.
+    // Counts: over the cases, each once.
     let failed = warnings(&table(&[half], 0.1, |input| {
         input.planned_count = 3;
         input.failed_count = 1;
     }))
     .unwrap();
-    assert_eq!((failed[0].measured.as_str(), failed[1].measured.as_str()), ("1 of 3 realizations finished", "1 realization failed"));
+    assert_eq!((failed[0].measured.as_str(), failed[1].measured.as_str()), ("1 of 3 realizations finished", "1 of 3 realizations failed"));
+    let twice = warnings(&table(&[half], 0.1, |input| {
+        input.max_loads = vec![0.004, 0.005];
+        (input.planned_count, input.failed_count) = (3, 2);
+    }))
+    .unwrap();
+    assert_eq!((twice[0].rows.len(), twice[1].measured.as_str()), (2, "2 of 3 realizations failed"));
 }
 
 /// The same table with other codes in the column `caution`.
