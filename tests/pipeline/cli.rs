@@ -86,6 +86,14 @@ fn e2e_every_template_is_a_spec() {
 }
 
 #[test]
+fn law_the_two_quickstarts_have_the_same_cases() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("pipelines/quickstart.toml");
+    let pipeline = Spec::read(path).unwrap();
+    let template = Spec::parse(&stdout(&hysteron(&Bench::new(""), &["init", "quickstart"])), "quickstart").unwrap();
+    assert_eq!((&template.cases, template.seed, &template.realizations), (&pipeline.cases, pipeline.seed, &pipeline.realizations));
+}
+
+#[test]
 fn val_the_full_template_has_every_key_with_its_default() {
     let bench = Bench::new("");
     let text = stdout(&hysteron(&bench, &["init", "full"]));
