@@ -46,14 +46,14 @@ enum Verb {
         campaign: CampaignArguments,
         #[arg(long, value_enum, value_name = "STAGE", default_value = "report", hide_possible_values = true, help = help::UNTIL)]
         until: StageArgument,
-        /// List pending tasks without running them, as `plan` does
+        /// Count pending tasks without running them, as `plan` does
         #[arg(long, short = 'n')]
         dry_run: bool,
         /// Open report.html when the run has finished
         #[arg(long)]
         open: bool,
     },
-    /// List pending tasks and the reasons, without running them
+    /// Count pending tasks by stage, with reasons; --json lists them
     Plan {
         /// Spec (TOML), or the output folder of a run
         spec: PathBuf,

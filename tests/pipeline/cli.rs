@@ -128,5 +128,13 @@ fn e2e_a_plan_has_the_reasons_of_pending_tasks() {
     assert!(plan.contains("cycle     2 planned\n  2 pending tasks: cycle.approach_step 0.05 → 0.1\n"), "{plan}");
     assert!(plan.contains("generate  2 done\n") && plan.contains("`run` would compute 4 tasks."), "{plan}");
     let plan = stdout(&bench.verb("plan", &["--set", "realizations=3"]));
-    assert!(plan.contains("  1 pending task: realization 1 → 2\n") || plan.contains("  1 pending task: realization 0 → 2\n"), "{plan}");
+    assert!(plan.contains("  1 pending task: not computed yet\n") && !plan.contains('→'), "nothing was changed but added: {plan}");
+    let answer: serde_json::Value = serde_json::from_slice(&bench.verb("plan", &["--set", "realizations=3", "--json"]).stdout).unwrap();
+    let pending: Vec<&serde_json::Value> =
+        answer["stages"][2]["units"].as_array().unwrap().iter().filter(|unit| unit["state"] == "planned").collect();
+    assert!(pending.len() == 1 && pending[0]["why"] == "not computed yet", "{pending:?}");
+    let more = bench.folder.path().join("more.toml");
+    std::fs::write(&more, SMALL.replace("realizations = 2", "realizations = 3")).unwrap();
+    let explained = stdout(&bench.look("explain", &[pending[0]["id"].as_str().unwrap(), "--spec", more.to_str().unwrap()]));
+    assert!(explained.contains(" is planned\n  not computed yet; ") && !explained.contains("requested"), "{explained}");
 }
