@@ -131,9 +131,12 @@ enum Verb {
         /// Spec (TOML), or the output folder of a run
         #[arg(required_unless_present = "compare")]
         spec: Option<PathBuf>,
-        /// Compare these runs with the first one, as `compare` does
-        #[arg(long, num_args = 2.., value_name = "DIR", conflicts_with_all = ["spec", "set"])]
+        /// Compare these runs with SPEC or the first one, as `compare` does
+        #[arg(long, num_args = 1.., value_name = "DIR", conflicts_with = "set")]
         compare: Vec<PathBuf>,
+        /// Replace a comparison of other runs
+        #[arg(long, requires = "compare")]
+        force: bool,
         /// Open the report when it is written
         #[arg(long)]
         open: bool,
@@ -202,7 +205,7 @@ enum Verb {
 
 #[derive(Debug, Subcommand)]
 enum ExportVerb {
-    /// All tables of statistics as CSV (RFC 4180)
+    /// All tables of statistics or of a comparison as CSV (RFC 4180)
     Csv(CsvArguments),
     /// A surface as NetCDF-3, for SurfaceTopography
     Netcdf(ExportArguments),

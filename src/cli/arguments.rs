@@ -82,6 +82,9 @@ pub(super) struct CompareArguments {
     /// Print JSON
     #[arg(long)]
     pub(super) json: bool,
+    /// Replace a comparison of other runs
+    #[arg(long)]
+    pub(super) force: bool,
     /// Open comparison.html when it is written
     #[arg(long)]
     pub(super) open: bool,

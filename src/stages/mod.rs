@@ -19,7 +19,7 @@ mod surface;
 mod theories;
 mod trust;
 
-pub use comparison::compare;
+pub use comparison::{Comparison, compare};
 pub use cycle::unload_again;
 pub use measure::measure;
 pub use sampling::sampled;
@@ -112,6 +112,18 @@ pub enum StageError {
         path: PathBuf,
         /// What it has.
         kept: String,
+    },
+    /// A campaign that is to be compared with itself.
+    #[error("cannot compare {} with itself\nhelp: name each run once", shown(path))]
+    ComparedTwice {
+        /// Its folder.
+        path: PathBuf,
+    },
+    /// A comparison of other campaigns in the place of a new one.
+    #[error("{} holds the comparison of other runs\nhelp: write to another folder with --out DIR, or replace it with --force", shown(path))]
+    OtherComparison {
+        /// Its folder.
+        path: PathBuf,
     },
     /// Campaigns without a case in common.
     #[error(
