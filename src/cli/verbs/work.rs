@@ -102,10 +102,10 @@ fn differences(compared: &Comparison) -> Result<String, FrameError> {
 
 pub(super) fn retry(asked: &FolderArguments, ids: &[String], talk: TalkArguments) -> Result<u8, Fault> {
     let dir = folder(asked)?;
-    let campaign = open_dir("retry the failed cases of", &dir)?;
+    let campaign = open_dir("retry the failed cycles of", &dir)?;
     if let Some(why) = campaign.spec_fault() {
         let dir = shown(&dir);
-        return Err(failed(format!("cannot retry the failed cases of {dir}: {why}\nhelp: run `hysteron run SPEC` first")));
+        return Err(failed(format!("cannot retry the failed cycles of {dir}: {why}\nhelp: run `hysteron run SPEC` first")));
     }
     let standings = campaign.cycle_standings(Check::Sizes);
     let units = campaign.cycles.iter().zip(standings);
@@ -113,11 +113,11 @@ pub(super) fn retry(asked: &FolderArguments, ids: &[String], talk: TalkArguments
     if let Some(strange) = ids.iter().find(|id| !failures.contains(*id)) {
         let mut known: Vec<&str> = failures.iter().map(String::as_str).collect();
         known.sort_unstable();
-        let known = if known.is_empty() { "no case has failed".to_owned() } else { format!("failed are: {}", known.join(", ")) };
+        let known = if known.is_empty() { "no cycle has failed".to_owned() } else { format!("failed are: {}", known.join(", ")) };
         return Err(failed(format!("cannot retry {strange}: it has not failed in {}\nhelp: {known}", shown(&dir))));
     }
     if failures.is_empty() {
-        say("Nothing to retry: no case has failed.\n")?;
+        say("Nothing to retry: no cycle has failed.\n")?;
         return Ok(0);
     }
     let retried = if ids.is_empty() { failures } else { ids.iter().cloned().collect() };
@@ -128,8 +128,19 @@ pub(super) fn retry(asked: &FolderArguments, ids: &[String], talk: TalkArguments
 fn perform(campaign: Campaign, task: &Task, json: bool, talk: TalkArguments) -> Result<u8, Fault> {
     let teller = Arc::new(Teller::new(talk));
     interrupt::expect(teller.clone(), &campaign.dir).map_err(failed)?;
-    let (campaign, tallies) = rayon::scope(|_| stages::run(campaign, task, &*teller)).map_err(failed)?;
-    let ended = Ended::of(&campaign, &tallies, teller.elapsed());
+    let jobs = submit::sent(&campaign).unwrap_or_default();
+    let (campaign, tallies) = rayon::scope(|_| stages::run(campaign, task, &*teller)).map_err(|error| {
+        let is_queued = || submit::queue(&jobs).is_some_and(|queue| !queue.jobs.is_empty());
+        let text = error.to_string();
+        match &error {
+            StageError::Incomplete { .. } if is_queued() => {
+                let problem = text.split_once("\nhelp:").map_or(text.as_str(), |(problem, _)| problem);
+                failed(format!("{problem}\nhelp: jobs of the run are in the Slurm queue; wait until they have ended (`hysteron status`)"))
+            }
+            _ => failed(text),
+        }
+    })?;
+    let ended = Ended::of(&campaign, task.shard, &tallies, teller.elapsed());
     if json {
         say(&tally_json(&ended))?;
     } else if !talk.quiet {
