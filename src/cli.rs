@@ -64,7 +64,7 @@ enum Verb {
     Status {
         #[command(flatten)]
         folder: FolderArguments,
-        /// Repeat every two seconds until no task is pending
+        /// Repeat every two seconds until no task is pending, or no job is queued
         #[arg(long)]
         watch: bool,
     },
@@ -86,7 +86,7 @@ enum Verb {
         #[arg(long)]
         deep: bool,
     },
-    /// Rerun failed cases
+    /// Rerun failed cycles
     Retry {
         #[command(flatten)]
         folder: FolderArguments,
