@@ -266,6 +266,12 @@ pub(super) fn queue(sent: &[Sent]) -> Option<Queue> {
     answer("squeue", &QUERY).map(|text| Queue::parse(&text, sent))
 }
 
+/// Whether jobs other than the one that this program runs in are in the queue.
+pub(super) fn is_queued(sent: &[Sent]) -> bool {
+    let own = std::env::var("SLURM_ARRAY_JOB_ID").or_else(|_| std::env::var("SLURM_JOB_ID")).ok().and_then(|job| job.parse::<u64>().ok());
+    queue(sent).is_some_and(|queue| queue.jobs.iter().any(|job| Some(*job) != own))
+}
+
 /// The command that submits pending tasks of a campaign again, with the options of the last submission.
 pub(super) fn again(campaign: &Campaign, sent: &[Sent]) -> String {
     let last = sent.iter().rev().find(|sent| !sent.options.is_empty());

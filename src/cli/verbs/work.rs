@@ -11,7 +11,7 @@ use crate::schema;
 use crate::stages::{self, Comparison, StageError, Task};
 use crate::stats::significant;
 use crate::store::{Check, FrameError};
-use crate::text::{shown, visible, wrapped};
+use crate::text::{shell_path, shown, visible, wrapped};
 use serde_json::json;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -128,17 +128,21 @@ pub(super) fn retry(asked: &FolderArguments, ids: &[String], talk: TalkArguments
 fn perform(campaign: Campaign, task: &Task, json: bool, talk: TalkArguments) -> Result<u8, Fault> {
     let teller = Arc::new(Teller::new(talk));
     interrupt::expect(teller.clone(), &campaign.dir).map_err(failed)?;
+    let dir = campaign.dir.clone();
     let jobs = submit::sent(&campaign).unwrap_or_default();
-    let (campaign, tallies) = rayon::scope(|_| stages::run(campaign, task, &*teller)).map_err(|error| {
-        let is_queued = || submit::queue(&jobs).is_some_and(|queue| !queue.jobs.is_empty());
-        let text = error.to_string();
-        match &error {
-            StageError::Incomplete { .. } if is_queued() => {
-                let problem = text.split_once("\nhelp:").map_or(text.as_str(), |(problem, _)| problem);
-                failed(format!("{problem}\nhelp: jobs of the run are in the Slurm queue; wait until they have ended (`hysteron status`)"))
-            }
-            _ => failed(text),
+    let again = submit::again(&campaign, &jobs);
+    let (campaign, tallies) = rayon::scope(|_| stages::run(campaign, task, &*teller)).map_err(|error| match &error {
+        StageError::Incomplete { .. } if !jobs.is_empty() => {
+            let text = error.to_string();
+            let problem = text.split_once("\nhelp:").map_or(text.as_str(), |(problem, _)| problem);
+            let help = if submit::is_queued(&jobs) {
+                format!("jobs of the run are in the Slurm queue; wait until they have ended (`hysteron status {}`)", shell_path(&dir))
+            } else {
+                format!("submit them with `{again}`")
+            };
+            failed(format!("{problem}\nhelp: {help}"))
         }
+        _ => failed(error),
     })?;
     let ended = Ended::of(&campaign, task.shard, &tallies, teller.elapsed());
     if json {

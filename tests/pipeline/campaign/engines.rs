@@ -250,10 +250,13 @@ fn e2e_status_names_ended_jobs_and_the_command_that_submits_again() {
     assert!(stderr(&watched).starts_with("error: tasks are pending, but no job of the run is in the Slurm queue"), "{}", stderr(&watched));
     // The same jobs are the reason why a stage lacks its input.
     let path = commands(&bench, &[("squeue", "printf '31 0 RUNNING 0\\n'")]);
-    let early = bench.command("aggregate").env("PATH", path).output().unwrap();
+    let early = bench.command("aggregate").env("PATH", &path).output().unwrap();
     assert_eq!(code(&early), 1);
     assert!(stderr(&early).contains("of 2 tasks of the previous stage 2 not computed"), "{}", stderr(&early));
     assert!(stderr(&early).contains("\nhelp: jobs of the run are in the Slurm queue"), "{}", stderr(&early));
+    // Of the job itself nothing is waited for.
+    let own = bench.command("aggregate").env("PATH", &path).env("SLURM_JOB_ID", "31").output().unwrap();
+    assert!(stderr(&own).contains("\nhelp: submit them with `hysteron submit "), "{}", stderr(&own));
 }
 
 #[cfg(unix)]
