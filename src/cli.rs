@@ -205,7 +205,7 @@ enum Verb {
 
 #[derive(Debug, Subcommand)]
 enum ExportVerb {
-    /// All tables of statistics or of a comparison as CSV (RFC 4180)
+    /// Tables as CSV (RFC 4180), also of a comparison; --cycles: of cycles too
     Csv(CsvArguments),
     /// A surface as NetCDF-3, for SurfaceTopography
     Netcdf(ExportArguments),

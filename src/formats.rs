@@ -71,9 +71,9 @@ enum Way {
 /// Why a file is not read, and what to do about it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Refusal {
-    /// What the file is.
+    /// Description of the file.
     pub problem: String,
-    /// What to do.
+    /// Recommended action.
     pub help: String,
 }
 

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 /// Version of this scheme.
 const SCHEME: u32 = 1;
 
-/// What a key is the hash of.
+/// Text whose hash is the key of a task.
 #[must_use]
 pub fn preimage(stage: &str, meaning: u32, reads: &Value) -> Value {
     json!({ "scheme": SCHEME, "stage": stage, "meaning": meaning, "reads": reads })
@@ -21,7 +21,7 @@ pub fn key(stage: &str, meaning: u32, reads: &Value) -> String {
     key_of_text(stage, meaning, &canonical(reads))
 }
 
-/// The same, where what is read is canonical JSON already.
+/// Key of a task from inputs that are canonical JSON.
 #[must_use]
 pub fn key_of_text(stage: &str, meaning: u32, reads: &str) -> String {
     let text = format!("{{\"meaning\":{meaning},\"reads\":{reads},\"scheme\":{SCHEME},\"stage\":\"{stage}\"}}");

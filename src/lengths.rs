@@ -7,7 +7,7 @@ pub const LENGTHS: &str = "km, m, mm, µm or um, nm, pm, Å or A, in, mil";
 pub const LENGTH_PATTERN: &str =
     "^\\s*(km|m|mm|[\u{b5}\u{3bc}]m|um|nm|pm|[\u{c5}\u{212b}]|A\u{30a}?|in|mil|[A-Za-z\u{e5}\u{f6}]{3,})?\\s*$";
 
-/// How many metres one of a unit of length is \[m\]; nothing, if it is none that is understood.
+/// Length of a unit \[m\]; nothing for an unknown unit.
 #[must_use]
 pub fn metres(unit: &str) -> Option<f64> {
     let unit = unit.trim();

@@ -180,7 +180,7 @@ choice! {
 }
 
 impl Slip {
-    /// Whether the contact itself reads it. The others only enter Deng and Kesari's estimate beside it, so they make no other cycle.
+    /// True if the contact itself reads it. The others only enter Deng and Kesari's estimate beside it, so they make no other cycle.
     #[must_use]
     pub fn in_contact(self) -> bool {
         matches!(self, Self::Eq8 | Self::Eq9)

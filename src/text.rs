@@ -106,7 +106,7 @@ pub fn shell_path(path: &Path) -> String {
     shell_quote(&path.to_string_lossy())
 }
 
-/// Whether a character could move a cursor, end a line, or reorder what is around it.
+/// True if a character could move a cursor, end a line, or reorder what is around it.
 fn hides(c: char) -> bool {
     c.is_control() || matches!(c, '\u{2028}' | '\u{2029}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
-/// What an audit has found.
+/// Result of an audit.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
 pub struct Audit {
     /// Receipts that were read.
@@ -16,7 +16,7 @@ pub struct Audit {
     pub file_count: usize,
     /// Their bytes.
     pub size_bytes: u64,
-    /// Whether contents were compared, and not lengths alone.
+    /// True if contents were compared, and not lengths alone.
     pub deep: bool,
     /// Files and receipts that are not as they were written: a sentence for each.
     pub faults: Vec<String>,
@@ -27,7 +27,7 @@ pub struct Audit {
 }
 
 impl Audit {
-    /// How many faults of all kinds there are.
+    /// Number of faults of all kinds.
     #[must_use]
     pub fn fault_count(&self) -> usize {
         self.faults.len() + self.unreceipted.len() + self.unnamed.len()

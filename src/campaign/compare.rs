@@ -8,20 +8,20 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 
-/// How a unit stands, and what tells it from the nearest one that is done.
+/// Status of a task, and its differences from the most similar finished one.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Explanation {
     /// The stage's word.
     pub stage: &'static str,
     /// The unit.
     pub id: String,
-    /// How it stands: a word of [`Standing`], or `orphan` if the spec does not name it.
+    /// Status: a word of [`Standing`], or `orphan` if the spec does not name the task.
     pub state: &'static str,
     /// Why, where there is more to say.
     pub why: Option<String>,
     /// The nearest unit: one that is done, or for an orphan one that the spec names.
     pub nearest: Option<String>,
-    /// What differs.
+    /// Differences.
     pub differences: Vec<Difference>,
 }
 
@@ -32,9 +32,9 @@ pub struct Difference {
     pub field: String,
     /// The first stage that reads it.
     pub read_by: String,
-    /// What the unit has; nothing if it has no such field.
+    /// Value of the task; nothing if it has no such field.
     pub here: Option<Value>,
-    /// What the nearest one has.
+    /// Value of the most similar task.
     pub there: Option<Value>,
 }
 

@@ -88,7 +88,7 @@ fn unnamed(folder: &Path, extension: Option<&str>, known: &HashSet<&str>, found:
     }
 }
 
-/// Whether a file has the name of a figure that the program draws, as `zeta_A.svg` or `closer_loop.png`, in one of its formats.
+/// True if a file has the name of a figure that the program draws, as `zeta_A.svg` or `closer_loop.png`, in one of its formats.
 fn is_picture(path: &Path) -> bool {
     let stem = path.file_stem().and_then(|stem| stem.to_str()).and_then(|stem| stem.rsplit_once('_'));
     let drawn = |(sweep, panel): (&str, &str)| {
@@ -97,7 +97,7 @@ fn is_picture(path: &Path) -> bool {
     path.extension().and_then(|e| e.to_str()).is_some_and(|e| matches!(e, "svg" | "png" | "pdf")) && stem.is_some_and(drawn)
 }
 
-/// Whether a name is that of a surface or a cycle, as `H0.80_z128_r03-1a2b3c4d` or `scan_r00-1a2b3c4d`: nothing else may be taken for one, since it may be
+/// True if a name is that of a surface or a cycle, as `H0.80_z128_r03-1a2b3c4d` or `scan_r00-1a2b3c4d`: nothing else may be taken for one, since it may be
 /// somebody's own.
 pub(super) fn is_id(name: &str) -> bool {
     let digits = |text: &str| text.len() >= 2 && text.bytes().all(|b| b.is_ascii_digit());

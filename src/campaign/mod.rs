@@ -27,8 +27,8 @@ use std::path::{Component, Path, PathBuf};
 const GENERATE: u32 = 2;
 const EXTRACT: u32 = 2;
 const CYCLE: u32 = 14;
-const AGGREGATE: u32 = 7;
-const REPORT: u32 = 10;
+const AGGREGATE: u32 = 8;
+const REPORT: u32 = 11;
 
 /// The stages, in their order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -71,7 +71,7 @@ pub struct SurfaceUnit {
     pub key: String,
     /// Key of the asperity table.
     pub asperities_key: String,
-    /// What it is made from.
+    /// Parameters of the surface.
     pub params: SurfaceParams,
     /// Number of the realisation.
     pub realization: u32,
@@ -110,7 +110,7 @@ pub struct Campaign {
     pub dir: PathBuf,
     /// Cases.
     pub cases: Vec<CaseUnit>,
-    /// How many realizations each case has, as far as is known.
+    /// Number of realizations of each case, as far as known.
     pub counts: Vec<u32>,
     /// Surfaces, each once however many cases share it.
     pub surfaces: Vec<SurfaceUnit>,
@@ -118,14 +118,14 @@ pub struct Campaign {
     pub cycles: Vec<CycleUnit>,
 }
 
-/// What a unit is known by.
+/// Identity of a task.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Unit<'a> {
-    /// Its stage.
+    /// Stage.
     pub stage: Stage,
-    /// Its id.
+    /// Id.
     pub id: &'a str,
-    /// Its key.
+    /// Key.
     pub key: &'a str,
 }
 
@@ -136,7 +136,7 @@ impl SurfaceUnit {
         Unit { stage: Stage::Generate, id: &self.id, key: &self.key }
     }
 
-    /// Its asperities.
+    /// Asperities.
     #[must_use]
     pub fn asperities(&self) -> Unit<'_> {
         Unit { stage: Stage::Extract, id: &self.id, key: &self.asperities_key }
@@ -202,7 +202,7 @@ impl Campaign {
         campaign
     }
 
-    /// How many realizations the cases have, as in "6 realizations" or "6 to 14 realizations".
+    /// Number of realizations of the cases, as in "6 realizations" or "6 to 14 realizations".
     #[must_use]
     pub fn realizations_in_words(&self) -> String {
         match (self.counts.iter().min(), self.counts.iter().max()) {
@@ -263,13 +263,13 @@ impl Campaign {
         self.dir.join("cycles").join(&unit.id)
     }
 
-    /// Where the failure of a cycle is recorded.
+    /// Path of the failure record of a cycle.
     #[must_use]
     pub fn failure_path(&self, unit: &CycleUnit) -> PathBuf {
         self.cycle_dir(unit).join("failed.json")
     }
 
-    /// Where a cycle on its way is kept.
+    /// Path of the checkpoint of a cycle.
     #[must_use]
     pub fn halfway_path(&self, unit: &CycleUnit) -> PathBuf {
         self.cycle_dir(unit).join("halfway.bin")
@@ -281,13 +281,13 @@ impl Campaign {
         self.dir.join("statistics").join(format!("{table}.parquet"))
     }
 
-    /// Where the receipt of a unit is.
+    /// Path of the provenance record of a task.
     #[must_use]
     pub fn receipt_path(&self, unit: &Unit<'_>) -> PathBuf {
         self.receipts_dir(unit.stage).join(format!("{}.json", unit.id))
     }
 
-    /// Where the receipt of the resolved spec is.
+    /// Path of the provenance record of the resolved spec.
     #[must_use]
     pub fn spec_receipt_path(&self) -> PathBuf {
         self.dir.join("receipts").join("campaign.json")
@@ -347,7 +347,7 @@ impl Campaign {
         key(Stage::Report.word(), REPORT, &self.report_reads(statistics_key))
     }
 
-    /// What the keys of a surface's units are hashes of, by stage, up to and with `stage`.
+    /// Key inputs of the tasks of a surface, by stage, up to and including `stage`.
     #[must_use]
     pub fn surface_preimages(&self, unit: &SurfaceUnit, stage: Stage) -> Map<String, Value> {
         let reads = json!({ "surface": surface_reads(&self.spec, &unit.params), "seed": seed_of(&self.spec, &unit.params), "realization": unit.realization });
@@ -359,7 +359,7 @@ impl Campaign {
         preimages
     }
 
-    /// What the key of a cycle, and those of what it builds on, are hashes of.
+    /// Key inputs of a cycle and of the tasks that it depends on.
     #[must_use]
     pub fn cycle_preimages(&self, unit: &CycleUnit) -> Map<String, Value> {
         let (surface, params) = (&self.surfaces[unit.surface], &self.cases[unit.case].case.params);
@@ -374,7 +374,7 @@ impl Campaign {
         preimages
     }
 
-    /// What the key of the tables over realisations is a hash of.
+    /// Key inputs of the tables over realizations.
     #[must_use]
     pub fn statistics_preimages(&self, cycles: &[Standing]) -> Map<String, Value> {
         let mut preimages = Map::new();
@@ -382,7 +382,7 @@ impl Campaign {
         preimages
     }
 
-    /// What the key of the report is a hash of.
+    /// Key inputs of the report.
     #[must_use]
     pub fn report_preimages(&self, statistics_key: &str) -> Map<String, Value> {
         let mut preimages = Map::new();

@@ -20,13 +20,13 @@ impl Default for Shard {
 }
 
 impl Shard {
-    /// Whether the surface at this place of [`super::Campaign::surfaces`] belongs to it.
+    /// True if the surface at this place of [`super::Campaign::surfaces`] belongs to it.
     #[must_use]
     pub fn holds(self, surface: usize) -> bool {
         surface % self.count == self.index
     }
 
-    /// Whether it is all of a campaign.
+    /// True if it is all of a campaign.
     #[must_use]
     pub fn is_whole(self) -> bool {
         self.count == 1

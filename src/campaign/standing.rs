@@ -5,7 +5,7 @@ use crate::store::{Check, Fault, Found, Receipt, is_halfway, read_receipt};
 use rayon::prelude::*;
 use serde_json::Value;
 
-/// How a unit stands.
+/// Status of a task.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Standing {
     /// Done, with the present key: its receipt is there, and every file that it names.
@@ -52,7 +52,7 @@ impl Standing {
     }
 }
 
-/// How all units of a campaign stand, in its order.
+/// Status of all tasks of a campaign, in its order.
 #[derive(Debug, Clone)]
 pub struct Survey {
     /// Surfaces.
@@ -68,7 +68,7 @@ pub struct Survey {
 }
 
 impl Campaign {
-    /// How a unit stands.
+    /// Status of a task.
     #[must_use]
     pub fn standing(&self, unit: &Unit<'_>, check: Check) -> Standing {
         let name = || format!("receipts/{}/{}.json", unit.stage.word(), unit.id);
@@ -93,7 +93,7 @@ impl Campaign {
         }
     }
 
-    /// Whether anything of a stage can be there. Where its folders are not, none of its units need be asked for, which of 10⁵ units takes most of the time of a plan.
+    /// True if anything of a stage can be there. Where its folders are not, none of its units need be asked for, which of 10⁵ units takes most of the time of a plan.
     fn begun(&self, stage: Stage) -> bool {
         self.receipts_dir(stage).exists() || (stage == Stage::Cycle && self.dir.join("cycles").exists())
     }
@@ -103,7 +103,7 @@ impl Campaign {
         receipt.files.iter().find_map(|file| file.fault(&self.dir, check))
     }
 
-    /// How a cycle stands, which may have failed or be on its way.
+    /// Status of a cycle, which may have failed or be checkpointed.
     #[must_use]
     pub fn cycle_standing(&self, unit: &CycleUnit, check: Check) -> Standing {
         match self.standing(&unit.cycle(), check) {
@@ -150,7 +150,7 @@ impl Campaign {
         (record.get("key")?.as_str()? == unit.key).then_some(record)
     }
 
-    /// How all cycles stand, in the order of [`Campaign::cycles`]; those that cases share are looked at once.
+    /// Status of all cycles, in the order of [`Campaign::cycles`]; shared cycles are checked once.
     #[must_use]
     pub fn cycle_standings(&self, check: Check) -> Vec<Standing> {
         self.distinct_standings(check).1
@@ -179,7 +179,7 @@ impl Campaign {
         }
     }
 
-    /// How everything stands.
+    /// Status of all tasks.
     #[must_use]
     pub fn survey(&self, check: Check) -> Survey {
         let of_surfaces = |stage: Stage, unit: fn(&SurfaceUnit) -> Unit<'_>| -> Vec<Standing> {

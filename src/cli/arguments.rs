@@ -94,6 +94,9 @@ pub(super) struct CompareArguments {
 pub(super) struct CsvArguments {
     /// Output folder of a run, or its spec
     pub(super) dir: PathBuf,
+    /// Also export the tables of each cycle: steps, events, contacts, ...
+    #[arg(long)]
+    pub(super) cycles: bool,
     /// Folder of the CSV files [default: csv/ in the output folder]
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,

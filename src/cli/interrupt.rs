@@ -69,7 +69,7 @@ fn end(teller: &Teller, notice: &str) {
     hdf5::alone(|| std::process::exit(INTERRUPTED));
 }
 
-/// Whether the system's words on this process say so.
+/// True if the system's words on this process say so.
 fn ignores_hang_up(status: &str) -> bool {
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
     let bit = 1_u64 << (SIGHUP - 1);

@@ -64,7 +64,7 @@ impl Teller {
         self.with(|now| now.bar.finish_and_clear());
     }
 
-    /// Whether there are lines for tasks and progress: always with --verbose; otherwise where there is no bar, unless --quiet.
+    /// True if there are lines for tasks and progress: always with --verbose; otherwise where there is no bar, unless --quiet.
     fn has_lines(&self) -> bool {
         self.talk.verbose || !self.terminal && !self.talk.quiet
     }

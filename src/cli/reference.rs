@@ -86,7 +86,7 @@ fn section(command: &Command, parent: &str, page: &mut String) {
     }
 }
 
-/// Whether an argument is one that other commands do not have too.
+/// True if an argument is one that other commands do not have too.
 fn is_own(argument: &Arg) -> bool {
     !argument.is_hide_set() && !matches!(argument.get_id().as_str(), "help" | "version")
 }

@@ -11,7 +11,7 @@ use crate::campaign::{Campaign, Stage, Standing, Survey};
 /// Shards at most, unless more are asked for: a scheduler takes about a second for each.
 const MOST_SHARDS: usize = 1000;
 
-/// How many shards a campaign is split into where nobody says: one for each surface.
+/// Default number of shards of a campaign: one for each surface.
 #[must_use]
 pub fn usual_shards(campaign: &Campaign) -> usize {
     campaign.surfaces.len().clamp(1, MOST_SHARDS)

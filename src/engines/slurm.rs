@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// What is submitted.
+/// Jobs to submit.
 #[derive(Debug, Clone)]
 pub struct Order {
     /// The program, as the nodes find it.
@@ -196,7 +196,7 @@ pub fn jobs(order: &Order) -> Vec<Job> {
 }
 
 impl Job {
-    /// What follows `sbatch`, where the jobs before it have these numbers.
+    /// Arguments of `sbatch`, after jobs with these numbers.
     #[must_use]
     pub fn arguments(&self, folder: &Path, numbers: &[String], queued: &[u64]) -> Vec<String> {
         let mut arguments = vec!["--parsable".to_owned()];
@@ -245,7 +245,7 @@ pub struct Queue {
     pub states: BTreeMap<String, usize>,
     /// Shards that are waiting or running, by the stage's word and how many shards there were.
     pub shards: BTreeSet<(String, usize, usize)>,
-    /// Whether the job that aggregates is there.
+    /// True if the job that aggregates is there.
     pub aggregates: bool,
     /// The jobs that are there.
     pub jobs: BTreeSet<u64>,

@@ -3,7 +3,7 @@
 /// One axis of a panel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
-    /// What is shown, with markup.
+    /// Label, with markup.
     pub label: String,
     /// Range of what is drawn.
     range: (f64, f64),
@@ -77,7 +77,7 @@ impl Axis {
         self
     }
 
-    /// Where a value is drawn.
+    /// Position at which a value is drawn.
     pub fn drawn(&self, value: f64) -> f64 {
         match self.scale {
             Scale::Doublings => value.max(f64::MIN_POSITIVE).log2(),
@@ -86,7 +86,7 @@ impl Axis {
         }
     }
 
-    /// How long a difference is drawn.
+    /// Drawn length of a difference.
     pub fn drawn_length(&self, difference: f64) -> f64 {
         difference / 10f64.powi(self.exponent)
     }
@@ -139,7 +139,7 @@ impl Axis {
     }
 }
 
-/// Least and greatest of the finite values; 0 and 1 if there is none.
+/// Minimum and maximum of the finite values; 0 and 1 if there is none.
 fn extent(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
     let finite = values.into_iter().filter(|value| value.is_finite());
     finite

@@ -65,7 +65,9 @@ fn cases(sweep: &Sweep) -> String {
 /// The caption of a panel of the closer look at one cycle, by its name.
 pub(super) fn of_cycle(name: &str, of: &Closer<'_>) -> String {
     let text = match name {
-        "loop" => "Normal force F/(E*A₀) against mean penetration Δ/h_rms up to the load reversal and back".to_owned(),
+        "loop" => {
+            format!("Normal force F/(E*A₀) against mean penetration Δ/h_rms up to the load reversal and back, for {}", of.parameters)
+        }
         "events" => {
             "Energy dissipated by each event against mean penetration; events of negative dissipated energy are not drawn on the logarithmic axis".to_owned()
         }

@@ -13,7 +13,7 @@ use crate::text::counted;
 use ndarray::ArrayView2;
 use std::collections::BTreeMap;
 
-/// Points of one scatter, at most: the greatest are drawn.
+/// Points of one scatter, at most: the largest are drawn.
 const MOST_POINTS: usize = 2000;
 
 /// Points of a distribution, at most.
@@ -27,11 +27,13 @@ const BARS: usize = 40;
 pub struct Closer<'a> {
     /// The turning point that is looked at, `F/(E* A0)`.
     pub max_load: f64,
-    /// Its steps.
+    /// The parameters of the case, for the captions.
+    pub parameters: &'a str,
+    /// Steps.
     pub steps: &'a Frame,
-    /// Its events.
+    /// Events.
     pub events: &'a Frame,
-    /// Its spots at the steps that were kept.
+    /// Spots at the steps that were kept.
     pub contacts: &'a Frame,
     /// The asperities of its surface.
     pub asperities: &'a Frame,
@@ -41,7 +43,7 @@ pub struct Closer<'a> {
     pub rms_height_m: f64,
     /// Side of the square \[m\].
     pub length_m: f64,
-    /// Whether the square has periodic images.
+    /// True if the square has periodic images.
     pub periodic: bool,
     /// Pull-off load of a JKR asperity over its radius, `(3/2)πΔγ` \[N/m\].
     pub pull_off_n_m: f64,

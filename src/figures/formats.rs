@@ -87,7 +87,7 @@ fn in_order(file: &[u8]) -> Vec<u8> {
     ordered
 }
 
-/// Whether a line is an entry such as `/gs46 53 0 R`.
+/// True if a line is an entry such as `/gs46 53 0 R`.
 fn is_resource(line: &[u8]) -> bool {
     let Ok(text) = std::str::from_utf8(line) else { return false };
     let mut words = text.split_whitespace();

@@ -11,7 +11,7 @@ use crate::store::Frame;
 
 const LOSS: &str = "Θ/(E^{*}A_{0}h_{rms})";
 
-/// What panels are drawn from.
+/// Tables from which panels are drawn.
 #[derive(Debug, Clone, Copy)]
 pub struct Tables<'a> {
     /// The table `cases`.
@@ -27,13 +27,13 @@ pub struct Tables<'a> {
 pub struct Panel {
     /// Stem of its file's name.
     pub stem: String,
-    /// Its letter, or its word.
+    /// Letter, or its word.
     pub name: String,
-    /// Its caption.
+    /// Caption.
     pub caption: String,
     /// The drawing.
     pub svg: String,
-    /// What was drawn.
+    /// Contents of the plot.
     pub plot: XyPlot,
 }
 

@@ -24,7 +24,7 @@ pub(super) const SPECK: f64 = 1.8;
 /// Least distance of two notes beside the plot, in pixels.
 pub(super) const NOTE_PITCH: f64 = 17.0;
 
-/// How a curve is stroked.
+/// Stroke of a curve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stroke {
     /// One unbroken line.
@@ -48,7 +48,7 @@ impl Stroke {
         }
     }
 
-    /// Whether its points are joined.
+    /// True if its points are joined.
     pub(super) fn is_line(self) -> bool {
         !matches!(self, Self::Points | Self::Crosses)
     }
@@ -57,28 +57,28 @@ impl Stroke {
 /// One curve, in units of the data.
 #[derive(Debug, Clone)]
 pub struct Curve {
-    /// What it shows, as a column of a table or a branch is called.
+    /// Name of the plotted column or branch.
     pub name: String,
     /// Of what of the sweep, as it is named in the panel; may be empty.
     pub of: String,
-    /// Its points, in the order in which they are joined.
+    /// Points, in the order in which they are joined.
     pub points: Vec<(f64, f64)>,
     /// Half the length of each point's error bar, or half the width of the band around the curve; empty for a curve without.
     pub errors: Vec<Option<f64>>,
-    /// Whether the errors are a band.
+    /// True if the errors are a band.
     pub band: bool,
-    /// Whether the quantity cannot be negative: bars and bands end at zero.
+    /// True if the quantity cannot be negative: bars and bands end at zero.
     pub positive: bool,
     /// A CSS colour.
     pub colour: String,
-    /// Its stroke.
+    /// Stroke.
     pub stroke: Stroke,
-    /// Whether each point has a marker.
+    /// True if each point has a marker.
     pub marked: bool,
 }
 
 impl Curve {
-    /// Whether each point is drawn with a mark: a line of one point would not be seen.
+    /// True if each point is drawn with a mark: a line of one point would not be seen.
     pub(super) fn is_marked(&self) -> bool {
         self.marked || self.points.len() == 1 || !self.stroke.is_line()
     }
@@ -90,13 +90,13 @@ impl Curve {
         Some((if self.positive && y >= 0.0 { low.max(0.0) } else { low }, y + error))
     }
 
-    /// Its vertical values, with the ends of bars and bands.
+    /// Vertical values, with the ends of bars and bands.
     pub(super) fn heights(&self) -> Vec<f64> {
         let ends = |place: usize| self.ends(place).map_or_else(Vec::new, |(low, high)| vec![low, high]);
         (0..self.points.len()).flat_map(|place| [vec![self.points[place].1], ends(place)].concat()).collect()
     }
 
-    /// Whether a bar or the band ends at zero for that reason.
+    /// True if a bar or the band ends at zero for that reason.
     pub(super) fn is_cut(&self) -> bool {
         let cut = |((_, y), error): (&(f64, f64), &Option<f64>)| *y >= 0.0 && error.is_some_and(|error| error > *y);
         self.positive && self.points.iter().zip(&self.errors).any(cut)
@@ -112,7 +112,7 @@ pub struct KeyEntry {
     pub colour: String,
     /// The stroke, or nothing for a line of text alone.
     pub stroke: Option<Stroke>,
-    /// Whether the sample has a marker.
+    /// True if the sample has a marker.
     pub marked: bool,
 }
 
@@ -123,7 +123,7 @@ pub struct Note {
     pub at: (f64, f64),
     /// The text, with markup.
     pub text: String,
-    /// Whether it stands in the right margin, at the height of the end, or else just below the end and to its right.
+    /// True if it stands in the right margin, at the height of the end, or else just below the end and to its right.
     pub beside: bool,
 }
 

@@ -16,7 +16,7 @@ pub(super) struct Measured {
     pub(super) text: &'static str,
     pub(super) hue: [u8; 3],
     pub(super) stroke: Stroke,
-    /// Whether it cannot be negative.
+    /// True if it cannot be negative.
     pub(super) positive: bool,
 }
 

@@ -11,7 +11,7 @@ pub(super) struct Member {
     pub(super) row: usize,
     pub(super) case_id: String,
     pub(super) max_load: f64,
-    /// Its place along the horizontal axis of the panels of results.
+    /// Place along the horizontal axis of the panels of results.
     pub(super) x: f64,
     /// What its curves are called.
     pub(super) label: String,
@@ -25,7 +25,7 @@ pub(super) struct Sweep {
     pub(super) members: Vec<Member>,
     /// What varies, the horizontal axis first; nothing if only the turning point does.
     pub(super) differing: Vec<Varying>,
-    /// Whether there are several turning points.
+    /// True if there are several turning points.
     pub(super) many_loads: bool,
     pub(super) axis: Axis,
 }

@@ -331,7 +331,7 @@ impl Path<'_> {
         true
     }
 
-    /// Whether an uncovering was in vain: it was undone on the way, or is to be undone at once.
+    /// True if an uncovering was in vain: it was undone on the way, or is to be undone at once.
     fn vain(&self, uncovering: &Change, taken: &[Change]) -> bool {
         let problem = self.problem();
         let Some(by) = uncovering.by else { return false };

@@ -15,7 +15,7 @@ use super::state::{Problem, State};
 use crate::model::KeptContacts;
 use serde::{Deserialize, Serialize};
 
-/// What a cycle is asked for.
+/// Settings of a cycle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
     /// Turning points `F/(E* A0)`, ascending.
@@ -86,7 +86,7 @@ pub struct Step {
     pub drift_m: f64,
     /// Least eigenvalue of the tangent, as [`State::stability`] has it.
     pub stability: f64,
-    /// What has been done since the step before.
+    /// Computational effort since the step before.
     pub effort: Effort,
 }
 
@@ -97,7 +97,7 @@ pub struct Contact {
     pub step: usize,
     /// The asperity.
     pub asperity: usize,
-    /// Whether it is under a greater spot.
+    /// True if it is under a greater spot.
     pub covered: bool,
     /// Contact radius \[m\]; 0 if covered.
     pub contact_radius_m: f64,
@@ -115,7 +115,7 @@ pub struct Contact {
 pub struct MergedAt {
     /// Number of the step.
     pub step: usize,
-    /// Its own number.
+    /// Own number.
     pub asperity: usize,
     /// The spot.
     pub spot: Merged,
@@ -152,7 +152,7 @@ pub struct Halfway {
     leg: Option<Leg>,
 }
 
-/// Loads to the greatest of the loads, and unloads from each. `progress` is told how much is done, from 0 to 1.
+/// Loads to the largest of the loads, and unloads from each. `progress` is told how much is done, from 0 to 1.
 ///
 /// # Errors
 /// A load that is not reached within 100 rms heights; an approach without an equilibrium.
@@ -279,7 +279,7 @@ impl Settings {
         self.approach_step * problem.rms_height_m
     }
 
-    /// Whether a path that began or rested at the approach `from` \[m\] is to rest where it is.
+    /// True if a path that began or rested at the approach `from` \[m\] is to rest where it is.
     fn rests(&self, path: &Path<'_>, from: f64) -> bool {
         let at = path.state().approach_m;
         self.rest_every
@@ -304,7 +304,7 @@ impl Leg {
     }
 }
 
-/// Loads until it rests, or to the greatest of the loads: then nothing is left.
+/// Loads until it rests, or to the largest of the loads: then nothing is left.
 fn load(problem: &Problem, settings: &Settings, leg: Leg, cycle: &mut Cycle, progress: &dyn Fn(f64)) -> Result<Option<Leg>, PhysicsError> {
     let Leg { mut recorder, carried } = leg;
     let from = carried.state.approach_m;

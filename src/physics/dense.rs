@@ -12,7 +12,7 @@ pub(crate) struct Lu {
 }
 
 impl Lu {
-    /// Factors the square matrix `matrix`. A pivot that vanishes is replaced by rounding of the greatest entry, so that a solve with a
+    /// Factors the square matrix `matrix`. A pivot that vanishes is replaced by rounding of the largest entry, so that a solve with a
     /// singular matrix gives its null vector, greatly enlarged.
     pub(crate) fn factor(&mut self, matrix: &[f64], size: usize) {
         self.size = size;

@@ -65,7 +65,7 @@ pub(crate) struct Solver<'p> {
     pub(crate) problem: &'p Problem,
     pub(crate) effort: Effort,
     spots: Spots,
-    /// Whether the present solution is only to be good enough to go on: sums are rough then.
+    /// True if the present solution is only to be good enough to go on: sums are rough then.
     roughly: bool,
     /// The tangent of the present solution, and what is known of the places of free asperities against the spots; the same of the last solution of
     /// the other kind, for what it knows of places.
@@ -75,7 +75,7 @@ pub(crate) struct Solver<'p> {
     /// An approximate inverse of the tangent as it was, and how many solutions have begun since: it only makes them short.
     inverse: Option<LocalInverse>,
     age: usize,
-    /// Whether the tangent is that of the state that was evaluated last.
+    /// True if the tangent is that of the state that was evaluated last.
     fresh: bool,
     /// Residuals of the spots that were evaluated last \[m\].
     pub(crate) residual: Vec<f64>,
@@ -405,7 +405,7 @@ impl Relaxing for Whole<'_, '_> {
     }
 }
 
-/// Shortens a step to the greatest relative change of a radius that is let pass.
+/// Shortens a step to the largest relative change of a radius that is let pass.
 fn limit(step: &mut [f64], state: &State, most: f64) {
     let stride = state.contacts.iter().zip(&*step).map(|(&i, s)| s.abs() / state.radius[i]).fold(0.0, f64::max);
     if stride > most {

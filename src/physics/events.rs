@@ -61,7 +61,7 @@ pub(crate) struct Change {
 }
 
 impl Change {
-    /// Whether this would undo one of the changes that have `moved` in the same avalanche.
+    /// True if this would undo one of the changes that have `moved` in the same avalanche.
     pub(crate) fn returns(&self, moved: &[Self], state: &State) -> bool {
         let i = self.asperity;
         moved.iter().any(|earlier| match (self.kind, earlier.kind) {
@@ -75,7 +75,7 @@ impl Change {
         })
     }
 
-    /// Whether this covers an asperity that was uncovered, or covers the spot that it was uncovered from by its own.
+    /// True if this covers an asperity that was uncovered, or covers the spot that it was uncovered from by its own.
     pub(crate) fn undoes(&self, uncovering: &Self) -> bool {
         let i = uncovering.asperity;
         self.kind == Kind::Cover && (self.asperity == i || (Some(self.asperity) == uncovering.by && self.by == Some(i)))
@@ -104,12 +104,12 @@ pub(crate) struct Trigger {
 pub(crate) type Moving = (usize, f64, f64, f64);
 
 impl Problem {
-    /// Whether spots cover asperities.
+    /// True if spots cover asperities.
     pub(crate) fn covers(&self) -> bool {
         self.rules.coalescence != Coalescence::None
     }
 
-    /// Whether an asperity is there to be covered: it is not yet, nor a part of a merged spot, nor one that has parted.
+    /// True if an asperity is there to be covered: it is not yet, nor a part of a merged spot, nor one that has parted.
     pub(crate) fn can_be_covered(&self, state: &State, i: usize) -> bool {
         match state.status[i] {
             Status::Contact => true,
@@ -155,7 +155,7 @@ impl Problem {
         due
     }
 
-    /// Whether a change that was due still is.
+    /// True if a change that was due still is.
     pub(crate) fn is_due(&self, change: &Change, front: &Front) -> bool {
         let (i, state) = (change.asperity, &front.state);
         let possible = match (change.kind, state.status[i], change.by) {
@@ -203,7 +203,7 @@ impl Problem {
         }
     }
 
-    /// The greatest spot over the centre of asperity `i` other than `but`, with its distance.
+    /// Largest spot over the centre of asperity `i` other than `but`, with its distance.
     pub(crate) fn covering(&self, state: &State, i: usize, but: Option<usize>) -> Option<(usize, f64)> {
         state
             .contacts

@@ -21,7 +21,7 @@ const RINGS: f64 = 4.0;
 pub(super) struct Field {
     /// Points along a side.
     n: usize,
-    /// Its wavenumber of the longest waves, `2π/L` \[1/m\].
+    /// Wavenumber of the longest waves, `2π/L` \[1/m\].
     lowest: f64,
     /// By columns of ky, kx running fastest: n² times the modes.
     columns: Vec<Complex64>,
@@ -98,13 +98,13 @@ impl Field {
         self.sum(&[0.0; N], add, |total, sum| total.iter_mut().zip(sum).for_each(|(t, s)| *t += s))
     }
 
-    /// Its moments, the mean left out: `m0 = Σ|c|²`, `m2 = ½ Σ q²|c|²`, `m4 = ⅜ Σ q⁴|c|²`.
+    /// Moments, the mean left out: `m0 = Σ|c|²`, `m2 = ½ Σ q²|c|²`, `m4 = ⅜ Σ q⁴|c|²`.
     pub(super) fn moments(&self) -> Moments {
         let [m0, slope, laplacian] = self.weighted(|q| [if q > 0.0 { 1.0 } else { 0.0 }, q * q, q.powi(4)]);
         Moments { m0_m2: m0, m2: 0.5 * slope, m4_1_m2: 0.375 * laplacian }
     }
 
-    /// Its spectrum in rings of wavevectors; see [`super::periodogram::periodogram`].
+    /// Spectrum in rings of wavevectors; see [`super::periodogram::periodogram`].
     pub(super) fn rings(&self) -> Vec<Ring> {
         let reach = self.n as f64 / 2.0;
         let count = (RINGS * reach.log2()).round() as usize + 1;

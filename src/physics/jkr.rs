@@ -184,7 +184,7 @@ impl Asperity {
         self.jump_off_penetration
     }
 
-    /// Contact radius `(9πR²Δγ/(8E*))^⅓` \[m\] at the greatest tension.
+    /// Contact radius `(9πR²Δγ/(8E*))^⅓` \[m\] at the largest tension.
     #[must_use]
     pub fn pull_off_radius(&self) -> f64 {
         self.fold_radius * 9f64.cbrt()

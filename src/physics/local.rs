@@ -68,7 +68,7 @@ impl LocalInverse {
         found
     }
 
-    /// Whether it is of these spots.
+    /// True if it is of these spots.
     pub(crate) fn serves(&self, contacts: &[usize]) -> bool {
         self.index == contacts
     }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// An event as it happened.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Event {
-    /// What happened.
+    /// Kind of event.
     pub kind: Kind,
     /// To which asperity.
     pub asperity: usize,
@@ -32,7 +32,7 @@ pub(crate) struct Log {
     /// `∫F dΔ` since the branch began \[J\].
     pub(crate) work_j: f64,
     avalanches: u64,
-    /// Whether the next event is of another avalanche.
+    /// True if the next event is of another avalanche.
     fresh: bool,
     /// The way of the load, from event to event.
     pub(crate) ways: Vec<Way>,

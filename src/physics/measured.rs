@@ -22,21 +22,21 @@ pub const FEWEST_POINTS: usize = 16;
 /// 1 GiB of heights; the mirror images make four of them while they are filtered.
 pub const MOST_POINTS: usize = 8192;
 
-/// The greatest share of points that may be missing.
+/// Largest share of points that may be missing.
 const MOST_MISSING: f64 = 0.5;
 /// How far the distances of points along the two directions may differ and count as one.
 const SQUARE: f64 = 1e-3;
-/// The greatest ratio of the two that is resampled.
+/// Largest ratio of the two that is resampled.
 const MOST_OBLONG: f64 = 16.0;
 
-/// What is done to a measured surface.
+/// Preprocessing of a measured surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Treatment {
-    /// What becomes of missing points.
+    /// Treatment of missing points.
     pub missing: Missing,
-    /// What is taken off the heights.
+    /// Form subtracted from the heights.
     pub detrend: Detrend,
-    /// Whether the field continues periodically.
+    /// True if the field continues periodically.
     pub periodic: bool,
     /// Shorter waves than so many points are taken off.
     pub points_per_shortest_wavelength: f64,
@@ -49,11 +49,11 @@ pub struct Prepared {
     pub heights_m: Array2<f64>,
     /// Side of the square \[m\].
     pub length_m: f64,
-    /// Its moments, from its modes.
+    /// Moments, from its modes.
     pub moments: Moments,
-    /// Its spectrum before short waves were taken off, in rings.
+    /// Spectrum before short waves were taken off, in rings.
     pub rings: Vec<Ring>,
-    /// How many points were missing, in the square.
+    /// Number of missing points in the square.
     pub missing_count: usize,
     /// Rms height of what was taken off as trend \[m\].
     pub trend_m: f64,

@@ -42,15 +42,15 @@ const TENSEST: f64 = 0.8;
 /// A spot that stands for two.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Merged {
-    /// Its parts: summits, or merged spots themselves.
+    /// Parts: summits, or merged spots themselves.
     pub parts: [usize; 2],
     /// Their contact radii when they merged \[m\].
     pub radii_m: [f64; 2],
-    /// Its centre \[m\].
+    /// Centre \[m\].
     pub place_m: [f64; 2],
-    /// Its radius of curvature R \[m\].
+    /// Radius of curvature R \[m\].
     pub radius_m: f64,
-    /// Its height over the highest summit \[m\].
+    /// Height over the highest summit \[m\].
     pub height_m: f64,
     /// The contact radius at which it parts \[m\].
     pub release_m: f64,
@@ -219,7 +219,7 @@ impl Problem {
         (found[0], grip)
     }
 
-    /// Whether there is room for the spots of a state, which have this area \[m²\].
+    /// True if there is room for the spots of a state, which have this area \[m²\].
     fn check_room(&self, state: &State, area: f64) -> Result<(), PhysicsError> {
         let share = area / (self.length_m * self.length_m);
         if share < 1.0 && state.greatest_radius() < 0.5 * self.length_m {

@@ -4,6 +4,7 @@
 
 mod avalanche;
 pub mod bandlimited;
+pub mod boundary_elements;
 pub mod cycle;
 mod dense;
 pub mod equilibrium;
@@ -57,7 +58,7 @@ pub enum PhysicsError {
         action: &'static str,
         /// The quantity, with its unit.
         quantity: &'static str,
-        /// Its value.
+        /// Value.
         value: f64,
         /// What the equation allows.
         allowed: &'static str,
@@ -85,7 +86,7 @@ pub enum PhysicsError {
         smallest: f64,
         /// How many asperities lie below 2.
         below: usize,
-        /// How many asperities there are.
+        /// Number of asperities.
         all: usize,
     },
     /// No equilibrium was found near the last one, not even by relaxation.
@@ -113,7 +114,7 @@ pub enum PhysicsError {
     UnknownAsperity {
         /// The number of the asperity.
         asperity: usize,
-        /// How many asperities there are.
+        /// Number of asperities.
         count: usize,
     },
     /// Events go on without end within one increment of the approach.
@@ -140,6 +141,15 @@ pub enum PhysicsError {
         /// Area over that of the square.
         share: f64,
     },
+    /// Full contact at a load reversal, with bonds that open at edges only.
+    #[error(
+        "full contact at the mean penetration {approach_m:e} m: there is no edge from which the surfaces can separate\n\
+         help: reduce cycle.max_load or the work of adhesion, increase the reduced modulus, or set boundary_elements.attraction = \"range\""
+    )]
+    Closed {
+        /// Mean penetration Δ \[m\].
+        approach_m: f64,
+    },
     /// The contacts have a larger area than the nominal one.
     #[error(
         "the contact area {share:.3} A0 exceeds the nominal area at the mean penetration {approach_m:e} m: the contacts have grown together, and the \
@@ -164,7 +174,7 @@ pub enum PhysicsError {
         max_load: f64,
         /// Dissipated energy Θ \[J\].
         loss_j: f64,
-        /// Its magnitude over the work of loading.
+        /// Magnitude over the work of loading.
         fraction: f64,
     },
     /// The sum of the event energies differs from the loop area.

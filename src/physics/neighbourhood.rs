@@ -26,14 +26,14 @@ const SPAN: f64 = 5.0;
 /// Distance over reach from which on a ripple is the same for a whole neighbourhood.
 const AFAR: f64 = 4.0;
 
-/// Share of the greatest lag that spots of a neighbourhood may have when it is solved.
+/// Share of the largest lag that spots of a neighbourhood may have when it is solved.
 const LEAST_LAG: f64 = 0.1;
 
 /// A neighbourhood before it is changed.
 pub(crate) struct Before {
     totals: Totals,
     pub(crate) potential: f64,
-    /// Its spots.
+    /// Spots.
     stood: Vec<Stood>,
     /// Load of its spots, and what the rest of the contact does to their loads as the approach goes on \[N\].
     load: f64,
@@ -51,7 +51,7 @@ pub(crate) struct Ripple {
 }
 
 impl Ripple {
-    /// Whether a place was not told of it.
+    /// True if a place was not told of it.
     fn passes(&self, problem: &Problem, place: &[f64; 2]) -> bool {
         problem.neighbours.distance(place, &self.place) > self.reach
     }
@@ -174,7 +174,7 @@ impl Path<'_> {
         self.lags[i] + afar.map(|ripple| ripple.field(problem, place)).sum::<f64>()
     }
 
-    /// Whether spots of the neighbourhood have lags that matter.
+    /// True if spots of the neighbourhood have lags that matter.
     pub(crate) fn lagging(&self) -> bool {
         let limit = LEAST_LAG * self.lag_limit();
         self.missed.iter().any(|lag| lag.abs() > limit)

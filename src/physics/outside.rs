@@ -10,7 +10,7 @@ pub(crate) struct Stood {
     pub(crate) asperity: usize,
     /// With the grip that it had.
     pub(crate) sphere: Asperity,
-    /// Its radius \[m\].
+    /// Radius \[m\].
     pub(crate) radius: f64,
     /// By how much that was expected to change \[m\], and its grip.
     pub(crate) more: f64,

@@ -26,7 +26,7 @@ pub(crate) struct Trace {
     pub(crate) at: f64,
     /// Penetration there \[m\].
     pub(crate) value: f64,
-    /// Its derivative to the approach.
+    /// Derivative to the approach.
     pub(crate) rate: f64,
     /// Grip of the spot there, and its derivative to the approach \[1/m\]: 1 and 0 where spots do not change one another's.
     pub(crate) grip: f64,
@@ -75,7 +75,7 @@ pub(crate) struct Place {
     pub(crate) asperity: usize,
     /// Displacement by the spots outside the patch at the reference approach \[m\].
     pub(crate) outside: f64,
-    /// Its derivative to the approach.
+    /// Derivative to the approach.
     pub(crate) drift: f64,
     /// What the spots outside do to its grip, as [`super::interaction::Mutual`] has it \[1/m\].
     pub(crate) outer: f64,
@@ -104,7 +104,7 @@ pub(crate) struct Patch {
     /// Their grips as they were evaluated last; nothing where all are 1.
     pub(crate) grip: Vec<f64>,
     pub(crate) watched: Vec<Place>,
-    /// Whether there are spots outside it: what they do is held, and some digits of what images do are enough.
+    /// True if there are spots outside it: what they do is held, and some digits of what images do are enough.
     local: bool,
     /// Where the patch has been on its way to an event, if it was followed there by a radius.
     pub(crate) way: Vec<Point>,

@@ -116,7 +116,7 @@ pub(crate) struct Path<'p> {
     pub(crate) settled: usize,
     pub(crate) settled_at: f64,
     pub(crate) balance: f64,
-    /// Whether the balance is to be closed by what the last event has lost.
+    /// True if the balance is to be closed by what the last event has lost.
     pub(crate) unbalanced: bool,
     /// The neighbourhood of the event at hand; the radii that its spots had at the approach `reference` \[m\], before they went to the event.
     pub(crate) patch: Patch,
@@ -336,7 +336,7 @@ impl<'p> Path<'p> {
         if asked { Depth::Whole } else { self.between() }
     }
 
-    /// Whether all that was counted is a number: a load that was not must not spoil a sum without a word.
+    /// True if all that was counted is a number: a load that was not must not spoil a sum without a word.
     fn sound(&self, events: usize) -> Result<(), Halt> {
         let energies = self.log.events[events..].iter().map(|event| event.energy_lost_j + event.before.load_n + event.after.load_n);
         if self.log.work_j.is_finite() && self.totals.load_n.is_finite() && energies.into_iter().all(f64::is_finite) {
@@ -482,7 +482,7 @@ impl<'p> Path<'p> {
     }
 }
 
-/// Whether `value` is a multiple of `size` to rounding, which grows with their ratio.
+/// True if `value` is a multiple of `size` to rounding, which grows with their ratio.
 pub(crate) fn is_multiple(value: f64, size: f64) -> bool {
     let count = value / size;
     (count - count.round()).abs() < 1e-9 + 4.0 * f64::EPSILON * count.abs()

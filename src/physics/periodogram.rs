@@ -6,14 +6,14 @@ use super::memory::zeros;
 use ndarray::{Array1, ArrayView2};
 use std::f64::consts::TAU;
 
-/// What the modes of a ring of wavevectors have on average.
+/// Average over the modes of a ring of wavevectors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ring {
     /// Mean wavenumber q \[1/m\].
     pub wavenumber_1_m: f64,
     /// Mean power spectral density C(q) \[m⁴\].
     pub density_m4: f64,
-    /// How many modes there are.
+    /// Number of modes.
     pub mode_count: u64,
 }
 

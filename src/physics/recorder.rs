@@ -23,7 +23,7 @@ pub(super) struct Recorder {
     ways_before: usize,
     merged_before: usize,
     effort_before: Effort,
-    /// Load at the last record \[N\], and the greatest tension of all records so far with its spots, while these are to be kept.
+    /// Load at the last record \[N\], and the largest tension of all records so far with its spots, while these are to be kept.
     load_before: Option<f64>,
     pulled: Option<(f64, Vec<Contact>)>,
 }
@@ -46,7 +46,7 @@ impl Recorder {
         }
     }
 
-    /// Whether events have happened since the last record.
+    /// True if events have happened since the last record.
     pub(super) fn lacks_events(&self, path: &Path<'_>) -> bool {
         self.events_before < path.log.events.len()
     }
@@ -78,7 +78,7 @@ impl Recorder {
         }
     }
 
-    /// Whether the load has come to half that of a turning point since the last record, or to none on the way back.
+    /// True if the load has come to half that of a turning point since the last record, or to none on the way back.
     fn passes_landmark(&self, settings: &Settings, problem: &Problem, load: f64) -> bool {
         let Some(before) = self.load_before else { return false };
         match self.branch {

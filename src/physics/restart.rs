@@ -11,11 +11,11 @@ use super::state::{Problem, State, Status};
 pub struct Kept {
     /// The asperity, by the caller's number.
     pub asperity: usize,
-    /// What it is doing.
+    /// Status of the asperity.
     pub status: Status,
     /// Contact radius \[m\], 0 out of contact.
     pub radius_m: f64,
-    /// Whether it has left and waits until its penetration falls below the jump-in.
+    /// True if it has left and waits until its penetration falls below the jump-in.
     pub barred: bool,
 }
 

@@ -11,7 +11,7 @@ pub struct SelfAffine {
     pub plateau_m4: f64,
     /// q_r \[1/m\]; the longest waves' wavenumber, if there is no roll-off.
     pub roll_off_1_m: f64,
-    /// Whether there is a roll-off within the band.
+    /// True if there is a roll-off within the band.
     pub rolls_off: bool,
     /// Rms deviation of log10 C from the fit, rings weighted as in it.
     pub scatter: f64,

@@ -117,7 +117,7 @@ impl Path<'_> {
         }
     }
 
-    /// Whether a spot has gone over the centre of another that is in contact, where fields are reciprocal: what that one does to its grip is without bound at its
+    /// True if a spot has gone over the centre of another that is in contact, where fields are reciprocal: what that one does to its grip is without bound at its
     /// edge, so that it has jumped there, and lost what the event that is due now is charged with.
     fn crosses(&self, change: &Change) -> bool {
         let reciprocal = self.problem().rules.interaction == Interaction::Reciprocal;
@@ -140,7 +140,7 @@ impl Path<'_> {
         state.contacts.iter().zip(&self.solver.residual).map(|(&i, residual)| load(i) * residual).sum()
     }
 
-    /// Whether the traces have led too far from the equilibrium of the whole contact, but for what they were known to lack.
+    /// True if the traces have led too far from the equilibrium of the whole contact, but for what they were known to lack.
     fn astray(&self) -> bool {
         let contacts = &self.front.state.contacts;
         let off: Vec<f64> = contacts.iter().zip(&self.solver.residual).map(|(&i, residual)| residual + self.whole_lags[i]).collect();

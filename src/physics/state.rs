@@ -16,11 +16,11 @@ use std::f64::consts::PI;
 /// The choices of the contact model that a cycle reads.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rules {
-    /// How spots act on one another.
+    /// Elastic interaction between contacts.
     pub interaction: Kind,
-    /// What surrounds the square.
+    /// Boundary condition of the square.
     pub boundary: Boundary,
-    /// What happens to an asperity under a greater spot.
+    /// Rule for an asperity under a larger contact.
     pub coalescence: Coalescence,
     /// When a free asperity jumps in.
     pub jump_in: JumpIn,
@@ -136,13 +136,13 @@ impl Problem {
         })
     }
 
-    /// Whether there is no adhesion: the half-space is elastic, and its contact has no memory.
+    /// True if there is no adhesion: the half-space is elastic, and its contact has no memory.
     #[must_use]
     pub fn is_adhesionless(&self) -> bool {
         self.material.work_of_adhesion_j_m2 == 0.0
     }
 
-    /// Whether neighbourhoods hold all summits.
+    /// True if neighbourhoods hold all summits.
     pub(crate) fn solves_whole(&self) -> bool {
         self.spots_in_patch >= self.summits
     }
@@ -165,7 +165,7 @@ impl Problem {
         self.heights.len()
     }
 
-    /// Whether there is no asperity (never: [`Self::new`] refuses it).
+    /// True if there is no asperity (never: [`Self::new`] refuses it).
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.heights.is_empty()
@@ -251,7 +251,7 @@ pub struct Totals {
     pub area_m2: f64,
 }
 
-/// What an asperity is doing.
+/// Status of an asperity.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Status {
     /// Out of contact.
@@ -277,7 +277,7 @@ pub enum Status {
 pub struct State {
     /// Approach δ \[m\], 0 at the highest summit.
     pub approach_m: f64,
-    /// What each asperity is doing.
+    /// Status of each asperity.
     pub status: Vec<Status>,
     /// Contact radius of each asperity \[m\], 0 out of contact.
     pub radius: Vec<f64>,
@@ -339,7 +339,7 @@ impl State {
         None
     }
 
-    /// Whether an asperity is part of a merged spot that has left.
+    /// True if an asperity is part of a merged spot that has left.
     pub(crate) fn is_orphan(&self, i: usize) -> bool {
         matches!(self.status[i], Status::Merged { into } if self.status[into] == Status::Free)
     }
@@ -382,7 +382,7 @@ impl State {
         self.radius[i] = radius;
     }
 
-    /// How many asperities are covered.
+    /// Number of absorbed asperities.
     #[must_use]
     pub fn covered_count(&self) -> usize {
         self.status.iter().filter(|s| matches!(s, Status::Covered { .. })).count()

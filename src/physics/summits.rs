@@ -31,7 +31,7 @@ pub struct Summit {
     pub grid_row: usize,
     /// Grid column of the maximum.
     pub grid_col: usize,
-    /// Whether position, height and curvatures are those of the apex between grid points.
+    /// True if position, height and curvatures are those of the apex between grid points.
     pub refined: bool,
 }
 

@@ -57,6 +57,30 @@ macro_rules! over_realizations {
     };
 }
 
+/// Mean and extreme value over surfaces, those of failed cycles included. Both are null without a value.
+macro_rules! over_surfaces {
+    ($name:literal, $what:literal, $source:literal) => {
+        &[
+            real(concat!($name, "_mean"), "1", concat!("Mean over the surfaces of finished and failed cycles: ", $what))
+                .or_null()
+                .from($source),
+            real(concat!($name, "_min"), "1", concat!("Minimum over the surfaces of finished and failed cycles: ", $what))
+                .or_null()
+                .from($source),
+        ]
+    };
+}
+
+/// Pooled fraction of the contacts of all realizations, and its maximum over realizations. Both are null without contacts.
+macro_rules! pooled {
+    ($name:literal, $sums:literal, $what:literal) => {
+        &[
+            real(concat!($name, "_mean"), "1", concat!("Pooled over realizations, ", $sums, ": ", $what)).or_null(),
+            real(concat!($name, "_max"), "1", concat!("Maximum over realizations: ", $what)).or_null(),
+        ]
+    };
+}
+
 /// Mean and extreme value over realizations. Both are null without a value.
 macro_rules! mean_and_worst {
     ($name:literal, $end:literal, $word:literal, $what:literal, $source:literal) => {
@@ -96,13 +120,15 @@ const RESULTS: &[Column] = &[
     real("dissipated", "1", "Dissipated energy over E* A0 h_rms, summed over the events of the loop"),
     real("dissipated_j", "J", "Dissipated energy, summed over the events of the loop"),
     real("audit_gap", "1", "Energy-balance error |loss_j - dissipated_j| / |loss_j|; where loss_j is 0 (no adhesion), energy of the loading events over the work of loading").or_null(),
-    real("absorption_share", "1", "Coalescence energy over dissipated energy: (|cover + uncover| + |merge + split|)/|Θ| of the event energies; null where Θ = 0").or_null(),
+    real("absorption_share", "1", "Coalescence energy over dissipated energy: |cover + uncover + merge + split|/|Θ| of the energies of events; null where Θ = 0").or_null(),
     real("loss_uncertainty", "1", "Numerical resolution of Θ over |Θ|; the resolution is 1e-7 of the maximum work along the loop; null where Θ = 0").or_null(),
     count("summit_count", "Number of asperities of the surface"),
     real("summit_density_1_m2", "1/m^2", "Number of asperities per nominal area"),
     real("nayak_density_1_m2", "1/m^2", "Summit density of a Gaussian surface with the spectral moments of the realized surface")
         .from("Eq A4, Nayak 1971"),
     count("contact_count_at_max_load", "Asperities in contact at load reversal"),
+    count("touching_count_at_max_load", "Contact spots at load reversal that overlap a neighbour (distance < sum of radii)"),
+    count("covered_count_at_max_load", "Asperities absorbed by a larger contact at load reversal"),
     count("step_count", "Output steps of loading and of this unloading"),
     count("unconverged_count", "Output steps with a residual above the tolerance"),
     count("held_count", "Frozen asperities: state kept, because it alternated between absorbed and released; summed over the steps"),
@@ -208,35 +234,40 @@ const VALIDITY: &[&[Column]] = &[
         "absorption_share",
         "max",
         "Maximum",
-        "coalescence energy over dissipated energy, (|cover + uncover| + |merge + split|)/|Θ|",
+        "coalescence energy over dissipated energy, |cover + uncover + merge + split|/|Θ|",
         ""
     ),
     mean_and_worst!("loss_uncertainty", "max", "Maximum", "numerical resolution of Θ over |Θ|", ""),
-    mean_and_worst!("touching_share", "max", "Maximum", "fraction of contact spots that overlap a neighbour at load reversal", ""),
-    mean_and_worst!("covered_share", "max", "Maximum", "absorbed fraction of the asperities in contact or absorbed, at load reversal", ""),
-    mean_and_worst!("conformity", "min", "Minimum", "U_el/Δγ of the shortest octave, continuous spectrum", "Persson and Tosatti 2001"),
-    mean_and_worst!(
-        "conformity_realised",
-        "min",
-        "Minimum",
-        "U_el/Δγ of the shortest octave, realized spectrum",
-        "Persson and Tosatti 2001"
+    pooled!(
+        "touching_share",
+        "sum of touching_count_at_max_load over sum of contact_count_at_max_load",
+        "fraction of contact spots that overlap a neighbour at load reversal"
     ),
-    mean_and_worst!("persson_tosatti", "min", "Minimum", "Persson-Tosatti ratio U_el/Δγ, continuous spectrum", "Persson and Tosatti 2001"),
-    mean_and_worst!(
-        "persson_tosatti_realised",
-        "min",
-        "Minimum",
-        "Persson-Tosatti ratio U_el/Δγ, realized spectrum",
-        "Persson and Tosatti 2001"
+    pooled!(
+        "covered_share",
+        "sum of covered_count_at_max_load over sum of absorbed and contacting asperities",
+        "absorbed fraction of the asperities in contact or absorbed, at load reversal"
     ),
+    mean_and_worst!("contact_count_at_max_load", "min", "Minimum", "number of asperities in contact at load reversal", ""),
+    mean_and_worst!(
+        "touching_count_at_max_load",
+        "max",
+        "Maximum",
+        "number of contact spots at load reversal that overlap a neighbour",
+        ""
+    ),
+    over_surfaces!("summit_count", "number of asperities of a surface", ""),
+    over_surfaces!("conformity", "U_el/Δγ of the shortest octave, continuous spectrum", "Persson and Tosatti 2001"),
+    over_surfaces!("conformity_realised", "U_el/Δγ of the shortest octave, realized spectrum", "Persson and Tosatti 2001"),
+    over_surfaces!("persson_tosatti", "Persson-Tosatti ratio U_el/Δγ, continuous spectrum", "Persson and Tosatti 2001"),
+    over_surfaces!("persson_tosatti_realised", "Persson-Tosatti ratio U_el/Δγ, realized spectrum", "Persson and Tosatti 2001"),
 ];
 
 const COUNTS: &[Column] = &[
     count("planned_count", "Realizations requested by the spec"),
     count("done_count", "Realizations in the means"),
     count("failed_count", "Realizations that failed"),
-    text("caution", "Codes of all warnings of the row, joined by +; empty without warnings"),
+    text("caution", "Codes of all warnings of the row by severity, joined by +; empty without warnings"),
 ];
 
 const SPREAD_COLUMNS: [Column; 4 * SPREADS.len()] = join(SPREADS);
@@ -257,7 +288,7 @@ pub static CASES: Table = Table {
     name: "cases",
     version: 1,
     file: "statistics/cases.parquet",
-    doc: "One row per case and load reversal, averaged over realizations.",
+    doc: "One row per case and load reversal, averaged over realizations, in the order of the spec.",
     columns: &CASE_COLUMNS,
 };
 

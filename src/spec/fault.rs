@@ -216,12 +216,12 @@ impl<'t> Faults<'t> {
         self.add(span, message, help);
     }
 
-    /// Whether further faults are only counted.
+    /// True if further faults are only counted.
     pub(super) fn is_full(&self) -> bool {
         self.found.len() >= MOST
     }
 
-    /// How many faults there are.
+    /// Number of faults.
     pub(super) fn count(&self) -> usize {
         self.found.len() + self.more
     }

@@ -55,7 +55,7 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
     Some(Spec { name: name?, seed, realizations, cases: cases.list, base, sweeps, files })
 }
 
-/// Whether the sweeps make more cases than allowed, found without making them.
+/// True if the sweeps make more cases than allowed, found without making them.
 fn too_many(sweeps: &[&SweepDraft], faults: &mut Faults<'_>) -> bool {
     let mut total: u128 = 0;
     let mut first_beyond: Option<&Range<usize>> = None;

@@ -17,7 +17,7 @@ pub(super) struct Key {
     pub(super) meaning: &'static str,
     /// What it takes.
     pub(super) kind: Kind,
-    /// Its value in a case.
+    /// Value in a case.
     pub(super) get: fn(&CaseParams) -> Value,
     /// Puts a value of the right kind into a case.
     pub(super) set: fn(&mut CaseParams, &Value),
@@ -54,7 +54,7 @@ impl Key {
 }
 
 impl Kind {
-    /// Whether one value of this kind is an array already.
+    /// True if one value of this kind is an array already.
     pub(super) fn is_list(&self) -> bool {
         matches!(self, Self::Numbers(..) | Self::Words(..))
     }
@@ -66,7 +66,7 @@ pub(super) struct Limits {
     pub(super) low: f64,
     /// `low` itself is not allowed.
     pub(super) above: bool,
-    /// The greatest value.
+    /// Largest value.
     pub(super) high: f64,
     /// Symbol of the unit, with a space before it; empty if there is none.
     pub(super) unit: &'static str,
@@ -79,7 +79,7 @@ pub(super) struct Limits {
 }
 
 impl Limits {
-    /// Whether a value lies within.
+    /// True if a value lies within.
     pub(super) fn hold(&self, value: f64) -> bool {
         value <= self.high && if self.above { value > self.low } else { value >= self.low }
     }
@@ -203,7 +203,7 @@ pub(super) const TABLES: [&str; 4] = ["surface", "material", "model", "cycle"];
 /// Keys of `[surface]` that describe a measured surface.
 pub const MEASURED: [&str; 7] = ["file", "dataset", "periodic", "pixel_m", "unit", "missing", "detrend"];
 /// Keys of `[surface]` that describe a generated one.
-pub(super) const GENERATED: [&str; 6] = ["length_m", "rms_height_m", "hurst", "magnification", "normalization", "amplitudes"];
+pub const GENERATED: [&str; 6] = ["length_m", "rms_height_m", "hurst", "magnification", "normalization", "amplitudes"];
 
 /// The place in [`KEYS`] of a key of a table.
 pub(super) fn find(table: &str, name: &str) -> Option<usize> {

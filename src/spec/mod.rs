@@ -32,23 +32,23 @@ use crate::model::{
 pub use crate::text::quoted;
 pub use fault::{Fault, Place, SpecErrors};
 pub use json_schema::{SCHEMA_FILE, json_schema};
-pub use keys::MEASURED;
+pub use keys::{GENERATED, MEASURED};
 pub use realizations::{Realizations, Until};
 pub use reference::reference;
 
-/// The greatest number of cases that one spec may make.
+/// Maximum number of cases that one spec may make.
 pub const MAX_CASES: u32 = 10_000;
 
-/// The greatest number of realisations of each surface.
+/// Maximum number of realisations of each surface.
 pub const MAX_REALIZATIONS: u32 = 10_000;
 
-/// The greatest number of tasks of one campaign: two for each surface, one for each cycle.
+/// Maximum number of tasks of one campaign: two for each surface, one for each cycle.
 pub const MAX_TASKS: u64 = 10_000_000;
 
-/// The greatest number of grid points along one side of a surface: 8 GiB of heights.
+/// Maximum number of grid points along one side of a surface: 8 GiB of heights.
 pub const MAX_GRID: u32 = 32_768;
 
-/// The greatest size of a spec's text \[bytes\].
+/// Largest size of a spec's text \[bytes\].
 pub const MAX_BYTES: u64 = 4 << 20;
 
 /// A campaign: what is computed, and how often.
@@ -62,7 +62,7 @@ pub struct Spec {
     pub realizations: Realizations,
     /// The cases: every different one once, in the order in which the sweeps first ask for it.
     pub cases: Vec<Case>,
-    /// What the sweeps override; itself a case only if there is no sweep.
+    /// Parameters that the sweeps override; a case of its own only without a sweep.
     pub base: CaseParams,
     /// The sweeps as written, each value checked.
     pub sweeps: Vec<Sweep>,
@@ -75,7 +75,7 @@ pub struct Spec {
 pub struct Case {
     /// Names of all sweeps in which this case occurs, in their order; `base` alone when the spec has no sweep.
     pub sweeps: Vec<String>,
-    /// What is computed.
+    /// Parameters of the case.
     pub params: CaseParams,
 }
 
@@ -107,7 +107,7 @@ pub struct SurfaceParams {
     pub magnification: u32,
     /// Grid points per shortest wavelength.
     pub points_per_shortest_wavelength: u32,
-    /// How the surface gets its rms height.
+    /// Normalization of the rms height.
     pub normalization: Normalization,
     /// The moduli of the Fourier modes.
     pub amplitudes: Amplitudes,
@@ -115,20 +115,20 @@ pub struct SurfaceParams {
     pub file: String,
     /// Which of the file's fields it is; empty for the only one.
     pub dataset: String,
-    /// Whether it continues periodically.
+    /// True if it continues periodically.
     pub periodic: bool,
     /// Distance of its points \[m\], where the file does not tell it; else 0.
     pub pixel_m: f64,
     /// Unit of its heights, where the file does not tell it.
     pub unit: String,
-    /// What becomes of its missing points.
+    /// Treatment of missing points.
     pub missing: Missing,
     /// Shape that is removed from its heights by least squares; the mean alone if it is periodic.
     pub detrend: Detrend,
 }
 
 impl SurfaceParams {
-    /// Whether it is a measured surface.
+    /// True if it is a measured surface.
     #[must_use]
     pub fn is_measured(&self) -> bool {
         !self.file.is_empty()
@@ -145,11 +145,11 @@ impl SurfaceParams {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ModelParams {
-    /// How contact spots act on one another.
+    /// Elastic interaction between contacts.
     pub interaction: Interaction,
-    /// What surrounds the square.
+    /// Boundary condition of the square.
     pub boundary: Boundary,
-    /// What happens when a spot grows over the centre of another asperity.
+    /// Coalescence rule: a contact grows over the centre of another asperity.
     pub coalescence: Coalescence,
     /// When a free asperity jumps into contact.
     pub jump_in: JumpIn,
@@ -182,9 +182,9 @@ pub struct CycleParams {
 /// One `[[sweep]]`: its axes multiply, the last one runs fastest.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Sweep {
-    /// Its name, unique in the spec.
+    /// Name, unique in the spec.
     pub name: String,
-    /// What it overrides, in the order written.
+    /// Overridden keys, in the order written.
     pub axes: Vec<Axis>,
 }
 

@@ -14,7 +14,7 @@ use super::value::{Written, word, wrong_type};
 use super::walk::{entries, shown};
 use crate::model::{Choice, Goal};
 
-/// How many realizations each surface has.
+/// Number of realizations of each surface.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Realizations {
@@ -33,12 +33,12 @@ pub struct Until {
     pub of: Goal,
     /// With how many it begins.
     pub min: u32,
-    /// How many there are at most.
+    /// Maximum number.
     pub max: u32,
 }
 
 impl Realizations {
-    /// How many there are in any case.
+    /// Minimum number.
     #[must_use]
     pub fn least(self) -> u32 {
         match self {
@@ -47,7 +47,7 @@ impl Realizations {
         }
     }
 
-    /// How many there are at most in any case.
+    /// Maximum number.
     #[must_use]
     pub fn most(self) -> u32 {
         match self {

@@ -43,13 +43,13 @@ fn write(spec: &Spec, text: &mut String) -> Result<(), Error> {
     Ok(())
 }
 
-/// Whether the base's kind of surface reads a key, or it says something other than its default.
+/// True if the base's kind of surface reads a key, or it says something other than its default.
 fn is_read(key: &Key, base: &CaseParams) -> bool {
     let others: &[&str] = if base.surface.is_measured() { &GENERATED } else { &MEASURED };
     key.table != "surface" || !others.contains(&key.name) || (key.get)(base) != (key.get)(&CaseParams::default())
 }
 
-/// Whether a value was left to its default, which differs between the cases of a sweep that does not set it: written out, it would hold for all of them.
+/// True if a value was left to its default, which differs between the cases of a sweep that does not set it: written out, it would hold for all of them.
 fn follows(key: &Key, spec: &Spec) -> bool {
     let set = |name: &str| spec.sweeps.iter().any(|sweep| sweep.name == name && sweep.axes.iter().any(|axis| axis.key == key.path));
     let differs = |case: &Case| (key.get)(&case.params) != (key.get)(&spec.base);

@@ -6,13 +6,14 @@ use super::statistics::moments;
 use super::surface::{scale, spectrum};
 use crate::campaign::{Campaign, CycleUnit, Standing};
 use crate::figures::{Closer, Panel, closer};
-use crate::model::{Boundary, Normalization};
+use crate::model::{Boundary, Choice, Normalization};
 use crate::physics::periodogram::{periodogram, windowed_periodogram};
 use crate::physics::spectrum::Spectrum;
 use crate::physics::theory::curvature_density;
 use crate::schema;
-use crate::spec::SurfaceParams;
-use crate::stats::significant;
+use crate::spec::{CaseParams, SurfaceParams};
+use crate::stats::{labels_with_unit, significant};
+use crate::store::Frame;
 use crate::store::hdf5::{SurfaceHeader, read_surface};
 use crate::store::parquet::read_table;
 use std::f64::consts::{PI, TAU};
@@ -26,24 +27,28 @@ const POINTS: usize = 120;
 
 /// The figures of one cycle.
 pub(super) struct Look {
-    /// The id of the cycle, and the turning point.
+    /// The id of the cycle, and the number of its surface.
     pub(super) id: String,
-    pub(super) max_load: f64,
+    pub(super) realization: u32,
+    /// The parameters of the case, with the load reversal.
+    pub(super) parameters: String,
     pub(super) panels: Vec<Panel>,
     /// The maps of the spots, if these were kept.
     pub(super) map: Option<String>,
 }
 
-/// The first finished cycle, at the load reversal nearest to the first one of the spec; `None` without a finished cycle, or if all surfaces are too
-/// large.
-pub(super) fn look(campaign: &Campaign, standings: &[Standing]) -> Result<Option<Look>, StageError> {
+/// The first finished cycle of the case with the largest mean Θ, at that load reversal; `None` without a finished cycle, or if all surfaces are too large.
+pub(super) fn look(campaign: &Campaign, standings: &[Standing], cases: &Frame) -> Result<Option<Look>, StageError> {
     let params = |unit: &CycleUnit| &campaign.surfaces[unit.surface].params;
-    let done = campaign.cycles.iter().zip(standings).filter(|(_, standing)| **standing == Standing::Done).map(|(unit, _)| unit);
-    let Some(unit) = done.into_iter().find(|unit| params(unit).grid() <= GREATEST) else { return Ok(None) };
+    let done = || campaign.cycles.iter().zip(standings).filter(|(_, standing)| **standing == Standing::Done).map(|(unit, _)| unit);
+    let (ids, loads, losses) = (cases.text("case_id")?, cases.f64("max_load")?, cases.f64_or_null("loss_mean")?);
+    let mut rows: Vec<(usize, f64)> = losses.iter().enumerate().filter_map(|(row, loss)| loss.map(|loss| (row, loss))).collect();
+    // Of equal means, the first row.
+    rows.sort_by(|u, v| v.1.total_cmp(&u.1));
+    let first = |row: usize| done().find(|unit| campaign.cases[unit.case].id == ids[row] && params(unit).grid() <= GREATEST);
+    let Some((unit, max_load)) = rows.into_iter().find_map(|(row, _)| first(row).map(|unit| (unit, loads[row]))) else { return Ok(None) };
     let case = &campaign.cases[unit.case].case.params;
-    let first = campaign.spec.base.cycle.max_load.first().copied().unwrap_or_default();
-    let nearest = case.cycle.max_load.iter().min_by(|u, v| (*u - first).abs().total_cmp(&(*v - first).abs()));
-    let Some(max_load) = nearest.copied() else { return Ok(None) };
+    let parameters = parameters(case, max_load);
     let surface = &campaign.surfaces[unit.surface];
     let (header, heights) = read_surface(&campaign.surface_path(surface))?;
     let asperities = read_table(&campaign.asperities_path(surface), &schema::ASPERITIES)?;
@@ -62,6 +67,7 @@ pub(super) fn look(campaign: &Campaign, standings: &[Standing]) -> Result<Option
     let area = header.length_m * header.length_m;
     let of = Closer {
         max_load,
+        parameters: &parameters,
         steps: &steps,
         events: &events,
         contacts: &contacts,
@@ -79,7 +85,33 @@ pub(super) fn look(campaign: &Campaign, standings: &[Standing]) -> Result<Option
         densities_1_m2: [asperities.row_count() as f64 / area, realised.summit_density_1_m2()],
     };
     let (panels, map) = closer(&of, heights.view())?;
-    Ok(Some(Look { id: unit.id.clone(), max_load, panels, map }))
+    let realization = surface.realization;
+    Ok(Some(Look { id: unit.id.clone(), realization, parameters, panels, map }))
+}
+
+/// The parameters of a case as text: `ζ = 64, H = 0.8, …`.
+fn parameters(case: &CaseParams, max_load: f64) -> String {
+    let (surface, material, model) = (&case.surface, &case.material, &case.model);
+    let with_unit = |symbol: &str, column: &str, value: f64| {
+        labels_with_unit(column, &[value]).into_iter().map(|text| format!("{symbol} = {text}")).collect::<String>()
+    };
+    let mut parts = if surface.is_measured() {
+        vec![surface.file.clone()]
+    } else {
+        vec![
+            format!("ζ = {}", surface.magnification),
+            format!("H = {}", significant(surface.hurst, 4)),
+            with_unit("h_rms", "rms_height_m", surface.rms_height_m),
+            with_unit("L", "length_m", surface.length_m),
+        ]
+    };
+    parts.push(with_unit("E*", "contact_modulus_pa", material.contact_modulus_pa));
+    parts.push(with_unit("Δγ", "work_of_adhesion_j_m2", material.work_of_adhesion_j_m2));
+    let choices =
+        [("interaction", model.interaction.word()), ("boundary", model.boundary.word()), ("coalescence", model.coalescence.word())];
+    parts.extend(choices.map(|(key, word)| format!("{key} = \"{word}\"")));
+    parts.push(format!("F_max/(E*A₀) = {}", significant(max_load, 4)));
+    parts.join(", ")
 }
 
 /// The wavenumber q/qL up to which rings of the spectrum have all their modes below the cut-off: the mean of a ring that it divides has modes without amplitude.
@@ -124,10 +156,11 @@ pub(super) fn section(html: &mut String, number: usize, look: &Look) {
     // Writing to a string cannot fail.
     let _ = write!(
         html,
-        "<h2>Single cycle</h2>\n<p>Cycle {} with F<sub>max</sub>/(E*A<sub>0</sub>) = {}. The table <code>events</code> of the cycle holds all events, the \
-         table <code>contacts</code> the contact spots.</p>\n",
+        "<h2>Single cycle</h2>\n<p>The case with the largest mean Θ/(E*A<sub>0</sub>h<sub>rms</sub>): {}. Cycle {}, realization {}. The table \
+         <code>events</code> of the cycle holds all events, the table <code>contacts</code> the contact spots.</p>\n",
+        escape(&look.parameters),
         escape(&look.id),
-        significant(look.max_load, 4)
+        look.realization
     );
     grid(html, number, &look.panels);
     if let Some(map) = &look.map {

@@ -8,7 +8,7 @@ use serde_json::json;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
-/// Whether an error is one case's own: the others go on. What the system says of a file (a full disk) is not.
+/// True if an error is one case's own: the others go on. What the system says of a file (a full disk) is not.
 pub(super) fn is_of_a_case(error: &StageError) -> bool {
     matches!(
         error,
@@ -96,7 +96,7 @@ pub(super) fn by_surface(campaign: &Campaign) -> HashMap<&str, Vec<&CycleUnit>> 
     found
 }
 
-/// Whether a stage is not tried for a surface: for all of its `cycles` it failed before and is not to be `retried`, or an earlier one did.
+/// True if a stage is not tried for a surface: for all of its `cycles` it failed before and is not to be `retried`, or an earlier one did.
 pub(super) fn given_up(campaign: &Campaign, cycles: &[&CycleUnit], stage: Stage, retried: &HashSet<String>) -> bool {
     let failed = |cycle: &&CycleUnit| match campaign.failed_at(cycle) {
         Some(at) if at == stage => !retried.contains(&cycle.id),

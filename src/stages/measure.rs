@@ -19,19 +19,33 @@ use std::path::Path;
 /// How far a distance of points that is given may be from that of the file.
 const SAME: f64 = 1e-3;
 
+/// A measured surface after all preprocessing steps.
+pub struct Imported {
+    /// Heights and spectrum.
+    pub prepared: Prepared,
+    /// Header of its file in a run.
+    pub header: SurfaceHeader,
+    /// Factor from the numbers of the file to heights \[m\]; nothing for a surface of this program, which is in metres.
+    pub height_factor_m: Option<f64>,
+}
+
 /// A measured surface as the spec's parameters ask for it, with what its file in a run says of it. `digest` is the BLAKE3 of its file. A surface of this program, which
 /// `import` may have written, is taken as it is.
 ///
 /// # Errors
 /// A file that cannot be read or does not say what is needed; what [`prepare`] refuses.
-pub fn measure(params: &SurfaceParams, digest: &str, key: &str) -> Result<(Prepared, SurfaceHeader), StageError> {
+pub fn measure(params: &SurfaceParams, digest: &str, key: &str) -> Result<Imported, StageError> {
     let path = Path::new(&params.file);
     let scan = match source(path, &params.dataset)? {
-        Source::Own(header, heights) => return own(params, *header, heights, digest, key),
+        Source::Own(header, heights) => {
+            let (prepared, header) = own(params, *header, heights, digest, key)?;
+            return Ok(Imported { prepared, header, height_factor_m: None });
+        }
         Source::Scan(scan) => scan,
     };
     let (rows, columns) = scan.heights.dim();
     let unit = unit(params, &scan)?;
+    let height_factor_m = Some(unit * scan.factor);
     let spacing = spacing(params, &scan)?;
     if let Some(apart) = spacing.iter().find(|apart| !PIXEL_SIZES.contains(apart)) {
         let why =
@@ -71,7 +85,7 @@ pub fn measure(params: &SurfaceParams, digest: &str, key: &str) -> Result<(Prepa
         generated: None,
         measured: Some(measured),
     };
-    Ok((prepared, header))
+    Ok(Imported { prepared, header, height_factor_m })
 }
 
 /// A surface of this program, which has been treated already.
@@ -232,6 +246,7 @@ fn source(path: &Path, dataset: &str) -> Result<Source, StageError> {
             heights: read_heights(path, dataset).map_err(StageError::Scan)?,
             size_m: None,
             unit: None,
+            factor: 1.0,
             periodic: None,
             spacing: None,
         })),

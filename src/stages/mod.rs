@@ -21,8 +21,9 @@ mod trust;
 
 pub use comparison::{Comparison, compare};
 pub use cycle::unload_again;
-pub use measure::measure;
+pub use measure::{Imported, measure};
 pub use sampling::sampled;
+pub use statistics::{Outside, foreseen};
 
 use crate::campaign::{Campaign, CycleUnit, Shard, Stage, Standing, SurfaceUnit, Unit};
 use crate::physics::PhysicsError;
@@ -66,7 +67,7 @@ pub enum StageError {
     /// A measured surface.
     #[error("cannot import the surface {}: {why}", shown(path))]
     Measured {
-        /// Its file.
+        /// File.
         path: PathBuf,
         /// Why, and what is allowed.
         why: String,
@@ -77,7 +78,7 @@ pub enum StageError {
     /// A measured surface that changed after the spec was read. It is no failure of a case, whose keys refer to the former file.
     #[error("cannot import the surface {}: {why}", shown(path))]
     Changed {
-        /// Its file.
+        /// File.
         path: PathBuf,
         /// Why, and what is allowed.
         why: String,
@@ -210,7 +211,7 @@ pub trait Watch: Sync {
     fn end(&self, stage: Stage);
 }
 
-/// What became of a stage's units.
+/// Outcome of the tasks of a stage.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Tally {
     /// Units of the stage.
@@ -232,7 +233,7 @@ impl Tally {
     }
 }
 
-/// What of a campaign is to be done.
+/// Selection of the tasks of a campaign.
 #[derive(Debug, Clone)]
 pub struct Task {
     /// The first stage.
@@ -243,7 +244,7 @@ pub struct Task {
     pub shard: Shard,
     /// Aggregate what is there, although cases are missing.
     pub partial: bool,
-    /// How what is done is looked at: a file that has changed since is made again.
+    /// Check of finished files: a changed file is computed again.
     pub check: Check,
     /// Cycles that have failed and are tried again.
     pub retried: HashSet<String>,

@@ -2,19 +2,19 @@
 
 use super::StageError;
 use super::page::escape;
-use super::trust::{Cases, NAME_HEADS, Shown, scaled, shown};
+use super::trust::{Cases, ENERGIES, NAME_HEADS, Scale, Shown, scaled, shown};
 use crate::stats::{Difference, FEW, difference_of, singles};
 use std::fmt::Write as _;
 
-/// Heading, column of the table `cases` without its ending, the scale, and whether the quantity cannot be negative.
-const RESULTS: [(&str, &str, f64, bool); 7] = [
-    ("A/A<sub>0</sub>", "area_at_max_load", 1.0, true),
-    ("Δ/h<sub>rms</sub>", "penetration_at_max_load", 1.0, false),
-    ("F<sub>po</sub>/(E*A<sub>0</sub>) [10<sup>−3</sup>]", "pull_off_load", 1e-3, true),
-    ("Θ/(E*A<sub>0</sub>h<sub>rms</sub>) [10<sup>−3</sup>]", "loss", 1e-3, true),
-    ("Θ<sub>DK</sub>, target spectrum [10<sup>−3</sup>]", "loss_dk", 1e-3, true),
-    ("Θ/Θ<sub>DK</sub>", "loss_ratio_dk", 1.0, true),
-    ("Θ<sub>DK</sub>, realised spectrum [10<sup>−3</sup>]", "loss_dk_realised", 1e-3, true),
+/// Heading, column of the table `cases` without its ending, and whether the quantity cannot be negative.
+const RESULTS: [(&str, &str, bool); 7] = [
+    ("A/A<sub>0</sub>", "area_at_max_load", true),
+    ("Δ/h<sub>rms</sub>", "penetration_at_max_load", false),
+    ("F<sub>po</sub>/(E*A<sub>0</sub>)", "pull_off_load", true),
+    ("Θ/(E*A<sub>0</sub>h<sub>rms</sub>)", "loss", true),
+    ("Θ<sub>DK</sub>, target spectrum", "loss_dk", true),
+    ("Θ/Θ<sub>DK</sub>", "loss_ratio_dk", true),
+    ("Θ<sub>DK</sub>, realised spectrum", "loss_dk_realised", true),
 ];
 
 /// Quantities compared with the reference case.
@@ -35,23 +35,26 @@ pub(super) fn results(html: &mut String, cases: &Cases<'_>) -> Result<(), StageE
         "<h2>Results</h2>\n<p>Means over realizations: contact area A and mean penetration Δ at load reversal, pull-off force F<sub>po</sub> (maximum tensile \
          load during unloading), dissipated energy Θ (area of the loop), and its estimate Θ<sub>DK</sub> by Deng and Kesari (target spectrum). Brackets: \
          95 % confidence interval of the mean (Student). A lower limit below 0 of a quantity that cannot be negative is replaced by 0 and marked with †. \
-         Braces: values of the single surfaces, for fewer than {FEW}. Numbers with a power of ten are not scaled by the factor in the column \
-         head.{}</p>\n<div class=\"wide\"><table>\n{NAME_HEADS}<th>finished of planned</th>",
+         Braces: values of the single surfaces, for fewer than {FEW}. A power of ten in a column head is the unit of \
+         its numbers.{}</p>\n<div class=\"wide\"><table>\n{NAME_HEADS}<th>finished of planned</th>",
         cases.reference().map_or_else(String::new, |of| format!(
             " Reference case: {}. It belongs to the most sweeps; the other cases are named by the parameters that differ from it.",
             escape(of)
         ))
     );
-    for (heading, ..) in RESULTS {
-        let _ = write!(html, "<th>{heading}</th>");
+    let mut scales = Vec::new();
+    for (heading, column, _) in RESULTS {
+        let scale = if ENERGIES.contains(&column) { cases.scale(&ENERGIES)? } else { cases.scale(&[column])? };
+        let _ = write!(html, "<th>{heading}{}</th>", scale.head());
+        scales.push(scale);
     }
     html.push_str("</tr>\n");
     for listed in cases.rows() {
         let row = listed.row;
         let lost = if failed[row] > 0 { format!(", {} failed", failed[row]) } else { String::new() };
         let _ = write!(html, "<tr>{}<td>{} of {}{lost}</td>", cases.name(listed), done[row], planned[row]);
-        for (_, column, scale, positive) in RESULTS {
-            let _ = write!(html, "<td>{}</td>", result(cases, row, column, (scale, positive))?);
+        for ((_, column, positive), scale) in RESULTS.into_iter().zip(&scales) {
+            let _ = write!(html, "<td>{}</td>", result(cases, row, column, (*scale, positive))?);
         }
         html.push_str("</tr>\n");
     }
@@ -60,7 +63,7 @@ pub(super) fn results(html: &mut String, cases: &Cases<'_>) -> Result<(), StageE
 }
 
 /// A mean with its confidence interval, or with the values of the single surfaces.
-fn result(cases: &Cases<'_>, row: usize, column: &str, (scale, positive): (f64, bool)) -> Result<String, StageError> {
+fn result(cases: &Cases<'_>, row: usize, column: &str, (scale, positive): (Scale, bool)) -> Result<String, StageError> {
     let number = |end: &str| cases.number(&format!("{column}_{end}"), row);
     let (mean, low, high) = (number("mean")?, number("ci95_low")?, number("ci95_high")?);
     let text = |number: f64| scaled(Some(number), scale);
@@ -121,10 +124,10 @@ pub(super) fn usage(html: &mut String) {
          <pre>import polars as pl          # or pandas: pd.read_parquet, or DuckDB: SELECT * FROM 'statistics/cases.parquet'\n\
          cases = pl.read_parquet(\"statistics/cases.parquet\")\n\
          print(cases.select(\"case_id\", \"max_load\", \"loss_mean\", \"loss_ci95_low\", \"loss_ci95_high\"))\n\
-         # all events of the run with the parameters of their case\n\
-         cycles = pl.scan_parquet(\"statistics/cycles.parquet\").drop(\"case_id\", \"realization\")\n\
-         events = pl.scan_parquet(\"cycles/*/events.parquet\").join(cycles, on=\"cycle_id\").collect()</pre>\n<p>In R:</p>\n\
-         <pre>library(arrow)\ncases &lt;- read_parquet(\"statistics/cases.parquet\")\nplot(cases$area_at_max_load_mean, cases$loss_mean)</pre>\n\
+         # All events with the parameters of their cycle. Cases that share a cycle have one row each in the table cycles: keep one of them.\n\
+         cycles = pl.scan_parquet(\"statistics/cycles.parquet\").drop(\"case_id\", \"realization\").unique(\"cycle_id\")\n\
+         events = pl.scan_parquet(\"cycles/*/events.parquet\").join(cycles, on=\"cycle_id\").collect()</pre>\n<p>In R, after <code>hysteron export csv .</code>:</p>\n\
+         <pre>cases &lt;- read.csv(\"csv/cases.csv\")\nplot(cases$area_at_max_load_mean, cases$loss_mean)</pre>\n\
          <h2>Citation</h2>\n<p>Computed with hysteron {} (MIT OR Apache-2.0). Model: G. Violano and L. Afferrante, \
          “Roughness-induced adhesive hysteresis in self-affine fractal surfaces”, Lubricants 9(1):7, 2021, with corrected equations; \
          the guide of hysteron lists the corrections. The provenance records in <code>receipts/</code> state program, commit and compiler of each file.</p>\n",

@@ -46,7 +46,7 @@ pub(super) fn run(campaign: &Campaign, (cycles_check, check): (Check, Check), wa
             drawings.push((sweep.clone(), panel));
         }
     }
-    let look = closer::look(campaign, &standings)?;
+    let look = closer::look(campaign, &standings, &cases)?;
     let close = look.iter().flat_map(|look| &look.panels);
     for panel in drawings.iter().map(|(_, panel)| panel).chain(close.clone()) {
         files.extend(write_picture(&campaign.dir, &panel.stem, &panel.svg)?);

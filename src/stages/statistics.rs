@@ -6,7 +6,7 @@ use super::{StageError, Tally, Watch, datapackage, incomplete};
 use crate::campaign::{Campaign, CaseUnit, CycleUnit, STATISTICS, Stage, Standing, Unit};
 use crate::model::Choice;
 use crate::physics::jkr::Asperity;
-use crate::physics::spectrum::Moments;
+use crate::physics::spectrum::{Moments, Spectrum};
 use crate::physics::summits::Summit;
 use crate::physics::synthesis::realization_seed;
 use crate::physics::theory::{
@@ -14,10 +14,11 @@ use crate::physics::theory::{
 };
 use crate::physics::validity::{Flattening, LEAST_TABOR, flattening, measured_flattening, realised_flattening};
 use crate::spec::CaseParams;
-use crate::stats::{self, CaseInput, CycleInput, Given, Planned, Sample, Value};
+use crate::stats::{self, CAUTIONS, CaseInput, Caution, CycleInput, Given, Limit, Planned, Sample, Value};
 use crate::store::hdf5::{SurfaceHeader, read_header, read_surface};
 use crate::store::{Check, Frame, commit, parquet};
 use rayon::prelude::*;
+use std::collections::HashMap;
 
 /// Which cycles are done.
 fn done(standings: &[Standing]) -> Vec<bool> {
@@ -55,7 +56,7 @@ pub(super) fn run(
         return Ok(tally);
     }
     watch.begin(Stage::Aggregate, 0, 1);
-    let cases: Vec<CaseInput> =
+    let mut cases: Vec<CaseInput> =
         campaign.cases.iter().enumerate().map(|(k, unit)| case_input(campaign, k, unit, &standings)).collect::<Result<_, _>>()?;
     let cycles: Vec<CycleInput> = campaign
         .cycles
@@ -64,6 +65,24 @@ pub(super) fn run(
         .filter(|(_, standing)| **standing == Standing::Done)
         .map(|(unit, _)| cycle_input(campaign, unit))
         .collect::<Result<_, _>>()?;
+    let failed: Vec<(usize, Given)> = campaign
+        .cycles
+        .par_iter()
+        .zip(&standings)
+        .filter(|(_, standing)| matches!(standing, Standing::Failed(_)))
+        .map(|(unit, _)| (unit.case, of_failed(campaign, unit)))
+        .collect();
+    for (case, of_surface) in failed {
+        cases[case].surfaces.push(of_surface);
+    }
+    // Without failed cycles the table of realizations has all surfaces.
+    let places = cases.iter().enumerate().filter(|(_, case)| case.failed_count > 0);
+    let with_failed: HashMap<String, usize> = places.map(|(place, case)| (case.case_id.clone(), place)).collect();
+    for cycle in &cycles {
+        if let Some(place) = with_failed.get(&cycle.case_id) {
+            cases[*place].surfaces.push(cycle.surface.clone());
+        }
+    }
     let realizations = stats::realizations(&cases, &cycles)?;
     let averaged = stats::cases(&realizations, &cases)?;
     let curves = stats::curves(&cases, &cycles)?;
@@ -139,7 +158,86 @@ fn case_input(campaign: &Campaign, number: usize, unit: &CaseUnit, standings: &[
         precision: campaign.spec.realizations.until().map(|until| (until.of.word().to_owned(), until.until_relative_ci)),
         planned_count: campaign.counts[number] as usize,
         failed_count: campaign.cycles.iter().zip(standings).filter(|pair| failed(*pair)).count(),
+        surfaces: Vec::new(),
     })
+}
+
+/// Columns of a failed cycle that depend on its surface and the material alone. Those of a surface that could not be made, or of which no asperities were found,
+/// are missing.
+fn of_failed(campaign: &Campaign, unit: &CycleUnit) -> Given {
+    let surface = &campaign.surfaces[unit.surface];
+    let mut columns = flattenings(campaign, unit, read_header(&campaign.surface_path(surface)).ok().as_ref()).unwrap_or_default();
+    let summits = read_summits(&campaign.asperities_path(surface)).ok();
+    columns.extend(named([("summit_count", summits.map(|summits| summits.len()).into())]));
+    columns
+}
+
+/// `U_el/Δγ` of all roughness and of the shortest octave. For a generated surface they follow from the spec and the seed.
+fn flattenings(campaign: &Campaign, unit: &CycleUnit, header: Option<&SurfaceHeader>) -> Result<Given, StageError> {
+    let params = &campaign.cases[unit.case].case.params;
+    let surface = &campaign.surfaces[unit.surface];
+    let modulus = params.material.contact_modulus_pa;
+    let measured = header.and_then(|header| header.measured.as_ref().map(|measured| (header, measured)));
+    let of_modes = if let Some(asked) = target(params) {
+        let seed = realization_seed(campaign.spec.seed, u64::from(surface.realization));
+        Some(realised_flattening(&asked, &seed, modulus))
+    } else if let Some((header, measured)) = measured {
+        let (_, heights) = read_surface(&campaign.surface_path(surface))?;
+        Some(measured_flattening(heights.view(), (header.length_m, header.periodic), measured.shortest_wavelength_m, modulus)?)
+    } else {
+        None
+    };
+    let continuous = target(params).map(|asked| flattening(&asked, modulus));
+    // Without adhesion the ratios are infinite, and missing in the table.
+    let adhesion = params.material.work_of_adhesion_j_m2;
+    let ratio = |of: Option<&Flattening>, ratio: fn(&Flattening, f64) -> f64| of.filter(|_| adhesion > 0.0).map(|of| ratio(of, adhesion));
+    Ok(named([
+        ("conformity", ratio(continuous.as_ref(), Flattening::conformity).into()),
+        ("conformity_realised", ratio(of_modes.as_ref(), Flattening::conformity).into()),
+        ("persson_tosatti", ratio(continuous.as_ref(), Flattening::persson_tosatti).into()),
+        ("persson_tosatti_realised", ratio(of_modes.as_ref(), Flattening::persson_tosatti).into()),
+    ]))
+}
+
+/// Target spectrum of a case; a measured surface has none.
+fn target(params: &CaseParams) -> Option<Spectrum> {
+    (!params.surface.is_measured()).then(|| spectrum(&params.surface))
+}
+
+/// Elastic energy over a work of adhesion \[J/m²\].
+type Ratio = fn(&Flattening, f64) -> f64;
+
+/// Cases whose target spectrum is outside the range of the asperity model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outside {
+    /// The warning.
+    pub kind: Caution,
+    /// Its limit.
+    pub limit: f64,
+    /// Smallest and largest value over these cases.
+    pub range: [f64; 2],
+    /// Ids of the cases.
+    pub cases: Vec<String>,
+}
+
+/// Warnings that follow from the spec alone, before any surface is made: `U_el/Δγ` and `U_1/Δγ` of the target spectra. Measured surfaces and cases
+/// without adhesion have none.
+#[must_use]
+pub fn foreseen(campaign: &Campaign) -> Vec<Outside> {
+    let ratios: [(&str, Ratio); 2] = [("sticky", Flattening::persson_tosatti), ("conformed", Flattening::conformity)];
+    let value = |unit: &CaseUnit, ratio: fn(&Flattening, f64) -> f64| {
+        let (params, material) = (&unit.case.params, &unit.case.params.material);
+        let asked = target(params).filter(|_| material.work_of_adhesion_j_m2 > 0.0)?;
+        Some(ratio(&flattening(&asked, material.contact_modulus_pa), material.work_of_adhesion_j_m2))
+    };
+    let of = |(code, ratio): (&str, Ratio)| {
+        let (limit, kind) = (Limit::of(code)?, CAUTIONS.into_iter().find(|kind| kind.code == code)?);
+        let known = campaign.cases.iter().filter_map(|unit| Some((unit.id.clone(), value(unit, ratio)?)));
+        let (cases, values): (Vec<String>, Vec<f64>) = known.filter(|(_, value)| limit.is_passed(Some(*value))).unzip();
+        let range = [values.iter().copied().reduce(f64::min)?, values.iter().copied().reduce(f64::max)?];
+        Some(Outside { kind, limit: limit.bound, range, cases })
+    };
+    ratios.into_iter().filter_map(of).collect()
 }
 
 pub(super) fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<CycleInput, StageError> {
@@ -158,8 +256,7 @@ pub(super) fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<Cycle
     let low = tabor.iter().filter(|number| **number < LEAST_TABOR).count();
     let over_all = |sum: f64| (!tabor.is_empty()).then(|| sum / tabor.len() as f64);
     let scale = scale(campaign, surface)?;
-    // Nobody asked for the spectrum of a measured surface.
-    let asked = (!params.surface.is_measured()).then(|| spectrum(&params.surface));
+    let asked = target(params);
     let adhesion = params.material.work_of_adhesion_j_m2;
     let losses =
         summits.iter().map(|s| Ok(Asperity::new(s.radius_m(), &params.material)?.loop_loss())).collect::<Result<Vec<f64>, StageError>>()?;
@@ -173,20 +270,7 @@ pub(super) fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<Cycle
         ];
         (*load, named(columns))
     };
-    let seed = realization_seed(campaign.spec.seed, u64::from(surface.realization));
-    let continuous = asked.as_ref().map(|asked| flattening(asked, params.material.contact_modulus_pa));
-    let modulus = params.material.contact_modulus_pa;
-    let of_modes = match (&asked, &header.measured) {
-        (Some(asked), _) => Some(realised_flattening(asked, &seed, modulus)),
-        (None, Some(measured)) => {
-            let (_, heights) = read_surface(&campaign.surface_path(surface))?;
-            Some(measured_flattening(heights.view(), (header.length_m, header.periodic), measured.shortest_wavelength_m, modulus)?)
-        }
-        (None, None) => None,
-    };
-    // Without adhesion the ratios to it are infinite, and missing in the table.
-    let ratio = |of: Option<&Flattening>, ratio: fn(&Flattening, f64) -> f64| of.filter(|_| adhesion > 0.0).map(|of| ratio(of, adhesion));
-    let numbers: [(&str, Value); 16] = [
+    let numbers: [(&str, Value); 12] = [
         ("summit_count", summits.len().into()),
         ("summit_density_1_m2", (summits.len() as f64 / area).into()),
         ("nayak_density_1_m2", realised.summit_density_1_m2().into()),
@@ -195,15 +279,13 @@ pub(super) fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<Cycle
         ("tabor_max", tabor.last().copied().into()),
         ("tabor_mean", over_all(tabor.iter().sum()).into()),
         ("low_tabor_share", over_all(low as f64).into()),
-        ("conformity", ratio(continuous.as_ref(), Flattening::conformity).into()),
-        ("conformity_realised", ratio(of_modes.as_ref(), Flattening::conformity).into()),
-        ("persson_tosatti", ratio(continuous.as_ref(), Flattening::persson_tosatti).into()),
-        ("persson_tosatti_realised", ratio(of_modes.as_ref(), Flattening::persson_tosatti).into()),
         ("fuller_tabor", spread.filter(|_| adhesion > 0.0).into()),
         ("rms_slope", header.rms_slope.into()),
         ("rms_curvature_1_m", header.rms_curvature_1_m.into()),
         ("nayak_parameter", header.nayak_parameter.into()),
     ];
+    let mut of_surface = flattenings(campaign, unit, Some(&header))?;
+    of_surface.extend(named(numbers));
     Ok(CycleInput {
         case_id: case.id.clone(),
         realization: i64::from(surface.realization),
@@ -220,7 +302,7 @@ pub(super) fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<Cycle
         loss_dalvi_per_area_j: dalvi_loss(&params.material, area),
         asperity_loss_j: losses,
         at_max_load: params.cycle.max_load.iter().map(at_max_load).collect(),
-        surface: named(numbers),
+        surface: of_surface,
     })
 }
 

@@ -2,7 +2,7 @@
 
 use super::StageError;
 use super::done::Outcome;
-use super::measure::measure;
+use super::measure::{Imported, measure};
 use crate::campaign::{Campaign, SurfaceUnit};
 use crate::formats::recognize;
 use crate::keys::digest_of_file;
@@ -64,7 +64,7 @@ fn take(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Outcome, StageError> 
                 .to_owned(),
         ));
     }
-    let (prepared, header) = measure(&unit.params, &digest, &unit.key)?;
+    let Imported { prepared, header, .. } = measure(&unit.params, &digest, &unit.key)?;
     Ok(Outcome::of(vec![write_surface(&campaign.surface_path(unit), &header, prepared.heights_m.view())?]))
 }
 

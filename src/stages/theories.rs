@@ -1,16 +1,16 @@
 //! Part of the report: comparison with analytical models.
 
 use super::StageError;
-use super::trust::{Cases, NAME_HEADS, scaled};
+use super::trust::{Cases, ENERGIES, NAME_HEADS, scaled};
 use std::fmt::Write as _;
 
 /// Heading, and column of the table `cases` without its `_mean`.
 const LOSSES: [(&str, &str); 5] = [
-    ("Θ, this simulation [10<sup>−3</sup>]", "loss"),
-    ("Θ<sub>DK</sub>, target spectrum [10<sup>−3</sup>]", "loss_dk"),
-    ("Θ<sub>DK</sub>, realised spectrum [10<sup>−3</sup>]", "loss_dk_realised"),
-    ("Σθ over contacting asperities [10<sup>−3</sup>]", "loss_touched"),
-    ("Δγ A [10<sup>−3</sup>]", "loss_dalvi"),
+    ("Θ, this simulation", "loss"),
+    ("Θ<sub>DK</sub>, target spectrum", "loss_dk"),
+    ("Θ<sub>DK</sub>, realised spectrum", "loss_dk_realised"),
+    ("Σθ over contacting asperities", "loss_touched"),
+    ("Δγ A", "loss_dalvi"),
 ];
 
 const AREAS: [(&str, &str); 3] = [
@@ -33,17 +33,18 @@ pub(super) fn theories(html: &mut String, cases: &Cases<'_>) -> Result<(), Stage
          <div class=\"wide\"><table>\n",
     );
     html.push_str(NAME_HEADS);
-    for (heading, _) in LOSSES.iter().chain(&AREAS).chain(&NUMBERS) {
-        let _ = write!(html, "<th>{heading}</th>");
+    let mut columns = Vec::new();
+    for (heading, column) in LOSSES.iter().chain(&AREAS).chain(&NUMBERS) {
+        let scale = if ENERGIES.contains(column) { cases.scale(&ENERGIES)? } else { cases.scale(&[*column])? };
+        let _ = write!(html, "<th>{heading}{}</th>", scale.head());
+        columns.push((*column, scale));
     }
     html.push_str("</tr>\n");
     for listed in cases.rows() {
         let _ = write!(html, "<tr>{}", cases.name(listed));
-        for (scale, columns) in [(1e-3, &LOSSES[..]), (1.0, &AREAS), (1.0, &NUMBERS)] {
-            for (_, column) in columns {
-                let mean = cases.number(&format!("{column}_mean"), listed.row)?;
-                let _ = write!(html, "<td>{}</td>", scaled(mean, scale));
-            }
+        for (column, scale) in &columns {
+            let mean = cases.number(&format!("{column}_mean"), listed.row)?;
+            let _ = write!(html, "<td>{}</td>", scaled(mean, *scale));
         }
         html.push_str("</tr>\n");
     }

@@ -3,7 +3,7 @@
 use super::StageError;
 use super::page::escape;
 use crate::schema::EVENT_KINDS;
-use crate::stats::{LIMITS, Limit, Listed, Listing, Warning, labels, listing, warnings};
+use crate::stats::{LIMITS, Limit, Listed, Listing, Warning, column_exponent, decimals, labels, listing, warnings};
 use crate::store::Frame;
 use std::fmt::Write as _;
 
@@ -15,11 +15,13 @@ pub(super) enum Shown {
 }
 
 /// The table of model validity: heading, the column that is compared with a limit, and the column shown in brackets.
-const TRUST: [(&str, &str, Option<&str>, Shown); 7] = [
+const TRUST: [(&str, &str, Option<&str>, Shown); 9] = [
     ("Tabor parameter μ: minimum (mean)", "tabor_min_min", Some("tabor_mean_mean"), Shown::Plain),
     ("asperities with μ &lt; 2", "low_tabor_share_mean", None, Shown::Percent),
-    ("overlapping contacts: mean (maximum)", "touching_share_mean", Some("touching_share_max"), Shown::Percent),
-    ("absorbed asperities: mean (maximum)", "covered_share_mean", Some("covered_share_max"), Shown::Percent),
+    ("asperities per surface: mean (minimum)", "summit_count_mean", Some("summit_count_min"), Shown::Plain),
+    ("contacts at F<sub>max</sub>: mean (minimum)", "contact_count_at_max_load_mean", Some("contact_count_at_max_load_min"), Shown::Plain),
+    ("overlapping contacts: pooled (maximum)", "touching_share_mean", Some("touching_share_max"), Shown::Percent),
+    ("absorbed asperities: pooled (maximum)", "covered_share_mean", Some("covered_share_max"), Shown::Percent),
     ("A/A<sub>0</sub>", "area_at_max_load_mean", None, Shown::Percent),
     ("U<sub>el</sub>/Δγ of the shortest octave: realised (target)", "conformity_realised_mean", Some("conformity_mean"), Shown::Plain),
     ("U<sub>el</sub>/Δγ: realised (target)", "persson_tosatti_realised_mean", Some("persson_tosatti_mean"), Shown::Plain),
@@ -53,6 +55,15 @@ impl<'a> Cases<'a> {
         self.listing.reference.as_deref()
     }
 
+    /// The scale of the means of these columns, which share it.
+    pub(super) fn scale(&self, columns: &[&str]) -> Result<Scale, StageError> {
+        let mut means = Vec::new();
+        for column in columns {
+            means.extend(self.frame.f64_or_null(&format!("{column}_mean"))?.iter().flatten().copied());
+        }
+        Ok(Scale::of(&means))
+    }
+
     pub(super) fn number(&self, column: &str, row: usize) -> Result<Option<f64>, StageError> {
         Ok(self.frame.f64_or_null(column)?.get(row).copied().flatten())
     }
@@ -66,7 +77,7 @@ impl<'a> Cases<'a> {
         self.loads.get(row).map_or("", String::as_str)
     }
 
-    /// Whether a row has a warning.
+    /// True if a row has a warning.
     fn has(&self, row: usize, word: &str) -> bool {
         self.words.get(row).is_some_and(|said| said.split('+').any(|part| part == word))
     }
@@ -94,9 +105,11 @@ pub(super) fn split(html: &mut String, cases: &Cases<'_>) -> Result<(), StageErr
          branch, and by the kind of event that triggers each relaxation. Absorption and release have no potential, so their fractions may be \
          negative.</p>\n<div class=\"wide\"><table>\n",
     );
+    let scale = cases.scale(&ENERGIES)?;
+    let factor = scale.head();
     let _ = write!(
         html,
-        "{NAME_HEADS}<th>Θ [10<sup>−3</sup>]</th><th>sum over events [10<sup>−3</sup>]</th><th>energy-balance error: maximum (mean){}</th><th>loading</th><th>unloading</th>",
+        "{NAME_HEADS}<th>Θ{factor}</th><th>sum over events{factor}</th><th>energy-balance error: maximum (mean){}</th><th>loading</th><th>unloading</th>",
         bound("audit_gap_max", Shown::Percent)
     );
     for kind in &kinds {
@@ -109,7 +122,7 @@ pub(super) fn split(html: &mut String, cases: &Cases<'_>) -> Result<(), StageErr
         let whole = mean("dissipated")?;
         let _ = write!(html, "<tr>{}", cases.name(listed));
         for number in [mean("loss")?, whole] {
-            let _ = write!(html, "<td>{}</td>", scaled(number, 1e-3));
+            let _ = write!(html, "<td>{}</td>", scaled(number, scale));
         }
         let gap = with_aside(cases.number("audit_gap_max", row)?, mean("audit_gap")?, Shown::Percent);
         html.push_str(&cases.cell(row, "audit_gap_max", &gap));
@@ -220,10 +233,36 @@ fn with_aside(number: Option<f64>, aside: Option<f64>, as_what: Shown) -> String
 /// Sign of a missing number.
 const MISSING: &str = "–";
 
-/// A number over the scale of its column; without the scale, and with a power of ten, where the scale cannot show it.
-pub(super) fn scaled(number: Option<f64>, scale: f64) -> String {
-    let own = number.filter(|number| *number != 0.0 && !(0.01..1e4).contains(&(number / scale).abs()));
-    own.map_or_else(|| shown(number.map(|number| number / scale), Shown::Plain), power)
+/// Columns of energies over `E* A0 h_rms`, which share one scale in all tables.
+pub(super) const ENERGIES: [&str; 6] = ["loss", "loss_dk", "loss_dk_realised", "loss_touched", "loss_dalvi", "dissipated"];
+
+/// The common power of ten of the numbers of a column; none where they differ by too much, and each has its own.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Scale(Option<i32>);
+
+impl Scale {
+    fn of(means: &[f64]) -> Self {
+        let exponent = column_exponent(means.iter().copied());
+        let is_readable = |mean: &f64| *mean == 0.0 || (1e-3..1e5).contains(&(mean.abs() / 10f64.powi(exponent)));
+        Self(means.iter().all(is_readable).then_some(exponent))
+    }
+
+    /// The factor for the head of the column; empty where there is none.
+    pub(super) fn head(self) -> String {
+        let of = |exponent: i32| format!(" [10<sup>{exponent}</sup>]").replace('-', "−");
+        self.0.filter(|exponent| *exponent != 0).map(of).unwrap_or_default()
+    }
+}
+
+/// A number over the scale of its column, with three significant digits.
+pub(super) fn scaled(number: Option<f64>, scale: Scale) -> String {
+    let Some(number) = number else { return MISSING.to_owned() };
+    let Some(exponent) = scale.0 else { return if number == 0.0 { "0".to_owned() } else { power(number) } };
+    let over = number / 10f64.powi(exponent);
+    // The limits of an interval may be far smaller than all means.
+    let places = decimals(over, 3).min(5);
+    let text = format!("{over:.places$}");
+    if text.trim_start_matches('-').chars().all(|c| matches!(c, '0' | '.')) { "0".to_owned() } else { text.replace('-', "−") }
 }
 
 /// A number as a digit or two and a power of ten.

@@ -8,28 +8,29 @@ use super::rows::{Rows, Value};
 use super::student::Sample;
 use super::{CaseInput, Given, StatsError};
 use crate::schema::{CASES, Kind, REALIZATIONS};
-use crate::store::Frame;
+use crate::store::{ColumnData, Frame};
 
-/// Averages each case at each of its turning points; rows are ordered by case and turning point, and a case without any finished
-/// realization has its row, without means.
+/// Averages each case at each of its load reversals. The rows have the order of the inputs, and the load reversals of a case ascend.
 ///
-/// What is averaged is what the table has columns for: `<column>_mean`, `_sd`, `_ci95_low`, `_ci95_high`, `_min` and `_max` of a column of the
-/// table `realizations`. A realization in which that column is null is left out.
+/// A case without finished realization has its row, with null means. The table has `<column>_mean`, `_sd`, `_ci95_low`, `_ci95_high`, `_min` and `_max` of
+/// columns of the table `realizations`; realizations in which that column is null are omitted. Columns that depend on the surface alone
+/// ([`CaseInput::surfaces`]) include the surfaces of failed cycles. Fractions of contacts are weighted by the number of contacts.
 ///
 /// # Errors
 /// If a column is missing, or a required parameter of a case was not given.
 pub fn cases(realizations: &Frame, inputs: &[CaseInput]) -> Result<Frame, StatsError> {
     let groups = groups(realizations)?;
-    let mut ordered: Vec<(&CaseInput, f64)> =
-        inputs.iter().flat_map(|case| case.max_loads.iter().map(move |max_load| (case, *max_load))).collect();
-    ordered.sort_by(|a, b| a.0.case_id.cmp(&b.0.case_id).then(a.1.total_cmp(&b.1)));
     let mut rows = Rows::of(&CASES);
-    for (case, max_load) in ordered {
-        // A turning point is a number of the spec, copied; the tolerance only forgives a rounding on the way through a file.
-        let same = |group: &&Group| group.case_id == case.case_id && (group.max_load - max_load).abs() <= 1e-9 * max_load.abs();
-        let none = Group::default();
-        let group = groups.iter().find(same).unwrap_or(&none);
-        rows.push(&[&identity(case), &averages(group, case, max_load), &case.parameters]);
+    for case in inputs {
+        let mut max_loads = case.max_loads.clone();
+        max_loads.sort_by(f64::total_cmp);
+        for max_load in max_loads {
+            // A load reversal is a number of the spec, copied; the tolerance covers the rounding in a file.
+            let same = |group: &&Group| group.case_id == case.case_id && (group.max_load - max_load).abs() <= 1e-9 * max_load.abs();
+            let none = Group::default();
+            let group = groups.iter().find(same).unwrap_or(&none);
+            rows.push(&[&identity(case), &averages(group, case, max_load), &case.parameters]);
+        }
     }
     rows.build()
 }
@@ -57,7 +58,7 @@ const STATISTICS: [(&str, Statistic); 6] = [
 impl Statistic {
     /// The column of the table `realizations` behind a column of the table `cases`, and what is said of it.
     fn of(column: &'static str) -> Option<(&'static str, Self)> {
-        let numbers = |base: &str| REALIZATIONS.column(base).is_some_and(|base| base.kind == Kind::F64);
+        let numbers = |base: &str| REALIZATIONS.column(base).is_some_and(|base| matches!(base.kind, Kind::F64 | Kind::I64));
         STATISTICS.iter().find_map(|(end, what)| column.strip_suffix(end).filter(|base| numbers(base)).map(|base| (base, *what)))
     }
 
@@ -77,7 +78,9 @@ impl Statistic {
 
 /// The columns of the table `realizations` that the table `cases` says something of.
 fn averaged() -> Vec<&'static str> {
+    let counts = POOLED.iter().flat_map(|(_, part, whole)| whole.iter().copied().chain([*part]));
     let mut names: Vec<&str> = CASES.columns.iter().filter_map(|column| Statistic::of(column.name)).map(|(base, _)| base).collect();
+    names.extend(counts);
     names.sort_unstable();
     names.dedup();
     names
@@ -93,13 +96,39 @@ struct Group {
     values: Vec<(&'static str, Vec<f64>)>,
 }
 
+/// Fractions whose mean is the ratio of two sums over all realizations: the column, the counted contacts or asperities, and the counts of which they are a
+/// part. The mean of the fractions of single surfaces would give a surface with one contact the weight of one with a hundred.
+const POOLED: [(&str, &str, &[&str]); 2] = [
+    ("touching_share", "touching_count_at_max_load", &["contact_count_at_max_load"]),
+    ("covered_share", "covered_count_at_max_load", &["contact_count_at_max_load", "covered_count_at_max_load"]),
+];
+
+impl Group {
+    fn values(&self, column: &str) -> &[f64] {
+        self.values.iter().find(|(name, _)| *name == column).map_or(&[], |(_, values)| values)
+    }
+
+    /// The pooled fraction of a column; null without counts.
+    fn pooled(&self, part: &str, whole: &[&str]) -> Option<f64> {
+        let sum = |column: &str| self.values(column).iter().sum::<f64>();
+        let whole: f64 = whole.iter().map(|column| sum(column)).sum();
+        (whole > 0.0).then(|| sum(part) / whole)
+    }
+}
+
 fn averages(group: &Group, case: &CaseInput, max_load: f64) -> Given {
     let mut row: Given = vec![("max_load".to_owned(), max_load.into())];
     for column in CASES.columns {
-        if let Some((base, what)) = Statistic::of(column.name) {
-            let values = group.values.iter().find(|(name, _)| *name == base).map_or(&[][..], |(_, values)| values);
-            row.push((column.name.to_owned(), Value::from(what.take(values))));
-        }
+        let Some((base, what)) = Statistic::of(column.name) else { continue };
+        let pooled = POOLED.iter().find(|(name, ..)| what == Statistic::Mean && *name == base);
+        let of_surfaces: Vec<f64> =
+            case.surfaces.iter().flatten().filter(|(name, _)| name == base).filter_map(|(_, value)| value.number()).collect();
+        let value = match pooled {
+            Some((_, part, whole)) => group.pooled(part, whole),
+            None if of_surfaces.is_empty() => what.take(group.values(base)),
+            None => what.take(&of_surfaces),
+        };
+        row.push((column.name.to_owned(), Value::from(value)));
     }
     let done = group.unconverged.len();
     row.push(("planned_count".to_owned(), case.planned_count.into()));
@@ -119,7 +148,10 @@ fn groups(realizations: &Frame) -> Result<Vec<Group>, StatsError> {
     ];
     let names = averaged();
     for name in &names {
-        columns.push(Series::new((*name).into(), realizations.f64_or_null(name)?).into_column());
+        columns.push(match realizations.column(name)? {
+            ColumnData::I64(counts) => Series::new((*name).into(), counts).into_column(),
+            _ => Series::new((*name).into(), realizations.f64_or_null(name)?).into_column(),
+        });
     }
     let grouped = DataFrame::new_infer_height(columns).and_then(|frame| group(frame, &names));
     grouped.map_err(|source| StatsError::Group { table: realizations.table().name, source })

@@ -22,84 +22,15 @@ const fn warning(code: &'static str, label: &'static str, text: &'static str, co
     Caution { code, label, text, consequence, action }
 }
 
-/// All warnings, in the order of their codes in the column `caution`.
-pub const CAUTIONS: [Caution; 14] = [
+/// All warnings by severity, which is the order of their codes in the column `caution`: results outside the model, then results that depend on a rule of the model,
+/// then incomplete or inaccurate results, then small samples.
+pub const CAUTIONS: [Caution; 16] = [
     warning(
-        "incomplete",
-        "incomplete",
-        "{} realizations finished",
-        "The means are of the finished realizations only.",
-        "Rerun the spec with `hysteron run`.",
-    ),
-    warning(
-        "failed",
-        "failed",
-        "{} failed",
-        "Failures depend on the surface, so the means may be biased.",
-        "Read the reasons with `hysteron status`.",
-    ),
-    warning(
-        "imprecise",
-        "confidence interval too wide",
-        "half-width of the 95 % confidence interval of the mean above the requested `until_relative_ci`",
-        "The mean is less precise than requested.",
-        "Increase `max` of `realizations`, or accept the wider interval.",
-    ),
-    warning(
-        "single",
-        "single realization",
-        "one realization finished",
-        "There is no standard deviation and no confidence interval.",
-        "Increase `realizations`; for measured surfaces, compare several scans.",
-    ),
-    warning(
-        "unconverged",
-        "not converged",
-        "output steps with a residual above the tolerance",
-        "These steps are not in equilibrium to the tolerance.",
-        "Check `residual_m` in the table `steps`, or reduce `max_load`.",
-    ),
-    warning(
-        "audit",
-        "energy balance",
-        "loop area and event energies differ by {} of Θ",
-        "The partition of Θ over events, branches and kinds has this error.",
-        "Quote the loop area `loss`; `interaction = \"point\"` has an exact balance.",
-    ),
-    warning(
-        "absorption",
-        "energy of coalescence",
-        "absorption and merging, net of their reversal, are {} of Θ",
-        "This part of Θ is an artefact of the coalescence rule.",
-        "Compare `coalescence = \"cover\"` and `\"merge\"`; quote the difference.",
-    ),
-    warning(
-        "unresolved",
-        "energy not resolved",
-        "numerical resolution is {} of Θ",
-        "Θ is zero within the numerical resolution.",
-        "Do not quote Θ and Θ/Θ_DK.",
-    ),
-    warning(
-        "touching",
-        "overlap",
-        "{} of contact spots overlap a neighbour",
-        "Area and pull-off force are outside the validated range.",
-        "Reduce `max_load`, or use a larger reduced modulus.",
-    ),
-    warning(
-        "covered",
-        "coalescence",
-        "{} of asperities are absorbed by larger contacts",
-        "The contact area depends on the coalescence rule.",
-        "Compare `coalescence = \"cover\"` and `\"merge\"`.",
-    ),
-    warning(
-        "tabor",
-        "low Tabor parameter",
-        "minimum Tabor parameter μ = {}",
-        "Wu's criterion for jump into contact is invalid.",
-        "Use `jump_in = \"jkr\"`, or a smaller `interaction_range_m`.",
+        "sticky",
+        "near full contact",
+        "U_el/Δγ = {}",
+        "The true contact may be near full contact, outside the range of an asperity model.",
+        "Use a larger reduced modulus or a smaller work of adhesion, or a boundary-element method.",
     ),
     warning(
         "area",
@@ -116,11 +47,95 @@ pub const CAUTIONS: [Caution; 14] = [
         "Use a smaller ζ, or a larger S-filter cut-off.",
     ),
     warning(
-        "sticky",
-        "near full contact",
-        "U_el/Δγ = {}",
-        "The true contact may be near full contact, outside the range of an asperity model.",
-        "Use a boundary-element method.",
+        "covered",
+        "coalescence",
+        "{} of asperities are absorbed by larger contacts",
+        "The contact area depends on the coalescence rule.",
+        "Compare `coalescence = \"cover\"` and `\"merge\"`.",
+    ),
+    warning(
+        "absorption",
+        "energy of coalescence",
+        "absorption and merging, net of their reversal, are {} of Θ",
+        "This part of Θ is an artefact of the coalescence rule.",
+        "Compare `coalescence = \"cover\"` and `\"merge\"`; quote the difference.",
+    ),
+    warning(
+        "touching",
+        "overlap",
+        "{} of contact spots overlap a neighbour",
+        "Area and pull-off force are outside the validated range.",
+        "Use a smaller `max_load`, or `coalescence = \"merge\"`, which merges overlapping contacts.",
+    ),
+    warning(
+        "tabor",
+        "low Tabor parameter",
+        "minimum Tabor parameter μ = {}",
+        "Wu's criterion for jump into contact is invalid.",
+        "Use `jump_in = \"jkr\"`, or a smaller `interaction_range_m`.",
+    ),
+    warning(
+        "failed",
+        "failed",
+        "{} failed",
+        "Failures depend on the surface, so the means may be biased.",
+        "Read the reasons with `hysteron status`.",
+    ),
+    warning(
+        "incomplete",
+        "incomplete",
+        "{} realizations finished",
+        "The means are of the finished realizations only.",
+        "Rerun the spec with `hysteron run`.",
+    ),
+    warning(
+        "unconverged",
+        "not converged",
+        "output steps with a residual above the tolerance",
+        "These steps are not in equilibrium to the tolerance.",
+        "Check `residual_m` in the table `steps`, or reduce `max_load`.",
+    ),
+    warning(
+        "unresolved",
+        "energy not resolved",
+        "numerical resolution is {} of Θ",
+        "Θ is zero within the numerical resolution.",
+        "Do not quote Θ and Θ/Θ_DK.",
+    ),
+    warning(
+        "audit",
+        "energy balance",
+        "loop area and event energies differ by {} of Θ",
+        "The partition of Θ over events, branches and kinds has this error.",
+        "Quote the loop area `loss`; `interaction = \"point\"` has an exact balance.",
+    ),
+    warning(
+        "few_contacts",
+        "few contacts",
+        "mean number of contacts at F_max = {}",
+        "Single contacts determine the result, and its standard deviation is large.",
+        "Use a larger ζ, a larger scan or a larger `max_load`, or more `realizations`.",
+    ),
+    warning(
+        "few_asperities",
+        "few asperities",
+        "number of asperities per surface = {}",
+        "The surface is too small a sample for the statistics of Nayak and of Deng and Kesari.",
+        "Use a larger ζ or a larger scan, or more `realizations`.",
+    ),
+    warning(
+        "single",
+        "single realization",
+        "one realization finished",
+        "There is no standard deviation and no confidence interval.",
+        "Increase `realizations`; for measured surfaces, compare several scans.",
+    ),
+    warning(
+        "imprecise",
+        "confidence interval too wide",
+        "half-width of the 95 % confidence interval of the mean above the requested `until_relative_ci`",
+        "The mean is less precise than requested.",
+        "Increase `max` of `realizations`, or accept the wider interval.",
     ),
 ];
 
@@ -133,7 +148,7 @@ pub struct Limit {
     pub column: &'static str,
     /// The limit; the limit itself is within the range.
     pub bound: f64,
-    /// True for a minimum, false for a maximum. Maxima are fractions, written in percent; minima are ratios.
+    /// True for a minimum, false for a maximum. Maxima are fractions, written in percent; minima are ratios or numbers.
     pub at_least: bool,
 }
 
@@ -146,6 +161,12 @@ impl Limit {
         Self { caution, column, bound, at_least: true }
     }
 
+    /// The limit of a warning that has one.
+    #[must_use]
+    pub fn of(code: &str) -> Option<Self> {
+        LIMITS.into_iter().find(|limit| limit.caution == code)
+    }
+
     /// Whether a number is beyond the limit. A missing number is not.
     #[must_use]
     pub fn is_passed(&self, number: Option<f64>) -> bool {
@@ -154,16 +175,18 @@ impl Limit {
 }
 
 /// All limits. The limit of the Tabor parameter applies to Wu's criterion only, and only with adhesion.
-pub const LIMITS: [Limit; 9] = [
-    Limit::at_most("audit", "audit_gap_max", 0.01),
-    Limit::at_most("absorption", "absorption_share_max", 0.1),
-    Limit::at_most("unresolved", "loss_uncertainty_max", 0.1),
-    Limit::at_most("touching", "touching_share_mean", 0.1),
-    Limit::at_most("covered", "covered_share_mean", 0.1),
-    Limit::at_least("tabor", "tabor_min_min", 2.0),
+pub const LIMITS: [Limit; 11] = [
+    Limit::at_least("sticky", "persson_tosatti_realised_mean", 2.0),
     Limit::at_most("area", "area_at_max_load_mean", 0.3),
     Limit::at_least("conformed", "conformity_realised_mean", 1.0),
-    Limit::at_least("sticky", "persson_tosatti_realised_mean", 2.0),
+    Limit::at_most("covered", "covered_share_mean", 0.1),
+    Limit::at_most("absorption", "absorption_share_max", 0.1),
+    Limit::at_most("touching", "touching_share_mean", 0.1),
+    Limit::at_least("tabor", "tabor_min_min", 2.0),
+    Limit::at_most("unresolved", "loss_uncertainty_max", 0.1),
+    Limit::at_most("audit", "audit_gap_max", 0.01),
+    Limit::at_least("few_contacts", "contact_count_at_max_load_mean", 10.0),
+    Limit::at_least("few_asperities", "summit_count_mean", 100.0),
 ];
 
 /// Codes of the warnings of a row whose other columns are given, joined by `+`.

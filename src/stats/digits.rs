@@ -23,6 +23,46 @@ pub fn significant(value: f64, digits: usize) -> String {
     }
 }
 
+/// Magnitudes that three digits show readably: `0.0100` to `99999`.
+const READABLE: (f64, f64) = (0.01, 1e5);
+
+/// The common power of ten of a column of numbers, a multiple of three. The median decides; the power moves towards the smallest or the largest number as long
+/// as that makes more of the column readable.
+#[must_use]
+pub fn column_exponent(values: impl IntoIterator<Item = f64>) -> i32 {
+    let mut sizes: Vec<f64> = values.into_iter().map(f64::abs).filter(|size| *size > 0.0 && size.is_finite()).collect();
+    sizes.sort_by(f64::total_cmp);
+    let (Some(median), Some(smallest), Some(largest)) = (sizes.get(sizes.len() / 2), sizes.first(), sizes.last()) else { return 0 };
+    // A median of 0.1 to 100 units; numbers of 0.01 to 1000 need no factor.
+    let of_median = if (0.01..1e3).contains(median) { 0 } else { ((median.log10() + 1.0) / 3.0 + 1e-9).floor() as i32 * 3 };
+    let over = |exponent: i32, size: f64| size / 10f64.powi(exponent);
+    let mut exponent = of_median;
+    while over(exponent, *smallest) < READABLE.0 && over(exponent - 3, *largest) < READABLE.1 {
+        exponent -= 3;
+    }
+    while over(exponent, *largest) >= READABLE.1 && over(exponent + 3, *smallest) >= READABLE.0 {
+        exponent += 3;
+    }
+    exponent
+}
+
+/// Decimals of a number with so many significant digits; none for a number of more digits before its point.
+#[must_use]
+pub fn decimals(value: f64, digits: usize) -> usize {
+    let text = format!("{:.*e}", digits.saturating_sub(1), value.abs());
+    let power: i32 = text.split_once('e').and_then(|(_, power)| power.parse().ok()).unwrap_or_default();
+    let wanted = i32::try_from(digits).unwrap_or(i32::MAX).saturating_sub(1).saturating_sub(power);
+    if value == 0.0 { 0 } else { usize::try_from(wanted).unwrap_or_default() }
+}
+
+/// A power of ten as text: `10⁻³`.
+#[must_use]
+pub fn power_of_ten(exponent: i32) -> String {
+    const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    let raised = |c: char| c.to_digit(10).and_then(|digit| RAISED.get(digit as usize).copied()).unwrap_or('⁻');
+    format!("10{}", exponent.to_string().chars().map(raised).collect::<String>())
+}
+
 /// Numbers as labels: four significant digits each, more where two different numbers would have one label.
 #[must_use]
 pub fn labels(values: &[f64]) -> Vec<String> {

@@ -36,8 +36,35 @@ pub(super) struct Events(Vec<Event>);
 pub(super) struct Lost {
     pub(super) loading: f64,
     pub(super) unloading: f64,
-    /// By kind, as [`EVENT_KINDS`] has them.
+    /// By the kind of the cause, as [`EVENT_KINDS`] has them.
     pub(super) kinds: [f64; EVENT_KINDS.len()],
+}
+
+/// Kinds of events that exchange the potential of contacts for that of another contact: merging, and splitting, which undoes it.
+const EXCHANGES: [&str; 2] = ["merge", "split"];
+
+impl Event {
+    fn exchanges(&self) -> bool {
+        EVENT_KINDS.get(self.kind).is_some_and(|kind| EXCHANGES.contains(kind))
+    }
+}
+
+/// Energies of the events of one avalanche \[J\], each with the kind of the event that causes it.
+///
+/// The ledger books the energy of a relaxation on one event and 0 on the others. That event is the cause, with one exception: merging and splitting
+/// are recorded before the contact is in equilibrium again, with 0. If other contacts jump or are absorbed on the way to that equilibrium, the first of
+/// these has the energy, which is mainly the difference between the potentials of the merged contact and of its parts. This energy belongs to
+/// the merging or splitting before it. Without this rule the energies of merging and splitting do not cancel: on one surface of
+/// Δγ = 0.005 J/m² with ζ = 32, a jump that follows a splitting has fourteen times Θ.
+fn by_cause<'a>(avalanche: &'a [&Event]) -> impl Iterator<Item = (usize, f64)> + 'a {
+    let mut exchange = None;
+    avalanche.iter().map(move |event| {
+        if event.energy_lost_j == 0.0 {
+            exchange = if event.exchanges() { Some(event.kind) } else { exchange };
+            return (event.kind, 0.0);
+        }
+        (exchange.take().unwrap_or(event.kind), event.energy_lost_j)
+    })
 }
 
 impl Events {
@@ -76,14 +103,19 @@ impl Events {
     /// One loading path serves every turning point: what happened beyond this one's step is no part of its loop.
     pub(super) fn lost(&self, turning_step: i64, max_load: f64) -> Lost {
         let mut lost = Lost::default();
-        for event in self.of_loop(turning_step, max_load) {
+        let events: Vec<&Event> = self.of_loop(turning_step, max_load).collect();
+        for event in &events {
             if event.loading {
                 lost.loading += event.energy_lost_j;
             } else {
                 lost.unloading += event.energy_lost_j;
             }
-            if let Some(of_kind) = lost.kinds.get_mut(event.kind) {
-                *of_kind += event.energy_lost_j;
+        }
+        for avalanche in events.chunk_by(|a, b| a.avalanche_id == b.avalanche_id) {
+            for (kind, energy_j) in by_cause(avalanche) {
+                if let Some(of_kind) = lost.kinds.get_mut(kind) {
+                    *of_kind += energy_j;
+                }
             }
         }
         lost

@@ -1,9 +1,8 @@
-//! Rows of the table `cases` as tables and reports list them: labelled by the parameters that vary, the reference case first.
+//! Rows of the table `cases` as tables and reports list them: labelled by the parameters that vary, the reference case first, the others in the order of the spec.
 
-use super::varying::{Values, Varying, varying};
+use super::varying::{Varying, varying};
 use super::{StatsError, digits};
 use crate::store::Frame;
-use std::cmp::Ordering;
 
 /// A row of the table `cases` in a list.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -27,18 +26,22 @@ pub struct Listing {
     pub reference: Option<String>,
 }
 
-/// The names of all sweeps, each once: the column `sweep` joins those of a case by `+`.
+/// The names of all sweeps, each once, in the order of the rows: the column `sweep` joins those of a case by `+`.
 ///
 /// # Errors
 /// If the table lacks the column.
 pub fn sweeps(cases: &Frame) -> Result<Vec<String>, StatsError> {
-    let mut names: Vec<String> = cases.text("sweep")?.iter().flat_map(|joined| joined.split('+')).map(str::to_owned).collect();
-    names.sort_unstable();
-    names.dedup();
+    let mut names: Vec<String> = Vec::new();
+    for name in cases.text("sweep")?.iter().flat_map(|joined| joined.split('+')) {
+        if !names.iter().any(|known| known == name) {
+            names.push(name.to_owned());
+        }
+    }
     Ok(names)
 }
 
-/// The rows of one sweep: the reference case first, the others ordered by the parameters that vary within the sweep, which are their labels.
+/// The rows of one sweep: the reference case first, the others in the order of the table, which is that of the spec. Labels are the parameters that vary within
+/// the sweep.
 ///
 /// # Errors
 /// If the table lacks a column.
@@ -47,10 +50,10 @@ pub fn listing_of(cases: &Frame, sweep: &str) -> Result<Vec<Listed>, StatsError>
     let rows: Vec<usize> = (0..joined.len()).filter(|row| joined[*row].split('+').any(|name| name == sweep)).collect();
     let list = List::of(cases, rows)?;
     let label = |place: usize| list.differing.iter().map(|parameter| parameter.named(place)).collect::<Vec<_>>().join(", ");
-    list.listed(cases, None, label)
+    list.listed(cases, label)
 }
 
-/// All rows: the reference case first. With a reference case, the label of another case has the parameters that differ from it; otherwise those that vary in
+/// All rows: the reference case first, the others in the order of the table. With a reference case, the label of another case has the parameters that differ from it; otherwise those that vary in
 /// the campaign.
 ///
 /// # Errors
@@ -67,7 +70,7 @@ pub fn listing(cases: &Frame) -> Result<Listing, StatsError> {
         }
         None => all(place),
     };
-    Ok(Listing { rows: list.listed(cases, base, label)?, reference: base.map(all) })
+    Ok(Listing { rows: list.listed(cases, label)?, reference: base.map(all) })
 }
 
 /// The reference case: the one that belongs to more sweeps than every other.
@@ -100,12 +103,9 @@ impl List {
         Ok(Self { differing: varying(cases, &rows)?, loads: rows.iter().map(|row| loads[*row]).collect(), rows, references })
     }
 
-    fn listed(&self, cases: &Frame, base: Option<usize>, label: impl Fn(usize) -> String) -> Result<Vec<Listed>, StatsError> {
+    fn listed(&self, cases: &Frame, label: impl Fn(usize) -> String) -> Result<Vec<Listed>, StatsError> {
         let mut places: Vec<usize> = (0..self.rows.len()).collect();
-        places.sort_by(|a, b| {
-            let first = self.references[*b].cmp(&self.references[*a]);
-            first.then(self.order(base, *a, *b)).then(self.loads[*a].total_cmp(&self.loads[*b]))
-        });
+        places.sort_by_key(|place| !self.references[*place]);
         let same_load = |place: usize| (0..self.rows.len()).find(|k| self.references[*k] && self.loads[*k] == self.loads[place]);
         let one = |place: usize| -> Result<Listed, StatsError> {
             let is_reference = self.references[place];
@@ -114,22 +114,6 @@ impl List {
             Ok(Listed { row: self.rows[place], label, is_reference, reference })
         };
         places.into_iter().map(one).collect()
-    }
-
-    /// By the values; where a base is given, cases that differ from it in the same parameters are neighbours.
-    fn order(&self, base: Option<usize>, a: usize, b: usize) -> Ordering {
-        let differs = |place: usize| {
-            let own = move |base: usize| self.differing.iter().map(move |parameter| parameter.text(place) == parameter.text(base));
-            base.map(|base| own(base).collect::<Vec<bool>>())
-        };
-        let compared = self.differing.iter().map(|parameter| match &parameter.values {
-            Values::Numbers(numbers) => {
-                let number = |at: usize| numbers[at].unwrap_or(f64::INFINITY);
-                number(a).total_cmp(&number(b))
-            }
-            Values::Words(words) => words[a].cmp(&words[b]),
-        });
-        differs(a).cmp(&differs(b)).then(compared.fold(Ordering::Equal, Ordering::then))
     }
 }
 

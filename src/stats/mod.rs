@@ -28,7 +28,7 @@ pub use cases::cases;
 pub use cautions::{CAUTIONS, Caution, LIMITS, Limit};
 pub use compare::{Difference, Group, Matched, Side, comparison, difference_of, matched, singles, together};
 pub use curves::curves;
-pub use digits::{labels, significant};
+pub use digits::{column_exponent, decimals, labels, labels_with_unit, significant};
 pub use listed::{Listed, Listing, listing, listing_of, sweeps};
 pub use planned::{Planned, planned};
 pub use realizations::{realizations, results};
@@ -62,6 +62,9 @@ pub struct CaseInput {
     pub planned_count: usize,
     /// How many of them failed.
     pub failed_count: usize,
+    /// Columns of the table `realizations` that depend on the surface and the material alone: one list per surface whose cycle is done or failed. Empty if
+    /// only finished cycles count.
+    pub surfaces: Vec<Given>,
 }
 
 /// One finished cycle of a case.

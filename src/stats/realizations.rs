@@ -78,19 +78,17 @@ fn parts(lost: &Lost, input: &CycleInput) -> Given {
     branches.into_iter().chain(kinds).flat_map(both).collect()
 }
 
-/// Kinds of events in which contacts meet and part: of each pair the second undoes the first, and gives back what it took.
-const COALESCENCE: [[&str; 2]; 2] = [["cover", "uncover"], ["merge", "split"]];
+/// Kinds of events of coalescence; splitting undoes merging, and release undoes absorption.
+const COALESCENCE: [&str; 4] = ["cover", "uncover", "merge", "split"];
 
-/// Part of the dissipated energy from contacts that meet and part; nothing where that energy is zero.
+/// Coalescence energy over Θ, `|E_cover + E_uncover + E_merge + E_split|/|Θ|`; null for Θ = 0.
+///
+/// Energies that cancel along the loop, such as those of merging and of the later splitting, do not count. The energies of all events sum to Θ. So the share is
+/// between 0 and 1, up to the energy-balance error, if neither the events of coalescence nor the other ones gain energy in sum.
 fn absorption_share(lost: &Lost, results: &Given) -> Option<f64> {
-    let loss = results.iter().find_map(|(name, value)| match value {
-        Value::Real(loss) if name == "loss_j" => Some(*loss),
-        _ => None,
-    })?;
-    let of = |pair: &[&str; 2]| {
-        EVENT_KINDS.iter().zip(lost.kinds).filter(|(kind, _)| pair.contains(kind)).map(|(_, energy)| energy).sum::<f64>()
-    };
-    (loss != 0.0).then(|| COALESCENCE.iter().map(|pair| of(pair).abs()).sum::<f64>() / loss.abs())
+    let loss = results.iter().find(|(name, _)| name == "loss_j").and_then(|(_, value)| value.number())?;
+    let kinds = EVENT_KINDS.iter().zip(lost.kinds).filter(|(kind, _)| COALESCENCE.contains(kind));
+    (loss != 0.0).then(|| (kinds.map(|(_, energy)| energy).sum::<f64>() / loss).abs())
 }
 
 /// What the asperities that touched lose by themselves, over the scale of energies.
@@ -129,7 +127,7 @@ fn reduce(loading: &Branch, turning: usize, unloading: &Branch, max_load: f64, i
     let pull_off = |loads: &[f64]| tension(loads) + 0.0;
     let touching = count_at(&loading.touching_count);
     let held: i64 = loading.held_count.iter().take(turning + 1).chain(&unloading.held_count).sum();
-    let columns: [(&str, Value); 26] = [
+    let columns: [(&str, Value); 28] = [
         ("realization", input.realization.into()),
         ("cycle_id", input.cycle_id.as_str().into()),
         ("surface_id", input.surface_id.as_str().into()),
@@ -153,6 +151,8 @@ fn reduce(loading: &Branch, turning: usize, unloading: &Branch, max_load: f64, i
         ("audit_gap", (compared_j > 0.0).then(|| imbalance_j / compared_j).into()),
         ("loss_uncertainty", (loss_j != 0.0).then(|| resolution_j / loss_j.abs()).into()),
         ("contact_count_at_max_load", contacts.into()),
+        ("touching_count_at_max_load", touching.into()),
+        ("covered_count_at_max_load", covered.into()),
         ("step_count", (turning + 1 + unloading.step.len()).into()),
         ("unconverged_count", converged.filter(|converged| !**converged).count().into()),
         ("held_count", held.into()),

@@ -17,6 +17,18 @@ pub enum Value {
     Missing,
 }
 
+impl Value {
+    /// The value as a number; nothing for text and for a missing value.
+    #[must_use]
+    pub fn number(&self) -> Option<f64> {
+        match self {
+            Self::Real(real) => Some(*real),
+            Self::Whole(whole) => Some(*whole as f64),
+            Self::Word(_) | Self::Missing => None,
+        }
+    }
+}
+
 impl From<f64> for Value {
     fn from(value: f64) -> Self {
         Self::Real(value)
@@ -73,7 +85,7 @@ impl Rows {
             let values = self.rows.iter().filter_map(|row| row.get(at));
             // A value of another kind becomes missing, and is then refused where the column must be complete.
             let data = match column.kind {
-                Kind::F64 => ColumnData::F64(values.map(real).collect()),
+                Kind::F64 => ColumnData::F64(values.map(Value::number).collect()),
                 Kind::I64 => {
                     ColumnData::I64(values.map(|value| if let Value::Whole(whole) = value { Some(*whole) } else { None }).collect())
                 }
@@ -85,13 +97,5 @@ impl Rows {
             frame = frame.with(column.name, data);
         }
         Ok(frame.build()?)
-    }
-}
-
-fn real(value: &Value) -> Option<f64> {
-    match value {
-        Value::Real(real) => Some(*real),
-        Value::Whole(whole) => Some(*whole as f64),
-        Value::Word(_) | Value::Missing => None,
     }
 }

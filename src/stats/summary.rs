@@ -1,7 +1,7 @@
 //! The table of results at the end of a run.
 
 use super::StatsError;
-use super::digits::{labels, significant};
+use super::digits::{column_exponent, decimals, labels, power_of_ten, significant};
 use super::listed::{Listed, listing, listing_of, sweeps};
 use super::warnings::warnings;
 use crate::store::Frame;
@@ -21,15 +21,52 @@ F_max: maximum load, F_po: pull-off force, both over E* A0.
 A: contact area at F_max over A0. Θ: dissipated energy over E* A0 h_rms.
 Θ_DK: estimate of Θ by Deng and Kesari.";
 
-const EXPONENTS: &str = "Numbers with an exponent are not scaled by the factor of their column.";
-
 const REFERENCE: &str = "*: reference case. change: relative to it, where all realizations finished.";
 
-/// Heading, column of the table `cases` without its ending, and the scale.
-const RESULTS: [(&str, &str, f64); 4] =
-    [("A", "area_at_max_load", 1.0), ("F_po [10⁻³]", "pull_off_load", 1e-3), ("Θ [10⁻³]", "loss", 1e-3), ("Θ/Θ_DK", "loss_ratio_dk", 1.0)];
+/// Heading, and column of the table `cases` without its ending.
+const RESULTS: [(&str, &str); 4] = [("A", "area_at_max_load"), ("F_po", "pull_off_load"), ("Θ", "loss"), ("Θ/Θ_DK", "loss_ratio_dk")];
 
-/// The results of every case as lines of at most 80 columns. Each sweep lists all of its cases: the reference case first, the others ordered by what varies.
+/// Magnitude from which numbers are not written in full.
+const LONG: f64 = 1e5;
+
+/// A mean with its standard deviation.
+type MeanSd = (Option<f64>, Option<f64>);
+
+/// Notation of all numbers of a column.
+#[derive(Debug, Clone, Copy)]
+enum Notation {
+    /// Over a power of ten, which the head of the column states.
+    Over(i32),
+    /// Each with its own exponent, where no common power of ten is readable.
+    Exponents,
+}
+
+impl Notation {
+    fn of(heading: &str, cells: &[MeanSd], width: usize) -> Self {
+        let exponent = column_exponent(cells.iter().filter_map(|(mean, _)| *mean));
+        let over = Self::Over(exponent);
+        let is_readable =
+            over.heading(heading).chars().count() <= width && cells.iter().all(|cell| fixed(*cell, exponent, width).is_some());
+        if is_readable { over } else { Self::Exponents }
+    }
+
+    fn heading(self, heading: &str) -> String {
+        match self {
+            Self::Over(exponent) if exponent != 0 => format!("{heading} [{}]", power_of_ten(exponent)),
+            _ => heading.to_owned(),
+        }
+    }
+
+    fn cell(self, cell: MeanSd, width: usize) -> String {
+        match (self, cell) {
+            (_, (None, _)) => "-".to_owned(),
+            (Self::Over(exponent), _) => fixed(cell, exponent, width).unwrap_or_default(),
+            (Self::Exponents, (Some(mean), sd)) => fitting(mean, sd, width),
+        }
+    }
+}
+
+/// The results of every case as lines of at most 80 columns. Each sweep lists all of its cases: the reference case first, the others in the order of the spec.
 ///
 /// # Errors
 /// If the table lacks one of its columns.
@@ -39,32 +76,38 @@ pub fn summary(cases: &Frame) -> Result<String, StatsError> {
     for name in sweeps(cases)? {
         lines.push(String::new());
         let title = if name.is_empty() { "case".to_owned() } else { name.clone() };
-        let headings = RESULTS.map(|(heading, ..)| heading.to_owned());
-        lines.extend(labelled(&title, ["F_max".to_owned(), "n".to_owned()], headings));
-        for listed in listing_of(cases, &name)? {
+        let rows = listing_of(cases, &name)?;
+        let mut columns = Vec::new();
+        for ((heading, name), width) in RESULTS.into_iter().zip(&WIDTHS[3..]) {
+            let cells = rows.iter().map(|listed| mean_sd(cases, name, listed.row)).collect::<Result<Vec<_>, _>>()?;
+            columns.push((heading, Notation::of(heading, &cells, width - 1)));
+        }
+        let headings = columns.iter().map(|(heading, notation)| notation.heading(heading)).collect();
+        lines.extend(labelled(&title, ["F_max".to_owned(), "n".to_owned()], four(headings)));
+        for listed in rows {
             compared |= listed.is_reference;
-            lines.extend(case_lines(cases, &listed)?);
+            lines.extend(case_lines(cases, &listed, &columns)?);
         }
     }
     let mut head = vec![HEADER];
-    head.extend(lines.iter().any(|line| has_exponent(line)).then_some(EXPONENTS));
     head.extend(compared.then_some(REFERENCE));
     lines.extend(warning_lines(cases)?);
     lines.push(String::new());
     Ok(format!("{}\n{}", head.join("\n"), lines.join("\n")))
 }
 
-/// Whether a line of results has a number that [`fitting`] has written with an exponent.
-fn has_exponent(line: &str) -> bool {
-    line.split_whitespace().any(|cell| cell.split('±').all(|number| number.contains('e') && number.parse::<f64>().is_ok()))
+fn value(cases: &Frame, name: &str, row: usize) -> Result<Option<f64>, StatsError> {
+    Ok(cases.f64_or_null(name)?.get(row).copied().flatten())
 }
 
-fn case_lines(cases: &Frame, listed: &Listed) -> Result<Vec<String>, StatsError> {
-    let value = |name: String, row: usize| -> Result<Option<f64>, StatsError> { Ok(cases.f64_or_null(&name)?.get(row).copied().flatten()) };
-    let mean = |name: &str, row: usize| value(format!("{name}_mean"), row);
+fn mean_sd(cases: &Frame, name: &str, row: usize) -> Result<MeanSd, StatsError> {
+    Ok((value(cases, &format!("{name}_mean"), row)?, value(cases, &format!("{name}_sd"), row)?))
+}
+
+fn case_lines(cases: &Frame, listed: &Listed, columns: &[(&str, Notation)]) -> Result<Vec<String>, StatsError> {
     let count = |name: &str, row: usize| -> Result<i64, StatsError> { Ok(cases.i64(name)?.get(row).copied().unwrap_or_default()) };
     let counts = |row: usize| -> Result<[i64; 2], StatsError> { Ok([count("done_count", row)?, count("planned_count", row)?]) };
-    let load = value("max_load".to_owned(), listed.row)?.map_or_else(String::new, |load| significant(load, 4));
+    let load = value(cases, "max_load", listed.row)?.map_or_else(String::new, |load| significant(load, 4));
     let [done, planned] = counts(listed.row)?;
     // Means of different surfaces differ by the surfaces too.
     let reference = match listed.reference {
@@ -72,11 +115,11 @@ fn case_lines(cases: &Frame, listed: &Listed) -> Result<Vec<String>, StatsError>
         _ => None,
     };
     let (mut results, mut changes) = (Vec::new(), Vec::new());
-    for ((_, name, scale), width) in RESULTS.into_iter().zip(&WIDTHS[3..]) {
-        let own = mean(name, listed.row)?;
-        results.push(mean_and_sd(own, value(format!("{name}_sd"), listed.row)?, scale, width - 1));
-        let other = reference.map(|row| mean(name, row)).transpose()?.flatten();
-        changes.push(own.zip(other).and_then(|(own, other)| change(own, other)));
+    for (((_, name), (_, notation)), width) in RESULTS.into_iter().zip(columns).zip(&WIDTHS[3..]) {
+        let own = mean_sd(cases, name, listed.row)?;
+        results.push(notation.cell(own, width - 1));
+        let other = reference.map(|row| mean_sd(cases, name, row)).transpose()?.and_then(|(mean, _)| mean);
+        changes.push(own.0.zip(other).and_then(|(own, other)| change(own, other)));
     }
     let label = listed.label.replace(" = ", "=") + if listed.is_reference { "*" } else { "" };
     let mut lines = labelled(&label, [load, format!("{done}/{planned}")], four(results));
@@ -137,25 +180,22 @@ fn wrapped(paragraph: &str) -> Vec<String> {
     lines.into_iter().map(|line| cut(&line.replace('\u{a0}', " "), LINE)).collect()
 }
 
-/// A mean with its standard deviation over a scale, in so many columns. Numbers that the scale cannot show are written with exponents, and without the scale.
-fn mean_and_sd(mean: Option<f64>, sd: Option<f64>, scale: f64, width: usize) -> String {
-    let Some(mean) = mean else {
-        return "-".to_owned();
-    };
-    let largest = mean.abs().max(sd.unwrap_or_default().abs());
-    let digits = match largest / scale {
-        0.0 => 0,
-        _ if mean != 0.0 && mean.abs() < 5e-4 * scale => return fitting(mean, sd, width),
-        size if size < 0.01 => return fitting(mean, sd, width),
-        size if size < 10.0 => 3,
-        size if size < 100.0 => 2,
-        size if size < 1000.0 => 1,
-        _ => return fitting(mean, sd, width),
-    };
-    match sd {
-        Some(sd) => format!("{:.digits$}±{:.digits$}", mean / scale, sd / scale),
-        None => format!("{:.digits$}", mean / scale),
+/// A mean with its standard deviation over a power of ten, with three significant digits of the larger, or two where three are too wide; nothing where the mean
+/// would print as zero, or as a long number.
+fn fixed((mean, sd): MeanSd, exponent: i32, width: usize) -> Option<String> {
+    let Some(mean) = mean.map(|mean| mean / 10f64.powi(exponent)) else { return Some("-".to_owned()) };
+    let sd = sd.map(|sd| sd / 10f64.powi(exponent));
+    let largest = mean.abs().max(sd.unwrap_or_default());
+    if largest >= LONG {
+        return None;
     }
+    let text = |digits: usize| {
+        let places = decimals(largest, digits);
+        let is_lost = mean != 0.0 && format!("{:.places$}", mean.abs()).chars().all(|c| matches!(c, '0' | '.'));
+        let text = sd.map_or_else(|| format!("{mean:.places$}"), |sd| format!("{mean:.places$}±{sd:.places$}"));
+        Some(text).filter(|text| !is_lost && text.chars().count() <= width)
+    };
+    text(3).or_else(|| text(2))
 }
 
 /// A mean with its standard deviation, with exponents of their own and as many digits, two at most, as fit.

@@ -53,7 +53,7 @@ pub(super) fn write(file: &File, kind: &Datatype, heights: &Dataset, length_m: f
     Ok(heights.new_attr::<VarLenUnicode>().shape(2).create("DIMENSION_LABELS")?.write(&[x?, y?])?)
 }
 
-/// Whether the coordinates that a file holds are these.
+/// True if the coordinates that a file holds are these.
 pub(super) fn are_as_written(file: &File, points: usize, length_m: f64) -> Result<bool, Cause> {
     let wanted = coordinates(points, length_m);
     let mut same = true;

@@ -12,9 +12,9 @@ use std::sync::{PoisonError, RwLock, RwLockWriteGuard};
 use super::error::{Cause, StoreError};
 use crate::text::shown;
 
-/// How the name of a file that is still being written begins.
+/// Prefix of the name of a file that is being written.
 pub const TEMPORARY_PREFIX: &str = ".hysteron-";
-/// How the name of a file that is still being written ends.
+/// Suffix of the name of a file that is being written.
 pub const TEMPORARY_SUFFIX: &str = ".tmp";
 
 /// Held by all that write, and by one that lets nobody begin.
@@ -28,9 +28,9 @@ pub fn quiet() -> RwLockWriteGuard<'static, ()> {
 /// A file that has been put in place.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Written {
-    /// Its place.
+    /// Place.
     pub path: PathBuf,
-    /// Its length \[bytes\].
+    /// Length \[bytes\].
     pub size_bytes: u64,
     /// The BLAKE3 hash of its content, hexadecimal.
     pub blake3: String,
@@ -46,13 +46,13 @@ pub fn sum(path: &Path) -> std::io::Result<(u64, String)> {
     Ok((hasher.count(), hasher.finalize().to_hex().to_string()))
 }
 
-/// Whether this is the name of a file that is being written, or was when the program was killed.
+/// True if this is the name of a file that is being written, or was when the program was killed.
 #[must_use]
 pub fn is_temporary(path: &Path) -> bool {
     path.file_name().and_then(OsStr::to_str).is_some_and(|name| name.starts_with(TEMPORARY_PREFIX) && name.ends_with(TEMPORARY_SUFFIX))
 }
 
-/// Whether nobody is writing this temporary file any more.
+/// True if no process is writing this temporary file.
 #[must_use]
 pub fn is_abandoned(path: &Path) -> bool {
     is_temporary(path) && path.is_file() && File::open(path).is_ok_and(|file| file.try_lock().is_ok())

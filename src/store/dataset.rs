@@ -67,7 +67,7 @@ fn own(group: &Group, name: &str, path: &str) -> Result<Option<Dataset>, Cause> 
     Ok(Some(data))
 }
 
-/// Whether any link of the file leads to another file, or there are too many groups to tell.
+/// True if any link of the file leads to another file, or there are too many groups to tell.
 fn links_outside(file: &File) -> Result<bool, Cause> {
     let mut known = vec![file.loc_info()?.token];
     let mut open = vec![Group::clone(file)];

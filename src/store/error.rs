@@ -14,7 +14,7 @@ pub(super) type Cause = Box<dyn Error + Send + Sync + 'static>;
 #[derive(Debug, thiserror::Error)]
 #[error("cannot {action} {}: {source}", shown(path))]
 pub struct StoreError {
-    /// What was tried, as in "write the table steps to".
+    /// Failed action, as in "write the table steps to".
     pub action: String,
     /// The file.
     pub path: PathBuf,
@@ -34,7 +34,7 @@ impl StoreError {
 pub struct FrameError {
     /// Name of the table.
     pub table: &'static str,
-    /// What does not fit, as in "has no column \"a\"".
+    /// Problem, as in "has no column \"a\"".
     pub problem: String,
 }
 

@@ -19,7 +19,7 @@ pub enum ColumnData {
 }
 
 impl ColumnData {
-    /// What the column holds.
+    /// Kind of the values.
     #[must_use]
     pub fn kind(&self) -> Kind {
         match self {
@@ -30,7 +30,7 @@ impl ColumnData {
         }
     }
 
-    /// How many values there are, missing ones included.
+    /// Number of values, missing ones included.
     #[must_use]
     pub fn len(&self) -> usize {
         match self {
@@ -41,7 +41,7 @@ impl ColumnData {
         }
     }
 
-    /// Whether there are no values.
+    /// True if there are no values.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
@@ -77,19 +77,19 @@ impl Frame {
         FrameBuilder::new(table)
     }
 
-    /// Its schema.
+    /// Schema.
     #[must_use]
     pub fn table(&self) -> &'static Table {
         self.table
     }
 
-    /// How many rows it has.
+    /// Number of rows.
     #[must_use]
     pub fn row_count(&self) -> usize {
         self.rows
     }
 
-    /// Its columns with their schemas, in order.
+    /// Columns with their schemas, in order.
     pub fn columns(&self) -> impl Iterator<Item = (&'static Column, &ColumnData)> {
         self.table.columns.iter().zip(&self.columns)
     }

@@ -27,7 +27,7 @@ pub fn write_halfway(path: &Path, key: &str, bytes: &[u8]) -> Result<(), StoreEr
     commit_bytes("keep what is needed to go on in", path, &whole).map(drop)
 }
 
-/// Whether `path` begins as one of the unit `key` does. Whether it is whole is seen when it is read.
+/// True if `path` begins as one of the unit `key` does. Whether it is whole is seen when it is read.
 #[must_use]
 pub fn is_halfway(path: &Path, key: &str) -> bool {
     let mut head = [0; DIGITS];

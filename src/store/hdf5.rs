@@ -129,7 +129,7 @@ fn only_field(file: &File) -> Result<String, Cause> {
     }
 }
 
-/// Whether a file is a surface of this program, by its attributes.
+/// True if a file is a surface of this program, by its attributes.
 #[must_use]
 pub fn is_own_surface(path: &Path) -> bool {
     library(|| is_own(&open(path)?)).unwrap_or(false)

@@ -30,13 +30,13 @@ pub struct Receipt {
     pub stage: String,
     /// The unit.
     pub id: String,
-    /// Its key.
+    /// Key.
     pub key: String,
-    /// What the key is the hash of, and the same of all units that it builds on, by stage.
+    /// Key inputs of the task and of all tasks that it depends on, by stage.
     pub preimages: Map<String, Value>,
-    /// Its files.
+    /// Files.
     pub files: Vec<Kept>,
-    /// How they came to be.
+    /// Origin of the files.
     pub made: Made,
 }
 
@@ -44,15 +44,15 @@ pub struct Receipt {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Kept {
-    /// Its place below the output folder, parts separated by `/`.
+    /// Place below the output folder, parts separated by `/`.
     pub path: String,
-    /// Its length \[bytes\].
+    /// Length \[bytes\].
     pub size_bytes: u64,
     /// The BLAKE3 hash of its content, hexadecimal.
     pub blake3: String,
 }
 
-/// How files came to be. Nothing of this is part of a key.
+/// Origin of files. No part of it enters a key.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Made {
@@ -68,22 +68,22 @@ pub struct Made {
     pub threads: usize,
     /// When the unit was begun.
     pub began: String,
-    /// How long it took \[s\].
+    /// Run time \[s\].
     pub seconds: f64,
-    /// What it counted.
+    /// Counted effort.
     pub effort: Map<String, Value>,
 }
 
-/// How a file is compared with its receipt.
+/// Comparison of a file with its provenance record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Check {
     /// It is there, and as long as it was.
     Sizes,
-    /// Its content has the hash that it had.
+    /// Content has the hash that it had.
     Contents,
 }
 
-/// What a receipt's place holds.
+/// Content at the path of a provenance record.
 #[derive(Debug)]
 pub enum Found {
     /// Nothing.
@@ -94,7 +94,7 @@ pub enum Found {
     Damaged(String),
 }
 
-/// What is wrong with a file.
+/// Fault of a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Fault {
     /// It is not there.
@@ -104,7 +104,7 @@ pub enum Fault {
 }
 
 impl Fault {
-    /// What is wrong.
+    /// Description of the fault.
     #[must_use]
     pub fn sentence(self) -> String {
         match self {
@@ -122,7 +122,7 @@ impl Kept {
         Self { path: parts.join("/"), size_bytes: written.size_bytes, blake3: written.blake3.clone() }
     }
 
-    /// What is wrong with it below `dir`, if anything.
+    /// Fault of the file below `dir`, if any.
     #[must_use]
     pub fn fault(&self, dir: &Path, check: Check) -> Option<Fault> {
         let path = dir.join(&self.path);

@@ -14,14 +14,14 @@ const COPIES: &str = "header";
 /// Bytes that a word may have: a key is the longest.
 const LONGEST_WORD: usize = 256;
 
-/// What a surface file says of its surface.
+/// Attributes of a surface file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SurfaceHeader {
     /// Side of the square \[m\].
     pub length_m: f64,
     /// Number of the surface among those that share its spectrum; 0 for a measured one.
     pub realization: u64,
-    /// Whether the surface continues periodically.
+    /// True if the surface continues periodically.
     pub periodic: bool,
     /// Key of the unit that wrote it.
     pub key: String,
@@ -33,13 +33,13 @@ pub struct SurfaceHeader {
     pub rms_curvature_1_m: f64,
     /// `m0 m4 / m2²` that it has (Nayak 1971).
     pub nayak_parameter: f64,
-    /// How it was made; nothing for a measured surface, whose file then lacks these attributes.
+    /// Parameters of generation; nothing for a measured surface, whose file lacks these attributes.
     pub generated: Option<Generated>,
-    /// What it was measured from; nothing for a generated one.
+    /// Source and preprocessing of a measured surface; nothing for a generated one.
     pub measured: Option<Measured>,
 }
 
-/// What a measured surface was made of.
+/// Source and preprocessing of a measured surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measured {
     /// Name of the file, without its folder.
@@ -48,11 +48,11 @@ pub struct Measured {
     pub source_blake3: String,
     /// Points of that file along rows and along columns.
     pub source_point_counts: [u64; 2],
-    /// How far apart they are along each \[m\].
+    /// Spacing of the points along rows and columns \[m\].
     pub source_spacings_m: [f64; 2],
     /// Points that were missing and are filled in.
     pub missing_count: u64,
-    /// What was taken off its heights.
+    /// Form subtracted from the heights.
     pub detrend: Detrend,
     /// Rms height of that \[m\].
     pub trend_m: f64,
@@ -87,7 +87,7 @@ pub struct SpectrumFit {
     pub scatter: f64,
 }
 
-/// How a surface was made.
+/// Parameters of a generated surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Generated {
     /// Rms height that was asked for \[m\].
@@ -100,7 +100,7 @@ pub struct Generated {
     pub seed: u64,
     /// Grid points per shortest wavelength.
     pub points_per_shortest_wavelength: f64,
-    /// How it got its rms height.
+    /// Normalization of the rms height.
     pub normalization: Normalization,
     /// The moduli of its Fourier modes.
     pub amplitudes: Amplitudes,

@@ -41,6 +41,16 @@ fn e2e_a_contact_beyond_full_contact_fails_in_a_sentence() {
         for column in ["loss_mean", "pull_off_load_mean", "area_at_max_load_mean", "audit_gap_max"] {
             assert_eq!(number(&frame, column), None, "{column}");
         }
+        // The surfaces alone decide on these.
+        for column in
+            ["persson_tosatti_mean", "persson_tosatti_realised_mean", "conformity_mean", "conformity_realised_min", "summit_count_mean"]
+        {
+            assert!(number(&frame, column).unwrap() > 0.0, "{column}");
+        }
+        let carried = frame.text("caution").unwrap()[0].to_owned();
+        let sticky = number(&frame, "persson_tosatti_realised_mean").unwrap() < 2.0;
+        assert_eq!(carried.starts_with("sticky+"), sticky, "{carried}");
+        assert!(carried.contains("failed+incomplete"), "{carried}");
         let folders: Vec<_> = std::fs::read_dir(bench.out().join("cycles")).unwrap().map(|entry| entry.unwrap().path()).collect();
         assert_eq!(folders.len(), 2);
         for folder in folders {
@@ -80,6 +90,21 @@ fn e2e_a_dissipated_energy_of_absorption_is_a_warning() {
     assert!(number(&frame, "absorption_share_max").unwrap() > 0.9, "{:?}", number(&frame, "absorption_share_max"));
     assert!(frame.text("caution").unwrap()[0].contains("absorption"));
     assert!(stdout(&run).contains("absorption"), "{}", stdout(&run));
+}
+
+/// A jump off after a splitting had fourteen times Θ here, and the share was 14.
+#[test]
+fn e2e_the_share_of_coalescence_is_a_share_with_merging() {
+    let text = "name = \"x\"\nseed = 7\nrealizations = 3\n[surface]\nmagnification = 32\n[material]\nwork_of_adhesion_j_m2 = 0.005\n[model]\n\
+                coalescence = \"merge\"\n[cycle]\nmax_load = [0.002]\napproach_step = 0.05\n";
+    let bench = Bench::new(text);
+    let run = bench.verb("run", &["--until", "aggregate"]);
+    assert_eq!(code(&run), 0, "{}", stderr(&run));
+    let frame = read_table(&bench.out().join("statistics/realizations.parquet"), &schema::REALIZATIONS).unwrap();
+    let shares = frame.f64("absorption_share").unwrap();
+    assert!(shares.iter().all(|share| (0.0..0.1).contains(share)), "{shares:?}");
+    let (merged, loss) = (frame.f64("dissipated_merge").unwrap(), frame.f64("loss").unwrap());
+    assert!(merged[2].abs() > 10.0 * loss[2], "energies far above Θ cancel");
 }
 
 /// Version 0.1.0 did not end here, and its memory grew.

@@ -1,7 +1,9 @@
 //! README and guide: specs parse, commands exist, keys, columns and links are real, Python blocks run.
 
 mod blocks;
+mod outputs;
 mod snippets;
+mod warnings;
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};

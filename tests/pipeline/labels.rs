@@ -1,6 +1,6 @@
 //! Numbers and names in tables that people read.
 
-use hysteron::stats::{CaseInput, cases, labels, realizations, significant, summary};
+use hysteron::stats::{CaseInput, cases, column_exponent, labels, realizations, significant, summary};
 use hysteron::store::Frame;
 use hysteron::text::counted;
 
@@ -87,6 +87,19 @@ fn law_every_sweep_lists_its_cases_by_what_varies_the_reference_first() {
 }
 
 #[test]
+fn law_rows_and_sweeps_have_the_order_of_the_spec() {
+    let with = |id: &str, sweep: &str, zeta: f64, hurst: f64| CaseInput { planned_count: 2, ..case(id, sweep, hurst, zeta, &[0.0071]) };
+    // Neither the ids nor the values ascend.
+    let inputs =
+        [with("c", "rough", 64.0, 0.8), with("a", "rough", 512.0, 0.8), with("b", "rough", 128.0, 0.8), with("d", "hurst", 64.0, 0.7)];
+    let frame = table(&inputs, 2);
+    assert_eq!(frame.text("case_id").unwrap(), ["c", "a", "b", "d"]);
+    let text = summary(&frame).unwrap();
+    let places: Vec<_> = ["\nrough ", "ζ=64", "ζ=512", "ζ=128", "\nhurst "].iter().map(|label| text.find(label).unwrap()).collect();
+    assert!(places.is_sorted(), "{text}");
+}
+
+#[test]
 fn law_a_campaign_without_a_shared_case_has_no_reference() {
     let mut inputs = sensitivity();
     inputs.iter_mut().for_each(|input| input.sweep = "all".to_owned());
@@ -111,12 +124,58 @@ fn law_no_number_vanishes_in_the_scale_of_its_column() {
         text
     };
     let text = row(&[("loss_mean", -1.84e-11), ("loss_sd", 2.96e-11), ("loss_ratio_dk_mean", 51245.0), ("loss_ratio_dk_sd", 67298.0)]);
-    assert!(text.contains("-2e-11±3e-11") && text.contains("5.1e4±6.7e4"), "{text}");
-    assert!(!text.contains("0.000") && !text.contains("51245") && text.contains("Numbers with an exponent are not scaled"), "{text}");
+    assert!(text.contains("Θ [10⁻¹²]") && text.contains(" -18.4±29.6"), "{text}");
+    // The head of this column has no room for a factor.
+    assert!(text.contains(" Θ/Θ_DK\n") && text.contains(" 5.1e4±6.7e4"), "{text}");
     let text = row(&[("loss_mean", 5.43e-12), ("loss_sd", 2.11e-12), ("area_at_max_load_mean", 1.24e-5), ("area_at_max_load_sd", 2e-6)]);
-    assert!(text.contains("5.4e-12±2e-12") && text.contains("1.2e-5±2e-6"), "{text}");
+    assert!(text.contains(" 5.43±2.11") && text.contains(" A [10⁻⁶]") && text.contains(" 12.4±2.0"), "{text}");
+    // A mean that the digits of its standard deviation hide.
     let text = row(&[("loss_mean", 1e-7), ("loss_sd", 2e-4)]);
-    assert!(text.contains("1.0e-7±2.0e-4"), "{text}");
+    assert!(text.contains(" Θ ") && text.contains("1.0e-7±2.0e-4"), "{text}");
     let text = row(&[("loss_mean", 0.0), ("loss_sd", 0.0)]);
     assert!(text.contains("0±0"), "{text}");
+}
+
+#[test]
+fn law_all_numbers_of_a_column_have_one_notation() {
+    let inputs = [1e-3, 1e-2, 0.1].map(|work| {
+        let mut input = case(&format!("w{work}"), "adhesion", 0.8, 8.0, &[0.0071]);
+        input.parameters.iter_mut().filter(|(name, _)| name == "work_of_adhesion_j_m2").for_each(|(_, value)| *value = work.into());
+        input
+    });
+    let whole = table(&inputs, 3);
+    let text = |losses: [f64; 3]| {
+        let frame = losses
+            .iter()
+            .enumerate()
+            .fold(whole.clone(), |frame, (row, loss)| replaced(&replaced(&frame, "loss_mean", row, *loss), "loss_sd", row, 0.1 * loss));
+        let text = summary(&frame).unwrap();
+        let head = text.lines().find(|line| line.starts_with("adhesion")).unwrap().to_owned();
+        let cells = text.lines().filter(|line| line.starts_with("Δγ")).map(|line| line.split_whitespace().rev().nth(1).unwrap().to_owned());
+        (head, cells.collect::<Vec<_>>())
+    };
+    let (head, cells) = text([4.6e-7, 8.9e-6, 1.53e-3]);
+    assert!(head.contains("Θ [10⁻⁶]"), "{head}");
+    assert_eq!(cells, ["0.460±0.046", "8.90±0.89", "1530±153"]);
+    // No power of ten suits ten decades.
+    let (head, cells) = text([4.6e-12, 8.9e-6, 0.0153]);
+    assert!(head.contains("Θ  ") && !head.contains("Θ ["), "{head}");
+    assert_eq!(cells, ["4.6e-12±5e-13", "8.9e-6±8.9e-7", "1.5e-2±1.5e-3"]);
+}
+
+#[test]
+fn val_the_power_of_ten_of_a_column() {
+    for (values, exponent) in [
+        (&[0.198, 0.277][..], 0),
+        (&[10.9, 2.3], 0),
+        (&[0.857e-3, 0.987e-3], -3),
+        (&[4.25e-6, 4.25e-6], -6),
+        (&[4.25e-6, 4.25e-6, 0.857e-3, 0.857e-3, 0.987e-3], -6),
+        (&[5.1e4], 3),
+        (&[-1.84e-11, 0.0], -12),
+        (&[0.0], 0),
+        (&[], 0),
+    ] {
+        assert_eq!(column_exponent(values.iter().copied()), exponent, "{values:?}");
+    }
 }

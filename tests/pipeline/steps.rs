@@ -58,6 +58,11 @@ pub fn write_events(steps: &Path, events: &[Event]) {
 
 /// Writes a table of steps, and beside it one of events without rows.
 pub fn write(path: &Path, steps: &[Step]) {
+    write_counts(path, steps, [19, 1, 1]);
+}
+
+/// The same with the numbers of contacts, of absorbed asperities, and of contacts that overlap a neighbour.
+pub fn write_counts(path: &Path, steps: &[Step], [contacts, covered, touching]: [usize; 3]) {
     let reals = |value: fn(&Step) -> f64| steps.iter().map(value).collect::<Vec<f64>>();
     let zeros = || vec![0_usize; steps.len()];
     let frame = named(&STEPS, steps.len())
@@ -69,8 +74,8 @@ pub fn write(path: &Path, steps: &[Step]) {
         .f64("least_load_n", reals(|step| step.2 * FORCE_N))
         .f64("area_m2", reals(|step| step.3 * 1e-6))
         .f64("area_union_m2", reals(|step| step.3 * 0.9e-6))
-        .count("contact_count", vec![19; steps.len()])
-        .count("covered_count", vec![1; steps.len()])
+        .count("contact_count", vec![contacts; steps.len()])
+        .count("covered_count", vec![covered; steps.len()])
         .count("jump_in_count", zeros())
         .count("jump_off_count", zeros())
         .count("cover_count", zeros())
@@ -79,7 +84,7 @@ pub fn write(path: &Path, steps: &[Step]) {
         .count("merge_count", zeros())
         .count("split_count", zeros())
         .count("held_count", (0..steps.len()).map(|row| usize::from(row == 1)))
-        .count("touching_count", vec![1; steps.len()])
+        .count("touching_count", vec![touching; steps.len()])
         .f64("dissipated_j", reals(|step| if step.0 == "loading" { 1e-10 } else { 2e-10 }))
         .f64("work_j", reals(|step| step.5))
         .f64("residual_m", vec![1e-15; steps.len()])
@@ -130,6 +135,7 @@ pub fn case(id: &str, sweep: &str, hurst: f64, magnification: f64, max_loads: &[
         precision: None,
         planned_count: 6,
         failed_count: 0,
+        surfaces: Vec::new(),
     }
 }
 

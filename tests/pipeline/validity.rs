@@ -5,7 +5,7 @@ use hysteron::stats::{CAUTIONS, CaseInput, LIMITS, Value, cases, realizations, s
 use hysteron::store::{ColumnData, Frame};
 
 use crate::panels::replaced;
-use crate::steps::{Step, case, cycle, write};
+use crate::steps::{Step, case, cycle, write, write_counts};
 
 const STEPS: [Step; 3] =
     [("loading", None, 0.0, 0.0, 0.0, 0.0), ("loading", None, 0.004, 0.08, 0.6, 5e-9), ("unloading", Some(0.004), 0.0, 0.0, 0.0, -4.7e-9)];
@@ -64,8 +64,79 @@ fn val_each_limit_has_its_caution() {
     assert_eq!(set("conformity_realised", 0.99), "conformed");
     assert_eq!(set("persson_tosatti_realised", 1.99), "sticky");
     assert_eq!(set("tabor_min", 1.9), "tabor");
+    let few: Value = 99_usize.into();
+    assert_eq!(words(&table(&[&[("summit_count", few.clone())], &[("summit_count", few)]], 0.1, |_| {})), "few_asperities");
+    assert_eq!(words(&counted(&[[9, 0, 0], [10, 0, 0]])), "few_contacts");
+    assert_eq!(words(&counted(&[[1, 0, 0], [19, 0, 0]])), "", "the limit is within the range, and the mean counts");
     // The continuous spectrum is shown beside; what was computed is what is judged.
     assert_eq!(set("conformity", 0.1), "");
+}
+
+/// The table of one case with these numbers of contacts, of absorbed asperities and of overlapping contacts, one list per surface.
+fn counted(surfaces: &[[usize; 3]]) -> Frame {
+    let directory = tempfile::tempdir().unwrap();
+    let mut input = case("c1", "", 0.8, 64.0, &[0.004]);
+    input.planned_count = surfaces.len();
+    let of = |(at, counts): (usize, &[usize; 3])| {
+        let path = directory.path().join(format!("{at}.parquet"));
+        let mut steps = STEPS;
+        steps[2].5 = -4.6e-9;
+        write_counts(&path, &steps, *counts);
+        cycle("c1", at as i64, &path, 2e-8)
+    };
+    let cycles: Vec<_> = surfaces.iter().enumerate().map(of).collect();
+    let inputs = [input];
+    cases(&realizations(&inputs, &cycles).unwrap(), &inputs).unwrap()
+}
+
+#[test]
+fn val_fractions_of_contacts_are_weighted_by_contacts() {
+    // One contact that overlaps, of 1 and of 99: 2 of 100. The mean of the fractions is 0.505.
+    let frame = counted(&[[1, 1, 1], [99, 0, 1]]);
+    let near = |name: &str, wanted: f64| assert!((number(&frame, name).unwrap() - wanted).abs() < 1e-14, "{name}");
+    near("touching_share_mean", 0.02);
+    near("touching_share_max", 1.0);
+    near("covered_share_mean", 1.0 / 101.0);
+    near("covered_share_max", 0.5);
+    near("contact_count_at_max_load_mean", 50.0);
+    near("contact_count_at_max_load_min", 1.0);
+    near("touching_count_at_max_load_mean", 1.0);
+    assert_eq!(words(&frame), "", "2 % overlap");
+    let none = counted(&[[0, 0, 0], [0, 0, 0]]);
+    assert_eq!((number(&none, "touching_share_mean"), number(&none, "contact_count_at_max_load_mean")), (None, Some(0.0)));
+    let found = warnings(&counted(&[[20, 0, 10], [20, 0, 0]])).unwrap();
+    assert_eq!(found[0].measured, "25\u{a0}% of contact spots overlap a neighbour (limit 10\u{a0}%)");
+    assert!(found[0].kind.action.contains("smaller `max_load`") && found[0].kind.action.contains("\"merge\""));
+}
+
+#[test]
+fn law_surfaces_of_failed_cycles_count_where_the_surface_alone_decides() {
+    let ratio = |value: f64| vec![("persson_tosatti_realised".to_owned(), value.into()), ("summit_count".to_owned(), 20_usize.into())];
+    // Both failed: no result, and yet the warnings of the surfaces.
+    let failed = table(&[], 0.1, |input| {
+        (input.planned_count, input.failed_count) = (2, 2);
+        input.surfaces = vec![ratio(0.5), ratio(1.5)];
+    });
+    assert_eq!(words(&failed), "sticky+failed+incomplete+few_asperities");
+    assert_eq!((number(&failed, "persson_tosatti_realised_mean"), number(&failed, "persson_tosatti_realised_min")), (Some(1.0), Some(0.5)));
+    assert_eq!((number(&failed, "summit_count_mean"), number(&failed, "loss_mean")), (Some(20.0), None));
+    // One of two: the mean is over both surfaces.
+    let one = table(&[&[("persson_tosatti_realised", 3.5.into())]], 0.1, |input| {
+        (input.planned_count, input.failed_count) = (2, 1);
+        input.surfaces = vec![ratio(0.5), ratio(3.5)];
+    });
+    assert_eq!(number(&one, "persson_tosatti_realised_mean"), Some(2.0));
+}
+
+#[test]
+fn law_codes_are_ordered_by_severity() {
+    let codes: Vec<&str> = CAUTIONS.iter().map(|known| known.code).collect();
+    assert_eq!(codes[..3], ["sticky", "area", "conformed"]);
+    let all: &[(&str, Value)] = &[("conformity_realised", 0.1.into()), ("persson_tosatti_realised", 0.1.into()), ("tabor_min", 1.0.into())];
+    let carried = words(&table(&[all], 0.5, |_| {}));
+    assert_eq!(carried, "sticky+area+conformed+tabor+single");
+    let limits: Vec<usize> = LIMITS.iter().map(|limit| codes.iter().position(|code| *code == limit.caution).unwrap()).collect();
+    assert!(limits.is_sorted());
 }
 
 #[test]
@@ -120,7 +191,7 @@ fn law_what_is_missing_is_null_and_no_caution() {
         input.planned_count = 2;
         input.failed_count = 2;
     });
-    assert_eq!((words(&failed).as_str(), number(&failed, "audit_gap_max")), ("incomplete+failed", None));
+    assert_eq!((words(&failed).as_str(), number(&failed, "audit_gap_max")), ("failed+incomplete", None));
 }
 
 #[test]
@@ -147,9 +218,9 @@ fn law_a_warning_has_measured_value_limit_consequence_and_action() {
     assert_eq!(
         texts,
         [
-            ("tabor", "low Tabor parameter", "minimum Tabor parameter μ = 1.25 (limit ≥ 2)"),
-            ("area", "large contact area", "A/A₀ = 32\u{a0}% (limit 30\u{a0}%)"),
             ("sticky", "near full contact", "U_el/Δγ = 0.5 (limit ≥ 2)"),
+            ("area", "large contact area", "A/A₀ = 32\u{a0}% (limit 30\u{a0}%)"),
+            ("tabor", "low Tabor parameter", "minimum Tabor parameter μ = 1.25 (limit ≥ 2)"),
         ]
     );
     for kind in CAUTIONS {
@@ -161,13 +232,15 @@ fn law_a_warning_has_measured_value_limit_consequence_and_action() {
         input.failed_count = 1;
     }))
     .unwrap();
-    assert_eq!((failed[0].measured.as_str(), failed[1].measured.as_str()), ("1 of 3 realizations finished", "1 of 3 realizations failed"));
+    let measured = |code: &str| failed.iter().find(|of| of.kind.code == code).unwrap().measured.as_str();
+    assert_eq!((measured("failed"), measured("incomplete")), ("1 of 3 realizations failed", "1 of 3 realizations finished"));
     let twice = warnings(&table(&[half], 0.1, |input| {
         input.max_loads = vec![0.004, 0.005];
         (input.planned_count, input.failed_count) = (3, 2);
     }))
     .unwrap();
-    assert_eq!((twice[0].rows.len(), twice[1].measured.as_str()), (2, "2 of 3 realizations failed"));
+    let twice = twice.iter().find(|of| of.kind.code == "failed").unwrap();
+    assert_eq!((twice.rows.len(), twice.measured.as_str()), (2, "2 of 3 realizations failed"));
 }
 
 /// The same table with other codes in the column `caution`.

@@ -1,4 +1,4 @@
-//! `export csv`: the tables of statistics as comma-separated values (RFC 4180).
+//! `export csv`: the tables of statistics, and on request of cycles, as comma-separated values (RFC 4180).
 
 use super::place::folder_of;
 use super::{Fault, failed, make_folder, say};
@@ -8,7 +8,9 @@ use crate::store::{ColumnData, Frame, commit, parquet};
 use crate::text::{counted, shown};
 use serde_json::json;
 use std::borrow::Cow;
-use std::path::Path;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
 
 pub(super) fn export(asked: &CsvArguments) -> Result<u8, Fault> {
     let dir = folder_of(&asked.dir)?;
@@ -21,11 +23,17 @@ pub(super) fn export(asked: &CsvArguments) -> Result<u8, Fault> {
              help: run `hysteron run SPEC` first, or name the folder of a comparison"
         )));
     }
+    let mut wanted: Vec<(PathBuf, &'static Table)> = tables.into_iter().map(|table| (PathBuf::from(table.file), table)).collect();
+    if asked.cycles {
+        wanted.extend(of_cycles(&dir)?);
+    }
     make_folder(&out)?;
     let mut files = Vec::new();
-    for table in tables {
-        let frame = parquet::read_table(&dir.join(table.file), table).map_err(failed)?;
-        let path = out.join(format!("{}.csv", table.name));
+    for (file, table) in wanted {
+        let frame = parquet::read_table(&dir.join(&file), table).map_err(failed)?;
+        let name = file.strip_prefix("statistics").unwrap_or(&file).with_extension("csv");
+        let path = out.join(name);
+        path.parent().map_or(Ok(()), make_folder)?;
         commit::commit_bytes("write the table", &path, text(&frame).as_bytes()).map_err(failed)?;
         files.push((path, frame.row_count()));
     }
@@ -40,9 +48,27 @@ pub(super) fn export(asked: &CsvArguments) -> Result<u8, Fault> {
     Ok(0)
 }
 
-/// Whether a table is one of statistics or that of a comparison, and in the folder.
+/// True if a table is one of statistics or that of a comparison, and in the folder.
 fn has(dir: &Path, table: &Table) -> bool {
     (table.file.starts_with("statistics/") || table.file == COMPARISON.file) && dir.join(table.file).is_file()
+}
+
+/// Folder of the tables of one cycle in the file of a table.
+const OF_CYCLE: &str = "cycles/<id>/";
+
+/// The tables of the cycles in a folder, with their files relative to it, in order of the ids.
+fn of_cycles(dir: &Path) -> Result<Vec<(PathBuf, &'static Table)>, Fault> {
+    let folder = dir.join("cycles");
+    let refused = |error: io::Error| failed(format!("cannot list {}: {error}", shown(&folder)));
+    let mut ids = Vec::new();
+    // A run whose cycles have all failed has no such folder.
+    for entry in if folder.is_dir() { Some(fs::read_dir(&folder).map_err(refused)?) } else { None }.into_iter().flatten() {
+        ids.push(entry.map_err(refused)?.file_name());
+    }
+    ids.sort();
+    let names = || TABLES.iter().filter_map(|table| table.file.strip_prefix(OF_CYCLE).map(|name| (name, *table)));
+    let files = ids.iter().flat_map(|id| names().map(move |(name, table)| (Path::new("cycles").join(id).join(name), table)));
+    Ok(files.filter(|(file, _)| dir.join(file).is_file()).collect())
 }
 
 /// A table as CSV: column names, then rows; a null is empty, an empty text is quoted.

@@ -67,7 +67,7 @@ impl<'a> Ended<'a> {
         Ok(text)
     }
 
-    /// Whether nothing was computed, and nothing failed.
+    /// True if nothing was computed, and nothing failed.
     fn is_idle(&self) -> bool {
         self.failed_count == 0 && self.tallies.iter().all(|(_, tally)| tally.computed == 0)
     }

@@ -6,8 +6,11 @@ use crate::formats::recognize;
 use crate::keys::digest_of_file;
 use crate::model::{Choice, Detrend, Missing};
 use crate::physics::measured::find_measured;
-use crate::spec::{SurfaceParams, quoted};
-use crate::stages::measure;
+use crate::physics::summits::Summit;
+use crate::physics::validity::{Flattening, LEAST_TABOR, measured_flattening};
+use crate::spec::{CaseParams, SurfaceParams, quoted};
+use crate::stages::{Imported, measure};
+use crate::stats::{Limit, significant};
 use crate::store::hdf5::{SurfaceHeader, read_surface, write_surface, write_tamaas};
 use crate::store::scan::export::write_netcdf3;
 use crate::text::{counted, wrapped};
@@ -33,7 +36,7 @@ pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
             asked.file.display()
         )));
     }
-    let (prepared, header) = measure(&params, &digest, "").map_err(failed)?;
+    let Imported { prepared, header, height_factor_m } = measure(&params, &digest, "").map_err(failed)?;
     let out = asked.out.clone().unwrap_or_else(|| named_after(&asked.file));
     if !asked.dry_run {
         may_be_written(&asked.file, &out)?;
@@ -47,6 +50,10 @@ pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
         write_surface(&out, &header, prepared.heights_m.view()).map_err(failed)?;
     }
     let written = (!asked.dry_run).then_some(out.as_path());
+    let shortest_m = header.measured.as_ref().map_or(0.0, |of| of.shortest_wavelength_m);
+    let shape = (header.length_m, header.periodic);
+    let unit = measured_flattening(prepared.heights_m.view(), shape, shortest_m, 1.0).map_err(failed)?;
+    let range = Range::of(&unit, summits.list.iter().map(Summit::radius_m));
     let counts = [prepared.heights_m.nrows(), summits.list.len(), edge];
     if asked.json {
         let rings: Vec<Value> = prepared
@@ -54,9 +61,9 @@ pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
             .iter()
             .map(|ring| json!({ "wavenumber_1_m": ring.wavenumber_1_m, "density_m4": ring.density_m4, "mode_count": ring.mode_count }))
             .collect();
-        say(&format!("{:#}\n", answer(&header, counts, rings, written)))?;
+        say(&format!("{:#}\n", answer((&header, height_factor_m), &range, (counts, rings), written)))?;
     } else {
-        say(&told(&asked.file, &header, counts, written))?;
+        say(&told(&asked.file, (&header, height_factor_m), &range, (counts, written)))?;
     }
     Ok(0)
 }
@@ -95,8 +102,94 @@ fn may_be_written(scan: &Path, out: &Path) -> Result<(), Fault> {
     if same(scan, out) { Err(refused("it is the measured surface itself")) } else { Ok(()) }
 }
 
+/// Range of the asperity model on a surface: the elastic energies that flatten its roughness are proportional to E*.
+struct Range {
+    /// `U_el/E*` \[m\], of all roughness.
+    whole_m: f64,
+    /// `U_1/E*` \[m\], of the shortest octave; 0 where that is unknown.
+    octave_m: f64,
+    /// Smallest radius of an asperity \[m\]; nothing without asperities.
+    radius_m: Option<f64>,
+}
+
+/// Work of adhesion of the printed spec \[J/m²\].
+const ADHESION_J_M2: f64 = 0.05;
+
+/// Modulus of the printed spec over the smallest one inside the range, at least.
+const MARGIN: f64 = 1.5;
+
+/// Limits of `U_el/Δγ` and `U_1/Δγ`.
+fn limits() -> [f64; 2] {
+    ["sticky", "conformed"].map(|code| Limit::of(code).map_or(f64::NAN, |limit| limit.bound))
+}
+
+impl Range {
+    /// Of the energies at a modulus of 1 Pa, and the radii of the asperities \[m\].
+    fn of(unit: &Flattening, radii_m: impl Iterator<Item = f64>) -> Self {
+        Self { whole_m: unit.whole_j_m2, octave_m: unit.octave_j_m2, radius_m: radii_m.reduce(f64::min) }
+    }
+
+    /// The ratios `U_el/Δγ` and `U_1/Δγ` of a material.
+    fn ratios(&self, modulus_pa: f64, adhesion_j_m2: f64) -> [f64; 2] {
+        [self.whole_m, self.octave_m].map(|length| modulus_pa * length / adhesion_j_m2)
+    }
+
+    /// Smallest `E*/Δγ` inside the range \[1/m\]: both ratios are at their limits or above.
+    fn least_1_m(&self) -> f64 {
+        let [whole, octave] = limits();
+        let of_octave = if self.octave_m > 0.0 { octave / self.octave_m } else { 0.0 };
+        of_octave.max(whole / self.whole_m)
+    }
+
+    /// A round modulus inside the range for [`ADHESION_J_M2`] \[Pa\]; the largest of a spec if that is smaller.
+    fn modulus_pa(&self) -> f64 {
+        let least = MARGIN * self.least_1_m() * ADHESION_J_M2;
+        let decade = 10_f64.powf(least.log10().floor());
+        let round = [1.0, 2.0, 5.0, 10.0].into_iter().map(|digit| digit * decade).find(|modulus| *modulus >= least);
+        round.unwrap_or(f64::INFINITY).clamp(1.0, 1e13)
+    }
+
+    /// The condition as a paragraph.
+    fn text(&self) -> String {
+        let [whole, octave] = limits();
+        let octave = if self.octave_m > 0.0 { format!(" and U_1/Δγ ≥ {octave}") } else { String::new() };
+        format!(
+            "U_el/Δγ ≥ {whole}{octave}, that is E*/Δγ ≥ {:.2e} 1/m. U_el = E* x {:.3e} m flattens all roughness, U_1 = E* x {:.3e} m its shortest octave. \
+             A softer or more adhesive contact is outside the range of the asperity model.",
+            self.least_1_m(),
+            self.whole_m,
+            self.octave_m
+        )
+    }
+
+    /// Material and model of the printed spec.
+    fn spec(&self, periodic: bool) -> String {
+        let modulus = self.modulus_pa();
+        let [whole, octave] = self.ratios(modulus, ADHESION_J_M2).map(|ratio| significant(ratio, 2));
+        let [at_least, and] = limits();
+        let ratios = format!("# U_el/Δγ = {whole} (limit ≥ {at_least}), U_1/Δγ = {octave} (limit ≥ {and})");
+        let mut text = format!("[material]      {ratios}\ncontact_modulus_pa = {modulus:e}\nwork_of_adhesion_j_m2 = {ADHESION_J_M2}\n");
+        let range_m = CaseParams::default().material.interaction_range_m;
+        let tabor = self.radius_m.map(|radius| (radius * (ADHESION_J_M2 / modulus).powi(2)).cbrt() / range_m);
+        let jump_in = tabor.filter(|tabor| *tabor < LEAST_TABOR).map(|tabor| {
+            format!("jump_in = \"jkr\"      # Tabor parameter μ ≥ {}; \"wu\" requires {LEAST_TABOR}\n", significant(tabor, 2))
+        });
+        let boundary = (!periodic).then(|| "boundary = \"isolated\"\n".to_owned());
+        let model: Vec<String> = [boundary, jump_in].into_iter().flatten().collect();
+        if !model.is_empty() {
+            text += &format!("[model]\n{}", model.concat());
+        }
+        text
+    }
+}
+
 /// The statistics of a surface as JSON.
-fn answer(header: &SurfaceHeader, [points, summits, edge]: [usize; 3], rings: Vec<Value>, written: Option<&Path>) -> Value {
+fn answer(
+    (header, height_factor_m): (&SurfaceHeader, Option<f64>),
+    range: &Range,
+    ([points, summits, edge], rings): ([usize; 3], Vec<Value>),
+    written: Option<&Path>,
+) -> Value {
     let measured = header.measured.as_ref();
     let fit = measured
         .and_then(|of| of.fit)
@@ -105,6 +198,7 @@ fn answer(header: &SurfaceHeader, [points, summits, edge]: [usize; 3], rings: Ve
         "file": written.map(|path| path.display().to_string()),
         "point_count": points,
         "length_m": header.length_m,
+        "height_factor_m": height_factor_m,
         "periodic": header.periodic,
         "rms_height_m": header.rms_height_m,
         "rms_slope": header.rms_slope,
@@ -122,12 +216,20 @@ fn answer(header: &SurfaceHeader, [points, summits, edge]: [usize; 3], rings: Ve
         "shortest_wavelength_m": measured.map(|of| of.shortest_wavelength_m),
         "source_blake3": measured.map(|of| of.source_blake3.as_str()),
         "self_affine": fit,
+        "flattening_m": range.whole_m,
+        "flattening_octave_m": range.octave_m,
+        "least_modulus_over_adhesion_1_m": range.least_1_m(),
         "spectrum": rings,
     })
 }
 
 /// The same as text of at most 80 columns.
-fn told(file: &Path, header: &SurfaceHeader, [points, summits, edge]: [usize; 3], written: Option<&Path>) -> String {
+fn told(
+    file: &Path,
+    (header, height_factor_m): (&SurfaceHeader, Option<f64>),
+    range: &Range,
+    ([points, summits, edge], written): ([usize; 3], Option<&Path>),
+) -> String {
     let (length, rms) = (header.length_m, header.rms_height_m);
     let area = length * length;
     let [m2, m4] = [0.5 * header.rms_slope.powi(2), 0.375 * header.rms_curvature_1_m.powi(2)];
@@ -142,6 +244,10 @@ fn told(file: &Path, header: &SurfaceHeader, [points, summits, edge]: [usize; 3]
         if (a / b - 1.0).abs() > 1e-3 {
             line("", format!("interpolated to points {:.4e} m apart both ways", a.min(b)));
         }
+    }
+    match height_factor_m {
+        Some(factor) => line("height factor", format!("{} m per number of the file", significant(factor, 6))),
+        None => line("height factor", "1 (surface of this program, in metres)".to_owned()),
     }
     line("square", format!("{points} x {points} points, {length:.4e} m, {continued}"));
     if let Some(of) = &header.measured {
@@ -173,18 +279,19 @@ fn told(file: &Path, header: &SurfaceHeader, [points, summits, edge]: [usize; 3]
         }
         None => line("self-affine", "no fit".to_owned()),
     }
+    text += &wrapped(&format!("  {:<14}{}", "model range", range.text()), "                ");
     for caution in cautions(header) {
         text += &wrapped(&format!("warning: {caution}"), "  ");
     }
     match written {
         Some(path) => {
-            let boundary = if header.periodic { "periodic = true\n" } else { "[model]\nboundary = \"isolated\"\n" };
+            let periodic = if header.periodic { "periodic = true\n" } else { "" };
             let stem: String =
                 path.file_stem().unwrap_or_default().to_string_lossy().chars().filter(|c| c.is_ascii_alphanumeric()).take(32).collect();
             let file = quoted(&path.to_string_lossy());
             text += &format!("Written: {}. Spec for this surface; replace the material constants:\n\n", path.display());
-            text += &format!("name = \"of_{stem}\"\n[surface]\nfile = {file}\n{boundary}[material]\ncontact_modulus_pa = 1e8\n");
-            text += "work_of_adhesion_j_m2 = 0.05\n[cycle]\nmax_load = [0.004]       # F/(E* A0)\n";
+            text += &format!("name = \"of_{stem}\"\n[surface]\nfile = {file}\n{periodic}{}", range.spec(header.periodic));
+            text += "[cycle]\nmax_load = [0.004]       # F/(E* A0)\n";
         }
         None => text += "No file was written.\n",
     }

@@ -5,7 +5,7 @@ use super::{Fault, failed, say};
 use crate::campaign::{Campaign, CaseUnit, CycleUnit, REPORT_PAGE, STATISTICS, Stage, Standing, SurfaceUnit, Unit};
 use crate::cli::FolderArguments;
 use crate::schema::{self, Table};
-use crate::spec::{CaseParams, MEASURED};
+use crate::spec::{CaseParams, GENERATED, MEASURED, SurfaceParams};
 use crate::stats::{significant, warnings_of};
 use crate::store::{Check, ColumnData, Found, Frame, Kept, parquet, read_receipt};
 use crate::text::{shell_path, shown, visible, wrapped};
@@ -13,7 +13,18 @@ use indicatif::HumanBytes;
 use serde_json::{Map, Value, json};
 
 /// Results in the printed text; JSON has all columns.
-const RESULTS: [&str; 7] = ["pull_off_load", "area_at_max_load", "penetration_at_max_load", "loss", "loss_j", "loss_ratio_dk", "audit_gap"];
+const RESULTS: [&str; 10] = [
+    "pull_off_load",
+    "area_at_max_load",
+    "penetration_at_max_load",
+    "contact_count_at_max_load",
+    "touching_count_at_max_load",
+    "summit_count",
+    "loss",
+    "loss_j",
+    "loss_ratio_dk",
+    "audit_gap",
+];
 
 /// A case or task.
 #[derive(Default)]
@@ -109,6 +120,7 @@ fn of_surface(campaign: &Campaign, unit: &SurfaceUnit) -> Shown {
     let word = |unit: &Unit<'_>| state(&campaign.standing(unit, Check::Sizes));
     let mut parameters = Map::new();
     flatten("surface", &json!(unit.params), &mut parameters);
+    keep_own(&unit.params, &mut parameters);
     parameters.insert("realization".to_owned(), unit.realization.into());
     Shown {
         kind: "surface",
@@ -139,11 +151,14 @@ fn parameters(params: &CaseParams) -> Map<String, Value> {
     if let Value::Object(tables) = json!(params) {
         tables.iter().for_each(|(table, values)| flatten(table, values, &mut all));
     }
-    // A generated surface reads none of the keys of a measured one.
-    if !params.surface.is_measured() {
-        all.retain(|key, _| !MEASURED.iter().any(|name| key.strip_prefix("surface.") == Some(*name)));
-    }
+    keep_own(&params.surface, &mut all);
     all
+}
+
+/// Removes the keys of a measured surface from those of a generated one, and the other way round.
+fn keep_own(surface: &SurfaceParams, all: &mut Map<String, Value>) {
+    let others: &[&str] = if surface.is_measured() { &GENERATED } else { &MEASURED };
+    all.retain(|key, _| !others.iter().any(|name| key.strip_prefix("surface.") == Some(*name)));
 }
 
 fn flatten(table: &str, values: &Value, all: &mut Map<String, Value>) {

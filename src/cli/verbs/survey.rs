@@ -7,8 +7,10 @@ use super::{Fault, failed, say, submit};
 use crate::campaign::{Campaign, REPORT_PAGE, STATISTICS, Stage, Standing, Survey};
 use crate::cli::{FolderArguments, OutputArguments};
 use crate::engines::slurm::{Queue, Sent};
+use crate::stages::{Outside, foreseen};
+use crate::stats::{Caution, significant};
 use crate::store::Check;
-use crate::text::{counted, shown, visible};
+use crate::text::{counted, shown, visible, wrapped};
 use serde_json::{Value, json};
 use std::io::{IsTerminal, Write as _};
 use std::path::Path;
@@ -29,15 +31,36 @@ type Units = Vec<(Stage, Vec<(String, Standing)>)>;
 pub(super) fn plan(spec: &Path, output: &OutputArguments) -> Result<u8, Fault> {
     let campaign = open(spec, output)?;
     let units = units(&campaign, campaign.survey(Check::Sizes));
+    let outside = foreseen(&campaign);
     let text = if output.json {
-        format!("{:#}\n", answer(&campaign, &units))
+        let mut answer = answer(&campaign, &units);
+        answer["outside_range"] = outside.iter().map(outside_json).collect();
+        format!("{answer:#}\n")
     } else {
         let reasons = |stage: Stage, units: &[(String, Standing)]| causes(&campaign, stage, units);
+        let warnings: String = outside.iter().map(|of| outside_text(of, campaign.cases.len())).collect();
         describe(&campaign, &units, reasons)
+            + &warnings
             + &remaining(&units, &campaign, |open| format!("`run` would compute {}.\n", counted(open, "task")))
     };
     say(&text)?;
     Ok(0)
+}
+
+/// Cases outside the range of the asperity model, by the target spectrum of the spec.
+fn outside_json(of: &Outside) -> Value {
+    json!({ "code": of.kind.code, "min": of.range[0], "max": of.range[1], "limit": of.limit, "cases": of.cases })
+}
+
+/// The same as text of at most 80 columns.
+fn outside_text(of: &Outside, all: usize) -> String {
+    let [low, high] = of.range.map(|value| significant(value, 3));
+    let range = if low == high { low } else { format!("{low} to {high}") };
+    let measured = of.kind.text.replace("{}", &range);
+    let Caution { code, label, consequence, action, .. } = of.kind;
+    let cases = format!("{} of {}", of.cases.len(), counted(all, "case"));
+    let text = format!("warning[{code}]: {label}: {measured} (target spectrum; limit ≥ {}) for {cases}. {consequence} {action}", of.limit);
+    wrapped(&text, "  ")
 }
 
 pub(super) fn status(asked: &FolderArguments, watch: bool) -> Result<u8, Fault> {

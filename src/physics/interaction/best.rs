@@ -11,7 +11,7 @@ const MANY_ALONE: usize = 400;
 /// Asperities from which there may be so many spots.
 const ENOUGH: usize = 300;
 
-/// Errors of the fast sum, of the greatest displacement: where an equilibrium is met to 1e-10 of the rms height, and where it is met well enough to go on.
+/// Errors of the fast sum, of the largest displacement: where an equilibrium is met to 1e-10 of the rms height, and where it is met well enough to go on.
 const TOLERANCE: f64 = 1e-10;
 const ROUGH: f64 = 1e-6;
 

@@ -68,7 +68,7 @@ impl Tangent {
         }
     }
 
-    /// The same with all digits that it has: made fast, a product has five, and this seven.
+    /// Product with full precision: seven digits, against five of the fast product.
     pub fn fine_product(&mut self, x: &[f64], y: &mut [f64]) {
         match &mut self.0 {
             Form::Sparse(sparse) => sparse.fine_product(x, y),
@@ -85,7 +85,7 @@ impl Tangent {
         }
     }
 
-    /// Whether it has all digits; made fast, it has some.
+    /// True if it has all digits; made fast, it has some.
     #[must_use]
     pub fn is_exact(&self) -> bool {
         matches!(self.0, Form::Dense(..) | Form::Mutual(_))
@@ -151,7 +151,7 @@ pub(crate) fn places_in<'a>(numbers: &'a [usize], others: &'a [usize]) -> impl I
     })
 }
 
-/// What it cost: counted, never timed.
+/// Computational effort: counted, never timed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Effort {
     /// Pair fields evaluated.
@@ -186,7 +186,7 @@ impl Sub for Effort {
     }
 }
 
-/// How contact spots displace the half-space at one another and at free asperities.
+/// Displacement of the half-space at contacts and free asperities by other contacts.
 pub trait Interaction: Sync {
     /// Displacement ŵ \[m\] at each of `targets` (asperity numbers), and in `displacements` in their order. A spot does not act on its own
     /// centre, but its periodic images and the background do.

@@ -281,13 +281,13 @@ impl SpotColumns {
         self.load[..loads.len()].copy_from_slice(loads);
     }
 
-    /// How many spots there are.
+    /// Number of spots.
     #[must_use]
     pub fn len(&self) -> usize {
         self.count
     }
 
-    /// Whether there is none.
+    /// True if there is none.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.count == 0

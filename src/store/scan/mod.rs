@@ -38,7 +38,9 @@ pub struct Scan {
     pub size_m: Option<[f64; 2]>,
     /// The unit of length that the file gives its heights in, and from which they have been taken to metres.
     pub unit: Option<String>,
-    /// Whether the surface continues periodically, if the file says.
+    /// Factor by which the reader multiplied the file's own numbers: unit of length times scale.
+    pub factor: f64,
+    /// True if the surface continues periodically, if the file says.
     pub periodic: Option<bool>,
     /// Distance of points along the row index and along the column index in the file's own numbers, if it has positions; their unit is that of the heights where
     /// [`size_m`](Self::size_m) is unknown.

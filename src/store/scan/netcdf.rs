@@ -36,7 +36,7 @@ pub(super) fn read(mut source: Source, variable: Option<&str>) -> Result<Scan, C
     // The package has one unit for sizes and heights. Each one's own comes first, for files in which they differ.
     let lateral = [along_x, along_y].into_iter().flatten().find_map(unit_of);
     let unit = unit_of(variable).or(lateral).map(ToOwned::to_owned);
-    let metres = unit.as_deref().map_or(Ok(1.0), |unit| units::length("its heights are", unit))?;
+    let metres = unit.as_deref().map_or(Ok(1.0), |unit| units::length("the heights are", unit))?;
     for height in &mut heights {
         *height = if missing.is(*height) {
             f64::NAN
@@ -48,7 +48,7 @@ pub(super) fn read(mut source: Source, variable: Option<&str>) -> Result<Scan, C
     }
     if let Some(mask) = header.variables.iter().find(|other| name == HEIGHTS && other.name == MASK) {
         if mask.dimensions != variable.dimensions {
-            return Err(format!("its variable {MASK:?} has other dimensions than its variable {name:?}").into());
+            return Err(format!("variable {MASK:?} has other dimensions than variable {name:?}").into());
         }
         heights.zip_mut_with(&header.field(&mut source, mask)?, |height, missing| {
             if missing.abs() > 0.0 {
@@ -64,7 +64,7 @@ pub(super) fn read(mut source: Source, variable: Option<&str>) -> Result<Scan, C
     };
     let said: Vec<_> = [along_x, along_y].into_iter().flatten().filter_map(|axis| axis.number("periodic")).collect();
     let periodic = (!said.is_empty()).then(|| said.iter().all(|periodic| periodic.abs() > 0.0));
-    Ok(Scan { heights, size_m, unit, periodic, spacing: None })
+    Ok(Scan { heights, size_m, unit, factor: scale * metres, periodic, spacing: None })
 }
 
 fn unit_of(variable: &Variable) -> Option<&str> {
@@ -75,7 +75,7 @@ fn unit_of(variable: &Variable) -> Option<&str> {
 fn size(axis: &Variable, otherwise: Option<&str>) -> Option<Result<f64, Cause>> {
     let length = axis.number("length")?;
     let unit = unit_of(axis).or(otherwise)?;
-    let what = format!("its size along {:?} is", axis.name);
+    let what = format!("the size along {:?} is", axis.name);
     Some(units::length(&what, unit).and_then(|metres| {
         let size = length * metres;
         if size.is_finite() && size > 0.0 { Ok(size) } else { Err(format!("{what} {length} {unit}, and must be positive").into()) }
@@ -118,12 +118,10 @@ impl Header {
     /// Names of the two dimensions of a field.
     fn axes(&self, variable: &Variable) -> Result<[&str; 2], Cause> {
         let names: Vec<_> = variable.dimensions.iter().filter_map(|place| Some(self.dimensions.get(*place)?.name.as_str())).collect();
-        names
-            .try_into()
-            .map_err(|names: Vec<_>| format!("its variable {:?} has {} dimensions, and a surface has 2", variable.name, names.len()).into())
+        names.try_into().map_err(|names: Vec<_>| format!("variable {:?} has {} dimensions instead of 2", variable.name, names.len()).into())
     }
 
-    /// Whether a variable has a part of itself in every record.
+    /// True if a variable has a part of itself in every record.
     fn grows(&self, variable: &Variable) -> bool {
         variable.dimensions.first().and_then(|place| self.dimensions.get(*place)).is_some_and(|dimension| dimension.length == 0)
     }
@@ -157,17 +155,17 @@ impl Header {
         };
         match self.variables.iter().find(|variable| end(variable).is_none_or(|end| end > length)) {
             None => Ok(()),
-            Some(cut) => Err(format!("it ends before its variable {:?} does, and was probably cut short", cut.name).into()),
+            Some(cut) => Err(format!("the file ends within variable {:?}; it was probably truncated", cut.name).into()),
         }
     }
 
     /// The numbers of a two-dimensional variable.
     fn field(&self, source: &mut Source, variable: &Variable) -> Result<Array2<f64>, Cause> {
         let name = &variable.name;
-        let kind = variable.kind.ok_or_else(|| format!("its variable {name:?} is text"))?;
+        let kind = variable.kind.ok_or_else(|| format!("variable {name:?} is text"))?;
         let lengths: Vec<_> = variable.dimensions.iter().filter_map(|place| Some(self.dimensions.get(*place)?.length)).collect();
         let [first, columns] = lengths[..] else {
-            return Err(format!("its variable {name:?} is not two-dimensional").into());
+            return Err(format!("variable {name:?} is not two-dimensional").into());
         };
         let grows = self.grows(variable);
         let rows = if grows { self.records } else { first };
@@ -176,9 +174,7 @@ impl Header {
         let step = if grows { self.record() } else { Some(row) };
         let end = step.and_then(|step| step.checked_mul(rows - 1)?.checked_add(row)?.checked_add(variable.begin));
         let (Some(step), Some(_)) = (step, end.filter(|end| *end <= source.length)) else {
-            return Err(
-                format!("its variable {name:?} claims {rows} by {columns} values, which its {} bytes do not hold", source.length).into()
-            );
+            return Err(format!("variable {name:?} claims {rows} by {columns} values, more than {} bytes can hold", source.length).into());
         };
         let mut values = room(count)?;
         source.file.seek(SeekFrom::Start(variable.begin))?;

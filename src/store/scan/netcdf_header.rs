@@ -19,7 +19,7 @@ const STREAMING: u64 = u32::MAX as u64;
 /// What the header says.
 #[derive(Default)]
 pub(super) struct Header {
-    /// How many records there are.
+    /// Number of records.
     pub(super) records: u64,
     /// Dimensions, to which variables point by their place.
     pub(super) dimensions: Vec<Dimension>,
@@ -83,7 +83,7 @@ impl Header {
         }
         let mut header = Self { records: bytes.count()?, ..Self::default() };
         if header.records == if bytes.counts == 8 { u64::MAX } else { STREAMING } {
-            return Err("it was not closed by the program that wrote it: the number of its records is open".into());
+            return Err("the file was not closed by the program that wrote it: the number of records is missing".into());
         }
         for _ in 0..bytes.list(10, "dimensions")? {
             header.dimensions.push(Dimension { name: bytes.name()?, length: bytes.count()? });
@@ -109,7 +109,7 @@ struct Bytes<'a> {
 
 impl Bytes<'_> {
     fn spend(&mut self, count: u64) -> Result<(), Cause> {
-        self.left = self.left.checked_sub(count).ok_or("it ends within its header")?;
+        self.left = self.left.checked_sub(count).ok_or("the file ends within the header")?;
         Ok(())
     }
 
@@ -149,7 +149,7 @@ impl Bytes<'_> {
     fn list(&mut self, tag: u64, what: &str) -> Result<u64, Cause> {
         let (found, count) = (self.word()?, self.count()?);
         if found != tag && (found, count) != (0, 0) {
-            return Err(format!("its header is damaged where its {what} are due").into());
+            return Err(format!("the header is damaged: no list of {what}").into());
         }
         if count > MOST_ENTRIES {
             Err(format!("it says that it has {count} {what}, and may have {MOST_ENTRIES}").into())
@@ -161,11 +161,11 @@ impl Bytes<'_> {
     fn name(&mut self) -> Result<String, Cause> {
         let length = self.count()?;
         if length > LONGEST_NAME {
-            return Err(format!("a name in its header is said to have {length} bytes, and may have {LONGEST_NAME}").into());
+            return Err(format!("a name in the header has {length} bytes (limit {LONGEST_NAME})").into());
         }
         let name = self.take(length)?;
         self.skip(padding(length))?;
-        Ok(String::from_utf8(name).map_err(|_| "a name in its header is no text")?)
+        Ok(String::from_utf8(name).map_err(|_| "a name in the header is not UTF-8 text")?)
     }
 
     fn attributes(&mut self) -> Result<Vec<(String, Value)>, Cause> {
@@ -173,9 +173,9 @@ impl Bytes<'_> {
         for _ in 0..self.list(12, "attributes")? {
             let name = self.name()?;
             let (kind, count) = (self.kind()?, self.count()?);
-            let length = count.checked_mul(kind.map_or(1, |kind| kind.width() as u64)).ok_or("it ends within its header")?;
+            let length = count.checked_mul(kind.map_or(1, |kind| kind.width() as u64)).ok_or("the file ends within the header")?;
             if length > LONGEST_ATTRIBUTE {
-                self.skip(length.checked_add(padding(length)).ok_or("it ends within its header")?)?;
+                self.skip(length.checked_add(padding(length)).ok_or("the file ends within the header")?)?;
                 continue;
             }
             let bytes = self.take(length)?;
@@ -204,7 +204,7 @@ impl Bytes<'_> {
             9 => Number::U32,
             10 => Number::I64,
             11 => Number::U64,
-            other => return Err(format!("its header names a kind of number {other}, and there are 11").into()),
+            other => return Err(format!("unknown number type {other} in the header").into()),
         }))
     }
 
@@ -212,13 +212,13 @@ impl Bytes<'_> {
         let name = self.name()?;
         let count = self.count()?;
         if count > MOST_DIMENSIONS {
-            return Err(format!("its variable {name:?} is said to have {count} dimensions, and may have {MOST_DIMENSIONS}").into());
+            return Err(format!("variable {name:?} has {count} dimensions (limit {MOST_DIMENSIONS})").into());
         }
         let mut places = Vec::new();
         for _ in 0..count {
             let place = usize::try_from(self.count()?)?;
             if place >= dimensions {
-                return Err(format!("its variable {name:?} has the dimension {place} of {dimensions}").into());
+                return Err(format!("variable {name:?} has the dimension {place} of {dimensions}").into());
             }
             places.push(place);
         }

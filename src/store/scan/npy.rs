@@ -13,7 +13,7 @@ const KINDS: &str = "f4, f8, i1, i2, i4, i8, u1, u2, u4, u8, with < or > before 
 /// Reads the array.
 pub(super) fn read(mut source: Source) -> Result<Scan, Cause> {
     let (line, start) = line(&mut source)?;
-    let about = Line { rest: &line }.parse().map_err(|cause| format!("its header is damaged: {cause}"))?;
+    let about = Line { rest: &line }.parse().map_err(|cause| format!("the header is damaged: {cause}"))?;
     let [rows, columns] = about.shape[..] else {
         let many = about.shape.len();
         return Err(format!("{many} dimension{} instead of 2", if many == 1 { "" } else { "s" }).into());
@@ -26,13 +26,13 @@ pub(super) fn read(mut source: Source) -> Result<Scan, Cause> {
         return Err(format!("the file has {length} bytes, but {rows} by {columns} numbers of type {:?} need {says}", about.descr).into());
     }
     let heights = field(&mut source.file, (kind, order), [rows, columns], about.layout, |value| value)?;
-    Ok(Scan { heights, size_m: None, unit: None, periodic: None, spacing: None })
+    Ok(Scan { heights, size_m: None, unit: None, factor: 1.0, periodic: None, spacing: None })
 }
 
 /// The line, and where the numbers begin.
 fn line(source: &mut Source) -> Result<(String, u64), Cause> {
     let mut fixed = [0; 8];
-    source.file.read_exact(&mut fixed).map_err(|_| "it ends within its header")?;
+    source.file.read_exact(&mut fixed).map_err(|_| "the file ends within the header")?;
     let [0x93, b'N', b'U', b'M', b'P', b'Y', version, _] = fixed else {
         return Err("not a NumPy file: wrong signature".into());
     };
@@ -46,14 +46,14 @@ fn line(source: &mut Source) -> Result<(String, u64), Cause> {
     let length = length.iter().rev().fold(0, |sum, byte| sum << 8 | u64::from(*byte));
     let start = fixed.len() as u64 + width + length;
     if start > source.length {
-        return Err(format!("it ends within its header, which is said to have {length} bytes").into());
+        return Err(format!("the file ends within the header of {length} bytes").into());
     }
     if length > LONGEST_LINE {
-        return Err(format!("its header is said to have {length} bytes, and may have {LONGEST_LINE}").into());
+        return Err(format!("the header has {length} bytes (limit {LONGEST_LINE})").into());
     }
     let mut line = Vec::new();
     source.file.by_ref().take(length).read_to_end(&mut line)?;
-    Ok((String::from_utf8(line).map_err(|_| "its header is no text")?, start))
+    Ok((String::from_utf8(line).map_err(|_| "the header is not UTF-8 text")?, start))
 }
 
 /// The kind of number that a word like `<f8` stands for.
@@ -114,7 +114,7 @@ impl Line<'_> {
             }
         }
         if !self.rest.trim().is_empty() {
-            return Err("something follows its dictionary".into());
+            return Err("unexpected text after the dictionary".into());
         }
         match (descr, layout, shape) {
             (Some(descr), Some(layout), Some(shape)) => Ok(About { descr, layout, shape }),
@@ -149,7 +149,7 @@ impl Line<'_> {
                 return Ok(layout);
             }
         }
-        Err("its fortran_order is neither True nor False".into())
+        Err("fortran_order is neither True nor False".into())
     }
 
     fn shape(&mut self) -> Result<Vec<u64>, Cause> {
@@ -158,7 +158,7 @@ impl Line<'_> {
         while !self.eat(')') {
             let text = self.rest.trim_start();
             let (digits, rest) = text.split_at(text.find(|sign: char| !sign.is_ascii_digit()).unwrap_or(text.len()));
-            shape.push(digits.parse().map_err(|_| format!("its shape has {digits:?} where a number of points is due"))?);
+            shape.push(digits.parse().map_err(|_| format!("the shape has {digits:?} instead of a number of points"))?);
             // Python 2 put an L behind long numbers.
             self.rest = rest.strip_prefix('L').unwrap_or(rest);
             if !self.eat(',') {

@@ -68,9 +68,9 @@ struct Matrix {
     values: Vec<f64>,
     rows: u64,
     columns: u64,
-    /// Whether all rows so far end with a separator.
+    /// True if all rows so far end with a separator.
     open: bool,
-    /// Whether a line of words says that the columns are x, y and z.
+    /// True if a line of words says that the columns are x, y and z.
     points: bool,
 }
 
@@ -102,7 +102,7 @@ impl Matrix {
         self.row(line)
     }
 
-    /// Whether a line of nothing but blanks is a row of which every point is missing.
+    /// True if a line of nothing but blanks is a row of which every point is missing.
     fn is_row_of_tabs(&self, line: &str) -> bool {
         line.contains('\t') && matches!(self.separator, None | Some(Separator::Sign('\t')))
     }
@@ -165,7 +165,7 @@ impl Matrix {
         let meaning = self.heading.meaning(extent)?;
         let mut heights = shaped(extent, self.values)?;
         heights *= meaning.factor;
-        Ok(Scan { heights, size_m: meaning.size_m, unit: meaning.unit, periodic: None, spacing: None })
+        Ok(Scan { heights, size_m: meaning.size_m, unit: meaning.unit, factor: meaning.factor, periodic: None, spacing: None })
     }
 
     /// The heights of points. Where the file says a unit of the heights, it holds for x and y, unless these have their own.
@@ -176,11 +176,18 @@ impl Matrix {
         let meaning = self.heading.of_points(found.spacing, extent)?;
         let mut heights = found.heights;
         heights *= meaning.factor;
-        Ok(Scan { heights, size_m: meaning.size_m, unit: meaning.unit, periodic: None, spacing: Some(found.spacing) })
+        Ok(Scan {
+            heights,
+            size_m: meaning.size_m,
+            unit: meaning.unit,
+            factor: meaning.factor,
+            periodic: None,
+            spacing: Some(found.spacing),
+        })
     }
 }
 
-/// Whether a line is the words x, y and z, as a heading of columns.
+/// True if a line is the words x, y and z, as a heading of columns.
 fn names_points(line: &str) -> bool {
     let words = line.split(|sign: char| sign.is_whitespace() || matches!(sign, ',' | ';')).filter(|word| !word.is_empty());
     words.map(|word| word.trim_matches('"').to_ascii_lowercase()).eq(["x", "y", "z"])
@@ -200,7 +207,7 @@ fn separator(line: &str) -> Separator {
     }
 }
 
-/// Whether a line is several numbers between blanks, each with a comma inside.
+/// True if a line is several numbers between blanks, each with a comma inside.
 fn has_decimal_commas(line: &str) -> bool {
     let mut cells = line.split_whitespace().map(|cell| cell.trim_matches(',').contains(',') && !cell.ends_with(','));
     line.split_whitespace().nth(1).is_some() && cells.all(|inside| inside)

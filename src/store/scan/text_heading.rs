@@ -125,7 +125,7 @@ impl Heading {
 /// Entries that are a number with a unit.
 const SIZES: [&str; 7] = ["width", "breite", "x-length", "height", "h\u{f6}he", "y-length", "pixel size"];
 
-/// Whether a text begins with a number that has a comma in it.
+/// True if a text begins with a number that has a comma in it.
 fn has_decimal_comma(text: &str) -> bool {
     let rest = text.trim_start_matches(|sign: char| sign.is_ascii_digit() || matches!(sign, '+' | '-'));
     rest.len() < text.len() && rest.strip_prefix(',').is_some_and(|rest| rest.starts_with(|sign: char| sign.is_ascii_digit()))

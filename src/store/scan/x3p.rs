@@ -40,7 +40,7 @@ pub(super) fn read(source: Source) -> Result<Scan, Cause> {
     let names = Names::of(&archive)?;
     let text = description(&mut archive, &names)?;
     let options = ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() };
-    let document = Document::parse_with_options(&text, options).map_err(|error| format!("its {MAIN} is damaged: {error}"))?;
+    let document = Document::parse_with_options(&text, options).map_err(|error| format!("{MAIN} is damaged: {error}"))?;
     let about = About::of(document.root_element())?;
     // Of at most 2^28 points, so that nothing overflows.
     let count = about.shape[0] * about.shape[1];
@@ -58,7 +58,14 @@ pub(super) fn read(source: Source) -> Result<Scan, Cause> {
         remove(&mut heights, &mut bits)?;
         ends(bits, name)?;
     }
-    Ok(Scan { heights, size_m: about.size_m, unit: Some("m".to_owned()), periodic: None, spacing: None })
+    Ok(Scan {
+        heights,
+        size_m: about.size_m,
+        unit: Some("m".to_owned()),
+        factor: about.increment.unwrap_or(1.0),
+        periodic: None,
+        spacing: None,
+    })
 }
 
 /// Takes out the points whose bit is 0; the lowest bit of a byte comes first.
@@ -76,7 +83,7 @@ fn remove(heights: &mut Array2<f64>, bits: &mut impl Read) -> Result<(), Cause> 
 }
 
 fn damaged(error: &ZipError) -> Cause {
-    format!("it is damaged as a zip archive: {error}").into()
+    format!("damaged zip archive: {error}").into()
 }
 
 /// The parts of an archive by their paths from the folder that has the description, which is the root or one folder in it.
@@ -87,7 +94,7 @@ struct Names {
 
 impl Names {
     fn of(archive: &Archive) -> Result<Self, Cause> {
-        let twice = |name: &str| -> Cause { format!("its zip archive has two parts named {name:?}\nhelp: save the scan again").into() };
+        let twice = |name: &str| -> Cause { format!("the zip archive has two parts named {name:?}\nhelp: save the scan again").into() };
         let mut parts = HashMap::new();
         for (place, name) in archive.file_names().enumerate() {
             let name = plain(&name.map_err(|error| damaged(&error))?);
@@ -97,7 +104,7 @@ impl Names {
         }
         // The library keeps the last one of parts with equal names.
         if archive.has_duplicate_names() {
-            return Err("its zip archive has two parts of one name\nhelp: save the scan again".into());
+            return Err("the zip archive has two parts of one name\nhelp: save the scan again".into());
         }
         if parts.contains_key(MAIN) {
             return Ok(Self { parts, folder: String::new() });
@@ -136,17 +143,17 @@ fn description(archive: &mut Archive, names: &Names) -> Result<String, Cause> {
     let place = names.place(MAIN).ok_or_else(|| format!("it has no {MAIN}"))?;
     let main = archive.by_index(place).map_err(|error| damaged(&error))?;
     let mut bytes = Vec::new();
-    main.take(MOST_XML + 1).read_to_end(&mut bytes).map_err(|error| format!("its {MAIN} is damaged: {error}"))?;
+    main.take(MOST_XML + 1).read_to_end(&mut bytes).map_err(|error| format!("{MAIN} is damaged: {error}"))?;
     if bytes.len() as u64 > MOST_XML {
-        return Err(format!("its {MAIN} has more than {MOST_XML} bytes").into());
+        return Err(format!("{MAIN} has more than {MOST_XML} bytes").into());
     }
-    let text = String::from_utf8(bytes).map_err(|_| format!("its {MAIN} is not in UTF-8"))?;
+    let text = String::from_utf8(bytes).map_err(|_| format!("{MAIN} is not in UTF-8"))?;
     let opens = |pair: &&[u8]| matches!(pair, [b'<', next] if !matches!(next, b'/' | b'!' | b'?'));
     if text.as_bytes().windows(2).filter(opens).count() > MOST_ELEMENTS {
-        return Err(format!("its {MAIN} has more than {MOST_ELEMENTS} elements, as no surface with binary data needs").into());
+        return Err(format!("{MAIN} has more than {MOST_ELEMENTS} elements").into());
     }
     if attributes(&text) > MOST_ATTRIBUTES {
-        return Err(format!("its {MAIN} has more than {MOST_ATTRIBUTES} attributes, as no surface needs").into());
+        return Err(format!("{MAIN} has more than {MOST_ATTRIBUTES} attributes").into());
     }
     Ok(text.strip_prefix('\u{feff}').map(ToOwned::to_owned).unwrap_or(text))
 }
@@ -158,21 +165,21 @@ fn part<'a>(
     bytes: u64,
     length: u64,
 ) -> Result<ZipFile<'a, BufReader<File>>, Cause> {
-    let place = names.place(name).ok_or_else(|| format!("its {MAIN} names {name:?}, which is not there"))?;
+    let place = names.place(name).ok_or_else(|| format!("{MAIN} names {name:?}, which is missing"))?;
     let file = archive.by_index(place).map_err(|error| damaged(&error))?;
     if file.size() != bytes {
-        return Err(format!("its {name:?} has {} bytes, and by its {MAIN} it has {bytes}", file.size()).into());
+        return Err(format!("{name:?} has {} bytes instead of {bytes} as in {MAIN}", file.size()).into());
     }
     if bytes > file.compressed_size().min(length).saturating_mul(MOST_PACKED) {
-        return Err(format!("its {name:?} claims {bytes} bytes, which a file of its size cannot hold").into());
+        return Err(format!("{name:?} claims {bytes} bytes, which a file of its size cannot hold").into());
     }
     Ok(file)
 }
 
 /// Makes sure that a part ends here, at which its checksum is compared too.
 fn ends(mut part: impl Read, name: &str) -> Result<(), Cause> {
-    let more = part.read(&mut [0]).map_err(|error| format!("its {name:?} is damaged: {error}"))?;
-    if more == 0 { Ok(()) } else { Err(format!("its {name:?} has more bytes than it says").into()) }
+    let more = part.read(&mut [0]).map_err(|error| format!("{name:?} is damaged: {error}"))?;
+    if more == 0 { Ok(()) } else { Err(format!("{name:?} has more bytes than its entry in the archive states").into()) }
 }
 
 /// What the description says.
@@ -191,7 +198,7 @@ struct About {
 
 impl About {
     fn of(root: Node<'_, '_>) -> Result<Self, Cause> {
-        let axes = inside(root, &["Record1", "Axes"]).ok_or_else(|| format!("its {MAIN} describes no axes"))?;
+        let axes = inside(root, &["Record1", "Axes"]).ok_or_else(|| format!("{MAIN} describes no axes"))?;
         let matrix = inside(root, &["Record3", "MatrixDimension"])
             .ok_or_else(|| format!("no matrix in {MAIN}: profiles and point clouds are not supported"))?;
         let [rows, columns, layers] = ["SizeX", "SizeY", "SizeZ"].map(|name| whole(matrix, name));
@@ -204,8 +211,8 @@ impl About {
             return Err("heights stored in XML are not supported\nhelp: save the scan with binary data".into());
         }
         let link = |name| word(inside(root, &["Record3", "DataLink"])?, name);
-        let data = link("PointDataLink").ok_or_else(|| format!("its {MAIN} does not say where the heights are"))?;
-        let height = inside(axes, &["CZ"]).ok_or_else(|| format!("its {MAIN} describes no axis CZ"))?;
+        let data = link("PointDataLink").ok_or_else(|| format!("{MAIN} has no link to the heights (PointDataLink)"))?;
+        let height = inside(axes, &["CZ"]).ok_or_else(|| format!("{MAIN} describes no axis CZ"))?;
         let kind = match word(height, "DataType").as_deref() {
             Some("I") => Number::I16,
             Some("L") => Number::I32,
@@ -224,10 +231,10 @@ impl About {
 
 /// Size along an axis \[m\], if it is said how far apart the points are.
 fn size(axes: Node<'_, '_>, name: &str, points: u64) -> Result<Option<f64>, Cause> {
-    let axis = inside(axes, &[name]).ok_or_else(|| format!("its {MAIN} describes no axis {name}"))?;
+    let axis = inside(axes, &[name]).ok_or_else(|| format!("{MAIN} describes no axis {name}"))?;
     match word(axis, "AxisType").as_deref() {
         None | Some("I") => {}
-        Some("A") => return Err(format!("the points along its axis {name} are not evenly spaced, which is not supported").into()),
+        Some("A") => return Err(format!("the points along axis {name} are not evenly spaced, which is not supported").into()),
         Some(other) => return Err(format!("unsupported type {other:?} of axis {name}\nhelp: expected I (incremental)").into()),
     }
     let Some(increment) = number(axis, "Increment")? else {
@@ -237,7 +244,7 @@ fn size(axes: Node<'_, '_>, name: &str, points: u64) -> Result<Option<f64>, Caus
     if size.is_finite() && size > 0.0 {
         Ok(Some(size))
     } else {
-        Err(format!("the points along its axis {name} are {increment} m apart, which must be positive").into())
+        Err(format!("the points along axis {name} are {increment} m apart, which must be positive").into())
     }
 }
 
@@ -258,11 +265,11 @@ fn number(node: Node<'_, '_>, name: &str) -> Result<Option<f64>, Cause> {
     };
     match text.parse::<f64>() {
         Ok(number) if number.is_finite() => Ok(Some(number)),
-        _ => Err(format!("its {name} of {} is {text:?}, and must be a number", node.tag_name().name()).into()),
+        _ => Err(format!("{name} of {} is {text:?} instead of a number", node.tag_name().name()).into()),
     }
 }
 
 fn whole(node: Node<'_, '_>, name: &str) -> Result<u64, Cause> {
-    let text = word(node, name).ok_or_else(|| format!("its {MAIN} does not say its {name}"))?;
-    text.parse().map_err(|_| format!("its {name} is {text:?}, and must be a number of points").into())
+    let text = word(node, name).ok_or_else(|| format!("{MAIN} has no {name}"))?;
+    text.parse().map_err(|_| format!("{name} is {text:?} instead of a number of points").into())
 }

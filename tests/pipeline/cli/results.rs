@@ -2,6 +2,7 @@
 
 use super::SMALL;
 use crate::bench::{Bench, SPEC, code, files, stderr, stdout};
+use crate::scan::import::{bytes, part};
 use hysteron::schema::{self, Kind};
 use hysteron::store::parquet::read_table;
 use std::fs;
@@ -148,6 +149,63 @@ fn in_r(bench: &Bench) {
 }
 
 #[test]
+fn e2e_csv_of_cycles_holds_the_tables_of_each_cycle() {
+    let bench = Bench::new(SMALL);
+    assert_eq!(code(&bench.verb("run", &["--until", "aggregate"])), 0);
+    let exported = program(&["export", "csv", "--cycles", text(&bench.out())]);
+    assert_eq!(code(&exported), 0, "{}", stderr(&exported));
+    let mut count = 0;
+    for entry in fs::read_dir(bench.out().join("cycles")).unwrap() {
+        let id = entry.unwrap().file_name().into_string().unwrap();
+        for table in schema::TABLES {
+            let Some(name) = table.file.strip_prefix("cycles/<id>/") else { continue };
+            let path = format!("cycles/{id}/{name}");
+            if !bench.out().join(&path).is_file() {
+                continue;
+            }
+            let frame = read_table(&bench.out().join(&path), table).unwrap();
+            let csv = fs::read_to_string(bench.out().join("csv").join(Path::new(&path).with_extension("csv"))).unwrap();
+            assert_eq!(cells(&csv).len(), frame.row_count() + 1, "{path}");
+            count += 1;
+        }
+    }
+    assert!(count >= 8, "{count}");
+    assert_eq!(code(&bench.look("verify", &["--deep"])), 0);
+}
+
+#[test]
+fn e2e_show_lists_the_keys_of_the_kind_of_surface() {
+    let spec = "name = \"measured\"\nsurface.file = \"scan.npy\"\nsurface.pixel_m = 12.5e-9\nsurface.unit = \"nm\"\nmodel.boundary = \"isolated\"\n\
+                model.jump_in = \"jkr\"\ncycle.max_load = [0.001]\n";
+    let bench = Bench::new(spec);
+    fs::write(bench.folder.path().join("scan.npy"), bytes(&part())).unwrap();
+    let run = bench.verb("run", &["--until", "extract"]);
+    assert_eq!(code(&run), 0, "{}", stderr(&run));
+    let plan: serde_json::Value = serde_json::from_slice(&bench.verb("plan", &["--json"]).stdout).unwrap();
+    for stage in [0, 2] {
+        let shown = stdout(&bench.look("show", &[plan["stages"][stage]["units"][0]["id"].as_str().unwrap()]));
+        for part in ["surface.file = ", "surface.unit = ", "surface.points_per_shortest_wavelength = "] {
+            assert!(shown.contains(part), "{part} is missing in {shown}");
+        }
+        for part in [
+            "surface.magnification",
+            "surface.hurst",
+            "surface.length_m",
+            "surface.rms_height_m",
+            "surface.normalization",
+            "surface.amplitudes",
+        ] {
+            assert!(!shown.contains(part), "{part} is in {shown}");
+        }
+    }
+    let generated = Bench::new(SMALL);
+    let plan: serde_json::Value = serde_json::from_slice(&generated.verb("plan", &["--json"]).stdout).unwrap();
+    assert_eq!(code(&generated.verb("run", &["--until", "generate"])), 0);
+    let shown = stdout(&generated.look("show", &[plan["stages"][0]["units"][0]["id"].as_str().unwrap()]));
+    assert!(shown.contains("surface.hurst = ") && !shown.contains("surface.unit") && !shown.contains("surface.detrend"), "{shown}");
+}
+
+#[test]
 fn e2e_show_prints_cases_and_tasks() {
     let bench = Bench::new(SMALL);
     assert_eq!(code(&bench.verb("run", &["--until", "extract"])), 0);
@@ -181,4 +239,31 @@ fn e2e_show_prints_cases_and_tasks() {
     let unknown = bench.look("show", &["H0.80_z6-00000000"]);
     assert_eq!(code(&unknown), 1);
     assert!(stderr(&unknown).contains("\nhelp: "), "{}", stderr(&unknown));
+}
+
+/// What the spec alone decides is said before anything is computed.
+#[test]
+fn e2e_plan_warns_of_cases_outside_the_range() {
+    let spec = SMALL.to_owned() + "[[sweep]]\nname = \"modulus\"\nmaterial.contact_modulus_pa = [1e6, 1e9]\n";
+    let bench = Bench::new(&spec);
+    let planned = bench.verb("plan", &[]);
+    assert_eq!(code(&planned), 0, "{}", stderr(&planned));
+    let text = stdout(&planned);
+    assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
+    for code in ["sticky", "conformed"] {
+        assert!(text.contains(&format!("warning[{code}]: ")), "{text}");
+    }
+    assert_eq!(text.split_whitespace().collect::<Vec<_>>().join(" ").matches("for 1 of 2 cases.").count(), 2, "{text}");
+    let answer: serde_json::Value = serde_json::from_str(&stdout(&bench.verb("plan", &["--json"]))).unwrap();
+    let outside = answer["outside_range"].as_array().unwrap();
+    assert_eq!((outside.len(), &outside[0]["code"], outside[0]["cases"].as_array().unwrap().len()), (2, &"sticky".into(), 1));
+    let value = outside[0]["max"].as_f64().unwrap();
+    assert!(value > 0.0 && value < outside[0]["limit"].as_f64().unwrap());
+    assert!(!bench.out().exists(), "plan writes nothing");
+    // The same number as after the run.
+    assert_eq!(code(&bench.verb("run", &["--until", "aggregate"])), 0);
+    let cases = read_table(&bench.out().join("statistics/cases.parquet"), &schema::CASES).unwrap();
+    assert!((cases.f64("persson_tosatti_mean").unwrap()[0] / value - 1.0).abs() < 1e-12);
+    let stiff = Bench::new(&spec.replace("[1e6, 1e9]", "1e9"));
+    assert!(!stdout(&stiff.verb("plan", &[])).contains("warning["));
 }

@@ -7,7 +7,7 @@ use hysteron::physics::synthesis::{realization_seed, synthesize};
 use hysteron::schema;
 use hysteron::store::hdf5::{read_header, read_surface};
 use hysteron::store::parquet::read_table;
-use ndarray::{Array2, s};
+use ndarray::{Array2, ArrayView1, s};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -16,7 +16,7 @@ use std::process::{Command, Output};
 use super::make::{npy, npy_line};
 
 /// A part of a rough surface, which does not continue periodically: heights in nanometres, points 12.5 nm apart.
-fn part() -> Array2<f64> {
+pub fn part() -> Array2<f64> {
     cut(16, 96)
 }
 
@@ -71,6 +71,7 @@ fn e2e_a_scan_is_taken_and_told() {
     let rms = heights.mapv(|h| h * h).mean().unwrap().sqrt();
     assert!((header.rms_height_m / rms - 1.0).abs() < 1e-9);
     for (name, value) in [
+        ("height_factor_m", 1e-9),
         ("length_m", header.length_m),
         ("rms_height_m", header.rms_height_m),
         ("rms_slope", header.rms_slope),
@@ -92,11 +93,22 @@ fn e2e_a_scan_is_taken_and_told() {
     assert!(code(&refused) == 1 && stderr(&refused).contains("the file exists\nhelp: use another --out, or --force"));
     let dry = import(folder.path(), &[&["scan.npy", "--dry-run", "--out", "other.h5"], &TOLD[..]].concat());
     assert!(code(&dry) == 0 && stdout(&dry).lines().all(|line| line.chars().count() <= 80), "{}", stdout(&dry));
+    assert!(stdout(&dry).contains("  height factor 1e-9 m per number of the file\n"), "{}", stdout(&dry));
     assert!(!folder.path().join("other.h5").exists());
     assert_eq!(fs::read(folder.path().join("scan.h5")).unwrap(), before);
     // What was written is taken again without being told anything.
     let again = import(folder.path(), &["scan.h5", "--out", "again.h5"]);
     assert_eq!(code(&again), 0, "{}", stderr(&again));
+    assert!(stdout(&again).contains("  height factor 1 (surface of this program, in metres)\n"), "{}", stdout(&again));
+    // A factor in the file and its unit are one factor.
+    let line = |row: ArrayView1<'_, f64>| row.iter().map(ToString::to_string).collect::<Vec<_>>().join(" ");
+    let lines: Vec<String> = part().rows().into_iter().map(line).collect();
+    let text = format!("# height conversion factor (-> m): 2e-9\n# pixel size: 10 nm\n{}\n", lines.join("\n"));
+    fs::write(folder.path().join("factor.txt"), text).unwrap();
+    let factor = import(folder.path(), &["factor.txt", "--json", "--dry-run"]);
+    assert_eq!(code(&factor), 0, "{}", stderr(&factor));
+    let factor: Value = serde_json::from_str(&stdout(&factor)).unwrap();
+    assert_eq!(factor["height_factor_m"], 2e-9);
     let second = read_header(&folder.path().join("again.h5")).unwrap();
     assert_eq!(second, read_header(&folder.path().join("scan.h5")).unwrap(), "it is taken as it is");
     // The scan itself is never written over, by whatever name, and what is no file is not either.
@@ -114,6 +126,40 @@ fn e2e_a_scan_is_taken_and_told() {
     // Units that cannot be right are doubted.
     let steep = import(folder.path(), &["scan.npy", "--dry-run", "--pixel-m", "1e-9", "--unit", "um"]);
     assert!(stdout(&steep).contains("warning: an rms slope of "), "{}", stdout(&steep));
+}
+
+/// The spec that `import` prints runs, inside the range of the model; one a hundred times softer is outside.
+#[test]
+fn e2e_the_printed_spec_is_inside_the_range() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("scan.npy"), bytes(&part())).unwrap();
+    let told = import(folder.path(), &[&["scan.npy"], &TOLD[..]].concat());
+    assert_eq!(code(&told), 0, "{}", stderr(&told));
+    let text = stdout(&told);
+    assert!(text.contains("model range   U_el/Δγ ≥ 2 and U_1/Δγ ≥ 1, that is E*/Δγ ≥ "), "{text}");
+    let printed = &text[text.find("name = ").unwrap()..];
+    let table: toml::Table = printed.parse().unwrap();
+    let modulus = table["material"]["contact_modulus_pa"].as_float().unwrap();
+    let adhesion = table["material"]["work_of_adhesion_j_m2"].as_float().unwrap();
+    let as_json = import(folder.path(), &[&["scan.npy", "--json", "--dry-run"], &TOLD[..]].concat());
+    let answer: Value = serde_json::from_str(&stdout(&as_json)).unwrap();
+    let number = |name: &str| answer[name].as_f64().unwrap();
+    assert!(modulus / adhesion >= 1.5 * number("least_modulus_over_adhesion_1_m"), "{text}");
+    // Cauchy and Schwarz: U_el is at most E* h_rms h'_rms/4.
+    assert!(number("flattening_m") < 0.25 * number("rms_height_m") * number("rms_slope"));
+    fs::write(folder.path().join("spec.toml"), printed).unwrap();
+    let run = |more: &[&str], out: &str| {
+        let arguments = [&["run", "spec.toml", "--until", "aggregate", "--out", out], more].concat();
+        let output = Command::new(env!("CARGO_BIN_EXE_hysteron")).args(arguments).current_dir(folder.path()).output().unwrap();
+        let cases = read_table(&folder.path().join(out).join("statistics/cases.parquet"), &schema::CASES).unwrap();
+        let ratio = cases.f64_or_null("persson_tosatti_realised_mean").unwrap()[0].unwrap();
+        (code(&output), cases.text("caution").unwrap()[0].to_owned(), ratio)
+    };
+    let (status, carried, ratio) = run(&[], "inside");
+    assert!(status == 0 && !carried.contains("sticky") && !carried.contains("conformed"), "{status} {carried}");
+    assert!((ratio * adhesion / (modulus * number("flattening_m")) - 1.0).abs() < 1e-9);
+    let soft = format!("material.contact_modulus_pa={}", 0.01 * modulus);
+    assert!(run(&["--set", &soft], "outside").1.starts_with("sticky"));
 }
 
 #[test]

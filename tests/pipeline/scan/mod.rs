@@ -4,7 +4,7 @@ mod damage;
 #[cfg(feature = "stats")]
 mod formats;
 #[cfg(feature = "stats")]
-mod import;
+pub mod import;
 #[cfg(feature = "stats")]
 mod limits;
 mod make;

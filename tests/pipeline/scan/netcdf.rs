@@ -91,10 +91,10 @@ fn law_units_hold_where_they_are_said() {
     at(&mut cdf, "heights").attributes.clear();
     assert_eq!(scan_of(&cdf.bytes(), Format::NetCdf3, None).unwrap().heights[[0, 0]], 1e-6);
     at(&mut cdf, "heights").attributes = vec![("unit", Said::Text("V"))];
-    refused(&cdf.bytes(), Format::NetCdf3, &["its heights are in \"V\"", "use one of km, m"]);
+    refused(&cdf.bytes(), Format::NetCdf3, &["the heights are in \"V\"", "use one of km, m"]);
     let mut cdf = surface(2);
     at(&mut cdf, "y").attributes = vec![("length", Said::Double(1.0)), ("unit", Said::Text("s"))];
-    refused(&cdf.bytes(), Format::NetCdf3, &["its size along \"y\" is in \"s\""]);
+    refused(&cdf.bytes(), Format::NetCdf3, &["the size along \"y\" is in \"s\""]);
     at(&mut cdf, "y").attributes = vec![("length", Said::Double(-1.0)), ("periodic", Said::Int(0))];
     refused(&cdf.bytes(), Format::NetCdf3, &["-1 um, and must be positive"]);
     at(&mut cdf, "y").attributes[0].1 = Said::Double(1.0);
@@ -137,7 +137,7 @@ fn law_any_variable_can_be_asked_for() {
     let message = scan_of(&cdf.bytes(), Format::NetCdf3, Some("height")).unwrap_err();
     assert!(message.contains("no variable \"height\"\nhelp: use one of \"heights\", \"bytes\""), "{message}");
     let message = scan_of(&cdf.bytes(), Format::NetCdf3, Some("x")).unwrap_err();
-    assert!(message.contains("\"x\" has 1 dimensions, and a surface has 2"), "{message}");
+    assert!(message.contains("\"x\" has 1 dimensions instead of 2"), "{message}");
     at(&mut cdf, "heights").name = "z";
     refused(&cdf.bytes(), Format::NetCdf3, &["no variable \"heights\"", "\"z\""]);
 }
@@ -178,25 +178,25 @@ fn law_every_bad_header_has_its_sentence() {
     refused(&cdf.bytes(), Format::NetCdf3, &["2 by 0 points"]);
     let mut cdf = surface(2);
     at(&mut cdf, "heights").kind = 12;
-    refused(&cdf.bytes(), Format::NetCdf3, &["kind of number 12"]);
+    refused(&cdf.bytes(), Format::NetCdf3, &["unknown number type 12"]);
     at(&mut cdf, "heights").kind = 2;
     refused(&cdf.bytes(), Format::NetCdf3, &["\"heights\" is text"]);
     let mut cdf = surface(2);
     at(&mut cdf, "heights").dimensions = vec![0, 7];
     refused(&cdf.bytes(), Format::NetCdf3, &["dimension 7 of 2"]);
     at(&mut cdf, "heights").dimensions = vec![0; 2000];
-    refused(&cdf.bytes(), Format::NetCdf3, &["2000 dimensions, and may have 1024"]);
+    refused(&cdf.bytes(), Format::NetCdf3, &["2000 dimensions (limit 1024)"]);
     let mut bytes = surface(2).bytes();
     bytes[4..8].fill(0xff);
     refused(&bytes, Format::NetCdf3, &["was not closed"]);
     bytes[4..8].fill(0);
     bytes[8] = 7;
-    refused(&bytes, Format::NetCdf3, &["damaged where its dimensions are due"]);
+    refused(&bytes, Format::NetCdf3, &["the header is damaged: no list of dimensions"]);
     bytes[8] = 0;
     bytes[12..16].fill(0xff);
     refused(&bytes, Format::NetCdf3, &["4294967295 dimensions"]);
     refused(b"CDF\x04\0\0\0\0", Format::NetCdf3, &["does not begin as"]);
-    refused(b"CDF\x01\0\0\0\0", Format::NetCdf3, &["ends within its header"]);
+    refused(b"CDF\x01\0\0\0\0", Format::NetCdf3, &["ends within the header"]);
 }
 
 #[test]

@@ -100,7 +100,7 @@ fn law_every_bad_header_has_its_sentence() {
         ("{'descr': '<f8', 'shape': (2, 2), }".to_owned(), vec!["lacks one of"]),
         ("{'order': 'C', }".to_owned(), vec!["unknown entry \"order\" in the header\nhelp: expected descr, fortran_order, shape"]),
         ("{'descr': '<f8".to_owned(), vec!["has no end"]),
-        (format!("{} x", npy_line("<f8", "False", "(2, 2)")), vec!["something follows"]),
+        (format!("{} x", npy_line("<f8", "False", "(2, 2)")), vec!["unexpected text after the dictionary"]),
         (String::new(), vec!["'{' is missing"]),
     ] {
         refused(&npy(1, &line, &data), Format::Npy, &parts);
@@ -112,12 +112,12 @@ fn law_every_bad_header_has_its_sentence() {
     // The length of the header is a lie.
     let mut bytes = npy(2, &good, &data);
     bytes[8..12].copy_from_slice(&u32::MAX.to_le_bytes());
-    refused(&bytes, Format::Npy, &["ends within its header", "4294967295"]);
+    refused(&bytes, Format::Npy, &["ends within the header of 4294967295 bytes"]);
     let long = npy(2, &format!("{good}{}", " ".repeat(1 << 16)), &data);
-    refused(&long, Format::Npy, &["may have 65536"]);
+    refused(&long, Format::Npy, &["limit 65536"]);
     let mut bytes = npy(1, &good, &data);
     bytes[20] = 0xff;
-    refused(&bytes, Format::Npy, &["no text"]);
+    refused(&bytes, Format::Npy, &["not UTF-8 text"]);
 }
 
 #[test]

@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// Share of the spots, or of the targets, by which their number may have changed until all is found anew.
 const CHANGE: f64 = 0.2;
 
-/// How far the greatest radius that a spot's pairs serve may be beyond its own, over what it was when they were found.
+/// How far the largest radius that a spot's pairs serve may be beyond its own, over what it was when they were found.
 const LOOSE: f64 = 2.0;
 
 /// Near pairs of all targets, sources on meshes and readers there.
@@ -136,7 +136,7 @@ impl Geometry {
         kept
     }
 
-    /// Whether it is that of the spots at themselves, and none of them has grown too large for it.
+    /// True if it is that of the spots at themselves, and none of them has grown too large for it.
     pub(super) fn serves(&self, field: &FastSum, spots: &Spots) -> bool {
         let columns = &spots.columns;
         let place = |j: usize| [columns.x[j], columns.y[j]];

@@ -167,7 +167,7 @@ impl FastSum {
         }
     }
 
-    /// Whether there is any field.
+    /// True if there is any field.
     fn acts(&self, spots: &Spots) -> bool {
         self.measure.kind != Kind::None && !spots.index.is_empty()
     }

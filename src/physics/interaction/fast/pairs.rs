@@ -140,7 +140,7 @@ impl Pairs {
         self.waiting.reserve(count);
     }
 
-    /// How many entries there are.
+    /// Number of entries.
     pub(super) fn len(&self) -> usize {
         self.spots.len()
     }

@@ -16,7 +16,7 @@ use std::sync::Arc;
 pub(super) const WIDTH: usize = 16;
 pub(super) const ROUGH_WIDTH: usize = 8;
 
-/// Orders of the far field that a mesh has of the derivatives, and their error, of the greatest one: linear systems are solved no better.
+/// Orders of the far field that a mesh has of the derivatives, and their error, of the largest one: linear systems are solved no better.
 pub(super) const ROUGH_ORDERS: usize = 2;
 const ROUGH: f64 = 1e-5;
 
@@ -42,7 +42,7 @@ pub(super) struct Accuracy {
 }
 
 impl Accuracy {
-    /// For displacements that are right to `tolerance` times the greatest of them.
+    /// For displacements that are right to `tolerance` times the largest of them.
     ///
     /// Beyond the reach `erfc(αr)` of a field is left out. A B-spline of order p takes a wave at the share t of the mesh's highest for its
     /// alias with the weight `(t/(2 − t))^p`, and `e^(−(q/2α)²)` of a wave is there to be taken. Beyond `r = r_c` the far field lacks

@@ -1,0 +1,12 @@
+//! Adhesive boundary elements: equilibrium of a rough surface on an elastic half-space, resolved on a grid.
+//!
+//! Imports nothing of the asperity model. Inside, lengths are in grid spacings `dx`, stresses in E*, energies in `E* dx³`.
+
+pub mod contact;
+pub mod cycle;
+pub mod grid;
+pub mod law;
+pub mod minimise;
+pub mod regions;
+pub mod resample;
+mod sums;

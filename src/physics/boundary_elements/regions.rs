@@ -1,0 +1,199 @@
+//! Connected regions of contact on the periodic grid, and how they change in an event.
+
+use super::contact::{Problem, State};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::{PI, TAU};
+
+/// A connected region of contact; points that share an edge or a corner are connected.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Region {
+    /// Points.
+    pub points: usize,
+    /// Sum of the pressures, compression positive \[E* dx²\].
+    pub load: f64,
+    /// Length of the edge \[dx\], by Crofton's formula along the rows, the columns and the diagonals.
+    pub perimeter: f64,
+    /// Centroid, row and column \[dx\]; of a region around the whole square one of its points of reference.
+    pub centroid: [f64; 2],
+}
+
+/// Label of each point: 0 outside contact, else the number of its region plus 1.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Labels {
+    /// By point.
+    pub of: Vec<u32>,
+    /// Number of regions.
+    pub count: usize,
+}
+
+/// Kind of an event, by what happened to the region whose area changed most.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Change {
+    /// A new region.
+    Formed,
+    /// A region separated.
+    Lost,
+    /// Regions joined.
+    Joined,
+    /// A region parted.
+    Parted,
+    /// A region grew without a change of topology.
+    Grown,
+    /// A region shrank without a change of topology.
+    Shrunk,
+}
+
+impl Change {
+    /// All kinds.
+    pub const ALL: [Self; 6] = [Self::Formed, Self::Lost, Self::Joined, Self::Parted, Self::Grown, Self::Shrunk];
+
+    /// Word in the tables.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Formed => "formed",
+            Self::Lost => "lost",
+            Self::Joined => "joined",
+            Self::Parted => "parted",
+            Self::Grown => "grown",
+            Self::Shrunk => "shrunk",
+        }
+    }
+}
+
+/// Labels the contact of a state.
+#[must_use]
+pub fn label(problem: &Problem, state: &State) -> Labels {
+    let columns = problem.half_space.columns();
+    let contact: Vec<bool> = (0..problem.half_space.points()).map(|k| problem.touches(state.bonds[k], problem.gap(state, k))).collect();
+    label_points(&contact, columns)
+}
+
+/// Labels marked points of a periodic grid, regions numbered by their first point.
+#[must_use]
+pub fn label_points(marked: &[bool], columns: usize) -> Labels {
+    let rows = marked.len() / columns;
+    let mut parent: Vec<u32> = (0..marked.len() as u32).collect();
+    for row in 0..rows {
+        let below = (row + 1) % rows * columns;
+        for column in 0..columns {
+            let here = row * columns + column;
+            if !marked[here] {
+                continue;
+            }
+            let (left, right) = ((column + columns - 1) % columns, (column + 1) % columns);
+            for other in [row * columns + right, below + column, below + left, below + right] {
+                if marked[other] {
+                    join(&mut parent, here as u32, other as u32);
+                }
+            }
+        }
+    }
+    let mut number = vec![0; marked.len()];
+    let mut count = 0;
+    let mut of = vec![0; marked.len()];
+    for k in 0..marked.len() {
+        if marked[k] {
+            let root = root(&mut parent, k as u32) as usize;
+            if number[root] == 0 {
+                count += 1;
+                number[root] = count;
+            }
+            of[k] = number[root];
+        }
+    }
+    Labels { of, count: count as usize }
+}
+
+fn root(parent: &mut [u32], mut k: u32) -> u32 {
+    while parent[k as usize] != k {
+        parent[k as usize] = parent[parent[k as usize] as usize];
+        k = parent[k as usize];
+    }
+    k
+}
+
+fn join(parent: &mut [u32], a: u32, b: u32) {
+    let (a, b) = (root(parent, a), root(parent, b));
+    if a != b {
+        parent[a.max(b) as usize] = a.min(b);
+    }
+}
+
+/// Area, load, edge and centroid of each region.
+#[must_use]
+pub fn regions(problem: &Problem, state: &State, labels: &Labels) -> Vec<Region> {
+    let columns = problem.half_space.columns();
+    let rows = problem.half_space.rows();
+    let mut all = vec![Region { points: 0, load: 0.0, perimeter: 0.0, centroid: [0.0; 2] }; labels.count];
+    // Sums of exp(i 2π x/n) along each direction: the centroid on a circle.
+    let mut circles = vec![[0.0_f64; 4]; labels.count];
+    for (k, label) in labels.of.iter().enumerate().filter(|(_, label)| **label > 0) {
+        let region = &mut all[*label as usize - 1];
+        let (row, column) = (k / columns, k % columns);
+        region.points += 1;
+        region.load -= problem.bond(state.bonds[k], problem.gap(state, k)).tension;
+        let outside = |down: usize, right: usize| labels.of[(row + down) % rows * columns + (column + right) % columns] != *label;
+        let (up, left) = (rows - 1, columns - 1);
+        let count = |places: [(usize, usize); 4]| places.into_iter().filter(|(down, right)| outside(*down, *right)).count() as f64;
+        let straight = count([(0, 1), (0, left), (1, 0), (up, 0)]);
+        let oblique = count([(1, 1), (1, left), (up, 1), (up, left)]);
+        region.perimeter += PI / 8.0 * (straight + oblique / 2.0_f64.sqrt());
+        let circle = &mut circles[*label as usize - 1];
+        for (place, size, at) in [(row, rows, 0), (column, columns, 2)] {
+            let (sine, cosine) = (TAU * place as f64 / size as f64).sin_cos();
+            circle[at] += cosine;
+            circle[at + 1] += sine;
+        }
+    }
+    for (region, circle) in all.iter_mut().zip(circles) {
+        for (at, size) in [(0, rows), (1, columns)] {
+            region.centroid[at] = (circle[2 * at + 1].atan2(circle[2 * at]) / TAU).rem_euclid(1.0) * size as f64;
+        }
+    }
+    all
+}
+
+/// Kind of the change from one labelling to the next: that of the region whose area changed most.
+#[must_use]
+pub fn change(before: &Labels, after: &Labels) -> Change {
+    let mut overlap: std::collections::BTreeMap<(u32, u32), usize> = std::collections::BTreeMap::new();
+    let (mut size_before, mut size_after) = (vec![0_i64; before.count], vec![0_i64; after.count]);
+    for (a, b) in before.of.iter().zip(&after.of) {
+        if *a > 0 {
+            size_before[*a as usize - 1] += 1;
+        }
+        if *b > 0 {
+            size_after[*b as usize - 1] += 1;
+        }
+        if *a > 0 && *b > 0 {
+            *overlap.entry((*a, *b)).or_default() += 1;
+        }
+    }
+    // (change of area, kind) of every region, the largest first found.
+    let mut most = (-1, Change::Grown);
+    let mut consider = |size: i64, kind| {
+        if size > most.0 {
+            most = (size, kind);
+        }
+    };
+    for (k, size) in size_after.iter().enumerate() {
+        let from: Vec<i64> = overlap.keys().filter(|(_, b)| *b as usize == k + 1).map(|(a, _)| size_before[*a as usize - 1]).collect();
+        match from[..] {
+            [] => consider(*size, Change::Formed),
+            [one] if *size >= one => consider(size - one, Change::Grown),
+            [_] => {}
+            _ => consider(size - from.iter().max().copied().unwrap_or(0), Change::Joined),
+        }
+    }
+    for (k, size) in size_before.iter().enumerate() {
+        let to: Vec<i64> = overlap.keys().filter(|(a, _)| *a as usize == k + 1).map(|(_, b)| size_after[*b as usize - 1]).collect();
+        match to[..] {
+            [] => consider(*size, Change::Lost),
+            [one] if one < *size => consider(size - one, Change::Shrunk),
+            [_] => {}
+            _ => consider(size - to.iter().max().copied().unwrap_or(0), Change::Parted),
+        }
+    }
+    most.1
+}

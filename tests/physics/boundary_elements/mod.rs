@@ -1,0 +1,44 @@
+//! Adhesive boundary elements: operators, exact solutions, energy balance and the independence of the path from grid, step and threads.
+
+mod johnson;
+mod operator;
+mod rough;
+mod sphere;
+mod study;
+mod trapping;
+
+use hysteron::physics::boundary_elements::contact::{Attraction, Problem};
+use hysteron::physics::boundary_elements::cycle::{Cycle, Settings, run};
+use hysteron::physics::boundary_elements::grid::HalfSpace;
+use hysteron::physics::boundary_elements::law::Law;
+use hysteron::physics::boundary_elements::minimise::Accuracy;
+
+/// The JKR limit: bonds within two points of contact, formed by touch.
+const BONDED: Attraction = Attraction::Bonded { margin: 2, nucleation: 0.0 };
+
+fn accuracy(rms: f64) -> Accuracy {
+    Accuracy { rms, largest: 100.0 * rms, iterations: 3000 }
+}
+
+/// A problem on `rows × columns` points from heights \[dx\], measured from their highest.
+fn problem(rows: usize, columns: usize, heights: impl Fn(usize, usize) -> f64, law: Law, attraction: Attraction) -> Problem {
+    let mut heights: Vec<f64> = (0..rows * columns).map(|k| heights(k / columns, k % columns)).collect();
+    let top = heights.iter().copied().fold(f64::MIN, f64::max);
+    heights.iter_mut().for_each(|z| *z -= top);
+    Problem { half_space: HalfSpace::new(rows, columns).unwrap(), law, heights, attraction }
+}
+
+fn cycle(problem: &Problem, max_load: f64, step: f64, halvings: u32) -> Cycle {
+    let settings = Settings { max_loads: vec![max_load], step, halvings, accuracy: accuracy(1e-4), all_regions: false };
+    run(problem, &settings, None, &mut |_| {}, &|_| {}).unwrap()
+}
+
+/// `∮F dΔ`, energy dissipated in events, and maximum tensile load.
+fn sums(cycle: &Cycle) -> (f64, f64, f64) {
+    let steps = &cycle.steps;
+    (
+        steps.iter().map(|s| s.imbalance).sum(),
+        steps.iter().map(|s| s.dissipated).sum(),
+        -steps.iter().map(|s| s.totals.load).fold(0.0, f64::min),
+    )
+}

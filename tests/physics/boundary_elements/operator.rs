@@ -1,0 +1,94 @@
+//! The elastic operator, the law and the gradient of the energy.
+
+use super::{BONDED, problem};
+use hysteron::physics::boundary_elements::contact::Bonding;
+use hysteron::physics::boundary_elements::grid::{HalfSpace, Operator};
+use hysteron::physics::boundary_elements::law::Law;
+use std::f64::consts::{PI, TAU};
+
+/// A plane wave `u = cos q·x` needs the pressure `|q|/2 u`, in both directions and obliquely, on square and oblong grids. Rounding only.
+#[test]
+fn val_plane_wave_of_the_half_space() {
+    for (rows, columns) in [(32, 32), (1, 64), (24, 40), (27, 33)] {
+        let half_space = HalfSpace::new(rows, columns).unwrap();
+        let mut waves = half_space.waves().unwrap();
+        for (kx, ky) in [(0, 3), (2, 5), (5, 1), (3, 0)] {
+            if kx >= rows {
+                continue;
+            }
+            let (qx, qy) = (TAU * kx as f64 / rows as f64, TAU * ky as f64 / columns as f64);
+            let q = qx.hypot(qy);
+            let u: Vec<f64> = (0..rows * columns).map(|k| (qx * (k / columns) as f64 + qy * (k % columns) as f64).cos()).collect();
+            let mut p = vec![0.0; u.len()];
+            half_space.apply(Operator::Stiffness, &u, &mut p, &mut waves);
+            let worst = u.iter().zip(&p).map(|(u, p)| (p - 0.5 * q * u).abs()).fold(0.0, f64::max);
+            assert!(worst < 1e-13, "pressure off by {worst:e} for ({kx}, {ky}) on {rows} x {columns}");
+            let energy: f64 = 0.5 * u.iter().zip(&p).map(|(u, p)| u * p).sum::<f64>() / u.len() as f64;
+            assert!((energy / (0.125 * q) - 1.0).abs() < 1e-12, "energy per area E* q u²/8, it is {energy}");
+            let mut back = vec![0.0; u.len()];
+            half_space.apply(Operator::Compliance, &p, &mut back, &mut waves);
+            assert!(u.iter().zip(&back).all(|(a, b)| (a - b).abs() < 1e-12), "the compliance inverts the stiffness");
+        }
+        assert_eq!(waves.transforms % 4, 0, "two transforms to an application");
+    }
+}
+
+/// The work of the law is Δγ, its energy is the integral of the tension, and its slope the derivative (differences of 1e-6 are good to 1e-8).
+#[test]
+fn law_of_attraction_is_consistent() {
+    for law in [Law::crack(0.02), Law::morse(0.02, 0.11)] {
+        let work = law.work();
+        assert!((law.bonded(0.0).energy / -work - 1.0).abs() < 1e-12);
+        assert!(law.bonded(law.end_gap() * 1.01).energy.abs() < 1e-6 * work);
+        let step = 1e-6;
+        for k in -50..600 {
+            let gap = (f64::from(k) + 0.37) * 0.003 * law.end_gap();
+            let (low, here, high) = (law.bonded(gap - step), law.bonded(gap), law.bonded(gap + step));
+            let strength = law.strength();
+            assert!(((high.energy - low.energy) / (2.0 * step) - here.tension).abs() < 1e-5 * strength, "tension at {gap}");
+            let kink = (gap - law.spring_gap()).abs() < 2.0 * step;
+            assert!(kink || ((high.tension - low.tension) / (2.0 * step) - here.slope).abs() < 1e-4, "slope at {gap}");
+            assert!(here.tension <= strength * (1.0 + 1e-4), "strength is the maximum");
+            assert!(law.sealed(gap).energy >= here.energy - 1e-12, "opening a sealed point does not raise the energy");
+            assert!(law.wall(gap).energy >= here.energy - 1e-12, "bonding a free point does not raise the energy");
+        }
+    }
+}
+
+/// The law is that of the exact crack low-passed: far from its edge the tension at a gap is `4Δγ/(πg)` times what is left of the cut. With the kernel's
+/// width going to 0 this is the only scale, so the strength is a fixed multiple of `sqrt(E*Δγ/dx)`: it does not depend on Δγ.
+#[test]
+fn law_of_the_crack_has_one_scale() {
+    let (a, b) = (Law::crack(1e-4), Law::crack(1e-2));
+    assert!((b.strength() / a.strength() - 10.0).abs() < 1e-9);
+    assert!((b.contact_gap() / a.contact_gap() - 10.0).abs() < 1e-9);
+    let strength = a.strength() / 1e-2;
+    assert!((0.6..0.8).contains(&strength), "strength over sqrt(E*Δγ/dx) is {strength}");
+    // The exact crack has σ = sqrt(E*Δγ/(π|x|)): at the distance of one spacing 0.564, so the strength lies above.
+    assert!(strength > 1.0 / PI.sqrt());
+}
+
+/// Load and residual are derivatives of the energy: differences of the total energy by the approach and by single displacements agree to 1e-6.
+#[test]
+fn law_load_and_residual_are_derivatives_of_the_energy() {
+    let n = 24;
+    let wave = |row: usize, column: usize| 0.3 * ((TAU * row as f64 / n as f64).cos() + (TAU * 2.0 * column as f64 / n as f64).sin());
+    let problem = problem(n, n, wave, Law::crack(0.03), BONDED);
+    let mut state = problem.apart(0.5).unwrap();
+    let half_space = HalfSpace::new(n, n).unwrap();
+    let mut waves = half_space.waves().unwrap();
+    for k in 0..n * n {
+        state.displacement[k] = 0.05 * (TAU * (3 * (k / n) + k % n) as f64 / n as f64).sin();
+        state.bonds[k] = [Bonding::Free, Bonding::Bonded, Bonding::Sealed][k % 3];
+    }
+    half_space.apply(Operator::Stiffness, &state.displacement.clone(), &mut state.pressure, &mut waves);
+    let step = 1e-6;
+    let energy = |approach: f64| {
+        let mut moved = state.clone();
+        moved.approach = approach;
+        problem.totals(&moved).energy
+    };
+    let slope = (energy(0.5 + step) - energy(0.5 - step)) / (2.0 * step);
+    let load = problem.totals(&state).load;
+    assert!((slope / load - 1.0).abs() < 1e-6, "load {load}, slope of the energy {slope}");
+}

@@ -1,0 +1,75 @@
+//! A rough surface: energy balance, threads, shifts.
+
+use super::{BONDED, cycle, problem, sums};
+use hysteron::physics::boundary_elements::cycle::{Settings, run, unload_from};
+use hysteron::physics::boundary_elements::law::Law;
+use std::f64::consts::TAU;
+
+/// Five waves with fixed phases, in spacings.
+fn wavy(n: usize, row: usize, column: usize) -> f64 {
+    let waves = [(1.0, 0.0, 0.4, 1.6), (0.0, 1.0, 1.9, 1.4), (2.0, 1.0, 3.0, 0.7), (1.0, -3.0, 5.1, 0.45), (3.0, 2.0, 0.2, 0.4)];
+    let unit = TAU / n as f64;
+    waves.iter().map(|(kx, ky, phase, height)| height * (unit * (kx * row as f64 + ky * column as f64) + phase).cos()).sum()
+}
+
+/// Events add up to the area of the loop to 1e-3, and none creates energy.
+#[test]
+fn law_events_add_up_to_the_loop() {
+    let n = 48;
+    let problem = problem(n, n, |r, c| wavy(n, r, c), Law::crack(0.02), BONDED);
+    let cycle = cycle(&problem, 0.02 * (n * n) as f64, 0.03, 3);
+    let (area, events, tension) = sums(&cycle);
+    let negative: f64 = cycle.steps.iter().map(|s| s.imbalance.min(0.0)).sum();
+    let small: f64 = cycle.steps.iter().filter(|s| s.dissipated == 0.0).map(|s| s.imbalance.max(0.0)).sum();
+    println!("negative {negative} small {small} worst {}", cycle.steps.iter().map(|s| s.imbalance).fold(0.0, f64::min));
+    for s in &cycle.steps { println!("STEP {} {} {} {} {}", s.reversal.is_some(), s.approach, s.totals.load, s.totals.energy, s.dissipated); }
+    println!("area {area} events {events} tension {tension} count {} steps {}", cycle.events.len(), cycle.steps.len());
+    assert!(tension > 0.0 && cycle.events.len() > 3);
+    assert!((area - events).abs() < 1e-3 * area, "loop {area}, events {events}");
+    assert!(cycle.steps.iter().all(|s| s.imbalance > -3e-4 * area), "no step creates energy");
+    let turn = cycle.turning[0].last.totals.load / (n * n) as f64;
+    assert!((turn / 0.02 - 1.0).abs() < 1e-6, "the reversal is at the load asked for, {turn}");
+}
+
+/// The same bytes with 1 and 2 threads, after an interruption at any of three steps, and unloading from the stored reversal.
+#[test]
+fn law_same_bytes_with_threads_and_after_interruptions() {
+    let n = 40;
+    let problem = problem(n, n, |r, c| wavy(n, r, c), Law::crack(0.02), BONDED);
+    let loads = vec![0.008 * (n * n) as f64, 0.016 * (n * n) as f64];
+    let settings = Settings { max_loads: loads, step: 0.06, halvings: 2, accuracy: super::accuracy(1e-4), all_regions: true };
+    let mut kept = Vec::new();
+    let whole = run(&problem, &settings, None, &mut |halfway| kept.push(halfway.clone()), &|_| {}).unwrap();
+    let pool = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    for threads in [1, 2] {
+        let again = pool(threads).install(|| run(&problem, &settings, None, &mut |_| {}, &|_| {}).unwrap());
+        assert!(again == whole, "{threads} threads");
+    }
+    for k in [1, kept.len() / 2, kept.len() - 2] {
+        let bytes = postcard::to_stdvec(&kept[k]).unwrap();
+        let halfway = postcard::from_bytes(&bytes).unwrap();
+        let resumed = run(&problem, &settings, Some(halfway), &mut |_| {}, &|_| {}).unwrap();
+        assert!(resumed == whole, "resumed after step {k} of {}", kept.len());
+    }
+    let unloaded = unload_from(&problem, &settings, 0, &whole.turning[0]).unwrap();
+    let steps: Vec<_> = whole.steps.iter().filter(|s| s.reversal == Some(0)).copied().collect();
+    assert_eq!(unloaded.steps, steps);
+}
+
+/// A surface moved by whole points, and one transposed, has the same events: their energies to 1e-6, the rounding of the iterations.
+#[test]
+fn law_shift_and_transposition_change_nothing() {
+    let n = 40;
+    let loop_of = |height: &dyn Fn(usize, usize) -> f64| {
+        let problem = problem(n, n, height, Law::crack(0.02), BONDED);
+        let cycle = cycle(&problem, 0.012 * (n * n) as f64, 0.06, 1);
+        (sums(&cycle).0, cycle.events.len())
+    };
+    let (area, count) = loop_of(&|r, c| wavy(n, r, c));
+    for (name, (other, events)) in
+        [("shifted", loop_of(&|r, c| wavy(n, (r + 7) % n, (c + 19) % n))), ("transposed", loop_of(&|r, c| wavy(n, c, r)))]
+    {
+        println!("{name}: {other} {area} {events} {count}");
+        assert!((other / area - 1.0).abs() < 1e-6, "{name}: {other} and {area}");
+    }
+}
