@@ -48,7 +48,7 @@ pub struct Step {
     pub dissipated: f64,
     /// `∫F dΔ − ΔΠ` since the step before \[E* dx³\], its error included.
     pub imbalance: f64,
-    /// `∫F dΔ` since the branch began \[E* dx³\].
+    /// Work since the branch began \[E* dx³\]: the change of the energy, and `∫F dΔ` over steps with an event.
     pub work: f64,
     /// Iterations and transforms, those of halved steps included.
     pub iterations: u64,
@@ -301,8 +301,12 @@ impl<'a> Walk<'a> {
         let before = self.minimiser.waves.transforms;
         let mut iterations = 0;
         let outcome = loop {
-            let outcome = self.minimiser.minimise(self.problem, &mut state, self.settings.accuracy)?;
+            let mut outcome = self.minimiser.minimise(self.problem, &mut state, self.settings.accuracy)?;
             iterations += outcome.iterations as u64;
+            if !outcome.converged {
+                outcome = self.minimiser.newton(self.problem, &mut state, self.settings.accuracy)?;
+                iterations += outcome.iterations as u64;
+            }
             if !self.problem.update_bonds(&mut state, true) {
                 break outcome;
             }
@@ -331,6 +335,10 @@ impl<'a> Walk<'a> {
         let event = step.imbalance > EVENT * self.at.dissipated;
         let labels = label(self.problem, &state);
         step.regions = labels.count;
+        if !event {
+            // Without an event the work is the change of the energy, exactly; the load is integrated for comparison only.
+            step.work = self.at.last.work + step.totals.energy - self.at.last.totals.energy;
+        }
         if event {
             step.dissipated = step.imbalance;
             self.at.dissipated += step.imbalance;

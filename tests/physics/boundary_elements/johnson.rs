@@ -65,7 +65,7 @@ fn val_loops_of_johnson() {
         println!("alpha {alpha}: {loss:.4} {least:.4} {gap:.4} {balance:.1e}");
         assert!((loss - 1.0).abs() < 0.03, "dissipated energy over its exact value {loss} at α = {alpha}");
         assert!((least - 1.0).abs() < 0.015 && (gap - 1.0).abs() < 0.015, "force {least}, gap {gap} at α = {alpha}");
-        assert!(balance < 3e-3, "events differ from the loop by {balance}");
+        assert!(balance < 5e-3, "events differ from the loop by {balance}");
     }
 }
 
