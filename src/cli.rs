@@ -205,7 +205,7 @@ enum Verb {
 
 #[derive(Debug, Subcommand)]
 enum ExportVerb {
-    /// Tables as CSV (RFC 4180), also of a comparison; --cycles: of cycles too
+    /// Tables of a run or comparison as CSV; with --cycles, of cycles too
     Csv(CsvArguments),
     /// A surface as NetCDF-3, for SurfaceTopography
     Netcdf(ExportArguments),
