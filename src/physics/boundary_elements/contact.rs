@@ -230,14 +230,16 @@ impl Problem {
 
     /// Gradient of the energy without its mean, into `residual`, and the slopes of the law into `slopes`: (rms, largest magnitude) \[E*\].
     pub(super) fn residual(&self, state: &State, residual: &mut [f64], slopes: &mut [f64]) -> (f64, f64) {
-        residual.par_chunks_mut(PANEL).zip(slopes.par_chunks_mut(PANEL)).enumerate().with_min_len(grain(PANEL)).for_each(|(panel, (to, slopes))| {
-            for (k, (value, slope)) in to.iter_mut().zip(slopes).enumerate() {
-                let point = panel * PANEL + k;
-                let bond = self.bond(state.bonds[point], self.gap(state, point));
-                *value = state.pressure[point] + bond.tension;
-                *slope = bond.slope;
-            }
-        });
+        residual.par_chunks_mut(PANEL).zip(slopes.par_chunks_mut(PANEL)).enumerate().with_min_len(grain(PANEL)).for_each(
+            |(panel, (to, slopes))| {
+                for (k, (value, slope)) in to.iter_mut().zip(slopes).enumerate() {
+                    let point = panel * PANEL + k;
+                    let bond = self.bond(state.bonds[point], self.gap(state, point));
+                    *value = state.pressure[point] + bond.tension;
+                    *slope = bond.slope;
+                }
+            },
+        );
         remove_mean(residual);
         let square = super::sums::dot(residual, residual);
         ((square / residual.len() as f64).sqrt(), largest(residual))

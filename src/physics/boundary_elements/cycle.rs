@@ -157,7 +157,11 @@ pub fn run(
         let branches = settings.max_loads.len() + 1;
         while walk.at.branches < branches {
             let done = walk.at.branches;
-            if done == 0 { walk.load(keep, progress)? } else { walk.unload(done - 1, keep, progress)? }
+            if done == 0 {
+                walk.load(keep, progress)?;
+            } else {
+                walk.unload(done - 1, keep, progress)?;
+            }
             walk.at.branches += 1;
         }
         Ok(walk.at.cycle)

@@ -185,7 +185,11 @@ impl Morse {
     fn at(&self, gap: f64) -> Bond {
         let e = (-gap / self.range).exp();
         let unit = self.work / self.range;
-        Bond { energy: self.work * e * (e - 2.0), tension: 2.0 * unit * e * (1.0 - e), slope: 2.0 * unit / self.range * e * (2.0 * e - 1.0) }
+        Bond {
+            energy: self.work * e * (e - 2.0),
+            tension: 2.0 * unit * e * (1.0 - e),
+            slope: 2.0 * unit / self.range * e * (2.0 * e - 1.0),
+        }
     }
 }
 

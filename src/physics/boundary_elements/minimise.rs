@@ -6,7 +6,7 @@
 
 use super::contact::{Problem, State};
 use super::grid::{Operator, Waves};
-use super::sums::{PANEL, grain, add, dot, largest, remove_mean, sums};
+use super::sums::{PANEL, add, dot, grain, largest, remove_mean, sums};
 use crate::physics::PhysicsError;
 use crate::physics::memory::filled;
 use rayon::prelude::*;
@@ -176,11 +176,13 @@ impl Minimiser {
             return;
         }
         let slopes = &self.slopes;
-        self.masked.par_chunks_mut(PANEL).zip(self.direction.par_chunks(PANEL)).enumerate().with_min_len(grain(PANEL)).for_each(|(panel, (to, from))| {
-            for (k, (x, y)) in to.iter_mut().zip(from).enumerate() {
-                *x = if slopes[panel * PANEL + k] > STIFF { 0.0 } else { *y };
-            }
-        });
+        self.masked.par_chunks_mut(PANEL).zip(self.direction.par_chunks(PANEL)).enumerate().with_min_len(grain(PANEL)).for_each(
+            |(panel, (to, from))| {
+                for (k, (x, y)) in to.iter_mut().zip(from).enumerate() {
+                    *x = if slopes[panel * PANEL + k] > STIFF { 0.0 } else { *y };
+                }
+            },
+        );
         problem.half_space.apply(Operator::Compliance, &self.masked, &mut self.response, &mut self.waves);
         let response = &self.response;
         self.direction.par_chunks_mut(PANEL).enumerate().with_min_len(grain(PANEL)).for_each(|(panel, part)| {

@@ -20,7 +20,6 @@ fn law_events_add_up_to_the_loop() {
     let problem = problem(n, n, |r, c| wavy(n, r, c), Law::crack(0.02), BONDED);
     let cycle = cycle(&problem, 0.02 * (n * n) as f64, 0.01, 3);
     let (area, events, tension) = sums(&cycle);
-    println!("area {area} events {events} tension {tension} count {} steps {}", cycle.events.len(), cycle.steps.len());
     assert!(tension > 0.0 && cycle.events.len() > 3);
     assert!((area - events).abs() < 2e-3 * area, "loop {area}, events {events}");
     assert!(cycle.steps.iter().all(|s| s.imbalance > -3e-4 * area), "no step creates energy");
@@ -66,7 +65,6 @@ fn law_shift_and_transposition_change_nothing() {
     for (name, (other, events)) in
         [("shifted", loop_of(&|r, c| wavy(n, (r + 7) % n, (c + 19) % n))), ("transposed", loop_of(&|r, c| wavy(n, c, r)))]
     {
-        println!("{name}: {other} {area} {events} {count}");
         assert!((other / area - 1.0).abs() < 1e-6, "{name}: {other} and {area}");
     }
 }
@@ -84,8 +82,11 @@ fn law_three_minimisers_reach_one_state() {
             state.approach = 0.08 * f64::from(k);
             loop {
                 let accuracy = super::accuracy(1e-6);
-                let outcome =
-                    if newton { minimiser.newton(&problem, &mut state, accuracy) } else { minimiser.minimise(&problem, &mut state, accuracy) };
+                let outcome = if newton {
+                    minimiser.newton(&problem, &mut state, accuracy)
+                } else {
+                    minimiser.minimise(&problem, &mut state, accuracy)
+                };
                 assert!(outcome.unwrap().converged);
                 if !problem.update_bonds(&mut state, true) {
                     break;
@@ -96,7 +97,6 @@ fn law_three_minimisers_reach_one_state() {
         (problem.totals(&state), minimiser.waves.transforms)
     };
     let [split, spectral, newton] = [(true, false), (false, false), (true, true)].map(|(split, newton)| state_of(split, newton));
-    println!("{split:?} {spectral:?} {newton:?}");
     for (name, other) in [("spectral", spectral), ("Newton", newton)] {
         assert_eq!(split.0.contact, other.0.contact, "{name}");
         assert!((split.0.load / other.0.load - 1.0).abs() < 1e-5, "{name}: {} and {}", split.0.load, other.0.load);

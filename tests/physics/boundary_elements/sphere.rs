@@ -59,9 +59,11 @@ fn sphere(n: usize, a0: f64) -> (f64, f64) {
 #[test]
 fn lim_sphere_approaches_jkr() {
     let [(coarse_force, coarse_loss), (force, loss)] = [sphere(60, 6.0), sphere(160, 16.0)];
-    println!("6: {coarse_force:.4} {coarse_loss:.4}; 16: {force:.4} {loss:.4}");
     assert!((force - 1.0).abs() < 0.04 && (force - 1.0).abs() < (coarse_force - 1.0).abs(), "force over JKR {coarse_force}, {force}");
-    assert!((loss - 1.0).abs() < 0.08 && (loss - 1.0).abs() < (coarse_loss - 1.0).abs(), "dissipated energy over JKR {coarse_loss}, {loss}");
+    assert!(
+        (loss - 1.0).abs() < 0.08 && (loss - 1.0).abs() < (coarse_loss - 1.0).abs(),
+        "dissipated energy over JKR {coarse_loss}, {loss}"
+    );
 }
 
 /// Without adhesion the force of a sphere at a given approach is that of Hertz, with the displacement by its images, and a penetration that is less by
@@ -78,11 +80,14 @@ fn val_hertz() {
     let last = cycle.turning[0].last;
     let own = (last.approach + IMAGES * force / (PI * n as f64)) * (1.0 - 1.0 / (2.0 * PI * 20.0));
     let hertz = 4.0 / 3.0 * radius.sqrt() * own.powf(1.5);
-    println!("Hertz {hertz} load {} area {} {}", last.totals.load, last.totals.contact, PI * radius * own);
     assert!((hertz / last.totals.load - 1.0).abs() < 2e-3, "load {} and Hertz {hertz}", last.totals.load);
     assert!((PI * radius * own / last.totals.contact as f64 - 1.0).abs() < 0.05, "area {}", last.totals.contact);
     // Unloading is loading reversed.
     let dissipated: f64 = cycle.steps.iter().map(|s| s.imbalance).sum();
     let work: f64 = cycle.steps.iter().filter(|s| s.reversal.is_none()).map(|s| s.imbalance.abs()).sum();
-    assert!(dissipated.abs() < 1e-2 * last.totals.energy && work < 0.01 * last.totals.energy, "{dissipated}, {work}, {}", last.totals.energy);
+    assert!(
+        dissipated.abs() < 1e-2 * last.totals.energy && work < 0.01 * last.totals.energy,
+        "{dissipated}, {work}, {}",
+        last.totals.energy
+    );
 }
