@@ -66,6 +66,7 @@ fn law_shift_and_transposition_change_nothing() {
         [("shifted", loop_of(&|r, c| wavy(n, (r + 7) % n, (c + 19) % n))), ("transposed", loop_of(&|r, c| wavy(n, c, r)))]
     {
         assert!((other / area - 1.0).abs() < 1e-6, "{name}: {other} and {area}");
+        assert_eq!(events, count, "{name}");
     }
 }
 
