@@ -170,7 +170,7 @@ pub enum StageError {
 fn lacks(missing: usize, damaged: usize) -> String {
     let parts = [(missing, "not computed"), (damaged, "stale or damaged")];
     let parts: Vec<String> = parts.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")).collect();
-    parts.join(", ")
+    parts.join(" and ")
 }
 
 fn incomplete_help(stage: &str) -> &'static str {
