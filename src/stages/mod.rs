@@ -20,7 +20,7 @@ mod theories;
 mod trust;
 
 pub use comparison::compare;
-pub use cycle::unload_again;
+pub use cycle::{Units, unload_again, unload_elements_again};
 pub use measure::{Imported, measure};
 pub use sampling::sampled;
 pub use statistics::{Outside, foreseen};
@@ -113,6 +113,12 @@ pub enum StageError {
         path: PathBuf,
         /// What it has.
         kept: String,
+    },
+    /// A state at a load reversal that cannot be stored.
+    #[error("cannot store the state at a load reversal: {what}\nhelp: report this")]
+    State {
+        /// Why.
+        what: String,
     },
     /// Campaigns without a case in common.
     #[error(
@@ -345,7 +351,8 @@ fn cycles(campaign: &Campaign, task: &Task, watch: &dyn Watch) -> Result<Tally, 
     let surface = |unit: &CycleUnit| &campaign.surfaces[unit.surface];
     require(Stage::Cycle, &wanted, |unit| campaign.standing(&surface(unit).asperities(), task.check), |unit| surface(unit).id.clone())?;
     // The longest first, so that the threads end together.
-    wanted.sort_by_key(|(job, _)| std::cmp::Reverse(surface(job.of).params.magnification));
+    let by_elements = |unit: &CycleUnit| campaign.cases[unit.case].case.params.by_elements();
+    wanted.sort_by_key(|(job, _)| std::cmp::Reverse((by_elements(job.of), surface(job.of).params.magnification)));
     let mut tally = each(
         campaign,
         (Stage::Cycle, planned - failed),
