@@ -46,14 +46,14 @@ enum Verb {
         campaign: CampaignArguments,
         #[arg(long, value_enum, value_name = "STAGE", default_value = "report", hide_possible_values = true, help = help::UNTIL)]
         until: StageArgument,
-        /// List pending tasks without running them, as `plan` does
+        /// Count pending tasks without running them, as `plan` does
         #[arg(long, short = 'n')]
         dry_run: bool,
         /// Open report.html when the run has finished
         #[arg(long)]
         open: bool,
     },
-    /// List pending tasks and the reasons, without running them
+    /// Count pending tasks by stage, with reasons; --json lists them
     Plan {
         /// Spec (TOML), or the output folder of a run
         spec: PathBuf,
@@ -64,7 +64,7 @@ enum Verb {
     Status {
         #[command(flatten)]
         folder: FolderArguments,
-        /// Repeat every two seconds until no task is pending
+        /// Repeat every two seconds until no task is pending, or no job is queued
         #[arg(long)]
         watch: bool,
     },
@@ -86,7 +86,7 @@ enum Verb {
         #[arg(long)]
         deep: bool,
     },
-    /// Rerun failed cases
+    /// Rerun failed cycles
     Retry {
         #[command(flatten)]
         folder: FolderArguments,
@@ -131,9 +131,12 @@ enum Verb {
         /// Spec (TOML), or the output folder of a run
         #[arg(required_unless_present = "compare")]
         spec: Option<PathBuf>,
-        /// Compare these runs with the first one, as `compare` does
-        #[arg(long, num_args = 2.., value_name = "DIR", conflicts_with_all = ["spec", "set"])]
+        /// Compare these runs with SPEC or the first one, as `compare` does
+        #[arg(long, num_args = 1.., value_name = "DIR", conflicts_with = "set")]
         compare: Vec<PathBuf>,
+        /// Replace a comparison of other runs
+        #[arg(long, requires = "compare")]
+        force: bool,
         /// Open the report when it is written
         #[arg(long)]
         open: bool,
@@ -202,7 +205,7 @@ enum Verb {
 
 #[derive(Debug, Subcommand)]
 enum ExportVerb {
-    /// Tables of statistics as CSV (RFC 4180); with --cycles, of cycles too
+    /// Tables of a run or comparison as CSV; with --cycles, of cycles too
     Csv(CsvArguments),
     /// A surface as NetCDF-3, for SurfaceTopography
     Netcdf(ExportArguments),

@@ -74,6 +74,12 @@ impl Campaign {
         readable(&self.receipts_of(stage).unwrap_or_default())
     }
 
+    /// Time of the longest finished cycle \[s\], if one is finished.
+    #[must_use]
+    pub fn longest_cycle_s(&self) -> Option<f64> {
+        self.receipts(Stage::Cycle).iter().map(|receipt| receipt.made.seconds).reduce(f64::max)
+    }
+
     /// A receipt against its files; and itself, if it can be read.
     fn audit_one(&self, path: &Path, check: Check) -> (Audit, Option<Receipt>) {
         let name = path.strip_prefix(&self.dir).unwrap_or(path).display();

@@ -6,7 +6,7 @@ use crate::keys::canonical;
 use crate::store::{Check, Found, read_receipt};
 use serde::Serialize;
 use serde_json::{Map, Value};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 /// Status of a task, and its differences from the most similar finished one.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -88,10 +88,22 @@ impl Campaign {
         };
         if !matches!(standing, Standing::Done | Standing::Missing(_) | Standing::Corrupt(_)) {
             let here = fields(preimages);
-            let others = self.receipts(stage).into_iter().map(|receipt| (receipt.id.clone(), fields(&receipt.preimages)));
+            // A planned task differs from others of the same spec on purpose: only results of another spec show a change.
+            let own = if *standing == Standing::Planned { self.ids(stage) } else { HashSet::new() };
+            let others = self.receipts(stage).into_iter().filter(|receipt| !own.contains(receipt.id.as_str()));
+            let others = others.map(|receipt| (receipt.id.clone(), fields(&receipt.preimages)));
             (explanation.nearest, explanation.differences) = nearest(&here, others);
         }
         explanation
+    }
+
+    /// The ids of a stage's tasks in the spec.
+    fn ids(&self, stage: Stage) -> HashSet<&str> {
+        match stage {
+            Stage::Generate | Stage::Extract => self.surfaces.iter().map(|unit| unit.id.as_str()).collect(),
+            Stage::Cycle => self.cycles.iter().map(|unit| unit.id.as_str()).collect(),
+            Stage::Aggregate | Stage::Report => HashSet::new(),
+        }
     }
 
     /// A unit that is done and that the spec does not name, beside the nearest that it names.

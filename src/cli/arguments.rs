@@ -82,6 +82,9 @@ pub(super) struct CompareArguments {
     /// Print JSON
     #[arg(long)]
     pub(super) json: bool,
+    /// Replace a comparison of other runs
+    #[arg(long)]
+    pub(super) force: bool,
     /// Open comparison.html when it is written
     #[arg(long)]
     pub(super) open: bool,
@@ -151,7 +154,7 @@ pub(super) struct ImportArguments {
 
 #[derive(Debug, Args)]
 pub(super) struct ShardsArguments {
-    /// Number of parts [default: one for each surface, up to 1000]
+    /// Number of parts, at most 10^6 [default: one per surface, up to 1000]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(super) shards: Option<u32>,
 }

@@ -9,7 +9,7 @@ Exit codes:
   0    done
   1    failed: the message has the reason
   2    invalid spec or arguments
-  3    finished, but some cases failed (`hysteron retry`)
+  3    finished, but some cycles failed (`hysteron status`)
   130  interrupted; the same command resumes
 
 Help on a command: hysteron help <COMMAND>";
@@ -17,7 +17,7 @@ Help on a command: hysteron help <COMMAND>";
 /// Below the options of `run`.
 pub(super) const RUN: &str = "\
 Exit codes: 0 done, 1 failed, 2 invalid spec or arguments,
-            3 finished with failed cases, 130 interrupted (rerun to resume)
+            3 finished with failed cycles, 130 interrupted (rerun to resume)
 
 --set takes TOML values; quotes around a word may be omitted. Values that a
 [[sweep]] of the spec sets override those of --set. A relative path in

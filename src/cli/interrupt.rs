@@ -36,11 +36,7 @@ pub(super) fn expect(teller: Arc<Teller>, dir: &Path) -> std::io::Result<()> {
     }
     signal_hook::flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false)))?;
     let mut signals = Signals::new(waited)?;
-    let notice = format!(
-        "interrupted: finished tasks are kept, running tasks restart\nhelp: resume with the same command, or with `hysteron run {} --out {}`",
-        shell_path(&dir.join("campaign.toml")),
-        shell_path(dir)
-    );
+    let notice = format!("interrupted: finished tasks are kept, running tasks restart\nhelp: {}", next_step(dir));
     let wait = move || {
         if signals.forever().next().is_none() {
             return;
@@ -54,6 +50,15 @@ pub(super) fn expect(teller: Arc<Teller>, dir: &Path) -> std::io::Result<()> {
         low_level::exit(INTERRUPTED);
     };
     std::thread::Builder::new().name("signals".to_owned()).spawn(wait).map(drop)
+}
+
+/// Recommended action after an interrupt.
+fn next_step(dir: &Path) -> String {
+    if std::env::var_os("SLURM_JOB_ID").is_some() && dir.join("slurm/jobs.json").is_file() {
+        return format!("`hysteron status {}` shows the state and the command that submits pending tasks", shell_path(dir));
+    }
+    let [spec, dir] = [&dir.join("campaign.toml"), dir].map(shell_path);
+    format!("resume with the same command, or with `hysteron run {spec} --out {dir}`")
 }
 
 /// Ends the program as soon as no file is being read or written.

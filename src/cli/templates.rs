@@ -12,7 +12,7 @@ pub(super) enum Template {
 impl Template {
     /// All templates, each with its name and its purpose.
     pub(super) const ALL: [(Self, &'static str, &'static str); 4] = [
-        (Self::Quickstart, "quickstart", "two generated surfaces at two loads: runs in seconds"),
+        (Self::Quickstart, "quickstart", "a soft and a stiff contact, generated surfaces: runs in seconds"),
         (Self::Sweep, "sweep", "parameter sweeps around a reference case"),
         (Self::Scan, "scan", "a measured surface"),
         (Self::Full, "full", "every key with its default"),

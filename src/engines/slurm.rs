@@ -28,6 +28,19 @@ pub struct Order {
     pub queued: Vec<u64>,
 }
 
+impl Order {
+    /// Options of `submit` that give this order again.
+    #[must_use]
+    pub fn arguments(&self) -> Vec<String> {
+        let mut arguments = vec![format!("--shards={}", self.shards)];
+        if self.cpus > 1 {
+            arguments.push(format!("--cpus={}", self.cpus));
+        }
+        arguments.extend(self.options.iter().map(|option| format!("--option={option}")));
+        arguments
+    }
+}
+
 /// A job array, or the job that aggregates.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Job {
@@ -52,6 +65,59 @@ pub struct Sent {
     pub first: usize,
     /// Shards of the campaign when it was sent.
     pub shards: usize,
+    /// Tasks of the array; empty for the job that aggregates.
+    #[serde(default)]
+    pub tasks: Vec<usize>,
+    /// Options of `submit` with which it was sent.
+    #[serde(default)]
+    pub options: Vec<String>,
+}
+
+impl Sent {
+    /// Name of a task's log in `slurm/log`.
+    #[must_use]
+    pub fn log(&self, task: Option<usize>) -> String {
+        match task {
+            Some(task) => format!("{}-{}_{task}.log", self.stage, self.job),
+            None => format!("{}-{}.log", self.stage, self.job),
+        }
+    }
+}
+
+/// Seconds before the time limit at which Slurm signals a task, for limits of six minutes and more.
+pub const LEAD_S: u64 = 90;
+
+/// Seconds by which Slurm may signal earlier than requested (manual of `sbatch`, `--signal`).
+pub const EARLY_S: u64 = 60;
+
+/// Time limit in seconds of options of sbatch, if one sets it: `--time=1-2:00:00`, `-t 30`.
+#[must_use]
+pub fn time_limit_s(options: &[String]) -> Option<u64> {
+    let value = |option: &String| {
+        let rest = option.strip_prefix("--time").or_else(|| option.strip_prefix("-t"))?;
+        seconds(rest.trim_start_matches(['=', ' ']).trim())
+    };
+    options.iter().filter_map(value).next_back()
+}
+
+/// Seconds of a time as Slurm writes it: `minutes`, `m:s`, `h:m:s`, `d-h`, `d-h:m`, `d-h:m:s`.
+fn seconds(text: &str) -> Option<u64> {
+    let (days, rest) = text.split_once('-').map_or((None, text), |(days, rest)| (Some(days), rest));
+    let parts = rest.split(':').map(|part| part.parse::<u64>().ok()).collect::<Option<Vec<u64>>>()?;
+    let units: &[u64] = match (days.is_some(), parts.len()) {
+        (false, 1) => &[60],
+        (false, 2) => &[60, 1],
+        (true, 1..=3) | (false, 3) => &[3600, 60, 1],
+        _ => return None,
+    };
+    let of_days = days.map_or(Some(0), |days| days.parse::<u64>().ok()?.checked_mul(86_400))?;
+    parts.iter().zip(units).try_fold(of_days, |sum, (part, unit)| sum.checked_add(part.checked_mul(*unit)?))
+}
+
+/// Seconds before a time limit at which a task is signalled: a quarter of a short limit.
+#[must_use]
+pub fn lead_s(limit: Option<u64>) -> u64 {
+    limit.map_or(LEAD_S, |limit| (limit / 4).clamp(1, LEAD_S))
 }
 
 /// The folder of the scripts, the logs and `jobs.json`.
@@ -74,24 +140,35 @@ pub fn script(campaign: &Campaign, stage: Stage, order: &Order) -> String {
     option(&format!("--output=\"{}/{word}-{}.log\"", log.display(), if array { "%A_%a" } else { "%j" }));
     option("--open-mode=append");
     option("--requeue");
-    option("--signal=B:USR1@90");
+    option(&format!("--signal=B:USR1@{}", lead_s(time_limit_s(&order.options))));
     option(&format!("--cpus-per-task={}", if array { order.cpus } else { 1 }));
     order.options.iter().for_each(|given| option(given));
-    text.push_str("set -u\n");
-    if !array {
-        text.push_str(&format!("{program} aggregate {spec} --out {dir} && {program} report {spec} --out {dir}\n"));
-        return text;
-    }
-    let (shards, cpus) = (order.shards, order.cpus);
+    let this = if array { "${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID" } else { "$SLURM_JOB_ID" };
+    let mark = shell_path(&log.join(word));
+    let [records, cycles] = ["receipts", "cycles"].map(|name| shell_path(&campaign.dir.join(name)));
     text.push_str(&format!(
-        "{program} {word} {spec} --out {dir} --shard \"$((HYSTERON_FIRST + SLURM_ARRAY_TASK_ID))/{shards}\" --jobs {cpus} &\n"
+        "set -u\nthis={this}\nbegan={mark}-$this.began\n: >\"$began\"\nchild= again=0 code=0\n\
+         # Slurm sends USR1 before the time limit: the current file is finished, and the task returns to the queue.\n\
+         trap 'again=1; [ -z \"$child\" ] || kill -TERM \"$child\"' USR1\ntrap '[ -z \"$child\" ] || kill -TERM \"$child\"' TERM\n\
+         work() {{\n  \"$@\" &\n  child=$! code=129\n  \
+         while [ \"$code\" -gt 128 ] && kill -0 \"$child\" 2>/dev/null; do wait \"$child\"; code=$?; done\n  child=\n}}\n\
+         # A task that has written nothing since its start would be interrupted at the same point again.\n\
+         progress() {{ [ -n \"$(find {records} {cycles} -newer \"$began\" \\( -name '*.json' -o -name halfway.bin \\) -print -quit 2>/dev/null)\" ]; }}\n"
     ));
+    if array {
+        let (shards, cpus) = (order.shards, order.cpus);
+        text.push_str(&format!(
+            "work {program} {word} {spec} --out {dir} --shard \"$((HYSTERON_FIRST + SLURM_ARRAY_TASK_ID))/{shards}\" --jobs {cpus}\n"
+        ));
+    } else {
+        text.push_str(&format!("work {program} aggregate {spec} --out {dir} --jobs 1 --quiet\n"));
+        text.push_str(&format!("[ \"$code\" != 0 ] || [ \"$again\" = 1 ] || work {program} report {spec} --out {dir} --jobs 1\n"));
+    }
     text.push_str(
-        "work=$!\nagain=0\n\
-         # Before the time limit Slurm says USR1: the file at hand is finished, and the task goes back into the queue and goes on from there.\n\
-         trap 'again=1; kill -TERM \"$work\"' USR1\ntrap 'kill -TERM \"$work\"' TERM\n\
-         code=129\nwhile [ \"$code\" -gt 128 ] && kill -0 \"$work\" 2>/dev/null; do wait \"$work\"; code=$?; done\n\
-         if [ \"$again\" = 1 ]; then scontrol requeue \"${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID\"; fi\nexit \"$code\"\n",
+        "if [ \"$again\" = 1 ] && [ \"$code\" -gt 128 ]; then\n  if progress; then\n    scontrol requeue \"$this\"\n  else\n    \
+         echo 'error: no task was finished within the time limit, so the job does not return to the queue' >&2\n    \
+         echo 'help: repeat `hysteron submit` with a longer limit, for example --option=--time=4:00:00' >&2\n    code=1\n  fi\nfi\n\
+         rm -f \"$began\"\nexit \"$code\"\n",
     );
     text
 }
@@ -161,10 +238,10 @@ fn ranges(numbers: &[usize]) -> String {
     words.join(",")
 }
 
-/// What Slurm's queue has of the jobs that were sent: `squeue` was asked for `%F %K %T`, a line for each task.
+/// State of submitted jobs in Slurm's queue; [`QUERY`] gives a line for each task.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Queue {
-    /// Tasks by state, as Slurm calls it.
+    /// Number of waiting and running tasks by state, as Slurm calls it.
     pub states: BTreeMap<String, usize>,
     /// Shards that are waiting or running, by the stage's word and how many shards there were.
     pub shards: BTreeSet<(String, usize, usize)>,
@@ -172,10 +249,17 @@ pub struct Queue {
     pub aggregates: bool,
     /// The jobs that are there.
     pub jobs: BTreeSet<u64>,
+    /// States of tasks that have ended and that Slurm still lists, by job and task.
+    pub ended: BTreeMap<(u64, Option<usize>), String>,
+    /// Number of restarts of all waiting and running tasks.
+    pub restarts: usize,
 }
 
+/// Arguments of `squeue`: job, task, state and number of restarts of each task, ended ones included.
+pub const QUERY: [&str; 7] = ["--me", "-h", "-r", "-t", "all", "-O", "ArrayJobID:24,ArrayTaskID:24,State:24,RestartCnt:24"];
+
 impl Queue {
-    /// Reads the answer of `squeue -h -r -o "%F %K %T"`.
+    /// Reads the answer of `squeue` to [`QUERY`].
     #[must_use]
     pub fn parse(answer: &str, sent: &[Sent]) -> Self {
         let mut queue = Self::default();
@@ -183,16 +267,33 @@ impl Queue {
             let mut words = line.split_whitespace();
             let (Some(job), Some(task), Some(state)) = (words.next(), words.next(), words.next()) else { continue };
             let Some(sent) = sent.iter().find(|sent| job.parse() == Ok(sent.job)) else { continue };
-            *queue.states.entry(state.to_lowercase()).or_default() += 1;
-            if !matches!(state, "PENDING" | "RUNNING" | "REQUEUED" | "CONFIGURING" | "COMPLETING" | "SUSPENDED" | "REQUEUE_HOLD") {
+            let task = task.parse::<usize>().ok();
+            if !matches!(
+                state,
+                "PENDING"
+                    | "RUNNING"
+                    | "REQUEUED"
+                    | "REQUEUE_FED"
+                    | "CONFIGURING"
+                    | "COMPLETING"
+                    | "SUSPENDED"
+                    | "REQUEUE_HOLD"
+                    | "STOPPED"
+                    | "SIGNALING"
+                    | "STAGE_OUT"
+                    | "RESIZING"
+            ) {
+                queue.ended.insert((sent.job, task), state.to_owned());
                 continue;
             }
+            *queue.states.entry(state.to_lowercase()).or_default() += 1;
+            queue.restarts += words.next().and_then(|count| count.parse().ok()).unwrap_or(0);
             queue.jobs.insert(sent.job);
-            match task.parse::<usize>() {
-                Ok(task) => {
+            match task {
+                Some(task) => {
                     queue.shards.insert((sent.stage.clone(), sent.shards, sent.first + task));
                 }
-                Err(_) => queue.aggregates = true,
+                None => queue.aggregates = true,
             }
         }
         queue

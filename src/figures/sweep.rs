@@ -86,11 +86,12 @@ impl Sweep {
             max_load: loads.get(row).copied().unwrap_or_default(),
             x: row as f64,
             label: label.clone(),
-            series: String::new(),
+            // Runs are not joined by a line.
+            series: label.clone(),
         };
-        let differing = vec![Varying::new(("campaign", "campaign", "campaign"), Values::Words(labels.to_vec()))];
+        let differing = vec![Varying::new(("campaign", "run", "run"), Values::Words(labels.to_vec()))];
         let members: Vec<Member> = labels.iter().enumerate().map(member).collect();
-        Ok(Self { members, differing, many_loads: false, axis: Axis::of_words("campaign", labels.to_vec()) })
+        Ok(Self { members, differing, many_loads: false, axis: Axis::of_words("run", labels.to_vec()) })
     }
 }
 

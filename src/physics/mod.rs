@@ -92,7 +92,7 @@ pub enum PhysicsError {
     /// No equilibrium was found near the last one, not even by relaxation.
     #[error(
         "no equilibrium at the mean penetration {approach_m:e} m after {iterations} iterations: {} (asperity {asperity})\nhelp: contacts that \
-         grow together may have none: reduce cycle.max_load, or set model.coalescence = \"cover\"",
+         grow together may have none: reduce cycle.max_load; with model.coalescence = \"merge\" or \"none\", try \"cover\"",
         reason.sentence(*residual_m)
     )]
     NoEquilibrium {
@@ -120,7 +120,7 @@ pub enum PhysicsError {
     /// Events go on without end within one increment of the approach.
     #[error(
         "no stable state at the mean penetration {approach_m:e} m after {events} changes of state (asperity {asperity} last)\nhelp: reduce \
-         cycle.max_load, or set model.coalescence = \"none\""
+         cycle.max_load; with model.coalescence = \"cover\" or \"merge\", try \"none\""
     )]
     EndlessAvalanche {
         /// Mean penetration Δ \[m\].
@@ -167,7 +167,7 @@ pub enum PhysicsError {
     /// A loop with negative dissipated energy.
     #[error(
         "negative dissipated energy of the loop to F/(E* A0) = {max_load}: Θ = {loss_j:e} J ({fraction:.1e} of the work of loading)\n\
-         help: reduce cycle.max_load, or set model.coalescence = \"merge\" or \"none\": absorbing contacts does not conserve energy"
+         help: reduce cycle.max_load; with model.coalescence = \"cover\", which does not conserve energy, try \"merge\" or \"none\""
     )]
     NegativeDissipation {
         /// F/(E* A0) at the load reversal; not a number under displacement control.
@@ -180,7 +180,7 @@ pub enum PhysicsError {
     /// The sum of the event energies differs from the loop area.
     #[error(
         "energy-balance error above half of Θ in the loop to F/(E* A0) = {max_load}: Θ = {loss_j:e} J, sum over events {events_j:e} J\n\
-         help: reduce cycle.max_load, or set model.coalescence = \"merge\" or \"none\": absorbing contacts does not conserve energy"
+         help: reduce cycle.max_load; with model.coalescence = \"cover\", which does not conserve energy, try \"merge\" or \"none\""
     )]
     EnergyImbalance {
         /// F/(E* A0) at the load reversal; not a number under displacement control.

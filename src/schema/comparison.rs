@@ -1,17 +1,21 @@
 //! The table of a comparison of runs.
 
-use super::{Column, Table, count, flag, index, real, text};
+use super::statistics::PARAMETERS;
+use super::{Column, Table, count, flag, index, join, real, text};
 
 /// Paired cases of two runs.
 pub static COMPARISON: Table = Table {
     name: "comparison",
     version: 1,
     file: "comparison.parquet",
-    doc: "One row per quantity and pair of cases with equal parameters, except those in which the runs differ; the first run is the reference.",
+    doc: "One row per quantity and pair of cases with equal parameters, except those in which the runs differ; the first run is the reference. \
+          The parameters are those of the compared case; rows are in the order of the parameters.",
     columns: COLUMNS,
 };
 
-const COLUMNS: &[Column] = &[
+const COLUMNS: &[Column] = &join::<{ OWN.len() + PARAMETERS.len() }>(&[OWN, PARAMETERS]);
+
+const OWN: &[Column] = &[
     index("group", "Number of the group of compared cases, from 0, as in the figures"),
     text("campaign", "Name of the compared run"),
     text("case_id", "Identifier of the case in the compared run"),

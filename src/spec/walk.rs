@@ -165,10 +165,33 @@ pub(super) fn lost(unknown: &str, here: &[&str], elsewhere: impl Fn(&str) -> Str
     if let Some(table) = TABLES.iter().find(|table| find(table, unknown).is_some()) {
         return elsewhere(table);
     }
+    if let Some((table, name, meaning)) = of_symbol(unknown) {
+        let section = if here.contains(&name) { String::new() } else { format!(" in [{table}]") };
+        return format!("{meaning} is `{name}`{section}");
+    }
     match nearest(unknown, here.iter().copied()) {
         Some(near) => format!("did you mean `{near}`? {listed}"),
         None => listed,
     }
+}
+
+/// Table and key of a symbol or another name of a quantity, with the quantity.
+fn of_symbol(unknown: &str) -> Option<(&'static str, &'static str, &'static str)> {
+    let plain: String = unknown.to_lowercase().chars().filter(|c| c.is_alphanumeric()).collect();
+    Some(match plain.as_str() {
+        "zeta" | "ζ" => ("surface", "magnification", "ζ"),
+        "hrms" | "rmsheight" | "rms" | "sq" | "rmsroughness" => ("surface", "rms_height_m", "h_rms"),
+        "h" | "hurstexponent" => ("surface", "hurst", "H"),
+        "l" | "size" | "lateralsize" => ("surface", "length_m", "L, the side of the square,"),
+        "e" | "estar" | "youngsmodulus" | "youngmodulus" | "modulus" | "reducedmodulus" | "elasticmodulus" => {
+            ("material", "contact_modulus_pa", "E* = E/(1 − ν²)")
+        }
+        "deltagamma" | "dgamma" | "gamma" | "δγ" | "γ" | "adhesion" | "surfaceenergy" => ("material", "work_of_adhesion_j_m2", "Δγ"),
+        "epsilon" | "eps" | "ε" | "range" => ("material", "interaction_range_m", "ε"),
+        "fmax" | "load" | "maxforce" | "force" => ("cycle", "max_load", "F_max/(E* A0)"),
+        "step" | "outputstep" => ("cycle", "approach_step", "the output step Δ/h_rms"),
+        _ => return None,
+    })
 }
 
 /// A key as it can stand in a sentence: a quoted key may hold anything.

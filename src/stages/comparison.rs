@@ -11,12 +11,36 @@ use crate::store::{Frame, commit, parquet};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-/// Compares the campaigns in `folders` with the first one, and writes `comparison.parquet`, `comparison.html` and `figures/` into `out`. The page's path is returned.
+/// Groups of cases up to which a comparison has its figures as PNG and PDF too.
+const MOST_IN_ALL_FORMATS: usize = 4;
+
+/// A written comparison.
+#[derive(Debug)]
+pub struct Comparison {
+    /// The page.
+    pub page: PathBuf,
+    /// Its table.
+    pub table: Frame,
+    /// The cases that were compared, by the number of their group.
+    pub names: Vec<String>,
+}
+
+/// Compares the campaigns in `folders` with the first one, and writes `comparison.parquet`, `comparison.html` and `figures/` into `out`. A comparison of
+/// other campaigns in `out` is replaced only if `force` is true.
 ///
 /// # Errors
-/// If a folder lacks its tables over realizations; if cases cannot be told apart; if no case is in all campaigns; a file that cannot be written.
-pub fn compare(folders: &[PathBuf], out: &Path) -> Result<PathBuf, StageError> {
+/// If a folder is given twice or lacks its tables over realizations; if cases cannot be told apart; if no case is in all campaigns; if `out` holds another
+/// comparison; a file that cannot be written.
+pub fn compare(folders: &[PathBuf], out: &Path, force: bool) -> Result<Comparison, StageError> {
+    let same = |a: &PathBuf, b: &PathBuf| a == b || a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b));
+    if let Some((_, twice)) = folders.iter().enumerate().find(|(place, folder)| folders[..*place].iter().any(|other| same(other, folder))) {
+        return Err(StageError::ComparedTwice { path: twice.clone() });
+    }
     let sides: Vec<Side> = labels(folders).into_iter().zip(folders).map(|(label, folder)| side(label, folder)).collect::<Result<_, _>>()?;
+    let file = out.join(COMPARISON.file);
+    if !force && file.exists() && of_others(&file, &sides) {
+        return Err(StageError::OtherComparison { path: out.to_owned() });
+    }
     let matched = stats::matched(&sides)?;
     if matched.groups.is_empty() {
         let folders = folders.iter().map(|folder| folder.display().to_string()).collect::<Vec<_>>().join(", ");
@@ -26,18 +50,47 @@ pub fn compare(folders: &[PathBuf], out: &Path) -> Result<PathBuf, StageError> {
     for path in [out.to_owned(), out.join("figures")] {
         std::fs::create_dir_all(&path).map_err(|source| StageError::Folder { path, source })?;
     }
+    remove_figures(&out.join("figures"));
     let names = names(&sides, &matched)?;
     let mut drawings: Vec<(String, Vec<Panel>)> = Vec::new();
     for (number, (group, name)) in matched.groups.iter().zip(&names).enumerate() {
         drawings.push((name.clone(), panels(&sides, group, (name, &format!("compare{number}")))?));
     }
     for panel in drawings.iter().flat_map(|(_, panels)| panels) {
-        write_picture(out, &panel.stem, &panel.svg)?;
+        if matched.groups.len() > MOST_IN_ALL_FORMATS {
+            let path = out.join("figures").join(format!("{}.svg", panel.stem));
+            commit::commit_bytes("write a figure", &path, panel.svg.as_bytes())?;
+        } else {
+            write_picture(out, &panel.stem, &panel.svg)?;
+        }
     }
-    parquet::write_table(&out.join(COMPARISON.file), &table, &[])?;
+    parquet::write_table(&file, &table, &[])?;
     let path = out.join("comparison.html");
     commit::commit_bytes("write the comparison", &path, page(&sides, &matched, &names, &drawings, &table)?.as_bytes())?;
-    Ok(path)
+    Ok(Comparison { page: path, table, names })
+}
+
+/// Whether a table compares other campaigns than these, or cannot be read.
+fn of_others(file: &Path, sides: &[Side]) -> bool {
+    let Ok(table) = parquet::read_table(file, &COMPARISON) else { return true };
+    let (Ok(references), Ok(campaigns)) = (table.text("reference"), table.text("campaign")) else { return true };
+    let Some((reference, others)) = sides.split_first() else { return true };
+    references.iter().any(|label| *label != reference.label)
+        || campaigns.iter().any(|label| others.iter().all(|side| side.label != *label))
+        || others.iter().any(|side| campaigns.iter().all(|label| *label != side.label))
+}
+
+/// Removes the figures of an earlier comparison, of which there may have been more.
+fn remove_figures(folder: &Path) {
+    let is_figure = |name: &str| {
+        name.strip_prefix("compare").is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit()))
+            && [".svg", ".png", ".pdf"].iter().any(|ending| name.ends_with(ending))
+    };
+    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        if is_figure(&entry.file_name().to_string_lossy()) {
+            let _ = std::fs::remove_file(entry.path());
+        }
+    }
 }
 
 /// Symbol and column of a compared quantity.

@@ -19,7 +19,7 @@ mod surface;
 mod theories;
 mod trust;
 
-pub use comparison::compare;
+pub use comparison::{Comparison, compare};
 pub use cycle::{Units, unload_again, unload_elements_again};
 pub use measure::{Imported, measure};
 pub use sampling::sampled;
@@ -120,6 +120,18 @@ pub enum StageError {
         /// Why.
         what: String,
     },
+    /// A campaign that is to be compared with itself.
+    #[error("cannot compare {} with itself\nhelp: name each run once", shown(path))]
+    ComparedTwice {
+        /// Its folder.
+        path: PathBuf,
+    },
+    /// A comparison of other campaigns in the place of a new one.
+    #[error("{} holds the comparison of other runs\nhelp: write to another folder with --out DIR, or replace it with --force", shown(path))]
+    OtherComparison {
+        /// Its folder.
+        path: PathBuf,
+    },
     /// Campaigns without a case in common.
     #[error(
         "cannot compare {folders}: no case with otherwise equal parameters is in all runs\nhelp: compare runs that differ in one parameter"
@@ -130,19 +142,65 @@ pub enum StageError {
     },
     /// A stage lacks what an earlier one writes.
     #[error(
-        "cannot run the stage {stage}: {missing} of {} of the previous stage missing or damaged ({example})\nhelp: run `hysteron run SPEC`, or the previous stage",
-        counted(*all, "task")
+        "cannot run the stage {stage} in {}: of {} of the previous stage {}, for example {example}\nhelp: {}",
+        shown(path), counted(*all, "task"), lacks(*missing, *damaged), incomplete_help(stage)
     )]
     Incomplete {
         /// The stage.
         stage: &'static str,
-        /// How many are missing.
+        /// The output folder.
+        path: PathBuf,
+        /// How many are not computed.
         missing: usize,
+        /// How many are stale, or have missing or changed files.
+        damaged: usize,
         /// Of how many.
         all: usize,
         /// One of them.
         example: String,
     },
+    /// A single stage in a folder without a run.
+    #[error(
+        "cannot run the stage {stage}: {} has no campaign.toml\nhelp: run the previous stages first, or name the output folder of the run with --out",
+        shown(path)
+    )]
+    NoRun {
+        /// The stage.
+        stage: &'static str,
+        /// The folder.
+        path: PathBuf,
+    },
+}
+
+/// Numbers of tasks that a stage lacks.
+fn lacks(missing: usize, damaged: usize) -> String {
+    let parts = [(missing, "not computed"), (damaged, "stale or damaged")];
+    let parts: Vec<String> = parts.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")).collect();
+    parts.join(", ")
+}
+
+fn incomplete_help(stage: &str) -> &'static str {
+    if stage == Stage::Aggregate.word() {
+        "compute them with `hysteron run SPEC`, or aggregate the finished ones with --partial"
+    } else {
+        "run `hysteron run SPEC`, or the previous stage"
+    }
+}
+
+/// The error of a stage whose inputs have these states; `None` if all are done.
+fn incomplete(campaign: &Campaign, stage: Stage, inputs: &[(String, Standing)]) -> Option<StageError> {
+    let lacking = || inputs.iter().filter(|(_, standing)| *standing != Standing::Done);
+    let (id, standing) = lacking().next()?;
+    let missing =
+        lacking().filter(|(_, standing)| matches!(standing, Standing::Planned | Standing::Interrupted | Standing::Failed(_))).count();
+    Some(StageError::Incomplete {
+        stage: stage.word(),
+        path: campaign.dir.clone(),
+        missing,
+        damaged: lacking().count() - missing,
+        all: inputs.len(),
+        example: standing.why().map_or_else(|| id.clone(), |why| format!("{id}: {why}")),
+    })
 }
 
 /// Who is told of the progress.
@@ -219,6 +277,9 @@ struct Job<'a, T> {
 /// # Errors
 /// A folder or file that cannot be written; for a single stage: what that stage reads is not there.
 pub fn run(campaign: Campaign, task: &Task, watch: &dyn Watch) -> Result<(Campaign, Vec<(Stage, Tally)>), StageError> {
+    if task.from > Stage::Generate && !campaign.dir.join("campaign.toml").is_file() {
+        return Err(StageError::NoRun { stage: task.from.word(), path: campaign.dir });
+    }
     prepare(&campaign)?;
     let mut campaign = campaign;
     // What an earlier stage of this run has looked at is not read again.
@@ -315,7 +376,7 @@ fn surfaces(campaign: &Campaign, task: &Task, stage: Stage, watch: &dyn Watch) -
     wanted.retain(|(job, _)| !failure::given_up(campaign, cycles_of(job.of), stage, &task.retried));
     let given_up = open - wanted.len();
     if stage == Stage::Extract {
-        require(stage, &wanted, |unit| campaign.standing(&unit.surface(), task.check), |unit| unit.id.clone())?;
+        require((campaign, stage), &wanted, |unit| campaign.standing(&unit.surface(), task.check), |unit| unit.id.clone())?;
     }
     let work = |unit: &SurfaceUnit| {
         let task = if stage == Stage::Generate { unit.surface() } else { unit.asperities() };
@@ -349,7 +410,8 @@ fn cycles(campaign: &Campaign, task: &Task, watch: &dyn Watch) -> Result<Tally, 
     wanted.retain(|(job, standing)| !matches!(standing, Standing::Failed(_)) || again(job.of));
     let failed = before - wanted.len();
     let surface = |unit: &CycleUnit| &campaign.surfaces[unit.surface];
-    require(Stage::Cycle, &wanted, |unit| campaign.standing(&surface(unit).asperities(), task.check), |unit| surface(unit).id.clone())?;
+    let asperities = |unit: &CycleUnit| campaign.standing(&surface(unit).asperities(), task.check);
+    require((campaign, Stage::Cycle), &wanted, asperities, |unit| surface(unit).id.clone())?;
     // The longest first, so that the threads end together.
     let by_elements = |unit: &CycleUnit| campaign.cases[unit.case].case.params.by_elements();
     wanted.sort_by_key(|(job, _)| std::cmp::Reverse((by_elements(job.of), surface(job.of).params.magnification)));
@@ -378,24 +440,14 @@ fn cycles(campaign: &Campaign, task: &Task, watch: &dyn Watch) -> Result<Tally, 
 
 /// Refuses to begin where units lack what they read.
 fn require<T: Sync>(
-    stage: Stage,
+    (campaign, stage): (&Campaign, Stage),
     units: &[(Job<'_, T>, Standing)],
     standing: impl Fn(&T) -> Standing + Sync,
     name: impl Fn(&T) -> String,
 ) -> Result<(), StageError> {
     let standings: Vec<Standing> = units.par_iter().map(|(job, _)| standing(job.of)).collect();
-    let lacking: Vec<String> = units
-        .iter()
-        .zip(standings)
-        .filter(|(_, standing)| *standing != Standing::Done)
-        .map(|((job, _), standing)| standing.why().map_or_else(|| name(job.of), str::to_owned))
-        .collect();
-    match lacking.first() {
-        None => Ok(()),
-        Some(example) => {
-            Err(StageError::Incomplete { stage: stage.word(), missing: lacking.len(), all: units.len(), example: example.clone() })
-        }
-    }
+    let inputs: Vec<(String, Standing)> = units.iter().map(|(job, _)| name(job.of)).zip(standings).collect();
+    incomplete(campaign, stage, &inputs).map_or(Ok(()), Err)
 }
 
 /// Runs units in parallel, in their order, and writes the receipt of each; `then` is what is left to do. Failures of one case are counted; another error ends

@@ -7,7 +7,7 @@ use super::reading;
 use super::scans::scans;
 use super::theories::theories;
 use super::trust::{Cases, split, trust};
-use super::{StageError, Tally, Watch};
+use super::{StageError, Tally, Watch, incomplete};
 use crate::campaign::{Campaign, REPORT_PAGE, STATISTICS, Stage, Standing, Unit};
 use crate::figures::{Panel, Tables, panels, pdf, png, table};
 use crate::schema;
@@ -32,9 +32,8 @@ pub(super) fn run(campaign: &Campaign, (cycles_check, check): (Check, Check), wa
         return Ok(tally);
     }
     let standing = campaign.standing(&Unit { stage: Stage::Aggregate, id: STATISTICS, key: &statistics }, check);
-    if standing != Standing::Done {
-        let example = standing.why().map_or_else(|| campaign.statistics_path("cases").display().to_string(), str::to_owned);
-        return Err(StageError::Incomplete { stage: Stage::Report.word(), missing: 1, all: 1, example });
+    if let Some(error) = incomplete(campaign, Stage::Report, &[("statistics".to_owned(), standing)]) {
+        return Err(error);
     }
     watch.begin(Stage::Report, 0, 1);
     let cases = parquet::read_table(&campaign.statistics_path("cases"), &schema::CASES)?;

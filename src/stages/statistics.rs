@@ -2,7 +2,7 @@
 
 use super::done::{Clock, Outcome};
 use super::surface::{read_summits, scale, spectrum};
-use super::{StageError, Tally, Watch, datapackage};
+use super::{StageError, Tally, Watch, datapackage, incomplete};
 use crate::campaign::{Campaign, CaseUnit, CycleUnit, STATISTICS, Stage, Standing, Unit};
 use crate::model::Choice;
 use crate::physics::jkr::Asperity;
@@ -38,20 +38,12 @@ pub(super) fn run(
 ) -> Result<Tally, StageError> {
     let clock = Clock::start();
     let standings = campaign.cycle_standings(cycles_check);
-    let lacking: Vec<&CycleUnit> = campaign
-        .cycles
-        .iter()
-        .zip(&standings)
-        .filter(|(_, standing)| !matches!(standing, Standing::Done | Standing::Failed(_)))
-        .map(|(unit, _)| unit)
-        .collect();
-    if let (false, Some(first)) = (partial, lacking.first()) {
-        return Err(StageError::Incomplete {
-            stage: Stage::Aggregate.word(),
-            missing: lacking.len(),
-            all: standings.len(),
-            example: format!("{}; --partial aggregates the finished ones", first.id),
-        });
+    // A failed cycle is finished.
+    let state = |standing: &Standing| if matches!(standing, Standing::Failed(_)) { Standing::Done } else { standing.clone() };
+    let inputs: Vec<(String, Standing)> =
+        campaign.cycles.iter().zip(&standings).map(|(unit, standing)| (unit.id.clone(), state(standing))).collect();
+    if let (false, Some(error)) = (partial, incomplete(campaign, Stage::Aggregate, &inputs)) {
+        return Err(error);
     }
     let finished = done(&standings);
     let key = campaign.statistics_key(&standings);

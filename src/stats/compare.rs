@@ -83,9 +83,27 @@ pub fn matched(sides: &[Side]) -> Result<Matched, StatsError> {
         }
     }
     let places = |key: &String| keys.iter().map(|keys| keys.iter().position(|other| other == key)).collect::<Option<Vec<usize>>>();
-    let groups: Vec<Group> = keys.first().into_iter().flatten().filter_map(places).map(|rows| Group { rows }).collect();
+    let mut groups: Vec<Group> = keys.first().into_iter().flatten().filter_map(places).map(|rows| Group { rows }).collect();
+    if let Some(first) = sides.first() {
+        let ranks = PARAMETERS.iter().map(|(name, ..)| *name).chain(["max_load"]).map(|name| ranks(&first.cases, name));
+        let ranks: Vec<Vec<usize>> = ranks.collect::<Result<_, _>>()?;
+        groups.sort_by_cached_key(|group| ranks.iter().map(|ranks| ranks[group.rows[0]]).collect::<Vec<usize>>());
+    }
     let left_over = keys.iter().map(|keys| keys.len() - groups.len()).collect();
     Ok(Matched { differing, groups, left_over })
+}
+
+/// Rank of each row by the value of a column, ascending; equal values have equal ranks.
+fn ranks(frame: &Frame, column: &str) -> Result<Vec<usize>, StatsError> {
+    fn ranked<T>(values: &[T], before: impl Fn(&T, &T) -> bool) -> Vec<usize> {
+        values.iter().map(|value| values.iter().filter(|other| before(other, value)).count()).collect()
+    }
+    Ok(match frame.column(column)? {
+        ColumnData::F64(values) => ranked(values, |a, b| a < b),
+        ColumnData::I64(values) => ranked(values, |a, b| a < b),
+        ColumnData::Bool(values) => ranked(values, |a, b| a < b),
+        ColumnData::Text(values) => ranked(values, |a, b| a < b),
+    })
 }
 
 /// A quantity of a row of the table `cases`, realization by realization, each with its surface.
@@ -176,12 +194,27 @@ pub fn comparison(sides: &[Side], matched: &Matched) -> Result<Frame, StatsError
                     &samples(&side.cases, &side.realizations, *row, quantity)?,
                     &samples(&reference.cases, &reference.realizations, base, quantity)?,
                 );
-                rows.extend(found.map(|found| (number, side, ids.clone(), load, quantity, found)));
+                rows.extend(found.map(|found| (number, side, ids.clone(), load, quantity, found, *row)));
             }
         }
     }
     let each = |value: fn(&Difference) -> f64| rows.iter().map(move |row| value(&row.5));
-    Ok(Frame::of(&COMPARISON)
+    let mut builder = Frame::of(&COMPARISON);
+    for (name, ..) in PARAMETERS {
+        // The parameters of the compared case.
+        let data = match COMPARISON.column(name).map(|column| column.kind) {
+            Some(Kind::F64) => {
+                let each = rows.iter().map(|row| Ok(row.1.cases.f64_or_null(name)?[row.6]));
+                ColumnData::F64(each.collect::<Result<_, StatsError>>()?)
+            }
+            _ => {
+                let each = rows.iter().map(|row| Ok(row.1.cases.text_or_null(name)?[row.6].clone()));
+                ColumnData::Text(each.collect::<Result<_, StatsError>>()?)
+            }
+        };
+        builder = builder.with(name, data);
+    }
+    Ok(builder
         .i64("group", rows.iter().map(|row| row.0 as i64))
         .text("campaign", rows.iter().map(|row| row.1.label.as_str()))
         .text("case_id", rows.iter().map(|row| row.2[0].as_str()))

@@ -49,16 +49,22 @@ fn measured(cases: &Frame, kind: &Caution, rows: &[usize]) -> Result<String, Sta
         return Ok(format!("{} (limit {})", kind.text.replace("{}", &range(*limit, &values)), bound(*limit)));
     }
     let (done, planned, failed) = (cases.i64("done_count")?, cases.i64("planned_count")?, cases.i64("failed_count")?);
-    // The row with the smallest finished fraction.
-    let worst = rows.iter().copied().min_by_key(|row| (1000 * done[*row] / planned[*row].max(1), *row)).unwrap_or_default();
-    let most = rows.iter().map(|row| failed[*row]).max().unwrap_or_default();
-    Ok(kind.text.replace(
-        "{}",
-        &match kind.code {
-            "incomplete" => format!("{} of {}", done[worst], planned[worst]),
-            _ => counted(usize::try_from(most).unwrap_or_default(), "realization"),
-        },
-    ))
+    // A case has a row for each load reversal, and its cycles count once.
+    let ids = cases.text("case_id")?;
+    let firsts: Vec<usize> = rows.iter().copied().filter(|row| rows.iter().find(|other| ids[**other] == ids[*row]) == Some(row)).collect();
+    let total = |counts: &[i64]| firsts.iter().map(|row| counts[*row]).sum::<i64>();
+    if kind.code != "incomplete" {
+        let all = counted(usize::try_from(total(&planned)).unwrap_or_default(), "realization");
+        return Ok(kind.text.replace("{}", &format!("{} of {all}", total(&failed))));
+    }
+    let of_rows = || rows.iter().map(|row| done[*row]);
+    let (low, high) = (of_rows().min().unwrap_or_default(), of_rows().max().unwrap_or_default());
+    let each = match (firsts.len(), low == high) {
+        (1, _) => String::new(),
+        (_, true) => format!(" ({low} per case)"),
+        (_, false) => format!(" ({low} to {high} per case)"),
+    };
+    Ok(kind.text.replace("{}", &format!("{} of {}", total(&done), total(&planned))) + &each)
 }
 
 /// The interval of measured values: `76 %`, `76 to 87 %`, `0.99 to 1.02`.

@@ -86,6 +86,14 @@ fn e2e_every_template_is_a_spec() {
 }
 
 #[test]
+fn law_the_two_quickstarts_have_the_same_cases() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("pipelines/quickstart.toml");
+    let pipeline = Spec::read(path).unwrap();
+    let template = Spec::parse(&stdout(&hysteron(&Bench::new(""), &["init", "quickstart"])), "quickstart").unwrap();
+    assert_eq!((&template.cases, template.seed, &template.realizations), (&pipeline.cases, pipeline.seed, &pipeline.realizations));
+}
+
+#[test]
 fn val_the_full_template_has_every_key_with_its_default() {
     let bench = Bench::new("");
     let text = stdout(&hysteron(&bench, &["init", "full"]));
@@ -121,5 +129,13 @@ fn e2e_a_plan_has_the_reasons_of_pending_tasks() {
     assert!(plan.contains("cycle     2 planned\n  2 pending tasks: cycle.approach_step 0.05 → 0.1\n"), "{plan}");
     assert!(plan.contains("generate  2 done\n") && plan.contains("`run` would compute 4 tasks."), "{plan}");
     let plan = stdout(&bench.verb("plan", &["--set", "realizations=3"]));
-    assert!(plan.contains("  1 pending task: realization 1 → 2\n") || plan.contains("  1 pending task: realization 0 → 2\n"), "{plan}");
+    assert!(plan.contains("  1 pending task: not computed yet\n") && !plan.contains('→'), "nothing was changed but added: {plan}");
+    let answer: serde_json::Value = serde_json::from_slice(&bench.verb("plan", &["--set", "realizations=3", "--json"]).stdout).unwrap();
+    let pending: Vec<&serde_json::Value> =
+        answer["stages"][2]["units"].as_array().unwrap().iter().filter(|unit| unit["state"] == "planned").collect();
+    assert!(pending.len() == 1 && pending[0]["why"] == "not computed yet", "{pending:?}");
+    let more = bench.folder.path().join("more.toml");
+    std::fs::write(&more, SMALL.replace("realizations = 2", "realizations = 3")).unwrap();
+    let explained = stdout(&bench.look("explain", &[pending[0]["id"].as_str().unwrap(), "--spec", more.to_str().unwrap()]));
+    assert!(explained.contains(" is planned\n  not computed yet; ") && !explained.contains("requested"), "{explained}");
 }

@@ -219,7 +219,7 @@ fn e2e_few_surfaces_are_listed_and_no_interval_of_a_positive_quantity_is_negativ
 
 fn compare(folders: &[&Bench], out: &Path) -> std::process::Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_hysteron"));
-    command.args(["report", "--compare"]).args(folders.iter().map(|bench| bench.out())).arg("--out").arg(out);
+    command.args(["report", "--force", "--compare"]).args(folders.iter().map(|bench| bench.out())).arg("--out").arg(out);
     command.output().unwrap()
 }
 
@@ -264,11 +264,16 @@ fn e2e_campaigns_are_compared_case_by_case() {
     let (difference, half) = (table.f64("difference").unwrap(), table.f64_or_null("difference_ci95").unwrap());
     for k in rows_of {
         assert!(paired[k], "both have the surfaces of one seed");
+        assert_eq!(table.text("interaction").unwrap()[k], "none", "parameters of the compared case");
         let (mine, other) = (losses(&alone, ids[k], loads[k]), losses(&spots, others[k], loads[k]));
         let each: Vec<f64> = mine.iter().zip(&other).map(|(a, b)| a - b).collect();
         let sample = Sample::of(&each);
         assert!((difference[k] - sample.mean.unwrap()).abs() < 1e-15 && (half[k].unwrap() - sample.ci95.unwrap()).abs() < 1e-15);
     }
+    // Cases are in the order of their parameters.
+    let zeta = table.f64_or_null("magnification").unwrap();
+    let order: Vec<(f64, f64)> = rows(&table, "loss").into_iter().map(|k| (zeta[k].unwrap(), loads[k])).collect();
+    assert_eq!(order, [(6.0, 0.001), (6.0, 0.002), (8.0, 0.001), (8.0, 0.002)]);
     let page = fs::read_to_string(out.join("comparison.html")).unwrap();
     assert!(page.contains("differ in interaction") && page.contains("3 pairs") && !page.contains("NaN"));
     assert!(page.contains("<figcaption>") && !page.contains("panels.parquet"), "a comparison has no table of panels");

@@ -226,14 +226,21 @@ fn law_a_warning_has_measured_value_limit_consequence_and_action() {
     for kind in CAUTIONS {
         assert!(kind.consequence.ends_with('.') && kind.action.ends_with('.') && kind.action.contains(' '), "{}", kind.code);
     }
-    // Counts: of the worst row.
+    // Counts: over the cases, each once.
     let failed = warnings(&table(&[half], 0.1, |input| {
         input.planned_count = 3;
         input.failed_count = 1;
     }))
     .unwrap();
     let measured = |code: &str| failed.iter().find(|of| of.kind.code == code).unwrap().measured.as_str();
-    assert_eq!((measured("failed"), measured("incomplete")), ("1 realization failed", "1 of 3 realizations finished"));
+    assert_eq!((measured("failed"), measured("incomplete")), ("1 of 3 realizations failed", "1 of 3 realizations finished"));
+    let twice = warnings(&table(&[half], 0.1, |input| {
+        input.max_loads = vec![0.004, 0.005];
+        (input.planned_count, input.failed_count) = (3, 2);
+    }))
+    .unwrap();
+    let twice = twice.iter().find(|of| of.kind.code == "failed").unwrap();
+    assert_eq!((twice.rows.len(), twice.measured.as_str()), (2, "2 of 3 realizations failed"));
 }
 
 /// The same table with other codes in the column `caution`.

@@ -46,7 +46,7 @@ fn sentences(explanation: &Explanation) -> String {
     let mut text = format!("{stage} {id} is {state}{}\n", why.as_ref().map_or_else(String::new, |why| format!(": {why}")));
     let Some(nearest) = nearest else {
         if *state == "planned" {
-            text += "  no task of this stage is done: there is none to compare it with\n";
+            text += "  not computed yet; no finished task of another spec to compare with\n";
         }
         return text;
     };

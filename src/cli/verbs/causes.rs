@@ -11,7 +11,7 @@ const COMPARED: usize = 10;
 /// Records that are read at most for the tasks of a stage: each task is compared with all finished ones.
 const READ: usize = 20_000;
 
-/// A line for each set of parameters in which pending tasks of a stage differ from finished ones; nothing where none is finished.
+/// A line for each set of parameters in which pending tasks of a stage differ from finished ones of another spec; nothing where no task is finished.
 pub(super) fn causes(campaign: &Campaign, stage: Stage, units: &[(String, Standing)]) -> String {
     let finished = std::fs::read_dir(campaign.receipts_dir(stage)).map_or(0, Iterator::count);
     let pending = || units.iter().filter(|(_, standing)| matches!(standing, Standing::Planned | Standing::Stale));
@@ -22,9 +22,14 @@ pub(super) fn causes(campaign: &Campaign, stage: Stage, units: &[(String, Standi
     let mut causes: BTreeMap<String, usize> = BTreeMap::new();
     for (id, _) in pending().take(compared) {
         let explained = campaign.explain(id).into_iter().find(|explanation| explanation.stage == stage.word());
-        if let Some(explanation) = explained.filter(|explanation| !explanation.differences.is_empty()) {
-            *causes.entry(explanation.differences.iter().map(change).collect::<Vec<_>>().join(", ")).or_default() += 1;
-        }
+        let cause = match explained {
+            Some(explanation) if !explanation.differences.is_empty() => {
+                explanation.differences.iter().map(change).collect::<Vec<_>>().join(", ")
+            }
+            Some(explanation) if explanation.nearest.is_none() => "not computed yet".to_owned(),
+            _ => continue,
+        };
+        *causes.entry(cause).or_default() += 1;
     }
     let all = pending().count();
     let first = if all > compared { format!(" of the first {compared}") } else { String::new() };

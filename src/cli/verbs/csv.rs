@@ -3,7 +3,7 @@
 use super::place::folder_of;
 use super::{Fault, failed, make_folder, say};
 use crate::cli::CsvArguments;
-use crate::schema::{TABLES, Table};
+use crate::schema::{COMPARISON, TABLES, Table};
 use crate::store::{ColumnData, Frame, commit, parquet};
 use crate::text::{counted, shown};
 use serde_json::json;
@@ -19,7 +19,8 @@ pub(super) fn export(asked: &CsvArguments) -> Result<u8, Fault> {
     if tables.is_empty() {
         let dir = shown(&dir);
         return Err(failed(format!(
-            "cannot export the tables of {dir}: it has no statistics/*.parquet\nhelp: run `hysteron run SPEC` first"
+            "cannot export the tables of {dir}: it has no statistics/*.parquet and no comparison.parquet\n\
+             help: run `hysteron run SPEC` first, or name the folder of a comparison"
         )));
     }
     let mut wanted: Vec<(PathBuf, &'static Table)> = tables.into_iter().map(|table| (PathBuf::from(table.file), table)).collect();
@@ -47,9 +48,9 @@ pub(super) fn export(asked: &CsvArguments) -> Result<u8, Fault> {
     Ok(0)
 }
 
-/// True if a table is one of statistics, and in the folder.
+/// True if a table is one of statistics or that of a comparison, and in the folder.
 fn has(dir: &Path, table: &Table) -> bool {
-    table.file.starts_with("statistics/") && dir.join(table.file).is_file()
+    (table.file.starts_with("statistics/") || table.file == COMPARISON.file) && dir.join(table.file).is_file()
 }
 
 /// Folder of the tables of one cycle in the file of a table.

@@ -1,7 +1,7 @@
 //! The end of a run: results, failures with their reasons, elapsed time and size.
 
 use super::{Fault, failed};
-use crate::campaign::{Campaign, Stage, Standing};
+use crate::campaign::{Campaign, Shard, Stage, Standing};
 use crate::cli::progress::duration;
 use crate::schema;
 use crate::stages::Tally;
@@ -29,9 +29,9 @@ pub(super) struct Ended<'a> {
 }
 
 impl<'a> Ended<'a> {
-    pub(super) fn of(campaign: &'a Campaign, tallies: &'a [(Stage, Tally)], time: Duration) -> Self {
+    pub(super) fn of(campaign: &'a Campaign, shard: Shard, tallies: &'a [(Stage, Tally)], time: Duration) -> Self {
         let failed_count = tallies.iter().map(|(_, tally)| tally.failed).max().unwrap_or(0);
-        let failures = if failed_count > 0 { failures(campaign) } else { Vec::new() };
+        let failures = if failed_count > 0 { failures(campaign, shard) } else { Vec::new() };
         Self { campaign, tallies, time, size_bytes: size(&campaign.dir), failed_count, failures }
     }
 
@@ -48,7 +48,7 @@ impl<'a> Ended<'a> {
             text += &format!("{:9} {} of {} computed, {} done before{lost}\n", stage.word(), t.computed, t.planned, t.before);
         }
         if self.failed_count > 0 {
-            text += &failed_cases(self.failed_count, &self.campaign.dir);
+            text += &failed_cycles(self.failed_count, &self.campaign.dir);
             text += &self.reasons();
         }
         let size = HumanBytes(self.size_bytes);
@@ -106,18 +106,20 @@ pub(super) fn tally_json(ended: &Ended<'_>) -> String {
     format!("{answer:#}\n")
 }
 
-/// The number of failed cases, and the command that reruns them.
-pub(super) fn failed_cases(failures: usize, dir: &Path) -> String {
+/// The number of failed cycles, and the command that reruns them.
+pub(super) fn failed_cycles(failures: usize, dir: &Path) -> String {
     let them = if failures == 1 { "it" } else { "them" };
     format!(
-        "{} failed; `hysteron retry {}` reruns {them}.\nThe same spec and program give the same failure: follow the help of the error.\n",
-        counted(failures, "case"),
+        "{} failed. Follow the help of the error and change the spec: without a change, a cycle fails again.\n\
+         After a change of the program, `hysteron retry {}` reruns {them}.\n",
+        counted(failures, "cycle"),
         shell_path(dir)
     )
 }
 
-fn failures(campaign: &Campaign) -> Vec<(String, String)> {
-    let cycles = campaign.survey(Check::Sizes).cycles.into_iter();
+/// Failed cycles of a shard with their reasons.
+fn failures(campaign: &Campaign, shard: Shard) -> Vec<(String, String)> {
+    let cycles = campaign.survey(Check::Sizes).cycles.into_iter().filter(|(place, _)| shard.holds(campaign.cycles[*place].surface));
     let failed = cycles.filter_map(|(place, standing)| match standing {
         Standing::Failed(why) => Some((campaign.cycles[place].id.clone(), why)),
         _ => None,

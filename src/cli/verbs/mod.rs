@@ -81,11 +81,14 @@ fn performed(verb: &Verb) -> Result<u8, Fault> {
         Verb::Extract(campaign) => of_spec(campaign, (Stage::Extract, Stage::Extract), false),
         Verb::Cycle(campaign) => of_spec(campaign, (Stage::Cycle, Stage::Cycle), false),
         Verb::Aggregate { campaign, partial } => of_spec(campaign, (Stage::Aggregate, Stage::Aggregate), *partial),
-        Verb::Report { spec: Some(spec), campaign, open, .. } => {
+        Verb::Report { spec: Some(spec), compare, campaign, open, .. } if compare.is_empty() => {
             work::stages(spec, campaign, (Stage::Report, Stage::Report), (false, *open))
         }
-        Verb::Report { compare, campaign, open, .. } => work::compare(compare, campaign.output.out.as_deref(), campaign.output.json, *open),
-        Verb::Compare(asked) => work::compare(&asked.runs, asked.out.as_deref(), asked.json, asked.open),
+        Verb::Report { spec, compare, force, campaign, open } => {
+            let runs: Vec<PathBuf> = spec.iter().chain(compare).cloned().collect();
+            work::compare(&runs, campaign.output.out.as_deref(), *force, campaign.output.json, *open)
+        }
+        Verb::Compare(asked) => work::compare(&asked.runs, asked.out.as_deref(), asked.force, asked.json, asked.open),
         Verb::Show { folder, id } => show::show(folder, id),
         Verb::Plan { spec, output } => survey::plan(spec, output),
         Verb::Status { folder, watch } => survey::status(folder, *watch),

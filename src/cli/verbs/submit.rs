@@ -1,16 +1,18 @@
 //! `submit`: pending tasks as Slurm jobs; and the state of Slurm's queue for `status`.
 
+use super::ending::failed_cycles;
 use super::place::{open, told};
-use super::{BAD_SPEC, Fault, failed, make_folder, own_file, say};
-use crate::campaign::{Campaign, Stage, Standing};
+use super::{BAD_SPEC, FAILED_CASES, Fault, failed, make_folder, own_file, say};
+use crate::campaign::{Campaign, Stage, Standing, Survey};
 use crate::cli::OutputArguments;
-use crate::engines::slurm::{Job, Order, Queue, Sent, folder, jobs, script};
+use crate::engines::slurm::{EARLY_S, Job, Order, QUERY, Queue, Sent, folder, jobs, lead_s, script, time_limit_s};
 use crate::engines::{open_shards, usual_shards};
 use crate::stages;
 use crate::store::{Check, commit};
 use crate::text::{counted, shell_path, shell_quote, shown as path_shown};
 use serde_json::{Value, json};
-use std::io::Read as _;
+use std::collections::BTreeSet;
+use std::io::{Read as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Duration;
@@ -18,12 +20,21 @@ use std::time::Duration;
 /// What Slurm lets array indices go up to where it does not say.
 const USUAL_MOST: usize = 1001;
 
-pub(super) fn slurm(spec: &Path, output: &OutputArguments, shards: Option<u32>, task: (u16, &[String]), dry: bool) -> Result<u8, Fault> {
-    if let Some(option) = task.1.iter().find(|option| option.chars().any(char::is_control)) {
-        let text =
-            format!("error: --option {option:?} has a control character\nhelp: give one option of sbatch for each --option, on one line");
-        return Err(Fault { code: BAD_SPEC, text });
+/// Problem and help of an option that sbatch cannot read.
+fn option_fault(option: &str) -> Option<String> {
+    if option.chars().any(char::is_control) {
+        return Some(format!(
+            "error: --option {option:?} has a control character\nhelp: give one option of sbatch for each --option, on one line"
+        ));
     }
+    (!option.starts_with('-')).then(|| {
+        let option = shell_quote(&format!("--option=--{option}"));
+        format!("error: an option of sbatch begins with a hyphen\nhelp: write {option}")
+    })
+}
+
+pub(super) fn slurm(spec: &Path, output: &OutputArguments, shards: Option<u32>, task: (u16, &[String]), dry: bool) -> Result<u8, Fault> {
+    task.1.iter().try_for_each(|option| option_fault(option).map_or(Ok(()), |text| Err(Fault { code: BAD_SPEC, text })))?;
     let mut campaign = open(spec, output)?;
     campaign.dir = told(&campaign.dir)?;
     let shards = shards.map_or_else(|| usual_shards(&campaign), |count| count as usize);
@@ -45,14 +56,50 @@ pub(super) fn slurm(spec: &Path, output: &OutputArguments, shards: Option<u32>, 
     let waiting: Vec<_> =
         [Stage::Generate, Stage::Extract, Stage::Cycle].map(open).into_iter().filter(|(_, open)| !open.is_empty()).collect();
     if waiting.is_empty() && (queue.aggregates || survey.report == Standing::Done) {
-        let why = if queue.aggregates { "all pending tasks are in the queue" } else { "everything is done" };
-        say(&if output.json { jobs_json(&campaign, &[], &[]) } else { format!("Nothing to submit: {why}.\n") })?;
-        return Ok(0);
+        let failures = survey.cycles.iter().filter(|(_, standing)| matches!(standing, Standing::Failed(_))).count();
+        let text = match (queue.aggregates, failures) {
+            (true, _) => "Nothing to submit: all pending tasks are in the queue.\n".to_owned(),
+            (false, 0) => "Nothing to submit: everything is done.\n".to_owned(),
+            (false, _) => format!("Nothing to submit: all other tasks are done.\n{}", failed_cycles(failures, &campaign.dir)),
+        };
+        say(&if output.json { jobs_json(&campaign, &[], &[]) } else { text })?;
+        return Ok(if queue.aggregates || failures == 0 { 0 } else { FAILED_CASES });
     }
+    enough_processors(task.0)?;
+    short_limit(&campaign, task.1);
     let program = own_file()?;
     let queued = queue.jobs.iter().copied().collect();
     let order = Order { program, shards, waiting, most: most(), cpus: task.0, options: task.1.to_vec(), queued };
     if dry { show(&campaign, &order, output.json) } else { send(&campaign, &order, sent, output.json) }
+}
+
+/// Refuses more threads than any node has. Without a Slurm that answers, nothing is refused.
+fn enough_processors(wanted: u16) -> Result<(), Fault> {
+    let nodes = answer("sinfo", &["-h", "-o", "%c"]).unwrap_or_default();
+    let most = nodes.lines().filter_map(|line| line.trim().trim_end_matches('+').parse::<u64>().ok()).max();
+    // `8+`: some nodes of the group have more.
+    let known = most.filter(|_| !nodes.contains('+'));
+    match known.filter(|most| *most < u64::from(wanted)) {
+        Some(most) => Err(failed(format!("no node has {wanted} processors (--cpus {wanted})\nhelp: use --cpus {most} or less"))),
+        None => Ok(()),
+    }
+}
+
+/// Warns of a time limit within which the longest finished cycle could not be computed.
+fn short_limit(campaign: &Campaign, options: &[String]) {
+    let Some(limit) = time_limit_s(options) else { return };
+    let usable = limit.saturating_sub(lead_s(Some(limit)) + EARLY_S);
+    let longest = campaign.longest_cycle_s().unwrap_or(0.0);
+    // Time of a small cycle, where none is finished.
+    if longest.max(60.0) < usable as f64 {
+        return;
+    }
+    let of_cycles = if longest > 0.0 { format!("; the longest finished cycle took {longest:.0} s") } else { String::new() };
+    let text = format!(
+        "warning: a time limit of {limit} s may leave only {usable} s for computing{of_cycles}\n\
+         help: a cycle that does not finish within the limit is not requeued; use a longer --option=--time"
+    );
+    let _ = writeln!(std::io::stderr().lock(), "{text}");
 }
 
 /// The scripts of an order, each with its place.
@@ -96,8 +143,15 @@ fn send(campaign: &Campaign, order: &Order, mut sent: Vec<Sent>, json: bool) -> 
     }
     let mut numbers: Vec<String> = Vec::new();
     for job in &jobs {
-        let number = sbatch(&job.arguments(&folder, &numbers, &order.queued))?;
-        sent.push(Sent { job: number, stage: job.stage.word().to_owned(), first: job.first, shards: order.shards });
+        let number = sbatch(&job.arguments(&folder, &numbers, &order.queued), &numbers, &order.options)?;
+        sent.push(Sent {
+            job: number,
+            stage: job.stage.word().to_owned(),
+            first: job.first,
+            shards: order.shards,
+            tasks: job.tasks.clone(),
+            options: order.arguments(),
+        });
         // After each, so that none that was sent is forgotten.
         remember(campaign, &sent)?;
         if !json {
@@ -130,18 +184,29 @@ fn shown(arguments: &[String]) -> String {
     arguments.iter().map(|word| shell_quote(word)).collect::<Vec<_>>().join(" ")
 }
 
-fn sbatch(arguments: &[String]) -> Result<u64, Fault> {
-    let refused = |why: &str| failed(format!("cannot submit with `sbatch {}` (jobs submitted before are kept): {why}", shown(arguments)));
-    let output = Command::new("sbatch")
-        .args(arguments)
-        .output()
-        .map_err(|error| refused(&format!("{error}\nhelp: use a machine with the commands of Slurm, or --dry-run")))?;
+/// Submits a job, after those with these numbers.
+fn sbatch(arguments: &[String], before: &[String], options: &[String]) -> Result<u64, Fault> {
+    let kept = match before {
+        [] => "no job was submitted".to_owned(),
+        jobs => format!("submitted before: {}; `scancel {}` cancels them", jobs.join(", "), jobs.join(" ")),
+    };
+    let output = Command::new("sbatch").args(arguments).output().map_err(|error| {
+        failed(format!("cannot start sbatch: {error}; {kept}\nhelp: use a machine with the commands of Slurm, or --dry-run"))
+    })?;
     let said = String::from_utf8_lossy(&output.stdout);
     // `--parsable` says the number, and where there are several clusters a semicolon and which.
     let number = said.trim().split(';').next().and_then(|number| number.parse().ok());
-    number.filter(|_| output.status.success()).ok_or_else(|| match String::from_utf8_lossy(&output.stderr).trim() {
-        "" => refused("it returned no job number"),
-        why => refused(why),
+    number.filter(|_| output.status.success()).ok_or_else(|| {
+        let reasons = String::from_utf8_lossy(&output.stderr);
+        let reason = |line: &str| line.trim().trim_start_matches("sbatch: ").trim_start_matches("error: ").to_owned();
+        let reason = reasons.lines().map(reason).find(|line| !line.is_empty()).unwrap_or_else(|| "it returned no job number".to_owned());
+        let help = match options {
+            [] => format!("`sbatch {}` shows the error again", shown(arguments)),
+            options => {
+                format!("check {}", options.iter().map(|option| shell_quote(&format!("--option={option}"))).collect::<Vec<_>>().join(" "))
+            }
+        };
+        failed(format!("sbatch refused the job: {reason}; {kept}\nhelp: {help}"))
     })
 }
 
@@ -198,5 +263,62 @@ pub(super) fn queue(sent: &[Sent]) -> Option<Queue> {
     if sent.is_empty() {
         return Some(Queue::default());
     }
-    answer("squeue", &["--me", "-h", "-r", "-o", "%F %K %T"]).map(|text| Queue::parse(&text, sent))
+    answer("squeue", &QUERY).map(|text| Queue::parse(&text, sent))
+}
+
+/// Whether jobs other than the one that this program runs in are in the queue.
+pub(super) fn is_queued(sent: &[Sent]) -> bool {
+    let own = std::env::var("SLURM_ARRAY_JOB_ID").or_else(|_| std::env::var("SLURM_JOB_ID")).ok().and_then(|job| job.parse::<u64>().ok());
+    queue(sent).is_some_and(|queue| queue.jobs.iter().any(|job| Some(*job) != own))
+}
+
+/// The command that submits pending tasks of a campaign again, with the options of the last submission.
+pub(super) fn again(campaign: &Campaign, sent: &[Sent]) -> String {
+    let last = sent.iter().rev().find(|sent| !sent.options.is_empty());
+    let options: String =
+        last.map(|sent| sent.options.iter().map(|option| format!(" {}", shell_quote(option))).collect()).unwrap_or_default();
+    format!("hysteron submit {} --engine slurm{options}", shell_path(&campaign.dir))
+}
+
+/// Tasks of Slurm that have left the queue with work undone: name, state if Slurm still has it, log.
+pub(super) fn ended(campaign: &Campaign, sent: &[Sent], queue: &Queue, survey: &Survey) -> Vec<Ended> {
+    let mut found: Vec<Ended> = Vec::new();
+    let mut seen = BTreeSet::new();
+    let mut enter = |of: &Sent, task: Option<usize>| {
+        let name = task.map_or_else(|| of.job.to_string(), |task| format!("{}_{task}", of.job));
+        let state = queue.ended.get(&(of.job, task)).cloned();
+        found.push(Ended { name, stage: of.stage.clone(), state, log: folder(campaign).join("log").join(of.log(task)) });
+    };
+    // The last job of a shard counts.
+    for of in sent.iter().rev() {
+        let Some(stage) = Stage::ALL.into_iter().find(|stage| stage.word() == of.stage) else { continue };
+        if stage > Stage::Cycle {
+            let is_open = survey.report != Standing::Done && !queue.aggregates;
+            if is_open && seen.insert((of.stage.clone(), 0, 0)) {
+                enter(of, None);
+            }
+            continue;
+        }
+        let open = open_shards(campaign, survey, stage, of.shards);
+        for task in of.tasks.iter().rev() {
+            let shard = (of.stage.clone(), of.shards, of.first + task);
+            if open.contains(&shard.2) && !queue.shards.contains(&shard) && seen.insert(shard) {
+                enter(of, Some(*task));
+            }
+        }
+    }
+    found.reverse();
+    found
+}
+
+/// A task of Slurm that has left the queue with work undone.
+pub(super) struct Ended {
+    /// Job, or job and task.
+    pub(super) name: String,
+    /// The stage's word.
+    pub(super) stage: String,
+    /// State in Slurm's words, if it is still known.
+    pub(super) state: Option<String>,
+    /// File of its output.
+    pub(super) log: PathBuf,
 }

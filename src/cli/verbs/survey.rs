@@ -1,11 +1,12 @@
 //! Commands that show the state of a run: `plan` and `status`. They write nothing.
 
 use super::causes::causes;
-use super::ending::failed_cases;
+use super::ending::failed_cycles;
 use super::place::{folder, open, open_dir, resuming};
-use super::{Fault, say, submit};
-use crate::campaign::{Campaign, REPORT_PAGE, STATISTICS, Stage, Standing};
+use super::{Fault, failed, say, submit};
+use crate::campaign::{Campaign, REPORT_PAGE, STATISTICS, Stage, Standing, Survey};
 use crate::cli::{FolderArguments, OutputArguments};
+use crate::engines::slurm::{Queue, Sent};
 use crate::stages::{Outside, foreseen};
 use crate::stats::{Caution, significant};
 use crate::store::Check;
@@ -18,12 +19,18 @@ use std::time::Duration;
 /// Period of `status --watch`.
 const EVERY: Duration = Duration::from_secs(2);
 
+/// Observations of an empty queue after which `status --watch` ends.
+const MOST_IDLE: usize = 2;
+
+/// Tasks of Slurm that are listed.
+const LISTED: usize = 10;
+
 /// The state of every task of a campaign, by stage.
 type Units = Vec<(Stage, Vec<(String, Standing)>)>;
 
 pub(super) fn plan(spec: &Path, output: &OutputArguments) -> Result<u8, Fault> {
     let campaign = open(spec, output)?;
-    let units = units(&campaign);
+    let units = units(&campaign, campaign.survey(Check::Sizes));
     let outside = foreseen(&campaign);
     let text = if output.json {
         let mut answer = answer(&campaign, &units);
@@ -58,11 +65,18 @@ fn outside_text(of: &Outside, all: usize) -> String {
 
 pub(super) fn status(asked: &FolderArguments, watch: bool) -> Result<u8, Fault> {
     let dir = folder(asked)?;
+    let mut idle = 0;
     loop {
         let campaign = open_dir("show the state of", &dir)?;
-        let units = units(&campaign);
+        let survey = campaign.survey(Check::Sizes);
+        let slurm = Slurm::of(&campaign, &survey);
+        let units = units(&campaign, survey);
         let mut text = if asked.json {
-            format!("{:#}\n", queued(answer(&campaign, &units), &campaign))
+            let mut answer = answer(&campaign, &units);
+            if let Some(of_slurm) = slurm.answer() {
+                answer["slurm"] = of_slurm;
+            }
+            format!("{answer:#}\n")
         } else {
             describe(&campaign, &units, |_, _| String::new())
         };
@@ -70,9 +84,8 @@ pub(super) fn status(asked: &FolderArguments, watch: bool) -> Result<u8, Fault> 
             if let Some(why) = campaign.spec_fault() {
                 text += &format!("warning: {why}: the spec of this folder may differ from the one that was run\n");
             }
-            text += &in_queue(&campaign);
-            let does = |open| format!("{} pending; resume with `{}`.\n", counted(open, "task"), resuming(&campaign.dir));
-            text += &remaining(&units, &campaign, does);
+            text += &slurm.lines();
+            text += &remaining(&units, &campaign, |open| slurm.pending(open, &campaign));
         }
         if watch && !asked.json && std::io::stdout().is_terminal() {
             clear_screen();
@@ -81,7 +94,92 @@ pub(super) fn status(asked: &FolderArguments, watch: bool) -> Result<u8, Fault> 
         if !watch || !heard || left(&units) == 0 {
             return Ok(0);
         }
+        // A file system of a network may show the last files late.
+        idle = if slurm.is_idle() { idle + 1 } else { 0 };
+        if idle > MOST_IDLE {
+            return Err(failed("tasks are pending, but no job of the run is in the Slurm queue\nhelp: submit them with the command above"));
+        }
         std::thread::sleep(EVERY);
+    }
+}
+
+/// Jobs that were submitted for a campaign.
+enum Slurm {
+    /// None.
+    None,
+    /// The list of them cannot be read: why.
+    Unreadable(String),
+    /// With the queue, if it answers, and with tasks that have left it with work undone.
+    Sent { jobs: Vec<Sent>, queue: Option<Queue>, ended: Vec<submit::Ended> },
+}
+
+impl Slurm {
+    fn of(campaign: &Campaign, survey: &Survey) -> Self {
+        let jobs = match submit::sent(campaign) {
+            Ok(jobs) if jobs.is_empty() => return Self::None,
+            Ok(jobs) => jobs,
+            Err(fault) => return Self::Unreadable(fault.text),
+        };
+        let queue = submit::queue(&jobs);
+        let ended = queue.as_ref().map(|queue| submit::ended(campaign, &jobs, queue, survey)).unwrap_or_default();
+        Self::Sent { jobs, queue, ended }
+    }
+
+    /// Whether the queue answers that it has none of the jobs.
+    fn is_idle(&self) -> bool {
+        matches!(self, Self::Sent { queue: Some(queue), .. } if queue.jobs.is_empty())
+    }
+
+    /// Jobs and tasks by state, and tasks that have ended with work undone. Finished tasks are known by their files.
+    fn lines(&self) -> String {
+        let (jobs, queue, ended) = match self {
+            Self::None => return String::new(),
+            Self::Unreadable(why) => return format!("slurm     {why}\n"),
+            Self::Sent { jobs, queue, ended } => (jobs, queue, ended),
+        };
+        let Some(queue) = queue else {
+            return format!("slurm     {} submitted; the queue cannot be asked here\n", counted(jobs.len(), "job"));
+        };
+        let mut states: Vec<String> = queue.states.iter().map(|(state, count)| format!("{count} {state}")).collect();
+        if queue.restarts > 0 {
+            states.push(counted(queue.restarts, "restart"));
+        }
+        let mut text = format!("slurm     {}\n", if states.is_empty() { "nothing in the queue".to_owned() } else { states.join(", ") });
+        for task in ended.iter().take(LISTED) {
+            let state = task.state.as_deref().unwrap_or("has ended");
+            text += &format!("  {} job {} {state}, log {}\n", task.stage, task.name, shown(&task.log));
+        }
+        if ended.len() > LISTED {
+            text += &format!("  … and {} more\n", ended.len() - LISTED);
+        }
+        text
+    }
+
+    /// The number of pending tasks, and how to continue.
+    fn pending(&self, open: usize, campaign: &Campaign) -> String {
+        let open = counted(open, "task");
+        match self {
+            Self::Sent { queue: Some(queue), .. } if !queue.jobs.is_empty() => {
+                format!("{open} pending; jobs of the run are in the Slurm queue.\n")
+            }
+            Self::Sent { jobs, .. } => format!("{open} pending; submit with\n  {}\n", submit::again(campaign, jobs)),
+            Self::None | Self::Unreadable(_) => format!("{open} pending; resume with `{}`.\n", resuming(&campaign.dir)),
+        }
+    }
+
+    /// The same in JSON: numbers of tasks are null where the queue cannot be asked.
+    fn answer(&self) -> Option<Value> {
+        let Self::Sent { jobs, queue, ended } = self else { return None };
+        let ended: Vec<Value> = ended
+            .iter()
+            .map(|task| json!({ "job": task.name, "stage": task.stage, "state": task.state, "log": task.log.display().to_string() }))
+            .collect();
+        Some(json!({
+            "job_count": jobs.len(),
+            "tasks": queue.as_ref().map(|queue| &queue.states),
+            "restart_count": queue.as_ref().map(|queue| queue.restarts),
+            "ended": ended,
+        }))
     }
 }
 
@@ -92,9 +190,9 @@ fn remaining(units: &Units, campaign: &Campaign, does: impl Fn(usize) -> String)
     let failed = units.iter().map(|(_, units)| of_stage(units)).max().unwrap_or(0);
     match (left(units), failed) {
         (0, 0) => "Nothing is left to do.\n".to_owned(),
-        (0, failed) => format!("All other tasks are done. {}", failed_cases(failed, &campaign.dir)),
+        (0, failed) => format!("All other tasks are done. {}", failed_cycles(failed, &campaign.dir)),
         (open, 0) => does(open),
-        (open, failed) => does(open) + &failed_cases(failed, &campaign.dir),
+        (open, failed) => does(open) + &failed_cycles(failed, &campaign.dir),
     }
 }
 
@@ -103,8 +201,7 @@ fn clear_screen() {
     let _ = std::io::stdout().lock().write_all(b"\x1b[H\x1b[2J");
 }
 
-fn units(campaign: &Campaign) -> Units {
-    let survey = campaign.survey(Check::Sizes);
+fn units(campaign: &Campaign, survey: Survey) -> Units {
     let ids = || campaign.surfaces.iter().map(|unit| unit.id.clone());
     vec![
         (Stage::Generate, ids().zip(survey.surfaces).collect()),
@@ -115,46 +212,30 @@ fn units(campaign: &Campaign) -> Units {
     ]
 }
 
-/// The state of submitted jobs in Slurm's queue. Finished tasks are known by their files.
-fn in_queue(campaign: &Campaign) -> String {
-    let sent = match submit::sent(campaign) {
-        Ok(sent) if sent.is_empty() => return String::new(),
-        Ok(sent) => sent,
-        Err(fault) => return format!("slurm     {}\n", fault.text),
-    };
-    let Some(queue) = submit::queue(&sent) else {
-        return format!("slurm     {} submitted; the queue cannot be asked here\n", counted(sent.len(), "job"));
-    };
-    let counted: Vec<String> = queue.states.iter().map(|(state, count)| format!("{count} {state}")).collect();
-    format!("slurm     {}\n", if counted.is_empty() { "nothing in the queue".to_owned() } else { counted.join(", ") })
-}
-
 /// The number of pending tasks.
 fn left(units: &Units) -> usize {
     units.iter().flat_map(|(_, units)| units).filter(|(_, standing)| !matches!(standing, Standing::Done | Standing::Failed(_))).count()
+}
+
+/// Reason of a state, empty for a finished task.
+fn reason(standing: &Standing) -> &str {
+    standing.why().unwrap_or(match standing {
+        Standing::Planned => "not computed yet",
+        Standing::Interrupted => "continues from a checkpoint",
+        Standing::Stale => "computed from other parameters or by another stage version",
+        Standing::Done | Standing::Failed(_) | Standing::Missing(_) | Standing::Corrupt(_) => "",
+    })
 }
 
 fn answer(campaign: &Campaign, units: &Units) -> Value {
     let stages: Vec<_> = units
         .iter()
         .map(|(stage, units)| {
-            let units: Vec<_> =
-                units.iter().map(|(id, s)| json!({ "id": id, "state": s.word(), "why": s.why().unwrap_or_default() })).collect();
+            let units: Vec<_> = units.iter().map(|(id, s)| json!({ "id": id, "state": s.word(), "why": reason(s) })).collect();
             json!({ "stage": stage.word(), "units": units })
         })
         .collect();
     json!({ "name": campaign.spec.name, "dir": campaign.dir.display().to_string(), "stages": stages })
-}
-
-/// The same with the jobs that were submitted, if any: the number of tasks in each state, or null where the queue cannot be asked.
-fn queued(mut answer: Value, campaign: &Campaign) -> Value {
-    if let Ok(sent) = submit::sent(campaign)
-        && !sent.is_empty()
-    {
-        let states = submit::queue(&sent).map(|queue| queue.states);
-        answer["slurm"] = json!({ "job_count": sent.len(), "tasks": states });
-    }
-    answer
 }
 
 /// The number of tasks in each state by stage, with failed and damaged ones, and further lines on the tasks of a stage.

@@ -37,6 +37,8 @@ pub enum Attraction {
     },
     /// All points: the range of the law acts everywhere.
     Range,
+    /// No point: contact without adhesion.
+    None,
 }
 
 /// A state of the contact.
@@ -107,6 +109,28 @@ impl Problem {
             pressure: filled(points, 0.0)?,
             bonds: filled(points, if self.attraction == Attraction::Range { Bonding::Bonded } else { Bonding::Free })?,
         })
+    }
+
+    /// Stress of which the accuracy of an equilibrium is a fraction \[E*\]: the maximum tension; without adhesion, the pressure that flattens the longest
+    /// waves of the heights.
+    pub(super) fn stress(&self) -> f64 {
+        match self.attraction {
+            Attraction::None => self.range() / self.half_space.columns() as f64,
+            _ => self.law.strength(),
+        }
+    }
+
+    /// Largest change of the displacement in one iteration \[dx\]. Without adhesion the energy is convex, and there is no barrier to pass over.
+    pub(super) fn reach(&self) -> f64 {
+        match self.attraction {
+            Attraction::None => self.range(),
+            _ => self.law.reach(),
+        }
+    }
+
+    /// Range of the heights \[dx\].
+    pub(super) fn range(&self) -> f64 {
+        self.heights.iter().fold(0.0, |most: f64, z| most.max(-z))
     }
 
     /// Gap at a point.
@@ -206,14 +230,16 @@ impl Problem {
 
     /// Gradient of the energy without its mean, into `residual`, and the slopes of the law into `slopes`: (rms, largest magnitude) \[E*\].
     pub(super) fn residual(&self, state: &State, residual: &mut [f64], slopes: &mut [f64]) -> (f64, f64) {
-        residual.par_chunks_mut(PANEL).zip(slopes.par_chunks_mut(PANEL)).enumerate().with_min_len(grain(PANEL)).for_each(|(panel, (to, slopes))| {
-            for (k, (value, slope)) in to.iter_mut().zip(slopes).enumerate() {
-                let point = panel * PANEL + k;
-                let bond = self.bond(state.bonds[point], self.gap(state, point));
-                *value = state.pressure[point] + bond.tension;
-                *slope = bond.slope;
-            }
-        });
+        residual.par_chunks_mut(PANEL).zip(slopes.par_chunks_mut(PANEL)).enumerate().with_min_len(grain(PANEL)).for_each(
+            |(panel, (to, slopes))| {
+                for (k, (value, slope)) in to.iter_mut().zip(slopes).enumerate() {
+                    let point = panel * PANEL + k;
+                    let bond = self.bond(state.bonds[point], self.gap(state, point));
+                    *value = state.pressure[point] + bond.tension;
+                    *slope = bond.slope;
+                }
+            },
+        );
         remove_mean(residual);
         let square = super::sums::dot(residual, residual);
         ((square / residual.len() as f64).sqrt(), largest(residual))

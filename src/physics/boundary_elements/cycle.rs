@@ -48,7 +48,7 @@ pub struct Step {
     pub dissipated: f64,
     /// `∫F dΔ − ΔΠ` since the step before \[E* dx³\], its error included.
     pub imbalance: f64,
-    /// `∫F dΔ` since the branch began \[E* dx³\].
+    /// Work since the branch began \[E* dx³\]: the change of the energy, and `∫F dΔ` over steps with an event.
     pub work: f64,
     /// Iterations and transforms, those of halved steps included.
     pub iterations: u64,
@@ -171,7 +171,11 @@ pub fn run(
         let branches = settings.max_loads.len() + 1;
         while walk.at.branches < branches {
             let done = walk.at.branches;
-            if done == 0 { walk.load(keep, progress)? } else { walk.unload(done - 1, keep, progress)? }
+            if done == 0 {
+                walk.load(keep, progress)?;
+            } else {
+                walk.unload(done - 1, keep, progress)?;
+            }
             walk.at.branches += 1;
         }
         Ok(walk.at.cycle)
@@ -196,6 +200,7 @@ impl<'a> Walk<'a> {
         let start = match problem.attraction {
             Attraction::Bonded { nucleation, .. } => -nucleation,
             Attraction::Range => -problem.law.end_gap(),
+            Attraction::None => 0.0,
         };
         let at = match halfway {
             Some(halfway) => halfway,
@@ -219,7 +224,7 @@ impl<'a> Walk<'a> {
             let (state, step) = self.attempt(self.at.state.approach)?;
             self.accept(state, step);
         }
-        let farthest = FARTHEST * self.problem.heights.iter().fold(0.0, |most: f64, z| most.max(-z));
+        let farthest = FARTHEST * self.problem.range();
         let last = self.settings.max_loads.last().copied().unwrap_or(0.0);
         while let Some(max_load) = self.settings.max_loads.get(self.at.cycle.turning.len()).copied() {
             self.advance(1.0, Some(max_load))?;
@@ -315,8 +320,12 @@ impl<'a> Walk<'a> {
         let before = self.minimiser.waves.transforms;
         let mut iterations = 0;
         let outcome = loop {
-            let outcome = self.minimiser.minimise(self.problem, &mut state, self.settings.accuracy)?;
+            let mut outcome = self.minimiser.minimise(self.problem, &mut state, self.settings.accuracy)?;
             iterations += outcome.iterations as u64;
+            if !outcome.converged {
+                outcome = self.minimiser.newton(self.problem, &mut state, self.settings.accuracy)?;
+                iterations += outcome.iterations as u64;
+            }
             if !self.problem.update_bonds(&mut state, true) {
                 break outcome;
             }
@@ -345,6 +354,10 @@ impl<'a> Walk<'a> {
         let event = step.imbalance > EVENT * self.at.dissipated;
         let labels = label(self.problem, &state);
         step.regions = labels.count;
+        if !event {
+            // Without an event the work is the change of the energy, exactly; the load is integrated for comparison only.
+            step.work = self.at.last.work + step.totals.energy - self.at.last.totals.energy;
+        }
         if event {
             step.dissipated = step.imbalance;
             self.at.dissipated += step.imbalance;

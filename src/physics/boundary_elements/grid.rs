@@ -13,6 +13,8 @@ use rustfft::{Fft, FftPlanner};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+/// Stiffness that the spectral preconditioner adds, in E*/dx.
+const SHIFT: f64 = 0.15;
 /// Columns of wavevectors that are transformed together.
 const BLOCK: usize = 8;
 
@@ -43,6 +45,8 @@ pub enum Operator {
     Stiffness,
     /// Pressure to displacement, `1/K`, with 0 at `q = 0`.
     Compliance,
+    /// `1/(K + 0.15)`: the spectral preconditioner, to compare the split one with.
+    Shifted,
 }
 
 impl HalfSpace {
@@ -176,6 +180,7 @@ impl HalfSpace {
                     Operator::Stiffness => stiff,
                     Operator::Compliance if stiff > 0.0 => unit / stiff,
                     Operator::Compliance => 0.0,
+                    Operator::Shifted => unit / (stiff + SHIFT * self.points() as f64 * unit),
                 };
             }
         }

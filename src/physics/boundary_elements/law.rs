@@ -101,6 +101,9 @@ impl Crack {
         // A fixed point: the energy is nearly linear in the factor.
         for _ in 0..40 {
             let energy = -law.nodes[0][2] + 0.5 * SPRING * law.onset * law.onset;
+            if (energy - 1.0_f64).abs() < 1e-13 {
+                break;
+            }
             factor /= energy;
             law = Self::scaled(factor);
         }
@@ -182,12 +185,16 @@ impl Morse {
     fn at(&self, gap: f64) -> Bond {
         let e = (-gap / self.range).exp();
         let unit = self.work / self.range;
-        Bond { energy: self.work * e * (e - 2.0), tension: 2.0 * unit * e * (1.0 - e), slope: 2.0 * unit / self.range * e * (2.0 * e - 1.0) }
+        Bond {
+            energy: self.work * e * (e - 2.0),
+            tension: 2.0 * unit * e * (1.0 - e),
+            slope: 2.0 * unit / self.range * e * (2.0 * e - 1.0),
+        }
     }
 }
 
 impl Law {
-    /// Law of the band-limited crack for the work of adhesion `work` \[E* dx\], positive.
+    /// Law of the band-limited crack for the work of adhesion `work` \[E* dx\]; 0 for the wall alone.
     #[must_use]
     pub fn crack(work: f64) -> Self {
         Self::Crack(Crack::new(work))
@@ -238,8 +245,13 @@ impl Law {
         if gap >= 0.0 {
             return Bond::default();
         }
-        let bond = self.bonded(gap);
-        Bond { energy: bond.energy + self.work(), ..bond }
+        match self {
+            Self::Crack(_) => Bond { energy: 0.5 * SPRING * gap * gap, tension: SPRING * gap, slope: SPRING },
+            Self::Morse(law) => {
+                let bond = law.at(gap);
+                Bond { energy: bond.energy + law.work, ..bond }
+            }
+        }
     }
 
     /// Work of adhesion \[E* dx\].

@@ -6,7 +6,7 @@
 
 use super::contact::{Problem, State};
 use super::grid::{Operator, Waves};
-use super::sums::{PANEL, grain, add, dot, largest, remove_mean, sums};
+use super::sums::{PANEL, add, dot, grain, largest, remove_mean, sums};
 use crate::physics::PhysicsError;
 use crate::physics::memory::filled;
 use rayon::prelude::*;
@@ -43,13 +43,15 @@ pub struct Outcome {
 pub struct Minimiser {
     /// Waves of the operator.
     pub waves: Waves,
-    residual: Vec<f64>,
-    slopes: Vec<f64>,
+    pub(super) residual: Vec<f64>,
+    pub(super) slopes: Vec<f64>,
     previous: Vec<f64>,
-    direction: Vec<f64>,
-    response: Vec<f64>,
+    pub(super) direction: Vec<f64>,
+    pub(super) response: Vec<f64>,
     masked: Vec<f64>,
     pairs: Vec<Pair>,
+    /// Whether the points in contact have a preconditioner of their own; else that of the open points, shifted, is used for all.
+    pub split: bool,
 }
 
 struct Pair {
@@ -75,6 +77,7 @@ impl Minimiser {
             response: field()?,
             masked: field()?,
             pairs: Vec::new(),
+            split: true,
         })
     }
 
@@ -83,7 +86,7 @@ impl Minimiser {
     /// # Errors
     /// Not enough memory.
     pub fn minimise(&mut self, problem: &Problem, state: &mut State, accuracy: Accuracy) -> Result<Outcome, PhysicsError> {
-        let strength = problem.law.strength();
+        let strength = problem.stress();
         let mut outcome = Outcome::default();
         let mut free: Vec<Pair> = std::mem::take(&mut self.pairs);
         let mut pairs: Vec<Pair> = Vec::new();
@@ -166,13 +169,20 @@ impl Minimiser {
     }
 
     /// `direction ← M⁻¹ direction`.
-    fn precondition(&mut self, problem: &Problem) {
+    pub(super) fn precondition(&mut self, problem: &Problem) {
+        if !self.split {
+            problem.half_space.apply(Operator::Shifted, &self.direction, &mut self.response, &mut self.waves);
+            self.direction.copy_from_slice(&self.response);
+            return;
+        }
         let slopes = &self.slopes;
-        self.masked.par_chunks_mut(PANEL).zip(self.direction.par_chunks(PANEL)).enumerate().with_min_len(grain(PANEL)).for_each(|(panel, (to, from))| {
-            for (k, (x, y)) in to.iter_mut().zip(from).enumerate() {
-                *x = if slopes[panel * PANEL + k] > STIFF { 0.0 } else { *y };
-            }
-        });
+        self.masked.par_chunks_mut(PANEL).zip(self.direction.par_chunks(PANEL)).enumerate().with_min_len(grain(PANEL)).for_each(
+            |(panel, (to, from))| {
+                for (k, (x, y)) in to.iter_mut().zip(from).enumerate() {
+                    *x = if slopes[panel * PANEL + k] > STIFF { 0.0 } else { *y };
+                }
+            },
+        );
         problem.half_space.apply(Operator::Compliance, &self.masked, &mut self.response, &mut self.waves);
         let response = &self.response;
         self.direction.par_chunks_mut(PANEL).enumerate().with_min_len(grain(PANEL)).for_each(|(panel, part)| {
@@ -184,8 +194,8 @@ impl Minimiser {
     }
 
     /// Length of the step along the direction: at most the reach of the law, and such that the energy falls.
-    fn step_length(&self, problem: &Problem, state: &State) -> f64 {
-        let mut step = (problem.law.reach() / largest(&self.direction)).min(1.0);
+    pub(super) fn step_length(&self, problem: &Problem, state: &State) -> f64 {
+        let mut step = (problem.reach() / largest(&self.direction)).min(1.0);
         let [slope, linear, quadratic, start] = sums::<4>(self.direction.len(), |range, sum| {
             for k in range {
                 sum[0] += self.direction[k] * self.residual[k];

@@ -7,6 +7,7 @@ pub mod cycle;
 pub mod grid;
 pub mod law;
 pub mod minimise;
+mod newton;
 pub mod regions;
 pub mod resample;
 mod sums;

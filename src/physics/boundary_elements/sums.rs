@@ -37,12 +37,18 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 /// Largest magnitude.
 pub(super) fn largest(a: &[f64]) -> f64 {
-    a.par_chunks(PANEL).with_min_len(grain(PANEL)).map(|part| part.iter().fold(0.0_f64, |most, x| most.max(x.abs()))).reduce(|| 0.0, f64::max)
+    a.par_chunks(PANEL)
+        .with_min_len(grain(PANEL))
+        .map(|part| part.iter().fold(0.0_f64, |most, x| most.max(x.abs())))
+        .reduce(|| 0.0, f64::max)
 }
 
 /// `to ← to + factor × from`.
 pub(super) fn add(to: &mut [f64], factor: f64, from: &[f64]) {
-    to.par_chunks_mut(PANEL).zip(from.par_chunks(PANEL)).with_min_len(grain(PANEL)).for_each(|(a, b)| a.iter_mut().zip(b).for_each(|(x, y)| *x += factor * y));
+    to.par_chunks_mut(PANEL)
+        .zip(from.par_chunks(PANEL))
+        .with_min_len(grain(PANEL))
+        .for_each(|(a, b)| a.iter_mut().zip(b).for_each(|(x, y)| *x += factor * y));
 }
 
 /// Subtracts the mean.

@@ -4,7 +4,6 @@ mod johnson;
 mod operator;
 mod rough;
 mod sphere;
-mod study;
 mod trapping;
 
 use hysteron::physics::boundary_elements::contact::{Attraction, Problem};

@@ -16,7 +16,7 @@ fn val_plane_wave_of_the_half_space() {
             if kx >= rows {
                 continue;
             }
-            let (qx, qy) = (TAU * kx as f64 / rows as f64, TAU * ky as f64 / columns as f64);
+            let (qx, qy) = (TAU * kx as f64 / rows as f64, TAU * f64::from(ky) / columns as f64);
             let q = qx.hypot(qy);
             let u: Vec<f64> = (0..rows * columns).map(|k| (qx * (k / columns) as f64 + qy * (k % columns) as f64).cos()).collect();
             let mut p = vec![0.0; u.len()];

@@ -3,6 +3,7 @@
 use super::{BONDED, cycle, problem, sums};
 use hysteron::physics::boundary_elements::cycle::{Settings, run, unload_from};
 use hysteron::physics::boundary_elements::law::Law;
+use hysteron::physics::boundary_elements::minimise::Minimiser;
 use std::f64::consts::TAU;
 
 /// Five waves with fixed phases, in spacings.
@@ -12,20 +13,15 @@ fn wavy(n: usize, row: usize, column: usize) -> f64 {
     waves.iter().map(|(kx, ky, phase, height)| height * (unit * (kx * row as f64 + ky * column as f64) + phase).cos()).sum()
 }
 
-/// Events add up to the area of the loop to 1e-3, and none creates energy.
+/// Events add up to the area of the loop to 2e-3, the error of the trapezoid rule at this step, and none creates energy.
 #[test]
 fn law_events_add_up_to_the_loop() {
     let n = 48;
     let problem = problem(n, n, |r, c| wavy(n, r, c), Law::crack(0.02), BONDED);
-    let cycle = cycle(&problem, 0.02 * (n * n) as f64, 0.03, 3);
+    let cycle = cycle(&problem, 0.02 * (n * n) as f64, 0.01, 3);
     let (area, events, tension) = sums(&cycle);
-    let negative: f64 = cycle.steps.iter().map(|s| s.imbalance.min(0.0)).sum();
-    let small: f64 = cycle.steps.iter().filter(|s| s.dissipated == 0.0).map(|s| s.imbalance.max(0.0)).sum();
-    println!("negative {negative} small {small} worst {}", cycle.steps.iter().map(|s| s.imbalance).fold(0.0, f64::min));
-    for s in &cycle.steps { println!("STEP {} {} {} {} {}", s.reversal.is_some(), s.approach, s.totals.load, s.totals.energy, s.dissipated); }
-    println!("area {area} events {events} tension {tension} count {} steps {}", cycle.events.len(), cycle.steps.len());
     assert!(tension > 0.0 && cycle.events.len() > 3);
-    assert!((area - events).abs() < 1e-3 * area, "loop {area}, events {events}");
+    assert!((area - events).abs() < 2e-3 * area, "loop {area}, events {events}");
     assert!(cycle.steps.iter().all(|s| s.imbalance > -3e-4 * area), "no step creates energy");
     let turn = cycle.turning[0].last.totals.load / (n * n) as f64;
     assert!((turn / 0.02 - 1.0).abs() < 1e-6, "the reversal is at the load asked for, {turn}");
@@ -69,7 +65,42 @@ fn law_shift_and_transposition_change_nothing() {
     for (name, (other, events)) in
         [("shifted", loop_of(&|r, c| wavy(n, (r + 7) % n, (c + 19) % n))), ("transposed", loop_of(&|r, c| wavy(n, c, r)))]
     {
-        println!("{name}: {other} {area} {events} {count}");
         assert!((other / area - 1.0).abs() < 1e-6, "{name}: {other} and {area}");
+        assert_eq!(events, count, "{name}");
     }
+}
+
+/// L-BFGS with the split and with the spectral preconditioner and Newton's method reach one state: equal contact, load to 1e-5. The split one needs fewer transforms.
+#[test]
+fn law_three_minimisers_reach_one_state() {
+    let n = 48;
+    let problem = problem(n, n, |r, c| wavy(n, r, c), Law::crack(0.02), BONDED);
+    let state_of = |split: bool, newton: bool| {
+        let mut minimiser = Minimiser::new(&problem).unwrap();
+        minimiser.split = split;
+        let mut state = problem.apart(0.0).unwrap();
+        for k in 0..12 {
+            state.approach = 0.08 * f64::from(k);
+            loop {
+                let accuracy = super::accuracy(1e-6);
+                let outcome = if newton {
+                    minimiser.newton(&problem, &mut state, accuracy)
+                } else {
+                    minimiser.minimise(&problem, &mut state, accuracy)
+                };
+                assert!(outcome.unwrap().converged);
+                if !problem.update_bonds(&mut state, true) {
+                    break;
+                }
+            }
+            problem.settle_bonds(&mut state);
+        }
+        (problem.totals(&state), minimiser.waves.transforms)
+    };
+    let [split, spectral, newton] = [(true, false), (false, false), (true, true)].map(|(split, newton)| state_of(split, newton));
+    for (name, other) in [("spectral", spectral), ("Newton", newton)] {
+        assert_eq!(split.0.contact, other.0.contact, "{name}");
+        assert!((split.0.load / other.0.load - 1.0).abs() < 1e-5, "{name}: {} and {}", split.0.load, other.0.load);
+    }
+    assert!(split.1 < spectral.1, "transforms {} and {}", split.1, spectral.1);
 }

@@ -56,10 +56,8 @@ fn trapped(n: usize, law: impl Fn(f64) -> Law) -> f64 {
 fn val_lattice_trapping() {
     for n in [64, 128] {
         let crack = trapped(n, Law::crack);
-        println!("n {n}: crack {crack:.2e}");
         assert!(crack.abs() < 1e-3, "trapped {crack:e} Δγ at {n} points");
     }
     let short = trapped(128, |work| Law::morse(work, 0.5 * work.sqrt()));
-    println!("morse 0.5 {short:.2e}");
     assert!(short > 0.1, "trapped {short} Δγ with a range that is too short");
 }

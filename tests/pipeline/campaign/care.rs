@@ -210,7 +210,7 @@ fn e2e_a_failed_case_waits_for_retry() {
     assert_eq!(code(&strange), 1);
     assert!(stderr(&strange).contains(id), "{}", stderr(&strange));
     let status = stdout(&bench.look("status", &["--watch"]));
-    assert!(status.contains("All other tasks are done. 2 cases failed; `hysteron retry"), "it ends though failed cases are left: {status}");
+    assert!(status.contains("All other tasks are done. 2 cycles failed. "), "it ends though failed cases are left: {status}");
     assert!(!status.contains("Nothing is left") && status.contains(&format!("  {id} failed: ")), "{status}");
 }
 

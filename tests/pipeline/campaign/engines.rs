@@ -5,7 +5,7 @@ use crate::bench::{Bench, SPEC, code, files, stderr, stdout};
 use crate::python;
 use hysteron::campaign::{Campaign, Stage};
 use hysteron::engines::ro_crate::licence;
-use hysteron::engines::slurm::{Order, Queue, Sent, jobs, script};
+use hysteron::engines::slurm::{LEAD_S, Order, Queue, Sent, jobs, lead_s, script, time_limit_s};
 use hysteron::spec::Spec;
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -93,15 +93,23 @@ fn val_the_arguments_of_sbatch() {
 
 #[test]
 fn val_the_queue_by_hand() {
-    let sent = |job: u64, stage: &str, first: usize| Sent { job, stage: stage.to_owned(), first, shards: 9 };
+    let sent = |job: u64, stage: &str, first: usize| Sent {
+        job,
+        stage: stage.to_owned(),
+        first,
+        shards: 9,
+        tasks: Vec::new(),
+        options: Vec::new(),
+    };
     let known = [sent(5, "cycle", 0), sent(6, "cycle", 4), sent(7, "aggregate", 0)];
-    let queue = Queue::parse("5 1 RUNNING\n5 2 COMPLETED\n6 0 PENDING\n7 N/A PENDING\n8 1 RUNNING\nnonsense\n", &known);
+    let queue =
+        Queue::parse("5 1 RUNNING 2\n5 2 COMPLETED 0\n6 0 PENDING 1\n6 1 CANCELLED 0\n7 N/A PENDING\n8 1 RUNNING 9\nnonsense\n", &known);
     let shards: Vec<usize> = queue.shards.iter().map(|(_, _, shard)| *shard).collect();
     assert_eq!((shards, queue.aggregates), (vec![1, 4], true));
-    assert_eq!(
-        queue.states.iter().map(|(state, count)| format!("{count} {state}")).collect::<Vec<_>>(),
-        ["1 completed", "2 pending", "1 running"]
-    );
+    assert_eq!(queue.states.iter().map(|(state, count)| format!("{count} {state}")).collect::<Vec<_>>(), ["2 pending", "1 running"]);
+    let ended: Vec<String> = queue.ended.iter().map(|((job, task), state)| format!("{job} {task:?} {state}")).collect();
+    assert_eq!((queue.restarts, ended), (3, vec!["5 Some(2) COMPLETED".to_owned(), "6 Some(1) CANCELLED".to_owned()]));
+    assert_eq!((known[1].log(Some(3)), known[2].log(None)), ("cycle-6_3.log".to_owned(), "aggregate-7.log".to_owned()));
 }
 
 #[test]
@@ -128,6 +136,159 @@ fn e2e_an_option_of_several_lines_is_refused() {
         assert_eq!(code(&refused), 2, "{option:?}: {}", stdout(&refused));
         assert!(stderr(&refused).contains("has a control character\nhelp: ") && stdout(&refused).is_empty(), "{}", stderr(&refused));
     }
+}
+
+#[test]
+fn val_time_limits_as_slurm_reads_them() {
+    for (option, seconds) in [
+        ("--time=2", 120),
+        ("--time=0:10:00", 600),
+        ("--time=2:30", 150),
+        ("--time=1-2", 93_600),
+        ("--time=1-0:30", 88_200),
+        ("--time=1-0:0:5", 86_405),
+        ("-t 4:00:00", 14_400),
+        ("-t30", 1800),
+    ] {
+        assert_eq!(time_limit_s(&["--mem=4G".to_owned(), option.to_owned()]), Some(seconds), "{option}");
+    }
+    for option in ["--mem=4G", "--time=UNLIMITED", "--time=1:2:3:4", "--time-min=5", "--time="] {
+        assert_eq!(time_limit_s(&[option.to_owned()]), None, "{option}");
+    }
+    assert_eq!([None, Some(36_000), Some(120), Some(1)].map(lead_s), [LEAD_S, LEAD_S, 30, 1]);
+    let campaign = Campaign::new(Spec::parse(SMALL, "x.toml").unwrap(), PathBuf::from("/data/run"));
+    let order = Order { options: vec!["--time=2".to_owned()], ..order(vec![(Stage::Cycle, vec![0])], 1000) };
+    assert!(script(&campaign, Stage::Cycle, &order).contains("#SBATCH --signal=B:USR1@30\n"));
+    assert_eq!(order.arguments(), ["--shards=12", "--cpus=3", "--option=--time=2"]);
+    let last = script(&campaign, Stage::Aggregate, &order);
+    assert!(last.contains(" aggregate /data/run/campaign.toml --out /data/run --jobs 1 --quiet\n"), "{last}");
+    assert!(last.contains(" report /data/run/campaign.toml --out /data/run --jobs 1\n") && last.contains("USR1\n"), "{last}");
+}
+
+/// Commands in place of those of the system, each a shell script; the path with them.
+#[cfg(unix)]
+fn commands(bench: &Bench, scripts: &[(&str, &str)]) -> String {
+    use std::os::unix::fs::PermissionsExt as _;
+    let folder = bench.folder.path().join("bin");
+    std::fs::create_dir_all(&folder).unwrap();
+    for (name, script) in scripts {
+        std::fs::write(folder.join(name), format!("#!/bin/sh\n{script}\n")).unwrap();
+        std::fs::set_permissions(folder.join(name), std::fs::Permissions::from_mode(0o755)).unwrap();
+    }
+    format!("{}:{}", folder.display(), std::env::var("PATH").unwrap_or_default())
+}
+
+/// A task that is signalled before its time limit returns to the queue only if something was written since its start.
+#[cfg(unix)]
+#[test]
+fn e2e_a_job_without_progress_is_not_requeued() {
+    for (progress, requeues) in [(true, true), (false, false)] {
+        let bench = Bench::new(SMALL);
+        let campaign = Campaign::new(Spec::parse(SMALL, "x.toml").unwrap(), bench.out());
+        std::fs::create_dir_all(bench.out().join("slurm/log")).unwrap();
+        std::fs::create_dir_all(bench.out().join("receipts/cycle")).unwrap();
+        std::fs::create_dir_all(bench.out().join("cycles")).unwrap();
+        let at = |name: &str| bench.folder.path().join(name);
+        let write =
+            if progress { format!("sleep 0.05; : >'{}'", bench.out().join("receipts/cycle/x.json").display()) } else { String::new() };
+        // Ends with the signal as the program does.
+        let program = format!("{write}\ntrap 'exit 130' TERM\n: >'{}'\nwhile :; do sleep 0.05; done", at("started").display());
+        let path = commands(&bench, &[("program", &program), ("scontrol", &format!("echo \"$@\" >>'{}'", at("requeued").display()))]);
+        let order = Order { program: at("bin/program"), ..order(vec![(Stage::Cycle, vec![0])], 1000) };
+        std::fs::write(at("job"), script(&campaign, Stage::Cycle, &order)).unwrap();
+        let mut command = Command::new("bash");
+        command.arg(at("job")).env("PATH", path).env("SLURM_ARRAY_JOB_ID", "5").env("SLURM_ARRAY_TASK_ID", "2").env("HYSTERON_FIRST", "0");
+        let child = command.stdout(std::process::Stdio::piped()).stderr(std::process::Stdio::piped()).spawn().unwrap();
+        while !at("started").exists() {
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        assert!(Command::new("kill").args(["-USR1", &child.id().to_string()]).status().unwrap().success());
+        let ended = child.wait_with_output().unwrap();
+        assert_eq!(at("requeued").exists(), requeues, "{}", stderr(&ended));
+        if requeues {
+            assert_eq!(std::fs::read_to_string(at("requeued")).unwrap(), "requeue 5_2\n");
+        } else {
+            assert_eq!(code(&ended), 1);
+            assert!(stderr(&ended).contains("no task was finished within the time limit"), "{}", stderr(&ended));
+        }
+        assert_eq!(std::fs::read_dir(bench.out().join("slurm/log")).unwrap().count(), 0, "no mark is left");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn e2e_status_names_ended_jobs_and_the_command_that_submits_again() {
+    let bench = Bench::new(SMALL);
+    assert_eq!(code(&bench.verb("run", &["--until", "extract"])), 0);
+    std::fs::create_dir(bench.out().join("slurm")).unwrap();
+    let sent = r#"[{"job":31,"stage":"cycle","first":0,"shards":2,"tasks":[0,1],"options":["--shards=2","--option=--time=2"]},
+        {"job":32,"stage":"aggregate","first":0,"shards":2}]"#;
+    std::fs::write(bench.out().join("slurm/jobs.json"), sent).unwrap();
+    let look = |answer: &str, more: &[&str]| {
+        let path = commands(&bench, &[("squeue", &format!("printf '{answer}'"))]);
+        let mut command = Command::new("timeout");
+        command.args(["60", env!("CARGO_BIN_EXE_hysteron"), "status"]).arg(bench.out()).args(more).env("PATH", path).output().unwrap()
+    };
+    let running = stdout(&look("31 0 RUNNING 2\\n31 1 CANCELLED 0\\n32 N/A PENDING 0\\n", &[]));
+    let log = bench.out().join("slurm/log/cycle-31_1.log");
+    assert!(running.contains(&format!("  cycle job 31_1 CANCELLED, log {}\n", log.display())), "{running}");
+    assert!(running.contains("slurm     1 pending, 1 running, 2 restarts\n"), "{running}");
+    assert!(
+        running.contains("4 tasks pending; jobs of the run are in the Slurm queue.\n") && !running.contains("hysteron run"),
+        "{running}"
+    );
+    let ended = stdout(&look("31 1 CANCELLED 0\\n", &[]));
+    assert!(ended.contains("slurm     nothing in the queue\n") && ended.contains("  cycle job 31_0 has ended, log "), "{ended}");
+    assert!(ended.contains("  aggregate job 32 has ended, log ") && ended.contains("aggregate-32.log\n"), "{ended}");
+    let again = format!("pending; submit with\n  hysteron submit {} --engine slurm --shards=2 --option=--time=2\n", bench.out().display());
+    assert!(ended.contains(&again) && !ended.contains("hysteron run"), "{ended}");
+    let answer: Value = serde_json::from_str(&stdout(&look("31 1 CANCELLED 0\\n", &["--json"]))).unwrap();
+    assert_eq!((&answer["slurm"]["ended"][1]["job"], &answer["slurm"]["ended"][1]["state"]), (&"31_1".into(), &"CANCELLED".into()));
+    // Nobody computes, so that nothing is watched for.
+    let watched = look("", &["--watch"]);
+    assert_eq!(code(&watched), 1, "{}", stdout(&watched));
+    assert!(stderr(&watched).starts_with("error: tasks are pending, but no job of the run is in the Slurm queue"), "{}", stderr(&watched));
+    // The same jobs are the reason why a stage lacks its input.
+    let path = commands(&bench, &[("squeue", "printf '31 0 RUNNING 0\\n'")]);
+    let early = bench.command("aggregate").env("PATH", &path).output().unwrap();
+    assert_eq!(code(&early), 1);
+    assert!(stderr(&early).contains("of 2 tasks of the previous stage 2 not computed"), "{}", stderr(&early));
+    assert!(stderr(&early).contains("\nhelp: jobs of the run are in the Slurm queue"), "{}", stderr(&early));
+    // Of the job itself nothing is waited for.
+    let own = bench.command("aggregate").env("PATH", &path).env("SLURM_JOB_ID", "31").output().unwrap();
+    assert!(stderr(&own).contains("\nhelp: submit them with `hysteron submit "), "{}", stderr(&own));
+}
+
+#[cfg(unix)]
+#[test]
+fn e2e_refusals_of_sbatch_name_the_option() {
+    let bench = Bench::new(SMALL);
+    let refusing =
+        "echo 'sbatch: error: invalid partition specified: gpu' >&2\necho 'sbatch: error: Batch job submission failed' >&2\nexit 1";
+    let submit = |scripts: &[(&str, &str)], more: &[&str]| {
+        let path = commands(&bench, scripts);
+        bench.command("submit").args(["--engine", "slurm"]).args(more).env("PATH", path).output().unwrap()
+    };
+    let scripts = [("sbatch", refusing), ("sinfo", "echo 4; echo 2"), ("scontrol", "exit 1")];
+    let refused = submit(&scripts, &["--option=--partition=gpu"]);
+    assert_eq!(code(&refused), 1);
+    let wanted =
+        "error: sbatch refused the job: invalid partition specified: gpu; no job was submitted\nhelp: check --option=--partition=gpu\n";
+    assert_eq!(stderr(&refused), wanted);
+    let once = format!("if [ -e '{0}' ]; then {refusing}; fi\n: >'{0}'\necho 7", bench.folder.path().join("sent").display());
+    let second = submit(&[("sbatch", &once)], &[]);
+    assert!(stderr(&second).contains("; submitted before: 7; `scancel 7` cancels them\n"), "{}", stderr(&second));
+    let bench = Bench::new(SMALL);
+    let cpus =
+        bench.command("submit").args(["--engine", "slurm", "--cpus", "99"]).env("PATH", commands(&bench, &scripts)).output().unwrap();
+    assert_eq!(code(&cpus), 1);
+    assert!(stderr(&cpus).starts_with("error: no node has 99 processors (--cpus 99)\nhelp: use --cpus 4 or less"), "{}", stderr(&cpus));
+    let option = bench.verb("submit", &["--engine", "slurm", "--dry-run", "--option=time=0:10:00"]);
+    assert_eq!(code(&option), 2);
+    assert!(stderr(&option).ends_with("help: write --option=--time=0:10:00\n"), "{}", stderr(&option));
+    let short = bench.verb("submit", &["--engine", "slurm", "--dry-run", "--option=--time=2"]);
+    assert!(code(&short) == 0 && stderr(&short).starts_with("warning: a time limit of 120 s may leave only 30 s"), "{}", stderr(&short));
+    assert!(!bench.out().exists(), "nothing is written");
 }
 
 #[cfg(unix)]

@@ -41,7 +41,7 @@ fn e2e_a_folder_in_the_place_of_a_file_fails_its_task_alone() {
             let run = bench.verb("run", &[]);
             assert_eq!(code(&run), 3, "{name}, fresh {fresh}: {}", stderr(&run));
             assert!(stderr(&run).contains("a folder of this name exists\nhelp: remove or rename it"), "{name}: {}", stderr(&run));
-            assert!(stdout(&run).contains("1 case failed; "), "{name}: {}", stdout(&run));
+            assert!(stdout(&run).contains("1 cycle failed. "), "{name}: {}", stdout(&run));
             assert!(bench.out().join("report.html").is_file(), "{name}: the others went on");
             assert_eq!(code(&bench.verb("run", &[])), 3, "{name}: it stays failed");
             fs::remove_dir_all(&victim).unwrap();

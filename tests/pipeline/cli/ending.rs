@@ -19,12 +19,21 @@ fn e2e_a_run_ends_with_its_failures_time_and_size() {
     let said = stdout(&run);
     let listed = said.lines().filter(|line| line.starts_with("  H0.80_z6_r") && line.contains(": ")).count();
     assert_eq!(listed, 10, "{said}");
-    assert!(said.contains("12 cases failed; `hysteron retry ") && said.contains("  … and 2 more\n") && said.contains("Tabor"), "{said}");
+    assert!(said.contains("12 cycles failed. ") && said.contains("  … and 2 more\n") && said.contains("Tabor"), "{said}");
     let answer: serde_json::Value = serde_json::from_slice(&bench.verb("run", &["--json"]).stdout).unwrap();
     assert_eq!(answer["failures"].as_array().unwrap().len(), 12);
     assert!(answer["failures"][0]["why"].as_str().unwrap().contains("Tabor") && answer["elapsed_s"].as_f64().unwrap() > 0.0);
     let bytes: u64 = paths(&bench.out()).iter().map(|path| fs::metadata(path).unwrap().len()).sum();
     assert_eq!(answer["size_bytes"].as_u64().unwrap(), bytes);
+
+    // A shard lists its own failures.
+    let shard = stdout(&bench.verb("cycle", &["--shard", "0/4"]));
+    let listed = shard.lines().filter(|line| line.starts_with("  H0.80_z6_r") && line.contains(": ")).count();
+    assert!(listed == 3 && shard.contains("3 cycles failed. "), "{shard}");
+    // Failed cycles are not submitted again.
+    let submitted = bench.verb("submit", &["--engine", "slurm", "--dry-run"]);
+    assert_eq!(code(&submitted), 3, "{}", stderr(&submitted));
+    assert!(stdout(&submitted).starts_with("Nothing to submit: all other tasks are done.\n12 cycles failed. "), "{}", stdout(&submitted));
 
     let whole = Bench::new(SMALL);
     let said = stdout(&whole.verb("run", &["--until", "cycle"]));
@@ -113,4 +122,19 @@ fn e2e_colours_are_for_terminals_without_no_color() {
     assert!(stdout(&coloured).contains("\u{1b}[1;31merror:\u{1b}[0m the spec"), "{:?}", stdout(&coloured));
     let plain = stdout(&on_terminal("1").unwrap());
     assert!(plain.contains("error: ") && !plain.contains('\u{1b}'), "{plain:?}");
+}
+
+#[test]
+fn e2e_a_stage_without_its_input_names_what_is_lacking() {
+    let bench = Bench::new(SMALL);
+    let nothing = bench.verb("aggregate", &[]);
+    assert_eq!(code(&nothing), 1);
+    assert!(stderr(&nothing).starts_with("error: cannot run the stage aggregate: "), "{}", stderr(&nothing));
+    assert!(stderr(&nothing).contains("out has no campaign.toml\nhelp: ") && !bench.out().exists(), "{}", stderr(&nothing));
+    assert_eq!(code(&bench.verb("run", &["--until", "cycle"])), 0);
+    let cycle = fs::read_dir(bench.out().join("cycles")).unwrap().next().unwrap().unwrap().path();
+    fs::remove_file(cycle.join("steps.parquet")).unwrap();
+    let damaged = stderr(&bench.verb("aggregate", &["--set", "realizations=3"]));
+    let wanted = format!("in {}: of 3 tasks of the previous stage 1 not computed, 1 stale or damaged, for example ", bench.out().display());
+    assert!(damaged.contains(&wanted) && damaged.contains(" or aggregate the finished ones with --partial"), "{damaged}");
 }

@@ -33,6 +33,26 @@ fn e2e_compare_is_the_option_of_report() {
     assert_eq!(code(&reported), 0, "{}", stderr(&reported));
     assert_eq!(files(&own), files(&option));
     assert_eq!(code(&program(&["compare", text(&first)])), 2, "one run is not enough");
+    assert_eq!(code(&program(&["report", "--compare", text(&first)])), 2, "one run is not enough");
+    let mixed = one.folder.path().join("mixed");
+    let reported = program(&["report", text(&first), "--compare", text(&second), "--out", text(&mixed)]);
+    assert_eq!(code(&reported), 0, "{}", stderr(&reported));
+    assert_eq!(files(&own), files(&mixed));
+    let said = stdout(&reported);
+    assert!(said.contains("loss ") && said.contains(" ± ") && said.contains(" against "), "{said}");
+    // A comparison is not replaced by that of other runs, nor is a run compared with itself.
+    let twice = program(&["compare", text(&first), text(&first), "--out", text(&own)]);
+    assert!(code(&twice) == 1 && stderr(&twice).contains(" with itself\nhelp: "), "{}", stderr(&twice));
+    let turned = |more: &[&str]| program(&[&["compare", text(&second), text(&first), "--out", text(&own)], more].concat());
+    assert!(code(&turned(&[])) == 1 && stderr(&turned(&[])).contains(" holds the comparison of other runs\nhelp: "));
+    assert_eq!(files(&own), files(&option));
+    assert_eq!(code(&program(&["compare", text(&first), text(&second), "--out", text(&own)])), 0, "the same runs");
+    assert_eq!(code(&turned(&["--force"])), 0);
+    let exported = program(&["export", "csv", text(&own)]);
+    assert_eq!(code(&exported), 0, "{}", stderr(&exported));
+    let csv = fs::read_to_string(own.join("csv/comparison.csv")).unwrap();
+    let heading = csv.lines().next().unwrap();
+    assert!(heading.starts_with("group,campaign,") && heading.contains(",magnification,"), "{heading}");
     assert_eq!(code(&program(&["report", "--compare", text(&first), text(&second), "--set", "seed=1"])), 2);
 }
 

@@ -305,7 +305,7 @@ fn e2e_a_scan_that_cannot_be_taken_fails_alone() {
     for _ in 0..2 {
         let run = bench.verb("run", &[]);
         assert_eq!(code(&run), 3, "{}", stderr(&run));
-        assert!(stdout(&run).contains("2 cases failed"), "{}", stdout(&run));
+        assert!(stdout(&run).contains("2 cycles failed"), "{}", stdout(&run));
         assert!(stdout(&run).contains("0/1") && stdout(&run).contains("1/1"), "{}", stdout(&run));
     }
     let cases = read_table(&bench.out().join("statistics/cases.parquet"), &schema::CASES).unwrap();
@@ -318,7 +318,7 @@ fn e2e_a_scan_that_cannot_be_taken_fails_alone() {
         "{}",
         stdout(&status)
     );
-    assert!(stdout(&status).contains("All other tasks are done. 2 cases failed; "), "{}", stdout(&status));
+    assert!(stdout(&status).contains("All other tasks are done. 2 cycles failed. "), "{}", stdout(&status));
     let retried = bench.look("retry", &[]);
     assert!(code(&retried) == 3 && stderr(&retried).matches(" failed: ").count() == 2, "{}", stderr(&retried));
     // The files are put right: they are other ones, and computed.

@@ -49,6 +49,25 @@ fn val_a_fault_looks_like_this() {
 }
 
 #[test]
+fn val_a_symbol_is_answered_with_its_key() {
+    for (table, symbol, help) in [
+        ("surface", "zeta", "ζ is `magnification`"),
+        ("surface", "hrms", "h_rms is `rms_height_m`"),
+        ("cycle", "step", "the output step Δ/h_rms is `approach_step`"),
+        ("cycle", "zeta", "ζ is `magnification` in [surface]"),
+        ("material", "delta_gamma", "Δγ is `work_of_adhesion_j_m2`"),
+        ("material", "youngs_modulus", "E* = E/(1 − ν²) is `contact_modulus_pa`"),
+        ("material", "\"Δγ\"", "Δγ is `work_of_adhesion_j_m2`"),
+    ] {
+        let rendered = refused(&format!("name = \"x\"\n[{table}]\n{symbol} = 1\n"));
+        assert!(rendered.ends_with(&format!("= help: {help}\n")), "{rendered}");
+    }
+    // A symbol names an existing key.
+    let top = refused("name = \"x\"\nf_max = 1\n");
+    assert!(top.ends_with("= help: F_max/(E* A0) is `max_load` in [cycle]\n"), "{top}");
+}
+
+#[test]
 fn val_an_empty_spec_says_so() {
     for text in ["", "\n\n", "# only a comment\n"] {
         let rendered = refused(text);
