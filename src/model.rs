@@ -101,6 +101,33 @@ choice! {
     }
 }
 choice! {
+    /// Method of a contact cycle.
+    Method {
+        /// Asperity model: interacting JKR asperities.
+        Asperities = "asperities",
+        /// Boundary elements: the rough surface on a grid, with adhesion at every point.
+        BoundaryElements = "boundary_elements",
+    }
+}
+choice! {
+    /// Attraction between the surfaces of boundary elements.
+    Attraction {
+        /// JKR limit, range 0: contact forms where the surfaces touch and opens from its edges.
+        Bonded = "bonded",
+        /// Morse law with the range ρ at every point.
+        Range = "range",
+    }
+}
+choice! {
+    /// Gap at which a point of boundary elements comes into contact.
+    Nucleation {
+        /// Zero gap, plain JKR.
+        Touch = "touch",
+        /// Wu's critical gap (Eq 3) at the median radius of the asperities.
+        Wu = "wu",
+    }
+}
+choice! {
     /// How contact spots act on one another.
     Interaction {
         /// Displacement field of a JKR contact spot outside its contact (Eqs 6 and 7).

@@ -1,8 +1,8 @@
 //! The keys of all units of a spec.
 
-use super::{CYCLE, EXTRACT, GENERATE, Stage, plain, read_by_cycle, seed_of, surface_reads};
+use super::{CYCLE, EXTRACT, GENERATE, Stage, case_reads, cycle_reads, read_by_cycle, seed_of, surface_reads};
 use crate::keys::{canonical, key_of_text};
-use crate::spec::{Case, CaseParams, ModelParams, Spec, SurfaceParams};
+use crate::spec::{Case, CaseParams, Spec, SurfaceParams};
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::path::Path;
@@ -62,16 +62,15 @@ impl Hashed {
         let hash = |((case, kind), count): ((&Case, &usize), &u32)| {
             let params = &case.params;
             // Whatever the realizations have in common is put into words once.
-            let read = read_by_cycle(&params.model);
-            let [material, model, cycle] = [plain(&params.material), plain(&read), plain(&params.cycle)];
-            let rest = format!("\"cycle\":{},\"material\":{},\"model\":{}", canonical(&cycle), canonical(&material), canonical(&model));
+            let rest = canonical(&cycle_reads(params));
+            // "asperities" is the first of the sorted names.
             let key = |(_, asperities): &(String, String)| {
-                key_of_text(Stage::Cycle.word(), CYCLE, &format!("{{\"asperities\":\"{asperities}\",{rest}}}"))
+                key_of_text(Stage::Cycle.word(), CYCLE, &format!("{{\"asperities\":\"{asperities}\",{}", rest.trim_start_matches('{')))
             };
             HashedCase {
                 name: readable(&params.surface),
-                whole: case_key(spec, params, &params.model),
-                in_cycle: case_key(spec, params, &read),
+                whole: case_key(spec, params),
+                in_cycle: case_key(spec, &read_by_cycle(params)),
                 surface: *kind,
                 cycles: surfaces[*kind].par_iter().take(*count as usize).map(key).collect(),
             }
@@ -81,12 +80,9 @@ impl Hashed {
     }
 }
 
-/// Key of the parameters of a case, with this model.
-fn case_key(spec: &Spec, params: &CaseParams, model: &ModelParams) -> String {
-    let mut reads = plain(params);
-    reads["surface"] = surface_reads(spec, &params.surface);
-    reads["model"] = plain(model);
-    key_of_text("case", 1, &canonical(&reads))
+/// Key of the parameters of a case.
+fn case_key(spec: &Spec, params: &CaseParams) -> String {
+    key_of_text("case", 1, &canonical(&case_reads(spec, params)))
 }
 
 /// The readable part of ids: of a measured surface the name of its file, without its folder and its ending.

@@ -17,7 +17,7 @@ pub use shard::Shard;
 pub use standing::{Standing, Survey};
 
 use crate::keys::{canonical, key, key_of_text, preimage, short};
-use crate::spec::{Case, MEASURED, ModelParams, Spec, SurfaceParams};
+use crate::spec::{Case, CaseParams, MEASURED, Spec, SurfaceParams};
 use hashed::Hashed;
 use serde_json::{Map, Value, json};
 use std::collections::{HashMap, HashSet};
@@ -364,12 +364,8 @@ impl Campaign {
     pub fn cycle_preimages(&self, unit: &CycleUnit) -> Map<String, Value> {
         let (surface, params) = (&self.surfaces[unit.surface], &self.cases[unit.case].case.params);
         let mut preimages = self.surface_preimages(surface, Stage::Extract);
-        let reads = json!({
-            "asperities": surface.asperities_key,
-            "material": plain(&params.material),
-            "model": plain(&read_by_cycle(&params.model)),
-            "cycle": plain(&params.cycle),
-        });
+        let mut reads = cycle_reads(params);
+        reads["asperities"] = surface.asperities_key.as_str().into();
         enter(&mut preimages, Stage::Cycle, CYCLE, &reads);
         preimages
     }
@@ -419,11 +415,41 @@ fn state(standing: &Standing) -> &'static str {
     }
 }
 
-/// Of the model's choices what a cycle reads: all but the slips of the estimate beside it.
-fn read_by_cycle(model: &ModelParams) -> ModelParams {
-    let mut model = model.clone();
-    model.as_printed.retain(|slip| slip.in_contact());
-    model
+/// The parameters of a case without the errata that only analytical estimates read.
+fn read_by_cycle(params: &CaseParams) -> CaseParams {
+    let mut params = params.clone();
+    params.model.as_printed.retain(|slip| slip.in_contact());
+    params
+}
+
+/// Inputs of a cycle in its key, besides the asperities. Those of the asperity model are the same as before there was another method.
+fn cycle_reads(params: &CaseParams) -> Value {
+    let params = read_by_cycle(params);
+    let [material, mut model, mut cycle] = [plain(&params.material), plain(&params.model), plain(&params.cycle)];
+    if params.by_elements() {
+        model = json!({ "method": model["method"] });
+        remove(&mut cycle, "approach_step");
+        return json!({ "material": material, "model": model, "boundary_elements": plain(&params.boundary_elements), "cycle": cycle });
+    }
+    remove(&mut model, "method");
+    json!({ "material": material, "model": model, "cycle": cycle })
+}
+
+/// Parameters of a case in its identity. Those of the asperity model are the same as before there was another method.
+fn case_reads(spec: &Spec, params: &CaseParams) -> Value {
+    let mut reads = plain(params);
+    reads["surface"] = surface_reads(spec, &params.surface);
+    if !params.by_elements() {
+        remove(&mut reads, "boundary_elements");
+        remove(&mut reads["model"], "method");
+    }
+    reads
+}
+
+fn remove(value: &mut Value, name: &str) {
+    if let Some(members) = value.as_object_mut() {
+        members.remove(name);
+    }
 }
 
 /// The seed that a surface reads: a measured one reads none.

@@ -294,7 +294,10 @@ pub fn find_measured(
 }
 
 /// A field with its mirror images: twice the side, and periodic.
-pub(super) fn mirrored(heights: ArrayView2<'_, f64>) -> Result<Array2<f64>, PhysicsError> {
+///
+/// # Errors
+/// Not enough memory.
+pub fn mirrored(heights: ArrayView2<'_, f64>) -> Result<Array2<f64>, PhysicsError> {
     let n = heights.nrows();
     let fold = |k: usize| if k < n { k } else { 2 * n - 1 - k };
     let mut whole = zeros((2 * n, 2 * n))?;

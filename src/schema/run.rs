@@ -13,9 +13,16 @@ const MAX_LOAD: Column = real(
     "Normal load F_max/(E* A0) at the load reversal from which this unloading starts; null for loading, which is common to all load reversals",
 )
 .or_null();
+/// Null in tables that were written before there was another method.
+const METHOD: Column = text("method", "Method: \"asperities\" or \"boundary_elements\"; null in tables of earlier versions (asperities)").or_null();
 const STEP: Column = index("step", "Number of the output step along the path of the cycle, from 0");
 const ASPERITY: Column =
     index("asperity_id", "Number of the asperity in the table asperities; larger numbers are merged contacts, listed in the table merged");
+const ASPERITY_OR_REGION: Column = index(
+    "asperity_id",
+    "Number of the asperity in the table asperities; larger numbers are merged contacts, listed in the table merged; null for boundary elements",
+)
+.or_null();
 
 /// The summits of one surface.
 pub static ASPERITIES: Table = Table {
@@ -59,28 +66,29 @@ pub static STEPS: Table = Table {
             "m",
             "Mean penetration Δ of the rigid rough surface; 0 where the highest asperity touches the undeformed half-space",
         ),
-        real("load_n", "N", "Normal load F, summed over all contact spots; positive in compression, negative in tension").from("Eq 1"),
+        real("load_n", "N", "Normal load F, summed over all contact spots or grid points; positive in compression, negative in tension")
+            .from("Eq 1"),
         real(
             "least_load_n",
             "N",
             "Minimum normal load since the previous step, including the states directly before and after events, where the load is discontinuous",
         ),
-        real("area_m2", "m^2", "Contact area A, summed over the discs of all contact spots"),
+        real("area_m2", "m^2", "Contact area A, summed over the discs of all contact spots, or over the grid points in contact"),
         real(
             "area_union_m2",
             "m^2",
-            "Area of the union of all contact discs, in which overlaps count once; null where it was not computed",
+            "Area of the union of all contact discs, in which overlaps count once; equal to area_m2 for boundary elements; null where it was not computed",
         )
         .or_null(),
-        count("contact_count", "Asperities in contact"),
+        count("contact_count", "Asperities in contact, or connected contact regions of boundary elements"),
         count("covered_count", "Asperities absorbed by a larger contact spot, without load and area of their own"),
-        count("jump_in_count", "Asperities that jumped into contact since the previous step"),
-        count("jump_off_count", "Asperities that jumped out of contact since the previous step"),
+        count("jump_in_count", "Asperities that jumped into contact, or regions formed, since the previous step"),
+        count("jump_off_count", "Asperities that jumped out of contact, or regions lost, since the previous step"),
         count("cover_count", "Asperities absorbed since the previous step"),
         count("uncover_count", "Asperities released from absorption since the previous step"),
-        count("snap_count", "Snap-through events since the previous step: transitions to another equilibrium with the same contacts"),
-        count("merge_count", "Pairs of contacts merged since the previous step"),
-        count("split_count", "Merged contacts split since the previous step"),
+        count("snap_count", "Snap-through events since the previous step: transitions to another equilibrium with the same contacts; regions grown or shrunk of boundary elements"),
+        count("merge_count", "Pairs of contacts merged, or regions joined, since the previous step"),
+        count("split_count", "Merged contacts split, or regions parted, since the previous step"),
         count("held_count", "Frozen asperities: state kept in this step, because it alternated between absorbed and released"),
         count("touching_count", "Contact spots that overlap a neighbour: distance below the sum of the contact radii"),
         real("dissipated_j", "J", "Energy dissipated in the events since the previous step"),
@@ -89,26 +97,32 @@ pub static STEPS: Table = Table {
             "J",
             "Work done on the contact since the start of the branch: integral of the normal load over the mean penetration",
         ),
-        real("residual_m", "m", "Residual of the equilibrium: maximum over all contact spots of |local penetration - JKR penetration|")
+        real("residual_m", "m", "Residual of the equilibrium: maximum over all contact spots of |local penetration - JKR penetration|; null for boundary elements")
+            .or_null()
             .from("Eqs 2, 5"),
         real(
             "drift_m",
             "m",
-            "Predictor residual: maximum residual of the global problem before its solution, since the previous step; the error of the local solutions after events",
-        ),
+            "Predictor residual: maximum residual of the global problem before its solution, since the previous step; the error of the local solutions after events; null for boundary elements",
+        )
+        .or_null(),
         real(
             "stability",
             "1",
-            "Smallest eigenvalue of the tangent of penetration with respect to contact radius, each column over its diagonal element: 1 without interaction, 0 at a limit point, negative for an unstable equilibrium",
-        ),
+            "Smallest eigenvalue of the tangent of penetration with respect to contact radius, each column over its diagonal element: 1 without interaction, 0 at a limit point, negative for an unstable equilibrium; null for boundary elements",
+        )
+        .or_null(),
         flag("converged", "True if the residual is below the tolerance"),
         count("iteration_count", "Iterations of Newton's method and of relaxation since the previous step, in local and global problems"),
         count("pair_evaluation_count", "Evaluations of the displacement of one contact by another since the previous step"),
         count("product_count", "Matrix-vector products of the tangent since the previous step, one per Krylov iteration"),
-        count("transform_count", "Fourier transforms of a mesh since the previous step"),
+        count("transform_count", "Fourier transforms of a mesh or grid since the previous step"),
         real("load", "1", "Normal load F/(E* A0); positive in compression"),
         real("area", "1", "Contact area A/A0, summed over the discs of all contact spots"),
         real("penetration", "1", "Mean penetration Δ/h_rms"),
+        METHOD,
+        real("residual", "1", "Residual of the equilibrium of boundary elements: rms of the pressure residual over the maximum tension; null for asperities")
+            .or_null(),
     ],
 };
 
@@ -117,7 +131,7 @@ pub static CONTACTS: Table = Table {
     name: "contacts",
     version: 1,
     file: "cycles/<id>/contacts.parquet",
-    doc: "One row per asperity in contact or absorbed, at each step selected by cycle.contacts.",
+    doc: "One row per asperity in contact or absorbed, or per connected contact region of boundary elements, at each step selected by cycle.contacts.",
     columns: &[
         CYCLE_ID,
         CYCLE_CASE_ID,
@@ -125,16 +139,22 @@ pub static CONTACTS: Table = Table {
         STEP,
         BRANCH,
         MAX_LOAD,
-        ASPERITY,
+        ASPERITY_OR_REGION,
         text("state", "\"contact\" or \"covered\" (absorbed); free asperities have no row"),
-        real("contact_radius_m", "m", "Contact radius a; 0 if absorbed").from("Eq 2"),
+        real("contact_radius_m", "m", "Contact radius a; 0 if absorbed; sqrt(area/π) of a region").from("Eq 2"),
         real("load_n", "N", "Normal load of the contact spot; positive in compression, 0 if absorbed").from("Eq 1"),
-        real("penetration_m", "m", "Local penetration δ, including the displacement by all other contacts; null if absorbed")
+        real("penetration_m", "m", "Local penetration δ, including the displacement by all other contacts; null if absorbed, and for a region")
             .or_null()
             .from("Eq 5"),
-        real("interaction_m", "m", "Normal displacement of the half-space by all other contacts; null if absorbed")
+        real("interaction_m", "m", "Normal displacement of the half-space by all other contacts; null if absorbed, and for a region")
             .or_null()
             .from("Eqs 6-8"),
+        METHOD,
+        real("x_m", "m", "Centroid x of a region on the periodic square; null for asperities").or_null(),
+        real("y_m", "m", "Centroid y of a region on the periodic square; null for asperities").or_null(),
+        real("area_m2", "m^2", "Area of a region; null for asperities").or_null(),
+        real("perimeter_m", "m", "Length of the edge of a region (Crofton's formula); null for asperities").or_null(),
+        count("summit_count", "Asperities of the table asperities inside a region, those of mirror images included; null for asperities").or_null(),
     ],
 };
 
@@ -200,7 +220,7 @@ pub static EVENTS: Table = Table {
     name: "events",
     version: 1,
     file: "cycles/<id>/events.parquet",
-    doc: "One row per change of state of an asperity.",
+    doc: "One row per change of state of an asperity, or per sudden change of the contact of boundary elements.",
     columns: &[
         CYCLE_ID,
         CYCLE_CASE_ID,
@@ -210,9 +230,9 @@ pub static EVENTS: Table = Table {
         MAX_LOAD,
         text(
             "kind",
-            "Kind of event: \"jump_in\", \"jump_off\" (out of contact), \"cover\" (absorption), \"uncover\" (release), \"merge\", \"split\", or \"snap\" (snap-through: same contacts, new equilibrium)",
+            "Kind of event: \"jump_in\", \"jump_off\" (out of contact), \"cover\" (absorption), \"uncover\" (release), \"merge\", \"split\", or \"snap\" (snap-through: same contacts, new equilibrium); of boundary elements, change of the region whose area changed most: \"formed\", \"lost\", \"joined\", \"parted\", \"grown\" or \"shrunk\"",
         ),
-        ASPERITY,
+        ASPERITY_OR_REGION,
         real("approach_m", "m", "Mean penetration Δ at the event, with the zero of the table steps").from("Eqs 3, 4"),
         index("avalanche_id", "Number of the avalanche, from 0 along the path; all events caused by one instability share it"),
         real("load_before_n", "N", "Normal load before the event, summed over all contact spots"),
@@ -224,5 +244,6 @@ pub static EVENTS: Table = Table {
             "J",
             "Energy dissipated in the event and the relaxation that follows; 0 for further events of the same relaxation",
         ),
+        METHOD,
     ],
 };

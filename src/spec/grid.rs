@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use toml::Spanned;
 
+use super::elements::{check_elements, without_unread};
 use super::fault::Faults;
 use super::files::named;
 use super::keys::{GENERATED, KEYS, find};
@@ -30,7 +31,7 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
     if sweeps.is_empty() {
         complete(&mut base, &origins);
         check(&base, &origins, &[], faults);
-        cases.add(BASE, base.clone());
+        cases.add(BASE, without_unread(&base));
     }
     for sweep in &read {
         let swept: Vec<usize> = sweep.axes.iter().map(|axis| axis.key).collect();
@@ -43,7 +44,7 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
             }
             complete(&mut params, &origins);
             check(&params, &origins, &swept, faults);
-            cases.add(&sweep.name, params);
+            cases.add(&sweep.name, without_unread(&params));
         }
     }
     complete(&mut base, &origins);
@@ -159,7 +160,7 @@ fn check_measured(case: &CaseParams, origins: &[Origin], swept: &[usize], faults
         let message = format!("`surface.detrend` is \"{word}\", and `surface.periodic` is true: the removed shape is not periodic");
         faults.add(&span, message, "write detrend = \"mean\" (the default of a periodic surface), or periodic = false".to_owned());
     }
-    if !case.surface.periodic && case.model.boundary == Boundary::Periodic {
+    if !case.surface.periodic && case.model.boundary == Boundary::Periodic && !case.by_elements() {
         let boundary = written(find("model", "boundary"), origins);
         let span = boundary.or_else(|| written(find("surface", "periodic"), origins)).or_else(|| written(find("surface", "file"), origins));
         if let Some(span) = span {
@@ -170,7 +171,7 @@ fn check_measured(case: &CaseParams, origins: &[Origin], swept: &[usize], faults
 }
 
 /// Where a value is written, if it is.
-fn written(key: Option<usize>, origins: &[Origin]) -> Option<Range<usize>> {
+pub(super) fn written(key: Option<usize>, origins: &[Origin]) -> Option<Range<usize>> {
     match &origins[key?] {
         Origin::Written(span) => Some(span.clone()),
         Origin::Default | Origin::Faulty => None,
@@ -180,6 +181,9 @@ fn written(key: Option<usize>, origins: &[Origin]) -> Option<Range<usize>> {
 /// Checks what depends on two values of a case.
 fn check(case: &CaseParams, origins: &[Origin], swept: &[usize], faults: &mut Faults<'_>) {
     let surface = &case.surface;
+    if case.by_elements() {
+        check_elements(case, origins, faults);
+    }
     if surface.is_measured() {
         check_measured(case, origins, swept, faults);
         return;

@@ -1,7 +1,10 @@
 //! The keys: what each takes, and where its value goes.
 
 use super::{CaseParams, Value};
-use crate::model::{Amplitudes, Boundary, Choice, Coalescence, Detrend, Interaction, JumpIn, KeptContacts, Missing, Normalization, Slip};
+use crate::model::{
+    Amplitudes, Attraction, Boundary, Choice, Coalescence, Detrend, Interaction, JumpIn, KeptContacts, Method, Missing, Normalization,
+    Nucleation, Slip,
+};
 
 /// One key of a table.
 pub(super) struct Key {
@@ -178,6 +181,7 @@ pub(super) static KEYS: &[Key] = &[
     key!(material.interaction_range_m, "ε", "Range of adhesion. It enters the Tabor parameter and the jump-in criterion of Wu."; number Limits {
         low: 1e-12, above: false, high: 1e-5, unit: " m", unit_name: "metres", slip: Some((1e-9, "nanometres")), note: "",
     }),
+    key!(model.method, "", "Method of the cycle. Boundary elements read none of the other keys of this table, and refuse `boundary = \"isolated\"` for periodic surfaces."; word Method),
     key!(model.interaction, "", "Elastic interaction between contact spots."; word Interaction),
     key!(model.boundary, "", "Surroundings of the nominal square."; word Boundary),
     key!(model.coalescence, "", "Rule for a contact spot that grows over the centre of another asperity."; word Coalescence),
@@ -186,11 +190,27 @@ pub(super) static KEYS: &[Key] = &[
         |slips: &Vec<Slip>| Value::Words(slips.iter().map(|slip| slip.word()).collect()),
         Words(w) => w.iter().map(|word| Slip::from_word(word)).collect::<Option<Vec<_>>>()),
     key!(model.allow_low_tabor, "", "With `jump_in = \"wu\"`, a Tabor parameter below 2 is an error. If true, it is a warning."; flag),
+    key!(boundary_elements.points, "", "Grid points along a side. 0: the smallest power of two with 16 points per shortest wavelength, at most 4096."; count 0 to 4096, &[],
+        "grid points along a side; 0 for 16 points per shortest wavelength; at most 4096"),
+    key!(boundary_elements.attraction, "", "Attraction between the surfaces."; word Attraction),
+    key!(boundary_elements.range_m, "ρ", "Range of the Morse law with `attraction = \"range\"`. 0: 0.8 sqrt(Δγ dx/E*) at the grid spacing dx."; number Limits {
+        low: 0.0, above: false, high: 1e-3, unit: " m", unit_name: "metres", slip: Some((1e-9, "nanometres")),
+        note: "ρ, range of the Morse law; 0 for 0.8 sqrt(Δγ dx/E*)",
+    }),
+    key!(boundary_elements.nucleation, "", "Gap at which a point comes into contact, with `attraction = \"bonded\"`."; word Nucleation),
+    key!(boundary_elements.approach_step, "", "Step of the mean penetration, as a fraction of h_rms. Steps with large events are halved up to three times."; number Limits {
+        low: 1e-3, above: false, high: 1.0, unit: "", unit_name: "", slip: None,
+        note: "step of Δ/h_rms of boundary elements; default 0.03",
+    }),
+    key!(boundary_elements.precision, "", "Tolerance of an equilibrium: rms residual of the pressure over the maximum tension."; number Limits {
+        low: 1e-10, above: false, high: 1e-2, unit: "", unit_name: "", slip: None,
+        note: "rms residual over the maximum tension; default 1e-4",
+    }),
     key!(cycle.max_load, "F_max/(E* A0)", "Load reversals. One loading path passes all of them, and one unloading path starts at each."; Kind::Numbers(Limits {
         low: 0.0, above: true, high: 0.2, unit: "", unit_name: "", slip: None,
         note: "F_max/(E* A0), maximum load, dimensionless; typical 0.004 to 0.015; near full contact above about 0.07",
     }, 64), |loads: &Vec<f64>| Value::Numbers(loads.clone()), Numbers(loads) => Some(loads.clone())),
-    key!(cycle.approach_step, "", "Interval of the mean penetration between output steps, as a fraction of h_rms."; number Limits {
+    key!(cycle.approach_step, "", "Interval of the mean penetration between output steps of the asperity model, as a fraction of h_rms."; number Limits {
         low: 1e-5, above: false, high: 1.0, unit: "", unit_name: "", slip: None,
         note: "maximum output step of Δ/h_rms; default 0.01; 1e-5 gives about 500 000 steps per branch",
     }),
@@ -198,7 +218,7 @@ pub(super) static KEYS: &[Key] = &[
 ];
 
 /// The tables that hold the keys, in the order in which they are shown.
-pub(super) const TABLES: [&str; 4] = ["surface", "material", "model", "cycle"];
+pub(super) const TABLES: [&str; 5] = ["surface", "material", "model", "boundary_elements", "cycle"];
 
 /// Keys of `[surface]` that describe a measured surface.
 pub const MEASURED: [&str; 7] = ["file", "dataset", "periodic", "pixel_m", "unit", "missing", "detrend"];

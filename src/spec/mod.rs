@@ -3,6 +3,7 @@
 //! The text is TOML. Every key has its row in one table (`keys.rs`): its type, its bounds, and where its value goes. The walker
 //! refuses what no row names, and collects every fault with its place, so that one reading of the answer mends the whole file.
 
+mod elements;
 mod fault;
 mod files;
 mod grid;
@@ -26,9 +27,10 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use crate::model::{
-    Amplitudes, Boundary, Coalescence, Detrend, Interaction, JumpIn, KeptContacts, Material, Missing, Normalization, Slip, Slips,
+    Amplitudes, Boundary, Coalescence, Detrend, Interaction, JumpIn, KeptContacts, Material, Method, Missing, Normalization, Slip, Slips,
 };
 
+pub use elements::{ElementParams, FEWEST_PER_WAVELENGTH, MAX_ELEMENTS, MOST_MESH_NUMBER, PER_WAVELENGTH, mesh_number};
 pub use crate::text::quoted;
 pub use fault::{Fault, Place, SpecErrors};
 pub use json_schema::{SCHEMA_FILE, json_schema};
@@ -89,8 +91,18 @@ pub struct CaseParams {
     pub material: Material,
     /// The choices that the model leaves open.
     pub model: ModelParams,
+    /// Boundary elements; the defaults for the asperity model.
+    pub boundary_elements: ElementParams,
     /// The loading and unloading path.
     pub cycle: CycleParams,
+}
+
+impl CaseParams {
+    /// True if boundary elements compute the case.
+    #[must_use]
+    pub fn by_elements(&self) -> bool {
+        self.model.method == Method::BoundaryElements
+    }
 }
 
 /// A self-affine surface on a square, or a measured one.
@@ -145,6 +157,8 @@ impl SurfaceParams {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ModelParams {
+    /// Method of the cycle.
+    pub method: Method,
     /// Elastic interaction between contacts.
     pub interaction: Interaction,
     /// Boundary condition of the square.
@@ -248,6 +262,7 @@ impl Default for Material {
 impl Default for ModelParams {
     fn default() -> Self {
         Self {
+            method: Method::Asperities,
             interaction: Interaction::Spots,
             boundary: Boundary::Periodic,
             coalescence: Coalescence::Cover,

@@ -27,7 +27,7 @@ pub(super) struct AxisDraft {
 }
 
 /// What a sweep takes.
-const IN_SWEEP: [&str; 5] = ["name", "surface", "material", "model", "cycle"];
+const IN_SWEEP: [&str; 6] = ["name", "surface", "material", "model", "boundary_elements", "cycle"];
 
 /// Reads the sweeps.
 pub(super) fn sweeps(written: &Spanned<DeValue<'_>>, span: &Range<usize>, read: &mut Vec<Option<SweepDraft>>, faults: &mut Faults<'_>) {

@@ -45,7 +45,7 @@ pub(super) enum Origin {
 pub(super) type Entry<'a, 't> = (&'a str, Range<usize>, &'a Spanned<DeValue<'t>>);
 
 /// What the top of a spec takes.
-const TOP: [&str; 9] = ["name", "seed", "realizations", "surface", "material", "model", "cycle", "sweep", "files"];
+const TOP: [&str; 10] = ["name", "seed", "realizations", "surface", "material", "model", "boundary_elements", "cycle", "sweep", "files"];
 
 /// The entries of a table in the order written.
 pub(super) fn entries<'a, 't>(table: &'a DeTable<'t>) -> Vec<Entry<'a, 't>> {

@@ -20,7 +20,7 @@ mod theories;
 mod trust;
 
 pub use comparison::{Comparison, compare};
-pub use cycle::unload_again;
+pub use cycle::{Units, unload_again, unload_elements_again};
 pub use measure::{Imported, measure};
 pub use sampling::sampled;
 pub use statistics::{Outside, foreseen};
@@ -113,6 +113,12 @@ pub enum StageError {
         path: PathBuf,
         /// What it has.
         kept: String,
+    },
+    /// A state at a load reversal that cannot be stored.
+    #[error("cannot store the state at a load reversal: {what}\nhelp: report this")]
+    State {
+        /// Why.
+        what: String,
     },
     /// A campaign that is to be compared with itself.
     #[error("cannot compare {} with itself\nhelp: name each run once", shown(path))]
@@ -407,7 +413,8 @@ fn cycles(campaign: &Campaign, task: &Task, watch: &dyn Watch) -> Result<Tally, 
     let asperities = |unit: &CycleUnit| campaign.standing(&surface(unit).asperities(), task.check);
     require((campaign, Stage::Cycle), &wanted, asperities, |unit| surface(unit).id.clone())?;
     // The longest first, so that the threads end together.
-    wanted.sort_by_key(|(job, _)| std::cmp::Reverse(surface(job.of).params.magnification));
+    let by_elements = |unit: &CycleUnit| campaign.cases[unit.case].case.params.by_elements();
+    wanted.sort_by_key(|(job, _)| std::cmp::Reverse((by_elements(job.of), surface(job.of).params.magnification)));
     let mut tally = each(
         campaign,
         (Stage::Cycle, planned - failed),

@@ -8,6 +8,21 @@ use super::StatsError;
 use super::cycle::scan;
 use crate::schema::EVENT_KINDS;
 
+/// Number of the asperity of an event of boundary elements, which has none.
+const NO_ASPERITY: i64 = -1;
+
+/// The kind of asperity event that corresponds to a kind of event of boundary elements; other words as they are.
+fn asperity_word(word: &str) -> &str {
+    match word {
+        "formed" => "jump_in",
+        "lost" => "jump_off",
+        "joined" => "merge",
+        "parted" => "split",
+        "grown" | "shrunk" => "snap",
+        other => other,
+    }
+}
+
 /// One event.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Event {
@@ -122,12 +137,12 @@ impl Events {
     }
 }
 
-const WHOLES: [&str; 3] = ["step", "avalanche_id", "asperity_id"];
+const WHOLES: [&str; 2] = ["step", "avalanche_id"];
 const WORDS: [&str; 2] = ["branch", "kind"];
 const REALS: [&str; 7] = ["max_load", "approach_m", "load_before_n", "load_after_n", "area_before_m2", "area_after_m2", "energy_lost_j"];
 
 fn read(path: &Path) -> PolarsResult<DataFrame> {
-    let columns: Vec<Expr> = WHOLES.iter().chain(&WORDS).chain(&REALS).map(|name| col(*name)).collect();
+    let columns: Vec<Expr> = WHOLES.iter().chain(&["asperity_id"]).chain(&WORDS).chain(&REALS).map(|name| col(*name)).collect();
     let order = SortMultipleOptions::default().with_maintain_order(true);
     scan(path)?.select(columns).sort(["avalanche_id"], order).collect()
 }
@@ -139,8 +154,9 @@ fn rows(frame: &DataFrame) -> PolarsResult<Vec<Result<Event, String>>> {
     let [max_load, approach, load_before, load_after, area_before, area_after, energy] = REALS.map(reals);
     let (max_load, approach, energy) = (max_load?, approach?, energy?);
     let (load_before, load_after, area_before, area_after) = (load_before?, load_after?, area_before?, area_after?);
-    let [step, avalanche, asperity] = WHOLES.map(wholes);
-    let (step, avalanche, asperity) = (step?, avalanche?, asperity?);
+    let [step, avalanche] = WHOLES.map(wholes);
+    let (step, avalanche) = (step?, avalanche?);
+    let asperity: Vec<i64> = frame.column("asperity_id")?.i64()?.iter().map(|id| id.unwrap_or(NO_ASPERITY)).collect();
     let at = |values: &[Option<f64>], row: usize| values.get(row).copied().flatten();
     let number = |values: &[Option<f64>], row: usize| at(values, row).unwrap_or(f64::NAN);
     let words = frame.column("branch")?.str()?.iter().zip(frame.column("kind")?.str()?.iter());
@@ -152,13 +168,13 @@ fn rows(frame: &DataFrame) -> PolarsResult<Vec<Result<Event, String>>> {
             ("unloading", Some(_)) => false,
             _ => return Err(format!("hold a branch {branch:?} with max_load {max_load:?}; loading has none, unloading has one")),
         };
-        let kind = EVENT_KINDS.iter().position(|known| *known == word);
+        let kind = EVENT_KINDS.iter().position(|known| *known == asperity_word(word));
         Ok(Event {
             step: step.get(row).copied().unwrap_or_default(),
             loading,
             max_load,
             kind: kind.ok_or_else(|| format!("hold the kind {word:?}; there are: {}", EVENT_KINDS.join(", ")))?,
-            asperity_id: asperity.get(row).copied().unwrap_or_default(),
+            asperity_id: asperity.get(row).copied().unwrap_or(NO_ASPERITY),
             approach_m: number(&approach, row),
             avalanche_id: avalanche.get(row).copied().unwrap_or_default(),
             load_before_n: number(&load_before, row),

@@ -1,7 +1,7 @@
 //! A unit on its way, as bytes that only the program reads: with the key of the unit and a hash, so that neither another unit's nor torn ones are taken
 //! for it.
 
-use super::commit::commit_bytes;
+use super::commit::{Written, commit_bytes};
 use super::error::StoreError;
 use std::io::Read as _;
 use std::path::Path;
@@ -23,8 +23,16 @@ fn seal(bytes: &[u8]) -> blake3::Hash {
 /// # Errors
 /// As [`commit_bytes`].
 pub fn write_halfway(path: &Path, key: &str, bytes: &[u8]) -> Result<(), StoreError> {
+    write_state(path, key, bytes).map(drop)
+}
+
+/// The same for a state that a finished unit keeps; [`read_halfway`] reads it.
+///
+/// # Errors
+/// As [`commit_bytes`].
+pub fn write_state(path: &Path, key: &str, bytes: &[u8]) -> Result<Written, StoreError> {
     let whole = [key.as_bytes(), seal(bytes).to_hex().as_bytes(), bytes].concat();
-    commit_bytes("keep what is needed to go on in", path, &whole).map(drop)
+    commit_bytes("keep what is needed to go on in", path, &whole)
 }
 
 /// True if `path` begins as one of the unit `key` does. Whether it is whole is seen when it is read.

@@ -176,11 +176,11 @@ pub fn write_tamaas(path: &Path, heights: ArrayView2<'_, f64>, size_m: [f64; 2])
 const TAMAAS_FIELD: &str = "surface";
 
 /// Runs code of the HDF5 library and puts its error into words at once, while its error stack still exists.
-fn library<T>(work: impl FnOnce() -> Result<T, Cause>) -> Result<T, Cause> {
+pub(super) fn library<T>(work: impl FnOnce() -> Result<T, Cause>) -> Result<T, Cause> {
     fenced(work).map_err(|cause| cause.to_string().into())
 }
 
-fn options() -> FileBuilder {
+pub(super) fn options() -> FileBuilder {
     let mut options = File::with_options();
     // Format 1.10: its metadata have checksums, so that damage is an error and not another surface. It is also the
     // upper bound, so that the file does not change with the library.
@@ -195,7 +195,7 @@ fn options() -> FileBuilder {
     options
 }
 
-fn open(path: &Path) -> Result<File, Cause> {
+pub(super) fn open(path: &Path) -> Result<File, Cause> {
     // HDF5 says "unable to open file" of whatever is wrong; the operating system knows better.
     let about = fs::metadata(path)?;
     if about.is_dir() {

@@ -215,7 +215,7 @@ pub(super) fn read(file: &File) -> Result<SurfaceHeader, Cause> {
     })
 }
 
-fn write_number<T: H5Type>(place: &Location, name: &str, value: T) -> Result<(), Cause> {
+pub(super) fn write_number<T: H5Type>(place: &Location, name: &str, value: T) -> Result<(), Cause> {
     Ok(place.new_attr::<T>().create(name)?.write_scalar(&value)?)
 }
 

@@ -128,7 +128,7 @@ fn e2e_keys_of_the_guide_exist() {
             let path: String = span.chars().take_while(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || "._".contains(*c)).collect();
             let Some((table, name)) = path.split_once('.') else { continue };
             // `model.md` is a page.
-            if ["surface", "material", "model", "cycle"].contains(&table) && !["md", "rs", "h5"].contains(&name) {
+            if ["surface", "material", "model", "boundary_elements", "cycle"].contains(&table) && !["md", "rs", "h5"].contains(&name) {
                 count += 1;
                 assert!(known.contains(&path), "{}: `{span}` is not a key of a spec", page.name);
             }
@@ -169,7 +169,8 @@ fn law_the_stage_of_a_key_reads_it() {
     let spec = |text: &str| Spec::parse(text, "x.toml").unwrap_or_else(|errors| panic!("{errors}"));
     let digest = "0".repeat(64);
     let measured = format!("name = \"x\"\nsurface.file = \"a.h5\"\nmodel.boundary = \"isolated\"\nfiles = {{ \"a.h5\" = \"{digest}\" }}");
-    let campaigns = ["name = \"x\"", &measured].map(|text| Campaign::new(spec(text), PathBuf::from("x")));
+    let elements = "name = \"x\"\nsurface.magnification = 8\nmodel.method = \"boundary_elements\"";
+    let campaigns = ["name = \"x\"", &measured, elements].map(|text| Campaign::new(spec(text), PathBuf::from("x")));
     let preimages = campaigns.map(|campaign| campaign.cycle_preimages(&campaign.cycles[0]));
     let page = reference();
     for path in keys() {

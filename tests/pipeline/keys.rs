@@ -75,3 +75,34 @@ fn law_cases_that_differ_beside_the_cycle_share_it() {
     assert_eq!(folders(&distinct), folders(&campaign.cycles));
     assert_eq!(campaign.cases.iter().map(|case| &case.id).collect::<BTreeSet<_>>().len(), 5);
 }
+
+#[test]
+fn reg_ids_of_the_asperity_model() {
+    // Cases and cycles of runs before there was another method: their files are still those of the same spec.
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("pipelines/paper.toml");
+    let campaign = Campaign::new(Spec::read(path).unwrap(), PathBuf::from("out"));
+    let cases: Vec<&str> = campaign.cases.iter().map(|case| case.id.as_str()).collect();
+    assert_eq!(cases[..3], ["H0.80_z128-6adbcc12", "H0.80_z64-f3e3216c", "H0.80_z128-ff1e5233"]);
+    assert_eq!(campaign.cycles[0].id, "H0.80_z128_r00-b334d472");
+}
+
+#[test]
+fn law_a_cycle_reads_the_keys_of_its_method() {
+    let base = campaign("method = \"boundary_elements\"");
+    let asperities = campaign("");
+    assert_eq!(keys(&base).0, keys(&asperities).0, "the same surfaces");
+    assert!(keys(&base).1.iter().zip(keys(&asperities).1).all(|(a, b)| *a != b), "other cycles");
+    let with = |lines: &str| campaign(&format!("method = \"boundary_elements\"\n{lines}"));
+    for unread in ["coalescence = \"merge\"", "interaction = \"none\"", "jump_in = \"jkr\"", "[cycle]\napproach_step = 0.02"] {
+        assert_eq!(keys(&with(unread)), keys(&base), "{unread}");
+    }
+    let mut seen = BTreeSet::from([keys(&base).1.concat()]);
+    let read = ["points = 256", "attraction = \"range\"", "nucleation = \"wu\"", "approach_step = 0.05", "precision = 1e-3"];
+    for line in read {
+        let other = with(&format!("[boundary_elements]\n{line}"));
+        assert_eq!(keys(&other).0, keys(&base).0, "{line}");
+        assert!(seen.insert(keys(&other).1.concat()), "{line}: a cycle of its own");
+    }
+    let preimage = &with("").cycle_preimages(&base.cycles[0])["cycle"];
+    assert_eq!(preimage["reads"]["boundary_elements"]["nucleation"], "touch", "explained field by field");
+}

@@ -1,5 +1,6 @@
 //! The spec: what it takes, what it refuses, and in which words.
 
+mod elements;
 mod faults;
 mod mutations;
 mod rules;

@@ -132,6 +132,20 @@ pub struct Halfway {
     tensest: Option<(f64, Map, Vec<Region>)>,
 }
 
+impl Halfway {
+    /// Steps so far.
+    #[must_use]
+    pub fn steps(&self) -> &[Step] {
+        &self.cycle.steps
+    }
+
+    /// State of the last step.
+    #[must_use]
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+}
+
 struct Walk<'a> {
     problem: &'a Problem,
     settings: &'a Settings,

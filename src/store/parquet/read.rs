@@ -43,13 +43,17 @@ pub(super) fn rows(path: &Path, table: &'static Table) -> Result<Frame, Cause> {
         check_identity(table, &own_metadata(reader.metadata())?)?;
         check_columns(table, reader.schema())?;
         let claimed = check_size(reader.metadata())?;
+        let present: Vec<bool> = table.columns.iter().map(|column| reader.schema().field_with_name(column.name).is_ok()).collect();
         let mut columns: Vec<ColumnData> = table.columns.iter().map(|column| empty(column.kind)).collect();
         for batch in reader.build()? {
             let batch = batch?;
-            for (data, array) in columns.iter_mut().zip(batch.columns()) {
+            let written = columns.iter_mut().zip(&present).filter(|(_, present)| **present).map(|(data, _)| data);
+            for (data, array) in written.zip(batch.columns()) {
                 append(data, array)?;
             }
         }
+        let rows = usize::try_from(claimed)?;
+        columns.iter_mut().zip(&present).filter(|(_, present)| !**present).for_each(|(data, _)| fill(data, rows));
         let mut builder = Frame::of(table);
         for (column, data) in table.columns.iter().zip(columns) {
             builder = builder.with(column.name, data);
@@ -89,6 +93,10 @@ fn check_identity(table: &Table, own: &Value) -> Result<(), Cause> {
 fn check_columns(table: &Table, found: &Schema) -> Result<(), Cause> {
     for column in table.columns {
         let Ok(field) = found.field_with_name(column.name) else {
+            // Columns that were added later are null in earlier tables.
+            if column.nullable {
+                continue;
+            }
             return Err(format!("no column {:?}", column.name).into());
         };
         if *field.data_type() != data_type(column.kind) {
@@ -100,8 +108,8 @@ fn check_columns(table: &Table, found: &Schema) -> Result<(), Cause> {
     if let Some(field) = strange {
         return Err(format!("unknown column {:?} in version {}", field.name(), table.version).into());
     }
-    let in_order = table.columns.iter().zip(found.fields()).all(|(column, field)| column.name == field.name());
-    if in_order && found.fields().len() == table.columns.len() {
+    let mut known = table.columns.iter();
+    if found.fields().iter().all(|field| known.any(|column| column.name == field.name())) {
         Ok(())
     } else {
         Err("its columns are repeated or in another order".into())
@@ -126,6 +134,16 @@ fn empty(kind: Kind) -> ColumnData {
         Kind::I64 => ColumnData::I64(Vec::new()),
         Kind::Bool => ColumnData::Bool(Vec::new()),
         Kind::Text => ColumnData::Text(Vec::new()),
+    }
+}
+
+/// A column without values.
+fn fill(data: &mut ColumnData, rows: usize) {
+    match data {
+        ColumnData::F64(values) => values.resize(rows, None),
+        ColumnData::I64(values) => values.resize(rows, None),
+        ColumnData::Bool(values) => values.resize(rows, None),
+        ColumnData::Text(values) => values.resize(rows, None),
     }
 }
 

@@ -23,7 +23,7 @@ fn keys(campaign: &Campaign) -> [Vec<String>; 5] {
 }
 
 /// Another value for every key of a spec, and the first stage that reads it: 0 generate, 2 cycle, 3 aggregate, 4 report.
-const OTHERS: [(&str, &str, usize); 21] = [
+const OTHERS: [(&str, &str, usize); 28] = [
     ("name", "\"y\"", 3),
     ("seed", "2022", 0),
     ("surface.length_m", "0.002", 0),
@@ -36,12 +36,20 @@ const OTHERS: [(&str, &str, usize); 21] = [
     ("material.contact_modulus_pa", "2e6", 2),
     ("material.work_of_adhesion_j_m2", "0.05", 2),
     ("material.interaction_range_m", "2e-9", 2),
+    ("model.method", "\"boundary_elements\"", 2),
     ("model.interaction", "\"point\"", 2),
     ("model.boundary", "\"isolated\"", 2),
     ("model.coalescence", "\"merge\"", 2),
     ("model.jump_in", "\"jkr\"", 2),
     ("model.as_printed", "[\"eq8\"]", 2),
     ("model.allow_low_tabor", "true", 2),
+    // The asperity model reads none of these; the report shows the spec.
+    ("boundary_elements.points", "128", 4),
+    ("boundary_elements.attraction", "\"range\"", 4),
+    ("boundary_elements.range_m", "1e-7", 4),
+    ("boundary_elements.nucleation", "\"wu\"", 4),
+    ("boundary_elements.approach_step", "0.02", 4),
+    ("boundary_elements.precision", "1e-5", 4),
     ("cycle.max_load", "[0.003]", 2),
     ("cycle.approach_step", "0.02", 2),
     ("cycle.contacts", "\"all\"", 2),

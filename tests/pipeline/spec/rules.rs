@@ -1,6 +1,8 @@
 //! Bounds and words.
 
-use hysteron::model::{Amplitudes, Boundary, Choice, Coalescence, Interaction, JumpIn, KeptContacts, Normalization, Slip};
+use hysteron::model::{
+    Amplitudes, Attraction, Boundary, Choice, Coalescence, Interaction, JumpIn, KeptContacts, Method, Normalization, Nucleation, Slip,
+};
 use hysteron::spec::Spec;
 
 use super::refused;
@@ -19,6 +21,10 @@ fn val_bounds_are_where_the_message_says() {
         ("material", "contact_modulus_pa", "0.999", "1", "1e13", "1.0001e13", ""),
         ("material", "work_of_adhesion_j_m2", "-1e-300", "0", "1e3", "1000.001", ""),
         ("material", "interaction_range_m", "9.99e-13", "1e-12", "1e-5", "1.001e-5", ""),
+        ("boundary_elements", "points", "-1", "0", "4096", "4097", ""),
+        ("boundary_elements", "range_m", "-1e-300", "0", "1e-3", "1.001e-3", ""),
+        ("boundary_elements", "approach_step", "9.99e-4", "1e-3", "1", "1.0000001", ""),
+        ("boundary_elements", "precision", "9.99e-11", "1e-10", "1e-2", "1.001e-2", ""),
         ("cycle", "max_load", "[0.0]", "[1e-300]", "[0.2]", "[0.2000001]", ""),
         ("cycle", "approach_step", "9.99e-6", "1e-5", "1", "1.0000001", ""),
     ];
@@ -46,12 +52,15 @@ fn all_words() -> Vec<(&'static str, &'static str)> {
     [
         words::<Normalization>("surface.normalization"),
         words::<Amplitudes>("surface.amplitudes"),
+        words::<Method>("model.method"),
         words::<Interaction>("model.interaction"),
         words::<Boundary>("model.boundary"),
         words::<Coalescence>("model.coalescence"),
         words::<JumpIn>("model.jump_in"),
         words::<Slip>("model.as_printed"),
         words::<KeptContacts>("cycle.contacts"),
+        words::<Attraction>("boundary_elements.attraction"),
+        words::<Nucleation>("boundary_elements.nucleation"),
     ]
     .concat()
 }
@@ -60,7 +69,8 @@ fn all_words() -> Vec<(&'static str, &'static str)> {
 fn law_every_word_is_taken() {
     for (key, word) in all_words() {
         let value = if key == "model.as_printed" { format!("[\"{word}\"]") } else { format!("\"{word}\"") };
-        let text = format!("name = \"x\"\n{key} = {value}\n");
+        let method = if key.starts_with("boundary_elements.") { "model.method = \"boundary_elements\"\n" } else { "" };
+        let text = format!("name = \"x\"\n{method}{key} = {value}\n");
         let spec = Spec::parse(&text, "x.toml").unwrap_or_else(|errors| panic!("{errors}"));
         let json = serde_json::to_value(&spec.cases[0].params).unwrap();
         let found = json.pointer(&format!("/{}", key.replace('.', "/"))).unwrap();

@@ -128,7 +128,8 @@ fn law_every_key_is_in_the_schema_and_on_the_page() {
             assert!(*default == "" || schema["default"] == *default, "{path}");
             assert!(*default == "" || valid(schema, default, &root), "{path}");
             assert_eq!(page.matches(&format!("| `{path}` | ")).count(), 1, "{path}");
-            assert_eq!(page.matches(&format!("\n- `{key}`: ")).count(), 1, "{path}");
+            let named = tables.as_object().unwrap().values().filter(|keys| keys.get(key).is_some()).count();
+            assert_eq!(page.matches(&format!("\n- `{key}`: ")).count(), named, "{path}");
             for word in schema.pointer("/enum").or(schema.pointer("/items/enum")).and_then(Value::as_array).into_iter().flatten() {
                 assert!(page.contains(&format!("\n  - `{word}`: ")), "{path}: {word}");
             }

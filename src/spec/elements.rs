@@ -1,0 +1,170 @@
+//! Boundary elements: parameters, the grid that follows from them, and what they refuse.
+
+use super::CaseParams;
+use super::fault::Faults;
+use super::grid::written;
+use super::keys::find;
+use super::number::short;
+use super::walk::Origin;
+use crate::model::{Attraction, Boundary, Choice, Method, Nucleation, Slip};
+use crate::text::counted;
+use serde::{Deserialize, Serialize};
+use std::ops::Range;
+
+/// Maximum number of grid points of boundary elements along a side.
+pub const MAX_ELEMENTS: u32 = 4096;
+/// Minimum number of grid points per shortest wavelength.
+pub const FEWEST_PER_WAVELENGTH: f64 = 4.0;
+/// Grid points per shortest wavelength of the automatic grid. Below, a case has a warning.
+pub const PER_WAVELENGTH: f64 = 16.0;
+/// Maximum mesh number `½ sqrt(Δγ dx/E*)/ρ` of a law with a range ρ: above, the grid traps the contact edges.
+pub const MOST_MESH_NUMBER: f64 = 0.7;
+/// Automatic range over `sqrt(Δγ dx/E*)`.
+const RANGE: f64 = 0.8;
+
+/// Mesh number `½ sqrt(a dx)/ρ` of a law with the range ρ, with `a = Δγ/E*` and the grid spacing dx \[m\].
+#[must_use]
+pub fn mesh_number(work_length_m: f64, spacing_m: f64, range_m: f64) -> f64 {
+    0.5 * (work_length_m * spacing_m).sqrt() / range_m
+}
+
+/// Parameters of boundary elements.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ElementParams {
+    /// Grid points along a side; 0 for [`PER_WAVELENGTH`].
+    pub points: u32,
+    /// Attraction between the surfaces.
+    pub attraction: Attraction,
+    /// Range ρ of the Morse law \[m\]; 0 for one that follows the grid.
+    pub range_m: f64,
+    /// Gap at which a point comes into contact.
+    pub nucleation: Nucleation,
+    /// Step of the approach, as a part of the rms height.
+    pub approach_step: f64,
+    /// Rms residual over the maximum tension.
+    pub precision: f64,
+}
+
+impl Default for ElementParams {
+    fn default() -> Self {
+        Self {
+            points: 0,
+            attraction: Attraction::Bonded,
+            range_m: 0.0,
+            nucleation: Nucleation::Touch,
+            approach_step: 0.03,
+            precision: 1e-4,
+        }
+    }
+}
+
+impl ElementParams {
+    /// Grid points along the side of a square that is so many shortest wavelengths long.
+    #[must_use]
+    pub fn grid(&self, wavelengths: f64) -> u32 {
+        if self.points > 0 {
+            return self.points;
+        }
+        let wanted = (PER_WAVELENGTH * wavelengths).ceil();
+        if wanted >= f64::from(MAX_ELEMENTS) { MAX_ELEMENTS } else { (wanted as u32).next_power_of_two() }
+    }
+
+    /// Range ρ of the Morse law \[m\], with `Δγ/E*` and the grid spacing \[m\].
+    #[must_use]
+    pub fn range(&self, work_length_m: f64, spacing_m: f64) -> f64 {
+        if self.range_m > 0.0 { self.range_m } else { RANGE * (work_length_m * spacing_m).sqrt() }
+    }
+
+    /// Why a grid cannot be used, and what to do: too few points per shortest wavelength, or a range that traps contact edges on it.
+    ///
+    /// `length_m` is the side of the square, `wavelengths` its shortest wavelengths, and `work_length_m` is `Δγ/E*` \[m\].
+    #[must_use]
+    pub fn refusal(&self, length_m: f64, wavelengths: f64, work_length_m: f64) -> Option<(String, &'static str)> {
+        let grid = self.grid(wavelengths);
+        let per_wavelength = f64::from(grid) / wavelengths;
+        if per_wavelength < FEWEST_PER_WAVELENGTH {
+            return Some((
+                format!("a grid of {grid} x {grid} points has {} per shortest wavelength: at least 4 are needed", short_points(per_wavelength)),
+                "increase boundary_elements.points (at most 4096), or use a smaller ζ or a larger cut-off",
+            ));
+        }
+        let spacing = length_m / f64::from(grid);
+        let mesh = mesh_number(work_length_m, spacing, self.range(work_length_m, spacing));
+        if self.attraction == Attraction::Range && mesh > MOST_MESH_NUMBER {
+            return Some((
+                format!(
+                    "the mesh number sqrt(Δγ dx/E*)/(2ρ) is {mesh:.2}, above {MOST_MESH_NUMBER}: the grid traps contact edges (ρ = {} m, dx = {} m)",
+                    short(self.range_m),
+                    short(spacing)
+                ),
+                "increase boundary_elements.range_m or boundary_elements.points, or use attraction = \"bonded\"",
+            ));
+        }
+        None
+    }
+}
+
+/// Points per wavelength as a sentence has them.
+fn short_points(points: f64) -> String {
+    if points.fract() == 0.0 { counted(points as usize, "point") } else { format!("{points:.2} points") }
+}
+
+/// A case without the values that its method does not read, so that cases which differ in nothing else are one case.
+pub(super) fn without_unread(case: &CaseParams) -> CaseParams {
+    let (mut case, default) = (case.clone(), CaseParams::default());
+    if !case.by_elements() {
+        case.boundary_elements = default.boundary_elements;
+        return case;
+    }
+    let mut printed = std::mem::take(&mut case.model.as_printed);
+    printed.retain(|slip: &Slip| !slip.in_contact());
+    case.model = super::ModelParams { method: Method::BoundaryElements, as_printed: printed, ..default.model };
+    case.cycle.approach_step = default.cycle.approach_step;
+    match case.boundary_elements.attraction {
+        Attraction::Bonded => case.boundary_elements.range_m = default.boundary_elements.range_m,
+        Attraction::Range => case.boundary_elements.nucleation = default.boundary_elements.nucleation,
+    }
+    case
+}
+
+/// Checks what boundary elements ask of the other values of their case. The grid of a measured surface is checked when its file has been read.
+pub(super) fn check_elements(case: &CaseParams, origins: &[Origin], faults: &mut Faults<'_>) {
+    let (surface, material, elements) = (&case.surface, &case.material, &case.boundary_elements);
+    if material.work_of_adhesion_j_m2 == 0.0
+        && let Some(span) = latest(&["material.work_of_adhesion_j_m2", "model.method"], origins)
+    {
+        let message = "boundary elements need adhesion: `material.work_of_adhesion_j_m2` is 0, and their law of attraction then has no range";
+        faults.add(&span, message.to_owned(), "use a positive work of adhesion, or method = \"asperities\"".to_owned());
+        return;
+    }
+    let continues = !surface.is_measured() || surface.periodic;
+    if case.model.boundary == Boundary::Isolated
+        && continues
+        && let Some(span) = latest(&["model.boundary", "model.method"], origins)
+    {
+        let word = case.model.boundary.word();
+        let message = format!("`model.boundary` is \"{word}\", and boundary elements are periodic");
+        faults.add(&span, message, "write boundary = \"periodic\", or method = \"asperities\"".to_owned());
+    }
+    if surface.is_measured() {
+        return;
+    }
+    let work_length = material.work_of_adhesion_j_m2 / material.contact_modulus_pa;
+    if let Some((message, help)) = elements.refusal(surface.length_m, f64::from(surface.magnification), work_length) {
+        let keys =
+            ["boundary_elements.points", "boundary_elements.range_m", "boundary_elements.attraction", "surface.magnification", "model.method"];
+        if let Some(span) = latest(&keys, origins) {
+            faults.add(&span, message, help.to_owned());
+        }
+    }
+}
+
+/// The later written of some values; nothing if one of them is not known.
+fn latest(paths: &[&str], origins: &[Origin]) -> Option<Range<usize>> {
+    let places: Vec<usize> = paths.iter().filter_map(|path| path.split_once('.').and_then(|(table, name)| find(table, name))).collect();
+    if places.iter().any(|place| matches!(origins[*place], Origin::Faulty)) {
+        return None;
+    }
+    places.into_iter().filter_map(|place| written(Some(place), origins)).max_by_key(|span| span.start)
+}

@@ -1,0 +1,144 @@
+//! A cycle of the asperity model.
+
+use super::super::done::Outcome;
+use super::super::identity::Identity;
+use super::super::surface::{Scale, read_summits, scale};
+use super::super::{StageError, Watch, step_count};
+use super::asperity_tables::{contacts, events, merged, steps, turning, word};
+use super::{Checkpoints, Progress};
+use crate::campaign::{Campaign, CycleUnit};
+use crate::physics::cycle::{self, Cycle, Halfway, Settings};
+use crate::physics::interaction::Effort;
+use crate::physics::merge::Merged;
+use crate::physics::restart::Kept;
+use crate::physics::state::{Problem, Rules, State, Status};
+use crate::physics::summits::Summit;
+use crate::schema;
+use crate::spec::CaseParams;
+use crate::store::{Frame, parquet};
+use serde_json::{Map, Value};
+use std::path::Path;
+
+/// The contact problem of a case on the asperities of a table.
+pub(super) fn problem(params: &CaseParams, scale: Scale, summits: &[Summit]) -> Result<Problem, StageError> {
+    let rules = Rules {
+        interaction: params.model.interaction,
+        boundary: params.model.boundary,
+        coalescence: params.model.coalescence,
+        jump_in: params.model.jump_in,
+        allow_low_tabor: params.model.allow_low_tabor,
+        slips: params.model.slips(),
+    };
+    Ok(Problem::new(summits, scale.length_m, scale.rms_height_m, params.material, rules)?)
+}
+
+/// Asperities from which on a cycle has checkpoints, and their interval of the mean penetration over the rms height.
+const MANY: usize = 20_000;
+const REST_EVERY: f64 = 0.1;
+
+pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> Result<Outcome, StageError> {
+    let params = &campaign.cases[unit.case].case.params;
+    let summits = read_summits(&campaign.asperities_path(&campaign.surfaces[unit.surface]))?;
+    let dir = campaign.cycle_dir(unit);
+    let problem = problem(params, scale(campaign, &campaign.surfaces[unit.surface])?, &summits)?;
+    step_count::bound(&problem, &summits, params)?;
+    let settings = settings(params, summits.len());
+    let progress = Progress::of(watch);
+    let mut checkpoints = Checkpoints::of(campaign, unit, watch);
+    let halfway: Option<Halfway> = checkpoints.read();
+    let mut keep = |halfway: &Halfway| checkpoints.keep(halfway);
+    let outcome = cycle::run_from(&problem, &settings, halfway, &mut keep, &|done| progress.reached(done));
+    progress.end();
+    let cycle = outcome?;
+    let keys = [("key", unit.key.clone())];
+    let of = Identity::of(campaign, unit);
+    let tables = [
+        contacts(of, &cycle)?,
+        turning(of, &cycle, &problem, &settings.max_loads)?,
+        merged(of, &cycle)?,
+        events(of, &cycle)?,
+        steps(of, &cycle, &problem)?,
+    ];
+    let write = |frame: &Frame| Ok(parquet::write_table(&dir.join(format!("{}.parquet", frame.table().name)), frame, &keys)?);
+    let files = tables.iter().map(write).collect::<Result<_, StageError>>()?;
+    Ok(Outcome { files, effort: effort(&cycle, &problem) })
+}
+
+/// What a cycle has taken, for its receipt.
+fn effort(cycle: &Cycle, problem: &Problem) -> Map<String, Value> {
+    let all = cycle.steps.iter().fold(Effort::default(), |mut sum, step| {
+        sum += step.effort;
+        sum
+    });
+    let counts = [
+        ("asperity_count", problem.len() as u64),
+        ("step_count", cycle.steps.len() as u64),
+        ("event_count", cycle.events.len() as u64),
+        ("iteration_count", all.iterations),
+        ("pair_evaluation_count", all.pairs),
+        ("product_count", all.products),
+        ("transform_count", all.transforms),
+    ];
+    counts.into_iter().map(|(name, count)| (name.to_owned(), count.into())).collect()
+}
+
+/// Unloads anew from a turning point that a finished cycle has kept.
+///
+/// # Errors
+/// The tables of the cycle and of its surface must be there and whole, and hold that load.
+pub fn unload_again(campaign: &Campaign, unit: &CycleUnit, max_load: f64) -> Result<Cycle, StageError> {
+    let params = &campaign.cases[unit.case].case.params;
+    let summits = read_summits(&campaign.asperities_path(&campaign.surfaces[unit.surface]))?;
+    let problem = problem(params, scale(campaign, &campaign.surfaces[unit.surface])?, &summits)?;
+    let path = campaign.cycle_dir(unit).join("turning.parquet");
+    let frame = parquet::read_table(&path, &schema::TURNING)?;
+    let (loads, approaches) = (frame.f64("max_load")?, frame.f64("approach_m")?);
+    let (asperities, states, radii) = (frame.i64("asperity_id")?, frame.text("state")?, frame.f64("contact_radius_m")?);
+    let (covering, release, barred) = (frame.i64_or_null("covered_by")?, frame.f64_or_null("release_m")?, frame.bool("barred")?);
+    let rows: Vec<usize> = (0..frame.row_count()).filter(|k| loads[*k] == max_load).collect();
+    let (into, counts) = (frame.i64_or_null("merged_into")?, frame.i64("merged_count")?);
+    let status = |k: usize| match (covering[k], release[k], into[k]) {
+        (Some(by), Some(release_m), _) => Status::Covered { by: by as usize, release_m },
+        (_, _, Some(into)) => Status::Merged { into: into as usize },
+        _ if states[k] == word(Status::Contact) => Status::Contact,
+        _ => Status::Free,
+    };
+    let kept = |&k: &usize| Kept { asperity: asperities[k] as usize, status: status(k), radius_m: radii[k], barred: barred[k] };
+    let Some(approach) = rows.first().map(|k| approaches[*k]) else {
+        let mut kept = loads;
+        kept.dedup();
+        return Err(StageError::NoTurning { max_load, path, kept: format!("the loads {kept:?}") });
+    };
+    let merged = merged_rows(&campaign.cycle_dir(unit).join("merged.parquet"), counts[rows[0]] as usize)?;
+    let state = State::restored(&problem, approach, &merged, &rows.iter().map(kept).collect::<Vec<_>>())?;
+    Ok(cycle::unload_from(&problem, &settings(params, summits.len()), max_load, state)?)
+}
+
+/// The first spots that have merged on loading.
+fn merged_rows(path: &Path, count: usize) -> Result<Vec<Merged>, StageError> {
+    let frame = parquet::read_table(path, &schema::MERGED)?;
+    let (first, second) = (frame.i64("first_id")?, frame.i64("second_id")?);
+    let [a, b] = [frame.f64("first_radius_m")?, frame.f64("second_radius_m")?];
+    let [x, y] = [frame.f64("x_m")?, frame.f64("y_m")?];
+    let [radius, height] = [frame.f64("radius_m")?, frame.f64("height_m")?];
+    let [release, approach] = [frame.f64("release_m")?, frame.f64("approach_m")?];
+    let row = |k: usize| Merged {
+        parts: [first[k] as usize, second[k] as usize],
+        radii_m: [a[k], b[k]],
+        place_m: [x[k], y[k]],
+        radius_m: radius[k],
+        height_m: height[k],
+        release_m: release[k],
+        approach_m: approach[k],
+    };
+    Ok((0..count.min(frame.row_count())).map(row).collect())
+}
+
+fn settings(params: &CaseParams, asperities: usize) -> Settings {
+    Settings {
+        max_loads: params.cycle.max_load.clone(),
+        approach_step: params.cycle.approach_step,
+        contacts: params.cycle.contacts,
+        rest_every: (asperities >= MANY).then_some(REST_EVERY),
+    }
+}

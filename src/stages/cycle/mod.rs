@@ -1,0 +1,86 @@
+//! cycle: load and unload one case on one surface, and write every step.
+
+mod asperities;
+mod asperity_tables;
+mod boundary_elements;
+mod elements_tables;
+
+pub use asperities::unload_again;
+pub use boundary_elements::{Units, unload_elements_again};
+
+use super::done::Outcome;
+use super::{StageError, Watch};
+use crate::campaign::{Campaign, CycleUnit, Stage};
+use crate::store::{read_halfway, write_halfway};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use std::path::PathBuf;
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+/// Minimum time between two checkpoints.
+const KEPT_FOR: Duration = Duration::from_secs(60);
+
+pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> Result<Outcome, StageError> {
+    let path = campaign.cycle_dir(unit);
+    std::fs::create_dir_all(&path).map_err(|source| StageError::Folder { path, source })?;
+    let by_elements = campaign.cases[unit.case].case.params.by_elements();
+    if by_elements { boundary_elements::run(campaign, unit, watch) } else { asperities::run(campaign, unit, watch) }
+}
+
+/// Progress of a cycle, of which the watch is given the increments.
+struct Progress<'a> {
+    watch: &'a dyn Watch,
+    reached: Mutex<f64>,
+}
+
+impl<'a> Progress<'a> {
+    fn of(watch: &'a dyn Watch) -> Self {
+        Self { watch, reached: Mutex::new(0.0) }
+    }
+
+    /// Reports the finished part of the cycle, from 0 to 1.
+    fn reached(&self, done: f64) {
+        let mut reached = self.reached.lock().unwrap_or_else(PoisonError::into_inner);
+        let done = done.max(*reached);
+        self.watch.progress(Stage::Cycle, done - *reached);
+        *reached = done;
+    }
+
+    /// Reports the rest: a failed case leaves the bar as a finished one does.
+    fn end(&self) {
+        self.reached(1.0);
+    }
+}
+
+/// Checkpoints of a cycle.
+struct Checkpoints<'a> {
+    path: PathBuf,
+    key: &'a str,
+    id: &'a str,
+    watch: &'a dyn Watch,
+    kept_at: Instant,
+}
+
+impl<'a> Checkpoints<'a> {
+    fn of(campaign: &Campaign, unit: &'a CycleUnit, watch: &'a dyn Watch) -> Self {
+        Self { path: campaign.halfway_path(unit), key: &unit.key, id: &unit.id, watch, kept_at: Instant::now() }
+    }
+
+    /// The last checkpoint; nothing if there is none of this cycle.
+    fn read<T: DeserializeOwned>(&self) -> Option<T> {
+        read_halfway(&self.path, self.key).and_then(|bytes| postcard::from_bytes(&bytes).ok())
+    }
+
+    /// Writes a checkpoint if the last one is old enough.
+    fn keep<T: Serialize>(&mut self, state: &T) {
+        if self.kept_at.elapsed() < KEPT_FOR {
+            return;
+        }
+        self.kept_at = Instant::now();
+        let kept = postcard::to_stdvec(state).map_err(|error| error.to_string());
+        if let Err(why) = kept.and_then(|bytes| write_halfway(&self.path, self.key, &bytes).map_err(|error| error.to_string())) {
+            self.watch.notice(&format!("{}: {why}; continuing without checkpoint, an interrupted cycle restarts", self.id));
+        }
+    }
+}

@@ -1,0 +1,119 @@
+//! Maps of gap and pressure in HDF5.
+
+use super::commit::{Written, commit};
+use super::error::{Cause, StoreError};
+use super::hdf5::{library, open, options};
+use super::surface_header::{write_number, write_text};
+use hdf5_metno::{File, Group};
+use ndarray::ArrayView2;
+use std::path::Path;
+
+/// Version of the layout of a file of maps, raised whenever a dataset or attribute is renamed, removed, or changes its meaning.
+const MAPS_VERSION: u32 = 1;
+/// Rows and columns of a chunk.
+const CHUNK: usize = 256;
+/// Compression level of deflate.
+const LEVEL: u8 = 4;
+/// Datasets of a map with their units.
+pub const FIELDS: [(&str, &str); 2] = [("gap_m", "m"), ("pressure_pa", "Pa")];
+
+/// Gap and pressure of one step on a square grid, rows along x.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactMap {
+    /// Number of the step in the table `steps`.
+    pub step: i64,
+    /// `loading` or `unloading`.
+    pub branch: &'static str,
+    /// Load at the reversal, `F_max/(E* A0)`.
+    pub max_load: f64,
+    /// Mean penetration \[m\].
+    pub approach_m: f64,
+    /// Load \[N\].
+    pub load_n: f64,
+    /// Gap \[m\].
+    pub gap_m: Vec<f32>,
+    /// Pressure, compression positive \[Pa\].
+    pub pressure_pa: Vec<f32>,
+}
+
+/// Identity of a file of maps.
+#[derive(Debug, Clone, Copy)]
+pub struct MapsHeader<'a> {
+    /// Key of the cycle.
+    pub key: &'a str,
+    /// Identifier of the cycle.
+    pub cycle_id: &'a str,
+    /// Side of the square \[m\].
+    pub length_m: f64,
+    /// Grid points along a side.
+    pub points: usize,
+}
+
+/// Writes the maps of a cycle in place of `path`: one group for each step, with the datasets of [`FIELDS`].
+///
+/// # Errors
+/// If a map has another number of points, or the file cannot be written whole.
+pub fn write_maps(path: &Path, header: &MapsHeader<'_>, maps: &[ContactMap]) -> Result<Written, StoreError> {
+    commit(
+        "write the contact maps to",
+        path,
+        |temporary| library(|| write_all(temporary, header, maps)),
+        |temporary| library(|| check_all(temporary, header, maps)),
+    )
+}
+
+/// Name of the group of a step.
+fn group_name(map: &ContactMap) -> String {
+    format!("step_{:06}", map.step)
+}
+
+fn fields(map: &ContactMap) -> [(&'static str, &'static str, &[f32]); 2] {
+    let [gap, pressure] = FIELDS;
+    [(gap.0, gap.1, &map.gap_m), (pressure.0, pressure.1, &map.pressure_pa)]
+}
+
+fn write_all(path: &Path, header: &MapsHeader<'_>, maps: &[ContactMap]) -> Result<(), Cause> {
+    let file = options().create(path)?;
+    write_number(&file, "schema_version", MAPS_VERSION)?;
+    write_text(&file, "key", header.key)?;
+    write_text(&file, "cycle_id", header.cycle_id)?;
+    write_number(&file, "length_m", header.length_m)?;
+    write_number(&file, "points", header.points as u64)?;
+    for map in maps {
+        let group = file.create_group_builder().obj_track_times(false).create(group_name(map).as_str())?;
+        write_number(&group, "step", map.step)?;
+        write_text(&group, "branch", map.branch)?;
+        write_number(&group, "max_load", map.max_load)?;
+        write_number(&group, "approach_m", map.approach_m)?;
+        write_number(&group, "load_n", map.load_n)?;
+        for (name, unit, values) in fields(map) {
+            write_field(&file, &group, header.points, (name, unit, values))?;
+        }
+    }
+    file.flush()?;
+    Ok(file.close()?)
+}
+
+fn write_field(file: &File, group: &Group, points: usize, (name, unit, values): (&str, &str, &[f32])) -> Result<(), Cause> {
+    let field = ArrayView2::from_shape((points, points), values)?;
+    let chunk = CHUNK.min(points);
+    let data = group.new_dataset::<f32>().shape((points, points)).chunk((chunk, chunk)).shuffle().deflate(LEVEL).create(name)?;
+    write_text(&data, "unit", unit)?;
+    data.write(field)?;
+    // While the dataset is open: closing it writes what is buffered, and reports no error.
+    Ok(file.flush()?)
+}
+
+fn check_all(path: &Path, header: &MapsHeader<'_>, maps: &[ContactMap]) -> Result<(), Cause> {
+    let file = open(path)?;
+    for map in maps {
+        for (name, _, values) in fields(map) {
+            let data = file.dataset(&format!("{}/{name}", group_name(map)))?;
+            let same = data.get_shape()? == [header.points; 2] && data.read_raw::<f32>()? == values;
+            if !same {
+                return Err("the content read back differs from the content written".into());
+            }
+        }
+    }
+    Ok(())
+}
