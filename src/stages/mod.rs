@@ -142,7 +142,7 @@ pub enum StageError {
     },
     /// A stage lacks what an earlier one writes.
     #[error(
-        "cannot run the stage {stage} in {}: of {} of the previous stage {}, for example {example}\nhelp: {}",
+        "cannot run the stage {stage} in {}: of {} of the previous stage, {}; for example {example}\nhelp: {}",
         shown(path), counted(*all, "task"), lacks(*missing, *damaged), incomplete_help(stage)
     )]
     Incomplete {
