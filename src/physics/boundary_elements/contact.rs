@@ -78,7 +78,7 @@ pub struct Totals {
 
 impl Problem {
     /// Whether a point is in contact at the gap.
-    #[inline]
+    #[inline(always)]
     pub(super) fn touches(&self, bonding: Bonding, gap: f64) -> bool {
         match bonding {
             Bonding::Free => gap <= 0.0,
@@ -88,7 +88,7 @@ impl Problem {
     }
 
     /// Law at a point.
-    #[inline]
+    #[inline(always)]
     pub(super) fn bond(&self, bonding: Bonding, gap: f64) -> Bond {
         match bonding {
             Bonding::Free => self.law.wall(gap),
@@ -134,7 +134,7 @@ impl Problem {
     }
 
     /// Gap at a point.
-    #[inline]
+    #[inline(always)]
     pub(super) fn gap(&self, state: &State, point: usize) -> f64 {
         state.displacement[point] - state.approach - self.heights[point]
     }

@@ -157,6 +157,7 @@ impl Crack {
         Self { unit: 0.0, onset, peak: onset + SPACING * most as f64, nodes }
     }
 
+    #[inline(always)]
     fn at(&self, gap: f64) -> Bond {
         let unit = self.unit;
         let g = gap / unit;
@@ -182,6 +183,7 @@ impl Crack {
 }
 
 impl Morse {
+    #[inline(always)]
     fn at(&self, gap: f64) -> Bond {
         let e = (-gap / self.range).exp();
         let unit = self.work / self.range;
@@ -208,7 +210,7 @@ impl Law {
 
     /// Energy, tension and slope at a gap of a bonded point.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn bonded(&self, gap: f64) -> Bond {
         match self {
             Self::Crack(law) => law.at(gap),
@@ -218,7 +220,7 @@ impl Law {
 
     /// Energy, tension and slope of a point inside a contact, which does not open: the spring of small gaps, continued.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn sealed(&self, gap: f64) -> Bond {
         match self {
             Self::Crack(law) => Bond { energy: 0.5 * SPRING * gap * gap - law.unit * law.unit, tension: SPRING * gap, slope: SPRING },
@@ -240,7 +242,7 @@ impl Law {
 
     /// Energy, tension and slope of a point that is not bonded: the wall alone, without its energy of adhesion.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn wall(&self, gap: f64) -> Bond {
         if gap >= 0.0 {
             return Bond::default();

@@ -1,10 +1,10 @@
 //! A cycle by boundary elements: grid, law and settings from the parameters of a case; steps, regions, events and maps in SI units.
 
-use super::elements_tables::{contacts, events, steps};
 use super::super::done::Outcome;
 use super::super::identity::Identity;
 use super::super::surface::{read_summits, scale};
 use super::super::{StageError, Watch};
+use super::elements_tables::{contacts, events, steps};
 use super::{Checkpoints, Progress};
 use crate::campaign::{Campaign, CycleUnit};
 use crate::model::{Attraction, KeptContacts, Material, Nucleation};
@@ -105,7 +105,8 @@ pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> R
     let of = Identity::of(campaign, unit);
     let keys = [("key", unit.key.clone())];
     let kept = if params.cycle.contacts == KeptContacts::None { &[][..] } else { &cycle.regions[..] };
-    let tables = [contacts(of, (&cycle, kept), loads, &units, &counts)?, events(of, &cycle, loads, &units)?, steps(of, &cycle, loads, &units)?];
+    let tables =
+        [contacts(of, (&cycle, kept), loads, &units, &counts)?, events(of, &cycle, loads, &units)?, steps(of, &cycle, loads, &units)?];
     let write = |frame: &Frame| Ok(parquet::write_table(&dir.join(format!("{}.parquet", frame.table().name)), frame, &keys)?);
     let mut files = tables.iter().map(write).collect::<Result<Vec<_>, StageError>>()?;
     let header = MapsHeader { key: &unit.key, cycle_id: &unit.id, length_m: units.length_m, points: units.points };
@@ -131,7 +132,9 @@ fn setup(campaign: &Campaign, unit: &CycleUnit) -> Result<Setup, StageError> {
     let images = if header.periodic { 1 } else { 2 };
     let length_m = f64::from(images) * header.length_m;
     let (material, elements) = (&params.material, &params.boundary_elements);
-    if let Some((problem, help)) = elements.refusal(length_m, length_m / shortest, material.work_of_adhesion_j_m2 / material.contact_modulus_pa) {
+    if let Some((problem, help)) =
+        elements.refusal(length_m, length_m / shortest, material.work_of_adhesion_j_m2 / material.contact_modulus_pa)
+    {
         return Err(PhysicsError::Surface { problem, help }.into());
     }
     let points = elements.grid(length_m / shortest) as usize;
