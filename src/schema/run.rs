@@ -14,7 +14,8 @@ const MAX_LOAD: Column = real(
 )
 .or_null();
 /// Null in tables that were written before there was another method.
-const METHOD: Column = text("method", "Method: \"asperities\" or \"boundary_elements\"; null in tables of earlier versions (asperities)").or_null();
+const METHOD: Column =
+    text("method", "Method: \"asperities\" or \"boundary_elements\"; null in tables of earlier versions (asperities)").or_null();
 const STEP: Column = index("step", "Number of the output step along the path of the cycle, from 0");
 const ASPERITY: Column =
     index("asperity_id", "Number of the asperity in the table asperities; larger numbers are merged contacts, listed in the table merged");
@@ -143,18 +144,23 @@ pub static CONTACTS: Table = Table {
         text("state", "\"contact\" or \"covered\" (absorbed); free asperities have no row"),
         real("contact_radius_m", "m", "Contact radius a; 0 if absorbed; sqrt(area/π) of a region").from("Eq 2"),
         real("load_n", "N", "Normal load of the contact spot; positive in compression, 0 if absorbed").from("Eq 1"),
-        real("penetration_m", "m", "Local penetration δ, including the displacement by all other contacts; null if absorbed, and for a region")
-            .or_null()
-            .from("Eq 5"),
+        real(
+            "penetration_m",
+            "m",
+            "Local penetration δ, including the displacement by all other contacts; null if absorbed, and for a region",
+        )
+        .or_null()
+        .from("Eq 5"),
         real("interaction_m", "m", "Normal displacement of the half-space by all other contacts; null if absorbed, and for a region")
             .or_null()
             .from("Eqs 6-8"),
         METHOD,
-        real("x_m", "m", "Centroid x of a region on the periodic square; null for asperities").or_null(),
-        real("y_m", "m", "Centroid y of a region on the periodic square; null for asperities").or_null(),
+        real("centroid_x_m", "m", "Centroid x of a region on the periodic square; null for asperities").or_null(),
+        real("centroid_y_m", "m", "Centroid y of a region on the periodic square; null for asperities").or_null(),
         real("area_m2", "m^2", "Area of a region; null for asperities").or_null(),
         real("perimeter_m", "m", "Length of the edge of a region (Crofton's formula); null for asperities").or_null(),
-        count("summit_count", "Asperities of the table asperities inside a region, those of mirror images included; null for asperities").or_null(),
+        count("summit_count", "Asperities of the table asperities inside a region, those of mirror images included; null for asperities")
+            .or_null(),
     ],
 };
 

@@ -2,7 +2,8 @@
 
 use super::super::StageError;
 use super::super::identity::Identity;
-use super::boundary_elements::{Counts, Units};
+use super::boundary_elements::Counts;
+use super::elements_setup::Units;
 use crate::physics::boundary_elements::cycle::{Cycle, Step};
 use crate::physics::boundary_elements::regions::{Change, Region};
 use crate::schema;
@@ -106,8 +107,8 @@ pub(super) fn contacts(
         .f64("penetration_m", nothing())
         .f64("interaction_m", nothing())
         .text("method", repeat_n(METHOD, rows.len()))
-        .f64("x_m", rows.iter().map(|row| row.1.centroid[0] * spacing))
-        .f64("y_m", rows.iter().map(|row| row.1.centroid[1] * spacing))
+        .f64("centroid_x_m", rows.iter().map(|row| row.1.centroid[0] * spacing))
+        .f64("centroid_y_m", rows.iter().map(|row| row.1.centroid[1] * spacing))
         .f64("area_m2", rows.iter().map(|row| area(&row.1)))
         .f64("perimeter_m", rows.iter().map(|row| row.1.perimeter * spacing))
         .i64("summit_count", rows.iter().map(|row| row.2.map(i64::from)))
