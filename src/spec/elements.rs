@@ -85,7 +85,10 @@ impl ElementParams {
         let per_wavelength = f64::from(grid) / wavelengths;
         if per_wavelength < FEWEST_PER_WAVELENGTH {
             return Some((
-                format!("a grid of {grid} x {grid} points has {} per shortest wavelength: at least 4 are needed", short_points(per_wavelength)),
+                format!(
+                    "a grid of {grid} x {grid} points has {} per shortest wavelength: at least 4 are needed",
+                    short_points(per_wavelength)
+                ),
                 "increase boundary_elements.points (at most 4096), or use a smaller ζ or a larger cut-off",
             ));
         }
@@ -134,7 +137,8 @@ pub(super) fn check_elements(case: &CaseParams, origins: &[Origin], faults: &mut
     if material.work_of_adhesion_j_m2 == 0.0
         && let Some(span) = latest(&["material.work_of_adhesion_j_m2", "model.method"], origins)
     {
-        let message = "boundary elements need adhesion: `material.work_of_adhesion_j_m2` is 0, and their law of attraction then has no range";
+        let message =
+            "boundary elements need adhesion: `material.work_of_adhesion_j_m2` is 0, and their law of attraction then has no range";
         faults.add(&span, message.to_owned(), "use a positive work of adhesion, or method = \"asperities\"".to_owned());
         return;
     }
@@ -152,8 +156,13 @@ pub(super) fn check_elements(case: &CaseParams, origins: &[Origin], faults: &mut
     }
     let work_length = material.work_of_adhesion_j_m2 / material.contact_modulus_pa;
     if let Some((message, help)) = elements.refusal(surface.length_m, f64::from(surface.magnification), work_length) {
-        let keys =
-            ["boundary_elements.points", "boundary_elements.range_m", "boundary_elements.attraction", "surface.magnification", "model.method"];
+        let keys = [
+            "boundary_elements.points",
+            "boundary_elements.range_m",
+            "boundary_elements.attraction",
+            "surface.magnification",
+            "model.method",
+        ];
         if let Some(span) = latest(&keys, origins) {
             faults.add(&span, message, help.to_owned());
         }

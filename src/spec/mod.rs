@@ -30,8 +30,8 @@ use crate::model::{
     Amplitudes, Boundary, Coalescence, Detrend, Interaction, JumpIn, KeptContacts, Material, Method, Missing, Normalization, Slip, Slips,
 };
 
-pub use elements::{ElementParams, FEWEST_PER_WAVELENGTH, MAX_ELEMENTS, MOST_MESH_NUMBER, PER_WAVELENGTH, mesh_number};
 pub use crate::text::quoted;
+pub use elements::{ElementParams, FEWEST_PER_WAVELENGTH, MAX_ELEMENTS, MOST_MESH_NUMBER, PER_WAVELENGTH, mesh_number};
 pub use fault::{Fault, Place, SpecErrors};
 pub use json_schema::{SCHEMA_FILE, json_schema};
 pub use keys::{GENERATED, MEASURED};

@@ -34,7 +34,12 @@ pub(super) fn in_the_way(campaign: &Campaign, task: &Unit<'_>) -> Result<(), Sta
                 return Err(StageError::InTheWay { path: folder, what: "a file" });
             }
             let inside = std::fs::read_dir(&folder).map(|all| all.flatten().map(|entry| entry.path()).collect::<Vec<PathBuf>>());
-            files.extend(inside.unwrap_or_default().into_iter().filter(|path| path.extension().is_some_and(|e| e == "parquet" || e == "h5" || e == "bin")));
+            files.extend(
+                inside
+                    .unwrap_or_default()
+                    .into_iter()
+                    .filter(|path| path.extension().is_some_and(|e| e == "parquet" || e == "h5" || e == "bin")),
+            );
         }
         Stage::Aggregate | Stage::Report => {}
     }

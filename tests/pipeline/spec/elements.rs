@@ -14,7 +14,10 @@ fn val_refusals_of_boundary_elements() {
     let bad: [(&str, &[&str]); 6] = [
         ("material.work_of_adhesion_j_m2 = 0", &["boundary elements need adhesion", "positive work of adhesion", "x.toml:4:"]),
         ("model.boundary = \"isolated\"", &["boundary elements are periodic", "boundary = \"periodic\""]),
-        ("boundary_elements.points = 31", &["31 x 31 points has 3.88 points per shortest wavelength: at least 4", "boundary_elements.points"]),
+        (
+            "boundary_elements.points = 31",
+            &["31 x 31 points has 3.88 points per shortest wavelength: at least 4", "boundary_elements.points"],
+        ),
         ("boundary_elements.points = 8", &["has 1 point per shortest wavelength"]),
         (
             "boundary_elements.attraction = \"range\"\nboundary_elements.range_m = 2e-7",
