@@ -144,7 +144,7 @@ pub enum StageError {
     },
     /// A stage lacks what an earlier one writes.
     #[error(
-        "cannot run the stage {stage} in {}: of {} of the previous stage {}, for example {example}\nhelp: {}",
+        "cannot run the stage {stage} in {}: of {} of the previous stage, {}; for example {example}\nhelp: {}",
         shown(path), counted(*all, "task"), lacks(*missing, *damaged), incomplete_help(stage)
     )]
     Incomplete {
@@ -178,7 +178,7 @@ pub enum StageError {
 fn lacks(missing: usize, damaged: usize) -> String {
     let parts = [(missing, "not computed"), (damaged, "stale or damaged")];
     let parts: Vec<String> = parts.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")).collect();
-    parts.join(", ")
+    parts.join(" and ")
 }
 
 fn incomplete_help(stage: &str) -> &'static str {

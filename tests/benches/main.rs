@@ -6,6 +6,7 @@
 #[cfg(feature = "stats")]
 mod campaign;
 mod cycle;
+mod elements;
 mod pairs;
 mod paper;
 mod sums;
@@ -19,7 +20,7 @@ use std::env::args;
 fn main() {
     // Cargo itself adds `--bench`.
     let wanted: Vec<String> = args().skip(1).filter(|word| !word.starts_with('-')).collect();
-    let all: [(&str, fn()); 6] = [
+    let all: [(&str, fn()); 7] = [
         ("pairs", pairs::run),
         ("sums", sums::run),
         ("surfaces", surfaces::run),
@@ -28,6 +29,7 @@ fn main() {
         #[cfg(not(feature = "store"))]
         ("tables", || println!("tables: not without the feature `store`")),
         ("cycle", cycle::run),
+        ("elements", elements::run),
         #[cfg(feature = "stats")]
         ("planning", campaign::run),
         #[cfg(not(feature = "stats"))]

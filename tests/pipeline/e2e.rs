@@ -162,7 +162,7 @@ fn e2e_a_stage_alone_refuses_what_it_cannot_read() {
     fs::write(&path, &bytes[..bytes.len() / 3]).unwrap();
     let extract = bench.verb("extract", &[]);
     assert_eq!(code(&extract), 1);
-    assert!(stderr(&extract).contains("1 of 4 tasks"), "{}", stderr(&extract));
+    assert!(stderr(&extract).contains("of 4 tasks of the previous stage, 1 stale or damaged"), "{}", stderr(&extract));
     let aggregate = bench.verb("aggregate", &[]);
     assert_eq!(code(&aggregate), 1);
     assert!(stderr(&aggregate).contains("--partial"), "{}", stderr(&aggregate));

@@ -13,8 +13,10 @@ use serde::{Deserialize, Serialize};
 /// Dissipated energy of an event, and of one that is located by halving the step, of the energy dissipated so far.
 const EVENT: f64 = 3e-4;
 const LARGE: f64 = 3e-3;
-/// Relative accuracy of the load at a reversal.
-const LOAD_ACCURACY: f64 = 1e-6;
+/// Relative accuracy of the load at a reversal, how much more exact than elsewhere the equilibria in its search are, and how many there are at most.
+const LOAD_ACCURACY: f64 = 1e-5;
+const SHARPER: f64 = 0.02;
+const SEARCHED: u32 = 40;
 /// Approach at which a load counts as not reached, in ranges of the heights.
 const FARTHEST: f64 = 20.0;
 
@@ -221,15 +223,15 @@ impl<'a> Walk<'a> {
     /// Loads to the largest of the loads.
     fn load(&mut self, keep: &mut dyn FnMut(&Halfway), progress: &dyn Fn(f64)) -> Result<(), PhysicsError> {
         if self.at.cycle.steps.is_empty() {
-            let (state, step) = self.attempt(self.at.state.approach)?;
+            let (state, step) = self.attempt(self.at.state.approach, self.settings.accuracy)?;
             self.accept(state, step);
         }
         let farthest = FARTHEST * self.problem.range();
         let last = self.settings.max_loads.last().copied().unwrap_or(0.0);
         while let Some(max_load) = self.settings.max_loads.get(self.at.cycle.turning.len()).copied() {
-            self.advance(1.0, Some(max_load))?;
+            let reached = self.advance(1.0, Some(max_load))?;
             let (load, approach) = (self.at.last.totals.load, self.at.last.approach);
-            if (load / max_load - 1.0).abs() < LOAD_ACCURACY {
+            if reached {
                 self.turn()?;
             } else if approach > farthest {
                 return Err(PhysicsError::LoadNotReached { wanted: max_load, reached: load, approach_m: approach });
@@ -308,7 +310,7 @@ impl<'a> Walk<'a> {
     }
 
     /// Equilibrium at an approach, from the last state extrapolated, with all contacts that form there.
-    fn attempt(&mut self, approach: f64) -> Result<(State, Step), PhysicsError> {
+    fn attempt(&mut self, approach: f64, accuracy: Accuracy) -> Result<(State, Step), PhysicsError> {
         let mut state = self.at.state.clone();
         if let Some((at, displacement)) = &self.at.before {
             let ratio = (approach - state.approach) / (state.approach - at);
@@ -320,10 +322,10 @@ impl<'a> Walk<'a> {
         let before = self.minimiser.waves.transforms;
         let mut iterations = 0;
         let outcome = loop {
-            let mut outcome = self.minimiser.minimise(self.problem, &mut state, self.settings.accuracy)?;
+            let mut outcome = self.minimiser.minimise(self.problem, &mut state, accuracy);
             iterations += outcome.iterations as u64;
             if !outcome.converged {
-                outcome = self.minimiser.newton(self.problem, &mut state, self.settings.accuracy)?;
+                outcome = self.minimiser.newton(self.problem, &mut state, accuracy)?;
                 iterations += outcome.iterations as u64;
             }
             if !self.problem.update_bonds(&mut state, true) {
@@ -381,19 +383,20 @@ impl<'a> Walk<'a> {
         self.at.cycle.steps.push(step);
     }
 
-    /// One step along the path; one with a large event is halved, one across `max_load` ends there.
-    fn advance(&mut self, sense: f64, max_load: Option<f64>) -> Result<(), PhysicsError> {
+    /// One step along the path; one with a large event is halved, one across `max_load` ends there: whether it does.
+    fn advance(&mut self, sense: f64, max_load: Option<f64>) -> Result<bool, PhysicsError> {
         let (mut iterations, mut transforms) = (0, 0);
         loop {
             let length = sense * self.settings.step / f64::from(1_u32 << self.at.level);
-            let (mut state, mut step) = self.attempt(self.at.state.approach + length)?;
+            let (mut state, mut step) = self.attempt(self.at.state.approach + length, self.settings.accuracy)?;
             let large = step.imbalance.abs() > LARGE * self.at.dissipated;
             if large && self.at.level < self.settings.halvings {
                 (iterations, transforms) = (iterations + step.iterations, transforms + step.transforms);
                 self.at.level += 1;
                 continue;
             }
-            if let Some(max_load) = max_load.filter(|most| step.totals.load > *most) {
+            let across = max_load.filter(|most| step.totals.load > *most);
+            if let Some(max_load) = across {
                 (iterations, transforms) = (iterations + step.iterations, transforms + step.transforms);
                 (state, step) = self.reach(max_load, step)?;
             } else {
@@ -402,21 +405,27 @@ impl<'a> Walk<'a> {
             step.iterations += iterations;
             step.transforms += transforms;
             self.accept(state, step);
-            return Ok(());
+            return Ok(across.is_some());
         }
     }
 
-    /// The equilibrium at `max_load` between the last state and a step beyond it.
+    /// The equilibrium at `max_load` between the last state and a step beyond it, to the accuracy of the load or of the search.
     fn reach(&mut self, max_load: f64, beyond: Step) -> Result<(State, Step), PhysicsError> {
         let (mut low, mut high) = ((self.at.last.approach, self.at.last.totals.load), (beyond.approach, beyond.totals.load));
         let (mut iterations, mut transforms) = (0, 0);
+        let Accuracy { rms, largest, iterations: most } = self.settings.accuracy;
+        let accuracy = Accuracy { rms: SHARPER * rms, largest: SHARPER * largest, iterations: most };
+        let mut searched = 0_u32;
         loop {
-            let part = ((max_load - low.1) / (high.1 - low.1)).clamp(0.02, 0.98);
+            searched += 1;
+            // The secant, and bisection where that does not help.
+            let secant = ((max_load - low.1) / (high.1 - low.1)).clamp(0.02, 0.98);
+            let part = if searched.is_multiple_of(3) { 0.5 } else { secant };
             let approach = low.0 + part * (high.0 - low.0);
-            let (state, mut step) = self.attempt(approach)?;
+            let (state, mut step) = self.attempt(approach, accuracy)?;
             (iterations, transforms) = (iterations + step.iterations, transforms + step.transforms);
             let load = step.totals.load;
-            if (load / max_load - 1.0).abs() < LOAD_ACCURACY || high.0 - low.0 < 1e-9 * self.settings.step {
+            if (load / max_load - 1.0).abs() < LOAD_ACCURACY || searched == SEARCHED {
                 (step.iterations, step.transforms) = (iterations, transforms);
                 return Ok((state, step));
             }

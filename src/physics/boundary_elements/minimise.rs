@@ -6,16 +6,17 @@
 
 use super::contact::{Problem, State};
 use super::grid::{Operator, Waves};
-use super::sums::{PANEL, add, dot, grain, largest, remove_mean, sums};
+use super::pairs::Pairs;
+use super::sums::{PANEL, add, dot, grain, largest, sums, sums_of};
 use crate::physics::PhysicsError;
 use crate::physics::memory::filled;
 use rayon::prelude::*;
 
-/// Pairs of steps and gradient changes that are kept.
-const PAIRS: usize = 3;
 /// Slope of the law from which a point counts as in contact, and the addition to it, in E*/dx.
 const STIFF: f64 = 0.3;
 const ADDED: f64 = 0.7;
+/// Change of the displacement after which bonds are looked at, of the reach of the law.
+const LOOK: f64 = 0.02;
 
 /// How exactly, and how long.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,20 +46,13 @@ pub struct Minimiser {
     pub waves: Waves,
     pub(super) residual: Vec<f64>,
     pub(super) slopes: Vec<f64>,
-    previous: Vec<f64>,
     pub(super) direction: Vec<f64>,
     pub(super) response: Vec<f64>,
+    previous: Vec<f64>,
     masked: Vec<f64>,
-    pairs: Vec<Pair>,
+    pairs: Pairs,
     /// Whether the points in contact have a preconditioner of their own; else that of the open points, shifted, is used for all.
     pub split: bool,
-}
-
-struct Pair {
-    step: Vec<f64>,
-    change: Vec<f64>,
-    curvature: f64,
-    weight: f64,
 }
 
 impl Minimiser {
@@ -67,105 +61,93 @@ impl Minimiser {
     /// # Errors
     /// Not enough memory.
     pub fn new(problem: &Problem) -> Result<Self, PhysicsError> {
-        let field = || filled(problem.half_space.points(), 0.0);
+        let points = problem.half_space.points();
+        let field = || filled(points, 0.0);
         Ok(Self {
             waves: problem.half_space.waves()?,
             residual: field()?,
             slopes: field()?,
-            previous: field()?,
             direction: field()?,
             response: field()?,
+            previous: field()?,
             masked: field()?,
-            pairs: Vec::new(),
+            pairs: Pairs::new(points)?,
             split: true,
         })
     }
 
     /// Moves `state` to the local minimum of the energy at its approach; bonds around contacts grow on the way.
-    ///
-    /// # Errors
-    /// Not enough memory.
-    pub fn minimise(&mut self, problem: &Problem, state: &mut State, accuracy: Accuracy) -> Result<Outcome, PhysicsError> {
-        let strength = problem.stress();
+    pub fn minimise(&mut self, problem: &Problem, state: &mut State, accuracy: Accuracy) -> Outcome {
+        let stress = problem.stress();
         let mut outcome = Outcome::default();
-        let mut free: Vec<Pair> = std::mem::take(&mut self.pairs);
-        let mut pairs: Vec<Pair> = Vec::new();
+        // Infinite, so that bonds are looked at first.
+        let mut moved = f64::INFINITY;
         problem.refresh(state, &mut self.waves);
+        self.pairs.clear();
+        let mut same = false;
         loop {
-            if problem.update_bonds(state, false) {
-                free.append(&mut pairs);
+            if moved > LOOK * problem.reach() {
+                moved = 0.0;
+                if problem.update_bonds(state, false) {
+                    self.pairs.clear();
+                    same = false;
+                }
             }
             let (rms, most) = problem.residual(state, &mut self.residual, &mut self.slopes);
-            outcome.residual = rms / strength;
-            outcome.converged = rms <= accuracy.rms * strength && most <= accuracy.largest * strength;
+            outcome.residual = rms / stress;
+            outcome.converged = rms <= accuracy.rms * stress && most <= accuracy.largest * stress;
+            if outcome.converged && moved > 0.0 {
+                // An equilibrium of the bonds as they are; they may have to change.
+                moved = f64::INFINITY;
+                continue;
+            }
             if outcome.converged || outcome.iterations >= accuracy.iterations {
-                break;
+                return outcome;
+            }
+            // A change of the bonds changes the gradient too.
+            if same {
+                self.pairs.remember(&self.direction, &self.residual, &self.previous);
             }
             outcome.iterations += 1;
-            if outcome.iterations > 1 {
-                self.remember(&mut pairs, &mut free)?;
-            }
-            self.direction(problem, &mut pairs);
-            if dot(&self.direction, &self.residual) >= 0.0 {
-                free.append(&mut pairs);
-                self.direction(problem, &mut pairs);
-            }
+            self.search(problem);
             problem.half_space.apply(Operator::Stiffness, &self.direction, &mut self.response, &mut self.waves);
             let step = self.step_length(problem, state);
-            self.previous.copy_from_slice(&self.residual);
-            add(&mut state.displacement, step, &self.direction);
-            add(&mut state.pressure, step, &self.response);
-            let scale = step;
-            self.direction.par_chunks_mut(PANEL).with_min_len(grain(PANEL)).for_each(|part| part.iter_mut().for_each(|x| *x *= scale));
             if step == 0.0 {
-                break;
+                return outcome;
             }
+            self.previous.copy_from_slice(&self.residual);
+            moved += self.take(state, step);
+            same = true;
         }
-        free.append(&mut pairs);
-        self.pairs = free;
-        Ok(outcome)
     }
 
-    /// Keeps the last step and the change of the gradient that it brought.
-    fn remember(&mut self, pairs: &mut Vec<Pair>, free: &mut Vec<Pair>) -> Result<(), PhysicsError> {
-        let curvature = dot(&self.direction, &self.residual) - dot(&self.direction, &self.previous);
-        if curvature <= 1e-12 * dot(&self.direction, &self.direction) {
-            return Ok(());
-        }
-        let points = self.direction.len();
-        let mut pair = match free.pop() {
-            Some(pair) => pair,
-            None if pairs.len() >= PAIRS => pairs.remove(0),
-            None => Pair { step: filled(points, 0.0)?, change: filled(points, 0.0)?, curvature: 0.0, weight: 0.0 },
+    /// Takes a step along the direction, which becomes that step: the largest change of the displacement.
+    fn take(&mut self, state: &mut State, step: f64) -> f64 {
+        add(&mut state.pressure, step, &self.response);
+        let fields = state.displacement.par_chunks_mut(PANEL).zip(self.direction.par_chunks_mut(PANEL)).with_min_len(grain(PANEL));
+        let one = |(to, direction): (&mut [f64], &mut [f64])| {
+            let mut most = 0.0_f64;
+            for (u, d) in to.iter_mut().zip(direction) {
+                *d *= step;
+                *u += *d;
+                most = most.max(d.abs());
+            }
+            most
         };
-        if pairs.len() >= PAIRS {
-            free.push(pairs.remove(0));
-        }
-        pair.step.copy_from_slice(&self.direction);
-        let (residual, previous) = (&self.residual, &self.previous);
-        pair.change.par_chunks_mut(PANEL).enumerate().with_min_len(grain(PANEL)).for_each(|(panel, part)| {
-            let from = panel * PANEL;
-            part.iter_mut().enumerate().for_each(|(k, x)| *x = residual[from + k] - previous[from + k]);
-        });
-        pair.curvature = curvature;
-        pairs.push(pair);
-        Ok(())
+        fields.map(one).reduce(|| 0.0, f64::max)
     }
 
-    /// The two loops of L-BFGS with the split preconditioner between them; a direction of descent without a mean.
-    fn direction(&mut self, problem: &Problem, pairs: &mut [Pair]) {
-        self.direction.copy_from_slice(&self.residual);
-        for pair in pairs.iter_mut().rev() {
-            pair.weight = dot(&pair.step, &self.direction) / pair.curvature;
-            add(&mut self.direction, -pair.weight, &pair.change);
-        }
+    /// A direction of descent, by the pairs if they give one.
+    fn search(&mut self, problem: &Problem) {
+        self.pairs.first(&self.residual, &mut self.direction);
         self.precondition(problem);
-        for pair in pairs.iter() {
-            let weight = pair.weight - dot(&pair.change, &self.direction) / pair.curvature;
-            add(&mut self.direction, weight, &pair.step);
+        self.pairs.second(&mut self.direction);
+        if dot(&self.direction, &self.residual) >= 0.0 {
+            self.pairs.clear();
+            self.direction.copy_from_slice(&self.residual);
+            self.precondition(problem);
+            self.pairs.second(&mut self.direction);
         }
-        self.direction.par_chunks_mut(PANEL).with_min_len(grain(PANEL)).for_each(|part| part.iter_mut().for_each(|x| *x = -*x));
-        remove_mean(&mut self.direction);
     }
 
     /// `direction ← M⁻¹ direction`.
@@ -176,43 +158,39 @@ impl Minimiser {
             return;
         }
         let slopes = &self.slopes;
-        self.masked.par_chunks_mut(PANEL).zip(self.direction.par_chunks(PANEL)).enumerate().with_min_len(grain(PANEL)).for_each(
-            |(panel, (to, from))| {
-                for (k, (x, y)) in to.iter_mut().zip(from).enumerate() {
-                    *x = if slopes[panel * PANEL + k] > STIFF { 0.0 } else { *y };
-                }
-            },
-        );
+        let open = self.masked.par_chunks_mut(PANEL).zip(self.direction.par_chunks(PANEL)).zip(slopes.par_chunks(PANEL));
+        open.with_min_len(grain(PANEL)).for_each(|((to, from), slopes)| {
+            for ((x, y), slope) in to.iter_mut().zip(from).zip(slopes) {
+                *x = if *slope > STIFF { 0.0 } else { *y };
+            }
+        });
         problem.half_space.apply(Operator::Compliance, &self.masked, &mut self.response, &mut self.waves);
-        let response = &self.response;
-        self.direction.par_chunks_mut(PANEL).enumerate().with_min_len(grain(PANEL)).for_each(|(panel, part)| {
-            for (k, x) in part.iter_mut().enumerate() {
-                let point = panel * PANEL + k;
-                *x = if slopes[point] > STIFF { *x / (slopes[point] + ADDED) } else { response[point] };
+        let all = self.direction.par_chunks_mut(PANEL).zip(self.response.par_chunks(PANEL)).zip(slopes.par_chunks(PANEL));
+        all.with_min_len(grain(PANEL)).for_each(|((to, open), slopes)| {
+            for ((x, y), slope) in to.iter_mut().zip(open).zip(slopes) {
+                *x = if *slope > STIFF { *x / (slope + ADDED) } else { *y };
             }
         });
     }
 
     /// Length of the step along the direction: at most the reach of the law, and such that the energy falls.
     pub(super) fn step_length(&self, problem: &Problem, state: &State) -> f64 {
-        let mut step = (problem.reach() / largest(&self.direction)).min(1.0);
-        let [slope, linear, quadratic, start] = sums::<4>(self.direction.len(), |range, sum| {
-            for k in range {
-                sum[0] += self.direction[k] * self.residual[k];
-                sum[1] += self.direction[k] * state.pressure[k];
-                sum[2] += self.direction[k] * self.response[k];
-                sum[3] += problem.bond(state.bonds[k], problem.gap(state, k)).energy;
-            }
-        });
+        let (direction, residual) = (&self.direction, &self.residual);
+        let mut step = (problem.reach() / largest(direction)).min(1.0);
+        let [slope, linear, quadratic] =
+            sums_of([direction, residual, &state.pressure, &self.response], |[d, r, p, k]| [d * r, d * p, d * k]);
         for _ in 0..30 {
-            let end = sums::<1>(self.direction.len(), |range, sum| {
+            // Change of the energy of the law: points that are open before and after have none.
+            let [change, scale] = sums::<2>(direction.len(), |range, sum| {
                 for k in range {
-                    sum[0] += problem.bond(state.bonds[k], problem.gap(state, k) + step * self.direction[k]).energy;
+                    let (bonding, gap) = (state.bonds[k], problem.gap(state, k));
+                    let (before, after) = (problem.bond(bonding, gap).energy, problem.bond(bonding, gap + step * direction[k]).energy);
+                    sum[0] += after - before;
+                    sum[1] += before.abs();
                 }
-            })[0];
+            });
             // Below rounding of the energies the slope alone decides.
-            let change = step * (linear + 0.5 * step * quadratic) + (end - start);
-            if change <= 1e-4 * step * slope + 1e-13 * start.abs() {
+            if step * (linear + 0.5 * step * quadratic) + change <= 1e-4 * step * slope + 1e-13 * scale {
                 return step;
             }
             step *= 0.4;

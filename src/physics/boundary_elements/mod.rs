@@ -8,6 +8,7 @@ pub mod grid;
 pub mod law;
 pub mod minimise;
 mod newton;
+mod pairs;
 pub mod regions;
 pub mod resample;
 mod sums;

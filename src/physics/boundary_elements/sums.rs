@@ -28,6 +28,17 @@ pub(super) fn sums<const N: usize>(points: usize, add: impl Fn(std::ops::Range<u
     })
 }
 
+/// Sums of `N` functions of the values of four fields at each point.
+pub(super) fn sums_of<const N: usize>(fields: [&[f64]; 4], of: impl Fn([f64; 4]) -> [f64; N] + Sync) -> [f64; N] {
+    sums(fields[0].len(), |range, sum| {
+        let [a, b, c, d] = fields.map(|field| &field[range.clone()]);
+        for (((a, b), c), d) in a.iter().zip(b).zip(c).zip(d) {
+            let values = of([*a, *b, *c, *d]);
+            sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += value);
+        }
+    })
+}
+
 /// Scalar product.
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     sums::<1>(a.len(), |range, sum| {

@@ -24,7 +24,7 @@ fn law_events_add_up_to_the_loop() {
     assert!((area - events).abs() < 2e-3 * area, "loop {area}, events {events}");
     assert!(cycle.steps.iter().all(|s| s.imbalance > -3e-4 * area), "no step creates energy");
     let turn = cycle.turning[0].last.totals.load / (n * n) as f64;
-    assert!((turn / 0.02 - 1.0).abs() < 1e-6, "the reversal is at the load asked for, {turn}");
+    assert!((turn / 0.02 - 1.0).abs() < 1e-5, "the reversal is at the load asked for, {turn}");
 }
 
 /// The same bytes with 1 and 2 threads, after an interruption at any of three steps, and unloading from the stored reversal.
@@ -84,11 +84,11 @@ fn law_three_minimisers_reach_one_state() {
             loop {
                 let accuracy = super::accuracy(1e-6);
                 let outcome = if newton {
-                    minimiser.newton(&problem, &mut state, accuracy)
+                    minimiser.newton(&problem, &mut state, accuracy).unwrap()
                 } else {
                     minimiser.minimise(&problem, &mut state, accuracy)
                 };
-                assert!(outcome.unwrap().converged);
+                assert!(outcome.converged);
                 if !problem.update_bonds(&mut state, true) {
                     break;
                 }

@@ -12,7 +12,7 @@ fn advance(problem: &Problem, minimiser: &mut Minimiser, state: &mut State, appr
     state.approach = approach;
     let accuracy = Accuracy { rms: 1e-7, largest: 1e-5, iterations: 20_000 };
     loop {
-        assert!(minimiser.minimise(problem, state, accuracy).unwrap().converged);
+        assert!(minimiser.minimise(problem, state, accuracy).converged);
         if !problem.update_bonds(state, true) {
             break;
         }

@@ -252,7 +252,7 @@ fn e2e_status_names_ended_jobs_and_the_command_that_submits_again() {
     let path = commands(&bench, &[("squeue", "printf '31 0 RUNNING 0\\n'")]);
     let early = bench.command("aggregate").env("PATH", &path).output().unwrap();
     assert_eq!(code(&early), 1);
-    assert!(stderr(&early).contains("of 2 tasks of the previous stage 2 not computed"), "{}", stderr(&early));
+    assert!(stderr(&early).contains("of 2 tasks of the previous stage, 2 not computed"), "{}", stderr(&early));
     assert!(stderr(&early).contains("\nhelp: jobs of the run are in the Slurm queue"), "{}", stderr(&early));
     // Of the job itself nothing is waited for.
     let own = bench.command("aggregate").env("PATH", &path).env("SLURM_JOB_ID", "31").output().unwrap();
