@@ -36,6 +36,10 @@ pub(super) fn steps(of: Identity<'_>, cycle: &Cycle, loads: &[f64], units: &Unit
     let of_kinds = |kinds_of: &'static [Change]| {
         kinds.iter().map(|counts| kinds_of.iter().map(|kind| counts[*kind as usize]).sum::<usize>()).collect::<Vec<_>>()
     };
+    let reversal_load = |step: usize| {
+        let reversal = cycle.turning.iter().position(|turning| turning.step == step);
+        reversal.and_then(|at| loads.get(at)).copied()
+    };
     let area_m2: Vec<f64> = steps.iter().map(|step| step.totals.contact as f64 * spacing * spacing).collect();
     Ok(of
         .begin(&schema::STEPS, steps.len())
@@ -73,6 +77,7 @@ pub(super) fn steps(of: Identity<'_>, cycle: &Cycle, loads: &[f64], units: &Unit
         .f64("penetration", steps.iter().map(|s| s.approach * spacing / units.rms_height_m))
         .text("method", repeat_n(METHOD, steps.len()))
         .f64("residual", each(|s| s.residual, 1.0))
+        .f64("reversal_load", (0..steps.len()).map(reversal_load))
         .build()?)
 }
 

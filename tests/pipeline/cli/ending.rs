@@ -135,6 +135,7 @@ fn e2e_a_stage_without_its_input_names_what_is_lacking() {
     let cycle = fs::read_dir(bench.out().join("cycles")).unwrap().next().unwrap().unwrap().path();
     fs::remove_file(cycle.join("steps.parquet")).unwrap();
     let damaged = stderr(&bench.verb("aggregate", &["--set", "realizations=3"]));
-    let wanted = format!("in {}: of 3 tasks of the previous stage, 1 not computed and 1 stale or damaged; for example ", bench.out().display());
+    let wanted =
+        format!("in {}: of 3 tasks of the previous stage, 1 not computed and 1 stale or damaged; for example ", bench.out().display());
     assert!(damaged.contains(&wanted) && damaged.contains(" or aggregate the finished ones with --partial"), "{damaged}");
 }

@@ -266,7 +266,7 @@ fn law_missing_columns_are_null_where_they_may_be() {
         })
         .collect()
     };
-    foreign(&path, Some(identity(&STEPS, STEPS.version)), columns(&["method", "residual"]));
+    foreign(&path, Some(identity(&STEPS, STEPS.version)), columns(&["method", "residual", "reversal_load"]));
     let frame = read_table(&path, &STEPS).unwrap();
     assert_eq!(frame.text_or_null("method").unwrap(), [None, None]);
     assert_eq!(frame.f64("load").unwrap(), [1.0, 2.0]);
