@@ -18,6 +18,7 @@ pages!(
     howto_data,
     howto_recover,
     model,
+    boundary_elements,
     numerics,
     validity,
     reproduction,

@@ -27,8 +27,8 @@ use std::path::{Component, Path, PathBuf};
 const GENERATE: u32 = 2;
 const EXTRACT: u32 = 2;
 const CYCLE: u32 = 14;
-const AGGREGATE: u32 = 8;
-const REPORT: u32 = 11;
+const AGGREGATE: u32 = 9;
+const REPORT: u32 = 12;
 
 /// The stages, in their order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -50,7 +50,8 @@ fn cases(sweep: &Sweep) -> String {
             Values::Numbers(numbers) => places.sort_by(|a, b| numbers[*a].unwrap_or(f64::NAN).total_cmp(&numbers[*b].unwrap_or(f64::NAN))),
             Values::Words(words) => places.sort_by(|a, b| words[*a].cmp(&words[*b])),
         }
-        let mut texts: Vec<&str> = places.into_iter().map(|place| parameter.text(place)).collect();
+        let mut texts: Vec<&str> =
+            places.into_iter().filter(|place| !parameter.is_absent(*place)).map(|place| parameter.text(place)).collect();
         texts.dedup();
         parts.push(match texts[..] {
             [first, .., last] if texts.len() > MOST_VALUES => {

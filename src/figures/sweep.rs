@@ -59,13 +59,21 @@ impl Sweep {
                 }
                 None => area.get(*row).copied().flatten(),
             };
-            let mut parts: Vec<String> = differing.iter().map(|parameter| parameter.named(place)).collect();
+            let said = |of: &[Varying]| -> Vec<String> {
+                of.iter().filter(|parameter| !parameter.is_absent(place)).map(|parameter| parameter.named(place)).collect()
+            };
+            let (mut parts, mut series) = (said(&differing), said(differing.get(1..).unwrap_or_default()));
             if many_loads {
                 let load = load_labels.get(place).map_or("", String::as_str);
-                parts.push(if differing.is_empty() { load.to_owned() } else { format!("F_{{max}} = {load}") });
+                if differing.is_empty() {
+                    parts.push(load.to_owned());
+                } else {
+                    parts.push(format!("F_{{max}} = {load}"));
+                    series.push(format!("F_{{max}} = {load}"));
+                }
             }
             let case_id = ids.get(*row).copied().unwrap_or_default().to_owned();
-            let series = parts.get(1..).unwrap_or_default().join(", ");
+            let series = series.join(", ");
             // Without a place, a member has curves but no point; NaN is left out of every axis.
             members.push(Member { row: *row, case_id, max_load: load, x: x.unwrap_or(f64::NAN), label: parts.join(", "), series });
         }

@@ -6,6 +6,7 @@
 mod avalanches;
 mod comparison;
 mod cycles;
+mod methods;
 mod render;
 mod run;
 mod statistics;
@@ -13,6 +14,7 @@ mod statistics;
 pub use avalanches::{AVALANCHES, EVENT_KINDS};
 pub use comparison::COMPARISON;
 pub use cycles::CYCLES;
+pub use methods::METHODS;
 pub use render::{DIRECTORY, OWN_KEYS, SchemaFile, files, metadata_json, readme_markdown, schema_file_name, schema_json};
 pub use run::{ASPERITIES, CONTACTS, EVENTS, MERGED, STEPS, TURNING};
 pub use statistics::{CASES, CURVES, PANELS, REALIZATIONS};
@@ -104,6 +106,7 @@ pub static TABLES: &[&Table] = &[
     &CURVES,
     &AVALANCHES,
     &CYCLES,
+    &METHODS,
     &PANELS,
     &COMPARISON,
 ];

@@ -124,6 +124,8 @@ pub static STEPS: Table = Table {
         METHOD,
         real("residual", "1", "Residual of the equilibrium of boundary elements: rms of the pressure residual over the maximum tension; null for asperities")
             .or_null(),
+        real("reversal_load", "1", "Load F_max/(E* A0) of the spec whose reversal is at this step of boundary elements; null elsewhere and for asperities")
+            .or_null(),
     ],
 };
 
@@ -155,8 +157,8 @@ pub static CONTACTS: Table = Table {
             .or_null()
             .from("Eqs 6-8"),
         METHOD,
-        real("x_m", "m", "Centroid x of a region on the periodic square; null for asperities").or_null(),
-        real("y_m", "m", "Centroid y of a region on the periodic square; null for asperities").or_null(),
+        real("centroid_x_m", "m", "Centroid x of a region on the periodic square; null for asperities").or_null(),
+        real("centroid_y_m", "m", "Centroid y of a region on the periodic square; null for asperities").or_null(),
         real("area_m2", "m^2", "Area of a region; null for asperities").or_null(),
         real("perimeter_m", "m", "Length of the edge of a region (Crofton's formula); null for asperities").or_null(),
         count("summit_count", "Asperities of the table asperities inside a region, those of mirror images included; null for asperities")

@@ -37,12 +37,39 @@ pub(super) const PARAMETERS: &[Column] = &[
     real("contact_modulus_pa", "Pa", "Reduced modulus E*, 1/E* = sum of (1 - ν²)/E over both bodies").from("Eq 1"),
     real("work_of_adhesion_j_m2", "J/m^2", "Work of adhesion Δγ").from("Eq 1"),
     real("interaction_range_m", "m", "Range of attraction ε").from("Eq 3"),
-    text("interaction", "Elastic interaction between contacts: \"spots\", \"point\", \"reciprocal\" or \"none\"").from("Eqs 6-8"),
+    text(
+        "interaction",
+        "Elastic interaction between contacts: \"spots\", \"point\", \"reciprocal\" or \"none\"; null for boundary elements",
+    )
+    .or_null()
+    .from("Eqs 6-8"),
     text("boundary", "Boundary condition of the square: \"periodic\" or \"isolated\""),
-    text("coalescence", "Coalescence rule: \"cover\" (absorption), \"merge\" (equal-area merging) or \"none\"").from("Eq 8"),
-    text("jump_in", "Criterion for jump into contact: \"wu\" (at Wu's jump-in distance) or \"jkr\" (at zero penetration)").from("Eq 3"),
+    text("coalescence", "Coalescence rule: \"cover\" (absorption), \"merge\" (equal-area merging) or \"none\"; null for boundary elements")
+        .or_null()
+        .from("Eq 8"),
+    text(
+        "jump_in",
+        "Criterion for jump into contact: \"wu\" (at Wu's jump-in distance) or \"jkr\" (at zero penetration); null for boundary elements",
+    )
+    .or_null()
+    .from("Eq 3"),
     text("as_printed", "Uncorrected equations of the paper that are in use, joined by +; empty if none"),
-    real("approach_step", "1", "Maximum output step of the mean penetration, over h_rms"),
+    real(
+        "approach_step",
+        "1",
+        "Maximum output step of the mean penetration, over h_rms; of boundary elements, step of the mean penetration",
+    ),
+    text("method", "Method: \"asperities\" or \"boundary_elements\""),
+    real("element_points", "1", "Grid points of boundary elements along a side; null for asperities").or_null(),
+    text("attraction", "Attraction of boundary elements: \"bonded\" (JKR limit) or \"range\" (Morse); null for asperities").or_null(),
+    real("attraction_range_m", "m", "Range ρ of the Morse law; null without one").or_null(),
+    text(
+        "nucleation",
+        "Gap at which a point of boundary elements comes into contact: \"touch\" or \"wu\"; null for asperities and with a range",
+    )
+    .or_null(),
+    real("precision", "1", "Tolerance of an equilibrium of boundary elements: rms residual over the maximum tension; null for asperities")
+        .or_null(),
 ];
 
 /// Mean, standard deviation and confidence interval of one result. All are null without a value; the last two require two.
@@ -114,19 +141,19 @@ const RESULTS: &[Column] = &[
     real("loss_dk_realised", "1", "Deng-Kesari estimate Θ_DK/(E* A0 h_rms) at area_at_max_load, with the moments of the realized surface; null where these define none")
         .or_null()
         .from("Eqs A1-A4"),
-    real("loss_touched", "1", "Sum of the dissipated energies of single isolated asperities over all asperities that came into contact, over E* A0 h_rms: no interaction, jump into contact at zero penetration").from("Eq A1"),
+    real("loss_touched", "1", "Sum of the dissipated energies of single isolated asperities over all asperities that came into contact, over E* A0 h_rms: no interaction, jump into contact at zero penetration; null for boundary elements").or_null().from("Eq A1"),
     real("loss_dalvi", "1", "Work of adhesion times contact area at load reversal, over E* A0 h_rms").from("Dalvi et al. 2019"),
     real("loss_ratio_dk", "1", "Ratio Θ/Θ_DK, loss over loss_dk; null where either is null or loss_dk is 0").or_null(),
     real("dissipated", "1", "Dissipated energy over E* A0 h_rms, summed over the events of the loop"),
     real("dissipated_j", "J", "Dissipated energy, summed over the events of the loop"),
-    real("audit_gap", "1", "Energy-balance error |loss_j - dissipated_j| / |loss_j|; where loss_j is 0 (no adhesion), energy of the loading events over the work of loading").or_null(),
+    real("audit_gap", "1", "Energy-balance error |loss_j - dissipated_j| / |loss_j|; where loss_j is 0 (no adhesion), energy of the loading events over the work of loading; for boundary elements, trapezoidal integral of the load over the mean penetration in place of the first loss_j").or_null(),
     real("absorption_share", "1", "Coalescence energy over dissipated energy: |cover + uncover + merge + split|/|Θ| of the energies of events; null where Θ = 0").or_null(),
     real("loss_uncertainty", "1", "Numerical resolution of Θ over |Θ|; the resolution is 1e-7 of the maximum work along the loop; null where Θ = 0").or_null(),
     count("summit_count", "Number of asperities of the surface"),
     real("summit_density_1_m2", "1/m^2", "Number of asperities per nominal area"),
     real("nayak_density_1_m2", "1/m^2", "Summit density of a Gaussian surface with the spectral moments of the realized surface")
         .from("Eq A4, Nayak 1971"),
-    count("contact_count_at_max_load", "Asperities in contact at load reversal"),
+    count("contact_count_at_max_load", "Asperities in contact at load reversal, or contact regions of boundary elements"),
     count("touching_count_at_max_load", "Contact spots at load reversal that overlap a neighbour (distance < sum of radii)"),
     count("covered_count_at_max_load", "Asperities absorbed by a larger contact at load reversal"),
     count("step_count", "Output steps of loading and of this unloading"),
@@ -155,6 +182,7 @@ const RESULTS: &[Column] = &[
     real("persson_tosatti_realised", "1", "Persson-Tosatti ratio U_el/Δγ for the realized spectrum of the surface; null where that is unknown and without adhesion")
         .or_null()
         .from("Persson and Tosatti 2001"),
+    real("elements_per_wavelength", "1", "Grid points of boundary elements per shortest wavelength; null for asperities").or_null(),
 ];
 
 /// Parts of `dissipated` by branch and by kind of event, over E* A0 h_rms and in joule. Each of the two groups sums to `dissipated`.
@@ -237,6 +265,7 @@ const VALIDITY: &[&[Column]] = &[
         "coalescence energy over dissipated energy, |cover + uncover + merge + split|/|Θ|",
         ""
     ),
+    mean_and_worst!("elements_per_wavelength", "min", "Minimum", "grid points of boundary elements per shortest wavelength", ""),
     mean_and_worst!("loss_uncertainty", "max", "Maximum", "numerical resolution of Θ over |Θ|", ""),
     pooled!(
         "touching_share",

@@ -6,7 +6,7 @@ use super::statistics::moments;
 use super::surface::{scale, spectrum};
 use crate::campaign::{Campaign, CycleUnit, Standing};
 use crate::figures::{Closer, Panel, closer};
-use crate::model::{Boundary, Choice, Normalization};
+use crate::model::{Boundary, Choice, Method, Normalization};
 use crate::physics::periodogram::{periodogram, windowed_periodogram};
 use crate::physics::spectrum::Spectrum;
 use crate::physics::theory::curvature_density;
@@ -42,7 +42,10 @@ pub(super) fn look(campaign: &Campaign, standings: &[Standing], cases: &Frame) -
     let params = |unit: &CycleUnit| &campaign.surfaces[unit.surface].params;
     let done = || campaign.cycles.iter().zip(standings).filter(|(_, standing)| **standing == Standing::Done).map(|(unit, _)| unit);
     let (ids, loads, losses) = (cases.text("case_id")?, cases.f64("max_load")?, cases.f64_or_null("loss_mean")?);
+    // The figures are those of contact spots.
+    let methods = cases.text("method")?;
     let mut rows: Vec<(usize, f64)> = losses.iter().enumerate().filter_map(|(row, loss)| loss.map(|loss| (row, loss))).collect();
+    rows.retain(|(row, _)| methods[*row] == Method::Asperities.word());
     // Of equal means, the first row.
     rows.sort_by(|u, v| v.1.total_cmp(&u.1));
     let first = |row: usize| done().find(|unit| campaign.cases[unit.case].id == ids[row] && params(unit).grid() <= GREATEST);

@@ -1,17 +1,22 @@
 //! `datapackage.json`: what tables a run has and what their columns mean, as the Data Package standard (version 2) has it.
 
-use crate::campaign::Campaign;
+use crate::campaign::{Campaign, CycleUnit};
 use crate::schema::{Column, Kind, TABLES, Table};
 use serde_json::{Value, json};
 
 /// The description of the tables of a campaign; of the cycles only of those that are done.
 pub(super) fn text(campaign: &Campaign, done: &[bool]) -> String {
-    let cycles: Vec<&str> = {
-        let mut ids: Vec<&str> = campaign.cycles.iter().zip(done).filter(|(_, done)| **done).map(|(unit, _)| unit.id.as_str()).collect();
+    let of_method = |by_elements: bool| {
+        let is = |unit: &CycleUnit| campaign.cases[unit.case].case.params.by_elements() == by_elements;
+        let finished = campaign.cycles.iter().zip(done).filter(|(unit, done)| **done && is(unit));
+        let mut ids: Vec<&str> = finished.map(|(unit, _)| unit.id.as_str()).collect();
         ids.sort_unstable();
         ids.dedup();
         ids
     };
+    let (asperities, elements) = (of_method(false), of_method(true));
+    let mut cycles = [asperities.as_slice(), elements.as_slice()].concat();
+    cycles.sort_unstable();
     let surfaces: Vec<&str> = campaign.surfaces.iter().map(|unit| unit.id.as_str()).collect();
     let mut resources: Vec<Value> = TABLES
         .iter()
@@ -19,6 +24,8 @@ pub(super) fn text(campaign: &Campaign, done: &[bool]) -> String {
         .filter(|table| table.file.contains('/'))
         .filter_map(|table| {
             let ids = match table.file.split('/').next() {
+                // Boundary elements have no such tables.
+                Some("cycles") if matches!(table.name, "turning" | "merged") => &asperities,
                 Some("cycles") => &cycles,
                 Some("asperities") => &surfaces,
                 _ => return Some(resource(table, json!(table.file))),
@@ -34,6 +41,15 @@ pub(super) fn text(campaign: &Campaign, done: &[bool]) -> String {
         "mediatype": "application/x-hdf5",
         "description": "Height fields: the dataset /height_m (f64, N x N, rows along x) with its coordinates /x_m and /y_m; parameters of the surface as attributes.",
     }));
+    if !elements.is_empty() {
+        resources.push(json!({
+            "name": "maps",
+            "path": elements.iter().map(|id| format!("cycles/{id}/maps.h5")).collect::<Vec<_>>(),
+            "format": "hdf5",
+            "mediatype": "application/x-hdf5",
+            "description": "Maps of boundary elements: a group for each load reversal and maximum tensile load, with the datasets gap_m and pressure_pa (f32, rows along x), and step, branch, max_load, approach_m and load_n as attributes.",
+        }));
+    }
     let package = json!({
         "$schema": "https://datapackage.org/profiles/2.0/datapackage.json",
         "name": campaign.spec.name.to_lowercase(),

@@ -6,8 +6,10 @@ mod cycle;
 mod datapackage;
 mod done;
 mod failure;
+mod foreseen;
 mod identity;
 mod measure;
+mod methods;
 mod page;
 mod reading;
 mod report;
@@ -21,9 +23,9 @@ mod trust;
 
 pub use comparison::{Comparison, compare};
 pub use cycle::{Units, unload_again, unload_elements_again};
+pub use foreseen::{Outside, foreseen};
 pub use measure::{Imported, measure};
 pub use sampling::sampled;
-pub use statistics::{Outside, foreseen};
 
 use crate::campaign::{Campaign, CycleUnit, Shard, Stage, Standing, SurfaceUnit, Unit};
 use crate::physics::PhysicsError;

@@ -2,16 +2,18 @@
 
 use super::closer::{self, Look};
 use super::done::{Clock, Outcome};
+use super::methods::side_by_side;
 use super::page::{escape, grid, head};
 use super::reading;
 use super::scans::scans;
 use super::theories::theories;
 use super::trust::{Cases, split, trust};
 use super::{StageError, Tally, Watch, incomplete};
-use crate::campaign::{Campaign, REPORT_PAGE, STATISTICS, Stage, Standing, Unit};
+use crate::campaign::{Campaign, CaseUnit, REPORT_PAGE, STATISTICS, Stage, Standing, Unit};
 use crate::figures::{Panel, Tables, panels, pdf, png, table};
 use crate::schema;
 use crate::stats::summary;
+use crate::store::Frame;
 use crate::store::commit::Written;
 use crate::store::{Check, commit, parquet};
 use crate::text::counted;
@@ -39,6 +41,7 @@ pub(super) fn run(campaign: &Campaign, (cycles_check, check): (Check, Check), wa
     let cases = parquet::read_table(&campaign.statistics_path("cases"), &schema::CASES)?;
     let curves = parquet::read_table(&campaign.statistics_path("curves"), &schema::CURVES)?;
     let realizations = parquet::read_table(&campaign.statistics_path("realizations"), &schema::REALIZATIONS)?;
+    let methods = parquet::read_table(&campaign.statistics_path("methods"), &schema::METHODS)?;
     let tables = Tables { cases: &cases, curves: &curves, realizations: &realizations };
     let (mut drawings, mut files) = (Vec::new(), Vec::new());
     for sweep in sweeps(campaign) {
@@ -54,7 +57,7 @@ pub(super) fn run(campaign: &Campaign, (cycles_check, check): (Check, Check), wa
     if let Some(map) = look.as_ref().and_then(|look| look.map.as_ref()) {
         files.extend(write_picture(&campaign.dir, "closer_map", map)?);
     }
-    let page = page(campaign, &key, &Cases::of(&cases, &realizations)?, &drawings, look.as_ref())?;
+    let page = page(campaign, &key, (&Cases::of(&cases, &realizations)?, &methods), &drawings, look.as_ref())?;
     drawings.extend(close.map(|panel| (String::new(), panel.clone())).collect::<Vec<_>>());
     files.push(parquet::write_table(&campaign.statistics_path("panels"), &table(&drawings)?, &[("key", key.clone())])?);
     files.push(commit::commit_bytes("write the report", &campaign.dir.join("report.html"), page.as_bytes())?);
@@ -83,10 +86,25 @@ fn sweeps(campaign: &Campaign) -> Vec<String> {
     names
 }
 
+/// The methods of a run in sentences.
+fn models(campaign: &Campaign) -> String {
+    let by_elements = |unit: &&CaseUnit| unit.case.params.by_elements();
+    let count = campaign.cases.iter().filter(by_elements).count();
+    let mut text = String::new();
+    if count < campaign.cases.len() {
+        text += "Interacting asperities of Johnson, Kendall and Roberts (JKR) after Violano and Afferrante, Lubricants 9(1):7 (2021), with corrected equations.";
+    }
+    if count > 0 {
+        text += if text.is_empty() { "" } else { " " };
+        text += "Adhesive boundary elements: the rough surface on a grid, loaded and unloaded under displacement control.";
+    }
+    text
+}
+
 fn page(
     campaign: &Campaign,
     key: &str,
-    cases: &Cases<'_>,
+    (cases, methods): (&Cases<'_>, &Frame),
     drawings: &[(String, Panel)],
     look: Option<&Look>,
 ) -> Result<String, StageError> {
@@ -95,14 +113,15 @@ fn page(
     // Writing to a string cannot fail.
     let _ = write!(
         html,
-        "<h1>{name}</h1>\n<p>Adhesive hysteresis of rough surfaces: {}, {} each. Interacting asperities of Johnson, Kendall and \
-         Roberts (JKR) after Violano and Afferrante, Lubricants 9(1):7 (2021), with corrected equations. E*: reduced modulus; A<sub>0</sub>: nominal area; \
+        "<h1>{name}</h1>\n<p>Adhesive hysteresis of rough surfaces: {}, {} each. {} E*: reduced modulus; A<sub>0</sub>: nominal area; \
          h<sub>rms</sub>: root-mean-square height; Δγ: work of adhesion; Δ: mean penetration; F: normal load, positive in compression.</p>\n<pre>{}</pre>\n",
         counted(campaign.cases.len(), "case"),
         campaign.realizations_in_words(),
+        models(campaign),
         escape(&summary(cases.frame)?)
     );
     reading::results(&mut html, cases)?;
+    side_by_side(&mut html, cases, methods)?;
     scans(&mut html, campaign)?;
     let sweeps = sweeps(campaign);
     for (number, sweep) in sweeps.iter().enumerate() {

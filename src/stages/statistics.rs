@@ -1,10 +1,11 @@
 //! aggregate: from the steps of all cycles to the tables over realisations.
 
+use super::cycle::lattice;
 use super::done::{Clock, Outcome};
 use super::surface::{read_summits, scale, spectrum};
 use super::{StageError, Tally, Watch, datapackage, incomplete};
 use crate::campaign::{Campaign, CaseUnit, CycleUnit, STATISTICS, Stage, Standing, Unit};
-use crate::model::Choice;
+use crate::model::{Attraction, Choice};
 use crate::physics::jkr::Asperity;
 use crate::physics::spectrum::{Moments, Spectrum};
 use crate::physics::summits::Summit;
@@ -14,7 +15,7 @@ use crate::physics::theory::{
 };
 use crate::physics::validity::{Flattening, LEAST_TABOR, flattening, measured_flattening, realised_flattening};
 use crate::spec::CaseParams;
-use crate::stats::{self, CAUTIONS, CaseInput, Caution, CycleInput, Given, Limit, Planned, Sample, Value};
+use crate::stats::{self, CaseInput, CycleInput, Given, Planned, Sample, Value};
 use crate::store::hdf5::{SurfaceHeader, read_header, read_surface};
 use crate::store::{Check, Frame, commit, parquet};
 use rayon::prelude::*;
@@ -85,11 +86,12 @@ pub(super) fn run(
     }
     let realizations = stats::realizations(&cases, &cycles)?;
     let averaged = stats::cases(&realizations, &cases)?;
+    let methods = stats::methods(&cases, &side_by_side(campaign), &realizations)?;
     let curves = stats::curves(&cases, &cycles)?;
     let avalanches = stats::avalanches(&cases, &cycles)?;
     let planned = stats::planned(&cases, &planned_cycles(campaign, &standings))?;
     let write = |frame: &Frame| Ok(parquet::write_table(&campaign.statistics_path(frame.table().name), frame, &[("key", key.clone())])?);
-    let tables = [realizations, curves, avalanches, planned, averaged];
+    let tables = [realizations, curves, avalanches, planned, methods, averaged];
     let mut files = tables.iter().map(write).collect::<Result<Vec<_>, StageError>>()?;
     let described = datapackage::text(campaign, &finished);
     files.push(commit::commit_bytes("describe the tables in", &campaign.dir.join("datapackage.json"), described.as_bytes())?);
@@ -99,6 +101,17 @@ pub(super) fn run(
     watch.end(Stage::Aggregate);
     tally.computed = 1;
     Ok(tally)
+}
+
+/// Ids of cases of the same surface and material, one by asperities and one by boundary elements.
+fn side_by_side(campaign: &Campaign) -> Vec<[String; 2]> {
+    let same = |a: &CaseParams, b: &CaseParams| a.surface == b.surface && a.material == b.material;
+    let (elements, asperities): (Vec<&CaseUnit>, Vec<&CaseUnit>) = campaign.cases.iter().partition(|unit| unit.case.params.by_elements());
+    let pairs = |one: &CaseUnit| {
+        let others = elements.iter().filter(|other| same(&one.case.params, &other.case.params));
+        others.map(|other| [one.id.clone(), other.id.clone()]).collect::<Vec<_>>()
+    };
+    asperities.into_iter().flat_map(pairs).collect()
 }
 
 /// Every cycle of every case with its status.
@@ -126,9 +139,12 @@ fn case_input(campaign: &Campaign, number: usize, unit: &CaseUnit, standings: &[
     let is_there = |cycle: &&CycleUnit| !surface.is_measured() || campaign.surface_path(&campaign.surfaces[cycle.surface]).is_file();
     let of_case = campaign.cycles.iter().find(|cycle| cycle.case == number).filter(is_there);
     let scale = of_case.map(|cycle| scale(campaign, &campaign.surfaces[cycle.surface])).transpose()?;
+    let lattice = of_case.map(|cycle| lattice(campaign, cycle)).transpose()?.flatten();
     let generated = (!surface.is_measured()).then_some(surface);
     let file = surface.is_measured().then(|| campaign.file_label(&surface.file));
-    let parameters: [(&str, Value); 19] = [
+    let elements = params.by_elements().then_some(&params.boundary_elements);
+    let asperities = |word: &'static str| -> Value { elements.is_none().then_some(word).into() };
+    let parameters: [(&str, Value); 25] = [
         ("surface_file", file.as_deref().into()),
         ("surface_dataset", (surface.is_measured() && !surface.dataset.is_empty()).then_some(surface.dataset.as_str()).into()),
         ("detrend", surface.is_measured().then(|| surface.detrend.word()).into()),
@@ -142,12 +158,21 @@ fn case_input(campaign: &Campaign, number: usize, unit: &CaseUnit, standings: &[
         ("contact_modulus_pa", material.contact_modulus_pa.into()),
         ("work_of_adhesion_j_m2", material.work_of_adhesion_j_m2.into()),
         ("interaction_range_m", material.interaction_range_m.into()),
-        ("interaction", model.interaction.word().into()),
+        ("interaction", asperities(model.interaction.word())),
         ("boundary", model.boundary.word().into()),
-        ("coalescence", model.coalescence.word().into()),
-        ("jump_in", model.jump_in.word().into()),
+        ("coalescence", asperities(model.coalescence.word())),
+        ("jump_in", asperities(model.jump_in.word())),
         ("as_printed", slips.join("+").as_str().into()),
-        ("approach_step", params.cycle.approach_step.into()),
+        ("approach_step", elements.map_or(params.cycle.approach_step, |elements| elements.approach_step).into()),
+        ("method", model.method.word().into()),
+        ("element_points", lattice.map(|lattice| lattice.points as f64).into()),
+        ("attraction", elements.map(|elements| elements.attraction.word()).into()),
+        ("attraction_range_m", lattice.and_then(|lattice| lattice.range_m).into()),
+        (
+            "nucleation",
+            elements.filter(|elements| elements.attraction == Attraction::Bonded).map(|elements| elements.nucleation.word()).into(),
+        ),
+        ("precision", elements.map(|elements| elements.precision).into()),
     ];
     let failed = |(cycle, standing): (&CycleUnit, &Standing)| cycle.case == number && matches!(standing, Standing::Failed(_));
     Ok(CaseInput {
@@ -200,44 +225,8 @@ fn flattenings(campaign: &Campaign, unit: &CycleUnit, header: Option<&SurfaceHea
 }
 
 /// Target spectrum of a case; a measured surface has none.
-fn target(params: &CaseParams) -> Option<Spectrum> {
+pub(super) fn target(params: &CaseParams) -> Option<Spectrum> {
     (!params.surface.is_measured()).then(|| spectrum(&params.surface))
-}
-
-/// Elastic energy over a work of adhesion \[J/m²\].
-type Ratio = fn(&Flattening, f64) -> f64;
-
-/// Cases whose target spectrum is outside the range of the asperity model.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Outside {
-    /// The warning.
-    pub kind: Caution,
-    /// Its limit.
-    pub limit: f64,
-    /// Smallest and largest value over these cases.
-    pub range: [f64; 2],
-    /// Ids of the cases.
-    pub cases: Vec<String>,
-}
-
-/// Warnings that follow from the spec alone, before any surface is made: `U_el/Δγ` and `U_1/Δγ` of the target spectra. Measured surfaces and cases
-/// without adhesion have none.
-#[must_use]
-pub fn foreseen(campaign: &Campaign) -> Vec<Outside> {
-    let ratios: [(&str, Ratio); 2] = [("sticky", Flattening::persson_tosatti), ("conformed", Flattening::conformity)];
-    let value = |unit: &CaseUnit, ratio: fn(&Flattening, f64) -> f64| {
-        let (params, material) = (&unit.case.params, &unit.case.params.material);
-        let asked = target(params).filter(|_| material.work_of_adhesion_j_m2 > 0.0)?;
-        Some(ratio(&flattening(&asked, material.contact_modulus_pa), material.work_of_adhesion_j_m2))
-    };
-    let of = |(code, ratio): (&str, Ratio)| {
-        let (limit, kind) = (Limit::of(code)?, CAUTIONS.into_iter().find(|kind| kind.code == code)?);
-        let known = campaign.cases.iter().filter_map(|unit| Some((unit.id.clone(), value(unit, ratio)?)));
-        let (cases, values): (Vec<String>, Vec<f64>) = known.filter(|(_, value)| limit.is_passed(Some(*value))).unzip();
-        let range = [values.iter().copied().reduce(f64::min)?, values.iter().copied().reduce(f64::max)?];
-        Some(Outside { kind, limit: limit.bound, range, cases })
-    };
-    ratios.into_iter().filter_map(of).collect()
 }
 
 pub(super) fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<CycleInput, StageError> {
@@ -248,6 +237,9 @@ pub(super) fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<Cycle
     let summits = read_summits(&campaign.asperities_path(surface))?;
     let realised = moments(&header);
     let area = header.length_m * header.length_m;
+    let lattice = lattice(campaign, unit)?;
+    // A square that is continued by mirror images is four times as large.
+    let nominal = lattice.map_or(area, |lattice| lattice.length_m * lattice.length_m);
     let mut tabor = summits
         .iter()
         .map(|s| Ok(Asperity::new(s.radius_m(), &params.material)?.tabor(params.material.interaction_range_m)))
@@ -270,7 +262,7 @@ pub(super) fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<Cycle
         ];
         (*load, named(columns))
     };
-    let numbers: [(&str, Value); 12] = [
+    let numbers: [(&str, Value); 13] = [
         ("summit_count", summits.len().into()),
         ("summit_density_1_m2", (summits.len() as f64 / area).into()),
         ("nayak_density_1_m2", realised.summit_density_1_m2().into()),
@@ -283,6 +275,7 @@ pub(super) fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<Cycle
         ("rms_slope", header.rms_slope.into()),
         ("rms_curvature_1_m", header.rms_curvature_1_m.into()),
         ("nayak_parameter", header.nayak_parameter.into()),
+        ("elements_per_wavelength", lattice.map(|lattice| lattice.per_wavelength).into()),
     ];
     let mut of_surface = flattenings(campaign, unit, Some(&header))?;
     of_surface.extend(named(numbers));
@@ -293,13 +286,13 @@ pub(super) fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<Cycle
         surface_id: surface.id.clone(),
         steps: campaign.cycle_dir(unit).join("steps.parquet"),
         events: campaign.cycle_dir(unit).join("events.parquet"),
-        energy_scale_j: params.material.contact_modulus_pa * area * scale.rms_height_m,
+        energy_scale_j: params.material.contact_modulus_pa * nominal * scale.rms_height_m,
         loss_dk_per_area_j: match &asked {
-            Some(asked) => deng_kesari(&asked.moments(), params, area)?,
+            Some(asked) => deng_kesari(&asked.moments(), params, nominal)?,
             None => None,
         },
-        loss_dk_realised_per_area_j: deng_kesari(&realised, params, area)?,
-        loss_dalvi_per_area_j: dalvi_loss(&params.material, area),
+        loss_dk_realised_per_area_j: deng_kesari(&realised, params, nominal)?,
+        loss_dalvi_per_area_j: dalvi_loss(&params.material, nominal),
         asperity_loss_j: losses,
         at_max_load: params.cycle.max_load.iter().map(at_max_load).collect(),
         surface: of_surface,

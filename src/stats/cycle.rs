@@ -28,6 +28,7 @@ pub(super) struct Branch {
     pub(super) touching_count: Vec<i64>,
     pub(super) held_count: Vec<i64>,
     pub(super) converged: Vec<bool>,
+    pub(super) reversal_load: Vec<Option<f64>>,
 }
 
 /// A cycle: one loading branch, and an unloading branch from each turning point.
@@ -75,6 +76,9 @@ impl Cycle {
 
     /// The position in the loading branch of the step at which it turned.
     pub(super) fn turning_row(&self, input: &CycleInput, max_load: f64) -> Result<usize, StatsError> {
+        if let Some(row) = self.loading.reversal_load.iter().position(|load| *load == Some(max_load)) {
+            return Ok(row);
+        }
         let near = |load: f64| (load - max_load).abs() <= TURNING_TOLERANCE * max_load.abs();
         let distance = |load: &f64| (load - max_load).abs();
         let nearest = self.loading.load.iter().enumerate().min_by(|a, b| distance(a.1).total_cmp(&distance(b.1)));
@@ -107,6 +111,9 @@ impl Branch {
     }
 }
 
+/// Column of the loads of the spec at the steps of load reversal.
+const REVERSAL: &str = "reversal_load";
+
 const COLUMNS: [&str; 15] = [
     "step",
     "load",
@@ -135,8 +142,13 @@ pub(super) fn scan(path: &Path) -> PolarsResult<LazyFrame> {
 /// One row per branch, each column a list in the order of the steps.
 fn group(path: &Path) -> PolarsResult<DataFrame> {
     let keys = [col("branch"), col("max_load")];
-    let lists: Vec<Expr> = COLUMNS.iter().map(|name| col(*name)).collect();
-    scan(path)?
+    let mut lists: Vec<Expr> = COLUMNS.iter().map(|name| col(*name)).collect();
+    let mut frame = scan(path)?;
+    // Tables of earlier versions lack it.
+    if frame.collect_schema()?.contains(REVERSAL) {
+        lists.push(col(REVERSAL));
+    }
+    frame
         .select([keys.as_slice(), lists.as_slice()].concat())
         .sort(["step"], SortMultipleOptions::default().with_maintain_order(true))
         .group_by_stable(keys)
@@ -177,6 +189,10 @@ fn branch(frame: &DataFrame, row: usize) -> PolarsResult<Branch> {
         covered_count: wholes("covered_count")?,
         touching_count: wholes("touching_count")?,
         held_count: wholes("held_count")?,
+        reversal_load: match frame.column(REVERSAL) {
+            Ok(column) => cell(column, row)?.unwrap_or_default().f64()?.iter().collect(),
+            Err(_) => Vec::new(),
+        },
         converged: list("converged")?.bool()?.iter().map(Option::unwrap_or_default).collect(),
     })
 }

@@ -49,7 +49,7 @@ pub fn listing_of(cases: &Frame, sweep: &str) -> Result<Vec<Listed>, StatsError>
     let joined = cases.text("sweep")?;
     let rows: Vec<usize> = (0..joined.len()).filter(|row| joined[*row].split('+').any(|name| name == sweep)).collect();
     let list = List::of(cases, rows)?;
-    let label = |place: usize| list.differing.iter().map(|parameter| parameter.named(place)).collect::<Vec<_>>().join(", ");
+    let label = |place: usize| said(&list.differing, place).map(|parameter| parameter.named(place)).collect::<Vec<_>>().join(", ");
     list.listed(cases, label)
 }
 
@@ -60,11 +60,11 @@ pub fn listing_of(cases: &Frame, sweep: &str) -> Result<Vec<Listed>, StatsError>
 /// If the table lacks a column.
 pub fn listing(cases: &Frame) -> Result<Listing, StatsError> {
     let list = List::of(cases, (0..cases.row_count()).collect())?;
-    let all = |place: usize| list.differing.iter().map(|parameter| parameter.assigned(place)).collect::<Vec<_>>().join(", ");
+    let all = |place: usize| said(&list.differing, place).map(|parameter| parameter.assigned(place)).collect::<Vec<_>>().join(", ");
     let base = list.references.iter().position(|is| *is);
     let label = |place: usize| match base {
         Some(base) => {
-            let own = list.differing.iter().filter(|parameter| parameter.text(place) != parameter.text(base));
+            let own = said(&list.differing, place).filter(|parameter| parameter.text(place) != parameter.text(base));
             let parts: Vec<String> = own.map(|parameter| parameter.assigned(place)).collect();
             if parts.is_empty() { "reference".to_owned() } else { parts.join(", ") }
         }
@@ -85,6 +85,11 @@ fn reference_case(cases: &Frame) -> Result<Option<String>, StatsError> {
         [id] if most > 1 => Some(id.to_owned()),
         _ => None,
     })
+}
+
+/// The parameters of a row that its method reads.
+fn said(differing: &[Varying], place: usize) -> impl Iterator<Item = &Varying> {
+    differing.iter().filter(move |parameter| !parameter.is_absent(place))
 }
 
 /// Rows with what varies among them.
@@ -118,7 +123,7 @@ impl List {
 }
 
 /// The label of a case where nothing varies: the file of a measured surface, or ζ and H.
-fn case_label(cases: &Frame, row: usize) -> Result<String, StatsError> {
+pub(super) fn case_label(cases: &Frame, row: usize) -> Result<String, StatsError> {
     if let Some(file) = cases.text_or_null("surface_file")?.get(row).cloned().flatten() {
         return Ok(file);
     }

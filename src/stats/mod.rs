@@ -12,6 +12,7 @@ mod cycle;
 mod digits;
 mod events;
 mod listed;
+mod methods;
 mod planned;
 mod realizations;
 mod rows;
@@ -30,6 +31,7 @@ pub use compare::{Difference, Group, Matched, Side, comparison, difference_of, m
 pub use curves::curves;
 pub use digits::{column_exponent, decimals, labels, labels_with_unit, significant};
 pub use listed::{Listed, Listing, listing, listing_of, sweeps};
+pub use methods::{MethodPair, method_pairs, methods, methods_summary, names_of_pairs};
 pub use planned::{Planned, planned};
 pub use realizations::{realizations, results};
 pub use rows::Value;

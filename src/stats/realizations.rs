@@ -3,6 +3,7 @@
 use super::cycle::{Branch, Cycle, fault};
 use super::events::{Events, Lost};
 use super::rows::{Rows, Value};
+use super::walk::Point;
 use super::{CaseInput, CycleInput, Given, StatsError};
 use crate::physics::soundness::RESOLUTION;
 use crate::schema::{EVENT_KINDS, REALIZATIONS};
@@ -30,7 +31,13 @@ pub fn realizations(cases: &[CaseInput], cycles: &[CycleInput]) -> Result<Frame,
             let lost = events.lost(step, *max_load);
             results.push(("absorption_share".to_owned(), absorption_share(&lost, &results).into()));
             results.extend(parts(&lost, input));
-            results.push(("loss_touched".to_owned(), touched(&events.touched(step, *max_load), input).into()));
+            if by_elements(case) {
+                let balance = trapezoidal_balance(&cycle.loading, turning, unloading, &results, input);
+                results.retain(|(name, _)| name != "audit_gap");
+                results.push(("audit_gap".to_owned(), balance.into()));
+            } else {
+                results.push(("loss_touched".to_owned(), touched(&events.touched(step, *max_load), input).into()));
+            }
             let given = input.at_max_load.iter().find(|(load, _)| load == max_load);
             results.extend(given.map(|(_, given)| given.clone()).unwrap_or_default());
             ordered.push((&case.case_id, *max_load, input.realization, results, case, input));
@@ -89,6 +96,22 @@ fn absorption_share(lost: &Lost, results: &Given) -> Option<f64> {
     let loss = results.iter().find(|(name, _)| name == "loss_j").and_then(|(_, value)| value.number())?;
     let kinds = EVENT_KINDS.iter().zip(lost.kinds).filter(|(kind, _)| COALESCENCE.contains(kind));
     (loss != 0.0).then(|| (kinds.map(|(_, energy)| energy).sum::<f64>() / loss).abs())
+}
+
+/// True if boundary elements compute the case.
+fn by_elements(case: &CaseInput) -> bool {
+    case.parameters.iter().any(|(name, value)| name == "method" && *value == Value::from("boundary_elements"))
+}
+
+/// Energy-balance error of boundary elements over |Θ|. Between events their work is the change of the energy, so that Θ is the sum of the events; the
+/// independent value is the trapezoidal integral of the load over the mean penetration. Null for Θ = 0.
+fn trapezoidal_balance(loading: &Branch, turning: usize, unloading: &Branch, results: &Given, input: &CycleInput) -> Option<f64> {
+    let number = |name: &str| results.iter().find(|(known, _)| known == name).and_then(|(_, value)| value.number());
+    let (loss, dissipated) = (number("loss_j")?, number("dissipated_j")?);
+    let points: Vec<Point> = loading.points().take(turning + 1).chain(unloading.points()).collect();
+    let part = |pair: &[Point]| 0.5 * (pair[0].load + pair[1].load) * (pair[1].penetration - pair[0].penetration);
+    let integral = points.windows(2).map(part).sum::<f64>() * input.energy_scale_j;
+    (loss != 0.0).then(|| ((integral - dissipated) / loss).abs())
 }
 
 /// What the asperities that touched lose by themselves, over the scale of energies.

@@ -10,6 +10,8 @@ mod cli;
 #[cfg(feature = "stats")]
 mod e2e;
 #[cfg(feature = "stats")]
+mod elements;
+#[cfg(feature = "stats")]
 mod extremes;
 #[cfg(feature = "stats")]
 mod figures;

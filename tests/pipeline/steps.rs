@@ -51,6 +51,7 @@ pub fn write_events(steps: &Path, events: &[Event]) {
         .f64("area_before_m2", reals(2))
         .f64("area_after_m2", reals(3))
         .f64("energy_lost_j", reals(4))
+        .text("method", vec!["asperities"; events.len()])
         .build()
         .unwrap();
     write_table(&events_path(steps), &frame, &[]).unwrap();
@@ -98,6 +99,9 @@ pub fn write_counts(path: &Path, steps: &[Step], [contacts, covered, touching]: 
         .f64("load", reals(|step| step.2))
         .f64("area", reals(|step| step.3))
         .f64("penetration", reals(|step| step.4))
+        .text("method", vec!["asperities"; steps.len()])
+        .f64("residual", vec![None; steps.len()])
+        .f64("reversal_load", vec![None; steps.len()])
         .build()
         .unwrap();
     write_table(path, &frame, &[]).unwrap();
@@ -130,6 +134,7 @@ pub fn case(id: &str, sweep: &str, hurst: f64, magnification: f64, max_loads: &[
             ("jump_in", "wu".into()),
             ("as_printed", "".into()),
             ("approach_step", 0.01.into()),
+            ("method", "asperities".into()),
         ]),
         max_loads: max_loads.to_vec(),
         precision: None,

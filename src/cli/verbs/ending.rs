@@ -5,7 +5,7 @@ use crate::campaign::{Campaign, Shard, Stage, Standing};
 use crate::cli::progress::duration;
 use crate::schema;
 use crate::stages::Tally;
-use crate::stats::summary;
+use crate::stats::{methods_summary, summary};
 use crate::store::{Check, parquet};
 use crate::text::{counted, shell_path, shown, visible, wrapped};
 use indicatif::HumanBytes;
@@ -41,6 +41,11 @@ impl<'a> Ended<'a> {
         if until >= Stage::Aggregate {
             let cases = parquet::read_table(&self.campaign.statistics_path("cases"), &schema::CASES).map_err(failed)?;
             text += &summary(&cases).map_err(failed)?;
+            let methods = parquet::read_table(&self.campaign.statistics_path("methods"), &schema::METHODS).map_err(failed)?;
+            let compared = methods_summary(&cases, &methods).map_err(failed)?;
+            if !compared.is_empty() {
+                text += &format!("\n{compared}");
+            }
             text += "\n";
         }
         for (stage, t) in self.tallies.iter().filter(|_| !self.is_idle()) {

@@ -59,7 +59,11 @@ fn outside_text(of: &Outside, all: usize) -> String {
     let measured = of.kind.text.replace("{}", &range);
     let Caution { code, label, consequence, action, .. } = of.kind;
     let cases = format!("{} of {}", of.cases.len(), counted(all, "case"));
-    let text = format!("warning[{code}]: {label}: {measured} (target spectrum; limit ≥ {}) for {cases}. {consequence} {action}", of.limit);
+    let text = format!(
+        "warning[{code}]: {label}: {measured} ({}limit ≥ {}) for {cases}. {consequence} {action}",
+        if code == "coarse" { "" } else { "target spectrum; " },
+        of.limit
+    );
     wrapped(&text, "  ")
 }
 

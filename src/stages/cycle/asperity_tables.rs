@@ -114,6 +114,7 @@ pub(super) fn steps(of: Identity<'_>, cycle: &Cycle, problem: &Problem) -> Resul
         .f64("penetration", steps.iter().map(|s| s.approach_m / problem.rms_height_m))
         .text("method", repeat_n(METHOD, steps.len()))
         .f64("residual", repeat_n(None::<f64>, steps.len()))
+        .f64("reversal_load", repeat_n(None::<f64>, steps.len()))
         .build()?)
 }
 
@@ -132,8 +133,8 @@ pub(super) fn contacts(of: Identity<'_>, cycle: &Cycle) -> Result<Frame, StageEr
         .f64("penetration_m", spots.iter().map(|s| s.penetration_m))
         .f64("interaction_m", spots.iter().map(|s| s.interaction_m))
         .text("method", repeat_n(METHOD, spots.len()))
-        .f64("x_m", repeat_n(None::<f64>, spots.len()))
-        .f64("y_m", repeat_n(None::<f64>, spots.len()))
+        .f64("centroid_x_m", repeat_n(None::<f64>, spots.len()))
+        .f64("centroid_y_m", repeat_n(None::<f64>, spots.len()))
         .f64("area_m2", repeat_n(None::<f64>, spots.len()))
         .f64("perimeter_m", repeat_n(None::<f64>, spots.len()))
         .i64("summit_count", repeat_n(None::<i64>, spots.len()))

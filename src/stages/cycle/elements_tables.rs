@@ -2,7 +2,8 @@
 
 use super::super::StageError;
 use super::super::identity::Identity;
-use super::boundary_elements::{Counts, Units};
+use super::boundary_elements::Counts;
+use super::elements_setup::Units;
 use crate::physics::boundary_elements::cycle::{Cycle, Step};
 use crate::physics::boundary_elements::regions::{Change, Region};
 use crate::schema;
@@ -34,6 +35,10 @@ pub(super) fn steps(of: Identity<'_>, cycle: &Cycle, loads: &[f64], units: &Unit
     }
     let of_kinds = |kinds_of: &'static [Change]| {
         kinds.iter().map(|counts| kinds_of.iter().map(|kind| counts[*kind as usize]).sum::<usize>()).collect::<Vec<_>>()
+    };
+    let reversal_load = |step: usize| {
+        let reversal = cycle.turning.iter().position(|turning| turning.step == step);
+        reversal.and_then(|at| loads.get(at)).copied()
     };
     let area_m2: Vec<f64> = steps.iter().map(|step| step.totals.contact as f64 * spacing * spacing).collect();
     Ok(of
@@ -72,6 +77,7 @@ pub(super) fn steps(of: Identity<'_>, cycle: &Cycle, loads: &[f64], units: &Unit
         .f64("penetration", steps.iter().map(|s| s.approach * spacing / units.rms_height_m))
         .text("method", repeat_n(METHOD, steps.len()))
         .f64("residual", each(|s| s.residual, 1.0))
+        .f64("reversal_load", (0..steps.len()).map(reversal_load))
         .build()?)
 }
 
@@ -106,8 +112,8 @@ pub(super) fn contacts(
         .f64("penetration_m", nothing())
         .f64("interaction_m", nothing())
         .text("method", repeat_n(METHOD, rows.len()))
-        .f64("x_m", rows.iter().map(|row| row.1.centroid[0] * spacing))
-        .f64("y_m", rows.iter().map(|row| row.1.centroid[1] * spacing))
+        .f64("centroid_x_m", rows.iter().map(|row| row.1.centroid[0] * spacing))
+        .f64("centroid_y_m", rows.iter().map(|row| row.1.centroid[1] * spacing))
         .f64("area_m2", rows.iter().map(|row| area(&row.1)))
         .f64("perimeter_m", rows.iter().map(|row| row.1.perimeter * spacing))
         .i64("summit_count", rows.iter().map(|row| row.2.map(i64::from)))

@@ -3,10 +3,13 @@
 mod asperities;
 mod asperity_tables;
 mod boundary_elements;
+mod elements_setup;
 mod elements_tables;
 
 pub use asperities::unload_again;
-pub use boundary_elements::{Units, unload_elements_again};
+pub use boundary_elements::unload_elements_again;
+pub use elements_setup::Units;
+pub(super) use elements_setup::lattice;
 
 use super::done::Outcome;
 use super::{StageError, Watch};

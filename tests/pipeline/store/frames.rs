@@ -18,6 +18,12 @@ fn contacts() -> FrameBuilder {
         .f64("contact_radius_m", [1e-6, 0.0])
         .f64("load_n", vec![-1e-9, 0.0])
         .f64("penetration_m", [1e-9, -1e-9])
+        .text("method", vec!["asperities"; 2])
+        .f64("centroid_x_m", vec![None; 2])
+        .f64("centroid_y_m", vec![None; 2])
+        .f64("area_m2", vec![None; 2])
+        .f64("perimeter_m", vec![None; 2])
+        .i64("summit_count", vec![None; 2])
 }
 
 #[test]

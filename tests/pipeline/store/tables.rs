@@ -4,7 +4,7 @@ use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use arrow::array::{ArrayRef, Float64Array, Int64Array, RecordBatch, StringArray};
+use arrow::array::{ArrayRef, BooleanArray, Float64Array, Int64Array, RecordBatch, StringArray};
 use hysteron::schema::{ASPERITIES, CONTACTS, CURVES, Kind, STEPS, TABLES, Table};
 use hysteron::store::Frame;
 use hysteron::store::parquet::{METADATA_KEY, read_key, read_metadata, read_table, write_table};
@@ -61,6 +61,12 @@ fn e2e_a_table_of_several_row_groups_comes_back() {
         .f64("load_n", (0..rows).map(at))
         .f64("penetration_m", (0..rows).map(at))
         .f64("interaction_m", (0..rows).map(at))
+        .text("method", vec!["asperities"; rows])
+        .f64("centroid_x_m", vec![None; rows])
+        .f64("centroid_y_m", vec![None; rows])
+        .f64("area_m2", vec![None; rows])
+        .f64("perimeter_m", vec![None; rows])
+        .i64("summit_count", vec![None; rows])
         .build()
         .unwrap();
     let (_directory, path) = written(&frame);
@@ -214,7 +220,7 @@ fn e2e_another_table_is_told_from_this_one() {
                 _ => (column.name, whole()),
             })
             .collect();
-        columns.push(("refined", Arc::new(arrow::array::BooleanArray::from(vec![true]))));
+        columns.push(("refined", Arc::new(BooleanArray::from(vec![true]))));
         columns.extend(last.map(|name| (name, reals())));
         columns
     };
@@ -240,4 +246,31 @@ fn e2e_what_is_no_parquet_file_is_refused() {
     says(&read_table(&path, &STEPS).unwrap_err().to_string(), &path, &["cannot read the table steps from"]);
     let error = read_table(directory.path(), &STEPS).unwrap_err();
     says(&error.to_string(), directory.path(), &["directory"]);
+}
+
+/// Columns that were added to a table later are null in files of earlier versions.
+#[test]
+fn law_missing_columns_are_null_where_they_may_be() {
+    let directory = tempdir().unwrap();
+    let path = directory.path().join("steps.parquet");
+    let columns = |without: &[&str]| -> Vec<(&str, ArrayRef)> {
+        let kept = STEPS.columns.iter().filter(|column| !without.contains(&column.name));
+        kept.map(|column| {
+            let array: ArrayRef = match column.kind {
+                Kind::F64 => Arc::new(Float64Array::from(vec![1.0, 2.0])),
+                Kind::I64 => Arc::new(Int64Array::from(vec![1, 2])),
+                Kind::Bool => Arc::new(BooleanArray::from(vec![true, false])),
+                Kind::Text => Arc::new(StringArray::from(vec!["a", "b"])),
+            };
+            (column.name, array)
+        })
+        .collect()
+    };
+    foreign(&path, Some(identity(&STEPS, STEPS.version)), columns(&["method", "residual", "reversal_load"]));
+    let frame = read_table(&path, &STEPS).unwrap();
+    assert_eq!(frame.text_or_null("method").unwrap(), [None, None]);
+    assert_eq!(frame.f64("load").unwrap(), [1.0, 2.0]);
+    // A column that is never null must be there.
+    foreign(&path, Some(identity(&STEPS, STEPS.version)), columns(&["load_n"]));
+    assert!(read_table(&path, &STEPS).unwrap_err().to_string().contains("no column \"load_n\""));
 }

@@ -1,0 +1,210 @@
+//! Grid, law and settings of boundary elements from the parameters of a case.
+
+use super::super::StageError;
+use super::super::surface::{read_summits, scale};
+use crate::campaign::{Campaign, CycleUnit};
+use crate::model::{Attraction, KeptContacts, Material, Nucleation};
+use crate::physics::PhysicsError;
+use crate::physics::boundary_elements::contact::{Attraction as Rule, Problem};
+use crate::physics::boundary_elements::cycle::Settings;
+use crate::physics::boundary_elements::grid::HalfSpace;
+use crate::physics::boundary_elements::law::Law;
+use crate::physics::boundary_elements::minimise::Accuracy;
+use crate::physics::boundary_elements::resample::resample;
+use crate::physics::jkr::Asperity;
+use crate::physics::measured::mirrored;
+use crate::physics::memory;
+use crate::physics::summits::Summit;
+use crate::spec::CaseParams;
+use crate::store::hdf5::{SurfaceHeader, read_header, read_surface};
+use ndarray::Array2;
+
+/// Halvings of a step with a large event.
+const HALVINGS: u32 = 3;
+/// Largest residual over the rms residual of an equilibrium.
+const PEAK: f64 = 100.0;
+/// Maximum number of iterations of one minimisation.
+const MOST_ITERATIONS: usize = 3000;
+/// Points around a contact that are bonded.
+const MARGIN: usize = 2;
+/// Fields of numbers that the solver needs, and those of a load reversal with its maps and checkpoint.
+const FIELDS: usize = 26;
+const FIELDS_OF_REVERSAL: usize = 9;
+
+/// Units of the solver in SI units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Units {
+    /// Side of the periodic square \[m\]; twice that of a surface that is continued by mirror images.
+    pub length_m: f64,
+    /// Grid points along a side.
+    pub points: usize,
+    /// Reduced modulus \[Pa\].
+    pub modulus_pa: f64,
+    /// Rms height \[m\].
+    pub rms_height_m: f64,
+}
+
+impl Units {
+    /// Grid spacing, the unit of length \[m\].
+    #[must_use]
+    pub fn spacing_m(&self) -> f64 {
+        self.length_m / self.points as f64
+    }
+
+    /// Unit of load \[N\].
+    #[must_use]
+    pub fn load_n(&self) -> f64 {
+        self.modulus_pa * self.spacing_m().powi(2)
+    }
+
+    /// Unit of energy \[J\].
+    #[must_use]
+    pub fn energy_j(&self) -> f64 {
+        self.modulus_pa * self.spacing_m().powi(3)
+    }
+
+    /// Number of grid points: A0, and `E* A0` in the units of the solver.
+    #[must_use]
+    pub fn all(&self) -> f64 {
+        (self.points * self.points) as f64
+    }
+}
+
+/// A contact problem with its settings, units and the grid points of the asperities.
+pub(super) struct Setup {
+    pub(super) problem: Problem,
+    pub(super) settings: Settings,
+    pub(super) units: Units,
+    pub(super) summits: Vec<usize>,
+}
+
+/// Grid of a case on one surface.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::stages) struct Lattice {
+    /// Side of the periodic square \[m\].
+    pub(in crate::stages) length_m: f64,
+    /// Grid points along a side.
+    pub(in crate::stages) points: usize,
+    /// Grid points per shortest wavelength.
+    pub(in crate::stages) per_wavelength: f64,
+    /// Range of the Morse law \[m\]; nothing for the JKR limit.
+    pub(in crate::stages) range_m: Option<f64>,
+}
+
+/// Grid of a cycle; nothing for the asperity model.
+pub(in crate::stages) fn lattice(campaign: &Campaign, unit: &CycleUnit) -> Result<Option<Lattice>, StageError> {
+    let params = &campaign.cases[unit.case].case.params;
+    if !params.by_elements() {
+        return Ok(None);
+    }
+    let (length_m, wavelengths) = if params.surface.is_measured() {
+        extent(&read_header(&campaign.surface_path(&campaign.surfaces[unit.surface]))?, params)
+    } else {
+        (params.surface.length_m, f64::from(params.surface.magnification))
+    };
+    let (elements, material) = (&params.boundary_elements, &params.material);
+    let points = elements.grid(wavelengths);
+    let work_length = material.work_of_adhesion_j_m2 / material.contact_modulus_pa;
+    let range = || elements.range(work_length, length_m / f64::from(points));
+    Ok(Some(Lattice {
+        length_m,
+        points: points as usize,
+        per_wavelength: f64::from(points) / wavelengths,
+        range_m: (elements.attraction == Attraction::Range).then(range),
+    }))
+}
+
+/// Side of the periodic square \[m\] and its number of shortest wavelengths. A surface that is not periodic is continued by mirror images.
+fn extent(header: &SurfaceHeader, params: &CaseParams) -> (f64, f64) {
+    let shortest = match &header.measured {
+        Some(measured) => measured.shortest_wavelength_m,
+        None => header.length_m / f64::from(params.surface.magnification),
+    };
+    let length_m = if header.periodic { header.length_m } else { 2.0 * header.length_m };
+    (length_m, length_m / shortest)
+}
+
+/// The problem of a cycle on the grid of its case.
+pub(super) fn setup(campaign: &Campaign, unit: &CycleUnit) -> Result<Setup, StageError> {
+    let params = &campaign.cases[unit.case].case.params;
+    let surface = &campaign.surfaces[unit.surface];
+    let (header, heights) = read_surface(&campaign.surface_path(surface))?;
+    let list = read_summits(&campaign.asperities_path(surface))?;
+    let (length_m, wavelengths) = extent(&header, params);
+    let (material, elements) = (&params.material, &params.boundary_elements);
+    if let Some((problem, help)) = elements.refusal(length_m, wavelengths, material.work_of_adhesion_j_m2 / material.contact_modulus_pa) {
+        return Err(PhysicsError::Surface { problem, help }.into());
+    }
+    let points = elements.grid(wavelengths) as usize;
+    enough_memory(points, params.cycle.max_load.len())?;
+    let rms_height_m = scale(campaign, surface)?.rms_height_m;
+    let units = Units { length_m, points, modulus_pa: material.contact_modulus_pa, rms_height_m };
+    let side = heights.nrows();
+    let whole = if header.periodic { heights } else { mirrored(heights.view())? };
+    let problem = problem(params, &units, resample(whole.view(), points)?, &list)?;
+    let summits = summit_points(&list, (header.length_m, side), !header.periodic, &units);
+    Ok(Setup { settings: settings(params, &units), problem, units, summits })
+}
+
+/// The contact problem of heights \[m\] on the grid.
+fn problem(params: &CaseParams, units: &Units, heights_m: Array2<f64>, list: &[Summit]) -> Result<Problem, StageError> {
+    let (material, elements, spacing) = (&params.material, &params.boundary_elements, units.spacing_m());
+    let work_length = material.work_of_adhesion_j_m2 / material.contact_modulus_pa;
+    let top = heights_m.iter().copied().fold(f64::MIN, f64::max);
+    let (mut heights, _) = heights_m.into_raw_vec_and_offset();
+    heights.iter_mut().for_each(|z| *z = (*z - top) / spacing);
+    let work = work_length / spacing;
+    let (law, attraction) = match elements.attraction {
+        Attraction::Range => (Law::morse(work, elements.range(work_length, spacing) / spacing), Rule::Range),
+        Attraction::Bonded => {
+            let nucleation = match elements.nucleation {
+                Nucleation::Touch => 0.0,
+                Nucleation::Wu => wu_gap(material, list)? / spacing,
+            };
+            (Law::crack(work), Rule::Bonded { margin: MARGIN, nucleation })
+        }
+    };
+    Ok(Problem { half_space: HalfSpace::new(units.points, units.points)?, law, heights, attraction })
+}
+
+/// Wu's jump-in gap at the median radius of the asperities \[m\].
+fn wu_gap(material: &Material, list: &[Summit]) -> Result<f64, PhysicsError> {
+    let mut radii: Vec<f64> = list.iter().map(Summit::radius_m).collect();
+    radii.sort_by(f64::total_cmp);
+    let Some(median) = radii.get(radii.len() / 2) else { return Err(PhysicsError::NoSummit) };
+    Ok((-Asperity::new(*median, material)?.wu_jump_in_penetration(material.interaction_range_m)).max(0.0))
+}
+
+fn settings(params: &CaseParams, units: &Units) -> Settings {
+    let elements = &params.boundary_elements;
+    Settings {
+        max_loads: params.cycle.max_load.iter().map(|load| load * units.all()).collect(),
+        step: elements.approach_step * units.rms_height_m / units.spacing_m(),
+        halvings: HALVINGS,
+        accuracy: Accuracy { rms: elements.precision, largest: PEAK * elements.precision, iterations: MOST_ITERATIONS },
+        all_regions: params.cycle.contacts == KeptContacts::All,
+    }
+}
+
+/// Refuses a grid for which there is not enough memory.
+fn enough_memory(points: usize, loads: usize) -> Result<(), PhysicsError> {
+    let bytes = points * points * size_of::<f64>() * (FIELDS + FIELDS_OF_REVERSAL * loads);
+    memory::check(bytes).map_err(|_| PhysicsError::Surface {
+        problem: format!("boundary elements on {points} x {points} points need {:.2} GB of memory, which are not free", bytes as f64 / 1e9),
+        help: "use fewer boundary_elements.points, fewer loads, or fewer tasks at once (--jobs 1)",
+    })
+}
+
+/// Grid points nearest to the asperities and, on a surface that is continued by mirror images, to their images.
+fn summit_points(list: &[Summit], (length_m, side): (f64, usize), is_mirrored: bool, units: &Units) -> Vec<usize> {
+    let n = units.points;
+    let at = |place: f64| (place / units.spacing_m()).round() as usize % n;
+    // Row k of the surface has its image in row 2 N - 1 - k.
+    let image = |place: f64| 2.0 * length_m - length_m / side as f64 - place;
+    let places = |place: f64| if is_mirrored { vec![at(place), at(image(place))] } else { vec![at(place)] };
+    let all = |summit: &Summit| {
+        let columns = places(summit.y_m);
+        places(summit.x_m).into_iter().flat_map(move |row| columns.clone().into_iter().map(move |column| row * n + column))
+    };
+    list.iter().flat_map(all).collect()
+}

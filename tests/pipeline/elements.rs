@@ -1,0 +1,293 @@
+//! Boundary elements in the pipeline: tables, maps, states, statistics and both methods side by side.
+
+use crate::bench::{Bench, code, files, stderr, stdout};
+use hysteron::campaign::{Campaign, CycleUnit};
+use hysteron::schema::{self, Table};
+use hysteron::spec::Spec;
+use hysteron::stages::{self, Units};
+use hysteron::store::parquet::read_table;
+use hysteron::store::{Frame, MAP_FIELDS};
+use std::fs;
+
+/// Both methods on the same two surfaces of ζ = 4, on 64 x 64 points.
+const SPEC: &str = r#"
+name = "both"
+seed = 7
+realizations = 2
+[surface]
+magnification = 4
+[boundary_elements]
+precision = 1e-6
+[cycle]
+max_load = [0.002, 0.004]
+approach_step = 0.05
+[[sweep]]
+name = "method"
+model.method = ["asperities", "boundary_elements"]
+"#;
+
+const LOADS: [f64; 2] = [0.002, 0.004];
+
+/// The same by boundary elements alone, on one surface.
+fn alone() -> String {
+    SPEC.replace("realizations = 2", "realizations = 1").replace("[\"asperities\", \"boundary_elements\"]", "\"boundary_elements\"")
+}
+
+fn campaign(bench: &Bench) -> Campaign {
+    Campaign::new(Spec::read(bench.spec()).unwrap(), bench.out())
+}
+
+/// The cycles of boundary elements.
+fn elements(campaign: &Campaign) -> Vec<CycleUnit> {
+    campaign.distinct_cycles().into_iter().filter(|unit| campaign.cases[unit.case].case.params.by_elements()).collect()
+}
+
+fn table(campaign: &Campaign, unit: &CycleUnit, table: &'static Table) -> Frame {
+    read_table(&campaign.cycle_dir(unit).join(format!("{}.parquet", table.name)), table).unwrap()
+}
+
+fn statistics(bench: &Bench, table: &'static Table) -> Frame {
+    read_table(&bench.out().join(table.file), table).unwrap()
+}
+
+fn close(what: &str, got: f64, want: f64, tolerance: f64) {
+    assert!((got - want).abs() <= tolerance * want.abs(), "{what}: {got} is not {want}");
+}
+
+#[test]
+fn e2e_both_methods_side_by_side() {
+    let bench = Bench::new(SPEC);
+    let run = bench.verb("run", &[]);
+    assert_eq!(code(&run), 0, "{}", stderr(&run));
+    let said = stdout(&run);
+    assert!(said.contains("Asperity model over boundary elements on the same surfaces"), "{said}");
+    assert!(said.contains("boundary_elements"), "{said}");
+    assert!(said.lines().all(|line| line.chars().count() <= 80 || line.contains('/')), "{said}");
+    // One row for each surface and load; ratios and their mean.
+    let methods = statistics(&bench, &schema::METHODS);
+    assert_eq!(methods.row_count(), 4);
+    let realizations = statistics(&bench, &schema::REALIZATIONS);
+    for name in ["area_at_max_load", "pull_off_load", "loss"] {
+        let column = |end: &str| methods.f64(&format!("{name}_{end}")).unwrap();
+        let (ratio, mean) = (column("ratio"), column("ratio_mean"));
+        for row in 0..4 {
+            assert_eq!(ratio[row], column("asperities")[row] / column("elements")[row], "{name}");
+        }
+        close(name, mean[0], 0.5 * (ratio[0] + ratio[1]), 1e-14);
+        assert!(column("ratio_sd")[0] > 0.0 && column("ratio_ci95_low")[0] < mean[0]);
+        let all = realizations.f64(name).unwrap();
+        assert!(column("elements").iter().all(|value| all.contains(value)), "{name}");
+    }
+    // The area of the asperity model is smaller near full contact.
+    assert!(methods.f64("area_at_max_load_ratio").unwrap().iter().all(|ratio| *ratio < 1.0));
+    let page = fs::read_to_string(bench.out().join("report.html")).unwrap();
+    for part in ["Asperity model and boundary elements", "Adhesive boundary elements", "Interacting asperities"] {
+        assert!(page.contains(part), "{part}");
+    }
+    assert!(!page.contains("NaN") && !page.contains("inf"));
+    let panels = statistics(&bench, &schema::PANELS);
+    let of = panels.text("of").unwrap();
+    for panel in ["A", "C"] {
+        let here = |word: &str| (0..of.len()).any(|row| panels.text("panel").unwrap()[row] == panel && of[row].contains(word));
+        assert!(here("asperities") && here("boundary_elements"), "panel {panel}");
+    }
+    // Done is done, and the files are those of their records.
+    assert!(stdout(&bench.verb("run", &[])).contains("Nothing to do"));
+    assert_eq!(code(&bench.look("verify", &["--deep"])), 0);
+    let gc = bench.look("gc", &["--dry-run"]);
+    assert!(!stdout(&gc).contains("maps.h5") && !stdout(&gc).contains("turning.bin"), "{}", stdout(&gc));
+}
+
+#[test]
+fn law_tables_of_boundary_elements() {
+    let bench = Bench::new(&alone());
+    assert_eq!(code(&bench.verb("run", &["--until", "aggregate"])), 0);
+    let campaign = campaign(&bench);
+    let unit = &elements(&campaign)[0];
+    let (steps, events, contacts) =
+        (table(&campaign, unit, &schema::STEPS), table(&campaign, unit, &schema::EVENTS), table(&campaign, unit, &schema::CONTACTS));
+    for frame in [&steps, &events, &contacts] {
+        assert!(frame.row_count() > 0 && frame.text("method").unwrap().iter().all(|word| *word == "boundary_elements"));
+    }
+    for column in ["residual_m", "drift_m", "stability"] {
+        assert!(steps.f64_or_null(column).unwrap().iter().all(Option::is_none), "{column}");
+    }
+    assert!(steps.f64("residual").unwrap().iter().all(|residual| *residual <= 1e-6));
+    // Each load of the spec is reached, and the last state of each unloading is apart.
+    let (load, of) = (steps.f64("load").unwrap(), steps.f64_or_null("max_load").unwrap());
+    let (regions, area) = (steps.i64("contact_count").unwrap(), steps.f64("area_m2").unwrap());
+    for max_load in LOADS {
+        let reversal = steps.f64_or_null("reversal_load").unwrap().iter().position(|load| *load == Some(max_load)).unwrap();
+        assert!(of[reversal].is_none() && (load[reversal] / max_load - 1.0).abs() < 2e-5, "{max_load}");
+        let last = (0..load.len()).rfind(|k| of[*k] == Some(max_load)).unwrap();
+        assert_eq!((regions[last], area[last]), (0, 0.0));
+        // Bonds of points that have just separated may still have the tail of the law.
+        assert!(load[last].abs() < 1e-5, "{}", load[last]);
+    }
+    // The regions of a step have its area, load and number.
+    let of_step = contacts.i64("step").unwrap();
+    let sum = |column: &str, step: i64| -> f64 {
+        let values = contacts.f64(column).unwrap();
+        (0..values.len()).filter(|row| of_step[*row] == step).map(|row| values[row]).sum()
+    };
+    let mut kept = of_step.clone();
+    kept.dedup();
+    assert_eq!(kept.len(), 4, "two load reversals and two maximum tensile loads");
+    for step in kept {
+        let k = step as usize;
+        close("area", sum("area_m2", step), area[k], 1e-12);
+        assert_eq!(of_step.iter().filter(|other| **other == step).count() as i64, regions[k]);
+    }
+    let radii = contacts.f64("contact_radius_m").unwrap();
+    assert!(contacts.f64("area_m2").unwrap().iter().zip(&radii).all(|(area, a)| (std::f64::consts::PI * a * a / area - 1.0).abs() < 1e-12));
+    assert!(contacts.i64("summit_count").unwrap().iter().sum::<i64>() > 0, "asperities inside regions");
+    assert!(contacts.i64_or_null("asperity_id").unwrap().iter().all(Option::is_none));
+    let kinds = ["formed", "lost", "joined", "parted", "grown", "shrunk"];
+    assert!(events.text("kind").unwrap().iter().all(|kind| kinds.contains(kind)));
+    let counted: i64 =
+        ["jump_in", "jump_off", "snap", "merge", "split"].iter().flat_map(|kind| steps.i64(&format!("{kind}_count")).unwrap()).sum();
+    assert_eq!(counted, events.row_count() as i64);
+}
+
+#[test]
+fn law_the_energy_of_boundary_elements_is_that_of_their_events() {
+    let bench = Bench::new(&alone());
+    assert_eq!(code(&bench.verb("run", &["--until", "aggregate"])), 0);
+    let frame = statistics(&bench, &schema::REALIZATIONS);
+    let column = |name: &str| frame.f64(name).unwrap();
+    let kinds = ["jump_in", "jump_off", "cover", "uncover", "snap", "merge", "split"];
+    for row in 0..2 {
+        close("events", column("dissipated_j")[row], column("loss_j")[row], 1e-3);
+        let of_kinds: f64 = kinds.iter().map(|kind| column(&format!("dissipated_{kind}_j"))[row]).sum();
+        close("kinds", of_kinds, column("dissipated_j")[row], 1e-9);
+        close("branches", column("dissipated_loading_j")[row] + column("dissipated_unloading_j")[row], of_kinds, 1e-9);
+        assert!(column("audit_gap")[row] < 0.01, "{}", column("audit_gap")[row]);
+        assert!(column("pull_off_load")[row] > 0.0 && column("area_at_max_load")[row] < 1.0);
+        assert_eq!(frame.f64_or_null("loss_touched").unwrap()[row], None);
+        assert_eq!(column("elements_per_wavelength")[row], 16.0);
+    }
+    // Warnings of the asperity model are none of boundary elements.
+    let cases = statistics(&bench, &schema::CASES);
+    for codes in cases.text("caution").unwrap() {
+        for code in ["sticky", "area", "conformed", "covered", "touching", "tabor", "few_contacts", "coarse"] {
+            assert!(!codes.split('+').any(|known| known == code), "{codes}");
+        }
+    }
+    assert_eq!((cases.text("method").unwrap()[0], cases.f64("element_points").unwrap()[0]), ("boundary_elements", 64.0));
+    assert_eq!(cases.text_or_null("coalescence").unwrap()[0], None);
+}
+
+#[test]
+fn e2e_threads_do_not_change_a_byte_of_boundary_elements() {
+    let written = ["1", "2"].map(|threads| {
+        let bench = Bench::new(&alone());
+        assert_eq!(code(&bench.verb("run", &["--until", "aggregate", "--jobs", threads])), 0);
+        files(&bench.out())
+    });
+    assert_eq!(written[0], written[1]);
+}
+
+#[test]
+fn e2e_a_state_in_a_file_is_enough_to_unload_by_boundary_elements() {
+    let bench = Bench::new(&alone());
+    assert_eq!(code(&bench.verb("run", &["--until", "cycle"])), 0);
+    // This is another process than the one that loaded.
+    let campaign = campaign(&bench);
+    let unit = &elements(&campaign)[0];
+    let steps = table(&campaign, unit, &schema::STEPS);
+    let of = steps.f64_or_null("max_load").unwrap();
+    let column = |name: &str| steps.f64(name).unwrap();
+    let (approach, load, area, work) = (column("approach_m"), column("load_n"), column("area"), column("work_j"));
+    for max_load in LOADS {
+        let rows: Vec<usize> = (0..of.len()).filter(|k| of[*k] == Some(max_load)).collect();
+        let (again, units): (_, Units) = stages::unload_elements_again(&campaign, unit, max_load).unwrap();
+        assert_eq!(again.steps.len(), rows.len());
+        for (step, &k) in again.steps.iter().zip(&rows) {
+            let got = [
+                step.approach * units.spacing_m(),
+                step.totals.load * units.load_n(),
+                step.totals.contact as f64 / units.all(),
+                step.work * units.energy_j(),
+            ];
+            assert_eq!(got.map(f64::to_bits), [approach[k], load[k], area[k], work[k]].map(f64::to_bits), "step {k}");
+        }
+    }
+    let told = stages::unload_elements_again(&campaign, unit, 0.003).unwrap_err().to_string();
+    assert!(told.contains("0.003") && told.contains("[0.002, 0.004]"), "{told}");
+}
+
+#[test]
+fn law_maps_hold_the_gap_and_the_load() {
+    let bench = Bench::new(&alone());
+    assert_eq!(code(&bench.verb("run", &["--until", "cycle"])), 0);
+    let campaign = campaign(&bench);
+    let unit = &elements(&campaign)[0];
+    let steps = table(&campaign, unit, &schema::STEPS);
+    let file = hdf5_metno::File::open(campaign.cycle_dir(unit).join("maps.h5")).unwrap();
+    let length: f64 = file.attr("length_m").unwrap().read_scalar().unwrap();
+    let mut names = file.member_names().unwrap();
+    names.sort();
+    assert_eq!(names.len(), 4, "{names:?}");
+    for name in names {
+        let group = file.group(&name).unwrap();
+        let number = |name: &str| group.attr(name).unwrap().read_scalar::<f64>().unwrap();
+        let step = group.attr("step").unwrap().read_scalar::<i64>().unwrap() as usize;
+        assert_eq!(number("approach_m"), steps.f64("approach_m").unwrap()[step]);
+        assert!(LOADS.contains(&number("max_load")));
+        let [gap, pressure] = MAP_FIELDS.map(|(field, _)| group.dataset(field).unwrap().read_raw::<f32>().unwrap());
+        let unit_of = |field: &str| group.dataset(field).unwrap().attr("unit").is_ok();
+        assert!(unit_of("gap_m") && unit_of("pressure_pa"));
+        let points = (gap.len() as f64).sqrt();
+        let load = pressure.iter().map(|p| f64::from(*p)).sum::<f64>() * (length / points).powi(2);
+        close("load", load, number("load_n"), 1e-4);
+        // The gap is the mean gap plus a displacement without a mean; its mean falls as the surfaces approach.
+        let mean = gap.iter().map(|g| f64::from(*g)).sum::<f64>() / gap.len() as f64;
+        assert!(mean > 0.0 && gap.iter().all(|g| g.is_finite()));
+    }
+}
+
+#[test]
+fn val_grids_and_warnings_of_boundary_elements() {
+    // Eight points per shortest wavelength: a warning before and after the run.
+    let spec = alone().replace("precision = 1e-6", "precision = 1e-6\npoints = 32").replace("[0.002, 0.004]", "[0.002]");
+    let bench = Bench::new(&spec);
+    let plan = stdout(&bench.verb("plan", &[]));
+    assert!(plan.contains("warning[coarse]") && !plan.contains("warning[sticky]"), "{plan}");
+    assert_eq!(code(&bench.verb("run", &["--until", "aggregate"])), 0);
+    let cases = statistics(&bench, &schema::CASES);
+    assert!(cases.text("caution").unwrap()[0].split('+').any(|code| code == "coarse"));
+    assert_eq!(cases.f64("elements_per_wavelength_min").unwrap(), [8.0]);
+}
+
+#[test]
+fn law_loads_of_a_scan_that_is_not_periodic_refer_to_its_mirror_images() {
+    let made = Bench::new(&alone());
+    assert_eq!(code(&made.verb("run", &["--until", "generate"])), 0);
+    let surface = files(&made.out()).into_keys().find(|path| path.extension().is_some_and(|end| end == "h5")).unwrap();
+    let scan = made.out().join(surface);
+    let spec = |lines: &str| {
+        format!(
+            "name = \"scan\"\n[surface]\nfile = \"{}\"\ndataset = \"height_m\"\nunit = \"m\"\npixel_m = 3.125e-5\n[model]\nmethod = \"boundary_elements\"\n\
+             [material]\nwork_of_adhesion_j_m2 = 0.01\n[cycle]\nmax_load = [0.004]\n[boundary_elements]\nprecision = 1e-4\n{lines}\n",
+            scan.display()
+        )
+    };
+    let bench = Bench::new(&spec(""));
+    let run = bench.verb("run", &["--until", "aggregate"]);
+    assert_eq!(code(&run), 0, "{}", stderr(&run));
+    let campaign = campaign(&bench);
+    let steps = table(&campaign, &elements(&campaign)[0], &schema::STEPS);
+    let (load, load_n) = (steps.f64("load").unwrap(), steps.f64("load_n").unwrap());
+    let at = (0..load.len()).find(|k| load[*k] > 1e-3).unwrap();
+    // E* times the area of a square of twice the side.
+    close("E* A0", load_n[at] / load[at], 1e6 * (2.0_f64 * 1e-3).powi(2), 1e-9);
+    let frame = statistics(&bench, &schema::REALIZATIONS);
+    let loss = frame.f64("loss_j").unwrap()[0] / frame.f64("loss").unwrap()[0];
+    close("E* A0 h_rms", loss, 1e6 * 4e-6 * frame.f64("rms_height_m").unwrap()[0], 1e-9);
+    close("A0", frame.f64("loss_dalvi").unwrap()[0] * loss / frame.f64("area_at_max_load").unwrap()[0], 0.01 * 4e-6, 1e-9);
+    // Too coarse a grid is known when the file has been read.
+    let coarse = Bench::new(&spec("points = 16"));
+    let refused = coarse.verb("run", &["--until", "cycle"]);
+    assert_eq!(code(&refused), 3, "{}", stderr(&refused));
+    assert!(stderr(&refused).contains("per shortest wavelength: at least 4 are needed"), "{}", stderr(&refused));
+}
