@@ -70,8 +70,8 @@ fn e2e_both_methods_side_by_side() {
     for name in ["area_at_max_load", "pull_off_load", "loss"] {
         let column = |end: &str| methods.f64(&format!("{name}_{end}")).unwrap();
         let (ratio, mean) = (column("ratio"), column("ratio_mean"));
-        for row in 0..4 {
-            assert_eq!(ratio[row], column("asperities")[row] / column("elements")[row], "{name}");
+        for ((ratio, asperities), elements) in ratio.iter().zip(column("asperities")).zip(column("elements")) {
+            assert_eq!(*ratio, asperities / elements, "{name}");
         }
         close(name, mean[0], 0.5 * (ratio[0] + ratio[1]), 1e-14);
         assert!(column("ratio_sd")[0] > 0.0 && column("ratio_ci95_low")[0] < mean[0]);

@@ -161,6 +161,11 @@ impl Problem {
         self.half_space.apply(Operator::Stiffness, &state.displacement, &mut state.pressure, waves);
     }
 
+    /// Whether no point is bonded.
+    pub(super) fn is_free(&self, state: &State) -> bool {
+        state.bonds.iter().all(|bonding| *bonding == Bonding::Free)
+    }
+
     /// Bonds the free points within the margin of a contact and opens the sealed ones within the margin of an open point; with `nucleate` free points
     /// that touch are a contact too. Neither raises the energy. Whether a bond has changed.
     pub fn update_bonds(&self, state: &mut State, nucleate: bool) -> bool {

@@ -305,8 +305,10 @@ impl<'a> Walk<'a> {
     }
 
     fn is_apart(&self) -> bool {
-        let apart = self.at.last.totals.contact == 0;
-        apart && (self.problem.attraction != Attraction::Range || self.at.state.approach <= -self.problem.law.end_gap())
+        let range = self.problem.attraction == Attraction::Range;
+        // Bonds end beyond the end of the law, where the load vanishes.
+        let ended = if range { self.at.state.approach <= -self.problem.law.end_gap() } else { self.problem.is_free(&self.at.state) };
+        self.at.last.totals.contact == 0 && ended
     }
 
     /// Equilibrium at an approach, from the last state extrapolated, with all contacts that form there.
@@ -425,7 +427,9 @@ impl<'a> Walk<'a> {
             let (state, mut step) = self.attempt(approach, accuracy)?;
             (iterations, transforms) = (iterations + step.iterations, transforms + step.transforms);
             let load = step.totals.load;
-            if (load / max_load - 1.0).abs() < LOAD_ACCURACY || searched == SEARCHED {
+            let reached = (load / max_load - 1.0).abs() < LOAD_ACCURACY;
+            if reached || searched == SEARCHED {
+                step.converged &= reached;
                 (step.iterations, step.transforms) = (iterations, transforms);
                 return Ok((state, step));
             }
