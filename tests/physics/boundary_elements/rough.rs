@@ -82,7 +82,7 @@ fn law_three_minimisers_reach_one_state() {
         for k in 0..12 {
             state.approach = 0.08 * f64::from(k);
             loop {
-                let accuracy = super::accuracy(1e-6);
+                let accuracy = super::accuracy(1e-7);
                 let outcome = if newton {
                     minimiser.newton(&problem, &mut state, accuracy).unwrap()
                 } else {
