@@ -174,8 +174,7 @@ impl Problem {
             Bonding::Free => u8::from(nucleate && gap <= nucleation),
             _ => u8::from(self.touches(bonding, gap)),
         });
-        let open: Vec<u8> = touching.par_iter().with_min_len(grain(1)).map(|t| 1 - t).collect();
-        let (near, edge) = (self.within(&touching, margin), self.within(&open, margin));
+        let (near, edge) = self.surroundings(&touching, margin);
         let mut changed = false;
         for (bond, (near, edge)) in state.bonds.iter_mut().zip(near.iter().zip(&edge)) {
             let next = match *bond {
@@ -194,8 +193,7 @@ impl Problem {
     pub fn settle_bonds(&self, state: &mut State) {
         let Attraction::Bonded { margin, .. } = self.attraction else { return };
         let touching = self.map(state, |bonding, gap| u8::from(self.touches(bonding, gap)));
-        let open: Vec<u8> = touching.par_iter().with_min_len(grain(1)).map(|t| 1 - t).collect();
-        let (near, edge) = (self.within(&touching, margin), self.within(&open, margin));
+        let (near, edge) = self.surroundings(&touching, margin);
         let (end, spring) = (self.law.end_gap(), self.law.spring_gap());
         for k in 0..near.len() {
             let gap = self.gap(state, k);
@@ -209,6 +207,12 @@ impl Problem {
 
     fn map(&self, state: &State, value: impl Fn(Bonding, f64) -> u8 + Sync) -> Vec<u8> {
         (0..self.half_space.points()).into_par_iter().with_min_len(grain(1)).map(|k| value(state.bonds[k], self.gap(state, k))).collect()
+    }
+
+    /// Points within the margin of a touching point, and those within the margin of an open one.
+    fn surroundings(&self, touching: &[u8], margin: usize) -> (Vec<u8>, Vec<u8>) {
+        let open: Vec<u8> = touching.par_iter().with_min_len(grain(1)).map(|t| 1 - t).collect();
+        (self.within(touching, margin), self.within(&open, margin))
     }
 
     /// Points in a square of half side `margin` around marked points, on the periodic grid.

@@ -116,7 +116,24 @@ pub struct Cycle {
     pub turning: Vec<Turning>,
 }
 
-/// A cycle on its way: all that is needed to continue in another process, to the same bytes.
+impl Cycle {
+    /// The load reversal at a step.
+    #[must_use]
+    pub fn reversal_at(&self, step: usize) -> Option<usize> {
+        self.turning.iter().position(|turning| turning.step == step)
+    }
+
+    fn keep(&mut self, map: Map, found: Vec<Region>) {
+        self.keep_regions(map.step, found);
+        self.maps.push(map);
+    }
+
+    fn keep_regions(&mut self, step: usize, found: Vec<Region>) {
+        self.regions.extend(found.into_iter().map(|region| (step, region)));
+    }
+}
+
+/// An unfinished cycle: all that is needed to continue in another process, to the same bytes.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Halfway {
     cycle: Cycle,
@@ -130,6 +147,9 @@ pub struct Halfway {
     level: u32,
     /// Map and regions at the maximum tensile load of the branch so far.
     tensest: Option<(f64, Map, Vec<Region>)>,
+    /// Contact of the state, from which it follows.
+    #[serde(skip)]
+    labels: Labels,
 }
 
 impl Halfway {
@@ -139,10 +159,10 @@ impl Halfway {
         &self.cycle.steps
     }
 
-    /// State of the last step.
+    /// Regions of contact of the last step.
     #[must_use]
-    pub fn state(&self) -> &State {
-        &self.state
+    pub fn labels(&self) -> &Labels {
+        &self.labels
     }
 }
 
@@ -150,8 +170,6 @@ struct Walk<'a> {
     problem: &'a Problem,
     settings: &'a Settings,
     minimiser: Minimiser,
-    /// Contact of the last state.
-    labels: Labels,
     at: Halfway,
 }
 
@@ -204,7 +222,7 @@ impl<'a> Walk<'a> {
             Attraction::Range => -problem.law.end_gap(),
             Attraction::None => 0.0,
         };
-        let at = match halfway {
+        let mut at = match halfway {
             Some(halfway) => halfway,
             None => Halfway {
                 cycle: Cycle::default(),
@@ -215,9 +233,11 @@ impl<'a> Walk<'a> {
                 dissipated: 0.0,
                 level: 0,
                 tensest: None,
+                labels: Labels::default(),
             },
         };
-        Ok(Self { problem, settings, minimiser: Minimiser::new(problem)?, labels: label(problem, &at.state), at })
+        at.labels = label(problem, &at.state);
+        Ok(Self { problem, settings, minimiser: Minimiser::new(problem)?, at })
     }
 
     /// Loads to the largest of the loads.
@@ -249,12 +269,8 @@ impl<'a> Walk<'a> {
             return Err(PhysicsError::Closed { approach_m: self.at.last.approach });
         }
         let step = self.at.cycle.steps.len() - 1;
-        let map = self.map(step);
-        let found = regions(self.problem, &self.at.state, &self.labels);
-        if !self.settings.all_regions {
-            self.at.cycle.regions.extend(found.into_iter().map(|region| (step, region)));
-        }
-        self.at.cycle.maps.push(map);
+        let (map, found) = self.landmark(step);
+        self.at.cycle.keep(map, found);
         let (state, last, dissipated) = (self.at.state.clone(), self.at.last, self.at.dissipated);
         self.at.cycle.turning.push(Turning { step, state, last, dissipated });
         Ok(())
@@ -270,7 +286,7 @@ impl<'a> Walk<'a> {
             self.at.last = Step { reversal: Some(reversal), work: 0.0, ..turning.last };
             self.at.dissipated = turning.dissipated;
             (self.at.before, self.at.level, self.at.tensest) = (None, 0, None);
-            self.labels = label(self.problem, &self.at.state);
+            self.at.labels = label(self.problem, &self.at.state);
         }
         let branches = self.settings.max_loads.len() as f64;
         while !self.is_apart() {
@@ -280,10 +296,7 @@ impl<'a> Walk<'a> {
             keep(&self.at);
         }
         if let Some((_, map, found)) = self.at.tensest.take() {
-            if !self.settings.all_regions {
-                self.at.cycle.regions.extend(found.into_iter().map(|region| (map.step, region)));
-            }
-            self.at.cycle.maps.push(map);
+            self.at.cycle.keep(map, found);
         }
         Ok(())
     }
@@ -293,8 +306,18 @@ impl<'a> Walk<'a> {
         let load = self.at.last.totals.load;
         if self.at.tensest.as_ref().is_none_or(|(least, ..)| load < *least) {
             let step = self.at.cycle.steps.len() - 1;
-            self.at.tensest = Some((load, self.map(step), regions(self.problem, &self.at.state, &self.labels)));
+            let (map, found) = self.landmark(step);
+            self.at.tensest = Some((load, map, found));
         }
+    }
+
+    /// Map of the last step and its regions, if those of every step are not kept anyway.
+    fn landmark(&self, step: usize) -> (Map, Vec<Region>) {
+        (self.map(step), if self.settings.all_regions { Vec::new() } else { self.regions() })
+    }
+
+    fn regions(&self) -> Vec<Region> {
+        regions(self.problem, &self.at.state, &self.at.labels)
     }
 
     fn map(&self, step: usize) -> Map {
@@ -358,29 +381,27 @@ impl<'a> Walk<'a> {
         let event = step.imbalance > EVENT * self.at.dissipated;
         let labels = label(self.problem, &state);
         step.regions = labels.count;
+        // Without an event the work is the change of the energy, exactly; the load is integrated for comparison only.
         if !event {
-            // Without an event the work is the change of the energy, exactly; the load is integrated for comparison only.
             step.work = self.at.last.work + step.totals.energy - self.at.last.totals.energy;
-        }
-        if event {
+        } else {
             step.dissipated = step.imbalance;
             self.at.dissipated += step.imbalance;
             self.at.cycle.events.push(Event {
                 step: self.at.cycle.steps.len(),
-                kind: change(&self.labels, &labels),
+                kind: change(&self.at.labels, &labels),
                 before: self.at.last.totals,
                 after: step.totals,
                 dissipated: step.imbalance,
             });
         }
-        self.labels = labels;
+        self.at.labels = labels;
         let old = std::mem::replace(&mut self.at.state, state);
         self.at.before = (!event && old.approach != self.at.state.approach).then_some((old.approach, old.displacement));
         self.at.last = step;
         if self.settings.all_regions {
-            let number = self.at.cycle.steps.len();
-            let found = regions(self.problem, &self.at.state, &self.labels);
-            self.at.cycle.regions.extend(found.into_iter().map(|region| (number, region)));
+            let (step, found) = (self.at.cycle.steps.len(), self.regions());
+            self.at.cycle.keep_regions(step, found);
         }
         self.at.cycle.steps.push(step);
     }

@@ -18,7 +18,7 @@ pub struct Region {
 }
 
 /// Label of each point: 0 outside contact, else the number of its region plus 1.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Labels {
     /// By point.
     pub of: Vec<u32>,

@@ -5,7 +5,7 @@ use super::super::identity::Identity;
 use super::super::surface::{Scale, read_summits, scale};
 use super::super::{StageError, Watch, step_count};
 use super::asperity_tables::{contacts, events, merged, steps, turning, word};
-use super::{Checkpoints, Progress};
+use super::{Checkpoints, Progress, effort_of, write_tables};
 use crate::campaign::{Campaign, CycleUnit};
 use crate::physics::cycle::{self, Cycle, Halfway, Settings};
 use crate::physics::interaction::Effort;
@@ -15,7 +15,7 @@ use crate::physics::state::{Problem, Rules, State, Status};
 use crate::physics::summits::Summit;
 use crate::schema;
 use crate::spec::CaseParams;
-use crate::store::{Frame, parquet};
+use crate::store::parquet;
 use serde_json::{Map, Value};
 use std::path::Path;
 
@@ -39,7 +39,6 @@ const REST_EVERY: f64 = 0.1;
 pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> Result<Outcome, StageError> {
     let params = &campaign.cases[unit.case].case.params;
     let summits = read_summits(&campaign.asperities_path(&campaign.surfaces[unit.surface]))?;
-    let dir = campaign.cycle_dir(unit);
     let problem = problem(params, scale(campaign, &campaign.surfaces[unit.surface])?, &summits)?;
     step_count::bound(&problem, &summits, params)?;
     let settings = settings(params, summits.len());
@@ -50,7 +49,6 @@ pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> R
     let outcome = cycle::run_from(&problem, &settings, halfway, &mut keep, &|done| progress.reached(done));
     progress.end();
     let cycle = outcome?;
-    let keys = [("key", unit.key.clone())];
     let of = Identity::of(campaign, unit);
     let tables = [
         contacts(of, &cycle)?,
@@ -59,9 +57,7 @@ pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> R
         events(of, &cycle)?,
         steps(of, &cycle, &problem)?,
     ];
-    let write = |frame: &Frame| Ok(parquet::write_table(&dir.join(format!("{}.parquet", frame.table().name)), frame, &keys)?);
-    let files = tables.iter().map(write).collect::<Result<_, StageError>>()?;
-    Ok(Outcome { files, effort: effort(&cycle, &problem) })
+    Ok(Outcome { files: write_tables(campaign, unit, &tables)?, effort: effort(&cycle, &problem) })
 }
 
 /// What a cycle has taken, for its receipt.
@@ -70,7 +66,7 @@ fn effort(cycle: &Cycle, problem: &Problem) -> Map<String, Value> {
         sum += step.effort;
         sum
     });
-    let counts = [
+    effort_of(&[
         ("asperity_count", problem.len() as u64),
         ("step_count", cycle.steps.len() as u64),
         ("event_count", cycle.events.len() as u64),
@@ -78,11 +74,10 @@ fn effort(cycle: &Cycle, problem: &Problem) -> Map<String, Value> {
         ("pair_evaluation_count", all.pairs),
         ("product_count", all.products),
         ("transform_count", all.transforms),
-    ];
-    counts.into_iter().map(|(name, count)| (name.to_owned(), count.into())).collect()
+    ])
 }
 
-/// Unloads anew from a turning point that a finished cycle has kept.
+/// Unloads again from a load reversal of a finished cycle.
 ///
 /// # Errors
 /// The tables of the cycle and of its surface must be there and whole, and hold that load.

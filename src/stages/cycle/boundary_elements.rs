@@ -4,15 +4,15 @@ use super::super::done::Outcome;
 use super::super::identity::Identity;
 use super::super::{StageError, Watch};
 use super::elements_setup::{Setup, Units, setup};
-use super::elements_tables::{contacts, events, steps};
-use super::{Checkpoints, Progress};
+use super::elements_tables::{branch, contacts, events, steps};
+use super::{Checkpoints, Progress, effort_of, write_tables};
 use crate::campaign::{Campaign, CycleUnit};
 use crate::model::KeptContacts;
 use crate::physics::PhysicsError;
 use crate::physics::boundary_elements::contact::Problem;
 use crate::physics::boundary_elements::cycle::{self, Cycle, Halfway, Turning};
-use crate::physics::boundary_elements::regions::{Labels, label};
-use crate::store::{ContactMap, Frame, MapsHeader, parquet, read_halfway, write_maps, write_state};
+use crate::physics::boundary_elements::regions::Labels;
+use crate::store::{ContactMap, MapsHeader, read_halfway, write_maps, write_state};
 use serde_json::{Map, Value};
 use std::path::{Path, PathBuf};
 
@@ -25,7 +25,7 @@ pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> R
     let kept: Option<(Halfway, Counts)> = checkpoints.read();
     let (halfway, mut counts) = kept.map_or((None, Counts::new()), |(halfway, counts)| (Some(halfway), counts));
     let mut keep = |halfway: &Halfway| {
-        counts.push((halfway.steps().len() - 1, summit_counts(&label(&problem, halfway.state()), &summits)));
+        counts.push((halfway.steps().len() - 1, summit_counts(halfway.labels(), &summits)));
         checkpoints.keep(&(halfway, &counts));
     };
     let outcome = cycle::run(&problem, &settings, halfway, &mut keep, &|done| progress.reached(done));
@@ -33,12 +33,10 @@ pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> R
     let cycle = outcome.map_err(|error| in_si(error, &units))?;
     let loads = &params.cycle.max_load;
     let of = Identity::of(campaign, unit);
-    let keys = [("key", unit.key.clone())];
     let kept = if params.cycle.contacts == KeptContacts::None { &[][..] } else { &cycle.regions[..] };
     let tables =
         [contacts(of, (&cycle, kept), loads, &units, &counts)?, events(of, &cycle, loads, &units)?, steps(of, &cycle, loads, &units)?];
-    let write = |frame: &Frame| Ok(parquet::write_table(&dir.join(format!("{}.parquet", frame.table().name)), frame, &keys)?);
-    let mut files = tables.iter().map(write).collect::<Result<Vec<_>, StageError>>()?;
+    let mut files = write_tables(campaign, unit, &tables)?;
     let header = MapsHeader { key: &unit.key, cycle_id: &unit.id, length_m: units.length_m, points: units.points };
     files.push(write_maps(&dir.join("maps.h5"), &header, &maps(&cycle, loads, &units))?);
     files.push(write_state(&turning_path(&dir), &unit.key, &turning_bytes(&cycle)?)?);
@@ -77,10 +75,10 @@ fn maps(cycle: &Cycle, loads: &[f64], units: &Units) -> Vec<ContactMap> {
         .iter()
         .map(|map| {
             let step = &cycle.steps[map.step];
-            let reversal = step.reversal.or_else(|| cycle.turning.iter().position(|turning| turning.step == map.step));
+            let reversal = step.reversal.or_else(|| cycle.reversal_at(map.step));
             ContactMap {
                 step: map.step as i64,
-                branch: if step.reversal.is_some() { "unloading" } else { "loading" },
+                branch: branch(step),
                 max_load: reversal.and_then(|at| loads.get(at)).copied().unwrap_or_default(),
                 approach_m: step.approach * length,
                 load_n: step.totals.load * units.load_n(),
@@ -130,12 +128,11 @@ pub fn unload_elements_again(campaign: &Campaign, unit: &CycleUnit, max_load: f6
 /// Effort of a cycle, for its provenance record.
 fn effort(cycle: &Cycle, problem: &Problem) -> Map<String, Value> {
     let sum = |value: fn(&cycle::Step) -> u64| cycle.steps.iter().map(value).sum::<u64>();
-    let counts = [
+    effort_of(&[
         ("point_count", problem.half_space.points() as u64),
         ("step_count", cycle.steps.len() as u64),
         ("event_count", cycle.events.len() as u64),
         ("iteration_count", sum(|step| step.iterations)),
         ("transform_count", sum(|step| step.transforms)),
-    ];
-    counts.into_iter().map(|(name, count)| (name.to_owned(), count.into())).collect()
+    ])
 }

@@ -15,7 +15,7 @@ use std::iter::repeat_n;
 /// Word of the method in the tables.
 const METHOD: &str = "boundary_elements";
 
-fn branch(step: &Step) -> &'static str {
+pub(super) fn branch(step: &Step) -> &'static str {
     if step.reversal.is_some() { "unloading" } else { "loading" }
 }
 
@@ -36,10 +36,7 @@ pub(super) fn steps(of: Identity<'_>, cycle: &Cycle, loads: &[f64], units: &Unit
     let of_kinds = |kinds_of: &'static [Change]| {
         kinds.iter().map(|counts| kinds_of.iter().map(|kind| counts[*kind as usize]).sum::<usize>()).collect::<Vec<_>>()
     };
-    let reversal_load = |step: usize| {
-        let reversal = cycle.turning.iter().position(|turning| turning.step == step);
-        reversal.and_then(|at| loads.get(at)).copied()
-    };
+    let reversal_load = |step: usize| cycle.reversal_at(step).and_then(|at| loads.get(at)).copied();
     let area_m2: Vec<f64> = steps.iter().map(|step| step.totals.contact as f64 * spacing * spacing).collect();
     Ok(of
         .begin(&schema::STEPS, steps.len())

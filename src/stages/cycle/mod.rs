@@ -14,9 +14,11 @@ pub(super) use elements_setup::lattice;
 use super::done::Outcome;
 use super::{StageError, Watch};
 use crate::campaign::{Campaign, CycleUnit, Stage};
-use crate::store::{read_halfway, write_halfway};
+use crate::store::commit::Written;
+use crate::store::{Frame, parquet, read_halfway, write_halfway};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+use serde_json::{Map, Value};
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -29,6 +31,18 @@ pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> R
     std::fs::create_dir_all(&path).map_err(|source| StageError::Folder { path, source })?;
     let by_elements = campaign.cases[unit.case].case.params.by_elements();
     if by_elements { boundary_elements::run(campaign, unit, watch) } else { asperities::run(campaign, unit, watch) }
+}
+
+/// Writes the tables of a cycle.
+fn write_tables(campaign: &Campaign, unit: &CycleUnit, tables: &[Frame]) -> Result<Vec<Written>, StageError> {
+    let (dir, keys) = (campaign.cycle_dir(unit), [("key", unit.key.clone())]);
+    let write = |frame: &Frame| Ok(parquet::write_table(&dir.join(format!("{}.parquet", frame.table().name)), frame, &keys)?);
+    tables.iter().map(write).collect()
+}
+
+/// Counts of the effort of a cycle, for its provenance record.
+fn effort_of(counts: &[(&str, u64)]) -> Map<String, Value> {
+    counts.iter().map(|(name, count)| ((*name).to_owned(), (*count).into())).collect()
 }
 
 /// Progress of a cycle, of which the watch is given the increments.
