@@ -35,7 +35,7 @@ fn one(n: usize) {
         attraction: Attraction::Bonded { margin: 2, nucleation: 0.0 },
     };
     let (points, rms) = ((n * n) as f64, spectrum.rms_height_m / spacing);
-    let mut waves = problem.half_space.waves().unwrap();
+    let mut waves = problem.half_space.waves::<f64>().unwrap();
     let mut pressure = vec![0.0; n * n];
     // One application of the operator is two transforms.
     let mut apply = || problem.half_space.apply(Operator::Stiffness, &problem.heights, &mut pressure, &mut waves);
@@ -43,7 +43,7 @@ fn one(n: usize) {
     let settings = Settings {
         max_loads: vec![LOAD * points],
         step: 0.03 * rms,
-        halvings: 2,
+        halvings: 1,
         accuracy: Accuracy { rms: 1e-4, largest: 1e-2, iterations: 3000 },
         all_regions: false,
     };

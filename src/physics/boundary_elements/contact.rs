@@ -5,7 +5,7 @@
 
 use super::grid::{HalfSpace, Operator, Waves};
 use super::law::{Bond, Law};
-use super::sums::{PANEL, grain, remove_mean, sums};
+use super::sums::{grain, remove_mean, sums};
 use crate::physics::PhysicsError;
 use crate::physics::memory::filled;
 use rayon::prelude::*;
@@ -156,7 +156,7 @@ impl Problem {
     }
 
     /// Pressure of the displacement, without the rounding of the increments.
-    pub(super) fn refresh(&self, state: &mut State, waves: &mut Waves) {
+    pub(super) fn refresh(&self, state: &mut State, waves: &mut Waves<f64>) {
         remove_mean(&mut state.displacement);
         self.half_space.apply(Operator::Stiffness, &state.displacement, &mut state.pressure, waves);
     }
@@ -235,35 +235,6 @@ impl Problem {
             }
         });
         near
-    }
-
-    /// Gradient of the energy without its mean, into `residual`, and the slopes of the law into `slopes`: (rms, largest magnitude) \[E*\].
-    pub(super) fn residual(&self, state: &State, residual: &mut [f64], slopes: &mut [f64]) -> (f64, f64) {
-        let points = residual.len() as f64;
-        let fields = residual.par_chunks_mut(PANEL).zip(slopes.par_chunks_mut(PANEL)).enumerate().with_min_len(grain(PANEL));
-        let parts: Vec<f64> = fields
-            .map(|(panel, (to, slopes))| {
-                for (k, (value, slope)) in to.iter_mut().zip(slopes).enumerate() {
-                    let point = panel * PANEL + k;
-                    let bond = self.bond(state.bonds[point], self.gap(state, point));
-                    *value = state.pressure[point] + bond.tension;
-                    *slope = bond.slope;
-                }
-                to.iter().sum()
-            })
-            .collect();
-        let mean = parts.iter().sum::<f64>() / points;
-        let centre = |to: &mut [f64]| {
-            let mut sums = (0.0, 0.0_f64);
-            for value in to {
-                *value -= mean;
-                sums = (sums.0 + *value * *value, sums.1.max(value.abs()));
-            }
-            sums
-        };
-        let parts: Vec<(f64, f64)> = residual.par_chunks_mut(PANEL).with_min_len(grain(PANEL)).map(centre).collect();
-        let (square, most) = parts.iter().fold((0.0, 0.0_f64), |all, part| (all.0 + part.0, all.1.max(part.1)));
-        ((square / points).sqrt(), most)
     }
 }
 

@@ -344,7 +344,7 @@ impl<'a> Walk<'a> {
             }
         }
         state.approach = approach;
-        let before = self.minimiser.waves.transforms;
+        let before = self.minimiser.transforms();
         let mut iterations = 0;
         let outcome = loop {
             let mut outcome = self.minimiser.minimise(self.problem, &mut state, accuracy);
@@ -370,7 +370,7 @@ impl<'a> Walk<'a> {
             imbalance: work - (totals.energy - from.totals.energy),
             work: from.work + work,
             iterations,
-            transforms: self.minimiser.waves.transforms - before,
+            transforms: self.minimiser.transforms() - before,
             residual: outcome.residual,
             converged: outcome.converged,
         };

@@ -8,8 +8,9 @@ use crate::physics::PhysicsError;
 use crate::physics::memory::filled;
 use rayon::prelude::*;
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
-use rustfft::num_complex::Complex64;
-use rustfft::{Fft, FftPlanner};
+use rustfft::num_complex::Complex;
+use rustfft::num_traits::Zero;
+use rustfft::{Fft, FftNum, FftPlanner};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -18,22 +19,57 @@ const SHIFT: f64 = 0.15;
 /// Columns of wavevectors that are transformed together.
 const BLOCK: usize = 8;
 
-/// A periodic grid of `rows × columns` points with one spacing, and the elastic operator on it.
+/// A periodic grid of `rows × columns` points with one spacing, and the elastic operator on it, in double and in single precision.
 pub struct HalfSpace {
     rows: usize,
     columns: usize,
-    forward_row: Arc<dyn RealToComplex<f64>>,
-    inverse_row: Arc<dyn ComplexToReal<f64>>,
-    forward_column: Arc<dyn Fft<f64>>,
-    inverse_column: Arc<dyn Fft<f64>>,
-    /// `|q|/2` over the number of points, by blocks of columns.
-    stiffness: Vec<f64>,
+    double: Plans<f64>,
+    single: Plans<f32>,
+}
+
+/// Numbers that fields consist of. In single precision are the search directions and what is computed from them: an error of a direction
+/// delays the minimum and does not move it.
+pub trait Real: FftNum + PartialOrd + Into<f64> {
+    /// Transforms in this precision.
+    fn plans(half_space: &HalfSpace) -> &Plans<Self>;
+    /// The nearest number.
+    fn nearest(value: f64) -> Self;
+}
+
+impl Real for f64 {
+    fn plans(half_space: &HalfSpace) -> &Plans<Self> {
+        &half_space.double
+    }
+
+    fn nearest(value: f64) -> Self {
+        value
+    }
+}
+
+impl Real for f32 {
+    fn plans(half_space: &HalfSpace) -> &Plans<Self> {
+        &half_space.single
+    }
+
+    fn nearest(value: f64) -> Self {
+        value as Self
+    }
+}
+
+/// Transforms of one precision and the operator.
+pub struct Plans<T> {
+    forward_row: Arc<dyn RealToComplex<T>>,
+    inverse_row: Arc<dyn ComplexToReal<T>>,
+    forward_column: Arc<dyn Fft<T>>,
+    inverse_column: Arc<dyn Fft<T>>,
+    /// `|q|/2` over the number of points, by columns.
+    stiffness: Vec<T>,
 }
 
 /// Work space of one operator application.
-pub struct Waves {
-    by_row: Vec<Complex64>,
-    by_block: Vec<Complex64>,
+pub struct Waves<T> {
+    by_row: Vec<Complex<T>>,
+    by_block: Vec<Complex<T>>,
     /// Real transforms so far; an application is two.
     pub transforms: u64,
 }
@@ -49,35 +85,38 @@ pub enum Operator {
     Shifted,
 }
 
-impl HalfSpace {
-    /// Operator on `rows × columns` points.
-    ///
-    /// # Errors
-    /// Not enough memory.
-    pub fn new(rows: usize, columns: usize) -> Result<Self, PhysicsError> {
-        let mut real = RealFftPlanner::<f64>::new();
-        let mut complex = FftPlanner::<f64>::new();
-        let half = columns / 2 + 1;
-        let blocks = half.div_ceil(BLOCK);
-        let mut stiffness = filled(blocks * rows * BLOCK, 0.0)?;
+impl<T: Real> Plans<T> {
+    fn new(rows: usize, columns: usize) -> Result<Self, PhysicsError> {
+        let mut real = RealFftPlanner::<T>::new();
+        let mut complex = FftPlanner::<T>::new();
+        let blocks = (columns / 2 + 1).div_ceil(BLOCK);
+        let mut stiffness = filled(blocks * rows * BLOCK, T::zero())?;
         let points = (rows * columns) as f64;
         stiffness.par_chunks_mut(rows * BLOCK).enumerate().for_each(|(block, values)| {
             for (k, value) in values.iter_mut().enumerate() {
-                let (row, column) = (k / BLOCK, block * BLOCK + k % BLOCK);
+                let (row, column) = (k % rows, block * BLOCK + k / rows);
                 let qx = TAU * row.min(rows - row) as f64 / rows as f64;
                 let qy = TAU * column as f64 / columns as f64;
-                *value = 0.5 * qx.hypot(qy) / points;
+                *value = T::nearest(0.5 * qx.hypot(qy) / points);
             }
         });
         Ok(Self {
-            rows,
-            columns,
             forward_row: real.plan_fft_forward(columns),
             inverse_row: real.plan_fft_inverse(columns),
             forward_column: complex.plan_fft_forward(rows),
             inverse_column: complex.plan_fft_inverse(rows),
             stiffness,
         })
+    }
+}
+
+impl HalfSpace {
+    /// Operator on `rows × columns` points.
+    ///
+    /// # Errors
+    /// Not enough memory.
+    pub fn new(rows: usize, columns: usize) -> Result<Self, PhysicsError> {
+        Ok(Self { rows, columns, double: Plans::new(rows, columns)?, single: Plans::new(rows, columns)? })
     }
 
     /// Number of rows.
@@ -102,68 +141,70 @@ impl HalfSpace {
     ///
     /// # Errors
     /// Not enough memory.
-    pub fn waves(&self) -> Result<Waves, PhysicsError> {
+    pub fn waves<T: Real>(&self) -> Result<Waves<T>, PhysicsError> {
         let half = self.columns / 2 + 1;
         Ok(Waves {
-            by_row: filled(self.rows * half, Complex64::ZERO)?,
-            by_block: filled(half.div_ceil(BLOCK) * self.rows * BLOCK, Complex64::ZERO)?,
+            by_row: filled(self.rows * half, Complex::zero())?,
+            by_block: filled(half.div_ceil(BLOCK) * self.rows * BLOCK, Complex::zero())?,
             transforms: 0,
         })
     }
 
     /// Applies an operator to `field` and writes the result to `result`. Neither has a component at `q = 0`.
-    pub fn apply(&self, operator: Operator, field: &[f64], result: &mut [f64], waves: &mut Waves) {
+    pub fn apply<T: Real>(&self, operator: Operator, field: &[T], result: &mut [T], waves: &mut Waves<T>) {
         let half = self.columns / 2 + 1;
+        let plans = T::plans(self);
         let Waves { by_row, by_block, transforms } = waves;
         *transforms += 2;
         by_row.par_chunks_mut(half).zip(field.par_chunks(self.columns)).with_min_len(grain(self.columns)).for_each_init(
-            || (self.forward_row.make_input_vec(), self.forward_row.make_scratch_vec()),
+            || (plans.forward_row.make_input_vec(), plans.forward_row.make_scratch_vec()),
             |(input, scratch), (row, values)| {
                 input.copy_from_slice(values);
-                let done = self.forward_row.process_with_scratch(input, row, scratch);
+                let done = plans.forward_row.process_with_scratch(input, row, scratch);
                 debug_assert!(done.is_ok(), "lengths of the plan");
             },
         );
-        let by_row: &[Complex64] = by_row;
-        let chunks = by_block.par_chunks_mut(self.rows * BLOCK).zip(self.stiffness.par_chunks(self.rows * BLOCK)).enumerate();
+        let by_row: &[Complex<T>] = by_row;
+        let chunks = by_block.par_chunks_mut(self.rows * BLOCK).zip(plans.stiffness.par_chunks(self.rows * BLOCK)).enumerate();
         chunks.with_min_len(grain(self.rows * BLOCK)).for_each_init(
-            || self.column_space(),
+            || self.column_space::<T>(),
             |space, (block, (waves, stiffness))| self.block(operator, by_row, block, waves, stiffness, space),
         );
-        let by_block: &[Complex64] = by_block;
+        let by_block: &[Complex<T>] = by_block;
         result.par_chunks_mut(self.columns).enumerate().with_min_len(grain(self.columns)).for_each_init(
-            || (self.inverse_row.make_input_vec(), self.inverse_row.make_scratch_vec()),
+            || (plans.inverse_row.make_input_vec(), plans.inverse_row.make_scratch_vec()),
             |(input, scratch), (row, values)| {
                 for (block, part) in input.chunks_mut(BLOCK).enumerate() {
                     let from = (block * self.rows + row) * BLOCK;
                     part.copy_from_slice(&by_block[from..from + part.len()]);
                 }
-                input[0].im = 0.0;
+                input[0].im = T::zero();
                 if self.columns.is_multiple_of(2) {
-                    input[half - 1].im = 0.0;
+                    input[half - 1].im = T::zero();
                 }
-                let done = self.inverse_row.process_with_scratch(input, values, scratch);
+                let done = plans.inverse_row.process_with_scratch(input, values, scratch);
                 debug_assert!(done.is_ok(), "lengths of the plan");
             },
         );
     }
 
-    fn column_space(&self) -> (Vec<Complex64>, Vec<Complex64>) {
-        let scratch = self.forward_column.get_inplace_scratch_len().max(self.inverse_column.get_inplace_scratch_len());
-        (vec![Complex64::ZERO; self.rows * BLOCK], vec![Complex64::ZERO; scratch])
+    fn column_space<T: Real>(&self) -> ColumnSpace<T> {
+        let plans = T::plans(self);
+        let scratch = plans.forward_column.get_inplace_scratch_len().max(plans.inverse_column.get_inplace_scratch_len());
+        (vec![Complex::zero(); self.rows * BLOCK], vec![Complex::zero(); scratch])
     }
 
     /// Transforms the columns of one block, multiplies by the operator and transforms back.
-    fn block(
+    fn block<T: Real>(
         &self,
         operator: Operator,
-        by_row: &[Complex64],
+        by_row: &[Complex<T>],
         block: usize,
-        waves: &mut [Complex64],
-        stiffness: &[f64],
-        (columns, scratch): &mut (Vec<Complex64>, Vec<Complex64>),
+        waves: &mut [Complex<T>],
+        stiffness: &[T],
+        (columns, scratch): &mut ColumnSpace<T>,
     ) {
-        let half = self.columns / 2 + 1;
+        let (half, plans) = (self.columns / 2 + 1, T::plans(self));
         let (first, count) = (block * BLOCK, BLOCK.min(half - block * BLOCK));
         let columns = &mut columns[..count * self.rows];
         for (row, values) in by_row.chunks(half).enumerate() {
@@ -171,20 +212,16 @@ impl HalfSpace {
                 columns[k * self.rows + row] = *value;
             }
         }
-        self.forward_column.process_with_scratch(columns, scratch);
-        let unit = 1.0 / (self.points() as f64).powi(2);
-        for k in 0..count {
-            for row in 0..self.rows {
-                let stiff = stiffness[row * BLOCK + k];
-                columns[k * self.rows + row] *= match operator {
-                    Operator::Stiffness => stiff,
-                    Operator::Compliance if stiff > 0.0 => unit / stiff,
-                    Operator::Compliance => 0.0,
-                    Operator::Shifted => unit / (stiff + SHIFT * self.points() as f64 * unit),
-                };
-            }
+        plans.forward_column.process_with_scratch(columns, scratch);
+        let points = self.points() as f64;
+        let (unit, shift) = (T::nearest(points.powi(-2)), T::nearest(SHIFT / points));
+        let inverse = |stiff: T| if stiff > T::zero() { unit / stiff } else { T::zero() };
+        match operator {
+            Operator::Stiffness => multiply(columns, stiffness, |stiff| stiff),
+            Operator::Compliance => multiply(columns, stiffness, inverse),
+            Operator::Shifted => multiply(columns, stiffness, |stiff| unit / (stiff + shift)),
         }
-        self.inverse_column.process_with_scratch(columns, scratch);
+        plans.inverse_column.process_with_scratch(columns, scratch);
         for (row, values) in waves.chunks_mut(BLOCK).enumerate() {
             for (k, value) in values[..count].iter_mut().enumerate() {
                 *value = columns[k * self.rows + row];
@@ -192,3 +229,10 @@ impl HalfSpace {
         }
     }
 }
+
+fn multiply<T: Real>(waves: &mut [Complex<T>], stiffness: &[T], factor: impl Fn(T) -> T) {
+    waves.iter_mut().zip(stiffness).for_each(|(wave, stiff)| *wave = *wave * factor(*stiff));
+}
+
+/// Columns of one block and the scratch of their transforms.
+type ColumnSpace<T> = (Vec<Complex<T>>, Vec<Complex<T>>);

@@ -23,7 +23,8 @@ const WIDTH: f64 = 0.6;
 /// Stiffness of the spring at small and negative gaps, in E*/dx.
 const SPRING: f64 = 4.0;
 /// Spacing of the table, in ℓ.
-const SPACING: f64 = 0.01;
+const SPACING: f64 = 1.0 / PER_UNIT;
+const PER_UNIT: f64 = 100.0;
 /// Tension at which the table ends, in E*ℓ/dx.
 const END: f64 = 1e-7;
 
@@ -50,8 +51,9 @@ pub enum Law {
 /// Law of the band-limited crack for one work of adhesion.
 #[derive(Debug, Clone)]
 pub struct Crack {
-    /// Unit of the gap, ℓ/dx.
+    /// Unit of the gap, ℓ/dx, and dx/ℓ.
     unit: f64,
+    inverse_unit: f64,
     /// Gap from which on the table is valid, in ℓ.
     onset: f64,
     /// Gap of the maximum tension, in ℓ.
@@ -110,6 +112,7 @@ impl Crack {
         let depth = -(law.nodes[0][2] - 0.5 * SPRING * law.onset * law.onset);
         debug_assert!((depth - 1.0).abs() < 1e-12, "work of adhesion of the law");
         law.unit = work.sqrt();
+        law.inverse_unit = 1.0 / law.unit;
         law
     }
 
@@ -154,17 +157,17 @@ impl Crack {
             nodes[k][2] = v1 - SPACING * (0.5 * (s0 + s1) + SPACING * (d0 - d1) / 12.0);
         }
         let most = (0..nodes.len()).max_by(|a, b| nodes[*a][0].total_cmp(&nodes[*b][0])).unwrap_or(0);
-        Self { unit: 0.0, onset, peak: onset + SPACING * most as f64, nodes }
+        Self { unit: 0.0, inverse_unit: 0.0, onset, peak: onset + SPACING * most as f64, nodes }
     }
 
     #[inline(always)]
     fn at(&self, gap: f64) -> Bond {
         let unit = self.unit;
-        let g = gap / unit;
+        let g = gap * self.inverse_unit;
         if g < self.onset {
             return Bond { energy: unit * unit * (0.5 * SPRING * g * g - 1.0), tension: SPRING * gap, slope: SPRING };
         }
-        let place = (g - self.onset) / SPACING;
+        let place = (g - self.onset) * PER_UNIT;
         let k = place as usize;
         if k + 1 >= self.nodes.len() {
             return Bond::default();
@@ -177,7 +180,7 @@ impl Crack {
         Bond {
             energy: unit * unit * (v0 + SPACING * t * (s0 + t * (0.5 * d0 + t * (b / 3.0 + t * 0.25 * c)))),
             tension: unit * (s0 + t * (d0 + t * (b + t * c))),
-            slope: (d0 + t * (2.0 * b + t * 3.0 * c)) / SPACING,
+            slope: (d0 + t * (2.0 * b + t * 3.0 * c)) * PER_UNIT,
         }
     }
 }

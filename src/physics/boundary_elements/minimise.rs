@@ -3,20 +3,25 @@
 //! L-BFGS with three pairs and a *split* preconditioner, `M⁻¹ = P_O K⁻¹ P_O + P_C (max(V'', 0) + 0.7)⁻¹ P_C` in E*/dx: points in contact `C` are
 //! nearly fixed by the wall, and on the open points `O` the inverse of the elastic operator is the opposite-order (Calderón) preconditioner of the
 //! hypersingular operator. So the iterations grow only with log² of the grid. An iteration is two operator applications, four transforms.
+//!
+//! The state, its energy and its residual are in double precision; directions and what they are made of in single precision. The pressure that the
+//! increments have added up to is replaced by that of the displacement before a state counts as an equilibrium.
 
 use super::contact::{Problem, State};
 use super::grid::{Operator, Waves};
 use super::pairs::Pairs;
-use super::sums::{PANEL, add, dot, grain, largest, sums, sums_of};
+use super::sums::{PANEL, grain, panel_largest, panel_sums, panel_work, total};
 use crate::physics::PhysicsError;
 use crate::physics::memory::filled;
 use rayon::prelude::*;
 
 /// Slope of the law from which a point counts as in contact, and the addition to it, in E*/dx.
-const STIFF: f64 = 0.3;
-const ADDED: f64 = 0.7;
+const STIFF: f32 = 0.3;
+const ADDED: f32 = 0.7;
 /// Change of the displacement after which bonds are looked at, of the reach of the law.
 const LOOK: f64 = 0.02;
+/// Shortenings of a step that would raise the energy.
+const SHORTENINGS: u32 = 30;
 
 /// How exactly, and how long.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,16 +45,48 @@ pub struct Outcome {
     pub converged: bool,
 }
 
+/// Gradient of the energy in E*: `values − mean`.
+pub(super) struct Gradient {
+    pub(super) values: Vec<f32>,
+    pub(super) mean: f64,
+}
+
+/// Energy of the law and residual at a state.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Here {
+    /// Energy of the law, and the sum of its magnitudes.
+    energy: f64,
+    scale: f64,
+    /// Root mean square of the residual and a bound of its largest magnitude.
+    pub(super) rms: f64,
+    pub(super) largest: f64,
+}
+
+impl Here {
+    pub(super) fn within(&self, accuracy: Accuracy, stress: f64) -> bool {
+        self.rms <= accuracy.rms * stress && self.largest <= accuracy.largest * stress
+    }
+}
+
+/// A direction of descent: its mean, which is no part of it, and the slope of the energy along it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Descent {
+    pub(super) mean: f64,
+    pub(super) slope: f64,
+}
+
 /// Work space.
 pub struct Minimiser {
-    /// Waves of the operator.
-    pub waves: Waves,
-    pub(super) residual: Vec<f64>,
-    pub(super) slopes: Vec<f64>,
-    pub(super) direction: Vec<f64>,
-    pub(super) response: Vec<f64>,
-    previous: Vec<f64>,
-    masked: Vec<f64>,
+    double: Waves<f64>,
+    pub(super) single: Waves<f32>,
+    pub(super) gradient: Gradient,
+    previous: Gradient,
+    /// Mean of pressure and tension that is subtracted before the gradient is rounded.
+    centre: f64,
+    pub(super) slopes: Vec<f32>,
+    pub(super) direction: Vec<f32>,
+    pub(super) response: Vec<f32>,
+    masked: Vec<f32>,
     pairs: Pairs,
     /// Whether the points in contact have a preconditioner of their own; else that of the open points, shifted, is used for all.
     pub split: bool,
@@ -62,139 +99,207 @@ impl Minimiser {
     /// Not enough memory.
     pub fn new(problem: &Problem) -> Result<Self, PhysicsError> {
         let points = problem.half_space.points();
-        let field = || filled(points, 0.0);
+        let field = || filled(points, 0.0_f32);
+        let gradient = || Ok::<_, PhysicsError>(Gradient { values: field()?, mean: 0.0 });
         Ok(Self {
-            waves: problem.half_space.waves()?,
-            residual: field()?,
+            double: problem.half_space.waves()?,
+            single: problem.half_space.waves()?,
+            gradient: gradient()?,
+            previous: gradient()?,
+            centre: 0.0,
             slopes: field()?,
             direction: field()?,
             response: field()?,
-            previous: field()?,
             masked: field()?,
             pairs: Pairs::new(points)?,
             split: true,
         })
     }
 
+    /// Real transforms so far, in both precisions.
+    #[must_use]
+    pub fn transforms(&self) -> u64 {
+        self.double.transforms + self.single.transforms
+    }
+
     /// Moves `state` to the local minimum of the energy at its approach; bonds around contacts grow on the way.
     pub fn minimise(&mut self, problem: &Problem, state: &mut State, accuracy: Accuracy) -> Outcome {
         let stress = problem.stress();
         let mut outcome = Outcome::default();
-        // Infinite, so that bonds are looked at first.
-        let mut moved = f64::INFINITY;
-        problem.refresh(state, &mut self.waves);
         self.pairs.clear();
-        let mut same = false;
+        let mut here = self.begin(problem, state);
+        let (mut moved, mut exact) = (0.0, true);
         loop {
-            if moved > LOOK * problem.reach() {
-                moved = 0.0;
-                if problem.update_bonds(state, false) {
-                    self.pairs.clear();
-                    same = false;
-                }
-            }
-            let (rms, most) = problem.residual(state, &mut self.residual, &mut self.slopes);
-            outcome.residual = rms / stress;
-            outcome.converged = rms <= accuracy.rms * stress && most <= accuracy.largest * stress;
-            if outcome.converged && moved > 0.0 {
-                // An equilibrium of the bonds as they are; they may have to change.
-                moved = f64::INFINITY;
+            (outcome.residual, outcome.converged) = (here.rms / stress, here.within(accuracy, stress));
+            if outcome.converged && !exact {
+                // By the increments of the pressure, for the bonds as they were.
+                here = self.begin(problem, state);
+                (exact, moved) = (true, 0.0);
+                self.pairs.face(&self.gradient);
                 continue;
             }
             if outcome.converged || outcome.iterations >= accuracy.iterations {
                 return outcome;
             }
-            // A change of the bonds changes the gradient too.
-            if same {
-                self.pairs.remember(&self.direction, &self.residual, &self.previous);
-            }
             outcome.iterations += 1;
-            self.search(problem);
-            problem.half_space.apply(Operator::Stiffness, &self.direction, &mut self.response, &mut self.waves);
-            let step = self.step_length(problem, state);
-            if step == 0.0 {
-                return outcome;
+            let descent = self.search(problem);
+            problem.half_space.apply(Operator::Stiffness, &self.direction, &mut self.response, &mut self.single);
+            let Some((step, there)) = self.descend(problem, state, here, descent) else { return outcome };
+            (here, exact) = (there, false);
+            moved += step.largest;
+            let look = moved > LOOK * problem.reach();
+            if look {
+                moved = 0.0;
             }
-            self.previous.copy_from_slice(&self.residual);
-            moved += self.take(state, step);
-            same = true;
+            if look && problem.update_bonds(state, false) {
+                here = self.evaluate(problem, state, 0.0, 0.0);
+            }
+            self.pairs.remember(&mut self.direction, descent.mean, step.length, &self.gradient, &self.previous);
         }
     }
 
-    /// Takes a step along the direction, which becomes that step: the largest change of the displacement.
-    fn take(&mut self, state: &mut State, step: f64) -> f64 {
-        add(&mut state.pressure, step, &self.response);
-        let fields = state.displacement.par_chunks_mut(PANEL).zip(self.direction.par_chunks_mut(PANEL)).with_min_len(grain(PANEL));
-        let one = |(to, direction): (&mut [f64], &mut [f64])| {
-            let mut most = 0.0_f64;
-            for (u, d) in to.iter_mut().zip(direction) {
-                *d *= step;
-                *u += *d;
-                most = most.max(d.abs());
+    /// Bonds, pressure without the rounding of its increments, and gradient of a state.
+    pub(super) fn begin(&mut self, problem: &Problem, state: &mut State) -> Here {
+        problem.refresh(state, &mut self.double);
+        problem.update_bonds(state, false);
+        self.centre = -problem.totals(state).load / self.slopes.len() as f64;
+        self.evaluate(problem, state, 0.0, 0.0)
+    }
+
+    /// Moves the state by `length` along the direction less its mean, and computes the gradient and the slopes of the law there.
+    fn evaluate(&mut self, problem: &Problem, state: &mut State, length: f64, mean: f64) -> Here {
+        let centre = self.centre;
+        let points = self.slopes.len() as f64;
+        let fields = (
+            state.displacement.par_chunks_mut(PANEL),
+            state.pressure.par_chunks_mut(PANEL),
+            state.bonds.par_chunks(PANEL),
+            problem.heights.par_chunks(PANEL),
+            self.direction.par_chunks(PANEL),
+            self.response.par_chunks(PANEL),
+            self.gradient.values.par_chunks_mut(PANEL),
+            self.slopes.par_chunks_mut(PANEL),
+        );
+        let approach = state.approach;
+        let parts = fields.into_par_iter().map(|(u, p, bonds, z, d, k, g, slopes)| {
+            if length != 0.0 {
+                u.iter_mut().zip(d).for_each(|(u, d)| *u += length * (f64::from(*d) - mean));
+                p.iter_mut().zip(k).for_each(|(p, k)| *p += length * f64::from(*k));
             }
-            most
-        };
-        fields.map(one).reduce(|| 0.0, f64::max)
+            let (mut energy, mut scale) = (0.0, 0.0);
+            let points = u.iter().zip(p.iter()).zip(bonds.iter().zip(z)).zip(g.iter_mut().zip(slopes));
+            for (((u, p), (bonding, z)), (g, slope)) in points {
+                let bond = problem.bond(*bonding, u - approach - z);
+                (*g, *slope) = ((p + bond.tension - centre) as f32, bond.slope as f32);
+                energy += bond.energy;
+                scale += bond.energy.abs();
+            }
+            let [sum, square] = panel_sums([&*g], |[g]| [g, g * g]);
+            [energy, scale, sum, square, panel_largest(g)]
+        });
+        let parts: Vec<[f64; 5]> = parts.with_min_len(grain(PANEL)).collect();
+        let [energy, scale, sum, square, largest] = parts.iter().fold([0.0; 5], |all: [f64; 5], part| {
+            [all[0] + part[0], all[1] + part[1], all[2] + part[2], all[3] + part[3], all[4].max(part[4])]
+        });
+        let mean = sum / points;
+        self.gradient.mean = mean;
+        self.centre += mean;
+        Here { energy, scale, rms: (square / points - mean * mean).max(0.0).sqrt(), largest: largest + mean.abs() }
     }
 
     /// A direction of descent, by the pairs if they give one.
-    fn search(&mut self, problem: &Problem) {
-        self.pairs.first(&self.residual, &mut self.direction);
-        self.precondition(problem);
-        self.pairs.second(&mut self.direction);
-        if dot(&self.direction, &self.residual) >= 0.0 {
-            self.pairs.clear();
-            self.direction.copy_from_slice(&self.residual);
-            self.precondition(problem);
-            self.pairs.second(&mut self.direction);
+    fn search(&mut self, problem: &Problem) -> Descent {
+        let weights = self.pairs.first();
+        let onto = self.precondition(problem, weights);
+        let (mean, slope) = self.pairs.finish(&mut self.direction, self.pairs.second(weights, onto), &self.gradient);
+        if slope < 0.0 {
+            return Descent { mean, slope };
         }
+        self.pairs.clear();
+        self.precondition(problem, [0.0; 3]);
+        let (mean, slope) = self.pairs.finish(&mut self.direction, [0.0; 3], &self.gradient);
+        Descent { mean, slope }
+    }
+
+    /// `direction ← M⁻¹ (gradient − Σ weights_i y_i)`: its products with the changes `y`.
+    fn precondition(&mut self, problem: &Problem, weights: [f64; 3]) -> [f64; 3] {
+        let [wa, wb, wc] = weights.map(|weight| weight as f32);
+        let mean = self.gradient.mean as f32;
+        let [a, b, c] = self.pairs.changes();
+        let fields = (
+            self.direction.par_chunks_mut(PANEL),
+            self.gradient.values.par_chunks(PANEL),
+            a.par_chunks(PANEL),
+            b.par_chunks(PANEL),
+            c.par_chunks(PANEL),
+        );
+        fields.into_par_iter().with_min_len(grain(PANEL)).for_each(|(d, g, a, b, c)| {
+            for ((((d, g), a), b), c) in d.iter_mut().zip(g).zip(a).zip(b).zip(c) {
+                *d = g - mean - wa * a - wb * b - wc * c;
+            }
+        });
+        self.divide(problem);
+        let [a, b, c] = self.pairs.changes();
+        let fields = (self.direction.par_chunks(PANEL), a.par_chunks(PANEL), b.par_chunks(PANEL), c.par_chunks(PANEL));
+        total(fields.into_par_iter().map(|(d, a, b, c)| panel_sums([d, a, b, c], |[d, a, b, c]| [d * a, d * b, d * c])))
     }
 
     /// `direction ← M⁻¹ direction`.
-    pub(super) fn precondition(&mut self, problem: &Problem) {
+    pub(super) fn divide(&mut self, problem: &Problem) {
         if !self.split {
-            problem.half_space.apply(Operator::Shifted, &self.direction, &mut self.response, &mut self.waves);
+            problem.half_space.apply(Operator::Shifted, &self.direction, &mut self.response, &mut self.single);
             self.direction.copy_from_slice(&self.response);
             return;
         }
-        let slopes = &self.slopes;
-        let open = self.masked.par_chunks_mut(PANEL).zip(self.direction.par_chunks(PANEL)).zip(slopes.par_chunks(PANEL));
-        open.with_min_len(grain(PANEL)).for_each(|((to, from), slopes)| {
+        let fields = (self.masked.par_chunks_mut(PANEL), self.direction.par_chunks(PANEL), self.slopes.par_chunks(PANEL));
+        fields.into_par_iter().with_min_len(grain(PANEL)).for_each(|(to, from, slopes)| {
             for ((x, y), slope) in to.iter_mut().zip(from).zip(slopes) {
                 *x = if *slope > STIFF { 0.0 } else { *y };
             }
         });
-        problem.half_space.apply(Operator::Compliance, &self.masked, &mut self.response, &mut self.waves);
-        let all = self.direction.par_chunks_mut(PANEL).zip(self.response.par_chunks(PANEL)).zip(slopes.par_chunks(PANEL));
-        all.with_min_len(grain(PANEL)).for_each(|((to, open), slopes)| {
-            for ((x, y), slope) in to.iter_mut().zip(open).zip(slopes) {
+        problem.half_space.apply(Operator::Compliance, &self.masked, &mut self.response, &mut self.single);
+        let fields = (self.direction.par_chunks_mut(PANEL), self.response.par_chunks(PANEL), self.slopes.par_chunks(PANEL));
+        fields.into_par_iter().with_min_len(grain(PANEL)).for_each(|(d, open, slopes)| {
+            for ((x, y), slope) in d.iter_mut().zip(open).zip(slopes) {
                 *x = if *slope > STIFF { *x / (slope + ADDED) } else { *y };
             }
         });
     }
 
-    /// Length of the step along the direction: at most the reach of the law, and such that the energy falls.
-    pub(super) fn step_length(&self, problem: &Problem, state: &State) -> f64 {
-        let (direction, residual) = (&self.direction, &self.residual);
-        let mut step = (problem.reach() / largest(direction)).min(1.0);
-        let [slope, linear, quadratic] =
-            sums_of([direction, residual, &state.pressure, &self.response], |[d, r, p, k]| [d * r, d * p, d * k]);
-        for _ in 0..30 {
-            // Change of the energy of the law: points that are open before and after have none.
-            let [change, scale] = sums::<2>(direction.len(), |range, sum| {
-                for k in range {
-                    let (bonding, gap) = (state.bonds[k], problem.gap(state, k));
-                    let (before, after) = (problem.bond(bonding, gap).energy, problem.bond(bonding, gap + step * direction[k]).energy);
-                    sum[0] += after - before;
-                    sum[1] += before.abs();
-                }
-            });
+    /// Moves the state along the direction, whose elastic response is known, by at most the reach of the law and so far that the energy falls: the step
+    /// and what is there. Without such a step the state stays.
+    pub(super) fn descend(&mut self, problem: &Problem, state: &mut State, here: Here, descent: Descent) -> Option<(Taken, Here)> {
+        let Descent { mean, slope } = descent;
+        let fields = (self.direction.par_chunks(PANEL), self.response.par_chunks(PANEL), state.pressure.par_chunks(PANEL));
+        let parts = fields.into_par_iter().map(|(d, k, p)| {
+            let [quadratic] = panel_sums([d, k], |[d, k]| [d * k]);
+            [panel_work(d, p), quadratic, panel_largest(d)]
+        });
+        let parts: Vec<[f64; 3]> = parts.with_min_len(grain(PANEL)).collect();
+        let [linear, quadratic, largest] =
+            parts.iter().fold([0.0; 3], |all: [f64; 3], part| [all[0] + part[0], all[1] + part[1], all[2].max(part[2])]);
+        std::mem::swap(&mut self.gradient, &mut self.previous);
+        let largest = largest + mean.abs();
+        let mut step = (problem.reach() / largest).min(1.0);
+        let mut taken = 0.0;
+        for _ in 0..SHORTENINGS {
+            let there = self.evaluate(problem, state, step - taken, mean);
+            taken = step;
+            let change = there.energy - here.energy;
             // Below rounding of the energies the slope alone decides.
-            if step * (linear + 0.5 * step * quadratic) + change <= 1e-4 * step * slope + 1e-13 * scale {
-                return step;
+            if step * (linear + 0.5 * step * quadratic) + change <= 1e-4 * step * slope + 1e-13 * here.scale {
+                return Some((Taken { length: step, largest: step * largest }, there));
             }
             step *= 0.4;
         }
-        0.0
+        self.evaluate(problem, state, -taken, mean);
+        None
     }
+}
+
+/// A step that was taken: its length along the direction and the largest change of the displacement.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Taken {
+    pub(super) length: f64,
+    largest: f64,
 }

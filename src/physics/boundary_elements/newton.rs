@@ -5,8 +5,8 @@
 
 use super::contact::{Problem, State};
 use super::grid::Operator;
-use super::minimise::{Accuracy, Minimiser, Outcome};
-use super::sums::{PANEL, add, dot, grain, largest, remove_mean};
+use super::minimise::{Accuracy, Descent, Minimiser, Outcome};
+use super::sums::{add, dot, grain, largest, remove_mean};
 use crate::physics::PhysicsError;
 use crate::physics::memory::filled;
 use rayon::prelude::*;
@@ -18,12 +18,12 @@ const FORCING: f64 = 0.05;
 
 /// Fields of the inner iteration.
 struct Inner {
-    step: Vec<f64>,
-    response: Vec<f64>,
-    residual: Vec<f64>,
-    search: Vec<f64>,
-    stiff: Vec<f64>,
-    curved: Vec<f64>,
+    step: Vec<f32>,
+    response: Vec<f32>,
+    residual: Vec<f32>,
+    search: Vec<f32>,
+    stiff: Vec<f32>,
+    curved: Vec<f32>,
 }
 
 impl Minimiser {
@@ -32,27 +32,22 @@ impl Minimiser {
     /// # Errors
     /// Not enough memory.
     pub fn newton(&mut self, problem: &Problem, state: &mut State, accuracy: Accuracy) -> Result<Outcome, PhysicsError> {
-        let field = || filled(problem.half_space.points(), 0.0);
+        let field = || filled(problem.half_space.points(), 0.0_f32);
         let mut inner =
             Inner { step: field()?, response: field()?, residual: field()?, search: field()?, stiff: field()?, curved: field()? };
-        let strength = problem.stress();
+        let stress = problem.stress();
         let mut outcome = Outcome::default();
-        problem.refresh(state, &mut self.waves);
         loop {
-            problem.update_bonds(state, false);
-            let (rms, most) = problem.residual(state, &mut self.residual, &mut self.slopes);
-            outcome.residual = rms / strength;
-            outcome.converged = rms <= accuracy.rms * strength && most <= accuracy.largest * strength;
+            let here = self.begin(problem, state);
+            (outcome.residual, outcome.converged) = (here.rms / stress, here.within(accuracy, stress));
             if outcome.converged || outcome.iterations >= accuracy.iterations {
                 return Ok(outcome);
             }
             outcome.iterations += self.conjugate_gradients(problem, &mut inner);
             std::mem::swap(&mut self.direction, &mut inner.step);
             std::mem::swap(&mut self.response, &mut inner.response);
-            let length = self.step_length(problem, state);
-            add(&mut state.displacement, length, &self.direction);
-            add(&mut state.pressure, length, &self.response);
-            if length == 0.0 {
+            let descent = Descent { mean: 0.0, slope: dot(&self.direction, &self.gradient.values) };
+            if self.descend(problem, state, here, descent).is_none() {
                 return Ok(outcome);
             }
         }
@@ -62,14 +57,16 @@ impl Minimiser {
     fn conjugate_gradients(&mut self, problem: &Problem, inner: &mut Inner) -> usize {
         inner.step.fill(0.0);
         inner.response.fill(0.0);
-        inner.residual.par_iter_mut().zip(&self.residual).with_min_len(grain(1)).for_each(|(to, from)| *to = -from);
+        let mean = self.gradient.mean as f32;
+        let fields = (&mut inner.residual, &self.gradient.values).into_par_iter().with_min_len(grain(1));
+        fields.for_each(|(to, from)| *to = mean - from);
         let goal = FORCING * dot(&inner.residual, &inner.residual).sqrt();
         self.precondition_from(problem, &inner.residual);
         inner.search.copy_from_slice(&self.direction);
         let mut product = dot(&inner.residual, &self.direction);
         let reach = problem.reach();
         for iteration in 1..=INNER {
-            problem.half_space.apply(Operator::Stiffness, &inner.search, &mut inner.stiff, &mut self.waves);
+            problem.half_space.apply(Operator::Stiffness, &inner.search, &mut inner.stiff, &mut self.single);
             self.curve(inner);
             let curvature = dot(&inner.search, &inner.curved);
             let room = (reach - largest(&inner.step)).max(0.0) / largest(&inner.search).max(f64::MIN_POSITIVE);
@@ -88,31 +85,25 @@ impl Minimiser {
             }
             self.precondition_from(problem, &inner.residual);
             let next = dot(&inner.residual, &self.direction);
-            let ratio = next / product;
+            let ratio = (next / product) as f32;
             product = next;
-            let direction = &self.direction;
-            inner.search.par_iter_mut().zip(direction).with_min_len(grain(1)).for_each(|(to, from)| *to = from + ratio * *to);
+            let fields = (&mut inner.search, &self.direction).into_par_iter().with_min_len(grain(1));
+            fields.for_each(|(to, from)| *to = from + ratio * *to);
         }
         INNER
     }
 
     /// `curved ← (K + V'') search`, without its mean.
     fn curve(&self, inner: &mut Inner) {
-        let Inner { search, stiff, curved, .. } = inner;
-        let slopes = &self.slopes;
-        curved.par_chunks_mut(PANEL).enumerate().with_min_len(grain(PANEL)).for_each(|(panel, part)| {
-            for (k, value) in part.iter_mut().enumerate() {
-                let point = panel * PANEL + k;
-                *value = stiff[point] + slopes[point] * search[point];
-            }
-        });
-        remove_mean(curved);
+        let fields = (&mut inner.curved, &inner.stiff, &self.slopes, &inner.search).into_par_iter().with_min_len(grain(1));
+        fields.for_each(|(to, stiff, slope, search)| *to = stiff + slope * search);
+        remove_mean(&mut inner.curved);
     }
 
     /// `direction ← M⁻¹ field`, without its mean.
-    fn precondition_from(&mut self, problem: &Problem, field: &[f64]) {
+    fn precondition_from(&mut self, problem: &Problem, field: &[f32]) {
         self.direction.copy_from_slice(field);
-        self.precondition(problem);
+        self.divide(problem);
         remove_mean(&mut self.direction);
     }
 }

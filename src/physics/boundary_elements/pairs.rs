@@ -1,6 +1,8 @@
-//! Pairs of steps and gradient changes of L-BFGS, with their products, so that each of its two loops is two passes over the fields.
+//! Pairs of steps and gradient changes of L-BFGS. Their products are kept, so that a direction takes one pass over the fields for a new pair and one for
+//! each of the two loops.
 
-use super::sums::{PANEL, grain, remove_mean, sums_of};
+use super::minimise::Gradient;
+use super::sums::{PANEL, grain, panel_sums, total};
 use crate::physics::PhysicsError;
 use crate::physics::memory::filled;
 use rayon::prelude::*;
@@ -8,26 +10,33 @@ use rayon::prelude::*;
 /// Pairs that are kept.
 const PAIRS: usize = 3;
 
-/// The pairs `(s, y)`, the newest last.
+/// A step `s`, per its length, and the change of the gradient `y` that it brought, per the same length.
+struct Pair {
+    step: Vec<f32>,
+    change: Vec<f32>,
+    /// Mean of the step.
+    mean: f64,
+}
+
+/// The pairs `(s, y)`.
 pub(super) struct Pairs {
-    steps: [Vec<f64>; PAIRS],
-    changes: [Vec<f64>; PAIRS],
+    pairs: [Pair; PAIRS],
     /// `products[i][j] = s_i·y_j`.
     products: [[f64; PAIRS]; PAIRS],
+    /// `g·s_i` of the gradient of the last call of [`Self::remember`] or [`Self::face`].
+    onto: [f64; PAIRS],
     /// Places of the pairs, from the oldest to the newest.
     order: Vec<usize>,
-    weights: [f64; PAIRS],
 }
 
 impl Pairs {
     pub(super) fn new(points: usize) -> Result<Self, PhysicsError> {
-        let field = || filled(points, 0.0);
+        let pair = || Ok(Pair { step: filled(points, 0.0)?, change: filled(points, 0.0)?, mean: 0.0 });
         Ok(Self {
-            steps: [field()?, field()?, field()?],
-            changes: [field()?, field()?, field()?],
+            pairs: [pair()?, pair()?, pair()?],
             products: [[0.0; PAIRS]; PAIRS],
+            onto: [0.0; PAIRS],
             order: Vec::with_capacity(PAIRS),
-            weights: [0.0; PAIRS],
         })
     }
 
@@ -35,71 +44,107 @@ impl Pairs {
         self.order.clear();
     }
 
-    /// Keeps a step and the change of the gradient that it brought, unless the curvature along it is not positive.
-    pub(super) fn remember(&mut self, step: &[f64], gradient: &[f64], before: &[f64]) {
-        let [curvature, square] = sums_of([step, gradient, before, before], |[s, g, b, _]| [s * (g - b), s * s]);
-        if curvature <= 1e-12 * square {
-            return;
-        }
+    /// Keeps `direction`, a step of length `length` along which the gradient changed from `before`, in place of the oldest pair, unless the curvature
+    /// along it is not positive. What `direction` holds then has no meaning.
+    pub(super) fn remember(&mut self, direction: &mut Vec<f32>, mean: f64, length: f64, gradient: &Gradient, before: &Gradient) {
         let place =
             if self.order.len() < PAIRS { (0..PAIRS).find(|place| !self.order.contains(place)).unwrap_or(0) } else { self.order.remove(0) };
-        self.order.push(place);
-        self.steps[place].copy_from_slice(step);
-        let fields = self.changes[place].par_chunks_mut(PANEL).zip(gradient.par_chunks(PANEL)).zip(before.par_chunks(PANEL));
-        fields.with_min_len(grain(PANEL)).for_each(|((to, new), old)| {
-            to.iter_mut().zip(new.iter().zip(old)).for_each(|(y, (g, b))| *y = g - b);
-        });
-        // Products of the new step with all changes, and of all steps with the new change.
-        let row = Self::dots(&self.steps[place], &self.changes);
-        let column = Self::dots(&self.changes[place], &self.steps);
-        for k in 0..PAIRS {
-            self.products[place][k] = row[k];
-            self.products[k][place] = column[k];
+        std::mem::swap(&mut self.pairs[place].step, direction);
+        self.pairs[place].mean = mean;
+        let (a, b) = ((place + 1) % PAIRS, (place + 2) % PAIRS);
+        let mut change = std::mem::take(&mut self.pairs[place].change);
+        let (shift, unit) = ((gradient.mean - before.mean) as f32, (1.0 / length) as f32);
+        let [new, one, two] = [place, a, b].map(|k| &self.pairs[k]);
+        let fields = (
+            change.par_chunks_mut(PANEL),
+            gradient.values.par_chunks(PANEL),
+            before.values.par_chunks(PANEL),
+            new.step.par_chunks(PANEL),
+            one.step.par_chunks(PANEL),
+            one.change.par_chunks(PANEL),
+            two.step.par_chunks(PANEL),
+            two.change.par_chunks(PANEL),
+        );
+        let sums: [f64; 9] = total(fields.into_par_iter().map(|(y, g, old, s, sa, ya, sb, yb)| {
+            y.iter_mut().zip(g.iter().zip(old)).for_each(|(y, (g, old))| *y = (g - old - shift) * unit);
+            panel_sums([&*y, g, s, sa, ya, sb, yb], |[y, g, s, sa, ya, sb, yb]| {
+                [s * y, s * s, s * ya, s * yb, y * sa, y * sb, g * s, g * sa, g * sb]
+            })
+        }));
+        self.pairs[place].change = change;
+        let [own, square, with_a, with_b, of_a, of_b, onto, onto_a, onto_b] = sums;
+        self.products[place][place] = own;
+        (self.products[place][a], self.products[place][b]) = (with_a, with_b);
+        (self.products[a][place], self.products[b][place]) = (of_a, of_b);
+        (self.onto[place], self.onto[a], self.onto[b]) = (onto, onto_a, onto_b);
+        self.centre(gradient);
+        if own > 1e-12 * square {
+            self.order.push(place);
         }
     }
 
-    fn dots(one: &[f64], all: &[Vec<f64>; PAIRS]) -> [f64; PAIRS] {
-        sums_of([one, &all[0], &all[1], &all[2]], |[x, a, b, c]| [x * a, x * b, x * c])
+    /// Products of the steps with a gradient that no step has led to.
+    pub(super) fn face(&mut self, gradient: &Gradient) {
+        let [a, b, c] = &self.pairs;
+        let fields =
+            (gradient.values.par_chunks(PANEL), a.step.par_chunks(PANEL), b.step.par_chunks(PANEL), c.step.par_chunks(PANEL));
+        self.onto =
+            total(fields.into_par_iter().map(|(g, a, b, c)| panel_sums([g, a, b, c], |[g, a, b, c]| [g * a, g * b, g * c])));
+        self.centre(gradient);
     }
 
-    /// `direction ← gradient − Σ α_i y_i`, the first loop.
-    pub(super) fn first(&mut self, gradient: &[f64], direction: &mut [f64]) {
-        direction.copy_from_slice(gradient);
-        if self.order.is_empty() {
-            return;
+    /// Products with the gradient less its mean.
+    fn centre(&mut self, gradient: &Gradient) {
+        let sum = gradient.mean * gradient.values.len() as f64;
+        for (onto, pair) in self.onto.iter_mut().zip(&self.pairs) {
+            *onto -= sum * pair.mean;
         }
-        let onto = Self::dots(gradient, &self.steps);
-        self.weights = [0.0; PAIRS];
+    }
+
+    /// Weights of the first loop, from the newest pair to the oldest: the direction before the preconditioner is `gradient − Σ w_i y_i`.
+    pub(super) fn first(&self) -> [f64; PAIRS] {
+        let mut weights = [0.0; PAIRS];
         for (k, i) in self.order.iter().enumerate().rev() {
-            let newer: f64 = self.order[k + 1..].iter().map(|j| self.weights[*j] * self.products[*i][*j]).sum();
-            self.weights[*i] = (onto[*i] - newer) / self.products[*i][*i];
+            let newer: f64 = self.order[k + 1..].iter().map(|j| weights[*j] * self.products[*i][*j]).sum();
+            weights[*i] = (self.onto[*i] - newer) / self.products[*i][*i];
         }
-        combine(direction, self.weights.map(|weight| -weight), &self.changes);
+        weights
     }
 
-    /// `direction ← −(direction + Σ (α_i − β_i) s_i)` without its mean, the second loop.
-    pub(super) fn second(&mut self, direction: &mut [f64]) {
+    /// Weights of the second loop: after the preconditioner `Σ w_i s_i` is added. `onto` are the products of the direction with the changes.
+    pub(super) fn second(&self, first: [f64; PAIRS], onto: [f64; PAIRS]) -> [f64; PAIRS] {
         let mut added = [0.0; PAIRS];
-        if !self.order.is_empty() {
-            let onto = Self::dots(direction, &self.changes);
-            for (k, i) in self.order.iter().enumerate() {
-                let older: f64 = self.order[..k].iter().map(|j| added[*j] * self.products[*j][*i]).sum();
-                added[*i] = self.weights[*i] - (onto[*i] + older) / self.products[*i][*i];
-            }
-            combine(direction, added, &self.steps);
+        for (k, i) in self.order.iter().enumerate() {
+            let older: f64 = self.order[..k].iter().map(|j| added[*j] * self.products[*j][*i]).sum();
+            added[*i] = first[*i] - (onto[*i] + older) / self.products[*i][*i];
         }
-        direction.par_chunks_mut(PANEL).with_min_len(grain(PANEL)).for_each(|part| part.iter_mut().for_each(|x| *x = -*x));
-        remove_mean(direction);
+        added
     }
-}
 
-/// `to ← to + Σ factors_i fields_i`; fields without a factor may hold anything finite.
-fn combine(to: &mut [f64], factors: [f64; PAIRS], fields: &[Vec<f64>; PAIRS]) {
-    let [a, b, c] = fields;
-    let all = to.par_chunks_mut(PANEL).zip(a.par_chunks(PANEL)).zip(b.par_chunks(PANEL)).zip(c.par_chunks(PANEL));
-    all.with_min_len(grain(PANEL)).for_each(|(((to, a), b), c)| {
-        for (((x, a), b), c) in to.iter_mut().zip(a).zip(b).zip(c) {
-            *x += factors[0] * a + factors[1] * b + factors[2] * c;
-        }
-    });
+    /// The changes, in the order of the weights.
+    pub(super) fn changes(&self) -> [&[f32]; PAIRS] {
+        [0, 1, 2].map(|k| self.pairs[k].change.as_slice())
+    }
+
+    /// `direction ← −(direction + Σ weights_i s_i)`: its mean and its product with the gradient, both less their means.
+    pub(super) fn finish(&self, direction: &mut [f32], weights: [f64; PAIRS], gradient: &Gradient) -> (f64, f64) {
+        let points = direction.len() as f64;
+        let [wa, wb, wc] = weights.map(|weight| weight as f32);
+        let [a, b, c] = &self.pairs;
+        let fields = (
+            direction.par_chunks_mut(PANEL),
+            a.step.par_chunks(PANEL),
+            b.step.par_chunks(PANEL),
+            c.step.par_chunks(PANEL),
+            gradient.values.par_chunks(PANEL),
+        );
+        let [sum, slope] = total(fields.into_par_iter().with_min_len(grain(PANEL)).map(|(d, a, b, c, g)| {
+            for (((d, a), b), c) in d.iter_mut().zip(a).zip(b).zip(c) {
+                *d = -(*d + wa * a + wb * b + wc * c);
+            }
+            panel_sums([&*d, g], |[d, g]| [d, d * g])
+        }));
+        let mean = sum / points;
+        (mean, slope - points * mean * gradient.mean)
+    }
 }

@@ -1,69 +1,111 @@
 //! Sums and maps over fields whose results do not depend on the number of threads.
 
+use super::grid::Real;
 use rayon::prelude::*;
 
 /// Points whose partial sum is formed by one thread.
 pub(super) const PANEL: usize = 4096;
+/// Points whose partial sum is in single precision, and those of them that are added side by side.
+const RUN: usize = 512;
+const LANES: usize = 8;
 
 /// Parts of `size` points that one thread takes at least, so that small grids are not divided.
 pub(super) fn grain(size: usize) -> usize {
     (8 * PANEL).div_ceil(size)
 }
 
-/// Sums of `N` quantities over all points: `add` adds those of a range, panels are added in their order.
-pub(super) fn sums<const N: usize>(points: usize, add: impl Fn(std::ops::Range<usize>, &mut [f64; N]) + Sync) -> [f64; N] {
-    let panels = points.div_ceil(PANEL);
-    let partial: Vec<[f64; N]> = (0..panels)
-        .into_par_iter()
-        .with_min_len(grain(PANEL))
-        .map(|panel| {
-            let mut sum = [0.0; N];
-            add(panel * PANEL..points.min((panel + 1) * PANEL), &mut sum);
-            sum
-        })
-        .collect();
-    partial.iter().fold([0.0; N], |mut all, part| {
+/// Adds partial sums in their order.
+pub(super) fn total<const N: usize>(parts: impl IndexedParallelIterator<Item = [f64; N]>) -> [f64; N] {
+    let parts: Vec<[f64; N]> = parts.with_min_len(grain(PANEL)).collect();
+    parts.iter().fold([0.0; N], |mut all, part| {
         all.iter_mut().zip(part).for_each(|(a, b)| *a += b);
         all
     })
 }
 
-/// Sums of `N` functions of the values of four fields at each point.
-pub(super) fn sums_of<const N: usize>(fields: [&[f64]; 4], of: impl Fn([f64; 4]) -> [f64; N] + Sync) -> [f64; N] {
-    sums(fields[0].len(), |range, sum| {
-        let [a, b, c, d] = fields.map(|field| &field[range.clone()]);
-        for (((a, b), c), d) in a.iter().zip(b).zip(c).zip(d) {
-            let values = of([*a, *b, *c, *d]);
-            sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += value);
+/// Sums of `N` quantities over all points: `add` adds those of a range, panels are added in their order.
+pub(super) fn sums<const N: usize>(points: usize, add: impl Fn(std::ops::Range<usize>, &mut [f64; N]) + Sync) -> [f64; N] {
+    total((0..points.div_ceil(PANEL)).into_par_iter().map(|panel| {
+        let mut sum = [0.0; N];
+        add(panel * PANEL..points.min((panel + 1) * PANEL), &mut sum);
+        sum
+    }))
+}
+
+/// Sums over one panel of `N` functions of the values of `M` fields at each point: runs in single precision, their sums in double.
+#[inline(always)]
+pub(super) fn panel_sums<const M: usize, const N: usize>(fields: [&[f32]; M], of: impl Fn([f32; M]) -> [f32; N]) -> [f64; N] {
+    let mut sum = [0.0; N];
+    let points = fields[0].len();
+    for start in (0..points).step_by(RUN) {
+        let run = fields.map(|field| &field[start..points.min(start + RUN)]);
+        let whole = run[0].len() / LANES * LANES;
+        let mut lanes = [[0.0_f32; LANES]; N];
+        for k in (0..whole).step_by(LANES) {
+            let at = run.map(|field| &field[k..k + LANES]);
+            for lane in 0..LANES {
+                let values = of(at.map(|field| field[lane]));
+                for (to, value) in lanes.iter_mut().zip(values) {
+                    to[lane] += value;
+                }
+            }
         }
-    })
+        for k in whole..run[0].len() {
+            let values = of(run.map(|field| field[k]));
+            for (to, value) in lanes.iter_mut().zip(values) {
+                to[0] += value;
+            }
+        }
+        sum.iter_mut().zip(lanes).for_each(|(to, lanes)| *to += f64::from(lanes.iter().sum::<f32>()));
+    }
+    sum
+}
+
+/// Largest magnitude on one panel.
+#[inline(always)]
+pub(super) fn panel_largest(field: &[f32]) -> f64 {
+    let mut most = [0.0_f32; LANES];
+    for part in field.chunks(LANES) {
+        for (most, value) in most.iter_mut().zip(part) {
+            *most = if value.abs() > *most { value.abs() } else { *most };
+        }
+    }
+    f64::from(most.into_iter().fold(0.0, f32::max))
+}
+
+/// Scalar product with a field in double precision on one panel.
+#[inline(always)]
+pub(super) fn panel_work(field: &[f32], other: &[f64]) -> f64 {
+    let mut lanes = [0.0; LANES];
+    for (a, b) in field.chunks(LANES).zip(other.chunks(LANES)) {
+        for ((sum, a), b) in lanes.iter_mut().zip(a).zip(b) {
+            *sum += f64::from(*a) * b;
+        }
+    }
+    lanes.iter().sum()
 }
 
 /// Scalar product.
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    sums::<1>(a.len(), |range, sum| {
-        sum[0] += a[range.clone()].iter().zip(&b[range]).map(|(x, y)| x * y).sum::<f64>();
-    })[0]
+pub(super) fn dot(a: &[f32], b: &[f32]) -> f64 {
+    let [sum] = total((a.par_chunks(PANEL), b.par_chunks(PANEL)).into_par_iter().map(|(a, b)| panel_sums([a, b], |[x, y]| [x * y])));
+    sum
 }
 
 /// Largest magnitude.
-pub(super) fn largest(a: &[f64]) -> f64 {
-    a.par_chunks(PANEL)
-        .with_min_len(grain(PANEL))
-        .map(|part| part.iter().fold(0.0_f64, |most, x| most.max(x.abs())))
-        .reduce(|| 0.0, f64::max)
+pub(super) fn largest(a: &[f32]) -> f64 {
+    a.par_chunks(PANEL).with_min_len(grain(PANEL)).map(panel_largest).reduce(|| 0.0, f64::max)
 }
 
 /// `to ← to + factor × from`.
-pub(super) fn add(to: &mut [f64], factor: f64, from: &[f64]) {
-    to.par_chunks_mut(PANEL)
-        .zip(from.par_chunks(PANEL))
-        .with_min_len(grain(PANEL))
-        .for_each(|(a, b)| a.iter_mut().zip(b).for_each(|(x, y)| *x += factor * y));
+pub(super) fn add(to: &mut [f32], factor: f64, from: &[f32]) {
+    let factor = factor as f32;
+    let fields = (to.par_chunks_mut(PANEL), from.par_chunks(PANEL)).into_par_iter().with_min_len(grain(PANEL));
+    fields.for_each(|(a, b)| a.iter_mut().zip(b).for_each(|(x, y)| *x += factor * y));
 }
 
 /// Subtracts the mean.
-pub(super) fn remove_mean(field: &mut [f64]) {
-    let mean = sums::<1>(field.len(), |range, sum| sum[0] += field[range].iter().sum::<f64>())[0] / field.len() as f64;
-    field.par_chunks_mut(PANEL).with_min_len(grain(PANEL)).for_each(|part| part.iter_mut().for_each(|x| *x -= mean));
+pub(super) fn remove_mean<T: Real>(field: &mut [T]) {
+    let [sum] = sums(field.len(), |range, sum| sum[0] += field[range].iter().map(|x| (*x).into()).sum::<f64>());
+    let mean = T::nearest(sum / field.len() as f64);
+    field.par_chunks_mut(PANEL).with_min_len(grain(PANEL)).for_each(|part| part.iter_mut().for_each(|x| *x = *x - mean));
 }

@@ -20,7 +20,7 @@ use crate::store::hdf5::{SurfaceHeader, read_header, read_surface};
 use ndarray::Array2;
 
 /// Halvings of a step with a large event.
-const HALVINGS: u32 = 3;
+const HALVINGS: u32 = 1;
 /// Largest residual over the rms residual of an equilibrium.
 const PEAK: f64 = 100.0;
 /// Maximum number of iterations of one minimisation.

@@ -95,7 +95,7 @@ fn law_three_minimisers_reach_one_state() {
             }
             problem.settle_bonds(&mut state);
         }
-        (problem.totals(&state), minimiser.waves.transforms)
+        (problem.totals(&state), minimiser.transforms())
     };
     let [split, spectral, newton] = [(true, false), (false, false), (true, true)].map(|(split, newton)| state_of(split, newton));
     for (name, other) in [("spectral", spectral), ("Newton", newton)] {
