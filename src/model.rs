@@ -128,6 +128,15 @@ choice! {
     }
 }
 choice! {
+    /// Where contact of boundary elements opens.
+    Opening {
+        /// From the edges of contacts only.
+        Edges = "edges",
+        /// Inside contacts too, where the tension exceeds the maximum tension of the law on the grid.
+        Anywhere = "anywhere",
+    }
+}
+choice! {
     /// How contact spots act on one another.
     Interaction {
         /// Displacement field of a JKR contact spot outside its contact (Eqs 6 and 7).

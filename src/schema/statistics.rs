@@ -68,6 +68,11 @@ pub(super) const PARAMETERS: &[Column] = &[
         "Gap at which a point of boundary elements comes into contact: \"touch\" or \"wu\"; null for asperities and with a range",
     )
     .or_null(),
+    text(
+        "opening",
+        "Where contact of boundary elements opens: \"edges\" of contacts or \"anywhere\"; null for asperities and with a range",
+    )
+    .or_null(),
     real("precision", "1", "Tolerance of an equilibrium of boundary elements: rms residual over the maximum tension; null for asperities")
         .or_null(),
 ];

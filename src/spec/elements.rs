@@ -6,7 +6,7 @@ use super::grid::written;
 use super::keys::find;
 use super::number::short;
 use super::walk::Origin;
-use crate::model::{Attraction, Boundary, Choice, Method, Nucleation, Slip};
+use crate::model::{Attraction, Boundary, Choice, Method, Nucleation, Opening, Slip};
 use crate::text::counted;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -40,6 +40,8 @@ pub struct ElementParams {
     pub range_m: f64,
     /// Gap at which a point comes into contact.
     pub nucleation: Nucleation,
+    /// Where contact opens.
+    pub opening: Opening,
     /// Step of the approach, as a part of the rms height.
     pub approach_step: f64,
     /// Rms residual over the maximum tension.
@@ -53,6 +55,7 @@ impl Default for ElementParams {
             attraction: Attraction::Bonded,
             range_m: 0.0,
             nucleation: Nucleation::Touch,
+            opening: Opening::Edges,
             approach_step: 0.03,
             precision: 1e-4,
         }
@@ -126,7 +129,10 @@ pub(super) fn without_unread(case: &CaseParams) -> CaseParams {
     case.cycle.approach_step = default.cycle.approach_step;
     match case.boundary_elements.attraction {
         Attraction::Bonded => case.boundary_elements.range_m = default.boundary_elements.range_m,
-        Attraction::Range => case.boundary_elements.nucleation = default.boundary_elements.nucleation,
+        Attraction::Range => {
+            case.boundary_elements.nucleation = default.boundary_elements.nucleation;
+            case.boundary_elements.opening = default.boundary_elements.opening;
+        }
     }
     case
 }

@@ -3,7 +3,7 @@
 use super::{CaseParams, Value};
 use crate::model::{
     Amplitudes, Attraction, Boundary, Choice, Coalescence, Detrend, Interaction, JumpIn, KeptContacts, Method, Missing, Normalization,
-    Nucleation, Slip,
+    Nucleation, Opening, Slip,
 };
 
 /// One key of a table.
@@ -198,7 +198,8 @@ pub(super) static KEYS: &[Key] = &[
         note: "ρ, range of the Morse law; 0 for 0.8 sqrt(Δγ dx/E*)",
     }),
     key!(boundary_elements.nucleation, "", "Gap at which a point comes into contact, with `attraction = \"bonded\"`."; word Nucleation),
-    key!(boundary_elements.approach_step, "", "Step of the mean penetration, as a fraction of h_rms. Steps with large events are halved up to three times."; number Limits {
+    key!(boundary_elements.opening, "", "Where contact opens, with `attraction = \"bonded\"`."; word Opening),
+    key!(boundary_elements.approach_step, "", "Step of the mean penetration, as a fraction of h_rms. Steps with large events are halved once."; number Limits {
         low: 1e-3, above: false, high: 1.0, unit: "", unit_name: "", slip: None,
         note: "step of Δ/h_rms of boundary elements; default 0.03",
     }),

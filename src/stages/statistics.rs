@@ -143,8 +143,9 @@ fn case_input(campaign: &Campaign, number: usize, unit: &CaseUnit, standings: &[
     let generated = (!surface.is_measured()).then_some(surface);
     let file = surface.is_measured().then(|| campaign.file_label(&surface.file));
     let elements = params.by_elements().then_some(&params.boundary_elements);
+    let bonded = elements.filter(|elements| elements.attraction == Attraction::Bonded);
     let asperities = |word: &'static str| -> Value { elements.is_none().then_some(word).into() };
-    let parameters: [(&str, Value); 25] = [
+    let parameters: [(&str, Value); 26] = [
         ("surface_file", file.as_deref().into()),
         ("surface_dataset", (surface.is_measured() && !surface.dataset.is_empty()).then_some(surface.dataset.as_str()).into()),
         ("detrend", surface.is_measured().then(|| surface.detrend.word()).into()),
@@ -168,10 +169,8 @@ fn case_input(campaign: &Campaign, number: usize, unit: &CaseUnit, standings: &[
         ("element_points", lattice.map(|lattice| lattice.points as f64).into()),
         ("attraction", elements.map(|elements| elements.attraction.word()).into()),
         ("attraction_range_m", lattice.and_then(|lattice| lattice.range_m).into()),
-        (
-            "nucleation",
-            elements.filter(|elements| elements.attraction == Attraction::Bonded).map(|elements| elements.nucleation.word()).into(),
-        ),
+        ("nucleation", bonded.map(|elements| elements.nucleation.word()).into()),
+        ("opening", bonded.map(|elements| elements.opening.word()).into()),
         ("precision", elements.map(|elements| elements.precision).into()),
     ];
     let failed = |(cycle, standing): (&CycleUnit, &Standing)| cycle.case == number && matches!(standing, Standing::Failed(_));

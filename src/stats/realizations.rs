@@ -5,6 +5,7 @@ use super::events::{Events, Lost};
 use super::rows::{Rows, Value};
 use super::walk::Point;
 use super::{CaseInput, CycleInput, Given, StatsError};
+use crate::physics::boundary_elements::cycle::{work_after, work_between};
 use crate::physics::soundness::RESOLUTION;
 use crate::schema::{EVENT_KINDS, REALIZATIONS};
 use crate::store::Frame;
@@ -32,9 +33,9 @@ pub fn realizations(cases: &[CaseInput], cycles: &[CycleInput]) -> Result<Frame,
             results.push(("absorption_share".to_owned(), absorption_share(&lost, &results).into()));
             results.extend(parts(&lost, input));
             if by_elements(case) {
-                let balance = trapezoidal_balance(&cycle.loading, turning, unloading, &results, input);
+                let gap = balance(&cycle.loading, turning, unloading, &results, input);
                 results.retain(|(name, _)| name != "audit_gap");
-                results.push(("audit_gap".to_owned(), balance.into()));
+                results.push(("audit_gap".to_owned(), gap.into()));
             } else {
                 results.push(("loss_touched".to_owned(), touched(&events.touched(step, *max_load), input).into()));
             }
@@ -104,13 +105,17 @@ fn by_elements(case: &CaseInput) -> bool {
 }
 
 /// Energy-balance error of boundary elements over |Θ|. Between events their work is the change of the energy, so that Θ is the sum of the events; the
-/// independent value is the trapezoidal integral of the load over the mean penetration. Null for Θ = 0.
-fn trapezoidal_balance(loading: &Branch, turning: usize, unloading: &Branch, results: &Given, input: &CycleInput) -> Option<f64> {
+/// independent value is the integral of the load over the mean penetration, by parabolas through three points and, next to events, by trapezoids.
+/// Null for Θ = 0.
+fn balance(loading: &Branch, turning: usize, unloading: &Branch, results: &Given, input: &CycleInput) -> Option<f64> {
     let number = |name: &str| results.iter().find(|(known, _)| known == name).and_then(|(_, value)| value.number());
     let (loss, dissipated) = (number("loss_j")?, number("dissipated_j")?);
     let points: Vec<Point> = loading.points().take(turning + 1).chain(unloading.points()).collect();
-    let part = |pair: &[Point]| 0.5 * (pair[0].load + pair[1].load) * (pair[1].penetration - pair[0].penetration);
-    let integral = points.windows(2).map(part).sum::<f64>() * input.energy_scale_j;
+    let events: Vec<f64> = loading.dissipated_j.iter().take(turning + 1).chain(&unloading.dissipated_j).copied().collect();
+    let at = |k: usize| (points[k].penetration, points[k].load);
+    let follows = |k: usize| k > 1 && k != turning + 1 && events[k] == 0.0 && events[k - 1] == 0.0 && points[k - 1].penetration != points[k - 2].penetration;
+    let part = |k: usize| if follows(k) { work_after(at(k - 2), at(k - 1), at(k)) } else { work_between(at(k - 1), at(k)) };
+    let integral = (1..points.len()).map(part).sum::<f64>() * input.energy_scale_j;
     (loss != 0.0).then(|| ((integral - dissipated) / loss).abs())
 }
 

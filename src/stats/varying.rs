@@ -5,7 +5,7 @@ use super::digits::labels_with_unit;
 use crate::store::{ColumnData, Frame};
 
 /// Columns that may define a case, with the symbol and the axis label of each; labels have the markup of the figures.
-pub(super) const PARAMETERS: [(&str, &str, &str); 25] = [
+pub(super) const PARAMETERS: [(&str, &str, &str); 26] = [
     ("surface_file", "surface", "surface"),
     ("surface_dataset", "dataset", "dataset"),
     ("detrend", "detrend", "levelling"),
@@ -23,6 +23,7 @@ pub(super) const PARAMETERS: [(&str, &str, &str); 25] = [
     ("attraction", "attraction", "attraction"),
     ("attraction_range_m", "ρ", "ρ [m]"),
     ("nucleation", "nucleation", "nucleation"),
+    ("opening", "opening", "opening"),
     ("precision", "precision", "precision"),
     ("interaction", "interaction", "interaction"),
     ("boundary", "boundary", "boundary"),
@@ -34,7 +35,7 @@ pub(super) const PARAMETERS: [(&str, &str, &str); 25] = [
 ];
 
 /// Parameters that only one of the methods reads: they vary if they differ between cases of one method.
-const OF_METHOD: [&str; 10] = [
+const OF_METHOD: [&str; 11] = [
     "approach_step",
     "interaction",
     "boundary",
@@ -44,6 +45,7 @@ const OF_METHOD: [&str; 10] = [
     "attraction",
     "attraction_range_m",
     "nucleation",
+    "opening",
     "precision",
 ];
 

@@ -26,14 +26,16 @@ pub struct Problem {
 /// Points that attract.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Attraction {
-    /// The JKR limit, a range of attraction of 0: contact forms where the surfaces touch, and opens from its edges. The law acts on points that
-    /// have touched and those within `margin` points of contact; a point farther than `margin` from an open one does not open.
-    /// A point without a bond touches below the gap `nucleation`.
+    /// The JKR limit, a range of attraction of 0: contact forms where the surfaces touch. The law acts on points that have touched and those within
+    /// `margin` points of contact. With `edges_only` a point farther than `margin` from an open one does not open. A point without a bond touches
+    /// below the gap `nucleation`.
     Bonded {
         /// Points around a contact that are bonded.
         margin: usize,
         /// Gap at which a point outside bonds \[dx\].
         nucleation: f64,
+        /// Whether contact opens from its edges only.
+        edges_only: bool,
     },
     /// All points: the range of the law acts everywhere.
     Range,
@@ -169,7 +171,7 @@ impl Problem {
     /// Bonds the free points within the margin of a contact and opens the sealed ones within the margin of an open point; with `nucleate` free points
     /// that touch are a contact too. Neither raises the energy. Whether a bond has changed.
     pub fn update_bonds(&self, state: &mut State, nucleate: bool) -> bool {
-        let Attraction::Bonded { margin, nucleation } = self.attraction else { return false };
+        let Attraction::Bonded { margin, nucleation, .. } = self.attraction else { return false };
         let touching = self.map(state, |bonding, gap| match bonding {
             Bonding::Free => u8::from(nucleate && gap <= nucleation),
             _ => u8::from(self.touches(bonding, gap)),
@@ -191,7 +193,7 @@ impl Problem {
     /// Ends the bonds of points that have separated, beyond the end of the law and of the margin, and seals those inside contacts at which the law is
     /// its spring. Neither changes the energy.
     pub fn settle_bonds(&self, state: &mut State) {
-        let Attraction::Bonded { margin, .. } = self.attraction else { return };
+        let Attraction::Bonded { margin, edges_only, .. } = self.attraction else { return };
         let touching = self.map(state, |bonding, gap| u8::from(self.touches(bonding, gap)));
         let (near, edge) = self.surroundings(&touching, margin);
         let (end, spring) = (self.law.end_gap(), self.law.spring_gap());
@@ -199,7 +201,7 @@ impl Problem {
             let gap = self.gap(state, k);
             match state.bonds[k] {
                 Bonding::Bonded if near[k] == 0 && gap >= end => state.bonds[k] = Bonding::Free,
-                Bonding::Bonded if edge[k] == 0 && gap <= spring => state.bonds[k] = Bonding::Sealed,
+                Bonding::Bonded if edges_only && edge[k] == 0 && gap <= spring => state.bonds[k] = Bonding::Sealed,
                 _ => {}
             }
         }

@@ -17,7 +17,7 @@ const LARGE: f64 = 3e-3;
 const LOAD_ACCURACY: f64 = 1e-5;
 const SHARPER: f64 = 0.02;
 const SEARCHED: u32 = 40;
-/// Approach at which a load counts as not reached, in ranges of the heights.
+/// Approach at which a load counts as not reached and, behind the origin, the surfaces as inseparable, in ranges of the heights.
 const FARTHEST: f64 = 20.0;
 
 /// Settings of a path.
@@ -140,8 +140,8 @@ pub struct Halfway {
     /// Branches that are complete.
     branches: usize,
     state: State,
-    /// Displacement and approach one step before, if no event lies between.
-    before: Option<(f64, Vec<f64>)>,
+    /// The state one step before, if no event lies between.
+    before: Option<Before>,
     last: Step,
     dissipated: f64,
     level: u32,
@@ -150,6 +150,14 @@ pub struct Halfway {
     /// Contact of the state, from which it follows.
     #[serde(skip)]
     labels: Labels,
+}
+
+/// A state one step before.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+struct Before {
+    approach: f64,
+    load: f64,
+    displacement: Vec<f64>,
 }
 
 impl Halfway {
@@ -215,6 +223,20 @@ pub fn unload_from(problem: &Problem, settings: &Settings, reversal: usize, turn
     })
 }
 
+/// `∫F dΔ` between two points `(Δ, F)` by the trapezoid rule.
+#[must_use]
+pub fn work_between(start: (f64, f64), end: (f64, f64)) -> f64 {
+    0.5 * (start.1 + end.1) * (end.0 - start.0)
+}
+
+/// `∫F dΔ` from `start` to `end` of the parabola through these two points `(Δ, F)` and the one before them.
+#[must_use]
+pub fn work_after(before: (f64, f64), start: (f64, f64), end: (f64, f64)) -> f64 {
+    let slope = |a: (f64, f64), b: (f64, f64)| (b.1 - a.1) / (b.0 - a.0);
+    let bend = (slope(start, end) - slope(before, start)) / (end.0 - before.0);
+    work_between(start, end) - bend * (end.0 - start.0).powi(3) / 6.0
+}
+
 impl<'a> Walk<'a> {
     fn begin(problem: &'a Problem, settings: &'a Settings, halfway: Option<Halfway>) -> Result<Self, PhysicsError> {
         let start = match problem.attraction {
@@ -246,7 +268,7 @@ impl<'a> Walk<'a> {
             let (state, step) = self.attempt(self.at.state.approach, self.settings.accuracy)?;
             self.accept(state, step);
         }
-        let farthest = FARTHEST * self.problem.range();
+        let farthest = self.farthest();
         let last = self.settings.max_loads.last().copied().unwrap_or(0.0);
         while let Some(max_load) = self.settings.max_loads.get(self.at.cycle.turning.len()).copied() {
             let reached = self.advance(1.0, Some(max_load))?;
@@ -260,6 +282,11 @@ impl<'a> Walk<'a> {
             keep(&self.at);
         }
         Ok(())
+    }
+
+    /// Approach beyond which no load is reached and, behind the origin, nothing holds \[dx\].
+    fn farthest(&self) -> f64 {
+        FARTHEST * self.problem.range()
     }
 
     /// Keeps the state at a load reversal.
@@ -290,6 +317,9 @@ impl<'a> Walk<'a> {
         }
         let branches = self.settings.max_loads.len() as f64;
         while !self.is_apart() {
+            if self.at.state.approach < -self.farthest() {
+                return Err(PhysicsError::Closed { approach_m: self.at.state.approach });
+            }
             self.advance(-1.0, None)?;
             self.keep_tensest();
             progress(0.5 + 0.5 * (reversal as f64 + 1.0 - (self.at.last.totals.contact as f64 / full).min(1.0)) / branches);
@@ -337,9 +367,9 @@ impl<'a> Walk<'a> {
     /// Equilibrium at an approach, from the last state extrapolated, with all contacts that form there.
     fn attempt(&mut self, approach: f64, accuracy: Accuracy) -> Result<(State, Step), PhysicsError> {
         let mut state = self.at.state.clone();
-        if let Some((at, displacement)) = &self.at.before {
-            let ratio = (approach - state.approach) / (state.approach - at);
-            for (to, from) in state.displacement.iter_mut().zip(displacement) {
+        if let Some(before) = &self.at.before {
+            let ratio = (approach - state.approach) / (state.approach - before.approach);
+            for (to, from) in state.displacement.iter_mut().zip(&before.displacement) {
                 *to += ratio * (*to - from);
             }
         }
@@ -360,14 +390,18 @@ impl<'a> Walk<'a> {
         let totals = self.problem.totals(&state);
         self.problem.settle_bonds(&mut state);
         let from = &self.at.last;
-        let work = 0.5 * (from.totals.load + totals.load) * (approach - from.approach);
+        let (start, end) = ((from.approach, from.totals.load), (approach, totals.load));
+        let change = totals.energy - from.totals.energy;
+        let quiet = self.at.before.as_ref().map(|before| work_after((before.approach, before.load), start, end));
+        // Where the load jumps, the points before do not tell how it goes on.
+        let work = quiet.filter(|work| (work - change).abs() <= EVENT * self.at.dissipated).unwrap_or_else(|| work_between(start, end));
         let step = Step {
             reversal: from.reversal,
             approach,
             totals,
             regions: 0,
             dissipated: 0.0,
-            imbalance: work - (totals.energy - from.totals.energy),
+            imbalance: work - change,
             work: from.work + work,
             iterations,
             transforms: self.minimiser.transforms() - before,
@@ -397,7 +431,9 @@ impl<'a> Walk<'a> {
         }
         self.at.labels = labels;
         let old = std::mem::replace(&mut self.at.state, state);
-        self.at.before = (!event && old.approach != self.at.state.approach).then_some((old.approach, old.displacement));
+        let load = self.at.last.totals.load;
+        let follows = !event && old.approach != self.at.state.approach;
+        self.at.before = follows.then_some(Before { approach: old.approach, load, displacement: old.displacement });
         self.at.last = step;
         if self.settings.all_regions {
             let (step, found) = (self.at.cycle.steps.len(), self.regions());

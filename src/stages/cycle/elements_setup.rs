@@ -3,7 +3,7 @@
 use super::super::StageError;
 use super::super::surface::{read_summits, scale};
 use crate::campaign::{Campaign, CycleUnit};
-use crate::model::{Attraction, KeptContacts, Material, Nucleation};
+use crate::model::{Attraction, KeptContacts, Material, Nucleation, Opening};
 use crate::physics::PhysicsError;
 use crate::physics::boundary_elements::contact::{Attraction as Rule, Problem};
 use crate::physics::boundary_elements::cycle::Settings;
@@ -161,7 +161,7 @@ fn problem(params: &CaseParams, units: &Units, heights_m: Array2<f64>, list: &[S
                 Nucleation::Touch => 0.0,
                 Nucleation::Wu => wu_gap(material, list)? / spacing,
             };
-            (Law::crack(work), Rule::Bonded { margin: MARGIN, nucleation })
+            (Law::crack(work), Rule::Bonded { margin: MARGIN, nucleation, edges_only: elements.opening == Opening::Edges })
         }
     };
     Ok(Problem { half_space: HalfSpace::new(units.points, units.points)?, law, heights, attraction })

@@ -48,6 +48,7 @@ const OTHERS: [(&str, &str, usize); 28] = [
     ("boundary_elements.attraction", "\"range\"", 4),
     ("boundary_elements.range_m", "1e-7", 4),
     ("boundary_elements.nucleation", "\"wu\"", 4),
+    ("boundary_elements.opening", "\"anywhere\"", 4),
     ("boundary_elements.approach_step", "0.02", 4),
     ("boundary_elements.precision", "1e-5", 4),
     ("cycle.max_load", "[0.003]", 2),

@@ -1,7 +1,7 @@
 //! Bounds and words.
 
 use hysteron::model::{
-    Amplitudes, Attraction, Boundary, Choice, Coalescence, Interaction, JumpIn, KeptContacts, Method, Normalization, Nucleation, Slip,
+    Amplitudes, Attraction, Boundary, Choice, Coalescence, Interaction, JumpIn, KeptContacts, Method, Normalization, Nucleation, Opening, Slip,
 };
 use hysteron::spec::Spec;
 
@@ -61,6 +61,7 @@ fn all_words() -> Vec<(&'static str, &'static str)> {
         words::<KeptContacts>("cycle.contacts"),
         words::<Attraction>("boundary_elements.attraction"),
         words::<Nucleation>("boundary_elements.nucleation"),
+        words::<Opening>("boundary_elements.opening"),
     ]
     .concat()
 }
