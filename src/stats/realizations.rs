@@ -113,7 +113,9 @@ fn balance(loading: &Branch, turning: usize, unloading: &Branch, results: &Given
     let points: Vec<Point> = loading.points().take(turning + 1).chain(unloading.points()).collect();
     let events: Vec<f64> = loading.dissipated_j.iter().take(turning + 1).chain(&unloading.dissipated_j).copied().collect();
     let at = |k: usize| (points[k].penetration, points[k].load);
-    let follows = |k: usize| k > 1 && k != turning + 1 && events[k] == 0.0 && events[k - 1] == 0.0 && points[k - 1].penetration != points[k - 2].penetration;
+    let follows = |k: usize| {
+        k > 1 && k != turning + 1 && events[k] == 0.0 && events[k - 1] == 0.0 && points[k - 1].penetration != points[k - 2].penetration
+    };
     let part = |k: usize| if follows(k) { work_after(at(k - 2), at(k - 1), at(k)) } else { work_between(at(k - 1), at(k)) };
     let integral = (1..points.len()).map(part).sum::<f64>() * input.energy_scale_j;
     (loss != 0.0).then(|| ((integral - dissipated) / loss).abs())

@@ -97,7 +97,14 @@ fn law_a_cycle_reads_the_keys_of_its_method() {
         assert_eq!(keys(&with(unread)), keys(&base), "{unread}");
     }
     let mut seen = BTreeSet::from([keys(&base).1.concat()]);
-    let read = ["points = 256", "attraction = \"range\"", "nucleation = \"wu\"", "opening = \"anywhere\"", "approach_step = 0.05", "precision = 1e-3"];
+    let read = [
+        "points = 256",
+        "attraction = \"range\"",
+        "nucleation = \"wu\"",
+        "opening = \"anywhere\"",
+        "approach_step = 0.05",
+        "precision = 1e-3",
+    ];
     for line in read {
         let other = with(&format!("[boundary_elements]\n{line}"));
         assert_eq!(keys(&other).0, keys(&base).0, "{line}");

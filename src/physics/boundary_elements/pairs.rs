@@ -86,10 +86,8 @@ impl Pairs {
     /// Products of the steps with a gradient that no step has led to.
     pub(super) fn face(&mut self, gradient: &Gradient) {
         let [a, b, c] = &self.pairs;
-        let fields =
-            (gradient.values.par_chunks(PANEL), a.step.par_chunks(PANEL), b.step.par_chunks(PANEL), c.step.par_chunks(PANEL));
-        self.onto =
-            total(fields.into_par_iter().map(|(g, a, b, c)| panel_sums([g, a, b, c], |[g, a, b, c]| [g * a, g * b, g * c])));
+        let fields = (gradient.values.par_chunks(PANEL), a.step.par_chunks(PANEL), b.step.par_chunks(PANEL), c.step.par_chunks(PANEL));
+        self.onto = total(fields.into_par_iter().map(|(g, a, b, c)| panel_sums([g, a, b, c], |[g, a, b, c]| [g * a, g * b, g * c])));
         self.centre(gradient);
     }
 

@@ -1,7 +1,8 @@
 //! Bounds and words.
 
 use hysteron::model::{
-    Amplitudes, Attraction, Boundary, Choice, Coalescence, Interaction, JumpIn, KeptContacts, Method, Normalization, Nucleation, Opening, Slip,
+    Amplitudes, Attraction, Boundary, Choice, Coalescence, Interaction, JumpIn, KeptContacts, Method, Normalization, Nucleation, Opening,
+    Slip,
 };
 use hysteron::spec::Spec;
 
