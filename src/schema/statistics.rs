@@ -148,6 +148,7 @@ const RESULTS: &[Column] = &[
         .from("Eqs A1-A4"),
     real("loss_touched", "1", "Sum of the dissipated energies of single isolated asperities over all asperities that came into contact, over E* A0 h_rms: no interaction, jump into contact at zero penetration; null for boundary elements").or_null().from("Eq A1"),
     real("loss_dalvi", "1", "Work of adhesion times contact area at load reversal, over E* A0 h_rms").from("Dalvi et al. 2019"),
+    real("loss_pinning", "1", "Dissipated energy of crack-front pinning, 2 k U_el times contact area at load reversal with k = 1.35, over E* A0 h_rms; null where k U_el >= Δγ/2, and where U_el is unknown").or_null().from("Sanner et al. 2024"),
     real("loss_ratio_dk", "1", "Ratio Θ/Θ_DK, loss over loss_dk; null where either is null or loss_dk is 0").or_null(),
     real("dissipated", "1", "Dissipated energy over E* A0 h_rms, summed over the events of the loop"),
     real("dissipated_j", "J", "Dissipated energy, summed over the events of the loop"),
@@ -187,6 +188,9 @@ const RESULTS: &[Column] = &[
     real("persson_tosatti_realised", "1", "Persson-Tosatti ratio U_el/Δγ for the realized spectrum of the surface; null where that is unknown and without adhesion")
         .or_null()
         .from("Persson and Tosatti 2001"),
+    real("sticky_line", "1", "Wang-Müser ratio U_el/(2 Δγ) for the realized spectrum of the surface; below 1 the pull-off force is high; null where U_el is unknown and without adhesion")
+        .or_null()
+        .from("Wang and Müser 2022"),
     real("elements_per_wavelength", "1", "Grid points of boundary elements per shortest wavelength; null for asperities").or_null(),
 ];
 
@@ -244,6 +248,12 @@ const SPREADS: &[&[Column]] = &[
         "Eq A1"
     ),
     over_realizations!("loss_dalvi", "1", "work of adhesion times contact area at load reversal, over E* A0 h_rms", "Dalvi et al. 2019"),
+    over_realizations!(
+        "loss_pinning",
+        "1",
+        "dissipated energy of crack-front pinning, 2 k U_el times contact area at load reversal, over E* A0 h_rms",
+        "Sanner et al. 2024"
+    ),
     over_realizations!("area_adhesionless", "1", "adhesionless contact area A/A0 at F_max, Persson's theory", "Persson 2001"),
     over_realizations!(
         "area_adhesionless_small",
@@ -295,6 +305,7 @@ const VALIDITY: &[&[Column]] = &[
     over_surfaces!("conformity_realised", "U_el/Δγ of the shortest octave, realized spectrum", "Persson and Tosatti 2001"),
     over_surfaces!("persson_tosatti", "Persson-Tosatti ratio U_el/Δγ, continuous spectrum", "Persson and Tosatti 2001"),
     over_surfaces!("persson_tosatti_realised", "Persson-Tosatti ratio U_el/Δγ, realized spectrum", "Persson and Tosatti 2001"),
+    over_surfaces!("sticky_line", "Wang-Müser ratio U_el/(2 Δγ), realized spectrum", "Wang and Müser 2022"),
 ];
 
 const COUNTS: &[Column] = &[

@@ -11,7 +11,8 @@ use crate::physics::spectrum::{Moments, Spectrum};
 use crate::physics::summits::Summit;
 use crate::physics::synthesis::realization_seed;
 use crate::physics::theory::{
-    adhesionless_area, adhesionless_area_small, curvature_decay, dalvi_loss, deng_kesari_loss_as_printed, fuller_tabor,
+    adhesionless_area, adhesionless_area_small, curvature_decay, dalvi_loss, deng_kesari_loss_as_printed, fuller_tabor, pinning_loss,
+    sticky_line,
 };
 use crate::physics::validity::{Flattening, LEAST_TABOR, flattening, measured_flattening, realised_flattening};
 use crate::spec::CaseParams;
@@ -220,6 +221,7 @@ fn flattenings(campaign: &Campaign, unit: &CycleUnit, header: Option<&SurfaceHea
         ("conformity_realised", ratio(of_modes.as_ref(), Flattening::conformity).into()),
         ("persson_tosatti", ratio(continuous.as_ref(), Flattening::persson_tosatti).into()),
         ("persson_tosatti_realised", ratio(of_modes.as_ref(), Flattening::persson_tosatti).into()),
+        ("sticky_line", ratio(of_modes.as_ref(), Flattening::persson_tosatti).map(sticky_line).into()),
     ]))
 }
 
@@ -277,6 +279,8 @@ pub(super) fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<Cycle
         ("elements_per_wavelength", lattice.map(|lattice| lattice.per_wavelength).into()),
     ];
     let mut of_surface = flattenings(campaign, unit, Some(&header))?;
+    let flattened = of_surface.iter().find(|(name, _)| name == "persson_tosatti_realised").and_then(|(_, ratio)| ratio.number());
+    let pinning = flattened.and_then(|ratio| pinning_loss(&params.material, ratio * adhesion, nominal));
     of_surface.extend(named(numbers));
     Ok(CycleInput {
         case_id: case.id.clone(),
@@ -292,6 +296,7 @@ pub(super) fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<Cycle
         },
         loss_dk_realised_per_area_j: deng_kesari(&realised, params, nominal)?,
         loss_dalvi_per_area_j: dalvi_loss(&params.material, nominal),
+        loss_pinning_per_area_j: pinning,
         asperity_loss_j: losses,
         at_max_load: params.cycle.max_load.iter().map(at_max_load).collect(),
         surface: of_surface,

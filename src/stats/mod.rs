@@ -92,6 +92,8 @@ pub struct CycleInput {
     pub loss_dk_realised_per_area_j: Option<f64>,
     /// `Δγ A0` \[J\]: Θ after Dalvi and others per unit of `A/A0`.
     pub loss_dalvi_per_area_j: f64,
+    /// Energy dissipated by crack-front pinning over the nominal area \[J\]; nothing where that is undefined.
+    pub loss_pinning_per_area_j: Option<f64>,
     /// What each asperity loses by itself \[J\], by its number.
     pub asperity_loss_j: Vec<f64>,
     /// Further columns that depend on the turning point, by its load.

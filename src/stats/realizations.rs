@@ -157,7 +157,7 @@ fn reduce(loading: &Branch, turning: usize, unloading: &Branch, max_load: f64, i
     let pull_off = |loads: &[f64]| tension(loads) + 0.0;
     let touching = count_at(&loading.touching_count);
     let held: i64 = loading.held_count.iter().take(turning + 1).chain(&unloading.held_count).sum();
-    let columns: [(&str, Value); 28] = [
+    let columns: [(&str, Value); 29] = [
         ("realization", input.realization.into()),
         ("cycle_id", input.cycle_id.as_str().into()),
         ("surface_id", input.surface_id.as_str().into()),
@@ -174,6 +174,7 @@ fn reduce(loading: &Branch, turning: usize, unloading: &Branch, max_load: f64, i
         ("loss_j", loss_j.into()),
         ("loss_dk", loss_dk.into()),
         ("loss_dk_realised", dk(input.loss_dk_realised_per_area_j).into()),
+        ("loss_pinning", input.loss_pinning_per_area_j.map(|slope| slope * area / input.energy_scale_j).into()),
         ("loss_dalvi", (input.loss_dalvi_per_area_j * area / input.energy_scale_j).into()),
         ("loss_ratio_dk", loss_dk.filter(|dk| *dk != 0.0).map(|dk| loss / dk).into()),
         ("dissipated", (dissipated_j / input.energy_scale_j).into()),

@@ -8,7 +8,9 @@ use hysteron::physics::spectrum::{Moments, Spectrum};
 use hysteron::physics::state::{Problem, Rules};
 use hysteron::physics::summits::{Summit, find_summits};
 use hysteron::physics::synthesis::{realization_seed, synthesize};
-use hysteron::physics::theory::{adhesionless_area, dalvi_loss, deng_kesari_loss_as_printed, fuller_tabor, mean_loop_loss_as_printed};
+use hysteron::physics::theory::{
+    adhesionless_area, dalvi_loss, deng_kesari_loss_as_printed, fuller_tabor, mean_loop_loss_as_printed, pinning_loss,
+};
 
 /// Something that moments have.
 type Moment = fn(&Moments) -> f64;
@@ -161,6 +163,9 @@ fn law_the_other_theories_scale() {
         let stuff = units.material(PAPER);
         let scaled = |what: &str, got: f64, want: f64, l: f64, f: f64| close(what, got, want * units.of(l, f), ROUNDING);
         scaled("Dalvi", dalvi_loss(&stuff, 1e-7 * units.of(2.0, 0.0)), dalvi_loss(&PAPER, 1e-7), 1.0, 1.0);
+        let density = 1e-3 * units.of(-1.0, 1.0);
+        let pinned = pinning_loss(&stuff, density, 1e-7 * units.of(2.0, 0.0)).unwrap();
+        scaled("pinning", pinned, pinning_loss(&PAPER, 1e-3, 1e-7).unwrap(), 1.0, 1.0);
         let known = fuller_tabor(&PAPER, 4e-6, 1e-4);
         scaled("Fuller and Tabor", fuller_tabor(&stuff, 4e-6 * units.length, 1e-4 * units.length), known, 0.0, 0.0);
         // Neither load nor slope has a dimension: F/(E* A0) of scaled F, E* and A0.

@@ -8,6 +8,7 @@ use hysteron::physics::jkr::Asperity;
 use hysteron::physics::spectrum::Moments;
 use hysteron::physics::theory::{
     adhesionless_area, adhesionless_area_small, curvature_density, dalvi_loss, deng_kesari_loss, fuller_tabor, mean_loop_loss,
+    pinning_loss, sticky_line,
 };
 use std::f64::consts::PI;
 
@@ -155,4 +156,13 @@ fn val_dalvi_and_fuller_and_tabor_by_hand() {
     close("full contact", dalvi_loss(&PAPER, 1e-6), 0.07 * 1e-6, 1e-15);
     // 1e6 (4e-6)^1.5/(1e-4^0.5 0.07) = 1e6 · 8e-9/(1e-2 · 0.07).
     close("Fuller and Tabor", fuller_tabor(&PAPER, 4e-6, 1e-4), 8e-3 / 7e-4, 1e-14);
+}
+
+#[test]
+fn val_pinning_and_the_sticky_line_by_hand() {
+    // 2 · 1.35 · 0.01 · 1e-6.
+    close("pinning", pinning_loss(&PAPER, 0.01, 1e-6).unwrap(), 2.7e-8, 1e-14);
+    // k e_el = Δγ/2 at e_el = 0.035/1.35 = 0.0259.
+    assert!(pinning_loss(&PAPER, 0.0258, 1e-6).is_some() && pinning_loss(&PAPER, 0.0260, 1e-6).is_none());
+    close("sticky line", sticky_line(3.0), 1.5, 1e-15);
 }
