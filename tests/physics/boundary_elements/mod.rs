@@ -2,6 +2,7 @@
 
 mod johnson;
 mod operator;
+mod peer;
 mod rough;
 mod sphere;
 mod trapping;
