@@ -18,7 +18,8 @@ fn wavy(n: usize, row: usize, column: usize) -> f64 {
 /// tolerance of either program.
 #[test]
 fn val_adhesion_finds_the_same_states() {
-    let rows = table("adhesion");
+    let table = table("adhesion");
+    let rows: Vec<_> = table.rows().collect();
     let problem = problem(32, 32, |row, column| wavy(32, row, column), Law::morse(0.02, 0.12), Attraction::Range);
     let mut minimiser = Minimiser::new(&problem).unwrap();
     let mut state = problem.apart(0.0).unwrap();
