@@ -5,6 +5,7 @@
 //! Every tolerance is beside its reason. Nothing here is timed, and nothing is drawn from an entropy source.
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
+mod approximate_jkr;
 mod boundary_elements;
 mod coupled;
 mod cycle;

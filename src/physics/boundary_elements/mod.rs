@@ -2,6 +2,7 @@
 //!
 //! Imports nothing of the asperity model. Inside, lengths are in grid spacings `dx`, stresses in E*, energies in `E* dx³`.
 
+pub mod adhesionless;
 pub mod contact;
 pub mod cycle;
 pub mod grid;

@@ -1,0 +1,52 @@
+//! Loading without adhesion, under displacement control.
+
+use super::contact::{Problem, Totals};
+use super::minimise::{Accuracy, Minimiser};
+use crate::physics::PhysicsError;
+
+/// An equilibrium without adhesion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FreeStep {
+    /// Approach Δ \[dx\].
+    pub approach: f64,
+    /// Load, energy and area.
+    pub totals: Totals,
+    /// Real transforms.
+    pub transforms: u64,
+    /// Whether the accuracy was reached.
+    pub converged: bool,
+}
+
+/// Loads a problem without attraction in steps of the approach \[dx\] until `enough` says so of the steps, or all points are in contact.
+///
+/// # Errors
+/// Not enough memory.
+pub fn load_freely(
+    problem: &Problem,
+    step: f64,
+    accuracy: Accuracy,
+    enough: &mut dyn FnMut(&[FreeStep]) -> bool,
+) -> Result<Vec<FreeStep>, PhysicsError> {
+    let mut minimiser = Minimiser::new(problem)?;
+    let mut state = problem.apart(0.0)?;
+    let mut before = state.displacement.clone();
+    let mut steps: Vec<FreeStep> = Vec::new();
+    loop {
+        let transforms = minimiser.transforms();
+        let mut outcome = minimiser.minimise(problem, &mut state, accuracy);
+        if !outcome.converged {
+            outcome = minimiser.newton(problem, &mut state, accuracy)?;
+        }
+        let totals = problem.totals(&state);
+        let transforms = minimiser.transforms() - transforms;
+        steps.push(FreeStep { approach: state.approach, totals, transforms, converged: outcome.converged });
+        if totals.contact == problem.half_space.points() || enough(&steps) {
+            return Ok(steps);
+        }
+        state.approach += step;
+        for (now, before) in state.displacement.iter_mut().zip(&mut before) {
+            let next = 2.0 * *now - *before;
+            *before = std::mem::replace(now, next);
+        }
+    }
+}
