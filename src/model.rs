@@ -130,6 +130,8 @@ choice! {
 choice! {
     /// Where contact of boundary elements opens.
     Opening {
+        /// From the edges of contacts, and inside where the tension exceeds `Δγ/ρ`, with the interaction range ρ.
+        Strength = "strength",
         /// From the edges of contacts only.
         Edges = "edges",
         /// Inside contacts too, where the tension exceeds the maximum tension of the law on the grid.

@@ -38,11 +38,8 @@ pub fn adhesive_curve(curve: &[CurvePoint], work_length_m: f64) -> Vec<CurvePoin
         .filter(|pair| pair[1].penetration_m > pair[0].penetration_m)
         .map(|pair| {
             let middle = |value: fn(&CurvePoint) -> f64| 0.5 * (value(&pair[0]) + value(&pair[1]));
-            let point = CurvePoint {
-                penetration_m: middle(|p| p.penetration_m),
-                load_m2: middle(|p| p.load_m2),
-                area_m2: middle(|p| p.area_m2),
-            };
+            let point =
+                CurvePoint { penetration_m: middle(|p| p.penetration_m), load_m2: middle(|p| p.load_m2), area_m2: middle(|p| p.area_m2) };
             (point, (pair[1].load_m2 - pair[0].load_m2) / (pair[1].penetration_m - pair[0].penetration_m))
         })
         .collect();

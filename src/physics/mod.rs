@@ -2,8 +2,8 @@
 //!
 //! This module opens no files and is independent of the stages. All quantities are in SI units; compression and penetration are positive.
 
-mod avalanche;
 pub mod approximate_jkr;
+mod avalanche;
 pub mod bandlimited;
 pub mod boundary_elements;
 pub mod cycle;

@@ -16,7 +16,7 @@ pub use comparison::COMPARISON;
 pub use cycles::CYCLES;
 pub use methods::METHODS;
 pub use render::{DIRECTORY, OWN_KEYS, SchemaFile, files, metadata_json, readme_markdown, schema_file_name, schema_json};
-pub use run::{ASPERITIES, CONTACTS, EVENTS, MERGED, STEPS, TURNING};
+pub use run::{ADHESIONLESS, ASPERITIES, CONTACTS, EVENTS, MERGED, STEPS, TURNING};
 pub use statistics::{CASES, CURVES, PANELS, REALIZATIONS};
 
 /// What a column holds.
@@ -101,6 +101,7 @@ pub static TABLES: &[&Table] = &[
     &TURNING,
     &MERGED,
     &EVENTS,
+    &ADHESIONLESS,
     &REALIZATIONS,
     &CASES,
     &CURVES,

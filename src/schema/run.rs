@@ -193,6 +193,25 @@ pub static TURNING: Table = Table {
     ],
 };
 
+/// Loading without adhesion.
+pub static ADHESIONLESS: Table = Table {
+    name: "adhesionless",
+    version: 1,
+    file: "cycles/<id>/adhesionless.parquet",
+    doc: "One row per step of loading the same surface without adhesion, by boundary elements; from it follow the columns *_jkr_curve of the table realizations.",
+    columns: &[
+        CYCLE_ID,
+        CYCLE_CASE_ID,
+        REALIZATION,
+        STEP,
+        real("approach_m", "m", "Mean penetration Δ, with the zero of the table steps"),
+        real("load_n", "N", "Normal load; positive in compression"),
+        real("area_m2", "m^2", "Contact area"),
+        flag("converged", "True if the residual is below the tolerance"),
+        count("transform_count", "Fourier transforms"),
+    ],
+};
+
 /// Merged contacts.
 pub static MERGED: Table = Table {
     name: "merged",

@@ -70,7 +70,7 @@ pub(super) const PARAMETERS: &[Column] = &[
     .or_null(),
     text(
         "opening",
-        "Where contact of boundary elements opens: \"edges\" of contacts or \"anywhere\"; null for asperities and with a range",
+        "Where contact of boundary elements opens: \"strength\", \"edges\" or \"anywhere\"; null for asperities and with a range",
     )
     .or_null(),
     real("precision", "1", "Tolerance of an equilibrium of boundary elements: rms residual over the maximum tension; null for asperities")
@@ -136,6 +136,9 @@ const RESULTS: &[Column] = &[
     real("area_at_max_load", "1", "Contact area A/A0 at load reversal, summed over the contact discs"),
     real("area_union_at_max_load", "1", "Contact area A/A0 at load reversal, union of the contact discs; null where it was not computed").or_null(),
     real("area_adhesionless", "1", "Adhesionless contact area A/A0 at F_max, Persson's theory: erf(sqrt(2) F/(E* A0 rms_slope))").from("Persson 2001"),
+    real("area_jkr_curve", "1", "Contact area A/A0 at load reversal, approximate JKR theory from the adhesionless curve of the same surface; null for asperities and where that curve ends below the load").or_null().from("Ciavarella 2018"),
+    real("pull_off_jkr_curve", "1", "Pull-off force F_po/(E* A0) of the same theory; null likewise").or_null().from("Ciavarella 2018"),
+    real("loss_jkr_curve", "1", "Dissipated energy Θ/(E* A0 h_rms) of the same theory, with contact formed at zero penetration; null likewise").or_null().from("Ciavarella 2018"),
     real("area_adhesionless_small", "1", "Adhesionless contact area A/A0 at F_max, small-load limit of boundary-element results: 2 F/(E* A0 rms_slope)").from("Hyun et al. 2004"),
     real("penetration_at_max_load", "1", "Mean penetration Δ/h_rms at load reversal"),
     real("loss", "1", "Dissipated energy Θ/(E* A0 h_rms) of the loop"),
@@ -253,6 +256,24 @@ const SPREADS: &[&[Column]] = &[
         "1",
         "dissipated energy of crack-front pinning, 2 k U_el times contact area at load reversal, over E* A0 h_rms",
         "Sanner et al. 2024"
+    ),
+    over_realizations!(
+        "area_jkr_curve",
+        "1",
+        "contact area A/A0 at load reversal, approximate JKR theory from the adhesionless curve",
+        "Ciavarella 2018"
+    ),
+    over_realizations!(
+        "pull_off_jkr_curve",
+        "1",
+        "pull-off force F_po/(E* A0), approximate JKR theory from the adhesionless curve",
+        "Ciavarella 2018"
+    ),
+    over_realizations!(
+        "loss_jkr_curve",
+        "1",
+        "dissipated energy Θ/(E* A0 h_rms), approximate JKR theory from the adhesionless curve",
+        "Ciavarella 2018"
     ),
     over_realizations!("area_adhesionless", "1", "adhesionless contact area A/A0 at F_max, Persson's theory", "Persson 2001"),
     over_realizations!(

@@ -55,7 +55,7 @@ impl Default for ElementParams {
             attraction: Attraction::Bonded,
             range_m: 0.0,
             nucleation: Nucleation::Touch,
-            opening: Opening::Edges,
+            opening: Opening::Strength,
             approach_step: 0.03,
             precision: 1e-4,
         }

@@ -6,6 +6,7 @@ use super::surface::{read_summits, scale, spectrum};
 use super::{StageError, Tally, Watch, datapackage, incomplete};
 use crate::campaign::{Campaign, CaseUnit, CycleUnit, STATISTICS, Stage, Standing, Unit};
 use crate::model::{Attraction, Choice};
+use crate::physics::approximate_jkr::{CurvePoint, adhesive_curve, curve_loop};
 use crate::physics::jkr::Asperity;
 use crate::physics::spectrum::{Moments, Spectrum};
 use crate::physics::summits::Summit;
@@ -15,6 +16,7 @@ use crate::physics::theory::{
     sticky_line,
 };
 use crate::physics::validity::{Flattening, LEAST_TABOR, flattening, measured_flattening, realised_flattening};
+use crate::schema::ADHESIONLESS;
 use crate::spec::CaseParams;
 use crate::stats::{self, CaseInput, CycleInput, Given, Planned, Sample, Value};
 use crate::store::hdf5::{SurfaceHeader, read_header, read_surface};
@@ -256,8 +258,13 @@ pub(super) fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<Cycle
     let heights: Vec<f64> = summits.iter().map(|s| s.height_m).collect();
     let radii: f64 = summits.iter().map(Summit::radius_m).sum();
     let spread = Sample::of(&heights).sd.map(|sd| fuller_tabor(&params.material, sd, radii / summits.len() as f64));
+    let free = jkr_curve(campaign, unit)?;
     let at_max_load = |load: &f64| {
-        let columns: [(&str, Value); 2] = [
+        let found = curve_loop(&free, load * nominal);
+        let columns: [(&str, Value); 5] = [
+            ("area_jkr_curve", found.map(|found| found.area_m2 / nominal).into()),
+            ("pull_off_jkr_curve", found.map(|found| found.pull_off_m2 / nominal).into()),
+            ("loss_jkr_curve", found.map(|found| found.loss_m3 / (nominal * scale.rms_height_m)).into()),
             ("area_adhesionless", adhesionless_area(*load, header.rms_slope).into()),
             ("area_adhesionless_small", adhesionless_area_small(*load, header.rms_slope).into()),
         ];
@@ -301,6 +308,20 @@ pub(super) fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<Cycle
         at_max_load: params.cycle.max_load.iter().map(at_max_load).collect(),
         surface: of_surface,
     })
+}
+
+/// Adhesive states that follow from the adhesionless curve of a cycle; none for asperities.
+fn jkr_curve(campaign: &Campaign, unit: &CycleUnit) -> Result<Vec<CurvePoint>, StageError> {
+    let material = &campaign.cases[unit.case].case.params.material;
+    let path = campaign.cycle_dir(unit).join("adhesionless.parquet");
+    if !path.exists() {
+        return Ok(Vec::new());
+    }
+    let frame = parquet::read_table(&path, &ADHESIONLESS)?;
+    let (approaches, loads, areas) = (frame.f64("approach_m")?, frame.f64("load_n")?, frame.f64("area_m2")?);
+    let point = |k: usize| CurvePoint { penetration_m: approaches[k], load_m2: loads[k] / material.contact_modulus_pa, area_m2: areas[k] };
+    let curve: Vec<CurvePoint> = (0..approaches.len()).map(point).collect();
+    Ok(adhesive_curve(&curve, material.work_of_adhesion_j_m2 / material.contact_modulus_pa))
 }
 
 /// Deng and Kesari's loss of an area \[J\]; nothing where the printed Eq A2 defines none.

@@ -234,7 +234,8 @@ fn with_aside(number: Option<f64>, aside: Option<f64>, as_what: Shown) -> String
 const MISSING: &str = "–";
 
 /// Columns of energies over `E* A0 h_rms`, which share one scale in all tables.
-pub(super) const ENERGIES: [&str; 7] = ["loss", "loss_dk", "loss_dk_realised", "loss_touched", "loss_dalvi", "loss_pinning", "dissipated"];
+pub(super) const ENERGIES: [&str; 8] =
+    ["loss", "loss_dk", "loss_dk_realised", "loss_touched", "loss_dalvi", "loss_pinning", "loss_jkr_curve", "dissipated"];
 
 /// The common power of ten of the numbers of a column; none where they differ by too much, and each has its own.
 #[derive(Debug, Clone, Copy)]

@@ -32,7 +32,7 @@ fn one(n: usize) {
         half_space: HalfSpace::new(n, n).unwrap(),
         law: Law::crack(MATERIAL.work_of_adhesion_j_m2 / (MATERIAL.contact_modulus_pa * spacing)),
         heights: surface.heights_m.iter().map(|height| (height - top) / spacing).collect(),
-        attraction: Attraction::Bonded { margin: 2, nucleation: 0.0, edges_only: true },
+        attraction: Attraction::Bonded { margin: 2, nucleation: 0.0, strength: f64::INFINITY },
     };
     let (points, rms) = ((n * n) as f64, spectrum.rms_height_m / spacing);
     let mut waves = problem.half_space.waves::<f64>().unwrap();

@@ -27,15 +27,15 @@ pub struct Problem {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Attraction {
     /// The JKR limit, a range of attraction of 0: contact forms where the surfaces touch. The law acts on points that have touched and those within
-    /// `margin` points of contact. With `edges_only` a point farther than `margin` from an open one does not open. A point without a bond touches
-    /// below the gap `nucleation`.
+    /// `margin` points of contact. A point farther than `margin` from an open one opens where its tension exceeds `strength` only. A point without a
+    /// bond touches below the gap `nucleation`.
     Bonded {
         /// Points around a contact that are bonded.
         margin: usize,
         /// Gap at which a point outside bonds \[dx\].
         nucleation: f64,
-        /// Whether contact opens from its edges only.
-        edges_only: bool,
+        /// Tension at which contact opens inside \[E*\]: infinite where it opens from its edges only, 0 where the law alone decides.
+        strength: f64,
     },
     /// All points: the range of the law acts everywhere.
     Range,
@@ -169,23 +169,24 @@ impl Problem {
     }
 
     /// Bonds the free points within the margin of a contact and opens the sealed ones within the margin of an open point; with `nucleate` free points
-    /// that touch are a contact too. Neither raises the energy. Whether a bond has changed.
+    /// that touch are a contact too, and sealed points whose tension exceeds the strength open. None of this raises the energy. Whether a bond has changed.
     pub fn update_bonds(&self, state: &mut State, nucleate: bool) -> bool {
-        let Attraction::Bonded { margin, nucleation, .. } = self.attraction else { return false };
+        let Attraction::Bonded { margin, nucleation, strength } = self.attraction else { return false };
         let touching = self.map(state, |bonding, gap| match bonding {
             Bonding::Free => u8::from(nucleate && gap <= nucleation),
             _ => u8::from(self.touches(bonding, gap)),
         });
         let (near, edge) = self.surroundings(&touching, margin);
+        let torn = |gap: f64| nucleate && self.law.sealed(gap).tension > strength;
         let mut changed = false;
-        for (bond, (near, edge)) in state.bonds.iter_mut().zip(near.iter().zip(&edge)) {
-            let next = match *bond {
+        for (k, (near, edge)) in near.iter().zip(&edge).enumerate() {
+            let next = match state.bonds[k] {
                 Bonding::Free if *near == 1 => Bonding::Bonded,
-                Bonding::Sealed if *edge == 1 => Bonding::Bonded,
+                Bonding::Sealed if *edge == 1 || torn(self.gap(state, k)) => Bonding::Bonded,
                 as_it_is => as_it_is,
             };
-            changed |= next != *bond;
-            *bond = next;
+            changed |= next != state.bonds[k];
+            state.bonds[k] = next;
         }
         changed
     }
@@ -193,7 +194,7 @@ impl Problem {
     /// Ends the bonds of points that have separated, beyond the end of the law and of the margin, and seals those inside contacts at which the law is
     /// its spring. Neither changes the energy.
     pub fn settle_bonds(&self, state: &mut State) {
-        let Attraction::Bonded { margin, edges_only, .. } = self.attraction else { return };
+        let Attraction::Bonded { margin, strength, .. } = self.attraction else { return };
         let touching = self.map(state, |bonding, gap| u8::from(self.touches(bonding, gap)));
         let (near, edge) = self.surroundings(&touching, margin);
         let (end, spring) = (self.law.end_gap(), self.law.spring_gap());
@@ -201,7 +202,7 @@ impl Problem {
             let gap = self.gap(state, k);
             match state.bonds[k] {
                 Bonding::Bonded if near[k] == 0 && gap >= end => state.bonds[k] = Bonding::Free,
-                Bonding::Bonded if edges_only && edge[k] == 0 && gap <= spring => state.bonds[k] = Bonding::Sealed,
+                Bonding::Bonded if strength > 0.0 && edge[k] == 0 && gap <= spring => state.bonds[k] = Bonding::Sealed,
                 _ => {}
             }
         }

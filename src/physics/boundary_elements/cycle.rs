@@ -11,8 +11,10 @@ use crate::physics::PhysicsError;
 use serde::{Deserialize, Serialize};
 
 /// Dissipated energy of an event, and of one that is located by halving the step, of the energy dissipated so far.
-const EVENT: f64 = 3e-4;
+const EVENT: f64 = 3e-5;
 const LARGE: f64 = 3e-3;
+/// Halvings of a step at most, as long as they reduce the error of the integral of the load.
+const DEEPEST: u32 = 5;
 /// Relative accuracy of the load at a reversal, how much more exact than elsewhere the equilibria in its search are, and how many there are at most.
 const LOAD_ACCURACY: f64 = 1e-5;
 const SHARPER: f64 = 0.02;
@@ -50,6 +52,8 @@ pub struct Step {
     pub dissipated: f64,
     /// `∫F dΔ − ΔΠ` since the step before \[E* dx³\], its error included.
     pub imbalance: f64,
+    /// Estimated error of that integral, a third of the difference of parabola and trapezoid \[E* dx³\]; 0 without an estimate, after an event.
+    pub uncertainty: f64,
     /// Work since the branch began \[E* dx³\]: the change of the energy, and `∫F dΔ` over steps with an event.
     pub work: f64,
     /// Iterations and transforms, those of halved steps included.
@@ -229,12 +233,13 @@ pub fn work_between(start: (f64, f64), end: (f64, f64)) -> f64 {
     0.5 * (start.1 + end.1) * (end.0 - start.0)
 }
 
-/// `∫F dΔ` from `start` to `end` of the parabola through these two points `(Δ, F)` and the one before them.
+/// `∫F dΔ` from `start` to `end` of the parabola through these two points `(Δ, F)` and the one before them; the trapezoid where two of them coincide.
 #[must_use]
 pub fn work_after(before: (f64, f64), start: (f64, f64), end: (f64, f64)) -> f64 {
     let slope = |a: (f64, f64), b: (f64, f64)| (b.1 - a.1) / (b.0 - a.0);
     let bend = (slope(start, end) - slope(before, start)) / (end.0 - before.0);
-    work_between(start, end) - bend * (end.0 - start.0).powi(3) / 6.0
+    let correction = bend * (end.0 - start.0).powi(3) / 6.0;
+    work_between(start, end) - if correction.is_finite() { correction } else { 0.0 }
 }
 
 impl<'a> Walk<'a> {
@@ -394,7 +399,9 @@ impl<'a> Walk<'a> {
         let change = totals.energy - from.totals.energy;
         let quiet = self.at.before.as_ref().map(|before| work_after((before.approach, before.load), start, end));
         // Where the load jumps, the points before do not tell how it goes on.
-        let work = quiet.filter(|work| (work - change).abs() <= EVENT * self.at.dissipated).unwrap_or_else(|| work_between(start, end));
+        let uncertainty = quiet.map_or(0.0, |quiet| (quiet - work_between(start, end)).abs() / 3.0);
+        let resolution = uncertainty.max(EVENT * self.at.dissipated);
+        let work = quiet.filter(|work| (work - change).abs() <= resolution).unwrap_or_else(|| work_between(start, end));
         let step = Step {
             reversal: from.reversal,
             approach,
@@ -402,6 +409,7 @@ impl<'a> Walk<'a> {
             regions: 0,
             dissipated: 0.0,
             imbalance: work - change,
+            uncertainty,
             work: from.work + work,
             iterations,
             transforms: self.minimiser.transforms() - before,
@@ -412,7 +420,7 @@ impl<'a> Walk<'a> {
     }
 
     fn accept(&mut self, state: State, mut step: Step) {
-        let event = step.imbalance > EVENT * self.at.dissipated;
+        let event = step.imbalance > (EVENT * self.at.dissipated).max(step.uncertainty);
         let labels = label(self.problem, &state);
         step.regions = labels.count;
         // Without an event the work is the change of the energy, exactly; the load is integrated for comparison only.
@@ -445,11 +453,15 @@ impl<'a> Walk<'a> {
     /// One step along the path; one with a large event is halved, one across `max_load` ends there: whether it does.
     fn advance(&mut self, sense: f64, max_load: Option<f64>) -> Result<bool, PhysicsError> {
         let (mut iterations, mut transforms) = (0, 0);
+        let mut coarser = f64::INFINITY;
         loop {
             let length = sense * self.settings.step / f64::from(1_u32 << self.at.level);
             let (mut state, mut step) = self.attempt(self.at.state.approach + length, self.settings.accuracy)?;
             let large = step.imbalance.abs() > LARGE * self.at.dissipated;
-            if large && self.at.level < self.settings.halvings {
+            // The error of the integral falls by halving the step, an event does not.
+            let falls = step.imbalance.abs() < 0.25 * coarser && self.at.level < DEEPEST;
+            if large && (self.at.level < self.settings.halvings || falls) {
+                coarser = step.imbalance.abs();
                 (iterations, transforms) = (iterations + step.iterations, transforms + step.transforms);
                 self.at.level += 1;
                 continue;
@@ -459,7 +471,12 @@ impl<'a> Walk<'a> {
                 (iterations, transforms) = (iterations + step.iterations, transforms + step.transforms);
                 (state, step) = self.reach(max_load, step)?;
             } else {
-                self.at.level = if large { self.settings.halvings.min(1) } else { self.at.level.saturating_sub(1) };
+                let small = step.imbalance.abs() < LARGE / 8.0 * self.at.dissipated;
+                self.at.level = match (large, small) {
+                    (true, _) => self.settings.halvings.min(1),
+                    (false, true) => self.at.level.saturating_sub(1),
+                    (false, false) => self.at.level,
+                };
             }
             step.iterations += iterations;
             step.transforms += transforms;

@@ -20,6 +20,8 @@ const STIFF: f32 = 0.3;
 const ADDED: f32 = 0.7;
 /// Change of the displacement after which bonds are looked at, of the reach of the law.
 const LOOK: f64 = 0.02;
+/// Largest residual, of the maximum tension, at which bonds are looked at: far from equilibrium edges of contact lie where no equilibrium has them.
+const NEAR: f64 = 0.2;
 /// Shortenings of a step that would raise the energy.
 const SHORTENINGS: u32 = 30;
 
@@ -133,8 +135,9 @@ impl Minimiser {
             (outcome.residual, outcome.converged) = (here.rms / stress, here.within(accuracy, stress));
             if outcome.converged && !exact {
                 // By the increments of the pressure, for the bonds as they were.
+                exact = !problem.update_bonds(state, false);
                 here = self.begin(problem, state);
-                (exact, moved) = (true, 0.0);
+                moved = 0.0;
                 self.pairs.face(&self.gradient);
                 continue;
             }
@@ -147,7 +150,7 @@ impl Minimiser {
             let Some((step, there)) = self.descend(problem, state, here, descent) else { return outcome };
             (here, exact) = (there, false);
             moved += step.largest;
-            let look = moved > LOOK * problem.reach();
+            let look = moved > LOOK * problem.reach() && here.largest <= NEAR * stress;
             if look {
                 moved = 0.0;
             }
@@ -161,7 +164,6 @@ impl Minimiser {
     /// Bonds, pressure without the rounding of its increments, and gradient of a state.
     pub(super) fn begin(&mut self, problem: &Problem, state: &mut State) -> Here {
         problem.refresh(state, &mut self.double);
-        problem.update_bonds(state, false);
         self.centre = -problem.totals(state).load / self.slopes.len() as f64;
         self.evaluate(problem, state, 0.0, 0.0)
     }

@@ -38,6 +38,7 @@ impl Minimiser {
         let stress = problem.stress();
         let mut outcome = Outcome::default();
         loop {
+            problem.update_bonds(state, false);
             let here = self.begin(problem, state);
             (outcome.residual, outcome.converged) = (here.rms / stress, here.within(accuracy, stress));
             if outcome.converged || outcome.iterations >= accuracy.iterations {

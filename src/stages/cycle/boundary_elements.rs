@@ -4,13 +4,15 @@ use super::super::done::Outcome;
 use super::super::identity::Identity;
 use super::super::{StageError, Watch};
 use super::elements_setup::{Setup, Units, setup};
-use super::elements_tables::{branch, contacts, events, steps};
+use super::elements_tables::{adhesionless, branch, contacts, events, steps};
 use super::{Checkpoints, Progress, effort_of, write_tables};
 use crate::campaign::{Campaign, CycleUnit};
 use crate::model::KeptContacts;
 use crate::physics::PhysicsError;
-use crate::physics::boundary_elements::contact::Problem;
-use crate::physics::boundary_elements::cycle::{self, Cycle, Halfway, Turning};
+use crate::physics::approximate_jkr::{CurvePoint, adhesive_curve};
+use crate::physics::boundary_elements::adhesionless::{FreeStep, load_freely};
+use crate::physics::boundary_elements::contact::{Attraction, Problem};
+use crate::physics::boundary_elements::cycle::{self, Cycle, Halfway, Settings, Turning};
 use crate::physics::boundary_elements::regions::Labels;
 use crate::store::{ContactMap, MapsHeader, read_halfway, write_maps, write_state};
 use serde_json::{Map, Value};
@@ -34,13 +36,44 @@ pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> R
     let loads = &params.cycle.max_load;
     let of = Identity::of(campaign, unit);
     let kept = if params.cycle.contacts == KeptContacts::None { &[][..] } else { &cycle.regions[..] };
-    let tables =
-        [contacts(of, (&cycle, kept), loads, &units, &counts)?, events(of, &cycle, loads, &units)?, steps(of, &cycle, loads, &units)?];
+    let effort = effort(&cycle, &problem);
+    let free = without_adhesion(problem, &settings, &cycle)?;
+    let tables = [
+        contacts(of, (&cycle, kept), loads, &units, &counts)?,
+        events(of, &cycle, loads, &units)?,
+        adhesionless(of, &free, &units)?,
+        steps(of, &cycle, loads, &units)?,
+    ];
     let mut files = write_tables(campaign, unit, &tables)?;
     let header = MapsHeader { key: &unit.key, cycle_id: &unit.id, length_m: units.length_m, points: units.points };
     files.push(write_maps(&dir.join("maps.h5"), &header, &maps(&cycle, loads, &units))?);
     files.push(write_state(&turning_path(&dir), &unit.key, &turning_bytes(&cycle)?)?);
-    Ok(Outcome { files, effort: effort(&cycle, &problem) })
+    Ok(Outcome { files, effort })
+}
+
+/// Step of loading without adhesion, in steps of the cycle.
+const FREE_STEP: f64 = 2.0;
+
+/// Loading of the problem without adhesion, until the adhesive states that follow from it reach the largest load, at most by the range of the heights beyond
+/// the cycle.
+fn without_adhesion(problem: Problem, settings: &Settings, cycle: &Cycle) -> Result<Vec<FreeStep>, StageError> {
+    let work_length = problem.law.work();
+    let wanted = settings.max_loads.iter().copied().fold(0.0, f64::max);
+    let range = -problem.heights.iter().copied().fold(0.0, f64::min);
+    let farthest = range + cycle.steps.iter().map(|step| step.approach).fold(0.0, f64::max);
+    let free = Problem { attraction: Attraction::None, ..problem };
+    let mut enough = |steps: &[FreeStep]| {
+        let reached = || adhesive_curve(&curve(steps), work_length).last().is_some_and(|point| point.load_m2 > wanted);
+        steps.last().is_some_and(|step| step.approach > farthest) || reached()
+    };
+    Ok(load_freely(&free, FREE_STEP * settings.step, settings.accuracy, &mut enough)?)
+}
+
+/// Steps without adhesion in grid units.
+fn curve(steps: &[FreeStep]) -> Vec<CurvePoint> {
+    let point =
+        |step: &FreeStep| CurvePoint { penetration_m: step.approach, load_m2: step.totals.load, area_m2: step.totals.contact as f64 };
+    steps.iter().map(point).collect()
 }
 
 /// Numbers of asperities in the regions of the steps.

@@ -161,7 +161,12 @@ fn problem(params: &CaseParams, units: &Units, heights_m: Array2<f64>, list: &[S
                 Nucleation::Touch => 0.0,
                 Nucleation::Wu => wu_gap(material, list)? / spacing,
             };
-            (Law::crack(work), Rule::Bonded { margin: MARGIN, nucleation, edges_only: elements.opening == Opening::Edges })
+            let strength = match elements.opening {
+                Opening::Strength => work_length / material.interaction_range_m,
+                Opening::Edges => f64::INFINITY,
+                Opening::Anywhere => 0.0,
+            };
+            (Law::crack(work), Rule::Bonded { margin: MARGIN, nucleation, strength })
         }
     };
     Ok(Problem { half_space: HalfSpace::new(units.points, units.points)?, law, heights, attraction })

@@ -4,6 +4,7 @@ use super::super::StageError;
 use super::super::identity::Identity;
 use super::boundary_elements::Counts;
 use super::elements_setup::Units;
+use crate::physics::boundary_elements::adhesionless::FreeStep;
 use crate::physics::boundary_elements::cycle::{Cycle, Step};
 use crate::physics::boundary_elements::regions::{Change, Region};
 use crate::schema;
@@ -114,6 +115,19 @@ pub(super) fn contacts(
         .f64("area_m2", rows.iter().map(|row| area(&row.1)))
         .f64("perimeter_m", rows.iter().map(|row| row.1.perimeter * spacing))
         .i64("summit_count", rows.iter().map(|row| row.2.map(i64::from)))
+        .build()?)
+}
+
+pub(super) fn adhesionless(of: Identity<'_>, steps: &[FreeStep], units: &Units) -> Result<Frame, StageError> {
+    let each = |value: fn(&FreeStep) -> f64, unit: f64| steps.iter().map(move |step| value(step) * unit);
+    Ok(of
+        .begin(&schema::ADHESIONLESS, steps.len())
+        .i64("step", (0..steps.len()).map(|k| k as i64))
+        .f64("approach_m", each(|step| step.approach, units.spacing_m()))
+        .f64("load_n", each(|step| step.totals.load, units.load_n()))
+        .f64("area_m2", each(|step| step.totals.contact as f64, units.spacing_m().powi(2)))
+        .bool("converged", steps.iter().map(|step| step.converged))
+        .count("transform_count", steps.iter().map(|step| step.transforms as usize))
         .build()?)
 }
 

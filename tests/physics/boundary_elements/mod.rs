@@ -14,7 +14,7 @@ use hysteron::physics::boundary_elements::law::Law;
 use hysteron::physics::boundary_elements::minimise::Accuracy;
 
 /// The JKR limit: bonds within two points of contact, formed by touch.
-const BONDED: Attraction = Attraction::Bonded { margin: 2, nucleation: 0.0, edges_only: true };
+const BONDED: Attraction = Attraction::Bonded { margin: 2, nucleation: 0.0, strength: f64::INFINITY };
 
 fn accuracy(rms: f64) -> Accuracy {
     Accuracy { rms, largest: 100.0 * rms, iterations: 3000 }
