@@ -333,6 +333,9 @@ const COUNTS: &[Column] = &[
     count("planned_count", "Realizations requested by the spec"),
     count("done_count", "Realizations in the means"),
     count("failed_count", "Realizations that failed"),
+    real("area_model_ratio", "1", "Expected ratio of the asperity model to boundary elements at this U_el/Δγ: contact area at F_max; null for boundary elements, without interaction and outside the measured range").or_null().from("pipelines/validity.toml"),
+    real("pull_off_model_ratio", "1", "The same ratio of the pull-off force").or_null().from("pipelines/validity.toml"),
+    real("loss_model_ratio", "1", "The same ratio of the dissipated energy").or_null().from("pipelines/validity.toml"),
     text("caution", "Codes of all warnings of the row by severity, joined by +; empty without warnings"),
 ];
 

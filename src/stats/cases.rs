@@ -3,6 +3,7 @@
 use polars::prelude::{DataFrame, DataType, IntoColumn, IntoLazy, NamedFrom, PolarsResult, Series, SortMultipleOptions, col};
 
 use super::cautions::caution;
+use super::model_error;
 use super::realizations::identity;
 use super::rows::{Rows, Value};
 use super::student::Sample;
@@ -135,6 +136,7 @@ fn averages(group: &Group, case: &CaseInput, max_load: f64) -> Given {
     row.push(("done_count".to_owned(), done.into()));
     row.push(("failed_count".to_owned(), case.failed_count.into()));
     let words = caution(&row, case, done, group.unconverged.iter().any(|count| *count > 0.0));
+    row.extend(model_error::columns(&row, case));
     row.push(("caution".to_owned(), words.as_str().into()));
     row
 }

@@ -13,6 +13,7 @@ mod digits;
 mod events;
 mod listed;
 mod methods;
+mod model_error;
 mod planned;
 mod realizations;
 mod rows;

@@ -27,6 +27,12 @@ impl Value {
             Self::Word(_) | Self::Missing => None,
         }
     }
+
+    /// The value as a word; nothing for numbers and for a missing value.
+    #[must_use]
+    pub fn text(&self) -> Option<&str> {
+        if let Self::Word(word) = self { Some(word) } else { None }
+    }
 }
 
 impl From<f64> for Value {

@@ -3,6 +3,7 @@
 use super::StatsError;
 use super::digits::{column_exponent, decimals, labels, power_of_ten, significant};
 use super::listed::{Listed, listing, listing_of, sweeps};
+use super::model_error::COLUMNS;
 use super::warnings::warnings;
 use crate::store::Frame;
 
@@ -91,6 +92,7 @@ pub fn summary(cases: &Frame) -> Result<String, StatsError> {
     }
     let mut head = vec![HEADER];
     head.extend(compared.then_some(REFERENCE));
+    lines.extend(model_lines(cases)?);
     lines.extend(warning_lines(cases)?);
     lines.push(String::new());
     Ok(format!("{}\n{}", head.join("\n"), lines.join("\n")))
@@ -139,6 +141,21 @@ fn change(own: f64, reference: f64) -> Option<String> {
     let percent = 100.0 * (own - reference) / reference.abs();
     let text = if percent.abs() < 1e4 { format!("{percent:+.1}") } else { format!("{percent:+.1e}") };
     percent.is_finite().then(|| if text == "-0.0" || text == "+0.0" { "0.0".to_owned() } else { text })
+}
+
+/// What the asperity model is expected to give of the results of boundary elements.
+fn model_lines(cases: &Frame) -> Result<Vec<String>, StatsError> {
+    let mut parts = Vec::new();
+    for (name, column) in ["A", "F_po", "Θ"].into_iter().zip(COLUMNS) {
+        let values: Vec<f64> = cases.f64_or_null(column)?.iter().copied().flatten().collect();
+        let [low, high] = [f64::min, f64::max].map(|least: fn(f64, f64) -> f64| values.iter().copied().reduce(least));
+        let Some((low, high)) = low.zip(high) else { return Ok(Vec::new()) };
+        let (low, high) = (format!("{low:.2}"), format!("{high:.2}"));
+        parts.push(if low == high { format!("{name} {low}") } else { format!("{name} {low} to {high}") });
+    }
+    let text =
+        format!("Expected ratio of the asperity model to boundary elements: {} (U_el/Δγ of each case, guide: Validity).", parts.join(", "));
+    Ok(std::iter::once(String::new()).chain(wrapped(&text)).collect())
 }
 
 /// One paragraph per warning, with its rows.

@@ -23,7 +23,7 @@ fn keys(campaign: &Campaign) -> [Vec<String>; 5] {
 }
 
 /// Another value for every key of a spec, and the first stage that reads it: 0 generate, 2 cycle, 3 aggregate, 4 report.
-const OTHERS: [(&str, &str, usize); 28] = [
+const OTHERS: [(&str, &str, usize); 29] = [
     ("name", "\"y\"", 3),
     ("seed", "2022", 0),
     ("surface.length_m", "0.002", 0),

@@ -104,8 +104,9 @@ fn law_no_bytes_end_a_reader() {
     assert_eq!(code(&bench.verb("run", &[])), 0);
     let all = paths(&bench.out());
     let of = |ending: &str| -> Vec<PathBuf> { all.iter().filter(|path| path.to_string_lossy().ends_with(ending)).cloned().collect() };
-    // All but the one that stands in no run: it is of several.
-    let known: Vec<&'static schema::Table> = schema::TABLES.iter().copied().filter(|table| table.file.contains('/')).collect();
+    // All but the one that stands in no run, as it is of several, and the one of boundary elements.
+    let here = |table: &&'static schema::Table| table.file.contains('/') && table.name != "adhesionless";
+    let known: Vec<&'static schema::Table> = schema::TABLES.iter().copied().filter(here).collect();
     let tables: Vec<(PathBuf, &'static schema::Table)> = known
         .iter()
         .filter_map(|table| {
@@ -118,7 +119,7 @@ fn law_no_bytes_end_a_reader() {
         })
         .collect();
     assert_eq!(tables.len(), known.len());
-    assert_eq!(known.len(), schema::TABLES.len() - 1);
+    assert_eq!(known.len(), schema::TABLES.len() - 2);
     let victim = bench.folder.path().join("victim");
     let mut random = ChaCha8Rng::seed_from_u64(6);
     let mut whole = 0;

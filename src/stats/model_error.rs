@@ -1,0 +1,42 @@
+//! Expected error of the asperity model: its results over those of boundary elements, by the ratio `U_el/Δγ` of the surface.
+//!
+//! The table is the result of `pipelines/validity.toml`, reduced by `tests/reference/validity.py`.
+
+use super::rows::Value;
+use super::{CaseInput, Given};
+use std::sync::LazyLock;
+
+const TABLE: &str = include_str!("model_error.csv");
+
+/// Columns of the table `cases`: contact area, pull-off force, dissipated energy.
+pub(super) const COLUMNS: [&str; 3] = ["area_model_ratio", "pull_off_model_ratio", "loss_model_ratio"];
+
+/// A row: coalescence rule, `ln(U_el/Δγ)`, and the ratios.
+type Row = (&'static str, f64, [f64; 3]);
+
+static ROWS: LazyLock<Vec<Row>> = LazyLock::new(|| TABLE.lines().filter_map(row).collect());
+
+fn row(line: &'static str) -> Option<Row> {
+    let mut cells = line.split(',');
+    let coalescence = cells.next()?;
+    let mut number = || cells.next()?.parse::<f64>().ok();
+    Some((coalescence, number()?.ln(), [number()?, number()?, number()?]))
+}
+
+/// Ratios of the asperity model with a coalescence rule to boundary elements at `U_el/Δγ`, linear in its logarithm between the rows of the table; nothing outside.
+pub(super) fn model_error(coalescence: &str, persson_tosatti: f64) -> Option<[f64; 3]> {
+    let at = persson_tosatti.ln();
+    let rows: Vec<&Row> = ROWS.iter().filter(|row| row.0 == coalescence).collect();
+    let pair = rows.windows(2).find(|pair| pair[0].1 <= at && at <= pair[1].1)?;
+    let part = (at - pair[0].1) / (pair[1].1 - pair[0].1);
+    Some([0, 1, 2].map(|k| pair[0].2[k] + part * (pair[1].2[k] - pair[0].2[k])))
+}
+
+/// The columns of a row of the table `cases`; missing without elastic interaction, for boundary elements and outside the table.
+pub(super) fn columns(row: &Given, case: &CaseInput) -> Given {
+    let word = |column: &str| case.parameters.iter().find(|(name, _)| name == column).and_then(|(_, value)| value.text());
+    let ratio = row.iter().find(|(name, _)| name == "persson_tosatti_realised_mean").and_then(|(_, value)| value.number());
+    let interacting = word("interaction").filter(|interaction| *interaction != "none");
+    let found = interacting.and(word("coalescence")).zip(ratio).and_then(|(coalescence, ratio)| model_error(coalescence, ratio));
+    COLUMNS.iter().enumerate().map(|(k, name)| ((*name).to_owned(), Value::from(found.map(|ratios| ratios[k])))).collect()
+}

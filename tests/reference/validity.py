@@ -1,0 +1,31 @@
+"""Table of the expected error of the asperity model, src/stats/model_error.csv, from a finished run of pipelines/validity.toml.
+
+    hysteron run pipelines/validity.toml --out out && python tests/reference/validity.py out > src/stats/model_error.csv
+
+Ratios of both methods on the same surface, averaged over surfaces and magnifications whose U_el/Δγ lies between two powers of two. Of boundary elements the
+cases with 16 points per shortest wavelength are taken.
+"""
+import math
+import sys
+from pathlib import Path
+
+import polars as pl
+
+folder = Path(sys.argv[1])
+pairs = pl.read_parquet(folder / "statistics" / "methods.parquet")
+cases = pl.read_parquet(folder / "statistics" / "cases.parquet")
+asperities = cases.select(pl.col("case_id").alias("asperities_case_id"), "coalescence", "magnification")
+elements = cases.filter(
+    (pl.col("elements_per_wavelength_mean") == 16) & (pl.col("opening") == "strength")
+).select(pl.col("case_id").alias("elements_case_id"))
+table = pairs.join(asperities, on="asperities_case_id").join(elements, on="elements_case_id")
+ratios = [f"{name}_ratio" for name in ("area_at_max_load", "pull_off_load", "loss")]
+table = table.drop_nulls(ratios).with_columns(bin=pl.col("persson_tosatti_realised").log(2).floor())
+print("# Asperity model over boundary elements: area, pull-off force and dissipated energy, means over surfaces; their standard deviations and number.")
+print(f"# hysteron run pipelines/validity.toml; magnifications {sorted(table['magnification'].unique().to_list())}; program {cases['program'][0] if 'program' in cases.columns else '0.1.0'}")
+print("coalescence,persson_tosatti,area,pull_off,loss,area_sd,pull_off_sd,loss_sd,count")
+for (rule, _), part in sorted(table.group_by("coalescence", "bin")):
+    middle = math.exp(part["persson_tosatti_realised"].log().mean())
+    means = [part[ratio].mean() for ratio in ratios]
+    sds = [part[ratio].std() or 0.0 for ratio in ratios]
+    print(",".join([rule, f"{middle:.4g}"] + [f"{value:.3f}" for value in means + sds] + [str(len(part))]))
