@@ -8,6 +8,8 @@ use hysteron::stages::{self, Units};
 use hysteron::store::parquet::read_table;
 use hysteron::store::{Frame, MAP_FIELDS};
 use std::fs;
+use std::process::Stdio;
+use std::time::Instant;
 
 /// Both methods on the same two surfaces of ζ = 4, on 64 x 64 points.
 const SPEC: &str = r#"
@@ -165,6 +167,8 @@ fn law_the_energy_of_boundary_elements_is_that_of_their_events() {
         assert!(column("pull_off_load")[row] > 0.0 && column("area_at_max_load")[row] < 1.0);
         assert_eq!(frame.f64_or_null("loss_touched").unwrap()[row], None);
         assert_eq!(column("elements_per_wavelength")[row], 16.0);
+        // Ciavarella's area from the adhesionless curve, an independent solution on the same surface; exact for one family of contact shapes only.
+        close("area from the adhesionless curve", column("area_jkr_curve")[row], column("area_at_max_load")[row], 0.05);
     }
     // Warnings of the asperity model are none of boundary elements.
     let cases = statistics(&bench, &schema::CASES);
@@ -185,6 +189,30 @@ fn e2e_threads_do_not_change_a_byte_of_boundary_elements() {
         files(&bench.out())
     });
     assert_eq!(written[0], written[1]);
+}
+
+/// A run that is killed at any of three times goes on to the same bytes, without repeating a finished task.
+#[test]
+fn e2e_killed_boundary_elements_go_on_to_the_same_bytes() {
+    let undisturbed = Bench::new(&alone());
+    let began = Instant::now();
+    assert_eq!(code(&undisturbed.verb("run", &[])), 0);
+    let long = began.elapsed();
+    let whole = files(&undisturbed.out());
+    for share in [0.25, 0.5, 0.75] {
+        let bench = Bench::new(&alone());
+        let mut child = bench.command("run").stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+        std::thread::sleep(long.mul_f64(share));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        let receipts = bench.receipts();
+        let again = bench.verb("run", &[]);
+        assert_eq!(code(&again), 0, "{}", stderr(&again));
+        assert_eq!(code(&bench.look("gc", &["--delete"])), 0);
+        assert!(files(&bench.out()) == whole, "killed after {share} of the time: other bytes");
+        let after = bench.receipts();
+        assert!(receipts.iter().all(|(path, bytes)| after[path] == *bytes), "a finished task was repeated");
+    }
 }
 
 #[test]
