@@ -3,7 +3,7 @@
 use super::FigureError;
 use super::axis::Axis;
 use super::captions::of_cycle;
-use super::map::map;
+use super::map::{SpotTables, map};
 use super::panels::Panel;
 use super::plot::{Curve, Stroke, XyPlot, plot_xy};
 use super::style::{LOADING, THEORY, UNLOADING, curve, entry, shade};
@@ -33,10 +33,8 @@ pub struct Closer<'a> {
     pub steps: &'a Frame,
     /// Events.
     pub events: &'a Frame,
-    /// Spots at the steps that were kept.
-    pub contacts: &'a Frame,
-    /// The asperities of its surface.
-    pub asperities: &'a Frame,
+    /// Contact spots at the steps that were kept.
+    pub spots: SpotTables<'a>,
     /// `E* A0 h_rms` \[J\].
     pub energy_j: f64,
     /// Rms height \[m\].
@@ -92,7 +90,7 @@ pub(super) type Kept = (Landmark, i64);
 impl Closer<'_> {
     /// The landmarks whose spots were kept.
     fn landmarks(&self) -> Result<Vec<Kept>, FigureError> {
-        let mut kept = self.contacts.i64("step")?;
+        let mut kept = self.spots.contacts.i64("step")?;
         kept.dedup();
         let (branches, of, loads) = (self.steps.text("branch")?, self.steps.f64_or_null("max_load")?, self.steps.f64("load")?);
         let load = |step: &i64| usize::try_from(*step).ok().and_then(|k| loads.get(k).copied()).unwrap_or(f64::NAN);
@@ -244,7 +242,7 @@ fn avalanches(of: &Closer<'_>, branches: &[OfBranch; 2]) -> Result<XyPlot, Figur
 
 /// The cumulative distribution of a value of each spot at the turning point and at the pull-off.
 fn distribution(of: &Closer<'_>, ends: &[End], label: &str, value: impl Fn(usize) -> Option<f64>) -> Result<XyPlot, FigureError> {
-    let (steps, states) = (of.contacts.i64("step")?, of.contacts.text("state")?);
+    let (steps, states) = (of.spots.contacts.i64("step")?, of.spots.contacts.text("state")?);
     let (mut curves, mut key) = (Vec::new(), Vec::new());
     for (landmark, step, hue, stroke) in ends.iter().copied() {
         let mut values: Vec<f64> = (0..steps.len()).filter(|k| steps[*k] == step && states[*k] == "contact").filter_map(&value).collect();
@@ -274,12 +272,13 @@ fn cumulative(ordered: &[f64]) -> Vec<(f64, f64)> {
 }
 
 fn radii(of: &Closer<'_>, ends: &[End]) -> Result<XyPlot, FigureError> {
-    let radii = of.contacts.f64("contact_radius_m")?;
+    let radii = of.spots.contacts.f64("contact_radius_m")?;
     distribution(of, ends, "contact radius/L", |k| Some(radii[k] / of.length_m))
 }
 
 fn loads(of: &Closer<'_>, ends: &[End]) -> Result<XyPlot, FigureError> {
-    let (loads, asperities, radii) = (of.contacts.f64("load_n")?, of.contacts.i64("asperity_id")?, of.asperities.f64("radius_m")?);
+    let (loads, asperities, radii) =
+        (of.spots.contacts.f64("load_n")?, of.spots.contacts.i64("asperity_id")?, of.spots.asperities.f64("radius_m")?);
     if of.pull_off_n_m == 0.0 {
         return distribution(of, ends, "normal load of a contact spot [N]", |k| Some(loads[k]));
     }
@@ -311,7 +310,7 @@ fn spectrum(of: &Closer<'_>) -> XyPlot {
 
 /// Curvatures of the summits over Nayak's density.
 fn summits(of: &Closer<'_>) -> Result<XyPlot, FigureError> {
-    let curvatures: Vec<f64> = of.asperities.f64("curvature_1_m")?.iter().map(|k| k / of.curvature_1_m).collect();
+    let curvatures: Vec<f64> = of.spots.asperities.f64("curvature_1_m")?.iter().map(|k| k / of.curvature_1_m).collect();
     let most = curvatures.iter().copied().fold(0.0, f64::max).max(1.0);
     let width = most / BARS as f64;
     let mut counts = [0usize; BARS];

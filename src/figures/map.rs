@@ -3,14 +3,16 @@
 use super::closer::{Closer, Kept};
 use super::{FigureError, markup};
 use crate::stats::significant;
+use crate::store::Frame;
 use crate::text::counted;
 use ndarray::ArrayView2;
+use std::collections::HashMap;
 use std::fmt::Write as _;
 
 /// Side of one map, what is between two, and room above each for its words \[pixels\].
-const SIDE: f64 = 300.0;
-const GAP: f64 = 16.0;
-const ABOVE: f64 = 42.0;
+pub(super) const SIDE: f64 = 300.0;
+pub(super) const GAP: f64 = 16.0;
+pub(super) const ABOVE: f64 = 42.0;
 
 /// Cells of the heights along a side, and shades of grey.
 const CELLS: usize = 75;
@@ -19,8 +21,8 @@ const SHADES: usize = 7;
 /// Spots on one map, at most: the largest are drawn.
 const MOST_SPOTS: usize = 4000;
 
-const PUSHED: &str = "#0077bb";
-const PULLED: &str = "#cc3311";
+pub(super) const PUSHED: &str = "#0077bb";
+pub(super) const PULLED: &str = "#cc3311";
 
 /// The spots at each landmark whose spots were kept, over the heights as shades of grey, the lower the darker; nothing where none were kept.
 ///
@@ -76,7 +78,7 @@ pub(super) fn map(of: &Closer<'_>, landmarks: &[Kept], heights_m: ArrayView2<'_,
 }
 
 /// The heights in shades of grey, a path for each shade.
-fn ground(heights: ArrayView2<'_, f64>) -> String {
+pub(super) fn ground(heights: ArrayView2<'_, f64>) -> String {
     let (rows, columns) = heights.dim();
     let cells = CELLS.min(rows).min(columns);
     if cells == 0 {
@@ -120,22 +122,49 @@ fn ground(heights: ArrayView2<'_, f64>) -> String {
 
 /// Contact spots at a step as circles, with the images across the edges of a periodic square, and their number.
 fn spots(of: &Closer<'_>, step: i64) -> Result<(String, usize), FigureError> {
-    let (steps, states, ids) = (of.contacts.i64("step")?, of.contacts.text("state")?, of.contacts.i64("asperity_id")?);
-    let (radii, loads) = (of.contacts.f64("contact_radius_m")?, of.contacts.f64("load_n")?);
-    let (x, y) = (of.asperities.f64("x_m")?, of.asperities.f64("y_m")?);
-    let unit = SIDE / of.length_m;
+    circles(&of.spots, of.length_m, of.periodic, step)
+}
+
+/// Tables of the contact spots of a cycle.
+#[derive(Debug, Clone, Copy)]
+pub struct SpotTables<'a> {
+    /// Table `contacts` of the cycle.
+    pub contacts: &'a Frame,
+    /// Table `asperities` of its surface.
+    pub asperities: &'a Frame,
+    /// Table `merged` of the cycle.
+    pub merged: &'a Frame,
+}
+
+/// Centres of the merged contacts of the loading branch and of the unloading from a load \[m\], by their numbers.
+fn merged_centres(merged: &Frame, max_load: Option<f64>) -> Result<HashMap<i64, (f64, f64)>, FigureError> {
+    let (ids, branches, loads) = (merged.i64("asperity_id")?, merged.text("branch")?, merged.f64_or_null("max_load")?);
+    let (x, y) = (merged.f64("x_m")?, merged.f64("y_m")?);
+    let of_path = |row: &usize| branches[*row] == "loading" || (max_load.is_some() && loads[*row] == max_load);
+    Ok((0..ids.len()).filter(of_path).map(|row| (ids[row], (x[row], y[row]))).collect())
+}
+
+/// The contact spots at a step as [`spots`] has them.
+pub(super) fn circles(tables: &SpotTables<'_>, length_m: f64, periodic: bool, step: i64) -> Result<(String, usize), FigureError> {
+    let SpotTables { contacts, asperities, merged } = *tables;
+    let (steps, states, ids) = (contacts.i64("step")?, contacts.text("state")?, contacts.i64("asperity_id")?);
+    let (radii, loads) = (contacts.f64("contact_radius_m")?, contacts.f64("load_n")?);
+    let (x, y) = (asperities.f64("x_m")?, asperities.f64("y_m")?);
+    let unit = SIDE / length_m;
+    let first = steps.iter().position(|of| *of == step);
+    let merged = merged_centres(merged, first.map(|row| contacts.f64_or_null("max_load").map(|loads| loads[row])).transpose()?.flatten())?;
     let mut spots: Vec<(f64, f64, f64, bool)> = Vec::new();
     let mut count = 0;
     for k in (0..steps.len()).filter(|k| steps[*k] == step && states[*k] == "contact") {
         count += 1;
-        // Spots that have become one have no asperity of their own; they are where their parts are.
-        let Some(id) = usize::try_from(ids[k]).ok().filter(|id| *id < x.len()) else { continue };
-        spots.push((x[id] * unit, SIDE - y[id] * unit, radii[k] * unit, loads[k] < 0.0));
+        let asperity = usize::try_from(ids[k]).ok().filter(|id| *id < x.len());
+        let Some((x, y)) = asperity.map(|id| (x[id], y[id])).or_else(|| merged.get(&ids[k]).copied()) else { continue };
+        spots.push((x * unit, SIDE - y * unit, radii[k] * unit, loads[k] < 0.0));
     }
     spots.sort_by(|u, v| v.2.total_cmp(&u.2));
     spots.truncate(MOST_SPOTS);
     let mut svg = String::new();
-    let shifts: &[f64] = if of.periodic { &[-SIDE, 0.0, SIDE] } else { &[0.0] };
+    let shifts: &[f64] = if periodic { &[-SIDE, 0.0, SIDE] } else { &[0.0] };
     for (hue, wanted) in [(PUSHED, false), (PULLED, true)] {
         let _ = write!(svg, "<g fill=\"{hue}\" fill-opacity=\"0.85\">");
         for (x, y, r, _) in spots.iter().filter(|spot| spot.3 == wanted) {

@@ -4,6 +4,7 @@
 //! colour vision, and the strokes without colour. In a sweep, later cases are darker, and each curve has its label at the end.
 
 mod axis;
+mod both;
 mod captions;
 mod closer;
 mod formats;
@@ -20,8 +21,10 @@ mod sweep;
 mod table;
 
 pub use axis::Axis;
+pub use both::{Both, both};
 pub use closer::{Closer, closer};
 pub use formats::{pdf, png};
+pub use map::SpotTables;
 pub use panels::{Panel, Tables, compared, panels};
 pub use plot::{Curve, KeyEntry, Note, Stroke, XyPlot, plot_xy};
 pub use table::table;

@@ -5,7 +5,7 @@ use super::page::{escape, grid};
 use super::statistics::moments;
 use super::surface::{scale, spectrum};
 use crate::campaign::{Campaign, CycleUnit, Standing};
-use crate::figures::{Closer, Panel, closer};
+use crate::figures::{Closer, Panel, SpotTables, closer};
 use crate::model::{Boundary, Choice, Method, Normalization};
 use crate::physics::periodogram::{periodogram, windowed_periodogram};
 use crate::physics::spectrum::Spectrum;
@@ -73,8 +73,7 @@ pub(super) fn look(campaign: &Campaign, standings: &[Standing], cases: &Frame) -
         parameters: &parameters,
         steps: &steps,
         events: &events,
-        contacts: &contacts,
-        asperities: &asperities,
+        spots: SpotTables { contacts: &contacts, asperities: &asperities, merged: &table(&schema::MERGED)? },
         energy_j: case.material.contact_modulus_pa * area * scale.rms_height_m,
         rms_height_m: scale.rms_height_m,
         length_m: header.length_m,

@@ -3,8 +3,14 @@
 use super::StageError;
 use super::page::escape;
 use super::trust::{Cases, ENERGIES, Shown, scaled, shown};
-use crate::stats::{labels, method_pairs, names_of_pairs};
-use crate::store::Frame;
+use crate::campaign::{Campaign, CycleUnit, Standing};
+use crate::figures::{Both, SpotTables, both};
+use crate::model::Boundary;
+use crate::schema;
+use crate::stats::{labels, method_pairs, names_of_pairs, significant};
+use crate::store::hdf5::read_surface;
+use crate::store::parquet::read_table;
+use crate::store::{Frame, read_reversal_map};
 use std::fmt::Write as _;
 
 /// Heading and column of the compared quantities, in the order of [`method_pairs`].
@@ -14,8 +20,57 @@ const QUANTITIES: [(&str, &str); 3] = [
     ("Θ/(E*A<sub>0</sub>h<sub>rms</sub>)", "loss"),
 ];
 
+/// Contact of both methods on one surface.
+pub(super) struct Maps {
+    pub(super) svg: String,
+    caption: String,
+}
+
+/// The contact of the pair of cycles with the largest Θ by boundary elements on a periodic surface, at that load reversal; nothing without one, and where its contacts
+/// or maps are not kept.
+pub(super) fn contact_maps(campaign: &Campaign, standings: &[Standing], methods: &Frame) -> Result<Option<Maps>, StageError> {
+    let (first, second, surfaces) = (methods.text("asperities_case_id")?, methods.text("elements_case_id")?, methods.text("surface_id")?);
+    let (loads, losses) = (methods.f64("max_load")?, methods.f64("loss_elements")?);
+    let areas = [methods.f64("area_at_max_load_asperities")?, methods.f64("area_at_max_load_elements")?];
+    let Some(row) = (0..methods.row_count()).rev().max_by(|a, b| losses[*a].total_cmp(&losses[*b])) else { return Ok(None) };
+    let done = |case: &str| {
+        let is = |unit: &CycleUnit| campaign.cases[unit.case].id == case && campaign.surfaces[unit.surface].id == surfaces[row];
+        campaign.cycles.iter().zip(standings).find(|(unit, standing)| **standing == Standing::Done && is(unit)).map(|(unit, _)| unit)
+    };
+    let (Some(asperities), Some(elements)) = (done(first[row]), done(second[row])) else { return Ok(None) };
+    let surface = &campaign.surfaces[asperities.surface];
+    let (header, heights) = read_surface(&campaign.surface_path(surface))?;
+    let map = read_reversal_map(&campaign.cycle_dir(elements).join("maps.h5"), loads[row])?;
+    let Some(map) = map.filter(|_| header.periodic) else { return Ok(None) };
+    let table = |table: &'static schema::Table| read_table(&campaign.cycle_dir(asperities).join(format!("{}.parquet", table.name)), table);
+    let (steps, contacts, merged) = (table(&schema::STEPS)?, table(&schema::CONTACTS)?, table(&schema::MERGED)?);
+    let summits = read_table(&campaign.asperities_path(surface), &schema::ASPERITIES)?;
+    let (branches, load) = (steps.text("branch")?, steps.f64("load")?);
+    let off = |step: &usize| (load[*step] - loads[row]).abs();
+    let reversal = (0..load.len()).filter(|step| branches[*step] == "loading").min_by(|a, b| off(a).total_cmp(&off(b)));
+    let kept = contacts.i64("step")?;
+    let Some(step) = reversal.map(|step| step as i64).filter(|step| kept.contains(step)) else { return Ok(None) };
+    let params = &campaign.cases[asperities.case].case.params;
+    let svg = both(&Both {
+        heights_m: heights.view(),
+        length_m: header.length_m,
+        periodic: params.model.boundary == Boundary::Periodic,
+        spots: SpotTables { contacts: &contacts, asperities: &summits, merged: &merged },
+        step,
+        areas: areas.map(|areas| areas[row]),
+        elements: &map,
+    })?;
+    let caption = format!(
+        "Contact of surface {} at F_max/(E*A₀) = {}. Left: contact spots of the asperity model. Right: grid points of boundary elements. Table realizations: \
+         area_at_max_load; maps.h5: pressure_pa.",
+        surfaces[row],
+        significant(loads[row], 4)
+    );
+    Ok(Some(Maps { svg, caption }))
+}
+
 /// A table of the means of both methods and their ratios; empty without cases of the same surfaces by both methods.
-pub(super) fn side_by_side(html: &mut String, cases: &Cases<'_>, methods: &Frame) -> Result<(), StageError> {
+pub(super) fn side_by_side(html: &mut String, cases: &Cases<'_>, methods: &Frame, maps: Option<&Maps>) -> Result<(), StageError> {
     let pairs = method_pairs(methods)?;
     if pairs.is_empty() {
         return Ok(());
@@ -52,5 +107,9 @@ pub(super) fn side_by_side(html: &mut String, cases: &Cases<'_>, methods: &Frame
         html.push_str("</tr>\n");
     }
     html.push_str("</table></div>\n");
+    if let Some(Maps { svg, caption }) = maps {
+        let links = ["SVG", "PNG", "PDF"].map(|format| format!("<a href=\"figures/contact_maps.{}\">{format}</a>", format.to_lowercase()));
+        let _ = writeln!(html, "<figure class=\"map\">{svg}<figcaption>{} {}</figcaption></figure>", escape(caption), links.join(" · "));
+    }
     Ok(())
 }

@@ -2,7 +2,7 @@
 
 use super::closer::{self, Look};
 use super::done::{Clock, Outcome};
-use super::methods::side_by_side;
+use super::methods::{self, contact_maps, side_by_side};
 use super::page::{escape, grid, head};
 use super::reading;
 use super::scans::scans;
@@ -57,7 +57,12 @@ pub(super) fn run(campaign: &Campaign, (cycles_check, check): (Check, Check), wa
     if let Some(map) = look.as_ref().and_then(|look| look.map.as_ref()) {
         files.extend(write_picture(&campaign.dir, "closer_map", map)?);
     }
-    let page = page(campaign, &key, (&Cases::of(&cases, &realizations)?, &methods), &drawings, look.as_ref())?;
+    let maps = contact_maps(campaign, &standings, &methods)?;
+    if let Some(maps) = &maps {
+        files.extend(write_picture(&campaign.dir, "contact_maps", &maps.svg)?);
+    }
+    let compared = (&methods, maps.as_ref());
+    let page = page(campaign, &key, (&Cases::of(&cases, &realizations)?, compared), &drawings, look.as_ref())?;
     drawings.extend(close.map(|panel| (String::new(), panel.clone())).collect::<Vec<_>>());
     files.push(parquet::write_table(&campaign.statistics_path("panels"), &table(&drawings)?, &[("key", key.clone())])?);
     files.push(commit::commit_bytes("write the report", &campaign.dir.join("report.html"), page.as_bytes())?);
@@ -104,7 +109,7 @@ fn models(campaign: &Campaign) -> String {
 fn page(
     campaign: &Campaign,
     key: &str,
-    (cases, methods): (&Cases<'_>, &Frame),
+    (cases, (methods, maps)): (&Cases<'_>, (&Frame, Option<&methods::Maps>)),
     drawings: &[(String, Panel)],
     look: Option<&Look>,
 ) -> Result<String, StageError> {
@@ -121,7 +126,7 @@ fn page(
         escape(&summary(cases.frame)?)
     );
     reading::results(&mut html, cases)?;
-    side_by_side(&mut html, cases, methods)?;
+    side_by_side(&mut html, cases, methods, maps)?;
     scans(&mut html, campaign)?;
     let sweeps = sweeps(campaign);
     for (number, sweep) in sweeps.iter().enumerate() {

@@ -11,8 +11,11 @@ const TABLE: &str = include_str!("model_error.csv");
 /// Columns of the table `cases`: contact area, pull-off force, dissipated energy.
 pub(super) const COLUMNS: [&str; 3] = ["area_model_ratio", "pull_off_model_ratio", "loss_model_ratio"];
 
+/// Ratios of area, pull-off force and dissipated energy; nothing where the surfaces differ by more than the mean.
+type Ratios = [Option<f64>; 3];
+
 /// A row: coalescence rule, `ln(U_el/Δγ)`, and the ratios.
-type Row = (&'static str, f64, [f64; 3]);
+type Row = (&'static str, f64, Ratios);
 
 static ROWS: LazyLock<Vec<Row>> = LazyLock::new(|| TABLE.lines().filter_map(row).collect());
 
@@ -20,16 +23,17 @@ fn row(line: &'static str) -> Option<Row> {
     let mut cells = line.split(',');
     let coalescence = cells.next()?;
     let mut number = || cells.next()?.parse::<f64>().ok();
-    Some((coalescence, number()?.ln(), [number()?, number()?, number()?]))
+    let ratio = number()?;
+    Some((coalescence, ratio.ln(), [number(), number(), number()]))
 }
 
 /// Ratios of the asperity model with a coalescence rule to boundary elements at `U_el/Δγ`, linear in its logarithm between the rows of the table; nothing outside.
-pub(super) fn model_error(coalescence: &str, persson_tosatti: f64) -> Option<[f64; 3]> {
+pub(super) fn model_error(coalescence: &str, persson_tosatti: f64) -> Option<Ratios> {
     let at = persson_tosatti.ln();
     let rows: Vec<&Row> = ROWS.iter().filter(|row| row.0 == coalescence).collect();
     let pair = rows.windows(2).find(|pair| pair[0].1 <= at && at <= pair[1].1)?;
     let part = (at - pair[0].1) / (pair[1].1 - pair[0].1);
-    Some([0, 1, 2].map(|k| pair[0].2[k] + part * (pair[1].2[k] - pair[0].2[k])))
+    Some([0, 1, 2].map(|k| pair[0].2[k].zip(pair[1].2[k]).map(|(low, high)| low + part * (high - low))))
 }
 
 /// The columns of a row of the table `cases`; missing without elastic interaction, for boundary elements and outside the table.
@@ -38,5 +42,26 @@ pub(super) fn columns(row: &Given, case: &CaseInput) -> Given {
     let ratio = row.iter().find(|(name, _)| name == "persson_tosatti_realised_mean").and_then(|(_, value)| value.number());
     let interacting = word("interaction").filter(|interaction| *interaction != "none");
     let found = interacting.and(word("coalescence")).zip(ratio).and_then(|(coalescence, ratio)| model_error(coalescence, ratio));
-    COLUMNS.iter().enumerate().map(|(k, name)| ((*name).to_owned(), Value::from(found.map(|ratios| ratios[k])))).collect()
+    COLUMNS.iter().enumerate().map(|(k, name)| ((*name).to_owned(), Value::from(found.and_then(|ratios| ratios[k])))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{ROWS, model_error};
+
+    /// Between two rows the ratios lie between theirs, at a row they are its own, and outside the table there are none.
+    #[test]
+    fn law_ratios_are_those_of_the_table() {
+        let merge: Vec<_> = ROWS.iter().filter(|row| row.0 == "merge").collect();
+        assert!(merge.len() > 4 && merge.windows(2).all(|pair| pair[0].1 < pair[1].1));
+        let [first, second] = [merge[0], merge[1]];
+        let middle = model_error("merge", (0.5 * (first.1 + second.1)).exp()).unwrap();
+        for (k, value) in middle.into_iter().enumerate() {
+            let mean = 0.5 * (first.2[k].unwrap() + second.2[k].unwrap());
+            assert!((value.unwrap() - mean).abs() < 1e-12);
+        }
+        assert_eq!(model_error("merge", 1e-3), None);
+        assert_eq!(model_error("merge", 1e6), None);
+        assert_eq!(model_error("other", 3.0), None);
+    }
 }

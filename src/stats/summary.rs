@@ -149,9 +149,12 @@ fn model_lines(cases: &Frame) -> Result<Vec<String>, StatsError> {
     for (name, column) in ["A", "F_po", "Θ"].into_iter().zip(COLUMNS) {
         let values: Vec<f64> = cases.f64_or_null(column)?.iter().copied().flatten().collect();
         let [low, high] = [f64::min, f64::max].map(|least: fn(f64, f64) -> f64| values.iter().copied().reduce(least));
-        let Some((low, high)) = low.zip(high) else { return Ok(Vec::new()) };
+        let Some((low, high)) = low.zip(high) else { continue };
         let (low, high) = (format!("{low:.2}"), format!("{high:.2}"));
         parts.push(if low == high { format!("{name} {low}") } else { format!("{name} {low} to {high}") });
+    }
+    if parts.is_empty() {
+        return Ok(Vec::new());
     }
     let text =
         format!("Expected ratio of the asperity model to boundary elements: {} (U_el/Δγ of each case, guide: Validity).", parts.join(", "));

@@ -4,8 +4,9 @@ use super::commit::{Written, commit};
 use super::error::{Cause, StoreError};
 use super::hdf5::{library, open, options};
 use super::surface_header::{write_number, write_text};
+use hdf5_metno::types::VarLenUnicode;
 use hdf5_metno::{File, Group};
-use ndarray::ArrayView2;
+use ndarray::{Array2, ArrayView2};
 use std::path::Path;
 
 /// Version of the layout of a file of maps, raised whenever a dataset or attribute is renamed, removed, or changes its meaning.
@@ -47,6 +48,8 @@ pub struct MapsHeader<'a> {
     pub length_m: f64,
     /// Grid points along a side.
     pub points: usize,
+    /// Gap below which a bonded point is in contact \[m\].
+    pub contact_gap_m: f64,
 }
 
 /// Writes the maps of a cycle in place of `path`: one group for each step, with the datasets of [`FIELDS`].
@@ -60,6 +63,38 @@ pub fn write_maps(path: &Path, header: &MapsHeader<'_>, maps: &[ContactMap]) -> 
         |temporary| library(|| write_all(temporary, header, maps)),
         |temporary| library(|| check_all(temporary, header, maps)),
     )
+}
+
+/// Gap and pressure at a load reversal, rows along x.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReversalMap {
+    /// Gap \[m\].
+    pub gap_m: Array2<f32>,
+    /// Pressure, compression positive \[Pa\].
+    pub pressure_pa: Array2<f32>,
+    /// Gap below which a point is in contact \[m\].
+    pub contact_gap_m: f64,
+}
+
+/// The map at the load reversal `F_max/(E* A0)`; nothing without one.
+///
+/// # Errors
+/// If the file cannot be read.
+pub fn read_reversal_map(path: &Path, max_load: f64) -> Result<Option<ReversalMap>, StoreError> {
+    let find = || -> Result<Option<ReversalMap>, Cause> {
+        let file = open(path)?;
+        let contact_gap_m = file.attr("contact_gap_m")?.read_scalar::<f64>()?;
+        for group in file.groups()? {
+            let branch = group.attr("branch")?.read_scalar::<VarLenUnicode>()?;
+            let load = group.attr("max_load")?.read_scalar::<f64>()?;
+            if branch.as_str() == "loading" && load == max_load {
+                let [gap_m, pressure_pa] = [FIELDS[0].0, FIELDS[1].0].map(|name| group.dataset(name).and_then(|data| data.read_2d()));
+                return Ok(Some(ReversalMap { gap_m: gap_m?, pressure_pa: pressure_pa?, contact_gap_m }));
+            }
+        }
+        Ok(None)
+    };
+    library(find).map_err(|cause| StoreError::new("read the contact maps from", path, cause))
 }
 
 /// Name of the group of a step.
@@ -79,6 +114,7 @@ fn write_all(path: &Path, header: &MapsHeader<'_>, maps: &[ContactMap]) -> Resul
     write_text(&file, "cycle_id", header.cycle_id)?;
     write_number(&file, "length_m", header.length_m)?;
     write_number(&file, "points", header.points as u64)?;
+    write_number(&file, "contact_gap_m", header.contact_gap_m)?;
     for map in maps {
         let group = file.create_group_builder().obj_track_times(false).create(group_name(map).as_str())?;
         write_number(&group, "step", map.step)?;

@@ -2,8 +2,8 @@
 
     hysteron run pipelines/validity.toml --out out && python tests/reference/validity.py out > src/stats/model_error.csv
 
-Ratios of both methods on the same surface, averaged over surfaces and magnifications whose U_el/Δγ lies between two powers of two. Of boundary elements the
-cases with 16 points per shortest wavelength are taken.
+Ratios of both methods on the same surface, averaged over surfaces and magnifications whose U_el/Δγ is nearest to one power of two. Of boundary elements the
+cases with 16 points per shortest wavelength are taken. A ratio whose standard deviation exceeds its mean is left out.
 """
 import math
 import sys
@@ -20,7 +20,7 @@ elements = cases.filter(
 ).select(pl.col("case_id").alias("elements_case_id"))
 table = pairs.join(asperities, on="asperities_case_id").join(elements, on="elements_case_id")
 ratios = [f"{name}_ratio" for name in ("area_at_max_load", "pull_off_load", "loss")]
-table = table.drop_nulls(ratios).with_columns(bin=pl.col("persson_tosatti_realised").log(2).floor())
+table = table.drop_nulls(ratios).with_columns(bin=pl.col("persson_tosatti_realised").log(2).round())
 print("# Asperity model over boundary elements: area, pull-off force and dissipated energy, means over surfaces; their standard deviations and number.")
 print(f"# hysteron run pipelines/validity.toml; magnifications {sorted(table['magnification'].unique().to_list())}; program {cases['program'][0] if 'program' in cases.columns else '0.1.0'}")
 print("coalescence,persson_tosatti,area,pull_off,loss,area_sd,pull_off_sd,loss_sd,count")
@@ -28,4 +28,5 @@ for (rule, _), part in sorted(table.group_by("coalescence", "bin")):
     middle = math.exp(part["persson_tosatti_realised"].log().mean())
     means = [part[ratio].mean() for ratio in ratios]
     sds = [part[ratio].std() or 0.0 for ratio in ratios]
-    print(",".join([rule, f"{middle:.4g}"] + [f"{value:.3f}" for value in means + sds] + [str(len(part))]))
+    shown = [f"{mean:.3f}" if sd < mean else "" for mean, sd in zip(means, sds)]
+    print(",".join([rule, f"{middle:.4g}"] + shown + [f"{sd:.3f}" for sd in sds] + [str(len(part))]))

@@ -37,6 +37,7 @@ pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> R
     let of = Identity::of(campaign, unit);
     let kept = if params.cycle.contacts == KeptContacts::None { &[][..] } else { &cycle.regions[..] };
     let effort = effort(&cycle, &problem);
+    let contact_gap_m = problem.law.contact_gap() * units.spacing_m();
     let free = without_adhesion(problem, &settings, &cycle)?;
     let tables = [
         contacts(of, (&cycle, kept), loads, &units, &counts)?,
@@ -45,7 +46,7 @@ pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> R
         steps(of, &cycle, loads, &units)?,
     ];
     let mut files = write_tables(campaign, unit, &tables)?;
-    let header = MapsHeader { key: &unit.key, cycle_id: &unit.id, length_m: units.length_m, points: units.points };
+    let header = MapsHeader { key: &unit.key, cycle_id: &unit.id, length_m: units.length_m, points: units.points, contact_gap_m };
     files.push(write_maps(&dir.join("maps.h5"), &header, &maps(&cycle, loads, &units))?);
     files.push(write_state(&turning_path(&dir), &unit.key, &turning_bytes(&cycle)?)?);
     Ok(Outcome { files, effort })

@@ -1,0 +1,103 @@
+//! Contact of one surface at one load by both methods.
+
+use super::map::{ABOVE, GAP, PULLED, PUSHED, SIDE, SpotTables, circles, ground};
+use super::{FigureError, markup};
+use crate::store::ReversalMap;
+use ndarray::ArrayView2;
+use std::fmt::Write as _;
+
+/// Cells of the contact of boundary elements along a side, at most.
+const CELLS: usize = 150;
+
+/// What is drawn.
+pub struct Both<'a> {
+    /// Heights of the surface \[m\], rows along x.
+    pub heights_m: ArrayView2<'a, f64>,
+    /// Side of the square \[m\].
+    pub length_m: f64,
+    /// Whether the asperity model is periodic.
+    pub periodic: bool,
+    /// Contact spots of the asperity model.
+    pub spots: SpotTables<'a>,
+    /// Step of the load reversal of the asperity model.
+    pub step: i64,
+    /// Contact area A/A0 of both.
+    pub areas: [f64; 2],
+    /// Contact by boundary elements, on the same square.
+    pub elements: &'a ReversalMap,
+}
+
+/// Contact spots of the asperity model and the contact of boundary elements over the heights, side by side.
+///
+/// # Errors
+/// If a table lacks a column.
+pub fn both(of: &Both<'_>) -> Result<String, FigureError> {
+    let (width, height) = (2.0 * SIDE + 3.0 * GAP, SIDE + ABOVE + GAP + 10.0);
+    let (spots, _) = circles(&of.spots, of.length_m, of.periodic, of.step)?;
+    let mut svg = format!(
+        "<svg viewBox=\"0 0 {width} {height}\" xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" width=\"{width}\" \
+         height=\"{height}\" font-family=\"DejaVu Sans, Verdana, Liberation Sans, Arial, sans-serif\" fill=\"black\">\
+         <rect width=\"100%\" height=\"100%\" fill=\"white\"/><defs><g id=\"both-heights\">{}</g><clipPath id=\"both-edge\">\
+         <rect x=\"0\" y=\"0\" width=\"{SIDE}\" height=\"{SIDE}\"/></clipPath></defs>",
+        ground(of.heights_m)
+    );
+    let contact = cells(of.elements);
+    let maps = [("Asperity model", &spots), ("Boundary elements", &contact)];
+    for (k, ((name, drawn), area)) in maps.into_iter().zip(of.areas).enumerate() {
+        let left = GAP + k as f64 * (SIDE + GAP);
+        // Writing to a string cannot fail.
+        let _ = write!(
+            svg,
+            "<text x=\"{left}\" y=\"{}\" font-size=\"14\">{name}: A/A_{{0}} = {area:.3}</text>\
+             <g transform=\"translate({left} {})\"><g clip-path=\"url(#both-edge)\"><use xlink:href=\"#both-heights\"/>{drawn}</g>\
+             <rect x=\"0\" y=\"0\" width=\"{SIDE}\" height=\"{SIDE}\" fill=\"none\" stroke=\"black\"/></g>",
+            ABOVE - 12.0,
+            ABOVE - 4.0
+        );
+    }
+    let foot = height - 8.0;
+    let _ = write!(
+        svg,
+        "<circle cx=\"{}\" cy=\"{}\" r=\"5\" fill=\"{PUSHED}\"/><text x=\"{}\" y=\"{foot}\" font-size=\"13\">compressive</text>\
+         <circle cx=\"{}\" cy=\"{}\" r=\"5\" fill=\"{PULLED}\"/><text x=\"{}\" y=\"{foot}\" font-size=\"13\">tensile; darker grey: lower heights</text></svg>",
+        GAP + 5.0,
+        foot - 4.5,
+        GAP + 15.0,
+        GAP + 115.0,
+        foot - 4.5,
+        GAP + 125.0
+    );
+    Ok(markup::render(&svg))
+}
+
+/// Cells in compression and in tension, a path for each.
+fn cells(map: &ReversalMap) -> String {
+    let points = map.pressure_pa.nrows();
+    let cells = CELLS.min(points);
+    let sign = |i: usize, j: usize| {
+        let at = [(2 * i + 1) * points / (2 * cells), (2 * j + 1) * points / (2 * cells)];
+        let touches = f64::from(map.gap_m[at]) < map.contact_gap_m;
+        if map.pressure_pa[at] > 0.0 { 1 } else { -i8::from(touches) }
+    };
+    let size = SIDE / cells as f64;
+    let mut svg = String::new();
+    for (hue, wanted) in [(PUSHED, 1), (PULLED, -1)] {
+        let _ = write!(svg, "<path fill=\"{hue}\" fill-opacity=\"0.85\" d=\"");
+        for j in 0..cells {
+            let mut i = 0;
+            while i < cells {
+                let from = i;
+                while i < cells && sign(i, j) == wanted {
+                    i += 1;
+                }
+                if i > from {
+                    let (x, y, w) = (from as f64 * size, SIDE - (j + 1) as f64 * size, (i - from) as f64 * size);
+                    let _ = write!(svg, "M{x:.2} {y:.2}h{w:.2}v{size:.2}h-{w:.2}z");
+                }
+                i += 1;
+            }
+        }
+        svg.push_str("\"/>");
+    }
+    svg
+}
