@@ -1,8 +1,13 @@
 //! Contact of one surface at one load by both methods.
 
+use super::axis::Axis;
+use super::closer::plot;
 use super::map::{ABOVE, GAP, PULLED, PUSHED, SIDE, SpotTables, circles, ground};
+use super::panels::Panel;
+use super::plot::{Stroke, XyPlot, plot_xy};
+use super::style::{LOADING, THEORY, UNLOADING, curve, shade};
 use super::{FigureError, markup};
-use crate::store::ReversalMap;
+use crate::store::{Frame, ReversalMap};
 use ndarray::ArrayView2;
 use std::fmt::Write as _;
 
@@ -100,4 +105,38 @@ fn cells(map: &ReversalMap) -> String {
         svg.push_str("\"/>");
     }
     svg
+}
+
+/// Ratios of the asperity model to boundary elements over `U_el/Δγ`, a point for each row of the table `methods`; nothing where that has one value only.
+///
+/// # Errors
+/// If the table lacks a column.
+pub fn method_ratios(methods: &Frame) -> Result<Option<Panel>, FigureError> {
+    let x = methods.f64_or_null("persson_tosatti_realised")?;
+    let columns = [
+        ("A", "area_at_max_load", LOADING, Stroke::Points),
+        ("F_{po}", "pull_off_load", THEORY, Stroke::Crosses),
+        ("Θ", "loss", UNLOADING, Stroke::Crosses),
+    ];
+    let mut curves = Vec::new();
+    for (name, column, hue, stroke) in columns {
+        let ratios = methods.f64_or_null(&format!("{column}_ratio"))?;
+        let points = x.iter().zip(ratios).filter_map(|(x, ratio)| x.zip(ratio.filter(|ratio| *ratio > 0.0))).collect();
+        curves.push(curve((name, ""), points, shade(hue, 0, 1), stroke));
+    }
+    let points = || curves.iter().flat_map(|curve| curve.points.iter().copied());
+    let (low, high) = points().fold((f64::INFINITY, 0.0_f64), |(low, high), point| (low.min(point.0), high.max(point.0)));
+    if low * 1.5 > high {
+        return Ok(None);
+    }
+    let axes = (
+        Axis::of_decades("U_{el}/Δγ", points().map(|point| point.0)),
+        Axis::of_decades("asperity model/boundary elements", points().map(|point| point.1)).with_headroom(0.06),
+    );
+    let key = columns.map(|(name, _, hue, stroke)| (name, hue, stroke));
+    let drawn = plot("ratio of the methods on each surface".to_owned(), axes.0, axes.1, curves, &key);
+    let drawn = XyPlot { stem: "method_ratios".to_owned(), ..drawn };
+    let caption = "Area, pull-off force and dissipated energy of the asperity model over those of boundary elements, each surface a point. Table methods: \
+                   area_at_max_load_ratio, pull_off_load_ratio, loss_ratio over persson_tosatti_realised.";
+    Ok(Some(Panel { stem: drawn.stem.clone(), name: "ratios".to_owned(), caption: caption.to_owned(), svg: plot_xy(&drawn), plot: drawn }))
 }

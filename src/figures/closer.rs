@@ -149,7 +149,7 @@ fn panel(name: &str, caption: String, plot: XyPlot) -> Panel {
     Panel { stem, name: name.to_owned(), caption, svg: plot_xy(&plot), plot }
 }
 
-fn plot(title: String, x: Axis, y: Axis, curves: Vec<Curve>, key: &[(&str, [u8; 3], Stroke)]) -> XyPlot {
+pub(super) fn plot(title: String, x: Axis, y: Axis, curves: Vec<Curve>, key: &[(&str, [u8; 3], Stroke)]) -> XyPlot {
     let marked = |colour: &str, stroke: Stroke| curves.iter().any(|of| of.colour == colour && of.stroke == stroke && of.is_marked());
     let key = key.iter().map(|(text, hue, stroke)| entry(text, *hue, Some(*stroke), marked(&shade(*hue, 0, 1), *stroke))).collect();
     XyPlot { stem: String::new(), letter: ' ', title, x, y, curves, key, notes: Vec::new() }

@@ -21,7 +21,7 @@ mod sweep;
 mod table;
 
 pub use axis::Axis;
-pub use both::{Both, both};
+pub use both::{Both, both, method_ratios};
 pub use closer::{Closer, closer};
 pub use formats::{pdf, png};
 pub use map::SpotTables;

@@ -24,8 +24,9 @@ pub(super) fn text(campaign: &Campaign, done: &[bool]) -> String {
         .filter(|table| table.file.contains('/'))
         .filter_map(|table| {
             let ids = match table.file.split('/').next() {
-                // Boundary elements have no such tables.
+                // Tables of one method only.
                 Some("cycles") if matches!(table.name, "turning" | "merged") => &asperities,
+                Some("cycles") if table.name == "adhesionless" => &elements,
                 Some("cycles") => &cycles,
                 Some("asperities") => &surfaces,
                 _ => return Some(resource(table, json!(table.file))),
@@ -47,7 +48,7 @@ pub(super) fn text(campaign: &Campaign, done: &[bool]) -> String {
             "path": elements.iter().map(|id| format!("cycles/{id}/maps.h5")).collect::<Vec<_>>(),
             "format": "hdf5",
             "mediatype": "application/x-hdf5",
-            "description": "Maps of boundary elements: a group for each load reversal and maximum tensile load, with the datasets gap_m and pressure_pa (f32, rows along x), and step, branch, max_load, approach_m and load_n as attributes.",
+            "description": "Maps of boundary elements: a group for each load reversal and maximum tensile load, with the datasets gap_m and pressure_pa (f32, rows along x), and step, branch, max_load, approach_m and load_n as attributes; contact_gap_m of the file is the gap below which a bonded point is in contact.",
         }));
     }
     let package = json!({

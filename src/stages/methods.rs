@@ -4,7 +4,7 @@ use super::StageError;
 use super::page::escape;
 use super::trust::{Cases, ENERGIES, Shown, scaled, shown};
 use crate::campaign::{Campaign, CycleUnit, Standing};
-use crate::figures::{Both, SpotTables, both};
+use crate::figures::{Both, Panel, SpotTables, both};
 use crate::model::Boundary;
 use crate::schema;
 use crate::stats::{labels, method_pairs, names_of_pairs, significant};
@@ -69,8 +69,14 @@ pub(super) fn contact_maps(campaign: &Campaign, standings: &[Standing], methods:
     Ok(Some(Maps { svg, caption }))
 }
 
+/// Figures of both methods: ratios over U_el/Δγ, and contact on one surface.
+pub(super) struct BothFigures {
+    pub(super) ratios: Option<Panel>,
+    pub(super) maps: Option<Maps>,
+}
+
 /// A table of the means of both methods and their ratios; empty without cases of the same surfaces by both methods.
-pub(super) fn side_by_side(html: &mut String, cases: &Cases<'_>, methods: &Frame, maps: Option<&Maps>) -> Result<(), StageError> {
+pub(super) fn side_by_side(html: &mut String, cases: &Cases<'_>, methods: &Frame, figures: &BothFigures) -> Result<(), StageError> {
     let pairs = method_pairs(methods)?;
     if pairs.is_empty() {
         return Ok(());
@@ -107,8 +113,10 @@ pub(super) fn side_by_side(html: &mut String, cases: &Cases<'_>, methods: &Frame
         html.push_str("</tr>\n");
     }
     html.push_str("</table></div>\n");
-    if let Some(Maps { svg, caption }) = maps {
-        let links = ["SVG", "PNG", "PDF"].map(|format| format!("<a href=\"figures/contact_maps.{}\">{format}</a>", format.to_lowercase()));
+    let ratios = figures.ratios.as_ref().map(|panel| (panel.stem.as_str(), &panel.svg, &panel.caption));
+    let maps = figures.maps.as_ref().map(|maps| ("contact_maps", &maps.svg, &maps.caption));
+    for (stem, svg, caption) in ratios.into_iter().chain(maps) {
+        let links = ["SVG", "PNG", "PDF"].map(|format| format!("<a href=\"figures/{stem}.{}\">{format}</a>", format.to_lowercase()));
         let _ = writeln!(html, "<figure class=\"map\">{svg}<figcaption>{} {}</figcaption></figure>", escape(caption), links.join(" · "));
     }
     Ok(())

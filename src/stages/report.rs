@@ -2,7 +2,7 @@
 
 use super::closer::{self, Look};
 use super::done::{Clock, Outcome};
-use super::methods::{self, contact_maps, side_by_side};
+use super::methods::{BothFigures, contact_maps, side_by_side};
 use super::page::{escape, grid, head};
 use super::reading;
 use super::scans::scans;
@@ -10,7 +10,7 @@ use super::theories::theories;
 use super::trust::{Cases, split, trust};
 use super::{StageError, Tally, Watch, incomplete};
 use crate::campaign::{Campaign, CaseUnit, REPORT_PAGE, STATISTICS, Stage, Standing, Unit};
-use crate::figures::{Panel, Tables, panels, pdf, png, table};
+use crate::figures::{Panel, Tables, method_ratios, panels, pdf, png, table};
 use crate::schema;
 use crate::stats::summary;
 use crate::store::Frame;
@@ -57,11 +57,14 @@ pub(super) fn run(campaign: &Campaign, (cycles_check, check): (Check, Check), wa
     if let Some(map) = look.as_ref().and_then(|look| look.map.as_ref()) {
         files.extend(write_picture(&campaign.dir, "closer_map", map)?);
     }
-    let maps = contact_maps(campaign, &standings, &methods)?;
-    if let Some(maps) = &maps {
+    let both = BothFigures { ratios: method_ratios(&methods)?, maps: contact_maps(campaign, &standings, &methods)? };
+    if let Some(maps) = &both.maps {
         files.extend(write_picture(&campaign.dir, "contact_maps", &maps.svg)?);
     }
-    let compared = (&methods, maps.as_ref());
+    if let Some(ratios) = &both.ratios {
+        files.extend(write_picture(&campaign.dir, &ratios.stem, &ratios.svg)?);
+    }
+    let compared = (&methods, &both);
     let page = page(campaign, &key, (&Cases::of(&cases, &realizations)?, compared), &drawings, look.as_ref())?;
     drawings.extend(close.map(|panel| (String::new(), panel.clone())).collect::<Vec<_>>());
     files.push(parquet::write_table(&campaign.statistics_path("panels"), &table(&drawings)?, &[("key", key.clone())])?);
@@ -109,7 +112,7 @@ fn models(campaign: &Campaign) -> String {
 fn page(
     campaign: &Campaign,
     key: &str,
-    (cases, (methods, maps)): (&Cases<'_>, (&Frame, Option<&methods::Maps>)),
+    (cases, (methods, both)): (&Cases<'_>, (&Frame, &BothFigures)),
     drawings: &[(String, Panel)],
     look: Option<&Look>,
 ) -> Result<String, StageError> {
@@ -126,7 +129,7 @@ fn page(
         escape(&summary(cases.frame)?)
     );
     reading::results(&mut html, cases)?;
-    side_by_side(&mut html, cases, methods, maps)?;
+    side_by_side(&mut html, cases, methods, both)?;
     scans(&mut html, campaign)?;
     let sweeps = sweeps(campaign);
     for (number, sweep) in sweeps.iter().enumerate() {

@@ -167,8 +167,6 @@ fn law_the_energy_of_boundary_elements_is_that_of_their_events() {
         assert!(column("pull_off_load")[row] > 0.0 && column("area_at_max_load")[row] < 1.0);
         assert_eq!(frame.f64_or_null("loss_touched").unwrap()[row], None);
         assert_eq!(column("elements_per_wavelength")[row], 16.0);
-        // Ciavarella's area from the adhesionless curve, an independent solution on the same surface; exact for one family of contact shapes only.
-        close("area from the adhesionless curve", column("area_jkr_curve")[row], column("area_at_max_load")[row], 0.05);
     }
     // Warnings of the asperity model are none of boundary elements.
     let cases = statistics(&bench, &schema::CASES);
@@ -189,6 +187,24 @@ fn e2e_threads_do_not_change_a_byte_of_boundary_elements() {
         files(&bench.out())
     });
     assert_eq!(written[0], written[1]);
+}
+
+/// Ciavarella's area from the adhesionless curve of the same surface, an independent solution that is exact for one family of contact shapes only: to 10 %
+/// of that of boundary elements where adhesion is weak.
+#[test]
+fn val_area_from_the_adhesionless_curve() {
+    let weak = alone().replace("[boundary_elements]", "[material]\nwork_of_adhesion_j_m2 = 0.002\n[boundary_elements]");
+    let bench = Bench::new(&weak);
+    assert_eq!(code(&bench.verb("run", &["--until", "aggregate"])), 0);
+    let frame = statistics(&bench, &schema::REALIZATIONS);
+    let [area, approximate] = ["area_at_max_load", "area_jkr_curve"].map(|name| frame.f64(name).unwrap());
+    for row in 0..2 {
+        close("area from the adhesionless curve", approximate[row], area[row], 0.1);
+    }
+    let campaign = campaign(&bench);
+    let curve = table(&campaign, &elements(&campaign)[0], &schema::ADHESIONLESS);
+    let (load, size) = (curve.f64("load_n").unwrap(), curve.f64("area_m2").unwrap());
+    assert!(load.windows(2).chain(size.windows(2)).all(|pair| pair[0] <= pair[1]), "load and area grow without adhesion");
 }
 
 /// A run that is killed at any of three times goes on to the same bytes, without repeating a finished task.
