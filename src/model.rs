@@ -12,7 +12,7 @@ pub struct Material {
     pub contact_modulus_pa: f64,
     /// Work of adhesion Δγ \[J/m²\].
     pub work_of_adhesion_j_m2: f64,
-    /// Range of attraction ε \[m\]; it enters the Tabor parameter and Wu's jump-in distance only.
+    /// Range of attraction ε \[m\]; it enters the Tabor parameter, Wu's jump-in distance and the strength Δγ/ε inside contacts of boundary elements only.
     pub interaction_range_m: f64,
 }
 
@@ -21,6 +21,12 @@ impl Material {
     #[must_use]
     pub fn compliance(&self) -> f64 {
         1.0 / (std::f64::consts::PI * self.contact_modulus_pa)
+    }
+
+    /// `Δγ/E*` \[m\]: the length of adhesion.
+    #[must_use]
+    pub fn adhesion_length_m(&self) -> f64 {
+        self.work_of_adhesion_j_m2 / self.contact_modulus_pa
     }
 
     /// `sqrt(2πΔγ/E*)` \[m^½\]: times the root of its radius, what adhesion draws a spot up (Eq 2).

@@ -47,7 +47,7 @@ pub fn adhesive_curve(curve: &[CurvePoint], work_length_m: f64) -> Vec<CurvePoin
         let near = &middles[k.saturating_sub(WINDOW)..middles.len().min(k + WINDOW + 1)];
         let (slope, stiffness) = line(near, point.area_m2)?;
         let withdrawn = SQRT_2 * (work_length_m / slope).sqrt();
-        (slope > 0.0).then(|| CurvePoint {
+        (slope > 0.0).then_some(CurvePoint {
             penetration_m: point.penetration_m - withdrawn,
             load_m2: point.load_m2 - stiffness * withdrawn,
             area_m2: point.area_m2,
@@ -63,7 +63,7 @@ fn line(points: &[(CurvePoint, f64)], at_m2: f64) -> Option<(f64, f64)> {
     let (area, stiffness) = (mean(&|p| p.0.area_m2), mean(&|p| p.1));
     let spread = mean(&|p| (p.0.area_m2 - area).powi(2));
     let slope = mean(&|p| (p.0.area_m2 - area) * (p.1 - stiffness)) / spread;
-    (points.len() > WINDOW && slope.is_finite()).then(|| (slope, stiffness + slope * (at_m2 - area)))
+    (points.len() > WINDOW && slope.is_finite()).then_some((slope, stiffness + slope * (at_m2 - area)))
 }
 
 /// Loading and unloading along an adhesive curve under displacement control, contact forming at zero penetration.

@@ -160,7 +160,7 @@ pub(super) fn check_elements(case: &CaseParams, origins: &[Origin], faults: &mut
     if surface.is_measured() {
         return;
     }
-    let work_length = material.work_of_adhesion_j_m2 / material.contact_modulus_pa;
+    let work_length = material.adhesion_length_m();
     if let Some((message, help)) = elements.refusal(surface.length_m, f64::from(surface.magnification), work_length) {
         let keys = [
             "boundary_elements.points",

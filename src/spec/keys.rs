@@ -178,7 +178,7 @@ pub(super) static KEYS: &[Key] = &[
         slip: Some((1e-3, "millijoules per square metre")),
         note: "0 is the adhesionless limit: Hertzian asperities without dissipation",
     }),
-    key!(material.interaction_range_m, "ε", "Range of adhesion. It enters the Tabor parameter and the jump-in criterion of Wu."; number Limits {
+    key!(material.interaction_range_m, "ε", "Range of adhesion. It enters the Tabor parameter, the jump-in criterion of Wu and, with `opening = \"strength\"`, the strength inside contacts of boundary elements."; number Limits {
         low: 1e-12, above: false, high: 1e-5, unit: " m", unit_name: "metres", slip: Some((1e-9, "nanometres")), note: "",
     }),
     key!(model.method, "", "Method of the cycle. Boundary elements read none of the other keys of this table, and refuse `boundary = \"isolated\"` for periodic surfaces."; word Method),

@@ -321,7 +321,7 @@ fn jkr_curve(campaign: &Campaign, unit: &CycleUnit) -> Result<Vec<CurvePoint>, S
     let (approaches, loads, areas) = (frame.f64("approach_m")?, frame.f64("load_n")?, frame.f64("area_m2")?);
     let point = |k: usize| CurvePoint { penetration_m: approaches[k], load_m2: loads[k] / material.contact_modulus_pa, area_m2: areas[k] };
     let curve: Vec<CurvePoint> = (0..approaches.len()).map(point).collect();
-    Ok(adhesive_curve(&curve, material.work_of_adhesion_j_m2 / material.contact_modulus_pa))
+    Ok(adhesive_curve(&curve, material.adhesion_length_m()))
 }
 
 /// Deng and Kesari's loss of an area \[J\]; nothing where the printed Eq A2 defines none.

@@ -104,7 +104,7 @@ pub(in crate::stages) fn lattice(campaign: &Campaign, unit: &CycleUnit) -> Resul
     };
     let (elements, material) = (&params.boundary_elements, &params.material);
     let points = elements.grid(wavelengths);
-    let work_length = material.work_of_adhesion_j_m2 / material.contact_modulus_pa;
+    let work_length = material.adhesion_length_m();
     let range = || elements.range(work_length, length_m / f64::from(points));
     Ok(Some(Lattice {
         length_m,
@@ -132,7 +132,7 @@ pub(super) fn setup(campaign: &Campaign, unit: &CycleUnit) -> Result<Setup, Stag
     let list = read_summits(&campaign.asperities_path(surface))?;
     let (length_m, wavelengths) = extent(&header, params);
     let (material, elements) = (&params.material, &params.boundary_elements);
-    if let Some((problem, help)) = elements.refusal(length_m, wavelengths, material.work_of_adhesion_j_m2 / material.contact_modulus_pa) {
+    if let Some((problem, help)) = elements.refusal(length_m, wavelengths, material.adhesion_length_m()) {
         return Err(PhysicsError::Surface { problem, help }.into());
     }
     let points = elements.grid(wavelengths) as usize;
@@ -149,7 +149,7 @@ pub(super) fn setup(campaign: &Campaign, unit: &CycleUnit) -> Result<Setup, Stag
 /// The contact problem of heights \[m\] on the grid.
 fn problem(params: &CaseParams, units: &Units, heights_m: Array2<f64>, list: &[Summit]) -> Result<Problem, StageError> {
     let (material, elements, spacing) = (&params.material, &params.boundary_elements, units.spacing_m());
-    let work_length = material.work_of_adhesion_j_m2 / material.contact_modulus_pa;
+    let work_length = material.adhesion_length_m();
     let top = heights_m.iter().copied().fold(f64::MIN, f64::max);
     let (mut heights, _) = heights_m.into_raw_vec_and_offset();
     heights.iter_mut().for_each(|z| *z = (*z - top) / spacing);
