@@ -31,7 +31,7 @@ const END: f64 = 1e-7;
 /// Energy, tension and its slope at a gap: `V` in E* dx, `V' = σ` in E*, `V'' = dσ/dg` in E*/dx.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Bond {
-    /// Energy per area, −Δγ at rest in contact and 0 when separated.
+    /// Energy per area, −Δγ at zero gap and 0 when separated.
     pub energy: f64,
     /// Tension, negative for pressure.
     pub tension: f64,

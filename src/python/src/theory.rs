@@ -88,6 +88,25 @@ fn dalvi_loss<'py>(py: Python<'py>, work_of_adhesion_j_m2: Column<'py>, area_m2:
 }
 
 #[pyfunction]
+fn pinning_loss<'py>(
+    py: Python<'py>,
+    work_of_adhesion_j_m2: Column<'py>,
+    elastic_energy_j_m2: Column<'py>,
+    area_m2: Column<'py>,
+) -> PyResult<Values<'py>> {
+    each(py, [work_of_adhesion_j_m2, elastic_energy_j_m2, area_m2], |[adhesion, elastic, area]| {
+        // The modulus does not enter.
+        let material = material("the pinning loss", 1.0, adhesion)?;
+        Ok(within(area >= 0.0 && elastic >= 0.0, theory::pinning_loss(&material, elastic, area).unwrap_or(f64::NAN)))
+    })
+}
+
+#[pyfunction]
+fn sticky_line<'py>(py: Python<'py>, persson_tosatti: Column<'py>) -> PyResult<Values<'py>> {
+    each(py, [persson_tosatti], |[ratio]| Ok(within(ratio >= 0.0, theory::sticky_line(ratio))))
+}
+
+#[pyfunction]
 fn adhesionless_area<'py>(py: Python<'py>, load: Column<'py>, rms_slope: Column<'py>) -> PyResult<Values<'py>> {
     each(py, [load, rms_slope], |[load, slope]| {
         let slope = positive("the area without adhesion", "the rms gradient", slope)?;
@@ -126,6 +145,8 @@ pub fn add(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(mean_loop_loss, module)?)?;
     module.add_function(wrap_pyfunction!(deng_kesari_loss, module)?)?;
     module.add_function(wrap_pyfunction!(dalvi_loss, module)?)?;
+    module.add_function(wrap_pyfunction!(pinning_loss, module)?)?;
+    module.add_function(wrap_pyfunction!(sticky_line, module)?)?;
     module.add_function(wrap_pyfunction!(adhesionless_area, module)?)?;
     module.add_function(wrap_pyfunction!(adhesionless_area_small, module)?)?;
     module.add_function(wrap_pyfunction!(fuller_tabor, module)?)

@@ -56,6 +56,9 @@ def test_mean_loss_by_quadrature():
 
 def test_closed_forms():
     assert theory.dalvi_loss(2e-7, work_of_adhesion_j_m2=G) == pytest.approx(G * 2e-7)
+    assert theory.pinning_loss(0.1 * G, 2e-7, work_of_adhesion_j_m2=G) == pytest.approx(2 * 1.35 * 0.1 * G * 2e-7)
+    assert math.isnan(theory.pinning_loss(0.4 * G, 2e-7, work_of_adhesion_j_m2=G))
+    assert theory.sticky_line(3.0) == 1.5
     load = np.linspace(0, 0.2, 11)
     np.testing.assert_allclose(theory.adhesionless_area(load, 0.1), [math.erf(math.sqrt(2) * p / 0.1) for p in load], rtol=1e-14)
     np.testing.assert_allclose(theory.adhesionless_area_small(load, 0.1), 2 * load / 0.1)

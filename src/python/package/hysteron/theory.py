@@ -94,6 +94,20 @@ def dalvi_loss(area_m2: Reals, *, work_of_adhesion_j_m2: Reals) -> Result:
     return one(_hysteron.dalvi_loss, work_of_adhesion_j_m2, area_m2)
 
 
+def pinning_loss(elastic_energy_j_m2: Reals, area_m2: Reals, *, work_of_adhesion_j_m2: Reals) -> Result:
+    """Energy dissipated by crack-front pinning, `Θ = 2 k U_el A` [J] with k = 1.35, after Sanner et al., Sci. Adv. 10:eadl1277 (2024).
+
+    U_el is the elastic energy per area that flattens the roughness [J/m2], A the contact area [m2]. The prefactor k is that of hysteron. For one connected
+    contact with weak roughness: NaN for k U_el >= Δγ/2, for A < 0 and for U_el < 0.
+    """
+    return one(_hysteron.pinning_loss, work_of_adhesion_j_m2, elastic_energy_j_m2, area_m2)
+
+
+def sticky_line(persson_tosatti: Reals) -> Result:
+    """Ratio `U_el/(2Δγ)` from `U_el/Δγ`; below 1 the pull-off force is high. Wang and Müser, Front. Mech. Eng. 8:965584 (2022). NaN below 0."""
+    return one(_hysteron.sticky_line, persson_tosatti)
+
+
 def adhesionless_area(load: Reals, rms_slope: Reals) -> Result:
     """Adhesionless contact area A/A0, `erf(√2 p/(E* h'_rms))`. Persson, J. Chem. Phys. 115:3840 (2001).
 
