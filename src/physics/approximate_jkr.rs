@@ -77,7 +77,8 @@ pub struct CurveLoop {
     pub loss_m3: f64,
 }
 
-/// The loop to a load over E* \[m²\]; nothing if the curve does not reach it, or does not begin below zero penetration.
+/// The loop to a load over E* \[m²\]; nothing if the curve does not reach it, does not begin below zero penetration, or begins at more than half of the contact area
+/// at that load: the curve then snaps to near full contact, where the approximation has no meaning.
 ///
 /// Unloading follows the curve from the last point below that load down to the smallest penetration before it would rise again, where contact is lost. The dissipated
 /// energy is the integral of the tension from there to zero penetration: what is lost when contact forms at zero penetration and when it separates.
@@ -94,8 +95,9 @@ pub fn curve_loop(curve: &[CurvePoint], max_load_m2: f64) -> Option<CurveLoop> {
         let last = from.load_m2 + share * (to.load_m2 - from.load_m2);
         -0.5 * (from.load_m2 + last) * share * (to.penetration_m - from.penetration_m)
     };
-    (branch[0].penetration_m < 0.0).then(|| CurveLoop {
-        area_m2: curve[end].area_m2 + part * (beyond.area_m2 - curve[end].area_m2),
+    let area_m2 = curve[end].area_m2 + part * (beyond.area_m2 - curve[end].area_m2);
+    (branch[0].penetration_m < 0.0 && branch[0].area_m2 < 0.5 * area_m2).then(|| CurveLoop {
+        area_m2,
         pull_off_m2: -branch.iter().map(|point| point.load_m2).fold(0.0, f64::min),
         loss_m3: branch.windows(2).map(piece).sum(),
     })

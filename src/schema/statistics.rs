@@ -136,7 +136,7 @@ const RESULTS: &[Column] = &[
     real("area_at_max_load", "1", "Contact area A/A0 at load reversal, summed over the contact discs"),
     real("area_union_at_max_load", "1", "Contact area A/A0 at load reversal, union of the contact discs; null where it was not computed").or_null(),
     real("area_adhesionless", "1", "Adhesionless contact area A/A0 at F_max, Persson's theory: erf(sqrt(2) F/(E* A0 rms_slope))").from("Persson 2001"),
-    real("area_jkr_curve", "1", "Contact area A/A0 at load reversal, approximate JKR theory from the adhesionless curve of the same surface; null for asperities and where that curve ends below the load").or_null().from("Ciavarella 2018"),
+    real("area_jkr_curve", "1", "Contact area A/A0 at load reversal, approximate JKR theory from the adhesionless curve of the same surface; null for asperities, where that curve ends below the load, and where it snaps to near full contact").or_null().from("Ciavarella 2018"),
     real("pull_off_jkr_curve", "1", "Pull-off force F_po/(E* A0) of the same theory; null likewise").or_null().from("Ciavarella 2018"),
     real("loss_jkr_curve", "1", "Dissipated energy Θ/(E* A0 h_rms) of the same theory, with contact formed at zero penetration; null likewise").or_null().from("Ciavarella 2018"),
     real("area_adhesionless_small", "1", "Adhesionless contact area A/A0 at F_max, small-load limit of boundary-element results: 2 F/(E* A0 rms_slope)").from("Hyun et al. 2004"),

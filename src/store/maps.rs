@@ -76,14 +76,15 @@ pub struct ReversalMap {
     pub contact_gap_m: f64,
 }
 
-/// The map at the load reversal `F_max/(E* A0)`; nothing without one.
+/// The map at the load reversal `F_max/(E* A0)`; nothing without one, and without the gap of contact.
 ///
 /// # Errors
 /// If the file cannot be read.
 pub fn read_reversal_map(path: &Path, max_load: f64) -> Result<Option<ReversalMap>, StoreError> {
     let find = || -> Result<Option<ReversalMap>, Cause> {
         let file = open(path)?;
-        let contact_gap_m = file.attr("contact_gap_m")?.read_scalar::<f64>()?;
+        // Files of the first builds lack it.
+        let Ok(contact_gap_m) = file.attr("contact_gap_m").and_then(|attribute| attribute.read_scalar::<f64>()) else { return Ok(None) };
         for group in file.groups()? {
             let branch = group.attr("branch")?.read_scalar::<VarLenUnicode>()?;
             let load = group.attr("max_load")?.read_scalar::<f64>()?;
