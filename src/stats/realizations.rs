@@ -5,7 +5,7 @@ use super::events::{Events, Lost};
 use super::rows::{Rows, Value};
 use super::walk::Point;
 use super::{CaseInput, CycleInput, Given, StatsError};
-use crate::physics::boundary_elements::cycle::{work_after, work_between};
+use crate::physics::boundary_elements::work::{work_after, work_between};
 use crate::physics::soundness::RESOLUTION;
 use crate::schema::{EVENT_KINDS, REALIZATIONS};
 use crate::store::Frame;

@@ -13,3 +13,4 @@ mod pairs;
 pub mod regions;
 pub mod resample;
 mod sums;
+pub mod work;

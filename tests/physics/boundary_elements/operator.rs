@@ -4,6 +4,7 @@ use super::{BONDED, problem};
 use hysteron::physics::boundary_elements::contact::Bonding;
 use hysteron::physics::boundary_elements::grid::{HalfSpace, Operator};
 use hysteron::physics::boundary_elements::law::Law;
+use hysteron::physics::boundary_elements::work::{work_after, work_between};
 use std::f64::consts::{PI, TAU};
 
 /// A plane wave `u = cos q·x` needs the pressure `|q|/2 u`, in both directions and obliquely, on square and oblong grids. Rounding only.
@@ -91,4 +92,16 @@ fn law_load_and_residual_are_derivatives_of_the_energy() {
     let slope = (energy(0.5 + step) - energy(0.5 - step)) / (2.0 * step);
     let load = problem.totals(&state).load;
     assert!((slope / load - 1.0).abs() < 1e-6, "load {load}, slope of the energy {slope}");
+}
+
+/// The work of a load that is a parabola of the approach is exact on uneven steps; where two points coincide it is the trapezoid.
+#[test]
+fn law_work_of_a_parabola_is_exact() {
+    let point = |x: f64| (x, 1.0 - 2.0 * x + 3.0 * x * x);
+    let integral = |x: f64| x - x * x + x * x * x;
+    for (a, b, c) in [(0.0, 0.3, 0.4), (1.0, 0.8, 0.1), (-0.2, 0.5, 0.9)] {
+        let work = work_after(point(a), point(b), point(c));
+        assert!((work - (integral(c) - integral(b))).abs() < 1e-14, "{work}");
+    }
+    assert_eq!(work_after(point(0.3), point(0.3), point(0.4)), work_between(point(0.3), point(0.4)));
 }
