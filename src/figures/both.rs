@@ -2,7 +2,7 @@
 
 use super::axis::Axis;
 use super::closer::plot;
-use super::map::{ABOVE, GAP, PULLED, PUSHED, SIDE, SpotTables, circles, ground};
+use super::map::{ABOVE, GAP, PULLED, PUSHED, SIDE, SpotTables, circles, legend, sheet};
 use super::panels::Panel;
 use super::plot::{Stroke, XyPlot, plot_xy};
 use super::style::{LOADING, THEORY, UNLOADING, curve, shade};
@@ -39,13 +39,7 @@ pub struct Both<'a> {
 pub fn both(of: &Both<'_>) -> Result<String, FigureError> {
     let (width, height) = (2.0 * SIDE + 3.0 * GAP, SIDE + ABOVE + GAP + 10.0);
     let (spots, _) = circles(&of.spots, of.length_m, of.periodic, of.step)?;
-    let mut svg = format!(
-        "<svg viewBox=\"0 0 {width} {height}\" xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" width=\"{width}\" \
-         height=\"{height}\" font-family=\"DejaVu Sans, Verdana, Liberation Sans, Arial, sans-serif\" fill=\"black\">\
-         <rect width=\"100%\" height=\"100%\" fill=\"white\"/><defs><g id=\"both-heights\">{}</g><clipPath id=\"both-edge\">\
-         <rect x=\"0\" y=\"0\" width=\"{SIDE}\" height=\"{SIDE}\"/></clipPath></defs>",
-        ground(of.heights_m)
-    );
+    let mut svg = sheet((width, height), "both", of.heights_m);
     let contact = cells(of.elements);
     let maps = [("Asperity model", &spots), ("Boundary elements", &contact)];
     for (k, ((name, drawn), area)) in maps.into_iter().zip(of.areas).enumerate() {
@@ -60,18 +54,7 @@ pub fn both(of: &Both<'_>) -> Result<String, FigureError> {
             ABOVE - 4.0
         );
     }
-    let foot = height - 8.0;
-    let _ = write!(
-        svg,
-        "<circle cx=\"{}\" cy=\"{}\" r=\"5\" fill=\"{PUSHED}\"/><text x=\"{}\" y=\"{foot}\" font-size=\"13\">compressive</text>\
-         <circle cx=\"{}\" cy=\"{}\" r=\"5\" fill=\"{PULLED}\"/><text x=\"{}\" y=\"{foot}\" font-size=\"13\">tensile; darker grey: lower heights</text></svg>",
-        GAP + 5.0,
-        foot - 4.5,
-        GAP + 15.0,
-        GAP + 115.0,
-        foot - 4.5,
-        GAP + 125.0
-    );
+    svg += &legend(height - 8.0);
     Ok(markup::render(&svg))
 }
 

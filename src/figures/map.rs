@@ -35,13 +35,7 @@ pub(super) fn map(of: &Closer<'_>, landmarks: &[Kept], heights_m: ArrayView2<'_,
     let (loads, penetrations) = (of.steps.f64("load")?, of.steps.f64("penetration")?);
     let rows = landmarks.len().div_ceil(2) as f64;
     let (width, height) = (2.0 * SIDE + 3.0 * GAP, rows * (SIDE + ABOVE) + GAP + 20.0);
-    let mut svg = format!(
-        "<svg viewBox=\"0 0 {width} {height}\" xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" width=\"{width}\" \
-         height=\"{height}\" font-family=\"DejaVu Sans, Verdana, Liberation Sans, Arial, sans-serif\" fill=\"black\">\
-         <rect width=\"100%\" height=\"100%\" fill=\"white\"/><defs><g id=\"map-heights\">{}</g><clipPath id=\"map-edge\">\
-         <rect x=\"0\" y=\"0\" width=\"{SIDE}\" height=\"{SIDE}\"/></clipPath></defs>",
-        ground(heights_m)
-    );
+    let mut svg = sheet((width, height), "map", heights_m);
     for (k, (landmark, step)) in landmarks.iter().enumerate() {
         let (left, top) = (GAP + (k % 2) as f64 * (SIDE + GAP), ABOVE + (k / 2) as f64 * (SIDE + ABOVE));
         let at = usize::try_from(*step).unwrap_or_default();
@@ -62,9 +56,24 @@ pub(super) fn map(of: &Closer<'_>, landmarks: &[Kept], heights_m: ArrayView2<'_,
             number(&penetrations)
         );
     }
-    let foot = height - 12.0;
-    let _ = write!(
-        svg,
+    svg += &legend(height - 12.0);
+    Ok(Some(markup::render(&svg)))
+}
+
+/// Beginning of an SVG of maps: the heights and the edge of a map are its definitions `<prefix>-heights` and `<prefix>-edge`.
+pub(super) fn sheet((width, height): (f64, f64), prefix: &str, heights_m: ArrayView2<'_, f64>) -> String {
+    format!(
+        "<svg viewBox=\"0 0 {width} {height}\" xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" width=\"{width}\" \
+         height=\"{height}\" font-family=\"DejaVu Sans, Verdana, Liberation Sans, Arial, sans-serif\" fill=\"black\">\
+         <rect width=\"100%\" height=\"100%\" fill=\"white\"/><defs><g id=\"{prefix}-heights\">{}</g><clipPath id=\"{prefix}-edge\">\
+         <rect x=\"0\" y=\"0\" width=\"{SIDE}\" height=\"{SIDE}\"/></clipPath></defs>",
+        ground(heights_m)
+    )
+}
+
+/// Meaning of the colours, with its base line at `foot`, and the end of the SVG.
+pub(super) fn legend(foot: f64) -> String {
+    format!(
         "<circle cx=\"{}\" cy=\"{}\" r=\"5\" fill=\"{PUSHED}\"/><text x=\"{}\" y=\"{foot}\" font-size=\"13\">compressive</text>\
          <circle cx=\"{}\" cy=\"{}\" r=\"5\" fill=\"{PULLED}\"/><text x=\"{}\" y=\"{foot}\" font-size=\"13\">tensile; darker grey: lower heights</text></svg>",
         GAP + 5.0,
@@ -73,12 +82,11 @@ pub(super) fn map(of: &Closer<'_>, landmarks: &[Kept], heights_m: ArrayView2<'_,
         GAP + 115.0,
         foot - 4.5,
         GAP + 125.0
-    );
-    Ok(Some(markup::render(&svg)))
+    )
 }
 
 /// The heights in shades of grey, a path for each shade.
-pub(super) fn ground(heights: ArrayView2<'_, f64>) -> String {
+fn ground(heights: ArrayView2<'_, f64>) -> String {
     let (rows, columns) = heights.dim();
     let cells = CELLS.min(rows).min(columns);
     if cells == 0 {

@@ -33,10 +33,7 @@ pub fn load_freely(
     let mut steps: Vec<FreeStep> = Vec::new();
     loop {
         let transforms = minimiser.transforms();
-        let mut outcome = minimiser.minimise(problem, &mut state, accuracy);
-        if !outcome.converged {
-            outcome = minimiser.newton(problem, &mut state, accuracy)?;
-        }
+        let outcome = minimiser.equilibrium(problem, &mut state, accuracy)?;
         let totals = problem.totals(&state);
         let transforms = minimiser.transforms() - transforms;
         steps.push(FreeStep { approach: state.approach, totals, transforms, converged: outcome.converged });

@@ -368,12 +368,8 @@ impl<'a> Walk<'a> {
         let before = self.minimiser.transforms();
         let mut iterations = 0;
         let outcome = loop {
-            let mut outcome = self.minimiser.minimise(self.problem, &mut state, accuracy);
+            let outcome = self.minimiser.equilibrium(self.problem, &mut state, accuracy)?;
             iterations += outcome.iterations as u64;
-            if !outcome.converged {
-                outcome = self.minimiser.newton(self.problem, &mut state, accuracy)?;
-                iterations += outcome.iterations as u64;
-            }
             if !self.problem.update_bonds(&mut state, true) {
                 break outcome;
             }
@@ -386,8 +382,7 @@ impl<'a> Walk<'a> {
         let quiet = self.at.before.as_ref().map(|before| work_after((before.approach, before.load), start, end));
         // Where the load jumps, the points before do not tell how it goes on.
         let uncertainty = quiet.map_or(0.0, |quiet| (quiet - work_between(start, end)).abs() / 3.0);
-        let resolution = uncertainty.max(EVENT * self.at.dissipated);
-        let work = quiet.filter(|work| (work - change).abs() <= resolution).unwrap_or_else(|| work_between(start, end));
+        let work = quiet.filter(|work| (work - change).abs() <= self.resolution(uncertainty)).unwrap_or_else(|| work_between(start, end));
         let step = Step {
             reversal: from.reversal,
             approach,
@@ -405,8 +400,13 @@ impl<'a> Walk<'a> {
         Ok((state, step))
     }
 
+    /// Imbalance up to which a step has no event, with the uncertainty of its integral \[E* dx³\].
+    fn resolution(&self, uncertainty: f64) -> f64 {
+        uncertainty.max(EVENT * self.at.dissipated)
+    }
+
     fn accept(&mut self, state: State, mut step: Step) {
-        let event = step.imbalance > (EVENT * self.at.dissipated).max(step.uncertainty);
+        let event = step.imbalance > self.resolution(step.uncertainty);
         let labels = label(self.problem, &state);
         step.regions = labels.count;
         // Without an event the work is the change of the energy, exactly; the load is integrated for comparison only.

@@ -161,7 +161,17 @@ impl Minimiser {
         }
     }
 
-    /// Bonds, pressure without the rounding of its increments, and gradient of a state.
+    /// Moves `state` to a local minimum by [`Self::minimise`] and, where that does not end, by [`Self::newton`]; the iterations are those of both.
+    pub(super) fn equilibrium(&mut self, problem: &Problem, state: &mut State, accuracy: Accuracy) -> Result<Outcome, PhysicsError> {
+        let first = self.minimise(problem, state, accuracy);
+        if first.converged {
+            return Ok(first);
+        }
+        let second = self.newton(problem, state, accuracy)?;
+        Ok(Outcome { iterations: first.iterations + second.iterations, ..second })
+    }
+
+    /// Pressure without the rounding of its increments, and gradient of a state.
     pub(super) fn begin(&mut self, problem: &Problem, state: &mut State) -> Here {
         problem.refresh(state, &mut self.double);
         self.centre = -problem.totals(state).load / self.slopes.len() as f64;
@@ -269,7 +279,7 @@ impl Minimiser {
     }
 
     /// Moves the state along the direction, whose elastic response is known, by at most the reach of the law and so far that the energy falls: the step
-    /// and what is there. Without such a step the state stays.
+    /// and the energy and residual after it. Without such a step the state stays.
     pub(super) fn descend(&mut self, problem: &Problem, state: &mut State, here: Here, descent: Descent) -> Option<(Taken, Here)> {
         let Descent { mean, slope } = descent;
         let fields = (self.direction.par_chunks(PANEL), self.response.par_chunks(PANEL), state.pressure.par_chunks(PANEL));
