@@ -97,21 +97,27 @@ pub(in crate::stages) fn lattice(campaign: &Campaign, unit: &CycleUnit) -> Resul
     if !params.by_elements() {
         return Ok(None);
     }
-    let (length_m, wavelengths) = if params.surface.is_measured() {
+    let extent = if params.surface.is_measured() {
         extent(&read_header(&campaign.surface_path(&campaign.surfaces[unit.surface]))?, params)
     } else {
         (params.surface.length_m, f64::from(params.surface.magnification))
     };
-    let (elements, material) = (&params.boundary_elements, &params.material);
-    let points = elements.grid(wavelengths);
-    let work_length = material.adhesion_length_m();
-    let range = || elements.range(work_length, length_m / f64::from(points));
-    Ok(Some(Lattice {
-        length_m,
-        points: points as usize,
-        per_wavelength: f64::from(points) / wavelengths,
-        range_m: (elements.attraction == Attraction::Range).then(range),
-    }))
+    Ok(Some(Lattice::of(params, extent)))
+}
+
+impl Lattice {
+    /// The grid of a case on a square of a side \[m\] with a number of shortest wavelengths.
+    fn of(params: &CaseParams, (length_m, wavelengths): (f64, f64)) -> Self {
+        let elements = &params.boundary_elements;
+        let points = elements.grid(wavelengths);
+        let range = || elements.range(params.material.adhesion_length_m(), length_m / f64::from(points));
+        Self {
+            length_m,
+            points: points as usize,
+            per_wavelength: f64::from(points) / wavelengths,
+            range_m: (elements.attraction == Attraction::Range).then(range),
+        }
+    }
 }
 
 /// Side of the periodic square \[m\] and its number of shortest wavelengths. A surface that is not periodic is continued by mirror images.
@@ -135,28 +141,29 @@ pub(super) fn setup(campaign: &Campaign, unit: &CycleUnit) -> Result<Setup, Stag
     if let Some((problem, help)) = elements.refusal(length_m, wavelengths, material.adhesion_length_m()) {
         return Err(PhysicsError::Surface { problem, help }.into());
     }
-    let points = elements.grid(wavelengths) as usize;
+    let lattice = Lattice::of(params, (length_m, wavelengths));
+    let points = lattice.points;
     enough_memory(points, params.cycle.max_load.len())?;
     let rms_height_m = scale(campaign, surface)?.rms_height_m;
     let units = Units { length_m, points, modulus_pa: material.contact_modulus_pa, rms_height_m };
     let side = heights.nrows();
     let whole = if header.periodic { heights } else { mirrored(heights.view())? };
-    let problem = problem(params, &units, resample(whole.view(), points)?, &list)?;
+    let problem = problem(params, (&units, lattice.range_m), resample(whole.view(), points)?, &list)?;
     let summits = summit_points(&list, (header.length_m, side), !header.periodic, &units);
     Ok(Setup { settings: settings(params, &units), problem, units, summits })
 }
 
-/// The contact problem of heights \[m\] on the grid.
-fn problem(params: &CaseParams, units: &Units, heights_m: Array2<f64>, list: &[Summit]) -> Result<Problem, StageError> {
+/// The contact problem of heights \[m\] on the grid, with the range of the Morse law \[m\] if there is one.
+fn problem(params: &CaseParams, (units, range_m): (&Units, Option<f64>), heights_m: Array2<f64>, list: &[Summit]) -> Result<Problem, StageError> {
     let (material, elements, spacing) = (&params.material, &params.boundary_elements, units.spacing_m());
     let work_length = material.adhesion_length_m();
     let top = heights_m.iter().copied().fold(f64::MIN, f64::max);
     let (mut heights, _) = heights_m.into_raw_vec_and_offset();
     heights.iter_mut().for_each(|z| *z = (*z - top) / spacing);
     let work = work_length / spacing;
-    let (law, attraction) = match elements.attraction {
-        Attraction::Range => (Law::morse(work, elements.range(work_length, spacing) / spacing), Rule::Range),
-        Attraction::Bonded => {
+    let (law, attraction) = match range_m {
+        Some(range_m) => (Law::morse(work, range_m / spacing), Rule::Range),
+        None => {
             let nucleation = match elements.nucleation {
                 Nucleation::Touch => 0.0,
                 Nucleation::Wu => wu_gap(material, list)? / spacing,
