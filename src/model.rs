@@ -151,8 +151,6 @@ choice! {
         Spots = "spots",
         /// Each contact spot acts as a point force at its centre. The model has an exact potential.
         Point = "point",
-        /// Mean of the field and its reciprocal. The model has an exact potential; 100 times slower.
-        Reciprocal = "reciprocal",
         /// No interaction: the Greenwood–Williamson model with JKR asperities.
         None = "none",
     }

@@ -106,7 +106,7 @@ impl Path<'_> {
             return inside.then_some(Place::Here);
         }
         let (spot, bound) = match (kind, self.front.state.status[i]) {
-            (Kind::JumpOff, _) => (i, patch.asperity(problem, patch.find(i)?).jump_off_radius()),
+            (Kind::JumpOff, _) => (i, problem.asperities[i].jump_off_radius()),
             (Kind::Cover, _) => {
                 let by = by?;
                 (by, problem.neighbours.distance(&problem.positions[i], &problem.positions[by]))

@@ -117,7 +117,7 @@ impl<'p> Solver<'p> {
     /// Displacements, residuals and tangent of a state; its worst residual and whose it is.
     pub(crate) fn evaluate(&mut self, state: &mut State) -> Unsettled {
         let problem = self.problem;
-        self.couple(state);
+        problem.spots(state, &mut self.spots);
         let field = problem.field.for_spots(&self.spots, self.roughly);
         field.linearise(&self.spots, &mut state.displacement, &mut self.tangent, &mut self.effort);
         self.fresh = true;
@@ -127,27 +127,11 @@ impl<'p> Solver<'p> {
     /// The same with the tangent left as it is.
     fn glance(&mut self, state: &mut State) -> Unsettled {
         let problem = self.problem;
-        self.couple(state);
+        problem.spots(state, &mut self.spots);
         let field = problem.field.for_spots(&self.spots, self.roughly);
         field.again(&self.spots, &mut state.displacement, &mut self.tangent, &mut self.effort);
         self.fresh = false;
         self.compare(state)
-    }
-
-    /// The spots of a state as sources, and what follows from their radii for the state.
-    fn couple(&mut self, state: &mut State) {
-        self.problem.spots(state, &mut self.spots);
-        if let Some(mutual) = &self.spots.mutual {
-            for (k, &i) in state.contacts.iter().enumerate() {
-                state.grip[i] = mutual.grip(k);
-            }
-            mutual.returned(&mut state.returned);
-        }
-    }
-
-    /// How grips change as the radii do, in the state that was evaluated last; nothing where all are 1.
-    pub(crate) fn grip_rates(&self, rates: &[f64]) -> Vec<f64> {
-        self.spots.mutual.as_ref().map_or(Vec::new(), |mutual| mutual.grip_rates(rates))
     }
 
     /// Residuals of a state whose displacements are known; the worst and whose it is.
@@ -157,7 +141,7 @@ impl<'p> Solver<'p> {
         self.diagonal.clear();
         let mut worst = Unsettled::residual(0.0, state.contacts.first().copied().unwrap_or(0));
         for (&i, w) in state.contacts.iter().zip(&state.displacement) {
-            let (asperity, a) = (state.asperity(problem, i), state.radius[i]);
+            let (asperity, a) = (&problem.asperities[i], state.radius[i]);
             let residual = state.approach_m + problem.heights[i] - w - asperity.penetration(a);
             self.residual.push(residual);
             self.diagonal.push(asperity.penetration_slope(a));
@@ -271,9 +255,9 @@ impl<'p> Solver<'p> {
         let near = problem
             .neighbours
             .nearest(&problem.positions[asperity], problem.spots_in_patch, state.contacts.len(), |i| state.status[i] == Status::Contact);
-        let mut spots: Vec<(usize, f64, f64, f64)> = near
+        let mut spots: Vec<(usize, f64, f64)> = near
             .into_iter()
-            .filter_map(|(_, i)| state.contacts.binary_search(&i).ok().map(|k| (i, state.radius[i], state.displacement[k], state.grip[i])))
+            .filter_map(|(_, i)| state.contacts.binary_search(&i).ok().map(|k| (i, state.radius[i], state.displacement[k])))
             .collect();
         spots.sort_unstable_by_key(|spot| spot.0);
         self.patch.fix(problem, &spots, state.approach_m, &mut self.effort);
@@ -348,14 +332,12 @@ impl<'p> Solver<'p> {
         field.approach(&self.spots, rates, wanted, found, &mut self.watched, &mut self.effort);
         let at = state.approach_m;
         let pairs = displacement.iter().zip(&slopes).zip(wanted);
-        pairs
-            .map(|((w, slope), &i)| Trace { at, value: at + problem.heights[i] - w, rate: 1.0 - slope, grip: 1.0, grip_rate: 0.0 })
-            .collect()
+        pairs.map(|((w, slope), &i)| Trace { at, value: at + problem.heights[i] - w, rate: 1.0 - slope }).collect()
     }
 
     /// Displacement at one asperity by spots of these radii \[m\].
     pub(crate) fn displacement(&mut self, spots: &[(usize, f64)], asperity: usize) -> f64 {
-        self.problem.columns(spots.iter().copied(), &[], &mut self.spots);
+        self.problem.columns(spots.iter().copied(), &mut self.spots);
         let mut displacement = Vec::new();
         self.problem.field.displacements(&self.spots, &[asperity], &mut displacement, &mut self.effort);
         displacement.first().copied().unwrap_or(0.0)
@@ -375,7 +357,7 @@ impl Relaxing for Whole<'_, '_> {
     }
 
     fn spots(&self) -> Vec<Moving> {
-        self.state.contacts.iter().zip(&self.solver.residual).map(|(&i, r)| (i, self.state.radius[i], *r, self.state.grip[i])).collect()
+        self.state.contacts.iter().zip(&self.solver.residual).map(|(&i, r)| (i, self.state.radius[i], *r)).collect()
     }
 
     fn take_out(&mut self, change: &Change) {

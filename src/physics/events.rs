@@ -10,7 +10,7 @@
 
 use super::front::Front;
 use super::state::{Problem, State, Status};
-use crate::model::{Coalescence, Interaction};
+use crate::model::Coalescence;
 use serde::{Deserialize, Serialize};
 
 /// A kind of event.
@@ -100,8 +100,8 @@ pub(crate) struct Trigger {
     pub(crate) overshoot: f64,
 }
 
-/// A spot as a relaxation has it: its asperity, its radius \[m\], its residual \[m\] and its grip.
-pub(crate) type Moving = (usize, f64, f64, f64);
+/// A spot as a relaxation has it: its asperity, its radius \[m\] and its residual \[m\].
+pub(crate) type Moving = (usize, f64, f64);
 
 impl Problem {
     /// True if spots cover asperities.
@@ -172,7 +172,7 @@ impl Problem {
     pub(crate) fn overshoot(&self, change: &Change, front: &Front) -> f64 {
         let (i, state) = (change.asperity, &front.state);
         match (change.kind, change.by) {
-            (Kind::JumpOff, _) => 1.0 - state.radius[i] / state.asperity(self, i).jump_off_radius(),
+            (Kind::JumpOff, _) => 1.0 - state.radius[i] / self.asperities[i].jump_off_radius(),
             (Kind::JumpIn, _) => (front.traces[i].value - self.jump_in[i]) / self.asperities[i].jump_off_penetration().abs(),
             (Kind::Cover, Some(by)) => {
                 let distance = self.neighbours.distance(&self.positions[i], &self.positions[by]);
@@ -191,11 +191,11 @@ impl Problem {
     pub(crate) fn lateness(&self, trigger: &Trigger, front: &Front) -> f64 {
         let (i, state) = (trigger.change.asperity, &front.state);
         let between = |j: usize, radius: f64| {
-            let asperity = state.asperity(self, j);
+            let asperity = &self.asperities[j];
             (asperity.penetration(state.radius[j]) - asperity.penetration(radius)).abs()
         };
         match (trigger.change.kind, trigger.change.by, state.status[i]) {
-            (Kind::JumpOff, ..) => between(i, state.asperity(self, i).jump_off_radius()),
+            (Kind::JumpOff, ..) => between(i, self.asperities[i].jump_off_radius()),
             (Kind::Cover, Some(by), _) => between(by, self.neighbours.distance(&self.positions[i], &self.positions[by])),
             (Kind::Uncover, _, Status::Covered { by, release_m }) if state.radius[by] > 0.0 => between(by, release_m),
             (Kind::JumpIn, ..) => trigger.overshoot * self.asperities[i].jump_off_penetration().abs(),
@@ -218,33 +218,15 @@ impl Problem {
     /// still shrinking, else the spot furthest under a greater one.
     pub(crate) fn overtaken(&self, spots: &[Moving]) -> Option<Change> {
         let mut found: Option<(f64, Change)> = None;
-        for &(i, a, residual, grip) in spots {
-            let overshoot = self.asperities[i].gripping(grip).jump_off_radius() / a;
+        for &(i, a, residual) in spots {
+            let overshoot = self.asperities[i].jump_off_radius() / a;
             if residual < 0.0 && overshoot > 1.0 && found.is_none_or(|(most, _)| overshoot > most) {
                 found = Some((overshoot, Change { kind: Kind::JumpOff, asperity: i, by: None }));
             }
         }
         if found.is_none() && self.covers() {
-            for &(j, a, residual, _) in spots {
-                let drawn = self.rules.interaction == Interaction::Reciprocal && residual > 0.0;
-                self.neighbours.within(j, if drawn { a / DRAWN } else { a }, |r, i| {
-                    let Some(spot) = spots.binary_search_by_key(&i, |spot| spot.0).ok().map(|k| spots[k]) else { return };
-                    let tensile = || self.asperities[i].gripping(spot.3).load(spot.1) < 0.0;
-                    if spot.1 < a && (a >= r || tensile()) && found.is_none_or(|(most, _)| a / r > most) {
-                        found = Some((a / r, Change { kind: Kind::Cover, asperity: i, by: Some(j) }));
-                    }
-                });
-            }
-        }
-        found.map(|(_, change)| change)
-    }
-
-    /// Where no loads balance, with reciprocal fields: who is nearest to being covered.
-    pub(crate) fn drawn(&self, spots: &[Moving]) -> Option<Change> {
-        let mut found: Option<(f64, Change)> = None;
-        if self.covers() {
-            for &(j, a, ..) in spots {
-                self.neighbours.within(j, a / DRAWN, |r, i| {
+            for &(j, a, _) in spots {
+                self.neighbours.within(j, a, |r, i| {
                     let smaller = spots.binary_search_by_key(&i, |spot| spot.0).is_ok_and(|k| spots[k].1 < a);
                     if smaller && found.is_none_or(|(most, _)| a / r > most) {
                         found = Some((a / r, Change { kind: Kind::Cover, asperity: i, by: Some(j) }));
@@ -279,10 +261,6 @@ impl Problem {
         found.map(|(_, change)| change)
     }
 }
-
-/// With reciprocal fields a tension draws the edge of a greater spot to itself, the more the nearer, without bound. Where a relaxation brings it to this share of
-/// the distance, and on, it arrives; on the last part of the way no loads balance.
-const DRAWN: f64 = 0.9;
 
 /// How near the edge of a spot counts as at it, of the distance.
 const EDGE: f64 = 0.02;

@@ -96,15 +96,15 @@ impl Front {
     /// `da/dδ` of a spot at its trace.
     pub(crate) fn speed(&self, problem: &Problem, i: usize) -> f64 {
         let trace = self.traces[i];
-        Trace { rate: trace.rate.clamp(-STEEPEST, STEEPEST), ..trace }.speed(&self.state.asperity(problem, i), self.state.radius[i])
+        Trace { rate: trace.rate.clamp(-STEEPEST, STEEPEST), ..trace }.speed(&problem.asperities[i], self.state.radius[i])
     }
 
     /// How the load of a spot goes on with the approach \[N/m\], no faster than that of a flat punch of thrice its size: at the end of its branch it
     /// is infinite, but not for long.
     pub(crate) fn answer(&self, problem: &Problem, i: usize) -> f64 {
-        let (asperity, a) = (self.state.asperity(problem, i), self.state.radius[i]);
+        let (asperity, a) = (&problem.asperities[i], self.state.radius[i]);
         let most = 6.0 * problem.material.contact_modulus_pa * a;
-        (asperity.load_slope(a) * self.speed(problem, i) + asperity.load_by_grip(a) * self.traces[i].grip_rate).clamp(-most, most)
+        (asperity.load_slope(a) * self.speed(problem, i)).clamp(-most, most)
     }
 
     /// Contact radius of a spot expected at an approach \[m\]. Where it is known it may be beyond the end of its branch, where the penetration
@@ -125,14 +125,13 @@ impl Front {
         for (i, a) in self.radii(problem, approach) {
             if !self.traces[i].value.is_nan() {
                 self.state.radius[i] = a;
-                self.state.grip[i] = self.traces[i].grip_ahead(approach);
             }
         }
     }
 
     /// Load and area of a spot at its trace, and their derivatives to the approach.
     fn share(&self, problem: &Problem, i: usize) -> Sums {
-        let (asperity, a, speed) = (self.state.asperity(problem, i), self.state.radius[i], self.speed(problem, i));
+        let (asperity, a, speed) = (&problem.asperities[i], self.state.radius[i], self.speed(problem, i));
         let load_rate = self.answer(problem, i);
         let turn = 2.0 * std::f64::consts::PI * a;
         Sums { at: self.traces[i].at, load: asperity.load(a), load_rate, area: 0.5 * turn * a, area_rate: turn * speed }
@@ -206,7 +205,7 @@ impl Front {
     }
 
     fn expect_of_spot(&self, problem: &Problem, j: usize, target: f64, sign: f64, due: &mut Vec<Due>) {
-        let (trace, asperity, a) = (self.traces[j], self.state.asperity(problem, j), self.state.radius[j]);
+        let (trace, asperity, a) = (self.traces[j], &problem.asperities[j], self.state.radius[j]);
         let speed = sign * trace.rate;
         let left = (target - trace.at) * sign;
         let mut offer = |way: f64, kind: Kind, i: usize, by: Option<usize>| {
@@ -257,22 +256,14 @@ pub(crate) fn work(problem: &Problem, i: usize, from: Trace, to: Trace) -> f64 {
     }
     gauss(|p| {
         let d = hermite(p, from.value, to.value, from.rate * span, to.rate * span);
-        let asperity = asperity.gripping(grip_between(p, [from.grip, from.grip_rate * span], [to.grip, to.grip_rate * span]));
         asperity.load(asperity.radius_ahead(d)) * span
     })
 }
 
-/// The grip between two points, given with its derivatives there.
-fn grip_between(p: f64, from: [f64; 2], to: [f64; 2]) -> f64 {
-    // Where no spot changes another's, rounding must not either.
-    if [from, to] == [[1.0, 0.0]; 2] { 1.0 } else { hermite(p, from[0], to[0], from[1], to[1]) }
-}
-
-/// A point of a curve along which a radius is the parameter: of one spot its radius and that one's derivative, and of its grip and of the approach.
+/// A point of a curve along which a radius is the parameter: of one spot its radius and that one's derivative, and of the approach.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct CurvePoint {
     pub(crate) radius: [f64; 2],
-    pub(crate) grip: [f64; 2],
     pub(crate) approach: [f64; 2],
 }
 
@@ -281,7 +272,6 @@ pub(crate) fn work_along(problem: &Problem, i: usize, span: f64, from: CurvePoin
     let asperity = &problem.asperities[i];
     gauss(|p| {
         let a = hermite(p, from.radius[0], to.radius[0], from.radius[1] * span, to.radius[1] * span);
-        let asperity = asperity.gripping(grip_between(p, [from.grip[0], from.grip[1] * span], [to.grip[0], to.grip[1] * span]));
         asperity.load(a) * hermite_slope(p, from.approach[0], to.approach[0], from.approach[1] * span, to.approach[1] * span)
     })
 }

@@ -20,9 +20,6 @@ use super::PhysicsError;
 use crate::model::{Material, Slips};
 use std::f64::consts::PI;
 
-/// Least share of its adhesive load that a spot is given: without any it would have no end of its branch.
-const LEAST_GRIP: f64 = 1e-6;
-
 /// Contact radius over the radius of curvature at which a contact without adhesion begins and ends.
 pub const HERTZ_EDGE: f64 = 1e-5;
 
@@ -32,8 +29,6 @@ pub struct Asperity {
     radius: f64,
     modulus: f64,
     adhesion: f64,
-    /// Share of the adhesive load of a lone spot of the same radius.
-    grip: f64,
     /// `sqrt(2πΔγ/E*)` \[m^½\].
     pull: f64,
     /// Where dδ/da vanishes, right as it is \[m\].
@@ -80,7 +75,6 @@ impl Asperity {
             radius: radius_m,
             modulus,
             adhesion,
-            grip: 1.0,
             pull: pull_squared.sqrt(),
             fold_radius,
             jump_off_radius: stretch * fold_radius,
@@ -92,42 +86,7 @@ impl Asperity {
     fn hertz(radius: f64, modulus: f64) -> Self {
         let jump_off_radius = HERTZ_EDGE * radius;
         let jump_off_penetration = jump_off_radius * HERTZ_EDGE;
-        Self { radius, modulus, adhesion: 0.0, grip: 1.0, pull: 0.0, fold_radius: 0.0, jump_off_radius, jump_off_penetration }
-    }
-
-    /// The same where loads around it change the pull at its edge: of the load `sqrt(8πE*Δγa³)` that adhesion takes off, the share `τ > 0`
-    /// (dimensionless) is left, as if the work of adhesion were `Δγτ²`. So the end of its branch is at `τ^⅔ a_off`. At `τ = 1` nothing is changed.
-    #[must_use]
-    pub fn gripping(&self, grip: f64) -> Self {
-        if grip == self.grip || self.adhesion == 0.0 {
-            return *self;
-        }
-        let more = grip.max(LEAST_GRIP) / self.grip;
-        let stretch = (more * more).cbrt();
-        Self {
-            adhesion: self.adhesion * more * more,
-            grip: self.grip * more,
-            pull: self.pull * more,
-            fold_radius: self.fold_radius * stretch,
-            jump_off_radius: self.jump_off_radius * stretch,
-            jump_off_penetration: self.jump_off_penetration * stretch * stretch,
-            ..*self
-        }
-    }
-
-    /// The share τ of [`Self::gripping`].
-    pub(crate) fn grip(&self) -> f64 {
-        self.grip
-    }
-
-    /// `∂δ/∂τ = −sqrt(2πaΔγ/E*)` \[m\] at contact radius `a` \[m\].
-    pub(crate) fn penetration_by_grip(&self, a: f64) -> f64 {
-        -self.pull / self.grip * a.sqrt()
-    }
-
-    /// `∂F/∂τ = −sqrt(8πE*Δγa³)` \[N\] at contact radius `a` \[m\].
-    pub(crate) fn load_by_grip(&self, a: f64) -> f64 {
-        -2.0 * self.modulus * self.pull / self.grip * a * a.sqrt()
+        Self { radius, modulus, adhesion: 0.0, pull: 0.0, fold_radius: 0.0, jump_off_radius, jump_off_penetration }
     }
 
     /// Radius of curvature R \[m\].

@@ -35,9 +35,6 @@ pub(crate) enum Found {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Point {
     pub(crate) radius: Vec<f64>,
-    /// Grips, and their derivatives as those of the radii; nothing where all are 1.
-    pub(crate) grip: Vec<f64>,
-    pub(crate) grip_direction: Vec<f64>,
     pub(crate) approach: f64,
     /// Derivatives of the radii and of the approach to the radius of the spot that is followed, `at` \[m\].
     pub(crate) direction: Vec<f64>,
@@ -183,8 +180,7 @@ impl Patch {
 
     fn point(&mut self, problem: &Problem, at: usize) -> Point {
         let (direction, slope) = self.along(problem, at);
-        let (grip, grip_direction) = (self.grip.clone(), self.grip_rates(&direction));
-        Point { radius: self.radius.clone(), grip, grip_direction, approach: self.approach, direction, slope, at: self.radius[at] }
+        Point { radius: self.radius.clone(), approach: self.approach, direction, slope, at: self.radius[at] }
     }
 
     fn restore(&mut self, problem: &Problem, point: &Point, effort: &mut Effort) {

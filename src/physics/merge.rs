@@ -111,7 +111,7 @@ impl Problem {
         let [a, b] = [state.radius[i], state.radius[j]];
         let area_radius = a.hypot(b);
         let root = 2.0 * self.material.contact_modulus_pa * self.material.pull() * area_radius * area_radius.sqrt();
-        (state.asperity(self, i).load(a) + state.asperity(self, j).load(b), root)
+        (&self.asperities[i].load(a) + &self.asperities[j].load(b), root)
     }
 
     /// A merged spot by the caller's numbers and places.
@@ -182,8 +182,8 @@ impl Problem {
             state.set(part, Status::Merged { into: number }, 0.0);
         }
         state.set(number, Status::Contact, radius);
-        let (displacement, grip) = self.surrounding(state, number);
-        merged.height_m = self.asperities[number].gripping(grip).penetration(radius) + displacement - state.approach_m;
+        let displacement = self.surrounding(state, number);
+        merged.height_m = self.asperities[number].penetration(radius) + displacement - state.approach_m;
         self.heights[number] = merged.height_m;
         state.merged.push(merged);
         Ok(number)
@@ -210,13 +210,12 @@ impl Problem {
         }
     }
 
-    /// Displacement at a spot by those of a state \[m\], and its grip among them.
-    fn surrounding(&self, state: &State, i: usize) -> (f64, f64) {
+    /// Displacement at a spot by those of a state \[m\].
+    fn surrounding(&self, state: &State, i: usize) -> f64 {
         let (mut spots, mut found) = (Spots::default(), Vec::new());
         self.spots(state, &mut spots);
         self.field.displacements(&spots, &[i], &mut found, &mut Effort::default());
-        let grip = spots.mutual.as_ref().zip(spots.index.binary_search(&i).ok()).map_or(1.0, |(mutual, k)| mutual.grip(k));
-        (found[0], grip)
+        found[0]
     }
 
     /// True if there is room for the spots of a state, which have this area \[m²\].

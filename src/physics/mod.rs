@@ -12,7 +12,6 @@ pub mod equilibrium;
 pub mod events;
 mod field;
 mod front;
-mod grip;
 mod illinois;
 pub mod interaction;
 pub mod jkr;

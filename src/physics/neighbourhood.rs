@@ -200,7 +200,7 @@ impl Path<'_> {
             for (member, lag) in self.patch.members.iter_mut().zip(&self.missed) {
                 member.outside += lag;
             }
-            let load = |k: usize| self.patch.asperity(problem, k).load(self.patch.radius[k]);
+            let load = |k: usize| problem.asperities[self.patch.members[k].asperity].load(self.patch.radius[k]);
             let start: Vec<(usize, f64, f64, f64)> =
                 (0..self.missed.len()).map(|k| (self.patch.members[k].asperity, self.patch.radius[k], load(k), self.missed[k])).collect();
             if self.patch.solve(problem, Hold::Approach, &mut self.solver.effort).is_ok() && self.patch.rates(problem).1 {
@@ -257,11 +257,9 @@ impl Path<'_> {
             self.enter(change, open);
         }
         let (rates, _) = self.patch.rates(problem);
-        let grip_rates = self.patch.grip_rates(&rates);
         for (k, rate) in rates.iter().enumerate() {
             let (i, a) = (self.patch.members[k].asperity, self.patch.radius[k]);
-            let grip_rate = grip_rates.get(k).copied().unwrap_or(0.0);
-            let trace = Trace::of(&self.patch.asperity(problem, k), approach, a, *rate, grip_rate);
+            let trace = Trace::of(&problem.asperities[i], approach, a, *rate);
             self.pending.push((i, a, trace));
             open.push(i);
         }
@@ -329,17 +327,13 @@ impl Path<'_> {
         }
         let problem = self.problem();
         let way = self.patch.approach - self.reference;
-        let known = |m: &Place| {
-            let i = m.asperity;
-            (self.front.state.asperity(problem, i), self.front.speed(problem, i) * way, self.front.traces[i].grip_rate * way)
-        };
         let stood = |(m, a): (&Place, &f64)| {
-            let (sphere, more, more_grip) = known(m);
-            Stood { asperity: m.asperity, sphere, radius: *a, more, more_grip }
+            let i = m.asperity;
+            Stood { asperity: i, sphere: problem.asperities[i], radius: *a, more: self.front.speed(problem, i) * way }
         };
         let stood: Vec<Stood> = self.patch.members.iter().zip(&self.origin).map(stood).collect();
         let moved = self.patch.moved_at(problem, &self.halo, &self.centre, &stood);
-        let (load, pull) = self.patch.off(problem, &stood);
+        let (load, pull) = self.patch.off(&stood);
         let before = self.far;
         self.lag(&moved, load, -pull, open);
         // It has grown on the way, slowly at first.
@@ -362,19 +356,15 @@ impl Path<'_> {
         let problem = self.problem();
         let (approach, reference) = (self.patch.approach, self.reference);
         let rates = if fold { None } else { Some(self.patch.rates(problem).0) };
-        let grip_rates = rates.as_ref().map_or(Vec::new(), |rates| self.patch.grip_rates(rates));
         for k in 0..self.patch.members.len() {
             let (i, a) = (self.patch.members[k].asperity, self.patch.radius[k]);
-            let asperity = self.patch.asperity(problem, k);
+            let asperity = &problem.asperities[i];
             let from = self.front.traces[i];
-            let (value, grip) = (asperity.penetration(a), asperity.grip());
+            let value = asperity.penetration(a);
             let trace = match &rates {
-                Some(rates) => Trace::of(&asperity, approach, a, rates[k], grip_rates.get(k).copied().unwrap_or(0.0)),
-                None if approach == from.at => Trace { value, grip, ..from },
-                None => {
-                    let way = approach - from.at;
-                    Trace { at: approach, value, rate: (value - from.value) / way, grip, grip_rate: (grip - from.grip) / way }
-                }
+                Some(rates) => Trace::of(asperity, approach, a, rates[k]),
+                None if approach == from.at => Trace { value, ..from },
+                None => Trace { at: approach, value, rate: (value - from.value) / (approach - from.at) },
             };
             let parts = stations.windows(2).map(|pair| work_along(problem, i, pair[1].at - pair[0].at, pair[0].of(k), pair[1].of(k)));
             self.log.work_j += if from.at == reference && stations.len() > 1 { parts.sum() } else { work(problem, i, from, trace) };
@@ -387,12 +377,11 @@ impl Path<'_> {
     pub(crate) fn catch_up(&mut self) {
         let problem = self.problem();
         let approach = self.patch.approach;
-        for (k, (member, a)) in self.patch.members.iter().zip(&self.patch.radius).enumerate() {
+        for (member, a) in self.patch.members.iter().zip(&self.patch.radius) {
             let i = member.asperity;
             let from = self.front.traces[i];
             if from.at != approach {
-                let asperity = self.patch.asperity(problem, k);
-                let to = Trace { at: approach, value: asperity.penetration(*a), grip: asperity.grip(), ..from };
+                let to = Trace { at: approach, value: problem.asperities[i].penetration(*a), ..from };
                 self.log.work_j += work(problem, i, from, to);
                 self.pending.push((i, *a, to));
             }
@@ -409,7 +398,6 @@ impl Path<'_> {
                 self.front.count(problem, *i, -1.0, trace.at);
             }
             self.front.state.radius[*i] = *a;
-            self.front.state.grip[*i] = trace.grip;
             self.front.traces[*i] = *trace;
             self.front.count(problem, *i, 1.0, trace.at);
         }
@@ -438,7 +426,6 @@ fn mean_square(stations: &[Point], way: f64) -> f64 {
 impl Point {
     /// The point as one member has it.
     fn of(&self, member: usize) -> CurvePoint {
-        let grip = self.grip.get(member).map_or([1.0, 0.0], |grip| [*grip, self.grip_direction[member]]);
-        CurvePoint { radius: [self.radius[member], self.direction[member]], grip, approach: [self.approach, self.slope] }
+        CurvePoint { radius: [self.radius[member], self.direction[member]], approach: [self.approach, self.slope] }
     }
 }

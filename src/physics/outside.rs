@@ -8,20 +8,18 @@ use super::state::Problem;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Stood {
     pub(crate) asperity: usize,
-    /// With the grip that it had.
     pub(crate) sphere: Asperity,
     /// Radius \[m\].
     pub(crate) radius: f64,
-    /// By how much that was expected to change \[m\], and its grip.
+    /// By how much that was expected to change \[m\].
     pub(crate) more: f64,
-    pub(crate) more_grip: f64,
 }
 
 impl Stood {
     /// The load that was expected of it \[N\].
     fn load(&self) -> f64 {
         let (sphere, was) = (&self.sphere, self.radius);
-        sphere.load(was) + (self.more * sphere.load_slope(was) + self.more_grip * sphere.load_by_grip(was))
+        sphere.load(was) + self.more * sphere.load_slope(was)
     }
 }
 
@@ -72,26 +70,25 @@ fn part(drift: f64) -> f64 {
 impl Patch {
     /// How the members stand, as [`Self::moved_at`] wants it, if nothing more is expected of them.
     pub(crate) fn stand(&self, problem: &Problem) -> Vec<Stood> {
-        let stood = |(k, (member, a)): (usize, (&Place, &f64))| Stood {
+        let stood = |(member, a): (&Place, &f64)| Stood {
             asperity: member.asperity,
-            sphere: self.asperity(problem, k),
+            sphere: problem.asperities[member.asperity],
             radius: *a,
             more: 0.0,
-            more_grip: 0.0,
         };
-        self.members.iter().zip(&self.radius).enumerate().map(stood).collect()
+        self.members.iter().zip(&self.radius).map(stood).collect()
     }
 
     /// By how much the displacements at asperities are other than they were expected to be, when members stood as they did before \[m\]: what the loads
     /// do from their centres, and near a spot, where that is not enough, its field.
     pub(crate) fn moved_at(&self, problem: &Problem, asperities: &[usize], centre: &[f64; 2], before: &[Stood]) -> Vec<f64> {
         let mut sources: Vec<Source> = before.iter().map(Source::before).collect();
-        for (k, (member, &a)) in self.members.iter().zip(&self.radius).enumerate() {
+        for (member, &a) in self.members.iter().zip(&self.radius) {
             let at = before.binary_search_by_key(&member.asperity, |stood| stood.asperity).unwrap_or_else(|_| {
                 sources.push(Source::new(member.asperity));
                 sources.len() - 1
             });
-            sources[at].become_of(self.asperity(problem, k), a);
+            sources[at].become_of(problem.asperities[member.asperity], a);
         }
         let whole: f64 = sources.iter().map(|source| source.load).sum();
         let compliance = problem.material.compliance();
@@ -106,18 +103,16 @@ impl Patch {
     /// What the spots outside do to the loads of the members as the approach goes on, `Σ F_i ∂ŵ_i/∂δ`; by reciprocity, what these loads do to the
     /// load of the others \[N\].
     pub(crate) fn pull(&self, problem: &Problem) -> f64 {
-        self.members.iter().zip(&self.radius).enumerate().map(|(k, (m, a))| part(m.drift) * self.asperity(problem, k).load(*a)).sum()
+        self.members.iter().zip(&self.radius).map(|(m, a)| part(m.drift) * problem.asperities[m.asperity].load(*a)).sum()
     }
 
     /// By how much the load of the members is other than it was expected to be, and by how much what the spots outside do to it is, both as the
     /// radii were to change \[N\].
-    pub(crate) fn off(&self, problem: &Problem, before: &[Stood]) -> (f64, f64) {
+    pub(crate) fn off(&self, before: &[Stood]) -> (f64, f64) {
         let (mut load, mut pull) = (0.0, 0.0);
-        for (k, ((member, &a), stood)) in self.members.iter().zip(&self.radius).zip(before).enumerate() {
+        for ((member, &a), stood) in self.members.iter().zip(&self.radius).zip(before) {
             let (sphere, was) = (&stood.sphere, stood.radius);
-            let off = self.asperity(problem, k).load(a)
-                - sphere.load(was)
-                - (stood.more * sphere.load_slope(was) + stood.more_grip * sphere.load_by_grip(was));
+            let off = sphere.load(a) - sphere.load(was) - stood.more * sphere.load_slope(was);
             load += off;
             pull += part(member.drift) * off;
         }

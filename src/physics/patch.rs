@@ -15,7 +15,6 @@ use super::jkr::Asperity;
 use super::locate::Point;
 use super::relax::STRIDE;
 use super::state::Problem;
-use crate::model::Interaction;
 use std::f64::consts::PI;
 
 /// A penetration `D − ŵ` \[m\] known at one approach, with its rate along the path: of a spot in contact its own, of a free asperity the
@@ -28,9 +27,6 @@ pub(crate) struct Trace {
     pub(crate) value: f64,
     /// Derivative to the approach.
     pub(crate) rate: f64,
-    /// Grip of the spot there, and its derivative to the approach \[1/m\]: 1 and 0 where spots do not change one another's.
-    pub(crate) grip: f64,
-    pub(crate) grip_rate: f64,
 }
 
 /// Greatest rate at which a penetration goes on. Without a fold near it is below 1.2; at a fold it is infinite, but the way to it is short.
@@ -42,25 +38,29 @@ const LEAST_SLOPE: f64 = 1e-6;
 impl Trace {
     /// Nothing is known but the approach.
     pub(crate) fn unknown(at: f64) -> Self {
-        Self { at, value: f64::NAN, rate: 0.0, grip: 1.0, grip_rate: 0.0 }
+        Self { at, value: f64::NAN, rate: 0.0 }
     }
 
-    /// Of a spot of radius `a` \[m\] at an approach, whose radius changes by `speed`, and its grip by `grip_rate`.
-    pub(crate) fn of(asperity: &Asperity, at: f64, a: f64, speed: f64, grip_rate: f64) -> Self {
-        let rate = asperity.penetration_slope(a) * speed + asperity.penetration_by_grip(a) * grip_rate;
-        Self { at, value: asperity.penetration(a), rate, grip: asperity.grip(), grip_rate }
+    /// Of a spot of radius `a` \[m\] at an approach, whose radius changes by `speed`.
+    pub(crate) fn of(asperity: &Asperity, at: f64, a: f64, speed: f64) -> Self {
+        Self { at, value: asperity.penetration(a), rate: asperity.penetration_slope(a) * speed }
     }
 
     /// `da/dδ` of a spot of radius `a` \[m\]. At the very end of its branch the radius has no finite rate, and beyond it, where others hold the spot, it
     /// goes against the penetration.
     pub(crate) fn speed(&self, asperity: &Asperity, a: f64) -> f64 {
         let slope = asperity.penetration_slope(a);
-        self.rate_by_radius(asperity, a) / if slope.abs() < LEAST_SLOPE { LEAST_SLOPE.copysign(slope) } else { slope }
+        self.rate / if slope.abs() < LEAST_SLOPE { LEAST_SLOPE.copysign(slope) } else { slope }
     }
 
     /// The penetration expected at another approach \[m\].
     pub(crate) fn ahead(&self, approach: f64) -> f64 {
         self.value + self.rate.clamp(-STEEPEST, STEEPEST) * (approach - self.at)
+    }
+
+    /// The radius expected there \[m\].
+    pub(crate) fn radius_ahead(&self, asperity: &Asperity, approach: f64) -> f64 {
+        asperity.radius_ahead(self.ahead(approach))
     }
 }
 
@@ -77,8 +77,6 @@ pub(crate) struct Place {
     pub(crate) outside: f64,
     /// Derivative to the approach.
     pub(crate) drift: f64,
-    /// What the spots outside do to its grip, as [`super::interaction::Mutual`] has it \[1/m\].
-    pub(crate) outer: f64,
 }
 
 /// What is held while a patch is solved; the approach is an unknown unless it is what is held.
@@ -101,8 +99,6 @@ pub(crate) struct Patch {
     pub(crate) members: Vec<Place>,
     /// Contact radii of the members \[m\].
     pub(crate) radius: Vec<f64>,
-    /// Their grips as they were evaluated last; nothing where all are 1.
-    pub(crate) grip: Vec<f64>,
     pub(crate) watched: Vec<Place>,
     /// True if there are spots outside it: what they do is held, and some digits of what images do are enough.
     local: bool,
@@ -113,8 +109,6 @@ pub(crate) struct Patch {
     /// Displacement at the members by one another \[m\], and its derivatives to their radii.
     field: Vec<f64>,
     slopes: Vec<f64>,
-    /// What their loads do to one another as to punches \[m\], where that is not the field.
-    returned: Vec<f64>,
     residual: Vec<f64>,
     row: Vec<f64>,
     matrix: Vec<f64>,
@@ -138,23 +132,19 @@ impl Patch {
         self.radius.clear();
         let mut speeds = Vec::with_capacity(contacts.len());
         for (i, trace, a) in contacts {
-            let (asperity, a) = (problem.asperities[*i].gripping(trace.grip_ahead(approach)), *a);
-            self.members.push(Place { asperity: *i, outside: 0.0, drift: 0.0, outer: 0.0 });
+            let (asperity, a) = (&problem.asperities[*i], *a);
+            self.members.push(Place { asperity: *i, outside: 0.0, drift: 0.0 });
             self.radius.push(a);
-            speeds.push(trace.speed(&asperity, a));
+            speeds.push(trace.speed(asperity, a));
         }
         self.evaluate(problem, effort);
-        if local {
-            let grips: Vec<f64> = contacts.iter().map(|(_, trace, _)| trace.grip_ahead(approach)).collect();
-            self.hold_grips(problem, &grips, effort);
-        }
         let n = self.members.len();
         for (k, (i, trace, _)) in contacts.iter().enumerate() {
-            let (asperity, a) = (self.asperity(problem, k), self.radius[k]);
+            let (asperity, a) = (&problem.asperities[*i], self.radius[k]);
             let displaced = approach + problem.heights[*i] - asperity.penetration(a);
             let by_members: f64 = self.slopes[k * n..(k + 1) * n].iter().zip(&speeds).map(|(s, v)| s * v).sum();
-            self.members[k].outside = displaced - self.field[k] - self.members[k].yielding(a);
-            self.members[k].drift = bounded(1.0 - trace.rate_by_radius(&asperity, a) - by_members);
+            self.members[k].outside = displaced - self.field[k];
+            self.members[k].drift = bounded(1.0 - trace.rate - by_members);
         }
         self.watched.clear();
         let places: Vec<usize> = free.iter().map(|(i, _)| *i).collect();
@@ -163,25 +153,23 @@ impl Patch {
             let by_members: f64 = slopes.iter().zip(&speeds).map(|(s, v)| s * v).sum();
             let displaced = approach + problem.heights[i] - trace.ahead(approach);
             let drift = bounded(1.0 - trace.rate - by_members);
-            self.watched.push(Place { asperity: i, outside: displaced - field, drift, outer: 0.0 });
+            self.watched.push(Place { asperity: i, outside: displaced - field, drift });
         });
     }
 
-    /// The patch of these spots (ascending) at an approach \[m\], each with its radius and its displacement by all \[m\], which need be no equilibrium, and
-    /// its grip.
-    pub(crate) fn fix(&mut self, problem: &Problem, spots: &[(usize, f64, f64, f64)], approach: f64, effort: &mut Effort) {
+    /// The patch of these spots (ascending) at an approach \[m\], each with its radius and its displacement by all \[m\], which need be no
+    /// equilibrium.
+    pub(crate) fn fix(&mut self, problem: &Problem, spots: &[(usize, f64, f64)], approach: f64, effort: &mut Effort) {
         (self.approach, self.reference, self.local) = (approach, approach, false);
         self.way.clear();
         self.watched.clear();
         self.members.clear();
-        self.members.extend(spots.iter().map(|spot| Place { asperity: spot.0, outside: 0.0, drift: 0.0, outer: 0.0 }));
+        self.members.extend(spots.iter().map(|spot| Place { asperity: spot.0, outside: 0.0, drift: 0.0 }));
         self.radius.clear();
         self.radius.extend(spots.iter().map(|spot| spot.1));
         self.evaluate(problem, effort);
-        let grips: Vec<f64> = spots.iter().map(|spot| spot.3).collect();
-        self.hold_grips(problem, &grips, effort);
         for ((member, spot), field) in self.members.iter_mut().zip(spots).zip(&self.field) {
-            member.outside = spot.2 - field - member.yielding(spot.1);
+            member.outside = spot.2 - field;
         }
     }
 
@@ -195,9 +183,6 @@ impl Patch {
         if let Err(at) = self.members.binary_search_by_key(&place.asperity, |m| m.asperity) {
             self.members.insert(at, place);
             self.radius.insert(at, radius);
-            if !self.grip.is_empty() {
-                self.grip.insert(at, 1.0);
-            }
             self.watched.retain(|w| w.asperity != place.asperity);
         }
     }
@@ -207,9 +192,6 @@ impl Patch {
         if let Some(at) = self.find(asperity) {
             let place = self.members.remove(at);
             self.radius.remove(at);
-            if at < self.grip.len() {
-                self.grip.remove(at);
-            }
             if free {
                 self.watched.push(place);
             }
@@ -220,7 +202,7 @@ impl Patch {
     pub(crate) fn place(&mut self, problem: &Problem, asperity: usize, (displacement, drift): (f64, f64), effort: &mut Effort) -> Place {
         let field = self.field_at(problem, asperity, effort);
         let outside = displacement - field - drift * (self.approach - self.reference);
-        Place { asperity, outside, drift, outer: 0.0 }
+        Place { asperity, outside, drift }
     }
 
     /// Displacement at an asperity by the members \[m\]; the derivatives to their radii are left in `row`.
@@ -242,19 +224,12 @@ impl Patch {
     /// Fields, slopes and residuals of the members at their radii; the worst residual and whose it is.
     pub(crate) fn evaluate(&mut self, problem: &Problem, effort: &mut Effort) -> Unsettled {
         let n = self.members.len();
-        let couples = problem.rules.interaction == Interaction::Reciprocal;
-        let outer: Vec<f64> = if couples { self.members.iter().map(|m| m.outer).collect() } else { Vec::new() };
-        problem.columns(self.members.iter().map(|m| m.asperity).zip(self.radius.iter().copied()), &outer, &mut self.spots);
-        self.grip.clear();
-        if let Some(mutual) = &self.spots.mutual {
-            self.grip.extend((0..n).map(|k| mutual.grip(k)));
-            mutual.returned(&mut self.returned);
-        }
+        problem.columns(self.members.iter().map(|m| m.asperity).zip(self.radius.iter().copied()), &mut self.spots);
         self.field.clear();
         self.slopes.clear();
         self.residual.clear();
         let mut worst = Unsettled::residual(0.0, self.members.first().map_or(0, |m| m.asperity));
-        if self.local && !couples {
+        if self.local {
             problem.field.among(&self.spots, &mut self.pairs, &mut self.field, &mut self.slopes, effort);
         } else {
             problem.field.rows(&self.spots, &self.spots.index, false, effort, |_, sum, slopes| {
@@ -268,7 +243,7 @@ impl Patch {
             let residual = self.approach + problem.heights[i]
                 - self.outside(&member)
                 - self.field[k]
-                - (self.asperity(problem, k).penetration(self.radius[k]) + member.yielding(self.radius[k]));
+                - problem.asperities[i].penetration(self.radius[k]);
             self.residual.push(residual);
             // A residual that is not a number must not pass as a small one.
             if residual.is_nan() || residual.abs() > worst.residual_m {
@@ -283,8 +258,8 @@ impl Patch {
         let n = self.members.len();
         self.matrix.clear();
         self.matrix.extend_from_slice(&self.slopes);
-        for (k, a) in self.radius.iter().enumerate() {
-            self.matrix[k * n + k] += self.asperity(problem, k).penetration_slope(*a) + damping;
+        for (k, (member, a)) in self.members.iter().zip(&self.radius).enumerate() {
+            self.matrix[k * n + k] += problem.asperities[member.asperity].penetration_slope(*a) + damping;
         }
     }
 
@@ -421,7 +396,7 @@ impl Patch {
             let place = &self.watched[k];
             let value = self.approach + problem.heights[place.asperity] - self.outside(place) - field;
             let by_members: f64 = slopes.iter().zip(rates).map(|(s, v)| s * v).sum();
-            traces.push(Trace { at: self.approach, value, rate: 1.0 - place.drift - by_members, grip: 1.0, grip_rate: 0.0 });
+            traces.push(Trace { at: self.approach, value, rate: 1.0 - place.drift - by_members });
         });
         traces
     }
@@ -431,36 +406,31 @@ impl Patch {
     /// is the whole one's to second order in what the rest of the contact does.
     pub(crate) fn totals(&self, problem: &Problem) -> (f64, f64) {
         let (mut whole, mut potential) = (0.0, 0.0);
-        let returned = if self.grip.is_empty() { &self.field } else { &self.returned };
-        for (k, ((member, &a), field)) in self.members.iter().zip(&self.radius).zip(returned).enumerate() {
-            let asperity = self.asperity(problem, k);
+        for ((member, &a), field) in self.members.iter().zip(&self.radius).zip(&self.field) {
+            let asperity = &problem.asperities[member.asperity];
             let load = asperity.load(a);
             let spot = PI * a * a;
             whole += load;
             potential +=
                 asperity.stored_energy(asperity.penetration(a), a) - problem.material.work_of_adhesion_j_m2 * spot + 0.5 * load * field;
-            potential += member.yielding_energy(problem, a);
         }
         (whole, potential)
     }
 
     /// `∂Π/∂δ` at the radii that are: the loads, less what the field from outside takes up \[N\].
     pub(crate) fn potential_slope(&self, problem: &Problem) -> f64 {
-        let pairs = self.members.iter().zip(&self.radius).enumerate();
-        pairs.map(|(k, (member, a))| self.asperity(problem, k).load(*a) * (1.0 - member.drift)).sum()
+        let pairs = self.members.iter().zip(&self.radius);
+        pairs.map(|(member, a)| problem.asperities[member.asperity].load(*a) * (1.0 - member.drift)).sum()
     }
 
     /// Sets out for another approach \[m\], every penetration going on at its rate.
     pub(crate) fn ahead(&mut self, problem: &Problem, approach: f64) {
         let (rates, _) = self.rates(problem);
-        let grip_rates = self.grip_rates(&rates);
         let way = approach - self.approach;
         for (k, rate) in rates.into_iter().enumerate() {
-            let (asperity, a) = (self.asperity(problem, k), self.radius[k]);
-            let grip_rate = grip_rates.get(k).copied().unwrap_or(0.0);
-            let speed = asperity.penetration_slope(a) * rate + asperity.penetration_by_grip(a) * grip_rate;
-            let grip = (asperity.grip() + grip_rate * way).clamp(0.5 * asperity.grip(), 2.0 * asperity.grip());
-            self.radius[k] = asperity.gripping(grip).radius_ahead(asperity.penetration(a) + speed * way);
+            let (asperity, a) = (&problem.asperities[self.members[k].asperity], self.radius[k]);
+            let speed = asperity.penetration_slope(a) * rate;
+            self.radius[k] = asperity.radius_ahead(asperity.penetration(a) + speed * way);
         }
         self.approach = approach;
     }

@@ -195,7 +195,7 @@ fn spots_of(problem: &Problem, state: &State, step: usize) -> Vec<Contact> {
         .iter()
         .zip(&state.displacement)
         .map(|(&i, w)| {
-            let (asperity, a) = (state.asperity(problem, i), state.radius[i]);
+            let (asperity, a) = (&problem.asperities[i], state.radius[i]);
             Contact {
                 step,
                 asperity: problem.number(i),

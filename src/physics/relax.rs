@@ -8,7 +8,6 @@ use super::equilibrium::Unsettled;
 use super::events::{Change, Moving};
 use super::krylov::dot;
 use super::state::Problem;
-use crate::model::Interaction;
 
 /// Greatest relative change of a radius in one iteration, here as in Newton's method.
 pub(crate) const STRIDE: f64 = 0.2;
@@ -26,9 +25,6 @@ const LONGER: f64 = 1e3;
 /// The longest step of time, and how much longer each is than the one before.
 const LONGEST: f64 = 1e9;
 const GROWTH: f64 = 3.0;
-
-/// Share of a step that is none any more.
-const SHORTEST: f64 = 1e-6;
 
 /// Attempts at a step, each a quarter as long as the one before.
 const ATTEMPTS: usize = 24;
@@ -55,8 +51,6 @@ pub(crate) trait Relaxing {
 /// of the way is of no interest, and the relaxation ends there.
 pub(crate) fn relax(contact: &mut impl Relaxing, problem: &Problem, uncovered: Option<&Change>) -> Result<Vec<Change>, Unsettled> {
     let mut changes: Vec<Change> = Vec::new();
-    let reciprocal = problem.rules.interaction == Interaction::Reciprocal;
-    let mut way: Option<(Vec<f64>, f64)> = None;
     let (mut time, mut finish) = (1.0, NEARLY);
     let mut last = Unsettled::because(Reason::NotANumber, 0);
     let mut round = 0;
@@ -67,30 +61,12 @@ pub(crate) fn relax(contact: &mut impl Relaxing, problem: &Problem, uncovered: O
             return Ok(changes);
         }
         if last.residual_m.is_nan() {
-            // With reciprocal fields there may be no loads that balance, where tensions draw edges to themselves.
-            if !reciprocal {
-                return Err(last);
-            }
-            match &mut way {
-                Some((step, share)) if *share > SHORTEST => {
-                    *share *= 0.5;
-                    contact.advance(step, -*share);
-                    time = 1.0;
-                }
-                _ => {
-                    let change = problem.drawn(&contact.spots()).ok_or(last)?;
-                    contact.take_out(&change);
-                    changes.push(change);
-                    way = None;
-                }
-            }
-            continue;
+            return Err(last);
         }
         let spots = contact.spots();
         let restless = if round.is_multiple_of(RESTLESS) { problem.at_edge(&spots, last.asperity) } else { None };
         if let Some(change) = problem.overtaken(&spots).or(restless) {
             contact.take_out(&change);
-            way = None;
             changes.push(change);
             if uncovered.is_some_and(|earlier| change.undoes(earlier)) {
                 return Ok(changes);
@@ -122,7 +98,6 @@ pub(crate) fn relax(contact: &mut impl Relaxing, problem: &Problem, uncovered: O
         let stride = stride(&step);
         let share = if stride > STRIDE { STRIDE / stride } else { 1.0 };
         contact.advance(&step, share);
-        way = Some((step, share));
         time = (time * GROWTH).min(LONGEST);
     }
     Err(last)

@@ -8,7 +8,6 @@ use super::patch::Trace;
 use super::path::{DRIFT, Depth, Halt, LATE, Mark, Path, WORST};
 use super::state::{Status, Totals};
 use super::{PhysicsError, Reason};
-use crate::model::Interaction;
 
 /// Residual of the whole contact where its state is not asked for, of the mean jump-off penetration.
 const ENOUGH: f64 = 2e-5;
@@ -75,7 +74,7 @@ impl Path<'_> {
                     self.finite_rates(first)?
                 }
             };
-            let missing = self.retrace(
+            self.retrace(
                 &rates,
                 if jump || rounds > 0 {
                     Since::Jump(shifted)
@@ -103,25 +102,13 @@ impl Path<'_> {
             let uncovered: Vec<usize> =
                 due.iter().filter(|(_, change)| change.kind == Kind::Uncover).map(|(_, change)| change.asperity).collect();
             uncovering = (!uncovered.is_empty()).then(|| (self.mark(), uncovered));
-            let events = self.log.events.len();
-            let crossed = rounds == 1 && !jump && due.iter().any(|(_, change)| self.crosses(change));
             for (_, change) in due {
                 // Another one may have brought it about, or made it needless.
                 if problem.is_due(&change, &self.front) {
                     self.avalanche(change)?;
                 }
             }
-            if crossed && self.log.events.len() > events {
-                self.log.charge(missing);
-            }
         }
-    }
-
-    /// True if a spot has gone over the centre of another that is in contact, where fields are reciprocal: what that one does to its grip is without bound at its
-    /// edge, so that it has jumped there, and lost what the event that is due now is charged with.
-    fn crosses(&self, change: &Change) -> bool {
-        let reciprocal = self.problem().rules.interaction == Interaction::Reciprocal;
-        reciprocal && change.kind == Kind::Cover && self.front.state.status[change.asperity] == Status::Contact
     }
 
     /// Rates of the spots at the equilibrium that was evaluated last; where they are no numbers, `first` tells why.
@@ -136,7 +123,7 @@ impl Path<'_> {
     /// `Σ F r` over the residuals that were evaluated last \[J\].
     fn work_on_residuals(&self) -> f64 {
         let state = &self.front.state;
-        let load = |i: usize| state.asperity(self.problem(), i).load(state.radius[i]);
+        let load = |i: usize| self.problem().asperities[i].load(state.radius[i]);
         state.contacts.iter().zip(&self.solver.residual).map(|(&i, residual)| load(i) * residual).sum()
     }
 
@@ -149,9 +136,8 @@ impl Path<'_> {
         worst > WORST * self.scale() || rms > DRIFT * self.scale()
     }
 
-    /// New traces of everything after the whole contact was solved; the work since the old ones is counted. What the potential has lost beyond that and is charged to
-    /// no event is returned \[J\].
-    fn retrace(&mut self, rates: &[f64], since: Since) -> f64 {
+    /// New traces of everything after the whole contact was solved; the work since the old ones is counted.
+    fn retrace(&mut self, rates: &[f64], since: Since) {
         let problem = self.problem();
         let target = self.front.state.approach_m;
         let jump = since != Since::Growth;
@@ -164,18 +150,16 @@ impl Path<'_> {
         }
         self.far_load(target, 0.0);
         let (mut relaxed, mut grown) = (0.0, -std::mem::take(&mut self.far));
-        let grip_rates = self.solver.grip_rates(rates);
         for (k, rate) in rates.iter().enumerate() {
             let i = self.front.state.contacts[k];
-            let (asperity, a) = (self.front.state.asperity(problem, i), self.front.state.radius[i]);
-            let trace = Trace::of(&asperity, target, a, *rate, grip_rates.get(k).copied().unwrap_or(0.0));
+            let (asperity, a) = (&problem.asperities[i], self.front.state.radius[i]);
+            let trace = Trace::of(asperity, target, a, *rate);
             let from = self.front.traces[i];
             if !from.value.is_nan() {
-                let to = if jump { Trace { at: target, value: from.ahead(target), grip: from.grip_ahead(target), ..from } } else { trace };
+                let to = if jump { Trace { at: target, value: from.ahead(target), ..from } } else { trace };
                 self.log.work_j += work(problem, i, from, to);
                 if jump {
-                    let expected = asperity.gripping(to.grip);
-                    let more = asperity.load(a) - expected.load(expected.radius_ahead(to.value));
+                    let more = asperity.load(a) - asperity.load(asperity.radius_ahead(to.value));
                     if shifted.is_none() {
                         relaxed += 0.5 * self.whole_lags[i] * more;
                     }
@@ -196,9 +180,8 @@ impl Path<'_> {
         self.log.charge(shifted.map_or(relaxed, |shifted| shifted - potential));
         let lost: f64 = self.log.events[self.settled..].iter().map(|event| event.energy_lost_j).sum();
         let balance = potential + lost - self.log.work_j;
-        let mut missing = self.balance - balance;
         if std::mem::take(&mut self.unbalanced) {
-            self.log.charge(std::mem::take(&mut missing));
+            self.log.charge(self.balance - balance);
         }
         // From one solution of the whole to the next only the events since are counted.
         self.balance = potential - self.log.work_j;
@@ -209,7 +192,6 @@ impl Path<'_> {
             self.log.pass(target, self.front.totals(target).load_n);
         }
         self.watch(rates);
-        missing
     }
 
     /// New traces of the free asperities that may come to their jump-in. All are taken anew now and then; between, only those that can have come

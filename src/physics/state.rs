@@ -95,14 +95,6 @@ impl Problem {
         let tabor: Vec<f64> = asperities.iter().map(|a| a.tabor(range)).collect();
         let below = tabor.iter().filter(|mu| **mu < LEAST_TABOR).count();
         let adhesive = material.work_of_adhesion_j_m2 > 0.0;
-        if !adhesive && rules.interaction == Kind::Reciprocal {
-            return Err(PhysicsError::Domain {
-                action: "reciprocal interaction",
-                quantity: "the work of adhesion [J/m2]",
-                value: 0.0,
-                allowed: "a positive number; without adhesion use interaction = \"spots\", \"point\" or \"none\"",
-            });
-        }
         if adhesive && rules.jump_in == JumpIn::Wu && below > 0 && !rules.allow_low_tabor {
             let smallest = tabor.iter().copied().fold(f64::INFINITY, f64::min);
             return Err(PhysicsError::LowTabor { smallest, below, all: tabor.len() });
@@ -189,9 +181,8 @@ impl Problem {
         self.material.contact_modulus_pa * self.length_m * self.length_m
     }
 
-    /// Spots as sources: asperities, ascending, with their contact radii \[m\]. Where spots change one another's grip, `outer` is what others do to it, as
-    /// [`super::interaction::Mutual`] has it; nothing where there are no others.
-    pub(crate) fn columns(&self, of: impl Iterator<Item = (usize, f64)> + Clone, outer: &[f64], spots: &mut Spots) {
+    /// Spots as sources: asperities, ascending, with their contact radii \[m\].
+    pub(crate) fn columns(&self, of: impl Iterator<Item = (usize, f64)> + Clone, spots: &mut Spots) {
         spots.index.clear();
         spots.index.extend(of.clone().map(|(i, _)| i));
         spots.columns.set(of.map(|(i, a)| {
@@ -199,38 +190,31 @@ impl Problem {
             let [x, y] = self.positions[i];
             Spot { x, y, a, radius: asperity.radius_m(), load: asperity.load(a), load_slope: asperity.load_slope(a) }
         }));
-        if self.rules.interaction == Kind::Reciprocal {
-            self.field.couple(spots, outer);
-        }
     }
 
     /// Displacement at distance r \[m\] from a spot of this radius \[m\], with its derivative to the radius; of another spot as far as that one's own
     /// size does not enter.
     pub(crate) fn spot_field(&self, asperity: &Asperity, r: f64, a: f64) -> (f64, f64) {
-        let unit = 1.0 / (PI * self.material.contact_modulus_pa * r);
-        let point = (asperity.load(a) * unit, asperity.load_slope(a) * unit);
         if self.rules.interaction == Kind::Point {
-            return point;
+            let unit = 1.0 / (PI * self.material.contact_modulus_pa * r);
+            return (asperity.load(a) * unit, asperity.load_slope(a) * unit);
         }
-        let field = spot_field_as_printed(r, a, asperity.radius_m(), asperity.pull_sqrt_m(), self.rules.slips);
-        if self.rules.interaction == Kind::Reciprocal { (0.5 * (field.0 + point.0), 0.5 * (field.1 + point.1)) } else { field }
+        spot_field_as_printed(r, a, asperity.radius_m(), asperity.pull_sqrt_m(), self.rules.slips)
     }
 
     /// The spots of a state as sources.
     pub(crate) fn spots(&self, state: &State, spots: &mut Spots) {
-        self.columns(state.contacts.iter().map(|&i| (i, state.radius[i])), &[], spots);
+        self.columns(state.contacts.iter().map(|&i| (i, state.radius[i])), spots);
     }
 
     /// Load, area and potential \[J\] of an equilibrium whose displacements at the spots are known.
     ///
-    /// The potential is `Π = Σ[U(d_i, a_i) − Δγπa_i²] + ½ΣF_iŵ_i`: exact for point interaction. With reciprocal fields it is exact with
-    /// `Σ_j F_j p(r_ij, a_i)` for `ŵ_i`, what the others' loads do to a spot as to a punch.
+    /// The potential is `Π = Σ[U(d_i, a_i) − Δγπa_i²] + ½ΣF_iŵ_i`: exact for point interaction.
     pub(crate) fn totals(&self, state: &State) -> (Totals, f64) {
         let mut totals = Totals::default();
         let mut potential = 0.0;
-        let returned = if state.returned.is_empty() { &state.displacement } else { &state.returned };
-        for (&i, &w) in state.contacts.iter().zip(returned) {
-            let (asperity, a) = (state.asperity(self, i), state.radius[i]);
+        for (&i, &w) in state.contacts.iter().zip(&state.displacement) {
+            let (asperity, a) = (&self.asperities[i], state.radius[i]);
             let load = asperity.load(a);
             let spot = PI * a * a;
             totals.load_n += load;
@@ -281,8 +265,6 @@ pub struct State {
     pub status: Vec<Status>,
     /// Contact radius of each asperity \[m\], 0 out of contact.
     pub radius: Vec<f64>,
-    /// Share of its adhesive load that each spot has where others change it: 1 with fields that do not, and out of contact. It follows from the radii.
-    pub grip: Vec<f64>,
     /// Asperities that left while others still invited them back: they stay free until their penetration falls below the jump-in.
     pub barred: Vec<bool>,
     /// Spots that stand for two since these touched, in the order in which they came; their numbers follow those of the summits.
@@ -291,8 +273,6 @@ pub struct State {
     pub contacts: Vec<usize>,
     /// Displacement ŵ at the asperities in contact \[m\], in their order.
     pub displacement: Vec<f64>,
-    /// What the loads of the others do to each as to a punch \[m\], in the same order; nothing where that is the displacement.
-    pub returned: Vec<f64>,
     /// Worst residual of the equilibrium \[m\].
     pub residual_m: f64,
     /// Least eigenvalue of the tangent `∂(δ_JKR + ŵ)/∂a`, each column over its diagonal element: 1 without coupling, 0 at a fold, negative where the
@@ -309,12 +289,10 @@ impl State {
             approach_m,
             status: vec![Status::Free; n],
             radius: vec![0.0; n],
-            grip: vec![1.0; n],
             barred: vec![false; n],
             merged: Vec::new(),
             contacts: Vec::new(),
             displacement: Vec::new(),
-            returned: Vec::new(),
             residual_m: 0.0,
             stability: 1.0,
         }
@@ -348,33 +326,20 @@ impl State {
     pub(crate) fn extend(&mut self) {
         self.status.push(Status::Free);
         self.radius.push(0.0);
-        self.grip.push(1.0);
         self.barred.push(false);
-    }
-
-    /// A spot's asperity with the grip that it has.
-    pub(crate) fn asperity(&self, problem: &Problem, i: usize) -> Asperity {
-        problem.asperities[i].gripping(self.grip[i])
     }
 
     pub(crate) fn set(&mut self, i: usize, status: Status, radius: f64) {
         match (self.contacts.binary_search(&i), status) {
             (Ok(at), Status::Free | Status::Covered { .. } | Status::Merged { .. }) => {
                 self.contacts.remove(at);
-                self.grip[i] = 1.0;
                 if at < self.displacement.len() {
                     self.displacement.remove(at);
-                }
-                if at < self.returned.len() {
-                    self.returned.remove(at);
                 }
             }
             (Err(at), Status::Contact) => {
                 self.contacts.insert(at, i);
                 self.displacement.insert(at.min(self.displacement.len()), 0.0);
-                if !self.returned.is_empty() {
-                    self.returned.insert(at.min(self.returned.len()), 0.0);
-                }
             }
             _ => {}
         }

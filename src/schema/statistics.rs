@@ -37,12 +37,9 @@ pub(super) const PARAMETERS: &[Column] = &[
     real("contact_modulus_pa", "Pa", "Reduced modulus E*, 1/E* = sum of (1 - ν²)/E over both bodies").from("Eq 1"),
     real("work_of_adhesion_j_m2", "J/m^2", "Work of adhesion Δγ").from("Eq 1"),
     real("interaction_range_m", "m", "Range of attraction ε").from("Eq 3"),
-    text(
-        "interaction",
-        "Elastic interaction between contacts: \"spots\", \"point\", \"reciprocal\" or \"none\"; null for boundary elements",
-    )
-    .or_null()
-    .from("Eqs 6-8"),
+    text("interaction", "Elastic interaction between contacts: \"spots\", \"point\" or \"none\"; null for boundary elements")
+        .or_null()
+        .from("Eqs 6-8"),
     text("boundary", "Boundary condition of the square: \"periodic\" or \"isolated\""),
     text("coalescence", "Coalescence rule: \"cover\" (absorption), \"merge\" (equal-area merging) or \"none\"; null for boundary elements")
         .or_null()

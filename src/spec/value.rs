@@ -95,6 +95,10 @@ fn length(path: &str, note: &str, value: &Written<'_>, faults: &mut Faults<'_>) 
     None
 }
 
+/// Values that earlier versions had: key, value, help.
+const REMOVED: [(&str, &str, &str); 1] =
+    [("model.interaction", "reciprocal", "use \"point\", which has an exact potential too, or \"spots\", the default")];
+
 /// One of the words of a key.
 pub(super) fn word(path: &str, words: &[&'static str], value: &Written<'_>, faults: &mut Faults<'_>) -> Option<&'static str> {
     let span = value.span();
@@ -105,7 +109,11 @@ pub(super) fn word(path: &str, words: &[&'static str], value: &Written<'_>, faul
     };
     let Some(known) = words.iter().find(|word| **word == found.as_ref()) else {
         let written = faults.written(&span);
+        let removed = REMOVED.iter().find(|(key, word, _)| *key == path && *word == found.as_ref());
         faults.add_with(&span, || {
+            if let Some((.., help)) = removed {
+                return (format!("value {written} of `{path}` was removed"), Some((*help).to_owned()));
+            }
             let help = match nearest(found, words.iter().copied()) {
                 Some(near) => format!("did you mean \"{near}\"? {}", listed()),
                 None => listed(),

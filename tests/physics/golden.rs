@@ -46,7 +46,8 @@ fn reg_whole_cycles() {
         let (found_area, found_pull_off, found_loss) =
             (found.area / (LENGTH * LENGTH), found.pull_off / load_unit, found.loss / (load_unit * RMS));
         if std::env::var_os("HYSTERON_DIGESTS").is_some() {
-            let turning: Vec<_> = cycle.turning.iter().map(|(step, state)| (step, state.approach_m, &state.radius, &state.barred)).collect();
+            let turning: Vec<_> =
+                cycle.turning.iter().map(|(step, state)| (step, state.approach_m, &state.radius, &state.barred)).collect();
             let bytes = postcard::to_stdvec(&(&cycle.steps, &cycle.contacts, &cycle.events, &cycle.merged, turning)).unwrap();
             let digest = blake3::hash(&bytes).to_hex();
             eprintln!("{what}: {} {found_area:.12e} {found_pull_off:.12e} {found_loss:.12e} {digest}", cycle.events.len());

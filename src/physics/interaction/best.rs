@@ -73,11 +73,6 @@ impl Best {
         }
     }
 
-    /// As [`DirectSum::couple`] has it.
-    pub(crate) fn couple(&self, spots: &mut Spots, outer: &[f64]) {
-        self.direct.couple(spots, outer);
-    }
-
     /// As [`DirectSum::rows`] has it.
     pub(crate) fn rows(&self, spots: &Spots, targets: &[usize], rough: bool, effort: &mut Effort, visit: impl FnMut(usize, f64, &[f64])) {
         self.direct.rows(spots, targets, rough, effort, visit);

@@ -3,14 +3,12 @@
 use super::centre::{CENTRE, Centre};
 use super::ewald::{IMAGES, ORDERS, RemainderSeries};
 use super::moments::{Moments, product};
-use super::mutual::{Measure, Mutual, Sphere};
 use super::pair::{LANES, Place, SpotColumns, sag, spot_fields};
 use super::table::{PairTable, Sources};
 use super::{Effort, Interaction, Spots, Tangent};
 use crate::model::{Boundary, Interaction as Kind, Material, Slips};
 use crate::physics::krylov::dot;
 use multiversion::multiversion;
-use std::f64::consts::FRAC_1_PI;
 use std::sync::Arc;
 
 /// Up to this many asperities the sums over images of every pair may be kept, 32 bytes each: 32 MB.
@@ -76,83 +74,6 @@ impl DirectSum {
         self.positions.push(place);
     }
 
-    /// What the spots are to one another where they change one another's grip; their loads follow. `outer` is what [`Mutual`] says.
-    pub(crate) fn couple(&self, spots: &mut Spots, outer: &[f64]) {
-        let measure = self.measure();
-        let columns = &spots.columns;
-        let spheres = (0..columns.len()).map(|i| sphere(columns, i)).collect();
-        let pair =
-            |i: usize, j: usize| self.pair([columns.x[i], columns.y[i]], spots.index[i], [columns.x[j], columns.y[j]], spots.index[j]);
-        let mutual = Mutual::new(spheres, outer, measure, pair);
-        spots.columns.set_loads(mutual.loads());
-        spots.mutual = Some(Arc::new(mutual));
-    }
-
-    fn measure(&self) -> Measure {
-        Measure { modulus: FRAC_1_PI / self.compliance, pull: self.pull, sag: self.sag, length: self.length }
-    }
-
-    /// Distance between two places, of these numbers \[m\], and what images of the one do at the other.
-    fn pair(&self, [x, y]: [f64; 2], i: usize, [u, v]: [f64; 2], j: usize) -> (f64, Option<[f64; ORDERS]>) {
-        let [dx, dy] = [x - u, y - v].map(|d| if self.periodic { d - self.length * (d / self.length).round_ties_even() } else { d });
-        let sums = self.periodic.then(|| match self.table.get(i * self.positions.len() + j) {
-            Some(known) => *known,
-            None => IMAGES.sums(dx / self.length, dy / self.length),
-        });
-        (dx.hypot(dy), sums)
-    }
-
-    /// What spots that change one another's grip do at an asperity out of contact.
-    fn around<'s>(&'s self, spots: &'s Spots, target: usize) -> impl Iterator<Item = ([f64; 4], f64)> + 's {
-        let (measure, columns) = (self.measure(), &spots.columns);
-        spots.index.iter().enumerate().map(move |(j, &source)| {
-            let (r, sums) = self.pair(self.positions[target], target, [columns.x[j], columns.y[j]], source);
-            let images = sums.map_or(0.0, |sums| sums[0] / self.length);
-            (measure.of(sphere(columns, j), r, sums.as_ref()), self.compliance * (1.0 / r + images))
-        })
-    }
-
-    /// Displacement at an asperity by spots that change one another's grip, and which of them it is. What the spots feel themselves is computed once, into
-    /// `known`; for another asperity the derivatives are left in `columns`.
-    fn felt(
-        &self,
-        spots: &Spots,
-        mutual: &Mutual,
-        target: usize,
-        known: &mut Vec<f64>,
-        columns: &mut [Vec<f64>; 2],
-    ) -> (f64, Option<usize>) {
-        match spots.index.binary_search(&target) {
-            Ok(i) => {
-                if known.is_empty() {
-                    mutual.displacements(known);
-                }
-                (known[i], Some(i))
-            }
-            Err(_) => (mutual.at(self.around(spots, target), columns), None),
-        }
-    }
-
-    /// [`Self::rows`] of spots that change one another's grip.
-    fn mutual_rows(
-        &self,
-        spots: &Spots,
-        mutual: &Mutual,
-        targets: &[usize],
-        slopes: &mut [f64],
-        visit: &mut impl FnMut(usize, f64, &[f64]),
-    ) {
-        let (mut known, mut columns) = (Vec::new(), Default::default());
-        for (k, target) in targets.iter().enumerate() {
-            let (sum, spot) = self.felt(spots, mutual, *target, &mut known, &mut columns);
-            match spot {
-                Some(i) => mutual.row(i, slopes),
-                None => mutual.row_at(&mut columns, slopes),
-            }
-            visit(k, sum, &slopes[..mutual.len()]);
-        }
-    }
-
     /// What the images of the spots need.
     fn moments(&self, spots: &Spots) -> Moments {
         Moments::of(self.kind, &spots.columns, self.pull, self.compliance, self.length)
@@ -170,11 +91,6 @@ impl DirectSum {
     ) {
         let n = spots.index.len();
         let mut slopes = vec![0.0; spots.columns.padded()];
-        if let Some(mutual) = &spots.mutual {
-            self.mutual_rows(spots, mutual, targets, &mut slopes, &mut visit);
-            effort.pairs += (n * targets.len()) as u64;
-            return;
-        }
         let moments = self.moments(spots);
         for (k, target) in targets.iter().enumerate() {
             let sum = self.row::<true>(spots, &moments, *target, rough, &mut slopes);
@@ -199,7 +115,7 @@ impl DirectSum {
         let inverse_length = if self.periodic { 1.0 / self.length } else { 0.0 };
         let place = Place { x, y, length: self.length, inverse_length, pull: self.pull, sag: self.sag };
         let mut sum = match self.kind {
-            Kind::None | Kind::Reciprocal => {
+            Kind::None => {
                 slopes.fill(0.0);
                 return 0.0;
             }
@@ -231,10 +147,6 @@ impl DirectSum {
         }
         sum
     }
-}
-
-fn sphere(columns: &SpotColumns, i: usize) -> Sphere {
-    Sphere { a: columns.a[i], radius: 1.0 / columns.inverse_radius[i] }
 }
 
 /// The sum of the fields of all images but the nearest; their derivatives are added.
@@ -314,23 +226,12 @@ impl Interaction for DirectSum {
     fn displacements(&self, spots: &Spots, targets: &[usize], displacements: &mut Vec<f64>, effort: &mut Effort) {
         displacements.clear();
         effort.pairs += (spots.index.len() * targets.len()) as u64;
-        if let Some(mutual) = &spots.mutual {
-            let (mut known, mut columns) = (Vec::new(), Default::default());
-            displacements.extend(targets.iter().map(|target| self.felt(spots, mutual, *target, &mut known, &mut columns).0));
-            return;
-        }
         let moments = self.moments(spots);
         displacements.extend(targets.iter().map(|target| self.row::<false>(spots, &moments, *target, false, &mut [])));
     }
 
     fn linearise(&self, spots: &Spots, displacements: &mut Vec<f64>, tangent: &mut Tangent, effort: &mut Effort) {
         let n = spots.index.len();
-        if let Some(mutual) = &spots.mutual {
-            effort.pairs += (n * n) as u64;
-            mutual.displacements(displacements);
-            tangent.set_mutual(mutual.clone());
-            return;
-        }
         let mut matrix = tangent.take_dense(n);
         displacements.clear();
         self.rows(spots, &spots.index, false, effort, |k, sum, slopes| {
@@ -352,15 +253,6 @@ impl Interaction for DirectSum {
         let [displacements, slopes] = found;
         displacements.clear();
         slopes.clear();
-        if let Some(mutual) = &spots.mutual {
-            let (loads, mut columns) = (mutual.load_rates(rates), Default::default());
-            for &target in targets {
-                displacements.push(mutual.at(self.around(spots, target), &mut columns));
-                slopes.push(mutual.slope_at(&columns, rates, &loads));
-            }
-            effort.pairs += (spots.index.len() * targets.len()) as u64;
-            return;
-        }
         self.rows(spots, targets, false, effort, |_, sum, row| {
             displacements.push(sum);
             slopes.push(dot(row, rates));

@@ -6,7 +6,6 @@ mod direct;
 pub mod ewald;
 mod fast;
 mod moments;
-mod mutual;
 pub mod pair;
 mod table;
 
@@ -15,11 +14,9 @@ pub use best::{Best, best};
 pub use direct::DirectSum;
 pub use fast::FastSum;
 use fast::Sparse;
-pub use mutual::Mutual;
 use pair::SpotColumns;
 use serde::{Deserialize, Serialize};
 use std::ops::{AddAssign, Sub};
-use std::sync::Arc;
 pub(crate) use table::PairTable;
 
 /// The spots in contact: which asperities they are, ascending, and their columns.
@@ -29,12 +26,9 @@ pub struct Spots {
     pub index: Vec<usize>,
     /// Their columns, in the same order.
     pub columns: SpotColumns,
-    /// What they are to one another, where their loads depend on it.
-    pub mutual: Option<Arc<Mutual>>,
 }
 
-/// `∂ŵ_i/∂a_j` over the spots in contact: what is asked of it is its product with a vector. Where grips follow the radii, the change of the penetrations by
-/// them is in it.
+/// `∂ŵ_i/∂a_j` over the spots in contact: what is asked of it is its product with a vector.
 #[derive(Debug, Clone)]
 pub struct Tangent(Form);
 
@@ -44,8 +38,6 @@ enum Form {
     Dense(usize, Vec<f64>),
     /// Near pairs and a mesh.
     Sparse(Box<Sparse>),
-    /// Spots that change one another's grip.
-    Mutual(Arc<Mutual>),
 }
 
 impl Default for Tangent {
@@ -64,7 +56,6 @@ impl Tangent {
                 }
             }
             Form::Sparse(sparse) => sparse.product(x, y),
-            Form::Mutual(mutual) => mutual.product(x, y),
         }
     }
 
@@ -72,7 +63,7 @@ impl Tangent {
     pub fn fine_product(&mut self, x: &[f64], y: &mut [f64]) {
         match &mut self.0 {
             Form::Sparse(sparse) => sparse.fine_product(x, y),
-            Form::Dense(..) | Form::Mutual(_) => self.product(x, y),
+            Form::Dense(..) => self.product(x, y),
         }
     }
 
@@ -81,14 +72,14 @@ impl Tangent {
     pub fn transforms(&self) -> u64 {
         match &self.0 {
             Form::Sparse(sparse) => sparse.transforms(),
-            Form::Dense(..) | Form::Mutual(_) => 0,
+            Form::Dense(..) => 0,
         }
     }
 
     /// True if it has all digits; made fast, it has some.
     #[must_use]
     pub fn is_exact(&self) -> bool {
-        matches!(self.0, Form::Dense(..) | Form::Mutual(_))
+        matches!(self.0, Form::Dense(..))
     }
 
     /// `∂ŵ_i/∂a_i`: what a spot's own images and the background do to it.
@@ -97,7 +88,6 @@ impl Tangent {
         match &self.0 {
             Form::Dense(size, matrix) => matrix[i * size + i],
             Form::Sparse(sparse) => sparse.own(i),
-            Form::Mutual(mutual) => mutual.own(i),
         }
     }
 
@@ -105,7 +95,7 @@ impl Tangent {
     fn take_dense(&mut self, size: usize) -> Vec<f64> {
         let mut matrix = match std::mem::take(self).0 {
             Form::Dense(_, matrix) => matrix,
-            Form::Sparse(_) | Form::Mutual(_) => Vec::new(),
+            Form::Sparse(_) => Vec::new(),
         };
         matrix.clear();
         matrix.resize(size * size, 0.0);
@@ -120,23 +110,19 @@ impl Tangent {
     fn take_sparse(&mut self) -> Box<Sparse> {
         match std::mem::take(self).0 {
             Form::Sparse(sparse) => sparse,
-            Form::Dense(..) | Form::Mutual(_) => Box::default(),
+            Form::Dense(..) => Box::default(),
         }
     }
 
     fn sparse(&mut self) -> Option<&mut Sparse> {
         match &mut self.0 {
             Form::Sparse(sparse) => Some(sparse),
-            Form::Dense(..) | Form::Mutual(_) => None,
+            Form::Dense(..) => None,
         }
     }
 
     fn set_sparse(&mut self, sparse: Box<Sparse>) {
         self.0 = Form::Sparse(sparse);
-    }
-
-    fn set_mutual(&mut self, mutual: Arc<Mutual>) {
-        self.0 = Form::Mutual(mutual);
     }
 }
 

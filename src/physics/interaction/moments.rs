@@ -27,8 +27,7 @@ impl Moments {
         for j in 0..n {
             let (mut value, mut slope) = ([0.0; ORDERS], [0.0; ORDERS]);
             match kind {
-                // Spots that change one another's grip are seen by what they are to one another.
-                Kind::None | Kind::Reciprocal => {}
+                Kind::None => {}
                 Kind::Point => {
                     value[0] = compliance / length * spots.load[j];
                     slope[0] = compliance / length * spots.load_slope[j];

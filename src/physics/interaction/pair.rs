@@ -276,11 +276,6 @@ impl SpotColumns {
         found
     }
 
-    /// Other loads \[N\] than those of lone spots.
-    pub(crate) fn set_loads(&mut self, loads: &[f64]) {
-        self.load[..loads.len()].copy_from_slice(loads);
-    }
-
     /// Number of spots.
     #[must_use]
     pub fn len(&self) -> usize {

@@ -100,8 +100,7 @@ fn evaluate(table: &PairTable, by: Sources<'_>, fields: &mut Vec<f64>, slopes: &
             }
             let (mut field, mut slope) = ([0.0; LANES], [0.0; LANES]);
             match by.kind {
-                // Reciprocal fields are no sums over pairs alone, and are not asked for here.
-                Kind::None | Kind::Reciprocal => {}
+                Kind::None => {}
                 Kind::Point => {
                     for k in 0..LANES {
                         field[k] = load[pass][k] * by.compliance * pairs.inverse_r[k];

@@ -29,8 +29,7 @@ impl Relaxing for Part<'_> {
 
     fn spots(&self) -> Vec<Moving> {
         let Patch { members, radius, residual, .. } = &*self.patch;
-        let spots = members.iter().zip(radius).zip(residual).enumerate();
-        spots.map(|(k, ((m, a), r))| (m.asperity, *a, *r, self.patch.grip_of(k))).collect()
+        members.iter().zip(radius).zip(residual).map(|((m, a), r)| (m.asperity, *a, *r)).collect()
     }
 
     fn take_out(&mut self, change: &Change) {

@@ -1,18 +1,17 @@
 //! One JKR asperity: the functions of `hysteron::physics::jkr`, by name.
 
-use crate::columns::{Column, Values, each, positive, within};
+use crate::columns::{Column, Values, each, within};
 use hysteron::model::{Material, Slips};
 use hysteron::physics::PhysicsError;
 use hysteron::physics::jkr::{self, Asperity};
 use pyo3::prelude::*;
 
 /// The asperity of one element.
-fn asperity(radius_m: f64, modulus: f64, adhesion: f64, grip: f64, eq9: bool) -> Result<Asperity, PhysicsError> {
+fn asperity(radius_m: f64, modulus: f64, adhesion: f64, eq9: bool) -> Result<Asperity, PhysicsError> {
     // The range of attraction enters where it is an argument, and nowhere else.
     let material = Material { contact_modulus_pa: modulus, work_of_adhesion_j_m2: adhesion, interaction_range_m: 1e-9 };
     let slips = Slips { eq9, ..Slips::NONE };
-    let lone = Asperity::as_printed(radius_m, &material, slips)?;
-    Ok(lone.gripping(positive("a JKR asperity", "the grip", grip)?))
+    Asperity::as_printed(radius_m, &material, slips)
 }
 
 /// A function of the asperity and of further columns.
@@ -20,20 +19,19 @@ macro_rules! of_asperity {
     ($($name:ident($($value:ident),*) $evaluate:expr;)*) => {
         $(
             #[pyfunction]
-            #[allow(clippy::too_many_arguments, reason = "an asperity is five of them")]
+            #[allow(clippy::too_many_arguments, reason = "an asperity is four of them")]
             fn $name<'py>(
                 py: Python<'py>,
                 radius_m: Column<'py>,
                 $($value: Column<'py>,)*
                 contact_modulus_pa: Column<'py>,
                 work_of_adhesion_j_m2: Column<'py>,
-                grip: Column<'py>,
                 eq9: bool,
             ) -> PyResult<Values<'py>> {
-                let columns = [radius_m, contact_modulus_pa, work_of_adhesion_j_m2, grip, $($value),*];
-                each(py, columns, |[radius, modulus, adhesion, grip, $($value),*]| {
+                let columns = [radius_m, contact_modulus_pa, work_of_adhesion_j_m2, $($value),*];
+                each(py, columns, |[radius, modulus, adhesion, $($value),*]| {
                     let evaluate: fn(&Asperity, $(of_asperity!(@number $value)),*) -> f64 = $evaluate;
-                    Ok(evaluate(&asperity(radius, modulus, adhesion, grip, eq9)?, $($value),*))
+                    Ok(evaluate(&asperity(radius, modulus, adhesion, eq9)?, $($value),*))
                 })
             }
         )*

@@ -154,7 +154,12 @@ pub(super) fn setup(campaign: &Campaign, unit: &CycleUnit) -> Result<Setup, Stag
 }
 
 /// The contact problem of heights \[m\] on the grid, with the range of the Morse law \[m\] if there is one.
-fn problem(params: &CaseParams, (units, range_m): (&Units, Option<f64>), heights_m: Array2<f64>, list: &[Summit]) -> Result<Problem, StageError> {
+fn problem(
+    params: &CaseParams,
+    (units, range_m): (&Units, Option<f64>),
+    heights_m: Array2<f64>,
+    list: &[Summit],
+) -> Result<Problem, StageError> {
     let (material, elements, spacing) = (&params.material, &params.boundary_elements, units.spacing_m());
     let work_length = material.adhesion_length_m();
     let top = heights_m.iter().copied().fold(f64::MIN, f64::max);

@@ -44,9 +44,6 @@ def test_the_formula_of_the_docstring_holds(name, values, formula):
     assert found.shape == (2, 3) and found.dtype == np.float64
     for (row, column), value in np.ndenumerate(found):
         assert value == pytest.approx(formula(E, adhesion[row, 0], radii[column], *values), rel=1e-11)
-    # A grip of τ is a work of adhesion of Δγτ².
-    gripped = function(R, *values, **GEL, grip=0.8)
-    assert gripped == pytest.approx(formula(E, G * 0.64, R, *values), rel=1e-11)
 
 
 def test_values_of_many_digits():
@@ -110,6 +107,6 @@ def test_outside_the_domain():
         jkr.load(-1.0, 1e-6, **GEL)
     with pytest.raises(ValueError, match=sentence + "; this is element 1 of the arrays"):
         jkr.load([1.0, -1.0, 2.0], 1e-6, **GEL)
-    for wrong in ({"contact_modulus_pa": 0.0}, {"work_of_adhesion_j_m2": math.inf}, {"grip": 0.0}):
+    for wrong in ({"contact_modulus_pa": 0.0}, {"work_of_adhesion_j_m2": math.inf}):
         with pytest.raises(ValueError, match="cannot evaluate a JKR asperity: the .*\nhelp: expected (zero or )?a positive, finite number"):
             jkr.load(R, 1e-6, **{**GEL, **wrong})

@@ -42,7 +42,7 @@ impl Order {
     /// Spots in order, named by their ranks.
     pub(super) fn spots(&self, spots: &Spots) -> (Spots, Vec<usize>) {
         let Ordered { ranks, from } = self.of(&spots.index);
-        (Spots { index: ranks, columns: spots.columns.in_order(&from), mutual: None }, from)
+        (Spots { index: ranks, columns: spots.columns.in_order(&from) }, from)
     }
 }
 
