@@ -1,12 +1,13 @@
 //! The events of a stretch: each is located in its neighbourhood, taken, and followed by all that it brings about.
 
-use super::equilibrium::Unsettled;
-use super::events::{Change, Kind, Trigger};
+use super::events::{Change, Kind};
 use super::front::Due;
 use super::locate::Found;
 use super::patch::Hold;
 use super::path::{EVENT_TOLERANCE, FLIPS, Halt, Path};
+use super::residual::Unsettled;
 use super::state::Status;
+use super::triggers::Trigger;
 use super::{PhysicsError, Reason};
 
 /// Share of its radius by which a spot is moved over a fold.

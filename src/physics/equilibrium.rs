@@ -7,14 +7,16 @@
 //!   themselves with dense matrices, and the whole goes on from there (nonlinear elimination, Lanzkron, Rose & Wilkes, SIAM J. Sci. Comput. 17:538, 1996);
 //! - [`Solver::relax`]: where Newton finds nothing (a fold, or after a jump), overdamped relaxation ([`super::relax`]).
 
-use super::Reason;
 use super::events::{Change, Moving};
 use super::interaction::{Effort, Interaction as _, Spots, Tangent};
-use super::krylov::{Matrix, alone, dot, gmres, gmres_and_least};
+use super::krylov::{Limits, LinearOperator, Preconditioner, Solution, bounded_inverse, gmres, gmres_and_least};
 use super::local::LocalInverse;
-use super::patch::{Hold, Patch, Trace};
-use super::relax::{Relaxing, STRIDE, relax};
+use super::patch::{Hold, Patch};
+use super::relax::{Relaxing, relax};
+use super::residual::{STRIDE, Unsettled};
 use super::state::{Problem, State, Status};
+use super::trace::Trace;
+use super::vector::dot;
 
 /// Products at most in one linear solve.
 const PRODUCTS: usize = 120;
@@ -39,26 +41,6 @@ const ROUGH_RATES: f64 = 3e-4;
 
 /// Solutions that one approximate inverse serves.
 const OLD: usize = 4;
-
-/// A state that is not in equilibrium: the worst residual and its asperity, and what else prevents an equilibrium.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Unsettled {
-    pub(crate) residual_m: f64,
-    pub(crate) asperity: usize,
-    pub(crate) reason: Reason,
-}
-
-impl Unsettled {
-    /// The worst residual \[m\] and its asperity.
-    pub(crate) fn residual(residual_m: f64, asperity: usize) -> Self {
-        Self { residual_m, asperity, reason: Reason::Residual }
-    }
-
-    /// Another reason, at an asperity.
-    pub(crate) fn because(reason: Reason, asperity: usize) -> Self {
-        Self { residual_m: f64::NAN, asperity, reason }
-    }
-}
 
 /// Solves for the radii of a state; keeps its work space from one solve to the next.
 pub(crate) struct Solver<'p> {
@@ -225,11 +207,20 @@ impl<'p> Solver<'p> {
         Err(worst)
     }
 
+    /// Counts the products of a solution.
+    fn count(&mut self, found: Solution) -> Vec<f64> {
+        self.effort.products += found.products;
+        self.effort.transforms += found.products * self.tangent.transforms();
+        found.x
+    }
+
     /// The step of Newton's method, to this share of the residual.
     fn newton_step(&mut self, state: &State, wanted: f64) -> Vec<f64> {
         self.invert(state);
-        let Self { tangent, inverse, diagonal, residual, effort, .. } = self;
-        gmres(Matrix { tangent, diagonal, inverse: inverse.as_ref() }, residual, wanted, PRODUCTS, effort)
+        let Self { tangent, inverse, diagonal, residual, .. } = self;
+        let inverse = inverse.as_ref().map(|inverse| inverse as &dyn Preconditioner);
+        let found = gmres(&Jacobian { tangent, diagonal }, inverse, residual, Limits { tolerance: wanted, products: PRODUCTS });
+        self.count(found)
     }
 
     /// Makes an approximate inverse of the tangent, if there is none of these spots.
@@ -240,7 +231,7 @@ impl<'p> Solver<'p> {
             *inverse = None;
             return;
         }
-        let own = |k: usize| alone(diagonal[k] + tangent.own(k));
+        let own = |k: usize| bounded_inverse(diagonal[k] + tangent.own(k));
         let known = inverse.take().filter(|_| *age < OLD);
         *inverse = known.and_then(|known| if known.serves(&state.contacts) { Some(known) } else { known.carried(&state.contacts, own) });
         if inverse.is_none() {
@@ -295,8 +286,9 @@ impl<'p> Solver<'p> {
             *left = 1.0 - (*left + own * rate);
         }
         let share = (dot(&left, &left) / left.len().max(1) as f64).sqrt();
-        let Self { tangent, diagonal, effort, .. } = self;
-        let more = gmres(Matrix { tangent, diagonal, inverse: None }, &left, (RATES / share).clamp(LEAST, 0.5), PRODUCTS, effort);
+        let limits = Limits { tolerance: (RATES / share).clamp(LEAST, 0.5), products: PRODUCTS };
+        let more = gmres(&Jacobian { tangent: &self.tangent, diagonal: &self.diagonal }, None, &left, limits);
+        let more = self.count(more);
         for (rate, more) in rates.iter_mut().zip(more) {
             *rate += more;
         }
@@ -315,11 +307,12 @@ impl<'p> Solver<'p> {
     /// Both, to a relative residual; `short` with the approximate inverse.
     fn rates_to(&mut self, wanted: f64, short: bool, state: &mut State) -> Vec<f64> {
         let ones = vec![1.0; state.contacts.len()];
-        let Self { tangent, inverse, diagonal, effort, .. } = self;
-        let inverse = inverse.as_ref().filter(|_| short);
-        let (rates, least) = gmres_and_least(Matrix { tangent, diagonal, inverse }, &ones, wanted, PRODUCTS, effort);
+        let Self { tangent, inverse, diagonal, .. } = self;
+        let inverse = inverse.as_ref().filter(|_| short).map(|inverse| inverse as &dyn Preconditioner);
+        let limits = Limits { tolerance: wanted, products: PRODUCTS };
+        let (rates, least) = gmres_and_least(&Jacobian { tangent, diagonal }, inverse, &ones, limits);
         state.stability = least;
-        rates
+        self.count(rates)
     }
 
     /// Penetrations `D_i − ŵ_i` of asperities that are not in contact, with their rates, in an equilibrium and its rates.
@@ -341,6 +334,25 @@ impl<'p> Solver<'p> {
         let mut displacement = Vec::new();
         self.problem.field.displacements(&self.spots, &[asperity], &mut displacement, &mut self.effort);
         displacement.first().copied().unwrap_or(0.0)
+    }
+}
+
+/// Jacobian `∂(δ_JKR + ŵ)/∂a`: the slopes `dδ/da` of the asperities and the tangent of the field.
+struct Jacobian<'a> {
+    tangent: &'a Tangent,
+    diagonal: &'a [f64],
+}
+
+impl LinearOperator for Jacobian<'_> {
+    fn product(&self, x: &[f64], y: &mut [f64]) {
+        self.tangent.product(x, y);
+        for (yi, (di, xi)) in y.iter_mut().zip(self.diagonal.iter().zip(x)) {
+            *yi += di * xi;
+        }
+    }
+
+    fn diagonal(&self, i: usize) -> f64 {
+        self.diagonal[i] + self.tangent.own(i)
     }
 }
 
@@ -375,9 +387,11 @@ impl Relaxing for Whole<'_, '_> {
     }
 
     fn step(&mut self, time: f64) -> (Vec<f64>, bool) {
-        let Solver { tangent, diagonal, residual, effort, .. } = &mut *self.solver;
+        let Solver { tangent, diagonal, residual, .. } = &*self.solver;
         let damped: Vec<f64> = diagonal.iter().map(|d| d + 1.0 / time).collect();
-        (gmres(Matrix { tangent, diagonal: &damped, inverse: None }, residual, 1e-3, PRODUCTS, effort), true)
+        let limits = Limits { tolerance: 1e-3, products: PRODUCTS };
+        let step = gmres(&Jacobian { tangent, diagonal: &damped }, None, residual, limits);
+        (self.solver.count(step), true)
     }
 
     fn advance(&mut self, step: &[f64], share: f64) {

@@ -1,9 +1,8 @@
 //! The modes of a height field: its transform, and what is told from it.
 
 use super::PhysicsError;
-use super::measured::mirrored;
 use super::memory::{filled, zeros};
-use super::periodogram::Ring;
+use super::ring::Ring;
 use super::spectrum::Moments;
 use ndarray::{Array2, ArrayView2};
 use rayon::prelude::*;
@@ -172,4 +171,16 @@ impl Field {
         );
         Ok(heights)
     }
+}
+
+/// A field with its mirror images: twice the side, and periodic.
+///
+/// # Errors
+/// Not enough memory.
+pub fn mirrored(heights: ArrayView2<'_, f64>) -> Result<Array2<f64>, PhysicsError> {
+    let n = heights.nrows();
+    let fold = |k: usize| if k < n { k } else { 2 * n - 1 - k };
+    let mut whole = zeros((2 * n, 2 * n))?;
+    whole.indexed_iter_mut().for_each(|((i, j), h)| *h = heights[[fold(i), fold(j)]]);
+    Ok(whole)
 }

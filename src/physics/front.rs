@@ -5,8 +5,9 @@
 //! approach follows from there.
 
 use super::events::{Change, Kind};
-use super::patch::{STEEPEST, Trace};
+use super::quadrature::{gauss, hermite, hermite_slope};
 use super::state::{Problem, State, Status, Totals};
+use super::trace::{STEEPEST, Trace};
 
 /// A rate of penetration beyond this tells of a fold: it grows as the inverse root of the distance to it, and is below 1.2 elsewhere.
 const STEEP: f64 = 2.5;
@@ -274,21 +275,4 @@ pub(crate) fn work_along(problem: &Problem, i: usize, span: f64, from: CurvePoin
         let a = hermite(p, from.radius[0], to.radius[0], from.radius[1] * span, to.radius[1] * span);
         asperity.load(a) * hermite_slope(p, from.approach[0], to.approach[0], from.approach[1] * span, to.approach[1] * span)
     })
-}
-
-fn hermite(x: f64, f0: f64, f1: f64, t0: f64, t1: f64) -> f64 {
-    let y = 1.0 - x;
-    y * y * (1.0 + 2.0 * x) * f0 + x * x * (1.0 + 2.0 * y) * f1 + x * y * (y * t0 - x * t1)
-}
-
-pub(crate) fn hermite_slope(x: f64, f0: f64, f1: f64, t0: f64, t1: f64) -> f64 {
-    let y = 1.0 - x;
-    6.0 * x * y * (f1 - f0) + y * (y - 2.0 * x) * t0 + x * (x - 2.0 * y) * t1
-}
-
-/// `∫f dp` over `[0, 1]` by Gauss's rule of four points.
-pub(crate) fn gauss(f: impl Fn(f64) -> f64) -> f64 {
-    let (inner, outer) = (0.339_981_043_584_856_3 / 2.0, 0.861_136_311_594_052_6 / 2.0);
-    let (heavy, light) = (0.652_145_154_862_546_1 / 2.0, 0.347_854_845_137_453_9 / 2.0);
-    light * (f(0.5 - outer) + f(0.5 + outer)) + heavy * (f(0.5 - inner) + f(0.5 + inner))
 }

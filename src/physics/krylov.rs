@@ -1,62 +1,63 @@
-//! GMRES: the linear solves of the equilibrium.
+//! GMRES for the linear systems of an equilibrium.
 //!
-//! Saad & Schultz, SIAM J. Sci. Stat. Comput. 7:856 (1986), right-preconditioned, modified Gram–Schmidt, no restart: the tangent of a
-//! contact is a diagonal and a long-range coupling of low rank, and some ten products are enough; half as many with [`LocalInverse`].
+//! Saad & Schultz, SIAM J. Sci. Stat. Comput. 7:856 (1986), right-preconditioned, modified Gram–Schmidt, without restart: the tangent of a contact is
+//! a diagonal and a long-range coupling of low rank, and ten products are enough; half as many with a preconditioner.
 
 use super::dense::Lu;
-use super::interaction::{Effort, Tangent};
-use super::local::LocalInverse;
+use super::vector::dot;
 
 /// Steps of the inverse iteration for the least eigenvalue: it stands apart where it matters.
 const INVERSE_ITERATIONS: usize = 30;
 
-/// `(diag(diagonal) + tangent)·x`.
-fn apply(tangent: &Tangent, diagonal: &[f64], x: &[f64], y: &mut [f64]) {
-    tangent.product(x, y);
-    for (yi, (di, xi)) in y.iter_mut().zip(diagonal.iter().zip(x)) {
-        *yi += di * xi;
-    }
+/// A square matrix, by its product with a vector.
+pub(crate) trait LinearOperator {
+    /// `y = A x`.
+    fn product(&self, x: &[f64], y: &mut [f64]);
+    /// Diagonal element `A_ii`.
+    fn diagonal(&self, i: usize) -> f64;
 }
 
-#[multiversion::multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut strands = [0.0; 8];
-    let (a_whole, a_rest) = a.as_chunks::<8>();
-    let (b_whole, b_rest) = b.as_chunks::<8>();
-    for (ca, cb) in a_whole.iter().zip(b_whole) {
-        for k in 0..8 {
-            strands[k] += ca[k] * cb[k];
-        }
-    }
-    for (k, (x, y)) in a_rest.iter().zip(b_rest).enumerate() {
-        strands[k] += x * y;
-    }
-    strands.iter().sum()
+/// An approximate inverse.
+pub(crate) trait Preconditioner {
+    /// `y ≈ A⁻¹ x`.
+    fn apply(&self, x: &[f64], y: &mut [f64]);
 }
 
-/// A matrix `diag(diagonal) + tangent`, and an approximate inverse of it if there is one.
-#[derive(Clone, Copy)]
-pub(crate) struct Matrix<'a> {
-    pub(crate) tangent: &'a Tangent,
-    pub(crate) diagonal: &'a [f64],
-    pub(crate) inverse: Option<&'a LocalInverse>,
+/// An approximate solution.
+pub(crate) struct Solution {
+    pub(crate) x: Vec<f64>,
+    /// Products of the matrix with a vector.
+    pub(crate) products: u64,
 }
 
-/// Solves `matrix·x = rhs` to the relative residual `tolerance`; what is reached within `most` products is returned.
-pub(crate) fn gmres(matrix: Matrix<'_>, rhs: &[f64], tolerance: f64, most: usize, effort: &mut Effort) -> Vec<f64> {
-    solve(matrix, rhs, tolerance, most, effort, None)
+/// Limits of a solution.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Limits {
+    /// Norm of the residual over that of the right-hand side.
+    pub(crate) tolerance: f64,
+    /// Maximum number of products.
+    pub(crate) products: usize,
 }
 
-/// The same, with the least eigenvalue of the matrix, each column over its diagonal element, in the space that the solution took: 1 without
-/// coupling, 0 at a fold.
-pub(crate) fn gmres_and_least(matrix: Matrix<'_>, rhs: &[f64], tolerance: f64, most: usize, effort: &mut Effort) -> (Vec<f64>, f64) {
+/// Solves `A x = rhs` within the limits.
+pub(crate) fn gmres(matrix: &impl LinearOperator, inverse: Option<&dyn Preconditioner>, rhs: &[f64], limits: Limits) -> Solution {
+    solve(matrix, inverse, rhs, limits, None)
+}
+
+/// Solves, and finds the least eigenvalue of the matrix in the Krylov space, each column over its diagonal element: 1 without coupling, 0 at a fold.
+pub(crate) fn gmres_and_least(
+    matrix: &impl LinearOperator,
+    inverse: Option<&dyn Preconditioner>,
+    rhs: &[f64],
+    limits: Limits,
+) -> (Solution, f64) {
     let mut projection = Projection::default();
-    let x = solve(matrix, rhs, tolerance, most, effort, Some(&mut projection));
-    (x, projection.least_eigenvalue())
+    let solution = solve(matrix, inverse, rhs, limits, Some(&mut projection));
+    (solution, projection.least_eigenvalue())
 }
 
-/// What a solution has seen of the matrix `A`, by columns: `VᵀAW` down to its subdiagonal element and `VᵀDW`, V being the orthonormal basis, W that as
-/// the approximate inverse answers to it and D the diagonal.
+/// Projection of the matrix `A` on the Krylov space, by columns: `VᵀAW` down to its subdiagonal element and `VᵀDW`, with the orthonormal basis V, the
+/// preconditioned basis W and the diagonal D.
 #[derive(Debug, Default)]
 struct Projection {
     matrix: Vec<Vec<f64>>,
@@ -97,34 +98,33 @@ impl Projection {
     }
 }
 
-/// Solves, and keeps what it has seen of the matrix if that is asked for.
+/// Solves, with the projection of the matrix if that is wanted.
 fn solve(
-    Matrix { tangent, diagonal, inverse }: Matrix<'_>,
+    matrix: &impl LinearOperator,
+    inverse: Option<&dyn Preconditioner>,
     rhs: &[f64],
-    tolerance: f64,
-    most: usize,
-    effort: &mut Effort,
+    limits: Limits,
     mut seen: Option<&mut Projection>,
-) -> Vec<f64> {
+) -> Solution {
     let n = rhs.len();
     let beta = dot(rhs, rhs).sqrt();
     let mut x = vec![0.0; n];
     if beta == 0.0 || !beta.is_finite() {
-        return x;
+        return Solution { x, products: 0 };
     }
-    let scale: Vec<f64> = diagonal.iter().enumerate().map(|(i, d)| alone(d + tangent.own(i))).collect();
+    let scale: Vec<f64> = (0..n).map(|i| bounded_inverse(matrix.diagonal(i))).collect();
     let mut basis: Vec<Vec<f64>> = vec![rhs.iter().map(|v| v / beta).collect()];
     let mut hessenberg: Vec<Vec<f64>> = Vec::new();
     let (mut cosines, mut sines): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
     let mut g = vec![beta];
     let mut scaled = vec![0.0; n];
     let mut answers: Vec<Vec<f64>> = Vec::new();
-    for k in 0..most.min(n) {
+    let mut products = 0;
+    for k in 0..limits.products.min(n) {
         precondition(inverse, &scale, &basis[k], &mut scaled);
         let mut w = vec![0.0; n];
-        apply(tangent, diagonal, &scaled, &mut w);
-        effort.products += 1;
-        effort.transforms += tangent.transforms();
+        matrix.product(&scaled, &mut w);
+        products += 1;
         let mut column = Vec::with_capacity(k + 2);
         for v in &basis {
             let h = dot(v, &w);
@@ -154,7 +154,7 @@ fn solve(
         sines.push(s);
         g.push(-s * g[k]);
         g[k] *= c;
-        if g[k + 1].abs() <= tolerance * beta || length <= 1e-300 {
+        if g[k + 1].abs() <= limits.tolerance * beta || length <= 1e-300 {
             break;
         }
         basis.push(w.iter().map(|wi| wi / length).collect());
@@ -174,17 +174,17 @@ fn solve(
         }
     }
     precondition(inverse, &scale, &x, &mut scaled);
-    scaled
+    Solution { x: scaled, products }
 }
 
-/// What a spot alone answers to, its diagonal element being `whole`.
-pub(crate) fn alone(whole: f64) -> f64 {
+/// Inverse of a diagonal element, bounded.
+pub(crate) fn bounded_inverse(whole: f64) -> f64 {
     // A diagonal near zero belongs to a spot near the end of its branch: keep its sign, bound its inverse.
     if whole.abs() > 1e-3 { 1.0 / whole } else { 1e3f64.copysign(whole) }
 }
 
-/// `y` as the approximate inverse answers to `x`, or the inverse of the diagonal.
-fn precondition(inverse: Option<&LocalInverse>, scale: &[f64], x: &[f64], y: &mut [f64]) {
+/// Applies the approximate inverse, or that of the diagonal.
+fn precondition(inverse: Option<&dyn Preconditioner>, scale: &[f64], x: &[f64], y: &mut [f64]) {
     match inverse {
         Some(inverse) => inverse.apply(x, y),
         None => {

@@ -6,6 +6,7 @@
 
 use super::dense::Lu;
 use super::interaction::{Tangent, places_in};
+use super::krylov::Preconditioner;
 use super::state::{Problem, State, Status};
 
 /// Spots in one group, at most, and spots that are solved together for it.
@@ -105,9 +106,10 @@ impl LocalInverse {
         }
         Some(found)
     }
+}
 
-    /// `y` as it answers to `x`.
-    pub(crate) fn apply(&self, x: &[f64], y: &mut [f64]) {
+impl Preconditioner for LocalInverse {
+    fn apply(&self, x: &[f64], y: &mut [f64]) {
         for (ends, yi) in self.starts.windows(2).zip(y) {
             let mut strands = [0.0; 4];
             let ((spots, left), (values, over)) =

@@ -5,10 +5,10 @@
 //! radius and solving for the approach; a fold is where `dδ/da` of a spot that moves with it vanishes.
 
 use super::Reason;
-use super::equilibrium::Unsettled;
 use super::illinois::{End, Illinois};
 use super::interaction::Effort;
-use super::patch::{Hold, Patch};
+use super::patch::{Hold, Patch, Point};
+use super::residual::Unsettled;
 use super::state::Problem;
 
 /// Shortest part of a way that is tried where the whole is too long.
@@ -29,17 +29,6 @@ pub(crate) enum Found {
     Bound,
     /// Neither comes before the approach at which the search ends.
     Beyond,
-}
-
-/// A state of a patch on the curve of equilibria, with its direction.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Point {
-    pub(crate) radius: Vec<f64>,
-    pub(crate) approach: f64,
-    /// Derivatives of the radii and of the approach to the radius of the spot that is followed, `at` \[m\].
-    pub(crate) direction: Vec<f64>,
-    pub(crate) slope: f64,
-    pub(crate) at: f64,
 }
 
 impl Patch {

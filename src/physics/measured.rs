@@ -9,9 +9,11 @@
 use super::PhysicsError;
 
 use super::field::Field;
+use super::field::mirrored;
 use super::levelling::{ROUNDING, check_size, level};
 use super::memory::zeros;
-use super::periodogram::{Ring, windowed_periodogram};
+use super::periodogram::windowed_periodogram;
+use super::ring::Ring;
 use super::spectrum::Moments;
 use super::summits::{Summits, find_summits};
 use crate::model::{Detrend, Missing};
@@ -291,16 +293,4 @@ pub fn find_measured(
     // Each of the four images has them.
     found.rejected /= 4;
     Ok((found, edge))
-}
-
-/// A field with its mirror images: twice the side, and periodic.
-///
-/// # Errors
-/// Not enough memory.
-pub fn mirrored(heights: ArrayView2<'_, f64>) -> Result<Array2<f64>, PhysicsError> {
-    let n = heights.nrows();
-    let fold = |k: usize| if k < n { k } else { 2 * n - 1 - k };
-    let mut whole = zeros((2 * n, 2 * n))?;
-    whole.indexed_iter_mut().for_each(|((i, j), h)| *h = heights[[fold(i), fold(j)]]);
-    Ok(whole)
 }

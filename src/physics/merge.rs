@@ -18,11 +18,11 @@ use super::illinois::{End, Illinois};
 use super::interaction::{Effort, Interaction as _, Spots};
 use super::jkr::Asperity;
 use super::log::Event;
+use super::merged::Known;
+pub use super::merged::Merged;
 use super::path::{Carried, Path};
 use super::state::{Problem, State, Status};
 use crate::model::Coalescence;
-use serde::{Deserialize, Serialize};
-use std::collections::BTreeSet;
 
 /// Overlap at which spots merge at the latest, of their distance.
 const TOUCH: f64 = 1e-3;
@@ -39,33 +39,6 @@ const SUDDEN: f64 = 1e-6;
 /// Greatest tension of a merged spot, of `sqrt(8πE*Δγa³)`. The branch ends at 5/6.
 const TENSEST: f64 = 0.8;
 
-/// A spot that stands for two.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Merged {
-    /// Parts: summits, or merged spots themselves.
-    pub parts: [usize; 2],
-    /// Their contact radii when they merged \[m\].
-    pub radii_m: [f64; 2],
-    /// Centre \[m\].
-    pub place_m: [f64; 2],
-    /// Radius of curvature R \[m\].
-    pub radius_m: f64,
-    /// Height over the highest summit \[m\].
-    pub height_m: f64,
-    /// The contact radius at which it parts \[m\].
-    pub release_m: f64,
-    /// Approach at which they merged \[m\].
-    pub approach_m: f64,
-}
-
-impl Merged {
-    /// Contact radius when the parts merged \[m\].
-    #[must_use]
-    pub fn contact_radius_m(&self) -> f64 {
-        self.radii_m[0].hypot(self.radii_m[1])
-    }
-}
-
 /// What is to be done.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Meeting {
@@ -76,9 +49,6 @@ pub(crate) enum Meeting {
     /// A merged spot has left, and what it stood for is free.
     Leave,
 }
-
-/// Pairs that touch and are no news.
-pub(crate) type Known = BTreeSet<(usize, usize)>;
 
 impl Problem {
     /// The problem of a state that has merged spots; nothing where it has none.

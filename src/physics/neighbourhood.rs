@@ -6,12 +6,14 @@
 //! do to the rest of the contact is what the rest does to them as the approach goes on.
 
 use super::events::{Change, Kind};
-use super::front::{CurvePoint, gauss, hermite_slope, work, work_along};
-use super::locate::Point;
+use super::front::{CurvePoint, work, work_along};
 use super::outside::Stood;
-use super::patch::{Hold, Place, Trace};
+use super::patch::{Hold, Place, Point};
 use super::path::{Halt, Path};
-use super::state::{Problem, Status, Totals};
+use super::pending::Ripple;
+use super::quadrature::{gauss, hermite_slope};
+use super::state::{Status, Totals};
+use super::trace::Trace;
 use crate::model::Interaction;
 
 /// Spots that learn of an event at once or lag, over those that are solved with it.
@@ -38,28 +40,6 @@ pub(crate) struct Before {
     /// Load of its spots, and what the rest of the contact does to their loads as the approach goes on \[N\].
     load: f64,
     pull: f64,
-}
-
-/// What a neighbourhood does from afar, to those who were not told.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Ripple {
-    place: [f64; 2],
-    /// Those nearer than this know better \[m\].
-    reach: f64,
-    /// Change of its load \[N\].
-    load_n: f64,
-}
-
-impl Ripple {
-    /// True if a place was not told of it.
-    fn passes(&self, problem: &Problem, place: &[f64; 2]) -> bool {
-        problem.neighbours.distance(place, &self.place) > self.reach
-    }
-
-    /// What it does to a place \[m\].
-    fn field(&self, problem: &Problem, place: &[f64; 2]) -> f64 {
-        self.load_n * problem.material.compliance() * problem.neighbours.kernel(place, &self.place)
-    }
 }
 
 impl Path<'_> {

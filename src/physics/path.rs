@@ -14,15 +14,17 @@ mod limit;
 
 pub(crate) use carried::Carried;
 
-use super::equilibrium::{Solver, Unsettled};
+use super::equilibrium::Solver;
 use super::events::{Change, Kind};
 use super::front::{Due, Front};
 use super::illinois::{End, Illinois};
 use super::interaction::Effort;
 use super::log::Log;
-use super::neighbourhood::Ripple;
-use super::patch::{Patch, Trace};
+use super::patch::Patch;
+use super::pending::Ripple;
+use super::residual::Unsettled;
 use super::state::{Problem, State, Status, Totals};
+use super::trace::Trace;
 use super::{PhysicsError, Reason};
 
 /// Greatest root mean square of the residuals at the end of a stretch, before the whole contact is solved; of the mean jump-off penetration.

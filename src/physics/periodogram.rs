@@ -3,19 +3,9 @@
 use super::PhysicsError;
 use super::field::Field;
 use super::memory::zeros;
+pub use super::ring::Ring;
 use ndarray::{Array1, ArrayView2};
 use std::f64::consts::TAU;
-
-/// Average over the modes of a ring of wavevectors.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Ring {
-    /// Mean wavenumber q \[1/m\].
-    pub wavenumber_1_m: f64,
-    /// Mean power spectral density C(q) \[m⁴\].
-    pub density_m4: f64,
-    /// Number of modes.
-    pub mode_count: u64,
-}
 
 /// `C(q) = |c_k|²/qL²` of the modes `h(x) = Σ_k c_k exp(i k·x)` of a square of side L \[m\], `qL = 2π/L`, as [`super::spectrum::Spectrum::density`] has it (Eq 10):
 /// `Σ_k C(k) qL² = h_rms²`. Averaged over rings of wavevectors, four to a doubling, from the longest waves to half the grid's shortest ones; rings without modes

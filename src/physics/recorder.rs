@@ -1,7 +1,7 @@
 //! What is written down of a branch: a step at every point of the grid and at the turning points, with the events since the step before.
 
 use super::PhysicsError;
-use super::cycle::{Branch, Contact, Cycle, MergedAt, Settings, Step};
+use super::cycle_table::{Branch, Contact, Cycle, MergedAt, Settings, Step};
 use super::events::Kind;
 use super::interaction::Effort;
 use super::log::Event;

@@ -4,13 +4,10 @@
 //! reached is covered: the flow decides who, without reference to the step of the approach. For `point` it is a gradient flow of the potential.
 
 use super::Reason;
-use super::equilibrium::Unsettled;
 use super::events::{Change, Moving};
-use super::krylov::dot;
+use super::residual::{STRIDE, Unsettled};
 use super::state::Problem;
-
-/// Greatest relative change of a radius in one iteration, here as in Newton's method.
-pub(crate) const STRIDE: f64 = 0.2;
+use super::vector::dot;
 
 /// Steps at most since a spot was taken out last: however many go, each is a step towards rest.
 const STEPS: usize = 1000;

@@ -3,7 +3,7 @@
 //! What a state was found by, displacements and residual, is not kept: it is computed anew before the path goes on.
 
 use super::PhysicsError;
-use super::merge::Merged;
+use super::merged::Merged;
 use super::state::{Problem, State, Status};
 
 /// An asperity that is not simply free.

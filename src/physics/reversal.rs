@@ -3,7 +3,7 @@
 //! At `Δγ = 0` the half-space is elastic and the contact has no memory: its state is a function of the approach alone, and the loop encloses no area. The
 //! unloading branch is therefore the loading branch in reverse. Each event is undone at its approach and gives back the energy that it took: Θ is exactly 0.
 
-use super::cycle::{Branch, Contact, Cycle, Step};
+use super::cycle_table::{Branch, Contact, Cycle, Step};
 use super::events::Kind;
 use super::interaction::Effort;
 use super::log::Event;

@@ -1,6 +1,6 @@
 //! A self-affine spectrum that fits a measured one.
 
-use super::periodogram::Ring;
+use super::ring::Ring;
 
 /// `C(q) = C0` up to the roll-off `q_r`, and `C0 (q/q_r)^(−2(H+1))` beyond (Eq 10 with a roll-off).
 #[derive(Debug, Clone, Copy, PartialEq)]

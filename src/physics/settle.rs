@@ -1,12 +1,12 @@
 //! The whole contact, solved at the end of every stretch: the traces begin anew.
 
-use super::equilibrium::Unsettled;
 use super::events::{Change, Kind};
 use super::front::work;
-use super::krylov::dot;
-use super::patch::Trace;
 use super::path::{DRIFT, Depth, Halt, LATE, Mark, Path, WORST};
+use super::residual::Unsettled;
 use super::state::{Status, Totals};
+use super::trace::Trace;
+use super::vector::dot;
 use super::{PhysicsError, Reason};
 
 /// Residual of the whole contact where its state is not asked for, of the mean jump-off penetration.

@@ -4,7 +4,7 @@
 //! overlapping discs count an area twice and the absorption rule has no potential. Such a cycle ends with an error, and its tables are not written.
 
 use super::PhysicsError;
-use super::cycle::{Branch, Cycle, Step};
+use super::cycle_table::{Branch, Cycle, Step};
 use super::state::Problem;
 
 /// Numerical resolution of the dissipated energy, over the largest work along the loop: Θ is the difference of the works of loading and unloading, and each is

@@ -4,7 +4,7 @@ use super::PhysicsError;
 use super::interaction::pair::{Spot, spot_field_as_printed};
 use super::interaction::{Best, Spots, best};
 use super::jkr::Asperity;
-use super::merge::Merged;
+use super::merged::Merged;
 use super::neighbours::Neighbours;
 use super::places::Places;
 use super::summits::Summit;

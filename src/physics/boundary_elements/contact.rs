@@ -3,9 +3,10 @@
 //! With the displacement `u` (zero mean), the mean gap `D` and the heights `z`, the gap is `g = D + u − z` and the energy
 //! `Π(u; D) = ½ u·K u + Σ V(g)`. The load is `F = dΠ/dΔ = −Σ V'(g)` at the approach `Δ = max z − D`.
 
+use super::grid::remove_mean;
 use super::grid::{HalfSpace, Operator, Waves};
 use super::law::{Bond, Law};
-use super::sums::{grain, remove_mean, sums};
+use super::sums::{grain, sums};
 use crate::physics::PhysicsError;
 use crate::physics::memory::filled;
 use rayon::prelude::*;

@@ -3,7 +3,7 @@
 //! The displacement `u` of a half-space under the pressure `p` satisfies `p(q) = (E*/2)|q| u(q)` for every wavevector but zero. Lengths in this module
 //! are in grid spacings and pressures in E*, so the operator is `K = |q|/2` and its elastic energy `½ u·K u` in `E* dx³`.
 
-use super::sums::grain;
+use super::sums::{PANEL, grain, sums};
 use crate::physics::PhysicsError;
 use crate::physics::memory::filled;
 use rayon::prelude::*;
@@ -236,3 +236,10 @@ fn multiply<T: Real>(waves: &mut [Complex<T>], stiffness: &[T], factor: impl Fn(
 
 /// Columns of one block and the scratch of their transforms.
 type ColumnSpace<T> = (Vec<Complex<T>>, Vec<Complex<T>>);
+
+/// Subtracts the mean.
+pub(super) fn remove_mean<T: Real>(field: &mut [T]) {
+    let [sum] = sums(field.len(), |range, sum| sum[0] += field[range].iter().map(|x| (*x).into()).sum::<f64>());
+    let mean = T::nearest(sum / field.len() as f64);
+    field.par_chunks_mut(PANEL).with_min_len(grain(PANEL)).for_each(|part| part.iter_mut().for_each(|x| *x = *x - mean));
+}

@@ -9,7 +9,7 @@
 
 use super::contact::{Problem, State};
 use super::grid::{Operator, Waves};
-use super::pairs::Pairs;
+use super::pairs::{Gradient, Pairs};
 use super::sums::{PANEL, grain, panel_largest, panel_sums, panel_work, total};
 use crate::physics::PhysicsError;
 use crate::physics::memory::filled;
@@ -45,12 +45,6 @@ pub struct Outcome {
     pub residual: f64,
     /// Whether the accuracy was reached.
     pub converged: bool,
-}
-
-/// Gradient of the energy in E*: `values − mean`.
-pub(super) struct Gradient {
-    pub(super) values: Vec<f32>,
-    pub(super) mean: f64,
 }
 
 /// Energy of the law and residual at a state.

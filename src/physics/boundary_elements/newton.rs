@@ -5,8 +5,9 @@
 
 use super::contact::{Problem, State};
 use super::grid::Operator;
+use super::grid::remove_mean;
 use super::minimise::{Accuracy, Descent, Minimiser, Outcome};
-use super::sums::{add, dot, grain, largest, remove_mean};
+use super::sums::{add, dot, grain, largest};
 use crate::physics::PhysicsError;
 use crate::physics::memory::filled;
 use rayon::prelude::*;

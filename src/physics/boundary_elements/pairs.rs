@@ -1,7 +1,6 @@
 //! Pairs of steps and gradient changes of L-BFGS. Their products are kept, so that a direction takes one pass over the fields for a new pair and one for
 //! each of the two loops.
 
-use super::minimise::Gradient;
 use super::sums::{PANEL, grain, panel_sums, total};
 use crate::physics::PhysicsError;
 use crate::physics::memory::filled;
@@ -16,6 +15,12 @@ struct Pair {
     change: Vec<f32>,
     /// Mean of the step.
     mean: f64,
+}
+
+/// Gradient of the energy in E*: `values − mean`.
+pub(super) struct Gradient {
+    pub(super) values: Vec<f32>,
+    pub(super) mean: f64,
 }
 
 /// The pairs `(s, y)`.

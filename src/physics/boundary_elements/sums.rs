@@ -1,6 +1,5 @@
 //! Sums and maps over fields whose results do not depend on the number of threads.
 
-use super::grid::Real;
 use rayon::prelude::*;
 
 /// Points whose partial sum is formed by one thread.
@@ -101,11 +100,4 @@ pub(super) fn add(to: &mut [f32], factor: f64, from: &[f32]) {
     let factor = factor as f32;
     let fields = (to.par_chunks_mut(PANEL), from.par_chunks(PANEL)).into_par_iter().with_min_len(grain(PANEL));
     fields.for_each(|(a, b)| a.iter_mut().zip(b).for_each(|(x, y)| *x += factor * y));
-}
-
-/// Subtracts the mean.
-pub(super) fn remove_mean<T: Real>(field: &mut [T]) {
-    let [sum] = sums(field.len(), |range, sum| sum[0] += field[range].iter().map(|x| (*x).into()).sum::<f64>());
-    let mean = T::nearest(sum / field.len() as f64);
-    field.par_chunks_mut(PANEL).with_min_len(grain(PANEL)).for_each(|part| part.iter_mut().for_each(|x| *x = *x - mean));
 }

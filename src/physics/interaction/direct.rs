@@ -7,7 +7,7 @@ use super::pair::{LANES, Place, SpotColumns, sag, spot_fields};
 use super::table::{PairTable, Sources};
 use super::{Effort, Interaction, Spots, Tangent};
 use crate::model::{Boundary, Interaction as Kind, Material, Slips};
-use crate::physics::krylov::dot;
+use crate::physics::vector::dot;
 use multiversion::multiversion;
 use std::sync::Arc;
 

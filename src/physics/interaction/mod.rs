@@ -9,7 +9,7 @@ mod moments;
 pub mod pair;
 mod table;
 
-use super::krylov::dot;
+use super::vector::dot;
 pub use best::{Best, best};
 pub use direct::DirectSum;
 pub use fast::FastSum;

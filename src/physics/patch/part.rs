@@ -1,9 +1,9 @@
 //! A patch on its way to rest ([`super::super::relax`]).
 
-use super::super::equilibrium::Unsettled;
 use super::super::events::{Change, Kind, Moving};
 use super::super::interaction::Effort;
 use super::super::relax::{Relaxing, relax};
+use super::super::residual::Unsettled;
 use super::super::state::Problem;
 use super::{Hold, Patch};
 

@@ -4,7 +4,7 @@ use super::super::PhysicsError;
 use super::super::front::Front;
 use super::super::interaction::Effort;
 use super::super::log::{Event, Log};
-use super::super::merge::Known;
+use super::super::merged::Known;
 use super::super::state::{Problem, State, Totals};
 use super::{Depth, Halt, Path, UNIT};
 use serde::{Deserialize, Serialize};

@@ -2,9 +2,10 @@
 
 use super::super::ewald::ORDERS;
 use super::super::{Spots, places_in};
-use super::mesh::{Level, Loads, Reader, Real, Work, read, splines, transform};
+use super::mesh::{Level, Loads, Reader, Work, read, splines, transform};
 use super::near::{Group, Rest};
 use super::pairs::{GONE, Known, Pairs, Sources, TOGETHER, Target};
+use super::plan::Real;
 use super::plan::{Accuracy, Mesh, Plan, ROUGH_ORDERS, ROUGH_WIDTH, WIDTH};
 use super::{Effort, FastSum, MARGIN, REACHES};
 use rayon::prelude::*;

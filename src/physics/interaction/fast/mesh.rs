@@ -1,38 +1,10 @@
 //! The smooth far field on meshes: sources are spread, waves are weighted, and the field is read at the targets.
 
 use super::super::ewald::ORDERS;
-use super::plan::{LAPLACIANS, Mesh};
+use super::plan::{LAPLACIANS, Mesh, Real};
 use multiversion::multiversion;
-use rustfft::FftNum;
 use rustfft::num_complex::Complex;
-use rustfft::num_traits::Float;
 use std::sync::Arc;
-
-/// What a mesh is made of: doubles where displacements are wanted, half as many digits where their derivatives are.
-pub(super) trait Real: FftNum + Float + Default {
-    fn of(value: f64) -> Self;
-    fn long(self) -> f64;
-}
-
-impl Real for f64 {
-    fn of(value: f64) -> Self {
-        value
-    }
-
-    fn long(self) -> f64 {
-        self
-    }
-}
-
-impl Real for f32 {
-    fn of(value: f64) -> Self {
-        value as Self
-    }
-
-    fn long(self) -> f64 {
-        Self::into(self)
-    }
-}
 
 /// Points of a row of a mesh before its first: a spline of so many points reaches beyond the period on both sides.
 const fn before(width: usize) -> usize {

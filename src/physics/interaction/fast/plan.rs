@@ -2,14 +2,40 @@
 
 use super::super::ewald::ORDERS;
 use super::ROOM;
-use super::mesh::Real;
 use crate::model::Boundary;
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use rustfft::num_complex::Complex;
-use rustfft::{Fft, FftPlanner};
+use rustfft::num_traits::Float;
+use rustfft::{Fft, FftNum, FftPlanner};
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 use std::sync::Arc;
+
+/// What a mesh is made of: doubles where displacements are wanted, half as many digits where their derivatives are.
+pub(super) trait Real: FftNum + Float + Default {
+    fn of(value: f64) -> Self;
+    fn long(self) -> f64;
+}
+
+impl Real for f64 {
+    fn of(value: f64) -> Self {
+        value
+    }
+
+    fn long(self) -> f64 {
+        self
+    }
+}
+
+impl Real for f32 {
+    fn of(value: f64) -> Self {
+        value as Self
+    }
+
+    fn long(self) -> f64 {
+        Self::into(self)
+    }
+}
 
 /// Points of the mesh on which a source is spread along each direction, the order of its B-spline: where displacements are wanted, and where their
 /// derivatives are.

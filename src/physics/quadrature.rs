@@ -1,0 +1,20 @@
+//! Gauss quadrature and Hermite interpolation on the unit interval.
+
+/// Cubic through `f0` at 0 and `f1` at 1 with the slopes `t0` and `t1`, at `x`.
+pub(crate) fn hermite(x: f64, f0: f64, f1: f64, t0: f64, t1: f64) -> f64 {
+    let y = 1.0 - x;
+    y * y * (1.0 + 2.0 * x) * f0 + x * x * (1.0 + 2.0 * y) * f1 + x * y * (y * t0 - x * t1)
+}
+
+/// Derivative of [`hermite`] at `x`.
+pub(crate) fn hermite_slope(x: f64, f0: f64, f1: f64, t0: f64, t1: f64) -> f64 {
+    let y = 1.0 - x;
+    6.0 * x * y * (f1 - f0) + y * (y - 2.0 * x) * t0 + x * (x - 2.0 * y) * t1
+}
+
+/// `∫f dp` over `[0, 1]` by Gauss's rule of four points.
+pub(crate) fn gauss(f: impl Fn(f64) -> f64) -> f64 {
+    let (inner, outer) = (0.339_981_043_584_856_3 / 2.0, 0.861_136_311_594_052_6 / 2.0);
+    let (heavy, light) = (0.652_145_154_862_546_1 / 2.0, 0.347_854_845_137_453_9 / 2.0);
+    light * (f(0.5 - outer) + f(0.5 + outer)) + heavy * (f(0.5 - inner) + f(0.5 + inner))
+}

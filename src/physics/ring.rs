@@ -1,0 +1,12 @@
+//! One bin of a periodogram.
+
+/// Average over the modes of a ring of wavevectors.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ring {
+    /// Mean wavenumber q \[1/m\].
+    pub wavenumber_1_m: f64,
+    /// Mean power spectral density C(q) \[m⁴\].
+    pub density_m4: f64,
+    /// Number of modes.
+    pub mode_count: u64,
+}
