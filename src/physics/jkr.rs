@@ -16,12 +16,15 @@
 //! `a = (πR²Δγ/(4E*))^⅓ = 2^⅓ a_off`. So with the slip put back ([`Asperity::as_printed`]) a spot's branch ends there, and with it the
 //! spot leaves: at a penetration that is 3 % less deep than `δ_off`. Eq 4, which the paper prints for it, is right, and the two do not agree.
 
-use super::PhysicsError;
 use crate::model::{Material, Slips};
+use crate::physics::PhysicsError;
 use std::f64::consts::PI;
 
 /// Contact radius over the radius of curvature at which a contact without adhesion begins and ends.
 pub const HERTZ_EDGE: f64 = 1e-5;
+
+/// Smallest Tabor parameter at which Wu's jump-in distance (Eq 3) holds.
+pub const LEAST_TABOR: f64 = 2.0;
 
 /// One asperity with its material.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,10 +1,10 @@
 //! Memory for whole fields: too little of it is an error and does not abort the program.
 
-use super::PhysicsError;
+use crate::physics::PhysicsError;
 use ndarray::Array2;
 
 /// As many copies of a value.
-pub(super) fn filled<T: Clone>(count: usize, value: T) -> Result<Vec<T>, PhysicsError> {
+pub(crate) fn filled<T: Clone>(count: usize, value: T) -> Result<Vec<T>, PhysicsError> {
     let mut values = Vec::new();
     values.try_reserve_exact(count).map_err(|_| short(count.saturating_mul(size_of::<T>())))?;
     values.resize(count, value);
@@ -12,7 +12,7 @@ pub(super) fn filled<T: Clone>(count: usize, value: T) -> Result<Vec<T>, Physics
 }
 
 /// A field of zeros.
-pub(super) fn zeros((rows, columns): (usize, usize)) -> Result<Array2<f64>, PhysicsError> {
+pub(crate) fn zeros((rows, columns): (usize, usize)) -> Result<Array2<f64>, PhysicsError> {
     let values = filled(rows.saturating_mul(columns), 0.0)?;
     Array2::from_shape_vec((rows, columns), values).map_err(|_| short(usize::MAX))
 }

@@ -2,7 +2,7 @@
 
 use super::statistics::target;
 use crate::campaign::{Campaign, CaseUnit};
-use crate::physics::validity::{Flattening, flattening};
+use crate::physics::theory::flattening::{Flattening, flattening};
 use crate::stats::{CAUTIONS, Caution, Limit};
 
 /// Elastic energy over a work of adhesion \[J/m²\].

@@ -6,16 +6,17 @@ use super::surface::{read_summits, scale, spectrum};
 use super::{StageError, Tally, Watch, datapackage, incomplete};
 use crate::campaign::{Campaign, CaseUnit, CycleUnit, STATISTICS, Stage, Standing, Unit};
 use crate::model::{Attraction, Choice};
-use crate::physics::approximate_jkr::{CurvePoint, adhesive_curve, curve_loop};
 use crate::physics::jkr::Asperity;
-use crate::physics::spectrum::{Moments, Spectrum};
-use crate::physics::summits::Summit;
-use crate::physics::synthesis::realization_seed;
+use crate::physics::jkr::LEAST_TABOR;
+use crate::physics::surface::spectrum::{Moments, Spectrum};
+use crate::physics::surface::summits::Summit;
+use crate::physics::surface::synthesis::realization_seed;
+use crate::physics::theory::approximate_jkr::{CurvePoint, adhesive_curve, curve_loop};
+use crate::physics::theory::flattening::{Flattening, flattening, measured_flattening, realised_flattening};
 use crate::physics::theory::{
     adhesionless_area, adhesionless_area_small, curvature_decay, dalvi_loss, deng_kesari_loss_as_printed, fuller_tabor, pinning_loss,
     sticky_line,
 };
-use crate::physics::validity::{Flattening, LEAST_TABOR, flattening, measured_flattening, realised_flattening};
 use crate::schema::ADHESIONLESS;
 use crate::spec::CaseParams;
 use crate::stats::{self, CaseInput, CycleInput, Given, Planned, Sample, Value};

@@ -1,8 +1,8 @@
 //! How many steps a cycle writes, estimated before it begins.
 
 use super::StageError;
-use crate::physics::state::Problem;
-use crate::physics::summits::Summit;
+use crate::physics::contact::Problem;
+use crate::physics::surface::summits::Summit;
 use crate::spec::CaseParams;
 
 /// Steps of all branches of a cycle at most: they take about 2 GB of memory.

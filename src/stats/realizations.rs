@@ -6,7 +6,7 @@ use super::rows::{Rows, Value};
 use super::walk::Point;
 use super::{CaseInput, CycleInput, Given, StatsError};
 use crate::physics::boundary_elements::work::{work_after, work_between};
-use crate::physics::soundness::RESOLUTION;
+use crate::physics::cycle::soundness::RESOLUTION;
 use crate::schema::{EVENT_KINDS, REALIZATIONS};
 use crate::store::Frame;
 

@@ -3,11 +3,11 @@
 use crate::paper::{MATERIAL, spectrum};
 use crate::watch::{heading, line, once, plain};
 use hysteron::model::{Boundary, Coalescence, Interaction as Kind, JumpIn, KeptContacts, Slips};
+use hysteron::physics::contact::{Problem, Rules};
 use hysteron::physics::cycle::{Settings, run as cycle};
-use hysteron::physics::interaction::{DirectSum, Effort, Interaction};
-use hysteron::physics::state::{Problem, Rules};
-use hysteron::physics::summits::find_summits;
-use hysteron::physics::synthesis::{realization_seed, synthesize};
+use hysteron::physics::half_space::{DirectSum, Effort, Interaction};
+use hysteron::physics::surface::summits::find_summits;
+use hysteron::physics::surface::synthesis::{realization_seed, synthesize};
 
 pub fn run() {
     let spectrum = spectrum(64);

@@ -8,8 +8,8 @@ use hysteron::physics::boundary_elements::cycle::{Settings, run as cycle};
 use hysteron::physics::boundary_elements::grid::{HalfSpace, Operator};
 use hysteron::physics::boundary_elements::law::Law;
 use hysteron::physics::boundary_elements::minimise::Accuracy;
-use hysteron::physics::spectrum::Spectrum;
-use hysteron::physics::synthesis::{realization_seed, synthesize};
+use hysteron::physics::surface::spectrum::Spectrum;
+use hysteron::physics::surface::synthesis::{realization_seed, synthesize};
 
 /// Maximum load over E* A0.
 const LOAD: f64 = 0.0071;

@@ -4,7 +4,7 @@ use crate::paper::MATERIAL;
 use crate::sums::contact;
 use crate::watch::{heading, line, plain, race};
 use hysteron::model::{Boundary, Interaction as Kind, Slips};
-use hysteron::physics::interaction::{DirectSum, Effort, Interaction};
+use hysteron::physics::half_space::{DirectSum, Effort, Interaction};
 use std::f64::consts::PI;
 
 pub fn run() {

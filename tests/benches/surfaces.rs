@@ -2,8 +2,8 @@
 
 use crate::paper::spectrum;
 use crate::watch::{heading, line, plain, race};
-use hysteron::physics::summits::find_summits;
-use hysteron::physics::synthesis::{realization_seed, synthesize};
+use hysteron::physics::surface::summits::find_summits;
+use hysteron::physics::surface::synthesis::{realization_seed, synthesize};
 use realfft::RealFftPlanner;
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;

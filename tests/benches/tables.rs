@@ -2,7 +2,7 @@
 
 use crate::paper::spectrum;
 use crate::watch::{heading, line, plain, race};
-use hysteron::physics::synthesis::{realization_seed, synthesize};
+use hysteron::physics::surface::synthesis::{realization_seed, synthesize};
 use hysteron::schema::CONTACTS;
 use hysteron::store::hdf5::{SurfaceHeader, write_surface};
 use hysteron::store::parquet::write_table;

@@ -1,6 +1,6 @@
 //! Adhesive contact from adhesionless curves, where the approximation is exact.
 
-use hysteron::physics::approximate_jkr::{CurvePoint, adhesive_curve, curve_loop};
+use hysteron::physics::theory::approximate_jkr::{CurvePoint, adhesive_curve, curve_loop};
 use std::f64::consts::PI;
 
 /// From the Hertz curve of a sphere follow JKR's penetration, load, pull-off force 1.5πΔγR and dissipated energy. Differences of 2000 points are good to 1e-4.

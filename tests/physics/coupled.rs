@@ -3,11 +3,11 @@
 use crate::reference::table;
 use crate::support::{ALONE, LENGTH, PAPER, asperity, close, near, run, turning, unloading};
 use hysteron::model::{Boundary, Interaction, KeptContacts};
+use hysteron::physics::contact::{Problem, Rules};
 use hysteron::physics::cycle::{Branch, Contact, Cycle, Step};
-use hysteron::physics::interaction::ewald::remainder;
+use hysteron::physics::half_space::ewald::remainder;
 use hysteron::physics::jkr::Asperity;
-use hysteron::physics::state::{Problem, Rules};
-use hysteron::physics::summits::Summit;
+use hysteron::physics::surface::summits::Summit;
 use std::f64::consts::PI;
 
 /// The unit of the grid of approaches: every approach of the table is a whole number of it. Its 1e-10 is the tolerance of an equilibrium.

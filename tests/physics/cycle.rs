@@ -6,11 +6,11 @@ use crate::support::{
 };
 use hysteron::model::{Coalescence, Interaction, JumpIn, KeptContacts, Material};
 use hysteron::physics::PhysicsError;
+use hysteron::physics::contact::Kind;
+use hysteron::physics::contact::{Problem, Rules};
 use hysteron::physics::cycle::{Cycle, Halfway, Settings, run_from, run_to};
-use hysteron::physics::events::Kind;
 use hysteron::physics::jkr::Asperity;
-use hysteron::physics::state::{Problem, Rules};
-use hysteron::physics::summits::Summit;
+use hysteron::physics::surface::summits::Summit;
 use hysteron::physics::theory::deng_kesari_loss;
 use std::f64::consts::PI;
 

@@ -3,11 +3,11 @@
 use crate::support::{DEFAULT, LENGTH, PAPER, RMS, asperity, close, loop_of, near, paper_spectrum, run, unloading};
 use hysteron::model::{Coalescence, Interaction, JumpIn, KeptContacts, Material};
 use hysteron::physics::PhysicsError;
+use hysteron::physics::contact::{Problem, Rules};
+use hysteron::physics::cycle::soundness::{check_energy, loop_energy};
 use hysteron::physics::cycle::{self, Branch, Cycle, Settings};
-use hysteron::physics::soundness::{check_energy, loop_energy};
-use hysteron::physics::state::{Problem, Rules};
-use hysteron::physics::summits::{Summit, find_summits};
-use hysteron::physics::synthesis::{realization_seed, synthesize};
+use hysteron::physics::surface::summits::{Summit, find_summits};
+use hysteron::physics::surface::synthesis::{realization_seed, synthesize};
 use std::f64::consts::PI;
 
 /// Summits of the paper's surface of another campaign seed.

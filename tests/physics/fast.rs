@@ -2,11 +2,11 @@
 
 use crate::support::{DEFAULT, Dice, LENGTH, PAPER, RMS, close, loop_of, near, paper_summits, run};
 use hysteron::model::{Boundary, Interaction as Kind, KeptContacts, Slips};
+use hysteron::physics::contact::{Problem, Rules};
 use hysteron::physics::cycle::Cycle;
-use hysteron::physics::interaction::pair::Spot;
-use hysteron::physics::interaction::{DirectSum, Effort, FastSum, Interaction, Spots, Tangent, best};
+use hysteron::physics::half_space::spot_field::Spot;
+use hysteron::physics::half_space::{DirectSum, Effort, FastSum, Interaction, Spots, Tangent, best};
 use hysteron::physics::jkr::Asperity;
-use hysteron::physics::state::{Problem, Rules};
 
 /// Asperities at random, of which the first are in contact with spots of very different radii, overlapping; `huge` \[m\] is the radius of one.
 fn contact(seed: u64, asperities: usize, contacts: usize, huge: f64) -> (Vec<[f64; 2]>, Spots) {

@@ -4,7 +4,7 @@
 
 use crate::support::{DEFAULT, LENGTH, PAPER, RMS, close, loop_of, paper_summits, run};
 use hysteron::model::{Boundary, Coalescence, Interaction, JumpIn, KeptContacts, Material};
-use hysteron::physics::state::{Problem, Rules};
+use hysteron::physics::contact::{Problem, Rules};
 
 /// Magnification, realization, rules, work of adhesion \[J/m²\], contacts in a local problem.
 type Setup = (u32, u64, Rules, f64, usize);

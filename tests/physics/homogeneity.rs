@@ -2,12 +2,12 @@
 
 use crate::support::{ALONE, DEFAULT, Dice, LENGTH, PAPER, RMS, asperity, close, near, paper_spectrum, run};
 use hysteron::model::{Amplitudes, Boundary, Coalescence, Interaction, KeptContacts, Material, Normalization, Slips};
-use hysteron::physics::interaction::pair::spot_field_as_printed;
+use hysteron::physics::contact::{Problem, Rules};
+use hysteron::physics::half_space::spot_field::spot_field_as_printed;
 use hysteron::physics::jkr::Asperity;
-use hysteron::physics::spectrum::{Moments, Spectrum};
-use hysteron::physics::state::{Problem, Rules};
-use hysteron::physics::summits::{Summit, find_summits};
-use hysteron::physics::synthesis::{realization_seed, synthesize};
+use hysteron::physics::surface::spectrum::{Moments, Spectrum};
+use hysteron::physics::surface::summits::{Summit, find_summits};
+use hysteron::physics::surface::synthesis::{realization_seed, synthesize};
 use hysteron::physics::theory::{
     adhesionless_area, dalvi_loss, deng_kesari_loss_as_printed, fuller_tabor, mean_loop_loss_as_printed, pinning_loss,
 };

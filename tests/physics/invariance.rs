@@ -2,10 +2,10 @@
 
 use crate::support::{DEFAULT, LENGTH, PAPER, RMS, close, loop_of, paper_cycle, paper_summits};
 use hysteron::model::{Coalescence, KeptContacts};
+use hysteron::physics::contact::Event;
+use hysteron::physics::contact::{Problem, Rules};
 use hysteron::physics::cycle::{Cycle, Settings, run_to};
-use hysteron::physics::log::Event;
-use hysteron::physics::state::{Problem, Rules};
-use hysteron::physics::summits::Summit;
+use hysteron::physics::surface::summits::Summit;
 
 /// The same loop and the same events. Asperities are numbered from the highest down and placed from the highest on, so that not even rounding differs: there
 /// is no tolerance.

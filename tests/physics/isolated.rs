@@ -2,10 +2,10 @@
 
 use crate::support::{ALONE, DEFAULT, LENGTH, PAPER, RMS, asperity, close, loop_of, near, paper_cycle, paper_summits, run, turning};
 use hysteron::model::{Boundary, Coalescence, Interaction, KeptContacts};
+use hysteron::physics::contact::{Problem, Rules};
 use hysteron::physics::cycle::{Branch, Contact, Cycle, Step};
 use hysteron::physics::jkr::Asperity;
-use hysteron::physics::state::{Problem, Rules};
-use hysteron::physics::summits::Summit;
+use hysteron::physics::surface::summits::Summit;
 use std::f64::consts::PI;
 
 /// The unit of the grid of approaches; 1e-10 of it is the tolerance of an equilibrium.

@@ -2,7 +2,7 @@
 
 use crate::reference::table;
 use crate::support::{Dice, close, near};
-use hysteron::physics::interaction::ewald::{ORDERS, RemainderSeries, RoughRemainder, image_sums, kernel, remainder};
+use hysteron::physics::half_space::ewald::{ORDERS, RemainderSeries, RoughRemainder, image_sums, kernel, remainder};
 use std::f64::consts::PI;
 
 /// `4 ζ(½) β(½)`: own images and background.

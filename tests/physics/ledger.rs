@@ -56,11 +56,11 @@ fn law_every_public_equation_has_a_test() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let sources = [
         ("jkr", "src/physics/jkr.rs"),
-        ("spectrum", "src/physics/spectrum.rs"),
-        ("theory", "src/physics/theory.rs"),
-        ("validity", "src/physics/validity.rs"),
-        ("pair", "src/physics/interaction/pair.rs"),
-        ("ewald", "src/physics/interaction/ewald.rs"),
+        ("spectrum", "src/physics/surface/spectrum.rs"),
+        ("theory", "src/physics/theory/mod.rs"),
+        ("flattening", "src/physics/theory/flattening.rs"),
+        ("spot_field", "src/physics/half_space/spot_field.rs"),
+        ("ewald", "src/physics/half_space/ewald.rs"),
     ];
     let tests: Vec<String> = fs::read_dir(root.join("tests/physics"))
         .unwrap()

@@ -84,11 +84,11 @@ mod reference {
 /// What several files use.
 mod support {
     use hysteron::model::{Amplitudes, Boundary, Coalescence, Interaction, JumpIn, KeptContacts, Material, Normalization, Slips};
+    use hysteron::physics::contact::{Problem, Rules};
     use hysteron::physics::cycle::{self, Branch, Cycle, Settings, Step};
-    use hysteron::physics::spectrum::Spectrum;
-    use hysteron::physics::state::{Problem, Rules};
-    use hysteron::physics::summits::{Summit, find_summits};
-    use hysteron::physics::synthesis::{Surface, realization_seed, synthesize};
+    use hysteron::physics::surface::spectrum::Spectrum;
+    use hysteron::physics::surface::summits::{Summit, find_summits};
+    use hysteron::physics::surface::synthesis::{Surface, realization_seed, synthesize};
 
     /// The paper's material.
     pub const PAPER: Material = Material { contact_modulus_pa: 1e6, work_of_adhesion_j_m2: 0.07, interaction_range_m: 1e-9 };

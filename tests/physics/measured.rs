@@ -2,12 +2,12 @@
 
 use hysteron::model::{Amplitudes, Detrend, Missing, Normalization};
 use hysteron::physics::PhysicsError;
-use hysteron::physics::measured::{Prepared, Treatment, find_measured, prepare};
-use hysteron::physics::periodogram::{periodogram, windowed_periodogram};
-use hysteron::physics::selfaffine::fit_self_affine;
-use hysteron::physics::spectrum::Spectrum;
-use hysteron::physics::summits::find_summits;
-use hysteron::physics::synthesis::{Surface, realization_seed, synthesize};
+use hysteron::physics::surface::measured::{Prepared, Treatment, find_measured, prepare};
+use hysteron::physics::surface::periodogram::{periodogram, windowed_periodogram};
+use hysteron::physics::surface::self_affine::fit_self_affine;
+use hysteron::physics::surface::spectrum::Spectrum;
+use hysteron::physics::surface::summits::find_summits;
+use hysteron::physics::surface::synthesis::{Surface, realization_seed, synthesize};
 use ndarray::{Array2, s};
 use std::f64::consts::{PI, TAU};
 
@@ -249,7 +249,7 @@ fn val_the_window_shows_the_spectrum_of_a_part_of_a_surface() {
     let part = part.mapv(|h| h - mean);
     let [windowed, bare] = [windowed_periodogram(part.view(), length).unwrap(), periodogram(part.view(), length).unwrap()];
     let (low, high) = (8.0 * TAU / surface.length_m, 48.0 * TAU / surface.length_m);
-    let far = |rings: &[hysteron::physics::periodogram::Ring]| -> f64 {
+    let far = |rings: &[hysteron::physics::surface::periodogram::Ring]| -> f64 {
         let inside = rings.iter().filter(|ring| (low..high).contains(&ring.wavenumber_1_m));
         let near = |q: f64| whole.iter().min_by(|a, b| (a.wavenumber_1_m - q).abs().total_cmp(&(b.wavenumber_1_m - q).abs())).unwrap();
         let off = inside.map(|ring| {
@@ -280,7 +280,7 @@ fn val_the_fit_finds_the_spectrum_that_a_surface_was_made_from() {
         let plateau = rings.iter().find(|ring| ring.wavenumber_1_m >= from).unwrap().density_m4;
         let rolled: Vec<_> = rings
             .iter()
-            .map(|ring| hysteron::physics::periodogram::Ring {
+            .map(|ring| hysteron::physics::surface::periodogram::Ring {
                 density_m4: if ring.wavenumber_1_m < from { plateau } else { ring.density_m4 },
                 ..*ring
             })

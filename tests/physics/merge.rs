@@ -3,11 +3,11 @@
 use crate::support::{ALONE, DEFAULT, Dice, LENGTH, PAPER, RMS, asperity, close, loop_of, near, paper_summits, run, turning, unloading};
 use hysteron::model::{Coalescence, Interaction, KeptContacts};
 use hysteron::physics::PhysicsError;
+use hysteron::physics::contact::Kind;
+use hysteron::physics::contact::{Problem, Rules, State};
 use hysteron::physics::cycle::{self, Cycle, Settings};
-use hysteron::physics::events::Kind;
 use hysteron::physics::jkr::Asperity;
-use hysteron::physics::state::{Problem, Rules, State};
-use hysteron::physics::summits::Summit;
+use hysteron::physics::surface::summits::Summit;
 
 const MERGE: Rules = Rules { coalescence: Coalescence::Merge, ..DEFAULT };
 const MERGE_ALONE: Rules = Rules { coalescence: Coalescence::Merge, ..ALONE };

@@ -3,9 +3,9 @@
 use crate::reference::{Row, table};
 use crate::support::{DEFAULT, PAPER, RMS, close, near};
 use hysteron::model::{Interaction, KeptContacts};
+use hysteron::physics::contact::Kind;
+use hysteron::physics::contact::{Problem, Rules};
 use hysteron::physics::cycle::{self, Branch, Cycle, Settings};
-use hysteron::physics::events::Kind;
-use hysteron::physics::state::{Problem, Rules};
 
 /// The cycle of a surface of the reference, with steps of `spacing` \[m\].
 fn run(surface: &str, spacing: f64) -> Cycle {

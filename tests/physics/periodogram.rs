@@ -1,9 +1,9 @@
 //! The spectrum that a surface has.
 
 use hysteron::model::{Amplitudes, Normalization};
-use hysteron::physics::periodogram::periodogram;
-use hysteron::physics::spectrum::Spectrum;
-use hysteron::physics::synthesis::{realization_seed, synthesize};
+use hysteron::physics::surface::periodogram::periodogram;
+use hysteron::physics::surface::spectrum::Spectrum;
+use hysteron::physics::surface::synthesis::{realization_seed, synthesize};
 use ndarray::Array2;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;

@@ -2,9 +2,9 @@
 
 use crate::support::{ALONE, DEFAULT, LENGTH, Loop, PAPER, RMS, asperity, loop_of, near, paper_summits, run};
 use hysteron::model::{Interaction, KeptContacts};
+use hysteron::physics::contact::{Problem, Rules};
 use hysteron::physics::cycle::{self, Contact, Settings};
-use hysteron::physics::state::{Problem, Rules};
-use hysteron::physics::summits::Summit;
+use hysteron::physics::surface::summits::Summit;
 
 /// Unit of height: its 1e-10 is the tolerance of an equilibrium, 1e-17 m.
 const UNIT: f64 = 1e-7;

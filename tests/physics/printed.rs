@@ -4,12 +4,12 @@ use crate::jkr::work;
 use crate::support::{ALONE, DEFAULT, LENGTH, PAPER, RMS, close, loop_of, near, paper_cycle, paper_spectrum, paper_summits, turning};
 use hysteron::model::{Boundary, Choice, Interaction as Kind, JumpIn, Slip, Slips};
 use hysteron::physics::PhysicsError;
-use hysteron::physics::events::Kind as Event;
-use hysteron::physics::interaction::pair::{Spot, spot_field, spot_field_as_printed};
-use hysteron::physics::interaction::{DirectSum, Effort, Interaction, Spots, ewald::RemainderSeries};
+use hysteron::physics::contact::Kind as Event;
+use hysteron::physics::contact::Rules;
+use hysteron::physics::half_space::spot_field::{Spot, spot_field, spot_field_as_printed};
+use hysteron::physics::half_space::{DirectSum, Effort, Interaction, Spots, ewald::RemainderSeries};
 use hysteron::physics::jkr::Asperity;
-use hysteron::physics::spectrum::Moments;
-use hysteron::physics::state::Rules;
+use hysteron::physics::surface::spectrum::Moments;
 use hysteron::physics::theory::{
     curvature_decay, curvature_density, curvature_density_as_printed, deng_kesari_loss, deng_kesari_loss_as_printed, mean_loop_loss,
     mean_loop_loss_as_printed,

@@ -3,7 +3,7 @@
 use crate::reference::table;
 use crate::support::{LENGTH, RMS, close, near, paper_spectrum};
 use hysteron::model::Normalization;
-use hysteron::physics::spectrum::Spectrum;
+use hysteron::physics::surface::spectrum::Spectrum;
 use std::f64::consts::PI;
 
 #[test]

@@ -2,8 +2,8 @@
 
 use crate::support::{Dice, LENGTH, RMS, close, near, paper_spectrum, surface};
 use hysteron::physics::PhysicsError;
-use hysteron::physics::bandlimited::BandLimited;
-use hysteron::physics::summits::{Summits, find_summits};
+use hysteron::physics::surface::band_limited::BandLimited;
+use hysteron::physics::surface::summits::{Summits, find_summits};
 use ndarray::Array2;
 use std::f64::consts::TAU;
 
@@ -75,7 +75,7 @@ fn law_a_moved_surface_has_moved_summits() {
     let of = |dx: f64, dy: f64| find(&Waves::crest(0.3e-3 + dx, 0.4e-3 + dy, &shapes).grid(64), 16.0).list;
     let (here, there) = (of(0.0, 0.0), of(0.4321e-3, 0.7777e-3));
     assert_eq!(here.len(), there.len());
-    let sorted = |list: &[hysteron::physics::summits::Summit]| {
+    let sorted = |list: &[hysteron::physics::surface::summits::Summit]| {
         let mut pairs: Vec<(f64, f64)> = list.iter().map(|s| (s.height_m, s.curvature_1_m)).collect();
         pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
         pairs
@@ -97,7 +97,7 @@ fn law_an_apex_within_a_spacing_is_found() {
         let (dx, dy) = (dice.roll() * LENGTH, dice.roll() * LENGTH);
         let found = find(&Waves::crest(0.3e-3 + dx, 0.4e-3 + dy, &shapes).grid(32), 8.0);
         for summit in found.list.iter().filter(|s| !s.refined) {
-            let far = |apex: &hysteron::physics::summits::Summit| {
+            let far = |apex: &hysteron::physics::surface::summits::Summit| {
                 let [x, y] = [summit.x_m - apex.x_m - dx, summit.y_m - apex.y_m - dy].map(|d| d - LENGTH * (d / LENGTH).round());
                 x.abs().max(y.abs())
             };

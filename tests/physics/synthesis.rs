@@ -2,8 +2,8 @@
 
 use crate::support::{RMS, close, near, paper_spectrum, surface};
 use hysteron::model::{Amplitudes, Normalization};
-use hysteron::physics::spectrum::Spectrum;
-use hysteron::physics::synthesis::{Surface, realization_seed, synthesize};
+use hysteron::physics::surface::spectrum::Spectrum;
+use hysteron::physics::surface::synthesis::{Surface, realization_seed, synthesize};
 use rustfft::{FftPlanner, num_complex::Complex64};
 
 /// The modes `c_k = (1/n²) Σ h exp(−i k·x)` of a surface, by columns and rows of a plain complex transform.

@@ -5,7 +5,7 @@ use crate::support::{PAPER, close, near, paper_spectrum};
 use hysteron::model::Material;
 use hysteron::physics::PhysicsError;
 use hysteron::physics::jkr::Asperity;
-use hysteron::physics::spectrum::Moments;
+use hysteron::physics::surface::spectrum::Moments;
 use hysteron::physics::theory::{
     adhesionless_area, adhesionless_area_small, curvature_density, dalvi_loss, deng_kesari_loss, fuller_tabor, mean_loop_loss,
     pinning_loss, sticky_line,

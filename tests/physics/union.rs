@@ -1,7 +1,7 @@
 //! The area of the union of the discs.
 
 use crate::support::{Dice, close, near};
-use hysteron::physics::union::{Disc, plain_area, union_area};
+use hysteron::physics::contact::union_area::{Disc, plain_area, union_area};
 use std::f64::consts::PI;
 
 const SIDE: f64 = 1e-3;

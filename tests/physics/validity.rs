@@ -3,9 +3,9 @@
 use crate::reference::table;
 use crate::support::{LENGTH, PAPER, RMS, close, near, paper_spectrum, surface};
 use hysteron::model::{Amplitudes, Normalization};
-use hysteron::physics::spectrum::Spectrum;
-use hysteron::physics::synthesis::{mode_sums, realization_seed, synthesize};
-use hysteron::physics::validity::{Flattening, flattening, measured_flattening, realised_flattening};
+use hysteron::physics::surface::spectrum::Spectrum;
+use hysteron::physics::surface::synthesis::{mode_sums, realization_seed, synthesize};
+use hysteron::physics::theory::flattening::{Flattening, flattening, measured_flattening, realised_flattening};
 use std::f64::consts::PI;
 
 const MODULUS: f64 = PAPER.contact_modulus_pa;

@@ -1,12 +1,14 @@
 //! A path that begins, and one that goes on with other asperities.
 
-use super::super::PhysicsError;
-use super::super::front::Front;
-use super::super::interaction::Effort;
-use super::super::log::{Event, Log};
-use super::super::merged::Known;
-use super::super::state::{Problem, State, Totals};
-use super::{Depth, Halt, Path, UNIT};
+use super::equilibrium_path::{Depth, Halt, Path, UNIT};
+use super::event_log::Log;
+use super::predictor::Front;
+use crate::physics::PhysicsError;
+use crate::physics::contact::event::Event;
+use crate::physics::contact::merged_spot::Known;
+use crate::physics::contact::problem::{Problem, Totals};
+use crate::physics::contact::state::State;
+use crate::physics::half_space::Effort;
 use serde::{Deserialize, Serialize};
 
 /// Longest stretch, of the mean jump-off penetration.

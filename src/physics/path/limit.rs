@@ -1,9 +1,9 @@
 //! The limit on events within one increment of the approach: a contact whose events recur without end is an error.
 
-use super::super::PhysicsError;
-use super::{Halt, Path};
+use super::equilibrium_path::{Halt, Path};
+use crate::physics::PhysicsError;
 
-/// Changes of state within one increment of the approach, per asperity, beyond which the events have no end: [`super::FLIPS`] allows each asperity a few.
+/// Changes of state within one increment of the approach, per asperity, beyond which the events have no end: [`super::equilibrium_path::FLIPS`] allows each asperity a few.
 const MOST_EVENTS: usize = 20;
 
 impl Path<'_> {

@@ -3,8 +3,8 @@
 use crate::columns::{Column, Values, allowed, each, each_many, positive};
 use hysteron::model::{Amplitudes, Normalization};
 use hysteron::physics::PhysicsError;
-use hysteron::physics::spectrum::{Moments, Spectrum};
-use hysteron::physics::validity::{self, Flattening};
+use hysteron::physics::surface::spectrum::{Moments, Spectrum};
+use hysteron::physics::theory::flattening::{self, Flattening};
 use pyo3::prelude::*;
 
 const ACTION: &str = "the spectrum (Eq 10)";

@@ -3,7 +3,7 @@
 use crate::columns::{Column, Values, each, positive, within};
 use hysteron::model::{Material, Slips};
 use hysteron::physics::PhysicsError;
-use hysteron::physics::spectrum::Moments;
+use hysteron::physics::surface::spectrum::Moments;
 use hysteron::physics::theory;
 use pyo3::prelude::*;
 

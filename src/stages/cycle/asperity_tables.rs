@@ -2,10 +2,10 @@
 
 use super::super::StageError;
 use super::super::identity::Identity;
+use crate::physics::contact::Merged;
+use crate::physics::contact::rows::Kept;
+use crate::physics::contact::{Problem, Status};
 use crate::physics::cycle::{Cycle, Step};
-use crate::physics::merge::Merged;
-use crate::physics::restart::Kept;
-use crate::physics::state::{Problem, Status};
 use crate::schema;
 use crate::store::Frame;
 use std::iter::repeat_n;

@@ -2,8 +2,8 @@
 
 use crate::bench::{Bench, code, paths, stderr, stdout};
 use hysteron::model::{Amplitudes, Normalization};
-use hysteron::physics::spectrum::Spectrum;
-use hysteron::physics::synthesis::{realization_seed, synthesize};
+use hysteron::physics::surface::spectrum::Spectrum;
+use hysteron::physics::surface::synthesis::{realization_seed, synthesize};
 use hysteron::schema;
 use hysteron::store::hdf5::{read_header, read_surface};
 use hysteron::store::parquet::read_table;

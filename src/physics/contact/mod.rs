@@ -1,0 +1,18 @@
+//! A contact of asperities: the problem, its states and the transitions between them.
+
+pub(crate) mod event;
+pub(crate) mod merged_spot;
+pub(crate) mod merging;
+pub(crate) mod neighbours;
+mod numbering;
+pub(crate) mod problem;
+pub mod rows;
+pub(crate) mod state;
+pub(crate) mod transition;
+pub mod union_area;
+
+pub use event::Event;
+pub use merged_spot::Merged;
+pub use problem::{Problem, Rules, Totals};
+pub use state::{State, Status};
+pub use transition::Kind;

@@ -1,0 +1,187 @@
+//! Which asperities lie near which: a grid of cells.
+
+use crate::physics::half_space::ewald::ROUGH_IMAGES;
+use std::f64::consts::PI;
+
+/// The shortest of the ways that differ by whole sides, from one between two places on the square: no rounding, which is a call of a function.
+fn nearest_image(way: f64, side: f64) -> f64 {
+    if way > 0.5 * side {
+        way - side
+    } else if way < -0.5 * side {
+        way + side
+    } else {
+        way
+    }
+}
+
+/// Asperities on the square, by cells of two mean spacings.
+#[derive(Clone)]
+pub(crate) struct Neighbours {
+    positions: Vec<[f64; 2]>,
+    length: f64,
+    periodic: bool,
+    /// Cells on a side, and the side of one \[m\].
+    cells: usize,
+    side: f64,
+    /// Asperities by cell, and where each cell begins.
+    members: Vec<u32>,
+    starts: Vec<usize>,
+    /// For each asperity, the others within the side of a cell, nearest first.
+    near: Vec<Vec<(f64, usize)>>,
+}
+
+impl Neighbours {
+    pub(crate) fn new(positions: &[[f64; 2]], length: f64, periodic: bool) -> Self {
+        let reach = (2.0 * length / (positions.len() as f64).sqrt()).min(0.5 * length);
+        let cells = ((length / reach) as usize).max(1);
+        let mut found = Self {
+            positions: positions.to_vec(),
+            length,
+            periodic,
+            cells,
+            side: length / cells as f64,
+            members: Vec::new(),
+            starts: vec![0; cells * cells + 1],
+            near: Vec::new(),
+        };
+        let cell = |p: &[f64; 2]| found.cell(p[0]) * cells + found.cell(p[1]);
+        let mut order: Vec<u32> = (0..positions.len() as u32).collect();
+        order.sort_by_key(|i| (cell(&positions[*i as usize]), *i));
+        let mut starts = vec![0; cells * cells + 1];
+        for p in positions {
+            starts[cell(p) + 1] += 1;
+        }
+        for k in 0..cells * cells {
+            starts[k + 1] += starts[k];
+        }
+        (found.members, found.starts) = (order, starts);
+        // Most spots stay within: they are looked up at every step.
+        found.near = (0..positions.len()).map(|i| found.others(i, found.side)).collect();
+        found
+    }
+
+    /// Adds a place \[m\], whose number follows the last one.
+    pub(crate) fn add(&mut self, place: [f64; 2]) {
+        let number = self.positions.len();
+        let cell = self.cell(place[0]) * self.cells + self.cell(place[1]);
+        self.members.insert(self.starts[cell + 1], number as u32);
+        for start in &mut self.starts[cell + 1..] {
+            *start += 1;
+        }
+        self.positions.push(place);
+        let others = self.others(number, self.side);
+        for &(r, i) in &others {
+            let at = self.near[i].partition_point(|other| other.0 <= r);
+            self.near[i].insert(at, (r, number));
+        }
+        self.near.push(others);
+    }
+
+    fn cell(&self, coordinate: f64) -> usize {
+        ((coordinate / self.side) as usize).min(self.cells - 1)
+    }
+
+    pub(crate) fn distance(&self, p: &[f64; 2], q: &[f64; 2]) -> f64 {
+        let [dx, dy] = self.apart(p, q);
+        (dx * dx + dy * dy).sqrt()
+    }
+
+    /// The way from `q` to the nearest image of `p` \[m\].
+    pub(crate) fn apart(&self, p: &[f64; 2], q: &[f64; 2]) -> [f64; 2] {
+        [0, 1].map(|k| {
+            let d = p[k] - q[k];
+            if self.periodic { nearest_image(d, self.length) } else { d }
+        })
+    }
+
+    /// What a load at `q` does at `p`, `1/r` and the same of all images \[1/m\], of which some digits are enough.
+    pub(crate) fn kernel(&self, p: &[f64; 2], q: &[f64; 2]) -> f64 {
+        1.0 / self.distance(p, q) + self.image_kernel(p, q)
+    }
+
+    /// The part of the images but the nearest \[1/m\], with some digits.
+    pub(crate) fn image_kernel(&self, p: &[f64; 2], q: &[f64; 2]) -> f64 {
+        if !self.periodic {
+            return 0.0;
+        }
+        let [x, y] = [0, 1].map(|k| nearest_image((p[k] - q[k]) / self.length, 1.0));
+        ROUGH_IMAGES.at(x, y) / self.length
+    }
+
+    /// Rows or columns of cells that a circle may meet.
+    fn lines(&self, coordinate: f64, radius: f64) -> Vec<usize> {
+        let (low, high) = (((coordinate - radius) / self.side).floor(), ((coordinate + radius) / self.side).floor());
+        let cells = self.cells as f64;
+        if high - low + 1.0 >= cells {
+            return (0..self.cells).collect();
+        }
+        let all = (0..=(high - low) as usize).map(|k| low + k as f64);
+        if self.periodic {
+            all.map(|line| line.rem_euclid(cells) as usize).collect()
+        } else {
+            all.filter(|line| (0.0..cells).contains(line)).map(|line| line as usize).collect()
+        }
+    }
+
+    /// Calls `visit(distance, asperity)` for every asperity within `radius` of `place`, in no order.
+    pub(crate) fn around(&self, place: &[f64; 2], radius: f64, mut visit: impl FnMut(f64, usize)) {
+        let columns = self.lines(place[1], radius);
+        for x in self.lines(place[0], radius) {
+            for &y in &columns {
+                let cell = x * self.cells + y;
+                for &i in &self.members[self.starts[cell]..self.starts[cell + 1]] {
+                    let r = self.distance(place, &self.positions[i as usize]);
+                    if r <= radius {
+                        visit(r, i as usize);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Other asperities within `radius` of asperity `j`, nearest first.
+    fn others(&self, j: usize, radius: f64) -> Vec<(f64, usize)> {
+        let mut list = Vec::new();
+        self.around(&self.positions[j], radius, |r, i| {
+            if i != j {
+                list.push((r, i));
+            }
+        });
+        list.sort_by(|u, v| u.0.total_cmp(&v.0).then(u.1.cmp(&v.1)));
+        list
+    }
+
+    /// Calls `visit(distance, asperity)` for every other asperity within `radius` of asperity `j`, nearest first.
+    pub(crate) fn within(&self, j: usize, radius: f64, mut visit: impl FnMut(f64, usize)) {
+        if radius <= self.side {
+            for &(r, i) in self.near[j].iter().take_while(|(r, _)| *r <= radius) {
+                visit(r, i);
+            }
+        } else {
+            for (r, i) in self.others(j, radius) {
+                visit(r, i);
+            }
+        }
+    }
+
+    /// The `count` asperities nearest to `place` of those that are `wanted`, nearest first; fewer where there are no more. There are `all` of them.
+    pub(crate) fn nearest(&self, place: &[f64; 2], count: usize, all: usize, wanted: impl Fn(usize) -> bool) -> Vec<(f64, usize)> {
+        // So many lie within, if they are spread evenly, and half as many again.
+        let mut radius = self.length * (1.5 * count as f64 / (PI * all.max(1) as f64)).sqrt();
+        loop {
+            let mut list = Vec::new();
+            let whole = radius >= self.length;
+            self.around(place, if whole { f64::INFINITY } else { radius }, |r, i| {
+                if wanted(i) {
+                    list.push((r, i));
+                }
+            });
+            if list.len() >= count || whole {
+                list.sort_by(|u, v| u.0.total_cmp(&v.0).then(u.1.cmp(&v.1)));
+                list.truncate(count);
+                return list;
+            }
+            radius *= 1.3;
+        }
+    }
+}

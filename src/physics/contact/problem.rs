@@ -1,0 +1,235 @@
+//! Contact problem: everything that does not change along the path.
+
+use super::neighbours::Neighbours;
+use super::numbering::Places;
+use super::state::State;
+use crate::model::{Boundary, Coalescence, Interaction as Kind, JumpIn, Material, Slips};
+use crate::physics::PhysicsError;
+use crate::physics::half_space::spot_field::{Spot, spot_field_as_printed};
+use crate::physics::half_space::{Best, Spots, best};
+use crate::physics::jkr::{Asperity, LEAST_TABOR};
+use crate::physics::surface::summits::Summit;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
+
+/// The choices of the contact model that a cycle reads.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rules {
+    /// Elastic interaction between contacts.
+    pub interaction: Kind,
+    /// Boundary condition of the square.
+    pub boundary: Boundary,
+    /// Rule for an asperity under a larger contact.
+    pub coalescence: Coalescence,
+    /// When a free asperity jumps in.
+    pub jump_in: JumpIn,
+    /// Go on below Tabor number 2 with Wu's rule.
+    pub allow_low_tabor: bool,
+    /// Slips of the paper that are put back.
+    pub slips: Slips,
+}
+
+/// A set of asperities over a half-space: everything that does not change along the path, but for spots that become one ([`crate::physics::merge`]).
+#[derive(Clone)]
+pub struct Problem {
+    pub(crate) asperities: Vec<Asperity>,
+    /// How the caller numbers and places them.
+    pub(crate) places: Places,
+    /// Heights over the highest summit \[m\]: zero or negative.
+    pub(crate) heights: Vec<f64>,
+    pub(crate) positions: Vec<[f64; 2]>,
+    /// Jump-in penetrations \[m\]: zero or negative (without adhesion, next to zero), never below the end of the branch.
+    pub(crate) jump_in: Vec<f64>,
+    pub(crate) tabor: Vec<f64>,
+    pub(crate) material: Material,
+    pub(crate) rules: Rules,
+    pub(crate) field: Best,
+    pub(crate) neighbours: Neighbours,
+    /// How many of the asperities are summits; beyond are merged spots.
+    pub(crate) summits: usize,
+    /// Spots that are solved together at an event.
+    pub(crate) spots_in_patch: usize,
+    /// Side of the square L \[m\].
+    pub length_m: f64,
+    /// Rms height, the unit of penetration \[m\].
+    pub rms_height_m: f64,
+}
+
+/// Limit of Wu's jump-in penetration, as a fraction of the jump-off penetration. Wu's criterion (Eq 3) is beyond the end of the JKR branch at Tabor
+/// parameters from 0.2 to 1: an asperity that formed a contact there would leave at once. At its lower bound, μ = 2, the criterion gives 0.79.
+const DEEPEST_JUMP_IN: f64 = 0.95;
+
+/// Spots that are solved together at an event, with all others held to first order: some five screening lengths around it.
+const SPOTS_IN_PATCH: usize = 24;
+
+impl Problem {
+    /// The same problem with another number of spots solved together at an event; with `usize::MAX` every event is solved with all.
+    #[must_use]
+    pub fn with_patches_of(self, spots: usize) -> Self {
+        Self { spots_in_patch: spots.max(1), ..self }
+    }
+
+    /// The same problem with fast sums from another number of spots on; with `usize::MAX` every sum goes over all pairs. A problem of few asperities
+    /// has none.
+    #[must_use]
+    pub fn with_fast_sums_from(self, spots: usize) -> Self {
+        Self { field: self.field.fast_from(spots), ..self }
+    }
+
+    /// Asperities from summits.
+    ///
+    /// Inside they are numbered from the highest down, at places from the highest one on, rounded to 2⁻⁴⁰ of the side: so nothing depends on how a caller
+    /// numbers them, or on where the square begins. [`Self::number`] is the caller's number.
+    ///
+    /// # Errors
+    /// There must be a summit; radii and material must be positive; with Wu's rule all Tabor numbers must be at least 2 unless allowed.
+    pub fn new(summits: &[Summit], length_m: f64, rms_height_m: f64, material: Material, rules: Rules) -> Result<Self, PhysicsError> {
+        let periodic = rules.boundary == Boundary::Periodic;
+        let places = Places::new(summits, length_m, periodic)?;
+        let highest = summits[places.numbers[0]].height_m;
+        let summits: Vec<Summit> = places.numbers.iter().map(|i| summits[*i]).collect();
+        let of = |s: &Summit| Asperity::as_printed(s.radius_m(), &material, rules.slips);
+        let asperities: Vec<Asperity> = summits.iter().map(of).collect::<Result<_, _>>()?;
+        let range = material.interaction_range_m;
+        let tabor: Vec<f64> = asperities.iter().map(|a| a.tabor(range)).collect();
+        let below = tabor.iter().filter(|mu| **mu < LEAST_TABOR).count();
+        let adhesive = material.work_of_adhesion_j_m2 > 0.0;
+        if adhesive && rules.jump_in == JumpIn::Wu && below > 0 && !rules.allow_low_tabor {
+            let smallest = tabor.iter().copied().fold(f64::INFINITY, f64::min);
+            return Err(PhysicsError::LowTabor { smallest, below, all: tabor.len() });
+        }
+        let jump_in = asperities
+            .iter()
+            .map(|a| match rules.jump_in {
+                // Without adhesion nothing jumps: contact begins beyond the radius at which it ends, so that rounding takes no part.
+                _ if !adhesive => 4.0 * a.jump_off_penetration(),
+                JumpIn::Jkr => 0.0,
+                JumpIn::Wu => a.wu_jump_in_penetration(range).min(0.0).max(DEEPEST_JUMP_IN * a.jump_off_penetration()),
+            })
+            .collect();
+        let positions: Vec<[f64; 2]> = summits.iter().map(|s| places.inward([s.x_m, s.y_m])).collect();
+        let field = best(positions.clone(), length_m, &material, rules.interaction, rules.boundary, rules.slips);
+        Ok(Self {
+            heights: summits.iter().map(|s| s.height_m - highest).collect(),
+            jump_in,
+            tabor,
+            field: if rules.coalescence == Coalescence::Merge { field } else { field.with_table() },
+            neighbours: Neighbours::new(&positions, length_m, periodic),
+            spots_in_patch: SPOTS_IN_PATCH,
+            summits: asperities.len(),
+            places,
+            asperities,
+            positions,
+            material,
+            rules,
+            length_m,
+            rms_height_m,
+        })
+    }
+
+    /// True if there is no adhesion: the half-space is elastic, and its contact has no memory.
+    #[must_use]
+    pub fn is_adhesionless(&self) -> bool {
+        self.material.work_of_adhesion_j_m2 == 0.0
+    }
+
+    /// True if neighbourhoods hold all summits.
+    pub(crate) fn solves_whole(&self) -> bool {
+        self.spots_in_patch >= self.summits
+    }
+
+    /// Residual at which a state counts as an equilibrium \[m\].
+    #[must_use]
+    pub fn tolerance_m(&self) -> f64 {
+        1e-10 * self.rms_height_m
+    }
+
+    /// The approach at which the first asperity jumps into contact \[m\]: below zero with Wu's rule.
+    #[must_use]
+    pub fn first_contact_m(&self) -> f64 {
+        self.jump_in.iter().zip(&self.heights).map(|(jump, z)| jump - z).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Number of asperities, merged spots among them.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.heights.len()
+    }
+
+    /// True if there is no asperity (never: [`Self::new`] refuses it).
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.heights.is_empty()
+    }
+
+    /// The caller's number of an asperity. Those of merged spots follow the summits' inside and outside.
+    #[must_use]
+    pub fn number(&self, i: usize) -> usize {
+        self.places.numbers.get(i).copied().unwrap_or(i)
+    }
+
+    /// Tabor numbers of the asperities, from the highest down.
+    #[must_use]
+    pub fn tabor(&self) -> &[f64] {
+        &self.tabor
+    }
+
+    /// `E* A0` \[N\], the unit of load.
+    #[must_use]
+    pub fn load_unit_n(&self) -> f64 {
+        self.material.contact_modulus_pa * self.length_m * self.length_m
+    }
+
+    /// Spots as sources: asperities, ascending, with their contact radii \[m\].
+    pub(crate) fn columns(&self, of: impl Iterator<Item = (usize, f64)> + Clone, spots: &mut Spots) {
+        spots.index.clear();
+        spots.index.extend(of.clone().map(|(i, _)| i));
+        spots.columns.set(of.map(|(i, a)| {
+            let asperity = &self.asperities[i];
+            let [x, y] = self.positions[i];
+            Spot { x, y, a, radius: asperity.radius_m(), load: asperity.load(a), load_slope: asperity.load_slope(a) }
+        }));
+    }
+
+    /// Displacement at distance r \[m\] from a spot of this radius \[m\], with its derivative to the radius; of another spot as far as that one's own
+    /// size does not enter.
+    pub(crate) fn spot_field(&self, asperity: &Asperity, r: f64, a: f64) -> (f64, f64) {
+        if self.rules.interaction == Kind::Point {
+            let unit = 1.0 / (PI * self.material.contact_modulus_pa * r);
+            return (asperity.load(a) * unit, asperity.load_slope(a) * unit);
+        }
+        spot_field_as_printed(r, a, asperity.radius_m(), asperity.pull_sqrt_m(), self.rules.slips)
+    }
+
+    /// The spots of a state as sources.
+    pub(crate) fn spots(&self, state: &State, spots: &mut Spots) {
+        self.columns(state.contacts.iter().map(|&i| (i, state.radius[i])), spots);
+    }
+
+    /// Load, area and potential \[J\] of an equilibrium whose displacements at the spots are known.
+    ///
+    /// The potential is `Π = Σ[U(d_i, a_i) − Δγπa_i²] + ½ΣF_iŵ_i`: exact for point interaction.
+    pub(crate) fn totals(&self, state: &State) -> (Totals, f64) {
+        let mut totals = Totals::default();
+        let mut potential = 0.0;
+        for (&i, &w) in state.contacts.iter().zip(&state.displacement) {
+            let (asperity, a) = (&self.asperities[i], state.radius[i]);
+            let load = asperity.load(a);
+            let spot = PI * a * a;
+            totals.load_n += load;
+            totals.area_m2 += spot;
+            let energy = asperity.stored_energy(asperity.penetration(a), a) - self.material.work_of_adhesion_j_m2 * spot;
+            potential += energy + 0.5 * load * w;
+        }
+        (totals, potential)
+    }
+}
+
+/// Sums over the spots of a state.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Totals {
+    /// Load F \[N\].
+    pub load_n: f64,
+    /// Area Σπa² \[m²\].
+    pub area_m2: f64,
+}

@@ -1,0 +1,124 @@
+//! State of a contact: status and radius of every asperity.
+
+use super::merged_spot::Merged;
+use super::problem::Problem;
+use serde::{Deserialize, Serialize};
+
+/// Status of an asperity.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub enum Status {
+    /// Out of contact.
+    Free,
+    /// In contact, on its own JKR branch.
+    Contact,
+    /// Under a greater spot: it carries no load and no area.
+    Covered {
+        /// The asperity whose spot covers it.
+        by: usize,
+        /// The radius of that spot below which it is released \[m\]: the distance, or less where covering it made the spot shrink.
+        release_m: f64,
+    },
+    /// Part of a merged spot.
+    Merged {
+        /// That spot.
+        into: usize,
+    },
+}
+
+/// A state along the path. It is all that is needed to go on from there.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct State {
+    /// Approach δ \[m\], 0 at the highest summit.
+    pub approach_m: f64,
+    /// Status of each asperity.
+    pub status: Vec<Status>,
+    /// Contact radius of each asperity \[m\], 0 out of contact.
+    pub radius: Vec<f64>,
+    /// Asperities that left while others still invited them back: they stay free until their penetration falls below the jump-in.
+    pub barred: Vec<bool>,
+    /// Spots that stand for two since these touched, in the order in which they came; their numbers follow those of the summits.
+    pub merged: Vec<Merged>,
+    /// Asperities in contact, ascending.
+    pub contacts: Vec<usize>,
+    /// Displacement ŵ at the asperities in contact \[m\], in their order.
+    pub displacement: Vec<f64>,
+    /// Worst residual of the equilibrium \[m\].
+    pub residual_m: f64,
+    /// Least eigenvalue of the tangent `∂(δ_JKR + ŵ)/∂a`, each column over its diagonal element: 1 without coupling, 0 at a fold, negative where the
+    /// equilibrium repels.
+    pub stability: f64,
+}
+
+impl State {
+    /// All asperities free.
+    #[must_use]
+    pub fn free(problem: &Problem, approach_m: f64) -> Self {
+        let n = problem.len();
+        Self {
+            approach_m,
+            status: vec![Status::Free; n],
+            radius: vec![0.0; n],
+            barred: vec![false; n],
+            merged: Vec::new(),
+            contacts: Vec::new(),
+            displacement: Vec::new(),
+            residual_m: 0.0,
+            stability: 1.0,
+        }
+    }
+
+    /// Greatest contact radius \[m\], 0 without contact.
+    pub(crate) fn greatest_radius(&self) -> f64 {
+        self.contacts.iter().map(|&i| self.radius[i]).fold(0.0, f64::max)
+    }
+
+    /// The spot that an asperity rides with, over others that are covered themselves or part of a merged spot.
+    pub(crate) fn carrier(&self, mut i: usize) -> Option<usize> {
+        // No longer than there are asperities: where each is covered by the next, none is a spot.
+        for _ in 0..self.status.len() {
+            match self.status[i] {
+                Status::Contact => return Some(i),
+                Status::Covered { by, .. } => i = by,
+                Status::Merged { into } => i = into,
+                Status::Free => return None,
+            }
+        }
+        None
+    }
+
+    /// True if an asperity is part of a merged spot that has left.
+    pub(crate) fn is_orphan(&self, i: usize) -> bool {
+        matches!(self.status[i], Status::Merged { into } if self.status[into] == Status::Free)
+    }
+
+    /// One asperity more, free.
+    pub(crate) fn extend(&mut self) {
+        self.status.push(Status::Free);
+        self.radius.push(0.0);
+        self.barred.push(false);
+    }
+
+    pub(crate) fn set(&mut self, i: usize, status: Status, radius: f64) {
+        match (self.contacts.binary_search(&i), status) {
+            (Ok(at), Status::Free | Status::Covered { .. } | Status::Merged { .. }) => {
+                self.contacts.remove(at);
+                if at < self.displacement.len() {
+                    self.displacement.remove(at);
+                }
+            }
+            (Err(at), Status::Contact) => {
+                self.contacts.insert(at, i);
+                self.displacement.insert(at.min(self.displacement.len()), 0.0);
+            }
+            _ => {}
+        }
+        self.status[i] = status;
+        self.radius[i] = radius;
+    }
+
+    /// Number of absorbed asperities.
+    #[must_use]
+    pub fn covered_count(&self) -> usize {
+        self.status.iter().filter(|s| matches!(s, Status::Covered { .. })).count()
+    }
+}

@@ -1,0 +1,173 @@
+//! The area of the union of the contact discs, exactly, on the periodic square.
+//!
+//! By Green's theorem the area is `∮ x dy` along the arcs that lie in no other disc. On the periodic square `x` is taken in `[0, L)`; an arc
+//! is cut where it crosses `x = 0`, and the union's share of that line counts with the factor L.
+
+use super::problem::Problem;
+use super::state::State;
+use crate::model::Boundary;
+use std::f64::consts::{PI, TAU};
+
+/// Area of the union of the discs of a state \[m²\].
+#[must_use]
+pub fn area(problem: &Problem, state: &State) -> f64 {
+    let discs: Vec<Disc> = state.contacts.iter().map(|&i| Disc { centre: problem.positions[i], radius: state.radius[i] }).collect();
+    let periodic = problem.rules.boundary == Boundary::Periodic;
+    let greatest = discs.iter().map(|d| d.radius).fold(0.0, f64::max);
+    let overlapping = |k: usize| {
+        let mut list = Vec::new();
+        problem.neighbours.within(state.contacts[k], discs[k].radius + greatest, |r, i| {
+            if let Ok(other) = state.contacts.binary_search(&i)
+                && r < discs[k].radius + discs[other].radius
+            {
+                list.push(other);
+            }
+        });
+        list
+    };
+    // The sum of the discs is an upper bound, also of a disc that reaches its own periodic image.
+    let sum: f64 = discs.iter().map(|disc| PI * disc.radius * disc.radius).sum();
+    union_area(&discs, problem.length_m, periodic, overlapping).min(sum)
+}
+
+/// A disc of the plane.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Disc {
+    /// Centre \[m\].
+    pub centre: [f64; 2],
+    /// Radius \[m\].
+    pub radius: f64,
+}
+
+/// Area of the union of discs \[m²\], periodic with side `length` or in the open plane; `overlapping(k)` names the discs that overlap disc k.
+/// A disc may not reach its own periodic image (radius below half the side); where one does, the union is the sum's upper bound L².
+#[must_use]
+pub fn union_area(discs: &[Disc], length: f64, periodic: bool, overlapping: impl Fn(usize) -> Vec<usize>) -> f64 {
+    let mut area = 0.0;
+    let mut line: Vec<(f64, f64)> = Vec::new();
+    for (k, disc) in discs.iter().enumerate() {
+        if periodic && disc.radius >= 0.5 * length {
+            return length * length;
+        }
+        let mut hidden = Vec::new();
+        let mut swallowed = false;
+        for other in overlapping(k) {
+            match hidden_arc(disc, &discs[other], length, periodic) {
+                // Of two equal discs in one place the first stands for both.
+                Arc::Whole => swallowed |= discs[other] != *disc || other < k,
+                Arc::Part(from, to) => push_interval(&mut hidden, from, to, TAU),
+                Arc::Nothing => {}
+            }
+        }
+        if periodic {
+            crossing(disc, length, &mut line);
+        }
+        if swallowed {
+            continue;
+        }
+        for (from, to) in complement(&mut hidden, TAU) {
+            area += arc_moment(disc, from, to, length, periodic);
+        }
+    }
+    let crossed: f64 = if periodic { length - complement(&mut line, length).iter().map(|(from, to)| to - from).sum::<f64>() } else { 0.0 };
+    area + length * crossed
+}
+
+enum Arc {
+    Nothing,
+    Part(f64, f64),
+    Whole,
+}
+
+/// The arc of `disc` that lies inside `other`, as an interval of angles.
+fn hidden_arc(disc: &Disc, other: &Disc, length: f64, periodic: bool) -> Arc {
+    let [dx, dy] = [0, 1].map(|k| {
+        let d = other.centre[k] - disc.centre[k];
+        if periodic { d - length * (d / length).round_ties_even() } else { d }
+    });
+    let distance = dx.hypot(dy);
+    if distance + disc.radius <= other.radius {
+        return Arc::Whole;
+    }
+    if distance >= disc.radius + other.radius || distance + other.radius <= disc.radius {
+        return Arc::Nothing;
+    }
+    let cosine = (distance * distance + disc.radius * disc.radius - other.radius * other.radius) / (2.0 * distance * disc.radius);
+    let half = cosine.clamp(-1.0, 1.0).acos();
+    let middle = dy.atan2(dx).rem_euclid(TAU);
+    Arc::Part(middle - half, middle + half)
+}
+
+/// The part of the line `x = 0` that a disc covers.
+fn crossing(disc: &Disc, length: f64, line: &mut Vec<(f64, f64)>) {
+    let [x, y] = disc.centre;
+    let distance = x.min(length - x);
+    if distance < disc.radius {
+        let half = (disc.radius * disc.radius - distance * distance).sqrt();
+        push_interval(line, y - half, y + half, length);
+    }
+}
+
+/// Adds an interval of a circle of the given period, cut at 0.
+fn push_interval(list: &mut Vec<(f64, f64)>, from: f64, to: f64, period: f64) {
+    if from < 0.0 {
+        list.push((from + period, period));
+        list.push((0.0, to));
+    } else if to > period {
+        list.push((from, period));
+        list.push((0.0, to - period));
+    } else {
+        list.push((from, to));
+    }
+}
+
+/// What a list of intervals leaves of `[0, period]`.
+fn complement(list: &mut [(f64, f64)], period: f64) -> Vec<(f64, f64)> {
+    list.sort_by(|u, v| u.0.total_cmp(&v.0));
+    let mut left = Vec::new();
+    let mut reached = 0.0;
+    for (from, to) in list.iter() {
+        if *from > reached {
+            left.push((reached, *from));
+        }
+        reached = f64::max(reached, *to);
+    }
+    if reached < period {
+        left.push((reached, period));
+    }
+    left
+}
+
+/// `∫ x dy` along an arc, with x in `[0, L)`: the arc is cut where it crosses `x = 0` or `x = L`.
+fn arc_moment(disc: &Disc, from: f64, to: f64, length: f64, periodic: bool) -> f64 {
+    let radius = disc.radius;
+    let piece = |x: f64, a: f64, b: f64| {
+        x * radius * (b.sin() - a.sin()) + 0.5 * radius * radius * (b - a + 0.5 * ((2.0 * b).sin() - (2.0 * a).sin()))
+    };
+    let x = disc.centre[0];
+    if !periodic {
+        return piece(x, from, to);
+    }
+    // Angles at which the circle crosses the line, with the shift of x on either side.
+    let mut cuts = vec![from, to];
+    for edge in [-x, length - x] {
+        if edge.abs() < radius {
+            let angle = (edge / radius).acos();
+            cuts.extend([angle, TAU - angle].into_iter().filter(|cut| *cut > from && *cut < to));
+        }
+    }
+    cuts.sort_by(f64::total_cmp);
+    cuts.windows(2)
+        .map(|pair| {
+            let middle = 0.5 * (pair[0] + pair[1]);
+            let shift = ((x + radius * middle.cos()) / length).floor() * length;
+            piece(x - shift, pair[0], pair[1])
+        })
+        .sum()
+}
+
+/// Plain sum of the areas of discs \[m²\].
+#[must_use]
+pub fn plain_area(discs: &[Disc]) -> f64 {
+    discs.iter().map(|disc| PI * disc.radius * disc.radius).sum()
+}

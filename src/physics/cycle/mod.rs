@@ -1,0 +1,278 @@
+//! Loading and unloading: one loading path to the greatest load, and an unloading path from every turning point on it.
+//!
+//! The loop begins before the first jump-in and ends with the last separation, so its area is the whole loss `Θ = ∮F dΔ`.
+
+mod coalescence;
+mod recorder;
+mod reversal;
+pub mod soundness;
+mod table;
+
+use crate::physics::PhysicsError;
+use crate::physics::contact::problem::Problem;
+use crate::physics::contact::state::State;
+use crate::physics::path::{Carried, Depth, Path, is_multiple};
+use recorder::Recorder;
+use reversal::retrace;
+use serde::{Deserialize, Serialize};
+use soundness::check_energy;
+pub use table::{Branch, Contact, Cycle, MergedAt, Settings, Step};
+
+/// A branch on its way.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+struct Leg {
+    recorder: Recorder,
+    carried: Carried,
+}
+
+/// A cycle on its way: all that is needed to go on, in another process and to the same bytes.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Halfway {
+    cycle: Cycle,
+    /// How many branches are behind it, and where the next one is.
+    branches: usize,
+    leg: Option<Leg>,
+}
+
+/// Loads to the largest of the loads, and unloads from each. `progress` is told how much is done, from 0 to 1.
+///
+/// # Errors
+/// A load that is not reached within 100 rms heights; an approach without an equilibrium.
+pub fn run(problem: &Problem, settings: &Settings, progress: &dyn Fn(f64)) -> Result<Cycle, PhysicsError> {
+    run_from(problem, settings, None, &mut |_| {}, progress)
+}
+
+/// The same, from where it was `halfway`; wherever it rests, `keep` is given what is needed to go on from there.
+///
+/// # Errors
+/// A load that is not reached within 100 rms heights; an approach without an equilibrium.
+pub fn run_from(
+    problem: &Problem,
+    settings: &Settings,
+    halfway: Option<Halfway>,
+    keep: &mut dyn FnMut(&Halfway),
+    progress: &dyn Fn(f64),
+) -> Result<Cycle, PhysicsError> {
+    let all = settings.max_loads.len();
+    let mut halfway = halfway.unwrap_or_else(|| Halfway { cycle: Cycle::default(), branches: 0, leg: None });
+    while halfway.branches <= all {
+        let Halfway { cycle, branches, leg } = &mut halfway;
+        let rests = match branches.checked_sub(1) {
+            None => {
+                let leg = leg.take().unwrap_or_else(|| Leg::loading(problem, settings));
+                load(problem, settings, leg, cycle, &|done| progress(0.5 * done))?
+            }
+            Some(k) if problem.is_adhesionless() => {
+                retrace(cycle, k, Some(settings.max_loads[k]), settings.contacts);
+                None
+            }
+            Some(k) => {
+                let max_load = settings.max_loads[k];
+                let leg = leg.take().unwrap_or_else(|| Leg::unloading(problem, settings, Some(max_load), cycle.turning[k].1.clone()));
+                unload(problem, settings, leg, cycle, &|done| progress(0.5 + 0.5 * (k as f64 + done) / all as f64))?
+            }
+        };
+        *leg = rests;
+        if leg.is_some() {
+            keep(&halfway);
+        } else {
+            if let Some(k) = branches.checked_sub(1) {
+                check_energy(cycle, k)?;
+            }
+            *branches += 1;
+        }
+    }
+    Ok(halfway.cycle)
+}
+
+/// Unloads from a state that was kept at a turning point, `max_load` its `F/(E* A0)`: step by step what [`run`] does from there.
+///
+/// # Errors
+/// An approach without an equilibrium.
+pub fn unload_from(problem: &Problem, settings: &Settings, max_load: f64, state: State) -> Result<Cycle, PhysicsError> {
+    let mut cycle = Cycle::default();
+    if problem.is_adhesionless() {
+        // The state at the reversal does not hold the loading path, which the unloading repeats.
+        let settings = Settings { max_loads: vec![max_load], ..settings.clone() };
+        return Ok(run(problem, &settings, &|_| {})?.unloading_alone());
+    }
+    unload_through(problem, settings, Some(max_load), state, &mut cycle)?;
+    Ok(cycle)
+}
+
+/// Loads to the approach `turn` \[m\] and unloads from there, under displacement control alone: the load at the turn may be a tension. The
+/// turning loads of the settings are not read; the unloading steps have none.
+///
+/// # Errors
+/// An approach without an equilibrium.
+pub fn run_to(problem: &Problem, settings: &Settings, turn: f64) -> Result<Cycle, PhysicsError> {
+    let mut cycle = Cycle::default();
+    let Leg { mut recorder, carried } = Leg::loading(problem, settings);
+    travel(problem, carried, Some(turn), &mut |path| {
+        recorder.grid_points(settings, path, &mut cycle)?;
+        if path.state().approach_m < turn {
+            return Ok(Next::On);
+        }
+        recorder.turn(settings, path, None, &mut cycle)?;
+        Ok(Next::End)
+    })?;
+    if problem.is_adhesionless() {
+        retrace(&mut cycle, 0, None, settings.contacts);
+        return Ok(cycle);
+    }
+    let state = cycle.turning[0].1.clone();
+    unload_through(problem, settings, None, state, &mut cycle)?;
+    Ok(cycle)
+}
+
+/// Unloads from a turning state to the last separation, over all rests.
+fn unload_through(
+    problem: &Problem,
+    settings: &Settings,
+    max_load: Option<f64>,
+    state: State,
+    cycle: &mut Cycle,
+) -> Result<(), PhysicsError> {
+    let mut leg = Some(Leg::unloading(problem, settings, max_load, state));
+    while let Some(rests) = leg {
+        leg = unload(problem, settings, rests, cycle, &|_| {})?;
+    }
+    Ok(())
+}
+
+impl Settings {
+    /// The steps lie on one grid of approaches, the same for both senses and for every turning point.
+    pub(crate) fn grid(&self, problem: &Problem) -> f64 {
+        self.approach_step * problem.rms_height_m
+    }
+
+    /// True if a path that began or rested at the approach `from` \[m\] is to rest where it is.
+    fn rests(&self, path: &Path<'_>, from: f64) -> bool {
+        let at = path.state().approach_m;
+        self.rest_every
+            .is_some_and(|every| path.solved == Depth::Whole && at != from && is_multiple(at, every * path.problem().rms_height_m))
+    }
+}
+
+impl Leg {
+    /// From a point of the grid before the first jump-in.
+    fn loading(problem: &Problem, settings: &Settings) -> Self {
+        let spacing = settings.grid(problem);
+        let number = (problem.first_contact_m() / spacing).floor() - 1.0;
+        let state = State::free(problem, number * spacing);
+        Self { recorder: Recorder::new(Branch::Loading, None, number, 0), carried: Carried::begin(problem, state, 1.0) }
+    }
+
+    /// From a turning state, which is all that is needed.
+    fn unloading(problem: &Problem, settings: &Settings, max_load: Option<f64>, state: State) -> Self {
+        let number = -(state.approach_m / settings.grid(problem)).ceil();
+        let recorder = Recorder::new(Branch::Unloading, max_load, number, state.merged.len());
+        Self { recorder, carried: Carried::begin(problem, state, -1.0) }
+    }
+}
+
+/// Loads until it rests, or to the largest of the loads: then nothing is left.
+fn load(problem: &Problem, settings: &Settings, leg: Leg, cycle: &mut Cycle, progress: &dyn Fn(f64)) -> Result<Option<Leg>, PhysicsError> {
+    let Leg { mut recorder, carried } = leg;
+    let from = carried.state.approach_m;
+    let last = settings.max_loads.last().copied().unwrap_or(0.0);
+    let left = travel(problem, carried, None, &mut |path| {
+        while let Some(max_load) = settings.max_loads.get(cycle.turning.len()) {
+            let Some(turning) = path.turning(*max_load * problem.load_unit_n())? else { break };
+            recorder.turn(settings, path, Some(&turning), cycle)?;
+        }
+        let Some(max_load) = settings.max_loads.get(cycle.turning.len()) else { return Ok(Next::End) };
+        recorder.grid_points(settings, path, cycle)?;
+        let (reached, approach_m) = (path.totals.load_n / problem.load_unit_n(), path.state().approach_m);
+        if approach_m > 100.0 * problem.rms_height_m {
+            return Err(PhysicsError::LoadNotReached { wanted: *max_load, reached, approach_m });
+        }
+        progress((reached / last).clamp(0.0, 1.0));
+        Ok(if settings.rests(path, from) { Next::Rest } else { Next::On })
+    })?;
+    Ok(left.map(|carried| Leg { recorder, carried }))
+}
+
+/// Unloads until it rests, or to the last separation: then nothing is left.
+fn unload(
+    problem: &Problem,
+    settings: &Settings,
+    leg: Leg,
+    cycle: &mut Cycle,
+    progress: &dyn Fn(f64),
+) -> Result<Option<Leg>, PhysicsError> {
+    let Leg { mut recorder, carried } = leg;
+    let from = carried.state.approach_m;
+    let mut full = None;
+    let left = travel(problem, carried, None, &mut |path| {
+        let full = *full.get_or_insert(path.totals.area_m2);
+        recorder.grid_points(settings, path, cycle)?;
+        progress(1.0 - path.totals.area_m2 / full);
+        if path.state().contacts.is_empty() {
+            if recorder.lacks_events(path) {
+                // The last spot has gone between two points of the grid.
+                recorder.record(settings, path, None, cycle, false)?;
+            }
+            return Ok(Next::End);
+        }
+        Ok(if settings.rests(path, from) { Next::Rest } else { Next::On })
+    })?;
+    match left {
+        Some(carried) => Ok(Some(Leg { recorder, carried })),
+        None => {
+            recorder.end(cycle);
+            Ok(None)
+        }
+    }
+}
+
+/// What is to be done after a look at a path.
+enum Next {
+    On,
+    /// To begin anew from what is carried.
+    Rest,
+    End,
+}
+
+/// Goes along a branch from what is carried, but not beyond `bound` \[m\]; spots merge and part on the way. At the beginning, after every
+/// stretch and after every meeting `visit` is shown where the path is, and says what is next. Where it rests, what is to be carried on is returned.
+fn travel(
+    problem: &Problem,
+    mut carried: Carried,
+    bound: Option<f64>,
+    visit: &mut dyn FnMut(&mut Path<'_>) -> Result<Next, PhysicsError>,
+) -> Result<Option<Carried>, PhysicsError> {
+    let mut own = problem.grown(&carried.state.merged)?;
+    let mut known = carried.known.take().unwrap_or_else(|| own.as_ref().unwrap_or(problem).touching(&carried.state));
+    loop {
+        let mut path = Path::resume(own.as_ref().unwrap_or(problem), carried)?;
+        path.settle_meeting();
+        let meeting = loop {
+            match visit(&mut path)? {
+                Next::On => {}
+                Next::Rest => {
+                    carried = path.carry();
+                    carried.known = Some(known);
+                    return Ok(Some(carried));
+                }
+                Next::End => return Ok(None),
+            }
+            if let Some(meeting) = path.due_meeting(&mut known)? {
+                break meeting;
+            }
+            let mut bound = bound;
+            loop {
+                path.stretch(bound)?;
+                match path.meeting(&known)? {
+                    Some(at) if at != path.state().approach_m => {
+                        path.rewind();
+                        bound = Some(at);
+                    }
+                    _ => break,
+                }
+            }
+        };
+        carried = path.carry();
+        carried.meet(own.get_or_insert_with(|| problem.clone()), meeting, &mut known)?;
+    }
+}

@@ -1,0 +1,223 @@
+//! What is written down of a branch: a step at every point of the grid and at the turning points, with the events since the step before.
+
+use super::soundness::check_area;
+use super::table::{Branch, Contact, Cycle, MergedAt, Settings, Step};
+use crate::model::KeptContacts;
+use crate::physics::PhysicsError;
+use crate::physics::contact::event::Event;
+use crate::physics::contact::problem::Problem;
+use crate::physics::contact::state::{State, Status};
+use crate::physics::contact::transition::Kind;
+use crate::physics::half_space::Effort;
+use crate::physics::path::{Depth, Path};
+use serde::{Deserialize, Serialize};
+
+/// Writes the steps of one branch down.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(crate) struct Recorder {
+    branch: Branch,
+    max_load: Option<f64>,
+    /// Number of the last point of the grid, counted in the sense of the path; whether the beginning has been recorded.
+    number: f64,
+    begun: bool,
+    events_before: usize,
+    ways_before: usize,
+    merged_before: usize,
+    effort_before: Effort,
+    /// Load at the last record \[N\], and the largest tension of all records so far with its spots, while these are to be kept.
+    load_before: Option<f64>,
+    pulled: Option<(f64, Vec<Contact>)>,
+}
+
+impl Recorder {
+    /// Of a branch that begins at a point of the grid, `number`, or between it and the next one, with so many merged spots.
+    pub(crate) fn new(branch: Branch, max_load: Option<f64>, number: f64, merged_before: usize) -> Self {
+        let effort_before = Effort::default();
+        Self {
+            branch,
+            max_load,
+            number,
+            begun: false,
+            events_before: 0,
+            ways_before: 0,
+            merged_before,
+            effort_before,
+            load_before: None,
+            pulled: None,
+        }
+    }
+
+    /// True if events have happened since the last record.
+    pub(crate) fn lacks_events(&self, path: &Path<'_>) -> bool {
+        self.events_before < path.log.events.len()
+    }
+
+    /// Records the points of the grid that the last stretch has passed, and the beginning.
+    pub(crate) fn grid_points(&mut self, settings: &Settings, path: &mut Path<'_>, cycle: &mut Cycle) -> Result<(), PhysicsError> {
+        let end = path.state().approach_m;
+        self.grid_points_until(end, settings, path, cycle)
+    }
+
+    fn grid_points_until(&mut self, end: f64, settings: &Settings, path: &mut Path<'_>, cycle: &mut Cycle) -> Result<(), PhysicsError> {
+        if !std::mem::replace(&mut self.begun, true) {
+            self.record(settings, path, None, cycle, false)?;
+        }
+        let spacing = settings.grid(path.problem());
+        loop {
+            let next = (self.number + 1.0) * path.sign * spacing;
+            if (next - end) * path.sign > 1e-9 * spacing {
+                return Ok(());
+            }
+            self.number += 1.0;
+            if path.solved == Depth::Whole && (next - path.state().approach_m).abs() <= 1e-9 * spacing {
+                self.record(settings, path, None, cycle, false)?;
+            } else {
+                let excursion = path.excursion(next)?;
+                path.solver.effort += excursion.effort();
+                self.record(settings, path, Some(&excursion), cycle, false)?;
+            }
+        }
+    }
+
+    /// True if the load has come to half that of a turning point since the last record, or to none on the way back.
+    fn passes_landmark(&self, settings: &Settings, problem: &Problem, load: f64) -> bool {
+        let Some(before) = self.load_before else { return false };
+        match self.branch {
+            Branch::Loading => settings.max_loads.iter().any(|most| (before..load).contains(&(0.5 * most * problem.load_unit_n()))),
+            Branch::Unloading => before > 0.0 && load <= 0.0,
+        }
+    }
+
+    /// Ends the branch: the spots at its greatest tension are kept.
+    pub(crate) fn end(self, cycle: &mut Cycle) {
+        cycle.contacts.extend(self.pulled.map(|pulled| pulled.1).unwrap_or_default());
+    }
+
+    /// Records a turning point, where the path is or on an excursion from it, and the points of the grid before it.
+    pub(crate) fn turn(
+        &mut self,
+        settings: &Settings,
+        path: &mut Path<'_>,
+        excursion: Option<&Path<'_>>,
+        cycle: &mut Cycle,
+    ) -> Result<(), PhysicsError> {
+        let state = excursion.map_or_else(|| path.state().clone(), |at| at.state().clone());
+        self.grid_points_until(state.approach_m, settings, path, cycle)?;
+        self.record(settings, path, excursion, cycle, true)?;
+        cycle.turning.push((cycle.steps.len() - 1, state));
+        Ok(())
+    }
+
+    /// Records the state of the path, or that of an excursion from it.
+    ///
+    /// # Errors
+    /// A contact area above the nominal one.
+    pub(crate) fn record(
+        &mut self,
+        settings: &Settings,
+        path: &mut Path<'_>,
+        excursion: Option<&Path<'_>>,
+        cycle: &mut Cycle,
+        turning: bool,
+    ) -> Result<(), PhysicsError> {
+        let (number, problem) = (cycle.steps.len(), path.problem());
+        let at = excursion.unwrap_or(path);
+        let state = at.state();
+        let passed = |approach: f64| excursion.is_none() || (approach - state.approach_m) * path.sign <= 0.0;
+        let recent: Vec<Event> =
+            path.log.events[self.events_before..].iter().take_while(|event| passed(event.approach_m)).copied().collect();
+        let ways: Vec<f64> = path.log.ways[self.ways_before..].iter().take_while(|way| passed(way.approach)).map(|way| way.least).collect();
+        let count = |kind: Kind| recent.iter().filter(|event| event.kind == kind).count();
+        let effort = path.effort();
+        cycle.steps.push(Step {
+            branch: self.branch,
+            max_load: self.max_load,
+            approach_m: state.approach_m,
+            load_n: at.totals.load_n,
+            least_load_n: ways.iter().copied().fold(at.totals.load_n, f64::min),
+            area_m2: at.totals.area_m2,
+            area_union_m2: crate::physics::contact::union_area::area(problem, state),
+            contact_count: state.contacts.len(),
+            covered_count: state.covered_count(),
+            touching_count: touching(problem, state),
+            held_count: at.held.len(),
+            event_counts: Kind::ALL.map(count),
+            dissipated_j: recent.iter().map(|event| event.energy_lost_j).sum(),
+            work_j: at.log.work_j,
+            residual_m: state.residual_m,
+            drift_m: path.log.drift_m,
+            stability: state.stability,
+            effort: effort - self.effort_before,
+        });
+        self.events_before += recent.len();
+        self.ways_before += ways.len();
+        self.effort_before = effort;
+        cycle.events.extend(recent.into_iter().map(|event| (number, Event { asperity: problem.number(event.asperity), ..event })));
+        let keep = match settings.contacts {
+            KeptContacts::All => true,
+            KeptContacts::Turning => turning || self.passes_landmark(settings, problem, at.totals.load_n),
+            KeptContacts::None => false,
+        };
+        if keep {
+            cycle.contacts.extend(spots_of(problem, state, number));
+        }
+        let load = at.totals.load_n;
+        let load_before = self.load_before.unwrap_or(0.0);
+        let pulls = load < self.pulled.as_ref().map_or(0.0, |pulled| pulled.0);
+        if settings.contacts == KeptContacts::Turning && self.branch == Branch::Unloading && pulls {
+            // A step that is kept already need not be kept twice.
+            self.pulled = Some((load, if keep { Vec::new() } else { spots_of(problem, state, number) }));
+        }
+        self.load_before = Some(load);
+        let merged = state.merged.iter().enumerate().skip(self.merged_before);
+        cycle.merged.extend(merged.map(|(k, spot)| MergedAt { step: number, asperity: problem.summits + k, spot: problem.outward(spot) }));
+        self.merged_before = state.merged.len();
+        path.log.drift_m = 0.0;
+        path.held.clear();
+        check_area(problem, &cycle.steps[number], load_before)
+    }
+}
+
+/// How many spots touch another one.
+fn touching(problem: &Problem, state: &State) -> usize {
+    let greatest = state.greatest_radius();
+    let touches = |i: usize| {
+        let a = state.radius[i];
+        let mut found = false;
+        problem.neighbours.within(i, a + greatest, |r, j| found |= state.radius[j] > 0.0 && r < a + state.radius[j]);
+        found
+    };
+    state.contacts.iter().filter(|i| touches(**i)).count()
+}
+
+fn spots_of(problem: &Problem, state: &State, step: usize) -> Vec<Contact> {
+    let mut spots: Vec<Contact> = state
+        .contacts
+        .iter()
+        .zip(&state.displacement)
+        .map(|(&i, w)| {
+            let (asperity, a) = (&problem.asperities[i], state.radius[i]);
+            Contact {
+                step,
+                asperity: problem.number(i),
+                covered: false,
+                contact_radius_m: a,
+                load_n: asperity.load(a),
+                penetration_m: Some(asperity.penetration(a)),
+                interaction_m: Some(*w),
+            }
+        })
+        .collect();
+    let covered = state.status.iter().enumerate().filter(|(_, status)| matches!(status, Status::Covered { .. }));
+    spots.extend(covered.map(|(i, _)| Contact {
+        step,
+        asperity: problem.number(i),
+        covered: true,
+        contact_radius_m: 0.0,
+        load_n: 0.0,
+        penetration_m: None,
+        interaction_m: None,
+    }));
+    spots.sort_by_key(|spot| spot.asperity);
+    spots
+}

@@ -1,0 +1,205 @@
+//! Errors of the physics.
+
+use thiserror::Error;
+
+/// Errors of the physics, with quantity, value and action.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum PhysicsError {
+    /// A quantity outside the domain of its equation.
+    #[error("cannot evaluate {action}: {quantity} is {}\nhelp: expected {allowed}", short(*value))]
+    Domain {
+        /// What was to be evaluated.
+        action: &'static str,
+        /// The quantity, with its unit.
+        quantity: &'static str,
+        /// Value.
+        value: f64,
+        /// What the equation allows.
+        allowed: &'static str,
+    },
+    /// A surface that cannot be used.
+    #[error("{problem}\nhelp: {help}")]
+    Surface {
+        /// What is wrong with it, with its numbers.
+        problem: String,
+        /// What to do.
+        help: &'static str,
+    },
+    /// A surface without asperities.
+    #[error(
+        "the surface has no asperity: no local maximum with positive mean curvature\nhelp: use a larger surface or a smaller S-filter cut-off"
+    )]
+    NoSummit,
+    /// Asperities with a Tabor parameter below the limit of Wu's criterion.
+    #[error(
+        "Wu's criterion for jump into contact (Eq 3) is invalid: {below} of {all} asperities have a Tabor parameter below 2 (minimum {smallest:.3})\n\
+         help: reduce material.interaction_range_m, set model.jump_in = \"jkr\", or set model.allow_low_tabor = true for a result with a warning"
+    )]
+    LowTabor {
+        /// Minimum Tabor parameter.
+        smallest: f64,
+        /// How many asperities lie below 2.
+        below: usize,
+        /// Number of asperities.
+        all: usize,
+    },
+    /// No equilibrium was found near the last one, not even by relaxation.
+    #[error(
+        "no equilibrium at the mean penetration {approach_m:e} m after {iterations} iterations: {} (asperity {asperity})\nhelp: contacts that \
+         grow together may have none: reduce cycle.max_load; with model.coalescence = \"merge\" or \"none\", try \"cover\"",
+        reason.sentence(*residual_m)
+    )]
+    NoEquilibrium {
+        /// Mean penetration Δ \[m\].
+        approach_m: f64,
+        /// What prevents it.
+        reason: Reason,
+        /// The largest residual \[m\]; not a number for another reason.
+        residual_m: f64,
+        /// The asperity that has it.
+        asperity: usize,
+        /// Iterations spent.
+        iterations: u64,
+    },
+    /// A stored state with an asperity that the surface does not have.
+    #[error(
+        "cannot restore the state: it contains asperity {asperity}, but the surface has {count} asperities\nhelp: use a state of the same surface"
+    )]
+    UnknownAsperity {
+        /// The number of the asperity.
+        asperity: usize,
+        /// Number of asperities.
+        count: usize,
+    },
+    /// Events go on without end within one increment of the approach.
+    #[error(
+        "no stable state at the mean penetration {approach_m:e} m after {events} changes of state (asperity {asperity} last)\nhelp: reduce \
+         cycle.max_load; with model.coalescence = \"cover\" or \"merge\", try \"none\""
+    )]
+    EndlessAvalanche {
+        /// Mean penetration Δ \[m\].
+        approach_m: f64,
+        /// Changes of state so far.
+        events: usize,
+        /// The asperity that changed last.
+        asperity: usize,
+    },
+    /// Merged contacts fill the square.
+    #[error(
+        "the merged contacts have the area {share:.3} A0 at the mean penetration {approach_m:e} m and leave no gap\n\
+         help: reduce cycle.max_load, or set model.coalescence = \"cover\""
+    )]
+    FullContact {
+        /// Approach δ \[m\].
+        approach_m: f64,
+        /// Area over that of the square.
+        share: f64,
+    },
+    /// Full contact at a load reversal, with bonds that open at edges only.
+    #[error(
+        "full contact at the mean penetration {approach_m:e} m: there is no edge from which the surfaces can separate\n\
+         help: reduce cycle.max_load or the work of adhesion, increase the reduced modulus, or set boundary_elements.attraction = \"range\""
+    )]
+    Closed {
+        /// Mean penetration Δ \[m\].
+        approach_m: f64,
+    },
+    /// The contacts have a larger area than the nominal one.
+    #[error(
+        "the contact area {share:.3} A0 exceeds the nominal area at the mean penetration {approach_m:e} m: the contacts have grown together, and the \
+         asperity model is invalid\nhelp: {}",
+        excess_help(*load_before_n)
+    )]
+    ExcessArea {
+        /// Mean penetration Δ \[m\].
+        approach_m: f64,
+        /// Contact area Σπa² over A0.
+        share: f64,
+        /// Load at the step before \[N\].
+        load_before_n: f64,
+    },
+    /// A loop with negative dissipated energy.
+    #[error(
+        "negative dissipated energy of the loop to F/(E* A0) = {max_load}: Θ = {loss_j:e} J ({fraction:.1e} of the work of loading)\n\
+         help: reduce cycle.max_load; with model.coalescence = \"cover\", which does not conserve energy, try \"merge\" or \"none\""
+    )]
+    NegativeDissipation {
+        /// F/(E* A0) at the load reversal; not a number under displacement control.
+        max_load: f64,
+        /// Dissipated energy Θ \[J\].
+        loss_j: f64,
+        /// Magnitude over the work of loading.
+        fraction: f64,
+    },
+    /// The sum of the event energies differs from the loop area.
+    #[error(
+        "energy-balance error above half of Θ in the loop to F/(E* A0) = {max_load}: Θ = {loss_j:e} J, sum over events {events_j:e} J\n\
+         help: reduce cycle.max_load; with model.coalescence = \"cover\", which does not conserve energy, try \"merge\" or \"none\""
+    )]
+    EnergyImbalance {
+        /// F/(E* A0) at the load reversal; not a number under displacement control.
+        max_load: f64,
+        /// Dissipated energy Θ \[J\].
+        loss_j: f64,
+        /// Energy dissipated in the events \[J\].
+        events_j: f64,
+    },
+    /// The maximum load is not reached.
+    #[error(
+        "load F/(E* A0) = {wanted} not reached: it is {reached} at the mean penetration {approach_m:e} m\n\
+         help: reduce cycle.max_load; if the load is tensile, the surface is near full contact, so increase the modulus or the roughness"
+    )]
+    LoadNotReached {
+        /// The requested load.
+        wanted: f64,
+        /// The load reached.
+        reached: f64,
+        /// Mean penetration Δ at the end of the search \[m\].
+        approach_m: f64,
+    },
+}
+
+/// What helps where the contact area exceeds the nominal one after a step at a load \[N\].
+fn excess_help(load_before_n: f64) -> &'static str {
+    if load_before_n > 0.0 {
+        "reduce cycle.max_load, increase the reduced modulus or reduce the work of adhesion"
+    } else {
+        "adhesion alone closes the contact, so a smaller cycle.max_load has no effect: increase the reduced modulus or reduce the work of adhesion"
+    }
+}
+
+/// Why no equilibrium was found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Reason {
+    /// A residual stays above the tolerance.
+    Residual,
+    /// The equilibrium that was found is unstable.
+    Unstable,
+    /// A load or an energy is not a number.
+    NotANumber,
+    /// The search for the next event does not end.
+    EndlessEvents,
+    /// The solution curve to the next event does not end.
+    EndlessPath,
+}
+
+impl Reason {
+    /// The reason in words, with the largest residual \[m\].
+    fn sentence(self, residual_m: f64) -> String {
+        match self {
+            Self::Residual if residual_m.is_nan() => Self::NotANumber.sentence(residual_m),
+            Self::Residual => format!("the largest residual stays at {residual_m:e} m"),
+            Self::Unstable => "the equilibrium found is unstable".to_owned(),
+            Self::NotANumber => "a load or an energy is not a number".to_owned(),
+            Self::EndlessEvents => "the search for the next event does not end".to_owned(),
+            Self::EndlessPath => "the solution curve to the next event does not end".to_owned(),
+        }
+    }
+}
+
+/// A number as a sentence has it: a count by its digits.
+fn short(value: f64) -> String {
+    if value.fract() == 0.0 && value.abs() < 1e6 { format!("{value}") } else { format!("{value:e}") }
+}

@@ -1,0 +1,261 @@
+//! Direct sums over all pairs: exact, and the measure of every faster way.
+
+use super::ewald::{IMAGES, ORDERS, RemainderSeries};
+use super::multipole::{Moments, product};
+use super::patch_pairs::{PairTable, Sources};
+use super::rough_images::{CENTRE, Centre};
+use super::spot_field::{LANES, Place, SpotColumns, sag, spot_fields};
+use super::{Effort, Interaction, Spots, Tangent};
+use crate::model::{Boundary, Interaction as Kind, Material, Slips};
+use crate::physics::math::vector::dot;
+use multiversion::multiversion;
+use std::sync::Arc;
+
+/// Up to this many asperities the sums over images of every pair may be kept, 32 bytes each: 32 MB.
+const TABLE_LIMIT: usize = 1000;
+
+/// All pairs, one by one: the exact field of the nearest image of every spot, and of its other images what is seen from afar.
+#[derive(Debug, Clone)]
+pub struct DirectSum {
+    kind: Kind,
+    periodic: bool,
+    positions: Vec<[f64; 2]>,
+    length: f64,
+    pull: f64,
+    sag: f64,
+    /// `1/(πE*)` \[1/Pa\].
+    compliance: f64,
+    /// The sums over images of every pair of asperities, or nothing: then each is computed when needed.
+    table: Arc<Vec<[f64; ORDERS]>>,
+}
+
+impl DirectSum {
+    /// Asperities at `positions` \[m\] on the square of side `length_m`; of the slips only that of Eq 8 is read.
+    #[must_use]
+    pub fn new(positions: Vec<[f64; 2]>, length_m: f64, material: &Material, kind: Kind, boundary: Boundary, slips: Slips) -> Self {
+        let periodic = boundary == Boundary::Periodic;
+        Self {
+            kind,
+            periodic,
+            positions,
+            length: length_m,
+            pull: material.pull(),
+            sag: sag(slips),
+            compliance: material.compliance(),
+            table: Arc::default(),
+        }
+    }
+
+    /// The same, with the sums over images of every pair at hand where there are few enough places.
+    #[must_use]
+    pub fn with_table(self) -> Self {
+        let (n, positions) = (self.positions.len(), &self.positions);
+        if !self.periodic || self.kind == Kind::None || n > TABLE_LIMIT {
+            return self;
+        }
+        let mut table = vec![[0.0; ORDERS]; n * n];
+        for i in 0..n {
+            for j in 0..=i {
+                let [dx, dy] = [0, 1].map(|k| {
+                    let d = (positions[i][k] - positions[j][k]) / self.length;
+                    d - d.round_ties_even()
+                });
+                let sums = IMAGES.sums(dx, dy);
+                table[i * n + j] = sums;
+                table[j * n + i] = sums;
+            }
+        }
+        Self { table: Arc::new(table), ..self }
+    }
+
+    /// Adds a place \[m\], whose number follows the last one.
+    pub(crate) fn add(&mut self, place: [f64; 2]) {
+        self.table = Arc::default();
+        self.positions.push(place);
+    }
+
+    /// What the images of the spots need.
+    fn moments(&self, spots: &Spots) -> Moments {
+        Moments::of(self.kind, &spots.columns, self.pull, self.compliance, self.length)
+    }
+
+    /// Displacement by all spots at each of `targets` \[m\], and its derivatives to the radii of each: `visit` is given the number of the target in the
+    /// list, the displacement and the derivatives. Where `rough`, some digits of what images do are enough.
+    pub(crate) fn rows(
+        &self,
+        spots: &Spots,
+        targets: &[usize],
+        rough: bool,
+        effort: &mut Effort,
+        mut visit: impl FnMut(usize, f64, &[f64]),
+    ) {
+        let n = spots.index.len();
+        let mut slopes = vec![0.0; spots.columns.padded()];
+        let moments = self.moments(spots);
+        for (k, target) in targets.iter().enumerate() {
+            let sum = self.row::<true>(spots, &moments, *target, rough, &mut slopes);
+            visit(k, sum, &slopes[..n]);
+        }
+        effort.pairs += (n * targets.len()) as u64;
+    }
+
+    /// Displacements at the spots themselves, with some digits of what images do, and the derivatives to the radii of all, row by row.
+    pub(crate) fn among(&self, spots: &Spots, table: &mut PairTable, fields: &mut Vec<f64>, slopes: &mut Vec<f64>, effort: &mut Effort) {
+        table.find(&spots.index, &self.positions, self.length, self.periodic);
+        let moments = self.moments(spots);
+        let Self { kind, compliance, pull, sag, .. } = *self;
+        table.fields(Sources { kind, columns: &spots.columns, moments: &moments, compliance, pull, sag }, fields, slopes);
+        effort.pairs += (spots.index.len() * spots.index.len()) as u64;
+    }
+
+    /// Displacement at asperity `target` by all spots, with its derivatives if they are wanted.
+    fn row<const SLOPES: bool>(&self, spots: &Spots, moments: &Moments, target: usize, rough: bool, slopes: &mut [f64]) -> f64 {
+        let columns = &spots.columns;
+        let [x, y] = self.positions[target];
+        let inverse_length = if self.periodic { 1.0 / self.length } else { 0.0 };
+        let place = Place { x, y, length: self.length, inverse_length, pull: self.pull, sag: self.sag };
+        let mut sum = match self.kind {
+            Kind::None => {
+                slopes.fill(0.0);
+                return 0.0;
+            }
+            Kind::Spots => spot_fields::<SLOPES>(place, columns, slopes),
+            Kind::Point => {
+                let mut sum = 0.0;
+                for (j, load) in columns.load[..columns.len()].iter().enumerate() {
+                    let [dx, dy] = [x - columns.x[j], y - columns.y[j]].map(|d| d - self.length * (d * inverse_length).round_ties_even());
+                    let r = dx.hypot(dy);
+                    let unit = if r > 0.0 { self.compliance / r } else { 0.0 };
+                    sum += load * unit;
+                    if SLOPES {
+                        slopes[j] = columns.load_slope[j] * unit;
+                    }
+                }
+                sum
+            }
+        };
+        if self.periodic {
+            let n = self.positions.len();
+            sum += if rough {
+                rough_image_fields::<SLOPES>(place, columns, moments, slopes)
+            } else {
+                match self.table.get(target * n..(target + 1) * n) {
+                    Some(line) => known_image_fields::<SLOPES>(&spots.index, line, moments, slopes),
+                    None => image_fields::<SLOPES>(place, columns, moments, slopes),
+                }
+            };
+        }
+        sum
+    }
+}
+
+/// The sum of the fields of all images but the nearest; their derivatives are added.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
+fn image_fields<const SLOPES: bool>(place: Place, spots: &SpotColumns, moments: &Moments, slopes: &mut [f64]) -> f64 {
+    let images: &RemainderSeries = &IMAGES;
+    let columns = [&spots.x, &spots.y].map(|column| column.as_chunks::<LANES>().0);
+    let mut all = [0.0; ORDERS];
+    for (pass, (x, y)) in columns[0].iter().zip(columns[1]).enumerate() {
+        let (dx, dy) = in_sides(place, x, y);
+        let sums = images.local(&dx, &dy);
+        let from = pass * LANES;
+        for (sums, j) in sums.iter().zip(from..spots.len()) {
+            gather(&mut all, sums, &moments.value[j]);
+            if SLOPES {
+                slopes[j] += product(sums, &moments.slope[j]);
+            }
+        }
+    }
+    all.iter().sum()
+}
+
+/// The same to some digits.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
+fn rough_image_fields<const SLOPES: bool>(place: Place, spots: &SpotColumns, moments: &Moments, slopes: &mut [f64]) -> f64 {
+    let centre: &Centre = &CENTRE;
+    let columns = [&spots.x, &spots.y].map(|column| column.as_chunks::<LANES>().0);
+    let mut sum = 0.0;
+    for (pass, (x, y)) in columns[0].iter().zip(columns[1]).enumerate() {
+        let (dx, dy) = in_sides(place, x, y);
+        let [first, second] = centre.sums(&dx, &dy);
+        let from = pass * LANES;
+        for (k, j) in (from..spots.len().min(from + LANES)).enumerate() {
+            sum += first[k].mul_add(moments.value[j][0], second[k] * moments.value[j][1]);
+            if SLOPES {
+                slopes[j] += first[k].mul_add(moments.slope[j][0], second[k] * moments.slope[j][1]);
+            }
+        }
+    }
+    sum
+}
+
+/// The same by the sums that are known.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
+fn known_image_fields<const SLOPES: bool>(index: &[usize], line: &[[f64; ORDERS]], moments: &Moments, slopes: &mut [f64]) -> f64 {
+    let mut all = [[0.0; ORDERS]; 2];
+    for (j, &source) in index.iter().enumerate() {
+        gather(&mut all[j % 2], &line[source], &moments.value[j]);
+        if SLOPES {
+            slopes[j] += product(&line[source], &moments.slope[j]);
+        }
+    }
+    all.iter().flatten().sum()
+}
+
+#[inline(always)]
+fn gather(all: &mut [f64; ORDERS], sums: &[f64; ORDERS], moments: &[f64; ORDERS]) {
+    for m in 0..ORDERS {
+        all[m] = sums[m].mul_add(moments[m], all[m]);
+    }
+}
+
+/// Distances along both directions to the nearest images, in sides.
+#[inline(always)]
+fn in_sides(place: Place, x: &[f64; LANES], y: &[f64; LANES]) -> ([f64; LANES], [f64; LANES]) {
+    let (mut dx, mut dy) = ([0.0; LANES], [0.0; LANES]);
+    for k in 0..LANES {
+        dx[k] = (place.x - x[k]) * place.inverse_length;
+        dy[k] = (place.y - y[k]) * place.inverse_length;
+        dx[k] -= dx[k].round_ties_even();
+        dy[k] -= dy[k].round_ties_even();
+    }
+    (dx, dy)
+}
+
+impl Interaction for DirectSum {
+    fn displacements(&self, spots: &Spots, targets: &[usize], displacements: &mut Vec<f64>, effort: &mut Effort) {
+        displacements.clear();
+        effort.pairs += (spots.index.len() * targets.len()) as u64;
+        let moments = self.moments(spots);
+        displacements.extend(targets.iter().map(|target| self.row::<false>(spots, &moments, *target, false, &mut [])));
+    }
+
+    fn linearise(&self, spots: &Spots, displacements: &mut Vec<f64>, tangent: &mut Tangent, effort: &mut Effort) {
+        let n = spots.index.len();
+        let mut matrix = tangent.take_dense(n);
+        displacements.clear();
+        self.rows(spots, &spots.index, false, effort, |k, sum, slopes| {
+            displacements.push(sum);
+            matrix[k * n..(k + 1) * n].copy_from_slice(slopes);
+        });
+        tangent.set_dense(n, matrix);
+    }
+
+    fn approach(
+        &self,
+        spots: &Spots,
+        rates: &[f64],
+        targets: &[usize],
+        found: [&mut Vec<f64>; 2],
+        _kept: &mut Tangent,
+        effort: &mut Effort,
+    ) {
+        let [displacements, slopes] = found;
+        displacements.clear();
+        slopes.clear();
+        self.rows(spots, targets, false, effort, |_, sum, row| {
+            displacements.push(sum);
+            slopes.push(dot(row, rates));
+        });
+    }
+}

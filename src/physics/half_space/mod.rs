@@ -1,0 +1,192 @@
+//! The displacement field of contact spots, behind one small trait.
+
+mod choose;
+mod direct;
+pub mod ewald;
+mod multipole;
+mod particle_mesh;
+mod patch_pairs;
+mod rough_images;
+pub mod spot_field;
+
+use crate::physics::math::vector::dot;
+pub use choose::{Best, best};
+pub use direct::DirectSum;
+pub use particle_mesh::FastSum;
+use particle_mesh::Sparse;
+pub(crate) use patch_pairs::PairTable;
+use serde::{Deserialize, Serialize};
+use spot_field::SpotColumns;
+use std::ops::{AddAssign, Sub};
+
+/// The spots in contact: which asperities they are, ascending, and their columns.
+#[derive(Debug, Clone, Default)]
+pub struct Spots {
+    /// Asperity numbers, ascending.
+    pub index: Vec<usize>,
+    /// Their columns, in the same order.
+    pub columns: SpotColumns,
+}
+
+/// `∂ŵ_i/∂a_j` over the spots in contact: what is asked of it is its product with a vector.
+#[derive(Debug, Clone)]
+pub struct Tangent(Form);
+
+#[derive(Debug, Clone)]
+enum Form {
+    /// Rows of i, so many of each.
+    Dense(usize, Vec<f64>),
+    /// Near pairs and a mesh.
+    Sparse(Box<Sparse>),
+}
+
+impl Default for Tangent {
+    fn default() -> Self {
+        Self(Form::Dense(0, Vec::new()))
+    }
+}
+
+impl Tangent {
+    /// `y = ∂ŵ/∂a · x`.
+    pub fn product(&self, x: &[f64], y: &mut [f64]) {
+        match &self.0 {
+            Form::Dense(size, matrix) => {
+                for (line, yi) in matrix.chunks((*size).max(1)).zip(y.iter_mut()) {
+                    *yi = dot(line, x);
+                }
+            }
+            Form::Sparse(sparse) => sparse.product(x, y),
+        }
+    }
+
+    /// Product with full precision: seven digits, against five of the fast product.
+    pub fn fine_product(&mut self, x: &[f64], y: &mut [f64]) {
+        match &mut self.0 {
+            Form::Sparse(sparse) => sparse.fine_product(x, y),
+            Form::Dense(..) => self.product(x, y),
+        }
+    }
+
+    /// Transforms of a mesh in one product.
+    #[must_use]
+    pub fn transforms(&self) -> u64 {
+        match &self.0 {
+            Form::Sparse(sparse) => sparse.transforms(),
+            Form::Dense(..) => 0,
+        }
+    }
+
+    /// True if it has all digits; made fast, it has some.
+    #[must_use]
+    pub fn is_exact(&self) -> bool {
+        matches!(self.0, Form::Dense(..))
+    }
+
+    /// `∂ŵ_i/∂a_i`: what a spot's own images and the background do to it.
+    #[must_use]
+    pub fn own(&self, i: usize) -> f64 {
+        match &self.0 {
+            Form::Dense(size, matrix) => matrix[i * size + i],
+            Form::Sparse(sparse) => sparse.own(i),
+        }
+    }
+
+    /// Takes the matrix out, as `size` rows of zeros, to be filled and given back by [`Self::set_dense`].
+    fn take_dense(&mut self, size: usize) -> Vec<f64> {
+        let mut matrix = match std::mem::take(self).0 {
+            Form::Dense(_, matrix) => matrix,
+            Form::Sparse(_) => Vec::new(),
+        };
+        matrix.clear();
+        matrix.resize(size * size, 0.0);
+        matrix
+    }
+
+    fn set_dense(&mut self, size: usize, matrix: Vec<f64>) {
+        self.0 = Form::Dense(size, matrix);
+    }
+
+    /// Takes the sparse form out, for its memory; to be filled anew and given back by [`Self::set_sparse`].
+    fn take_sparse(&mut self) -> Box<Sparse> {
+        match std::mem::take(self).0 {
+            Form::Sparse(sparse) => sparse,
+            Form::Dense(..) => Box::default(),
+        }
+    }
+
+    fn sparse(&mut self) -> Option<&mut Sparse> {
+        match &mut self.0 {
+            Form::Sparse(sparse) => Some(sparse),
+            Form::Dense(..) => None,
+        }
+    }
+
+    fn set_sparse(&mut self, sparse: Box<Sparse>) {
+        self.0 = Form::Sparse(sparse);
+    }
+}
+
+/// The places of ascending numbers in another such list.
+pub(crate) fn places_in<'a>(numbers: &'a [usize], others: &'a [usize]) -> impl Iterator<Item = Option<usize>> + 'a {
+    let mut at = 0;
+    numbers.iter().map(move |number| {
+        while others.get(at).is_some_and(|other| other < number) {
+            at += 1;
+        }
+        (others.get(at) == Some(number)).then_some(at)
+    })
+}
+
+/// Computational effort: counted, never timed.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Effort {
+    /// Pair fields evaluated.
+    pub pairs: u64,
+    /// Newton and relaxation iterations.
+    pub iterations: u64,
+    /// Products of the tangent with a vector, one for each iteration of GMRES.
+    pub products: u64,
+    /// Transforms of a mesh, there or back.
+    pub transforms: u64,
+}
+
+impl AddAssign for Effort {
+    fn add_assign(&mut self, more: Self) {
+        self.pairs += more.pairs;
+        self.iterations += more.iterations;
+        self.products += more.products;
+        self.transforms += more.transforms;
+    }
+}
+
+impl Sub for Effort {
+    type Output = Self;
+
+    fn sub(self, less: Self) -> Self {
+        Self {
+            pairs: self.pairs - less.pairs,
+            iterations: self.iterations - less.iterations,
+            products: self.products - less.products,
+            transforms: self.transforms - less.transforms,
+        }
+    }
+}
+
+/// Displacement of the half-space at contacts and free asperities by other contacts.
+pub trait Interaction: Sync {
+    /// Displacement ŵ \[m\] at each of `targets` (asperity numbers), and in `displacements` in their order. A spot does not act on its own
+    /// centre, but its periodic images and the background do.
+    fn displacements(&self, spots: &Spots, targets: &[usize], displacements: &mut Vec<f64>, effort: &mut Effort);
+
+    /// Displacements at the spots themselves, with the tangent. What this has kept of places is taken over.
+    fn linearise(&self, spots: &Spots, displacements: &mut Vec<f64>, tangent: &mut Tangent, effort: &mut Effort);
+
+    /// Displacements at the spots themselves, by what the tangent, which stays as it is, has kept of their places.
+    fn again(&self, spots: &Spots, displacements: &mut Vec<f64>, _tangent: &mut Tangent, effort: &mut Effort) {
+        self.displacements(spots, &spots.index, displacements, effort);
+    }
+
+    /// Displacement at each of `targets` and its derivative along a path on which the radii of the spots change by `rates`:
+    /// `dŵ_i = Σ_j (∂ŵ_i/∂a_j) rates_j`; both into `found`. With `rates` = da_j/dδ it is dŵ_i/dδ. What it finds of places is `kept` for the next time.
+    fn approach(&self, spots: &Spots, rates: &[f64], targets: &[usize], found: [&mut Vec<f64>; 2], kept: &mut Tangent, effort: &mut Effort);
+}

@@ -1,0 +1,227 @@
+//! Where spots and targets lie to one another: all of the field that does not depend on the radii.
+
+use super::mesh::{Level, Loads, Reader, Work, read, splines, transform};
+use super::near::{Group, Rest};
+use super::pairs::{GONE, Known, Pairs, Sources, TOGETHER, Target};
+use super::plan::Real;
+use super::plan::{Accuracy, Mesh, Plan, ROUGH_ORDERS, ROUGH_WIDTH, WIDTH};
+use super::{Effort, FastSum, MARGIN, REACHES};
+use crate::physics::half_space::ewald::ORDERS;
+use crate::physics::half_space::{Spots, places_in};
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// Share of the spots, or of the targets, by which their number may have changed until all is found anew.
+const CHANGE: f64 = 0.2;
+
+/// How far the largest radius that a spot's pairs serve may be beyond its own, over what it was when they were found.
+const LOOSE: f64 = 2.0;
+
+/// Near pairs of all targets, sources on meshes and readers there.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Geometry {
+    /// Of which spots by their ranks, where, and up to which radii it serves \[m\]; at which targets.
+    index: Vec<usize>,
+    places: Vec<[f64; 2]>,
+    limits: Vec<f64>,
+    targets: Vec<usize>,
+    accuracy: Option<Accuracy>,
+    /// The finest reach, and for how many spots and targets it was chosen.
+    finest: usize,
+    chosen_for: [usize; 2],
+    /// So many targets by each, in their order; and what was before.
+    pairs: Vec<Pairs>,
+    old: Vec<Pairs>,
+    fine: Meshes<f64, WIDTH, ORDERS>,
+    rough: Meshes<f32, ROUGH_WIDTH, ROUGH_ORDERS>,
+}
+
+impl FastSum {
+    /// Finds the geometry of spots and targets, both by their ranks: what it was before is taken over.
+    pub(super) fn place(&self, spots: &Spots, targets: &[usize], geometry: &mut Geometry) {
+        let columns = &spots.columns;
+        let length = self.measure.length;
+        let kept = geometry.keep(self, spots, targets);
+        let shortest: Vec<Option<usize>> = geometry.limits.iter().map(|limit| self.shortest(*limit)).collect();
+        if kept.is_none() {
+            geometry.finest = self.finest(&shortest, columns, targets.len());
+            geometry.chosen_for = [spots.index.len(), targets.len()];
+        }
+        let finest = geometry.finest;
+        let mut members: [Vec<usize>; REACHES] = Default::default();
+        let mut large = Vec::new();
+        for (j, shortest) in shortest.iter().enumerate() {
+            shortest.and_then(|shortest| self.level(finest, shortest)).map_or(&mut large, |step| &mut members[step]).push(j);
+        }
+        let changed = |members: &[usize]| match &kept {
+            Some(kept) => members.iter().copied().filter(|j| !kept.stays[*j]).collect(),
+            None => Vec::new(),
+        };
+        let (mut all, mut others, mut levels) = (Vec::new(), Vec::new(), Vec::new());
+        let mut group = |rest: Rest, members: &[usize]| {
+            let few: Vec<usize> = changed(members);
+            if !few.is_empty() {
+                others.push(Group::new(rest.clone(), &few, columns, length));
+            }
+            all.push(Group::new(rest, members, columns, length));
+        };
+        for (step, members) in members.into_iter().enumerate().rev() {
+            if !members.is_empty() {
+                let plan = self.plan(step);
+                group(Rest::Mesh(plan.clone()), &members);
+                levels.push((plan, members));
+            }
+        }
+        if !large.is_empty() {
+            group(Rest::Images, &large);
+        }
+        // By its moments a spot is felt that is felt by nothing else: with point interaction all are.
+        let aloof = if self.measure.kind == super::Kind::Spots { self.accuracy.aloof } else { 0.0 };
+        let aloof: Vec<f64> = geometry.limits.iter().map(|limit| aloof * limit).collect();
+        std::mem::swap(&mut geometry.pairs, &mut geometry.old);
+        let before = kept.as_ref().map(|kept| kept.targets.as_slice());
+        let numbers = kept.as_ref().map_or(&[][..], |kept| &kept.numbers);
+        let known = Known { pairs: &geometry.old, numbers, changed: &others };
+        geometry.pairs.resize_with(targets.len().div_ceil(TOGETHER), Pairs::default);
+        geometry.pairs.par_iter_mut().enumerate().zip(targets.par_chunks(TOGETHER)).for_each(|((chunk, pairs), targets)| {
+            let target = |(k, target): (usize, &usize)| Target {
+                place: self.order.positions[*target],
+                before: before.and_then(|before| before[chunk * TOGETHER + k]),
+            };
+            pairs.find(targets.iter().enumerate().map(target), known, &all, self.measure, &aloof);
+        });
+        geometry.targets.clear();
+        geometry.targets.extend_from_slice(targets);
+        let targets: Vec<[f64; 2]> = targets.iter().map(|target| self.order.positions[*target].map(|p| p / length)).collect();
+        let sources: Vec<[f64; 2]> = geometry.places.iter().map(|place| place.map(|p| p / length)).collect();
+        geometry.fine = Meshes::new(&levels, |plan| &plan.fine, &sources, &targets);
+        geometry.rough = Meshes::new(&levels, |plan| &plan.rough, &sources, &targets);
+    }
+}
+
+/// What of a geometry is still as it was.
+struct Kept {
+    /// Which spots.
+    stays: Vec<bool>,
+    /// The new numbers of the spots that there were.
+    numbers: Vec<u32>,
+    /// The numbers that targets had.
+    targets: Vec<Option<usize>>,
+}
+
+impl Geometry {
+    /// Goes over to other spots and targets; what is still as it was, if most is.
+    fn keep(&mut self, field: &FastSum, spots: &Spots, targets: &[usize]) -> Option<Kept> {
+        let columns = &spots.columns;
+        let near = |now: usize, then: usize| (now as f64 - then as f64).abs() <= CHANGE * then as f64;
+        let same = self.accuracy == Some(field.accuracy);
+        let serves = same && near(spots.index.len(), self.chosen_for[0]) && near(targets.len(), self.chosen_for[1]);
+        let places: Vec<[f64; 2]> = (0..columns.len()).map(|j| [columns.x[j], columns.y[j]]).collect();
+        let mut kept = serves.then(|| Kept {
+            stays: vec![false; spots.index.len()],
+            numbers: vec![GONE; self.index.len()],
+            targets: places_in(targets, &self.targets).collect(),
+        });
+        let mut limits: Vec<f64> = columns.a[..columns.len()].iter().map(|a| MARGIN * a).collect();
+        if let Some(kept) = &mut kept {
+            for (j, before) in places_in(&spots.index, &self.index).enumerate() {
+                let Some(before) = before else { continue };
+                let limit = self.limits[before];
+                if self.places[before] == places[j] && (columns.a[j]..LOOSE * limits[j]).contains(&limit) {
+                    (kept.stays[j], kept.numbers[before], limits[j]) = (true, j as u32, limit);
+                }
+            }
+        }
+        self.index.clone_from(&spots.index);
+        (self.places, self.limits, self.accuracy) = (places, limits, Some(field.accuracy));
+        kept
+    }
+
+    /// True if it is that of the spots at themselves, and none of them has grown too large for it.
+    pub(super) fn serves(&self, field: &FastSum, spots: &Spots) -> bool {
+        let columns = &spots.columns;
+        let place = |j: usize| [columns.x[j], columns.y[j]];
+        self.accuracy == Some(field.accuracy)
+            && self.index == spots.index
+            && self.places.iter().enumerate().all(|(j, known)| *known == place(j))
+            && self.limits.iter().zip(&columns.a).all(|(limit, a)| a <= limit)
+    }
+
+    fn count(&self, effort: &mut Effort) {
+        effort.pairs += self.pairs.iter().map(|pairs| pairs.len() as u64).sum::<u64>();
+        effort.transforms += self.transforms();
+    }
+
+    /// Of each mesh there, and of the finest back.
+    pub(super) fn transforms(&self) -> u64 {
+        match self.fine.levels.len() {
+            0 => 0,
+            meshes => meshes as u64 + 1,
+        }
+    }
+
+    /// Displacements at the targets.
+    pub(super) fn displacements(&self, sources: &Sources, work: &mut Work<f64>, values: &mut [f64], effort: &mut Effort) {
+        self.count(effort);
+        self.pairs.par_iter().zip(values.par_chunks_mut(TOGETHER)).for_each(|(pairs, values)| pairs.sums(sources, values));
+        self.fine.add(Loads { moments: &sources.moments.value, factors: None }, work, values);
+    }
+
+    /// The same, and the derivatives for [`Self::product`].
+    pub(super) fn linearise(&mut self, sources: &Sources, work: &mut Work<f64>, values: &mut [f64], effort: &mut Effort) {
+        self.count(effort);
+        self.pairs.par_iter_mut().zip(values.par_chunks_mut(TOGETHER)).for_each(|(pairs, values)| pairs.linearise(sources, values));
+        self.fine.add(Loads { moments: &sources.moments.value, factors: None }, work, values);
+    }
+
+    /// Derivatives times a vector, the factors of the loads, with the digits of displacements but for near pairs, whose derivatives have seven.
+    pub(super) fn fine_product(&self, loads: Loads<'_>, work: &mut Work<f64>, values: &mut [f64]) {
+        let Some(x) = loads.factors else { return };
+        self.pairs.par_iter().zip(values.par_chunks_mut(TOGETHER)).for_each(|(pairs, values)| pairs.product(x, values));
+        self.fine.add(loads, work, values);
+    }
+
+    /// The same with the digits that a linear solve needs.
+    pub(super) fn product(&self, loads: Loads<'_>, work: &mut Work<f32>, values: &mut [f64]) {
+        let Some(x) = loads.factors else { return };
+        self.pairs.par_iter().zip(values.par_chunks_mut(TOGETHER)).for_each(|(pairs, values)| pairs.product(x, values));
+        self.rough.add(loads, work, values);
+    }
+}
+
+/// Sources on their meshes and readers there, for displacements or for their derivatives.
+#[derive(Debug, Clone)]
+struct Meshes<T, const W: usize, const O: usize> {
+    levels: Vec<Level<T, W, O>>,
+    readers: Vec<Reader<T, W>>,
+}
+
+impl<T, const W: usize, const O: usize> Default for Meshes<T, W, O> {
+    fn default() -> Self {
+        Self { levels: Vec::new(), readers: Vec::new() }
+    }
+}
+
+impl<T: Real, const W: usize, const O: usize> Meshes<T, W, O> {
+    /// Of sources by their plans, the finest first, on one of the `meshes` of these, at targets; all places in units of the side.
+    fn new(levels: &[(Arc<Plan>, Vec<usize>)], mesh: impl Fn(&Plan) -> &Arc<Mesh<T>>, sources: &[[f64; 2]], targets: &[[f64; 2]]) -> Self {
+        let of = |(plan, members): &(Arc<Plan>, Vec<usize>)| {
+            let mesh = mesh(plan).clone();
+            let places: Vec<[f64; 2]> = members.iter().map(|j| sources[*j]).collect();
+            let splines = splines(&places, mesh.size);
+            (mesh, (members.clone(), splines))
+        };
+        let levels: Vec<Level<T, W, O>> = levels.iter().map(of).collect();
+        let readers =
+            levels.first().map_or(Vec::new(), |(mesh, _)| splines::<T, W, O>(targets, mesh.size).iter().map(Reader::new).collect());
+        Self { levels, readers }
+    }
+
+    /// Adds the fields at the targets to `values`.
+    fn add(&self, loads: Loads<'_>, work: &mut Work<T>, values: &mut [f64]) {
+        if let Some((mesh, _)) = self.levels.first() {
+            transform(&self.levels, loads, work);
+            read(&self.readers, mesh.size, work, values);
+        }
+    }
+}

@@ -1,0 +1,331 @@
+//! The same field as the direct sum's in n log n: near pairs exactly, the smooth rest by a mesh.
+//!
+//! Ewald splitting (Darden, York & Pedersen, J. Chem. Phys. 98:10089, 1993; Essmann et al., 103:8577, 1995) of a field that is, from afar,
+//! `Σ_m c_m/r^(2m+1)`, m = 0 … 3 ([`super::multipole`]). As `∇^2m (1/r) = [(2m−1)!!]²/r^(2m+1)` in the plane, the smooth field of a spot is
+//! `Σ_m c_m ∇^2m(erf(αr)/r)/[(2m−1)!!]²`: one kernel, whose sources are a spot's load and Laplacians of it. Within the reach `r_c` of a
+//! source its field is exact, less the smooth field of its nearest image; the smooth fields of all sources and images come from a mesh.
+//!
+//! A spot must be small against its reach. So sources form groups by their radii: every group has twice the reach of the one before and
+//! a mesh half as fine, and one large spot costs one long list. What is too large for any mesh acts on all by its exact field.
+//!
+//! An isolated square has no images: it lies in an empty one of [`ROOM`] times its side, and the mesh has of each source what falls off to nothing before
+//! the next image of it begins ([`plan`]).
+
+mod geometry;
+mod mesh;
+mod near;
+mod order;
+mod pairs;
+mod plan;
+
+use super::ewald::ORDERS;
+use super::multipole::{Moments, product};
+use super::spot_field::{SpotColumns, sag};
+use super::{Effort, Interaction, Spots, Tangent};
+use crate::model::{Boundary, Interaction as Kind, Material, Slips};
+use geometry::Geometry;
+use mesh::{Loads, Work};
+use near::Measure;
+use order::{Order, inward, outward};
+use pairs::Sources;
+use plan::{Accuracy, Plan, mesh_size};
+use std::cell::RefCell;
+use std::f64::consts::{FRAC_1_SQRT_2, PI};
+use std::sync::{Arc, OnceLock};
+
+/// The longest reach, in sides: within it no image but the nearest can lie.
+const LONGEST: f64 = 0.45;
+
+/// Reaches to choose from, each `1/√2` of the one before.
+const REACHES: usize = 15;
+const REACH: [f64; REACHES] = {
+    let mut all = [LONGEST; REACHES];
+    let mut step = 1;
+    while step < REACHES {
+        all[step] = all[step - 1] * FRAC_1_SQRT_2;
+        step += 1;
+    }
+    all
+};
+
+/// Sides of the empty square in which an isolated one lies.
+const ROOM: f64 = 3.0;
+
+/// The longest reach there, in sides of the empty square: between what the square needs of a field and its next image this falls off, and rises again.
+const LONGEST_ALONE: f64 = 0.5 * (0.5 - 1.0 / ROOM);
+
+/// What is spent for one pair in a solution of some linearisations and the products that follow, in units of one point of a mesh in one transform.
+const PAIR_COST: f64 = 8.0;
+
+/// What the radii may grow by until pairs are found anew.
+const MARGIN: f64 = 1.05;
+
+/// Near pairs and a mesh.
+#[derive(Debug, Clone)]
+pub struct FastSum {
+    measure: Measure,
+    order: Order,
+    /// `1/(πE*)` \[1/Pa\].
+    compliance: f64,
+    accuracy: Accuracy,
+    /// What has been made, from the longest reach to the shortest.
+    plans: [OnceLock<Arc<Plan>>; REACHES],
+}
+
+impl FastSum {
+    /// Asperities at `positions` \[m\] on the square of side `length_m`; every displacement is right to `tolerance` times the
+    /// greatest one. The load of a spot must be the one of its radii by Eq 1; of the
+    /// slips only that of Eq 8 is read.
+    #[must_use]
+    pub fn new(
+        positions: Vec<[f64; 2]>,
+        length_m: f64,
+        material: &Material,
+        kind: Kind,
+        boundary: Boundary,
+        slips: Slips,
+        tolerance: f64,
+    ) -> Self {
+        let length = match boundary {
+            Boundary::Periodic => length_m,
+            Boundary::Isolated => ROOM * length_m,
+        };
+        Self {
+            measure: Measure { kind, boundary, pull: material.pull(), sag: sag(slips), length },
+            order: Order::new(positions, length),
+            compliance: material.compliance(),
+            accuracy: Accuracy::of(tolerance),
+            plans: [const { OnceLock::new() }; REACHES],
+        }
+    }
+
+    /// Adds a place \[m\], whose number follows the last one.
+    pub(crate) fn add(&mut self, place: [f64; 2]) {
+        self.order.add(place);
+    }
+
+    fn plan(&self, step: usize) -> Arc<Plan> {
+        self.plans[step].get_or_init(|| Arc::new(Plan::new(self.accuracy, REACH[step], self.measure.boundary))).clone()
+    }
+
+    /// The shortest of the reaches that a spot of radius `a` \[m\] may have, or nothing if it is too large for all.
+    fn shortest(&self, a: f64) -> Option<usize> {
+        let least = if self.measure.kind == Kind::Spots { a / (self.accuracy.girth * self.measure.length) } else { 0.0 };
+        REACH.iter().rposition(|reach| *reach >= least).filter(|step| *step >= self.longest())
+    }
+
+    /// The longest of the reaches.
+    fn longest(&self) -> usize {
+        match self.measure.boundary {
+            Boundary::Periodic => 0,
+            Boundary::Isolated => REACH.iter().position(|reach| *reach <= LONGEST_ALONE).unwrap_or(REACHES - 1),
+        }
+    }
+
+    /// The longest of the reaches `finest`, `finest` − 2, … that is no shorter than `shortest`, if there is one.
+    fn level(&self, finest: usize, shortest: usize) -> Option<usize> {
+        let step = if finest <= shortest { Some(finest) } else { (shortest + 1 - (finest - shortest) % 2).checked_sub(1) };
+        step.filter(|step| *step >= self.longest())
+    }
+
+    /// The finest reach that costs least, by the shortest ones that the spots may have, where these lie and the number of targets.
+    fn finest(&self, shortest: &[Option<usize>], columns: &SpotColumns, targets: usize) -> usize {
+        let crowds = crowds(columns, self.measure.length);
+        let mut spots = [0usize; REACHES];
+        for step in shortest.iter().flatten() {
+            spots[*step] += 1;
+        }
+        let cost = |finest: usize| {
+            let mut counts = [0usize; REACHES];
+            for (shortest, count) in spots.iter().enumerate() {
+                if let Some(step) = self.level(finest, shortest) {
+                    counts[step] += count;
+                }
+            }
+            let large = shortest.len() - counts.iter().sum::<usize>();
+            counts[finest] = counts[finest].max(1);
+            let mut cost = PAIR_COST * (targets * large) as f64;
+            for (step, count) in counts.iter().enumerate().filter(|(_, count)| **count > 0) {
+                let mesh = mesh_size(self.accuracy, REACH[step]) as f64;
+                let pairs = crowds[step] * PI * REACH[step] * REACH[step] * (count * targets) as f64;
+                cost += PAIR_COST * pairs + mesh * mesh * mesh.log2() * 2.0;
+            }
+            cost
+        };
+        let all = (self.longest()..REACHES).map(|step| (step, cost(step)));
+        all.min_by(|(_, a), (_, b)| a.total_cmp(b)).map_or(REACHES - 1, |(step, _)| step)
+    }
+
+    /// The spots as sources, by exact fields and by moments.
+    fn sources(&self, spots: &Spots) -> Sources {
+        let columns = &spots.columns;
+        let shape = |j: usize| [columns.a[j], columns.root_a[j], columns.inverse_root_a[j], columns.inverse_radius[j]];
+        Sources {
+            measure: self.measure,
+            shapes: (0..columns.len()).map(shape).collect(),
+            moments: Moments::of(self.measure.kind, columns, self.measure.pull, self.compliance, self.measure.length),
+        }
+    }
+
+    /// True if there is any field.
+    fn acts(&self, spots: &Spots) -> bool {
+        self.measure.kind != Kind::None && !spots.index.is_empty()
+    }
+}
+
+/// How many times as many spots lie near one of them as if they were spread evenly, within each of the reaches.
+fn crowds(columns: &SpotColumns, length: f64) -> [f64; REACHES] {
+    let n = columns.len();
+    let mut counts = Vec::new();
+    std::array::from_fn(|step| {
+        // No more cells than spots: within less there are few in any case.
+        let cells = ((1.0 / REACH[step]) as usize).min((n as f64).sqrt() as usize).max(1);
+        counts.clear();
+        counts.resize(cells * cells, 0u32);
+        let cell = |p: f64| (((p / length).rem_euclid(1.0) * cells as f64) as usize).min(cells - 1);
+        for (x, y) in columns.x[..n].iter().zip(&columns.y[..n]) {
+            counts[cell(*x) * cells + cell(*y)] += 1;
+        }
+        let squares: f64 = counts.iter().map(|count| f64::from(*count).powi(2)).sum();
+        squares * (cells * cells) as f64 / (n * n) as f64
+    })
+}
+
+impl Interaction for FastSum {
+    fn displacements(&self, spots: &Spots, targets: &[usize], displacements: &mut Vec<f64>, effort: &mut Effort) {
+        displacements.clear();
+        displacements.resize(targets.len(), 0.0);
+        if self.acts(spots) {
+            let ((spots, _), targets) = (self.order.spots(spots), self.order.of(targets));
+            let (mut geometry, mut values) = (Geometry::default(), vec![0.0; targets.ranks.len()]);
+            self.place(&spots, &targets.ranks, &mut geometry);
+            geometry.displacements(&self.sources(&spots), &mut Work::default(), &mut values, effort);
+            outward(&targets.from, &values, displacements);
+        }
+    }
+
+    fn approach(
+        &self,
+        spots: &Spots,
+        rates: &[f64],
+        targets: &[usize],
+        found: [&mut Vec<f64>; 2],
+        kept: &mut Tangent,
+        effort: &mut Effort,
+    ) {
+        let [displacements, slopes] = found;
+        for values in [&mut *displacements, &mut *slopes] {
+            values.clear();
+            values.resize(targets.len(), 0.0);
+        }
+        if self.acts(spots) {
+            let ((spots, from), targets) = (self.order.spots(spots), self.order.of(targets));
+            let mut sparse = kept.take_sparse();
+            self.place(&spots, &targets.ranks, &mut sparse.geometry);
+            let sources = self.sources(&spots);
+            let Sparse { geometry, fine, rough, .. } = &mut *sparse;
+            let x = &mut rough.get_mut().x;
+            inward(&from, rates, x);
+            let mut values = vec![0.0; targets.ranks.len()];
+            geometry.linearise(&sources, fine, &mut values, effort);
+            outward(&targets.from, &values, displacements);
+            values.fill(0.0);
+            geometry.fine_product(Loads { moments: &sources.moments.slope, factors: Some(x) }, fine, &mut values);
+            outward(&targets.from, &values, slopes);
+            kept.set_sparse(sparse);
+        }
+    }
+
+    fn linearise(&self, spots: &Spots, displacements: &mut Vec<f64>, tangent: &mut Tangent, effort: &mut Effort) {
+        displacements.clear();
+        displacements.resize(spots.index.len(), 0.0);
+        if !self.acts(spots) {
+            let zeros = tangent.take_dense(spots.index.len());
+            tangent.set_dense(spots.index.len(), zeros);
+            return;
+        }
+        let mut sparse = tangent.take_sparse();
+        let (spots, from) = self.order.spots(spots);
+        sparse.from = from;
+        if !sparse.geometry.serves(self, &spots) {
+            self.place(&spots, &spots.index, &mut sparse.geometry);
+        }
+        let sources = self.sources(&spots);
+        let mut values = vec![0.0; spots.index.len()];
+        sparse.geometry.linearise(&sources, &mut sparse.fine, &mut values, effort);
+        outward(&sparse.from, &values, displacements);
+        let own = self.measure.images(0.0, 0.0);
+        for (value, slope) in values.iter_mut().zip(&sources.moments.slope) {
+            *value = product(&own, slope);
+        }
+        sparse.own.resize(values.len(), 0.0);
+        outward(&sparse.from, &values, &mut sparse.own);
+        sparse.slopes = sources.moments.slope;
+        tangent.set_sparse(sparse);
+    }
+
+    fn again(&self, spots: &Spots, displacements: &mut Vec<f64>, tangent: &mut Tangent, effort: &mut Effort) {
+        if let Some(sparse) = tangent.sparse().filter(|_| self.acts(spots)) {
+            let (spots, from) = self.order.spots(spots);
+            if sparse.geometry.serves(self, &spots) {
+                let mut values = vec![0.0; from.len()];
+                sparse.geometry.displacements(&self.sources(&spots), &mut sparse.fine, &mut values, effort);
+                displacements.clear();
+                displacements.resize(from.len(), 0.0);
+                outward(&from, &values, displacements);
+                return;
+            }
+        }
+        self.displacements(spots, &spots.index, displacements, effort);
+    }
+}
+
+/// `∂ŵ/∂a` as near pairs and a mesh.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Sparse {
+    geometry: Geometry,
+    /// Where each of the spots stood among those that were given; all but `own` is in their order.
+    from: Vec<usize>,
+    /// Derivatives of the moments to the radii.
+    slopes: Vec<[f64; ORDERS]>,
+    own: Vec<f64>,
+    fine: Work<f64>,
+    rough: RefCell<Rough>,
+}
+
+/// Work space of products.
+#[derive(Debug, Clone, Default)]
+struct Rough {
+    work: Work<f32>,
+    x: Vec<f64>,
+    y: Vec<f64>,
+}
+
+impl Sparse {
+    pub(super) fn product(&self, x: &[f64], y: &mut [f64]) {
+        let rough = &mut *self.rough.borrow_mut();
+        inward(&self.from, x, &mut rough.x);
+        rough.y.clear();
+        rough.y.resize(x.len(), 0.0);
+        self.geometry.product(Loads { moments: &self.slopes, factors: Some(&rough.x) }, &mut rough.work, &mut rough.y);
+        outward(&self.from, &rough.y, y);
+    }
+
+    /// The same with more digits.
+    pub(super) fn fine_product(&mut self, x: &[f64], y: &mut [f64]) {
+        let rough = self.rough.get_mut();
+        inward(&self.from, x, &mut rough.x);
+        rough.y.clear();
+        rough.y.resize(x.len(), 0.0);
+        self.geometry.fine_product(Loads { moments: &self.slopes, factors: Some(&rough.x) }, &mut self.fine, &mut rough.y);
+        outward(&self.from, &rough.y, y);
+    }
+
+    pub(super) fn own(&self, i: usize) -> f64 {
+        self.own[i]
+    }
+
+    pub(super) fn transforms(&self) -> u64 {
+        self.geometry.transforms()
+    }
+}

@@ -1,0 +1,79 @@
+//! The order in which places are kept: what lies together stands together, so that what a target wants of its sources is at hand. With a million
+//! spots in any other order, a sum waits for the memory seven times as long as it counts.
+
+use crate::physics::half_space::Spots;
+
+/// Asperities in the order of the Z-curve (Morton 1966) through the square.
+#[derive(Debug, Clone)]
+pub(super) struct Order {
+    /// Places in order \[m\].
+    pub(super) positions: Vec<[f64; 2]>,
+    /// Of each asperity its place in the order.
+    ranks: Vec<u32>,
+    length: f64,
+}
+
+impl Order {
+    /// Of places \[m\] on the periodic square of side `length` \[m\].
+    pub(super) fn new(given: Vec<[f64; 2]>, length: f64) -> Self {
+        let mut numbers: Vec<u32> = (0..given.len() as u32).collect();
+        numbers.sort_by_cached_key(|i| (along_the_curve(given[*i as usize], length), *i));
+        let mut ranks = vec![0; given.len()];
+        for (rank, i) in numbers.iter().enumerate() {
+            ranks[*i as usize] = rank as u32;
+        }
+        Self { positions: numbers.iter().map(|i| given[*i as usize]).collect(), ranks, length }
+    }
+
+    /// Adds a place \[m\], whose number follows the last one.
+    pub(super) fn add(&mut self, place: [f64; 2]) {
+        let mut given: Vec<[f64; 2]> = self.ranks.iter().map(|rank| self.positions[*rank as usize]).collect();
+        given.push(place);
+        *self = Self::new(given, self.length);
+    }
+
+    /// Some asperities in order.
+    pub(super) fn of(&self, numbers: &[usize]) -> Ordered {
+        let mut pairs: Vec<(u32, u32)> = numbers.iter().enumerate().map(|(k, i)| (self.ranks[*i], k as u32)).collect();
+        pairs.sort_unstable();
+        Ordered { ranks: pairs.iter().map(|pair| pair.0 as usize).collect(), from: pairs.iter().map(|pair| pair.1 as usize).collect() }
+    }
+
+    /// Spots in order, named by their ranks.
+    pub(super) fn spots(&self, spots: &Spots) -> (Spots, Vec<usize>) {
+        let Ordered { ranks, from } = self.of(&spots.index);
+        (Spots { index: ranks, columns: spots.columns.in_order(&from) }, from)
+    }
+}
+
+/// Asperities in order: their ranks, ascending, and where each stood among those that were given.
+pub(super) struct Ordered {
+    pub(super) ranks: Vec<usize>,
+    pub(super) from: Vec<usize>,
+}
+
+/// What is given, in order.
+pub(super) fn inward(from: &[usize], given: &[f64], ordered: &mut Vec<f64>) {
+    ordered.clear();
+    ordered.extend(from.iter().map(|k| given[*k]));
+}
+
+/// What is in order, as it was given.
+pub(super) fn outward(from: &[usize], ordered: &[f64], given: &mut [f64]) {
+    for (k, value) in from.iter().zip(ordered) {
+        given[*k] = *value;
+    }
+}
+
+/// How far along the Z-curve a place is.
+fn along_the_curve(place: [f64; 2], length: f64) -> u64 {
+    let bits = place.map(|p| {
+        let share = p / length;
+        let cell = ((share - share.floor()) * 65536.0) as u64 & 0xFFFF;
+        let cell = (cell | cell << 8) & 0x00FF_00FF;
+        let cell = (cell | cell << 4) & 0x0F0F_0F0F;
+        let cell = (cell | cell << 2) & 0x3333_3333;
+        (cell | cell << 1) & 0x5555_5555
+    });
+    bits[0] << 1 | bits[1]
+}

@@ -1,0 +1,126 @@
+//! The pairs of a neighbourhood: how its spots lie to one another is found once, and serves for all evaluations of it.
+
+use super::multipole::Moments;
+use super::rough_images::{CENTRE, Centre};
+use super::spot_field::{AWAY, LANES, SpotColumns, field_at};
+use crate::model::Interaction as Kind;
+use multiversion::multiversion;
+
+/// All pairs of some asperities; of each its distance \[m\], the inverse, and the sums over images of the first two powers, in sides. Rows are filled up to
+/// whole passes.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct PairTable {
+    index: Vec<usize>,
+    passes: Vec<Pass>,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Pass {
+    r: [f64; LANES],
+    inverse_r: [f64; LANES],
+    images: [[f64; LANES]; 2],
+}
+
+impl PairTable {
+    /// Finds the pairs of the asperities `index` at `positions` \[m\], if they are others than before. Six digits of what images do are enough.
+    pub(crate) fn find(&mut self, index: &[usize], positions: &[[f64; 2]], length: f64, periodic: bool) {
+        if self.index != index {
+            self.index.clear();
+            self.index.extend_from_slice(index);
+            self.passes.clear();
+            find(self, positions, length, periodic);
+        }
+    }
+
+    /// Displacements at all, and their derivatives to the radii of all, row by row.
+    pub(crate) fn fields(&self, by: Sources<'_>, fields: &mut Vec<f64>, slopes: &mut Vec<f64>) {
+        evaluate(self, by, fields, slopes);
+    }
+}
+
+/// What acts.
+#[derive(Clone, Copy)]
+pub(crate) struct Sources<'a> {
+    pub(crate) kind: Kind,
+    pub(crate) columns: &'a SpotColumns,
+    pub(crate) moments: &'a Moments,
+    /// `1/(πE*)` \[1/Pa\].
+    pub(crate) compliance: f64,
+    pub(crate) pull: f64,
+    pub(crate) sag: f64,
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
+fn find(table: &mut PairTable, positions: &[[f64; 2]], length: f64, periodic: bool) {
+    let centre: &Centre = &CENTRE;
+    for &target in &table.index {
+        let [x, y] = positions[target];
+        for sources in table.index.chunks(LANES) {
+            let (mut dx, mut dy, mut r) = ([0.0; LANES], [0.0; LANES], [AWAY; LANES]);
+            for (k, source) in sources.iter().enumerate() {
+                [dx[k], dy[k]] = [x - positions[*source][0], y - positions[*source][1]];
+            }
+            if periodic {
+                for k in 0..LANES {
+                    dx[k] -= length * (dx[k] / length).round_ties_even();
+                    dy[k] -= length * (dy[k] / length).round_ties_even();
+                }
+            }
+            for (k, source) in sources.iter().enumerate() {
+                // A spot does not act on its own centre, as if that were far away.
+                if *source != target {
+                    r[k] = dx[k].mul_add(dx[k], dy[k] * dy[k]).sqrt();
+                }
+            }
+            let images = if periodic { centre.sums(&dx.map(|d| d / length), &dy.map(|d| d / length)) } else { [[0.0; LANES]; 2] };
+            table.passes.push(Pass { r, inverse_r: r.map(|r| 1.0 / r), images });
+        }
+    }
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
+fn evaluate(table: &PairTable, by: Sources<'_>, fields: &mut Vec<f64>, slopes: &mut Vec<f64>) {
+    let n = table.index.len();
+    let columns = [&by.columns.a, &by.columns.root_a, &by.columns.inverse_root_a, &by.columns.inverse_radius];
+    let [a, root_a, inverse_root_a, inverse_radius] = columns.map(|column| column.as_chunks::<LANES>().0);
+    let [load, load_slope] = [&by.columns.load, &by.columns.load_slope].map(|column| column.as_chunks::<LANES>().0);
+    let (mut values, mut rates) = ([[0.0; LANES]; 2], [[0.0; LANES]; 2]);
+    fields.clear();
+    slopes.clear();
+    for row in table.passes.chunks(n.div_ceil(LANES).max(1)) {
+        let mut sums = [0.0; LANES];
+        for (pass, pairs) in row.iter().enumerate() {
+            let from = pass * LANES;
+            let count = (n - from).min(LANES);
+            for lane in 0..count {
+                for order in 0..2 {
+                    values[order][lane] = by.moments.value[from + lane][order];
+                    rates[order][lane] = by.moments.slope[from + lane][order];
+                }
+            }
+            let (mut field, mut slope) = ([0.0; LANES], [0.0; LANES]);
+            match by.kind {
+                Kind::None => {}
+                Kind::Point => {
+                    for k in 0..LANES {
+                        field[k] = load[pass][k] * by.compliance * pairs.inverse_r[k];
+                        slope[k] = load_slope[pass][k] * by.compliance * pairs.inverse_r[k];
+                    }
+                }
+                Kind::Spots => {
+                    let shape = (&a[pass], &root_a[pass], &inverse_root_a[pass], &inverse_radius[pass]);
+                    (field, slope) = field_at(&pairs.r, &pairs.inverse_r, shape.0, shape.1, shape.2, shape.3, by.pull, by.sag);
+                }
+            }
+            for k in 0..LANES {
+                field[k] += pairs.images[0][k].mul_add(values[0][k], pairs.images[1][k] * values[1][k]);
+                slope[k] += pairs.images[0][k].mul_add(rates[0][k], pairs.images[1][k] * rates[1][k]);
+            }
+            for (sum, field) in sums[..count].iter_mut().zip(field) {
+                *sum += field;
+            }
+            slopes.extend_from_slice(&slope[..count]);
+        }
+        fields.push(sums.iter().sum());
+    }
+}

@@ -1,0 +1,279 @@
+//! The front: the state of the contact as it is known between two solutions of the whole, each asperity since its own last event.
+//!
+//! A spot's penetration is nearly linear in the approach, up to the end of its branch; its radius is not. So every asperity has a
+//! [`Trace`] of its penetration, taken when the whole contact was solved or when an event next to it was, and what it is at a later
+//! approach follows from there.
+
+use crate::physics::contact::problem::{Problem, Totals};
+use crate::physics::contact::state::{State, Status};
+use crate::physics::contact::transition::{Change, Kind};
+use crate::physics::math::quadrature::{gauss, hermite, hermite_slope};
+use crate::physics::solve::trace::{STEEPEST, Trace};
+
+/// A rate of penetration beyond this tells of a fold: it grows as the inverse root of the distance to it, and is below 1.2 elsewhere.
+const STEEP: f64 = 2.5;
+
+/// A spot's end is sought when its penetration would be there within this many times the way that is left: before a fold the penetration
+/// goes as a root, and moves as far again as its rate tells.
+const REACH: f64 = 2.2;
+
+/// Share of their distance at which the radii of two spots bring them near a fold: the field of each is steep there.
+const TWINS: f64 = 0.95;
+
+/// A change expected on the way, and the approach at which it is \[m\].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Due {
+    pub(crate) approach: f64,
+    pub(crate) change: Change,
+}
+
+/// The contact as it is known.
+#[derive(Debug, Clone)]
+pub(crate) struct Front {
+    /// Status of each asperity, and radii at their traces.
+    pub(crate) state: State,
+    /// What is known of asperities in contact and of free ones that are near their jump-in.
+    pub(crate) traces: Vec<Trace>,
+    /// Free asperities that are near their jump-in, ascending.
+    pub(crate) candidates: Vec<usize>,
+    /// Covered asperities under their covering spot: `(by, covered)`, ascending.
+    riders: Vec<(usize, usize)>,
+    /// Load and area, and their derivatives to the approach, at the approach at which they were last changed.
+    sums: Sums,
+}
+
+#[derive(Debug, Clone, Copy, Default)]
+struct Sums {
+    at: f64,
+    load: f64,
+    load_rate: f64,
+    area: f64,
+    area_rate: f64,
+}
+
+impl Front {
+    pub(crate) fn new(problem: &Problem, state: State) -> Self {
+        let unknown = Trace::unknown(state.approach_m);
+        let mut riders: Vec<(usize, usize)> = state
+            .status
+            .iter()
+            .enumerate()
+            .filter_map(|(i, status)| match status {
+                Status::Covered { by, .. } => Some((*by, i)),
+                _ => None,
+            })
+            .collect();
+        riders.sort_unstable();
+        Self { traces: vec![unknown; problem.len()], candidates: Vec::new(), riders, sums: Sums::default(), state }
+    }
+
+    /// Changes the status of an asperity.
+    pub(crate) fn set(&mut self, i: usize, status: Status, radius: f64) {
+        if let Status::Covered { by, .. } = self.state.status[i]
+            && let Ok(at) = self.riders.binary_search(&(by, i))
+        {
+            self.riders.remove(at);
+        }
+        if let Status::Covered { by, .. } = status
+            && let Err(at) = self.riders.binary_search(&(by, i))
+        {
+            self.riders.insert(at, (by, i));
+        }
+        match (self.candidates.binary_search(&i), status) {
+            (Err(at), Status::Free) => self.candidates.insert(at, i),
+            (Ok(at), Status::Contact | Status::Covered { .. }) => {
+                self.candidates.remove(at);
+            }
+            _ => {}
+        }
+        self.state.set(i, status, radius);
+    }
+
+    /// Asperities under spot `by`, ascending.
+    pub(crate) fn riders(&self, by: usize) -> impl Iterator<Item = usize> + '_ {
+        let from = self.riders.partition_point(|(j, _)| *j < by);
+        self.riders[from..].iter().take_while(move |(j, _)| *j == by).map(|(_, i)| *i)
+    }
+
+    /// `da/dδ` of a spot at its trace.
+    pub(crate) fn speed(&self, problem: &Problem, i: usize) -> f64 {
+        let trace = self.traces[i];
+        Trace { rate: trace.rate.clamp(-STEEPEST, STEEPEST), ..trace }.speed(&problem.asperities[i], self.state.radius[i])
+    }
+
+    /// How the load of a spot goes on with the approach \[N/m\], no faster than that of a flat punch of thrice its size: at the end of its branch it
+    /// is infinite, but not for long.
+    pub(crate) fn answer(&self, problem: &Problem, i: usize) -> f64 {
+        let (asperity, a) = (&problem.asperities[i], self.state.radius[i]);
+        let most = 6.0 * problem.material.contact_modulus_pa * a;
+        (asperity.load_slope(a) * self.speed(problem, i)).clamp(-most, most)
+    }
+
+    /// Contact radius of a spot expected at an approach \[m\]. Where it is known it may be beyond the end of its branch, where the penetration
+    /// tells another radius.
+    pub(crate) fn radius(&self, problem: &Problem, i: usize, approach: f64) -> f64 {
+        let trace = self.traces[i];
+        if trace.at == approach { self.state.radius[i] } else { trace.radius_ahead(&problem.asperities[i], approach) }
+    }
+
+    /// Contact radii expected at an approach \[m\].
+    pub(crate) fn radii(&self, problem: &Problem, approach: f64) -> Vec<(usize, f64)> {
+        self.state.contacts.iter().map(|&i| (i, self.radius(problem, i, approach))).collect()
+    }
+
+    /// All spots at an approach as it is expected \[m\].
+    pub(crate) fn go_to(&mut self, problem: &Problem, approach: f64) {
+        self.state.approach_m = approach;
+        for (i, a) in self.radii(problem, approach) {
+            if !self.traces[i].value.is_nan() {
+                self.state.radius[i] = a;
+            }
+        }
+    }
+
+    /// Load and area of a spot at its trace, and their derivatives to the approach.
+    fn share(&self, problem: &Problem, i: usize) -> Sums {
+        let (asperity, a, speed) = (&problem.asperities[i], self.state.radius[i], self.speed(problem, i));
+        let load_rate = self.answer(problem, i);
+        let turn = 2.0 * std::f64::consts::PI * a;
+        Sums { at: self.traces[i].at, load: asperity.load(a), load_rate, area: 0.5 * turn * a, area_rate: turn * speed }
+    }
+
+    /// Load and area expected at an approach.
+    pub(crate) fn totals(&self, approach: f64) -> Totals {
+        let way = approach - self.sums.at;
+        Totals { load_n: self.sums.load + self.sums.load_rate * way, area_m2: self.sums.area + self.sums.area_rate * way }
+    }
+
+    /// Takes a spot out of the sums (−1), or puts it in (+1), as its trace has it at an approach.
+    pub(crate) fn count(&mut self, problem: &Problem, i: usize, sign: f64, approach: f64) {
+        let way = approach - self.sums.at;
+        self.sums.load += self.sums.load_rate * way;
+        self.sums.area += self.sums.area_rate * way;
+        self.sums.at = approach;
+        let share = self.share(problem, i);
+        let way = approach - share.at;
+        self.sums.load += sign * (share.load + share.load_rate * way);
+        self.sums.load_rate += sign * share.load_rate;
+        self.sums.area += sign * (share.area + share.area_rate * way);
+        self.sums.area_rate += sign * share.area_rate;
+    }
+
+    /// Adds to the load what spots will do that do not know it yet \[N\].
+    pub(crate) fn add_load(&mut self, load: f64) {
+        self.sums.load += load;
+    }
+
+    /// Load and area at the present approach, before any trace is known.
+    pub(crate) fn expect_totals(&mut self, totals: Totals) {
+        self.sums = Sums { at: self.state.approach_m, load: totals.load_n, area: totals.area_m2, ..Sums::default() };
+    }
+
+    /// Sums anew, all traces being of the same approach.
+    pub(crate) fn recount(&mut self, problem: &Problem) {
+        let mut sums = Sums { at: self.state.approach_m, ..Sums::default() };
+        for &i in &self.state.contacts {
+            let share = self.share(problem, i);
+            sums.load += share.load;
+            sums.load_rate += share.load_rate;
+            sums.area += share.area;
+            sums.area_rate += share.area_rate;
+        }
+        self.sums = sums;
+    }
+
+    /// What is expected of asperity `i` on the way to `target`, in the sense `sign`.
+    pub(crate) fn expect(&self, problem: &Problem, i: usize, target: f64, sign: f64, due: &mut Vec<Due>) {
+        match self.state.status[i] {
+            Status::Free => self.expect_jump_in(problem, i, target, sign, due),
+            Status::Contact => self.expect_of_spot(problem, i, target, sign, due),
+            Status::Covered { .. } | Status::Merged { .. } => {}
+        }
+    }
+
+    fn expect_jump_in(&self, problem: &Problem, i: usize, target: f64, sign: f64, due: &mut Vec<Due>) {
+        let trace = self.traces[i];
+        if self.state.barred[i] || trace.value.is_nan() {
+            return;
+        }
+        let left = problem.jump_in[i] - trace.value;
+        let speed = sign * trace.rate;
+        let way = if left <= 0.0 { 0.0 } else { left / speed };
+        let left = (target - trace.at) * sign;
+        // A curved way may come a little earlier than a straight one.
+        if (left > 0.0 && speed > 0.0 || way == 0.0) && way <= 1.1 * left {
+            due.push(Due { approach: trace.at + sign * way, change: Change { kind: Kind::JumpIn, asperity: i, by: None } });
+        }
+    }
+
+    fn expect_of_spot(&self, problem: &Problem, j: usize, target: f64, sign: f64, due: &mut Vec<Due>) {
+        let (trace, asperity, a) = (self.traces[j], &problem.asperities[j], self.state.radius[j]);
+        let speed = sign * trace.rate;
+        let left = (target - trace.at) * sign;
+        let mut offer = |way: f64, kind: Kind, i: usize, by: Option<usize>| {
+            due.push(Due { approach: trace.at + sign * way.max(0.0), change: Change { kind, asperity: i, by } });
+        };
+        if speed < 0.0 {
+            let way = (trace.value - asperity.jump_off_penetration()) / -speed;
+            if way <= REACH * left || -speed > STEEP {
+                offer(way.min(left), Kind::JumpOff, j, None);
+            }
+            // A fold comes before what such a rate promises.
+            let speed = speed.max(-STEEP);
+            for i in self.riders(j) {
+                if let Status::Covered { release_m, .. } = self.state.status[i] {
+                    let way = (trace.value - asperity.penetration(release_m)) / -speed;
+                    if a <= release_m || way <= 1.1 * left {
+                        offer(if a <= release_m { 0.0 } else { way }, Kind::Uncover, i, Some(j));
+                    }
+                }
+            }
+        } else if speed > 0.0 {
+            if speed > STEEP {
+                offer(left, Kind::Snap, j, None);
+            }
+            let speed = speed.min(STEEP);
+            if problem.covers() {
+                let most = trace.value + 1.1 * speed * left;
+                let Some(reach) = asperity.radius_at_penetration(most) else { return };
+                problem.neighbours.within(j, reach / TWINS, |r, i| {
+                    let open = problem.can_be_covered(&self.state, i) && self.state.radius[i] < r;
+                    // Two spots that reach for one another's centres have a fold before they get there.
+                    let reached = reach >= r || self.state.radius[i] > TWINS * r;
+                    if open && r >= a && reached {
+                        offer(((asperity.penetration(r) - trace.value) / speed).min(left), Kind::Cover, i, Some(j));
+                    }
+                });
+            }
+        }
+    }
+}
+
+/// `∫F dδ` of one spot between two known points, the penetration being a cubic in the approach \[J\].
+pub(crate) fn work(problem: &Problem, i: usize, from: Trace, to: Trace) -> f64 {
+    let asperity = &problem.asperities[i];
+    let span = to.at - from.at;
+    if span == 0.0 {
+        return 0.0;
+    }
+    gauss(|p| {
+        let d = hermite(p, from.value, to.value, from.rate * span, to.rate * span);
+        asperity.load(asperity.radius_ahead(d)) * span
+    })
+}
+
+/// A point of a curve along which a radius is the parameter: of one spot its radius and that one's derivative, and of the approach.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct CurvePoint {
+    pub(crate) radius: [f64; 2],
+    pub(crate) approach: [f64; 2],
+}
+
+/// `∫F dδ` of one spot along such a curve, radius and approach being cubics in a parameter that changes by `span` \[J\].
+pub(crate) fn work_along(problem: &Problem, i: usize, span: f64, from: CurvePoint, to: CurvePoint) -> f64 {
+    let asperity = &problem.asperities[i];
+    gauss(|p| {
+        let a = hermite(p, from.radius[0], to.radius[0], from.radius[1] * span, to.radius[1] * span);
+        asperity.load(a) * hermite_slope(p, from.approach[0], to.approach[0], from.approach[1] * span, to.approach[1] * span)
+    })
+}

@@ -1,0 +1,100 @@
+//! Conditions under which a change of state is due.
+
+use super::predictor::Front;
+use crate::physics::contact::problem::Problem;
+use crate::physics::contact::state::Status;
+use crate::physics::contact::transition::{Change, Kind};
+
+/// A change that is due, and by how much: a dimensionless measure that is 0 at the event and positive beyond.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Trigger {
+    pub(crate) change: Change,
+    pub(crate) overshoot: f64,
+}
+
+impl Problem {
+    /// All changes that are due among these asperities: of spots and of what they cover (`touched`), and of free ones (`free`), whose
+    /// penetrations are known at the present approach.
+    pub(crate) fn triggers(&self, front: &Front, touched: &[usize], free: &[usize]) -> Vec<Trigger> {
+        let mut due = Vec::new();
+        let mut add = |change: Change| {
+            let overshoot = self.overshoot(&change, front);
+            if overshoot >= 0.0 {
+                due.push(Trigger { change, overshoot });
+            }
+        };
+        let state = &front.state;
+        let mut inside = Vec::new();
+        for &j in touched {
+            for i in front.riders(j) {
+                add(Change { kind: Kind::Uncover, asperity: i, by: Some(j) });
+            }
+            if state.status[j] != Status::Contact {
+                continue;
+            }
+            add(Change { kind: Kind::JumpOff, asperity: j, by: None });
+            if self.covers() {
+                self.neighbours.within(j, state.radius[j], |_, i| {
+                    if self.can_be_covered(state, i) && state.radius[i] < state.radius[j] {
+                        inside.push(i);
+                        add(Change { kind: Kind::Cover, asperity: i, by: Some(j) });
+                    }
+                });
+            }
+        }
+        for &i in free {
+            if state.status[i] == Status::Free && !state.barred[i] && !inside.contains(&i) {
+                add(Change { kind: Kind::JumpIn, asperity: i, by: None });
+            }
+        }
+        due
+    }
+
+    /// True if a change that was due still is.
+    pub(crate) fn is_due(&self, change: &Change, front: &Front) -> bool {
+        let (i, state) = (change.asperity, &front.state);
+        let possible = match (change.kind, state.status[i], change.by) {
+            (Kind::JumpIn, Status::Free, _) => !state.barred[i],
+            (Kind::JumpOff, Status::Contact, _) => true,
+            (Kind::Uncover, Status::Covered { by, .. }, _) => Some(by) == change.by,
+            (Kind::Cover, Status::Free | Status::Contact, Some(by)) => state.radius[i] < state.radius[by],
+            _ => false,
+        };
+        possible && self.overshoot(change, front) >= 0.0
+    }
+
+    /// How far a state is beyond a change: negative before it.
+    pub(crate) fn overshoot(&self, change: &Change, front: &Front) -> f64 {
+        let (i, state) = (change.asperity, &front.state);
+        match (change.kind, change.by) {
+            (Kind::JumpOff, _) => 1.0 - state.radius[i] / self.asperities[i].jump_off_radius(),
+            (Kind::JumpIn, _) => (front.traces[i].value - self.jump_in[i]) / self.asperities[i].jump_off_penetration().abs(),
+            (Kind::Cover, Some(by)) => {
+                let distance = self.neighbours.distance(&self.positions[i], &self.positions[by]);
+                state.radius[by] / distance - 1.0
+            }
+            (Kind::Uncover, _) => match state.status[i] {
+                // A covering asperity that is itself no spot any more covers nothing.
+                Status::Covered { by, release_m } => 1.0 - state.radius[by] / release_m,
+                _ => f64::NAN,
+            },
+            _ => f64::NAN,
+        }
+    }
+
+    /// How late a change is, as a penetration \[m\].
+    pub(crate) fn lateness(&self, trigger: &Trigger, front: &Front) -> f64 {
+        let (i, state) = (trigger.change.asperity, &front.state);
+        let between = |j: usize, radius: f64| {
+            let asperity = &self.asperities[j];
+            (asperity.penetration(state.radius[j]) - asperity.penetration(radius)).abs()
+        };
+        match (trigger.change.kind, trigger.change.by, state.status[i]) {
+            (Kind::JumpOff, ..) => between(i, self.asperities[i].jump_off_radius()),
+            (Kind::Cover, Some(by), _) => between(by, self.neighbours.distance(&self.positions[i], &self.positions[by])),
+            (Kind::Uncover, _, Status::Covered { by, release_m }) if state.radius[by] > 0.0 => between(by, release_m),
+            (Kind::JumpIn, ..) => trigger.overshoot * self.asperities[i].jump_off_penetration().abs(),
+            _ => 0.0,
+        }
+    }
+}

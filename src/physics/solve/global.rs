@@ -1,0 +1,411 @@
+//! The equilibrium of the spots in contact at one approach.
+//!
+//! Unknowns are the contact radii; the residual of each is `D_i − ŵ_i − δ_JKR(a_i)`, with `D_i = δ + z_i`. The paper's Eq 9 is one
+//! diagonal-Newton update of this system, all spots at once; it diverges. Here:
+//! - [`Solver::newton`]: Newton's method with GMRES, steps limited to 20 % of each radius, accepted only where they descend. Where a step does not
+//!   descend, it is mostly for one spot at the edge of another, where the slope of the field is infinite: the few spots around it are solved for
+//!   themselves with dense matrices, and the whole goes on from there (nonlinear elimination, Lanzkron, Rose & Wilkes, SIAM J. Sci. Comput. 17:538, 1996);
+//! - [`Solver::relax`]: where Newton finds nothing (a fold, or after a jump), overdamped relaxation ([`super::relaxation`]).
+
+use super::local::{Hold, Patch};
+use super::relaxation::{Relaxing, relax};
+use super::residual::{STRIDE, Unsettled};
+use super::schwarz::LocalInverse;
+use super::trace::Trace;
+use crate::physics::contact::problem::Problem;
+use crate::physics::contact::state::{State, Status};
+use crate::physics::contact::transition::{Change, Moving};
+use crate::physics::half_space::{Effort, Interaction as _, Spots, Tangent};
+use crate::physics::math::gmres::{Limits, LinearOperator, Preconditioner, Solution, bounded_inverse, gmres, gmres_and_least};
+use crate::physics::math::vector::dot;
+
+/// Products at most in one linear solve.
+const PRODUCTS: usize = 120;
+
+/// Neighbourhoods that are solved for themselves on the way of one solution of the whole.
+const MENDS: usize = 6;
+
+/// Share of the residual that a step with an earlier tangent must leave less than, or the next one has a tangent of its own.
+const WORTH: f64 = 0.03;
+
+/// Relative residuals to which linear systems are solved.
+const MOST: f64 = 3e-3;
+const LEAST: f64 = 1e-5;
+
+/// The same where the whole contact is solved well enough to go on.
+const ROUGH: f64 = 3e-2;
+
+/// The relative residual of rates where the whole contact is solved to the last digits, and where it is solved well enough to go on. What is next to happen is
+/// told by them.
+const RATES: f64 = 1e-6;
+const ROUGH_RATES: f64 = 3e-4;
+
+/// Solutions that one approximate inverse serves.
+const OLD: usize = 4;
+
+/// Solves for the radii of a state; keeps its work space from one solve to the next.
+pub(crate) struct Solver<'p> {
+    pub(crate) problem: &'p Problem,
+    pub(crate) effort: Effort,
+    spots: Spots,
+    /// True if the present solution is only to be good enough to go on: sums are rough then.
+    roughly: bool,
+    /// The tangent of the present solution, and what is known of the places of free asperities against the spots; the same of the last solution of
+    /// the other kind, for what it knows of places.
+    tangent: Tangent,
+    watched: Tangent,
+    others: [Tangent; 2],
+    /// An approximate inverse of the tangent as it was, and how many solutions have begun since: it only makes them short.
+    inverse: Option<LocalInverse>,
+    age: usize,
+    /// True if the tangent is that of the state that was evaluated last.
+    fresh: bool,
+    /// Residuals of the spots that were evaluated last \[m\].
+    pub(crate) residual: Vec<f64>,
+    diagonal: Vec<f64>,
+    /// The neighbourhood that is solved where Newton's method on the whole does not descend.
+    patch: Patch,
+}
+
+impl<'p> Solver<'p> {
+    pub(crate) fn new(problem: &'p Problem) -> Self {
+        Self {
+            problem,
+            effort: Effort::default(),
+            spots: Spots::default(),
+            roughly: false,
+            tangent: Tangent::default(),
+            watched: Tangent::default(),
+            others: Default::default(),
+            inverse: None,
+            age: 0,
+            fresh: false,
+            residual: Vec::new(),
+            diagonal: Vec::new(),
+            patch: Patch::default(),
+        }
+    }
+
+    /// Before a solution.
+    pub(crate) fn begin(&mut self, roughly: bool) {
+        self.age += 1;
+        if self.roughly != roughly {
+            self.roughly = roughly;
+            let [tangent, watched] = &mut self.others;
+            std::mem::swap(&mut self.tangent, tangent);
+            std::mem::swap(&mut self.watched, watched);
+        }
+    }
+
+    /// Displacements, residuals and tangent of a state; its worst residual and whose it is.
+    pub(crate) fn evaluate(&mut self, state: &mut State) -> Unsettled {
+        let problem = self.problem;
+        problem.spots(state, &mut self.spots);
+        let field = problem.field.for_spots(&self.spots, self.roughly);
+        field.linearise(&self.spots, &mut state.displacement, &mut self.tangent, &mut self.effort);
+        self.fresh = true;
+        self.compare(state)
+    }
+
+    /// The same with the tangent left as it is.
+    fn glance(&mut self, state: &mut State) -> Unsettled {
+        let problem = self.problem;
+        problem.spots(state, &mut self.spots);
+        let field = problem.field.for_spots(&self.spots, self.roughly);
+        field.again(&self.spots, &mut state.displacement, &mut self.tangent, &mut self.effort);
+        self.fresh = false;
+        self.compare(state)
+    }
+
+    /// Residuals of a state whose displacements are known; the worst and whose it is.
+    fn compare(&mut self, state: &mut State) -> Unsettled {
+        let problem = self.problem;
+        self.residual.clear();
+        self.diagonal.clear();
+        let mut worst = Unsettled::residual(0.0, state.contacts.first().copied().unwrap_or(0));
+        for (&i, w) in state.contacts.iter().zip(&state.displacement) {
+            let (asperity, a) = (&problem.asperities[i], state.radius[i]);
+            let residual = state.approach_m + problem.heights[i] - w - asperity.penetration(a);
+            self.residual.push(residual);
+            self.diagonal.push(asperity.penetration_slope(a));
+            // A residual that is not a number must not pass as a small one.
+            if residual.is_nan() || residual.abs() > worst.residual_m {
+                worst = Unsettled::residual(residual.abs(), i);
+            }
+        }
+        state.residual_m = worst.residual_m;
+        worst
+    }
+
+    /// Newton's method on the radii, from those of `state`, at its approach, with its spots; it was evaluated last. Where `patient`, it is tried
+    /// again in short steps before it fails.
+    pub(crate) fn newton(&mut self, state: &mut State, first: Unsettled, patient: bool, tolerance: f64) -> Result<(), Unsettled> {
+        let start: Vec<f64> = state.contacts.iter().map(|&i| state.radius[i]).collect();
+        self.descend(state, first, (0.2, 20), tolerance).or_else(|unsettled| {
+            if !patient {
+                return Err(unsettled);
+            }
+            // Near the edge of a spot, where the slope of its field is infinite, only short steps descend.
+            for (&i, a) in state.contacts.iter().zip(&start) {
+                state.radius[i] = *a;
+            }
+            let first = self.evaluate(state);
+            self.descend(state, first, (1e-4, 60), tolerance)
+        })
+    }
+
+    /// Newton's method, at most so many iterations, each step shortened down to the share `least` of itself until it descends.
+    fn descend(&mut self, state: &mut State, mut worst: Unsettled, (least, most): (f64, usize), tolerance: f64) -> Result<(), Unsettled> {
+        let exact = tolerance <= self.problem.tolerance_m();
+        let mut start: Vec<f64> = Vec::new();
+        let mut step: Vec<f64> = Vec::new();
+        let mut before = f64::INFINITY;
+        let mut share = 1.0;
+        let mut mends = 0;
+        for round in 0..most {
+            if worst.residual_m <= tolerance {
+                return Ok(());
+            }
+            if !self.fresh && worst.residual_m > WORTH * before {
+                worst = self.evaluate(state);
+            }
+            if worst.residual_m >= before && mends < MENDS {
+                // One spot is where the field is no smooth function of the radii: a few spots are solved for themselves there.
+                mends += 1;
+                if self.mend(state, worst.asperity) {
+                    worst = self.evaluate(state);
+                    if worst.residual_m <= tolerance {
+                        return Ok(());
+                    }
+                }
+            }
+            if worst.residual_m < before {
+                before = worst.residual_m;
+                share = 1.0;
+                // The first step leaves the square of the residual, however well it is solved for; the next ones are to be the last.
+                let wanted = match (exact, round) {
+                    (true, 0) => MOST,
+                    (true, _) => (0.1 * tolerance / worst.residual_m).clamp(LEAST, MOST),
+                    (false, _) => (0.3 * tolerance / worst.residual_m).clamp(MOST, ROUGH),
+                };
+                step = self.newton_step(state, wanted);
+                limit(&mut step, state, STRIDE);
+                start = state.contacts.iter().map(|&i| state.radius[i]).collect();
+            } else {
+                // No descent, or not a number: half as far from where the step began.
+                share *= 0.5;
+                if share < least || start.is_empty() {
+                    return Err(worst);
+                }
+            }
+            for ((&i, s), from) in state.contacts.iter().zip(&step).zip(&start) {
+                state.radius[i] = from + share * s;
+            }
+            self.effort.iterations += 1;
+            // The first step leads near enough for the tangent there to serve to the end.
+            worst = if exact && round == 0 { self.evaluate(state) } else { self.glance(state) };
+        }
+        Err(worst)
+    }
+
+    /// Counts the products of a solution.
+    fn count(&mut self, found: Solution) -> Vec<f64> {
+        self.effort.products += found.products;
+        self.effort.transforms += found.products * self.tangent.transforms();
+        found.x
+    }
+
+    /// The step of Newton's method, to this share of the residual.
+    fn newton_step(&mut self, state: &State, wanted: f64) -> Vec<f64> {
+        self.invert(state);
+        let Self { tangent, inverse, diagonal, residual, .. } = self;
+        let inverse = inverse.as_ref().map(|inverse| inverse as &dyn Preconditioner);
+        let found = gmres(&Jacobian { tangent, diagonal }, inverse, residual, Limits { tolerance: wanted, products: PRODUCTS });
+        self.count(found)
+    }
+
+    /// Makes an approximate inverse of the tangent, if there is none of these spots.
+    fn invert(&mut self, state: &State) {
+        let Self { problem, tangent, inverse, age, diagonal, .. } = self;
+        if tangent.is_exact() {
+            // A dense tangent is of so few spots that its products cost nothing.
+            *inverse = None;
+            return;
+        }
+        let own = |k: usize| bounded_inverse(diagonal[k] + tangent.own(k));
+        let known = inverse.take().filter(|_| *age < OLD);
+        *inverse = known.and_then(|known| if known.serves(&state.contacts) { Some(known) } else { known.carried(&state.contacts, own) });
+        if inverse.is_none() {
+            *age = 0;
+            *inverse = Some(LocalInverse::new(problem, state, tangent, diagonal));
+        }
+    }
+
+    /// Solves the neighbourhood of a spot with the displacement by all others held; says whether it has an equilibrium.
+    fn mend(&mut self, state: &mut State, asperity: usize) -> bool {
+        let problem = self.problem;
+        let near = problem
+            .neighbours
+            .nearest(&problem.positions[asperity], problem.spots_in_patch, state.contacts.len(), |i| state.status[i] == Status::Contact);
+        let mut spots: Vec<(usize, f64, f64)> = near
+            .into_iter()
+            .filter_map(|(_, i)| state.contacts.binary_search(&i).ok().map(|k| (i, state.radius[i], state.displacement[k])))
+            .collect();
+        spots.sort_unstable_by_key(|spot| spot.0);
+        self.patch.fix(problem, &spots, state.approach_m, &mut self.effort);
+        if self.patch.descend(problem, Hold::Approach, 1e-4, 60, &mut self.effort).is_err() {
+            return false;
+        }
+        for (member, a) in self.patch.members.iter().zip(&self.patch.radius) {
+            state.radius[member.asperity] = *a;
+        }
+        true
+    }
+
+    /// Relaxes from the radii of `state`, at its approach. Spots that leave or are covered on the way are returned.
+    pub(crate) fn relax(&mut self, state: &mut State) -> Result<Vec<Change>, Unsettled> {
+        let problem = self.problem;
+        relax(&mut Whole { solver: self, state }, problem, None)
+    }
+
+    /// `da_i/dδ` of the spots at the equilibrium that was evaluated last. Its stability is entered into the state.
+    pub(crate) fn rates(&mut self, state: &mut State) -> Vec<f64> {
+        if !self.fresh {
+            // At the edge of a spot the slope of its field is without bound, and the tangent of one step before is none.
+            self.evaluate(state);
+        }
+        if self.tangent.is_exact() {
+            return self.rates_to(RATES, false, state);
+        }
+        let mut rates = self.rates_to(LEAST, false, state);
+        // Solved for once more, with what those products lack of digits.
+        let mut left = vec![0.0; rates.len()];
+        self.tangent.fine_product(&rates, &mut left);
+        self.effort.products += 1;
+        self.effort.transforms += self.tangent.transforms();
+        for ((left, rate), own) in left.iter_mut().zip(&rates).zip(&self.diagonal) {
+            *left = 1.0 - (*left + own * rate);
+        }
+        let share = (dot(&left, &left) / left.len().max(1) as f64).sqrt();
+        let limits = Limits { tolerance: (RATES / share).clamp(LEAST, 0.5), products: PRODUCTS };
+        let more = gmres(&Jacobian { tangent: &self.tangent, diagonal: &self.diagonal }, None, &left, limits);
+        let more = self.count(more);
+        for (rate, more) in rates.iter_mut().zip(more) {
+            *rate += more;
+        }
+        rates
+    }
+
+    /// The same with fewer digits. Of the stability the sign is known: where the least eigenvalue is small, it is in the space of the solution.
+    pub(crate) fn rough_rates(&mut self, state: &mut State) -> Vec<f64> {
+        if !self.fresh {
+            self.evaluate(state);
+        }
+        self.invert(state);
+        self.rates_to(ROUGH_RATES, true, state)
+    }
+
+    /// Both, to a relative residual; `short` with the approximate inverse.
+    fn rates_to(&mut self, wanted: f64, short: bool, state: &mut State) -> Vec<f64> {
+        let ones = vec![1.0; state.contacts.len()];
+        let Self { tangent, inverse, diagonal, .. } = self;
+        let inverse = inverse.as_ref().filter(|_| short).map(|inverse| inverse as &dyn Preconditioner);
+        let limits = Limits { tolerance: wanted, products: PRODUCTS };
+        let (rates, least) = gmres_and_least(&Jacobian { tangent, diagonal }, inverse, &ones, limits);
+        state.stability = least;
+        self.count(rates)
+    }
+
+    /// Penetrations `D_i − ŵ_i` of asperities that are not in contact, with their rates, in an equilibrium and its rates.
+    pub(crate) fn penetrations(&mut self, state: &State, rates: &[f64], wanted: &[usize]) -> Vec<Trace> {
+        let problem = self.problem;
+        problem.spots(state, &mut self.spots);
+        let (mut displacement, mut slopes) = (Vec::new(), Vec::new());
+        let found = [&mut displacement, &mut slopes];
+        let field = problem.field.for_targets(&self.spots, wanted, self.roughly);
+        field.approach(&self.spots, rates, wanted, found, &mut self.watched, &mut self.effort);
+        let at = state.approach_m;
+        let pairs = displacement.iter().zip(&slopes).zip(wanted);
+        pairs.map(|((w, slope), &i)| Trace { at, value: at + problem.heights[i] - w, rate: 1.0 - slope }).collect()
+    }
+
+    /// Displacement at one asperity by spots of these radii \[m\].
+    pub(crate) fn displacement(&mut self, spots: &[(usize, f64)], asperity: usize) -> f64 {
+        self.problem.columns(spots.iter().copied(), &mut self.spots);
+        let mut displacement = Vec::new();
+        self.problem.field.displacements(&self.spots, &[asperity], &mut displacement, &mut self.effort);
+        displacement.first().copied().unwrap_or(0.0)
+    }
+}
+
+/// Jacobian `∂(δ_JKR + ŵ)/∂a`: the slopes `dδ/da` of the asperities and the tangent of the field.
+struct Jacobian<'a> {
+    tangent: &'a Tangent,
+    diagonal: &'a [f64],
+}
+
+impl LinearOperator for Jacobian<'_> {
+    fn product(&self, x: &[f64], y: &mut [f64]) {
+        self.tangent.product(x, y);
+        for (yi, (di, xi)) in y.iter_mut().zip(self.diagonal.iter().zip(x)) {
+            *yi += di * xi;
+        }
+    }
+
+    fn diagonal(&self, i: usize) -> f64 {
+        self.diagonal[i] + self.tangent.own(i)
+    }
+}
+
+/// The whole contact on its way to rest.
+struct Whole<'a, 'p> {
+    solver: &'a mut Solver<'p>,
+    state: &'a mut State,
+}
+
+impl Relaxing for Whole<'_, '_> {
+    fn evaluate(&mut self) -> Unsettled {
+        self.solver.effort.iterations += 1;
+        self.solver.evaluate(self.state)
+    }
+
+    fn spots(&self) -> Vec<Moving> {
+        self.state.contacts.iter().zip(&self.solver.residual).map(|(&i, r)| (i, self.state.radius[i], *r)).collect()
+    }
+
+    fn take_out(&mut self, change: &Change) {
+        self.state.set(change.asperity, change.status(self.solver.problem), 0.0);
+    }
+
+    fn finish(&mut self) -> bool {
+        let mut end = self.state.clone();
+        let first = self.solver.evaluate(&mut end);
+        let found = self.solver.descend(&mut end, first, (1e-4, 40), self.solver.problem.tolerance_m()).is_ok();
+        if found {
+            *self.state = end;
+        }
+        found
+    }
+
+    fn step(&mut self, time: f64) -> (Vec<f64>, bool) {
+        let Solver { tangent, diagonal, residual, .. } = &*self.solver;
+        let damped: Vec<f64> = diagonal.iter().map(|d| d + 1.0 / time).collect();
+        let limits = Limits { tolerance: 1e-3, products: PRODUCTS };
+        let step = gmres(&Jacobian { tangent, diagonal: &damped }, None, residual, limits);
+        (self.solver.count(step), true)
+    }
+
+    fn advance(&mut self, step: &[f64], share: f64) {
+        for (&i, s) in self.state.contacts.iter().zip(step) {
+            self.state.radius[i] += share * s;
+        }
+    }
+}
+
+/// Shortens a step to the largest relative change of a radius that is let pass.
+fn limit(step: &mut [f64], state: &State, most: f64) {
+    let stride = state.contacts.iter().zip(&*step).map(|(&i, s)| s.abs() / state.radius[i]).fold(0.0, f64::max);
+    if stride > most {
+        step.iter_mut().for_each(|s| *s *= most / stride);
+    }
+}

@@ -1,0 +1,180 @@
+//! Where the curve of equilibria of a patch meets an event.
+//!
+//! Along the curve a radius is the better parameter: at a fold the approach turns round and the radius goes on, and where a spot
+//! reaches the centre of another the field has an infinite slope in that radius alone. So events of a spot are found by holding its
+//! radius and solving for the approach; a fold is where `dδ/da` of a spot that moves with it vanishes.
+
+use super::{Hold, Patch, Point};
+use crate::physics::Reason;
+use crate::physics::contact::problem::Problem;
+use crate::physics::half_space::Effort;
+use crate::physics::math::bracket::{End, Illinois};
+use crate::physics::solve::residual::Unsettled;
+
+/// Shortest part of a way that is tried where the whole is too long.
+const SHORTEST: f64 = 1e-3;
+
+/// Greatest relative change of a radius on a way that is trusted to be without a fold.
+const NEAR: f64 = 0.3;
+
+/// Points of one way, and parts of one march, after which no shorter ones are tried.
+const STATIONS: usize = 50;
+
+/// Where a spot's way ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Found {
+    /// The fold is met, and the patch stands there.
+    Fold,
+    /// The radius that bounds the search is met first, and the patch stands there.
+    Bound,
+    /// Neither comes before the approach at which the search ends.
+    Beyond,
+}
+
+impl Patch {
+    /// Follows the curve until the radius of member `at` is `value` \[m\], from an equilibrium that was evaluated last.
+    pub(crate) fn march(&mut self, problem: &Problem, at: usize, value: f64, effort: &mut Effort) -> Result<(), Unsettled> {
+        let mut share = 1.0;
+        let mut parts = 0;
+        while self.radius[at] != value {
+            // Where the field itself jumps, as with the printed Eq 8, ever shorter parts lead to the jump and not beyond.
+            parts += 1;
+            if parts > STATIONS {
+                return Err(Unsettled::because(Reason::EndlessPath, self.members[at].asperity));
+            }
+            let from = (self.radius.clone(), self.approach);
+            let (direction, rate) = self.along(problem, at);
+            let whole = value - self.radius[at];
+            let span = if share < 1.0 { share * whole } else { whole };
+            for (radius, d) in self.radius.iter_mut().zip(&direction) {
+                // A spot at its end has no tangent in the radius of another.
+                let change = (d * span).clamp(-0.3 * *radius, 0.3 * *radius);
+                *radius += change;
+            }
+            self.radius[at] = if share < 1.0 { from.0[at] + span } else { value };
+            self.approach += rate * span;
+            match self.solve(problem, Hold::Radius(at), effort) {
+                Ok(()) => share = (2.0 * share).min(1.0),
+                Err(unsettled) => {
+                    (self.radius, self.approach) = from;
+                    self.evaluate(problem, effort);
+                    share *= 0.25;
+                    if share < SHORTEST {
+                        return Err(unsettled);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The radii at another approach \[m\], if the patch gets there without a fold on the way; it stays where it is.
+    pub(crate) fn glance(&mut self, problem: &Problem, approach: f64, effort: &mut Effort) -> Option<Vec<f64>> {
+        let start = (self.radius.clone(), self.approach);
+        self.ahead(problem, approach);
+        let arrived = self.solve(problem, Hold::Approach, effort).is_ok() && self.rates(problem).1;
+        let near = self.radius.iter().zip(&start.0).all(|(a, from)| (a / from - 1.0).abs() < NEAR);
+        let there = std::mem::replace(&mut self.radius, start.0);
+        self.approach = start.1;
+        self.evaluate(problem, effort);
+        (arrived && near).then_some(there)
+    }
+
+    /// Follows member `at` in the sense of `sense` (the sign of its change) up to the radius `bound` \[m\], until the approach turns round or
+    /// has passed `target` \[m\] in the sense of the path, `sign`.
+    pub(crate) fn follow(
+        &mut self,
+        problem: &Problem,
+        at: usize,
+        bound: f64,
+        (target, sign): (f64, f64),
+        effort: &mut Effort,
+    ) -> Result<Found, Unsettled> {
+        let sense = (bound - self.radius[at]).signum();
+        let ahead = sense * sign;
+        self.way.clear();
+        let mut before = self.point(problem, at);
+        self.way.push(before.clone());
+        if before.slope * ahead <= 0.0 {
+            // It goes the other way by now.
+            return Ok(Found::Beyond);
+        }
+        // At a fold the radius has gone twice as far as its rate tells.
+        let left = (target - self.approach).abs();
+        let mut stride = (2.0 * left / before.slope.abs()).clamp(1e-4 * self.radius[at], 0.2 * self.radius[at]);
+        let beyond = loop {
+            let left = (bound - self.radius[at]).abs();
+            let next = if left <= stride { bound } else { self.radius[at] + sense * stride };
+            match self.march(problem, at, next, effort) {
+                Ok(()) => {
+                    let point = self.point(problem, at);
+                    if point.slope * ahead <= 0.0 {
+                        break point;
+                    }
+                    if (point.approach - target) * sign > 0.0 {
+                        return Ok(Found::Beyond);
+                    }
+                    self.way.push(point.clone());
+                    if next == bound {
+                        return Ok(Found::Bound);
+                    }
+                    before = point;
+                    stride = (2.0 * stride).min(0.2 * self.radius[at]);
+                }
+                Err(unsettled) => {
+                    self.restore(problem, &before, effort);
+                    stride *= 0.25;
+                    if stride < 1e-6 * self.radius[at] || self.way.len() > STATIONS {
+                        return Err(unsettled);
+                    }
+                }
+            }
+        };
+        self.bracket(problem, at, before, beyond, effort)?;
+        Ok(if (self.approach - target) * sign > 0.0 { Found::Beyond } else { Found::Fold })
+    }
+
+    /// The fold between two points of the curve, by the Illinois rule on `dδ/da`.
+    fn bracket(
+        &mut self,
+        problem: &Problem,
+        at: usize,
+        mut before: Point,
+        mut beyond: Point,
+        effort: &mut Effort,
+    ) -> Result<(), Unsettled> {
+        let tolerance = 1e-9 * problem.rms_height_m;
+        let mut ends = Illinois::new(before.slope, beyond.slope);
+        for _ in 0..60 {
+            let span = beyond.at - before.at;
+            if (before.slope * span).abs() <= tolerance || span.abs() <= 1e-9 * before.at {
+                break;
+            }
+            let value = before.at + ends.share(0.02) * span;
+            self.restore(problem, &before, effort);
+            self.march(problem, at, value, effort)?;
+            let point = self.point(problem, at);
+            if point.slope * before.slope > 0.0 {
+                ends.narrow(End::Low, point.slope);
+                before = point;
+            } else {
+                ends.narrow(End::High, point.slope);
+                beyond = point;
+            }
+        }
+        self.restore(problem, &before, effort);
+        self.way.push(before);
+        Ok(())
+    }
+
+    fn point(&mut self, problem: &Problem, at: usize) -> Point {
+        let (direction, slope) = self.along(problem, at);
+        Point { radius: self.radius.clone(), approach: self.approach, direction, slope, at: self.radius[at] }
+    }
+
+    fn restore(&mut self, problem: &Problem, point: &Point, effort: &mut Effort) {
+        self.radius.clone_from(&point.radius);
+        self.approach = point.approach;
+        self.evaluate(problem, effort);
+    }
+}

@@ -1,0 +1,411 @@
+//! The neighbourhood of an event: the spots next to it as unknowns, all others by the field that they have there.
+//!
+//! An event moves its neighbours by much and the rest of the contact by little, since what one spot gains its neighbours lose: the response
+//! falls off beyond a few spacings. So each event is solved among its nearest spots, with the displacement by all others as it was and as
+//! it changes with the approach; the whole contact is solved again at the end of each stretch of the path, and the difference is measured
+//! (see [`crate::physics::path::equilibrium_path`]). Where a patch holds all spots there is no difference.
+
+pub(crate) mod curve;
+pub(crate) mod outside;
+mod relaxing;
+
+use super::residual::{STRIDE, Unsettled};
+use super::trace::Trace;
+use crate::physics::Reason;
+use crate::physics::contact::problem::Problem;
+use crate::physics::half_space::{Effort, PairTable, Spots};
+use crate::physics::math::dense::Lu;
+use std::f64::consts::PI;
+
+/// What is outside a patch follows the approach by a part of it; next to a fold of the whole it would go further, but not far.
+fn bounded(drift: f64) -> f64 {
+    drift.clamp(-2.0, 3.0)
+}
+
+/// An asperity of the patch: what the rest of the contact does to it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Place {
+    pub(crate) asperity: usize,
+    /// Displacement by the spots outside the patch at the reference approach \[m\].
+    pub(crate) outside: f64,
+    /// Derivative to the approach.
+    pub(crate) drift: f64,
+}
+
+/// A state of a patch on the curve of equilibria, with its direction.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Point {
+    pub(crate) radius: Vec<f64>,
+    pub(crate) approach: f64,
+    /// Derivatives of the radii and of the approach to the radius of the spot that is followed, `at` \[m\].
+    pub(crate) direction: Vec<f64>,
+    pub(crate) slope: f64,
+    pub(crate) at: f64,
+}
+
+/// What is held while a patch is solved; the approach is an unknown unless it is what is held.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Hold {
+    /// The approach.
+    Approach,
+    /// The radius of the member of this number.
+    Radius(usize),
+    /// The penetration of the watched asperity of this number \[m\].
+    Penetration(usize, f64),
+}
+
+/// The spots around an event, ascending, and the free asperities among them.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Patch {
+    /// Approach \[m\].
+    pub(crate) approach: f64,
+    reference: f64,
+    pub(crate) members: Vec<Place>,
+    /// Contact radii of the members \[m\].
+    pub(crate) radius: Vec<f64>,
+    pub(crate) watched: Vec<Place>,
+    /// True if there are spots outside it: what they do is held, and some digits of what images do are enough.
+    local: bool,
+    /// Where the patch has been on its way to an event, if it was followed there by a radius.
+    pub(crate) way: Vec<Point>,
+    pub(crate) spots: Spots,
+    pairs: PairTable,
+    /// Displacement at the members by one another \[m\], and its derivatives to their radii.
+    field: Vec<f64>,
+    slopes: Vec<f64>,
+    residual: Vec<f64>,
+    row: Vec<f64>,
+    matrix: Vec<f64>,
+    lu: Lu,
+}
+
+impl Patch {
+    /// The patch of these spots and free asperities at an approach \[m\], each with its trace, the spots with their radii \[m\]; both lists ascending.
+    pub(crate) fn gather(
+        &mut self,
+        problem: &Problem,
+        contacts: &[(usize, Trace, f64)],
+        free: &[(usize, Trace)],
+        approach: f64,
+        local: bool,
+        effort: &mut Effort,
+    ) {
+        (self.approach, self.reference, self.local) = (approach, approach, local);
+        self.members.clear();
+        self.way.clear();
+        self.radius.clear();
+        let mut speeds = Vec::with_capacity(contacts.len());
+        for (i, trace, a) in contacts {
+            let (asperity, a) = (&problem.asperities[*i], *a);
+            self.members.push(Place { asperity: *i, outside: 0.0, drift: 0.0 });
+            self.radius.push(a);
+            speeds.push(trace.speed(asperity, a));
+        }
+        self.evaluate(problem, effort);
+        let n = self.members.len();
+        for (k, (i, trace, _)) in contacts.iter().enumerate() {
+            let (asperity, a) = (&problem.asperities[*i], self.radius[k]);
+            let displaced = approach + problem.heights[*i] - asperity.penetration(a);
+            let by_members: f64 = self.slopes[k * n..(k + 1) * n].iter().zip(&speeds).map(|(s, v)| s * v).sum();
+            self.members[k].outside = displaced - self.field[k];
+            self.members[k].drift = bounded(1.0 - trace.rate - by_members);
+        }
+        self.watched.clear();
+        let places: Vec<usize> = free.iter().map(|(i, _)| *i).collect();
+        problem.field.rows(&self.spots, &places, self.local, effort, |k, field, slopes| {
+            let (i, trace) = free[k];
+            let by_members: f64 = slopes.iter().zip(&speeds).map(|(s, v)| s * v).sum();
+            let displaced = approach + problem.heights[i] - trace.ahead(approach);
+            let drift = bounded(1.0 - trace.rate - by_members);
+            self.watched.push(Place { asperity: i, outside: displaced - field, drift });
+        });
+    }
+
+    /// The patch of these spots (ascending) at an approach \[m\], each with its radius and its displacement by all \[m\], which need be no
+    /// equilibrium.
+    pub(crate) fn fix(&mut self, problem: &Problem, spots: &[(usize, f64, f64)], approach: f64, effort: &mut Effort) {
+        (self.approach, self.reference, self.local) = (approach, approach, false);
+        self.way.clear();
+        self.watched.clear();
+        self.members.clear();
+        self.members.extend(spots.iter().map(|spot| Place { asperity: spot.0, outside: 0.0, drift: 0.0 }));
+        self.radius.clear();
+        self.radius.extend(spots.iter().map(|spot| spot.1));
+        self.evaluate(problem, effort);
+        for ((member, spot), field) in self.members.iter_mut().zip(spots).zip(&self.field) {
+            member.outside = spot.2 - field;
+        }
+    }
+
+    /// Where a member stands.
+    pub(crate) fn find(&self, asperity: usize) -> Option<usize> {
+        self.members.binary_search_by_key(&asperity, |m| m.asperity).ok()
+    }
+
+    /// Puts an asperity into contact; what acts on it from outside is known from watching it, or given.
+    pub(crate) fn insert(&mut self, place: Place, radius: f64) {
+        if let Err(at) = self.members.binary_search_by_key(&place.asperity, |m| m.asperity) {
+            self.members.insert(at, place);
+            self.radius.insert(at, radius);
+            self.watched.retain(|w| w.asperity != place.asperity);
+        }
+    }
+
+    /// Takes a member out of contact; if it is free then, it is watched.
+    pub(crate) fn remove(&mut self, asperity: usize, free: bool) {
+        if let Some(at) = self.find(asperity) {
+            let place = self.members.remove(at);
+            self.radius.remove(at);
+            if free {
+                self.watched.push(place);
+            }
+        }
+    }
+
+    /// An asperity whose whole displacement is known at the present approach \[m\], with the rate of what is outside, as one of the patch.
+    pub(crate) fn place(&mut self, problem: &Problem, asperity: usize, (displacement, drift): (f64, f64), effort: &mut Effort) -> Place {
+        let field = self.field_at(problem, asperity, effort);
+        let outside = displacement - field - drift * (self.approach - self.reference);
+        Place { asperity, outside, drift }
+    }
+
+    /// Displacement at an asperity by the members \[m\]; the derivatives to their radii are left in `row`.
+    fn field_at(&mut self, problem: &Problem, asperity: usize, effort: &mut Effort) -> f64 {
+        let mut field = 0.0;
+        problem.field.rows(&self.spots, &[asperity], self.local, effort, |_, sum, slopes| {
+            field = sum;
+            self.row.clear();
+            self.row.extend_from_slice(slopes);
+        });
+        field
+    }
+
+    /// Displacement by what is outside, at the present approach \[m\].
+    fn outside(&self, place: &Place) -> f64 {
+        place.outside + place.drift * (self.approach - self.reference)
+    }
+
+    /// Fields, slopes and residuals of the members at their radii; the worst residual and whose it is.
+    pub(crate) fn evaluate(&mut self, problem: &Problem, effort: &mut Effort) -> Unsettled {
+        let n = self.members.len();
+        problem.columns(self.members.iter().map(|m| m.asperity).zip(self.radius.iter().copied()), &mut self.spots);
+        self.field.clear();
+        self.slopes.clear();
+        self.residual.clear();
+        let mut worst = Unsettled::residual(0.0, self.members.first().map_or(0, |m| m.asperity));
+        if self.local {
+            problem.field.among(&self.spots, &mut self.pairs, &mut self.field, &mut self.slopes, effort);
+        } else {
+            problem.field.rows(&self.spots, &self.spots.index, false, effort, |_, sum, slopes| {
+                self.field.push(sum);
+                self.slopes.extend_from_slice(slopes);
+            });
+        }
+        for k in 0..n {
+            let member = self.members[k];
+            let i = member.asperity;
+            let residual = self.approach + problem.heights[i]
+                - self.outside(&member)
+                - self.field[k]
+                - problem.asperities[i].penetration(self.radius[k]);
+            self.residual.push(residual);
+            // A residual that is not a number must not pass as a small one.
+            if residual.is_nan() || residual.abs() > worst.residual_m {
+                worst = Unsettled::residual(residual.abs(), i);
+            }
+        }
+        worst
+    }
+
+    /// The Jacobian `∂(δ_JKR + ŵ)/∂a`, with `1/time` on its diagonal.
+    fn assemble(&mut self, problem: &Problem, damping: f64) {
+        let n = self.members.len();
+        self.matrix.clear();
+        self.matrix.extend_from_slice(&self.slopes);
+        for (k, (member, a)) in self.members.iter().zip(&self.radius).enumerate() {
+            self.matrix[k * n + k] += problem.asperities[member.asperity].penetration_slope(*a) + damping;
+        }
+    }
+
+    /// Puts `−∂residual/∂δ` into column `at` of the Jacobian, for an approach that is an unknown in the place of a radius.
+    fn exchange(&mut self, at: usize) {
+        let n = self.members.len();
+        for (k, member) in self.members.iter().enumerate() {
+            self.matrix[k * n + at] = member.drift - 1.0;
+        }
+    }
+
+    /// The step of Newton's method, of the radii and of the approach.
+    fn newton_step(&mut self, problem: &Problem, hold: Hold, effort: &mut Effort) -> (Vec<f64>, f64) {
+        let n = self.members.len();
+        let mut step = self.residual.clone();
+        match hold {
+            Hold::Approach => {
+                self.assemble(problem, 0.0);
+                self.lu.factor(&self.matrix, n);
+                self.lu.solve(&mut step);
+                (step, 0.0)
+            }
+            Hold::Radius(at) => {
+                self.assemble(problem, 0.0);
+                self.exchange(at);
+                self.lu.factor(&self.matrix, n);
+                self.lu.solve(&mut step);
+                let approach = std::mem::replace(&mut step[at], 0.0);
+                (step, approach)
+            }
+            Hold::Penetration(watched, wanted) => {
+                let place = self.watched[watched];
+                let off = self.penetration_of(problem, watched, effort) - wanted;
+                self.assemble(problem, 0.0);
+                let mut bordered = Vec::with_capacity((n + 1) * (n + 1));
+                for (k, member) in self.members.iter().enumerate() {
+                    bordered.extend_from_slice(&self.matrix[k * n..(k + 1) * n]);
+                    bordered.push(member.drift - 1.0);
+                }
+                bordered.extend(self.row[..n].iter().map(|s| -s));
+                bordered.push(1.0 - place.drift);
+                step.push(-off);
+                self.lu.factor(&bordered, n + 1);
+                self.lu.solve(&mut step);
+                let approach = step.pop().unwrap_or(0.0);
+                (step, approach)
+            }
+        }
+    }
+
+    /// Newton's method from the present radii and approach.
+    pub(crate) fn solve(&mut self, problem: &Problem, hold: Hold, effort: &mut Effort) -> Result<(), Unsettled> {
+        self.descend(problem, hold, 0.2, 25, effort)
+    }
+
+    /// Newton's method, at most so many iterations, each step shortened down to the share `least` of itself until it descends.
+    pub(crate) fn descend(&mut self, problem: &Problem, hold: Hold, least: f64, most: usize, effort: &mut Effort) -> Result<(), Unsettled> {
+        let tolerance = problem.tolerance_m();
+        let mut start = (self.radius.clone(), self.approach);
+        let mut step = (Vec::new(), 0.0);
+        let mut before = f64::INFINITY;
+        let mut share = 1.0;
+        let mut last = Unsettled::because(Reason::NotANumber, 0);
+        for _ in 0..most {
+            effort.iterations += 1;
+            last = self.evaluate(problem, effort);
+            let mut worst = last.residual_m;
+            if let Hold::Penetration(watched, wanted) = hold {
+                worst = worst.max((self.penetration_of(problem, watched, effort) - wanted).abs());
+            }
+            if worst <= tolerance {
+                return Ok(());
+            }
+            if worst < before {
+                before = worst;
+                share = 1.0;
+                step = self.newton_step(problem, hold, effort);
+                let stride = step.0.iter().zip(&self.radius).map(|(s, a)| (s / a).abs()).fold(0.0, f64::max);
+                if stride > STRIDE {
+                    step.0.iter_mut().for_each(|s| *s *= STRIDE / stride);
+                    step.1 *= STRIDE / stride;
+                }
+                start = (self.radius.clone(), self.approach);
+            } else {
+                // No descent, or not a number: half as far from where the step began.
+                share *= 0.5;
+                if share < least || step.0.is_empty() {
+                    return Err(last);
+                }
+            }
+            for ((radius, from), s) in self.radius.iter_mut().zip(&start.0).zip(&step.0) {
+                *radius = from + share * s;
+            }
+            self.approach = start.1 + share * step.1;
+        }
+        Err(last)
+    }
+
+    /// `da_i/dδ` of the members at the equilibrium that was evaluated last, and whether it is on the stable side of every fold: the sign of
+    /// the Jacobian's determinant.
+    pub(crate) fn rates(&mut self, problem: &Problem) -> (Vec<f64>, bool) {
+        let mut rates: Vec<f64> = self.members.iter().map(|m| 1.0 - m.drift).collect();
+        self.assemble(problem, 0.0);
+        self.lu.factor(&self.matrix, self.members.len());
+        self.lu.solve(&mut rates);
+        let stable = self.lu.sign() > 0.0 && rates.iter().all(|rate| rate.is_finite());
+        (rates, stable)
+    }
+
+    /// Derivatives along the curve of equilibria to the radius of member `at`: of the other radii, and of the approach.
+    pub(crate) fn along(&mut self, problem: &Problem, at: usize) -> (Vec<f64>, f64) {
+        let n = self.members.len();
+        self.assemble(problem, 0.0);
+        let mut direction: Vec<f64> = (0..n).map(|k| -self.matrix[k * n + at]).collect();
+        self.exchange(at);
+        self.lu.factor(&self.matrix, n);
+        self.lu.solve(&mut direction);
+        let approach = std::mem::replace(&mut direction[at], 1.0);
+        (direction, approach)
+    }
+
+    /// Penetration of a watched asperity \[m\].
+    pub(crate) fn penetration_of(&mut self, problem: &Problem, watched: usize, effort: &mut Effort) -> f64 {
+        let place = self.watched[watched];
+        let field = self.field_at(problem, place.asperity, effort);
+        self.approach + problem.heights[place.asperity] - self.outside(&place) - field
+    }
+
+    /// Penetration and its rate of each watched asperity, given the rates of the members.
+    pub(crate) fn watch(&self, problem: &Problem, rates: &[f64], effort: &mut Effort) -> Vec<Trace> {
+        let places: Vec<usize> = self.watched.iter().map(|place| place.asperity).collect();
+        let mut traces = Vec::with_capacity(places.len());
+        problem.field.rows(&self.spots, &places, self.local, effort, |k, field, slopes| {
+            let place = &self.watched[k];
+            let value = self.approach + problem.heights[place.asperity] - self.outside(place) - field;
+            let by_members: f64 = slopes.iter().zip(rates).map(|(s, v)| s * v).sum();
+            traces.push(Trace { at: self.approach, value, rate: 1.0 - place.drift - by_members });
+        });
+        traces
+    }
+
+    /// Load of the members \[N\], and the part of the potential that changes with them \[J\]:
+    /// `Σ[U(d_i, a_i) − Δγπa_i²] + ½ΣF_iŵ_i`, ŵ by one another. What acts from outside is held, and `Π` is stationary, so that its change
+    /// is the whole one's to second order in what the rest of the contact does.
+    pub(crate) fn totals(&self, problem: &Problem) -> (f64, f64) {
+        let (mut whole, mut potential) = (0.0, 0.0);
+        for ((member, &a), field) in self.members.iter().zip(&self.radius).zip(&self.field) {
+            let asperity = &problem.asperities[member.asperity];
+            let load = asperity.load(a);
+            let spot = PI * a * a;
+            whole += load;
+            potential +=
+                asperity.stored_energy(asperity.penetration(a), a) - problem.material.work_of_adhesion_j_m2 * spot + 0.5 * load * field;
+        }
+        (whole, potential)
+    }
+
+    /// `∂Π/∂δ` at the radii that are: the loads, less what the field from outside takes up \[N\].
+    pub(crate) fn potential_slope(&self, problem: &Problem) -> f64 {
+        let pairs = self.members.iter().zip(&self.radius);
+        pairs.map(|(member, a)| problem.asperities[member.asperity].load(*a) * (1.0 - member.drift)).sum()
+    }
+
+    /// Sets out for another approach \[m\], every penetration going on at its rate.
+    pub(crate) fn ahead(&mut self, problem: &Problem, approach: f64) {
+        let (rates, _) = self.rates(problem);
+        let way = approach - self.approach;
+        for (k, rate) in rates.into_iter().enumerate() {
+            let (asperity, a) = (&problem.asperities[self.members[k].asperity], self.radius[k]);
+            let speed = asperity.penetration_slope(a) * rate;
+            self.radius[k] = asperity.radius_ahead(asperity.penetration(a) + speed * way);
+        }
+        self.approach = approach;
+    }
+
+    /// Moves the patch over the fold at which it stands: member `at` by this share of its radius, the others with it, the approach by `gap` \[m\].
+    pub(crate) fn nudge(&mut self, problem: &Problem, at: usize, share: f64, gap: f64) {
+        let (direction, _) = self.along(problem, at);
+        let span = share * self.radius[at];
+        for (radius, d) in self.radius.iter_mut().zip(&direction) {
+            *radius += (d * span).clamp(-0.05 * *radius, 0.05 * *radius);
+        }
+        self.approach += gap;
+    }
+}

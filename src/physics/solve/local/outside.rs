@@ -1,0 +1,121 @@
+//! What a neighbourhood does to those outside it, and they to its load.
+
+use super::{Patch, Place};
+use crate::physics::contact::problem::Problem;
+use crate::physics::jkr::Asperity;
+
+/// A member as it stood.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Stood {
+    pub(crate) asperity: usize,
+    pub(crate) sphere: Asperity,
+    /// Radius \[m\].
+    pub(crate) radius: f64,
+    /// By how much that was expected to change \[m\].
+    pub(crate) more: f64,
+}
+
+impl Stood {
+    /// The load that was expected of it \[N\].
+    fn load(&self) -> f64 {
+        let (sphere, was) = (&self.sphere, self.radius);
+        sphere.load(was) + self.more * sphere.load_slope(was)
+    }
+}
+
+/// A member as those outside feel it: now and before, out of contact perhaps, and how much more load it has than expected \[N\].
+struct Source {
+    asperity: usize,
+    now: Option<(Asperity, f64)>,
+    before: Option<Stood>,
+    load: f64,
+}
+
+/// Distance over radius from which on a spot's load alone is felt: what else there is is 2 % of it there, and less beyond.
+const ALOOF: f64 = 2.0;
+
+impl Source {
+    fn before(stood: &Stood) -> Self {
+        Self { asperity: stood.asperity, now: None, before: Some(*stood), load: -stood.load() }
+    }
+
+    fn new(asperity: usize) -> Self {
+        Self { asperity, now: None, before: None, load: 0.0 }
+    }
+
+    fn become_of(&mut self, sphere: Asperity, radius: f64) {
+        self.now = Some((sphere, radius));
+        self.load += sphere.load(radius);
+    }
+
+    /// What it does at a place beyond what was expected \[m\], without images.
+    fn field(&self, problem: &Problem, place: &[f64; 2], compliance: f64) -> f64 {
+        let r = problem.neighbours.distance(place, &problem.positions[self.asperity]);
+        let (radius, was) = (self.now.map_or(0.0, |now| now.1), self.before.map_or(0.0, |before| before.radius));
+        if r > ALOOF * radius.max(was) {
+            return compliance * self.load / r;
+        }
+        let field = |sphere: &Asperity, a: f64| problem.spot_field(sphere, r, a);
+        let (was, slope) = self.before.map_or((0.0, 0.0), |before| field(&before.sphere, before.radius));
+        let more = self.before.map_or(0.0, |before| before.more);
+        self.now.map_or(0.0, |(sphere, a)| field(&sphere, a).0) - was - more * slope
+    }
+}
+
+/// How much of the way of the approach what is outside takes up, where it tells how loads answer.
+fn part(drift: f64) -> f64 {
+    drift.clamp(-1.0, 2.0)
+}
+
+impl Patch {
+    /// How the members stand, as [`Self::moved_at`] wants it, if nothing more is expected of them.
+    pub(crate) fn stand(&self, problem: &Problem) -> Vec<Stood> {
+        let stood = |(member, a): (&Place, &f64)| Stood {
+            asperity: member.asperity,
+            sphere: problem.asperities[member.asperity],
+            radius: *a,
+            more: 0.0,
+        };
+        self.members.iter().zip(&self.radius).map(stood).collect()
+    }
+
+    /// By how much the displacements at asperities are other than they were expected to be, when members stood as they did before \[m\]: what the loads
+    /// do from their centres, and near a spot, where that is not enough, its field.
+    pub(crate) fn moved_at(&self, problem: &Problem, asperities: &[usize], centre: &[f64; 2], before: &[Stood]) -> Vec<f64> {
+        let mut sources: Vec<Source> = before.iter().map(Source::before).collect();
+        for (member, &a) in self.members.iter().zip(&self.radius) {
+            let at = before.binary_search_by_key(&member.asperity, |stood| stood.asperity).unwrap_or_else(|_| {
+                sources.push(Source::new(member.asperity));
+                sources.len() - 1
+            });
+            sources[at].become_of(problem.asperities[member.asperity], a);
+        }
+        let whole: f64 = sources.iter().map(|source| source.load).sum();
+        let compliance = problem.material.compliance();
+        let of = |&i: &usize| {
+            let place = &problem.positions[i];
+            let near: f64 = sources.iter().map(|source| source.field(problem, place, compliance)).sum();
+            near + compliance * whole * problem.neighbours.image_kernel(place, centre)
+        };
+        asperities.iter().map(of).collect()
+    }
+
+    /// What the spots outside do to the loads of the members as the approach goes on, `Σ F_i ∂ŵ_i/∂δ`; by reciprocity, what these loads do to the
+    /// load of the others \[N\].
+    pub(crate) fn pull(&self, problem: &Problem) -> f64 {
+        self.members.iter().zip(&self.radius).map(|(m, a)| part(m.drift) * problem.asperities[m.asperity].load(*a)).sum()
+    }
+
+    /// By how much the load of the members is other than it was expected to be, and by how much what the spots outside do to it is, both as the
+    /// radii were to change \[N\].
+    pub(crate) fn off(&self, before: &[Stood]) -> (f64, f64) {
+        let (mut load, mut pull) = (0.0, 0.0);
+        for ((member, &a), stood) in self.members.iter().zip(&self.radius).zip(before) {
+            let (sphere, was) = (&stood.sphere, stood.radius);
+            let off = sphere.load(a) - sphere.load(was) - stood.more * sphere.load_slope(was);
+            load += off;
+            pull += part(member.drift) * off;
+        }
+        (load, pull)
+    }
+}

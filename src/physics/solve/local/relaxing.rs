@@ -1,0 +1,62 @@
+//! A patch on its way to rest ([`crate::physics::solve::relaxation`]).
+
+use super::{Hold, Patch};
+use crate::physics::contact::problem::Problem;
+use crate::physics::contact::transition::{Change, Kind, Moving};
+use crate::physics::half_space::Effort;
+use crate::physics::solve::relaxation::{Relaxing, relax};
+use crate::physics::solve::residual::Unsettled;
+
+impl Patch {
+    /// Relaxes at the present approach ([`crate::physics::solve::relaxation`]). Spots that leave or are covered on the way are taken out, and returned.
+    pub(crate) fn relax(&mut self, problem: &Problem, uncovered: Option<&Change>, effort: &mut Effort) -> Result<Vec<Change>, Unsettled> {
+        relax(&mut Part { patch: self, problem, effort }, problem, uncovered)
+    }
+}
+
+/// A patch on its way to rest.
+struct Part<'a> {
+    patch: &'a mut Patch,
+    problem: &'a Problem,
+    effort: &'a mut Effort,
+}
+
+impl Relaxing for Part<'_> {
+    fn evaluate(&mut self) -> Unsettled {
+        self.effort.iterations += 1;
+        self.patch.evaluate(self.problem, self.effort)
+    }
+
+    fn spots(&self) -> Vec<Moving> {
+        let Patch { members, radius, residual, .. } = &*self.patch;
+        members.iter().zip(radius).zip(residual).map(|((m, a), r)| (m.asperity, *a, *r)).collect()
+    }
+
+    fn take_out(&mut self, change: &Change) {
+        self.patch.remove(change.asperity, change.kind == Kind::JumpOff);
+    }
+
+    fn finish(&mut self) -> bool {
+        let rest = self.patch.radius.clone();
+        let found = self.patch.descend(self.problem, Hold::Approach, 1e-4, 40, self.effort).is_ok() && self.patch.rates(self.problem).1;
+        if !found {
+            self.patch.radius = rest;
+        }
+        found
+    }
+
+    fn step(&mut self, time: f64) -> (Vec<f64>, bool) {
+        let patch = &mut *self.patch;
+        patch.assemble(self.problem, 1.0 / time);
+        patch.lu.factor(&patch.matrix, patch.members.len());
+        let mut step = patch.residual.clone();
+        patch.lu.solve(&mut step);
+        (step, patch.lu.sign() > 0.0)
+    }
+
+    fn advance(&mut self, step: &[f64], share: f64) {
+        for (radius, s) in self.patch.radius.iter_mut().zip(step) {
+            *radius += share * s;
+        }
+    }
+}

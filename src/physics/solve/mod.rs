@@ -1,0 +1,8 @@
+//! Equilibria of a contact at one approach: global, local, and by relaxation.
+
+pub(crate) mod global;
+pub(crate) mod local;
+pub(crate) mod relaxation;
+pub(crate) mod residual;
+mod schwarz;
+pub(crate) mod trace;

@@ -1,0 +1,188 @@
+//! An approximate inverse of the tangent, spot by spot: what a spot answers is decided among its neighbours, since what one of them gains the
+//! others lose. It makes linear solves of the whole contact short.
+//!
+//! Restricted additive Schwarz (Cai & Sarkis, SIAM J. Sci. Comput. 21:792, 1999): the spots are parted into small groups; each is solved for
+//! itself with the spots around it, and what comes out for the group itself is kept.
+
+use crate::physics::contact::problem::Problem;
+use crate::physics::contact::state::{State, Status};
+use crate::physics::half_space::{Tangent, places_in};
+use crate::physics::math::dense::Lu;
+use crate::physics::math::gmres::Preconditioner;
+
+/// Spots in one group, at most, and spots that are solved together for it.
+const GROUP: usize = 24;
+const TOGETHER: usize = 44;
+
+/// The new place of a spot that has gone.
+const GONE: u32 = u32::MAX;
+
+/// One in so many spots may have come or gone until it is made anew.
+const CHANGES: usize = 20;
+
+/// Distance over radius from which on a spot is felt by its load.
+const ALOOF: f64 = 2.0;
+
+/// Rows of the approximate inverse.
+#[derive(Debug, Default)]
+pub(crate) struct LocalInverse {
+    /// The asperities in contact.
+    index: Vec<usize>,
+    starts: Vec<usize>,
+    spots: Vec<u32>,
+    values: Vec<f32>,
+}
+
+impl LocalInverse {
+    /// Of a tangent, and of the diagonal that is added to it, at the spots in contact.
+    pub(crate) fn new(problem: &Problem, state: &State, tangent: &Tangent, diagonal: &[f64]) -> Self {
+        let mut groups = Vec::new();
+        let mut all: Vec<usize> = (0..state.contacts.len()).collect();
+        part(&mut all, &|k, along| problem.positions[state.contacts[k]][along], &mut groups);
+        let mut rows: Vec<(usize, Vec<f32>)> = Vec::with_capacity(all.len());
+        let mut members: Vec<Vec<u32>> = Vec::with_capacity(groups.len());
+        let (mut lu, mut unit) = (Lu::default(), Vec::new());
+        for group in &groups {
+            let near = around(problem, state, &all[group.clone()]);
+            let matrix = transposed(problem, state, &near, tangent, diagonal);
+            lu.factor(&matrix, near.len());
+            let columns = group.len();
+            unit.clear();
+            unit.resize(near.len() * columns, 0.0);
+            for (column, k) in all[group.clone()].iter().enumerate() {
+                if let Ok(at) = near.binary_search_by_key(k, |(j, _)| *j) {
+                    unit[at * columns + column] = 1.0;
+                }
+            }
+            lu.solve_all(&mut unit, columns);
+            rows.extend((0..columns).map(|column| (members.len(), unit.iter().skip(column).step_by(columns).map(|v| *v as f32).collect())));
+            members.push(near.iter().map(|(j, _)| *j as u32).collect());
+        }
+        let mut order: Vec<usize> = (0..all.len()).collect();
+        order.sort_unstable_by_key(|at| all[*at]);
+        let mut found = Self { index: state.contacts.clone(), starts: vec![0], ..Self::default() };
+        for at in order {
+            let (group, row) = &rows[at];
+            found.spots.extend_from_slice(&members[*group]);
+            found.values.extend_from_slice(row);
+            found.starts.push(found.spots.len());
+        }
+        found
+    }
+
+    /// True if it is of these spots.
+    pub(crate) fn serves(&self, contacts: &[usize]) -> bool {
+        self.index == contacts
+    }
+
+    /// The same for other spots, if most are those that it is of: those that have come answer for themselves, by `own`, their place among all given.
+    pub(crate) fn carried(&self, contacts: &[usize], own: impl Fn(usize) -> f64) -> Option<Self> {
+        let mut places = vec![GONE; self.index.len()];
+        let rows: Vec<Option<usize>> = places_in(contacts, &self.index).collect();
+        let mut changes = contacts.len() + self.index.len();
+        for (k, old) in rows.iter().enumerate().filter_map(|(k, old)| old.map(|old| (k, old))) {
+            places[old] = k as u32;
+            changes -= 2;
+        }
+        if changes * CHANGES > contacts.len() {
+            return None;
+        }
+        let mut found = Self { index: contacts.to_vec(), starts: vec![0], ..Self::default() };
+        found.spots.reserve(self.spots.len());
+        found.values.reserve(self.values.len());
+        for (k, row) in rows.into_iter().enumerate() {
+            if let Some(old) = row {
+                for at in self.starts[old]..self.starts[old + 1] {
+                    let place = places[self.spots[at] as usize];
+                    if place != GONE {
+                        found.spots.push(place);
+                        found.values.push(self.values[at]);
+                    }
+                }
+            } else {
+                found.spots.push(k as u32);
+                found.values.push(own(k) as f32);
+            }
+            found.starts.push(found.spots.len());
+        }
+        Some(found)
+    }
+}
+
+impl Preconditioner for LocalInverse {
+    fn apply(&self, x: &[f64], y: &mut [f64]) {
+        for (ends, yi) in self.starts.windows(2).zip(y) {
+            let mut strands = [0.0; 4];
+            let ((spots, left), (values, over)) =
+                (self.spots[ends[0]..ends[1]].as_chunks::<4>(), self.values[ends[0]..ends[1]].as_chunks::<4>());
+            for (spot, value) in spots.iter().zip(values) {
+                for k in 0..4 {
+                    strands[k] += f64::from(value[k]) * x[spot[k] as usize];
+                }
+            }
+            for (spot, value) in left.iter().zip(over) {
+                strands[0] += f64::from(*value) * x[*spot as usize];
+            }
+            *yi = strands.iter().sum();
+        }
+    }
+}
+
+/// Parts spots into groups by halving them across their longer side; the groups are ranges of what `all` is put in order to.
+fn part(all: &mut [usize], place: &dyn Fn(usize, usize) -> f64, groups: &mut Vec<std::ops::Range<usize>>) {
+    fn halve(all: &mut [usize], from: usize, place: &dyn Fn(usize, usize) -> f64, groups: &mut Vec<std::ops::Range<usize>>) {
+        if all.len() <= GROUP {
+            groups.push(from..from + all.len());
+            return;
+        }
+        let span = |along: usize| {
+            let ends =
+                all.iter().map(|k| place(*k, along)).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (p.min(low), p.max(high)));
+            ends.1 - ends.0
+        };
+        let along = usize::from(span(1) > span(0));
+        let middle = all.len() / 2;
+        all.select_nth_unstable_by(middle, |u, v| place(*u, along).total_cmp(&place(*v, along)).then(u.cmp(v)));
+        let (low, high) = all.split_at_mut(middle);
+        halve(low, from, place, groups);
+        halve(high, from + middle, place, groups);
+    }
+    halve(all, 0, place, groups);
+}
+
+/// A group of spots and those around it, each with its place against the middle of the group \[m\].
+fn around(problem: &Problem, state: &State, group: &[usize]) -> Vec<(usize, [f64; 2])> {
+    let place = |k: usize| problem.positions[state.contacts[k]];
+    let count = group.len() as f64;
+    let centre = [0, 1].map(|along| group.iter().map(|k| place(*k)[along]).sum::<f64>() / count);
+    let near = problem.neighbours.nearest(&centre, TOGETHER, state.contacts.len(), |i| state.status[i] == Status::Contact);
+    let mut spots: Vec<usize> =
+        near.iter().filter_map(|(_, i)| state.contacts.binary_search(i).ok()).chain(group.iter().copied()).collect();
+    spots.sort_unstable();
+    spots.dedup();
+    spots.into_iter().map(|k| (k, problem.neighbours.apart(&place(k), &centre))).collect()
+}
+
+/// The tangent among some spots with its diagonal, columns one after another.
+fn transposed(problem: &Problem, state: &State, spots: &[(usize, [f64; 2])], tangent: &Tangent, diagonal: &[f64]) -> Vec<f64> {
+    let mut matrix = Vec::with_capacity(spots.len() * spots.len());
+    for (j, [x, y]) in spots {
+        let i = state.contacts[*j];
+        let a = state.radius[i];
+        let slope = problem.material.compliance() * problem.asperities[i].load_slope(a);
+        // What images do is nearly the same for all of them.
+        let images = tangent.own(*j);
+        for (k, [u, v]) in spots {
+            let r = ((u - x) * (u - x) + (v - y) * (v - y)).sqrt();
+            let by = if k == j {
+                diagonal[*j]
+            } else if r > ALOOF * a {
+                slope / r
+            } else {
+                problem.spot_field(&problem.asperities[i], r, a).1
+            };
+            matrix.push(by + images);
+        }
+    }
+    matrix
+}

@@ -1,0 +1,98 @@
+//! Levelling of measured heights, and values that cannot be levelled.
+
+use crate::model::Detrend;
+use crate::physics::PhysicsError;
+use ndarray::Array2;
+
+/// Part of the heights that rounding can make of nothing: of their range, and of their mean.
+pub(crate) const ROUNDING: f64 = 1e-12;
+const OF_MEAN: f64 = 1e-15;
+/// Heights of a surface at most, and deviations at least \[m\]: their squares are far from the ends of what numbers can be.
+const HIGHEST: f64 = 1e9;
+const LOWEST: f64 = 1e-60;
+
+/// Refuses heights \[m\] whose squares are no numbers, before anything is made of them. Infinite ones are missing.
+pub(crate) fn check_size(heights_m: &Array2<f64>) -> Result<(), PhysicsError> {
+    let largest = heights_m.iter().filter(|h| h.is_finite()).fold(0.0_f64, |most, h| most.max(h.abs()));
+    if largest <= HIGHEST {
+        return Ok(());
+    }
+    Err(PhysicsError::Surface {
+        problem: format!("heights too large: up to {largest:.1e} m (limit {HIGHEST:e} m)"),
+        help: "check the unit of the heights (--unit, surface.unit), and that no value marks missing points",
+    })
+}
+
+/// Levels heights \[m\] and gives the rms height of what was removed \[m\].
+///
+/// # Errors
+/// If the heights are constant or too small, or if nothing but rounding is left of them.
+pub(crate) fn level(heights: &mut Array2<f64>, kind: Detrend) -> Result<f64, PhysicsError> {
+    let before = range(heights)?;
+    let trend_m = detrend(heights, kind);
+    left_over(heights, &before, trend_m)?;
+    Ok(trend_m)
+}
+
+/// What heights are before they are levelled \[m\].
+struct Range {
+    mean: f64,
+    /// Largest distance from the mean.
+    deviation: f64,
+}
+
+/// The range of heights, the squares of which must not vanish.
+fn range(heights: &Array2<f64>) -> Result<Range, PhysicsError> {
+    let (low, high) = heights.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), h| (low.min(*h), high.max(*h)));
+    let mean = heights.sum() / heights.len() as f64;
+    let deviation = (high - mean).max(mean - low);
+    if low < high && deviation < LOWEST {
+        return Err(PhysicsError::Surface {
+            problem: format!("height range too small: {:.1e} m", high - low),
+            help: "check the unit of the heights (--unit, surface.unit)",
+        });
+    }
+    if low < high { Ok(Range { mean, deviation }) } else { Err(flat(format!("its heights are constant: all are {low:e} m"))) }
+}
+
+/// Checks that levelled heights are more than what rounding has left.
+fn left_over(heights: &Array2<f64>, before: &Range, trend_m: f64) -> Result<(), PhysicsError> {
+    let most = heights.iter().fold(0.0_f64, |most, h| most.max(h.abs()));
+    if most > ROUNDING * before.deviation + OF_MEAN * before.mean.abs() {
+        return Ok(());
+    }
+    Err(flat(format!("it is flat to rounding: nothing is left after levelling, which removed {trend_m:.3e} m rms")))
+}
+
+fn flat(problem: String) -> PhysicsError {
+    PhysicsError::Surface { problem, help: "a rough surface is needed: check which field of the file is read, and its units" }
+}
+
+/// Takes a trend off, by least squares, and gives its rms height \[m\] about its mean. The mean goes in any case.
+fn detrend(heights: &mut Array2<f64>, kind: Detrend) -> f64 {
+    let n = heights.nrows();
+    let count = heights.len() as f64;
+    // On a whole square grid these are orthogonal, so that each coefficient stands by itself.
+    let at = |k: usize| (2 * k + 1) as f64 / n as f64 - 1.0;
+    let mean_square = (0..n).map(|k| at(k).powi(2)).sum::<f64>() / n as f64;
+    type Shape<'a> = Box<dyn Fn(f64, f64) -> f64 + 'a>;
+    let plane: [Shape<'_>; 2] = [Box::new(|x, _| x), Box::new(|_, y| y)];
+    let curved: [Shape<'_>; 3] =
+        [Box::new(|x, y| x * y), Box::new(move |x, _| x * x - mean_square), Box::new(move |_, y| y * y - mean_square)];
+    let mean = heights.sum() / count;
+    heights.mapv_inplace(|h| h - mean);
+    let mut squares = 0.0;
+    let shapes = plane.iter().filter(|_| kind != Detrend::Mean).chain(curved.iter().filter(|_| kind == Detrend::Quadratic));
+    for shape in shapes {
+        let (mut product, mut norm) = (0.0, 0.0);
+        for ((i, j), h) in heights.indexed_iter() {
+            let value = shape(at(i), at(j));
+            product += value * h;
+            norm += value * value;
+        }
+        let coefficient = product / norm;
+        heights.indexed_iter_mut().for_each(|((i, j), h)| *h -= coefficient * shape(at(i), at(j)));
+        squares += coefficient * coefficient * norm / count;
+    }
+    squares.sqrt()
+}

@@ -1,0 +1,12 @@
+//! Rough surfaces: spectra, synthesis, measured surfaces, and their asperities.
+
+pub mod band_limited;
+mod levelling;
+pub mod measured;
+pub(crate) mod modes;
+pub mod periodogram;
+pub(crate) mod psd_bin;
+pub mod self_affine;
+pub mod spectrum;
+pub mod summits;
+pub mod synthesis;

@@ -1,0 +1,186 @@
+//! The modes of a height field: its transform, and what is told from it.
+
+use super::psd_bin::Ring;
+use super::spectrum::Moments;
+use crate::physics::PhysicsError;
+use crate::physics::memory::{filled, zeros};
+use ndarray::{Array2, ArrayView2};
+use rayon::prelude::*;
+use realfft::RealFftPlanner;
+use rustfft::FftPlanner;
+use rustfft::num_complex::Complex64;
+use std::f64::consts::TAU;
+
+/// Rows that are transformed at a time.
+const ROWS: usize = 256;
+/// Rings to a doubling of the wavenumber.
+const RINGS: f64 = 4.0;
+
+/// The modes `c_k` of `h(x) = Σ_k c_k exp(i k·x)` on a square grid, half of them: the other half are their conjugates.
+pub(crate) struct Field {
+    /// Points along a side.
+    n: usize,
+    /// Wavenumber of the longest waves, `2π/L` \[1/m\].
+    lowest: f64,
+    /// By columns of ky, kx running fastest: n² times the modes.
+    columns: Vec<Complex64>,
+}
+
+impl Field {
+    /// The modes of a square field of side L \[m\] as it is, if it is periodic, and else of its continuation by mirror images, of side 2 L.
+    pub(crate) fn of(heights_m: ArrayView2<'_, f64>, length_m: f64, periodic: bool) -> Result<Self, PhysicsError> {
+        if periodic { Self::periodic(heights_m, length_m) } else { Self::periodic(mirrored(heights_m)?.view(), 2.0 * length_m) }
+    }
+
+    fn periodic(heights_m: ArrayView2<'_, f64>, length_m: f64) -> Result<Self, PhysicsError> {
+        let n = heights_m.nrows();
+        let half = n / 2 + 1;
+        let along_y = RealFftPlanner::<f64>::new().plan_fft_forward(n);
+        let mut columns = filled(half * n, Complex64::ZERO)?;
+        // Some rows at a time, so that no second field is in memory.
+        let mut rows = filled(half * ROWS.min(n), Complex64::ZERO)?;
+        for first in (0..n).step_by(ROWS) {
+            let count = ROWS.min(n - first);
+            rows.par_chunks_mut(half).take(count).enumerate().for_each_init(
+                || (along_y.make_input_vec(), along_y.make_scratch_vec()),
+                |(row, scratch), (k, waves)| {
+                    row.iter_mut().zip(heights_m.row(first + k)).for_each(|(to, from)| *to = *from);
+                    let outcome = along_y.process_with_scratch(row, waves, scratch);
+                    debug_assert!(outcome.is_ok(), "lengths are those of the plan");
+                },
+            );
+            columns.par_chunks_mut(n).enumerate().for_each(|(ky, column)| {
+                for (value, row) in column[first..first + count].iter_mut().zip(rows.chunks(half)) {
+                    *value = row[ky];
+                }
+            });
+        }
+        let along_x = FftPlanner::<f64>::new().plan_fft_forward(n);
+        columns.par_chunks_mut(n).for_each_init(
+            || vec![Complex64::ZERO; along_x.get_inplace_scratch_len()],
+            |scratch, column| along_x.process_with_scratch(column, scratch),
+        );
+        Ok(Self { n, lowest: TAU / length_m, columns })
+    }
+
+    /// Sums over the modes of each column, added up in their order, so that they do not depend on the threads: `add` is given the sum so far, the squared mode
+    /// number, how many modes of the whole plane this one stands for, and `|c_k|²` \[m²\].
+    fn sum<T: Clone + Send + Sync>(&self, zero: &T, add: impl Fn(&mut T, f64, f64, f64) + Sync, join: impl Fn(&mut T, &T)) -> T {
+        let n = self.n;
+        let unit = 1.0 / (n as f64).powi(4);
+        let sums: Vec<T> = self
+            .columns
+            .par_chunks(n)
+            .enumerate()
+            .map(|(ky, column)| {
+                // Every column but the first, and the last of an even number of points, stands for its mirror image too.
+                let times = if ky == 0 || 2 * ky == n { 1.0 } else { 2.0 };
+                let mut sum = zero.clone();
+                for (place, value) in column.iter().enumerate() {
+                    let kx = place.min(n - place);
+                    add(&mut sum, (kx * kx + ky * ky) as f64, times, unit * value.norm_sqr());
+                }
+                sum
+            })
+            .collect();
+        let mut total = zero.clone();
+        sums.iter().for_each(|sum| join(&mut total, sum));
+        total
+    }
+
+    /// `Σ w(q)|c|²` over all modes but the mean, of weights of the wavenumber q \[1/m\].
+    pub(crate) fn weighted<const N: usize>(&self, weights: impl Fn(f64) -> [f64; N] + Sync) -> [f64; N] {
+        let add = |sums: &mut [f64; N], squared: f64, times: f64, power: f64| {
+            let of_mode = weights(self.lowest * squared.sqrt());
+            sums.iter_mut().zip(of_mode).for_each(|(sum, weight)| *sum += times * power * weight);
+        };
+        self.sum(&[0.0; N], add, |total, sum| total.iter_mut().zip(sum).for_each(|(t, s)| *t += s))
+    }
+
+    /// Moments, the mean left out: `m0 = Σ|c|²`, `m2 = ½ Σ q²|c|²`, `m4 = ⅜ Σ q⁴|c|²`.
+    pub(crate) fn moments(&self) -> Moments {
+        let [m0, slope, laplacian] = self.weighted(|q| [if q > 0.0 { 1.0 } else { 0.0 }, q * q, q.powi(4)]);
+        Moments { m0_m2: m0, m2: 0.5 * slope, m4_1_m2: 0.375 * laplacian }
+    }
+
+    /// Spectrum in rings of wavevectors; see [`super::periodogram::periodogram`].
+    pub(crate) fn rings(&self) -> Vec<Ring> {
+        let reach = self.n as f64 / 2.0;
+        let count = (RINGS * reach.log2()).round() as usize + 1;
+        let add = |rings: &mut Vec<(f64, f64, f64)>, squared: f64, times: f64, power: f64| {
+            let mode = squared.sqrt();
+            // The wavevectors of a disc: corners of the grid have no whole rings.
+            if mode > 0.0 && mode < reach {
+                let ring = &mut rings[(RINGS * mode.log2()).round() as usize];
+                *ring = (ring.0 + times * mode, ring.1 + times * power, ring.2 + times);
+            }
+        };
+        let join = |total: &mut Vec<(f64, f64, f64)>, sum: &Vec<(f64, f64, f64)>| {
+            total.iter_mut().zip(sum).for_each(|(t, s)| *t = (t.0 + s.0, t.1 + s.1, t.2 + s.2));
+        };
+        let rings = self.sum(&vec![(0.0, 0.0, 0.0); count], add, join);
+        let mean = |(modes, power, count): (f64, f64, f64)| Ring {
+            wavenumber_1_m: self.lowest * modes / count,
+            density_m4: power / (count * self.lowest * self.lowest),
+            mode_count: count as u64,
+        };
+        rings.into_iter().filter(|ring| ring.2 > 0.0).map(mean).collect()
+    }
+
+    /// Takes off the mean and every wave that is not longer than so many points.
+    pub(crate) fn cut(&mut self, points: f64) {
+        let n = self.n;
+        let most = n as f64 / points;
+        self.columns.par_chunks_mut(n).enumerate().for_each(|(ky, column)| {
+            for (place, value) in column.iter_mut().enumerate() {
+                let kx = place.min(n - place);
+                let squared = (kx * kx + ky * ky) as f64;
+                if squared == 0.0 || squared >= most * most {
+                    *value = Complex64::ZERO;
+                }
+            }
+        });
+    }
+
+    /// The heights \[m\] of its first `side` points along each direction: of the part that is no mirror image.
+    pub(crate) fn heights(mut self, side: usize) -> Result<Array2<f64>, PhysicsError> {
+        let n = self.n;
+        let mut heights = zeros((side, side))?;
+        let along_x = FftPlanner::<f64>::new().plan_fft_inverse(n);
+        self.columns.par_chunks_mut(n).for_each_init(
+            || vec![Complex64::ZERO; along_x.get_inplace_scratch_len()],
+            |scratch, column| along_x.process_with_scratch(column, scratch),
+        );
+        let along_y = RealFftPlanner::<f64>::new().plan_fft_inverse(n);
+        let unit = 1.0 / (n as f64 * n as f64);
+        let columns = &self.columns;
+        let Some(field) = heights.as_slice_mut() else { return Ok(heights) };
+        field.par_chunks_mut(side).enumerate().for_each_init(
+            || (along_y.make_input_vec(), along_y.make_output_vec(), along_y.make_scratch_vec()),
+            |(half, line, scratch), (x, row)| {
+                half.iter_mut().enumerate().for_each(|(ky, value)| *value = columns[ky * n + x]);
+                // The first and, of an even number, the last line of a real field are real, but for rounding.
+                half[0].im = 0.0;
+                if n.is_multiple_of(2) {
+                    half[n / 2].im = 0.0;
+                }
+                let outcome = along_y.process_with_scratch(half, line, scratch);
+                debug_assert!(outcome.is_ok(), "lengths and the real lines are set above");
+                row.iter_mut().zip(line.iter()).for_each(|(to, from)| *to = unit * from);
+            },
+        );
+        Ok(heights)
+    }
+}
+
+/// A field with its mirror images: twice the side, and periodic.
+///
+/// # Errors
+/// Not enough memory.
+pub fn mirrored(heights: ArrayView2<'_, f64>) -> Result<Array2<f64>, PhysicsError> {
+    let n = heights.nrows();
+    let fold = |k: usize| if k < n { k } else { 2 * n - 1 - k };
+    let mut whole = zeros((2 * n, 2 * n))?;
+    whole.indexed_iter_mut().for_each(|((i, j), h)| *h = heights[[fold(i), fold(j)]]);
+    Ok(whole)
+}

@@ -1,0 +1,203 @@
+//! Theories beside a run: Deng and Kesari's estimate of the loss, from Nayak's statistics of summits; what Dalvi and others found of soft solids in full
+//! contact; the area without adhesion; the parameter of Fuller and Tabor.
+//!
+//! Left out, since their formulae could not be confirmed at their sources: the bearing-area model (Ciavarella 2018) and the criterion of Pastewka and
+//! Robbins (2014). Persson and Tosatti's is in [`flattening`].
+
+pub mod approximate_jkr;
+pub mod flattening;
+
+use crate::model::{Material, Slips};
+use crate::physics::PhysicsError;
+use crate::physics::jkr::loop_loss_constant;
+use crate::physics::surface::spectrum::Moments;
+use std::f64::consts::PI;
+
+/// Nayak's density of the reduced summit curvature in the limit that Deng and Kesari use,
+/// `p_k(t) = sqrt(3/(4π)) (t² − 2 + 2e^(−t²/2)) e^(−t²/4)` for `t < 0`, with `t = −sqrt(3/m4) k_m`. Eq A2; it integrates to 1.
+///
+/// # Deviations
+/// The exponent printed in Eq A2 is `8(C1² − C2²)t²/(16C1)`; Nayak's marginal has `(8C1² − C2²)t²/(16C1) = t²/4`, and only this integrates to 1.
+/// [`curvature_decay`] and [`curvature_density_as_printed`] can put the printed one back.
+#[must_use]
+pub fn curvature_density(t: f64) -> f64 {
+    curvature_density_as_printed(t, NAYAK_DECAY)
+}
+
+/// `c` in the factor `e^(−ct²)` of the density of curvature.
+const NAYAK_DECAY: f64 = 0.25;
+
+/// `c` in the factor `e^(−ct²)` of Eq A2, of Nayak's parameter `α = m0 m4/m2² ≥ 3/2` (dimensionless): `(8C1² − C2²)/(16C1)` with
+/// `C1 = α/(2α − 3)` and `C2 = C1 sqrt(12/α)`, which is ¼ whatever `α` is.
+///
+/// With the slip of A2 the printed `8(C1² − C2²)/(16C1) = (α − 12)/(2(2α − 3))`: below ¼, which it comes to for great `α` only. The density
+/// then integrates to `(√3/2)(c^(−3/2)/4 − c^(−1/2) + (c + ½)^(−1/2)) > 1`, and for `α ≤ 12` to nothing finite: there is no `c` then.
+#[must_use]
+pub fn curvature_decay(nayak_parameter: f64, slips: Slips) -> Option<f64> {
+    if !slips.a2 {
+        return Some(NAYAK_DECAY);
+    }
+    let decay = (nayak_parameter - 12.0) / (2.0 * (2.0 * nayak_parameter - 3.0));
+    (nayak_parameter > 12.0 && decay > 0.0).then_some(decay)
+}
+
+/// The density of curvature with another decay in its last factor, `p_k(t) = sqrt(3/(4π)) (t² − 2 + 2e^(−t²/2)) e^(−ct²)` for `t < 0`: Eq A2 as
+/// printed, with `c` of [`curvature_decay`]. It integrates to 1 only with `c = ¼`.
+#[must_use]
+pub fn curvature_density_as_printed(t: f64, decay: f64) -> f64 {
+    if t >= 0.0 {
+        return 0.0;
+    }
+    let half = 0.5 * t * t;
+    // t² − 2 + 2e^(−t²/2) = 2(h + expm1(−h)), h = t²/2: as printed it cancels near 0.
+    let bracket = if half < 1e-2 {
+        half * half * (1.0 - half / 3.0 + half * half / 12.0 - half.powi(3) / 60.0 + half.powi(4) / 360.0 - half.powi(5) / 2520.0)
+    } else {
+        2.0 * (half + (-half).exp_m1())
+    };
+    (3.0 / (4.0 * PI)).sqrt() * bracket * (-decay * t * t).exp()
+}
+
+/// Mean loss of one asperity `⟨θ⟩ = ∫ 2E*R³ (πΔγ/(E*R))^(5/3) × 0.5262… p_k(t) dt` \[J\], with `1/R(t) = 1/R_tip + sqrt(m4/3)|t|`. Eq A3.
+///
+/// `tip_radius_m` is the radius of a spherical indenter \[m\]; nothing for nominally flat surfaces.
+///
+/// # Deviations
+/// The curvature printed below Eq A3 is `sqrt(m4/3t)`; from `t = −sqrt(3/m4) k_m` it is `sqrt(m4/3)·t`. [`mean_loop_loss_as_printed`] can put
+/// that and the printed Eq A2 back.
+///
+/// # Errors
+/// m4 must be positive and finite, and so must the tip's radius.
+pub fn mean_loop_loss(moments: &Moments, material: &Material, tip_radius_m: Option<f64>) -> Result<f64, PhysicsError> {
+    mean_loop_loss_as_printed(moments, material, tip_radius_m, Slips::NONE)
+}
+
+/// The same, with the printed Eq A2 ([`curvature_decay`]) and the printed curvature below Eq A3 if they are among `slips`.
+///
+/// The printed `1/R(t) = 1/R_tip − sqrt(m4/3t)` is read as `1/R_tip + sqrt((m4/3)|t|)`: the root drawn one symbol too far. The same page
+/// writes `h''_rms = sqrt(8/3m4)` for `sqrt((8/3)m4)`, so that a slash takes one symbol only; and as `t < 0`, no reading has a root without `|t|`.
+///
+/// # Errors
+/// As [`mean_loop_loss`]; with the slip of A2 Nayak's parameter must be above 12 too, since the mean has no end below.
+pub fn mean_loop_loss_as_printed(
+    moments: &Moments,
+    material: &Material,
+    tip_radius_m: Option<f64>,
+    slips: Slips,
+) -> Result<f64, PhysicsError> {
+    let refused =
+        |quantity, value, allowed| PhysicsError::Domain { action: "Deng and Kesari's mean loss (Eq A3)", quantity, value, allowed };
+    let domain = |quantity, value| refused(quantity, value, "a positive, finite number");
+    if !(moments.m4_1_m2 > 0.0 && moments.m4_1_m2.is_finite()) {
+        return Err(domain("m4 [1/m2]", moments.m4_1_m2));
+    }
+    let nayak = moments.nayak_parameter();
+    let Some(decay) = curvature_decay(nayak, slips) else {
+        return Err(refused("Nayak's parameter", nayak, "with Eq A2 as printed, above 12"));
+    };
+    let tip_curvature = match tip_radius_m {
+        None => 0.0,
+        Some(radius) if radius > 0.0 && radius.is_finite() => 1.0 / radius,
+        Some(radius) => return Err(domain("the tip radius [m]", radius)),
+    };
+    let (modulus, adhesion) = (material.contact_modulus_pa, material.work_of_adhesion_j_m2);
+    let unit = (moments.m4_1_m2 / 3.0).sqrt();
+    // θ(R) = 2·0.5262 E* (πΔγ/E*)^(5/3) R^(4/3).
+    let prefactor = 2.0 * loop_loss_constant() * modulus * (PI * adhesion / modulus).powf(5.0 / 3.0);
+    // With t = −y³ the integrand p(t)·(…)^(−4/3) has no fractional power at 0 left but far below its rounding; beyond ct² = 56, which is
+    // |t| = 15, the density is below 1e-21.
+    let most = (7.5 / decay.sqrt()).cbrt();
+    let panels = (48.0 * most / 15f64.cbrt()).ceil() as usize;
+    let integrand = |y: f64| {
+        let t = y.powi(3);
+        let reduced = if slips.a3 { t.sqrt() } else { t };
+        let size = tip_curvature + unit * reduced;
+        if y == 0.0 { 0.0 } else { curvature_density_as_printed(-t, decay) * size.powf(-4.0 / 3.0) * 3.0 * y * y }
+    };
+    Ok(prefactor * gauss_panels(integrand, 0.0, most, panels))
+}
+
+/// Composite five-point Gauss quadrature.
+fn gauss_panels(f: impl Fn(f64) -> f64, from: f64, to: f64, panels: usize) -> f64 {
+    let nodes = [0.0, 0.538_469_310_105_683_1, 0.906_179_845_938_664];
+    let weights = [0.568_888_888_888_888_9, 0.478_628_670_499_366_47, 0.236_926_885_056_189_08];
+    let half = 0.5 * (to - from) / panels as f64;
+    (0..panels)
+        .map(|k| {
+            let middle = from + (2 * k + 1) as f64 * half;
+            let pairs: f64 = nodes.iter().zip(&weights).skip(1).map(|(x, w)| w * (f(middle - half * x) + f(middle + half * x))).sum();
+            half * (weights[0] * f(middle) + pairs)
+        })
+        .sum()
+}
+
+/// Deng and Kesari's loss `Θ = η A ⟨θ⟩` \[J\] of the true contact area `A` \[m²\] reached at the end of loading, with Nayak's density η. Eq A4.
+///
+/// # Errors
+/// As [`mean_loop_loss`].
+pub fn deng_kesari_loss(moments: &Moments, material: &Material, area_m2: f64) -> Result<f64, PhysicsError> {
+    deng_kesari_loss_as_printed(moments, material, area_m2, Slips::NONE)
+}
+
+/// The same with the slips of A2 and A3, if they are among `slips`.
+///
+/// # Errors
+/// As [`mean_loop_loss_as_printed`].
+pub fn deng_kesari_loss_as_printed(moments: &Moments, material: &Material, area_m2: f64, slips: Slips) -> Result<f64, PhysicsError> {
+    Ok(moments.summit_density_1_m2() * area_m2 * mean_loop_loss_as_printed(moments, material, None, slips)?)
+}
+
+/// Loss of a contact that forms without loss and parts by its full work of adhesion, `Θ = Δγ A` \[J\]: with the true contact area `A` \[m²\] reached at the end of
+/// loading and Δγ \[J/m²\]. Dalvi et al., PNAS 116:25484 (2019), found it of soft spheres in nearly full contact with nanodiamond; of separate spots it is an upper
+/// bound, since each regains a part of the energy elastically.
+#[must_use]
+pub fn dalvi_loss(material: &Material, area_m2: f64) -> f64 {
+    material.work_of_adhesion_j_m2 * area_m2
+}
+
+/// Prefactor k of the work of adhesion of an advancing and a receding contact line, `Δγ ∓ k e_el`.
+const PINNING: f64 = 1.35;
+
+/// Energy dissipated by crack-front pinning over a contact of area A \[m²\], `2 k e_el A` with k = 1.35 \[J\]; `e_el` \[J/m²\] is the elastic energy per area that
+/// flattens the roughness. Nothing where `k e_el ≥ Δγ/2`.
+///
+/// Roughness makes the work of adhesion along a contact line random, with the standard deviation `2 sqrt(Δγ e_el)`. The line is elastic, with a stiffness that
+/// falls with the wavelength, and collective pinning changes the apparent work of adhesion in proportion to the variance: a contact that advances has `Δγ − k e_el`,
+/// one that recedes `Δγ + k e_el`. Sanner, Kumar, Dhinojwala, Jacobs and Pastewka, Sci. Adv. 10:eadl1277 (2024), for the proportionality. The prefactor is ours: from
+/// simulated lines of 512 to 1024 points in weak fields, driven slowly, with H = 0.8, between 1.2 and 1.5. One connected contact with weak roughness is assumed.
+#[must_use]
+pub fn pinning_loss(material: &Material, elastic_energy_j_m2: f64, area_m2: f64) -> Option<f64> {
+    let shift = PINNING * elastic_energy_j_m2;
+    (shift < 0.5 * material.work_of_adhesion_j_m2).then_some(2.0 * shift * area_m2)
+}
+
+/// Wang and Müser's line of sticky surfaces, `e_el/(2Δγ)`, from Persson and Tosatti's ratio `e_el/Δγ`: below 1 the pull-off force of a flat rough contact is high.
+/// Wang and Müser, Front. Mech. Eng. 8:965584 (2022).
+#[must_use]
+pub fn sticky_line(persson_tosatti: f64) -> f64 {
+    0.5 * persson_tosatti
+}
+
+/// Contact area over A0 without adhesion, `erf(√2 p/(E* h'_rms))`, of the load `p/E* = F/(E* A0) ≥ 0` and the rms gradient `h'_rms` of the surface (both
+/// dimensionless). Persson, J. Chem. Phys. 115:3840 (2001).
+///
+/// At full contact the pressure of a surface has the variance `E*²h'²_rms/4`, a mode of amplitude c and wavevector k being flattened by `(E*/2) k c`. In Persson's
+/// theory pressures spread by diffusion up to that variance with an absorbing wall at zero, which leaves `erf(p/(√2 E* h'_rms/2))` of the area in contact.
+#[must_use]
+pub fn adhesionless_area(load: f64, rms_slope: f64) -> f64 {
+    libm::erf(std::f64::consts::SQRT_2 * load / rms_slope)
+}
+
+/// Contact area over A0 without adhesion, `κ p/(E* h'_rms)` with κ = 2, at small loads: what boundary-element solutions find, between `√(8/π)` of Persson's theory
+/// and `√(2π)` of asperities that do not act on one another (Bush, Gibson and Thomas, Wear 35:87, 1975). Hyun, Pei, Molinari and Robbins, Phys. Rev. E 70:026117 (2004).
+#[must_use]
+pub fn adhesionless_area_small(load: f64, rms_slope: f64) -> f64 {
+    2.0 * load / rms_slope
+}
+
+/// Fuller and Tabor's adhesion parameter `E* σ^(3/2)/(R^(1/2) Δγ)` (dimensionless), with the standard deviation σ \[m\] of the summits' heights and their mean radius
+/// R \[m\]: the load that presses high asperities over the pull that low ones give. Above some 10 adhesion is lost. Fuller and Tabor, Proc. R. Soc. A 345:327 (1975).
+#[must_use]
+pub fn fuller_tabor(material: &Material, height_sd_m: f64, mean_radius_m: f64) -> f64 {
+    material.contact_modulus_pa * height_sd_m.powf(1.5) / (mean_radius_m.sqrt() * material.work_of_adhesion_j_m2)
+}
