@@ -17,6 +17,7 @@ mod invariance;
 mod isolated;
 mod jkr;
 mod kernel;
+mod layout;
 mod ledger;
 mod measured;
 mod merge;

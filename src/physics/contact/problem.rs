@@ -2,7 +2,6 @@
 
 use super::neighbours::Neighbours;
 use super::numbering::Places;
-use super::state::State;
 use crate::model::{Boundary, Coalescence, Interaction as Kind, JumpIn, Material, Slips};
 use crate::physics::PhysicsError;
 use crate::physics::half_space::spot_field::{Spot, spot_field_as_printed};
@@ -199,29 +198,6 @@ impl Problem {
             return (asperity.load(a) * unit, asperity.load_slope(a) * unit);
         }
         spot_field_as_printed(r, a, asperity.radius_m(), asperity.pull_sqrt_m(), self.rules.slips)
-    }
-
-    /// The spots of a state as sources.
-    pub(crate) fn spots(&self, state: &State, spots: &mut Spots) {
-        self.columns(state.contacts.iter().map(|&i| (i, state.radius[i])), spots);
-    }
-
-    /// Load, area and potential \[J\] of an equilibrium whose displacements at the spots are known.
-    ///
-    /// The potential is `Π = Σ[U(d_i, a_i) − Δγπa_i²] + ½ΣF_iŵ_i`: exact for point interaction.
-    pub(crate) fn totals(&self, state: &State) -> (Totals, f64) {
-        let mut totals = Totals::default();
-        let mut potential = 0.0;
-        for (&i, &w) in state.contacts.iter().zip(&state.displacement) {
-            let (asperity, a) = (&self.asperities[i], state.radius[i]);
-            let load = asperity.load(a);
-            let spot = PI * a * a;
-            totals.load_n += load;
-            totals.area_m2 += spot;
-            let energy = asperity.stored_energy(asperity.penetration(a), a) - self.material.work_of_adhesion_j_m2 * spot;
-            potential += energy + 0.5 * load * w;
-        }
-        (totals, potential)
     }
 }
 

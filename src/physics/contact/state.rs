@@ -1,8 +1,10 @@
 //! State of a contact: status and radius of every asperity.
 
 use super::merged_spot::Merged;
-use super::problem::Problem;
+use super::problem::{Problem, Totals};
+use crate::physics::half_space::Spots;
 use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
 
 /// Status of an asperity.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -120,5 +122,30 @@ impl State {
     #[must_use]
     pub fn covered_count(&self) -> usize {
         self.status.iter().filter(|s| matches!(s, Status::Covered { .. })).count()
+    }
+}
+
+impl Problem {
+    /// The spots of a state as sources.
+    pub(crate) fn spots(&self, state: &State, spots: &mut Spots) {
+        self.columns(state.contacts.iter().map(|&i| (i, state.radius[i])), spots);
+    }
+
+    /// Load, area and potential \[J\] of an equilibrium whose displacements at the spots are known.
+    ///
+    /// The potential is `Π = Σ[U(d_i, a_i) − Δγπa_i²] + ½ΣF_iŵ_i`: exact for point interaction.
+    pub(crate) fn totals(&self, state: &State) -> (Totals, f64) {
+        let mut totals = Totals::default();
+        let mut potential = 0.0;
+        for (&i, &w) in state.contacts.iter().zip(&state.displacement) {
+            let (asperity, a) = (&self.asperities[i], state.radius[i]);
+            let load = asperity.load(a);
+            let spot = PI * a * a;
+            totals.load_n += load;
+            totals.area_m2 += spot;
+            let energy = asperity.stored_energy(asperity.penetration(a), a) - self.material.work_of_adhesion_j_m2 * spot;
+            potential += energy + 0.5 * load * w;
+        }
+        (totals, potential)
     }
 }

@@ -1,0 +1,165 @@
+//! Layout of the source: imports go in one direction, and no modules import each other in a circle.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::Path;
+
+/// Folders and files of `src/physics`, each with those that it may import. `error` and `memory` import nothing and are free for all.
+const PHYSICS: [(&str, &[&str]); 10] = [
+    ("math", &[]),
+    ("jkr", &[]),
+    ("surface", &[]),
+    ("half_space", &["math"]),
+    ("contact", &["math", "jkr", "surface", "half_space"]),
+    ("solve", &["math", "jkr", "half_space", "contact"]),
+    ("path", &["math", "jkr", "half_space", "contact", "solve"]),
+    ("cycle", &["math", "jkr", "half_space", "contact", "solve", "path"]),
+    ("theory", &["jkr", "surface"]),
+    ("boundary_elements", &[]),
+];
+
+type Graph = BTreeMap<Vec<String>, BTreeSet<Vec<String>>>;
+
+/// Every module below a folder of sources, with its text without comments.
+fn modules(folder: &Path, prefix: &[String], found: &mut Vec<(Vec<String>, String)>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
+        let mut module = prefix.to_vec();
+        if path.is_dir() {
+            // The Python package and the guide are not modules of the library.
+            if !["python", "guide"].contains(&name.as_str()) {
+                module.push(name);
+                modules(&path, &module, found);
+            }
+        } else if path.extension().is_some_and(|e| e == "rs") && !["lib", "main", "build"].contains(&name.as_str()) {
+            if name != "mod" {
+                module.push(name);
+            }
+            let text = fs::read_to_string(&path).unwrap();
+            let code: Vec<&str> = text.lines().map(|line| line.split("//").next().unwrap()).collect();
+            found.push((module, code.join("\n")));
+        }
+    }
+}
+
+/// Paths of an item of a `use` declaration, braces expanded.
+fn expand(item: &str, prefix: &str, paths: &mut Vec<String>) {
+    let Some(open) = item.find('{') else {
+        paths.push(format!("{prefix}{item}"));
+        return;
+    };
+    let inner = &item[open + 1..item.rfind('}').unwrap_or(item.len())];
+    let prefix = format!("{prefix}{}", &item[..open]);
+    let (mut depth, mut start) = (0, 0);
+    for (at, c) in inner.char_indices() {
+        match c {
+            '{' => depth += 1,
+            '}' => depth -= 1,
+            ',' if depth == 0 => {
+                expand(&inner[start..at], &prefix, paths);
+                start = at + 1;
+            }
+            _ => {}
+        }
+    }
+    expand(&inner[start..], &prefix, paths);
+}
+
+/// Paths that begin with `crate`, `super` or `self`, in declarations and in expressions.
+fn paths_in(code: &str) -> Vec<String> {
+    let mut paths = Vec::new();
+    for declaration in code.split(';') {
+        let Some(at) = declaration.rfind("use ") else { continue };
+        let item: String = declaration[at + 4..].chars().filter(|c| !c.is_whitespace()).collect();
+        expand(&item, "", &mut paths);
+    }
+    let is_path = |c: char| c.is_alphanumeric() || c == '_' || c == ':';
+    paths.extend(code.split(|c| !is_path(c)).filter(|word| word.contains("::")).map(str::to_owned));
+    paths.retain(|path| ["crate::", "super::", "self::"].iter().any(|start| path.starts_with(start)));
+    paths
+}
+
+/// The module that a path in a module names, as far as it is known.
+fn target(module: &[String], path: &str, known: &BTreeSet<Vec<String>>) -> Option<Vec<String>> {
+    let mut full = module.to_vec();
+    for word in path.split("::") {
+        match word {
+            "crate" => full.clear(),
+            "super" => drop(full.pop()),
+            "self" => {}
+            other => full.push(other.to_owned()),
+        }
+    }
+    while !full.is_empty() && !known.contains(&full) {
+        full.pop();
+    }
+    (!full.is_empty() && full != module).then_some(full)
+}
+
+fn imports() -> Graph {
+    let mut found = Vec::new();
+    modules(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"), &[], &mut found);
+    let known: BTreeSet<Vec<String>> = found.iter().map(|(module, _)| module.clone()).collect();
+    let of = |(module, code): (Vec<String>, String)| {
+        let targets = paths_in(&code).iter().filter_map(|path| target(&module, path, &known)).collect();
+        (module, targets)
+    };
+    found.into_iter().map(of).collect()
+}
+
+/// Modules that are left when those without imports among the rest are taken away, again and again: those in a circle, and what imports them.
+fn in_circles(mut graph: Graph) -> Graph {
+    loop {
+        let left: BTreeSet<Vec<String>> = graph.keys().cloned().collect();
+        graph.values_mut().for_each(|targets| targets.retain(|target| left.contains(target)));
+        let imported: BTreeSet<Vec<String>> = graph.values().flatten().cloned().collect();
+        let before = graph.len();
+        graph.retain(|module, targets| !targets.is_empty() && imported.contains(module));
+        if graph.len() == before {
+            return graph;
+        }
+    }
+}
+
+#[test]
+fn law_no_modules_import_each_other_in_a_circle() {
+    let graph = imports();
+    assert!(graph.len() > 100 && graph.values().map(BTreeSet::len).sum::<usize>() > 300, "too few imports found, the reader is wrong");
+    let circles = in_circles(graph);
+    assert!(circles.is_empty(), "modules in a circle of imports: {circles:#?}");
+}
+
+#[test]
+fn law_imports_of_the_physics_go_in_one_direction() {
+    let mut wrong = Vec::new();
+    for (module, targets) in imports().iter().filter(|(module, _)| module.len() > 1 && module[0] == "physics") {
+        let allowed = PHYSICS.iter().find(|(name, _)| *name == module[1]).map_or(&[][..], |(_, allowed)| allowed);
+        for target in targets {
+            let free = target[0] == "model" || *target == ["physics"] || target.get(1).is_some_and(|t| ["error", "memory"].contains(&t.as_str()));
+            let inside = target[0] == "physics" && target.get(1).is_some_and(|t| *t == module[1] || allowed.contains(&t.as_str()));
+            if !free && !inside {
+                wrong.push(format!("{} imports {}", module.join("::"), target.join("::")));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "imports against the direction of the layout: {wrong:#?}");
+}
+
+#[test]
+fn reg_the_reader_of_imports() {
+    let known: BTreeSet<Vec<String>> =
+        ["a", "a::b", "a::c", "d"].iter().map(|m| m.split("::").map(str::to_owned).collect()).collect();
+    let module = ["a".to_owned(), "b".to_owned()];
+    let found = |code: &str| -> Vec<String> {
+        paths_in(code).iter().filter_map(|path| target(&module, path, &known)).map(|target| target.join("::")).collect()
+    };
+    assert_eq!(found("use super::c::{X, Y as Z};\n"), ["a::c", "a::c", "a::c"]);
+    assert_eq!(found("use crate::{d::D, a::{c, b::E}};\n"), ["d", "a::c"]);
+    assert_eq!(found("let x = super::super::d::f(1);\n"), ["d"]);
+    let graph = |edges: &[(&str, &str)]| -> Graph {
+        edges.iter().map(|(from, to)| (vec![(*from).to_owned()], [vec![(*to).to_owned()]].into())).collect()
+    };
+    assert!(in_circles(graph(&[("x", "y"), ("y", "z")])).is_empty());
+    assert_eq!(in_circles(graph(&[("w", "x"), ("x", "y"), ("y", "x")])).len(), 2);
+}
