@@ -70,8 +70,11 @@ fn expand(item: &str, prefix: &str, paths: &mut Vec<String>) {
 fn paths_in(code: &str) -> Vec<String> {
     let mut paths = Vec::new();
     for declaration in code.split(';') {
-        let Some(at) = declaration.rfind("use ") else { continue };
-        let item: String = declaration[at + 4..].chars().filter(|c| !c.is_whitespace()).collect();
+        let starts =
+            |line: &str| ["use ", "pub use ", "pub(crate) use ", "pub(super) use "].into_iter().find(|start| line.starts_with(start));
+        let lines: Vec<&str> = declaration.lines().map(str::trim).collect();
+        let Some((at, start)) = lines.iter().enumerate().rev().find_map(|(at, line)| Some((at, starts(line)?))) else { continue };
+        let item: String = lines[at..].concat()[start.len()..].chars().filter(|c| !c.is_whitespace()).collect();
         expand(&item, "", &mut paths);
     }
     let is_path = |c: char| c.is_alphanumeric() || c == '_' || c == ':';
@@ -136,7 +139,8 @@ fn law_imports_of_the_physics_go_in_one_direction() {
     for (module, targets) in imports().iter().filter(|(module, _)| module.len() > 1 && module[0] == "physics") {
         let allowed = PHYSICS.iter().find(|(name, _)| *name == module[1]).map_or(&[][..], |(_, allowed)| allowed);
         for target in targets {
-            let free = target[0] == "model" || *target == ["physics"] || target.get(1).is_some_and(|t| ["error", "memory"].contains(&t.as_str()));
+            let free =
+                target[0] == "model" || *target == ["physics"] || target.get(1).is_some_and(|t| ["error", "memory"].contains(&t.as_str()));
             let inside = target[0] == "physics" && target.get(1).is_some_and(|t| *t == module[1] || allowed.contains(&t.as_str()));
             if !free && !inside {
                 wrong.push(format!("{} imports {}", module.join("::"), target.join("::")));
@@ -148,8 +152,7 @@ fn law_imports_of_the_physics_go_in_one_direction() {
 
 #[test]
 fn reg_the_reader_of_imports() {
-    let known: BTreeSet<Vec<String>> =
-        ["a", "a::b", "a::c", "d"].iter().map(|m| m.split("::").map(str::to_owned).collect()).collect();
+    let known: BTreeSet<Vec<String>> = ["a", "a::b", "a::c", "d"].iter().map(|m| m.split("::").map(str::to_owned).collect()).collect();
     let module = ["a".to_owned(), "b".to_owned()];
     let found = |code: &str| -> Vec<String> {
         paths_in(code).iter().filter_map(|path| target(&module, path, &known)).map(|target| target.join("::")).collect()
