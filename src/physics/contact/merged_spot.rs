@@ -31,4 +31,4 @@ impl Merged {
 }
 
 /// Pairs that touch and are no news.
-pub(crate) type Known = BTreeSet<(usize, usize)>;
+pub(crate) type TouchingPairs = BTreeSet<(usize, usize)>;

@@ -12,8 +12,8 @@
 //! A merged spot is another sphere than its two parts, and has another potential. What the potential loses when they merge is no dissipation
 //! alone: parting gives it back, and only the sum over both is a loss.
 
-use super::merged_spot::Known;
 use super::merged_spot::Merged;
+use super::merged_spot::TouchingPairs;
 use super::problem::Problem;
 use super::state::{State, Status};
 use crate::model::Coalescence;
@@ -35,7 +35,7 @@ const TENSEST: f64 = 0.8;
 
 /// What is to be done.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Meeting {
+pub(crate) enum CoalescenceEvent {
     /// These spots become one.
     Touch(usize, usize),
     /// This merged spot parts.
@@ -84,28 +84,30 @@ impl Problem {
     }
 
     /// How far a state is beyond a meeting: negative before it.
-    pub(crate) fn beyond(&self, state: &State, meeting: Meeting) -> f64 {
+    pub(crate) fn beyond(&self, state: &State, meeting: CoalescenceEvent) -> f64 {
         match meeting {
-            Meeting::Touch(i, j) if state.radius[i] > 0.0 && state.radius[j] > 0.0 => {
+            CoalescenceEvent::Touch(i, j) if state.radius[i] > 0.0 && state.radius[j] > 0.0 => {
                 let overlap = (state.radius[i] + state.radius[j]) / self.neighbours.distance(&self.positions[i], &self.positions[j]) - 1.0;
                 let (load, root) = self.joint_load(state, i, j);
                 if root > 0.0 { overlap.min(load / root + TENSEST) } else { overlap }
             }
-            Meeting::Part(m) if state.radius[m] > 0.0 => NEARER * (1.0 - state.radius[m] / state.merged[m - self.summits].release_m),
+            CoalescenceEvent::Part(m) if state.radius[m] > 0.0 => {
+                NEARER * (1.0 - state.radius[m] / state.merged[m - self.summits].release_m)
+            }
             _ => -1.0,
         }
     }
 
     /// Pairs that touch and could merge.
-    pub(crate) fn touching(&self, state: &State) -> Known {
-        let mut pairs = Known::new();
+    pub(crate) fn touching(&self, state: &State) -> TouchingPairs {
+        let mut pairs = TouchingPairs::new();
         if self.rules.coalescence != Coalescence::Merge {
             return pairs;
         }
         let greatest = state.greatest_radius();
         for &i in &state.contacts {
             self.neighbours.within(i, state.radius[i] + greatest, |_, j| {
-                if j > i && self.beyond(state, Meeting::Touch(i, j)) >= 0.0 {
+                if j > i && self.beyond(state, CoalescenceEvent::Touch(i, j)) >= 0.0 {
                     pairs.insert((i, j));
                 }
             });
@@ -114,10 +116,11 @@ impl Problem {
     }
 
     /// Meetings that are due, the furthest beyond first, given who is touching.
-    pub(crate) fn meetings(&self, state: &State, touching: &Known, known: &Known) -> Vec<(f64, Meeting)> {
-        let touching = touching.difference(known).map(|(i, j)| Meeting::Touch(*i, *j));
-        let parting = (self.summits..self.len()).map(Meeting::Part);
-        let mut due: Vec<(f64, Meeting)> = touching.chain(parting).map(|m| (self.beyond(state, m), m)).filter(|due| due.0 >= 0.0).collect();
+    pub(crate) fn meetings(&self, state: &State, touching: &TouchingPairs, known: &TouchingPairs) -> Vec<(f64, CoalescenceEvent)> {
+        let touching = touching.difference(known).map(|(i, j)| CoalescenceEvent::Touch(*i, *j));
+        let parting = (self.summits..self.len()).map(CoalescenceEvent::Part);
+        let mut due: Vec<(f64, CoalescenceEvent)> =
+            touching.chain(parting).map(|m| (self.beyond(state, m), m)).filter(|due| due.0 >= 0.0).collect();
         due.sort_by(|u, v| v.0.total_cmp(&u.0).then(u.1.cmp(&v.1)));
         due
     }

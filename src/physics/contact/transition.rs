@@ -53,14 +53,14 @@ impl Kind {
 
 /// A change of one asperity's state.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Change {
+pub(crate) struct Transition {
     pub(crate) kind: Kind,
     pub(crate) asperity: usize,
     /// The covering asperity.
     pub(crate) by: Option<usize>,
 }
 
-impl Change {
+impl Transition {
     /// True if this would undo one of the changes that have `moved` in the same avalanche.
     pub(crate) fn returns(&self, moved: &[Self], state: &State) -> bool {
         let i = self.asperity;
@@ -94,7 +94,7 @@ impl Change {
 }
 
 /// A spot as a relaxation has it: its asperity, its radius \[m\] and its residual \[m\].
-pub(crate) type Moving = (usize, f64, f64);
+pub(crate) type ContactView = (usize, f64, f64);
 
 impl Problem {
     /// True if spots cover asperities.
@@ -124,12 +124,12 @@ impl Problem {
 
     /// Who leaves or is covered at this point of a relaxation of `spots` (ascending): the spot furthest below the end of its branch and
     /// still shrinking, else the spot furthest under a greater one.
-    pub(crate) fn overtaken(&self, spots: &[Moving]) -> Option<Change> {
-        let mut found: Option<(f64, Change)> = None;
+    pub(crate) fn overtaken(&self, spots: &[ContactView]) -> Option<Transition> {
+        let mut found: Option<(f64, Transition)> = None;
         for &(i, a, residual) in spots {
             let overshoot = self.asperities[i].jump_off_radius() / a;
             if residual < 0.0 && overshoot > 1.0 && found.is_none_or(|(most, _)| overshoot > most) {
-                found = Some((overshoot, Change { kind: Kind::JumpOff, asperity: i, by: None }));
+                found = Some((overshoot, Transition { kind: Kind::JumpOff, asperity: i, by: None }));
             }
         }
         if found.is_none() && self.covers() {
@@ -137,7 +137,7 @@ impl Problem {
                 self.neighbours.within(j, a, |r, i| {
                     let smaller = spots.binary_search_by_key(&i, |spot| spot.0).is_ok_and(|k| spots[k].1 < a);
                     if smaller && found.is_none_or(|(most, _)| a / r > most) {
-                        found = Some((a / r, Change { kind: Kind::Cover, asperity: i, by: Some(j) }));
+                        found = Some((a / r, Transition { kind: Kind::Cover, asperity: i, by: Some(j) }));
                     }
                 });
             }
@@ -147,12 +147,12 @@ impl Problem {
 
     /// Where a relaxation finds no rest because a spot is at the edge of a greater one, and the field jumps in slope there: the smaller of the two
     /// is covered. `restless` is the asperity with the worst residual.
-    pub(crate) fn at_edge(&self, spots: &[Moving], restless: usize) -> Option<Change> {
-        let mut found: Option<(f64, Change)> = None;
+    pub(crate) fn at_edge(&self, spots: &[ContactView], restless: usize) -> Option<Transition> {
+        let mut found: Option<(f64, Transition)> = None;
         let mut offer = |i: usize, j: usize, a: f64, r: f64| {
             let off = (a / r - 1.0).abs();
             if off < EDGE && found.is_none_or(|(least, _)| off < least) {
-                found = Some((off, Change { kind: Kind::Cover, asperity: i, by: Some(j) }));
+                found = Some((off, Transition { kind: Kind::Cover, asperity: i, by: Some(j) }));
             }
         };
         if !self.covers() {

@@ -9,9 +9,10 @@ pub mod soundness;
 mod table;
 
 use crate::physics::PhysicsError;
+use crate::physics::contact::merging::ROUNDING;
 use crate::physics::contact::problem::Problem;
 use crate::physics::contact::state::State;
-use crate::physics::path::{Carried, Depth, Path, is_multiple};
+use crate::physics::path::{EquilibriumPath, PathCheckpoint, is_multiple};
 use recorder::Recorder;
 use reversal::retrace;
 use serde::{Deserialize, Serialize};
@@ -22,7 +23,7 @@ pub use table::{Branch, Contact, Cycle, MergedAt, Settings, Step};
 #[derive(Debug, Clone, Serialize, Deserialize)]
 struct Leg {
     recorder: Recorder,
-    carried: Carried,
+    carried: PathCheckpoint,
 }
 
 /// A cycle on its way: all that is needed to go on, in another process and to the same bytes.
@@ -147,10 +148,9 @@ impl Settings {
     }
 
     /// True if a path that began or rested at the approach `from` \[m\] is to rest where it is.
-    fn rests(&self, path: &Path<'_>, from: f64) -> bool {
+    fn rests(&self, path: &EquilibriumPath<'_>, from: f64) -> bool {
         let at = path.state().approach_m;
-        self.rest_every
-            .is_some_and(|every| path.solved == Depth::Whole && at != from && is_multiple(at, every * path.problem().rms_height_m))
+        self.rest_every.is_some_and(|every| path.is_exact() && at != from && is_multiple(at, every * path.problem().rms_height_m))
     }
 }
 
@@ -160,14 +160,14 @@ impl Leg {
         let spacing = settings.grid(problem);
         let number = (problem.first_contact_m() / spacing).floor() - 1.0;
         let state = State::free(problem, number * spacing);
-        Self { recorder: Recorder::new(Branch::Loading, None, number, 0), carried: Carried::begin(problem, state, 1.0) }
+        Self { recorder: Recorder::new(Branch::Loading, None, number, 0), carried: PathCheckpoint::begin(problem, state, 1.0) }
     }
 
     /// From a turning state, which is all that is needed.
     fn unloading(problem: &Problem, settings: &Settings, max_load: Option<f64>, state: State) -> Self {
         let number = -(state.approach_m / settings.grid(problem)).ceil();
         let recorder = Recorder::new(Branch::Unloading, max_load, number, state.merged.len());
-        Self { recorder, carried: Carried::begin(problem, state, -1.0) }
+        Self { recorder, carried: PathCheckpoint::begin(problem, state, -1.0) }
     }
 }
 
@@ -183,7 +183,7 @@ fn load(problem: &Problem, settings: &Settings, leg: Leg, cycle: &mut Cycle, pro
         }
         let Some(max_load) = settings.max_loads.get(cycle.turning.len()) else { return Ok(Next::End) };
         recorder.grid_points(settings, path, cycle)?;
-        let (reached, approach_m) = (path.totals.load_n / problem.load_unit_n(), path.state().approach_m);
+        let (reached, approach_m) = (path.totals().load_n / problem.load_unit_n(), path.state().approach_m);
         if approach_m > 100.0 * problem.rms_height_m {
             return Err(PhysicsError::LoadNotReached { wanted: *max_load, reached, approach_m });
         }
@@ -205,9 +205,9 @@ fn unload(
     let from = carried.state.approach_m;
     let mut full = None;
     let left = travel(problem, carried, None, &mut |path| {
-        let full = *full.get_or_insert(path.totals.area_m2);
+        let full = *full.get_or_insert(path.totals().area_m2);
         recorder.grid_points(settings, path, cycle)?;
-        progress(1.0 - path.totals.area_m2 / full);
+        progress(1.0 - path.totals().area_m2 / full);
         if path.state().contacts.is_empty() {
             if recorder.lacks_events(path) {
                 // The last spot has gone between two points of the grid.
@@ -238,41 +238,41 @@ enum Next {
 /// stretch and after every meeting `visit` is shown where the path is, and says what is next. Where it rests, what is to be carried on is returned.
 fn travel(
     problem: &Problem,
-    mut carried: Carried,
+    mut carried: PathCheckpoint,
     bound: Option<f64>,
-    visit: &mut dyn FnMut(&mut Path<'_>) -> Result<Next, PhysicsError>,
-) -> Result<Option<Carried>, PhysicsError> {
+    visit: &mut dyn FnMut(&mut EquilibriumPath<'_>) -> Result<Next, PhysicsError>,
+) -> Result<Option<PathCheckpoint>, PhysicsError> {
     let mut own = problem.grown(&carried.state.merged)?;
     let mut known = carried.known.take().unwrap_or_else(|| own.as_ref().unwrap_or(problem).touching(&carried.state));
     loop {
-        let mut path = Path::resume(own.as_ref().unwrap_or(problem), carried)?;
-        path.settle_meeting();
+        let mut path = EquilibriumPath::resume(own.as_ref().unwrap_or(problem), carried)?;
+        path.finish_coalescence(ROUNDING);
         let meeting = loop {
             match visit(&mut path)? {
                 Next::On => {}
                 Next::Rest => {
-                    carried = path.carry();
+                    carried = path.into_checkpoint();
                     carried.known = Some(known);
                     return Ok(Some(carried));
                 }
                 Next::End => return Ok(None),
             }
-            if let Some(meeting) = path.due_meeting(&mut known)? {
+            if let Some(meeting) = path.due_coalescence(&mut known)? {
                 break meeting;
             }
             let mut bound = bound;
             loop {
-                path.stretch(bound)?;
-                match path.meeting(&known)? {
+                path.step(bound)?;
+                match path.next_coalescence(&known)? {
                     Some(at) if at != path.state().approach_m => {
-                        path.rewind();
+                        path.undo_step();
                         bound = Some(at);
                     }
                     _ => break,
                 }
             }
         };
-        carried = path.carry();
+        carried = path.into_checkpoint();
         carried.meet(own.get_or_insert_with(|| problem.clone()), meeting, &mut known)?;
     }
 }

@@ -9,7 +9,7 @@ use crate::physics::contact::problem::Problem;
 use crate::physics::contact::state::{State, Status};
 use crate::physics::contact::transition::Kind;
 use crate::physics::half_space::Effort;
-use crate::physics::path::{Depth, Path};
+use crate::physics::path::EquilibriumPath;
 use serde::{Deserialize, Serialize};
 
 /// Writes the steps of one branch down.
@@ -48,32 +48,43 @@ impl Recorder {
     }
 
     /// True if events have happened since the last record.
-    pub(crate) fn lacks_events(&self, path: &Path<'_>) -> bool {
-        self.events_before < path.log.events.len()
+    pub(crate) fn lacks_events(&self, path: &EquilibriumPath<'_>) -> bool {
+        self.events_before < path.log().events.len()
     }
 
     /// Records the points of the grid that the last stretch has passed, and the beginning.
-    pub(crate) fn grid_points(&mut self, settings: &Settings, path: &mut Path<'_>, cycle: &mut Cycle) -> Result<(), PhysicsError> {
+    pub(crate) fn grid_points(
+        &mut self,
+        settings: &Settings,
+        path: &mut EquilibriumPath<'_>,
+        cycle: &mut Cycle,
+    ) -> Result<(), PhysicsError> {
         let end = path.state().approach_m;
         self.grid_points_until(end, settings, path, cycle)
     }
 
-    fn grid_points_until(&mut self, end: f64, settings: &Settings, path: &mut Path<'_>, cycle: &mut Cycle) -> Result<(), PhysicsError> {
+    fn grid_points_until(
+        &mut self,
+        end: f64,
+        settings: &Settings,
+        path: &mut EquilibriumPath<'_>,
+        cycle: &mut Cycle,
+    ) -> Result<(), PhysicsError> {
         if !std::mem::replace(&mut self.begun, true) {
             self.record(settings, path, None, cycle, false)?;
         }
         let spacing = settings.grid(path.problem());
         loop {
-            let next = (self.number + 1.0) * path.sign * spacing;
-            if (next - end) * path.sign > 1e-9 * spacing {
+            let next = (self.number + 1.0) * path.sense() * spacing;
+            if (next - end) * path.sense() > 1e-9 * spacing {
                 return Ok(());
             }
             self.number += 1.0;
-            if path.solved == Depth::Whole && (next - path.state().approach_m).abs() <= 1e-9 * spacing {
+            if path.is_exact() && (next - path.state().approach_m).abs() <= 1e-9 * spacing {
                 self.record(settings, path, None, cycle, false)?;
             } else {
                 let excursion = path.excursion(next)?;
-                path.solver.effort += excursion.effort();
+                path.add_effort(excursion.effort());
                 self.record(settings, path, Some(&excursion), cycle, false)?;
             }
         }
@@ -97,8 +108,8 @@ impl Recorder {
     pub(crate) fn turn(
         &mut self,
         settings: &Settings,
-        path: &mut Path<'_>,
-        excursion: Option<&Path<'_>>,
+        path: &mut EquilibriumPath<'_>,
+        excursion: Option<&EquilibriumPath<'_>>,
         cycle: &mut Cycle,
     ) -> Result<(), PhysicsError> {
         let state = excursion.map_or_else(|| path.state().clone(), |at| at.state().clone());
@@ -115,37 +126,38 @@ impl Recorder {
     pub(crate) fn record(
         &mut self,
         settings: &Settings,
-        path: &mut Path<'_>,
-        excursion: Option<&Path<'_>>,
+        path: &mut EquilibriumPath<'_>,
+        excursion: Option<&EquilibriumPath<'_>>,
         cycle: &mut Cycle,
         turning: bool,
     ) -> Result<(), PhysicsError> {
         let (number, problem) = (cycle.steps.len(), path.problem());
         let at = excursion.unwrap_or(path);
         let state = at.state();
-        let passed = |approach: f64| excursion.is_none() || (approach - state.approach_m) * path.sign <= 0.0;
+        let passed = |approach: f64| excursion.is_none() || (approach - state.approach_m) * path.sense() <= 0.0;
         let recent: Vec<Event> =
-            path.log.events[self.events_before..].iter().take_while(|event| passed(event.approach_m)).copied().collect();
-        let ways: Vec<f64> = path.log.ways[self.ways_before..].iter().take_while(|way| passed(way.approach)).map(|way| way.least).collect();
+            path.log().events[self.events_before..].iter().take_while(|event| passed(event.approach_m)).copied().collect();
+        let ways: Vec<f64> =
+            path.log().segments[self.ways_before..].iter().take_while(|way| passed(way.approach)).map(|way| way.least).collect();
         let count = |kind: Kind| recent.iter().filter(|event| event.kind == kind).count();
         let effort = path.effort();
         cycle.steps.push(Step {
             branch: self.branch,
             max_load: self.max_load,
             approach_m: state.approach_m,
-            load_n: at.totals.load_n,
-            least_load_n: ways.iter().copied().fold(at.totals.load_n, f64::min),
-            area_m2: at.totals.area_m2,
+            load_n: at.totals().load_n,
+            least_load_n: ways.iter().copied().fold(at.totals().load_n, f64::min),
+            area_m2: at.totals().area_m2,
             area_union_m2: crate::physics::contact::union_area::area(problem, state),
             contact_count: state.contacts.len(),
             covered_count: state.covered_count(),
             touching_count: touching(problem, state),
-            held_count: at.held.len(),
+            held_count: at.frozen_count(),
             event_counts: Kind::ALL.map(count),
             dissipated_j: recent.iter().map(|event| event.energy_lost_j).sum(),
-            work_j: at.log.work_j,
+            work_j: at.log().work_j,
             residual_m: state.residual_m,
-            drift_m: path.log.drift_m,
+            drift_m: path.log().drift_m,
             stability: state.stability,
             effort: effort - self.effort_before,
         });
@@ -155,13 +167,13 @@ impl Recorder {
         cycle.events.extend(recent.into_iter().map(|event| (number, Event { asperity: problem.number(event.asperity), ..event })));
         let keep = match settings.contacts {
             KeptContacts::All => true,
-            KeptContacts::Turning => turning || self.passes_landmark(settings, problem, at.totals.load_n),
+            KeptContacts::Turning => turning || self.passes_landmark(settings, problem, at.totals().load_n),
             KeptContacts::None => false,
         };
         if keep {
             cycle.contacts.extend(spots_of(problem, state, number));
         }
-        let load = at.totals.load_n;
+        let load = at.totals().load_n;
         let load_before = self.load_before.unwrap_or(0.0);
         let pulls = load < self.pulled.as_ref().map_or(0.0, |pulled| pulled.0);
         if settings.contacts == KeptContacts::Turning && self.branch == Branch::Unloading && pulls {
@@ -172,8 +184,7 @@ impl Recorder {
         let merged = state.merged.iter().enumerate().skip(self.merged_before);
         cycle.merged.extend(merged.map(|(k, spot)| MergedAt { step: number, asperity: problem.summits + k, spot: problem.outward(spot) }));
         self.merged_before = state.merged.len();
-        path.log.drift_m = 0.0;
-        path.held.clear();
+        path.begin_record();
         check_area(problem, &cycle.steps[number], load_before)
     }
 }

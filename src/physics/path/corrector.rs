@@ -1,277 +1,290 @@
-//! The whole contact, solved at the end of every stretch: the traces begin anew.
+//! Global corrector: the contact solved at the end of an increment, and new predictors of everything.
 
-use super::equilibrium_path::{DRIFT, Depth, Halt, LATE, Mark, Path, WORST};
-use super::predictor::work;
-use crate::physics::contact::problem::Totals;
-use crate::physics::contact::state::Status;
-use crate::physics::contact::transition::{Change, Kind};
+use super::accuracy::{DRIFT, LATENESS, Precision, SUFFICIENT, WORST_RESIDUAL};
+use super::checkpoint::Checkpoint;
+use super::equilibrium_path::EquilibriumPath;
+use super::rejection::Rejection;
+use super::work::work;
+use crate::physics::contact::Status;
+use crate::physics::contact::transition::{Kind, Transition};
 use crate::physics::math::vector::dot;
-use crate::physics::solve::residual::Unsettled;
-use crate::physics::solve::trace::Trace;
+use crate::physics::solve::residual::NotConverged;
+use crate::physics::solve::trace::PenetrationTrace;
 use crate::physics::{PhysicsError, Reason};
 
-/// Residual of the whole contact where its state is not asked for, of the mean jump-off penetration.
-const ENOUGH: f64 = 2e-5;
-
-/// What has led the whole contact away from its traces since it was solved last.
+/// Reason for the difference between the predictors and the solution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Since {
-    /// The approach alone.
+    /// Growth along the increment alone.
     Growth,
-    /// The approach, and events whose lags are known.
-    Both,
-    /// A jump of all of it, here, where the potential, less the work of the loads on what they lag, was so much \[J\].
+    /// Growth, and events whose pending displacements are known.
+    Events,
+    /// A jump of the contact at the present mean penetration; with the potential before it, less the work of the loads on the residuals \[J\].
     Jump(f64),
 }
 
-impl Path<'_> {
-    /// Solves the whole contact at an approach, from where the traces lead; takes the events that are overdue there. Where `strict`, it is refused
-    /// if the traces have led too far from it.
+/// Asperities that are uncovered at once, and the state before.
+struct Uncovering {
+    before: Checkpoint,
+    asperities: Vec<usize>,
+}
+
+impl EquilibriumPath<'_> {
+    /// Solves the global problem at a mean penetration \[m\], from the predictors, and applies the transitions that are overdue there. If `strict`, the solution is
+    /// rejected where the predictors are too far from it.
     ///
-    /// After a jump of the whole contact (`jump`) it went on as its traces had it up to here. Otherwise the difference grew on the way.
-    pub(crate) fn settle(&mut self, target: f64, strict: bool, jump: bool, depth: Depth) -> Result<(), Halt> {
+    /// After a jump of the contact (`jump`) it followed its predictors up to here. Otherwise the difference grew along the increment.
+    pub(super) fn correct(&mut self, target: f64, strict: bool, jump: bool, precision: Precision) -> Result<(), Rejection> {
         let problem = self.problem();
-        let tolerance = match depth {
-            Depth::Whole => problem.tolerance_m(),
-            Depth::Enough => ENOUGH * self.scale(),
-        };
-        self.solved = depth;
-        self.gather_lags();
-        self.solver.begin(depth == Depth::Enough);
+        self.precision = precision;
+        let pending = self.pending.of_contacts(problem, &self.state().contacts);
+        self.solver.begin(precision == Precision::Sufficient);
         let mut rounds = 0;
-        let mut uncovering: Option<(Mark, Vec<usize>)> = None;
+        let mut uncovering: Option<Uncovering> = None;
         loop {
-            self.front.go_to(problem, target);
-            let start = if strict { Vec::new() } else { self.front.state.radius.clone() };
-            let first = self.solver.evaluate(&mut self.front.state);
-            let strange = first.residual_m.is_nan();
-            if strict && rounds == 0 && (strange || self.astray()) {
+            self.predictor.go_to(problem, target);
+            let first = self.solver.evaluate(&mut self.predictor.state);
+            if strict && rounds == 0 && (first.residual_m.is_nan() || self.is_astray(&pending)) {
                 return Err(first.into());
             }
-            // The state as it is now is an equilibrium at approaches that differ by the residuals.
-            let shifted = problem.totals(&self.front.state).1 + self.work_on_residuals();
-            if !strange {
+            // The present state is an equilibrium at mean penetrations that differ by the residuals.
+            let shifted = problem.totals(&self.predictor.state).1 + self.work_on_residuals();
+            if !first.residual_m.is_nan() {
                 self.log.drift_m = self.log.drift_m.max(first.residual_m);
             }
-            let found = self.solver.newton(&mut self.front.state, first, !strict, tolerance).and_then(|()| {
-                let rates = self.finite_rates(first)?;
-                let stable = self.front.state.stability > 0.0;
-                if stable { Ok(rates) } else { Err(Unsettled::because(Reason::Unstable, first.asperity)) }
-            });
-            let rates = match found {
+            let start = if strict { Vec::new() } else { self.state().radius.clone() };
+            let rates = match self.solve_globally(first, strict) {
                 Ok(rates) => rates,
-                Err(unsettled) => {
-                    if let Some((mark, uncovered)) = uncovering.take() {
-                        // There is no equilibrium with those asperities at the edge of the spot.
-                        self.back_to(&mark);
-                        self.hold_covered(&uncovered);
+                Err(reason) => {
+                    if let Some(Uncovering { before, asperities }) = uncovering.take() {
+                        // There is no equilibrium with these asperities at the edge of a contact.
+                        self.restore(&before);
+                        self.keep_all_covered(&asperities);
                         continue;
                     }
                     if strict {
-                        return Err(unsettled.into());
+                        return Err(reason.into());
                     }
-                    self.front.state.radius = start;
-                    self.relax_whole(target)?;
+                    self.predictor.state.radius = start;
+                    self.relax_contact(target)?;
                     self.finite_rates(first)?
                 }
             };
-            self.retrace(
-                &rates,
-                if jump || rounds > 0 {
-                    Since::Jump(shifted)
-                } else if self.ripples.is_empty() {
-                    Since::Growth
-                } else {
-                    Since::Both
-                },
-            );
-            self.settled = self.log.events.len();
+            let since = match (jump || rounds > 0, self.pending.is_smooth()) {
+                (true, _) => Since::Jump(shifted),
+                (false, true) => Since::Growth,
+                (false, false) => Since::Events,
+            };
+            self.restart_predictors(&rates, since, &pending);
             let due = self.overdue();
-            let Some(first) = due.first() else { return Ok(()) };
+            let Some(worst) = due.first() else { return Ok(()) };
             if strict && rounds == 0 {
-                let late: Vec<Change> = due.iter().filter(|(late, _)| *late > LATE * self.scale()).map(|(_, change)| *change).collect();
-                if !late.is_empty() {
-                    return Err(Halt::Late(late, Unsettled::residual(first.0, first.1.asperity)));
-                }
+                self.reject_late(&due)?;
             }
             rounds += 1;
-            self.check_event_count(target, first.1.asperity)?;
-            if rounds > 10 * problem.len() + 100 {
-                let asperity = problem.number(first.1.asperity);
-                return Err(Halt::Error(PhysicsError::EndlessAvalanche { approach_m: target, events: rounds, asperity }));
-            }
-            let uncovered: Vec<usize> =
-                due.iter().filter(|(_, change)| change.kind == Kind::Uncover).map(|(_, change)| change.asperity).collect();
-            uncovering = (!uncovered.is_empty()).then(|| (self.mark(), uncovered));
-            for (_, change) in due {
-                // Another one may have brought it about, or made it needless.
-                if problem.is_due(&change, &self.front) {
-                    self.avalanche(change)?;
-                }
-            }
+            self.check_rounds(target, rounds, worst.1.asperity)?;
+            uncovering = self.uncovering(&due);
+            self.apply_overdue(due)?;
         }
     }
 
-    /// Rates of the spots at the equilibrium that was evaluated last; where they are no numbers, `first` tells why.
-    fn finite_rates(&mut self, first: Unsettled) -> Result<Vec<f64>, Unsettled> {
-        let rates = match self.solved {
-            Depth::Whole => self.solver.rates(&mut self.front.state),
-            Depth::Enough => self.solver.rough_rates(&mut self.front.state),
+    /// Solves the global problem from the state that was evaluated last; its rates are returned if it is stable.
+    fn solve_globally(&mut self, first: NotConverged, strict: bool) -> Result<Vec<f64>, NotConverged> {
+        let tolerance = match self.precision {
+            Precision::Exact => self.problem().tolerance_m(),
+            Precision::Sufficient => SUFFICIENT * self.frame.scale,
+        };
+        self.solver.newton(&mut self.predictor.state, first, !strict, tolerance)?;
+        let rates = self.finite_rates(first)?;
+        let stable = self.state().stability > 0.0;
+        if stable { Ok(rates) } else { Err(NotConverged::because(Reason::Unstable, first.asperity)) }
+    }
+
+    /// Rejects an increment with transitions that were found too late.
+    fn reject_late(&self, due: &[(f64, Transition)]) -> Result<(), Rejection> {
+        let is_late = |lateness: f64| lateness > LATENESS * self.frame.scale;
+        let late: Vec<Transition> = due.iter().filter(|(lateness, _)| is_late(*lateness)).map(|(_, transition)| *transition).collect();
+        match due.first() {
+            Some(worst) if !late.is_empty() => Err(Rejection::Late(late, NotConverged::residual(worst.0, worst.1.asperity))),
+            _ => Ok(()),
+        }
+    }
+
+    /// Ends a correction whose overdue transitions go on without end.
+    fn check_rounds(&self, approach_m: f64, rounds: usize, asperity: usize) -> Result<(), Rejection> {
+        self.check_event_count(approach_m, asperity)?;
+        if rounds > 10 * self.problem().len() + 100 {
+            return Err(PhysicsError::EndlessAvalanche { approach_m, events: rounds, asperity: self.problem().number(asperity) }.into());
+        }
+        Ok(())
+    }
+
+    /// Asperities that are uncovered among overdue transitions, with the state before.
+    fn uncovering(&self, due: &[(f64, Transition)]) -> Option<Uncovering> {
+        let uncovered = due.iter().filter(|(_, transition)| transition.kind == Kind::Uncover);
+        let asperities: Vec<usize> = uncovered.map(|(_, transition)| transition.asperity).collect();
+        (!asperities.is_empty()).then(|| Uncovering { before: self.checkpoint(), asperities })
+    }
+
+    /// Applies overdue transitions, each with its avalanche, if it is still due.
+    fn apply_overdue(&mut self, due: Vec<(f64, Transition)>) -> Result<(), Rejection> {
+        for (_, transition) in due {
+            if self.problem().is_due(&transition, &self.predictor) {
+                self.start_avalanche(transition)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Rates of the contacts at the equilibrium that was evaluated last; where they are not numbers, the reason is `first`.
+    fn finite_rates(&mut self, first: NotConverged) -> Result<Vec<f64>, NotConverged> {
+        let rates = match self.precision {
+            Precision::Exact => self.solver.rates(&mut self.predictor.state),
+            Precision::Sufficient => self.solver.rough_rates(&mut self.predictor.state),
         };
         if rates.iter().all(|rate| rate.is_finite()) { Ok(rates) } else { Err(first) }
     }
 
     /// `Σ F r` over the residuals that were evaluated last \[J\].
     fn work_on_residuals(&self) -> f64 {
-        let state = &self.front.state;
-        let load = |i: usize| self.problem().asperities[i].load(state.radius[i]);
+        let (problem, state) = (self.problem(), self.state());
+        let load = |i: usize| problem.asperities[i].load(state.radius[i]);
         state.contacts.iter().zip(&self.solver.residual).map(|(&i, residual)| load(i) * residual).sum()
     }
 
-    /// True if the traces have led too far from the equilibrium of the whole contact, but for what they were known to lack.
-    fn astray(&self) -> bool {
-        let contacts = &self.front.state.contacts;
-        let off: Vec<f64> = contacts.iter().zip(&self.solver.residual).map(|(&i, residual)| residual + self.whole_lags[i]).collect();
+    /// True if the predictors are too far from the equilibrium, apart from pending displacements.
+    fn is_astray(&self, pending: &[f64]) -> bool {
+        let contacts = &self.state().contacts;
+        let off: Vec<f64> = contacts.iter().zip(&self.solver.residual).map(|(&i, residual)| residual + pending[i]).collect();
         let worst = off.iter().map(|r| r.abs()).fold(0.0, f64::max);
         let rms = (dot(&off, &off) / off.len().max(1) as f64).sqrt();
-        worst > WORST * self.scale() || rms > DRIFT * self.scale()
+        worst > WORST_RESIDUAL * self.frame.scale || rms > DRIFT * self.frame.scale
     }
 
-    /// New traces of everything after the whole contact was solved; the work since the old ones is counted.
-    fn retrace(&mut self, rates: &[f64], since: Since) {
+    /// Replaces all predictors after a global solve, and counts the work since the last one.
+    fn restart_predictors(&mut self, rates: &[f64], since: Since, pending: &[f64]) {
         let problem = self.problem();
-        let target = self.front.state.approach_m;
+        let target = self.state().approach_m;
         let jump = since != Since::Growth;
-        let shifted = match since {
-            Since::Jump(shifted) if !shifted.is_nan() => Some(shifted),
-            _ => None,
-        };
         if jump {
-            self.log.pass(target, self.front.totals(target).load_n);
+            self.log.pass(target, self.predictor.totals(target).load_n);
         }
-        self.far_load(target, 0.0);
-        let (mut relaxed, mut grown) = (0.0, -std::mem::take(&mut self.far));
+        self.expect_load(target, 0.0);
+        let expected = self.energy.take_expected();
+        let (relaxed, grown) = self.replace_traces(rates, jump, pending, -expected);
+        self.pending.clear();
+        if since == Since::Events {
+            // The part that pending displacements do not explain has grown with the square of the way.
+            self.log.work_j += grown * (target - self.energy.at()) / 3.0;
+        }
+        self.predictor.recount(problem);
+        let (totals, potential) = problem.totals(self.state());
+        self.totals = totals;
+        // Events were charged with the potential of a contact whose other members keep their loads; these have responded now.
+        self.log.charge(match since {
+            Since::Jump(shifted) if !shifted.is_nan() => shifted - potential,
+            _ => relaxed,
+        });
+        self.energy.close(&mut self.log, target, potential);
+        let load = self.predictor.totals(target).load_n;
+        if jump {
+            self.log.restart(target, load);
+        } else {
+            self.log.pass(target, load);
+        }
+        self.predict_jump_ins(rates);
+    }
+
+    /// Replaces the predictors of all contacts, and counts their work. The energy of their response to pending displacements \[J\] is returned, and the change of
+    /// their load beyond the prediction \[N\], added to `grown`.
+    fn replace_traces(&mut self, rates: &[f64], jump: bool, pending: &[f64], mut grown: f64) -> (f64, f64) {
+        let problem = self.problem();
+        let target = self.state().approach_m;
+        let mut relaxed = 0.0;
         for (k, rate) in rates.iter().enumerate() {
-            let i = self.front.state.contacts[k];
-            let (asperity, a) = (&problem.asperities[i], self.front.state.radius[i]);
-            let trace = Trace::of(asperity, target, a, *rate);
-            let from = self.front.traces[i];
+            let i = self.state().contacts[k];
+            let (asperity, a) = (&problem.asperities[i], self.state().radius[i]);
+            let trace = PenetrationTrace::of(asperity, target, a, *rate);
+            let from = self.predictor.traces[i];
             if !from.value.is_nan() {
-                let to = if jump { Trace { at: target, value: from.ahead(target), ..from } } else { trace };
+                let to = if jump { PenetrationTrace { at: target, value: from.ahead(target), ..from } } else { trace };
                 self.log.work_j += work(problem, i, from, to);
                 if jump {
                     let more = asperity.load(a) - asperity.load(asperity.radius_ahead(to.value));
-                    if shifted.is_none() {
-                        relaxed += 0.5 * self.whole_lags[i] * more;
-                    }
+                    relaxed += 0.5 * pending[i] * more;
                     grown += more;
                 }
             }
-            self.front.traces[i] = trace;
+            self.predictor.traces[i] = trace;
         }
-        self.forget();
-        if since == Since::Both {
-            // What the lags do not explain has grown with the square of the way.
-            self.log.work_j += grown * (target - self.settled_at) / 3.0;
-        }
-        self.front.recount(problem);
-        let (totals, potential) = problem.totals(&self.front.state);
-        self.totals = totals;
-        // Events were charged with the potential of a contact whose other spots keep their loads; those have answered now.
-        self.log.charge(shifted.map_or(relaxed, |shifted| shifted - potential));
-        let lost: f64 = self.log.events[self.settled..].iter().map(|event| event.energy_lost_j).sum();
-        let balance = potential + lost - self.log.work_j;
-        if std::mem::take(&mut self.unbalanced) {
-            self.log.charge(self.balance - balance);
-        }
-        // From one solution of the whole to the next only the events since are counted.
-        self.balance = potential - self.log.work_j;
-        self.settled_at = target;
-        if jump {
-            self.log.restart(target, self.front.totals(target).load_n);
-        } else {
-            self.log.pass(target, self.front.totals(target).load_n);
-        }
-        self.watch(rates);
+        (relaxed, grown)
     }
 
-    /// New traces of the free asperities that may come to their jump-in. All are taken anew now and then; between, only those that can have come
-    /// near: the half-space follows the surface, so that none grows by more than three times the way.
-    fn watch(&mut self, rates: &[f64]) {
+    /// Replaces the predictors of the free asperities that may jump into contact. All of them are evaluated on a grid of mean penetrations; in between, only those
+    /// that can have come near: no penetration grows by more than three times the way.
+    fn predict_jump_ins(&mut self, rates: &[f64]) {
         let problem = self.problem();
-        let (target, unit) = (self.front.state.approach_m, problem.rms_height_m);
-        let block = |approach: f64| (approach / (0.05 * unit)).floor();
-        let anew = self.watched_at.is_none_or(|at| block(target) != block(at));
+        let (target, scale) = (self.state().approach_m, self.frame.scale);
+        let all = self.solver.begins_block(target);
         let near = |i: &usize| {
-            let trace = &self.front.traces[*i];
-            let margin = 3.0 * (target - trace.at).abs() + self.scale();
-            anew || trace.value.is_nan() || trace.value > problem.jump_in[*i] - margin
+            let trace = &self.predictor.traces[*i];
+            let margin = 3.0 * (target - trace.at).abs() + scale;
+            all || trace.value.is_nan() || trace.value > problem.jump_in[*i] - margin
         };
-        let wanted: Vec<usize> = (0..problem.len()).filter(|i| self.front.state.status[*i] == Status::Free).filter(near).collect();
-        let found = self.solver.penetrations(&self.front.state, rates, &wanted);
-        if anew {
-            self.watched_at = Some(target);
-        }
-        let span = 3.0 * self.longest + self.scale();
-        self.front.candidates.clear();
+        let wanted: Vec<usize> = (0..problem.len()).filter(|i| self.state().status[*i] == Status::Free).filter(near).collect();
+        let found = self.solver.penetrations(&self.predictor.state, rates, &wanted);
+        let span = 3.0 * self.steps.longest() + scale;
+        self.predictor.candidates.clear();
         for (i, trace) in wanted.into_iter().zip(found) {
-            self.front.traces[i] = trace;
-            self.front.state.barred[i] &= trace.value >= problem.jump_in[i];
+            self.predictor.traces[i] = trace;
+            self.predictor.state.barred[i] &= trace.value >= problem.jump_in[i];
             if trace.value > problem.jump_in[i] - span {
-                self.front.candidates.push(i);
+                self.predictor.candidates.push(i);
             }
         }
     }
 
-    /// Changes that are due in the whole contact, the most overdue first, each with its lateness \[m\].
-    fn overdue(&mut self) -> Vec<(f64, Change)> {
+    /// Transitions that are due anywhere, the most overdue first, each with its lateness \[m\].
+    fn overdue(&mut self) -> Vec<(f64, Transition)> {
         let problem = self.problem();
-        let contacts = self.front.state.contacts.clone();
-        let candidates = self.front.candidates.clone();
-        let due = self.due(&contacts, &candidates);
-        let mut late: Vec<(f64, Change)> = due.iter().map(|t| (problem.lateness(t, &self.front), t.change)).collect();
+        let contacts = self.state().contacts.clone();
+        let candidates = self.predictor.candidates.clone();
+        let due = self.due_transitions(&contacts, &candidates);
+        let mut late: Vec<(f64, Transition)> = due.iter().map(|t| (problem.lateness(t, &self.predictor), t.transition)).collect();
         late.sort_by(|u, v| v.0.total_cmp(&u.0).then(u.1.asperity.cmp(&v.1.asperity)));
         late
     }
 
-    /// Where Newton's method finds no equilibrium of the whole contact, it relaxes. What leaves or is covered on the way belongs to the avalanche at
-    /// hand; what the potential loses is charged to it when the whole is counted.
-    fn relax_whole(&mut self, target: f64) -> Result<(), Halt> {
-        let before = self.front.totals(target);
-        let changes = self.solver.relax(&mut self.front.state)?;
+    /// Relaxes the contact where Newton's method finds no equilibrium. Contacts that leave or are absorbed on the way belong to the present avalanche; it is charged
+    /// with the loss of the potential at the next global solve.
+    fn relax_contact(&mut self, target: f64) -> Result<(), Rejection> {
+        let before = self.predictor.totals(target);
+        let changes = self.solver.relax(&mut self.predictor.state)?;
         for change in &changes {
-            self.front.traces[change.asperity].value = f64::NAN;
-            self.front.set(change.asperity, change.status(self.problem()), 0.0);
+            self.predictor.traces[change.asperity].value = f64::NAN;
+            self.predictor.set(change.asperity, change.status(self.problem()), 0.0);
         }
-        let (after, _) = self.problem().totals(&self.front.state);
+        let (after, _) = self.problem().totals(self.state());
         self.record(&changes, target, before, after, 0.0);
-        self.unbalanced = true;
+        self.energy.charge_last_event();
         Ok(())
     }
 
-    /// Last resort: the whole contact goes to `target` and relaxes there.
-    pub(crate) fn collapse(&mut self, target: f64) -> Result<(), Halt> {
+    /// Relaxes the contact at `target` \[m\], as the last resort.
+    pub(super) fn relax_globally(&mut self, target: f64) -> Result<(), Rejection> {
         self.log.begin_avalanche();
         let events = self.log.events.len();
-        let asperity = self.front.state.contacts.first().copied().unwrap_or(0);
-        self.front.go_to(self.problem(), target);
-        self.relax_whole(target)?;
+        let asperity = self.state().contacts.first().copied().unwrap_or(0);
+        self.predictor.go_to(self.problem(), target);
+        self.relax_contact(target)?;
         if self.log.events.len() == events {
-            let (before, (after, _)) = (self.totals, self.problem().totals(&self.front.state));
-            self.record(&[Change { kind: Kind::Snap, asperity, by: None }], target, before, after, 0.0);
+            let (before, (after, _)) = (self.totals, self.problem().totals(self.state()));
+            self.record(&[Transition { kind: Kind::Snap, asperity, by: None }], target, before, after, 0.0);
         }
-        for i in self.front.state.contacts.clone() {
-            self.front.traces[i].value = f64::NAN;
+        for i in self.state().contacts.clone() {
+            self.predictor.traces[i].value = f64::NAN;
         }
-        self.log.work_j += self.totals.load_n * (target - self.settled_at);
-        self.settle(target, false, true, Depth::Whole)
-    }
-
-    /// Writes changes of one relaxation down; its energy is the first one's.
-    pub(crate) fn record(&mut self, moved: &[Change], approach: f64, before: Totals, after: Totals, energy: f64) {
-        for change in moved.iter().filter(|change| change.kind != Kind::JumpOff) {
-            self.flips[change.asperity] = self.flips[change.asperity].saturating_add(1);
-        }
-        self.log.record(moved, approach, before, after, energy);
+        self.log.work_j += self.totals.load_n * (target - self.energy.at());
+        self.correct(target, false, true, Precision::Exact)
     }
 }

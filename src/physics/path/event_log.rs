@@ -2,12 +2,12 @@
 
 use crate::physics::contact::event::Event;
 use crate::physics::contact::problem::Totals;
-use crate::physics::contact::transition::Change;
+use crate::physics::contact::transition::Transition;
 use serde::{Deserialize, Serialize};
 
 /// What a path has left behind.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
-pub(crate) struct Log {
+pub(crate) struct EventLog {
     pub(crate) events: Vec<Event>,
     /// Which of them has the energy of the last relaxation.
     charged: usize,
@@ -17,7 +17,7 @@ pub(crate) struct Log {
     /// True if the next event is of another avalanche.
     fresh: bool,
     /// The way of the load, from event to event.
-    pub(crate) ways: Vec<Way>,
+    pub(crate) segments: Vec<LoadSegment>,
     /// Load where it was known last \[N\].
     last: f64,
     /// Greatest residual before the whole contact was solved, since this was asked last \[m\].
@@ -26,7 +26,7 @@ pub(crate) struct Log {
 
 /// A part of the way of the load on which it does not jump.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
-pub(crate) struct Way {
+pub(crate) struct LoadSegment {
     /// Approach and load at its end \[m, N\].
     pub(crate) approach: f64,
     pub(crate) load: f64,
@@ -34,7 +34,7 @@ pub(crate) struct Way {
     pub(crate) least: f64,
 }
 
-impl Log {
+impl EventLog {
     /// Adds to the energy of the last relaxation \[J\].
     pub(crate) fn charge(&mut self, energy: f64) {
         if let Some(event) = self.events.get_mut(self.charged) {
@@ -48,7 +48,7 @@ impl Log {
     }
 
     /// Writes changes of one relaxation down; its energy is the first one's.
-    pub(crate) fn record(&mut self, moved: &[Change], approach: f64, before: Totals, after: Totals, energy: f64) {
+    pub(crate) fn record(&mut self, moved: &[Transition], approach: f64, before: Totals, after: Totals, energy: f64) {
         if moved.is_empty() {
             return;
         }
@@ -61,38 +61,38 @@ impl Log {
     }
 
     /// Writes a change down that moves nothing; what is charged belongs to the last relaxation still.
-    pub(crate) fn note(&mut self, change: Change, approach: f64, totals: Totals) {
+    pub(crate) fn note(&mut self, change: Transition, approach: f64, totals: Totals) {
         self.avalanches += u64::from(std::mem::take(&mut self.fresh));
         self.enter(&change, approach, totals, totals, 0.0);
     }
 
-    fn enter(&mut self, change: &Change, approach_m: f64, before: Totals, after: Totals, energy_lost_j: f64) {
+    fn enter(&mut self, change: &Transition, approach_m: f64, before: Totals, after: Totals, energy_lost_j: f64) {
         let (kind, asperity, avalanche) = (change.kind, change.asperity, self.avalanches);
         self.events.push(Event { kind, asperity, approach_m, avalanche, before, after, energy_lost_j });
     }
 
     /// The load has gone on without a jump; it is known at the ends of the parts of a stretch, a twentieth of a jump-off penetration apart.
     pub(crate) fn pass(&mut self, approach: f64, load: f64) {
-        self.ways.push(Way { approach, load, least: load.min(self.last) });
+        self.segments.push(LoadSegment { approach, load, least: load.min(self.last) });
         self.last = load;
     }
 
     /// The load has jumped.
     pub(crate) fn restart(&mut self, approach: f64, load: f64) {
-        self.ways.push(Way { approach, load, least: load });
+        self.segments.push(LoadSegment { approach, load, least: load });
         self.last = load;
     }
 
-    /// Back to what it `was` when it had so many events and ways.
-    pub(crate) fn back_to(&mut self, was: &Self, events: usize, ways: usize) {
+    /// Back to what it `was` when it had so many events and segments.
+    pub(crate) fn restore(&mut self, was: &Self, events: usize, segments: usize) {
         self.events.truncate(events);
-        self.ways.truncate(ways);
-        let (events, ways) = (std::mem::take(&mut self.events), std::mem::take(&mut self.ways));
-        *self = Self { events, ways, ..*was };
+        self.segments.truncate(segments);
+        let (events, segments) = (std::mem::take(&mut self.events), std::mem::take(&mut self.segments));
+        *self = Self { events, segments, ..*was };
     }
 
     /// The same, of a path that has had no event.
     pub(crate) fn clone_without_events(&self) -> Self {
-        Self { events: Vec::new(), ways: Vec::new(), ..*self }
+        Self { events: Vec::new(), segments: Vec::new(), ..*self }
     }
 }

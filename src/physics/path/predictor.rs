@@ -1,14 +1,13 @@
 //! The front: the state of the contact as it is known between two solutions of the whole, each asperity since its own last event.
 //!
 //! A spot's penetration is nearly linear in the approach, up to the end of its branch; its radius is not. So every asperity has a
-//! [`Trace`] of its penetration, taken when the whole contact was solved or when an event next to it was, and what it is at a later
+//! [`PenetrationTrace`] of its penetration, taken when the whole contact was solved or when an event next to it was, and what it is at a later
 //! approach follows from there.
 
 use crate::physics::contact::problem::{Problem, Totals};
 use crate::physics::contact::state::{State, Status};
-use crate::physics::contact::transition::{Change, Kind};
-use crate::physics::math::quadrature::{gauss, hermite, hermite_slope};
-use crate::physics::solve::trace::{STEEPEST, Trace};
+use crate::physics::contact::transition::{Kind, Transition};
+use crate::physics::solve::trace::{PenetrationTrace, STEEPEST};
 
 /// A rate of penetration beyond this tells of a fold: it grows as the inverse root of the distance to it, and is below 1.2 elsewhere.
 const STEEP: f64 = 2.5;
@@ -22,22 +21,22 @@ const TWINS: f64 = 0.95;
 
 /// A change expected on the way, and the approach at which it is \[m\].
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Due {
+pub(crate) struct PredictedEvent {
     pub(crate) approach: f64,
-    pub(crate) change: Change,
+    pub(crate) transition: Transition,
 }
 
 /// The contact as it is known.
 #[derive(Debug, Clone)]
-pub(crate) struct Front {
+pub(crate) struct Predictor {
     /// Status of each asperity, and radii at their traces.
     pub(crate) state: State,
     /// What is known of asperities in contact and of free ones that are near their jump-in.
-    pub(crate) traces: Vec<Trace>,
+    pub(crate) traces: Vec<PenetrationTrace>,
     /// Free asperities that are near their jump-in, ascending.
     pub(crate) candidates: Vec<usize>,
     /// Covered asperities under their covering spot: `(by, covered)`, ascending.
-    riders: Vec<(usize, usize)>,
+    covered_by: Vec<(usize, usize)>,
     /// Load and area, and their derivatives to the approach, at the approach at which they were last changed.
     sums: Sums,
 }
@@ -51,10 +50,10 @@ struct Sums {
     area_rate: f64,
 }
 
-impl Front {
+impl Predictor {
     pub(crate) fn new(problem: &Problem, state: State) -> Self {
-        let unknown = Trace::unknown(state.approach_m);
-        let mut riders: Vec<(usize, usize)> = state
+        let unknown = PenetrationTrace::unknown(state.approach_m);
+        let mut covered_by: Vec<(usize, usize)> = state
             .status
             .iter()
             .enumerate()
@@ -63,21 +62,21 @@ impl Front {
                 _ => None,
             })
             .collect();
-        riders.sort_unstable();
-        Self { traces: vec![unknown; problem.len()], candidates: Vec::new(), riders, sums: Sums::default(), state }
+        covered_by.sort_unstable();
+        Self { traces: vec![unknown; problem.len()], candidates: Vec::new(), covered_by, sums: Sums::default(), state }
     }
 
     /// Changes the status of an asperity.
     pub(crate) fn set(&mut self, i: usize, status: Status, radius: f64) {
         if let Status::Covered { by, .. } = self.state.status[i]
-            && let Ok(at) = self.riders.binary_search(&(by, i))
+            && let Ok(at) = self.covered_by.binary_search(&(by, i))
         {
-            self.riders.remove(at);
+            self.covered_by.remove(at);
         }
         if let Status::Covered { by, .. } = status
-            && let Err(at) = self.riders.binary_search(&(by, i))
+            && let Err(at) = self.covered_by.binary_search(&(by, i))
         {
-            self.riders.insert(at, (by, i));
+            self.covered_by.insert(at, (by, i));
         }
         match (self.candidates.binary_search(&i), status) {
             (Err(at), Status::Free) => self.candidates.insert(at, i),
@@ -90,23 +89,23 @@ impl Front {
     }
 
     /// Asperities under spot `by`, ascending.
-    pub(crate) fn riders(&self, by: usize) -> impl Iterator<Item = usize> + '_ {
-        let from = self.riders.partition_point(|(j, _)| *j < by);
-        self.riders[from..].iter().take_while(move |(j, _)| *j == by).map(|(_, i)| *i)
+    pub(crate) fn covered_by(&self, by: usize) -> impl Iterator<Item = usize> + '_ {
+        let from = self.covered_by.partition_point(|(j, _)| *j < by);
+        self.covered_by[from..].iter().take_while(move |(j, _)| *j == by).map(|(_, i)| *i)
     }
 
     /// `da/dδ` of a spot at its trace.
-    pub(crate) fn speed(&self, problem: &Problem, i: usize) -> f64 {
+    pub(crate) fn radius_rate(&self, problem: &Problem, i: usize) -> f64 {
         let trace = self.traces[i];
-        Trace { rate: trace.rate.clamp(-STEEPEST, STEEPEST), ..trace }.speed(&problem.asperities[i], self.state.radius[i])
+        PenetrationTrace { rate: trace.rate.clamp(-STEEPEST, STEEPEST), ..trace }.speed(&problem.asperities[i], self.state.radius[i])
     }
 
     /// How the load of a spot goes on with the approach \[N/m\], no faster than that of a flat punch of thrice its size: at the end of its branch it
     /// is infinite, but not for long.
-    pub(crate) fn answer(&self, problem: &Problem, i: usize) -> f64 {
+    pub(crate) fn load_rate(&self, problem: &Problem, i: usize) -> f64 {
         let (asperity, a) = (&problem.asperities[i], self.state.radius[i]);
         let most = 6.0 * problem.material.contact_modulus_pa * a;
-        (asperity.load_slope(a) * self.speed(problem, i)).clamp(-most, most)
+        (asperity.load_slope(a) * self.radius_rate(problem, i)).clamp(-most, most)
     }
 
     /// Contact radius of a spot expected at an approach \[m\]. Where it is known it may be beyond the end of its branch, where the penetration
@@ -133,8 +132,8 @@ impl Front {
 
     /// Load and area of a spot at its trace, and their derivatives to the approach.
     fn share(&self, problem: &Problem, i: usize) -> Sums {
-        let (asperity, a, speed) = (&problem.asperities[i], self.state.radius[i], self.speed(problem, i));
-        let load_rate = self.answer(problem, i);
+        let (asperity, a, speed) = (&problem.asperities[i], self.state.radius[i], self.radius_rate(problem, i));
+        let load_rate = self.load_rate(problem, i);
         let turn = 2.0 * std::f64::consts::PI * a;
         Sums { at: self.traces[i].at, load: asperity.load(a), load_rate, area: 0.5 * turn * a, area_rate: turn * speed }
     }
@@ -159,7 +158,19 @@ impl Front {
         self.sums.area_rate += sign * share.area_rate;
     }
 
-    /// Adds to the load what spots will do that do not know it yet \[N\].
+    /// Replaces the predictors of contacts: asperity, radius \[m\], trace.
+    pub(crate) fn replace_all(&mut self, problem: &Problem, traces: &[(usize, f64, PenetrationTrace)]) {
+        for (i, a, trace) in traces {
+            if !self.traces[*i].value.is_nan() {
+                self.count(problem, *i, -1.0, trace.at);
+            }
+            self.state.radius[*i] = *a;
+            self.traces[*i] = *trace;
+            self.count(problem, *i, 1.0, trace.at);
+        }
+    }
+
+    /// Adds the load with which contacts will respond to pending displacements \[N\].
     pub(crate) fn add_load(&mut self, load: f64) {
         self.sums.load += load;
     }
@@ -183,7 +194,7 @@ impl Front {
     }
 
     /// What is expected of asperity `i` on the way to `target`, in the sense `sign`.
-    pub(crate) fn expect(&self, problem: &Problem, i: usize, target: f64, sign: f64, due: &mut Vec<Due>) {
+    pub(crate) fn expect(&self, problem: &Problem, i: usize, target: f64, sign: f64, due: &mut Vec<PredictedEvent>) {
         match self.state.status[i] {
             Status::Free => self.expect_jump_in(problem, i, target, sign, due),
             Status::Contact => self.expect_of_spot(problem, i, target, sign, due),
@@ -191,7 +202,7 @@ impl Front {
         }
     }
 
-    fn expect_jump_in(&self, problem: &Problem, i: usize, target: f64, sign: f64, due: &mut Vec<Due>) {
+    fn expect_jump_in(&self, problem: &Problem, i: usize, target: f64, sign: f64, due: &mut Vec<PredictedEvent>) {
         let trace = self.traces[i];
         if self.state.barred[i] || trace.value.is_nan() {
             return;
@@ -202,16 +213,19 @@ impl Front {
         let left = (target - trace.at) * sign;
         // A curved way may come a little earlier than a straight one.
         if (left > 0.0 && speed > 0.0 || way == 0.0) && way <= 1.1 * left {
-            due.push(Due { approach: trace.at + sign * way, change: Change { kind: Kind::JumpIn, asperity: i, by: None } });
+            due.push(PredictedEvent {
+                approach: trace.at + sign * way,
+                transition: Transition { kind: Kind::JumpIn, asperity: i, by: None },
+            });
         }
     }
 
-    fn expect_of_spot(&self, problem: &Problem, j: usize, target: f64, sign: f64, due: &mut Vec<Due>) {
+    fn expect_of_spot(&self, problem: &Problem, j: usize, target: f64, sign: f64, due: &mut Vec<PredictedEvent>) {
         let (trace, asperity, a) = (self.traces[j], &problem.asperities[j], self.state.radius[j]);
         let speed = sign * trace.rate;
         let left = (target - trace.at) * sign;
         let mut offer = |way: f64, kind: Kind, i: usize, by: Option<usize>| {
-            due.push(Due { approach: trace.at + sign * way.max(0.0), change: Change { kind, asperity: i, by } });
+            due.push(PredictedEvent { approach: trace.at + sign * way.max(0.0), transition: Transition { kind, asperity: i, by } });
         };
         if speed < 0.0 {
             let way = (trace.value - asperity.jump_off_penetration()) / -speed;
@@ -220,7 +234,7 @@ impl Front {
             }
             // A fold comes before what such a rate promises.
             let speed = speed.max(-STEEP);
-            for i in self.riders(j) {
+            for i in self.covered_by(j) {
                 if let Status::Covered { release_m, .. } = self.state.status[i] {
                     let way = (trace.value - asperity.penetration(release_m)) / -speed;
                     if a <= release_m || way <= 1.1 * left {
@@ -247,33 +261,4 @@ impl Front {
             }
         }
     }
-}
-
-/// `∫F dδ` of one spot between two known points, the penetration being a cubic in the approach \[J\].
-pub(crate) fn work(problem: &Problem, i: usize, from: Trace, to: Trace) -> f64 {
-    let asperity = &problem.asperities[i];
-    let span = to.at - from.at;
-    if span == 0.0 {
-        return 0.0;
-    }
-    gauss(|p| {
-        let d = hermite(p, from.value, to.value, from.rate * span, to.rate * span);
-        asperity.load(asperity.radius_ahead(d)) * span
-    })
-}
-
-/// A point of a curve along which a radius is the parameter: of one spot its radius and that one's derivative, and of the approach.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct CurvePoint {
-    pub(crate) radius: [f64; 2],
-    pub(crate) approach: [f64; 2],
-}
-
-/// `∫F dδ` of one spot along such a curve, radius and approach being cubics in a parameter that changes by `span` \[J\].
-pub(crate) fn work_along(problem: &Problem, i: usize, span: f64, from: CurvePoint, to: CurvePoint) -> f64 {
-    let asperity = &problem.asperities[i];
-    gauss(|p| {
-        let a = hermite(p, from.radius[0], to.radius[0], from.radius[1] * span, to.radius[1] * span);
-        asperity.load(a) * hermite_slope(p, from.approach[0], to.approach[0], from.approach[1] * span, to.approach[1] * span)
-    })
 }

@@ -1,58 +1,58 @@
 //! Conditions under which a change of state is due.
 
-use super::predictor::Front;
+use super::predictor::Predictor;
 use crate::physics::contact::problem::Problem;
 use crate::physics::contact::state::Status;
-use crate::physics::contact::transition::{Change, Kind};
+use crate::physics::contact::transition::{Kind, Transition};
 
 /// A change that is due, and by how much: a dimensionless measure that is 0 at the event and positive beyond.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Trigger {
-    pub(crate) change: Change,
+    pub(crate) transition: Transition,
     pub(crate) overshoot: f64,
 }
 
 impl Problem {
     /// All changes that are due among these asperities: of spots and of what they cover (`touched`), and of free ones (`free`), whose
     /// penetrations are known at the present approach.
-    pub(crate) fn triggers(&self, front: &Front, touched: &[usize], free: &[usize]) -> Vec<Trigger> {
+    pub(crate) fn triggers(&self, predictor: &Predictor, touched: &[usize], free: &[usize]) -> Vec<Trigger> {
         let mut due = Vec::new();
-        let mut add = |change: Change| {
-            let overshoot = self.overshoot(&change, front);
+        let mut add = |change: Transition| {
+            let overshoot = self.overshoot(&change, predictor);
             if overshoot >= 0.0 {
-                due.push(Trigger { change, overshoot });
+                due.push(Trigger { transition: change, overshoot });
             }
         };
-        let state = &front.state;
+        let state = &predictor.state;
         let mut inside = Vec::new();
         for &j in touched {
-            for i in front.riders(j) {
-                add(Change { kind: Kind::Uncover, asperity: i, by: Some(j) });
+            for i in predictor.covered_by(j) {
+                add(Transition { kind: Kind::Uncover, asperity: i, by: Some(j) });
             }
             if state.status[j] != Status::Contact {
                 continue;
             }
-            add(Change { kind: Kind::JumpOff, asperity: j, by: None });
+            add(Transition { kind: Kind::JumpOff, asperity: j, by: None });
             if self.covers() {
                 self.neighbours.within(j, state.radius[j], |_, i| {
                     if self.can_be_covered(state, i) && state.radius[i] < state.radius[j] {
                         inside.push(i);
-                        add(Change { kind: Kind::Cover, asperity: i, by: Some(j) });
+                        add(Transition { kind: Kind::Cover, asperity: i, by: Some(j) });
                     }
                 });
             }
         }
         for &i in free {
             if state.status[i] == Status::Free && !state.barred[i] && !inside.contains(&i) {
-                add(Change { kind: Kind::JumpIn, asperity: i, by: None });
+                add(Transition { kind: Kind::JumpIn, asperity: i, by: None });
             }
         }
         due
     }
 
     /// True if a change that was due still is.
-    pub(crate) fn is_due(&self, change: &Change, front: &Front) -> bool {
-        let (i, state) = (change.asperity, &front.state);
+    pub(crate) fn is_due(&self, change: &Transition, predictor: &Predictor) -> bool {
+        let (i, state) = (change.asperity, &predictor.state);
         let possible = match (change.kind, state.status[i], change.by) {
             (Kind::JumpIn, Status::Free, _) => !state.barred[i],
             (Kind::JumpOff, Status::Contact, _) => true,
@@ -60,15 +60,15 @@ impl Problem {
             (Kind::Cover, Status::Free | Status::Contact, Some(by)) => state.radius[i] < state.radius[by],
             _ => false,
         };
-        possible && self.overshoot(change, front) >= 0.0
+        possible && self.overshoot(change, predictor) >= 0.0
     }
 
     /// How far a state is beyond a change: negative before it.
-    pub(crate) fn overshoot(&self, change: &Change, front: &Front) -> f64 {
-        let (i, state) = (change.asperity, &front.state);
+    pub(crate) fn overshoot(&self, change: &Transition, predictor: &Predictor) -> f64 {
+        let (i, state) = (change.asperity, &predictor.state);
         match (change.kind, change.by) {
             (Kind::JumpOff, _) => 1.0 - state.radius[i] / self.asperities[i].jump_off_radius(),
-            (Kind::JumpIn, _) => (front.traces[i].value - self.jump_in[i]) / self.asperities[i].jump_off_penetration().abs(),
+            (Kind::JumpIn, _) => (predictor.traces[i].value - self.jump_in[i]) / self.asperities[i].jump_off_penetration().abs(),
             (Kind::Cover, Some(by)) => {
                 let distance = self.neighbours.distance(&self.positions[i], &self.positions[by]);
                 state.radius[by] / distance - 1.0
@@ -83,13 +83,13 @@ impl Problem {
     }
 
     /// How late a change is, as a penetration \[m\].
-    pub(crate) fn lateness(&self, trigger: &Trigger, front: &Front) -> f64 {
-        let (i, state) = (trigger.change.asperity, &front.state);
+    pub(crate) fn lateness(&self, trigger: &Trigger, predictor: &Predictor) -> f64 {
+        let (i, state) = (trigger.transition.asperity, &predictor.state);
         let between = |j: usize, radius: f64| {
             let asperity = &self.asperities[j];
             (asperity.penetration(state.radius[j]) - asperity.penetration(radius)).abs()
         };
-        match (trigger.change.kind, trigger.change.by, state.status[i]) {
+        match (trigger.transition.kind, trigger.transition.by, state.status[i]) {
             (Kind::JumpOff, ..) => between(i, self.asperities[i].jump_off_radius()),
             (Kind::Cover, Some(by), _) => between(by, self.neighbours.distance(&self.positions[i], &self.positions[by])),
             (Kind::Uncover, _, Status::Covered { by, release_m }) if state.radius[by] > 0.0 => between(by, release_m),

@@ -2,19 +2,19 @@
 //!
 //! Unknowns are the contact radii; the residual of each is `D_i − ŵ_i − δ_JKR(a_i)`, with `D_i = δ + z_i`. The paper's Eq 9 is one
 //! diagonal-Newton update of this system, all spots at once; it diverges. Here:
-//! - [`Solver::newton`]: Newton's method with GMRES, steps limited to 20 % of each radius, accepted only where they descend. Where a step does not
+//! - [`GlobalSolver::newton`]: Newton's method with GMRES, steps limited to 20 % of each radius, accepted only where they descend. Where a step does not
 //!   descend, it is mostly for one spot at the edge of another, where the slope of the field is infinite: the few spots around it are solved for
 //!   themselves with dense matrices, and the whole goes on from there (nonlinear elimination, Lanzkron, Rose & Wilkes, SIAM J. Sci. Comput. 17:538, 1996);
-//! - [`Solver::relax`]: where Newton finds nothing (a fold, or after a jump), overdamped relaxation ([`super::relaxation`]).
+//! - [`GlobalSolver::relax`]: where Newton finds nothing (a fold, or after a jump), overdamped relaxation ([`super::relaxation`]).
 
-use super::local::{Hold, Patch};
+use super::local::{Hold, LocalProblem};
 use super::relaxation::{Relaxing, relax};
-use super::residual::{STRIDE, Unsettled};
+use super::residual::{NotConverged, STRIDE};
 use super::schwarz::LocalInverse;
-use super::trace::Trace;
+use super::trace::PenetrationTrace;
 use crate::physics::contact::problem::Problem;
 use crate::physics::contact::state::{State, Status};
-use crate::physics::contact::transition::{Change, Moving};
+use crate::physics::contact::transition::{ContactView, Transition};
 use crate::physics::half_space::{Effort, Interaction as _, Spots, Tangent};
 use crate::physics::math::gmres::{Limits, LinearOperator, Preconditioner, Solution, bounded_inverse, gmres, gmres_and_least};
 use crate::physics::math::vector::dot;
@@ -40,11 +40,14 @@ const ROUGH: f64 = 3e-2;
 const RATES: f64 = 1e-6;
 const ROUGH_RATES: f64 = 3e-4;
 
+/// Way between two evaluations of all free asperities, in rms heights.
+const BLOCK: f64 = 0.05;
+
 /// Solutions that one approximate inverse serves.
 const OLD: usize = 4;
 
 /// Solves for the radii of a state; keeps its work space from one solve to the next.
-pub(crate) struct Solver<'p> {
+pub(crate) struct GlobalSolver<'p> {
     pub(crate) problem: &'p Problem,
     pub(crate) effort: Effort,
     spots: Spots,
@@ -55,6 +58,8 @@ pub(crate) struct Solver<'p> {
     tangent: Tangent,
     watched: Tangent,
     others: [Tangent; 2],
+    /// Mean penetration at which all free asperities were evaluated last \[m\].
+    swept_at: Option<f64>,
     /// An approximate inverse of the tangent as it was, and how many solutions have begun since: it only makes them short.
     inverse: Option<LocalInverse>,
     age: usize,
@@ -64,10 +69,10 @@ pub(crate) struct Solver<'p> {
     pub(crate) residual: Vec<f64>,
     diagonal: Vec<f64>,
     /// The neighbourhood that is solved where Newton's method on the whole does not descend.
-    patch: Patch,
+    patch: LocalProblem,
 }
 
-impl<'p> Solver<'p> {
+impl<'p> GlobalSolver<'p> {
     pub(crate) fn new(problem: &'p Problem) -> Self {
         Self {
             problem,
@@ -77,12 +82,13 @@ impl<'p> Solver<'p> {
             tangent: Tangent::default(),
             watched: Tangent::default(),
             others: Default::default(),
+            swept_at: None,
             inverse: None,
             age: 0,
             fresh: false,
             residual: Vec::new(),
             diagonal: Vec::new(),
-            patch: Patch::default(),
+            patch: LocalProblem::default(),
         }
     }
 
@@ -98,7 +104,7 @@ impl<'p> Solver<'p> {
     }
 
     /// Displacements, residuals and tangent of a state; its worst residual and whose it is.
-    pub(crate) fn evaluate(&mut self, state: &mut State) -> Unsettled {
+    pub(crate) fn evaluate(&mut self, state: &mut State) -> NotConverged {
         let problem = self.problem;
         problem.spots(state, &mut self.spots);
         let field = problem.field.for_spots(&self.spots, self.roughly);
@@ -108,7 +114,7 @@ impl<'p> Solver<'p> {
     }
 
     /// The same with the tangent left as it is.
-    fn glance(&mut self, state: &mut State) -> Unsettled {
+    fn glance(&mut self, state: &mut State) -> NotConverged {
         let problem = self.problem;
         problem.spots(state, &mut self.spots);
         let field = problem.field.for_spots(&self.spots, self.roughly);
@@ -118,11 +124,11 @@ impl<'p> Solver<'p> {
     }
 
     /// Residuals of a state whose displacements are known; the worst and whose it is.
-    fn compare(&mut self, state: &mut State) -> Unsettled {
+    fn compare(&mut self, state: &mut State) -> NotConverged {
         let problem = self.problem;
         self.residual.clear();
         self.diagonal.clear();
-        let mut worst = Unsettled::residual(0.0, state.contacts.first().copied().unwrap_or(0));
+        let mut worst = NotConverged::residual(0.0, state.contacts.first().copied().unwrap_or(0));
         for (&i, w) in state.contacts.iter().zip(&state.displacement) {
             let (asperity, a) = (&problem.asperities[i], state.radius[i]);
             let residual = state.approach_m + problem.heights[i] - w - asperity.penetration(a);
@@ -130,7 +136,7 @@ impl<'p> Solver<'p> {
             self.diagonal.push(asperity.penetration_slope(a));
             // A residual that is not a number must not pass as a small one.
             if residual.is_nan() || residual.abs() > worst.residual_m {
-                worst = Unsettled::residual(residual.abs(), i);
+                worst = NotConverged::residual(residual.abs(), i);
             }
         }
         state.residual_m = worst.residual_m;
@@ -139,7 +145,7 @@ impl<'p> Solver<'p> {
 
     /// Newton's method on the radii, from those of `state`, at its approach, with its spots; it was evaluated last. Where `patient`, it is tried
     /// again in short steps before it fails.
-    pub(crate) fn newton(&mut self, state: &mut State, first: Unsettled, patient: bool, tolerance: f64) -> Result<(), Unsettled> {
+    pub(crate) fn newton(&mut self, state: &mut State, first: NotConverged, patient: bool, tolerance: f64) -> Result<(), NotConverged> {
         let start: Vec<f64> = state.contacts.iter().map(|&i| state.radius[i]).collect();
         self.descend(state, first, (0.2, 20), tolerance).or_else(|unsettled| {
             if !patient {
@@ -155,7 +161,13 @@ impl<'p> Solver<'p> {
     }
 
     /// Newton's method, at most so many iterations, each step shortened down to the share `least` of itself until it descends.
-    fn descend(&mut self, state: &mut State, mut worst: Unsettled, (least, most): (f64, usize), tolerance: f64) -> Result<(), Unsettled> {
+    fn descend(
+        &mut self,
+        state: &mut State,
+        mut worst: NotConverged,
+        (least, most): (f64, usize),
+        tolerance: f64,
+    ) -> Result<(), NotConverged> {
         let exact = tolerance <= self.problem.tolerance_m();
         let mut start: Vec<f64> = Vec::new();
         let mut step: Vec<f64> = Vec::new();
@@ -263,7 +275,7 @@ impl<'p> Solver<'p> {
     }
 
     /// Relaxes from the radii of `state`, at its approach. Spots that leave or are covered on the way are returned.
-    pub(crate) fn relax(&mut self, state: &mut State) -> Result<Vec<Change>, Unsettled> {
+    pub(crate) fn relax(&mut self, state: &mut State) -> Result<Vec<Transition>, NotConverged> {
         let problem = self.problem;
         relax(&mut Whole { solver: self, state }, problem, None)
     }
@@ -316,8 +328,18 @@ impl<'p> Solver<'p> {
         self.count(rates)
     }
 
+    /// True if all free asperities are to be evaluated at a mean penetration \[m\]: the first in each block of [`BLOCK`].
+    pub(crate) fn begins_block(&mut self, approach: f64) -> bool {
+        let block = |approach: f64| (approach / (BLOCK * self.problem.rms_height_m)).floor();
+        let begins = self.swept_at.is_none_or(|at| block(approach) != block(at));
+        if begins {
+            self.swept_at = Some(approach);
+        }
+        begins
+    }
+
     /// Penetrations `D_i − ŵ_i` of asperities that are not in contact, with their rates, in an equilibrium and its rates.
-    pub(crate) fn penetrations(&mut self, state: &State, rates: &[f64], wanted: &[usize]) -> Vec<Trace> {
+    pub(crate) fn penetrations(&mut self, state: &State, rates: &[f64], wanted: &[usize]) -> Vec<PenetrationTrace> {
         let problem = self.problem;
         problem.spots(state, &mut self.spots);
         let (mut displacement, mut slopes) = (Vec::new(), Vec::new());
@@ -326,7 +348,7 @@ impl<'p> Solver<'p> {
         field.approach(&self.spots, rates, wanted, found, &mut self.watched, &mut self.effort);
         let at = state.approach_m;
         let pairs = displacement.iter().zip(&slopes).zip(wanted);
-        pairs.map(|((w, slope), &i)| Trace { at, value: at + problem.heights[i] - w, rate: 1.0 - slope }).collect()
+        pairs.map(|((w, slope), &i)| PenetrationTrace { at, value: at + problem.heights[i] - w, rate: 1.0 - slope }).collect()
     }
 
     /// Displacement at one asperity by spots of these radii \[m\].
@@ -359,21 +381,21 @@ impl LinearOperator for Jacobian<'_> {
 
 /// The whole contact on its way to rest.
 struct Whole<'a, 'p> {
-    solver: &'a mut Solver<'p>,
+    solver: &'a mut GlobalSolver<'p>,
     state: &'a mut State,
 }
 
 impl Relaxing for Whole<'_, '_> {
-    fn evaluate(&mut self) -> Unsettled {
+    fn evaluate(&mut self) -> NotConverged {
         self.solver.effort.iterations += 1;
         self.solver.evaluate(self.state)
     }
 
-    fn spots(&self) -> Vec<Moving> {
+    fn spots(&self) -> Vec<ContactView> {
         self.state.contacts.iter().zip(&self.solver.residual).map(|(&i, r)| (i, self.state.radius[i], *r)).collect()
     }
 
-    fn take_out(&mut self, change: &Change) {
+    fn take_out(&mut self, change: &Transition) {
         self.state.set(change.asperity, change.status(self.solver.problem), 0.0);
     }
 
@@ -388,7 +410,7 @@ impl Relaxing for Whole<'_, '_> {
     }
 
     fn step(&mut self, time: f64) -> (Vec<f64>, bool) {
-        let Solver { tangent, diagonal, residual, .. } = &*self.solver;
+        let GlobalSolver { tangent, diagonal, residual, .. } = &*self.solver;
         let damped: Vec<f64> = diagonal.iter().map(|d| d + 1.0 / time).collect();
         let limits = Limits { tolerance: 1e-3, products: PRODUCTS };
         let step = gmres(&Jacobian { tangent, diagonal: &damped }, None, residual, limits);

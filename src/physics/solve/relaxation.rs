@@ -3,10 +3,10 @@
 //! Implicit Euler steps, that grow as the contact comes to rest. On the way a spot whose own branch has ended leaves, and one that a greater spot has
 //! reached is covered: the flow decides who, without reference to the step of the approach. For `point` it is a gradient flow of the potential.
 
-use super::residual::{STRIDE, Unsettled};
+use super::residual::{NotConverged, STRIDE};
 use crate::physics::Reason;
 use crate::physics::contact::problem::Problem;
-use crate::physics::contact::transition::{Change, Moving};
+use crate::physics::contact::transition::{ContactView, Transition};
 use crate::physics::math::vector::dot;
 
 /// Steps at most since a spot was taken out last: however many go, each is a step towards rest.
@@ -29,11 +29,11 @@ const ATTEMPTS: usize = 24;
 /// A contact, or a part of one, at an approach.
 pub(crate) trait Relaxing {
     /// Evaluates fields and residuals; the worst residual, and whose it is.
-    fn evaluate(&mut self) -> Unsettled;
+    fn evaluate(&mut self) -> NotConverged;
     /// The spots, ascending, as they were evaluated last.
-    fn spots(&self) -> Vec<Moving>;
+    fn spots(&self) -> Vec<ContactView>;
     /// Applies a change that takes a spot out.
-    fn take_out(&mut self, change: &Change);
+    fn take_out(&mut self, change: &Transition);
     /// Tries to finish by Newton's method in short steps; where that does not lead to rest, all is as before.
     fn finish(&mut self) -> bool;
     /// The implicit step over a time, and whether the flow is stable over it as far as is known.
@@ -46,10 +46,14 @@ pub(crate) trait Relaxing {
 ///
 /// Where an asperity has just been uncovered (`uncovered`) and is covered again on the way, or exchanges parts with the spot that covered it, the rest
 /// of the way is of no interest, and the relaxation ends there.
-pub(crate) fn relax(contact: &mut impl Relaxing, problem: &Problem, uncovered: Option<&Change>) -> Result<Vec<Change>, Unsettled> {
-    let mut changes: Vec<Change> = Vec::new();
+pub(crate) fn relax(
+    contact: &mut impl Relaxing,
+    problem: &Problem,
+    uncovered: Option<&Transition>,
+) -> Result<Vec<Transition>, NotConverged> {
+    let mut changes: Vec<Transition> = Vec::new();
     let (mut time, mut finish) = (1.0, NEARLY);
-    let mut last = Unsettled::because(Reason::NotANumber, 0);
+    let mut last = NotConverged::because(Reason::NotANumber, 0);
     let mut round = 0;
     while round < STEPS {
         round += 1;

@@ -7,13 +7,13 @@ pub(crate) const STRIDE: f64 = 0.2;
 
 /// A state that is not in equilibrium: the worst residual and its asperity, and what else prevents an equilibrium.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Unsettled {
+pub(crate) struct NotConverged {
     pub(crate) residual_m: f64,
     pub(crate) asperity: usize,
     pub(crate) reason: Reason,
 }
 
-impl Unsettled {
+impl NotConverged {
     /// The worst residual \[m\] and its asperity.
     pub(crate) fn residual(residual_m: f64, asperity: usize) -> Self {
         Self { residual_m, asperity, reason: Reason::Residual }

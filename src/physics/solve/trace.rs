@@ -5,7 +5,7 @@ use crate::physics::jkr::Asperity;
 /// A penetration `D − ŵ` \[m\] known at one approach, with its rate along the path: of a spot in contact its own, of a free asperity the
 /// one that decides on its jump-in.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Trace {
+pub(crate) struct PenetrationTrace {
     /// Approach at which it is known \[m\].
     pub(crate) at: f64,
     /// Penetration there \[m\].
@@ -20,7 +20,7 @@ pub(crate) const STEEPEST: f64 = 4.0;
 /// Least derivative of a penetration to a radius that is told from none.
 const LEAST_SLOPE: f64 = 1e-6;
 
-impl Trace {
+impl PenetrationTrace {
     /// Nothing is known but the approach.
     pub(crate) fn unknown(at: f64) -> Self {
         Self { at, value: f64::NAN, rate: 0.0 }

@@ -4,12 +4,12 @@
 //! reaches the centre of another the field has an infinite slope in that radius alone. So events of a spot are found by holding its
 //! radius and solving for the approach; a fold is where `dδ/da` of a spot that moves with it vanishes.
 
-use super::{Hold, Patch, Point};
+use super::{CurveState, Hold, LocalProblem};
 use crate::physics::Reason;
 use crate::physics::contact::problem::Problem;
 use crate::physics::half_space::Effort;
 use crate::physics::math::bracket::{End, Illinois};
-use crate::physics::solve::residual::Unsettled;
+use crate::physics::solve::residual::NotConverged;
 
 /// Shortest part of a way that is tried where the whole is too long.
 const SHORTEST: f64 = 1e-3;
@@ -22,7 +22,7 @@ const STATIONS: usize = 50;
 
 /// Where a spot's way ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Found {
+pub(crate) enum CurveEnd {
     /// The fold is met, and the patch stands there.
     Fold,
     /// The radius that bounds the search is met first, and the patch stands there.
@@ -31,16 +31,16 @@ pub(crate) enum Found {
     Beyond,
 }
 
-impl Patch {
+impl LocalProblem {
     /// Follows the curve until the radius of member `at` is `value` \[m\], from an equilibrium that was evaluated last.
-    pub(crate) fn march(&mut self, problem: &Problem, at: usize, value: f64, effort: &mut Effort) -> Result<(), Unsettled> {
+    pub(crate) fn continue_to_radius(&mut self, problem: &Problem, at: usize, value: f64, effort: &mut Effort) -> Result<(), NotConverged> {
         let mut share = 1.0;
         let mut parts = 0;
         while self.radius[at] != value {
             // Where the field itself jumps, as with the printed Eq 8, ever shorter parts lead to the jump and not beyond.
             parts += 1;
             if parts > STATIONS {
-                return Err(Unsettled::because(Reason::EndlessPath, self.members[at].asperity));
+                return Err(NotConverged::because(Reason::EndlessPath, self.members[at].asperity));
             }
             let from = (self.radius.clone(), self.approach);
             let (direction, rate) = self.along(problem, at);
@@ -69,7 +69,7 @@ impl Patch {
     }
 
     /// The radii at another approach \[m\], if the patch gets there without a fold on the way; it stays where it is.
-    pub(crate) fn glance(&mut self, problem: &Problem, approach: f64, effort: &mut Effort) -> Option<Vec<f64>> {
+    pub(crate) fn probe(&mut self, problem: &Problem, approach: f64, effort: &mut Effort) -> Option<Vec<f64>> {
         let start = (self.radius.clone(), self.approach);
         self.ahead(problem, approach);
         let arrived = self.solve(problem, Hold::Approach, effort).is_ok() && self.rates(problem).1;
@@ -82,14 +82,14 @@ impl Patch {
 
     /// Follows member `at` in the sense of `sense` (the sign of its change) up to the radius `bound` \[m\], until the approach turns round or
     /// has passed `target` \[m\] in the sense of the path, `sign`.
-    pub(crate) fn follow(
+    pub(crate) fn trace_curve(
         &mut self,
         problem: &Problem,
         at: usize,
         bound: f64,
         (target, sign): (f64, f64),
         effort: &mut Effort,
-    ) -> Result<Found, Unsettled> {
+    ) -> Result<CurveEnd, NotConverged> {
         let sense = (bound - self.radius[at]).signum();
         let ahead = sense * sign;
         self.way.clear();
@@ -97,7 +97,7 @@ impl Patch {
         self.way.push(before.clone());
         if before.slope * ahead <= 0.0 {
             // It goes the other way by now.
-            return Ok(Found::Beyond);
+            return Ok(CurveEnd::Beyond);
         }
         // At a fold the radius has gone twice as far as its rate tells.
         let left = (target - self.approach).abs();
@@ -105,18 +105,18 @@ impl Patch {
         let beyond = loop {
             let left = (bound - self.radius[at]).abs();
             let next = if left <= stride { bound } else { self.radius[at] + sense * stride };
-            match self.march(problem, at, next, effort) {
+            match self.continue_to_radius(problem, at, next, effort) {
                 Ok(()) => {
                     let point = self.point(problem, at);
                     if point.slope * ahead <= 0.0 {
                         break point;
                     }
                     if (point.approach - target) * sign > 0.0 {
-                        return Ok(Found::Beyond);
+                        return Ok(CurveEnd::Beyond);
                     }
                     self.way.push(point.clone());
                     if next == bound {
-                        return Ok(Found::Bound);
+                        return Ok(CurveEnd::Bound);
                     }
                     before = point;
                     stride = (2.0 * stride).min(0.2 * self.radius[at]);
@@ -131,7 +131,7 @@ impl Patch {
             }
         };
         self.bracket(problem, at, before, beyond, effort)?;
-        Ok(if (self.approach - target) * sign > 0.0 { Found::Beyond } else { Found::Fold })
+        Ok(if (self.approach - target) * sign > 0.0 { CurveEnd::Beyond } else { CurveEnd::Fold })
     }
 
     /// The fold between two points of the curve, by the Illinois rule on `dδ/da`.
@@ -139,10 +139,10 @@ impl Patch {
         &mut self,
         problem: &Problem,
         at: usize,
-        mut before: Point,
-        mut beyond: Point,
+        mut before: CurveState,
+        mut beyond: CurveState,
         effort: &mut Effort,
-    ) -> Result<(), Unsettled> {
+    ) -> Result<(), NotConverged> {
         let tolerance = 1e-9 * problem.rms_height_m;
         let mut ends = Illinois::new(before.slope, beyond.slope);
         for _ in 0..60 {
@@ -152,7 +152,7 @@ impl Patch {
             }
             let value = before.at + ends.share(0.02) * span;
             self.restore(problem, &before, effort);
-            self.march(problem, at, value, effort)?;
+            self.continue_to_radius(problem, at, value, effort)?;
             let point = self.point(problem, at);
             if point.slope * before.slope > 0.0 {
                 ends.narrow(End::Low, point.slope);
@@ -167,12 +167,12 @@ impl Patch {
         Ok(())
     }
 
-    fn point(&mut self, problem: &Problem, at: usize) -> Point {
+    fn point(&mut self, problem: &Problem, at: usize) -> CurveState {
         let (direction, slope) = self.along(problem, at);
-        Point { radius: self.radius.clone(), approach: self.approach, direction, slope, at: self.radius[at] }
+        CurveState { radius: self.radius.clone(), approach: self.approach, direction, slope, at: self.radius[at] }
     }
 
-    fn restore(&mut self, problem: &Problem, point: &Point, effort: &mut Effort) {
+    fn restore(&mut self, problem: &Problem, point: &CurveState, effort: &mut Effort) {
         self.radius.clone_from(&point.radius);
         self.approach = point.approach;
         self.evaluate(problem, effort);

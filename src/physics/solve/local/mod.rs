@@ -9,8 +9,8 @@ pub(crate) mod curve;
 pub(crate) mod outside;
 mod relaxing;
 
-use super::residual::{STRIDE, Unsettled};
-use super::trace::Trace;
+use super::residual::{NotConverged, STRIDE};
+use super::trace::PenetrationTrace;
 use crate::physics::Reason;
 use crate::physics::contact::problem::Problem;
 use crate::physics::half_space::{Effort, PairTable, Spots};
@@ -24,7 +24,7 @@ fn bounded(drift: f64) -> f64 {
 
 /// An asperity of the patch: what the rest of the contact does to it.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Place {
+pub(crate) struct OutsideField {
     pub(crate) asperity: usize,
     /// Displacement by the spots outside the patch at the reference approach \[m\].
     pub(crate) outside: f64,
@@ -34,7 +34,7 @@ pub(crate) struct Place {
 
 /// A state of a patch on the curve of equilibria, with its direction.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Point {
+pub(crate) struct CurveState {
     pub(crate) radius: Vec<f64>,
     pub(crate) approach: f64,
     /// Derivatives of the radii and of the approach to the radius of the spot that is followed, `at` \[m\].
@@ -56,18 +56,18 @@ pub(crate) enum Hold {
 
 /// The spots around an event, ascending, and the free asperities among them.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Patch {
+pub(crate) struct LocalProblem {
     /// Approach \[m\].
     pub(crate) approach: f64,
     reference: f64,
-    pub(crate) members: Vec<Place>,
+    pub(crate) members: Vec<OutsideField>,
     /// Contact radii of the members \[m\].
     pub(crate) radius: Vec<f64>,
-    pub(crate) watched: Vec<Place>,
+    pub(crate) watched: Vec<OutsideField>,
     /// True if there are spots outside it: what they do is held, and some digits of what images do are enough.
     local: bool,
     /// Where the patch has been on its way to an event, if it was followed there by a radius.
-    pub(crate) way: Vec<Point>,
+    pub(crate) way: Vec<CurveState>,
     pub(crate) spots: Spots,
     pairs: PairTable,
     /// Displacement at the members by one another \[m\], and its derivatives to their radii.
@@ -79,13 +79,13 @@ pub(crate) struct Patch {
     lu: Lu,
 }
 
-impl Patch {
+impl LocalProblem {
     /// The patch of these spots and free asperities at an approach \[m\], each with its trace, the spots with their radii \[m\]; both lists ascending.
     pub(crate) fn gather(
         &mut self,
         problem: &Problem,
-        contacts: &[(usize, Trace, f64)],
-        free: &[(usize, Trace)],
+        contacts: &[(usize, PenetrationTrace, f64)],
+        free: &[(usize, PenetrationTrace)],
         approach: f64,
         local: bool,
         effort: &mut Effort,
@@ -97,7 +97,7 @@ impl Patch {
         let mut speeds = Vec::with_capacity(contacts.len());
         for (i, trace, a) in contacts {
             let (asperity, a) = (&problem.asperities[*i], *a);
-            self.members.push(Place { asperity: *i, outside: 0.0, drift: 0.0 });
+            self.members.push(OutsideField { asperity: *i, outside: 0.0, drift: 0.0 });
             self.radius.push(a);
             speeds.push(trace.speed(asperity, a));
         }
@@ -117,7 +117,7 @@ impl Patch {
             let by_members: f64 = slopes.iter().zip(&speeds).map(|(s, v)| s * v).sum();
             let displaced = approach + problem.heights[i] - trace.ahead(approach);
             let drift = bounded(1.0 - trace.rate - by_members);
-            self.watched.push(Place { asperity: i, outside: displaced - field, drift });
+            self.watched.push(OutsideField { asperity: i, outside: displaced - field, drift });
         });
     }
 
@@ -128,7 +128,7 @@ impl Patch {
         self.way.clear();
         self.watched.clear();
         self.members.clear();
-        self.members.extend(spots.iter().map(|spot| Place { asperity: spot.0, outside: 0.0, drift: 0.0 }));
+        self.members.extend(spots.iter().map(|spot| OutsideField { asperity: spot.0, outside: 0.0, drift: 0.0 }));
         self.radius.clear();
         self.radius.extend(spots.iter().map(|spot| spot.1));
         self.evaluate(problem, effort);
@@ -143,7 +143,7 @@ impl Patch {
     }
 
     /// Puts an asperity into contact; what acts on it from outside is known from watching it, or given.
-    pub(crate) fn insert(&mut self, place: Place, radius: f64) {
+    pub(crate) fn insert(&mut self, place: OutsideField, radius: f64) {
         if let Err(at) = self.members.binary_search_by_key(&place.asperity, |m| m.asperity) {
             self.members.insert(at, place);
             self.radius.insert(at, radius);
@@ -163,10 +163,16 @@ impl Patch {
     }
 
     /// An asperity whose whole displacement is known at the present approach \[m\], with the rate of what is outside, as one of the patch.
-    pub(crate) fn place(&mut self, problem: &Problem, asperity: usize, (displacement, drift): (f64, f64), effort: &mut Effort) -> Place {
+    pub(crate) fn place(
+        &mut self,
+        problem: &Problem,
+        asperity: usize,
+        (displacement, drift): (f64, f64),
+        effort: &mut Effort,
+    ) -> OutsideField {
         let field = self.field_at(problem, asperity, effort);
         let outside = displacement - field - drift * (self.approach - self.reference);
-        Place { asperity, outside, drift }
+        OutsideField { asperity, outside, drift }
     }
 
     /// Displacement at an asperity by the members \[m\]; the derivatives to their radii are left in `row`.
@@ -181,18 +187,18 @@ impl Patch {
     }
 
     /// Displacement by what is outside, at the present approach \[m\].
-    fn outside(&self, place: &Place) -> f64 {
+    fn outside(&self, place: &OutsideField) -> f64 {
         place.outside + place.drift * (self.approach - self.reference)
     }
 
     /// Fields, slopes and residuals of the members at their radii; the worst residual and whose it is.
-    pub(crate) fn evaluate(&mut self, problem: &Problem, effort: &mut Effort) -> Unsettled {
+    pub(crate) fn evaluate(&mut self, problem: &Problem, effort: &mut Effort) -> NotConverged {
         let n = self.members.len();
         problem.columns(self.members.iter().map(|m| m.asperity).zip(self.radius.iter().copied()), &mut self.spots);
         self.field.clear();
         self.slopes.clear();
         self.residual.clear();
-        let mut worst = Unsettled::residual(0.0, self.members.first().map_or(0, |m| m.asperity));
+        let mut worst = NotConverged::residual(0.0, self.members.first().map_or(0, |m| m.asperity));
         if self.local {
             problem.field.among(&self.spots, &mut self.pairs, &mut self.field, &mut self.slopes, effort);
         } else {
@@ -211,7 +217,7 @@ impl Patch {
             self.residual.push(residual);
             // A residual that is not a number must not pass as a small one.
             if residual.is_nan() || residual.abs() > worst.residual_m {
-                worst = Unsettled::residual(residual.abs(), i);
+                worst = NotConverged::residual(residual.abs(), i);
             }
         }
         worst
@@ -275,18 +281,25 @@ impl Patch {
     }
 
     /// Newton's method from the present radii and approach.
-    pub(crate) fn solve(&mut self, problem: &Problem, hold: Hold, effort: &mut Effort) -> Result<(), Unsettled> {
+    pub(crate) fn solve(&mut self, problem: &Problem, hold: Hold, effort: &mut Effort) -> Result<(), NotConverged> {
         self.descend(problem, hold, 0.2, 25, effort)
     }
 
     /// Newton's method, at most so many iterations, each step shortened down to the share `least` of itself until it descends.
-    pub(crate) fn descend(&mut self, problem: &Problem, hold: Hold, least: f64, most: usize, effort: &mut Effort) -> Result<(), Unsettled> {
+    pub(crate) fn descend(
+        &mut self,
+        problem: &Problem,
+        hold: Hold,
+        least: f64,
+        most: usize,
+        effort: &mut Effort,
+    ) -> Result<(), NotConverged> {
         let tolerance = problem.tolerance_m();
         let mut start = (self.radius.clone(), self.approach);
         let mut step = (Vec::new(), 0.0);
         let mut before = f64::INFINITY;
         let mut share = 1.0;
-        let mut last = Unsettled::because(Reason::NotANumber, 0);
+        let mut last = NotConverged::because(Reason::NotANumber, 0);
         for _ in 0..most {
             effort.iterations += 1;
             last = self.evaluate(problem, effort);
@@ -353,14 +366,14 @@ impl Patch {
     }
 
     /// Penetration and its rate of each watched asperity, given the rates of the members.
-    pub(crate) fn watch(&self, problem: &Problem, rates: &[f64], effort: &mut Effort) -> Vec<Trace> {
+    pub(crate) fn watch(&self, problem: &Problem, rates: &[f64], effort: &mut Effort) -> Vec<PenetrationTrace> {
         let places: Vec<usize> = self.watched.iter().map(|place| place.asperity).collect();
         let mut traces = Vec::with_capacity(places.len());
         problem.field.rows(&self.spots, &places, self.local, effort, |k, field, slopes| {
             let place = &self.watched[k];
             let value = self.approach + problem.heights[place.asperity] - self.outside(place) - field;
             let by_members: f64 = slopes.iter().zip(rates).map(|(s, v)| s * v).sum();
-            traces.push(Trace { at: self.approach, value, rate: 1.0 - place.drift - by_members });
+            traces.push(PenetrationTrace { at: self.approach, value, rate: 1.0 - place.drift - by_members });
         });
         traces
     }
@@ -400,7 +413,7 @@ impl Patch {
     }
 
     /// Moves the patch over the fold at which it stands: member `at` by this share of its radius, the others with it, the approach by `gap` \[m\].
-    pub(crate) fn nudge(&mut self, problem: &Problem, at: usize, share: f64, gap: f64) {
+    pub(crate) fn step_over_fold(&mut self, problem: &Problem, at: usize, share: f64, gap: f64) {
         let (direction, _) = self.along(problem, at);
         let span = share * self.radius[at];
         for (radius, d) in self.radius.iter_mut().zip(&direction) {

@@ -1,12 +1,12 @@
 //! What a neighbourhood does to those outside it, and they to its load.
 
-use super::{Patch, Place};
+use super::{LocalProblem, OutsideField};
 use crate::physics::contact::problem::Problem;
 use crate::physics::jkr::Asperity;
 
 /// A member as it stood.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Stood {
+pub(crate) struct ReferenceState {
     pub(crate) asperity: usize,
     pub(crate) sphere: Asperity,
     /// Radius \[m\].
@@ -15,7 +15,7 @@ pub(crate) struct Stood {
     pub(crate) more: f64,
 }
 
-impl Stood {
+impl ReferenceState {
     /// The load that was expected of it \[N\].
     fn load(&self) -> f64 {
         let (sphere, was) = (&self.sphere, self.radius);
@@ -27,7 +27,7 @@ impl Stood {
 struct Source {
     asperity: usize,
     now: Option<(Asperity, f64)>,
-    before: Option<Stood>,
+    before: Option<ReferenceState>,
     load: f64,
 }
 
@@ -35,7 +35,7 @@ struct Source {
 const ALOOF: f64 = 2.0;
 
 impl Source {
-    fn before(stood: &Stood) -> Self {
+    fn before(stood: &ReferenceState) -> Self {
         Self { asperity: stood.asperity, now: None, before: Some(*stood), load: -stood.load() }
     }
 
@@ -67,10 +67,10 @@ fn part(drift: f64) -> f64 {
     drift.clamp(-1.0, 2.0)
 }
 
-impl Patch {
-    /// How the members stand, as [`Self::moved_at`] wants it, if nothing more is expected of them.
-    pub(crate) fn stand(&self, problem: &Problem) -> Vec<Stood> {
-        let stood = |(member, a): (&Place, &f64)| Stood {
+impl LocalProblem {
+    /// How the members stand, as [`Self::displacement_changes`] wants it, if nothing more is expected of them.
+    pub(crate) fn reference_states(&self, problem: &Problem) -> Vec<ReferenceState> {
+        let stood = |(member, a): (&OutsideField, &f64)| ReferenceState {
             asperity: member.asperity,
             sphere: problem.asperities[member.asperity],
             radius: *a,
@@ -81,7 +81,13 @@ impl Patch {
 
     /// By how much the displacements at asperities are other than they were expected to be, when members stood as they did before \[m\]: what the loads
     /// do from their centres, and near a spot, where that is not enough, its field.
-    pub(crate) fn moved_at(&self, problem: &Problem, asperities: &[usize], centre: &[f64; 2], before: &[Stood]) -> Vec<f64> {
+    pub(crate) fn displacement_changes(
+        &self,
+        problem: &Problem,
+        asperities: &[usize],
+        centre: &[f64; 2],
+        before: &[ReferenceState],
+    ) -> Vec<f64> {
         let mut sources: Vec<Source> = before.iter().map(Source::before).collect();
         for (member, &a) in self.members.iter().zip(&self.radius) {
             let at = before.binary_search_by_key(&member.asperity, |stood| stood.asperity).unwrap_or_else(|_| {
@@ -102,13 +108,13 @@ impl Patch {
 
     /// What the spots outside do to the loads of the members as the approach goes on, `Σ F_i ∂ŵ_i/∂δ`; by reciprocity, what these loads do to the
     /// load of the others \[N\].
-    pub(crate) fn pull(&self, problem: &Problem) -> f64 {
+    pub(crate) fn reciprocal_load_rate(&self, problem: &Problem) -> f64 {
         self.members.iter().zip(&self.radius).map(|(m, a)| part(m.drift) * problem.asperities[m.asperity].load(*a)).sum()
     }
 
     /// By how much the load of the members is other than it was expected to be, and by how much what the spots outside do to it is, both as the
     /// radii were to change \[N\].
-    pub(crate) fn off(&self, before: &[Stood]) -> (f64, f64) {
+    pub(crate) fn unexpected_load(&self, before: &[ReferenceState]) -> (f64, f64) {
         let (mut load, mut pull) = (0.0, 0.0);
         for ((member, &a), stood) in self.members.iter().zip(&self.radius).zip(before) {
             let (sphere, was) = (&stood.sphere, stood.radius);

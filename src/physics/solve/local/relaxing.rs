@@ -1,38 +1,43 @@
 //! A patch on its way to rest ([`crate::physics::solve::relaxation`]).
 
-use super::{Hold, Patch};
+use super::{Hold, LocalProblem};
 use crate::physics::contact::problem::Problem;
-use crate::physics::contact::transition::{Change, Kind, Moving};
+use crate::physics::contact::transition::{ContactView, Kind, Transition};
 use crate::physics::half_space::Effort;
 use crate::physics::solve::relaxation::{Relaxing, relax};
-use crate::physics::solve::residual::Unsettled;
+use crate::physics::solve::residual::NotConverged;
 
-impl Patch {
+impl LocalProblem {
     /// Relaxes at the present approach ([`crate::physics::solve::relaxation`]). Spots that leave or are covered on the way are taken out, and returned.
-    pub(crate) fn relax(&mut self, problem: &Problem, uncovered: Option<&Change>, effort: &mut Effort) -> Result<Vec<Change>, Unsettled> {
+    pub(crate) fn relax(
+        &mut self,
+        problem: &Problem,
+        uncovered: Option<&Transition>,
+        effort: &mut Effort,
+    ) -> Result<Vec<Transition>, NotConverged> {
         relax(&mut Part { patch: self, problem, effort }, problem, uncovered)
     }
 }
 
 /// A patch on its way to rest.
 struct Part<'a> {
-    patch: &'a mut Patch,
+    patch: &'a mut LocalProblem,
     problem: &'a Problem,
     effort: &'a mut Effort,
 }
 
 impl Relaxing for Part<'_> {
-    fn evaluate(&mut self) -> Unsettled {
+    fn evaluate(&mut self) -> NotConverged {
         self.effort.iterations += 1;
         self.patch.evaluate(self.problem, self.effort)
     }
 
-    fn spots(&self) -> Vec<Moving> {
-        let Patch { members, radius, residual, .. } = &*self.patch;
+    fn spots(&self) -> Vec<ContactView> {
+        let LocalProblem { members, radius, residual, .. } = &*self.patch;
         members.iter().zip(radius).zip(residual).map(|((m, a), r)| (m.asperity, *a, *r)).collect()
     }
 
-    fn take_out(&mut self, change: &Change) {
+    fn take_out(&mut self, change: &Transition) {
         self.patch.remove(change.asperity, change.kind == Kind::JumpOff);
     }
 

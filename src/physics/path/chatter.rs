@@ -1,0 +1,58 @@
+//! Guard against asperities that change their status to and fro.
+
+use serde::{Deserialize, Serialize};
+
+/// Changes other than jumps out of contact that an asperity may have within one longest increment.
+const MOST_CHANGES: u8 = 3;
+
+/// Changes of each asperity within the present longest increment, and asperities that are frozen by it.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub(crate) struct ChatterGuard {
+    changes: Vec<u8>,
+    /// Asperities with a change that was not applied since the last record.
+    frozen: Vec<usize>,
+}
+
+impl ChatterGuard {
+    /// Makes room for `n` asperities.
+    pub(super) fn grow(&mut self, n: usize) {
+        self.changes.resize(n, 0);
+    }
+
+    /// True if an asperity may change again.
+    pub(super) fn allows(&self, i: usize) -> bool {
+        self.changes[i] < MOST_CHANGES
+    }
+
+    /// Counts a change.
+    pub(super) fn count(&mut self, i: usize) {
+        self.changes[i] = self.changes[i].saturating_add(1);
+    }
+
+    /// Begins a longest increment.
+    pub(super) fn restart(&mut self) {
+        self.changes.fill(0);
+    }
+
+    /// Marks an asperity as frozen, once.
+    pub(super) fn freeze(&mut self, i: usize) {
+        if !self.frozen.contains(&i) {
+            self.frozen.push(i);
+        }
+    }
+
+    /// Marks an asperity as frozen by the step control, once for each rejection.
+    pub(super) fn freeze_again(&mut self, i: usize) {
+        self.frozen.push(i);
+    }
+
+    /// Number of frozen asperities since the last record.
+    pub(crate) fn frozen_count(&self) -> usize {
+        self.frozen.len()
+    }
+
+    /// Begins a record.
+    pub(crate) fn clear_frozen(&mut self) {
+        self.frozen.clear();
+    }
+}

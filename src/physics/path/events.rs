@@ -1,0 +1,169 @@
+//! Events of an increment, in their order: predicted, located on the solution curve of their local problem, applied, and followed by their avalanche.
+
+use super::accuracy::EVENT_TOLERANCE;
+use super::avalanche::Avalanche;
+use super::equilibrium_path::EquilibriumPath;
+use super::predictor::PredictedEvent;
+use super::rejection::Rejection;
+use crate::physics::Reason;
+use crate::physics::contact::Status;
+use crate::physics::contact::transition::{Kind, Transition};
+use crate::physics::solve::local::Hold;
+use crate::physics::solve::local::curve::CurveEnd;
+use crate::physics::solve::residual::NotConverged;
+
+/// Position of an event on the solution curve: the local problem is there.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Located {
+    /// An ordinary point.
+    Point,
+    /// A fold, met by following this member.
+    Fold(usize),
+}
+
+/// Outcome of a predicted event.
+enum Outcome {
+    /// It does not occur before the target, or not before another one.
+    Absent,
+    /// These asperities were touched by it and its avalanche, ascending.
+    Touched(Vec<usize>),
+    /// Local solves do not propagate its avalanche.
+    Unpropagated,
+}
+
+impl EquilibriumPath<'_> {
+    /// Finds and applies the events before `target` \[m\], in their order. Where one has changed more than local solves can propagate, its mean penetration is
+    /// returned: the global problem is to be solved there.
+    pub(super) fn run_events(&mut self, target: f64) -> Result<Option<f64>, Rejection> {
+        let problem = self.problem();
+        let mut queue = self.expect_events(target);
+        let mut attempts = 0;
+        while let Some(at) = self.earliest(&queue) {
+            let event = queue.swap_remove(at);
+            attempts += 1;
+            if attempts > 100 * (problem.len() + 100) {
+                return Err(NotConverged::because(Reason::EndlessEvents, event.transition.asperity).into());
+            }
+            self.check_event_count(event.approach, event.transition.asperity)?;
+            let touched = match self.run_event(event, target, &mut queue)? {
+                Outcome::Absent => continue,
+                Outcome::Touched(touched) => touched,
+                Outcome::Unpropagated => return Ok(Some(self.neighbourhood.local.approach)),
+            };
+            // Predictions for the touched asperities are replaced.
+            let is_touched = |i: usize| touched.binary_search(&i).is_ok();
+            queue.retain(|event| !is_touched(event.transition.asperity) && !event.transition.by.is_some_and(is_touched));
+            for &i in &touched {
+                self.predictor.expect(problem, i, target, self.frame.sense, &mut queue);
+            }
+        }
+        Ok(None)
+    }
+
+    /// Events that are predicted before `target` \[m\], and those that an earlier attempt has missed.
+    fn expect_events(&self, target: f64) -> Vec<PredictedEvent> {
+        let approach = self.state().approach_m;
+        let missed = self.steps.missed().iter().map(|transition| PredictedEvent { approach, transition: *transition });
+        let mut queue: Vec<PredictedEvent> = missed.collect();
+        for &i in self.state().contacts.iter().chain(&self.predictor.candidates) {
+            self.predictor.expect(self.problem(), i, target, self.frame.sense, &mut queue);
+        }
+        queue
+    }
+
+    /// Position of the earliest event in the queue.
+    fn earliest(&self, queue: &[PredictedEvent]) -> Option<usize> {
+        let key = |event: &PredictedEvent| (event.approach * self.frame.sense, event.transition.asperity, event.transition.kind);
+        (0..queue.len()).min_by(|a, b| {
+            let (u, v) = (key(&queue[*a]), key(&queue[*b]));
+            u.0.total_cmp(&v.0).then(u.1.cmp(&v.1)).then(u.2.cmp(&v.2))
+        })
+    }
+
+    /// Locates and applies an event with its avalanche.
+    fn run_event(&mut self, event: PredictedEvent, target: f64, queue: &mut Vec<PredictedEvent>) -> Result<Outcome, Rejection> {
+        let transition = event.transition;
+        self.gather(&transition, None, self.problem().spots_in_patch);
+        let mut avalanche = Avalanche::default();
+        self.log.begin_avalanche();
+        if self.has_pending() {
+            self.apply_pending(&transition, &mut avalanche)?;
+            avalanche.open.extend([Some(transition.asperity), transition.by].into_iter().flatten());
+        } else {
+            let Some(located) = self.locate(&event, target) else { return Ok(Outcome::Absent) };
+            let approach = self.neighbourhood.local.approach;
+            let tolerance = EVENT_TOLERANCE * self.problem().rms_height_m;
+            if queue.iter().any(|other| (approach - other.approach) * self.frame.sense > tolerance) {
+                queue.push(PredictedEvent { approach, ..event });
+                return Ok(Outcome::Absent);
+            }
+            self.finish_location(located, transition.kind, &mut avalanche);
+            self.apply(transition, Some(located), &mut avalanche)?;
+        }
+        Ok(self.run_avalanche(avalanche)?.map_or(Outcome::Unpropagated, Outcome::Touched))
+    }
+
+    /// Moves the local problem along its solution curve to an event, just before it; nothing if the event does not occur before `target` \[m\].
+    fn locate(&mut self, event: &PredictedEvent, target: f64) -> Option<Located> {
+        self.neighbourhood.set_origin();
+        let (problem, sense) = (self.problem(), self.frame.sense);
+        let (local, effort) = (&mut self.neighbourhood.local, &mut self.solver.effort);
+        let Transition { kind, asperity: i, by } = event.transition;
+        if kind == Kind::JumpIn {
+            return self.locate_jump_in(event, target);
+        }
+        let (spot, bound) = match (kind, self.predictor.state.status[i]) {
+            (Kind::JumpOff, _) => (i, problem.asperities[i].jump_off_radius()),
+            (Kind::Cover, _) => {
+                let by = by?;
+                (by, problem.neighbours.distance(&problem.positions[i], &problem.positions[by]))
+            }
+            (Kind::Uncover, Status::Covered { by, release_m }) => (by, release_m),
+            (Kind::Snap, _) => (i, 1.5 * local.radius[local.find(i)?]),
+            _ => return None,
+        };
+        let at = local.find(spot)?;
+        let grows = matches!(kind, Kind::Cover | Kind::Snap);
+        let there = if grows { local.radius[at] >= bound } else { local.radius[at] <= bound };
+        if there {
+            return Some(Located::Point);
+        }
+        // Most predicted events do not occur: where the local problem reaches the target without a fold, only the bound matters.
+        if let Some(radius) = local.probe(problem, target, effort)
+            && (kind == Kind::Snap || if grows { radius[at] < bound } else { radius[at] > bound })
+        {
+            return None;
+        }
+        match local.trace_curve(problem, at, bound, (target, sense), effort) {
+            Ok(CurveEnd::Fold) => Some(Located::Fold(at)),
+            Ok(CurveEnd::Bound) if kind != Kind::Snap && (local.approach - target) * sense <= 0.0 => Some(Located::Point),
+            _ => None,
+        }
+    }
+
+    /// Locates a jump into contact, where the penetration of the asperity reaches its jump-in distance.
+    fn locate_jump_in(&mut self, event: &PredictedEvent, target: f64) -> Option<Located> {
+        let (problem, sense) = (self.problem(), self.frame.sense);
+        let (local, effort) = (&mut self.neighbourhood.local, &mut self.solver.effort);
+        let (i, start) = (event.transition.asperity, local.approach);
+        let watched = local.watched.iter().position(|place| place.asperity == i)?;
+        if local.penetration_of(problem, watched, effort) < problem.jump_in[i] {
+            // From near the predicted position, for a short way of Newton's method.
+            let guess = if (event.approach - start) * sense > 0.0 { event.approach } else { start };
+            local.ahead(problem, guess);
+            local.solve(problem, Hold::Penetration(watched, problem.jump_in[i]), effort).ok()?;
+        }
+        let way = (local.approach - start) * sense;
+        let inside = way >= -EVENT_TOLERANCE * problem.rms_height_m && (local.approach - target) * sense <= 0.0;
+        inside.then_some(Located::Point)
+    }
+
+    /// Advances the predictor of the members to a located event, and counts the work.
+    fn finish_location(&mut self, located: Located, kind: Kind, avalanche: &mut Avalanche) {
+        let fold = matches!(located, Located::Fold(_));
+        // Near the end of a branch the state is smooth in the radius; at the edge of a contact it is smooth in the mean penetration.
+        let curve = if fold || kind == Kind::JumpOff { std::mem::take(&mut self.neighbourhood.local.way) } else { Vec::new() };
+        self.propagate_curve(&curve, avalanche);
+        self.advance_predictors(&curve, fold);
+    }
+}

@@ -1,0 +1,304 @@
+//! Propagation of an event to the rest of the contact.
+//!
+//! A local problem changes the field around it. Free asperities of its shell take the change at once. Contacts have it as a pending displacement until they
+//! are members of a local problem, or until the global solve; a sequence of local solves continues while a pending displacement exceeds the limit. The load
+//! with which they will respond is counted before, to first order: by reciprocity it is the effect of the rest of the contact on the loads of the members.
+
+use super::avalanche::Avalanche;
+use super::equilibrium_path::EquilibriumPath;
+use super::pending::Monopole;
+use super::rejection::Rejection;
+use super::work::{mean_square, work, work_along};
+use crate::physics::contact::transition::{Kind, Transition};
+use crate::physics::contact::{Status, Totals};
+use crate::physics::solve::local::outside::ReferenceState;
+use crate::physics::solve::local::{CurveState, Hold, OutsideField};
+use crate::physics::solve::trace::PenetrationTrace;
+
+/// Contacts of a local problem that has no equilibrium with few, over the usual number.
+const WIDER: usize = 4;
+
+/// Pending displacement that a member may have when its local problem is solved, over the limit.
+const NEGLIGIBLE: f64 = 0.1;
+
+/// A local problem before it changes.
+pub(super) struct Before {
+    totals: Totals,
+    /// Part of the potential that changes with the members \[J\].
+    pub(super) potential: f64,
+    /// Members.
+    members: Vec<ReferenceState>,
+    /// Load of the members, and `Σ F_i ∂ŵ_i/∂Δ` by the outside \[N\].
+    load: f64,
+    reciprocal_load: f64,
+}
+
+/// A member before its pending displacement is applied.
+struct Pending {
+    asperity: usize,
+    radius: f64,
+    load: f64,
+    displacement: f64,
+}
+
+impl EquilibriumPath<'_> {
+    /// True if members have pending displacements that matter.
+    pub(super) fn has_pending(&self) -> bool {
+        self.neighbourhood.has_pending(NEGLIGIBLE * self.pending_limit())
+    }
+
+    /// Contact with the largest pending displacement above the limit.
+    pub(super) fn worst_pending(&mut self) -> Option<usize> {
+        let limit = self.pending_limit();
+        self.pending.worst(&self.predictor.state.status, limit)
+    }
+
+    /// Applies the pending displacements of the members of the neighbourhood of a transition, and solves it. Contacts that leave or are absorbed by that are
+    /// transitions of the avalanche.
+    pub(super) fn apply_pending(&mut self, transition: &Transition, avalanche: &mut Avalanche) -> Result<(), Rejection> {
+        let problem = self.problem();
+        let approach = self.neighbourhood.local.approach;
+        let (before, start) = match self.solve_pending() {
+            (before, start, true) => (before, start),
+            // Few contacts may have no equilibrium where more have.
+            (.., false) if self.neighbourhood.local.members.len() < self.state().contacts.len() => {
+                self.gather(transition, Some(approach), problem.spots_in_patch.saturating_mul(WIDER));
+                match self.solve_pending() {
+                    (before, start, true) => (before, start),
+                    (before, start, false) => return self.relax_pending(transition, before, start, avalanche),
+                }
+            }
+            (before, start, false) => return self.relax_pending(transition, before, start, avalanche),
+        };
+        let energy = self.settle_pending(&before, start);
+        self.log.charge(energy);
+        self.finish(&before, Vec::new(), energy, avalanche);
+        Ok(())
+    }
+
+    /// Solves the local problem with the pending displacements applied; false if it has no stable equilibrium nearby.
+    fn solve_pending(&mut self) -> (Before, Vec<Pending>, bool) {
+        let problem = self.problem();
+        self.advance_members();
+        let before = self.begin();
+        let near = &mut self.neighbourhood;
+        for (member, displacement) in near.local.members.iter_mut().zip(&near.to_apply) {
+            member.outside += displacement;
+        }
+        let members = near.local.members.iter().zip(&near.local.radius).zip(&near.to_apply);
+        let start = members
+            .map(|((member, radius), displacement)| Pending {
+                asperity: member.asperity,
+                radius: *radius,
+                load: problem.asperities[member.asperity].load(*radius),
+                displacement: *displacement,
+            })
+            .collect();
+        let solved = near.local.solve(problem, Hold::Approach, &mut self.solver.effort).is_ok() && near.local.rates(problem).1;
+        (before, start, solved)
+    }
+
+    /// Relaxes the local problem with the pending displacements applied.
+    fn relax_pending(
+        &mut self,
+        transition: &Transition,
+        before: Before,
+        start: Vec<Pending>,
+        avalanche: &mut Avalanche,
+    ) -> Result<(), Rejection> {
+        let local = &mut self.neighbourhood.local;
+        for (radius, from) in local.radius.iter_mut().zip(&start) {
+            *radius = from.radius;
+        }
+        let mut applied = local.relax(self.solver.problem, None, &mut self.solver.effort)?;
+        if applied.is_empty() {
+            applied.push(Transition { kind: Kind::Snap, asperity: transition.asperity, by: None });
+        }
+        let energy = self.settle_pending(&before, start);
+        self.finish(&before, applied, energy, avalanche);
+        Ok(())
+    }
+
+    /// Marks the pending displacements as applied; the energy that the local problem has lost beyond their work is returned \[J\].
+    ///
+    /// The event that caused them was charged as if the loads here had not changed, so the work of these loads is not part of the energy.
+    fn settle_pending(&mut self, before: &Before, start: Vec<Pending>) -> f64 {
+        let mut energy = before.potential - self.neighbourhood.local.totals(self.problem()).1;
+        let mut expected = 0.0;
+        for member in start {
+            self.pending.set_applied(member.asperity);
+            energy -= member.displacement * member.load;
+            expected += self.predictor.load_rate(self.problem(), member.asperity) * member.displacement;
+        }
+        self.expect_load(self.neighbourhood.local.approach, expected);
+        energy
+    }
+
+    /// Remembers the local problem before it changes.
+    pub(super) fn begin(&mut self) -> Before {
+        let problem = self.problem();
+        let local = &self.neighbourhood.local;
+        let totals = self.predictor.totals(local.approach);
+        self.log.pass(local.approach, totals.load_n);
+        let (load, potential) = local.totals(problem);
+        Before { totals, potential, load, members: local.reference_states(problem), reciprocal_load: local.reciprocal_load_rate(problem) }
+    }
+
+    /// Updates the predictor after the local problem has changed, and records the transitions with the energy that it has lost \[J\].
+    pub(super) fn finish(&mut self, before: &Before, applied: Vec<Transition>, energy: f64, avalanche: &mut Avalanche) {
+        let problem = self.problem();
+        let near = &self.neighbourhood;
+        let approach = near.local.approach;
+        let changes = near.local.displacement_changes(problem, &near.shell, &near.centre, &before.members);
+        let load = near.local.totals(problem).0 - before.load;
+        let response = before.reciprocal_load - near.local.reciprocal_load_rate(problem);
+        self.propagate(&changes, load, response, avalanche);
+        for transition in &applied {
+            self.enter(transition, avalanche);
+        }
+        let (rates, _) = self.neighbourhood.local.rates(problem);
+        let local = &self.neighbourhood.local;
+        let trace = |((member, a), rate): ((&OutsideField, &f64), &f64)| {
+            let i = member.asperity;
+            (i, *a, PenetrationTrace::of(&problem.asperities[i], approach, *a, *rate))
+        };
+        let traces: Vec<_> = local.members.iter().zip(&local.radius).zip(&rates).map(trace).collect();
+        avalanche.open.extend(traces.iter().map(|trace| trace.0));
+        self.predictor.replace_all(problem, &traces);
+        self.finish_free(&rates, avalanche);
+        let after = self.predictor.totals(approach);
+        self.log.restart(approach, after.load_n);
+        self.record(&applied, approach, before.totals, after, energy);
+        avalanche.moved.extend(applied);
+    }
+
+    /// Updates the free asperities of the local problem.
+    fn finish_free(&mut self, rates: &[f64], avalanche: &mut Avalanche) {
+        let problem = self.problem();
+        let traces = self.neighbourhood.local.watch(problem, rates, &mut self.solver.effort);
+        for (place, trace) in self.neighbourhood.local.watched.iter().zip(traces) {
+            let i = place.asperity;
+            self.predictor.traces[i] = trace;
+            self.pending.set_far_applied(i);
+            self.predictor.state.barred[i] &= trace.value >= problem.jump_in[i];
+            avalanche.open.push(i);
+        }
+    }
+
+    /// Enters the status after a transition into the predictor.
+    fn enter(&mut self, transition: &Transition, avalanche: &mut Avalanche) {
+        let problem = self.problem();
+        let i = transition.asperity;
+        avalanche.open.push(i);
+        let now = match transition.kind {
+            Kind::Snap => return,
+            Kind::JumpIn | Kind::Uncover if self.neighbourhood.local.find(i).is_some() => Status::Contact,
+            _ => transition.status(problem),
+        };
+        if self.predictor.state.status[i] == Status::Contact && now != Status::Contact && !self.predictor.traces[i].value.is_nan() {
+            self.predictor.count(problem, i, -1.0, self.neighbourhood.local.approach);
+        }
+        self.pending.drop_near(i);
+        self.predictor.traces[i].value = f64::NAN;
+        self.predictor.set(i, now, 0.0);
+    }
+
+    /// Changes the field around the local problem by `changes` at the shell \[m\], since its load has changed by `load`. The load of the contact will change by
+    /// `response` \[N\] when the pending displacements are applied.
+    fn propagate(&mut self, changes: &[f64], load: f64, response: f64, avalanche: &mut Avalanche) {
+        let limit = self.pending_limit();
+        let problem = self.problem();
+        let near = &self.neighbourhood;
+        for (&j, &change) in near.shell.iter().zip(changes) {
+            if self.predictor.state.status[j] == Status::Contact {
+                self.pending.add_near(j, change, limit);
+            } else {
+                let trace = &mut self.predictor.traces[j];
+                trace.value -= change;
+                self.predictor.state.barred[j] &= trace.value >= problem.jump_in[j];
+                avalanche.open.push(j);
+            }
+        }
+        if !near.shell.is_empty() {
+            self.pending.add_far(Monopole { place: near.centre, reach: near.reach, load_n: load });
+        }
+        self.expect_load(self.neighbourhood.local.approach, response);
+    }
+
+    /// Propagates the difference between the solution curve of a local problem and its linear prediction, which the rest of the contact does not have.
+    pub(super) fn propagate_curve(&mut self, curve: &[CurveState], avalanche: &mut Avalanche) {
+        let near = &self.neighbourhood;
+        if near.shell.is_empty() {
+            return;
+        }
+        let problem = self.problem();
+        let way = near.local.approach - near.reference;
+        let reference = |(member, a): (&OutsideField, &f64)| {
+            let i = member.asperity;
+            ReferenceState { asperity: i, sphere: problem.asperities[i], radius: *a, more: self.predictor.radius_rate(problem, i) * way }
+        };
+        let members: Vec<ReferenceState> = near.local.members.iter().zip(&near.origin).map(reference).collect();
+        let changes = near.local.displacement_changes(problem, &near.shell, &near.centre, &members);
+        let (load, reciprocal_load) = near.local.unexpected_load(&members);
+        let before = self.energy.expected_n();
+        self.propagate(&changes, load, -reciprocal_load, avalanche);
+        // It has grown on the way, slowly at first.
+        let grown = self.energy.expected_n() - before;
+        self.log.work_j += grown * mean_square(curve, way);
+    }
+
+    /// Counts the work of the load that contacts will have when pending displacements are applied; from here on it is larger by `more` \[N\].
+    pub(super) fn expect_load(&mut self, approach: f64, more: f64) {
+        self.log.work_j += self.energy.expect_load(approach, more);
+        self.predictor.add_load(more);
+    }
+
+    /// Advances the predictors of the members to a located event and counts the work, along a solution curve if there is one. At a fold the rates are infinite.
+    pub(super) fn advance_predictors(&mut self, curve: &[CurveState], fold: bool) {
+        let problem = self.problem();
+        let (approach, reference) = (self.neighbourhood.local.approach, self.neighbourhood.reference);
+        let rates = if fold { None } else { Some(self.neighbourhood.local.rates(problem).0) };
+        let local = &self.neighbourhood.local;
+        let mut traces = Vec::with_capacity(local.members.len());
+        for (k, (member, a)) in local.members.iter().zip(&local.radius).enumerate() {
+            let i = member.asperity;
+            let asperity = &problem.asperities[i];
+            let from = self.predictor.traces[i];
+            let value = asperity.penetration(*a);
+            let trace = match &rates {
+                Some(rates) => PenetrationTrace::of(asperity, approach, *a, rates[k]),
+                None if approach == from.at => PenetrationTrace { value, ..from },
+                None => PenetrationTrace { at: approach, value, rate: (value - from.value) / (approach - from.at) },
+            };
+            let along_curve = from.at == reference && curve.len() > 1;
+            self.log.work_j += if along_curve { work_along(problem, i, k, curve) } else { work(problem, i, from, trace) };
+            traces.push((i, *a, trace));
+        }
+        self.predictor.replace_all(problem, &traces);
+    }
+
+    /// Advances members that were known at an earlier mean penetration to the present one, and counts the work.
+    pub(super) fn advance_members(&mut self) {
+        let problem = self.problem();
+        let local = &self.neighbourhood.local;
+        let mut traces = Vec::new();
+        for (member, a) in local.members.iter().zip(&local.radius) {
+            let i = member.asperity;
+            let from = self.predictor.traces[i];
+            if from.at != local.approach {
+                let to = PenetrationTrace { at: local.approach, value: problem.asperities[i].penetration(*a), ..from };
+                self.log.work_j += work(problem, i, from, to);
+                traces.push((i, *a, to));
+            }
+        }
+        self.predictor.replace_all(problem, &traces);
+    }
+
+    /// Records the transitions of one relaxation; its energy is that of the first.
+    pub(super) fn record(&mut self, applied: &[Transition], approach: f64, before: Totals, after: Totals, energy: f64) {
+        for transition in applied.iter().filter(|transition| transition.kind != Kind::JumpOff) {
+            self.chatter.count(transition.asperity);
+        }
+        self.log.record(applied, approach, before, after, energy);
+    }
+}
