@@ -185,3 +185,39 @@ impl Neighbours {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Neighbours;
+
+    /// Places of a fixed sequence in the unit square.
+    fn places(count: usize) -> Vec<[f64; 2]> {
+        (1..=count).map(|i| [(i as f64 * 0.618_033_988_749_895).fract(), (i as f64 * 0.754_877_666_246_693).fract()]).collect()
+    }
+
+    #[test]
+    fn law_the_nearest_are_those_of_a_search_through_all() {
+        let all = places(200);
+        for periodic in [true, false] {
+            let neighbours = Neighbours::new(&all, 1.0, periodic);
+            for place in [[0.01, 0.99], [0.5, 0.5], [0.3, 0.02]] {
+                let mut expected: Vec<(f64, usize)> = all.iter().enumerate().map(|(i, p)| (neighbours.distance(p, &place), i)).collect();
+                expected.sort_by(|u, v| u.0.total_cmp(&v.0));
+                let found = neighbours.nearest(&place, 12, all.len(), |_| true);
+                assert_eq!(found, expected[..12], "{place:?}, periodic {periodic}");
+                let mut around = Vec::new();
+                neighbours.around(&place, 0.2, |r, i| around.push((r, i)));
+                around.sort_by(|u, v| u.0.total_cmp(&v.0));
+                let within: Vec<(f64, usize)> = expected.iter().copied().filter(|(r, _)| *r <= 0.2).collect();
+                assert_eq!(around, within, "{place:?}, periodic {periodic}");
+            }
+        }
+    }
+
+    #[test]
+    fn law_distances_are_to_the_nearest_image() {
+        let periodic = Neighbours::new(&places(4), 1.0, true);
+        assert!((periodic.distance(&[0.05, 0.5], &[0.95, 0.5]) - 0.1).abs() < 1e-15);
+        assert!((Neighbours::new(&places(4), 1.0, false).distance(&[0.05, 0.5], &[0.95, 0.5]) - 0.9).abs() < 1e-15);
+    }
+}

@@ -76,7 +76,7 @@ fn polynomial<const N: usize>(rows: &[[f64; N]; N], s: &[f64; LANES], t: &[f64; 
 #[cfg(test)]
 mod tests {
     use super::{CENTRE, LANES};
-    use crate::physics::ewald::IMAGES;
+    use crate::physics::half_space::ewald::IMAGES;
 
     #[test]
     fn val_the_sums_have_the_digits_that_they_are_said_to_have() {

@@ -40,3 +40,34 @@ impl Illinois {
         self.last = Some(end);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{End, Illinois};
+
+    #[test]
+    fn law_a_bracket_narrows_to_the_root_faster_than_by_halving() {
+        let f = |x: f64| x * x * x - 2.0;
+        let (mut low, mut high) = (0.0, 4.0);
+        let mut ends = Illinois::new(f(low), f(high));
+        let mut evaluations = 0;
+        while high - low > 1e-12 && evaluations < 60 {
+            evaluations += 1;
+            let x = low + ends.share(1e-4) * (high - low);
+            let value = f(x);
+            if value.abs() < 1e-14 {
+                (low, high) = (x, x);
+            } else if value < 0.0 {
+                low = x;
+                ends.narrow(End::Low, value);
+            } else {
+                high = x;
+                ends.narrow(End::High, value);
+            }
+            assert!(f(low) <= 1e-14 && f(high) >= -1e-14, "the root stays inside");
+        }
+        assert!((low - 2f64.cbrt()).abs() < 1e-12, "{low}");
+        // Halving takes 42 evaluations.
+        assert!(evaluations <= 20, "{evaluations}");
+    }
+}

@@ -127,3 +127,56 @@ fn product(a: &[f64], b: &[f64]) -> f64 {
     let rest: f64 = a_rest.iter().zip(b_rest).map(|(x, y)| x * y).sum();
     strands.iter().sum::<f64>() + rest
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Lu;
+
+    /// Values of a fixed sequence in [−½, ½).
+    fn values(count: usize) -> Vec<f64> {
+        (0..count)
+            .scan(1u64, |seed, _| {
+                *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                Some((*seed >> 11) as f64 / (1u64 << 53) as f64 - 0.5)
+            })
+            .collect()
+    }
+
+    #[test]
+    fn law_a_solution_satisfies_its_system() {
+        for n in [1, 2, 7, 24, 45] {
+            let matrix = values(n * n);
+            let x = values(n + 3)[3..].to_vec();
+            let b: Vec<f64> = matrix.chunks(n).map(|row| row.iter().zip(&x).map(|(a, x)| a * x).sum()).collect();
+            let mut lu = Lu::default();
+            lu.factor(&matrix, n);
+            let mut found = b.clone();
+            lu.solve(&mut found);
+            // Condition numbers of these matrices are below 1e4.
+            assert!(found.iter().zip(&x).all(|(f, x)| (f - x).abs() < 1e-11), "{n}");
+            // Two right sides at once: the second twice the first.
+            let mut both: Vec<f64> = b.iter().flat_map(|b| [*b, 2.0 * b]).collect();
+            lu.solve_all(&mut both, 2);
+            assert!(both.chunks(2).zip(&x).all(|(f, x)| (f[0] - x).abs() < 1e-11 && (f[1] - 2.0 * x).abs() < 2e-11), "{n}");
+        }
+    }
+
+    #[test]
+    fn law_the_sign_is_that_of_the_determinant() {
+        let mut lu = Lu::default();
+        for (matrix, sign) in [([2.0, 1.0, 1.0, 3.0], 1.0), ([1.0, 3.0, 2.0, 1.0], -1.0), ([0.0, 1.0, 1.0, 0.0], -1.0)] {
+            lu.factor(&matrix, 2);
+            assert_eq!(lu.sign(), sign, "{matrix:?}");
+        }
+    }
+
+    #[test]
+    fn lim_a_singular_matrix_gives_its_null_vector() {
+        let mut lu = Lu::default();
+        lu.factor(&[1.0, 2.0, 2.0, 4.0], 2);
+        let mut x = [1.0, 0.0];
+        lu.solve(&mut x);
+        // Null vector (2, −1), enlarged by the replaced pivot.
+        assert!((x[0] / x[1] + 2.0).abs() < 1e-12 && x[0].abs() > 1e12, "{x:?}");
+    }
+}

@@ -194,3 +194,75 @@ fn precondition(inverse: Option<&dyn Preconditioner>, scale: &[f64], x: &[f64], 
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Limits, LinearOperator, Preconditioner, gmres, gmres_and_least};
+
+    /// Rows of a matrix.
+    struct Rows(Vec<Vec<f64>>);
+
+    impl LinearOperator for Rows {
+        fn product(&self, x: &[f64], y: &mut [f64]) {
+            for (y, row) in y.iter_mut().zip(&self.0) {
+                *y = row.iter().zip(x).map(|(a, x)| a * x).sum();
+            }
+        }
+
+        fn diagonal(&self, i: usize) -> f64 {
+            self.0[i][i]
+        }
+    }
+
+    impl Preconditioner for Rows {
+        fn apply(&self, x: &[f64], y: &mut [f64]) {
+            self.product(x, y);
+        }
+    }
+
+    /// A diagonal and a coupling of rank one: `D + c 1 1ᵀ`.
+    fn coupled(n: usize, coupling: f64) -> Rows {
+        Rows((0..n).map(|i| (0..n).map(|j| coupling + if i == j { 1.0 + i as f64 / n as f64 } else { 0.0 }).collect()).collect())
+    }
+
+    #[test]
+    fn law_a_solution_has_the_wanted_residual() {
+        let matrix = coupled(40, 0.05);
+        let rhs: Vec<f64> = (0..40).map(|i| f64::from(i % 7) - 3.0).collect();
+        for tolerance in [1e-3, 1e-8] {
+            let found = gmres(&matrix, None, &rhs, Limits { tolerance, products: 40 });
+            let mut product = vec![0.0; 40];
+            matrix.product(&found.x, &mut product);
+            let norm = |v: &[f64]| v.iter().map(|v| v * v).sum::<f64>().sqrt();
+            let left: Vec<f64> = product.iter().zip(&rhs).map(|(p, r)| p - r).collect();
+            assert!(norm(&left) <= 1.01 * tolerance * norm(&rhs), "{tolerance}");
+            assert!(found.products < 20, "{}", found.products);
+        }
+    }
+
+    #[test]
+    fn law_the_exact_inverse_needs_one_product() {
+        let matrix = Rows(vec![vec![2.0, 1.0], vec![1.0, 3.0]]);
+        let inverse = Rows(vec![vec![0.6, -0.2], vec![-0.2, 0.4]]);
+        let found = gmres(&matrix, Some(&inverse), &[1.0, 2.0], Limits { tolerance: 1e-12, products: 9 });
+        assert_eq!(found.products, 1);
+        assert!((found.x[0] - 0.2).abs() < 1e-14 && (found.x[1] - 0.6).abs() < 1e-14);
+    }
+
+    #[test]
+    fn law_the_least_eigenvalue_vanishes_where_the_matrix_is_singular() {
+        // D^-1 A has the least eigenvalue 1 - λ for A = D - λ d dᵀ/(dᵀ D^-1 d), with d the right side.
+        let n = 12;
+        let d: Vec<f64> = (0..n).map(|i| 1.0 + i as f64 / n as f64).collect();
+        let sum: f64 = d.iter().sum();
+        for share in [0.3, 0.9, 1.0 - 1e-9, 1.2] {
+            let element = |i: usize, j: usize| if i == j { d[i] } else { 0.0 } - share * d[i] * d[j] / sum;
+            let matrix = Rows((0..n).map(|i| (0..n).map(|j| element(i, j)).collect()).collect());
+            // Each column over its diagonal element, as in the definition; elements of the coupling are below a tenth of it.
+            let rhs: Vec<f64> = (0..n).map(|i| 1.0 + 0.1 * i as f64).collect();
+            let (_, least) = gmres_and_least(&matrix, None, &rhs, Limits { tolerance: 1e-10, products: n });
+            assert_eq!(least > 0.0, share < 1.0, "{share}: {least}");
+            assert!(share < 0.99 || share > 1.01 || least.abs() < 1e-8, "{share}: {least}");
+        }
+    }
+}

@@ -18,3 +18,26 @@ pub(crate) fn gauss(f: impl Fn(f64) -> f64) -> f64 {
     let (heavy, light) = (0.652_145_154_862_546_1 / 2.0, 0.347_854_845_137_453_9 / 2.0);
     light * (f(0.5 - outer) + f(0.5 + outer)) + heavy * (f(0.5 - inner) + f(0.5 + inner))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{gauss, hermite, hermite_slope};
+
+    #[test]
+    fn law_four_points_integrate_degree_seven() {
+        for degree in 0..8 {
+            let exact = 1.0 / f64::from(degree + 1);
+            assert!((gauss(|p| p.powi(degree)) - exact).abs() < 1e-15, "{degree}");
+        }
+        assert!((gauss(|p| p.powi(8)) - 1.0 / 9.0).abs() > 1e-7, "the rule has degree seven");
+    }
+
+    #[test]
+    fn law_the_cubic_is_reproduced() {
+        let (f, slope) = (|x: f64| 1.0 + x * (2.0 + x * (-3.0 + 4.0 * x)), |x: f64| 2.0 + x * (-6.0 + 12.0 * x));
+        for x in [0.0, 0.3, 0.9, 1.0] {
+            assert!((hermite(x, f(0.0), f(1.0), slope(0.0), slope(1.0)) - f(x)).abs() < 1e-14);
+            assert!((hermite_slope(x, f(0.0), f(1.0), slope(0.0), slope(1.0)) - slope(x)).abs() < 1e-14);
+        }
+    }
+}

@@ -56,3 +56,26 @@ impl ChatterGuard {
         self.frozen.clear();
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{ChatterGuard, MOST_CHANGES};
+
+    #[test]
+    fn law_an_asperity_is_frozen_after_its_changes_until_the_next_increment() {
+        let mut guard = ChatterGuard::default();
+        guard.grow(2);
+        for _ in 0..MOST_CHANGES {
+            assert!(guard.allows(1));
+            guard.count(1);
+        }
+        assert!(!guard.allows(1) && guard.allows(0));
+        guard.freeze(1);
+        guard.freeze(1);
+        assert_eq!(guard.frozen_count(), 1);
+        guard.restart();
+        assert!(guard.allows(1));
+        guard.clear_frozen();
+        assert_eq!(guard.frozen_count(), 0);
+    }
+}

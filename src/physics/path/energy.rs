@@ -77,3 +77,38 @@ impl EnergyLedger {
         self.events = log.events.len();
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::EnergyLedger;
+    use crate::physics::contact::Totals;
+    use crate::physics::contact::transition::{Kind, Transition};
+    use crate::physics::path::event_log::EventLog;
+
+    #[test]
+    fn law_the_work_of_an_expected_load_is_counted_from_where_it_is_expected() {
+        let mut ledger = EnergyLedger::new(1.0, 0, 0.0);
+        assert_eq!(ledger.expect_load(2.0, 3.0), 0.0);
+        assert_eq!(ledger.expect_load(4.0, -1.0), 6.0);
+        assert_eq!(ledger.expect_load(5.0, 0.0), 2.0);
+        assert_eq!((ledger.take_expected(), ledger.expected_n()), (2.0, 0.0));
+    }
+
+    #[test]
+    fn law_an_open_balance_is_charged_to_the_last_event() {
+        let mut log = EventLog::default();
+        let mut ledger = EnergyLedger::new(0.0, 0, 10.0);
+        log.begin_avalanche();
+        let snap = Transition { kind: Kind::Snap, asperity: 0, by: None };
+        log.record(&[snap], 0.0, Totals::default(), Totals::default(), 1.0);
+        log.work_j = 2.0;
+        ledger.charge_last_event();
+        // Π + dissipated − work stays 10: with Π = 5 and 2 of work the event has dissipated 7.
+        ledger.close(&mut log, 1.0, 5.0);
+        assert_eq!(log.events[0].energy_lost_j, 7.0);
+        assert_eq!((ledger.balance(), ledger.at()), (3.0, 1.0));
+        // A closed balance charges nothing.
+        ledger.close(&mut log, 2.0, 4.0);
+        assert_eq!(log.events[0].energy_lost_j, 7.0);
+    }
+}
