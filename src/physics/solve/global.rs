@@ -7,7 +7,9 @@
 //!   themselves with dense matrices, and the whole goes on from there (nonlinear elimination, Lanzkron, Rose & Wilkes, SIAM J. Sci. Comput. 17:538, 1996);
 //! - [`GlobalSolver::relax`]: where Newton finds nothing (a fold, or after a jump), overdamped relaxation ([`super::relaxation`]).
 
+use super::jacobian::Jacobian;
 use super::local::{Hold, LocalProblem};
+use super::newton::{Damping, NonlinearSystem, Worst, damped_newton};
 use super::relaxation::{Relaxing, relax};
 use super::residual::{NotConverged, STRIDE};
 use super::schwarz::LocalInverse;
@@ -16,7 +18,7 @@ use crate::physics::contact::problem::Problem;
 use crate::physics::contact::state::{State, Status};
 use crate::physics::contact::transition::{ContactView, Transition};
 use crate::physics::half_space::{Effort, Interaction as _, Spots, Tangent};
-use crate::physics::math::gmres::{Limits, LinearOperator, Preconditioner, Solution, bounded_inverse, gmres, gmres_and_least};
+use crate::physics::math::gmres::{Limits, Preconditioner, Solution, bounded_inverse, gmres, gmres_and_least};
 use crate::physics::math::vector::dot;
 
 /// Products at most in one linear solve.
@@ -114,7 +116,7 @@ impl<'p> GlobalSolver<'p> {
     }
 
     /// The same with the tangent left as it is.
-    fn glance(&mut self, state: &mut State) -> NotConverged {
+    fn reevaluate(&mut self, state: &mut State) -> NotConverged {
         let problem = self.problem;
         problem.spots(state, &mut self.spots);
         let field = problem.field.for_spots(&self.spots, self.roughly);
@@ -147,7 +149,7 @@ impl<'p> GlobalSolver<'p> {
     /// again in short steps before it fails.
     pub(crate) fn newton(&mut self, state: &mut State, first: NotConverged, patient: bool, tolerance: f64) -> Result<(), NotConverged> {
         let start: Vec<f64> = state.contacts.iter().map(|&i| state.radius[i]).collect();
-        self.descend(state, first, (0.2, 20), tolerance).or_else(|unsettled| {
+        self.descend(state, first, Damping::NORMAL, tolerance).or_else(|unsettled| {
             if !patient {
                 return Err(unsettled);
             }
@@ -156,68 +158,15 @@ impl<'p> GlobalSolver<'p> {
                 state.radius[i] = *a;
             }
             let first = self.evaluate(state);
-            self.descend(state, first, (1e-4, 60), tolerance)
+            self.descend(state, first, Damping::CAREFUL, tolerance)
         })
     }
 
-    /// Newton's method, at most so many iterations, each step shortened down to the share `least` of itself until it descends.
-    fn descend(
-        &mut self,
-        state: &mut State,
-        mut worst: NotConverged,
-        (least, most): (f64, usize),
-        tolerance: f64,
-    ) -> Result<(), NotConverged> {
+    /// Newton's method from a state that was evaluated last.
+    fn descend(&mut self, state: &mut State, first: NotConverged, damping: Damping, tolerance: f64) -> Result<(), NotConverged> {
         let exact = tolerance <= self.problem.tolerance_m();
-        let mut start: Vec<f64> = Vec::new();
-        let mut step: Vec<f64> = Vec::new();
-        let mut before = f64::INFINITY;
-        let mut share = 1.0;
-        let mut mends = 0;
-        for round in 0..most {
-            if worst.residual_m <= tolerance {
-                return Ok(());
-            }
-            if !self.fresh && worst.residual_m > WORTH * before {
-                worst = self.evaluate(state);
-            }
-            if worst.residual_m >= before && mends < MENDS {
-                // One spot is where the field is no smooth function of the radii: a few spots are solved for themselves there.
-                mends += 1;
-                if self.mend(state, worst.asperity) {
-                    worst = self.evaluate(state);
-                    if worst.residual_m <= tolerance {
-                        return Ok(());
-                    }
-                }
-            }
-            if worst.residual_m < before {
-                before = worst.residual_m;
-                share = 1.0;
-                // The first step leaves the square of the residual, however well it is solved for; the next ones are to be the last.
-                let wanted = match (exact, round) {
-                    (true, 0) => MOST,
-                    (true, _) => (0.1 * tolerance / worst.residual_m).clamp(LEAST, MOST),
-                    (false, _) => (0.3 * tolerance / worst.residual_m).clamp(MOST, ROUGH),
-                };
-                step = self.newton_step(state, wanted);
-                limit(&mut step, state, STRIDE);
-                start = state.contacts.iter().map(|&i| state.radius[i]).collect();
-            } else {
-                // No descent, or not a number: half as far from where the step began.
-                share *= 0.5;
-                if share < least || start.is_empty() {
-                    return Err(worst);
-                }
-            }
-            for ((&i, s), from) in state.contacts.iter().zip(&step).zip(&start) {
-                state.radius[i] = from + share * s;
-            }
-            self.effort.iterations += 1;
-            // The first step leads near enough for the tangent there to serve to the end.
-            worst = if exact && round == 0 { self.evaluate(state) } else { self.glance(state) };
-        }
-        Err(worst)
+        let mut descent = Descent { solver: self, state, exact, tolerance, step: Vec::new(), start: Vec::new(), mends: 0 };
+        damped_newton(&mut descent, first.into(), damping, tolerance)
     }
 
     /// Counts the products of a solution.
@@ -265,7 +214,7 @@ impl<'p> GlobalSolver<'p> {
             .collect();
         spots.sort_unstable_by_key(|spot| spot.0);
         self.patch.fix(problem, &spots, state.approach_m, &mut self.effort);
-        if self.patch.descend(problem, Hold::Approach, 1e-4, 60, &mut self.effort).is_err() {
+        if self.patch.solve_with(problem, Hold::Approach, Damping::CAREFUL, &mut self.effort).is_err() {
             return false;
         }
         for (member, a) in self.patch.members.iter().zip(&self.patch.radius) {
@@ -360,22 +309,55 @@ impl<'p> GlobalSolver<'p> {
     }
 }
 
-/// Jacobian `∂(δ_JKR + ŵ)/∂a`: the slopes `dδ/da` of the asperities and the tangent of the field.
-struct Jacobian<'a> {
-    tangent: &'a Tangent,
-    diagonal: &'a [f64],
+/// Newton's method on all contacts of a state.
+struct Descent<'a, 'p> {
+    solver: &'a mut GlobalSolver<'p>,
+    state: &'a mut State,
+    exact: bool,
+    tolerance: f64,
+    step: Vec<f64>,
+    start: Vec<f64>,
+    /// Local problems solved so far.
+    mends: usize,
 }
 
-impl LinearOperator for Jacobian<'_> {
-    fn product(&self, x: &[f64], y: &mut [f64]) {
-        self.tangent.product(x, y);
-        for (yi, (di, xi)) in y.iter_mut().zip(self.diagonal.iter().zip(x)) {
-            *yi += di * xi;
-        }
+impl NonlinearSystem for Descent<'_, '_> {
+    fn evaluate(&mut self, round: usize) -> Worst {
+        self.solver.effort.iterations += 1;
+        // The first step leads near enough for the tangent there to serve to the end.
+        if self.exact && round == 0 { self.solver.evaluate(self.state) } else { self.solver.reevaluate(self.state) }.into()
     }
 
-    fn diagonal(&self, i: usize) -> f64 {
-        self.diagonal[i] + self.tangent.own(i)
+    fn improve(&mut self, mut worst: Worst, best: f64) -> Worst {
+        if !self.solver.fresh && worst.largest_m > WORTH * best {
+            worst = self.solver.evaluate(self.state).into();
+        }
+        if worst.largest_m >= best && self.mends < MENDS {
+            // At one contact the field is not a smooth function of the radii: the contacts around it are solved for themselves.
+            self.mends += 1;
+            if self.solver.mend(self.state, worst.contact.asperity) {
+                worst = self.solver.evaluate(self.state).into();
+            }
+        }
+        worst
+    }
+
+    fn begin_step(&mut self, round: usize, worst: &Worst) {
+        // The first step leaves the square of the residual, however well it is solved for; the next ones are to be the last.
+        let wanted = match (self.exact, round) {
+            (true, 0) => MOST,
+            (true, _) => (0.1 * self.tolerance / worst.largest_m).clamp(LEAST, MOST),
+            (false, _) => (0.3 * self.tolerance / worst.largest_m).clamp(MOST, ROUGH),
+        };
+        self.step = self.solver.newton_step(self.state, wanted);
+        limit(&mut self.step, self.state, STRIDE);
+        self.start = self.state.contacts.iter().map(|&i| self.state.radius[i]).collect();
+    }
+
+    fn advance(&mut self, share: f64) {
+        for ((&i, s), from) in self.state.contacts.iter().zip(&self.step).zip(&self.start) {
+            self.state.radius[i] = from + share * s;
+        }
     }
 }
 
@@ -402,7 +384,7 @@ impl Relaxing for Whole<'_, '_> {
     fn finish(&mut self) -> bool {
         let mut end = self.state.clone();
         let first = self.solver.evaluate(&mut end);
-        let found = self.solver.descend(&mut end, first, (1e-4, 40), self.solver.problem.tolerance_m()).is_ok();
+        let found = self.solver.descend(&mut end, first, Damping::FINISH, self.solver.problem.tolerance_m()).is_ok();
         if found {
             *self.state = end;
         }

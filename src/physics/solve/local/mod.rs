@@ -9,9 +9,9 @@ pub(crate) mod curve;
 pub(crate) mod outside;
 mod relaxing;
 
+use super::newton::{Damping, NonlinearSystem, Worst, damped_newton};
 use super::residual::{NotConverged, STRIDE};
 use super::trace::PenetrationTrace;
-use crate::physics::Reason;
 use crate::physics::contact::problem::Problem;
 use crate::physics::half_space::{Effort, PairTable, Spots};
 use crate::physics::math::dense::Lu;
@@ -280,59 +280,16 @@ impl LocalProblem {
         }
     }
 
-    /// Newton's method from the present radii and approach.
+    /// Newton's method from the present radii and mean penetration.
     pub(crate) fn solve(&mut self, problem: &Problem, hold: Hold, effort: &mut Effort) -> Result<(), NotConverged> {
-        self.descend(problem, hold, 0.2, 25, effort)
+        self.solve_with(problem, hold, Damping::LOCAL, effort)
     }
 
-    /// Newton's method, at most so many iterations, each step shortened down to the share `least` of itself until it descends.
-    pub(crate) fn descend(
-        &mut self,
-        problem: &Problem,
-        hold: Hold,
-        least: f64,
-        most: usize,
-        effort: &mut Effort,
-    ) -> Result<(), NotConverged> {
-        let tolerance = problem.tolerance_m();
-        let mut start = (self.radius.clone(), self.approach);
-        let mut step = (Vec::new(), 0.0);
-        let mut before = f64::INFINITY;
-        let mut share = 1.0;
-        let mut last = NotConverged::because(Reason::NotANumber, 0);
-        for _ in 0..most {
-            effort.iterations += 1;
-            last = self.evaluate(problem, effort);
-            let mut worst = last.residual_m;
-            if let Hold::Penetration(watched, wanted) = hold {
-                worst = worst.max((self.penetration_of(problem, watched, effort) - wanted).abs());
-            }
-            if worst <= tolerance {
-                return Ok(());
-            }
-            if worst < before {
-                before = worst;
-                share = 1.0;
-                step = self.newton_step(problem, hold, effort);
-                let stride = step.0.iter().zip(&self.radius).map(|(s, a)| (s / a).abs()).fold(0.0, f64::max);
-                if stride > STRIDE {
-                    step.0.iter_mut().for_each(|s| *s *= STRIDE / stride);
-                    step.1 *= STRIDE / stride;
-                }
-                start = (self.radius.clone(), self.approach);
-            } else {
-                // No descent, or not a number: half as far from where the step began.
-                share *= 0.5;
-                if share < least || step.0.is_empty() {
-                    return Err(last);
-                }
-            }
-            for ((radius, from), s) in self.radius.iter_mut().zip(&start.0).zip(&step.0) {
-                *radius = from + share * s;
-            }
-            self.approach = start.1 + share * step.1;
-        }
-        Err(last)
+    /// The same with other limits.
+    pub(crate) fn solve_with(&mut self, problem: &Problem, hold: Hold, damping: Damping, effort: &mut Effort) -> Result<(), NotConverged> {
+        let mut descent = Descent { local: self, problem, hold, effort, step: (Vec::new(), 0.0), start: (Vec::new(), 0.0) };
+        let first = descent.evaluate(0);
+        damped_newton(&mut descent, first, damping, problem.tolerance_m())
     }
 
     /// `da_i/dδ` of the members at the equilibrium that was evaluated last, and whether it is on the stable side of every fold: the sign of
@@ -420,5 +377,45 @@ impl LocalProblem {
             *radius += (d * span).clamp(-0.05 * *radius, 0.05 * *radius);
         }
         self.approach += gap;
+    }
+}
+
+/// Newton's method on a local problem.
+struct Descent<'a> {
+    local: &'a mut LocalProblem,
+    problem: &'a Problem,
+    hold: Hold,
+    effort: &'a mut Effort,
+    /// Step of the radii and of the mean penetration \[m\], and where it began.
+    step: (Vec<f64>, f64),
+    start: (Vec<f64>, f64),
+}
+
+impl NonlinearSystem for Descent<'_> {
+    fn evaluate(&mut self, _round: usize) -> Worst {
+        self.effort.iterations += 1;
+        let contact = self.local.evaluate(self.problem, self.effort);
+        let mut largest_m = contact.residual_m;
+        if let Hold::Penetration(watched, wanted) = self.hold {
+            largest_m = largest_m.max((self.local.penetration_of(self.problem, watched, self.effort) - wanted).abs());
+        }
+        Worst { contact, largest_m }
+    }
+
+    fn begin_step(&mut self, _round: usize, _worst: &Worst) {
+        self.step = self.local.newton_step(self.problem, self.hold, self.effort);
+        let stride = self.step.0.iter().zip(&self.local.radius).map(|(s, a)| (s / a).abs()).fold(0.0, f64::max);
+        if stride > STRIDE {
+            self.step.0.iter_mut().for_each(|s| *s *= STRIDE / stride);
+            self.step.1 *= STRIDE / stride;
+        }
+        self.start = (self.local.radius.clone(), self.local.approach);
+    }
+
+    fn advance(&mut self, share: f64) {
+        for ((radius, from), s) in self.local.radius.iter_mut().zip(&self.start.0).zip(&self.step.0) {
+            *radius = from + share * s;
+        }
+        self.local.approach = self.start.1 + share * self.step.1;
     }
 }

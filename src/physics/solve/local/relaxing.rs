@@ -4,6 +4,7 @@ use super::{Hold, LocalProblem};
 use crate::physics::contact::problem::Problem;
 use crate::physics::contact::transition::{ContactView, Kind, Transition};
 use crate::physics::half_space::Effort;
+use crate::physics::solve::newton::Damping;
 use crate::physics::solve::relaxation::{Relaxing, relax};
 use crate::physics::solve::residual::NotConverged;
 
@@ -43,7 +44,8 @@ impl Relaxing for Part<'_> {
 
     fn finish(&mut self) -> bool {
         let rest = self.patch.radius.clone();
-        let found = self.patch.descend(self.problem, Hold::Approach, 1e-4, 40, self.effort).is_ok() && self.patch.rates(self.problem).1;
+        let found =
+            self.patch.solve_with(self.problem, Hold::Approach, Damping::FINISH, self.effort).is_ok() && self.patch.rates(self.problem).1;
         if !found {
             self.patch.radius = rest;
         }

@@ -1,0 +1,132 @@
+//! Damped Newton method for the contact radii.
+//!
+//! No step changes a radius by more than [`STRIDE`](super::residual::STRIDE). A step that does not reduce the largest residual is halved. Near the edge of
+//! another contact, where the slope of the field is infinite, only short steps reduce it.
+
+use super::residual::NotConverged;
+
+/// Largest residual of an evaluation.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Worst {
+    /// Largest residual of a contact, with its asperity.
+    pub(crate) contact: NotConverged,
+    /// Largest residual, those of constraints included \[m\].
+    pub(crate) largest_m: f64,
+}
+
+impl From<NotConverged> for Worst {
+    fn from(contact: NotConverged) -> Self {
+        Self { contact, largest_m: contact.residual_m }
+    }
+}
+
+/// Limits of the method.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Damping {
+    /// Smallest share of a step.
+    pub(crate) least_share: f64,
+    /// Maximum number of steps and halvings.
+    pub(crate) rounds: usize,
+}
+
+impl Damping {
+    /// Away from edges of contacts.
+    pub(crate) const NORMAL: Self = Self { least_share: 0.2, rounds: 20 };
+    /// The same for a local problem.
+    pub(crate) const LOCAL: Self = Self { least_share: 0.2, rounds: 24 };
+    /// At edges of contacts.
+    pub(crate) const CAREFUL: Self = Self { least_share: 1e-4, rounds: 60 };
+    /// At the end of a relaxation.
+    pub(crate) const FINISH: Self = Self { least_share: 1e-4, rounds: 40 };
+}
+
+/// A system of equations with its present unknowns.
+pub(crate) trait NonlinearSystem {
+    /// Evaluates the residual after a step.
+    fn evaluate(&mut self, round: usize) -> Worst;
+
+    /// Improves the evaluation, or the unknowns where a step has not reduced the residual; `best` is the smallest one so far \[m\].
+    fn improve(&mut self, worst: Worst, _best: f64) -> Worst {
+        worst
+    }
+
+    /// Computes a step from the present unknowns.
+    fn begin_step(&mut self, round: usize, worst: &Worst);
+
+    /// Moves the unknowns by a share of the step from where it began.
+    fn advance(&mut self, share: f64);
+}
+
+/// Solves a system that was evaluated, with the largest residual `first`.
+pub(crate) fn damped_newton(
+    system: &mut impl NonlinearSystem,
+    first: Worst,
+    damping: Damping,
+    tolerance_m: f64,
+) -> Result<(), NotConverged> {
+    let mut worst = first;
+    let (mut best, mut share) = (f64::INFINITY, 1.0);
+    for round in 0..damping.rounds {
+        if worst.largest_m <= tolerance_m {
+            return Ok(());
+        }
+        worst = system.improve(worst, best);
+        if worst.largest_m <= tolerance_m {
+            return Ok(());
+        }
+        if worst.largest_m < best {
+            (best, share) = (worst.largest_m, 1.0);
+            system.begin_step(round, &worst);
+        } else {
+            // No descent, or not a number.
+            share *= 0.5;
+            if share < damping.least_share || best.is_infinite() {
+                return Err(worst.contact);
+            }
+        }
+        system.advance(share);
+        worst = system.evaluate(round);
+    }
+    if worst.largest_m <= tolerance_m { Ok(()) } else { Err(worst.contact) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Damping, NonlinearSystem, Worst, damped_newton};
+    use crate::physics::solve::residual::NotConverged;
+
+    /// `atan(x) = 0`, for which full steps of Newton's method diverge from |x| > 1.39.
+    struct Arc {
+        x: f64,
+        start: f64,
+        step: f64,
+    }
+
+    impl NonlinearSystem for Arc {
+        fn evaluate(&mut self, _round: usize) -> Worst {
+            NotConverged::residual(self.x.atan().abs(), 0).into()
+        }
+
+        fn begin_step(&mut self, _round: usize, _worst: &Worst) {
+            (self.start, self.step) = (self.x, -self.x.atan() * (1.0 + self.x * self.x));
+        }
+
+        fn advance(&mut self, share: f64) {
+            self.x = self.start + share * self.step;
+        }
+    }
+
+    #[test]
+    fn law_damping_makes_steps_descend() {
+        let solve = |damping| {
+            let mut arc = Arc { x: 5.0, start: 0.0, step: 0.0 };
+            let first = arc.evaluate(0);
+            damped_newton(&mut arc, first, damping, 1e-12).map(|()| arc.x)
+        };
+        assert!(solve(Damping::CAREFUL).is_ok_and(|x| x.abs() < 1e-12));
+        // Without halvings the first step overshoots to −31.
+        assert!(solve(Damping { least_share: 1.0, rounds: 60 }).is_err());
+        // A limit of rounds is kept.
+        assert!(solve(Damping { least_share: 1e-4, rounds: 2 }).is_err());
+    }
+}
