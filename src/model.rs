@@ -1,6 +1,10 @@
 //! What a case is made of: the material, and every choice that the model leaves open, by name.
 //!
-//! These types belong to no room: the spec fills them, the physics reads them, the keys hash them. They compute nothing.
+//! These types belong to no other module: the spec fills them, the physics reads them, the keys hash them. They compute nothing.
+
+mod case;
+
+pub use case::{CaseParams, CycleParams, ElementParams, ModelParams, SurfaceParams};
 
 use serde::{Deserialize, Serialize};
 
@@ -27,6 +31,12 @@ impl Material {
     #[must_use]
     pub fn adhesion_length_m(&self) -> f64 {
         self.work_of_adhesion_j_m2 / self.contact_modulus_pa
+    }
+
+    /// Pull-off force of an isolated JKR asperity over its radius, `3πΔγ/2` \[N/m\].
+    #[must_use]
+    pub fn pull_off_line_load(&self) -> f64 {
+        1.5 * std::f64::consts::PI * self.work_of_adhesion_j_m2
     }
 
     /// `sqrt(2πΔγ/E*)` \[m^½\]: times the root of its radius, what adhesion draws a spot up (Eq 2).

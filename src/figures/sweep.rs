@@ -97,7 +97,7 @@ impl Sweep {
             // Runs are not joined by a line.
             series: label.clone(),
         };
-        let differing = vec![Varying::new(("campaign", "run", "run"), Values::Words(labels.to_vec()))];
+        let differing = vec![Varying::named_as(["campaign", "run", "run"], Values::Words(labels.to_vec()))];
         let members: Vec<Member> = labels.iter().enumerate().map(member).collect();
         Ok(Self { members, differing, many_loads: false, axis: Axis::of_words("run", labels.to_vec()) })
     }

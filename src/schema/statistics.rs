@@ -1,80 +1,11 @@
 //! The tables over realizations.
 
+use super::parameters::PARAMETER_COLUMNS;
 use super::{ASPERITIES_ID, CYCLE_ID, Column, REALIZATION, SURFACE_ID, Table, count, index, join, real, text};
 
 pub(super) const CASE: &[Column] = &[
     text("case_id", "Identifier of the case: short name of the surface and a hash of all parameters"),
     text("sweep", "Names of the sweeps that contain the case, joined by +; empty for a spec without sweeps"),
-];
-
-/// Parameters that define a case, one column each.
-pub(super) const PARAMETERS: &[Column] = &[
-    text("surface_file", "File of a measured surface, with enough of its path to be unique; null for a generated surface").or_null(),
-    text("surface_dataset", "Dataset in that file; null for the only one, and for a generated surface").or_null(),
-    text("detrend", "Levelling of a measured surface: \"mean\", \"plane\" or \"quadratic\" was subtracted; null for a generated surface")
-        .or_null(),
-    real("hurst", "1", "Hurst exponent H; null for a measured surface").or_null().from("Eq 10"),
-    real("magnification", "1", "Magnification ζ, longest over shortest wavelength; null for a measured surface").or_null().from("Eq 10"),
-    real("length_m", "m", "Side L of the square; null for a measured surface whose import failed").or_null().from("Eq 10"),
-    real(
-        "rms_height_m",
-        "m",
-        "Rms height h_rms: target of a generated surface, or value of a measured one; null for a measured surface whose import failed",
-    )
-    .or_null(),
-    real(
-        "points_per_shortest_wavelength",
-        "1",
-        "Grid points per shortest wavelength; for a measured surface, the S-filter cut-off in pixels",
-    )
-    .or_null(),
-    text(
-        "normalization",
-        "Rule for the rms height: \"sample\" (heights rescaled) or \"spectrum\" (integral of the spectrum); null for a measured surface",
-    )
-    .or_null(),
-    text("amplitudes", "Fourier amplitudes: \"fixed\" or \"gaussian\"; null for a measured surface").or_null(),
-    real("contact_modulus_pa", "Pa", "Reduced modulus E*, 1/E* = sum of (1 - ν²)/E over both bodies").from("Eq 1"),
-    real("work_of_adhesion_j_m2", "J/m^2", "Work of adhesion Δγ").from("Eq 1"),
-    real("interaction_range_m", "m", "Range of attraction ε").from("Eq 3"),
-    text(
-        "interaction",
-        "Elastic interaction between contacts: \"spots\", \"point\", \"reciprocal\" or \"none\"; null for boundary elements",
-    )
-    .or_null()
-    .from("Eqs 6-8"),
-    text("boundary", "Boundary condition of the square: \"periodic\" or \"isolated\""),
-    text("coalescence", "Coalescence rule: \"cover\" (absorption), \"merge\" (equal-area merging) or \"none\"; null for boundary elements")
-        .or_null()
-        .from("Eq 8"),
-    text(
-        "jump_in",
-        "Criterion for jump into contact: \"wu\" (at Wu's jump-in distance) or \"jkr\" (at zero penetration); null for boundary elements",
-    )
-    .or_null()
-    .from("Eq 3"),
-    text("as_printed", "Uncorrected equations of the paper that are in use, joined by +; empty if none"),
-    real(
-        "approach_step",
-        "1",
-        "Maximum output step of the mean penetration, over h_rms; of boundary elements, step of the mean penetration",
-    ),
-    text("method", "Method: \"asperities\" or \"boundary_elements\""),
-    real("element_points", "1", "Grid points of boundary elements along a side; null for asperities").or_null(),
-    text("attraction", "Attraction of boundary elements: \"bonded\" (JKR limit) or \"range\" (Morse); null for asperities").or_null(),
-    real("attraction_range_m", "m", "Range ρ of the Morse law; null without one").or_null(),
-    text(
-        "nucleation",
-        "Gap at which a point of boundary elements comes into contact: \"touch\" or \"wu\"; null for asperities and with a range",
-    )
-    .or_null(),
-    text(
-        "opening",
-        "Where contact of boundary elements opens: \"strength\", \"edges\" or \"anywhere\"; null for asperities and with a range",
-    )
-    .or_null(),
-    real("precision", "1", "Tolerance of an equilibrium of boundary elements: rms residual over the maximum tension; null for asperities")
-        .or_null(),
 ];
 
 /// Mean, standard deviation and confidence interval of one result. All are null without a value; the last two require two.
@@ -225,8 +156,8 @@ parts! {
 
 const PART_COLUMNS: [Column; 2 * PARTS.len()] = join(PARTS);
 
-const REALIZATION_COLUMNS: [Column; CASE.len() + PARAMETERS.len() + RESULTS.len() + PART_COLUMNS.len()] =
-    join(&[CASE, PARAMETERS, RESULTS, &PART_COLUMNS]);
+const REALIZATION_COLUMNS: [Column; CASE.len() + PARAMETER_COLUMNS.len() + RESULTS.len() + PART_COLUMNS.len()] =
+    join(&[CASE, &PARAMETER_COLUMNS, RESULTS, &PART_COLUMNS]);
 
 /// Results of single cycles.
 pub static REALIZATIONS: Table = Table {
@@ -345,12 +276,12 @@ const VALIDITY_COLUMNS: [Column; 2 * VALIDITY.len()] = join(VALIDITY);
 
 const CASE_COLUMNS: [Column;
     CASE.len()
-        + PARAMETERS.len()
+        + PARAMETER_COLUMNS.len()
         + MAX_LOAD.len()
         + SPREAD_COLUMNS.len()
         + PART_SPREAD_COLUMNS.len()
         + VALIDITY_COLUMNS.len()
-        + COUNTS.len()] = join(&[CASE, PARAMETERS, MAX_LOAD, &SPREAD_COLUMNS, &PART_SPREAD_COLUMNS, &VALIDITY_COLUMNS, COUNTS]);
+        + COUNTS.len()] = join(&[CASE, &PARAMETER_COLUMNS, MAX_LOAD, &SPREAD_COLUMNS, &PART_SPREAD_COLUMNS, &VALIDITY_COLUMNS, COUNTS]);
 
 /// Means over realizations.
 pub static CASES: Table = Table {

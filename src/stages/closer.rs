@@ -2,7 +2,6 @@
 
 use super::StageError;
 use super::page::{escape, grid};
-use super::statistics::moments;
 use super::surface::{scale, spectrum};
 use crate::campaign::{Campaign, CycleUnit, Standing};
 use crate::figures::{Closer, Panel, SpotTables, closer};
@@ -16,7 +15,7 @@ use crate::stats::{labels_with_unit, significant};
 use crate::store::Frame;
 use crate::store::hdf5::{SurfaceHeader, read_surface};
 use crate::store::parquet::read_table;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
 /// Maximum number of points along a side. For larger surfaces this section would need more memory than the cycle.
@@ -57,7 +56,7 @@ pub(super) fn look(campaign: &Campaign, standings: &[Standing], cases: &Frame) -
     let asperities = read_table(&campaign.asperities_path(surface), &schema::ASPERITIES)?;
     let table = |table: &'static schema::Table| read_table(&campaign.cycle_dir(unit).join(format!("{}.parquet", table.name)), table);
     let (steps, events, contacts) = (table(&schema::STEPS)?, table(&schema::EVENTS)?, table(&schema::CONTACTS)?);
-    let (realised, scale) = (moments(&header), scale(campaign, surface)?);
+    let (realised, scale) = (header.moments(), scale(campaign, surface)?);
     let (lowest, variance) = (TAU / header.length_m, header.rms_height_m.powi(2));
     let spectrum_of = if header.periodic { periodogram } else { windowed_periodogram };
     let highest = highest_whole_ring(&header, &surface.params);
@@ -78,11 +77,11 @@ pub(super) fn look(campaign: &Campaign, standings: &[Standing], cases: &Frame) -
         rms_height_m: scale.rms_height_m,
         length_m: header.length_m,
         periodic: case.model.boundary == Boundary::Periodic,
-        pull_off_n_m: 1.5 * PI * case.material.work_of_adhesion_j_m2,
+        pull_off_n_m: case.material.pull_off_line_load(),
         found: &found,
         asked: &asked(&case.surface),
         asked_factor: asked_factor(&case.surface, variance),
-        curvature_1_m: (realised.m4_1_m2 / 3.0).sqrt(),
+        curvature_1_m: realised.curvature_unit_1_m(),
         nayak: &nayak,
         densities_1_m2: [asperities.row_count() as f64 / area, realised.summit_density_1_m2()],
     };

@@ -1,7 +1,6 @@
 //! A measured surface: read, made fit for the model, and put into words.
 
 use super::StageError;
-use super::statistics::moments;
 use crate::formats::recognize;
 use crate::lengths::{LENGTHS, metres};
 use crate::model::Detrend;
@@ -119,7 +118,7 @@ fn own(
     let prepared = Prepared {
         heights_m,
         length_m: header.length_m,
-        moments: moments(&header),
+        moments: header.moments(),
         rings,
         missing_count: measured.missing_count as usize,
         trend_m: measured.trend_m,

@@ -5,7 +5,7 @@ use super::done::{Clock, Outcome};
 use super::surface::{read_summits, scale, spectrum};
 use super::{StageError, Tally, Watch, datapackage, incomplete};
 use crate::campaign::{Campaign, CaseUnit, CycleUnit, STATISTICS, Stage, Standing, Unit};
-use crate::model::{Attraction, Choice};
+use crate::model::Choice;
 use crate::physics::approximate_jkr::{CurvePoint, adhesive_curve, curve_loop};
 use crate::physics::jkr::Asperity;
 use crate::physics::spectrum::{Moments, Spectrum};
@@ -16,7 +16,7 @@ use crate::physics::theory::{
     sticky_line,
 };
 use crate::physics::validity::{Flattening, LEAST_TABOR, flattening, measured_flattening, realised_flattening};
-use crate::schema::ADHESIONLESS;
+use crate::schema::{ADHESIONLESS, CaseFacts, PARAMETERS};
 use crate::spec::CaseParams;
 use crate::stats::{self, CaseInput, CycleInput, Given, Planned, Sample, Value};
 use crate::store::hdf5::{SurfaceHeader, read_header, read_surface};
@@ -27,11 +27,6 @@ use std::collections::HashMap;
 /// Which cycles are done.
 fn done(standings: &[Standing]) -> Vec<bool> {
     standings.iter().map(|standing| *standing == Standing::Done).collect()
-}
-
-/// The moments that a surface's header tells.
-pub(super) fn moments(header: &SurfaceHeader) -> Moments {
-    Moments { m0_m2: header.rms_height_m.powi(2), m2: 0.5 * header.rms_slope.powi(2), m4_1_m2: 0.375 * header.rms_curvature_1_m.powi(2) }
 }
 
 pub(super) fn run(
@@ -136,51 +131,26 @@ fn planned_cycles(campaign: &Campaign, standings: &[Standing]) -> Vec<Planned> {
 
 fn case_input(campaign: &Campaign, number: usize, unit: &CaseUnit, standings: &[Standing]) -> Result<CaseInput, StageError> {
     let params = &unit.case.params;
-    let (surface, material, model) = (&params.surface, &params.material, &params.model);
-    let slips: Vec<&str> = model.as_printed.iter().map(|slip| slip.word()).collect();
-    // Of a measured surface that could not be taken nothing is known.
+    let surface = &params.surface;
+    // The import of a measured surface may have failed.
     let is_there = |cycle: &&CycleUnit| !surface.is_measured() || campaign.surface_path(&campaign.surfaces[cycle.surface]).is_file();
     let of_case = campaign.cycles.iter().find(|cycle| cycle.case == number).filter(is_there);
     let scale = of_case.map(|cycle| scale(campaign, &campaign.surfaces[cycle.surface])).transpose()?;
     let lattice = of_case.map(|cycle| lattice(campaign, cycle)).transpose()?.flatten();
-    let generated = (!surface.is_measured()).then_some(surface);
-    let file = surface.is_measured().then(|| campaign.file_label(&surface.file));
-    let elements = params.by_elements().then_some(&params.boundary_elements);
-    let bonded = elements.filter(|elements| elements.attraction == Attraction::Bonded);
-    let asperities = |word: &'static str| -> Value { elements.is_none().then_some(word).into() };
-    let parameters: [(&str, Value); 26] = [
-        ("surface_file", file.as_deref().into()),
-        ("surface_dataset", (surface.is_measured() && !surface.dataset.is_empty()).then_some(surface.dataset.as_str()).into()),
-        ("detrend", surface.is_measured().then(|| surface.detrend.word()).into()),
-        ("hurst", generated.map(|surface| surface.hurst).into()),
-        ("magnification", generated.map(|surface| f64::from(surface.magnification)).into()),
-        ("length_m", scale.map(|scale| scale.length_m).into()),
-        ("rms_height_m", scale.map(|scale| scale.rms_height_m).into()),
-        ("points_per_shortest_wavelength", f64::from(surface.points_per_shortest_wavelength).into()),
-        ("normalization", generated.map(|surface| surface.normalization.word()).into()),
-        ("amplitudes", generated.map(|surface| surface.amplitudes.word()).into()),
-        ("contact_modulus_pa", material.contact_modulus_pa.into()),
-        ("work_of_adhesion_j_m2", material.work_of_adhesion_j_m2.into()),
-        ("interaction_range_m", material.interaction_range_m.into()),
-        ("interaction", asperities(model.interaction.word())),
-        ("boundary", model.boundary.word().into()),
-        ("coalescence", asperities(model.coalescence.word())),
-        ("jump_in", asperities(model.jump_in.word())),
-        ("as_printed", slips.join("+").as_str().into()),
-        ("approach_step", elements.map_or(params.cycle.approach_step, |elements| elements.approach_step).into()),
-        ("method", model.method.word().into()),
-        ("element_points", lattice.map(|lattice| lattice.points as f64).into()),
-        ("attraction", elements.map(|elements| elements.attraction.word()).into()),
-        ("attraction_range_m", lattice.and_then(|lattice| lattice.range_m).into()),
-        ("nucleation", bonded.map(|elements| elements.nucleation.word()).into()),
-        ("opening", bonded.map(|elements| elements.opening.word()).into()),
-        ("precision", elements.map(|elements| elements.precision).into()),
-    ];
+    let facts = CaseFacts {
+        params,
+        surface_file: surface.is_measured().then(|| campaign.file_label(&surface.file)),
+        length_m: scale.map(|scale| scale.length_m),
+        rms_height_m: scale.map(|scale| scale.rms_height_m),
+        element_points: lattice.map(|lattice| lattice.points as f64),
+        attraction_range_m: lattice.and_then(|lattice| lattice.range_m),
+    };
+    let parameters = PARAMETERS.iter().map(|parameter| (parameter.column.name.to_owned(), (parameter.get)(&facts).into())).collect();
     let failed = |(cycle, standing): (&CycleUnit, &Standing)| cycle.case == number && matches!(standing, Standing::Failed(_));
     Ok(CaseInput {
         case_id: unit.id.clone(),
         sweep: unit.case.sweeps.join("+"),
-        parameters: named(parameters),
+        parameters,
         max_loads: params.cycle.max_load.clone(),
         precision: campaign.spec.realizations.until().map(|until| (until.of.word().to_owned(), until.until_relative_ci)),
         planned_count: campaign.counts[number] as usize,
@@ -238,7 +208,7 @@ pub(super) fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<Cycle
     let surface = &campaign.surfaces[unit.surface];
     let header = read_header(&campaign.surface_path(surface))?;
     let summits = read_summits(&campaign.asperities_path(surface))?;
-    let realised = moments(&header);
+    let realised = header.moments();
     let area = header.length_m * header.length_m;
     let lattice = lattice(campaign, unit)?;
     // A square that is continued by mirror images is four times as large.

@@ -131,7 +131,7 @@ pub(super) fn extract(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Outcome
         .bool("refined", list.iter().map(|s| s.refined))
         .build()?;
     let area = header.length_m * header.length_m;
-    let moments = super::statistics::moments(&header);
+    let moments = header.moments();
     let mut keys = vec![
         ("key", unit.asperities_key.clone()),
         // Nayak's density of the realised moments beside the one that was found.

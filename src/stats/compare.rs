@@ -1,8 +1,8 @@
 //! Campaigns side by side: which of their cases are the same but for what tells the campaigns apart, and by how much results differ.
 
+use super::StatsError;
 use super::student::{Sample, t_quantile};
-use super::{PARAMETERS, StatsError};
-use crate::schema::{COMPARISON, Kind};
+use crate::schema::{COMPARISON, Kind, parameters_by_rank};
 use crate::store::{ColumnData, Frame};
 
 /// What is compared: columns of the table `realizations`.
@@ -49,6 +49,11 @@ fn written(frame: &Frame, column: &str, row: usize) -> Result<String, StatsError
     })
 }
 
+/// Columns of the parameters, in the order of labels.
+fn names() -> impl Iterator<Item = &'static str> {
+    parameters_by_rank().into_iter().map(|parameter| parameter.column.name)
+}
+
 /// Finds the cases that all campaigns have. What tells these apart are the parameters that have other values in one of them than in the first; all others, and
 /// the load, must be the same.
 ///
@@ -62,7 +67,7 @@ pub fn matched(sides: &[Side]) -> Result<Matched, StatsError> {
         Ok(all)
     };
     let mut differing = Vec::new();
-    for (parameter, ..) in PARAMETERS {
+    for parameter in names() {
         let all: Vec<Vec<String>> = sides.iter().map(|side| values(side, parameter)).collect::<Result<_, _>>()?;
         if all.windows(2).any(|pair| pair.first() != pair.last()) {
             differing.push(parameter);
@@ -71,7 +76,7 @@ pub fn matched(sides: &[Side]) -> Result<Matched, StatsError> {
     let keys: Vec<Vec<String>> = sides
         .iter()
         .map(|side| {
-            let columns = || PARAMETERS.iter().map(|(name, ..)| *name).filter(|name| !differing.contains(name)).chain(["max_load"]);
+            let columns = || names().filter(|name| !differing.contains(name)).chain(["max_load"]);
             let key = |row: usize| columns().map(|column| written(&side.cases, column, row)).collect::<Result<Vec<_>, _>>();
             (0..side.cases.row_count()).map(|row| key(row).map(|parts| parts.join("\n"))).collect()
         })
@@ -85,7 +90,7 @@ pub fn matched(sides: &[Side]) -> Result<Matched, StatsError> {
     let places = |key: &String| keys.iter().map(|keys| keys.iter().position(|other| other == key)).collect::<Option<Vec<usize>>>();
     let mut groups: Vec<Group> = keys.first().into_iter().flatten().filter_map(places).map(|rows| Group { rows }).collect();
     if let Some(first) = sides.first() {
-        let ranks = PARAMETERS.iter().map(|(name, ..)| *name).chain(["max_load"]).map(|name| ranks(&first.cases, name));
+        let ranks = names().chain(["max_load"]).map(|name| ranks(&first.cases, name));
         let ranks: Vec<Vec<usize>> = ranks.collect::<Result<_, _>>()?;
         groups.sort_by_cached_key(|group| ranks.iter().map(|ranks| ranks[group.rows[0]]).collect::<Vec<usize>>());
     }
@@ -200,7 +205,7 @@ pub fn comparison(sides: &[Side], matched: &Matched) -> Result<Frame, StatsError
     }
     let each = |value: fn(&Difference) -> f64| rows.iter().map(move |row| value(&row.5));
     let mut builder = Frame::of(&COMPARISON);
-    for (name, ..) in PARAMETERS {
+    for name in names() {
         // The parameters of the compared case.
         let data = match COMPARISON.column(name).map(|column| column.kind) {
             Some(Kind::F64) => {

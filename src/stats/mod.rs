@@ -38,7 +38,6 @@ pub use realizations::{realizations, results};
 pub use rows::Value;
 pub use student::{FEW, Sample, t_quantile};
 pub use summary::summary;
-use varying::PARAMETERS;
 pub use varying::{Values, Varying, varying};
 pub use walk::{COMPRESSION_STATIONS, Point, STATIONS, TENSION_STATIONS, Walk};
 pub use warnings::{Warning, warnings, warnings_of};

@@ -4,7 +4,8 @@ use super::{BAD_SPEC, Fault, failed, say};
 use crate::cli::{ExportArguments, ImportArguments};
 use crate::formats::recognize;
 use crate::keys::digest_of_file;
-use crate::model::{Choice, Detrend, Missing};
+use crate::model::{Choice, Detrend, Material, Missing};
+use crate::physics::jkr::Asperity;
 use crate::physics::measured::find_measured;
 use crate::physics::summits::Summit;
 use crate::physics::validity::{Flattening, LEAST_TABOR, measured_flattening};
@@ -170,7 +171,9 @@ impl Range {
         let ratios = format!("# U_el/Δγ = {whole} (limit ≥ {at_least}), U_1/Δγ = {octave} (limit ≥ {and})");
         let mut text = format!("[material]      {ratios}\ncontact_modulus_pa = {modulus:e}\nwork_of_adhesion_j_m2 = {ADHESION_J_M2}\n");
         let range_m = CaseParams::default().material.interaction_range_m;
-        let tabor = self.radius_m.map(|radius| (radius * (ADHESION_J_M2 / modulus).powi(2)).cbrt() / range_m);
+        let material = Material { contact_modulus_pa: modulus, work_of_adhesion_j_m2: ADHESION_J_M2, interaction_range_m: range_m };
+        let asperity = self.radius_m.and_then(|radius| Asperity::new(radius, &material).ok());
+        let tabor = asperity.map(|asperity| asperity.tabor(range_m));
         let jump_in = tabor.filter(|tabor| *tabor < LEAST_TABOR).map(|tabor| {
             format!("jump_in = \"jkr\"      # Tabor parameter μ ≥ {}; \"wu\" requires {LEAST_TABOR}\n", significant(tabor, 2))
         });
@@ -232,8 +235,7 @@ fn told(
 ) -> String {
     let (length, rms) = (header.length_m, header.rms_height_m);
     let area = length * length;
-    let [m2, m4] = [0.5 * header.rms_slope.powi(2), 0.375 * header.rms_curvature_1_m.powi(2)];
-    let nayak = m4 / (6.0 * std::f64::consts::PI * 3f64.sqrt() * m2) * area;
+    let nayak = header.moments().summit_density_1_m2() * area;
     let mut text = format!("{}\n", file.display());
     let mut line = |what: &str, value: String| text += &format!("  {what:<14}{value}\n");
     let continued = if header.periodic { "periodic" } else { "not periodic" };
