@@ -1,7 +1,7 @@
 //! The stages: read, compute, commit. This room alone joins the physics and the files, and it alone knows the order of the stages.
 
-mod closer;
-mod comparison;
+mod compare;
+mod contact_maps;
 mod cycle;
 mod datapackage;
 mod done;
@@ -9,19 +9,14 @@ mod failure;
 mod foreseen;
 mod identity;
 mod measure;
-mod methods;
-mod page;
-mod reading;
 mod report;
 mod sampling;
-mod scans;
+mod single_cycle;
 mod statistics;
 mod step_count;
 mod surface;
-mod theories;
-mod trust;
 
-pub use comparison::{Comparison, compare};
+pub use compare::{Comparison, compare};
 pub use cycle::{Units, unload_again, unload_elements_again};
 pub use foreseen::{Outside, foreseen};
 pub use measure::{Imported, measure};
