@@ -1,9 +1,11 @@
 //! Stage report: the figures of all sweeps and the HTML report.
 
 use super::contact_maps::contact_maps;
-use super::done::{Clock, Outcome};
+use super::done::Clock;
+use super::error::incomplete;
+use super::runner::{Context, Single, run_single};
 use super::single_cycle::look;
-use super::{StageError, Tally, Watch, incomplete};
+use super::{StageError, Tally};
 use crate::campaign::{Campaign, REPORT_PAGE, STATISTICS, Stage, Standing, Unit};
 use crate::figures::{Panel, Tables, method_ratios, panels, pdf, png, table};
 use crate::report::{self, MethodFigures, Report, SingleCycle};
@@ -72,31 +74,20 @@ impl Drawings {
     }
 }
 
-pub(super) fn run(campaign: &Campaign, (cycles_check, check): (Check, Check), watch: &dyn Watch) -> Result<Tally, StageError> {
+/// Writes the figures and the page, once the tables over realizations are up to date.
+pub(super) fn run(context: Context<'_>, cycles_check: Check) -> Result<Tally, StageError> {
+    let (campaign, check) = (context.campaign, context.task.check);
     let clock = Clock::start();
     let standings = campaign.cycle_standings(cycles_check);
     let statistics = campaign.statistics_key(&standings);
     let key = campaign.report_key(&statistics);
-    let unit = Unit { stage: Stage::Report, id: REPORT_PAGE, key: &key };
-    let mut tally = Tally { planned: 1, ..Tally::default() };
-    if campaign.standing(&unit, check) == Standing::Done {
-        tally.before = 1;
-        watch.begin(Stage::Report, 1, 1);
-        watch.end(Stage::Report);
-        return Ok(tally);
-    }
-    let standing = campaign.standing(&Unit { stage: Stage::Aggregate, id: STATISTICS, key: &statistics }, check);
-    if let Some(error) = incomplete(campaign, Stage::Report, &[("statistics".to_owned(), standing)]) {
-        return Err(error);
-    }
-    watch.begin(Stage::Report, 0, 1);
-    let files = write(campaign, &standings, &key)?;
-    clock.receipt(campaign, &unit, campaign.report_preimages(&statistics), &Outcome::of(files))?;
-    watch.progress(Stage::Report, 1.0);
-    watch.finished(Stage::Report, "report.html");
-    watch.end(Stage::Report);
-    tally.computed = 1;
-    Ok(tally)
+    let single = Single { unit: Unit { stage: Stage::Report, id: REPORT_PAGE, key: &key }, name: "report.html", clock };
+    let ready = || {
+        let standing = campaign.standing(&Unit { stage: Stage::Aggregate, id: STATISTICS, key: &statistics }, check);
+        incomplete(campaign, Stage::Report, &[("statistics".to_owned(), standing)])
+    };
+    let compute = || Ok((write(campaign, &standings, &key)?, campaign.report_preimages(&statistics)));
+    run_single(single, (context, check), ready, compute)
 }
 
 /// Stem of the file and drawing of a panel.

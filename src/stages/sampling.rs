@@ -4,7 +4,7 @@
 //! the same results finds the same number: a run that was killed, another one with more threads, and `status`.
 
 use super::StageError;
-use super::statistics::cycle_input;
+use super::cycle_input::cycle_input;
 use crate::campaign::{Campaign, CycleUnit, Standing};
 use crate::model::Choice;
 use crate::spec::Until;

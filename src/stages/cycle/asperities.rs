@@ -1,8 +1,9 @@
 //! A cycle of the asperity model.
 
 use super::super::done::Outcome;
+use super::super::extract::read_summits;
 use super::super::identity::Identity;
-use super::super::surface::{Scale, read_summits, scale};
+use super::super::surface::{Scale, scale};
 use super::super::{StageError, Watch, step_count};
 use super::asperity_tables::{contacts, events, merged, steps, turning, word};
 use super::{Checkpoints, Progress, effort_of, write_tables};

@@ -1,7 +1,8 @@
 //! Grid, law and settings of boundary elements from the parameters of a case.
 
 use super::super::StageError;
-use super::super::surface::{read_summits, scale};
+use super::super::extract::read_summits;
+use super::super::surface::scale;
 use crate::campaign::{Campaign, CycleUnit};
 use crate::model::{Attraction, KeptContacts, Material, Nucleation, Opening};
 use crate::physics::PhysicsError;
