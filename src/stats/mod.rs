@@ -1,6 +1,6 @@
 //! Statistics: means, standard deviations and mean curves from the steps of many cycles.
 //!
-//! Polars reads, filters, sorts and groups; every sum is taken here, in the order of the realizations, so that the tables
+//! Tables are read and checked by the store, and grouped by Polars. Every sum is taken here, in the order of the realizations, so that the tables
 //! have the same bytes with any number of threads. This module is independent of the physics.
 
 mod avalanches;
@@ -11,6 +11,7 @@ mod curves;
 mod cycle;
 mod digits;
 mod events;
+mod grouped;
 mod listed;
 mod methods;
 mod model_error;
@@ -42,7 +43,7 @@ pub use varying::{Values, Varying, varying};
 pub use walk::{COMPRESSION_STATIONS, Point, STATIONS, TENSION_STATIONS, Walk};
 pub use warnings::{Warning, warnings, warnings_of};
 
-use crate::store::FrameError;
+use crate::store::{FrameError, StoreError};
 
 /// Columns by name, given from outside and copied through.
 pub type Given = Vec<(String, Value)>;
@@ -106,15 +107,10 @@ pub struct CycleInput {
 /// Why a table could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum StatsError {
-    /// Polars could not read or group a table.
-    #[error("cannot aggregate {}: {source}", path.display())]
-    Steps {
-        /// The table.
-        path: PathBuf,
-        /// What Polars says.
-        source: polars::error::PolarsError,
-    },
-    /// Polars could not group rows that were in memory.
+    /// A table of a cycle.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// Polars could not group rows.
     #[error("cannot group the rows of the table {table}: {source}")]
     Group {
         /// The table.
