@@ -15,13 +15,7 @@ pub fn preimage(stage: &str, meaning: u32, reads: &Value) -> Value {
     json!({ "scheme": SCHEME, "stage": stage, "meaning": meaning, "reads": reads })
 }
 
-/// The key of a unit: 64 hexadecimal digits.
-#[must_use]
-pub fn key(stage: &str, meaning: u32, reads: &Value) -> String {
-    key_of_text(stage, meaning, &canonical(reads))
-}
-
-/// Key of a task from inputs that are canonical JSON.
+/// Key of a task from inputs that are canonical JSON: 64 hexadecimal digits.
 #[must_use]
 pub fn key_of_text(stage: &str, meaning: u32, reads: &str) -> String {
     let text = format!("{{\"meaning\":{meaning},\"reads\":{reads},\"scheme\":{SCHEME},\"stage\":\"{stage}\"}}");
