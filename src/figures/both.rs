@@ -2,9 +2,11 @@
 
 use super::axis::Axis;
 use super::closer::plot;
-use super::map::{ABOVE, GAP, PULLED, PUSHED, SIDE, SpotTables, circles, legend, sheet};
+use super::curve::{Stroke, XyPlot};
+use super::cycle_loop::SpotTables;
+use super::map::{ABOVE, GAP, PULLED, PUSHED, SIDE, circles, legend, sheet};
 use super::panels::Panel;
-use super::plot::{Stroke, XyPlot, plot_xy};
+use super::plot::plot_xy;
 use super::style::{LOADING, THEORY, UNLOADING, curve, shade};
 use super::{FigureError, markup};
 use crate::store::{Frame, ReversalMap};

@@ -1,7 +1,7 @@
 //! Captions of the panels: quantity, cases, statistics, strokes and data.
 
-use super::closer::Closer;
-use super::plot::{Curve, Stroke, XyPlot};
+use super::curve::{Curve, Stroke, XyPlot};
+use super::cycle_loop::Closer;
 use super::sweep::Sweep;
 use crate::stats::{Values, significant};
 

@@ -5,6 +5,17 @@ use super::axis::Axis;
 use crate::stats::{Values, Varying, labels, varying};
 use crate::store::Frame;
 
+/// Tables from which panels are drawn.
+#[derive(Debug, Clone, Copy)]
+pub struct Tables<'a> {
+    /// The table `cases`.
+    pub cases: &'a Frame,
+    /// The table `curves`.
+    pub curves: &'a Frame,
+    /// The table `realizations`.
+    pub realizations: &'a Frame,
+}
+
 /// A row of the table `cases` that belongs to the sweep.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Member {

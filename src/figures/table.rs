@@ -1,7 +1,7 @@
 //! What the panels show, as a table: whoever wants other pictures draws them from it.
 
+use super::curve::Curve;
 use super::panels::Panel;
-use super::plot::Curve;
 use crate::schema::PANELS;
 use crate::store::{Frame, FrameError};
 

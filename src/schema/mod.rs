@@ -5,6 +5,7 @@
 
 mod avalanches;
 mod comparison;
+mod curves;
 mod cycles;
 mod methods;
 mod parameters;
@@ -14,12 +15,13 @@ mod statistics;
 
 pub use avalanches::{AVALANCHES, EVENT_KINDS};
 pub use comparison::COMPARISON;
+pub use curves::{CURVES, PANELS};
 pub use cycles::CYCLES;
 pub use methods::METHODS;
 pub use parameters::{CaseFacts, PARAMETERS, Parameter, ParameterValue, parameters_by_rank};
 pub use render::{DIRECTORY, OWN_KEYS, SchemaFile, files, metadata_json, readme_markdown, schema_file_name, schema_json};
 pub use run::{ADHESIONLESS, ASPERITIES, CONTACTS, EVENTS, MERGED, STEPS, TURNING};
-pub use statistics::{CASES, CURVES, PANELS, REALIZATIONS};
+pub use statistics::{CASES, REALIZATIONS};
 
 /// What a column holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

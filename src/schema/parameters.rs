@@ -78,6 +78,24 @@ pub struct Parameter {
     pub get: fn(&CaseFacts<'_>) -> Option<ParameterValue>,
 }
 
+impl Parameter {
+    /// The parameter as one that only one of the methods reads.
+    const fn of_method(mut self) -> Self {
+        self.of_method = true;
+        self
+    }
+}
+
+/// A parameter with symbol and label that both methods read.
+const fn parameter(
+    column: Column,
+    [symbol, label]: [&'static str; 2],
+    rank: u8,
+    get: fn(&CaseFacts<'_>) -> Option<ParameterValue>,
+) -> Parameter {
+    Parameter { column, symbol, label, rank, of_method: false, get }
+}
+
 /// Number of parameters.
 const COUNT: usize = 26;
 
@@ -108,252 +126,70 @@ fn word(choice: impl Choice) -> ParameterValue {
 }
 
 const LIST: [Parameter; COUNT] = [
-    Parameter {
-        column: text("surface_file", "File of a measured surface, with enough of its path to be unique; null for a generated surface").or_null(),
-        symbol: "surface",
-        label: "surface",
-        rank: 0,
-        of_method: false,
-        get: |case| case.surface_file.clone().map(Word),
-    },
-    Parameter {
-        column: text("surface_dataset", "Dataset in that file; null for the only one, and for a generated surface").or_null(),
-        symbol: "dataset",
-        label: "dataset",
-        rank: 1,
-        of_method: false,
-        get: |case| case.measured().map(|surface| &surface.dataset).filter(|name| !name.is_empty()).cloned().map(Word),
-    },
-    Parameter {
-        column: text("detrend", "Levelling of a measured surface: \"mean\", \"plane\" or \"quadratic\" was subtracted; null for a generated surface")
-        .or_null(),
-        symbol: "detrend",
-        label: "levelling",
-        rank: 2,
-        of_method: false,
-        get: |case| case.measured().map(|surface| word(surface.detrend)),
-    },
-    Parameter {
-        column: real("hurst", "1", "Hurst exponent H; null for a measured surface").or_null().from("Eq 10"),
-        symbol: "H",
-        label: "Hurst exponent H",
-        rank: 4,
-        of_method: false,
-        get: |case| case.generated().map(|surface| Number(surface.hurst)),
-    },
-    Parameter {
-        column: real("magnification", "1", "Magnification ζ, longest over shortest wavelength; null for a measured surface").or_null().from("Eq 10"),
-        symbol: "ζ",
-        label: "magnification ζ",
-        rank: 3,
-        of_method: false,
-        get: |case| case.generated().map(|surface| Number(surface.magnification.into())),
-    },
-    Parameter {
-        column: real("length_m", "m", "Side L of the square; null for a measured surface whose import failed").or_null().from("Eq 10"),
-        symbol: "L",
-        label: "L [m]",
-        rank: 6,
-        of_method: false,
-        get: |case| case.length_m.map(Number),
-    },
-    Parameter {
-        column: real(
+    parameter(text("surface_file", "File of a measured surface, with enough of its path to be unique; null for a generated surface").or_null(), ["surface", "surface"], 0, |case| case.surface_file.clone().map(Word)),
+    parameter(text("surface_dataset", "Dataset in that file; null for the only one, and for a generated surface").or_null(), ["dataset", "dataset"], 1, |case| case.measured().map(|surface| &surface.dataset).filter(|name| !name.is_empty()).cloned().map(Word)),
+    parameter(text("detrend", "Levelling of a measured surface: \"mean\", \"plane\" or \"quadratic\" was subtracted; null for a generated surface")
+        .or_null(), ["detrend", "levelling"], 2, |case| case.measured().map(|surface| word(surface.detrend))),
+    parameter(real("hurst", "1", "Hurst exponent H; null for a measured surface").or_null().from("Eq 10"), ["H", "Hurst exponent H"], 4, |case| case.generated().map(|surface| Number(surface.hurst))),
+    parameter(real("magnification", "1", "Magnification ζ, longest over shortest wavelength; null for a measured surface").or_null().from("Eq 10"), ["ζ", "magnification ζ"], 3, |case| case.generated().map(|surface| Number(surface.magnification.into()))),
+    parameter(real("length_m", "m", "Side L of the square; null for a measured surface whose import failed").or_null().from("Eq 10"), ["L", "L [m]"], 6, |case| case.length_m.map(Number)),
+    parameter(real(
         "rms_height_m",
         "m",
         "Rms height h_rms: target of a generated surface, or value of a measured one; null for a measured surface whose import failed",
     )
-    .or_null(),
-        symbol: "h",
-        label: "h_{rms} [m]",
-        rank: 5,
-        of_method: false,
-        get: |case| case.rms_height_m.map(Number),
-    },
-    Parameter {
-        column: real(
+    .or_null(), ["h", "h_{rms} [m]"], 5, |case| case.rms_height_m.map(Number)),
+    parameter(real(
         "points_per_shortest_wavelength",
         "1",
         "Grid points per shortest wavelength; for a measured surface, the S-filter cut-off in pixels",
     )
-    .or_null(),
-        symbol: "n",
-        label: "points per shortest wavelength",
-        rank: 7,
-        of_method: false,
-        get: |case| Some(Number(case.params.surface.points_per_shortest_wavelength.into())),
-    },
-    Parameter {
-        column: text(
+    .or_null(), ["n", "points per shortest wavelength"], 7, |case| Some(Number(case.params.surface.points_per_shortest_wavelength.into()))),
+    parameter(text(
         "normalization",
         "Rule for the rms height: \"sample\" (heights rescaled) or \"spectrum\" (integral of the spectrum); null for a measured surface",
     )
-    .or_null(),
-        symbol: "normalization",
-        label: "normalization",
-        rank: 23,
-        of_method: false,
-        get: |case| case.generated().map(|surface| word(surface.normalization)),
-    },
-    Parameter {
-        column: text("amplitudes", "Fourier amplitudes: \"fixed\" or \"gaussian\"; null for a measured surface").or_null(),
-        symbol: "amplitudes",
-        label: "amplitudes",
-        rank: 24,
-        of_method: false,
-        get: |case| case.generated().map(|surface| word(surface.amplitudes)),
-    },
-    Parameter {
-        column: real("contact_modulus_pa", "Pa", "Reduced modulus E*, 1/E* = sum of (1 - ν²)/E over both bodies").from("Eq 1"),
-        symbol: "E*",
-        label: "E^{*} [Pa]",
-        rank: 8,
-        of_method: false,
-        get: |case| Some(Number(case.params.material.contact_modulus_pa)),
-    },
-    Parameter {
-        column: real("work_of_adhesion_j_m2", "J/m^2", "Work of adhesion Δγ").from("Eq 1"),
-        symbol: "Δγ",
-        label: "Δγ [J/m^{2}]",
-        rank: 9,
-        of_method: false,
-        get: |case| Some(Number(case.params.material.work_of_adhesion_j_m2)),
-    },
-    Parameter {
-        column: real("interaction_range_m", "m", "Range of attraction ε").from("Eq 3"),
-        symbol: "ε",
-        label: "ε [m]",
-        rank: 10,
-        of_method: false,
-        get: |case| Some(Number(case.params.material.interaction_range_m)),
-    },
-    Parameter {
-        column: text(
+    .or_null(), ["normalization", "normalization"], 23, |case| case.generated().map(|surface| word(surface.normalization))),
+    parameter(text("amplitudes", "Fourier amplitudes: \"fixed\" or \"gaussian\"; null for a measured surface").or_null(), ["amplitudes", "amplitudes"], 24, |case| case.generated().map(|surface| word(surface.amplitudes))),
+    parameter(real("contact_modulus_pa", "Pa", "Reduced modulus E*, 1/E* = sum of (1 - ν²)/E over both bodies").from("Eq 1"), ["E*", "E^{*} [Pa]"], 8, |case| Some(Number(case.params.material.contact_modulus_pa))),
+    parameter(real("work_of_adhesion_j_m2", "J/m^2", "Work of adhesion Δγ").from("Eq 1"), ["Δγ", "Δγ [J/m^{2}]"], 9, |case| Some(Number(case.params.material.work_of_adhesion_j_m2))),
+    parameter(real("interaction_range_m", "m", "Range of attraction ε").from("Eq 3"), ["ε", "ε [m]"], 10, |case| Some(Number(case.params.material.interaction_range_m))),
+    parameter(text(
         "interaction",
         "Elastic interaction between contacts: \"spots\", \"point\", \"reciprocal\" or \"none\"; null for boundary elements",
     )
     .or_null()
-    .from("Eqs 6-8"),
-        symbol: "interaction",
-        label: "interaction",
-        rank: 19,
-        of_method: true,
-        get: |case| case.asperities().map(|model| word(model.interaction)),
-    },
-    Parameter {
-        column: text("boundary", "Boundary condition of the square: \"periodic\" or \"isolated\""),
-        symbol: "boundary",
-        label: "boundary",
-        rank: 20,
-        of_method: true,
-        get: |case| Some(word(case.params.model.boundary)),
-    },
-    Parameter {
-        column: text("coalescence", "Coalescence rule: \"cover\" (absorption), \"merge\" (equal-area merging) or \"none\"; null for boundary elements")
+    .from("Eqs 6-8"), ["interaction", "interaction"], 19, |case| case.asperities().map(|model| word(model.interaction))).of_method(),
+    parameter(text("boundary", "Boundary condition of the square: \"periodic\" or \"isolated\""), ["boundary", "boundary"], 20, |case| Some(word(case.params.model.boundary))).of_method(),
+    parameter(text("coalescence", "Coalescence rule: \"cover\" (absorption), \"merge\" (equal-area merging) or \"none\"; null for boundary elements")
         .or_null()
-        .from("Eq 8"),
-        symbol: "coalescence",
-        label: "coalescence",
-        rank: 21,
-        of_method: true,
-        get: |case| case.asperities().map(|model| word(model.coalescence)),
-    },
-    Parameter {
-        column: text(
+        .from("Eq 8"), ["coalescence", "coalescence"], 21, |case| case.asperities().map(|model| word(model.coalescence))).of_method(),
+    parameter(text(
         "jump_in",
         "Criterion for jump into contact: \"wu\" (at Wu's jump-in distance) or \"jkr\" (at zero penetration); null for boundary elements",
     )
     .or_null()
-    .from("Eq 3"),
-        symbol: "jump_in",
-        label: "jump-in criterion",
-        rank: 22,
-        of_method: true,
-        get: |case| case.asperities().map(|model| word(model.jump_in)),
-    },
-    Parameter {
-        column: text("as_printed", "Uncorrected equations of the paper that are in use, joined by +; empty if none"),
-        symbol: "as_printed",
-        label: "uncorrected equations",
-        rank: 25,
-        of_method: false,
-        get: |case| Some(Word(case.errata())),
-    },
-    Parameter {
-        column: real(
+    .from("Eq 3"), ["jump_in", "jump-in criterion"], 22, |case| case.asperities().map(|model| word(model.jump_in))).of_method(),
+    parameter(text("as_printed", "Uncorrected equations of the paper that are in use, joined by +; empty if none"), ["as_printed", "uncorrected equations"], 25, |case| Some(Word(case.errata()))),
+    parameter(real(
         "approach_step",
         "1",
         "Maximum output step of the mean penetration, over h_rms; of boundary elements, step of the mean penetration",
-    ),
-        symbol: "step",
-        label: "output step/h_{rms}",
-        rank: 11,
-        of_method: true,
-        get: |case| Some(Number(case.approach_step())),
-    },
-    Parameter {
-        column: text("method", "Method: \"asperities\" or \"boundary_elements\""),
-        symbol: "method",
-        label: "method",
-        rank: 12,
-        of_method: false,
-        get: |case| Some(word(case.params.model.method)),
-    },
-    Parameter {
-        column: real("element_points", "1", "Grid points of boundary elements along a side; null for asperities").or_null(),
-        symbol: "N",
-        label: "grid points along a side",
-        rank: 13,
-        of_method: true,
-        get: |case| case.element_points.map(Number),
-    },
-    Parameter {
-        column: text("attraction", "Attraction of boundary elements: \"bonded\" (JKR limit) or \"range\" (Morse); null for asperities").or_null(),
-        symbol: "attraction",
-        label: "attraction",
-        rank: 14,
-        of_method: true,
-        get: |case| case.elements().map(|elements| word(elements.attraction)),
-    },
-    Parameter {
-        column: real("attraction_range_m", "m", "Range ρ of the Morse law; null without one").or_null(),
-        symbol: "ρ",
-        label: "ρ [m]",
-        rank: 15,
-        of_method: true,
-        get: |case| case.attraction_range_m.map(Number),
-    },
-    Parameter {
-        column: text(
+    ), ["step", "output step/h_{rms}"], 11, |case| Some(Number(case.approach_step()))).of_method(),
+    parameter(text("method", "Method: \"asperities\" or \"boundary_elements\""), ["method", "method"], 12, |case| Some(word(case.params.model.method))),
+    parameter(real("element_points", "1", "Grid points of boundary elements along a side; null for asperities").or_null(), ["N", "grid points along a side"], 13, |case| case.element_points.map(Number)).of_method(),
+    parameter(text("attraction", "Attraction of boundary elements: \"bonded\" (JKR limit) or \"range\" (Morse); null for asperities").or_null(), ["attraction", "attraction"], 14, |case| case.elements().map(|elements| word(elements.attraction))).of_method(),
+    parameter(real("attraction_range_m", "m", "Range ρ of the Morse law; null without one").or_null(), ["ρ", "ρ [m]"], 15, |case| case.attraction_range_m.map(Number)).of_method(),
+    parameter(text(
         "nucleation",
         "Gap at which a point of boundary elements comes into contact: \"touch\" or \"wu\"; null for asperities and with a range",
     )
-    .or_null(),
-        symbol: "nucleation",
-        label: "nucleation",
-        rank: 16,
-        of_method: true,
-        get: |case| case.bonded().map(|elements| word(elements.nucleation)),
-    },
-    Parameter {
-        column: text(
+    .or_null(), ["nucleation", "nucleation"], 16, |case| case.bonded().map(|elements| word(elements.nucleation))).of_method(),
+    parameter(text(
         "opening",
         "Where contact of boundary elements opens: \"strength\", \"edges\" or \"anywhere\"; null for asperities and with a range",
     )
-    .or_null(),
-        symbol: "opening",
-        label: "opening",
-        rank: 17,
-        of_method: true,
-        get: |case| case.bonded().map(|elements| word(elements.opening)),
-    },
-    Parameter {
-        column: real("precision", "1", "Tolerance of an equilibrium of boundary elements: rms residual over the maximum tension; null for asperities")
-        .or_null(),
-        symbol: "precision",
-        label: "precision",
-        rank: 18,
-        of_method: true,
-        get: |case| case.elements().map(|elements| Number(elements.precision)),
-    },
+    .or_null(), ["opening", "opening"], 17, |case| case.bonded().map(|elements| word(elements.opening))).of_method(),
+    parameter(real("precision", "1", "Tolerance of an equilibrium of boundary elements: rms residual over the maximum tension; null for asperities")
+        .or_null(), ["precision", "precision"], 18, |case| case.elements().map(|elements| Number(elements.precision))).of_method(),
 ];

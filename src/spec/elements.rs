@@ -1,10 +1,9 @@
 //! Boundary elements: parameters, the grid that follows from them, and what they refuse.
 
 use super::fault::Faults;
-use super::grid::written;
 use super::keys::find;
 use super::number::short;
-use super::walk::Origin;
+use super::walk::{Origin, written};
 use super::{CaseParams, ElementParams, ModelParams};
 use crate::model::{Attraction, Boundary, Choice, Method, Slip};
 use crate::text::counted;

@@ -4,6 +4,7 @@
 //! refuses what no row names, and collects every fault with its place, so that one reading of the answer mends the whole file.
 
 mod elements;
+mod entries;
 mod fault;
 mod files;
 mod grid;
@@ -19,6 +20,7 @@ mod top;
 mod value;
 mod walk;
 mod write;
+mod written;
 
 use std::collections::BTreeMap;
 use std::io::Read as _;

@@ -4,7 +4,7 @@ use toml::de::{DeFloat, DeInteger, DeValue};
 
 use super::fault::Faults;
 use super::keys::{Key, Limits};
-use super::value::{Written, array, wrong_type};
+use super::written::{Written, array, wrong_type};
 
 /// A real number within its bounds.
 pub(super) fn number(path: &str, limits: &Limits, value: &Written<'_>, faults: &mut Faults<'_>) -> Option<f64> {

@@ -6,12 +6,13 @@ use serde::Serialize;
 use toml::de::DeValue;
 
 use super::MAX_REALIZATIONS;
+use super::entries::{entries, shown};
 use super::fault::Faults;
 use super::keys::Limits;
 use super::nearest::nearest;
 use super::number::{integer, number};
-use super::value::{Written, word, wrong_type};
-use super::walk::{entries, shown};
+use super::value::word;
+use super::written::{Written, wrong_type};
 use crate::model::{Choice, Goal};
 
 /// Number of realizations of each surface.
