@@ -1,4 +1,4 @@
-//! What a case is made of: the material, and every choice that the model leaves open, by name.
+//! Parameters of a case: the material, and every choice that the model leaves open, by name.
 //!
 //! These types belong to no other module: the spec fills them, the physics reads them, the keys hash them. They compute nothing.
 
@@ -79,7 +79,7 @@ macro_rules! choice {
 }
 
 choice! {
-    /// How a surface gets its rms height.
+    /// Definition of the rms height of a surface.
     Normalization {
         /// Each surface is scaled to h_rms exactly.
         Sample = "sample",
@@ -97,7 +97,7 @@ choice! {
     }
 }
 choice! {
-    /// What becomes of the missing points of a measured surface.
+    /// Treatment of the missing points of a measured surface.
     Missing {
         /// Missing points are an error.
         Refuse = "refuse",
@@ -106,7 +106,7 @@ choice! {
     }
 }
 choice! {
-    /// What is taken off the heights of a measured surface, by least squares.
+    /// Form that is subtracted from the heights of a measured surface, by least squares.
     Detrend {
         /// The mean height.
         Mean = "mean",
@@ -144,7 +144,7 @@ choice! {
     }
 }
 choice! {
-    /// Where contact of boundary elements opens.
+    /// Rule for the opening of contact of boundary elements.
     Opening {
         /// From the edges of contacts, and inside where the tension exceeds `Δγ/ρ`, with the interaction range ρ.
         Strength = "strength",
@@ -155,7 +155,7 @@ choice! {
     }
 }
 choice! {
-    /// How contact spots act on one another.
+    /// Elastic interaction between contact spots.
     Interaction {
         /// Displacement field of a JKR contact spot outside its contact (Eqs 6 and 7).
         Spots = "spots",
@@ -168,7 +168,7 @@ choice! {
     }
 }
 choice! {
-    /// What surrounds the square.
+    /// Surroundings of the square.
     Boundary {
         /// Periodic images of the square, with a self-balanced load.
         Periodic = "periodic",
@@ -177,7 +177,7 @@ choice! {
     }
 }
 choice! {
-    /// What happens when a spot grows over the centre of another asperity.
+    /// Rule for a contact spot that grows over the centre of another asperity.
     Coalescence {
         /// The asperity is absorbed by the larger contact spot and carries no load.
         Cover = "cover",

@@ -1,6 +1,6 @@
 //! The grid of units that a spec asks for, and what of it is done.
 //!
-//! What is done is derived from receipts and files and never stored: see [`Standing`].
+//! The status of tasks is derived from receipts and files and never stored: see [`Standing`].
 
 mod audit;
 mod compare;

@@ -36,7 +36,7 @@ pub(super) fn of_sweep(letter: char, sweep: &Sweep, surfaces: &str, plot: &XyPlo
     format!("{}.", parts.join("; "))
 }
 
-/// Where the points of a panel of a report are.
+/// Table of the points of a panel of a report.
 pub(super) fn data(name: &str) -> String {
     format!(" Data: statistics/panels.parquet (panel {name}).")
 }

@@ -119,7 +119,7 @@ fn events(of: &Closer<'_>, branches: &[OfBranch; 2]) -> Result<XyPlot, FigureErr
     Ok(plot(title, x, y, curves, &[("loading", LOADING, Stroke::Points), ("unloading", UNLOADING, Stroke::Points)]))
 }
 
-/// How many avalanches have so many events or more.
+/// Number of avalanches with at least as many events.
 fn avalanches(of: &Closer<'_>, branches: &[OfBranch; 2]) -> Result<XyPlot, FigureError> {
     let ids = of.events.i64("avalanche_id")?;
     let mut curves = Vec::new();

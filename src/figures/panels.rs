@@ -102,7 +102,7 @@ fn drawn(tables: &Tables<'_>, found: &Sweep, (heading, stem): (&str, &str)) -> R
     ])
 }
 
-/// How many surfaces the means of a sweep are of.
+/// Number of surfaces of the means of a sweep.
 fn surfaces(cases: &Frame, sweep: &Sweep) -> Result<String, FigureError> {
     let done = cases.i64("done_count")?;
     let counts = || sweep.members.iter().filter_map(|member| done.get(member.row));

@@ -17,7 +17,7 @@ use super::{key, markup};
 const SIZE: (f64, f64) = (480.0, 380.0);
 const LABEL: u32 = 16;
 const TICK: u32 = 14;
-/// How much a band covers: several lie over one another.
+/// Opacity of a band: several lie over one another.
 const BAND_OPACITY: f64 = 0.13;
 
 /// Draws a panel as a complete SVG document.
@@ -97,7 +97,7 @@ fn layout(plot: &XyPlot) -> Layout {
         .with_force_margins(left, 18.0 + if beside > 0.0 { beside + 6.0 } else { 0.0 })
 }
 
-/// What lies within the errors of a curve.
+/// Band of the errors of a curve.
 fn band(curve: &Curve, plot: &XyPlot) -> Plot {
     let (mut at, mut low, mut high) = (Vec::new(), Vec::new(), Vec::new());
     for (place, (x, y)) in curve.points.iter().enumerate() {

@@ -24,9 +24,9 @@ pub(super) struct Member {
     pub(super) max_load: f64,
     /// Place along the horizontal axis of the panels of results.
     pub(super) x: f64,
-    /// What its curves are called.
+    /// Label of its curves.
     pub(super) label: String,
-    /// What it has besides `x`: members that share it are joined by a line.
+    /// Parameters besides `x`: members that share them are joined by a line.
     pub(super) series: String,
 }
 
@@ -34,7 +34,7 @@ pub(super) struct Member {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Sweep {
     pub(super) members: Vec<Member>,
-    /// What varies, the horizontal axis first; nothing if only the turning point does.
+    /// Varying parameters, the horizontal axis first; nothing if only the load reversal varies.
     pub(super) differing: Vec<Varying>,
     /// True if there are several turning points.
     pub(super) many_loads: bool,

@@ -130,7 +130,7 @@ pub struct ElementParams {
     pub range_m: f64,
     /// Gap at which a point comes into contact.
     pub nucleation: Nucleation,
-    /// Where contact opens.
+    /// Rule for the opening of contact.
     pub opening: Opening,
     /// Step of the approach, as a part of the rms height.
     pub approach_step: f64,

@@ -91,7 +91,7 @@ pub(super) fn integer(path: &str, value: &Written<'_>, faults: &mut Faults<'_>) 
     whole
 }
 
-/// What to say of a number in quotes.
+/// Help for a number in quotes.
 fn unquoted(value: &DeValue<'_>) -> Option<String> {
     match value {
         DeValue::String(text) if text.trim().parse::<f64>().is_ok() => Some("write it without quotes".to_owned()),

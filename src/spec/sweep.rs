@@ -14,7 +14,7 @@ use super::{Value, top, value};
 /// A sweep whose values are read.
 pub(super) struct SweepDraft {
     pub(super) name: String,
-    /// Where it begins.
+    /// Start in the text.
     pub(super) span: Range<usize>,
     pub(super) axes: Vec<AxisDraft>,
 }
@@ -26,7 +26,7 @@ pub(super) struct AxisDraft {
     pub(super) values: Vec<Spanned<Value>>,
 }
 
-/// What a sweep takes.
+/// Keys of a sweep.
 const IN_SWEEP: [&str; 6] = ["name", "surface", "material", "model", "boundary_elements", "cycle"];
 
 /// Reads the sweeps.

@@ -20,24 +20,24 @@ pub(super) struct Draft {
     pub(super) seed: u64,
     pub(super) realizations: Realizations,
     pub(super) base: CaseParams,
-    /// Where the base's value of each key comes from, in the order of [`KEYS`].
+    /// Origin of the base's value of each key, in the order of [`KEYS`].
     pub(super) origins: Vec<Origin>,
     /// The sweeps; nothing for one that has a fault, of which the cases are unknown.
     pub(super) sweeps: Vec<Option<SweepDraft>>,
-    /// Where the number of realizations is written.
+    /// Place of the number of realizations in the text.
     pub(super) realizations_at: Option<Range<usize>>,
     /// BLAKE3 of the files that are named, and where it is written.
     pub(super) files: BTreeMap<String, (String, Range<usize>)>,
 }
 
-/// Where a value of the base comes from.
+/// Origin of a value of the base.
 #[derive(Clone)]
 pub(super) enum Origin {
     /// The spec does not say it.
     Default,
     /// It is written here.
     Written(Range<usize>),
-    /// What is written has a fault of its own, so that nothing follows from it.
+    /// The written value has a fault of its own, so that nothing follows from it.
     Faulty,
 }
 

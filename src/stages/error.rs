@@ -32,7 +32,7 @@ pub enum StageError {
     Folder {
         /// The folder.
         path: PathBuf,
-        /// What the system says.
+        /// Error of the system.
         source: std::io::Error,
     },
     /// A measured surface.
@@ -59,7 +59,7 @@ pub enum StageError {
     InTheWay {
         /// The place.
         path: PathBuf,
-        /// What is there.
+        /// Kind of the entry.
         what: &'static str,
     },
     /// Steps that would fill the memory.
@@ -72,7 +72,7 @@ pub enum StageError {
         approach_step: f64,
         /// Steps of all branches, estimated from below.
         steps: f64,
-        /// How many are allowed.
+        /// Limit.
         limit: u64,
     },
     /// A turning point that was not kept.
@@ -82,7 +82,7 @@ pub enum StageError {
         max_load: f64,
         /// The table.
         path: PathBuf,
-        /// What it has.
+        /// Stored load reversals.
         kept: String,
     },
     /// A state at a load reversal that cannot be stored.
@@ -121,9 +121,9 @@ pub enum StageError {
         stage: &'static str,
         /// The output folder.
         path: PathBuf,
-        /// How many are not computed.
+        /// Number of tasks that are not computed.
         missing: usize,
-        /// How many are stale, or have missing or changed files.
+        /// Number of tasks that are stale, or have missing or changed files.
         damaged: usize,
         /// Of how many.
         all: usize,

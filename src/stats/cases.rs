@@ -37,7 +37,7 @@ pub fn cases(realizations: &Frame, inputs: &[CaseInput]) -> Result<Frame, StatsE
     rows.build()
 }
 
-/// What a column of the table `cases` says of the realizations.
+/// Statistic over the realizations in a column of the table `cases`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Statistic {
     Mean,

@@ -5,13 +5,13 @@ use super::student::{Sample, t_quantile};
 use crate::schema::{COMPARISON, Kind, parameters_by_rank};
 use crate::store::{ColumnData, Frame};
 
-/// What is compared: columns of the table `realizations`.
+/// Compared quantities: columns of the table `realizations`.
 const QUANTITIES: [&str; 5] = ["area_at_max_load", "penetration_at_max_load", "pull_off_load", "loss", "loss_ratio_dk"];
 
 /// One campaign that is compared.
 #[derive(Debug, Clone)]
 pub struct Side {
-    /// What it is called.
+    /// Label.
     pub label: String,
     /// Its tables.
     pub cases: Frame,
@@ -28,14 +28,14 @@ pub struct Group {
     pub rows: Vec<usize>,
 }
 
-/// What campaigns have in common.
+/// Cases that campaigns have in common.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Matched {
     /// The parameters that tell them apart, by the columns of the table `cases`.
     pub differing: Vec<&'static str>,
     /// Cases that all of them have.
     pub groups: Vec<Group>,
-    /// How many rows of each have no counterpart.
+    /// Number of rows of each without a counterpart.
     pub left_over: Vec<usize>,
 }
 
@@ -152,9 +152,9 @@ pub struct Difference {
     pub of: f64,
     /// Half-width of its 95 % confidence interval; nothing where it takes more realizations.
     pub ci95: Option<f64>,
-    /// Whether realizations are compared surface by surface.
+    /// True if realizations are compared surface by surface.
     pub paired: bool,
-    /// How many realizations each mean is of.
+    /// Number of realizations of each mean.
     pub counts: [usize; 2],
 }
 

@@ -11,7 +11,7 @@ use crate::schema::STEPS;
 use crate::store::parquet::read_table;
 use crate::store::{Frame, FrameError};
 
-/// How far the load of a turning step may be from its turning point, relative: steps between turning points are never this close to one.
+/// Relative tolerance of the load of a step at load reversal: steps between load reversals are never this close to one.
 const TURNING_TOLERANCE: f64 = 1e-6;
 
 /// The rows of one branch, in the order of the path.

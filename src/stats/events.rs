@@ -112,7 +112,7 @@ impl Events {
         touched
     }
 
-    /// What was lost on the way to a turning point, whose step is given, and on the way back from it.
+    /// Energies dissipated up to a load reversal, whose step is given, and while unloading from it.
     ///
     /// One loading path serves every turning point: what happened beyond this one's step is no part of its loop.
     pub(super) fn lost(&self, turning_step: i64, max_load: f64) -> Lost {

@@ -1,4 +1,4 @@
-//! What a surface file says of its surface: the attributes of its root.
+//! Attributes of the root of a surface file.
 
 use hdf5_metno::types::{FixedUnicode, TypeDescriptor, VarLenUnicode};
 use hdf5_metno::{File, Group, H5Type, Location};

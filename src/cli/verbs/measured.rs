@@ -105,7 +105,7 @@ fn may_be_written(scan: &Path, out: &Path) -> Result<(), Fault> {
     if same(scan, out) { Err(refused("it is the measured surface itself")) } else { Ok(()) }
 }
 
-/// Where an exported surface goes to, and in which layout.
+/// File format of an exported surface.
 pub(super) enum Layout {
     /// NetCDF-3 as SurfaceTopography reads it.
     NetCdf,

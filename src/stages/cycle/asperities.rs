@@ -61,7 +61,7 @@ pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> R
     Ok(Outcome { files: write_tables(campaign, unit, &tables)?, effort: effort(&cycle, &problem) })
 }
 
-/// What a cycle has taken, for its receipt.
+/// Effort of a cycle, for its receipt.
 fn effort(cycle: &Cycle, problem: &Problem) -> Map<String, Value> {
     let all = cycle.steps.iter().fold(Effort::default(), |mut sum, step| {
         sum += step.effort;
