@@ -53,7 +53,7 @@ pub struct Foreign {
     way: Way,
 }
 
-/// How to get from a format to one that is read.
+/// Conversion of a format to one that is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Way {
     /// The Python package SurfaceTopography reads it.
@@ -234,7 +234,7 @@ fn archive(first_bytes: &[u8]) -> Found {
 /// Recognises the format of a file without reading more than its beginning.
 ///
 /// # Errors
-/// What the system says, or that it is not a regular file. The inner error is a file in a format that is not read.
+/// Error of the system, or a file that is not regular. The inner error is a file in a format that is not read.
 pub fn recognize(path: &Path) -> io::Result<Result<Found, Refusal>> {
     // What is not a file, such as a pipe or a device, might not end.
     if !std::fs::metadata(path)?.is_file() {

@@ -15,13 +15,7 @@ pub fn preimage(stage: &str, meaning: u32, reads: &Value) -> Value {
     json!({ "scheme": SCHEME, "stage": stage, "meaning": meaning, "reads": reads })
 }
 
-/// The key of a unit: 64 hexadecimal digits.
-#[must_use]
-pub fn key(stage: &str, meaning: u32, reads: &Value) -> String {
-    key_of_text(stage, meaning, &canonical(reads))
-}
-
-/// Key of a task from inputs that are canonical JSON.
+/// Key of a task from inputs that are canonical JSON: 64 hexadecimal digits.
 #[must_use]
 pub fn key_of_text(stage: &str, meaning: u32, reads: &str) -> String {
     let text = format!("{{\"meaning\":{meaning},\"reads\":{reads},\"scheme\":{SCHEME},\"stage\":\"{stage}\"}}");
@@ -31,7 +25,7 @@ pub fn key_of_text(stage: &str, meaning: u32, reads: &str) -> String {
 /// BLAKE3 of a regular file's contents, 64 hexadecimal digits.
 ///
 /// # Errors
-/// What the system says; that it is no regular file.
+/// Error of the system, or a file that is not regular.
 pub fn digest_of_file(path: &std::path::Path) -> std::io::Result<String> {
     // What is no file, such as a pipe or a device, might not end.
     if !std::fs::metadata(path)?.is_file() {

@@ -1,7 +1,7 @@
 //! hysteron: from a self-affine rough surface to the energy that its adhesive contact loses.
 //!
-//! One direction, no way back: `model` and `schema` know nothing; `physics` opens no file; `store` computes nothing; `stages` alone joins them;
-//! `stats` and `figures` read only tables.
+//! Dependencies have one direction: `model` has none and `schema` reads only `model`; `physics` opens no file; `store` computes no result; `stages` alone
+//! joins them; `stats`, `figures` and `report` read only tables.
 //!
 //! The documentation for users is the [`guide`].
 
@@ -19,6 +19,8 @@ pub mod keys;
 pub mod lengths;
 pub mod model;
 pub mod physics;
+#[cfg(feature = "stats")]
+pub mod report;
 pub mod schema;
 pub mod spec;
 #[cfg(feature = "stats")]

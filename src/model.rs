@@ -1,6 +1,10 @@
-//! What a case is made of: the material, and every choice that the model leaves open, by name.
+//! Parameters of a case: the material, and every choice that the model leaves open, by name.
 //!
-//! These types belong to no room: the spec fills them, the physics reads them, the keys hash them. They compute nothing.
+//! These types belong to no other module: the spec fills them, the physics reads them, the keys hash them. They compute nothing.
+
+mod case;
+
+pub use case::{CaseParams, CycleParams, ElementParams, ModelParams, SurfaceParams};
 
 use serde::{Deserialize, Serialize};
 
@@ -27,6 +31,12 @@ impl Material {
     #[must_use]
     pub fn adhesion_length_m(&self) -> f64 {
         self.work_of_adhesion_j_m2 / self.contact_modulus_pa
+    }
+
+    /// Pull-off force of an isolated JKR asperity over its radius, `3πΔγ/2` \[N/m\].
+    #[must_use]
+    pub fn pull_off_line_load(&self) -> f64 {
+        1.5 * std::f64::consts::PI * self.work_of_adhesion_j_m2
     }
 
     /// `sqrt(2πΔγ/E*)` \[m^½\]: times the root of its radius, what adhesion draws a spot up (Eq 2).
@@ -69,7 +79,7 @@ macro_rules! choice {
 }
 
 choice! {
-    /// How a surface gets its rms height.
+    /// Definition of the rms height of a surface.
     Normalization {
         /// Each surface is scaled to h_rms exactly.
         Sample = "sample",
@@ -87,7 +97,7 @@ choice! {
     }
 }
 choice! {
-    /// What becomes of the missing points of a measured surface.
+    /// Treatment of the missing points of a measured surface.
     Missing {
         /// Missing points are an error.
         Refuse = "refuse",
@@ -96,7 +106,7 @@ choice! {
     }
 }
 choice! {
-    /// What is taken off the heights of a measured surface, by least squares.
+    /// Form that is subtracted from the heights of a measured surface, by least squares.
     Detrend {
         /// The mean height.
         Mean = "mean",
@@ -134,7 +144,7 @@ choice! {
     }
 }
 choice! {
-    /// Where contact of boundary elements opens.
+    /// Rule for the opening of contact of boundary elements.
     Opening {
         /// From the edges of contacts, and inside where the tension exceeds `Δγ/ρ`, with the interaction range ρ.
         Strength = "strength",
@@ -145,7 +155,7 @@ choice! {
     }
 }
 choice! {
-    /// How contact spots act on one another.
+    /// Elastic interaction between contact spots.
     Interaction {
         /// Displacement field of a JKR contact spot outside its contact (Eqs 6 and 7).
         Spots = "spots",
@@ -156,7 +166,7 @@ choice! {
     }
 }
 choice! {
-    /// What surrounds the square.
+    /// Surroundings of the square.
     Boundary {
         /// Periodic images of the square, with a self-balanced load.
         Periodic = "periodic",
@@ -165,7 +175,7 @@ choice! {
     }
 }
 choice! {
-    /// What happens when a spot grows over the centre of another asperity.
+    /// Rule for a contact spot that grows over the centre of another asperity.
     Coalescence {
         /// The asperity is absorbed by the larger contact spot and carries no load.
         Cover = "cover",

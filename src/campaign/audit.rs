@@ -100,7 +100,7 @@ impl Campaign {
         (audit, sound)
     }
 
-    /// Where receipts are: the spec's, then those of each stage in the order of their names; and what could not be listed.
+    /// Paths of receipts: the spec's, then those of each stage in the order of their names; and folders that could not be listed.
     fn receipt_paths(&self) -> (Vec<PathBuf>, Vec<String>) {
         let (mut paths, mut faults) = (vec![self.spec_receipt_path()], Vec::new());
         for stage in Stage::ALL {
@@ -112,7 +112,7 @@ impl Campaign {
         (paths, faults)
     }
 
-    /// Where the receipts of a stage are, in the order of their names.
+    /// Paths of the receipts of a stage, in the order of their names.
     fn receipts_of(&self, stage: Stage) -> std::io::Result<Vec<PathBuf>> {
         let entries = match std::fs::read_dir(self.receipts_dir(stage)) {
             // No unit of this stage has been done yet.

@@ -41,7 +41,7 @@ pub struct Difference {
 /// A field by stage and name.
 type Fields = BTreeMap<(usize, String), Value>;
 
-/// How much more another realization counts than another parameter: a unit is compared with one of its own realization, if there is any.
+/// Weight of another realization relative to another parameter: a unit is compared with one of its own realization, if there is any.
 const OTHER_REALIZATION: usize = 100;
 
 impl Campaign {

@@ -1,7 +1,7 @@
 //! The keys of all units of a spec.
 
-use super::{CYCLE, EXTRACT, GENERATE, Stage, case_reads, cycle_reads, read_by_cycle, seed_of, surface_reads};
-use crate::keys::{canonical, key_of_text};
+use super::Stage;
+use super::key_inputs::{Canonical, Form, case_members, cycle, extract, generate, of_surface, of_whole_case, read_by_cycle, seed_of};
 use crate::spec::{Case, CaseParams, Spec, SurfaceParams};
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -30,7 +30,7 @@ pub(super) struct HashedCase {
 
 impl Hashed {
     pub(super) fn all(spec: &Spec, counts: &[u32]) -> Self {
-        let mut kinds: HashMap<String, usize> = HashMap::new();
+        let mut kinds: HashMap<Canonical, usize> = HashMap::new();
         // Of each kind, its seed and its greatest number of realizations.
         let mut most: Vec<(u64, u32)> = Vec::new();
         let of_case: Vec<usize> = spec
@@ -38,22 +38,21 @@ impl Hashed {
             .iter()
             .zip(counts)
             .map(|(case, count)| {
-                let kind = *kinds.entry(canonical(&surface_reads(spec, &case.params.surface))).or_insert(most.len());
+                let kind = *kinds.entry(Canonical::of(&of_surface(spec, &case.params.surface))).or_insert(most.len());
                 most.resize(most.len().max(kind + 1), (seed_of(spec, &case.params.surface), 0));
                 most[kind].1 = most[kind].1.max(*count);
                 kind
             })
             .collect();
-        let mut texts: Vec<&str> = vec![""; most.len()];
-        kinds.iter().for_each(|(text, kind)| texts[*kind] = text);
-        let surfaces: Vec<Vec<(String, String)>> = texts
+        let mut shared: Vec<(&Canonical, usize)> = kinds.iter().map(|(inputs, kind)| (inputs, *kind)).collect();
+        shared.sort_by_key(|(_, kind)| *kind);
+        let surfaces: Vec<Vec<(String, String)>> = shared
             .par_iter()
             .zip(&most)
-            .map(|(surface, (seed, count))| {
+            .map(|((surface, _), (seed, count))| {
                 let keys = |realization: u32| {
-                    let reads = format!("{{\"realization\":{realization},\"seed\":{seed},\"surface\":{surface}}}");
-                    let surface = key_of_text(Stage::Generate.word(), GENERATE, &reads);
-                    let asperities = key_of_text(Stage::Extract.word(), EXTRACT, &format!("{{\"surface\":\"{surface}\"}}"));
+                    let surface = generate(*surface, *seed, realization).key(Stage::Generate);
+                    let asperities = extract::<Canonical>(&surface).key(Stage::Extract);
                     (surface, asperities)
                 };
                 (0..*count).into_par_iter().map(keys).collect()
@@ -61,12 +60,9 @@ impl Hashed {
             .collect();
         let hash = |((case, kind), count): ((&Case, &usize), &u32)| {
             let params = &case.params;
-            // Whatever the realizations have in common is put into words once.
-            let rest = canonical(&cycle_reads(params));
-            // "asperities" is the first of the sorted names.
-            let key = |(_, asperities): &(String, String)| {
-                key_of_text(Stage::Cycle.word(), CYCLE, &format!("{{\"asperities\":\"{asperities}\",{}", rest.trim_start_matches('{')))
-            };
+            // The inputs that the realizations share are rendered once.
+            let members = case_members::<Canonical>(params);
+            let key = |(_, asperities): &(String, String)| cycle(&members, asperities).key(Stage::Cycle);
             HashedCase {
                 name: readable(&params.surface),
                 whole: case_key(spec, params),
@@ -82,7 +78,7 @@ impl Hashed {
 
 /// Key of the parameters of a case.
 fn case_key(spec: &Spec, params: &CaseParams) -> String {
-    key_of_text("case", 1, &canonical(&case_reads(spec, params)))
+    Canonical::of(&of_whole_case(spec, params)).case_key()
 }
 
 /// The readable part of ids: of a measured surface the name of its file, without its folder and its ending.

@@ -1,4 +1,4 @@
-//! What no spec names any more.
+//! Unreferenced files: no spec names them.
 
 use super::{Campaign, REPORT_PAGE, Stage, Standing};
 use crate::store::commit::is_abandoned;
@@ -24,7 +24,7 @@ const TORN: &str = "a killed run left it";
 const PAST: &str = "its cycle is done";
 
 impl Campaign {
-    /// What neither this campaign nor `others` in the same folder name: receipts first, so that whoever takes all away in this order leaves no receipt
+    /// Files that neither this campaign nor `others` in the same folder name: receipts first, so that removal in this order leaves no receipt
     /// without its files. Files that this program does not write are not looked at.
     #[must_use]
     pub fn leftovers(&self, others: &[Self]) -> Vec<Leftover> {
@@ -76,7 +76,7 @@ impl Leftover {
     }
 }
 
-/// What of a folder has the name of a unit, but of none that is known; folders where there is no extension.
+/// Entries of a folder that have the name of a task, but of none that is known; folders if there is no extension.
 fn unnamed(folder: &Path, extension: Option<&str>, known: &HashSet<&str>, found: &mut Vec<Leftover>) {
     for path in entries(folder) {
         let is_kind = if extension.is_some() { path.extension().and_then(|e| e.to_str()) == extension } else { path.is_dir() };
@@ -111,7 +111,7 @@ pub(super) fn is_id(name: &str) -> bool {
     parts().unwrap_or(false)
 }
 
-/// What is in a folder, by name; nothing if it cannot be read.
+/// Entries of a folder, by name; nothing if it cannot be read.
 pub(super) fn entries(folder: &Path) -> Vec<PathBuf> {
     let mut paths: Vec<PathBuf> =
         std::fs::read_dir(folder).map(|all| all.flatten().map(|entry| entry.path()).collect()).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! How a unit stands: read off its receipt and its files, never stored.
+//! Status of a task: derived from its receipt and its files, never stored.
 
 use super::{Campaign, CycleUnit, REPORT_PAGE, STATISTICS, Stage, SurfaceUnit, Unit};
 use crate::store::{Check, Fault, Found, Receipt, is_halfway, read_receipt};
@@ -83,7 +83,7 @@ impl Campaign {
         }
     }
 
-    /// What is wrong with `campaign.toml`, if anything: another one than a run has written is not what the folder was made for.
+    /// Fault of `campaign.toml`, if any: a run with another spec has written this folder.
     #[must_use]
     pub fn spec_fault(&self) -> Option<String> {
         match read_receipt(&self.spec_receipt_path()) {

@@ -15,15 +15,15 @@ use std::time::{Duration, Instant};
 /// Exit code of the contract.
 const INTERRUPTED: i32 = super::reference::INTERRUPTED as i32;
 
-/// How long an interrupt waits for files that are being written; a read or write that is stuck (a dead network disk) takes for ever.
+/// Time that an interrupt waits for files that are being written; a stuck read or write (a dead network disk) never ends.
 const PATIENCE: Duration = Duration::from_secs(5);
-/// How often a second signal is looked for meanwhile.
+/// Interval of the checks for a second signal.
 const EVERY: Duration = Duration::from_millis(50);
 
 /// From now on an interrupt ends the program between two files, at a second signal or after [`PATIENCE`] at once. All it costs are the running tasks, of which
 /// long ones are checkpointed.
 ///
-/// Where hang-ups are ignored, as under `nohup`, they stay so. A limit on the size of files (`ulimit -f`) is no longer deadly: it is an error of the write
+/// Ignored hang-ups, as under `nohup`, stay ignored. A limit on the size of files (`ulimit -f`) is no longer deadly: it is an error of the write
 /// that meets it.
 ///
 /// # Errors

@@ -5,7 +5,7 @@ use std::thread::available_parallelism;
 /// Threads at most: as many as `--jobs` takes.
 const MOST_THREADS: usize = 1024;
 
-/// What Polars reads its number of threads from, once.
+/// Environment variable from which Polars reads its number of threads, once.
 #[cfg(unix)]
 const OF_POLARS: &str = "POLARS_MAX_THREADS";
 
@@ -23,7 +23,7 @@ fn cores() -> usize {
     available_parallelism().map_or(1, usize::from).min(MOST_THREADS)
 }
 
-/// How many threads are started: what `--jobs` asks for, else `RAYON_NUM_THREADS`, else one for each core.
+/// Number of threads: `--jobs`, else `RAYON_NUM_THREADS`, else one for each core.
 pub(super) fn threads(jobs: Option<u16>) -> usize {
     jobs.map(usize::from).or_else(|| of_environment("RAYON_NUM_THREADS")).unwrap_or_else(cores)
 }
@@ -47,7 +47,7 @@ pub(super) fn bound_polars(jobs: Option<u16>) {
 #[cfg(not(unix))]
 pub(super) fn bound_polars(_: Option<u16>) {}
 
-/// What is wrong with the limit on address space (`ulimit -v`), if anything: problem and help.
+/// Fault of the limit on address space (`ulimit -v`), if any: problem and help.
 pub(super) fn too_little_space() -> Option<String> {
     let limits = std::fs::read_to_string("/proc/self/limits").ok()?;
     let bytes: u64 = limits.lines().find_map(|line| line.strip_prefix("Max address space"))?.split_whitespace().next()?.parse().ok()?;

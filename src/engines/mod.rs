@@ -1,4 +1,4 @@
-//! What other programs run or describe a campaign with: texts that a person can read too.
+//! Scripts and descriptions of a campaign for other programs, in readable text.
 //!
 //! The program is no scheduler. The one seam is a shard: some surfaces and all that is done with them, which may be run at any time, anywhere, twice at once.
 

@@ -1,7 +1,7 @@
 //! RO-Crate 1.2: a run described for a repository of research data.
 
 use crate::campaign::Campaign;
-use crate::store::Receipt;
+use crate::store::{Kept, Receipt};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
@@ -37,52 +37,21 @@ pub fn licence(text: &str) -> Result<String, String> {
     ))
 }
 
-/// `ro-crate-metadata.json` of a folder with these receipts, published on a day (`2026-01-31`), under a licence if one is told.
+/// Receipts by version of the program and stage.
+type Made<'a> = BTreeMap<(String, String), Vec<&'a Receipt>>;
+
+/// `ro-crate-metadata.json` of a folder with these receipts, published on a day (`2026-01-31`), under a licence if one is given.
 #[must_use]
 pub fn metadata(campaign: &Campaign, receipts: &[Receipt], day: &str, licence: Option<&str>) -> String {
-    let mut files: Vec<Value> = Vec::new();
-    let mut made: BTreeMap<(String, String), Vec<&Receipt>> = BTreeMap::new();
+    let mut made = Made::new();
     for receipt in receipts {
-        for file in &receipt.files {
-            let kind = TYPES.iter().find(|(ending, _)| file.path.ends_with(ending)).map_or("application/octet-stream", |(_, kind)| kind);
-            files.push(json!({
-                "@id": file.path,
-                "@type": "File",
-                "name": file.path,
-                "contentSize": file.size_bytes.to_string(),
-                "encodingFormat": kind,
-                "identifier": format!("blake3:{}", file.blake3),
-            }));
-        }
         let version =
             receipt.made.commit.as_ref().map_or_else(|| receipt.made.version.clone(), |at| format!("{} ({at})", receipt.made.version));
         made.entry((version, receipt.stage.clone())).or_default().push(receipt);
     }
-    let parts: Vec<Value> = files.iter().map(|file| json!({ "@id": file["@id"] })).collect();
-    let programs: Vec<Value> = {
-        let mut versions: Vec<&str> = made.keys().map(|(version, _)| version.as_str()).collect();
-        versions.dedup();
-        versions
-            .into_iter()
-            .map(|version| json!({ "@id": program(version), "@type": "SoftwareApplication", "name": "hysteron", "softwareVersion": version }))
-            .collect()
-    };
-    let actions: Vec<Value> = made
-        .iter()
-        .map(|((version, stage), of)| {
-            let results: Vec<Value> = of.iter().flat_map(|receipt| &receipt.files).map(|file| json!({ "@id": file.path })).collect();
-            let begun = of.iter().map(|receipt| receipt.made.began.as_str()).min().unwrap_or_default();
-            json!({
-                "@id": format!("#{stage}-{}", program(version).trim_start_matches('#')),
-                "@type": "CreateAction",
-                "name": stage,
-                "startTime": begun,
-                "instrument": { "@id": program(version) },
-                "object": { "@id": "campaign.toml" },
-                "result": results,
-            })
-        })
-        .collect();
+    let files: Vec<Value> = receipts.iter().flat_map(|receipt| &receipt.files).map(file).collect();
+    let actions: Vec<Value> = made.iter().map(action).collect();
+    let ids = |of: &[Value]| of.iter().map(|entity| json!({ "@id": entity["@id"] })).collect::<Vec<_>>();
     let mut root = json!({
         "@id": "./",
         "@type": "Dataset",
@@ -90,8 +59,8 @@ pub fn metadata(campaign: &Campaign, receipts: &[Receipt], day: &str, licence: O
         "description": "Loading and unloading of self-affine rough surfaces with interacting JKR asperities, computed with hysteron; \
                         the spec is campaign.toml, the columns of the tables are described in datapackage.json.",
         "datePublished": day,
-        "hasPart": parts,
-        "mentions": actions.iter().map(|action| json!({ "@id": action["@id"] })).collect::<Vec<_>>(),
+        "hasPart": ids(&files),
+        "mentions": ids(&actions),
     });
     if let Some(licence) = licence {
         root["license"] = json!({ "@id": licence });
@@ -107,9 +76,46 @@ pub fn metadata(campaign: &Campaign, receipts: &[Receipt], day: &str, licence: O
     ];
     graph.extend(licence.map(|licence| json!({ "@id": licence, "@type": "CreativeWork", "name": licence })));
     graph.extend(files);
-    graph.extend(programs);
+    graph.extend(programs(&made));
     graph.extend(actions);
     format!("{:#}\n", json!({ "@context": "https://w3id.org/ro/crate/1.2/context", "@graph": graph }))
+}
+
+/// A file of a receipt.
+fn file(file: &Kept) -> Value {
+    let kind = TYPES.iter().find(|(ending, _)| file.path.ends_with(ending)).map_or("application/octet-stream", |(_, kind)| kind);
+    json!({
+        "@id": file.path,
+        "@type": "File",
+        "name": file.path,
+        "contentSize": file.size_bytes.to_string(),
+        "encodingFormat": kind,
+        "identifier": format!("blake3:{}", file.blake3),
+    })
+}
+
+/// Versions of the program.
+fn programs(made: &Made<'_>) -> Vec<Value> {
+    let mut versions: Vec<&str> = made.keys().map(|(version, _)| version.as_str()).collect();
+    versions.dedup();
+    let entity =
+        |version: &str| json!({ "@id": program(version), "@type": "SoftwareApplication", "name": "hysteron", "softwareVersion": version });
+    versions.into_iter().map(entity).collect()
+}
+
+/// Creation of the files of a stage by a version of the program.
+fn action(((version, stage), of): (&(String, String), &Vec<&Receipt>)) -> Value {
+    let results: Vec<Value> = of.iter().flat_map(|receipt| &receipt.files).map(|file| json!({ "@id": file.path })).collect();
+    let begun = of.iter().map(|receipt| receipt.made.began.as_str()).min().unwrap_or_default();
+    json!({
+        "@id": format!("#{stage}-{}", program(version).trim_start_matches('#')),
+        "@type": "CreateAction",
+        "name": stage,
+        "startTime": begun,
+        "instrument": { "@id": program(version) },
+        "object": { "@id": "campaign.toml" },
+        "result": results,
+    })
 }
 
 /// The identity of a version of the program within the crate.

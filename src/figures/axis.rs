@@ -9,12 +9,12 @@ pub struct Axis {
     range: (f64, f64),
     /// Distance of two ticks, in units of what is drawn.
     step: f64,
-    /// What is drawn is the value divided by ten to this power.
+    /// Power of ten by which values are divided.
     exponent: i32,
     scale: Scale,
 }
 
-/// What a length along the axis stands for.
+/// Meaning of a length along the axis.
 #[derive(Debug, Clone, PartialEq)]
 enum Scale {
     /// A difference.
@@ -71,7 +71,7 @@ impl Axis {
         Self { label: label.to_owned(), range: (-0.5, last + 0.5), step: 1.0, exponent: 0, scale: Scale::Words(words) }
     }
 
-    /// The same axis with room for the key: a share of its length, added at its upper end.
+    /// This axis with room for the key: a share of its length, added at its upper end.
     pub fn with_headroom(mut self, share: f64) -> Self {
         self.range.1 += share * (self.range.1 - self.range.0);
         self

@@ -2,9 +2,11 @@
 
 use super::axis::Axis;
 use super::closer::plot;
-use super::map::{ABOVE, GAP, PULLED, PUSHED, SIDE, SpotTables, circles, legend, sheet};
+use super::curve::{Stroke, XyPlot};
+use super::cycle_loop::SpotTables;
+use super::map::{ABOVE, GAP, PULLED, PUSHED, SIDE, circles, legend, sheet};
 use super::panels::Panel;
-use super::plot::{Stroke, XyPlot, plot_xy};
+use super::plot::plot_xy;
 use super::style::{LOADING, THEORY, UNLOADING, curve, shade};
 use super::{FigureError, markup};
 use crate::store::{Frame, ReversalMap};
@@ -14,13 +16,13 @@ use std::fmt::Write as _;
 /// Cells of the contact of boundary elements along a side, at most.
 const CELLS: usize = 150;
 
-/// What is drawn.
+/// Content of the figure.
 pub struct Both<'a> {
     /// Heights of the surface \[m\], rows along x.
     pub heights_m: ArrayView2<'a, f64>,
     /// Side of the square \[m\].
     pub length_m: f64,
-    /// Whether the asperity model is periodic.
+    /// True if the asperity model is periodic.
     pub periodic: bool,
     /// Contact spots of the asperity model.
     pub spots: SpotTables<'a>,

@@ -1,7 +1,7 @@
 //! Captions of the panels: quantity, cases, statistics, strokes and data.
 
-use super::closer::Closer;
-use super::plot::{Curve, Stroke, XyPlot};
+use super::curve::{Curve, Stroke, XyPlot};
+use super::cycle_loop::Closer;
 use super::sweep::Sweep;
 use crate::stats::{Values, significant};
 
@@ -36,7 +36,7 @@ pub(super) fn of_sweep(letter: char, sweep: &Sweep, surfaces: &str, plot: &XyPlo
     format!("{}.", parts.join("; "))
 }
 
-/// Where the points of a panel of a report are.
+/// Table of the points of a panel of a report.
 pub(super) fn data(name: &str) -> String {
     format!(" Data: statistics/panels.parquet (panel {name}).")
 }

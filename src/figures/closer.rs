@@ -3,12 +3,13 @@
 use super::FigureError;
 use super::axis::Axis;
 use super::captions::of_cycle;
-use super::map::{SpotTables, map};
+use super::curve::{Curve, Stroke, XyPlot};
+use super::cycle_loop::{Closer, Landmark, step_of};
+use super::map::map;
 use super::panels::Panel;
-use super::plot::{Curve, Stroke, XyPlot, plot_xy};
+use super::plot::plot_xy;
 use super::style::{LOADING, THEORY, UNLOADING, curve, entry, shade};
 use crate::stats::significant;
-use crate::store::Frame;
 use crate::text::counted;
 use ndarray::ArrayView2;
 use std::collections::BTreeMap;
@@ -21,102 +22,6 @@ const MOST_RANKS: usize = 300;
 
 /// Bars of the histogram of curvatures.
 const BARS: usize = 40;
-
-/// One cycle with what it is compared to.
-#[derive(Debug, Clone, Copy)]
-pub struct Closer<'a> {
-    /// The turning point that is looked at, `F/(E* A0)`.
-    pub max_load: f64,
-    /// The parameters of the case, for the captions.
-    pub parameters: &'a str,
-    /// Steps.
-    pub steps: &'a Frame,
-    /// Events.
-    pub events: &'a Frame,
-    /// Contact spots at the steps that were kept.
-    pub spots: SpotTables<'a>,
-    /// `E* A0 h_rms` \[J\].
-    pub energy_j: f64,
-    /// Rms height \[m\].
-    pub rms_height_m: f64,
-    /// Side of the square \[m\].
-    pub length_m: f64,
-    /// True if the square has periodic images.
-    pub periodic: bool,
-    /// Pull-off load of a JKR asperity over its radius, `(3/2)πΔγ` \[N/m\].
-    pub pull_off_n_m: f64,
-    /// Spectrum that the surface has: wavenumber q/qL and `C qL²/h_rms²`.
-    pub found: &'a [(f64, f64)],
-    /// Target spectrum (Eq 10) at the realised rms height, likewise; nothing for a measured surface.
-    pub asked: &'a [(f64, f64)],
-    /// Realised density over that of Eq 10 at the target rms height; nothing for a measured surface.
-    pub asked_factor: Option<f64>,
-    /// Unit of curvature, `sqrt(m4/3)` \[1/m\], of the moments that the surface has.
-    pub curvature_1_m: f64,
-    /// Nayak's density of the curvature of summits, both in that unit.
-    pub nayak: &'a [(f64, f64)],
-    /// Summits per area: found, and Nayak's for the moments of the surface \[1/m²\].
-    pub densities_1_m2: [f64; 2],
-}
-
-/// The four points of a loop whose spots are shown.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Landmark {
-    /// On loading, at half the maximum load.
-    Half,
-    /// Load reversal.
-    Turning,
-    /// On unloading, at zero load.
-    NoLoad,
-    /// Maximum tensile load.
-    PullOff,
-}
-
-impl Landmark {
-    /// What it is called.
-    pub(super) fn words(self) -> &'static str {
-        match self {
-            Self::Half => "loading, at F_{max}/2",
-            Self::Turning => "at F_{max}",
-            Self::NoLoad => "unloading, at zero load",
-            Self::PullOff => "at pull-off",
-        }
-    }
-}
-
-/// A landmark whose spots were kept, and its step.
-pub(super) type Kept = (Landmark, i64);
-
-impl Closer<'_> {
-    /// The landmarks whose spots were kept.
-    fn landmarks(&self) -> Result<Vec<Kept>, FigureError> {
-        let mut kept = self.spots.contacts.i64("step")?;
-        kept.dedup();
-        let (branches, of, loads) = (self.steps.text("branch")?, self.steps.f64_or_null("max_load")?, self.steps.f64("load")?);
-        let load = |step: &i64| usize::try_from(*step).ok().and_then(|k| loads.get(k).copied()).unwrap_or(f64::NAN);
-        let on = |branch: &str, max_load: Option<f64>| -> Vec<i64> {
-            let fits = |step: &&i64| {
-                let k = usize::try_from(**step).unwrap_or(usize::MAX);
-                branches.get(k) == Some(&branch) && of.get(k) == Some(&max_load)
-            };
-            kept.iter().filter(fits).copied().collect()
-        };
-        let (loading, unloading) = (on("loading", None), on("unloading", Some(self.max_load)));
-        let nearest = |wanted: f64| loading.iter().min_by(|u, v| (load(u) - wanted).abs().total_cmp(&(load(v) - wanted).abs())).copied();
-        let found = [
-            (Landmark::Half, nearest(0.5 * self.max_load)),
-            (Landmark::Turning, nearest(self.max_load)),
-            (Landmark::NoLoad, unloading.iter().find(|step| load(step) <= 0.0).copied()),
-            (Landmark::PullOff, unloading.iter().min_by(|u, v| load(u).total_cmp(&load(v))).filter(|step| load(step) < 0.0).copied()),
-        ];
-        Ok(found.into_iter().filter_map(|(landmark, step)| step.map(|step| (landmark, step))).collect())
-    }
-}
-
-/// The step of a landmark.
-fn step_of(kept: &[Kept], wanted: Landmark) -> Option<i64> {
-    kept.iter().find(|(landmark, _)| *landmark == wanted).map(|(_, step)| *step)
-}
 
 /// The panels of a closer look, and the maps of its spots; what needs spots that were not kept is left out.
 ///
@@ -214,7 +119,7 @@ fn events(of: &Closer<'_>, branches: &[OfBranch; 2]) -> Result<XyPlot, FigureErr
     Ok(plot(title, x, y, curves, &[("loading", LOADING, Stroke::Points), ("unloading", UNLOADING, Stroke::Points)]))
 }
 
-/// How many avalanches have so many events or more.
+/// Number of avalanches with at least as many events.
 fn avalanches(of: &Closer<'_>, branches: &[OfBranch; 2]) -> Result<XyPlot, FigureError> {
     let ids = of.events.i64("avalanche_id")?;
     let mut curves = Vec::new();

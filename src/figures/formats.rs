@@ -66,7 +66,7 @@ pub fn pdf(svg: &str) -> Result<Vec<u8>, FigureError> {
     Ok(in_order(&file))
 }
 
-/// The same file with the resources of each page and group in order: the library lists them as a hash map has them, which no two runs have alike. Lines change places
+/// The file with the resources of each page and group in order: the library lists them in the order of a hash map, which differs between runs. Lines change places
 /// with others of the same list, so that all that follows stays where it is.
 fn in_order(file: &[u8]) -> Vec<u8> {
     let mut ordered = Vec::with_capacity(file.len());

@@ -3,7 +3,7 @@
 use kuva::render::layout::ComputedLayout;
 use kuva::render::render::{Primitive, Scene, TextAnchor};
 
-use super::plot::{NOTE, NOTE_PITCH, XyPlot, text};
+use super::curve::{NOTE, NOTE_PITCH, XyPlot, text};
 use super::{marks, markup};
 
 /// Length of a line's sample.

@@ -1,6 +1,6 @@
 //! Maps of the contact spots on the surface, at four points of the loop.
 
-use super::closer::{Closer, Kept};
+use super::cycle_loop::{Closer, Kept, SpotTables};
 use super::{FigureError, markup};
 use crate::stats::significant;
 use crate::store::Frame;
@@ -131,17 +131,6 @@ fn ground(heights: ArrayView2<'_, f64>) -> String {
 /// Contact spots at a step as circles, with the images across the edges of a periodic square, and their number.
 fn spots(of: &Closer<'_>, step: i64) -> Result<(String, usize), FigureError> {
     circles(&of.spots, of.length_m, of.periodic, step)
-}
-
-/// Tables of the contact spots of a cycle.
-#[derive(Debug, Clone, Copy)]
-pub struct SpotTables<'a> {
-    /// Table `contacts` of the cycle.
-    pub contacts: &'a Frame,
-    /// Table `asperities` of its surface.
-    pub asperities: &'a Frame,
-    /// Table `merged` of the cycle.
-    pub merged: &'a Frame,
 }
 
 /// Centres of the merged contacts of the loading branch and of the unloading from a load \[m\], by their numbers.

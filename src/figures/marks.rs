@@ -1,6 +1,6 @@
 //! Marks of single points: in a panel and in its key.
 
-use super::plot::{Curve, SPECK, Stroke};
+use super::curve::{Curve, SPECK, Stroke};
 use kuva::plot::scatter::{MarkerShape, ScatterPlot};
 use kuva::render::color::Color;
 use kuva::render::plots::Plot;

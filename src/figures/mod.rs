@@ -7,6 +7,8 @@ mod axis;
 mod both;
 mod captions;
 mod closer;
+mod curve;
+mod cycle_loop;
 mod formats;
 mod key;
 mod map;
@@ -22,11 +24,13 @@ mod table;
 
 pub use axis::Axis;
 pub use both::{Both, both, method_ratios};
-pub use closer::{Closer, closer};
+pub use closer::closer;
+pub use curve::{Curve, KeyEntry, Note, Stroke, XyPlot};
+pub use cycle_loop::{Closer, SpotTables};
 pub use formats::{pdf, png};
-pub use map::SpotTables;
-pub use panels::{Panel, Tables, compared, panels};
-pub use plot::{Curve, KeyEntry, Note, Stroke, XyPlot, plot_xy};
+pub use panels::{Panel, compared, panels};
+pub use plot::plot_xy;
+pub use sweep::Tables;
 pub use table::table;
 
 use crate::stats::StatsError;

@@ -2,25 +2,15 @@
 
 use super::FigureError;
 use super::captions::{data, of_sweep};
+use super::curve::{Stroke, XyPlot};
 use super::paths::paths;
-use super::plot::{Stroke, XyPlot, plot_xy};
+use super::plot::plot_xy;
 use super::results::{Measured, results};
 use super::style::{LOADING, UNLOADING};
-use super::sweep::Sweep;
+use super::sweep::{Sweep, Tables};
 use crate::store::Frame;
 
 const LOSS: &str = "Θ/(E^{*}A_{0}h_{rms})";
-
-/// Tables from which panels are drawn.
-#[derive(Debug, Clone, Copy)]
-pub struct Tables<'a> {
-    /// The table `cases`.
-    pub cases: &'a Frame,
-    /// The table `curves`.
-    pub curves: &'a Frame,
-    /// The table `realizations`.
-    pub realizations: &'a Frame,
-}
 
 /// A panel that has been drawn.
 #[derive(Debug, Clone)]
@@ -112,7 +102,7 @@ fn drawn(tables: &Tables<'_>, found: &Sweep, (heading, stem): (&str, &str)) -> R
     ])
 }
 
-/// How many surfaces the means of a sweep are of.
+/// Number of surfaces of the means of a sweep.
 fn surfaces(cases: &Frame, sweep: &Sweep) -> Result<String, FigureError> {
     let done = cases.i64("done_count")?;
     let counts = || sweep.members.iter().filter_map(|member| done.get(member.row));

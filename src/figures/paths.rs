@@ -2,7 +2,7 @@
 
 use super::FigureError;
 use super::axis::Axis;
-use super::plot::{Curve, Note, Stroke, XyPlot};
+use super::curve::{Curve, Note, Stroke, XyPlot};
 use super::style::{LOADING, MOST_NOTES, UNLOADING, curve, entry, shade};
 use super::sweep::{Member, Sweep};
 use crate::store::Frame;

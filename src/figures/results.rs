@@ -2,10 +2,9 @@
 
 use super::FigureError;
 use super::axis::Axis;
-use super::panels::Tables;
-use super::plot::{Curve, KeyEntry, Note, Stroke, XyPlot};
+use super::curve::{Curve, KeyEntry, Note, Stroke, XyPlot};
 use super::style::{MOST_NOTES, THEORY, curve, entry, shade};
-use super::sweep::{Member, Sweep};
+use super::sweep::{Member, Sweep, Tables};
 use crate::stats::{FEW, singles};
 
 /// A result to be drawn, and how.

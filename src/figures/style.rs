@@ -1,6 +1,6 @@
 //! The hues and strokes of the panels.
 
-use super::plot::{Curve, KeyEntry, Stroke};
+use super::curve::{Curve, KeyEntry, Stroke};
 
 pub(super) const LOADING: [u8; 3] = [0x00, 0x8a, 0x5e];
 pub(super) const UNLOADING: [u8; 3] = [0xcc, 0x33, 0x11];

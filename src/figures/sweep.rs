@@ -5,6 +5,17 @@ use super::axis::Axis;
 use crate::stats::{Values, Varying, labels, varying};
 use crate::store::Frame;
 
+/// Tables from which panels are drawn.
+#[derive(Debug, Clone, Copy)]
+pub struct Tables<'a> {
+    /// The table `cases`.
+    pub cases: &'a Frame,
+    /// The table `curves`.
+    pub curves: &'a Frame,
+    /// The table `realizations`.
+    pub realizations: &'a Frame,
+}
+
 /// A row of the table `cases` that belongs to the sweep.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Member {
@@ -13,9 +24,9 @@ pub(super) struct Member {
     pub(super) max_load: f64,
     /// Place along the horizontal axis of the panels of results.
     pub(super) x: f64,
-    /// What its curves are called.
+    /// Label of its curves.
     pub(super) label: String,
-    /// What it has besides `x`: members that share it are joined by a line.
+    /// Parameters besides `x`: members that share them are joined by a line.
     pub(super) series: String,
 }
 
@@ -23,7 +34,7 @@ pub(super) struct Member {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Sweep {
     pub(super) members: Vec<Member>,
-    /// What varies, the horizontal axis first; nothing if only the turning point does.
+    /// Varying parameters, the horizontal axis first; nothing if only the load reversal varies.
     pub(super) differing: Vec<Varying>,
     /// True if there are several turning points.
     pub(super) many_loads: bool,
@@ -97,7 +108,7 @@ impl Sweep {
             // Runs are not joined by a line.
             series: label.clone(),
         };
-        let differing = vec![Varying::new(("campaign", "run", "run"), Values::Words(labels.to_vec()))];
+        let differing = vec![Varying::named_as(["campaign", "run", "run"], Values::Words(labels.to_vec()))];
         let members: Vec<Member> = labels.iter().enumerate().map(member).collect();
         Ok(Self { members, differing, many_loads: false, axis: Axis::of_words("run", labels.to_vec()) })
     }

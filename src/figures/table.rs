@@ -1,7 +1,7 @@
-//! What the panels show, as a table: whoever wants other pictures draws them from it.
+//! Data of the panels as a table, for other figures.
 
+use super::curve::Curve;
 use super::panels::Panel;
-use super::plot::Curve;
 use crate::schema::PANELS;
 use crate::store::{Frame, FrameError};
 

@@ -1,6 +1,6 @@
 //! The table of a comparison of runs.
 
-use super::statistics::PARAMETERS;
+use super::parameters::PARAMETER_COLUMNS;
 use super::{Column, Table, count, flag, index, join, real, text};
 
 /// Paired cases of two runs.
@@ -13,7 +13,7 @@ pub static COMPARISON: Table = Table {
     columns: COLUMNS,
 };
 
-const COLUMNS: &[Column] = &join::<{ OWN.len() + PARAMETERS.len() }>(&[OWN, PARAMETERS]);
+const COLUMNS: &[Column] = &join::<{ OWN.len() + PARAMETER_COLUMNS.len() }>(&[OWN, &PARAMETER_COLUMNS]);
 
 const OWN: &[Column] = &[
     index("group", "Number of the group of compared cases, from 0, as in the figures"),

@@ -1,6 +1,7 @@
 //! The table of cycles, which joins tables of single cycles to cases.
 
-use super::statistics::{CASE, PARAMETERS};
+use super::parameters::PARAMETER_COLUMNS;
+use super::statistics::CASE;
 use super::{ASPERITIES_ID, CYCLE_ID, Column, REALIZATION, SURFACE_ID, Table, join, text};
 
 const CYCLE: &[Column] = &[
@@ -12,7 +13,7 @@ const CYCLE: &[Column] = &[
     text("failure", "Error message of a failed cycle; null otherwise").or_null(),
 ];
 
-const COLUMNS: [Column; CASE.len() + CYCLE.len() + PARAMETERS.len()] = join(&[CASE, CYCLE, PARAMETERS]);
+const COLUMNS: [Column; CASE.len() + CYCLE.len() + PARAMETER_COLUMNS.len()] = join(&[CASE, CYCLE, &PARAMETER_COLUMNS]);
 
 /// Cycles with the parameters of their cases.
 pub static CYCLES: Table = Table {

@@ -5,21 +5,25 @@
 
 mod avalanches;
 mod comparison;
+mod curves;
 mod cycles;
 mod methods;
+mod parameters;
 mod render;
 mod run;
 mod statistics;
 
 pub use avalanches::{AVALANCHES, EVENT_KINDS};
 pub use comparison::COMPARISON;
+pub use curves::{CURVES, PANELS};
 pub use cycles::CYCLES;
 pub use methods::METHODS;
+pub use parameters::{CaseFacts, PARAMETERS, Parameter, ParameterValue, parameters_by_rank};
 pub use render::{DIRECTORY, OWN_KEYS, SchemaFile, files, metadata_json, readme_markdown, schema_file_name, schema_json};
 pub use run::{ADHESIONLESS, ASPERITIES, CONTACTS, EVENTS, MERGED, STEPS, TURNING};
-pub use statistics::{CASES, CURVES, PANELS, REALIZATIONS};
+pub use statistics::{CASES, REALIZATIONS};
 
-/// What a column holds.
+/// Kind of the values of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// A finite real number in double precision.
@@ -50,14 +54,14 @@ impl Kind {
 pub struct Column {
     /// Its name, ending in its SI unit if it has one.
     pub name: &'static str,
-    /// What it holds.
+    /// Kind of its values.
     pub kind: Kind,
     /// SI unit, as UDUNITS, pint and astropy read it: "m", "J/m^2"; "1" if dimensionless or counted; empty for
     /// identities, words and truth values, which have none.
     pub unit: &'static str,
-    /// Whether a value may be missing. Missing is null, never 0.
+    /// True if a value may be missing. Missing is null, never 0.
     pub nullable: bool,
-    /// What it means, in one sentence.
+    /// Description in one sentence.
     pub doc: &'static str,
     /// The equation or publication that it comes from; empty if it needs none.
     pub source: &'static str,
@@ -70,9 +74,9 @@ pub struct Table {
     pub name: &'static str,
     /// Raised whenever a column is renamed, removed, or changes its meaning.
     pub version: u32,
-    /// Where it lies below the directory of a run; `<id>` stands for a unit's identity.
+    /// Path below the directory of a run; `<id>` stands for a unit's identity.
     pub file: &'static str,
-    /// What a row is.
+    /// Description of a row.
     pub doc: &'static str,
     /// Its columns, in order.
     pub columns: &'static [Column],
@@ -113,12 +117,12 @@ pub static TABLES: &[&Table] = &[
 ];
 
 impl Column {
-    /// The same column, whose values may be missing.
+    /// This column, with values that may be missing.
     const fn or_null(self) -> Self {
         Self { nullable: true, ..self }
     }
 
-    /// The same column, with the equation or publication behind it.
+    /// This column, with its equation or publication.
     const fn from(self, source: &'static str) -> Self {
         Self { source, ..self }
     }
@@ -133,7 +137,7 @@ const fn real(name: &'static str, unit: &'static str, doc: &'static str) -> Colu
     column(name, Kind::F64, unit, doc)
 }
 
-/// How many of something there are.
+/// A count.
 const fn count(name: &'static str, doc: &'static str) -> Column {
     column(name, Kind::I64, "1", doc)
 }

@@ -1,77 +1,11 @@
 //! The tables over realizations.
 
-use super::{ASPERITIES_ID, CYCLE_ID, Column, REALIZATION, SURFACE_ID, Table, count, index, join, real, text};
+use super::parameters::PARAMETER_COLUMNS;
+use super::{ASPERITIES_ID, CYCLE_ID, Column, REALIZATION, SURFACE_ID, Table, count, join, real, text};
 
 pub(super) const CASE: &[Column] = &[
     text("case_id", "Identifier of the case: short name of the surface and a hash of all parameters"),
     text("sweep", "Names of the sweeps that contain the case, joined by +; empty for a spec without sweeps"),
-];
-
-/// Parameters that define a case, one column each.
-pub(super) const PARAMETERS: &[Column] = &[
-    text("surface_file", "File of a measured surface, with enough of its path to be unique; null for a generated surface").or_null(),
-    text("surface_dataset", "Dataset in that file; null for the only one, and for a generated surface").or_null(),
-    text("detrend", "Levelling of a measured surface: \"mean\", \"plane\" or \"quadratic\" was subtracted; null for a generated surface")
-        .or_null(),
-    real("hurst", "1", "Hurst exponent H; null for a measured surface").or_null().from("Eq 10"),
-    real("magnification", "1", "Magnification ζ, longest over shortest wavelength; null for a measured surface").or_null().from("Eq 10"),
-    real("length_m", "m", "Side L of the square; null for a measured surface whose import failed").or_null().from("Eq 10"),
-    real(
-        "rms_height_m",
-        "m",
-        "Rms height h_rms: target of a generated surface, or value of a measured one; null for a measured surface whose import failed",
-    )
-    .or_null(),
-    real(
-        "points_per_shortest_wavelength",
-        "1",
-        "Grid points per shortest wavelength; for a measured surface, the S-filter cut-off in pixels",
-    )
-    .or_null(),
-    text(
-        "normalization",
-        "Rule for the rms height: \"sample\" (heights rescaled) or \"spectrum\" (integral of the spectrum); null for a measured surface",
-    )
-    .or_null(),
-    text("amplitudes", "Fourier amplitudes: \"fixed\" or \"gaussian\"; null for a measured surface").or_null(),
-    real("contact_modulus_pa", "Pa", "Reduced modulus E*, 1/E* = sum of (1 - ν²)/E over both bodies").from("Eq 1"),
-    real("work_of_adhesion_j_m2", "J/m^2", "Work of adhesion Δγ").from("Eq 1"),
-    real("interaction_range_m", "m", "Range of attraction ε").from("Eq 3"),
-    text("interaction", "Elastic interaction between contacts: \"spots\", \"point\" or \"none\"; null for boundary elements")
-        .or_null()
-        .from("Eqs 6-8"),
-    text("boundary", "Boundary condition of the square: \"periodic\" or \"isolated\""),
-    text("coalescence", "Coalescence rule: \"cover\" (absorption), \"merge\" (equal-area merging) or \"none\"; null for boundary elements")
-        .or_null()
-        .from("Eq 8"),
-    text(
-        "jump_in",
-        "Criterion for jump into contact: \"wu\" (at Wu's jump-in distance) or \"jkr\" (at zero penetration); null for boundary elements",
-    )
-    .or_null()
-    .from("Eq 3"),
-    text("as_printed", "Uncorrected equations of the paper that are in use, joined by +; empty if none"),
-    real(
-        "approach_step",
-        "1",
-        "Maximum output step of the mean penetration, over h_rms; of boundary elements, step of the mean penetration",
-    ),
-    text("method", "Method: \"asperities\" or \"boundary_elements\""),
-    real("element_points", "1", "Grid points of boundary elements along a side; null for asperities").or_null(),
-    text("attraction", "Attraction of boundary elements: \"bonded\" (JKR limit) or \"range\" (Morse); null for asperities").or_null(),
-    real("attraction_range_m", "m", "Range ρ of the Morse law; null without one").or_null(),
-    text(
-        "nucleation",
-        "Gap at which a point of boundary elements comes into contact: \"touch\" or \"wu\"; null for asperities and with a range",
-    )
-    .or_null(),
-    text(
-        "opening",
-        "Where contact of boundary elements opens: \"strength\", \"edges\" or \"anywhere\"; null for asperities and with a range",
-    )
-    .or_null(),
-    real("precision", "1", "Tolerance of an equilibrium of boundary elements: rms residual over the maximum tension; null for asperities")
-        .or_null(),
 ];
 
 /// Mean, standard deviation and confidence interval of one result. All are null without a value; the last two require two.
@@ -222,8 +156,8 @@ parts! {
 
 const PART_COLUMNS: [Column; 2 * PARTS.len()] = join(PARTS);
 
-const REALIZATION_COLUMNS: [Column; CASE.len() + PARAMETERS.len() + RESULTS.len() + PART_COLUMNS.len()] =
-    join(&[CASE, PARAMETERS, RESULTS, &PART_COLUMNS]);
+const REALIZATION_COLUMNS: [Column; CASE.len() + PARAMETER_COLUMNS.len() + RESULTS.len() + PART_COLUMNS.len()] =
+    join(&[CASE, &PARAMETER_COLUMNS, RESULTS, &PART_COLUMNS]);
 
 /// Results of single cycles.
 pub static REALIZATIONS: Table = Table {
@@ -342,12 +276,12 @@ const VALIDITY_COLUMNS: [Column; 2 * VALIDITY.len()] = join(VALIDITY);
 
 const CASE_COLUMNS: [Column;
     CASE.len()
-        + PARAMETERS.len()
+        + PARAMETER_COLUMNS.len()
         + MAX_LOAD.len()
         + SPREAD_COLUMNS.len()
         + PART_SPREAD_COLUMNS.len()
         + VALIDITY_COLUMNS.len()
-        + COUNTS.len()] = join(&[CASE, PARAMETERS, MAX_LOAD, &SPREAD_COLUMNS, &PART_SPREAD_COLUMNS, &VALIDITY_COLUMNS, COUNTS]);
+        + COUNTS.len()] = join(&[CASE, &PARAMETER_COLUMNS, MAX_LOAD, &SPREAD_COLUMNS, &PART_SPREAD_COLUMNS, &VALIDITY_COLUMNS, COUNTS]);
 
 /// Means over realizations.
 pub static CASES: Table = Table {
@@ -356,72 +290,4 @@ pub static CASES: Table = Table {
     file: "statistics/cases.parquet",
     doc: "One row per case and load reversal, averaged over realizations, in the order of the spec.",
     columns: &CASE_COLUMNS,
-};
-
-/// Averaged loading and unloading paths.
-pub static CURVES: Table = Table {
-    name: "curves",
-    version: 1,
-    file: "statistics/curves.parquet",
-    doc: "One row per case, branch and station, averaged over realizations. From the load reversal to zero load the stations are loads common to all \
-          realizations; below zero load they are equal fractions of the maximum tensile load of each realization on the branch.",
-    columns: &[
-        CASE[0],
-        CASE[1],
-        real(
-            "max_load",
-            "1",
-            "Normal load F_max/(E* A0) at the load reversal from which this unloading starts; null for loading, which is common to all load reversals",
-        )
-        .or_null(),
-        text("branch", "\"loading\" or \"unloading\""),
-        index("grid_index", "Number of the station along the branch, from 0; a station without realizations has no row"),
-        text(
-            "station",
-            "Rule of the station: \"load\" (same load in all realizations) or \"tension_fraction\" (same fraction of the maximum tensile load of each realization)",
-        ),
-        real(
-            "tension_fraction",
-            "1",
-            "Tensile load over the maximum tensile load of the realization on this branch; null if station is \"load\"",
-        )
-        .or_null(),
-        real("load", "1", "Normal load F/(E* A0), positive in compression: the common load, or the mean of the loads of the realizations if station is \"tension_fraction\""),
-        real("area_mean", "1", "Mean contact area A/A0 over the realizations, each at its own load if station is \"tension_fraction\""),
-        real("area_sd", "1", "Standard deviation of A/A0 over the realizations (n - 1); null for fewer than two").or_null(),
-        real(
-            "penetration_mean",
-            "1",
-            "Mean of the mean penetration Δ/h_rms over the realizations, each at its own load if station is \"tension_fraction\"",
-        ),
-        real("penetration_sd", "1", "Standard deviation of Δ/h_rms over the realizations (n - 1); null for fewer than two").or_null(),
-        count(
-            "realization_count",
-            "Realizations in the means: all that reach the load if station is \"load\", otherwise all; one without tensile load enters at zero load",
-        ),
-    ],
-};
-
-/// Data of the panels of the figures.
-pub static PANELS: Table = Table {
-    name: "panels",
-    version: 1,
-    file: "statistics/panels.parquet",
-    doc: "One row per point of each curve of each panel of the figures, in drawing order.",
-    columns: &[
-        text("sweep", "Name of the sweep; empty for the panels of a single cycle"),
-        text(
-            "panel",
-            "Panel: A contact area, B pull-off force, C mean penetration, D dissipated energy, E dissipated energy by branch; a name for a single cycle",
-        ),
-        index("curve", "Number of the curve in the panel, from 0"),
-        text("name", "Quantity of the curve: a branch, a column of the table cases without _mean, or a name"),
-        text("of", "Cases of the curve, as labelled in the panel; empty if the panel has a single series"),
-        index("point", "Number of the point along the curve, from 0"),
-        real("x", "1", "Horizontal value of the quantity x_label; a swept parameter is in the unit of its column in the table cases"),
-        real("y", "1", "Vertical value of the quantity y_label"),
-        real("y_sd", "1", "Standard deviation over realizations (n - 1), drawn as error bar or band; null where none is drawn").or_null(),
-        text("x_label", "Label of the horizontal axis, with _{} for subscripts and ^{} for superscripts"),
-        text("y_label", "Label of the vertical axis"),
-    ],
 };

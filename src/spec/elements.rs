@@ -1,14 +1,12 @@
 //! Boundary elements: parameters, the grid that follows from them, and what they refuse.
 
-use super::CaseParams;
 use super::fault::Faults;
-use super::grid::written;
 use super::keys::find;
 use super::number::short;
-use super::walk::Origin;
-use crate::model::{Attraction, Boundary, Choice, Method, Nucleation, Opening, Slip};
+use super::walk::{Origin, written};
+use super::{CaseParams, ElementParams, ModelParams};
+use crate::model::{Attraction, Boundary, Choice, Method, Slip};
 use crate::text::counted;
-use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 /// Maximum number of grid points of boundary elements along a side.
@@ -26,40 +24,6 @@ const RANGE: f64 = 0.8;
 #[must_use]
 pub fn mesh_number(work_length_m: f64, spacing_m: f64, range_m: f64) -> f64 {
     0.5 * (work_length_m * spacing_m).sqrt() / range_m
-}
-
-/// Parameters of boundary elements.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ElementParams {
-    /// Grid points along a side; 0 for [`PER_WAVELENGTH`].
-    pub points: u32,
-    /// Attraction between the surfaces.
-    pub attraction: Attraction,
-    /// Range ρ of the Morse law \[m\]; 0 for one that follows the grid.
-    pub range_m: f64,
-    /// Gap at which a point comes into contact.
-    pub nucleation: Nucleation,
-    /// Where contact opens.
-    pub opening: Opening,
-    /// Step of the approach, as a part of the rms height.
-    pub approach_step: f64,
-    /// Rms residual over the maximum tension.
-    pub precision: f64,
-}
-
-impl Default for ElementParams {
-    fn default() -> Self {
-        Self {
-            points: 0,
-            attraction: Attraction::Bonded,
-            range_m: 0.0,
-            nucleation: Nucleation::Touch,
-            opening: Opening::Strength,
-            approach_step: 0.03,
-            precision: 1e-4,
-        }
-    }
 }
 
 impl ElementParams {
@@ -125,7 +89,7 @@ pub(super) fn without_unread(case: &CaseParams) -> CaseParams {
     }
     let mut printed = std::mem::take(&mut case.model.as_printed);
     printed.retain(|slip: &Slip| !slip.in_contact());
-    case.model = super::ModelParams { method: Method::BoundaryElements, as_printed: printed, ..default.model };
+    case.model = ModelParams { method: Method::BoundaryElements, as_printed: printed, ..default.model };
     case.cycle.approach_step = default.cycle.approach_step;
     match case.boundary_elements.attraction {
         Attraction::Bonded => case.boundary_elements.range_m = default.boundary_elements.range_m,

@@ -55,7 +55,7 @@ impl SpecErrors {
         &self.faults
     }
 
-    /// The same errors of a spec that was read with settings.
+    /// These errors, for a spec that was read with settings.
     pub(super) fn with(self, settings: &[String]) -> Self {
         Self { settings: settings.to_vec(), ..self }
     }
@@ -163,7 +163,7 @@ fn boundary(text: &str, at: usize) -> usize {
     at
 }
 
-/// Where the lines of a text begin \[bytes\]; the first one at 0.
+/// Starts of the lines of a text \[bytes\]; the first one at 0.
 fn line_starts(text: &str) -> Vec<usize> {
     std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect()
 }
@@ -177,7 +177,7 @@ fn line_of(starts: &[usize], at: usize) -> usize {
 pub(super) struct Faults<'t> {
     text: &'t str,
     file: String,
-    /// Where the lines begin.
+    /// Starts of the lines.
     starts: Vec<usize>,
     found: Vec<(Range<usize>, Fault)>,
     /// Hashes of all faults, so that each is counted once.
@@ -231,14 +231,14 @@ impl<'t> Faults<'t> {
         line_of(&self.starts, boundary(self.text, span.start))
     }
 
-    /// What is written at a place, on one line and not too long.
+    /// Text at a place, on one line and not too long.
     pub(super) fn written(&self, span: &Range<usize>) -> String {
         let text = self.text.get(span.clone()).unwrap_or_default();
         let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
         if line.chars().count() > 40 { line.chars().take(39).chain(['…']).collect() } else { line }
     }
 
-    /// What was read, if nothing is wrong with it.
+    /// The value, if there are no faults.
     pub(super) fn finish<T>(mut self, read: Option<T>) -> Result<T, SpecErrors> {
         match read {
             Some(read) if self.found.is_empty() => Ok(read),

@@ -9,9 +9,9 @@ use std::path::Path;
 
 use toml::de::DeValue;
 
+use super::entries::{entries, shown};
 use super::fault::Faults;
-use super::value::{Written, wrong_type};
-use super::walk::{entries, shown};
+use super::written::{Written, wrong_type};
 use super::{Case, Spec, SpecErrors, Value};
 use crate::formats::{Found, Refusal, recognize};
 use crate::keys::digest_of_file;

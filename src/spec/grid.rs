@@ -11,7 +11,7 @@ use super::files::named;
 use super::keys::{GENERATED, KEYS, find};
 use super::number::short;
 use super::sweep::{AxisDraft, SweepDraft};
-use super::walk::{Draft, Origin};
+use super::walk::{Draft, Origin, written};
 use crate::model::{Boundary, Choice, Detrend};
 
 use super::{Axis, Case, CaseParams, MAX_CASES, MAX_GRID, MAX_TASKS, Realizations, Spec, SurfaceParams, Sweep, Value};
@@ -167,14 +167,6 @@ fn check_measured(case: &CaseParams, origins: &[Origin], swept: &[usize], faults
             let message = "a non-periodic measured surface requires model.boundary = \"isolated\"".to_owned();
             faults.add(&span, message, "write model.boundary = \"isolated\", or surface.periodic = true for a periodic scan".to_owned());
         }
-    }
-}
-
-/// Where a value is written, if it is.
-pub(super) fn written(key: Option<usize>, origins: &[Origin]) -> Option<Range<usize>> {
-    match &origins[key?] {
-        Origin::Written(span) => Some(span.clone()),
-        Origin::Default | Origin::Faulty => None,
     }
 }
 

@@ -18,7 +18,7 @@ pub(super) struct Key {
     pub(super) symbol: &'static str,
     /// Meaning, for the reference page and for editors.
     pub(super) meaning: &'static str,
-    /// What it takes.
+    /// Kind of its values.
     pub(super) kind: Kind,
     /// Value in a case.
     pub(super) get: fn(&CaseParams) -> Value,
@@ -29,7 +29,7 @@ pub(super) struct Key {
 /// The words of a choice, each with its meaning.
 pub(super) type Words = &'static [(&'static str, &'static str)];
 
-/// What a key takes.
+/// Kind of the values of a key.
 pub(super) enum Kind {
     /// A real number.
     Number(Limits),
@@ -77,7 +77,7 @@ pub(super) struct Limits {
     pub(super) unit_name: &'static str,
     /// A unit that is easily written instead: its size in the right one, and its name.
     pub(super) slip: Option<(f64, &'static str)>,
-    /// What to know of values out of bounds.
+    /// Help for values out of bounds.
     pub(super) note: &'static str,
 }
 

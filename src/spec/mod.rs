@@ -4,6 +4,7 @@
 //! refuses what no row names, and collects every fault with its place, so that one reading of the answer mends the whole file.
 
 mod elements;
+mod entries;
 mod fault;
 mod files;
 mod grid;
@@ -19,6 +20,7 @@ mod top;
 mod value;
 mod walk;
 mod write;
+mod written;
 
 use std::collections::BTreeMap;
 use std::io::Read as _;
@@ -26,12 +28,9 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::model::{
-    Amplitudes, Boundary, Coalescence, Detrend, Interaction, JumpIn, KeptContacts, Material, Method, Missing, Normalization, Slip, Slips,
-};
-
+pub use crate::model::{CaseParams, CycleParams, ElementParams, ModelParams, SurfaceParams};
 pub use crate::text::quoted;
-pub use elements::{ElementParams, FEWEST_PER_WAVELENGTH, MAX_ELEMENTS, MOST_MESH_NUMBER, PER_WAVELENGTH, mesh_number};
+pub use elements::{FEWEST_PER_WAVELENGTH, MAX_ELEMENTS, MOST_MESH_NUMBER, PER_WAVELENGTH, mesh_number};
 pub use fault::{Fault, Place, SpecErrors};
 pub use json_schema::{SCHEMA_FILE, json_schema};
 pub use keys::{GENERATED, MEASURED};
@@ -81,118 +80,6 @@ pub struct Case {
     pub params: CaseParams,
 }
 
-/// Everything that a case is made of but its seed.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct CaseParams {
-    /// The rough surface.
-    pub surface: SurfaceParams,
-    /// The half-space and its adhesion.
-    pub material: Material,
-    /// The choices that the model leaves open.
-    pub model: ModelParams,
-    /// Boundary elements; the defaults for the asperity model.
-    pub boundary_elements: ElementParams,
-    /// The loading and unloading path.
-    pub cycle: CycleParams,
-}
-
-impl CaseParams {
-    /// True if boundary elements compute the case.
-    #[must_use]
-    pub fn by_elements(&self) -> bool {
-        self.model.method == Method::BoundaryElements
-    }
-}
-
-/// A self-affine surface on a square, or a measured one.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct SurfaceParams {
-    /// Side L of the square \[m\].
-    pub length_m: f64,
-    /// Root mean square height \[m\].
-    pub rms_height_m: f64,
-    /// Hurst exponent H, from 0.01 to 1.
-    pub hurst: f64,
-    /// Magnification ζ: the longest over the shortest wavelength.
-    pub magnification: u32,
-    /// Grid points per shortest wavelength.
-    pub points_per_shortest_wavelength: u32,
-    /// Normalization of the rms height.
-    pub normalization: Normalization,
-    /// The moduli of the Fourier modes.
-    pub amplitudes: Amplitudes,
-    /// The file of a measured surface; empty for a generated one. Of the parameters above a measured one reads the points per shortest wavelength alone.
-    pub file: String,
-    /// Which of the file's fields it is; empty for the only one.
-    pub dataset: String,
-    /// True if it continues periodically.
-    pub periodic: bool,
-    /// Distance of its points \[m\], where the file does not tell it; else 0.
-    pub pixel_m: f64,
-    /// Unit of its heights, where the file does not tell it.
-    pub unit: String,
-    /// Treatment of missing points.
-    pub missing: Missing,
-    /// Shape that is removed from its heights by least squares; the mean alone if it is periodic.
-    pub detrend: Detrend,
-}
-
-impl SurfaceParams {
-    /// True if it is a measured surface.
-    #[must_use]
-    pub fn is_measured(&self) -> bool {
-        !self.file.is_empty()
-    }
-
-    /// Grid points along one side: ζ times the points per shortest wavelength. A validated spec has it at most [`MAX_GRID`].
-    #[must_use]
-    pub fn grid(&self) -> u64 {
-        u64::from(self.magnification) * u64::from(self.points_per_shortest_wavelength)
-    }
-}
-
-/// The choices that the model leaves open.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ModelParams {
-    /// Method of the cycle.
-    pub method: Method,
-    /// Elastic interaction between contacts.
-    pub interaction: Interaction,
-    /// Boundary condition of the square.
-    pub boundary: Boundary,
-    /// Coalescence rule: a contact grows over the centre of another asperity.
-    pub coalescence: Coalescence,
-    /// When a free asperity jumps into contact.
-    pub jump_in: JumpIn,
-    /// Slips of the paper that are put back, sorted, each once.
-    pub as_printed: Vec<Slip>,
-    /// Go on where an asperity's Tabor parameter is below 2 and JKR no longer holds.
-    pub allow_low_tabor: bool,
-}
-
-impl ModelParams {
-    /// The slips that are put back, as the physics takes them.
-    #[must_use]
-    pub fn slips(&self) -> Slips {
-        self.as_printed.iter().copied().collect()
-    }
-}
-
-/// The loading and unloading path.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct CycleParams {
-    /// Turning points `F/(E* A0)` of the one loading path, ascending, each once.
-    pub max_load: Vec<f64>,
-    /// Step of the approach, as a part of the rms height.
-    pub approach_step: f64,
-    /// Which steps of the table of contact spots are kept.
-    pub contacts: KeptContacts,
-}
-
 /// One `[[sweep]]`: its axes multiply, the last one runs fastest.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Sweep {
@@ -229,54 +116,6 @@ pub enum Value {
     Numbers(Vec<f64>),
     /// Words of a choice, in the order of the choice, each once.
     Words(Vec<&'static str>),
-}
-
-// The defaults are the paper's: its surface, its material, one of its loads.
-impl Default for SurfaceParams {
-    fn default() -> Self {
-        Self {
-            length_m: 1e-3,
-            rms_height_m: 5e-6,
-            hurst: 0.8,
-            magnification: 128,
-            points_per_shortest_wavelength: 8,
-            normalization: Normalization::Sample,
-            amplitudes: Amplitudes::Fixed,
-            file: String::new(),
-            dataset: String::new(),
-            periodic: false,
-            pixel_m: 0.0,
-            unit: String::new(),
-            missing: Missing::Refuse,
-            detrend: Detrend::Plane,
-        }
-    }
-}
-
-impl Default for Material {
-    fn default() -> Self {
-        Self { contact_modulus_pa: 1e6, work_of_adhesion_j_m2: 0.07, interaction_range_m: 1e-9 }
-    }
-}
-
-impl Default for ModelParams {
-    fn default() -> Self {
-        Self {
-            method: Method::Asperities,
-            interaction: Interaction::Spots,
-            boundary: Boundary::Periodic,
-            coalescence: Coalescence::Cover,
-            jump_in: JumpIn::Wu,
-            as_printed: Vec::new(),
-            allow_low_tabor: false,
-        }
-    }
-}
-
-impl Default for CycleParams {
-    fn default() -> Self {
-        Self { max_load: vec![0.0071], approach_step: 0.01, contacts: KeptContacts::Turning }
-    }
 }
 
 impl Spec {

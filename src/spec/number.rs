@@ -4,7 +4,7 @@ use toml::de::{DeFloat, DeInteger, DeValue};
 
 use super::fault::Faults;
 use super::keys::{Key, Limits};
-use super::value::{Written, array, wrong_type};
+use super::written::{Written, array, wrong_type};
 
 /// A real number within its bounds.
 pub(super) fn number(path: &str, limits: &Limits, value: &Written<'_>, faults: &mut Faults<'_>) -> Option<f64> {
@@ -91,7 +91,7 @@ pub(super) fn integer(path: &str, value: &Written<'_>, faults: &mut Faults<'_>) 
     whole
 }
 
-/// What to say of a number in quotes.
+/// Help for a number in quotes.
 fn unquoted(value: &DeValue<'_>) -> Option<String> {
     match value {
         DeValue::String(text) if text.trim().parse::<f64>().is_ok() => Some("write it without quotes".to_owned()),

@@ -1,4 +1,4 @@
-//! How many realizations: a number, or as many as the precision of a mean asks for.
+//! Number of realizations: fixed, or as many as the precision of a mean requires.
 
 use std::fmt;
 
@@ -6,19 +6,20 @@ use serde::Serialize;
 use toml::de::DeValue;
 
 use super::MAX_REALIZATIONS;
+use super::entries::{entries, shown};
 use super::fault::Faults;
 use super::keys::Limits;
 use super::nearest::nearest;
 use super::number::{integer, number};
-use super::value::{Written, word, wrong_type};
-use super::walk::{entries, shown};
+use super::value::word;
+use super::written::{Written, wrong_type};
 use crate::model::{Choice, Goal};
 
 /// Number of realizations of each surface.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Realizations {
-    /// So many.
+    /// Fixed number.
     Exactly(u32),
     /// As many as a precision asks for, case by case.
     Until(Until),
@@ -87,7 +88,7 @@ pub(super) const DEFAULT_BOUNDS: (u32, u32) = (6, 200);
 /// Fewest realizations of a spec that states a precision: two are the fewest that have a standard deviation.
 pub(super) const LEAST: u32 = 2;
 
-/// What the table takes.
+/// Keys of the table.
 const TAKES: [&str; 4] = ["until_relative_ci", "of", "min", "max"];
 
 /// Bounds of the relative half-width of a confidence interval.

@@ -5,10 +5,11 @@ use std::ops::Range;
 use toml::de::DeTable;
 
 use super::SpecErrors;
+use super::entries::entries;
 use super::fault::{Faults, NOWHERE};
 use super::keys::{TABLES, find};
 use super::sweep::SweepDraft;
-use super::walk::{Draft, Origin, enter, entries};
+use super::walk::{Draft, Origin, enter};
 use crate::text::quoted;
 
 /// The option, as errors name it.

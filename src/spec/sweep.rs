@@ -6,15 +6,15 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use super::entries::{entries, keys, lost, shown};
 use super::fault::Faults;
 use super::keys::{KEYS, TABLES};
-use super::walk::{entries, keys, lost, shown};
 use super::{Value, top, value};
 
 /// A sweep whose values are read.
 pub(super) struct SweepDraft {
     pub(super) name: String,
-    /// Where it begins.
+    /// Start in the text.
     pub(super) span: Range<usize>,
     pub(super) axes: Vec<AxisDraft>,
 }
@@ -26,7 +26,7 @@ pub(super) struct AxisDraft {
     pub(super) values: Vec<Spanned<Value>>,
 }
 
-/// What a sweep takes.
+/// Keys of a sweep.
 const IN_SWEEP: [&str; 6] = ["name", "surface", "material", "model", "boundary_elements", "cycle"];
 
 /// Reads the sweeps.
@@ -40,7 +40,7 @@ pub(super) fn sweeps(written: &Spanned<DeValue<'_>>, span: &Range<usize>, read: 
     for table in tables.iter() {
         let DeValue::Table(found) = table.get_ref() else {
             let help = "write [[sweep]], in double brackets".to_owned();
-            value::wrong_type("sweep", "an array of tables", table.get_ref(), &table.span(), help, faults);
+            super::written::wrong_type("sweep", "an array of tables", table.get_ref(), &table.span(), help, faults);
             continue;
         };
         read.push(sweep(found, table.span(), &mut names, faults));

@@ -4,7 +4,7 @@ use toml::de::DeValue;
 
 use super::fault::Faults;
 use super::number::integer;
-use super::value::{Written, wrong_type};
+use super::written::{Written, wrong_type};
 
 /// Seed of a spec that states none.
 pub(super) const DEFAULT_SEED: u64 = 2021;

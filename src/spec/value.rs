@@ -1,8 +1,5 @@
 //! From a value as written to a value of the right kind and within its bounds.
 
-use std::ops::Range;
-
-use toml::Spanned;
 use toml::de::DeValue;
 
 use super::Value;
@@ -10,10 +7,8 @@ use super::fault::Faults;
 use super::keys::{Key, Kind, words};
 use super::nearest::nearest;
 use super::number::{integer, number, numbers};
+use super::written::{Written, array, wrong_type};
 use crate::lengths::{LENGTHS, metres};
-
-/// A value and where it stands.
-pub(super) type Written<'t> = Spanned<DeValue<'t>>;
 
 /// The value of a key; nothing, with a fault added, if it is not fit.
 pub(super) fn read(key: &Key, value: &Written<'_>, faults: &mut Faults<'_>) -> Option<Value> {
@@ -48,19 +43,6 @@ pub(super) fn read(key: &Key, value: &Written<'_>, faults: &mut Faults<'_>) -> O
             let said: Vec<_> = read.into_iter().collect::<Option<_>>()?;
             // In the order of the choice, so that two orders of writing are one case.
             Some(Value::Words(words.into_iter().filter(|word| said.contains(word)).collect()))
-        }
-    }
-}
-
-/// The elements of an array.
-pub(super) fn array<'v, 't>(path: &str, of: &str, value: &'v Written<'t>, faults: &mut Faults<'_>) -> Option<&'v toml::de::DeArray<'t>> {
-    match value.get_ref() {
-        DeValue::Array(elements) => Some(elements),
-        other => {
-            let span = value.span();
-            let help = format!("write [{}]", faults.written(&span));
-            wrong_type(path, &format!("an array of {of}"), other, &span, help, faults);
-            None
         }
     }
 }
@@ -123,21 +105,4 @@ pub(super) fn word(path: &str, words: &[&'static str], value: &Written<'_>, faul
         return None;
     };
     Some(known)
-}
-
-/// Adds the fault of a value of a wrong type.
-pub(super) fn wrong_type(
-    path: &str,
-    wanted: &str,
-    found: &DeValue<'_>,
-    span: &Range<usize>,
-    help: impl Into<Option<String>>,
-    faults: &mut Faults<'_>,
-) {
-    let message = match found {
-        DeValue::Table(_) => format!("`{path}` must be {wanted}, not a table"),
-        DeValue::Array(_) => format!("`{path}` must be {wanted}, not an array"),
-        other => format!("`{path}` must be {wanted}, not the {} {}", other.type_str(), faults.written(span)),
-    };
-    faults.add(span, message, help);
 }

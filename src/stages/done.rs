@@ -7,7 +7,7 @@ use crate::store::{Kept, Made, RECEIPT_VERSION, Receipt, write_receipt};
 use serde_json::{Map, Value};
 use std::time::{Instant, SystemTime};
 
-/// What a stage has written of a unit, and what it counted.
+/// Written files and counted effort of a task.
 #[derive(Debug, Default)]
 pub(super) struct Outcome {
     pub(super) files: Vec<Written>,

@@ -1,4 +1,4 @@
-//! What failed: a record in the place of the cycle that is not there, and what is not tried again for it.
+//! Failures: a record in the folder of the missing cycle, and tasks that are not tried again.
 
 use super::{StageError, Watch};
 use crate::campaign::{Campaign, CycleUnit, Stage, Unit};
@@ -111,7 +111,7 @@ pub(super) fn given_up(campaign: &Campaign, cycles: &[&CycleUnit], stage: Stage,
     !cycles.is_empty() && cycles.iter().all(failed)
 }
 
-/// What is recorded of a failure at a stage that has been done since is taken away.
+/// Removes the record of a failure at a stage that has been done since.
 pub(super) fn forget(campaign: &Campaign, cycles: &[&CycleUnit], stage: Stage) {
     for cycle in cycles.iter().filter(|cycle| campaign.failed_at(cycle) == Some(stage)) {
         let _ = std::fs::remove_file(campaign.failure_path(cycle));

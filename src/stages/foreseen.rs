@@ -1,6 +1,6 @@
 //! Warnings that follow from a spec alone.
 
-use super::statistics::target;
+use super::surface::target;
 use crate::campaign::{Campaign, CaseUnit};
 use crate::physics::theory::flattening::{Flattening, flattening};
 use crate::stats::{CAUTIONS, Caution, Limit};

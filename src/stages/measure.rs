@@ -1,7 +1,6 @@
 //! A measured surface: read, made fit for the model, and put into words.
 
 use super::StageError;
-use super::statistics::moments;
 use crate::formats::recognize;
 use crate::lengths::{LENGTHS, metres};
 use crate::model::Detrend;
@@ -16,7 +15,7 @@ use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
 use std::path::Path;
 
-/// How far a distance of points that is given may be from that of the file.
+/// Relative tolerance of a given pixel size against that of the file.
 const SAME: f64 = 1e-3;
 
 /// A measured surface after all preprocessing steps.
@@ -119,7 +118,7 @@ fn own(
     let prepared = Prepared {
         heights_m,
         length_m: header.length_m,
-        moments: moments(&header),
+        moments: header.moments(),
         rings,
         missing_count: measured.missing_count as usize,
         trend_m: measured.trend_m,
@@ -173,7 +172,7 @@ fn fit(rings: &[Ring], shortest_wavelength_m: f64) -> Option<SpectrumFit> {
 /// Distances between the points of a scan \[m\]: from below an atom to the largest `pixel_m` of a spec.
 const PIXEL_SIZES: RangeInclusive<f64> = 1e-12..=0.1;
 
-/// How far apart the points of a scan are along rows and along columns \[m\].
+/// Spacings of the points of a scan along rows and along columns \[m\].
 fn spacing(params: &SurfaceParams, scan: &Scan) -> Result<[f64; 2], StageError> {
     let path = Path::new(&params.file);
     let (rows, columns) = scan.heights.dim();
@@ -206,7 +205,7 @@ fn spacing(params: &SurfaceParams, scan: &Scan) -> Result<[f64; 2], StageError> 
     }
 }
 
-/// What the heights of a scan are to be multiplied by, to be metres.
+/// Factor from the heights of a scan to metres.
 fn unit(params: &SurfaceParams, scan: &Scan) -> Result<f64, StageError> {
     let path = Path::new(&params.file);
     let given = &params.unit;

@@ -4,7 +4,7 @@
 //! the same results finds the same number: a run that was killed, another one with more threads, and `status`.
 
 use super::StageError;
-use super::statistics::cycle_input;
+use super::cycle_input::cycle_input;
 use crate::campaign::{Campaign, CycleUnit, Standing};
 use crate::model::Choice;
 use crate::spec::Until;
@@ -12,10 +12,10 @@ use crate::stats::{self, Sample, Value};
 use crate::store::Check;
 use rayon::prelude::*;
 
-/// What one realization of a case comes to at each turning point; nothing if it failed.
+/// Results of one realization of a case at each load reversal; nothing if it failed.
 type Outcome = Option<Vec<f64>>;
 
-/// How many realizations a case is to have, of which `outcomes` are known: those, if its means are known well enough, or it has as many as it may.
+/// Number of realizations of a case, of which `outcomes` are known: those, if its means are precise enough, or the maximum is reached.
 ///
 /// Half the 95 % interval falls as `1/√n`, so from its present share `h` of the mean `n (h/wanted)²` are expected to be enough; no more than twice as many as
 /// there are, since a spread of few is known badly. Where half of them failed, more would fail, and none is added.

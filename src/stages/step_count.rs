@@ -1,4 +1,4 @@
-//! How many steps a cycle writes, estimated before it begins.
+//! Number of steps of a cycle, estimated before it begins.
 
 use super::StageError;
 use crate::physics::contact::Problem;

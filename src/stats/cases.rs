@@ -1,8 +1,9 @@
 //! Means and spreads over the realizations of each case and turning point.
 
-use polars::prelude::{DataFrame, DataType, IntoColumn, IntoLazy, NamedFrom, PolarsResult, Series, SortMultipleOptions, col};
+use polars::prelude::{IntoColumn, NamedFrom, Series};
 
 use super::cautions::caution;
+use super::grouped::grouped;
 use super::model_error;
 use super::realizations::identity;
 use super::rows::{Rows, Value};
@@ -36,7 +37,7 @@ pub fn cases(realizations: &Frame, inputs: &[CaseInput]) -> Result<Frame, StatsE
     rows.build()
 }
 
-/// What a column of the table `cases` says of the realizations.
+/// Statistic over the realizations in a column of the table `cases`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Statistic {
     Mean,
@@ -142,45 +143,34 @@ fn averages(group: &Group, case: &CaseInput, max_load: f64) -> Given {
 }
 
 fn groups(realizations: &Frame) -> Result<Vec<Group>, StatsError> {
-    let mut columns = vec![
-        Series::new("case_id".into(), realizations.text("case_id")?).into_column(),
-        Series::new("max_load".into(), realizations.f64("max_load")?).into_column(),
+    let (ids, loads) = (realizations.text("case_id")?, realizations.f64("max_load")?);
+    let columns = vec![
+        Series::new("case_id".into(), &ids).into_column(),
+        Series::new("max_load".into(), &loads).into_column(),
         Series::new("realization".into(), realizations.i64("realization")?).into_column(),
-        Series::new("unconverged_count".into(), realizations.i64("unconverged_count")?).into_column(),
     ];
-    let names = averaged();
-    for name in &names {
-        columns.push(match realizations.column(name)? {
-            ColumnData::I64(counts) => Series::new((*name).into(), counts).into_column(),
-            _ => Series::new((*name).into(), realizations.f64_or_null(name)?).into_column(),
-        });
-    }
-    let grouped = DataFrame::new_infer_height(columns).and_then(|frame| group(frame, &names));
-    grouped.map_err(|source| StatsError::Group { table: realizations.table().name, source })
+    let rows = grouped(columns, &["case_id", "max_load"], &["case_id", "max_load", "realization"]);
+    let rows = rows.map_err(|source| StatsError::Group { table: realizations.table().name, source })?;
+    let values = |name: &'static str| Ok((name, numbers(realizations, name)?));
+    let columns: Vec<(&str, Vec<Option<f64>>)> = averaged().into_iter().map(values).collect::<Result<_, StatsError>>()?;
+    let unconverged = numbers(realizations, "unconverged_count")?;
+    let picked = |values: &[Option<f64>], rows: &[usize]| rows.iter().filter_map(|row| values[*row]).collect::<Vec<f64>>();
+    let group = |rows: Vec<usize>| {
+        let first = rows.first().copied()?;
+        Some(Group {
+            case_id: ids[first].to_owned(),
+            max_load: loads[first],
+            unconverged: picked(&unconverged, &rows),
+            values: columns.iter().map(|(name, values)| (*name, picked(values, &rows))).collect(),
+        })
+    };
+    Ok(rows.into_iter().filter_map(group).collect())
 }
 
-fn group(frame: DataFrame, names: &[&'static str]) -> PolarsResult<Vec<Group>> {
-    let keys = [col("case_id"), col("max_load")];
-    let lists: Vec<_> = ["unconverged_count"].iter().chain(names).map(|name| col(*name)).collect();
-    let order = SortMultipleOptions::default().with_maintain_order(true);
-    let grouped = frame.lazy().sort(["case_id", "max_load", "realization"], order).group_by_stable(keys).agg(lists).collect()?;
-    let words = grouped.column("case_id")?.str()?;
-    let loads = grouped.column("max_load")?.f64()?;
-    let list = |name: &str, row: usize| -> PolarsResult<Vec<f64>> {
-        let series = grouped.column(name)?.list()?.get_as_series(row).unwrap_or_default();
-        Ok(series.cast(&DataType::Float64)?.f64()?.iter().flatten().collect())
-    };
-    words
-        .iter()
-        .zip(loads.iter())
-        .enumerate()
-        .map(|(row, (word, load))| {
-            Ok(Group {
-                case_id: word.unwrap_or_default().to_owned(),
-                max_load: load.unwrap_or_default(),
-                unconverged: list("unconverged_count", row)?,
-                values: names.iter().map(|name| Ok((*name, list(name, row)?))).collect::<PolarsResult<_>>()?,
-            })
-        })
-        .collect()
+/// A column of real or whole numbers.
+fn numbers(frame: &Frame, name: &str) -> Result<Vec<Option<f64>>, StatsError> {
+    Ok(match frame.column(name)? {
+        ColumnData::I64(counts) => counts.iter().map(|count| count.map(|count| count as f64)).collect(),
+        _ => frame.f64_or_null(name)?.to_vec(),
+    })
 }

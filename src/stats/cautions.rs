@@ -174,7 +174,7 @@ impl Limit {
         LIMITS.into_iter().find(|limit| limit.caution == code)
     }
 
-    /// Whether a number is beyond the limit. A missing number is not.
+    /// True if a number is beyond the limit. A missing number is not.
     #[must_use]
     pub fn is_passed(&self, number: Option<f64>) -> bool {
         number.is_some_and(|number| if self.at_least { number < self.bound } else { number > self.bound })

@@ -1,17 +1,17 @@
 //! Campaigns side by side: which of their cases are the same but for what tells the campaigns apart, and by how much results differ.
 
+use super::StatsError;
 use super::student::{Sample, t_quantile};
-use super::{PARAMETERS, StatsError};
-use crate::schema::{COMPARISON, Kind};
+use crate::schema::{COMPARISON, Kind, parameters_by_rank};
 use crate::store::{ColumnData, Frame};
 
-/// What is compared: columns of the table `realizations`.
+/// Compared quantities: columns of the table `realizations`.
 const QUANTITIES: [&str; 5] = ["area_at_max_load", "penetration_at_max_load", "pull_off_load", "loss", "loss_ratio_dk"];
 
 /// One campaign that is compared.
 #[derive(Debug, Clone)]
 pub struct Side {
-    /// What it is called.
+    /// Label.
     pub label: String,
     /// Its tables.
     pub cases: Frame,
@@ -28,14 +28,14 @@ pub struct Group {
     pub rows: Vec<usize>,
 }
 
-/// What campaigns have in common.
+/// Cases that campaigns have in common.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Matched {
     /// The parameters that tell them apart, by the columns of the table `cases`.
     pub differing: Vec<&'static str>,
     /// Cases that all of them have.
     pub groups: Vec<Group>,
-    /// How many rows of each have no counterpart.
+    /// Number of rows of each without a counterpart.
     pub left_over: Vec<usize>,
 }
 
@@ -47,6 +47,11 @@ fn written(frame: &Frame, column: &str, row: usize) -> Result<String, StatsError
         ColumnData::Bool(values) => format!("{:?}", values.get(row).copied().flatten()),
         ColumnData::Text(values) => values.get(row).cloned().flatten().unwrap_or_default(),
     })
+}
+
+/// Columns of the parameters, in the order of labels.
+fn names() -> impl Iterator<Item = &'static str> {
+    parameters_by_rank().into_iter().map(|parameter| parameter.column.name)
 }
 
 /// Finds the cases that all campaigns have. What tells these apart are the parameters that have other values in one of them than in the first; all others, and
@@ -62,7 +67,7 @@ pub fn matched(sides: &[Side]) -> Result<Matched, StatsError> {
         Ok(all)
     };
     let mut differing = Vec::new();
-    for (parameter, ..) in PARAMETERS {
+    for parameter in names() {
         let all: Vec<Vec<String>> = sides.iter().map(|side| values(side, parameter)).collect::<Result<_, _>>()?;
         if all.windows(2).any(|pair| pair.first() != pair.last()) {
             differing.push(parameter);
@@ -71,7 +76,7 @@ pub fn matched(sides: &[Side]) -> Result<Matched, StatsError> {
     let keys: Vec<Vec<String>> = sides
         .iter()
         .map(|side| {
-            let columns = || PARAMETERS.iter().map(|(name, ..)| *name).filter(|name| !differing.contains(name)).chain(["max_load"]);
+            let columns = || names().filter(|name| !differing.contains(name)).chain(["max_load"]);
             let key = |row: usize| columns().map(|column| written(&side.cases, column, row)).collect::<Result<Vec<_>, _>>();
             (0..side.cases.row_count()).map(|row| key(row).map(|parts| parts.join("\n"))).collect()
         })
@@ -85,7 +90,7 @@ pub fn matched(sides: &[Side]) -> Result<Matched, StatsError> {
     let places = |key: &String| keys.iter().map(|keys| keys.iter().position(|other| other == key)).collect::<Option<Vec<usize>>>();
     let mut groups: Vec<Group> = keys.first().into_iter().flatten().filter_map(places).map(|rows| Group { rows }).collect();
     if let Some(first) = sides.first() {
-        let ranks = PARAMETERS.iter().map(|(name, ..)| *name).chain(["max_load"]).map(|name| ranks(&first.cases, name));
+        let ranks = names().chain(["max_load"]).map(|name| ranks(&first.cases, name));
         let ranks: Vec<Vec<usize>> = ranks.collect::<Result<_, _>>()?;
         groups.sort_by_cached_key(|group| ranks.iter().map(|ranks| ranks[group.rows[0]]).collect::<Vec<usize>>());
     }
@@ -147,9 +152,9 @@ pub struct Difference {
     pub of: f64,
     /// Half-width of its 95 % confidence interval; nothing where it takes more realizations.
     pub ci95: Option<f64>,
-    /// Whether realizations are compared surface by surface.
+    /// True if realizations are compared surface by surface.
     pub paired: bool,
-    /// How many realizations each mean is of.
+    /// Number of realizations of each mean.
     pub counts: [usize; 2],
 }
 
@@ -200,7 +205,7 @@ pub fn comparison(sides: &[Side], matched: &Matched) -> Result<Frame, StatsError
     }
     let each = |value: fn(&Difference) -> f64| rows.iter().map(move |row| value(&row.5));
     let mut builder = Frame::of(&COMPARISON);
-    for (name, ..) in PARAMETERS {
+    for name in names() {
         // The parameters of the compared case.
         let data = match COMPARISON.column(name).map(|column| column.kind) {
             Some(Kind::F64) => {

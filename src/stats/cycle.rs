@@ -1,13 +1,17 @@
-//! The steps of one cycle, read and grouped into its branches by Polars.
+//! The steps of one cycle, grouped into its branches.
 
 use std::path::Path;
 
-use polars::prelude::{Column, DataFrame, Expr, LazyFrame, PlRefPath, PolarsResult, ScanArgsParquet, Series, SortMultipleOptions, col};
+use polars::prelude::{IntoColumn, NamedFrom, Series};
 
+use super::grouped::grouped;
 use super::walk::{Point, Walk};
 use super::{CycleInput, StatsError};
+use crate::schema::STEPS;
+use crate::store::parquet::read_table;
+use crate::store::{Frame, FrameError};
 
-/// How far the load of a turning step may be from its turning point, relative: steps between turning points are never this close to one.
+/// Relative tolerance of the load of a step at load reversal: steps between load reversals are never this close to one.
 const TURNING_TOLERANCE: f64 = 1e-6;
 
 /// The rows of one branch, in the order of the path.
@@ -42,8 +46,8 @@ pub(super) struct Cycle {
 impl Cycle {
     /// Reads a table of steps.
     pub(super) fn read(path: &Path) -> Result<Self, StatsError> {
-        let grouped = group(path).and_then(|frame| split(&frame));
-        let branches = grouped.map_err(|source| StatsError::Steps { path: path.to_owned(), source })?;
+        let frame = read_table(path, &STEPS)?;
+        let branches = split(&frame)?;
         let mut loading = None;
         let mut unloading = Vec::new();
         for (word, max_load, branch) in branches {
@@ -111,69 +115,33 @@ impl Branch {
     }
 }
 
-/// Column of the loads of the spec at the steps of load reversal.
-const REVERSAL: &str = "reversal_load";
+/// A branch with its word and its load reversal.
+type Labelled = (String, Option<f64>, Branch);
 
-const COLUMNS: [&str; 15] = [
-    "step",
-    "load",
-    "load_n",
-    "least_load_n",
-    "area",
-    "penetration",
-    "area_m2",
-    "area_union_m2",
-    "work_j",
-    "dissipated_j",
-    "contact_count",
-    "covered_count",
-    "touching_count",
-    "held_count",
-    "converged",
-];
-
-/// A table that Polars reads from a file.
-pub(super) fn scan(path: &Path) -> PolarsResult<LazyFrame> {
-    // A run's directory may have any name: no pattern and no partition is to be read from it.
-    let arguments = ScanArgsParquet { glob: false, ..ScanArgsParquet::default() };
-    LazyFrame::scan_parquet(PlRefPath::try_from_path(path)?, arguments)
+/// The branches, each in the order of the steps.
+fn split(frame: &Frame) -> Result<Vec<Labelled>, StatsError> {
+    let (words, loads) = (frame.text("branch")?, frame.f64_or_null("max_load")?);
+    let columns = vec![
+        Series::new("branch".into(), &words).into_column(),
+        Series::new("max_load".into(), loads).into_column(),
+        Series::new("step".into(), frame.i64("step")?).into_column(),
+    ];
+    let groups = grouped(columns, &["branch", "max_load"], &["step"]);
+    let groups = groups.map_err(|source| StatsError::Group { table: STEPS.name, source })?;
+    let labelled = |rows: Vec<usize>| {
+        let first = rows.first().copied().unwrap_or_default();
+        Ok((words[first].to_owned(), loads[first], branch(frame, &rows)?))
+    };
+    groups.into_iter().map(labelled).collect()
 }
 
-/// One row per branch, each column a list in the order of the steps.
-fn group(path: &Path) -> PolarsResult<DataFrame> {
-    let keys = [col("branch"), col("max_load")];
-    let mut lists: Vec<Expr> = COLUMNS.iter().map(|name| col(*name)).collect();
-    let mut frame = scan(path)?;
-    // Tables of earlier versions lack it.
-    if frame.collect_schema()?.contains(REVERSAL) {
-        lists.push(col(REVERSAL));
+/// These rows of a table of steps.
+fn branch(frame: &Frame, rows: &[usize]) -> Result<Branch, FrameError> {
+    fn picked<T: Copy>(values: &[T], rows: &[usize]) -> Vec<T> {
+        rows.iter().map(|row| values[*row]).collect()
     }
-    frame
-        .select([keys.as_slice(), lists.as_slice()].concat())
-        .sort(["step"], SortMultipleOptions::default().with_maintain_order(true))
-        .group_by_stable(keys)
-        .agg(lists)
-        .collect()
-}
-
-type Split = Vec<(String, Option<f64>, Branch)>;
-
-fn split(frame: &DataFrame) -> PolarsResult<Split> {
-    let words = frame.column("branch")?.str()?;
-    let loads = frame.column("max_load")?.f64()?;
-    words
-        .iter()
-        .zip(loads.iter())
-        .enumerate()
-        .map(|(row, (word, load))| Ok((word.unwrap_or_default().to_owned(), load, branch(frame, row)?)))
-        .collect()
-}
-
-fn branch(frame: &DataFrame, row: usize) -> PolarsResult<Branch> {
-    let list = |name: &str| -> PolarsResult<Series> { Ok(cell(frame.column(name)?, row)?.unwrap_or_default()) };
-    // These columns are never null in the schema; a null in a damaged file becomes NaN, which the table of results refuses.
-    let reals = |name: &str| -> PolarsResult<Vec<f64>> { Ok(list(name)?.f64()?.iter().map(|value| value.unwrap_or(f64::NAN)).collect()) };
-    let wholes = |name: &str| -> PolarsResult<Vec<i64>> { Ok(list(name)?.i64()?.iter().map(Option::unwrap_or_default).collect()) };
+    let reals = |name: &str| Ok(picked(&frame.f64(name)?, rows));
+    let wholes = |name: &str| Ok(picked(&frame.i64(name)?, rows));
     Ok(Branch {
         step: wholes("step")?,
         load: reals("load")?,
@@ -182,21 +150,14 @@ fn branch(frame: &DataFrame, row: usize) -> PolarsResult<Branch> {
         area: reals("area")?,
         penetration: reals("penetration")?,
         area_m2: reals("area_m2")?,
-        area_union_m2: list("area_union_m2")?.f64()?.iter().collect(),
+        area_union_m2: picked(frame.f64_or_null("area_union_m2")?, rows),
         work_j: reals("work_j")?,
         dissipated_j: reals("dissipated_j")?,
         contact_count: wholes("contact_count")?,
         covered_count: wholes("covered_count")?,
         touching_count: wholes("touching_count")?,
         held_count: wholes("held_count")?,
-        reversal_load: match frame.column(REVERSAL) {
-            Ok(column) => cell(column, row)?.unwrap_or_default().f64()?.iter().collect(),
-            Err(_) => Vec::new(),
-        },
-        converged: list("converged")?.bool()?.iter().map(Option::unwrap_or_default).collect(),
+        reversal_load: picked(frame.f64_or_null("reversal_load")?, rows),
+        converged: picked(&frame.bool("converged")?, rows),
     })
-}
-
-fn cell(column: &Column, row: usize) -> PolarsResult<Option<Series>> {
-    Ok(column.list()?.get_as_series(row))
 }

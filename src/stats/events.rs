@@ -1,12 +1,11 @@
-//! The events of one cycle, read by Polars in the order of the path.
+//! The events of one cycle, in the order of the path.
 
 use std::path::Path;
 
-use polars::prelude::{DataFrame, Expr, PolarsResult, SortMultipleOptions, col};
-
 use super::StatsError;
-use super::cycle::scan;
-use crate::schema::EVENT_KINDS;
+use crate::schema::{EVENT_KINDS, EVENTS};
+use crate::store::parquet::read_table;
+use crate::store::{Frame, FrameError};
 
 /// Number of the asperity of an event of boundary elements, which has none.
 const NO_ASPERITY: i64 = -1;
@@ -85,10 +84,10 @@ fn by_cause<'a>(avalanche: &'a [&Event]) -> impl Iterator<Item = (usize, f64)> +
 impl Events {
     /// Reads a table of events. One without rows is a cycle in which nothing happened.
     pub(super) fn read(path: &Path) -> Result<Self, StatsError> {
-        let frame = read(path).map_err(|source| StatsError::Steps { path: path.to_owned(), source })?;
-        let rows = rows(&frame).map_err(|source| StatsError::Steps { path: path.to_owned(), source })?;
-        let events = rows.into_iter().collect::<Result<_, _>>();
-        events.map(Self).map_err(|problem| StatsError::Events { path: path.to_owned(), problem })
+        let events = rows(&read_table(path, &EVENTS)?)?.into_iter().collect::<Result<Vec<Event>, String>>();
+        let mut events = events.map_err(|problem| StatsError::Events { path: path.to_owned(), problem })?;
+        events.sort_by_key(|event| event.avalanche_id);
+        Ok(Self(events))
     }
 
     /// The avalanches, in the order of the path; none is empty.
@@ -113,7 +112,7 @@ impl Events {
         touched
     }
 
-    /// What was lost on the way to a turning point, whose step is given, and on the way back from it.
+    /// Energies dissipated up to a load reversal, whose step is given, and while unloading from it.
     ///
     /// One loading path serves every turning point: what happened beyond this one's step is no part of its loop.
     pub(super) fn lost(&self, turning_step: i64, max_load: f64) -> Lost {
@@ -137,32 +136,15 @@ impl Events {
     }
 }
 
-const WHOLES: [&str; 2] = ["step", "avalanche_id"];
-const WORDS: [&str; 2] = ["branch", "kind"];
-const REALS: [&str; 7] = ["max_load", "approach_m", "load_before_n", "load_after_n", "area_before_m2", "area_after_m2", "energy_lost_j"];
-
-fn read(path: &Path) -> PolarsResult<DataFrame> {
-    let columns: Vec<Expr> = WHOLES.iter().chain(&["asperity_id"]).chain(&WORDS).chain(&REALS).map(|name| col(*name)).collect();
-    let order = SortMultipleOptions::default().with_maintain_order(true);
-    scan(path)?.select(columns).sort(["avalanche_id"], order).collect()
-}
-
-fn rows(frame: &DataFrame) -> PolarsResult<Vec<Result<Event, String>>> {
-    // Of these only max_load is null in the schema; a null in a damaged file becomes NaN, which the tables of results refuse.
-    let reals = |name: &str| -> PolarsResult<Vec<Option<f64>>> { Ok(frame.column(name)?.f64()?.iter().collect()) };
-    let wholes = |name: &str| -> PolarsResult<Vec<i64>> { Ok(frame.column(name)?.i64()?.iter().map(Option::unwrap_or_default).collect()) };
-    let [max_load, approach, load_before, load_after, area_before, area_after, energy] = REALS.map(reals);
-    let (max_load, approach, energy) = (max_load?, approach?, energy?);
-    let (load_before, load_after, area_before, area_after) = (load_before?, load_after?, area_before?, area_after?);
-    let [step, avalanche] = WHOLES.map(wholes);
-    let (step, avalanche) = (step?, avalanche?);
-    let asperity: Vec<i64> = frame.column("asperity_id")?.i64()?.iter().map(|id| id.unwrap_or(NO_ASPERITY)).collect();
-    let at = |values: &[Option<f64>], row: usize| values.get(row).copied().flatten();
-    let number = |values: &[Option<f64>], row: usize| at(values, row).unwrap_or(f64::NAN);
-    let words = frame.column("branch")?.str()?.iter().zip(frame.column("kind")?.str()?.iter());
-    let event = |(row, (branch, word)): (usize, (Option<&str>, Option<&str>))| {
-        let max_load = at(&max_load, row);
-        let (branch, word) = (branch.unwrap_or_default(), word.unwrap_or_default());
+/// The events of a table, or why a row is none.
+fn rows(frame: &Frame) -> Result<Vec<Result<Event, String>>, FrameError> {
+    let (steps, avalanches, asperities) = (frame.i64("step")?, frame.i64("avalanche_id")?, frame.i64_or_null("asperity_id")?);
+    let (branches, kinds, max_loads) = (frame.text("branch")?, frame.text("kind")?, frame.f64_or_null("max_load")?);
+    let (approaches, energies) = (frame.f64("approach_m")?, frame.f64("energy_lost_j")?);
+    let (loads_before, loads_after) = (frame.f64("load_before_n")?, frame.f64("load_after_n")?);
+    let (areas_before, areas_after) = (frame.f64("area_before_m2")?, frame.f64("area_after_m2")?);
+    let event = |row: usize| {
+        let (branch, word, max_load) = (branches[row], kinds[row], max_loads[row]);
         let loading = match (branch, max_load) {
             ("loading", None) => true,
             ("unloading", Some(_)) => false,
@@ -170,19 +152,19 @@ fn rows(frame: &DataFrame) -> PolarsResult<Vec<Result<Event, String>>> {
         };
         let kind = EVENT_KINDS.iter().position(|known| *known == asperity_word(word));
         Ok(Event {
-            step: step.get(row).copied().unwrap_or_default(),
+            step: steps[row],
             loading,
             max_load,
             kind: kind.ok_or_else(|| format!("hold the kind {word:?}; there are: {}", EVENT_KINDS.join(", ")))?,
-            asperity_id: asperity.get(row).copied().unwrap_or(NO_ASPERITY),
-            approach_m: number(&approach, row),
-            avalanche_id: avalanche.get(row).copied().unwrap_or_default(),
-            load_before_n: number(&load_before, row),
-            load_after_n: number(&load_after, row),
-            area_before_m2: number(&area_before, row),
-            area_after_m2: number(&area_after, row),
-            energy_lost_j: number(&energy, row),
+            asperity_id: asperities[row].unwrap_or(NO_ASPERITY),
+            approach_m: approaches[row],
+            avalanche_id: avalanches[row],
+            load_before_n: loads_before[row],
+            load_after_n: loads_after[row],
+            area_before_m2: areas_before[row],
+            area_after_m2: areas_after[row],
+            energy_lost_j: energies[row],
         })
     };
-    Ok(words.enumerate().map(event).collect())
+    Ok((0..frame.row_count()).map(event).collect())
 }

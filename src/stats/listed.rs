@@ -11,7 +11,7 @@ pub struct Listed {
     pub row: usize,
     /// The parameters that vary in the list, with the values of this row.
     pub label: String,
-    /// Whether the row is of the reference case.
+    /// True if the row is of the reference case.
     pub is_reference: bool,
     /// The row of the reference case at the same load; nothing for the reference case itself, and where there is none.
     pub reference: Option<usize>,
@@ -97,7 +97,7 @@ struct List {
     rows: Vec<usize>,
     differing: Vec<Varying>,
     loads: Vec<f64>,
-    /// Whether each row is of the reference case.
+    /// True for each row of the reference case.
     references: Vec<bool>,
 }
 

@@ -1,6 +1,6 @@
 //! Statistics: means, standard deviations and mean curves from the steps of many cycles.
 //!
-//! Polars reads, filters, sorts and groups; every sum is taken here, in the order of the realizations, so that the tables
+//! Tables are read and checked by the store, and grouped by Polars. Every sum is taken here, in the order of the realizations, so that the tables
 //! have the same bytes with any number of threads. This module is independent of the physics.
 
 mod avalanches;
@@ -11,6 +11,7 @@ mod curves;
 mod cycle;
 mod digits;
 mod events;
+mod grouped;
 mod listed;
 mod methods;
 mod model_error;
@@ -38,12 +39,11 @@ pub use realizations::{realizations, results};
 pub use rows::Value;
 pub use student::{FEW, Sample, t_quantile};
 pub use summary::summary;
-use varying::PARAMETERS;
 pub use varying::{Values, Varying, varying};
 pub use walk::{COMPRESSION_STATIONS, Point, STATIONS, TENSION_STATIONS, Walk};
 pub use warnings::{Warning, warnings, warnings_of};
 
-use crate::store::FrameError;
+use crate::store::{FrameError, StoreError};
 
 /// Columns by name, given from outside and copied through.
 pub type Given = Vec<(String, Value)>;
@@ -55,15 +55,15 @@ pub struct CaseInput {
     pub case_id: String,
     /// The sweeps that it belongs to, joined by `+`.
     pub sweep: String,
-    /// What defines the case: the columns that the tables `realizations` and `cases` have in common.
+    /// Parameters of the case: the columns that the tables `realizations` and `cases` have in common.
     pub parameters: Given,
     /// Its turning points, as `F/(E* A0)`.
     pub max_loads: Vec<f64>,
     /// A column of the table `realizations` whose mean is to be known to such a share of itself.
     pub precision: Option<(String, f64)>,
-    /// How many realizations the spec asks for.
+    /// Number of realizations in the spec.
     pub planned_count: usize,
-    /// How many of them failed.
+    /// Number of failed realizations.
     pub failed_count: usize,
     /// Columns of the table `realizations` that depend on the surface and the material alone: one list per surface whose cycle is done or failed. Empty if
     /// only finished cycles count.
@@ -89,13 +89,13 @@ pub struct CycleInput {
     pub energy_scale_j: f64,
     /// Θ after Deng and Kesari per unit of `A/A0` \[J\], from the moments of the continuous spectrum.
     pub loss_dk_per_area_j: Option<f64>,
-    /// The same, from the moments of this surface.
+    /// Θ after Deng and Kesari per unit of `A/A0` \[J\], from the moments of this surface.
     pub loss_dk_realised_per_area_j: Option<f64>,
     /// `Δγ A0` \[J\]: Θ after Dalvi and others per unit of `A/A0`.
     pub loss_dalvi_per_area_j: f64,
     /// Energy dissipated by crack-front pinning over the nominal area \[J\]; nothing where that is undefined.
     pub loss_pinning_per_area_j: Option<f64>,
-    /// What each asperity loses by itself \[J\], by its number.
+    /// Energy that each asperity dissipates in isolation \[J\], by its number.
     pub asperity_loss_j: Vec<f64>,
     /// Further columns that depend on the turning point, by its load.
     pub at_max_load: Vec<(f64, Given)>,
@@ -107,20 +107,15 @@ pub struct CycleInput {
 /// Why a table could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum StatsError {
-    /// Polars could not read or group a table.
-    #[error("cannot aggregate {}: {source}", path.display())]
-    Steps {
-        /// The table.
-        path: PathBuf,
-        /// What Polars says.
-        source: polars::error::PolarsError,
-    },
-    /// Polars could not group rows that were in memory.
+    /// A table of a cycle.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// Polars could not group rows.
     #[error("cannot group the rows of the table {table}: {source}")]
     Group {
         /// The table.
         table: &'static str,
-        /// What Polars says.
+        /// Message of Polars.
         source: polars::error::PolarsError,
     },
     /// The steps hold what no cycle can hold.
@@ -128,7 +123,7 @@ pub enum StatsError {
     Cycle {
         /// The table.
         path: PathBuf,
-        /// What is wrong, as in "have no loading branch".
+        /// Fault, as in "have no loading branch".
         problem: String,
     },
     /// The events hold what no cycle can hold.
@@ -136,7 +131,7 @@ pub enum StatsError {
     Events {
         /// The table.
         path: PathBuf,
-        /// What is wrong, as in "hold the kind ...".
+        /// Fault, as in "hold the kind ...".
         problem: String,
     },
     /// Campaigns cannot be compared.

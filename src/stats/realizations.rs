@@ -13,7 +13,7 @@ use crate::store::Frame;
 /// Reduces each cycle to one row per turning point, ordered by case, turning point and realization, whatever the order of the inputs.
 ///
 /// The loss is `Θ = ∮F dΔ`: the work at the turning step, and the work of the whole unloading branch, which is negative where load falls with Δ.
-/// What its events lost is told in parts: on the way to the turning point, which is only a part of the loading path if loading went on, and on the
+/// The dissipated energy of its events is given in parts: up to the load reversal, which is only a part of the loading path if loading went on, and on the
 /// way back; and by the kind of event.
 /// The pull-off load is minus the least load of the unloading branch; it is zero if that is no tension.
 ///
@@ -52,7 +52,7 @@ pub fn realizations(cases: &[CaseInput], cycles: &[CycleInput]) -> Result<Frame,
     rows.build()
 }
 
-/// What the steps of one cycle come to at each of its turning points, ascending.
+/// Results of the steps of one cycle at each of its load reversals, ascending.
 ///
 /// # Errors
 /// If the table of steps cannot be read or holds no such branch.
@@ -121,7 +121,7 @@ fn balance(loading: &Branch, turning: usize, unloading: &Branch, results: &Given
     (loss != 0.0).then(|| ((integral - dissipated) / loss).abs())
 }
 
-/// What the asperities that touched lose by themselves, over the scale of energies.
+/// Energy dissipated by the contacting asperities as isolated ones, over the scale of energies.
 fn touched(asperities: &[i64], input: &CycleInput) -> f64 {
     // Spots that have become one have numbers beyond those of the asperities.
     let each = asperities.iter().filter_map(|id| input.asperity_loss_j.get(usize::try_from(*id).ok()?));

@@ -1,7 +1,7 @@
 //! Rows of mixed values, put together one by one and turned into a checked table.
 
 use super::{Given, StatsError};
-use crate::schema::{Kind, Table};
+use crate::schema::{Kind, ParameterValue, Table};
 use crate::store::{ColumnData, Frame};
 
 /// One value of a table.
@@ -57,6 +57,15 @@ impl From<usize> for Value {
 impl From<&str> for Value {
     fn from(value: &str) -> Self {
         Self::Word(value.to_owned())
+    }
+}
+
+impl From<ParameterValue> for Value {
+    fn from(value: ParameterValue) -> Self {
+        match value {
+            ParameterValue::Number(number) => Self::Real(number),
+            ParameterValue::Word(word) => Self::Word(word),
+        }
     }
 }
 

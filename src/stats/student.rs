@@ -5,10 +5,10 @@ use std::f64::consts::FRAC_PI_2;
 /// Fewer samples than this are shown one by one: an interval of so few says more about the assumed distribution than about them.
 pub const FEW: usize = 5;
 
-/// What is known of a quantity from its independent samples.
+/// Statistics of a quantity from its independent samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
-    /// How many samples there are.
+    /// Number of samples.
     pub count: usize,
     /// Arithmetic mean; nothing without samples.
     pub mean: Option<f64>,

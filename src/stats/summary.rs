@@ -143,7 +143,7 @@ fn change(own: f64, reference: f64) -> Option<String> {
     percent.is_finite().then(|| if text == "-0.0" || text == "+0.0" { "0.0".to_owned() } else { text })
 }
 
-/// What the asperity model is expected to give of the results of boundary elements.
+/// Expected ratios of the results of the asperity model to those of boundary elements.
 fn model_lines(cases: &Frame) -> Result<Vec<String>, StatsError> {
     let mut parts = Vec::new();
     for (name, column) in ["A", "F_po", "Θ"].into_iter().zip(COLUMNS) {

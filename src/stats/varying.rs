@@ -1,53 +1,9 @@
-//! Which parameters tell the cases of a table apart.
+//! Parameters that distinguish the cases of a table.
 
 use super::StatsError;
 use super::digits::labels_with_unit;
+use crate::schema::{Parameter, parameters_by_rank};
 use crate::store::{ColumnData, Frame};
-
-/// Columns that may define a case, with the symbol and the axis label of each; labels have the markup of the figures.
-pub(super) const PARAMETERS: [(&str, &str, &str); 26] = [
-    ("surface_file", "surface", "surface"),
-    ("surface_dataset", "dataset", "dataset"),
-    ("detrend", "detrend", "levelling"),
-    ("magnification", "ζ", "magnification ζ"),
-    ("hurst", "H", "Hurst exponent H"),
-    ("rms_height_m", "h", "h_{rms} [m]"),
-    ("length_m", "L", "L [m]"),
-    ("points_per_shortest_wavelength", "n", "points per shortest wavelength"),
-    ("contact_modulus_pa", "E*", "E^{*} [Pa]"),
-    ("work_of_adhesion_j_m2", "Δγ", "Δγ [J/m^{2}]"),
-    ("interaction_range_m", "ε", "ε [m]"),
-    ("approach_step", "step", "output step/h_{rms}"),
-    ("method", "method", "method"),
-    ("element_points", "N", "grid points along a side"),
-    ("attraction", "attraction", "attraction"),
-    ("attraction_range_m", "ρ", "ρ [m]"),
-    ("nucleation", "nucleation", "nucleation"),
-    ("opening", "opening", "opening"),
-    ("precision", "precision", "precision"),
-    ("interaction", "interaction", "interaction"),
-    ("boundary", "boundary", "boundary"),
-    ("coalescence", "coalescence", "coalescence"),
-    ("jump_in", "jump_in", "jump-in criterion"),
-    ("normalization", "normalization", "normalization"),
-    ("amplitudes", "amplitudes", "amplitudes"),
-    ("as_printed", "as_printed", "uncorrected equations"),
-];
-
-/// Parameters that only one of the methods reads: they vary if they differ between cases of one method.
-const OF_METHOD: [&str; 11] = [
-    "approach_step",
-    "interaction",
-    "boundary",
-    "coalescence",
-    "jump_in",
-    "element_points",
-    "attraction",
-    "attraction_range_m",
-    "nucleation",
-    "opening",
-    "precision",
-];
 
 /// The values of a parameter, one per row.
 #[derive(Debug, Clone, PartialEq)]
@@ -77,7 +33,19 @@ pub struct Varying {
 
 impl Varying {
     /// A parameter with its values.
-    pub fn new((name, symbol, label): (&'static str, &'static str, &'static str), values: Values) -> Self {
+    pub fn new(parameter: &Parameter, values: Values) -> Self {
+        let mut varying = Self::named_as([parameter.column.name, parameter.symbol, parameter.label], values);
+        if parameter.of_method {
+            varying.absent = match &varying.values {
+                Values::Numbers(numbers) => numbers.iter().map(Option::is_none).collect(),
+                Values::Words(words) => words.iter().map(String::is_empty).collect(),
+            };
+        }
+        varying
+    }
+
+    /// A quantity with its values: name, symbol and label. It belongs to no method.
+    pub fn named_as([name, symbol, label]: [&'static str; 3], values: Values) -> Self {
         let texts: Vec<String> = match &values {
             Values::Numbers(numbers) => {
                 let known: Vec<f64> = numbers.iter().flatten().copied().collect();
@@ -86,11 +54,7 @@ impl Varying {
             }
             Values::Words(words) => words.iter().map(|word| if word.is_empty() { "none".to_owned() } else { word.clone() }).collect(),
         };
-        let absent = match &values {
-            _ if !OF_METHOD.contains(&name) => vec![false; texts.len()],
-            Values::Numbers(numbers) => numbers.iter().map(Option::is_none).collect(),
-            Values::Words(words) => words.iter().map(String::is_empty).collect(),
-        };
+        let absent = vec![false; texts.len()];
         Self { name, symbol, label, values, texts, absent }
     }
 
@@ -119,8 +83,8 @@ impl Varying {
 }
 
 /// True if the values of a parameter differ: of one that only one method reads, between the rows of one method.
-fn differ<T: PartialEq>(name: &str, picked: &[T], same_method: &[usize]) -> bool {
-    let first = |place: usize| if OF_METHOD.contains(&name) { same_method[place] } else { 0 };
+fn differ<T: PartialEq>(parameter: &Parameter, picked: &[T], same_method: &[usize]) -> bool {
+    let first = |place: usize| if parameter.of_method { same_method[place] } else { 0 };
     (0..picked.len()).any(|place| picked[place] != picked[first(place)])
 }
 
@@ -136,20 +100,21 @@ pub fn varying(cases: &Frame, rows: &[usize]) -> Result<Vec<Varying>, StatsError
     let places = (0..rows.len()).map(|place| rows.iter().position(|row| methods.get(*row) == methods.get(rows[place])).unwrap_or(place));
     // The first row with the method of each row.
     let same_method: Vec<usize> = places.collect();
-    // What a measured surface is as large and rough as follows from which it is, and names none.
-    for (name, symbol, label) in PARAMETERS.into_iter().filter(|(name, ..)| !measured || !matches!(*name, "rms_height_m" | "length_m")) {
-        let values = match cases.column(name)? {
+    // The size and roughness of a measured surface follow from its file and are not named.
+    let follows = |name: &str| measured && matches!(name, "rms_height_m" | "length_m");
+    for parameter in parameters_by_rank().into_iter().filter(|parameter| !follows(parameter.column.name)) {
+        let values = match cases.column(parameter.column.name)? {
             ColumnData::F64(all) => {
                 let picked: Vec<Option<f64>> = rows.iter().map(|row| all.get(*row).copied().flatten()).collect();
-                differ(name, &picked, &same_method).then_some(Values::Numbers(picked))
+                differ(parameter, &picked, &same_method).then_some(Values::Numbers(picked))
             }
             ColumnData::Text(all) => {
                 let picked: Vec<String> = rows.iter().map(|row| all.get(*row).cloned().flatten().unwrap_or_default()).collect();
-                differ(name, &picked, &same_method).then_some(Values::Words(picked))
+                differ(parameter, &picked, &same_method).then_some(Values::Words(picked))
             }
             ColumnData::I64(_) | ColumnData::Bool(_) => None,
         };
-        found.extend(values.map(|values| Varying::new((name, symbol, label), values)));
+        found.extend(values.map(|values| Varying::new(parameter, values)));
     }
     Ok(found)
 }

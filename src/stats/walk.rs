@@ -5,14 +5,14 @@
 //! of time; the loading branch is walked backwards, so that its crossing is the last in time and that of the greatest penetration.
 //! Between two steps everything is linear in the load, across a jump too: then the chord of the jump is read.
 
-/// Where a branch is read: the number of stations from the turning point down to zero load, both included.
+/// Stations of a branch: their number from the turning point down to zero load, both included.
 pub const COMPRESSION_STATIONS: usize = 151;
 /// Stations below zero load, the last one at the branch's lowest load.
 pub const TENSION_STATIONS: usize = 50;
 /// All stations of a branch.
 pub const STATIONS: usize = COMPRESSION_STATIONS + TENSION_STATIONS;
 
-/// What a branch is at one load; all dimensionless.
+/// Point of a branch; all dimensionless.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Point {
     /// Load `F/(E* A0)`.

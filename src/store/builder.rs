@@ -1,9 +1,9 @@
 //! Putting a table together, with every mistake found before anything is written.
 
-use crate::schema::{Kind, Table};
+use crate::schema::Table;
 
 use super::error::FrameError;
-use super::frame::{ColumnData, Frame};
+use super::frame::{ColumnData, Frame, position, wrong_kind};
 
 /// A table that is being put together. What does not fit is reported by [`FrameBuilder::build`], the first fault first.
 #[derive(Debug)]
@@ -11,6 +11,14 @@ pub struct FrameBuilder {
     table: &'static Table,
     columns: Vec<Option<ColumnData>>,
     error: Option<FrameError>,
+}
+
+impl Frame {
+    /// Begins a table; its columns are given by name, in any order.
+    #[must_use]
+    pub fn of(table: &'static Table) -> FrameBuilder {
+        FrameBuilder::new(table)
+    }
 }
 
 impl FrameBuilder {
@@ -116,17 +124,4 @@ impl FrameBuilder {
         }
         Ok(Frame { table: self.table, rows, columns })
     }
-}
-
-/// The error of a column that holds one kind where another was wanted.
-pub(super) fn wrong_kind(table: &'static Table, name: &str, is: Kind, wanted: Kind) -> FrameError {
-    FrameError::new(table.name, format!("holds {} in the column {name:?}, not {}", is.word(), wanted.word()))
-}
-
-/// Where in the table the column of this name stands.
-pub(super) fn position(table: &'static Table, name: &str) -> Result<usize, FrameError> {
-    table.columns.iter().position(|column| column.name == name).ok_or_else(|| {
-        let allowed: Vec<_> = table.columns.iter().map(|column| column.name).collect();
-        FrameError::new(table.name, format!("has no column {name:?}\nhelp: use one of {}", allowed.join(", ")))
-    })
 }

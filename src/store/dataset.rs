@@ -11,7 +11,7 @@ use super::error::Cause;
 
 /// Groups at most that are searched for links to other files; a file with more has its soft links refused.
 const MOST_GROUPS: usize = 4096;
-/// What to do about heights in another file.
+/// Help for heights in another file.
 const HELP: &str = "copy the heights into one file, as an ordinary dataset (h5repack, or h5py: f[\"heights\"] = g[\"heights\"][...])";
 
 /// A dataset that is not in the file alone.

@@ -2,7 +2,6 @@
 
 use crate::schema::{Column, Kind, Table};
 
-use super::builder::{FrameBuilder, position, wrong_kind};
 use super::error::FrameError;
 
 /// The values of one column; `None` is a missing one.
@@ -71,12 +70,6 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Begins a table; its columns are given by name, in any order.
-    #[must_use]
-    pub fn of(table: &'static Table) -> FrameBuilder {
-        FrameBuilder::new(table)
-    }
-
     /// Schema.
     #[must_use]
     pub fn table(&self) -> &'static Table {
@@ -168,4 +161,17 @@ impl Frame {
     fn wrong_kind(&self, name: &str, found: &ColumnData, wanted: Kind) -> FrameError {
         wrong_kind(self.table, name, found.kind(), wanted)
     }
+}
+
+/// The error of a column that holds one kind where another was wanted.
+pub(super) fn wrong_kind(table: &'static Table, name: &str, is: Kind, wanted: Kind) -> FrameError {
+    FrameError::new(table.name, format!("holds {} in the column {name:?}, not {}", is.word(), wanted.word()))
+}
+
+/// Place of a column in its table.
+pub(super) fn position(table: &'static Table, name: &str) -> Result<usize, FrameError> {
+    table.columns.iter().position(|column| column.name == name).ok_or_else(|| {
+        let allowed: Vec<_> = table.columns.iter().map(|column| column.name).collect();
+        FrameError::new(table.name, format!("has no column {name:?}\nhelp: use one of {}", allowed.join(", ")))
+    })
 }

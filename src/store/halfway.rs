@@ -26,7 +26,7 @@ pub fn write_halfway(path: &Path, key: &str, bytes: &[u8]) -> Result<(), StoreEr
     write_state(path, key, bytes).map(drop)
 }
 
-/// The same for a state that a finished unit keeps; [`read_halfway`] reads it.
+/// Writes the state that a finished task keeps; [`read_halfway`] reads it.
 ///
 /// # Errors
 /// As [`commit_bytes`].

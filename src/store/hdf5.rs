@@ -95,7 +95,7 @@ pub fn read_heights(path: &Path, name: Option<&str>) -> Result<Array2<f64>, Stor
 /// Checks that the heights [`read_heights`] or [`read_surface`] would read lie in the file itself.
 ///
 /// # Errors
-/// Where else they are, and what to do. A file that cannot be opened, or has no such dataset, is no error here.
+/// The other file, and what to do. A file that cannot be opened, or has no such dataset, is no error here.
 pub fn check_inside(path: &Path, name: Option<&str>) -> Result<(), String> {
     let refusal = library(|| {
         let file = open(path)?;

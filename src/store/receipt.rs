@@ -1,4 +1,4 @@
-//! What is known of a unit that is done: its key and what that was made of, its files with their hashes, and how they came to be.
+//! Receipt of a finished task: its key and key inputs, its files with their hashes, and its provenance.
 //!
 //! A receipt is written after the unit's files, each of which was put in place whole. So a unit with a receipt is done, and one without is not, whatever files are
 //! there. It is the one place where a clock, a host and a program's version are told.
@@ -14,7 +14,7 @@ use super::error::StoreError;
 /// Version of this format.
 pub const RECEIPT_VERSION: u32 = 1;
 
-/// What stands before the hash of all that is before it.
+/// Text before the hash of the preceding bytes.
 const SEAL: &str = ",\n  \"seal\": \"";
 
 /// More than any receipt of this program has \[bytes\]: that of the statistics of 10⁵ cycles has 10 MB.

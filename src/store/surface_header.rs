@@ -1,9 +1,10 @@
-//! What a surface file says of its surface: the attributes of its root.
+//! Attributes of the root of a surface file.
 
 use hdf5_metno::types::{FixedUnicode, TypeDescriptor, VarLenUnicode};
 use hdf5_metno::{File, Group, H5Type, Location};
 
 use crate::model::{Amplitudes, Choice, Detrend, Normalization};
+use crate::physics::surface::spectrum::Moments;
 
 use super::error::Cause;
 
@@ -37,6 +38,14 @@ pub struct SurfaceHeader {
     pub generated: Option<Generated>,
     /// Source and preprocessing of a measured surface; nothing for a generated one.
     pub measured: Option<Measured>,
+}
+
+impl SurfaceHeader {
+    /// Spectral moments of the realized surface.
+    #[must_use]
+    pub fn moments(&self) -> Moments {
+        Moments::of_rms(self.rms_height_m, self.rms_slope, self.rms_curvature_1_m)
+    }
 }
 
 /// Source and preprocessing of a measured surface.

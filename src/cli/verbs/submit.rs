@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-/// What Slurm lets array indices go up to where it does not say.
+/// Number of array indices that Slurm allows by default.
 const USUAL_MOST: usize = 1001;
 
 /// Problem and help of an option that sbatch cannot read.
@@ -210,10 +210,10 @@ fn sbatch(arguments: &[String], before: &[String], options: &[String]) -> Result
     })
 }
 
-/// How long Slurm's commands may take to answer a question.
+/// Time limit of Slurm's commands.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// What a command prints, if it succeeds in time. One that does not answer is killed.
+/// Output of a command, if it succeeds in time. One that does not answer is killed.
 fn answer(command: &str, arguments: &[&str]) -> Option<String> {
     let mut child = Command::new(command).args(arguments).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().ok()?;
     let mut output = child.stdout.take()?;
@@ -232,7 +232,7 @@ fn answer(command: &str, arguments: &[&str]) -> Option<String> {
     text.filter(|_| status.success())
 }
 
-/// How far array indices may go here.
+/// Number of array indices that Slurm allows here.
 fn most() -> usize {
     let text = answer("scontrol", &["show", "config"]).unwrap_or_default();
     let line = text.lines().find(|line| line.trim_start().starts_with("MaxArraySize"));
@@ -258,7 +258,7 @@ fn remember(campaign: &Campaign, sent: &[Sent]) -> Result<(), Fault> {
     commit::commit_bytes("write down the jobs in", &folder(campaign).join("jobs.json"), text.as_bytes()).map(drop).map_err(failed)
 }
 
-/// What the queue has of some jobs; nothing where there is none to ask, or none that answers.
+/// State of some jobs in the queue; nothing if there is no queue or it does not answer.
 pub(super) fn queue(sent: &[Sent]) -> Option<Queue> {
     if sent.is_empty() {
         return Some(Queue::default());
@@ -266,7 +266,7 @@ pub(super) fn queue(sent: &[Sent]) -> Option<Queue> {
     answer("squeue", &QUERY).map(|text| Queue::parse(&text, sent))
 }
 
-/// Whether jobs other than the one that this program runs in are in the queue.
+/// True if jobs other than the one of this program are in the queue.
 pub(super) fn is_queued(sent: &[Sent]) -> bool {
     let own = std::env::var("SLURM_ARRAY_JOB_ID").or_else(|_| std::env::var("SLURM_JOB_ID")).ok().and_then(|job| job.parse::<u64>().ok());
     queue(sent).is_some_and(|queue| queue.jobs.iter().any(|job| Some(*job) != own))

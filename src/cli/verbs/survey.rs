@@ -52,7 +52,7 @@ fn outside_json(of: &Outside) -> Value {
     json!({ "code": of.kind.code, "min": of.range[0], "max": of.range[1], "limit": of.limit, "cases": of.cases })
 }
 
-/// The same as text of at most 80 columns.
+/// Status as text of at most 80 columns.
 fn outside_text(of: &Outside, all: usize) -> String {
     let [low, high] = of.range.map(|value| significant(value, 3));
     let range = if low == high { low } else { format!("{low} to {high}") };
@@ -129,7 +129,7 @@ impl Slurm {
         Self::Sent { jobs, queue, ended }
     }
 
-    /// Whether the queue answers that it has none of the jobs.
+    /// True if the queue answers that it has none of the jobs.
     fn is_idle(&self) -> bool {
         matches!(self, Self::Sent { queue: Some(queue), .. } if queue.jobs.is_empty())
     }
@@ -171,7 +171,7 @@ impl Slurm {
         }
     }
 
-    /// The same in JSON: numbers of tasks are null where the queue cannot be asked.
+    /// Jobs in JSON: numbers of tasks are null if the queue cannot be read.
     fn answer(&self) -> Option<Value> {
         let Self::Sent { jobs, queue, ended } = self else { return None };
         let ended: Vec<Value> = ended

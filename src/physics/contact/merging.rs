@@ -75,7 +75,7 @@ impl Problem {
         let [a, b] = [state.radius[i], state.radius[j]];
         let area_radius = a.hypot(b);
         let root = 2.0 * self.material.contact_modulus_pa * self.material.pull() * area_radius * area_radius.sqrt();
-        (&self.asperities[i].load(a) + &self.asperities[j].load(b), root)
+        (self.asperities[i].load(a) + self.asperities[j].load(b), root)
     }
 
     /// A merged spot by the caller's numbers and places.

@@ -126,6 +126,13 @@ pub struct Moments {
 }
 
 impl Moments {
+    /// Moments of an isotropic surface, from its rms height \[m\], rms slope and rms Laplacian \[1/m\]: `m0 = h_rms²`, `m2 = h'_rms²/2`,
+    /// `m4 = 3 h''_rms²/8`.
+    #[must_use]
+    pub fn of_rms(height_m: f64, slope: f64, laplacian_1_m: f64) -> Self {
+        Self { m0_m2: height_m.powi(2), m2: 0.5 * slope.powi(2), m4_1_m2: 0.375 * laplacian_1_m.powi(2) }
+    }
+
     /// `h_rms = sqrt(m0)` \[m\].
     #[must_use]
     pub fn rms_height_m(&self) -> f64 {
@@ -154,5 +161,11 @@ impl Moments {
     #[must_use]
     pub fn summit_density_1_m2(&self) -> f64 {
         self.m4_1_m2 / (6.0 * PI * 3f64.sqrt() * self.m2)
+    }
+
+    /// Unit of summit curvatures in Nayak's distribution, `sqrt(m4/3)` \[1/m\]. Below Eq A3.
+    #[must_use]
+    pub fn curvature_unit_1_m(&self) -> f64 {
+        (self.m4_1_m2 / 3.0).sqrt()
     }
 }

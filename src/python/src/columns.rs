@@ -23,7 +23,7 @@ pub fn each<'py, const N: usize>(
     Ok(values)
 }
 
-/// The same with several results of each element.
+/// Columns of several results of each element.
 pub fn each_many<'py, const N: usize, const M: usize>(
     py: Python<'py>,
     columns: [Column<'py>; N],

@@ -1,4 +1,4 @@
-//! The spectrum of a self-affine surface, its moments, and what it costs to flatten it: `hysteron::physics::spectrum` and `validity`, by name.
+//! The spectrum of a self-affine surface, its moments, and what it costs to flatten it: `hysteron::physics::surface::spectrum` and `theory::flattening`, by name.
 
 use crate::columns::{Column, Values, allowed, each, each_many, positive};
 use hysteron::model::{Amplitudes, Normalization};
@@ -89,7 +89,7 @@ fn statistics<'py>(py: Python<'py>, m0_m2: Column<'py>, m2: Column<'py>, m4_1_m2
     })
 }
 
-/// What it takes to flatten the whole band, and its shortest octave.
+/// Elastic energies that flatten the whole band, and its shortest octave.
 #[pyfunction]
 fn flattening<'py>(
     py: Python<'py>,
@@ -105,7 +105,7 @@ fn flattening<'py>(
     })
 }
 
-/// The same over the work of adhesion: Persson and Tosatti's ratio, and the conformity.
+/// Elastic energies over the work of adhesion: Persson and Tosatti's ratio, and the conformity.
 #[pyfunction]
 fn flattening_ratios<'py>(
     py: Python<'py>,

@@ -1,8 +1,9 @@
 //! A cycle of the asperity model.
 
 use super::super::done::Outcome;
+use super::super::extract::read_summits;
 use super::super::identity::Identity;
-use super::super::surface::{Scale, read_summits, scale};
+use super::super::surface::{Scale, scale};
 use super::super::{StageError, Watch, step_count};
 use super::asperity_tables::{contacts, events, merged, steps, turning, word};
 use super::{Checkpoints, Progress, effort_of, write_tables};
@@ -60,7 +61,7 @@ pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> R
     Ok(Outcome { files: write_tables(campaign, unit, &tables)?, effort: effort(&cycle, &problem) })
 }
 
-/// What a cycle has taken, for its receipt.
+/// Effort of a cycle, for its receipt.
 fn effort(cycle: &Cycle, problem: &Problem) -> Map<String, Value> {
     let all = cycle.steps.iter().fold(Effort::default(), |mut sum, step| {
         sum += step.effort;

@@ -39,7 +39,7 @@ pub(super) fn turning(of: Identity<'_>, cycle: &Cycle, problem: &Problem, loads:
         .build()?)
 }
 
-/// What an asperity is doing, in the tables.
+/// State of an asperity in the tables.
 pub(super) fn word(status: Status) -> &'static str {
     match status {
         Status::Contact => "contact",

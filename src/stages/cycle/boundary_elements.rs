@@ -4,7 +4,7 @@ use super::super::done::Outcome;
 use super::super::identity::Identity;
 use super::super::{StageError, Watch};
 use super::elements_setup::{Setup, Units, setup};
-use super::elements_tables::{adhesionless, branch, contacts, events, steps};
+use super::elements_tables::{Counts, adhesionless, branch, contacts, events, steps};
 use super::{Checkpoints, Progress, effort_of, write_tables};
 use crate::campaign::{Campaign, CycleUnit};
 use crate::model::KeptContacts;
@@ -76,9 +76,6 @@ fn curve(steps: &[FreeStep]) -> Vec<CurvePoint> {
         |step: &FreeStep| CurvePoint { penetration_m: step.approach, load_m2: step.totals.load, area_m2: step.totals.contact as f64 };
     steps.iter().map(point).collect()
 }
-
-/// Numbers of asperities in the regions of the steps.
-pub(super) type Counts = Vec<(usize, Vec<u32>)>;
 
 /// Number of asperities in each region.
 fn summit_counts(labels: &Labels, summits: &[usize]) -> Vec<u32> {

@@ -1,7 +1,8 @@
 //! Grid, law and settings of boundary elements from the parameters of a case.
 
 use super::super::StageError;
-use super::super::surface::{read_summits, scale};
+use super::super::extract::read_summits;
+use super::super::surface::scale;
 use crate::campaign::{Campaign, CycleUnit};
 use crate::model::{Attraction, KeptContacts, Material, Nucleation, Opening};
 use crate::physics::PhysicsError;
@@ -13,7 +14,7 @@ use crate::physics::boundary_elements::minimise::Accuracy;
 use crate::physics::boundary_elements::resample::resample;
 use crate::physics::jkr::Asperity;
 use crate::physics::memory;
-use crate::physics::surface::measured::mirrored;
+use crate::physics::surface::modes::mirrored;
 use crate::physics::surface::summits::Summit;
 use crate::spec::CaseParams;
 use crate::store::hdf5::{SurfaceHeader, read_header, read_surface};

@@ -2,7 +2,6 @@
 
 use super::super::StageError;
 use super::super::identity::Identity;
-use super::boundary_elements::Counts;
 use super::elements_setup::Units;
 use crate::physics::boundary_elements::adhesionless::FreeStep;
 use crate::physics::boundary_elements::cycle::{Cycle, Step};
@@ -12,6 +11,9 @@ use crate::store::Frame;
 use std::collections::HashMap;
 use std::f64::consts::PI;
 use std::iter::repeat_n;
+
+/// Numbers of asperities in the regions of the steps.
+pub(super) type Counts = Vec<(usize, Vec<u32>)>;
 
 /// Word of the method in the tables.
 const METHOD: &str = "boundary_elements";

@@ -12,8 +12,10 @@ pub use elements_setup::Units;
 pub(super) use elements_setup::lattice;
 
 use super::done::Outcome;
+use super::failure::in_the_way;
+use super::runner::{Context, Tasks};
 use super::{StageError, Watch};
-use crate::campaign::{Campaign, CycleUnit, Stage};
+use crate::campaign::{Campaign, CycleUnit, Stage, Standing, SurfaceUnit, Unit};
 use crate::store::commit::Written;
 use crate::store::{Frame, parquet, read_halfway, write_halfway};
 use serde::Serialize;
@@ -26,7 +28,76 @@ use std::time::{Duration, Instant};
 /// Minimum time between two checkpoints.
 const KEPT_FOR: Duration = Duration::from_secs(60);
 
-pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> Result<Outcome, StageError> {
+/// Tasks of the stage cycle: one for each different cycle.
+pub(super) struct Cycles<'a> {
+    context: Context<'a>,
+    units: Vec<CycleUnit>,
+}
+
+impl<'a> Cycles<'a> {
+    pub(super) fn of(context: Context<'a>) -> Self {
+        Self { context, units: context.campaign.distinct_cycles() }
+    }
+
+    fn surface(&self, of: &CycleUnit) -> &'a SurfaceUnit {
+        &self.context.campaign.surfaces[of.surface]
+    }
+}
+
+impl Tasks for Cycles<'_> {
+    type Of = CycleUnit;
+
+    const STAGE: Stage = Stage::Cycle;
+
+    fn selected(&self) -> Vec<&CycleUnit> {
+        self.units.iter().filter(|unit| self.context.task.shard.holds(unit.surface)).collect()
+    }
+
+    fn unit<'a>(&self, of: &'a CycleUnit) -> Unit<'a> {
+        of.cycle()
+    }
+
+    fn key_inputs(&self, of: &CycleUnit) -> Map<String, Value> {
+        self.context.campaign.cycle_preimages(of)
+    }
+
+    fn standing(&self, of: &CycleUnit) -> Standing {
+        self.context.campaign.cycle_standing(of, self.context.task.check)
+    }
+
+    /// A failed cycle would fail again; it is tried if that is requested.
+    fn is_given_up(&self, of: &CycleUnit, standing: &Standing) -> bool {
+        let Context { campaign, task, .. } = self.context;
+        let is_retried = || task.retried.contains(&of.id) && campaign.failed_at(of).is_none_or(|stage| stage == Stage::Cycle);
+        matches!(standing, Standing::Failed(_)) && !is_retried()
+    }
+
+    fn input(&self, of: &CycleUnit) -> Option<(String, Standing)> {
+        let surface = self.surface(of);
+        Some((surface.id.clone(), self.context.campaign.standing(&surface.asperities(), self.context.task.check)))
+    }
+
+    fn duration_rank(&self, of: &CycleUnit) -> (bool, u32) {
+        (self.context.campaign.cases[of.case].case.params.by_elements(), self.surface(of).params.magnification)
+    }
+
+    fn compute(&self, of: &CycleUnit) -> Result<Outcome, StageError> {
+        in_the_way(self.context.campaign, &of.cycle()).and_then(|()| compute(self.context.campaign, of, self.context.watch))
+    }
+
+    fn cycles<'a>(&'a self, of: &'a CycleUnit) -> Vec<&'a CycleUnit> {
+        vec![of]
+    }
+
+    fn clean_up(&self, of: &CycleUnit) {
+        for left in [self.context.campaign.failure_path(of), self.context.campaign.halfway_path(of)] {
+            let _ = std::fs::remove_file(left);
+        }
+    }
+}
+
+/// Computes a cycle and writes its tables.
+fn compute(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> Result<Outcome, StageError> {
     let path = campaign.cycle_dir(unit);
     std::fs::create_dir_all(&path).map_err(|source| StageError::Folder { path, source })?;
     let by_elements = campaign.cases[unit.case].case.params.by_elements();

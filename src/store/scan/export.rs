@@ -11,11 +11,11 @@ use super::super::error::{Cause, StoreError};
 use super::numbers::points;
 use super::{Source, netcdf};
 
-/// How a list of dimensions begins.
+/// Tag of a list of dimensions.
 const DIMENSIONS: u32 = 10;
-/// How a list of variables begins.
+/// Tag of a list of variables.
 const VARIABLES: u32 = 11;
-/// How a list of attributes begins.
+/// Tag of a list of attributes.
 const ATTRIBUTES: u32 = 12;
 /// The kinds of numbers that are written.
 const CHAR: u32 = 2;

@@ -16,7 +16,7 @@ use super::{Cause, Scan, Source, units};
 const HEIGHTS: &str = "heights";
 /// The variable that says which points are missing.
 const MASK: &str = "mask";
-/// What NetCDF puts where nothing has been written.
+/// Fill values of NetCDF.
 const NEVER_WRITTEN: f64 = f64::from_bits(0x479e_0000_0000_0000);
 
 /// Reads a variable as heights.
@@ -71,7 +71,7 @@ fn unit_of(variable: &Variable) -> Option<&str> {
     variable.text("unit").or_else(|| variable.text("units"))
 }
 
-/// What an axis says of the size along it \[m\].
+/// Size along an axis \[m\].
 fn size(axis: &Variable, otherwise: Option<&str>) -> Option<Result<f64, Cause>> {
     let length = axis.number("length")?;
     let unit = unit_of(axis).or(otherwise)?;

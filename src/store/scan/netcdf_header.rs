@@ -13,10 +13,10 @@ const LONGEST_ATTRIBUTE: u64 = 4096;
 const MOST_ENTRIES: u64 = 1 << 16;
 /// Dimensions that a variable may have.
 const MOST_DIMENSIONS: u64 = 1024;
-/// What a file has in place of the number of its records while it is being written.
+/// Value in place of the number of records while a file is being written.
 const STREAMING: u64 = u32::MAX as u64;
 
-/// What the header says.
+/// Content of the header.
 #[derive(Default)]
 pub(super) struct Header {
     /// Number of records.
@@ -40,20 +40,20 @@ pub(super) struct Variable {
     /// Places of its dimensions, every one of which exists.
     pub(super) dimensions: Vec<usize>,
     attributes: Vec<(String, Value)>,
-    /// What kind of number it has; none for text.
+    /// Kind of its numbers; none for text.
     pub(super) kind: Option<Number>,
-    /// Where its first number is.
+    /// Offset of its first number.
     pub(super) begin: u64,
 }
 
-/// What an attribute says.
+/// Value of an attribute.
 enum Value {
     Text(String),
     Number(f64),
 }
 
 impl Variable {
-    /// What an attribute says in letters, if it is there and not empty.
+    /// Text of an attribute, if it is there and not empty.
     pub(super) fn text(&self, name: &str) -> Option<&str> {
         self.attributes.iter().find_map(|(other, value)| match value {
             Value::Text(text) if other == name && !text.is_empty() => Some(text.as_str()),
@@ -61,7 +61,7 @@ impl Variable {
         })
     }
 
-    /// What an attribute says as a number, the first one if it has more.
+    /// Number of an attribute, the first one if it has more.
     pub(super) fn number(&self, name: &str) -> Option<f64> {
         self.attributes.iter().find_map(|(other, value)| match value {
             Value::Number(number) if other == name => Some(*number),
@@ -97,7 +97,7 @@ impl Header {
     }
 }
 
-/// What is left of a file, from which nothing is taken that is not there.
+/// Remainder of a file; reads beyond its end are errors.
 struct Bytes<'a> {
     source: &'a mut Source,
     left: u64,
@@ -145,7 +145,7 @@ impl Bytes<'_> {
         self.wide(self.counts)
     }
 
-    /// How many entries a list has that begins here.
+    /// Number of entries of a list that begins here.
     fn list(&mut self, tag: u64, what: &str) -> Result<u64, Cause> {
         let (found, count) = (self.word()?, self.count()?);
         if found != tag && (found, count) != (0, 0) {

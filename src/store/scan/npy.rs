@@ -80,7 +80,7 @@ fn number(descr: &str) -> Result<(Number, Order), Cause> {
     }
 }
 
-/// What the line says.
+/// Content of the line.
 struct About {
     descr: String,
     layout: Layout,

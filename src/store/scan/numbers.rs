@@ -71,7 +71,7 @@ pub(super) enum Layout {
     Columns,
 }
 
-/// How many points a field of this extent has, if that is a number that a scan can have.
+/// Number of points of a field of this extent, if a scan can have as many.
 pub(super) fn points(rows: u64, columns: u64) -> Result<u64, Cause> {
     match rows.checked_mul(columns) {
         Some(0) => Err(format!("it says that it has {rows} by {columns} points, so that it holds no surface").into()),

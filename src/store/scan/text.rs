@@ -1,6 +1,6 @@
 //! A matrix of numbers as text: every line a row.
 //!
-//! What separates the numbers is decided by the first line of them, and holds for the file. Lines that begin with a
+//! The first line of numbers determines the separator of the file. Lines that begin with a
 //! comment sign may say sizes and units; so may lines before the first numbers that say something of the form
 //! "width = 10 µm", as some instruments write it without a sign.
 //!
@@ -13,16 +13,16 @@ use super::text_heading::Heading;
 use super::text_points::grid;
 use super::{Cause, MOST_POINTS, Scan, Source};
 
-/// How a comment begins.
+/// Starts of a comment.
 const COMMENTS: [&str; 3] = ["#", "%", "//"];
-/// What stands for a missing point, whatever the size of its letters.
+/// Words for a missing point, in upper or lower case.
 const MISSING: [&str; 9] = ["nan", "+nan", "-nan", "bad", "--", "---", "inf", "-inf", "infinite"];
 /// Lines from which on few columns are coordinates: a matrix needs as many columns as that to be of use.
 const MANY: u64 = 16;
 /// Bytes of a cell that an error shows.
 const SHOWN: usize = 24;
 
-/// What separates numbers.
+/// Separator of numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Separator {
     /// As many spaces and tabs as you like.
@@ -61,7 +61,7 @@ fn decoded(bytes: &[u8]) -> String {
     }
 }
 
-/// What has been read of a matrix.
+/// Rows of a matrix that have been read.
 struct Matrix {
     heading: Heading,
     separator: Option<Separator>,
@@ -193,7 +193,7 @@ fn names_points(line: &str) -> bool {
     words.map(|word| word.trim_matches('"').to_ascii_lowercase()).eq(["x", "y", "z"])
 }
 
-/// What separates the numbers of this line.
+/// Separator of the numbers of this line.
 fn separator(line: &str) -> Separator {
     let one_each = |sign: char| line.split(sign).all(|cell| !cell.trim().contains(char::is_whitespace));
     if line.contains(';') {

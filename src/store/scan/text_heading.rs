@@ -1,4 +1,4 @@
-//! What the heading of a matrix of text says of its size and units.
+//! Size and units in the heading of a matrix of text.
 //!
 //! These are the words of Gwyddion, of SurfaceTopography, and of what SPIP and some interferometers write. Whatever else
 //! stands in a heading is passed over.
@@ -26,9 +26,9 @@ struct Quantity {
     unit: Option<String>,
 }
 
-/// What a heading comes to.
+/// Units and size of a heading.
 pub(super) struct Meaning {
-    /// What the numbers of the file are to be multiplied with.
+    /// Factor of the numbers of the file.
     pub(super) factor: f64,
     /// The unit of length that the file gives.
     pub(super) unit: Option<String>,
@@ -80,7 +80,7 @@ impl Heading {
         .ok_or_else(twice)
     }
 
-    /// What it comes to for points on a grid with these spacings along x and y, in the numbers of the file.
+    /// Units and size for points on a grid with these spacings along x and y, in the numbers of the file.
     pub(super) fn of_points(&self, spacing: [f64; 2], [x, y]: [u64; 2]) -> Result<Meaning, Cause> {
         let (factor, unit) = self.scale()?;
         let of_x = self.width_unit.as_ref().or(unit);
@@ -102,7 +102,7 @@ impl Heading {
         Ok((factor, unit))
     }
 
-    /// What it comes to for a matrix of this extent.
+    /// Units and size for a matrix of this extent.
     pub(super) fn meaning(&self, [rows, columns]: [u64; 2]) -> Result<Meaning, Cause> {
         for (said, found, what) in [(self.lines, rows, "lines"), (self.values_in_line, columns, "values in a line")] {
             if let Some(said) = said.filter(|said| *said != found) {

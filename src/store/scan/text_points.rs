@@ -9,7 +9,7 @@ use super::numbers::{points, room, shaped};
 const SAME: f64 = 1e-6;
 /// Fraction of a grid spacing by which a coordinate may be off, as rounding in a file makes it.
 const OFF: f64 = 0.1;
-/// What to do with points that are not on a regular grid.
+/// Help for points that are not on a regular grid.
 const HELP: &str = "interpolate the points to a regular grid first (scipy.interpolate.griddata in Python, or Gwyddion), and write nan where heights are missing";
 
 /// Heights on a grid, and the distance of its points along x and along y, all in the numbers of the file.

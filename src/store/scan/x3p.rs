@@ -27,7 +27,7 @@ const MOST_ELEMENTS: usize = 256;
 const MOST_NODES: u32 = 1 << 16;
 /// Attributes that all of them may have together; those of instruments have one or two. The parser compares the attributes of an element with one another.
 const MOST_ATTRIBUTES: usize = 1024;
-/// What deflate reaches on zeros: a part of an archive is at most this many times larger than what it takes there.
+/// Compression ratio of deflate on zeros: a part of an archive is at most this many times larger than its compressed size.
 const MOST_PACKED: u64 = 1100;
 
 /// An archive on the disk.
@@ -133,7 +133,7 @@ fn plain(name: &str) -> String {
     name.trim_start_matches("./").trim_start_matches('/').to_owned()
 }
 
-/// How many attributes a text has, from above: signs of equality before a quotation mark.
+/// Upper bound on the number of attributes of a text: signs of equality before a quotation mark.
 fn attributes(text: &str) -> usize {
     text.split('=').skip(1).filter(|rest| rest.trim_start().starts_with(['"', '\''])).count()
 }
@@ -182,7 +182,7 @@ fn ends(mut part: impl Read, name: &str) -> Result<(), Cause> {
     if more == 0 { Ok(()) } else { Err(format!("{name:?} has more bytes than its entry in the archive states").into()) }
 }
 
-/// What the description says.
+/// Content of the description.
 struct About {
     /// Points along x and along y.
     shape: [u64; 2],
@@ -190,9 +190,9 @@ struct About {
     kind: Number,
     increment: Option<f64>,
     offset: Option<f64>,
-    /// Where the numbers are.
+    /// Path of the numbers.
     data: String,
-    /// Where it is said which of them are valid.
+    /// Path of the validity mask.
     valid: Option<String>,
 }
 

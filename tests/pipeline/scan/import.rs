@@ -53,13 +53,19 @@ fn spec(surface: &str) -> String {
     )
 }
 
-#[test]
-fn e2e_a_scan_is_taken_and_told() {
+/// A folder with a scan and its import, and the answer of the import.
+fn imported() -> (tempfile::TempDir, Value) {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("scan.npy"), bytes(&part())).unwrap();
     let output = import(folder.path(), &[&["scan.npy", "--json"], &TOLD[..]].concat());
     assert_eq!(code(&output), 0, "{}", stderr(&output));
-    let told: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    let told = serde_json::from_str(&stdout(&output)).unwrap();
+    (folder, told)
+}
+
+#[test]
+fn e2e_a_scan_is_taken_and_told() {
+    let (folder, told) = imported();
     let (header, heights) = read_surface(&folder.path().join("scan.h5")).unwrap();
     // The middle square of 96 by 100 points.
     assert_eq!((heights.dim(), header.periodic), ((96, 96), false));
@@ -87,6 +93,11 @@ fn e2e_a_scan_is_taken_and_told() {
     let hurst = large["self_affine"]["hurst"].as_f64().unwrap();
     assert!((hurst - 0.8).abs() < 0.2, "{hurst}");
     assert!(told["spectrum"].as_array().unwrap().len() > 10 && told["summit_count"].as_u64().unwrap() > 5);
+}
+
+#[test]
+fn e2e_an_import_overwrites_nothing() {
+    let (folder, _) = imported();
     // In words, in eighty columns; nothing is written over, and a dry run writes nothing.
     let before = fs::read(folder.path().join("scan.h5")).unwrap();
     let refused = import(folder.path(), &[&["scan.npy"], &TOLD[..]].concat());

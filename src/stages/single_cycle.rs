@@ -1,23 +1,21 @@
-//! Part of the report: a single cycle.
+//! Figures of a single cycle for the report.
 
 use super::StageError;
-use super::page::{escape, grid};
-use super::statistics::moments;
 use super::surface::{scale, spectrum};
 use crate::campaign::{Campaign, CycleUnit, Standing};
-use crate::figures::{Closer, Panel, SpotTables, closer};
+use crate::figures::{Closer, SpotTables, closer};
 use crate::model::{Boundary, Choice, Method, Normalization};
 use crate::physics::surface::periodogram::{periodogram, windowed_periodogram};
 use crate::physics::surface::spectrum::Spectrum;
 use crate::physics::theory::curvature_density;
+use crate::report::SingleCycle;
 use crate::schema;
 use crate::spec::{CaseParams, SurfaceParams};
 use crate::stats::{labels_with_unit, significant};
 use crate::store::Frame;
 use crate::store::hdf5::{SurfaceHeader, read_surface};
 use crate::store::parquet::read_table;
-use std::f64::consts::{PI, TAU};
-use std::fmt::Write as _;
+use std::f64::consts::TAU;
 
 /// Maximum number of points along a side. For larger surfaces this section would need more memory than the cycle.
 const GREATEST: u64 = 8192;
@@ -25,20 +23,8 @@ const GREATEST: u64 = 8192;
 /// Points of a curve of a theory.
 const POINTS: usize = 120;
 
-/// The figures of one cycle.
-pub(super) struct Look {
-    /// The id of the cycle, and the number of its surface.
-    pub(super) id: String,
-    pub(super) realization: u32,
-    /// The parameters of the case, with the load reversal.
-    pub(super) parameters: String,
-    pub(super) panels: Vec<Panel>,
-    /// The maps of the spots, if these were kept.
-    pub(super) map: Option<String>,
-}
-
 /// The first finished cycle of the case with the largest mean Θ, at that load reversal; `None` without a finished cycle, or if all surfaces are too large.
-pub(super) fn look(campaign: &Campaign, standings: &[Standing], cases: &Frame) -> Result<Option<Look>, StageError> {
+pub(super) fn look(campaign: &Campaign, standings: &[Standing], cases: &Frame) -> Result<Option<SingleCycle>, StageError> {
     let params = |unit: &CycleUnit| &campaign.surfaces[unit.surface].params;
     let done = || campaign.cycles.iter().zip(standings).filter(|(_, standing)| **standing == Standing::Done).map(|(unit, _)| unit);
     let (ids, loads, losses) = (cases.text("case_id")?, cases.f64("max_load")?, cases.f64_or_null("loss_mean")?);
@@ -57,7 +43,7 @@ pub(super) fn look(campaign: &Campaign, standings: &[Standing], cases: &Frame) -
     let asperities = read_table(&campaign.asperities_path(surface), &schema::ASPERITIES)?;
     let table = |table: &'static schema::Table| read_table(&campaign.cycle_dir(unit).join(format!("{}.parquet", table.name)), table);
     let (steps, events, contacts) = (table(&schema::STEPS)?, table(&schema::EVENTS)?, table(&schema::CONTACTS)?);
-    let (realised, scale) = (moments(&header), scale(campaign, surface)?);
+    let (realised, scale) = (header.moments(), scale(campaign, surface)?);
     let (lowest, variance) = (TAU / header.length_m, header.rms_height_m.powi(2));
     let spectrum_of = if header.periodic { periodogram } else { windowed_periodogram };
     let highest = highest_whole_ring(&header, &surface.params);
@@ -78,17 +64,17 @@ pub(super) fn look(campaign: &Campaign, standings: &[Standing], cases: &Frame) -
         rms_height_m: scale.rms_height_m,
         length_m: header.length_m,
         periodic: case.model.boundary == Boundary::Periodic,
-        pull_off_n_m: 1.5 * PI * case.material.work_of_adhesion_j_m2,
+        pull_off_n_m: case.material.pull_off_line_load(),
         found: &found,
         asked: &asked(&case.surface),
         asked_factor: asked_factor(&case.surface, variance),
-        curvature_1_m: (realised.m4_1_m2 / 3.0).sqrt(),
+        curvature_1_m: realised.curvature_unit_1_m(),
         nayak: &nayak,
         densities_1_m2: [asperities.row_count() as f64 / area, realised.summit_density_1_m2()],
     };
     let (panels, map) = closer(&of, heights.view())?;
     let realization = surface.realization;
-    Ok(Some(Look { id: unit.id.clone(), realization, parameters, panels, map }))
+    Ok(Some(SingleCycle { id: unit.id.clone(), realization, parameters, panels, map }))
 }
 
 /// The parameters of a case as text: `ζ = 64, H = 0.8, …`.
@@ -151,21 +137,4 @@ fn eq10_unit(params: &SurfaceParams) -> f64 {
 /// The sum of Eq 10 over the lattice of modes \[m²\].
 fn eq10_variance(params: &SurfaceParams) -> f64 {
     Spectrum { normalization: Normalization::Spectrum, ..spectrum(params) }.lattice_moments().m0_m2
-}
-
-/// The section of the report.
-pub(super) fn section(html: &mut String, number: usize, look: &Look) {
-    // Writing to a string cannot fail.
-    let _ = write!(
-        html,
-        "<h2>Single cycle</h2>\n<p>The case with the largest mean Θ/(E*A<sub>0</sub>h<sub>rms</sub>): {}. Cycle {}, realization {}. The table \
-         <code>events</code> of the cycle holds all events, the table <code>contacts</code> the contact spots.</p>\n",
-        escape(&look.parameters),
-        escape(&look.id),
-        look.realization
-    );
-    grid(html, number, &look.panels);
-    if let Some(map) = &look.map {
-        let _ = writeln!(html, "<div class=\"map\">{map}</div>");
-    }
 }

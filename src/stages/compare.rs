@@ -1,14 +1,12 @@
 //! Comparison of finished runs, from their tables over realizations.
 
 use super::StageError;
-use super::page::{escape, grid, head};
 use super::report::write_picture;
-use super::trust::{Shown, shown};
 use crate::figures::{Panel, Tables, compared};
+use crate::report::{Compared, comparison_page};
 use crate::schema::{self, COMPARISON};
 use crate::stats::{self, Group, Matched, Side, varying};
 use crate::store::{Frame, commit, parquet};
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 /// Groups of cases up to which a comparison has its figures as PNG and PDF too.
@@ -66,11 +64,12 @@ pub fn compare(folders: &[PathBuf], out: &Path, force: bool) -> Result<Compariso
     }
     parquet::write_table(&file, &table, &[])?;
     let path = out.join("comparison.html");
-    commit::commit_bytes("write the comparison", &path, page(&sides, &matched, &names, &drawings, &table)?.as_bytes())?;
+    let page = comparison_page(&Compared { sides: &sides, matched: &matched, names: &names, drawings: &drawings, table: &table })?;
+    commit::commit_bytes("write the comparison", &path, page.as_bytes())?;
     Ok(Comparison { page: path, table, names })
 }
 
-/// Whether a table compares other campaigns than these, or cannot be read.
+/// True if a table compares other campaigns than these, or cannot be read.
 fn of_others(file: &Path, sides: &[Side]) -> bool {
     let Ok(table) = parquet::read_table(file, &COMPARISON) else { return true };
     let (Ok(references), Ok(campaigns)) = (table.text("reference"), table.text("campaign")) else { return true };
@@ -93,20 +92,7 @@ fn remove_figures(folder: &Path) {
     }
 }
 
-/// Symbol and column of a compared quantity.
-fn symbol(column: &str) -> String {
-    let symbol = match column {
-        "area_at_max_load" => "A/A<sub>0</sub>",
-        "penetration_at_max_load" => "Δ/h<sub>rms</sub>",
-        "pull_off_load" => "F<sub>po</sub>/(E*A<sub>0</sub>)",
-        "loss" => "Θ/(E*A<sub>0</sub>h<sub>rms</sub>)",
-        "loss_ratio_dk" => "Θ/Θ<sub>DK</sub>",
-        _ => return column.to_owned(),
-    };
-    format!("{symbol} (<code>{column}</code>)")
-}
-
-/// What campaigns are called: the names of their folders, or their whole paths where two have one name.
+/// Labels of campaigns: the names of their folders, or their whole paths where two have one name.
 fn labels(folders: &[PathBuf]) -> Vec<String> {
     let name =
         |folder: &PathBuf| folder.file_name().map_or_else(|| folder.display().to_string(), |name| name.to_string_lossy().into_owned());
@@ -120,7 +106,7 @@ fn side(label: String, folder: &Path) -> Result<Side, StageError> {
     Ok(Side { label, cases: read(&schema::CASES)?, realizations: read(&schema::REALIZATIONS)?, curves: read(&schema::CURVES)? })
 }
 
-/// What each group is called: what tells the cases of the first campaign apart, and the load.
+/// Names of the groups: parameters that differ between the cases of the first campaign, and the load.
 fn names(sides: &[Side], matched: &Matched) -> Result<Vec<String>, StageError> {
     let Some(first) = sides.first() else { return Ok(Vec::new()) };
     let rows: Vec<usize> = matched.groups.iter().map(|group| group.rows[0]).collect();
@@ -152,65 +138,4 @@ fn panels(sides: &[Side], group: &Group, (name, stem): (&str, &str)) -> Result<V
     let labels: Vec<String> = sides.iter().map(|side| side.label.clone()).collect();
     let (cases, curves, realizations) = (stats::together(&cases)?, stats::together(&curves)?, stats::together(&realizations)?);
     Ok(compared(&Tables { cases: &cases, curves: &curves, realizations: &realizations }, &labels, (name, stem))?)
-}
-
-fn page(
-    sides: &[Side],
-    matched: &Matched,
-    names: &[String],
-    drawings: &[(String, Vec<Panel>)],
-    table: &Frame,
-) -> Result<String, StageError> {
-    let labels: Vec<String> = sides.iter().map(|side| escape(&side.label)).collect();
-    let title = labels.join(", ");
-    let told = if matched.differing.is_empty() { "the realizations only".to_owned() } else { matched.differing.join(", ") };
-    let left: Vec<String> = labels
-        .iter()
-        .zip(&matched.left_over)
-        .filter(|(_, count)| **count > 0)
-        .map(|(label, count)| format!("{count} of {label}"))
-        .collect();
-    let left = if left.is_empty() { String::new() } else { format!(" Cases without a counterpart are omitted: {}.", left.join(", ")) };
-    let mut html = head(&format!("Comparison of {title}"), "");
-    // Writing to a string cannot fail.
-    let _ = write!(
-        html,
-        "<h1>Comparison of {title}</h1>\n<p>The runs differ in {}. Reference: {}. Cases with otherwise equal parameters are compared.{left} Quantities are \
-         means over realizations. Parentheses: half-width of the 95 % confidence interval of the difference, surface by surface where both runs have the same \
-         surfaces, otherwise of two independent means (Welch).</p>\n<div class=\"wide\"><table>\n<tr><th>case</th><th>quantity</th><th>run</th><th>mean</th><th>mean of {}</th>\
-         <th>difference</th><th>relative difference</th><th>realizations</th></tr>\n",
-        escape(&told),
-        labels[0],
-        labels[0]
-    );
-    let (groups, campaigns, quantities) = (table.i64("group")?, table.text("campaign")?, table.text("quantity")?);
-    let (means, references, differences) = (table.f64("mean")?, table.f64("reference_mean")?, table.f64("difference")?);
-    let (intervals, shares) = (table.f64_or_null("difference_ci95")?, table.f64_or_null("relative_difference")?);
-    let (paired, counts, others) = (table.bool("paired")?, table.i64("realization_count")?, table.i64("reference_realization_count")?);
-    for row in 0..table.row_count() {
-        let number = |value: f64| shown(Some(value), Shown::Plain);
-        let interval = intervals[row].map_or_else(String::new, |half| format!(" (±{})", number(half)));
-        // Significant at the 95 % level.
-        let clear = intervals[row].is_some_and(|half| differences[row].abs() > half);
-        let of = if paired[row] { format!("{} pairs", counts[row]) } else { format!("{} and {}", counts[row], others[row]) };
-        let _ = writeln!(
-            html,
-            "<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td{}>{}{interval}</td><td>{}</td><td>{of}</td></tr>",
-            escape(&names[groups[row] as usize]),
-            symbol(quantities[row]),
-            escape(campaigns[row]),
-            number(means[row]),
-            number(references[row]),
-            if clear { " class=\"clear\"" } else { "" },
-            number(differences[row]),
-            shown(shares[row], Shown::Percent)
-        );
-    }
-    html.push_str("</table></div>\n<p>Differences larger than their half-width are bold. Data: <code>comparison.parquet</code>.</p>\n");
-    for (number, (name, panels)) in drawings.iter().enumerate() {
-        let _ = writeln!(html, "<h2>{}</h2>", escape(name));
-        grid(&mut html, number + 1, panels);
-    }
-    html.push_str("</body>\n</html>\n");
-    Ok(html)
 }

@@ -1,0 +1,237 @@
+//! Inputs of the keys of all tasks.
+//!
+//! One description of the inputs of each stage makes both forms: canonical JSON text, which is hashed, and the JSON value that receipts show.
+
+use super::{Campaign, CycleUnit, Stage, Standing, SurfaceUnit};
+use crate::keys::{canonical, key_of_text, preimage};
+use crate::spec::{Case, CaseParams, MEASURED, Spec, SurfaceParams};
+use serde_json::{Map, Value, json};
+
+/// Form of key inputs.
+pub(super) trait Form: Clone {
+    /// The form of a value.
+    fn of(value: &Value) -> Self;
+
+    /// A list.
+    fn list(items: Vec<Self>) -> Self;
+
+    /// An object.
+    fn object(members: Vec<(&str, Self)>) -> Self;
+
+    /// A word.
+    fn word(word: &str) -> Self {
+        Self::of(&Value::from(word))
+    }
+}
+
+impl Form for Value {
+    fn of(value: &Value) -> Self {
+        value.clone()
+    }
+
+    fn list(items: Vec<Self>) -> Self {
+        Self::Array(items)
+    }
+
+    fn object(members: Vec<(&str, Self)>) -> Self {
+        members.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+    }
+}
+
+/// Canonical JSON: sorted names, no white space. It is rendered once for all tasks that share an input.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub(super) struct Canonical(String);
+
+impl Form for Canonical {
+    fn of(value: &Value) -> Self {
+        Self(canonical(value))
+    }
+
+    fn list(items: Vec<Self>) -> Self {
+        let items: Vec<String> = items.into_iter().map(|item| item.0).collect();
+        Self(format!("[{}]", items.join(",")))
+    }
+
+    fn object(mut members: Vec<(&str, Self)>) -> Self {
+        members.sort_by_key(|(name, _)| *name);
+        let members: Vec<String> = members.into_iter().map(|(name, value)| format!("\"{name}\":{}", value.0)).collect();
+        Self(format!("{{{}}}", members.join(",")))
+    }
+}
+
+impl Canonical {
+    /// Key of a task with these inputs.
+    pub(super) fn key(&self, stage: Stage) -> String {
+        key_of_text(stage.word(), stage.version(), &self.0)
+    }
+
+    /// Key of the parameters of a case.
+    pub(super) fn case_key(&self) -> String {
+        key_of_text("case", 1, &self.0)
+    }
+}
+
+/// Inputs of a surface, from those that its realizations share.
+pub(super) fn generate<F: Form>(surface: &F, seed: u64, realization: u32) -> F {
+    F::object(vec![("surface", surface.clone()), ("seed", F::of(&seed.into())), ("realization", F::of(&realization.into()))])
+}
+
+/// Inputs of a table of asperities.
+pub(super) fn extract<F: Form>(surface_key: &str) -> F {
+    F::object(vec![("surface", F::word(surface_key))])
+}
+
+/// Inputs of the cycles of a case, without the asperities.
+pub(super) fn case_members<F: Form>(params: &CaseParams) -> Vec<(&'static str, F)> {
+    of_case(params).into_iter().map(|(name, value)| (name, F::of(&value))).collect()
+}
+
+/// Inputs of a cycle, from those that the cycles of its case share.
+pub(super) fn cycle<F: Form>(members: &[(&'static str, F)], asperities_key: &str) -> F {
+    F::object([members, &[("asperities", F::word(asperities_key))]].concat())
+}
+
+impl Campaign {
+    /// Inputs of the tables over realizations: the cases with their labels, the cycles with their status and error messages, and the name of the run.
+    fn statistics_inputs<F: Form>(&self, cycles: &[Standing]) -> F {
+        let label = |case: &Case| case.params.surface.is_measured().then(|| self.file_label(&case.params.surface.file));
+        let cases = self.cases.iter().map(|unit| match label(&unit.case) {
+            Some(label) => F::of(&json!([unit.id, unit.case.sweeps, label])),
+            None => F::of(&json!([unit.id, unit.case.sweeps])),
+        });
+        let cycle = |(unit, standing): (&CycleUnit, &Standing)| {
+            let failure = self.failure_in_tables(standing);
+            let words = [unit.key.as_str(), state(standing)].into_iter().chain(failure.as_deref());
+            F::list(words.map(F::word).collect())
+        };
+        let cycles = self.cycles.iter().zip(cycles).map(cycle);
+        F::object(vec![("name", F::word(&self.spec.name)), ("cases", F::list(cases.collect())), ("cycles", F::list(cycles.collect()))])
+    }
+
+    /// Inputs of the report: the tables, and the spec with all defaults, which it shows.
+    fn report_inputs<F: Form>(&self, statistics_key: &str) -> F {
+        let spec = blake3::hash(self.spec.to_toml().as_bytes()).to_hex().to_string();
+        F::object(vec![("name", F::word(&self.spec.name)), ("spec", F::word(&spec)), ("statistics", F::word(statistics_key))])
+    }
+
+    /// Key of the tables over realizations, with this status of the cycles.
+    #[must_use]
+    pub fn statistics_key(&self, cycles: &[Standing]) -> String {
+        self.statistics_inputs::<Canonical>(cycles).key(Stage::Aggregate)
+    }
+
+    /// Key of the report.
+    #[must_use]
+    pub fn report_key(&self, statistics_key: &str) -> String {
+        self.report_inputs::<Canonical>(statistics_key).key(Stage::Report)
+    }
+
+    /// Key inputs of the tasks of a surface, by stage, up to and including `stage`.
+    #[must_use]
+    pub fn surface_preimages(&self, unit: &SurfaceUnit, stage: Stage) -> Map<String, Value> {
+        let surface = of_surface(&self.spec, &unit.params);
+        let mut shown = shown(Stage::Generate, &generate(&surface, seed_of(&self.spec, &unit.params), unit.realization));
+        if stage >= Stage::Extract {
+            shown.extend(self::shown(Stage::Extract, &extract(&unit.key)));
+        }
+        shown
+    }
+
+    /// Key inputs of a cycle and of the tasks that it depends on.
+    #[must_use]
+    pub fn cycle_preimages(&self, unit: &CycleUnit) -> Map<String, Value> {
+        let (surface, params) = (&self.surfaces[unit.surface], &self.cases[unit.case].case.params);
+        let mut shown = self.surface_preimages(surface, Stage::Extract);
+        shown.extend(self::shown(Stage::Cycle, &cycle(&case_members(params), &surface.asperities_key)));
+        shown
+    }
+
+    /// Key inputs of the tables over realizations.
+    #[must_use]
+    pub fn statistics_preimages(&self, cycles: &[Standing]) -> Map<String, Value> {
+        shown(Stage::Aggregate, &self.statistics_inputs(cycles))
+    }
+
+    /// Key inputs of the report.
+    #[must_use]
+    pub fn report_preimages(&self, statistics_key: &str) -> Map<String, Value> {
+        shown(Stage::Report, &self.report_inputs(statistics_key))
+    }
+}
+
+/// Key inputs of a stage by its word, as receipts show them.
+fn shown(stage: Stage, inputs: &Value) -> Map<String, Value> {
+    Map::from_iter([(stage.word().to_owned(), preimage(stage.word(), stage.version(), inputs))])
+}
+
+/// Word for the status of a cycle in the key of the tables over realizations.
+fn state(standing: &Standing) -> &'static str {
+    match standing {
+        Standing::Done => "done",
+        Standing::Failed(_) => "failed",
+        _ => "open",
+    }
+}
+
+/// The parameters of a case without the errata that only analytical estimates read.
+pub(super) fn read_by_cycle(params: &CaseParams) -> CaseParams {
+    let mut params = params.clone();
+    params.model.as_printed.retain(|slip| slip.in_contact());
+    params
+}
+
+/// Inputs of a cycle in its key, besides the asperities. Those of the asperity model are the same as before there was another method.
+fn of_case(params: &CaseParams) -> Vec<(&'static str, Value)> {
+    let params = read_by_cycle(params);
+    let [material, mut model, mut cycle] = [plain(&params.material), plain(&params.model), plain(&params.cycle)];
+    if params.by_elements() {
+        model = json!({ "method": model["method"] });
+        remove(&mut cycle, "approach_step");
+        return vec![("material", material), ("model", model), ("boundary_elements", plain(&params.boundary_elements)), ("cycle", cycle)];
+    }
+    remove(&mut model, "method");
+    vec![("material", material), ("model", model), ("cycle", cycle)]
+}
+
+/// Parameters of a case in its identity. Those of the asperity model are the same as before there was another method.
+pub(super) fn of_whole_case(spec: &Spec, params: &CaseParams) -> Value {
+    let mut reads = plain(params);
+    reads["surface"] = of_surface(spec, &params.surface);
+    if !params.by_elements() {
+        remove(&mut reads, "boundary_elements");
+        remove(&mut reads["model"], "method");
+    }
+    reads
+}
+
+fn remove(value: &mut Value, name: &str) {
+    if let Some(members) = value.as_object_mut() {
+        members.remove(name);
+    }
+}
+
+/// Seed in the key of a surface; a measured one has none.
+pub(super) fn seed_of(spec: &Spec, params: &SurfaceParams) -> u64 {
+    if params.is_measured() { 0 } else { spec.seed }
+}
+
+/// Inputs of a surface in its key: parameters of a generated one, contents of the file and preprocessing of a measured one.
+pub(super) fn of_surface(spec: &Spec, params: &SurfaceParams) -> Value {
+    let SurfaceParams { file, dataset, periodic, pixel_m, unit, missing, detrend, points_per_shortest_wavelength, .. } = params;
+    if params.is_measured() {
+        return json!({
+            "blake3": spec.files.get(file), "dataset": dataset, "periodic": periodic, "pixel_m": pixel_m, "unit": unit, "missing": missing, "detrend": detrend,
+            "points_per_shortest_wavelength": points_per_shortest_wavelength,
+        });
+    }
+    let mut reads = plain(params);
+    if let Some(members) = reads.as_object_mut() {
+        members.retain(|name, _| !MEASURED.contains(&name.as_str()));
+    }
+    reads
+}
+
+/// A parameter set as JSON; a number that JSON cannot hold is refused by the spec long before.
+fn plain(value: &impl serde::Serialize) -> Value {
+    serde_json::to_value(value).unwrap_or(Value::Null)
+}

@@ -1,0 +1,91 @@
+//! Range of the asperity model on a measured surface.
+
+use crate::model::Material;
+use crate::physics::jkr::Asperity;
+use crate::physics::jkr::LEAST_TABOR;
+use crate::physics::theory::flattening::Flattening;
+use crate::spec::CaseParams;
+use crate::stats::{Limit, significant};
+
+/// Range of the asperity model on a surface: the elastic energies that flatten its roughness are proportional to E*.
+pub(super) struct Range {
+    /// `U_el/E*` \[m\], of all roughness.
+    pub(super) whole_m: f64,
+    /// `U_1/E*` \[m\], of the shortest octave; 0 where that is unknown.
+    pub(super) octave_m: f64,
+    /// Smallest radius of an asperity \[m\]; nothing without asperities.
+    radius_m: Option<f64>,
+}
+
+/// Work of adhesion of the printed spec \[J/m²\].
+const ADHESION_J_M2: f64 = 0.05;
+
+/// Modulus of the printed spec over the smallest one inside the range, at least.
+const MARGIN: f64 = 1.5;
+
+/// Limits of `U_el/Δγ` and `U_1/Δγ`.
+fn limits() -> [f64; 2] {
+    ["sticky", "conformed"].map(|code| Limit::of(code).map_or(f64::NAN, |limit| limit.bound))
+}
+
+impl Range {
+    /// Of the energies at a modulus of 1 Pa, and the radii of the asperities \[m\].
+    pub(super) fn of(unit: &Flattening, radii_m: impl Iterator<Item = f64>) -> Self {
+        Self { whole_m: unit.whole_j_m2, octave_m: unit.octave_j_m2, radius_m: radii_m.reduce(f64::min) }
+    }
+
+    /// The ratios `U_el/Δγ` and `U_1/Δγ` of a material.
+    fn ratios(&self, modulus_pa: f64, adhesion_j_m2: f64) -> [f64; 2] {
+        [self.whole_m, self.octave_m].map(|length| modulus_pa * length / adhesion_j_m2)
+    }
+
+    /// Smallest `E*/Δγ` inside the range \[1/m\]: both ratios are at their limits or above.
+    pub(super) fn least_1_m(&self) -> f64 {
+        let [whole, octave] = limits();
+        let of_octave = if self.octave_m > 0.0 { octave / self.octave_m } else { 0.0 };
+        of_octave.max(whole / self.whole_m)
+    }
+
+    /// A round modulus inside the range for [`ADHESION_J_M2`] \[Pa\]; the largest of a spec if that is smaller.
+    fn modulus_pa(&self) -> f64 {
+        let least = MARGIN * self.least_1_m() * ADHESION_J_M2;
+        let decade = 10_f64.powf(least.log10().floor());
+        let round = [1.0, 2.0, 5.0, 10.0].into_iter().map(|digit| digit * decade).find(|modulus| *modulus >= least);
+        round.unwrap_or(f64::INFINITY).clamp(1.0, 1e13)
+    }
+
+    /// The condition as a paragraph.
+    pub(super) fn text(&self) -> String {
+        let [whole, octave] = limits();
+        let octave = if self.octave_m > 0.0 { format!(" and U_1/Δγ ≥ {octave}") } else { String::new() };
+        format!(
+            "U_el/Δγ ≥ {whole}{octave}, that is E*/Δγ ≥ {:.2e} 1/m. U_el = E* x {:.3e} m, elsewhere called e_el, flattens all roughness, U_1 = E* x {:.3e} m its shortest octave. \
+             A softer or more adhesive contact is outside the range of the asperity model.",
+            self.least_1_m(),
+            self.whole_m,
+            self.octave_m
+        )
+    }
+
+    /// Material and model of the printed spec.
+    pub(super) fn spec(&self, periodic: bool) -> String {
+        let modulus = self.modulus_pa();
+        let [whole, octave] = self.ratios(modulus, ADHESION_J_M2).map(|ratio| significant(ratio, 2));
+        let [at_least, and] = limits();
+        let ratios = format!("# U_el/Δγ = {whole} (limit ≥ {at_least}), U_1/Δγ = {octave} (limit ≥ {and})");
+        let mut text = format!("[material]      {ratios}\ncontact_modulus_pa = {modulus:e}\nwork_of_adhesion_j_m2 = {ADHESION_J_M2}\n");
+        let range_m = CaseParams::default().material.interaction_range_m;
+        let material = Material { contact_modulus_pa: modulus, work_of_adhesion_j_m2: ADHESION_J_M2, interaction_range_m: range_m };
+        let asperity = self.radius_m.and_then(|radius| Asperity::new(radius, &material).ok());
+        let tabor = asperity.map(|asperity| asperity.tabor(range_m));
+        let jump_in = tabor.filter(|tabor| *tabor < LEAST_TABOR).map(|tabor| {
+            format!("jump_in = \"jkr\"      # Tabor parameter μ ≥ {}; \"wu\" requires {LEAST_TABOR}\n", significant(tabor, 2))
+        });
+        let boundary = (!periodic).then(|| "boundary = \"isolated\"\n".to_owned());
+        let model: Vec<String> = [boundary, jump_in].into_iter().flatten().collect();
+        if !model.is_empty() {
+            text += &format!("[model]\n{}", model.concat());
+        }
+        text
+    }
+}

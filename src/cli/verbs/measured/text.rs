@@ -1,0 +1,202 @@
+//! Statistics of an imported surface as text and as JSON.
+
+use super::range::Range;
+use crate::model::Detrend;
+use crate::spec::quoted;
+use crate::stats::significant;
+use crate::store::hdf5::{Measured, SurfaceHeader};
+use crate::text::{counted, wrapped};
+use serde_json::{Value, json};
+use std::f64::consts::TAU;
+use std::path::Path;
+
+/// Statistics of an imported surface.
+#[derive(Clone, Copy)]
+pub(super) struct Statistics<'a> {
+    /// The file.
+    pub(super) file: &'a Path,
+    pub(super) header: &'a SurfaceHeader,
+    /// Metres per number of the file; nothing for a surface of this program.
+    pub(super) height_factor_m: Option<f64>,
+    pub(super) range: &'a Range,
+    /// Points along a side, asperities, and further ones near the edge.
+    pub(super) counts: [usize; 3],
+    /// The file written.
+    pub(super) written: Option<&'a Path>,
+}
+
+/// The statistics of a surface as JSON.
+pub(super) fn answer(of: &Statistics<'_>, rings: &[Value]) -> Value {
+    let Statistics { header, height_factor_m, range, counts: [points, summits, edge], written, .. } = *of;
+    let measured = header.measured.as_ref();
+    let fit = measured
+        .and_then(|of| of.fit)
+        .map(|fit| json!({ "hurst": fit.hurst, "plateau_m4": fit.plateau_m4, "roll_off_1_m": fit.roll_off_1_m, "scatter": fit.scatter }));
+    json!({
+        "file": written.map(|path| path.display().to_string()),
+        "point_count": points,
+        "length_m": header.length_m,
+        "height_factor_m": height_factor_m,
+        "periodic": header.periodic,
+        "rms_height_m": header.rms_height_m,
+        "rms_slope": header.rms_slope,
+        "rms_curvature_1_m": header.rms_curvature_1_m,
+        "rms_laplacian_1_m": header.rms_curvature_1_m,
+        "nayak_parameter": header.nayak_parameter,
+        "summit_count": summits,
+        "edge_count": edge,
+        "source_point_counts": measured.map(|of| of.source_point_counts),
+        "source_spacings_m": measured.map(|of| of.source_spacings_m),
+        "cautions": cautions(header),
+        "missing_count": measured.map(|of| of.missing_count),
+        "trend_m": measured.map(|of| of.trend_m),
+        "noise_m": measured.map(|of| of.noise_m),
+        "shortest_wavelength_m": measured.map(|of| of.shortest_wavelength_m),
+        "source_blake3": measured.map(|of| of.source_blake3.as_str()),
+        "self_affine": fit,
+        "flattening_m": range.whole_m,
+        "flattening_octave_m": range.octave_m,
+        "least_modulus_over_adhesion_1_m": range.least_1_m(),
+        "spectrum": rings,
+    })
+}
+
+/// A line of the text: label and value.
+type Line = (&'static str, String);
+
+/// The statistics of a surface as text of at most 80 columns.
+pub(super) fn text(of: &Statistics<'_>) -> String {
+    let mut text = format!("{}\n", of.file.display());
+    for (label, value) in [source(of), preprocessing(of.header), roughness(of), self_affinity(of.header)].concat() {
+        text += &format!("  {label:<14}{value}\n");
+    }
+    text += &wrapped(&format!("  {:<14}{}", "model range", of.range.text()), "                ");
+    for caution in cautions(of.header) {
+        text += &wrapped(&format!("warning: {caution}"), "  ");
+    }
+    text + &of.written.map_or_else(|| "No file was written.\n".to_owned(), |path| spec(path, of))
+}
+
+/// Points and units of the file, and the central square.
+fn source(of: &Statistics<'_>) -> Vec<Line> {
+    let mut lines = Vec::new();
+    if let Some(measured) = &of.header.measured {
+        let ([rows, columns], [a, b]) = (measured.source_point_counts, measured.source_spacings_m);
+        lines.push(("file", format!("{rows} x {columns} points, {a:.4e} m by {b:.4e} m apart")));
+        lines.push(("", "rows x columns; the row index runs along x".to_owned()));
+        if (a / b - 1.0).abs() > 1e-3 {
+            lines.push(("", format!("interpolated to points {:.4e} m apart both ways", a.min(b))));
+        }
+    }
+    let factor = of.height_factor_m.map(|factor| format!("{} m per number of the file", significant(factor, 6)));
+    lines.push(("height factor", factor.unwrap_or_else(|| "1 (surface of this program, in metres)".to_owned())));
+    let continued = if of.header.periodic { "periodic" } else { "not periodic" };
+    let points = of.counts[0];
+    lines.push(("square", format!("{points} x {points} points, {:.4e} m, {continued}", of.header.length_m)));
+    lines
+}
+
+/// Missing points, and removed form and wavelengths.
+fn preprocessing(header: &SurfaceHeader) -> Vec<Line> {
+    let lines = |of: &Measured| {
+        let missing = counted(usize::try_from(of.missing_count).unwrap_or(usize::MAX), "point");
+        let filled = if of.missing_count > 0 { ", interpolated (harmonic in-fill)" } else { "" };
+        let form =
+            if of.detrend == Detrend::Mean { "the mean".to_owned() } else { format!("a {}: {:.3e} m rms", shape(of.detrend), of.trend_m) };
+        vec![
+            ("missing", format!("{missing}{filled}")),
+            ("removed", form),
+            ("", format!("wavelengths below {:.3e} m: {:.3e} m rms", of.shortest_wavelength_m, of.noise_m)),
+        ]
+    };
+    header.measured.as_ref().map(lines).unwrap_or_default()
+}
+
+/// Rms values and asperities.
+fn roughness(of: &Statistics<'_>) -> Vec<Line> {
+    let SurfaceHeader { length_m, rms_height_m, rms_slope, rms_curvature_1_m, nayak_parameter, .. } = *of.header;
+    let [_, summits, edge] = of.counts;
+    let nayak = of.header.moments().summit_density_1_m2() * length_m * length_m;
+    let mut lines = vec![
+        ("heights", format!("{rms_height_m:.4e} m rms, slope {rms_slope:.4} rms, Laplacian {rms_curvature_1_m:.3e} 1/m rms")),
+        ("", format!("mean curvature {:.3e} 1/m rms: half the Laplacian", 0.5 * rms_curvature_1_m)),
+        ("summits", format!("{summits}, and {nayak:.0} predicted by Nayak (bandwidth parameter {nayak_parameter:.2})")),
+    ];
+    if edge > 0 {
+        lines.push(("", format!("{edge} more near the edge are excluded")));
+    }
+    lines
+}
+
+/// Fit of a self-affine spectrum.
+fn self_affinity(header: &SurfaceHeader) -> Vec<Line> {
+    let Some(fit) = header.measured.as_ref().and_then(|of| of.fit) else { return vec![("self-affine", "no fit".to_owned())] };
+    let longest = TAU / fit.roll_off_1_m;
+    let rolls = if longest < 0.7 * header.length_m { format!("at {longest:.3e} m") } else { "none within the scan".to_owned() };
+    let fitted = format!("H = {:.3}, C0 = {:.3e} m⁴, scatter {:.2} decades", fit.hurst, fit.plateau_m4, fit.scatter);
+    vec![("self-affine", fitted), ("roll-off", rolls)]
+}
+
+/// The written file and a spec for it.
+fn spec(path: &Path, of: &Statistics<'_>) -> String {
+    let periodic = if of.header.periodic { "periodic = true\n" } else { "" };
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let stem: String = stem.chars().filter(|c| c.is_ascii_alphanumeric()).take(32).collect();
+    let file = quoted(&path.to_string_lossy());
+    format!(
+        "Written: {}. Spec for this surface; replace the material constants:\n\n\
+         name = \"of_{stem}\"\n[surface]\nfile = {file}\n{periodic}{}[cycle]\nmax_load = [0.004]       # F/(E* A0)\n",
+        path.display(),
+        of.range.spec(of.header.periodic)
+    )
+}
+
+/// Fraction of a scan that the central crop may drop without a warning.
+const DROPPED: f64 = 0.1;
+
+/// Warnings: what the central square leaves out, units or values that are unlikely, and a spectrum that is not self-affine.
+fn cautions(header: &SurfaceHeader) -> Vec<String> {
+    let mut cautions = Vec::new();
+    if let Some(of) = &header.measured {
+        let ([rows, columns], dropped) = (of.source_point_counts, of.dropped(header.length_m));
+        if dropped > DROPPED {
+            let points = (header.length_m / of.source_spacings_m[0].min(of.source_spacings_m[1])).round();
+            let [a, b] = [rows as f64 * of.source_spacings_m[0], columns as f64 * of.source_spacings_m[1]];
+            cautions.push(format!(
+                "crop: {:.0} % of the scan ({rows} x {columns} points, {a:.3e} m x {b:.3e} m) is outside the central square and dropped (limit {:.0} %); \
+                 {points} x {points} points remain, and all results are of these",
+                100.0 * dropped,
+                100.0 * DROPPED
+            ));
+        }
+        match of.fit {
+            Some(fit) if !(0.0..=1.0).contains(&fit.hurst) => cautions.push(format!(
+                "fit: H = {:.2} is outside 0 to 1, so the spectrum is not self-affine between the longest wavelength and the cut-off; do not use H",
+                fit.hurst
+            )),
+            Some(_) => {}
+            None => cautions.push("fit: too few wavelengths above the cut-off for a self-affine fit; use a larger scan, or a lower cut-off (--points)".to_owned()),
+        }
+    }
+    if header.rms_slope > 1.0 {
+        cautions.push(format!(
+            "an rms slope of {:.3} is steeper than 45 degrees; check the units, and values of missing points",
+            header.rms_slope
+        ));
+    }
+    if header.rms_slope < 1e-5 {
+        cautions.push(format!("an rms slope of {:.1e} is flatter than any measured surface; check the units", header.rms_slope));
+    }
+    if header.rms_height_m < 1e-10 {
+        cautions.push(format!("{:.1e} m rms is less than an atom; check the units", header.rms_height_m));
+    }
+    cautions
+}
+
+fn shape(detrend: Detrend) -> &'static str {
+    match detrend {
+        Detrend::Mean => "mean",
+        Detrend::Plane => "plane",
+        Detrend::Quadratic => "quadratic surface",
+    }
+}

@@ -1,0 +1,73 @@
+//! Rows of the table `cases`, with the labels and scales of the report.
+
+use super::layout::prose;
+use super::numbers::Scale;
+use crate::stats::{Listed, Listing, StatsError, labels, listing};
+use crate::store::Frame;
+use maud::{Markup, html};
+
+/// Columns of energies over `E* A0 h_rms`, which share one scale in all tables.
+const ENERGIES: [&str; 8] =
+    ["loss", "loss_dk", "loss_dk_realised", "loss_touched", "loss_dalvi", "loss_pinning", "loss_jkr_curve", "dissipated"];
+
+/// Normal load at load reversal, with the markup of the figures.
+pub(super) const LOAD: &str = "F_{max}/(E*A_{0})";
+
+/// The first cells of the heading of every table.
+pub(super) fn name_heads() -> Markup {
+    html! { th { "case" } th { (prose(LOAD)) } }
+}
+
+/// The rows of the table `cases`, in the order and with the labels of the report.
+pub(super) struct Cases<'a> {
+    pub(super) frame: &'a Frame,
+    pub(super) realizations: &'a Frame,
+    loads: Vec<String>,
+    words: Vec<&'a str>,
+    listing: Listing,
+}
+
+impl<'a> Cases<'a> {
+    pub(super) fn of(frame: &'a Frame, realizations: &'a Frame) -> Result<Self, StatsError> {
+        let (loads, words) = (labels(&frame.f64("max_load")?), frame.text("caution")?);
+        Ok(Self { frame, realizations, loads, words, listing: listing(frame)? })
+    }
+
+    /// The rows in the order of the tables.
+    pub(super) fn rows(&self) -> &[Listed] {
+        &self.listing.rows
+    }
+
+    /// The parameters of the reference case that vary, if there is such a case.
+    pub(super) fn reference(&self) -> Option<&str> {
+        self.listing.reference.as_deref()
+    }
+
+    /// The scale of the means of a column; all energies share one.
+    pub(super) fn scale(&self, column: &str) -> Result<Scale, StatsError> {
+        let columns = if ENERGIES.contains(&column) { ENERGIES.as_slice() } else { &[column] };
+        let mut means = Vec::new();
+        for column in columns {
+            means.extend(self.frame.f64_or_null(&format!("{column}_mean"))?.iter().flatten().copied());
+        }
+        Ok(Scale::of(&means))
+    }
+
+    pub(super) fn number(&self, column: &str, row: usize) -> Result<Option<f64>, StatsError> {
+        Ok(self.frame.f64_or_null(column)?.get(row).copied().flatten())
+    }
+
+    /// The first two cells of a row.
+    pub(super) fn name(&self, listed: &Listed) -> Markup {
+        html! { td { (listed.label) } td { (self.load(listed.row)) } }
+    }
+
+    pub(super) fn load(&self, row: usize) -> &str {
+        self.loads.get(row).map_or("", String::as_str)
+    }
+
+    /// True if a row has a warning.
+    pub(super) fn has(&self, row: usize, word: &str) -> bool {
+        self.words.get(row).is_some_and(|said| said.split('+').any(|part| part == word))
+    }
+}

@@ -1,0 +1,127 @@
+//! Part of the report: results with confidence intervals, and differences from the reference case.
+
+use super::cases::{Cases, name_heads};
+use super::layout::{heading, prose, wide};
+use super::numbers::{Scale, Shown, scaled, shown};
+use crate::stats::{Difference, FEW, Listed, StatsError, difference_of, singles};
+use maud::{Markup, html};
+
+/// Heading, column of the table `cases` without its ending, and true if the quantity cannot be negative.
+const RESULTS: [(&str, &str, bool); 7] = [
+    ("A/A_{0}", "area_at_max_load", true),
+    ("Δ/h_{rms}", "penetration_at_max_load", false),
+    ("F_{po}/(E*A_{0})", "pull_off_load", true),
+    ("Θ/(E*A_{0}h_{rms})", "loss", true),
+    ("Θ_{DK}, target spectrum", "loss_dk", true),
+    ("Θ/Θ_{DK}", "loss_ratio_dk", true),
+    ("Θ_{DK}, realised spectrum", "loss_dk_realised", true),
+];
+
+/// Quantities compared with the reference case.
+const CHANGES: [(&str, &str); 5] = [
+    ("A/A_{0}", "area_at_max_load"),
+    ("Δ/h_{rms}", "penetration_at_max_load"),
+    ("F_{po}", "pull_off_load"),
+    ("Θ", "loss"),
+    ("Θ/Θ_{DK}", "loss_ratio_dk"),
+];
+
+/// The results with confidence intervals or values of single surfaces, and the number of realizations.
+pub(super) fn results(cases: &Cases<'_>) -> Result<Markup, StatsError> {
+    let mut scales = Vec::new();
+    for (_, column, _) in RESULTS {
+        scales.push(cases.scale(column)?);
+    }
+    let head = html! {
+        (name_heads())
+        th { "finished of planned" }
+        @for ((heading, ..), scale) in RESULTS.iter().zip(&scales) { th { (prose(heading)) (scale.head()) } }
+    };
+    let rows = cases.rows().iter().map(|listed| row(cases, listed, &scales)).collect::<Result<Vec<_>, _>>()?;
+    Ok(html! { (heading("Results")) p { (note(cases.reference())) } "\n" (wide(&head, &rows)) (changes(cases)?) })
+}
+
+fn note(reference: Option<&str>) -> Markup {
+    let text = format!(
+        "Means over realizations: contact area A and mean penetration Δ at load reversal, pull-off force F_{{po}} (maximum tensile \
+         load during unloading), dissipated energy Θ (area of the loop), and its estimate Θ_{{DK}} by Deng and Kesari (target spectrum). Brackets: \
+         95 % confidence interval of the mean (Student). A lower limit below 0 of a quantity that cannot be negative is replaced by 0 and marked with †. \
+         Braces: values of the single surfaces, for fewer than {FEW}. A power of ten in a column head is the unit of its numbers."
+    );
+    html! {
+        (prose(&text))
+        @if let Some(of) = reference {
+            " Reference case: " (of) ". It belongs to the most sweeps; the other cases are named by the parameters that differ from it."
+        }
+    }
+}
+
+fn row(cases: &Cases<'_>, listed: &Listed, scales: &[Scale]) -> Result<Markup, StatsError> {
+    let row = listed.row;
+    let count = |name: &str| -> Result<i64, StatsError> { Ok(cases.frame.i64(name)?.get(row).copied().unwrap_or_default()) };
+    let (done, planned, failed) = (count("done_count")?, count("planned_count")?, count("failed_count")?);
+    let mut cells = Vec::new();
+    for ((_, column, positive), scale) in RESULTS.into_iter().zip(scales) {
+        cells.push(result(cases, row, column, (*scale, positive))?);
+    }
+    Ok(html! {
+        (cases.name(listed))
+        td { (done) " of " (planned) @if failed > 0 { ", " (failed) " failed" } }
+        @for cell in cells { td { (cell) } }
+    })
+}
+
+/// A mean with its confidence interval, or with the values of the single surfaces.
+fn result(cases: &Cases<'_>, row: usize, column: &str, (scale, positive): (Scale, bool)) -> Result<Markup, StatsError> {
+    let number = |end: &str| cases.number(&format!("{column}_{end}"), row);
+    let (mean, low, high) = (number("mean")?, number("ci95_low")?, number("ci95_high")?);
+    let text = |number: f64| scaled(Some(number), scale);
+    let values = singles(cases.frame, cases.realizations, row, column)?;
+    let is_cut = |low: f64| positive && low < 0.0 && mean.is_some_and(|mean| mean >= 0.0);
+    Ok(html! {
+        (scaled(mean, scale))
+        @match (low, high) {
+            (Some(_), Some(_)) if values.len() < FEW => {
+                " {" @for (place, value) in values.iter().enumerate() { @if place > 0 { "; " } (text(*value)) } "}"
+            }
+            (Some(low), Some(high)) => { " [" @if is_cut(low) { "0†" } @else { (text(low)) } ", " (text(high)) "]" }
+            _ => {}
+        }
+    })
+}
+
+const CHANGES_NOTE: &str = "Difference of the means from the reference case at the same load, as a fraction of its mean, with the \
+    half-width of the 95 % confidence interval: surface by surface where both cases have the same surfaces, otherwise of two independent means \
+    (Welch). Differences larger than their half-width are bold.";
+
+/// Differences of the means of each case from those of the reference case at the same load; empty without such a case.
+fn changes(cases: &Cases<'_>) -> Result<Markup, StatsError> {
+    let compared = cases.rows().iter().filter_map(|listed| listed.reference.map(|reference| (listed, reference)));
+    let mut rows = Vec::new();
+    for (listed, reference) in compared {
+        let mut cells = Vec::new();
+        for (_, column) in CHANGES {
+            cells.push(change(difference_of(cases.frame, cases.realizations, [listed.row, reference], column)?));
+        }
+        rows.push(html! { (cases.name(listed)) @for cell in cells { (cell) } });
+    }
+    if rows.is_empty() {
+        return Ok(Markup::default());
+    }
+    let head = html! { (name_heads()) @for (heading, _) in CHANGES { th { (prose(heading)) } } };
+    Ok(html! { (heading("Differences from the reference case")) p { (CHANGES_NOTE) } "\n" (wide(&head, &rows)) })
+}
+
+/// A relative difference with the half-width of its interval; bold if it is larger than that.
+fn change(found: Option<Difference>) -> Markup {
+    let clear = found.is_some_and(|found| found.ci95.is_some_and(|half| found.of.abs() > half));
+    let share = |found: Difference, part: f64| Some(part / found.means[1].abs()).filter(|share| share.is_finite());
+    let change = found.and_then(|found| share(found, found.of));
+    let half = found.and_then(|found| found.ci95.and_then(|half| share(found, half)));
+    html! {
+        td class=[clear.then_some("clear")] {
+            (shown(change, Shown::Percent))
+            @if half.is_some() { " (±\u{a0}" (shown(half, Shown::Percent)) ")" }
+        }
+    }
+}

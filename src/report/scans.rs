@@ -1,0 +1,50 @@
+//! Part of the report: measured surfaces.
+
+use super::layout::{heading, prose, wide};
+use crate::store::hdf5::{Measured, SurfaceHeader};
+use maud::{Markup, html};
+
+const NOTE: &str = "Each measured surface is one realization, without a standard deviation. Area kept: fraction of the scan in the \
+    central square of side L. h_{rms} and rms slope: after levelling and S-filter. Removed: rms heights below the S-filter cut-off and of \
+    the form subtracted by levelling. Filled: missing points interpolated (harmonic in-fill). H: Hurst exponent of the self-affine fit, with its \
+    standard deviation; outside 0 to 1 the spectrum is not self-affine.";
+
+const HEADS: [&str; 11] = [
+    "file",
+    "points",
+    "area kept",
+    "L [m]",
+    "h_{rms} [m]",
+    "rms slope",
+    "cut-off [m]",
+    "removed by S-filter [m]",
+    "removed by levelling [m]",
+    "filled",
+    "H",
+];
+
+/// A table of the measured surfaces of a campaign, if it has any.
+pub(super) fn scans(surfaces: &[SurfaceHeader]) -> Markup {
+    let measured = surfaces.iter().filter_map(|header| header.measured.as_ref().map(|of| row(header, of)));
+    let rows: Vec<Markup> = measured.collect();
+    if rows.is_empty() {
+        return Markup::default();
+    }
+    let head = html! { @for name in HEADS { th { (prose(name)) } } };
+    html! { (heading("Measured surfaces")) p { (prose(NOTE)) } "\n" (wide(&head, &rows)) }
+}
+
+fn row(header: &SurfaceHeader, of: &Measured) -> Markup {
+    let [a, b] = of.source_point_counts;
+    let lengths = |values: &[f64]| html! { @for value in values { td { (format!("{value:.3e}")) } } };
+    html! {
+        td { (of.source) }
+        td { (a) " × " (b) }
+        td { (format!("{:.0} %", 100.0 * (1.0 - of.dropped(header.length_m)))) }
+        (lengths(&[header.length_m, header.rms_height_m]))
+        td { (format!("{:.3}", header.rms_slope)) }
+        (lengths(&[of.shortest_wavelength_m, of.noise_m, of.trend_m]))
+        td { (of.missing_count) }
+        td { (of.fit.map_or_else(|| "–".to_owned(), |fit| format!("{:.2} (±{:.2} decades)", fit.hurst, fit.scatter))) }
+    }
+}

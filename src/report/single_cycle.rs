@@ -1,0 +1,34 @@
+//! Part of the report: a single cycle.
+
+use super::layout::{grid, heading, prose};
+use crate::figures::Panel;
+use maud::{Markup, PreEscaped, html};
+
+/// Figures of one cycle.
+#[derive(Debug, Clone)]
+pub struct SingleCycle {
+    /// Identifier of the cycle.
+    pub id: String,
+    /// Number of its surface.
+    pub realization: u32,
+    /// Parameters of the case, with the load reversal.
+    pub parameters: String,
+    /// Panels.
+    pub panels: Vec<Panel>,
+    /// Maps of the contact spots, if these are stored.
+    pub map: Option<String>,
+}
+
+/// The section of the report.
+pub(super) fn section(number: usize, cycle: &SingleCycle) -> Markup {
+    html! {
+        (heading("Single cycle"))
+        p {
+            (prose("The case with the largest mean Θ/(E*A_{0}h_{rms}): ")) (cycle.parameters) ". Cycle " (cycle.id) ", realization " (cycle.realization)
+            (prose(". The table `events` of the cycle holds all events, the table `contacts` the contact spots."))
+        }
+        "\n"
+        (grid(number, &cycle.panels))
+        @if let Some(map) = &cycle.map { div.map { (PreEscaped(map)) } "\n" }
+    }
+}

@@ -1,0 +1,60 @@
+//! Part of the report: comparison with analytical models.
+
+use super::cases::{Cases, name_heads};
+use super::layout::{heading, prose, wide};
+use super::numbers::scaled;
+use crate::stats::{Listed, StatsError};
+use maud::{Markup, html};
+
+/// Heading, and column of the table `cases` without its `_mean`.
+const COLUMNS: [(&str, &str); 14] = [
+    ("Θ, this simulation", "loss"),
+    ("Θ_{DK}, target spectrum", "loss_dk"),
+    ("Θ_{DK}, realised spectrum", "loss_dk_realised"),
+    ("Σθ over contacting asperities", "loss_touched"),
+    ("Δγ A", "loss_dalvi"),
+    ("2kU_{el}A, pinning", "loss_pinning"),
+    ("Θ, JKR from adhesionless curve", "loss_jkr_curve"),
+    ("A/A_{0}, this simulation", "area_at_max_load"),
+    ("A/A_{0}, JKR from adhesionless curve", "area_jkr_curve"),
+    ("A/A_{0}, Persson, adhesionless", "area_adhesionless"),
+    ("2F/(E*A_{0}h′), adhesionless", "area_adhesionless_small"),
+    ("U_{el}/Δγ", "persson_tosatti_realised"),
+    ("U_{el}/(2Δγ)", "sticky_line"),
+    ("Fuller–Tabor parameter", "fuller_tabor"),
+];
+
+const NOTE: &str = "Dissipated energies are over E*A_{0}h_{rms}, at the simulated contact area.";
+
+const MODELS: [&str; 7] = [
+    "Θ_{DK}, Deng and Kesari (Eqs A1–A4, corrected): mean dissipated energy of one asperity times Nayak's summit density and the contact area.",
+    "Σθ: sum over contacting asperities without elastic interaction, with jump into contact at zero penetration.",
+    "Δγ A: work of adhesion times contact area, an empirical relation near full contact (Dalvi et al. 2019).",
+    "2kU_{el}A with k = 1.35: crack-front pinning in a connected, weakly rough contact (Sanner et al. 2024; prefactor of hysteron), empty for kU_{el} ≥ Δγ/2.",
+    "JKR from adhesionless curve: load and area of adhesive contact from those without adhesion on the same surface (Ciavarella 2018); boundary elements only.",
+    "Adhesionless areas: Persson's theory, and the small-load limit of boundary-element results, with the realised rms slope h′.",
+    "U_{el}/Δγ (Persson and Tosatti) or U_{el}/(2Δγ) (Wang and Müser) below 1, or a Fuller–Tabor parameter below about 10: adhesion is strong.",
+];
+
+/// Dissipated energies, contact areas and adhesion parameters of analytical models.
+pub(super) fn theories(cases: &Cases<'_>) -> Result<Markup, StatsError> {
+    let mut columns = Vec::new();
+    for (heading, column) in COLUMNS {
+        columns.push((heading, column, cases.scale(column)?));
+    }
+    let head = html! { (name_heads()) @for (heading, _, scale) in &columns { th { (prose(heading)) (scale.head()) } } };
+    let row = |listed: &Listed| -> Result<Markup, StatsError> {
+        let mut cells = Vec::new();
+        for (_, column, scale) in &columns {
+            cells.push(scaled(cases.number(&format!("{column}_mean"), listed.row)?, *scale));
+        }
+        Ok(html! { (cases.name(listed)) @for cell in cells { td { (cell) } } })
+    };
+    let rows = cases.rows().iter().map(row).collect::<Result<Vec<_>, _>>()?;
+    Ok(html! {
+        (heading("Comparison with analytical models"))
+        p { (prose(NOTE)) } "\n"
+        ul { "\n" @for model in MODELS { li { (prose(model)) } "\n" } } "\n"
+        (wide(&head, &rows))
+    })
+}

@@ -1,0 +1,170 @@
+//! Parts of the report: energy budget, model validity and warnings.
+
+use super::cases::{Cases, LOAD, name_heads};
+use super::layout::{heading, prose, wide};
+use super::numbers::{Shown, scaled, shown, with_aside};
+use crate::schema::EVENT_KINDS;
+use crate::stats::{LIMITS, Limit, Listed, StatsError, Warning, warnings};
+use maud::{Markup, html};
+
+/// The table of model validity: heading, the column that is compared with a limit, and the column shown in parentheses.
+const VALIDITY: [(&str, &str, Option<&str>, Shown); 9] = [
+    ("Tabor parameter μ: minimum (mean)", "tabor_min_min", Some("tabor_mean_mean"), Shown::Plain),
+    ("asperities with μ < 2", "low_tabor_share_mean", None, Shown::Percent),
+    ("asperities per surface: mean (minimum)", "summit_count_mean", Some("summit_count_min"), Shown::Plain),
+    ("contacts at F_{max}: mean (minimum)", "contact_count_at_max_load_mean", Some("contact_count_at_max_load_min"), Shown::Plain),
+    ("overlapping contacts: pooled (maximum)", "touching_share_mean", Some("touching_share_max"), Shown::Percent),
+    ("absorbed asperities: pooled (maximum)", "covered_share_mean", Some("covered_share_max"), Shown::Percent),
+    ("A/A_{0}", "area_at_max_load_mean", None, Shown::Percent),
+    ("U_{el}/Δγ of the shortest octave: realised (target)", "conformity_realised_mean", Some("conformity_mean"), Shown::Plain),
+    ("U_{el}/Δγ: realised (target)", "persson_tosatti_realised_mean", Some("persson_tosatti_mean"), Shown::Plain),
+];
+
+const BUDGET_NOTE: &str = "Θ is the area of the loop. The energies of all events sum to the same value if the energy balance is exact; the \
+    energy-balance error is the difference over Θ. Both are over E*A_{0}h_{rms}. The percentages are fractions of the sum over events: by \
+    branch, and by the kind of event that triggers each relaxation. Absorption and release have no potential, so their fractions may be \
+    negative.";
+
+/// The energy budget: fractions by branch and by kind of event. Kinds without dissipated energy in all cases have no column.
+pub(super) fn budget(cases: &Cases<'_>) -> Result<Markup, StatsError> {
+    let mut kinds = Vec::new();
+    for kind in EVENT_KINDS {
+        let all = cases.frame.f64_or_null(&format!("dissipated_{kind}_mean"))?;
+        if all.iter().flatten().any(|mean| *mean != 0.0) {
+            kinds.push(kind);
+        }
+    }
+    let factor = cases.scale("loss")?.head();
+    let head = html! {
+        (name_heads())
+        th { "Θ" (factor) }
+        th { "sum over events" (factor) }
+        th { "energy-balance error: maximum (mean)" (bound("audit_gap_max", Shown::Percent)) }
+        th { "loading" }
+        th { "unloading" }
+        @for kind in &kinds { th { (kind_name(kind)) } }
+    };
+    let rows = cases.rows().iter().map(|listed| budget_row(cases, listed, &kinds)).collect::<Result<Vec<_>, _>>()?;
+    Ok(html! { (heading("Energy budget")) p { (prose(BUDGET_NOTE)) } "\n" (wide(&head, &rows)) })
+}
+
+fn budget_row(cases: &Cases<'_>, listed: &Listed, kinds: &[&str]) -> Result<Markup, StatsError> {
+    let row = listed.row;
+    let mean = |column: &str| cases.number(&format!("{column}_mean"), row);
+    let (scale, loss, whole) = (cases.scale("loss")?, mean("loss")?, mean("dissipated")?);
+    let gap = with_aside(cases.number("audit_gap_max", row)?, mean("audit_gap")?, Shown::Percent);
+    let share = |part: &&str| -> Result<Option<f64>, StatsError> {
+        let part = mean(&format!("dissipated_{part}"))?;
+        Ok(part.zip(whole.filter(|whole| *whole != 0.0)).map(|(part, whole)| part / whole))
+    };
+    let shares = ["loading", "unloading"].iter().chain(kinds).map(share).collect::<Result<Vec<_>, _>>()?;
+    Ok(html! {
+        (cases.name(listed))
+        td { (scaled(loss, scale)) }
+        td { (scaled(whole, scale)) }
+        (cell(cases, row, "audit_gap_max", &gap))
+        @for share in shares { td { (shown(share, Shown::Percent)) } }
+    })
+}
+
+/// The name of a kind of event.
+fn kind_name(kind: &str) -> &str {
+    match kind {
+        "jump_in" => "jump into contact",
+        "jump_off" => "jump out of contact",
+        "cover" => "absorption",
+        "uncover" => "release",
+        "snap" => "snap-through",
+        "merge" => "merging",
+        "split" => "splitting",
+        _ => kind,
+    }
+}
+
+const VALIDITY_NOTE: &str = "An asperity model is outside its range where contacts coalesce: it then underestimates the contact area \
+    of a boundary-element solution by a third, even without adhesion. Numbers beyond their limit are bold. U_{el} is the elastic energy per area \
+    that flattens the roughness, Δγ the work of adhesion: for the realised spectrum of the surfaces, and in brackets for the target spectrum.";
+
+/// The indicators of model validity with their limits, and the warnings.
+pub(super) fn validity(cases: &Cases<'_>) -> Result<Markup, StatsError> {
+    let head = html! {
+        (name_heads())
+        @for (heading, column, _, format) in VALIDITY { th { (prose(heading)) (bound(column, format)) } }
+    };
+    let row = |listed: &Listed| -> Result<Markup, StatsError> {
+        let mut cells = Vec::new();
+        for (_, column, aside, format) in VALIDITY {
+            let aside = aside.map(|column| cases.number(column, listed.row)).transpose()?.flatten();
+            cells.push(cell(cases, listed.row, column, &with_aside(cases.number(column, listed.row)?, aside, format)));
+        }
+        Ok(html! { (cases.name(listed)) @for cell in cells { (cell) } })
+    };
+    let rows = cases.rows().iter().map(row).collect::<Result<Vec<_>, _>>()?;
+    Ok(html! {
+        h2 id="validity" { "Model validity" } "\n"
+        p { (prose(VALIDITY_NOTE)) } "\n"
+        (wide(&head, &rows))
+        (warning_table(cases)?)
+    })
+}
+
+/// Every warning with its measured values, consequence, action and rows.
+fn warning_table(cases: &Cases<'_>) -> Result<Markup, StatsError> {
+    let found = warnings(cases.frame)?;
+    Ok(html! {
+        (heading("Warnings"))
+        @if found.is_empty() {
+            p { "None." } "\n"
+        } @else {
+            table {
+                "\n"
+                tr { th { "warning (code)" } th { "measured" } th { "consequence and action" } th { "cases, at " (prose(LOAD)) } } "\n"
+                @for Warning { kind, measured, rows } in &found {
+                    tr {
+                        td { (kind.label) " (" (kind.code) ")" }
+                        td { (prose(measured)) }
+                        td { (prose(kind.consequence)) " " (prose(kind.action)) }
+                        td { (places(cases, rows)) }
+                    }
+                    "\n"
+                }
+            }
+            "\n"
+        }
+    })
+}
+
+/// The rows of a warning.
+fn places(cases: &Cases<'_>, rows: &[usize]) -> Markup {
+    if rows.len() == cases.rows().len() {
+        return html! { "all" };
+    }
+    let listed = cases.rows().iter().filter(|listed| rows.contains(&listed.row));
+    html! {
+        @for (place, listed) in listed.enumerate() {
+            @if place > 0 { br; }
+            (listed.label) " at " (cases.load(listed.row))
+        }
+    }
+}
+
+/// A cell, marked where the number of this column is beyond its limit.
+fn cell(cases: &Cases<'_>, row: usize, column: &str, content: &Markup) -> Markup {
+    // The warning decides, not the number: the limit of the Tabor parameter applies to one criterion only.
+    let beyond = limit_of(column).is_some_and(|limit| cases.has(row, limit.caution));
+    html! { td class=[beyond.then_some("beyond")] { (content) } }
+}
+
+fn limit_of(column: &str) -> Option<&'static Limit> {
+    LIMITS.iter().find(|limit| limit.column == column)
+}
+
+/// The limit of a column, below its heading; empty without a limit.
+fn bound(column: &str, format: Shown) -> Markup {
+    html! {
+        @if let Some(limit) = limit_of(column) {
+            br;
+            (if limit.at_least { "≥\u{a0}" } else { "≤\u{a0}" }) (shown(Some(limit.bound), format))
+        }
+    }
+}

@@ -1,0 +1,150 @@
+//! Stage aggregate: from the steps of all cycles to the tables over realizations.
+
+use super::cycle::lattice;
+use super::cycle_input::{cycle_input, of_failed};
+use super::done::Clock;
+use super::error::incomplete;
+use super::runner::{Context, Single, run_single};
+use super::surface::scale;
+use super::{StageError, Tally, datapackage};
+use crate::campaign::{Campaign, CaseUnit, CycleUnit, STATISTICS, Stage, Standing, Unit};
+use crate::model::Choice;
+use crate::schema::{CaseFacts, PARAMETERS};
+use crate::spec::CaseParams;
+use crate::stats::{self, CaseInput, CycleInput, Given, Planned};
+use crate::store::commit::Written;
+use crate::store::{Check, Frame, commit, parquet};
+use rayon::prelude::*;
+use std::collections::HashMap;
+
+/// Aggregates the finished cycles; without `--partial`, all must be finished.
+pub(super) fn run(context: Context<'_>, cycles_check: Check) -> Result<Tally, StageError> {
+    let (campaign, task) = (context.campaign, context.task);
+    let clock = Clock::start();
+    let standings = campaign.cycle_standings(cycles_check);
+    // A run of several stages aggregates what it has computed.
+    let partial = task.partial || task.from != task.until;
+    if let (false, Some(error)) = (partial, unfinished(campaign, &standings)) {
+        return Err(error);
+    }
+    let key = campaign.statistics_key(&standings);
+    let single = Single { unit: Unit { stage: Stage::Aggregate, id: STATISTICS, key: &key }, name: "statistics", clock };
+    let compute = || Ok((write(campaign, &standings, &key)?, campaign.statistics_preimages(&standings)));
+    run_single(single, (context, task.check), || None, compute)
+}
+
+/// The error of cycles that are neither done nor failed.
+fn unfinished(campaign: &Campaign, standings: &[Standing]) -> Option<StageError> {
+    let state = |standing: &Standing| if matches!(standing, Standing::Failed(_)) { Standing::Done } else { standing.clone() };
+    let inputs: Vec<(String, Standing)> =
+        campaign.cycles.iter().zip(standings).map(|(unit, standing)| (unit.id.clone(), state(standing))).collect();
+    incomplete(campaign, Stage::Aggregate, &inputs)
+}
+
+/// Writes the tables over realizations and their description.
+fn write(campaign: &Campaign, standings: &[Standing], key: &str) -> Result<Vec<Written>, StageError> {
+    let (cases, cycles) = inputs(campaign, standings)?;
+    let realizations = stats::realizations(&cases, &cycles)?;
+    let averaged = stats::cases(&realizations, &cases)?;
+    let methods = stats::methods(&cases, &side_by_side(campaign), &realizations)?;
+    let curves = stats::curves(&cases, &cycles)?;
+    let avalanches = stats::avalanches(&cases, &cycles)?;
+    let planned = stats::planned(&cases, &planned_cycles(campaign, standings))?;
+    let write = |frame: &Frame| Ok(parquet::write_table(&campaign.statistics_path(frame.table().name), frame, &[("key", key.to_owned())])?);
+    let tables = [realizations, curves, avalanches, planned, methods, averaged];
+    let mut files = tables.iter().map(write).collect::<Result<Vec<_>, StageError>>()?;
+    let finished: Vec<bool> = standings.iter().map(|standing| *standing == Standing::Done).collect();
+    let described = datapackage::text(campaign, &finished);
+    files.push(commit::commit_bytes("describe the tables in", &campaign.dir.join("datapackage.json"), described.as_bytes())?);
+    Ok(files)
+}
+
+/// Inputs of the aggregation: all cases, and the finished cycles.
+fn inputs(campaign: &Campaign, standings: &[Standing]) -> Result<(Vec<CaseInput>, Vec<CycleInput>), StageError> {
+    let mut cases: Vec<CaseInput> =
+        campaign.cases.iter().enumerate().map(|(k, unit)| case_input(campaign, k, unit, standings)).collect::<Result<_, _>>()?;
+    let cycles: Vec<CycleInput> = campaign
+        .cycles
+        .par_iter()
+        .zip(standings)
+        .filter(|(_, standing)| **standing == Standing::Done)
+        .map(|(unit, _)| cycle_input(campaign, unit))
+        .collect::<Result<_, _>>()?;
+    let failed: Vec<(usize, Given)> = campaign
+        .cycles
+        .par_iter()
+        .zip(standings)
+        .filter(|(_, standing)| matches!(standing, Standing::Failed(_)))
+        .map(|(unit, _)| (unit.case, of_failed(campaign, unit)))
+        .collect();
+    for (case, of_surface) in failed {
+        cases[case].surfaces.push(of_surface);
+    }
+    // Without failed cycles the table of realizations has all surfaces.
+    let places = cases.iter().enumerate().filter(|(_, case)| case.failed_count > 0);
+    let with_failed: HashMap<String, usize> = places.map(|(place, case)| (case.case_id.clone(), place)).collect();
+    for cycle in &cycles {
+        if let Some(place) = with_failed.get(&cycle.case_id) {
+            cases[*place].surfaces.push(cycle.surface.clone());
+        }
+    }
+    Ok((cases, cycles))
+}
+
+/// Ids of cases of the same surface and material, one by asperities and one by boundary elements.
+fn side_by_side(campaign: &Campaign) -> Vec<[String; 2]> {
+    let same = |a: &CaseParams, b: &CaseParams| a.surface == b.surface && a.material == b.material;
+    let (elements, asperities): (Vec<&CaseUnit>, Vec<&CaseUnit>) = campaign.cases.iter().partition(|unit| unit.case.params.by_elements());
+    let pairs = |one: &CaseUnit| {
+        let others = elements.iter().filter(|other| same(&one.case.params, &other.case.params));
+        others.map(|other| [one.id.clone(), other.id.clone()]).collect::<Vec<_>>()
+    };
+    asperities.into_iter().flat_map(pairs).collect()
+}
+
+/// Every cycle of every case with its status.
+fn planned_cycles(campaign: &Campaign, standings: &[Standing]) -> Vec<Planned> {
+    let row = |(unit, standing): (&CycleUnit, &Standing)| Planned {
+        case_id: campaign.cases[unit.case].id.clone(),
+        realization: i64::from(campaign.surfaces[unit.surface].realization),
+        cycle_id: unit.id.clone(),
+        surface_id: campaign.surfaces[unit.surface].id.clone(),
+        status: match standing {
+            Standing::Done => "done",
+            Standing::Failed(_) => "failed",
+            _ => "planned",
+        },
+        failure: campaign.failure_in_tables(standing),
+    };
+    campaign.cycles.iter().zip(standings).map(row).collect()
+}
+
+fn case_input(campaign: &Campaign, number: usize, unit: &CaseUnit, standings: &[Standing]) -> Result<CaseInput, StageError> {
+    let params = &unit.case.params;
+    let surface = &params.surface;
+    // The import of a measured surface may have failed.
+    let is_there = |cycle: &&CycleUnit| !surface.is_measured() || campaign.surface_path(&campaign.surfaces[cycle.surface]).is_file();
+    let of_case = campaign.cycles.iter().find(|cycle| cycle.case == number).filter(is_there);
+    let scale = of_case.map(|cycle| scale(campaign, &campaign.surfaces[cycle.surface])).transpose()?;
+    let lattice = of_case.map(|cycle| lattice(campaign, cycle)).transpose()?.flatten();
+    let facts = CaseFacts {
+        params,
+        surface_file: surface.is_measured().then(|| campaign.file_label(&surface.file)),
+        length_m: scale.map(|scale| scale.length_m),
+        rms_height_m: scale.map(|scale| scale.rms_height_m),
+        element_points: lattice.map(|lattice| lattice.points as f64),
+        attraction_range_m: lattice.and_then(|lattice| lattice.range_m),
+    };
+    let parameters = PARAMETERS.iter().map(|parameter| (parameter.column.name.to_owned(), (parameter.get)(&facts).into())).collect();
+    let failed = |(cycle, standing): (&CycleUnit, &Standing)| cycle.case == number && matches!(standing, Standing::Failed(_));
+    Ok(CaseInput {
+        case_id: unit.id.clone(),
+        sweep: unit.case.sweeps.join("+"),
+        parameters,
+        max_loads: params.cycle.max_load.clone(),
+        precision: campaign.spec.realizations.until().map(|until| (until.of.word().to_owned(), until.until_relative_ci)),
+        planned_count: campaign.counts[number] as usize,
+        failed_count: campaign.cycles.iter().zip(standings).filter(|pair| failed(*pair)).count(),
+        surfaces: Vec::new(),
+    })
+}

@@ -1,0 +1,55 @@
+//! Contact maps of both methods on one surface, for the report.
+
+use super::StageError;
+use crate::campaign::{Campaign, CycleUnit, Standing};
+use crate::figures::{Both, SpotTables, both};
+use crate::model::Boundary;
+use crate::report::ContactMaps;
+use crate::schema;
+use crate::stats::significant;
+use crate::store::hdf5::read_surface;
+use crate::store::parquet::read_table;
+use crate::store::{Frame, read_reversal_map};
+
+/// The contact of the pair of cycles with the largest Θ by boundary elements on a periodic surface, at that load reversal; nothing without one, and where its contacts
+/// or maps are not kept.
+pub(super) fn contact_maps(campaign: &Campaign, standings: &[Standing], methods: &Frame) -> Result<Option<ContactMaps>, StageError> {
+    let (first, second, surfaces) = (methods.text("asperities_case_id")?, methods.text("elements_case_id")?, methods.text("surface_id")?);
+    let (loads, losses) = (methods.f64("max_load")?, methods.f64("loss_elements")?);
+    let areas = [methods.f64("area_at_max_load_asperities")?, methods.f64("area_at_max_load_elements")?];
+    let Some(row) = (0..methods.row_count()).rev().max_by(|a, b| losses[*a].total_cmp(&losses[*b])) else { return Ok(None) };
+    let done = |case: &str| {
+        let is = |unit: &CycleUnit| campaign.cases[unit.case].id == case && campaign.surfaces[unit.surface].id == surfaces[row];
+        campaign.cycles.iter().zip(standings).find(|(unit, standing)| **standing == Standing::Done && is(unit)).map(|(unit, _)| unit)
+    };
+    let (Some(asperities), Some(elements)) = (done(first[row]), done(second[row])) else { return Ok(None) };
+    let surface = &campaign.surfaces[asperities.surface];
+    let (header, heights) = read_surface(&campaign.surface_path(surface))?;
+    let map = read_reversal_map(&campaign.cycle_dir(elements).join("maps.h5"), loads[row])?;
+    let Some(map) = map.filter(|_| header.periodic) else { return Ok(None) };
+    let table = |table: &'static schema::Table| read_table(&campaign.cycle_dir(asperities).join(format!("{}.parquet", table.name)), table);
+    let (steps, contacts, merged) = (table(&schema::STEPS)?, table(&schema::CONTACTS)?, table(&schema::MERGED)?);
+    let summits = read_table(&campaign.asperities_path(surface), &schema::ASPERITIES)?;
+    let (branches, load) = (steps.text("branch")?, steps.f64("load")?);
+    let off = |step: &usize| (load[*step] - loads[row]).abs();
+    let reversal = (0..load.len()).filter(|step| branches[*step] == "loading").min_by(|a, b| off(a).total_cmp(&off(b)));
+    let kept = contacts.i64("step")?;
+    let Some(step) = reversal.map(|step| step as i64).filter(|step| kept.contains(step)) else { return Ok(None) };
+    let params = &campaign.cases[asperities.case].case.params;
+    let svg = both(&Both {
+        heights_m: heights.view(),
+        length_m: header.length_m,
+        periodic: params.model.boundary == Boundary::Periodic,
+        spots: SpotTables { contacts: &contacts, asperities: &summits, merged: &merged },
+        step,
+        areas: areas.map(|areas| areas[row]),
+        elements: &map,
+    })?;
+    let caption = format!(
+        "Contact of surface {} at F_max/(E*A₀) = {}. Left: contact spots of the asperity model. Right: grid points of boundary elements. Table realizations: \
+         area_at_max_load; maps.h5: pressure_pa.",
+        surfaces[row],
+        significant(loads[row], 4)
+    );
+    Ok(Some(ContactMaps { svg, caption }))
+}

@@ -1,0 +1,175 @@
+//! Errors of the stages.
+
+use crate::campaign::{Campaign, Stage, Standing};
+use crate::physics::PhysicsError;
+use crate::stats::StatsError;
+use crate::store::{FrameError, StoreError};
+use crate::text::{counted, shown};
+use std::path::PathBuf;
+use thiserror::Error;
+
+/// Why a stage ended without its result.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum StageError {
+    /// A file.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// A table's columns.
+    #[error(transparent)]
+    Frame(#[from] FrameError),
+    /// The physics.
+    #[error(transparent)]
+    Physics(#[from] PhysicsError),
+    /// Aggregation.
+    #[error(transparent)]
+    Stats(#[from] StatsError),
+    /// A figure.
+    #[error(transparent)]
+    Figure(#[from] crate::figures::FigureError),
+    /// The output folder.
+    #[error("cannot create the directory {}: {source}\nhelp: give a writable directory with --out DIR", shown(path))]
+    Folder {
+        /// The folder.
+        path: PathBuf,
+        /// Error of the system.
+        source: std::io::Error,
+    },
+    /// A measured surface.
+    #[error("cannot import the surface {}: {why}", shown(path))]
+    Measured {
+        /// File.
+        path: PathBuf,
+        /// Why, and what is allowed.
+        why: String,
+    },
+    /// The file of a measured surface, which is not in the form that it seems to be in.
+    #[error(transparent)]
+    Scan(StoreError),
+    /// A measured surface that changed after the spec was read. It is no failure of a case, whose keys refer to the former file.
+    #[error("cannot import the surface {}: {why}", shown(path))]
+    Changed {
+        /// File.
+        path: PathBuf,
+        /// Why, and what is allowed.
+        why: String,
+    },
+    /// A folder in the place of a file that a task writes, or a file in the place of its folder.
+    #[error("cannot write {}: {what} of this name exists\nhelp: remove or rename it; the next run computes the task", shown(path))]
+    InTheWay {
+        /// The place.
+        path: PathBuf,
+        /// Kind of the entry.
+        what: &'static str,
+    },
+    /// Steps that would fill the memory.
+    #[error(
+        "cycle.approach_step = {approach_step:?} makes at least {steps:.0} steps of loading and unloading (limit {limit})\n\
+         help: use a larger approach_step (default 0.01); it does not change results, which are located between the steps"
+    )]
+    TooManySteps {
+        /// Step of the approach, in rms heights.
+        approach_step: f64,
+        /// Steps of all branches, estimated from below.
+        steps: f64,
+        /// Limit.
+        limit: u64,
+    },
+    /// A turning point that was not kept.
+    #[error("no load reversal at F/(E* A0) = {max_load} in {}\nhelp: use one of {kept}", shown(path))]
+    NoTurning {
+        /// The load asked for.
+        max_load: f64,
+        /// The table.
+        path: PathBuf,
+        /// Stored load reversals.
+        kept: String,
+    },
+    /// A state at a load reversal that cannot be stored.
+    #[error("cannot store the state at a load reversal: {what}\nhelp: report this")]
+    State {
+        /// Why.
+        what: String,
+    },
+    /// A campaign that is to be compared with itself.
+    #[error("cannot compare {} with itself\nhelp: name each run once", shown(path))]
+    ComparedTwice {
+        /// Its folder.
+        path: PathBuf,
+    },
+    /// A comparison of other campaigns in the place of a new one.
+    #[error("{} holds the comparison of other runs\nhelp: write to another folder with --out DIR, or replace it with --force", shown(path))]
+    OtherComparison {
+        /// Its folder.
+        path: PathBuf,
+    },
+    /// Campaigns without a case in common.
+    #[error(
+        "cannot compare {folders}: no case with otherwise equal parameters is in all runs\nhelp: compare runs that differ in one parameter"
+    )]
+    NothingInCommon {
+        /// Their folders.
+        folders: String,
+    },
+    /// A stage lacks what an earlier one writes.
+    #[error(
+        "cannot run the stage {stage} in {}: of {} of the previous stage, {}; for example {example}\nhelp: {}",
+        shown(path), counted(*all, "task"), lacks(*missing, *damaged), incomplete_help(stage)
+    )]
+    Incomplete {
+        /// The stage.
+        stage: &'static str,
+        /// The output folder.
+        path: PathBuf,
+        /// Number of tasks that are not computed.
+        missing: usize,
+        /// Number of tasks that are stale, or have missing or changed files.
+        damaged: usize,
+        /// Of how many.
+        all: usize,
+        /// One of them.
+        example: String,
+    },
+    /// A single stage in a folder without a run.
+    #[error(
+        "cannot run the stage {stage}: {} has no campaign.toml\nhelp: run the previous stages first, or name the output folder of the run with --out",
+        shown(path)
+    )]
+    NoRun {
+        /// The stage.
+        stage: &'static str,
+        /// The folder.
+        path: PathBuf,
+    },
+}
+
+/// Numbers of tasks that a stage lacks.
+fn lacks(missing: usize, damaged: usize) -> String {
+    let parts = [(missing, "not computed"), (damaged, "stale or damaged")];
+    let parts: Vec<String> = parts.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")).collect();
+    parts.join(" and ")
+}
+
+fn incomplete_help(stage: &str) -> &'static str {
+    if stage == Stage::Aggregate.word() {
+        "compute them with `hysteron run SPEC`, or aggregate the finished ones with --partial"
+    } else {
+        "run `hysteron run SPEC`, or the previous stage"
+    }
+}
+
+/// The error of a stage whose inputs have these states; `None` if all are done.
+pub(super) fn incomplete(campaign: &Campaign, stage: Stage, inputs: &[(String, Standing)]) -> Option<StageError> {
+    let lacking = || inputs.iter().filter(|(_, standing)| *standing != Standing::Done);
+    let (id, standing) = lacking().next()?;
+    let missing =
+        lacking().filter(|(_, standing)| matches!(standing, Standing::Planned | Standing::Interrupted | Standing::Failed(_))).count();
+    Some(StageError::Incomplete {
+        stage: stage.word(),
+        path: campaign.dir.clone(),
+        missing,
+        damaged: lacking().count() - missing,
+        all: inputs.len(),
+        example: standing.why().map_or_else(|| id.clone(), |why| format!("{id}: {why}")),
+    })
+}

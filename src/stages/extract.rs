@@ -1,0 +1,139 @@
+//! Stage extract: asperities of a surface.
+
+use super::StageError;
+use super::done::Outcome;
+use super::failure::in_the_way;
+use super::runner::{Context, Tasks};
+use super::surface::Surfaces;
+use crate::campaign::{Campaign, CycleUnit, Stage, Standing, SurfaceUnit, Unit};
+use crate::physics::surface::measured::find_measured;
+use crate::physics::surface::summits::{Summit, find_summits};
+use crate::schema;
+use crate::store::hdf5::read_surface;
+use crate::store::{Frame, FrameError, parquet};
+use serde_json::{Map, Value};
+use std::iter::repeat_n;
+use std::path::Path;
+
+/// Tasks of the stage extract: one for each surface.
+pub(super) struct Extract<'a>(Surfaces<'a>);
+
+impl<'a> Extract<'a> {
+    pub(super) fn of(context: Context<'a>) -> Self {
+        Self(Surfaces::of(context))
+    }
+}
+
+impl Tasks for Extract<'_> {
+    type Of = SurfaceUnit;
+
+    const STAGE: Stage = Stage::Extract;
+
+    fn selected(&self) -> Vec<&SurfaceUnit> {
+        self.0.selected()
+    }
+
+    fn unit<'a>(&self, of: &'a SurfaceUnit) -> Unit<'a> {
+        of.asperities()
+    }
+
+    fn key_inputs(&self, of: &SurfaceUnit) -> Map<String, Value> {
+        self.0.context.campaign.surface_preimages(of, Self::STAGE)
+    }
+
+    fn standing(&self, of: &SurfaceUnit) -> Standing {
+        self.0.context.campaign.standing(&of.asperities(), self.0.context.task.check)
+    }
+
+    fn is_given_up(&self, of: &SurfaceUnit, _: &Standing) -> bool {
+        self.0.is_given_up(of, Self::STAGE)
+    }
+
+    fn input(&self, of: &SurfaceUnit) -> Option<(String, Standing)> {
+        Some((of.id.clone(), self.0.context.campaign.standing(&of.surface(), self.0.context.task.check)))
+    }
+
+    fn compute(&self, of: &SurfaceUnit) -> Result<Outcome, StageError> {
+        let Context { campaign, watch, .. } = self.0.context;
+        let outcome = in_the_way(campaign, &of.asperities()).and_then(|()| extract(campaign, of));
+        watch.progress(Self::STAGE, 1.0);
+        outcome
+    }
+
+    fn cycles<'a>(&'a self, of: &'a SurfaceUnit) -> Vec<&'a CycleUnit> {
+        self.0.cycles(of).to_vec()
+    }
+
+    fn clean_up(&self, of: &SurfaceUnit) {
+        self.0.forget(of, Self::STAGE);
+    }
+}
+
+/// Finds the asperities of a surface and writes their table.
+fn extract(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Outcome, StageError> {
+    let (header, heights) = read_surface(&campaign.surface_path(unit))?;
+    let (found, edge) = match &header.measured {
+        Some(measured) => {
+            let points = measured.shortest_wavelength_m * heights.nrows() as f64 / header.length_m;
+            find_measured(heights.view(), header.length_m, (header.periodic, points))?
+        }
+        None => (find_summits(heights.view(), header.length_m, f64::from(unit.params.points_per_shortest_wavelength))?, 0),
+    };
+    let list = &found.list;
+    let frame = table(unit, list)?;
+    let area = header.length_m * header.length_m;
+    let moments = header.moments();
+    let mut keys = vec![
+        ("key", unit.asperities_key.clone()),
+        // Nayak's density of the realised moments beside the one that was found.
+        ("nayak_density_1_m2", moments.summit_density_1_m2().to_string()),
+        ("summit_density_1_m2", (list.len() as f64 / area).to_string()),
+        ("rejected_count", found.rejected.to_string()),
+        ("unrefined_count", found.unrefined.to_string()),
+    ];
+    if header.measured.is_some() {
+        keys.push(("edge_count", edge.to_string()));
+    }
+    Ok(Outcome::of(vec![parquet::write_table(&campaign.asperities_path(unit), &frame, &keys)?]))
+}
+
+/// Table of the asperities of a surface.
+fn table(unit: &SurfaceUnit, list: &[Summit]) -> Result<Frame, FrameError> {
+    Frame::of(&schema::ASPERITIES)
+        .text("surface_id", repeat_n(unit.id.as_str(), list.len()))
+        .i64("realization", repeat_n(i64::from(unit.realization), list.len()))
+        .i64("asperity_id", (0..list.len()).map(|k| k as i64))
+        .f64("x_m", list.iter().map(|s| s.x_m))
+        .f64("y_m", list.iter().map(|s| s.y_m))
+        .f64("height_m", list.iter().map(|s| s.height_m))
+        .f64("radius_m", list.iter().map(Summit::radius_m))
+        .f64("curvature_1_m", list.iter().map(|s| s.curvature_1_m))
+        .f64("curvature_min_1_m", list.iter().map(|s| s.curvature_min_1_m))
+        .f64("curvature_max_1_m", list.iter().map(|s| s.curvature_max_1_m))
+        .i64("grid_row", list.iter().map(|s| s.grid_row as i64))
+        .i64("grid_col", list.iter().map(|s| s.grid_col as i64))
+        .bool("refined", list.iter().map(|s| s.refined))
+        .build()
+}
+
+/// Reads a table of asperities.
+pub(super) fn read_summits(path: &Path) -> Result<Vec<Summit>, StageError> {
+    let frame = parquet::read_table(path, &schema::ASPERITIES)?;
+    let [x, y, height, curvature, least, most] =
+        ["x_m", "y_m", "height_m", "curvature_1_m", "curvature_min_1_m", "curvature_max_1_m"].map(|name| frame.f64(name));
+    let (x, y, height, curvature, least, most) = (x?, y?, height?, curvature?, least?, most?);
+    let (rows, columns, refined) = (frame.i64("grid_row")?, frame.i64("grid_col")?, frame.bool("refined")?);
+    Ok((0..frame.row_count())
+        .map(|k| Summit {
+            x_m: x[k],
+            y_m: y[k],
+            height_m: height[k],
+            curvature_1_m: curvature[k],
+            curvature_min_1_m: least[k],
+            curvature_max_1_m: most[k],
+            grid_row: rows[k] as usize,
+            grid_col: columns[k] as usize,
+            refined: refined[k],
+        })
+        .collect())
+}

@@ -1,0 +1,128 @@
+//! Stage generate: surfaces from their spectra, and import of measured surfaces.
+
+use super::StageError;
+use super::done::Outcome;
+use super::failure::in_the_way;
+use super::measure::{Imported, measure};
+use super::runner::{Context, Tasks};
+use super::surface::{Surfaces, spectrum};
+use crate::campaign::{Campaign, CycleUnit, Stage, Standing, SurfaceUnit, Unit};
+use crate::formats::recognize;
+use crate::keys::digest_of_file;
+use crate::physics::PhysicsError;
+use crate::physics::memory;
+use crate::physics::surface::synthesis::{realization_seed, synthesis_bytes, synthesize};
+use crate::store::hdf5::{Generated, SurfaceHeader, write_surface};
+use serde_json::{Map, Value};
+use std::path::Path;
+
+/// Tasks of the stage generate: one for each surface.
+pub(super) struct Generate<'a>(Surfaces<'a>);
+
+impl<'a> Generate<'a> {
+    pub(super) fn of(context: Context<'a>) -> Self {
+        Self(Surfaces::of(context))
+    }
+}
+
+impl Tasks for Generate<'_> {
+    type Of = SurfaceUnit;
+
+    const STAGE: Stage = Stage::Generate;
+
+    fn selected(&self) -> Vec<&SurfaceUnit> {
+        self.0.selected()
+    }
+
+    fn unit<'a>(&self, of: &'a SurfaceUnit) -> Unit<'a> {
+        of.surface()
+    }
+
+    fn key_inputs(&self, of: &SurfaceUnit) -> Map<String, Value> {
+        self.0.context.campaign.surface_preimages(of, Self::STAGE)
+    }
+
+    fn standing(&self, of: &SurfaceUnit) -> Standing {
+        self.0.context.campaign.standing(&of.surface(), self.0.context.task.check)
+    }
+
+    fn is_given_up(&self, of: &SurfaceUnit, _: &Standing) -> bool {
+        self.0.is_given_up(of, Self::STAGE)
+    }
+
+    fn input(&self, _: &SurfaceUnit) -> Option<(String, Standing)> {
+        None
+    }
+
+    fn compute(&self, of: &SurfaceUnit) -> Result<Outcome, StageError> {
+        let Context { campaign, watch, .. } = self.0.context;
+        let outcome = in_the_way(campaign, &of.surface()).and_then(|()| generate(campaign, of));
+        watch.progress(Self::STAGE, 1.0);
+        outcome
+    }
+
+    fn cycles<'a>(&'a self, of: &'a SurfaceUnit) -> Vec<&'a CycleUnit> {
+        self.0.cycles(of).to_vec()
+    }
+
+    fn clean_up(&self, of: &SurfaceUnit) {
+        self.0.forget(of, Self::STAGE);
+    }
+}
+
+/// Imports a measured surface.
+fn import(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Outcome, StageError> {
+    let path = Path::new(&unit.params.file);
+    let refuse = |why: String| StageError::Changed { path: path.to_owned(), why };
+    // A file in an unknown format may be too large to be hashed for nothing.
+    recognize(path)
+        .map_err(|error| refuse(error.to_string()))?
+        .map_err(|refusal| StageError::Measured { path: path.to_owned(), why: refusal.to_string() })?;
+    let digest = digest_of_file(path).map_err(|error| refuse(error.to_string()))?;
+    if campaign.spec.files.get(&unit.params.file) != Some(&digest) {
+        return Err(refuse(
+            "the file differs from its checksum in [files] of the spec\nhelp: remove this line to recompute with the present file"
+                .to_owned(),
+        ));
+    }
+    let Imported { prepared, header, .. } = measure(&unit.params, &digest, &unit.key)?;
+    Ok(Outcome::of(vec![write_surface(&campaign.surface_path(unit), &header, prepared.heights_m.view())?]))
+}
+
+/// Synthesizes a surface, or imports a measured one.
+fn generate(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Outcome, StageError> {
+    let params = &unit.params;
+    if params.is_measured() {
+        return import(campaign, unit);
+    }
+    let seed = realization_seed(campaign.spec.seed, u64::from(unit.realization));
+    let (spectrum, grid) = (spectrum(params), params.grid() as usize);
+    memory::check(synthesis_bytes(&spectrum, grid))?;
+    let surface = synthesize(&spectrum, &seed, grid);
+    // One that no file may hold is the failure of this surface.
+    if let Some(value) = surface.heights_m.iter().copied().find(|height| !height.is_finite()) {
+        let [action, quantity, allowed] = ["the heights of the surface", "a height [m]", "finite heights"];
+        return Err(PhysicsError::Domain { action, quantity, value, allowed }.into());
+    }
+    let header = SurfaceHeader {
+        length_m: params.length_m,
+        realization: u64::from(unit.realization),
+        periodic: true,
+        key: unit.key.clone(),
+        rms_height_m: surface.moments.rms_height_m(),
+        rms_slope: surface.moments.rms_slope(),
+        rms_curvature_1_m: surface.moments.rms_curvature_1_m(),
+        nayak_parameter: surface.moments.nayak_parameter(),
+        generated: Some(Generated {
+            target_rms_height_m: params.rms_height_m,
+            hurst: params.hurst,
+            magnification: f64::from(params.magnification),
+            seed: campaign.spec.seed,
+            points_per_shortest_wavelength: f64::from(params.points_per_shortest_wavelength),
+            normalization: params.normalization,
+            amplitudes: params.amplitudes,
+        }),
+        measured: None,
+    };
+    Ok(Outcome::of(vec![write_surface(&campaign.surface_path(unit), &header, surface.heights_m.view())?]))
+}
