@@ -9,6 +9,7 @@ mod approximate_jkr;
 mod boundary_elements;
 mod coupled;
 mod cycle;
+mod examples;
 mod extremes;
 mod fast;
 mod golden;
