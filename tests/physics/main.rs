@@ -25,6 +25,7 @@ mod pair;
 mod path;
 mod periodogram;
 mod printed;
+mod properties;
 mod reciprocal;
 mod spectrum;
 mod summits;
@@ -90,6 +91,7 @@ mod support {
     use hysteron::physics::state::{Problem, Rules};
     use hysteron::physics::summits::{Summit, find_summits};
     use hysteron::physics::synthesis::{Surface, realization_seed, synthesize};
+    use proptest::test_runner::{Config, RngSeed};
 
     /// The paper's material.
     pub const PAPER: Material = Material { contact_modulus_pa: 1e6, work_of_adhesion_j_m2: 0.07, interaction_range_m: 1e-9 };
@@ -120,6 +122,13 @@ mod support {
     pub fn near(what: &str, got: f64, want: f64, absolute: f64) {
         let off = (got - want).abs();
         assert!(off <= absolute, "{what}: got {got:e}, want {want:e}, off by {off:e}, allowed {absolute:e}");
+    }
+
+    /// Configuration of random cases: `usual` of them or `PROPTEST_CASES`, the same ones in every run.
+    pub fn random(usual: u32) -> Config {
+        let config = Config::default();
+        let cases = if std::env::var_os("PROPTEST_CASES").is_some() { config.cases } else { usual };
+        Config { cases, rng_seed: RngSeed::Fixed(2021), failure_persistence: None, ..config }
     }
 
     /// SplitMix64 (Steele, Lea & Flood 2014): a few fixed pseudorandom numbers in `[0, 1)`, not the program's generator.
