@@ -2,12 +2,13 @@
 
 use crate::support::{DEFAULT, LENGTH, PAPER, RMS, asperity, close, loop_of, near, paper_spectrum, run, unloading};
 use hysteron::model::{Coalescence, Interaction, JumpIn, KeptContacts, Material};
-use hysteron::physics::PhysicsError;
 use hysteron::physics::contact::{Problem, Rules};
 use hysteron::physics::cycle::soundness::{check_energy, loop_energy};
 use hysteron::physics::cycle::{self, Branch, Cycle, Settings};
 use hysteron::physics::surface::summits::{Summit, find_summits};
 use hysteron::physics::surface::synthesis::{realization_seed, synthesize};
+use hysteron::physics::{PhysicsError, Reason};
+use std::collections::BTreeSet;
 use std::f64::consts::PI;
 
 /// Summits of the paper's surface of another campaign seed.
@@ -167,4 +168,19 @@ fn reg_weak_adhesion_at_high_load() {
         let energy = loop_energy(&attempt(&problem, 0.03).unwrap(), 0);
         assert!(energy.loss_j < 1e-5 * energy.work_j, "{energy:?}");
     }
+}
+
+/// Each reason has its own sentence, and an unknown residual is not printed as one.
+#[test]
+fn reg_no_equilibrium_has_a_reason_in_words() {
+    let sentence = |reason: Reason, residual_m: f64| {
+        PhysicsError::NoEquilibrium { approach_m: 1e-7, reason, residual_m, asperity: 3, iterations: 100 }.to_string()
+    };
+    let known = sentence(Reason::Residual, 2e-9);
+    assert!(known.contains("the largest residual stays at 2e-9 m (asperity 3)"), "{known}");
+    let unknown = [Reason::Unstable, Reason::NotANumber, Reason::EndlessEvents, Reason::EndlessPath];
+    let sentences: BTreeSet<String> = unknown.into_iter().map(|reason| sentence(reason, f64::NAN)).chain([known]).collect();
+    assert_eq!(sentences.len(), unknown.len() + 1);
+    assert!(sentences.iter().all(|text| !text.contains("NaN") && text.contains("\nhelp: ")), "{sentences:?}");
+    assert_eq!(sentence(Reason::Residual, f64::NAN), sentence(Reason::NotANumber, f64::NAN));
 }

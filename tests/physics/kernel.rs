@@ -1,8 +1,9 @@
 //! The periodic point-load kernel.
 
 use crate::reference::table;
-use crate::support::{Dice, close, near};
+use crate::support::{Dice, close, near, random};
 use hysteron::physics::half_space::ewald::{ORDERS, RemainderSeries, RoughRemainder, image_sums, kernel, remainder};
+use proptest::prelude::*;
 use std::f64::consts::PI;
 
 /// `4 ζ(½) β(½)`: own images and background.
@@ -21,17 +22,26 @@ fn val_kernel_agrees_with_many_digits() {
     }
 }
 
-#[test]
-fn law_the_splitting_parameter_is_arbitrary() {
-    let mut dice = Dice(1);
-    for _ in 0..40 {
-        let (x, y) = (dice.roll() - 0.5, dice.roll() - 0.5);
-        let want = kernel(x, y, PI.sqrt());
-        for alpha in [1.1, 2.5, 4.0] {
-            // The terms are below 2√π/α and 1/r: rounding only.
-            near("G", kernel(x, y, alpha), want, 1e-12 * (1.0 / x.hypot(y)).max(1.0));
-            near("G - 1/r", remainder(x, y, alpha), want - 1.0 / x.hypot(y), 1e-12 * (1.0 / x.hypot(y)).max(1.0));
+proptest! {
+    #![proptest_config(random(40))]
+
+    #[test]
+    fn law_the_splitting_parameter_is_arbitrary(x in -0.5..0.5f64, y in -0.5..0.5f64, alpha in 1.1..4.0f64) {
+        let (want, near_pole) = (kernel(x, y, PI.sqrt()), 1.0 / x.hypot(y));
+        // The terms are below 2√π/α and 1/r: rounding only.
+        near("G", kernel(x, y, alpha), want, 1e-12 * near_pole.max(1.0));
+        near("G - 1/r", remainder(x, y, alpha), want - near_pole, 1e-12 * near_pole.max(1.0));
+    }
+
+    #[test]
+    fn law_the_kernel_has_the_symmetry_of_the_square(x in 0.0..0.5f64, y in 0.0..0.5f64) {
+        let series = RemainderSeries::new();
+        for (u, v) in [(-x, y), (x, -y), (-x, -y), (y, x), (-y, x)] {
+            near("remainder", remainder(u, v, 2.0), remainder(x, y, 2.0), 1e-13);
+            near("series", series.at(u, v), series.at(x, y), 1e-13);
         }
+        // The same place in the next cell: the kernel is periodic, the remainder is not.
+        near("period", kernel(x - 1.0, y, 2.0), kernel(x, y, 2.0), 1e-12 / x.hypot(y));
     }
 }
 
@@ -66,21 +76,6 @@ fn law_the_series_is_the_remainder() {
     for (x, y) in places {
         // Truncated where it falls below rounding of the values, which are below 4.
         near("series", series.at(x, y), remainder(x, y, 2.5), 1e-13);
-    }
-}
-
-#[test]
-fn law_the_kernel_has_the_symmetry_of_the_square() {
-    let series = RemainderSeries::new();
-    let mut dice = Dice(3);
-    for _ in 0..20 {
-        let (x, y) = (0.5 * dice.roll(), 0.5 * dice.roll());
-        for (u, v) in [(-x, y), (x, -y), (-x, -y), (y, x), (-y, x)] {
-            near("remainder", remainder(u, v, 2.0), remainder(x, y, 2.0), 1e-13);
-            near("series", series.at(u, v), series.at(x, y), 1e-13);
-        }
-        // The same place in the next cell: the kernel is periodic, the remainder is not.
-        near("period", kernel(x - 1.0, y, 2.0), kernel(x, y, 2.0), 1e-12 / x.hypot(y));
     }
 }
 

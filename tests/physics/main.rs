@@ -9,6 +9,7 @@ mod approximate_jkr;
 mod boundary_elements;
 mod coupled;
 mod cycle;
+mod examples;
 mod extremes;
 mod fast;
 mod golden;
@@ -26,6 +27,7 @@ mod path;
 mod periodogram;
 mod potential;
 mod printed;
+mod properties;
 mod spectrum;
 mod summits;
 mod synthesis;
@@ -90,6 +92,7 @@ mod support {
     use hysteron::physics::surface::spectrum::Spectrum;
     use hysteron::physics::surface::summits::{Summit, find_summits};
     use hysteron::physics::surface::synthesis::{Surface, realization_seed, synthesize};
+    use proptest::test_runner::{Config, RngSeed};
 
     /// The paper's material.
     pub const PAPER: Material = Material { contact_modulus_pa: 1e6, work_of_adhesion_j_m2: 0.07, interaction_range_m: 1e-9 };
@@ -120,6 +123,13 @@ mod support {
     pub fn near(what: &str, got: f64, want: f64, absolute: f64) {
         let off = (got - want).abs();
         assert!(off <= absolute, "{what}: got {got:e}, want {want:e}, off by {off:e}, allowed {absolute:e}");
+    }
+
+    /// Configuration of random cases: `usual` of them or `PROPTEST_CASES`, the same ones in every run.
+    pub fn random(usual: u32) -> Config {
+        let config = Config::default();
+        let cases = if std::env::var_os("PROPTEST_CASES").is_some() { config.cases } else { usual };
+        Config { cases, rng_seed: RngSeed::Fixed(2021), failure_persistence: None, ..config }
     }
 
     /// SplitMix64 (Steele, Lea & Flood 2014): a few fixed pseudorandom numbers in `[0, 1)`, not the program's generator.

@@ -68,6 +68,13 @@ impl Bench {
     }
 }
 
+/// Reports a test that is skipped because a tool is missing; fails if `HYSTERON_REQUIRE`, names with commas between them, holds the tool.
+pub fn skip(tool: &str, why: &str) {
+    let required = std::env::var("HYSTERON_REQUIRE").unwrap_or_default();
+    assert!(!required.split(',').any(|name| name == tool), "{tool} is required: {why}");
+    eprintln!("skipped: {tool}: {why}");
+}
+
 pub fn code(output: &Output) -> i32 {
     output.status.code().unwrap()
 }

@@ -1,6 +1,7 @@
 //! Campaigns: what is done again and what is not, whatever happens to files and processes.
 
 mod care;
+mod checkpoints;
 mod engines;
 mod faults;
 mod fields;

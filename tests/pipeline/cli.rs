@@ -12,11 +12,11 @@ use hysteron::spec::Spec;
 use std::process::Output;
 
 /// Two surfaces, one load: half a second of work.
-const SMALL: &str =
+pub const SMALL: &str =
     "name = \"small\"\nseed = 7\nrealizations = 2\n[surface]\nmagnification = 6\n[cycle]\nmax_load = [0.001]\napproach_step = 0.05\n";
 
 /// Runs the program in a folder.
-fn hysteron(bench: &Bench, arguments: &[&str]) -> Output {
+pub fn hysteron(bench: &Bench, arguments: &[&str]) -> Output {
     let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_hysteron"));
     command.current_dir(bench.folder.path()).args(arguments).output().unwrap()
 }

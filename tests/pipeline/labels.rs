@@ -87,6 +87,11 @@ fn law_every_sweep_lists_its_cases_by_what_varies_the_reference_first() {
 }
 
 #[test]
+fn reg_the_table_of_results() {
+    insta::assert_snapshot!("results", summary(&table(&sensitivity(), 3)).unwrap());
+}
+
+#[test]
 fn law_rows_and_sweeps_have_the_order_of_the_spec() {
     let with = |id: &str, sweep: &str, zeta: f64, hurst: f64| CaseInput { planned_count: 2, ..case(id, sweep, hurst, zeta, &[0.0071]) };
     // Neither the ids nor the values ascend.

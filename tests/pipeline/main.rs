@@ -32,6 +32,8 @@ mod report;
 #[cfg(feature = "store")]
 mod scan;
 mod schema;
+#[cfg(feature = "stats")]
+mod snapshots;
 mod spec;
 #[cfg(feature = "stats")]
 mod stats;

@@ -1,6 +1,6 @@
 //! Python with what a test needs, and what other programs find in a run.
 
-use crate::bench::{Bench, SPEC, code, stderr};
+use crate::bench::{Bench, SPEC, code, skip, stderr};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::{Mutex, PoisonError};
@@ -18,7 +18,7 @@ pub fn environment(name: &str, packages: &[&str]) -> Option<PathBuf> {
         return Some(folder);
     }
     let skipped = |why: &str| {
-        eprintln!("skipped: {name}: {why}");
+        skip("python", &format!("{name}: {why}"));
         None
     };
     let ran = |command: &mut Command| -> Option<Output> { command.output().ok().filter(|output| output.status.success()) };

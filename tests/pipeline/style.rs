@@ -184,8 +184,8 @@ fn check_markdown(paths: &[PathBuf]) {
 }
 
 #[test]
-fn law_style_of_the_readme_and_the_changelog() {
-    check_markdown(&[root().join("README.md"), root().join("CHANGELOG.md")]);
+fn law_style_of_the_readme_the_changelog_and_the_checklist() {
+    check_markdown(&["README.md", "CHANGELOG.md", ".github/CONTRIBUTING.md"].map(|name| root().join(name)));
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! What other programs run a campaign with.
 
 use super::SMALL;
-use crate::bench::{Bench, SPEC, code, files, stderr, stdout};
+use crate::bench::{Bench, SPEC, code, files, skip, stderr, stdout};
 use crate::python;
 use hysteron::campaign::{Campaign, Stage};
 use hysteron::engines::ro_crate::licence;
@@ -358,7 +358,7 @@ impl Slurm {
         let slurm = Self { folder: std::env::temp_dir().join(format!("hysteron-slurm-{}", std::process::id())) };
         let up = Self::script("up", &slurm.folder);
         if !up.status.success() {
-            eprintln!("skipped: {}", stderr(&up).trim());
+            skip("slurm", stderr(&up).trim());
             return None;
         }
         Some(slurm)

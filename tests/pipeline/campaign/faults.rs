@@ -2,7 +2,7 @@
 #![cfg(target_os = "linux")]
 
 use super::SMALL;
-use crate::bench::{Bench, code, files, stderr};
+use crate::bench::{Bench, code, files, skip, stderr};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -30,8 +30,7 @@ fn run(bench: &Bench, shim: &Path, at: u64, kind: i32) -> (Output, u64) {
 #[test]
 fn e2e_a_disk_that_fails_at_any_call_tears_nothing() {
     let Some(shim) = shim("faults") else {
-        eprintln!("skipped: there is no C compiler to build tests/pipeline/campaign/shim.c with");
-        return;
+        return skip("cc", "there is no C compiler to build tests/pipeline/campaign/shim.c with");
     };
     let undisturbed = Bench::new(SMALL);
     let (output, calls) = run(&undisturbed, &shim, 0, 0);
@@ -82,8 +81,7 @@ fn e2e_a_power_cut_loses_nothing_that_has_a_receipt() {
     std::fs::create_dir(&folder).unwrap();
     let tried = Command::new(script).arg(env!("CARGO_BIN_EXE_hysteron")).arg(bench.spec()).arg(folder).arg(count).output().unwrap();
     if tried.status.code() == Some(77) {
-        eprintln!("skipped: {}", stderr(&tried).trim());
-        return;
+        return skip("disk", stderr(&tried).trim());
     }
     let said = String::from_utf8_lossy(&tried.stdout);
     assert!(tried.status.success(), "{said}{}", stderr(&tried));

@@ -1,7 +1,7 @@
 //! Signals: interrupts, hang-ups that are ignored, and the limit on the size of files.
 #![cfg(unix)]
 
-use crate::bench::{Bench, SPEC, code, files, paths, stderr};
+use crate::bench::{Bench, SPEC, code, files, paths, skip, stderr};
 #[cfg(target_os = "linux")]
 use std::io::Read as _;
 #[cfg(target_os = "linux")]
@@ -107,8 +107,7 @@ fn ended(child: &mut Child) -> Option<i32> {
 #[test]
 fn e2e_an_interrupt_ends_a_run_whose_write_is_stuck() {
     let Some(shim) = super::faults::shim("signals") else {
-        eprintln!("skipped: there is no C compiler to build tests/pipeline/campaign/shim.c with");
-        return;
+        return skip("cc", "there is no C compiler to build tests/pipeline/campaign/shim.c with");
     };
     let undisturbed = Bench::new(super::SMALL);
     assert_eq!(code(&undisturbed.verb("run", &[])), 0);

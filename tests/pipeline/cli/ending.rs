@@ -1,7 +1,7 @@
 //! Progress, the end of a run, colours, and opening the report.
 
 use super::SMALL;
-use crate::bench::{Bench, code, paths, stderr, stdout};
+use crate::bench::{Bench, code, paths, skip, stderr, stdout};
 use std::fs;
 use std::process::Command;
 
@@ -116,8 +116,7 @@ fn e2e_colours_are_for_terminals_without_no_color() {
     };
     assert!(!stderr(&bench.verb("plan", &[])).contains('\u{1b}'), "a pipe");
     let Ok(coloured) = on_terminal("") else {
-        eprintln!("skipped: there is no `script`");
-        return;
+        return skip("script", "there is no `script`");
     };
     assert!(stdout(&coloured).contains("\u{1b}[1;31merror:\u{1b}[0m the spec"), "{:?}", stdout(&coloured));
     let plain = stdout(&on_terminal("1").unwrap());

@@ -1,7 +1,7 @@
 //! Results in other forms: `compare`, `show`, `export csv`.
 
 use super::SMALL;
-use crate::bench::{Bench, SPEC, code, files, stderr, stdout};
+use crate::bench::{Bench, SPEC, code, files, skip, stderr, stdout};
 use crate::scan::import::{bytes, part};
 use hysteron::schema::{self, Kind};
 use hysteron::store::parquet::read_table;
@@ -135,8 +135,7 @@ fn in_r(bench: &Bench) {
                   stopifnot(is.numeric(x$loss_mean), is.character(x$case_id), any(is.na(x$loss_mean)), ncol(x) > 100); \
                   cat(nrow(x), format(sum(x$loss_mean, na.rm = TRUE), digits = 15))";
     let Ok(ran) = Command::new("Rscript").args(["-e", script]).current_dir(bench.out()).output() else {
-        eprintln!("skipped: there is no Rscript");
-        return;
+        return skip("R", "there is no Rscript");
     };
     assert!(ran.status.success(), "{}", stderr(&ran));
     let cases = read_table(&bench.out().join("statistics/cases.parquet"), &schema::CASES).unwrap();

@@ -21,12 +21,12 @@ pub struct Page {
     pub headings: Vec<String>,
 }
 
-/// The README and the pages of the guide.
+/// The README, the checklist of contributors and the pages of the guide.
 pub fn pages() -> Vec<Page> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let guide = root.join("src/guide");
     let mut paths: Vec<PathBuf> = std::fs::read_dir(&guide).unwrap().map(|entry| entry.unwrap().path()).collect();
-    paths.push(root.join("README.md"));
+    paths.extend(["README.md", ".github/CONTRIBUTING.md"].map(|name| root.join(name)));
     paths.sort();
     paths.iter().map(|path| Page::read(path)).collect()
 }

@@ -1,7 +1,7 @@
 //! The Python, SQL and R blocks of the guide, run on the run that the tutorial makes.
 
 use super::blocks::{Page, pages};
-use crate::bench::stderr;
+use crate::bench::{skip, stderr};
 use crate::python::environment;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -95,7 +95,7 @@ fn e2e_snippets_of_the_guide_run() {
             std::fs::write(folder.path().join("block.R"), with_own_run(block)).unwrap();
             match Command::new("Rscript").arg("block.R").current_dir(folder.path()).output() {
                 Ok(ran) => assert!(ran.status.success(), "{}: {}", page.name, stderr(&ran)),
-                Err(error) => eprintln!("skipped: Rscript: {error}"),
+                Err(error) => skip("R", &format!("Rscript: {error}")),
             }
         }
     }

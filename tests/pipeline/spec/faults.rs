@@ -42,10 +42,23 @@ fn val_line_ends_and_byte_order_marks_do_not_shift_a_place() {
 
 #[test]
 fn val_a_fault_looks_like_this() {
-    let wanted = "error: unknown key `hurts` in [surface]\n  --> x.toml:3:1\n   |\n 3 | hurts = 0.8\n   | ^^^^^\n   = help: \
-                  did you mean `hurst`? keys of [surface]: length_m, rms_height_m, hurst, magnification, \
-                  points_per_shortest_wavelength, normalization, amplitudes, file, dataset, periodic, pixel_m, unit, missing, detrend\n";
-    assert_eq!(refused("name = \"x\"\n[surface]\nhurts = 0.8\n"), wanted);
+    insta::assert_snapshot!(refused("name = \"x\"\n[surface]\nhurts = 0.8\n"), @r"
+    error: unknown key `hurts` in [surface]
+      --> x.toml:3:1
+       |
+     3 | hurts = 0.8
+       | ^^^^^
+       = help: did you mean `hurst`? keys of [surface]: length_m, rms_height_m, hurst, magnification, points_per_shortest_wavelength, normalization, amplitudes, file, dataset, periodic, pixel_m, unit, missing, detrend
+    ");
+    // A tab above has a tab below.
+    insta::assert_snapshot!(refused("name = \"x\"\n[cycle]\n\tmax_load = [0.1, -0.2]\n").replace('\t', "<tab>"), @r"
+    error: `cycle.max_load` cannot be -0.2: it must be greater than 0 and at most 0.2
+      --> x.toml:3:19
+       |
+     3 | <tab>max_load = [0.1, -0.2]
+       | <tab>                 ^^^^
+       = help: F_max/(E* A0), maximum load, dimensionless; typical 0.004 to 0.015; near full contact above about 0.07
+    ");
 }
 
 #[test]

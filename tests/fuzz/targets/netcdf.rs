@@ -1,0 +1,9 @@
+//! Reader of NetCDF files.
+#![no_main]
+
+mod file;
+mod scan;
+
+use hysteron::store::scan::Format;
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| scan::scan(bytes, Format::NetCdf3));
