@@ -1,6 +1,6 @@
 //! Equal-area merging of overlapping spots and their splitting, for coalescence `merge`.
 //!
-//! Two spots with `r < a_i + a_j` merge into one of the same area and load: `a² = a_i² + a_j²`, at their area-weighted centre, `F = F_i + F_j`.
+//! Two spots with `r < a_i + a_j` merge into one of the same area and load at their area-weighted centre: `a² = a_i² + a_j²`, `F = F_i + F_j`.
 //! The radius of its sphere is `R = (4/3)E*a³/(F + sqrt(8πE*Δγa³))` (Eq 1), and its height makes it an equilibrium (Eqs 2 and 5).
 //! From then on it is an asperity, which may merge again. It splits when its area has returned to the value at merging.
 //!
