@@ -1,20 +1,21 @@
-//! One JKR asperity: a rigid paraboloid of radius R on a soft half-space, one function per equation.
+//! JKR equations of one asperity: a rigid paraboloid of radius R on a soft half-space.
 //!
 //! Source: Violano & Afferrante, Lubricants 9(1):7 (2021), Eqs 1–4 and A1; Johnson, Kendall & Roberts, Proc. R. Soc. A 324:301 (1971).
-//! Symbols: contact radius `a` \[m\], penetration `δ` \[m\] (positive inwards), load `F` \[N\] (positive in compression), radius of
-//! curvature `R` \[m\], contact modulus `E*` \[Pa\], work of adhesion `Δγ` \[J/m²\].
+//! Symbols: contact radius `a` \[m\], penetration `δ` \[m\] (positive inwards), load `F` \[N\] (positive in compression),
+//! radius of curvature `R` \[m\], reduced modulus `E*` \[Pa\], work of adhesion `Δγ` \[J/m²\].
 //!
-//! In units `a: (R²Δγ/E*)^⅓`, `δ: (RΔγ²/E*²)^⅓`, `F: RΔγ` every asperity is the same one.
+//! In units `a: (R²Δγ/E*)^⅓`, `δ: (RΔγ²/E*²)^⅓`, `F: RΔγ` all asperities have the same curves.
 //!
 //! # Without adhesion
-//! At `Δγ = 0` Eqs 1 and 2 are those of Hertz. The branch then ends at `a = 0`, where `dδ/da` vanishes and no Newton step has a direction: contact is taken to
-//! begin and end at `a_off =` [`HERTZ_EDGE`] `R`, where the penetration is `1e-10 R` and the load `(4/3)·1e-15 E*R²`.
+//! At `Δγ = 0` Eqs 1 and 2 are those of Hertz. The branch then ends at `a = 0`, where `dδ/da` vanishes and Newton's method fails.
+//! Contact therefore begins and ends at `a_off =` [`HERTZ_EDGE`] `R`, where the penetration is `1e-10 R` and the load `(4/3)·1e-15 E*R²`.
 //!
-//! # The slip in Eq 9
-//! The denominator of Eq 9 is the slope dδ/da of Eq 2, printed as `2a/R − sqrt(πΔγ/(E*a))`. The equilibrium does not know it: Eq 9 is a
-//! way to get there. What does is the end of the branch, which is where this slope vanishes: printed, at
-//! `a = (πR²Δγ/(4E*))^⅓ = 2^⅓ a_off`. So with the slip put back ([`Asperity::as_printed`]) a spot's branch ends there, and with it the
-//! spot leaves: at a penetration that is 3 % less deep than `δ_off`. Eq 4, which the paper prints for it, is right, and the two do not agree.
+//! # Erratum in Eq 9
+//! The denominator of Eq 9 is the slope dδ/da of Eq 2, printed as `2a/R − sqrt(πΔγ/(E*a))`.
+//! Eq 9 is only an iteration to the equilibrium, which does not depend on this slope. The end of the branch does: it is
+//! where the slope vanishes, with the printed slope at `a = (πR²Δγ/(4E*))^⅓ = 2^⅓ a_off`.
+//! With the printed equation ([`Asperity::as_printed`]) a spot's branch ends there and the spot leaves contact, at a
+//! penetration that is 3 % less deep than `δ_off`. The printed Eq 4 for `δ_off` is right, so the two do not agree.
 
 use crate::model::{Material, Slips};
 use crate::physics::PhysicsError;
@@ -26,7 +27,7 @@ pub const HERTZ_EDGE: f64 = 1e-5;
 /// Smallest Tabor parameter at which Wu's jump-in distance (Eq 3) holds.
 pub const LEAST_TABOR: f64 = 2.0;
 
-/// One asperity with its material.
+/// JKR asperity with its material.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Asperity {
     radius: f64,
@@ -34,15 +35,15 @@ pub struct Asperity {
     adhesion: f64,
     /// `sqrt(2πΔγ/E*)` \[m^½\].
     pull: f64,
-    /// Where dδ/da vanishes, right as it is \[m\].
+    /// Contact radius at which the correct dδ/da vanishes \[m\].
     fold_radius: f64,
-    /// Where the branch ends \[m\]: there, or where the printed slope vanishes.
+    /// Contact radius at the end of the branch \[m\]: `fold_radius`, or where the printed slope vanishes.
     jump_off_radius: f64,
     jump_off_penetration: f64,
 }
 
 impl Asperity {
-    /// An asperity of radius of curvature `radius_m` \[m\] on `material`.
+    /// Asperity with radius of curvature `radius_m` \[m\] on `material`.
     ///
     /// # Errors
     /// Radius and modulus must be positive and finite, the work of adhesion zero or positive and finite.
@@ -50,9 +51,10 @@ impl Asperity {
         Self::as_printed(radius_m, material, Slips::NONE)
     }
 
-    /// The same, with the end of the branch by the printed Eq 9 if that is among `slips`; see the head of this module. It changes
-    /// [`Self::jump_off_radius`], [`Self::jump_off_penetration`], what [`Self::radius_at_penetration`] refuses and
-    /// [`Self::loop_loss_from`], and nothing else.
+    /// Asperity with the end of the branch by Eq 9 as printed, if `slips` contains it; see the head of this module.
+    ///
+    /// It changes only [`Self::jump_off_radius`], [`Self::jump_off_penetration`], [`Self::loop_loss_from`] and the domain of
+    /// [`Self::radius_at_penetration`].
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -98,7 +100,7 @@ impl Asperity {
         self.radius
     }
 
-    /// `sqrt(2πΔγ/E*)` \[m^½\]: what adhesion takes from the penetration is this times `sqrt(a)`.
+    /// Adhesion length scale `sqrt(2πΔγ/E*)` \[m^½\]: adhesion reduces the penetration by this times `sqrt(a)`.
     #[must_use]
     pub fn pull_sqrt_m(&self) -> f64 {
         self.pull
@@ -126,42 +128,46 @@ impl Asperity {
     ///
     /// # Deviations
     /// The denominator of the paper's Eq 9 has `sqrt(πΔγ/(E*a))`, which is not the derivative of Eq 2: it vanishes before the true jump-off.
-    /// This is the true one also where the slip is put back, since an equilibrium is solved for with it.
+    /// This function is correct also with Eq 9 as printed, since equilibria are solved with it.
     #[must_use]
     pub fn penetration_slope(&self, a: f64) -> f64 {
         2.0 * a / self.radius - self.pull / (2.0 * a.sqrt())
     }
 
-    /// Contact radius at jump-off under displacement control `(πR²Δγ/(8E*))^⅓` \[m\], where `dδ/da = 0`; with the slip of Eq 9
-    /// `(πR²Δγ/(4E*))^⅓`.
+    /// Contact radius at jump-off under displacement control `(πR²Δγ/(8E*))^⅓` \[m\], where `dδ/da = 0`.
+    ///
+    /// With Eq 9 as printed it is `(πR²Δγ/(4E*))^⅓`.
     #[must_use]
     pub fn jump_off_radius(&self) -> f64 {
         self.jump_off_radius
     }
 
-    /// Penetration at jump-off `δ_off = −(27π²Δγ²R/(64E*²))^⅓` \[m\]. Eq 4. With the slip of Eq 9 that of Eq 2 at the jump-off radius,
-    /// `(4·2^(1/6) − 2^(2/3))/3 = 0.9675` of it.
+    /// Penetration at jump-off `δ_off = −(27π²Δγ²R/(64E*²))^⅓` \[m\]. Eq 4.
+    ///
+    /// With Eq 9 as printed it is Eq 2 at the jump-off radius, which is `(4·2^(1/6) − 2^(2/3))/3 = 0.9675` of it.
     #[must_use]
     pub fn jump_off_penetration(&self) -> f64 {
         self.jump_off_penetration
     }
 
-    /// Contact radius `(9πR²Δγ/(8E*))^⅓` \[m\] at the largest tension.
+    /// Contact radius `(9πR²Δγ/(8E*))^⅓` \[m\] at the pull-off force.
     #[must_use]
     pub fn pull_off_radius(&self) -> f64 {
         self.fold_radius * 9f64.cbrt()
     }
 
-    /// Greatest tension `−(3/2)πRΔγ` \[N\], as a load.
+    /// Load `−(3/2)πRΔγ` \[N\] at the pull-off force, the most negative load.
     #[must_use]
     pub fn pull_off_load(&self) -> f64 {
         -1.5 * PI * self.radius * self.adhesion
     }
 
-    /// Contact radius \[m\] on the stable branch at penetration `δ` \[m\]: the inverse of Eq 2; nothing below the jump-off penetration.
+    /// Contact radius \[m\] on the stable branch at penetration `δ` \[m\], the inverse of Eq 2.
     ///
-    /// With `a = a_off(1 + e)²` Eq 2 reads `6e² + 4e³ + e⁴ = (δ − δ_off)/(a_off²/R)`, whose left side is convex: Newton from above
-    /// converges from any start, and the root keeps its digits down to the jump-off itself.
+    /// `None` below the jump-off penetration.
+    ///
+    /// With `a = a_off(1 + e)²` Eq 2 reads `6e² + 4e³ + e⁴ = (δ − δ_off)/(a_off²/R)`, whose left side is convex.
+    /// Newton's method from above converges from any start, and the root is accurate down to the jump-off itself.
     #[must_use]
     pub fn radius_at_penetration(&self, penetration: f64) -> Option<f64> {
         let off = self.fold_radius;
@@ -189,20 +195,21 @@ impl Asperity {
         Some(off * (1.0 + e) * (1.0 + e))
     }
 
-    /// The same, and the end of the branch beyond it.
+    /// [`Self::radius_at_penetration`], or the jump-off radius below the end of the branch.
     pub(crate) fn radius_ahead(&self, penetration: f64) -> f64 {
         self.radius_at_penetration(penetration).unwrap_or(self.jump_off_radius())
     }
 
-    /// Stored elastic energy at fixed contact radius `U(δ, a) = E*(aδ² − 2a³δ/(3R) + a⁵/(5R²))` \[J\]. On the equilibrium path
-    /// `∂U/∂δ = F` and `∂U/∂(πa²) = Δγ`.
+    /// Stored elastic energy at fixed contact radius `U(δ, a) = E*(aδ² − 2a³δ/(3R) + a⁵/(5R²))` \[J\].
+    ///
+    /// On the equilibrium path `∂U/∂δ = F` and `∂U/∂(πa²) = Δγ`.
     #[must_use]
     pub fn stored_energy(&self, penetration: f64, a: f64) -> f64 {
         let flat = a * a / self.radius;
         self.modulus * a * (penetration * penetration - 2.0 * flat * penetration / 3.0 + flat * flat / 5.0)
     }
 
-    /// Tabor number `μ = (RΔγ²/E*²)^⅓ / ε`, of the range of attraction `ε > 0` \[m\]. Below Eq 3.
+    /// Tabor parameter `μ = (RΔγ²/E*²)^⅓ / ε`, with the range of attraction `ε > 0` \[m\]. Below Eq 3.
     #[must_use]
     pub fn tabor(&self, range: f64) -> f64 {
         (self.radius * (self.adhesion / self.modulus).powi(2)).cbrt() / range
@@ -211,24 +218,26 @@ impl Asperity {
     /// Wu's jump-in penetration `δ_in = (1 − 2.641 μ^(3/7)) ε` \[m\], valid for `μ ≥ 2`. Eq 3.
     ///
     /// # Deviations
-    /// It is a negative penetration: contact forms where the gap falls below `|δ_in|`, not below `δ_in` as §2.2 says.
+    /// This penetration is negative: contact forms where the gap falls below `|δ_in|`, not below `δ_in` as §2.2 says.
     #[must_use]
     pub fn wu_jump_in_penetration(&self, range: f64) -> f64 {
         (1.0 - 2.641 * self.tabor(range).powf(3.0 / 7.0)) * range
     }
 
-    /// Loss of one loading–unloading loop whose jump-in is at `δ = 0`: `θ = 2E*R³ (πΔγ/(E*R))^(5/3) × 0.5262…` \[J\]. Eq A1.
+    /// Dissipated energy `θ = 2E*R³ (πΔγ/(E*R))^(5/3) × 0.5262…` \[J\] of a loop with jump-in at `δ = 0`. Eq A1.
     ///
     /// # Deviations
-    /// The constant is exact here, `2^⅔ (3/10 + (1/5) 16^(−⅔))`; the paper prints 0.5262. The slip of Eq 9 does not enter.
+    /// The constant is exact here, `2^⅔ (3/10 + (1/5) 16^(−⅔))`. The paper prints 0.5262. Eq 9 as printed has no effect.
     #[must_use]
     pub fn loop_loss(&self) -> f64 {
         let ratio = PI * self.adhesion / (self.modulus * self.radius);
         2.0 * self.modulus * self.radius.powi(3) * ratio.powf(5.0 / 3.0) * loop_loss_constant()
     }
 
-    /// Loss of one loading–unloading loop whose jump-in is at `jump_in` \[m\], `δ_off ≤ jump_in ≤ 0` \[J\]: the release of
-    /// `U − Δγπa²` in the two jumps. Nothing if the jump-in lies outside the branch. The loop ends where the branch does.
+    /// Dissipated energy \[J\] of a loop with jump-in at `jump_in` \[m\], `δ_off ≤ jump_in ≤ 0`.
+    ///
+    /// It is the decrease of `U − Δγπa²` in the two jumps. `None` if the jump-in is below the end of the branch.
+    /// The loop ends where the branch ends.
     #[must_use]
     pub fn loop_loss_from(&self, jump_in: f64) -> Option<f64> {
         let energy = |penetration: f64, a: f64| self.stored_energy(penetration, a) - PI * self.adhesion * a * a;
@@ -237,7 +246,7 @@ impl Asperity {
     }
 }
 
-/// The exact constant of Deng and Kesari's loop loss, `2^⅔ (3/10 + (1/5)·16^(−⅔)) = 0.5262203…`.
+/// Exact constant of Deng and Kesari's loop loss, `2^⅔ (3/10 + (1/5)·16^(−⅔)) = 0.5262203…`.
 #[must_use]
 pub fn loop_loss_constant() -> f64 {
     4f64.cbrt() * (0.3 + 0.2 / 256f64.cbrt())

@@ -1,9 +1,9 @@
-//! Memory for whole fields: too little of it is an error and does not abort the program.
+//! Memory allocation that returns an error instead of aborting the program.
 
 use crate::physics::PhysicsError;
 use ndarray::Array2;
 
-/// As many copies of a value.
+/// Vector of `count` copies of a value.
 pub(crate) fn filled<T: Clone>(count: usize, value: T) -> Result<Vec<T>, PhysicsError> {
     let mut values = Vec::new();
     values.try_reserve_exact(count).map_err(|_| short(count.saturating_mul(size_of::<T>())))?;
@@ -11,16 +11,16 @@ pub(crate) fn filled<T: Clone>(count: usize, value: T) -> Result<Vec<T>, Physics
     Ok(values)
 }
 
-/// A field of zeros.
+/// Array of zeros.
 pub(crate) fn zeros((rows, columns): (usize, usize)) -> Result<Array2<f64>, PhysicsError> {
     let values = filled(rows.saturating_mul(columns), 0.0)?;
     Array2::from_shape_vec((rows, columns), values).map_err(|_| short(usize::MAX))
 }
 
-/// Checks that so many bytes can be had at this moment.
+/// Checks that `bytes` bytes can be allocated now.
 ///
 /// # Errors
-/// If they cannot.
+/// Too little memory.
 pub fn check(bytes: usize) -> Result<(), PhysicsError> {
     Vec::<u8>::new().try_reserve_exact(bytes).map_err(|_| short(bytes))
 }

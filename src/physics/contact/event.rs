@@ -1,24 +1,24 @@
-//! Event of a path.
+//! Events of an equilibrium path.
 
 use super::problem::Totals;
 use super::transition::Kind;
 use serde::{Deserialize, Serialize};
 
-/// An event as it happened.
+/// An event with its load, area and energy change.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Event {
     /// Kind of event.
     pub kind: Kind,
-    /// To which asperity.
+    /// Asperity that changes state.
     pub asperity: usize,
-    /// At which approach δ \[m\].
+    /// Mean penetration Δ \[m\] at the event.
     pub approach_m: f64,
-    /// Which avalanche it belongs to, counted along the branch.
+    /// Number of its avalanche, counted along the branch.
     pub avalanche: u64,
-    /// Load and area before.
+    /// Load and area before the event.
     pub before: Totals,
-    /// Load and area when the rest has relaxed.
+    /// Load and area after relaxation of the other contacts.
     pub after: Totals,
-    /// Potential lost \[J\].
+    /// Decrease of the potential \[J\].
     pub energy_lost_j: f64,
 }

@@ -1,34 +1,34 @@
-//! Contact spots that stand for two, where coalescence is `merge`.
+//! Merged contact spots: one spot in place of two, for coalescence `merge`.
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
-/// A spot that stands for two.
+/// A merged spot, which replaces two contact spots.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Merged {
-    /// Parts: summits, or merged spots themselves.
+    /// Parts: asperities of the surface, or merged spots themselves.
     pub parts: [usize; 2],
-    /// Their contact radii when they merged \[m\].
+    /// Contact radii of the parts at merging \[m\].
     pub radii_m: [f64; 2],
     /// Centre \[m\].
     pub place_m: [f64; 2],
     /// Radius of curvature R \[m\].
     pub radius_m: f64,
-    /// Height over the highest summit \[m\].
+    /// Height relative to the highest asperity \[m\].
     pub height_m: f64,
-    /// The contact radius at which it parts \[m\].
+    /// Contact radius at which the spot splits \[m\].
     pub release_m: f64,
-    /// Approach at which they merged \[m\].
+    /// Mean penetration at merging \[m\].
     pub approach_m: f64,
 }
 
 impl Merged {
-    /// Contact radius when the parts merged \[m\].
+    /// Contact radius of the spot at merging \[m\].
     #[must_use]
     pub fn contact_radius_m(&self) -> f64 {
         self.radii_m[0].hypot(self.radii_m[1])
     }
 }
 
-/// Pairs that touch and are no news.
+/// Set of pairs of overlapping spots, the lower number first.
 pub(crate) type TouchingPairs = BTreeSet<(usize, usize)>;

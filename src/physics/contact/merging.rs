@@ -1,16 +1,19 @@
-//! Touching spots become one and part again, where coalescence is `merge`.
+//! Equal-area merging of overlapping spots and their splitting, for coalescence `merge`.
 //!
-//! Two spots with `r < a_i + a_j` become one of the same area and load: `a² = a_i² + a_j²`, at their area-weighted centre, `F = F_i + F_j`. So its
-//! sphere is that of radius `R = (4/3)E*a³/(F + sqrt(8πE*Δγa³))` (Eq 1), at the height at which it is in equilibrium as it is (Eqs 2 and 5). It is an
-//! asperity from then on, may merge again, and parts where its area has come back to what it was then.
+//! Two spots with `r < a_i + a_j` merge into one of the same area and load at their area-weighted centre: `a² = a_i² + a_j²`, `F = F_i + F_j`.
+//! The radius of its sphere is `R = (4/3)E*a³/(F + sqrt(8πE*Δγa³))` (Eq 1), and its height makes it an equilibrium (Eqs 2 and 5).
+//! From then on it is an asperity, which may merge again. It splits when its area has returned to the value at merging.
 //!
-//! Spots merge where they come to touch, in equilibrium, one pair at a time, the most overlapping first; merging on the way to an equilibrium runs
-//! away. An asperity whose centre a greater spot reaches before they have merged, since it is free or on the way to an equilibrium, is covered
-//! as with `cover`. A pair that would be beyond the end of its branch, by its tension, does not merge until it would not be; one that has parted must have been
-//! apart before it merges again.
+//! Spots merge in equilibrium, when they begin to overlap, one pair at a time and the largest overlap first.
+//! Merging during the solution for an equilibrium is unstable.
+//! An asperity is absorbed as with `cover` if a larger spot reaches its centre before they have merged, which happens
+//! if the asperity is free or during the solution for an equilibrium.
+//! A pair whose tensile load would put the merged spot beyond the end of its branch merges only when this is no longer so.
+//! A pair that has split must have been apart before it merges again.
 //!
-//! A merged spot is another sphere than its two parts, and has another potential. What the potential loses when they merge is no dissipation
-//! alone: parting gives it back, and only the sum over both is a loss.
+//! A merged spot is a different sphere from its two parts, and has a different potential.
+//! The decrease of the potential at merging is therefore not dissipation alone, since splitting returns it.
+//! Only the sum over both is a dissipated energy.
 
 use super::merged_spot::Merged;
 use super::merged_spot::TouchingPairs;
@@ -21,31 +24,31 @@ use crate::physics::PhysicsError;
 use crate::physics::half_space::{Effort, Interaction as _, Spots};
 use crate::physics::jkr::Asperity;
 
-/// Overlap at which spots merge at the latest, of their distance.
+/// Maximum overlap at merging, relative to the distance of the spots.
 pub(crate) const TOUCH: f64 = 1e-3;
 
-/// How many times nearer to its radius of release a spot parts at the latest.
+/// Factor on the relative distance to the release radius, which tightens the tolerance for splitting.
 const NEARER: f64 = 10.0;
 
-/// Relative change of a radius that an equilibrium does not tell from none.
+/// Relative change of a contact radius below the accuracy of an equilibrium.
 pub(crate) const ROUNDING: f64 = 1e-8;
 
-/// Greatest tension of a merged spot, of `sqrt(8πE*Δγa³)`. The branch ends at 5/6.
+/// Maximum tensile load of a merged spot, relative to `sqrt(8πE*Δγa³)`. The branch ends at 5/6.
 const TENSEST: f64 = 0.8;
 
-/// What is to be done.
+/// A pending change of the merged spots.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum CoalescenceEvent {
-    /// These spots become one.
+    /// Two spots merge.
     Touch(usize, usize),
-    /// This merged spot parts.
+    /// A merged spot splits into its parts.
     Part(usize),
-    /// A merged spot has left, and what it stood for is free.
+    /// A merged spot has left contact, and its parts become free.
     Leave,
 }
 
 impl Problem {
-    /// The problem of a state that has merged spots; nothing where it has none.
+    /// Extends the problem by the merged spots of a state; `None` if there are none.
     pub(crate) fn grown(&self, merged: &[Merged]) -> Result<Option<Self>, PhysicsError> {
         if merged.is_empty() {
             return Ok(None);
@@ -63,14 +66,14 @@ impl Problem {
         self.asperities.push(asperity);
         self.heights.push(merged.height_m);
         self.positions.push(merged.place_m);
-        // Once it has parted it is nothing.
+        // After splitting, it cannot form a contact again.
         self.jump_in.push(f64::INFINITY);
         self.field.add(merged.place_m);
         self.neighbours.add(merged.place_m);
         Ok(())
     }
 
-    /// Load of the contact that two contacts would become, and its adhesive part `sqrt(8πE*Δγa³)` \[N\].
+    /// Load of the spot that two spots would merge into, and its adhesive part `sqrt(8πE*Δγa³)` \[N\].
     fn joint_load(&self, state: &State, i: usize, j: usize) -> (f64, f64) {
         let [a, b] = [state.radius[i], state.radius[j]];
         let area_radius = a.hypot(b);
@@ -78,12 +81,12 @@ impl Problem {
         (self.asperities[i].load(a) + self.asperities[j].load(b), root)
     }
 
-    /// A merged spot by the caller's numbers and places.
+    /// Converts a merged spot to the caller's numbers and positions.
     pub(crate) fn outward(&self, spot: &Merged) -> Merged {
         Merged { parts: spot.parts.map(|part| self.number(part)), place_m: self.places.outward(spot.place_m), ..*spot }
     }
 
-    /// How far a state is beyond a meeting: negative before it.
+    /// Signed distance of a state past a coalescence event: negative before the event.
     pub(crate) fn beyond(&self, state: &State, meeting: CoalescenceEvent) -> f64 {
         match meeting {
             CoalescenceEvent::Touch(i, j) if state.radius[i] > 0.0 && state.radius[j] > 0.0 => {
@@ -98,7 +101,7 @@ impl Problem {
         }
     }
 
-    /// Pairs that touch and could merge.
+    /// Pairs that overlap and could merge.
     pub(crate) fn touching(&self, state: &State) -> TouchingPairs {
         let mut pairs = TouchingPairs::new();
         if self.rules.coalescence != Coalescence::Merge {
@@ -115,7 +118,7 @@ impl Problem {
         pairs
     }
 
-    /// Meetings that are due, the furthest beyond first, given who is touching.
+    /// Pending coalescence events, the furthest past first, given the overlapping pairs.
     pub(crate) fn meetings(&self, state: &State, touching: &TouchingPairs, known: &TouchingPairs) -> Vec<(f64, CoalescenceEvent)> {
         let touching = touching.difference(known).map(|(i, j)| CoalescenceEvent::Touch(*i, *j));
         let parting = (self.summits..self.len()).map(CoalescenceEvent::Part);
@@ -125,7 +128,7 @@ impl Problem {
         due
     }
 
-    /// Makes two spots of a state one; its number is returned.
+    /// Merges two spots of a state; returns the number of the merged spot.
     pub(crate) fn join(&mut self, state: &mut State, i: usize, j: usize) -> Result<usize, PhysicsError> {
         let [a, b] = [state.radius[i], state.radius[j]];
         let radius = a.hypot(b);
@@ -136,7 +139,7 @@ impl Problem {
         let mut merged = Merged {
             parts: [i, j],
             radii_m: [a, b],
-            // As it will be when it has been written down and read again.
+            // Rounded as after writing and reading it back.
             place_m: self.places.inward(self.places.outward(between)),
             radius_m: 4.0 / 3.0 * self.material.contact_modulus_pa * radius.powi(3) / (load + root),
             height_m: 0.0,
@@ -156,7 +159,7 @@ impl Problem {
         Ok(number)
     }
 
-    /// A merged spot of a state becomes its parts again, of the area that it has.
+    /// Splits a merged spot of a state into its parts, with its current area.
     pub(crate) fn part(&self, state: &mut State, number: usize) {
         let merged = state.merged[number - self.summits];
         let share = state.radius[number] / merged.contact_radius_m();
@@ -166,9 +169,9 @@ impl Problem {
         }
     }
 
-    /// Where a merged spot has left, what it stood for is free, as anything that has left.
+    /// Frees the parts of merged spots that have left contact, and blocks them from re-entry.
     pub(crate) fn free_orphans(&self, state: &mut State) {
-        // A part has a lower number than its spot.
+        // A part has a lower number than its merged spot.
         for i in (0..state.status.len()).rev() {
             if state.is_orphan(i) {
                 state.set(i, Status::Free, 0.0);
@@ -177,7 +180,7 @@ impl Problem {
         }
     }
 
-    /// Displacement at a spot by those of a state \[m\].
+    /// Displacement \[m\] at asperity `i` by the spots of a state.
     fn surrounding(&self, state: &State, i: usize) -> f64 {
         let (mut spots, mut found) = (Spots::default(), Vec::new());
         self.spots(state, &mut spots);
@@ -185,7 +188,7 @@ impl Problem {
         found[0]
     }
 
-    /// True if there is room for the spots of a state, which have this area \[m²\].
+    /// Refuses a state whose area \[m²\] reaches the nominal area or whose largest spot spans the square.
     pub(crate) fn check_room(&self, state: &State, area: f64) -> Result<(), PhysicsError> {
         let share = area / (self.length_m * self.length_m);
         if share < 1.0 && state.greatest_radius() < 0.5 * self.length_m {

@@ -1,4 +1,4 @@
-//! A contact of asperities: the problem, its states and the transitions between them.
+//! Contact of asperities: the problem, its states and the transitions between them.
 
 pub(crate) mod event;
 pub(crate) mod merged_spot;

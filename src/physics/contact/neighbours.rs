@@ -1,9 +1,11 @@
-//! Which asperities lie near which: a grid of cells.
+//! Neighbour search by a grid of cells.
 
 use crate::physics::half_space::ewald::ROUGH_IMAGES;
 use std::f64::consts::PI;
 
-/// The shortest of the ways that differ by whole sides, from one between two places on the square: no rounding, which is a call of a function.
+/// Shortest periodic equivalent of a component of the distance between two points on the square.
+///
+/// It avoids rounding, which would be a function call.
 fn nearest_image(way: f64, side: f64) -> f64 {
     if way > 0.5 * side {
         way - side
@@ -14,19 +16,19 @@ fn nearest_image(way: f64, side: f64) -> f64 {
     }
 }
 
-/// Asperities on the square, by cells of two mean spacings.
+/// Asperities on the square, sorted by cells of two mean spacings.
 #[derive(Clone)]
 pub(crate) struct Neighbours {
     positions: Vec<[f64; 2]>,
     length: f64,
     periodic: bool,
-    /// Cells on a side, and the side of one \[m\].
+    /// Number of cells on a side, and the side of a cell \[m\].
     cells: usize,
     side: f64,
-    /// Asperities by cell, and where each cell begins.
+    /// Asperities by cell, and the first entry of each cell.
     members: Vec<u32>,
     starts: Vec<usize>,
-    /// For each asperity, the others within the side of a cell, nearest first.
+    /// For each asperity, the others within one cell side, nearest first.
     near: Vec<Vec<(f64, usize)>>,
 }
 
@@ -55,12 +57,12 @@ impl Neighbours {
             starts[k + 1] += starts[k];
         }
         (found.members, found.starts) = (order, starts);
-        // Most spots stay within: they are looked up at every step.
+        // Most searches at each step are within this radius.
         found.near = (0..positions.len()).map(|i| found.others(i, found.side)).collect();
         found
     }
 
-    /// Adds a place \[m\], whose number follows the last one.
+    /// Adds an asperity at `place` \[m\]; it gets the next number.
     pub(crate) fn add(&mut self, place: [f64; 2]) {
         let number = self.positions.len();
         let cell = self.cell(place[0]) * self.cells + self.cell(place[1]);
@@ -86,7 +88,7 @@ impl Neighbours {
         (dx * dx + dy * dy).sqrt()
     }
 
-    /// The way from `q` to the nearest image of `p` \[m\].
+    /// Vector from `q` to the nearest image of `p` \[m\].
     pub(crate) fn apart(&self, p: &[f64; 2], q: &[f64; 2]) -> [f64; 2] {
         [0, 1].map(|k| {
             let d = p[k] - q[k];
@@ -94,12 +96,12 @@ impl Neighbours {
         })
     }
 
-    /// What a load at `q` does at `p`, `1/r` and the same of all images \[1/m\], of which some digits are enough.
+    /// Displacement kernel \[1/m\] at `p` of a load at `q` and all its images: `1/r` plus the approximate image sum.
     pub(crate) fn kernel(&self, p: &[f64; 2], q: &[f64; 2]) -> f64 {
         1.0 / self.distance(p, q) + self.image_kernel(p, q)
     }
 
-    /// The part of the images but the nearest \[1/m\], with some digits.
+    /// Approximate kernel of all images but the nearest \[1/m\].
     pub(crate) fn image_kernel(&self, p: &[f64; 2], q: &[f64; 2]) -> f64 {
         if !self.periodic {
             return 0.0;
@@ -108,7 +110,7 @@ impl Neighbours {
         ROUGH_IMAGES.at(x, y) / self.length
     }
 
-    /// Rows or columns of cells that a circle may meet.
+    /// Rows or columns of cells that a circle may intersect.
     fn lines(&self, coordinate: f64, radius: f64) -> Vec<usize> {
         let (low, high) = (((coordinate - radius) / self.side).floor(), ((coordinate + radius) / self.side).floor());
         let cells = self.cells as f64;
@@ -164,9 +166,11 @@ impl Neighbours {
         }
     }
 
-    /// The `count` asperities nearest to `place` of those that are `wanted`, nearest first; fewer where there are no more. There are `all` of them.
+    /// The `count` asperities nearest to `place` among those that are `wanted`, nearest first, or fewer.
+    ///
+    /// `all` is the number of `wanted` asperities.
     pub(crate) fn nearest(&self, place: &[f64; 2], count: usize, all: usize, wanted: impl Fn(usize) -> bool) -> Vec<(f64, usize)> {
-        // So many lie within, if they are spread evenly, and half as many again.
+        // Radius that contains 1.5 times as many if they are uniformly distributed.
         let mut radius = self.length * (1.5 * count as f64 / (PI * all.max(1) as f64)).sqrt();
         loop {
             let mut list = Vec::new();
@@ -190,7 +194,7 @@ impl Neighbours {
 mod tests {
     use super::Neighbours;
 
-    /// Places of a fixed sequence in the unit square.
+    /// Points of a fixed sequence in the unit square.
     fn places(count: usize) -> Vec<[f64; 2]> {
         (1..=count).map(|i| [(i as f64 * 0.618_033_988_749_895).fract(), (i as f64 * 0.754_877_666_246_693).fract()]).collect()
     }

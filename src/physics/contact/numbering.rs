@@ -1,24 +1,26 @@
-//! How asperities are numbered and placed inside, so that nothing depends on how a caller does.
+//! Internal numbering and positions, which make results independent of the caller's order and origin.
 
 use crate::physics::PhysicsError;
 use crate::physics::surface::summits::Summit;
 
-/// Places are rounded to this share of the side: far below what a grid tells, and far above what rounding makes of a shift.
+/// Position quantum relative to the side: far below the grid spacing, far above the rounding error of a shift.
 const GRAIN: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// From the caller's numbers and places to those inside, and back.
+/// Conversion between the caller's numbers and positions and the internal ones.
 #[derive(Debug, Clone)]
 pub(crate) struct Places {
-    /// The caller's numbers, from the highest summit down.
+    /// The caller's numbers, from the highest asperity down.
     pub(crate) numbers: Vec<usize>,
-    /// The caller's place of what is the origin inside \[m\].
+    /// Internal origin in the caller's coordinates \[m\].
     origin: [f64; 2],
     length: f64,
     periodic: bool,
 }
 
 impl Places {
-    /// Of summits on a square of side `length` \[m\]. The origin is the highest summit, or, where there are no images, the corner of all.
+    /// Numbering of summits on a square of side `length` \[m\].
+    ///
+    /// The origin is the highest summit, or, without periodic images, the minimum of each coordinate.
     pub(crate) fn new(summits: &[Summit], length: f64, periodic: bool) -> Result<Self, PhysicsError> {
         let mut numbers: Vec<usize> = (0..summits.len()).collect();
         let height = |i: &usize| summits[*i].height_m;
@@ -35,7 +37,7 @@ impl Places {
         Ok(places)
     }
 
-    /// A place of the caller's, inside \[m\].
+    /// Internal position \[m\] of a position of the caller.
     pub(crate) fn inward(&self, place: [f64; 2]) -> [f64; 2] {
         [0, 1].map(|k| {
             let share = (place[k] - self.origin[k]) / self.length;
@@ -45,7 +47,7 @@ impl Places {
         })
     }
 
-    /// A place inside, as the caller has it \[m\].
+    /// The caller's position \[m\] of an internal position.
     pub(crate) fn outward(&self, place: [f64; 2]) -> [f64; 2] {
         [0, 1].map(|k| {
             let there = place[k] + self.origin[k];
@@ -53,7 +55,7 @@ impl Places {
         })
     }
 
-    /// From the caller's numbers of the summits to those inside.
+    /// Internal number of each of the caller's numbers.
     pub(crate) fn inside(&self) -> Vec<usize> {
         let mut inside = vec![0; self.numbers.len()];
         for (i, number) in self.numbers.iter().enumerate() {

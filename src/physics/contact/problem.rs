@@ -1,4 +1,4 @@
-//! Contact problem: everything that does not change along the path.
+//! Contact problem: the data that are constant along the path.
 
 use super::neighbours::Neighbours;
 use super::numbering::Places;
@@ -11,7 +11,7 @@ use crate::physics::surface::summits::Summit;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
-/// The choices of the contact model that a cycle reads.
+/// Options of the contact model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rules {
     /// Elastic interaction between contacts.
@@ -20,68 +20,79 @@ pub struct Rules {
     pub boundary: Boundary,
     /// Rule for an asperity under a larger contact.
     pub coalescence: Coalescence,
-    /// When a free asperity jumps in.
+    /// Jump-in criterion of a free asperity.
     pub jump_in: JumpIn,
-    /// Go on below Tabor number 2 with Wu's rule.
+    /// Allows Tabor parameters below 2 with Wu's rule.
     pub allow_low_tabor: bool,
-    /// Slips of the paper that are put back.
+    /// Errata of the paper to apply: equations as printed.
     pub slips: Slips,
 }
 
-/// A set of asperities over a half-space: everything that does not change along the path, but for spots that become one ([`crate::physics::merge`]).
+/// Asperities over a half-space: the data that are constant along the path, except for merged spots.
+///
+/// Module `contact::merging` adds and describes the merged spots.
 #[derive(Clone)]
 pub struct Problem {
     pub(crate) asperities: Vec<Asperity>,
-    /// How the caller numbers and places them.
+    /// Caller's numbers and positions.
     pub(crate) places: Places,
-    /// Heights over the highest summit \[m\]: zero or negative.
+    /// Heights relative to the highest asperity \[m\]: zero or negative.
     pub(crate) heights: Vec<f64>,
     pub(crate) positions: Vec<[f64; 2]>,
-    /// Jump-in penetrations \[m\]: zero or negative (without adhesion, next to zero), never below the end of the branch.
+    /// Jump-in penetrations \[m\]: zero or negative, never below the end of the branch.
+    ///
+    /// Without adhesion they are slightly positive.
     pub(crate) jump_in: Vec<f64>,
     pub(crate) tabor: Vec<f64>,
     pub(crate) material: Material,
     pub(crate) rules: Rules,
     pub(crate) field: Best,
     pub(crate) neighbours: Neighbours,
-    /// How many of the asperities are summits; beyond are merged spots.
+    /// Number of asperities of the surface; merged spots have higher numbers.
     pub(crate) summits: usize,
-    /// Spots that are solved together at an event.
+    /// Number of spots in the local problem of an event.
     pub(crate) spots_in_patch: usize,
     /// Side of the square L \[m\].
     pub length_m: f64,
-    /// Rms height, the unit of penetration \[m\].
+    /// Rms height, unit of the mean penetration \[m\].
     pub rms_height_m: f64,
 }
 
-/// Limit of Wu's jump-in penetration, as a fraction of the jump-off penetration. Wu's criterion (Eq 3) is beyond the end of the JKR branch at Tabor
-/// parameters from 0.2 to 1: an asperity that formed a contact there would leave at once. At its lower bound, μ = 2, the criterion gives 0.79.
+/// Lower limit of Wu's jump-in penetration, as a fraction of the jump-off penetration.
+///
+/// Wu's criterion (Eq 3) is beyond the end of the JKR branch at Tabor parameters from 0.2 to 1.
+/// An asperity that formed a contact there would leave at once. At its lower bound, μ = 2, the criterion gives 0.79.
 const DEEPEST_JUMP_IN: f64 = 0.95;
 
-/// Spots that are solved together at an event, with all others held to first order: some five screening lengths around it.
+/// Number of spots in the local problem of an event: a radius of about five screening lengths.
+///
+/// All other spots respond to first order.
 const SPOTS_IN_PATCH: usize = 24;
 
 impl Problem {
-    /// The same problem with another number of spots solved together at an event; with `usize::MAX` every event is solved with all.
+    /// Sets the number of spots in local problems; with `usize::MAX` every event is solved globally.
     #[must_use]
     pub fn with_patches_of(self, spots: usize) -> Self {
         Self { spots_in_patch: spots.max(1), ..self }
     }
 
-    /// The same problem with fast sums from another number of spots on; with `usize::MAX` every sum goes over all pairs. A problem of few asperities
-    /// has none.
+    /// Sets the number of spots from which fast sums are used; with `usize::MAX` all sums are direct.
+    ///
+    /// It has no effect on a problem of few asperities, which has no fast sums.
     #[must_use]
     pub fn with_fast_sums_from(self, spots: usize) -> Self {
         Self { field: self.field.fast_from(spots), ..self }
     }
 
-    /// Asperities from summits.
+    /// Contact problem of the given summits.
     ///
-    /// Inside they are numbered from the highest down, at places from the highest one on, rounded to 2⁻⁴⁰ of the side: so nothing depends on how a caller
-    /// numbers them, or on where the square begins. [`Self::number`] is the caller's number.
+    /// Asperities are numbered internally from the highest down. Positions are relative to the highest one and rounded to 2⁻⁴⁰ of the side.
+    /// The results therefore do not depend on the caller's order or on the origin of the square.
+    /// [`Self::number`] returns the caller's number.
     ///
     /// # Errors
-    /// There must be a summit; radii and material must be positive; with Wu's rule all Tabor numbers must be at least 2 unless allowed.
+    /// There must be a summit. Radii and material must be positive.
+    /// With Wu's rule all Tabor parameters must be at least 2 unless allowed.
     pub fn new(summits: &[Summit], length_m: f64, rms_height_m: f64, material: Material, rules: Rules) -> Result<Self, PhysicsError> {
         let periodic = rules.boundary == Boundary::Periodic;
         let places = Places::new(summits, length_m, periodic)?;
@@ -100,7 +111,7 @@ impl Problem {
         let jump_in = asperities
             .iter()
             .map(|a| match rules.jump_in {
-                // Without adhesion nothing jumps: contact begins beyond the radius at which it ends, so that rounding takes no part.
+                // Without adhesion there is no jump: contact begins above the penetration at which it ends, beyond rounding.
                 _ if !adhesive => 4.0 * a.jump_off_penetration(),
                 JumpIn::Jkr => 0.0,
                 JumpIn::Wu => a.wu_jump_in_penetration(range).min(0.0).max(DEEPEST_JUMP_IN * a.jump_off_penetration()),
@@ -126,60 +137,60 @@ impl Problem {
         })
     }
 
-    /// True if there is no adhesion: the half-space is elastic, and its contact has no memory.
+    /// True if there is no adhesion: the contact is elastic and has no hysteresis.
     #[must_use]
     pub fn is_adhesionless(&self) -> bool {
         self.material.work_of_adhesion_j_m2 == 0.0
     }
 
-    /// True if neighbourhoods hold all summits.
+    /// True if local problems contain all asperities of the surface.
     pub(crate) fn solves_whole(&self) -> bool {
         self.spots_in_patch >= self.summits
     }
 
-    /// Residual at which a state counts as an equilibrium \[m\].
+    /// Residual below which a state is an equilibrium \[m\].
     #[must_use]
     pub fn tolerance_m(&self) -> f64 {
         1e-10 * self.rms_height_m
     }
 
-    /// The approach at which the first asperity jumps into contact \[m\]: below zero with Wu's rule.
+    /// Mean penetration at which the first asperity jumps into contact \[m\]: below zero with Wu's rule.
     #[must_use]
     pub fn first_contact_m(&self) -> f64 {
         self.jump_in.iter().zip(&self.heights).map(|(jump, z)| jump - z).fold(f64::INFINITY, f64::min)
     }
 
-    /// Number of asperities, merged spots among them.
+    /// Number of asperities, including merged spots.
     #[must_use]
     pub fn len(&self) -> usize {
         self.heights.len()
     }
 
-    /// True if there is no asperity (never: [`Self::new`] refuses it).
+    /// True if there are no asperities; [`Self::new`] refuses this.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.heights.is_empty()
     }
 
-    /// The caller's number of an asperity. Those of merged spots follow the summits' inside and outside.
+    /// The caller's number of an asperity; merged spots have the same number internally and externally.
     #[must_use]
     pub fn number(&self, i: usize) -> usize {
         self.places.numbers.get(i).copied().unwrap_or(i)
     }
 
-    /// Tabor numbers of the asperities, from the highest down.
+    /// Tabor parameters of the asperities, from the highest down.
     #[must_use]
     pub fn tabor(&self) -> &[f64] {
         &self.tabor
     }
 
-    /// `E* A0` \[N\], the unit of load.
+    /// Unit of load, `E* A0` \[N\].
     #[must_use]
     pub fn load_unit_n(&self) -> f64 {
         self.material.contact_modulus_pa * self.length_m * self.length_m
     }
 
-    /// Spots as sources: asperities, ascending, with their contact radii \[m\].
+    /// Source columns of asperities, ascending, with their contact radii \[m\].
     pub(crate) fn columns(&self, of: impl Iterator<Item = (usize, f64)> + Clone, spots: &mut Spots) {
         spots.index.clear();
         spots.index.extend(of.clone().map(|(i, _)| i));
@@ -190,8 +201,9 @@ impl Problem {
         }));
     }
 
-    /// Displacement at distance r \[m\] from a spot of this radius \[m\], with its derivative to the radius; of another spot as far as that one's own
-    /// size does not enter.
+    /// Displacement \[m\] at distance r \[m\] from a spot of radius `a` \[m\], and its derivative to `a`.
+    ///
+    /// The size of a contact at the target does not enter.
     pub(crate) fn spot_field(&self, asperity: &Asperity, r: f64, a: f64) -> (f64, f64) {
         if self.rules.interaction == Kind::Point {
             let unit = 1.0 / (PI * self.material.contact_modulus_pa * r);
@@ -201,7 +213,7 @@ impl Problem {
     }
 }
 
-/// Sums over the spots of a state.
+/// Load and area of a state.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Totals {
     /// Load F \[N\].

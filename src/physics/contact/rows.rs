@@ -1,13 +1,13 @@
-//! A state at a turning point as rows, and the state again from them: all that is needed to unload from it in another process.
+//! Table rows of a state at a load reversal, sufficient to unload from it in another process.
 //!
-//! What a state was found by, displacements and residual, is not kept: it is computed anew before the path goes on.
+//! Displacements and residual are not stored: they are computed again before the path continues.
 
 use super::merged_spot::Merged;
 use super::problem::Problem;
 use super::state::{State, Status};
 use crate::physics::PhysicsError;
 
-/// An asperity that is not simply free.
+/// Row of an asperity that is not simply free.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Kept {
     /// The asperity, by the caller's number.
@@ -16,12 +16,12 @@ pub struct Kept {
     pub status: Status,
     /// Contact radius \[m\], 0 out of contact.
     pub radius_m: f64,
-    /// True if it has left and waits until its penetration falls below the jump-in.
+    /// True if it is blocked from re-entry until its penetration falls below the jump-in.
     pub barred: bool,
 }
 
 impl State {
-    /// All asperities that are not simply free, by the caller's numbers, ascending.
+    /// Rows of all asperities that are not simply free, by the caller's numbers, ascending.
     #[must_use]
     pub fn kept(&self, problem: &Problem) -> Vec<Kept> {
         let all = self.status.iter().zip(&self.radius).zip(&self.barred).enumerate();
@@ -38,17 +38,18 @@ impl State {
         kept
     }
 
-    /// The spots that have become one, by the caller's numbers and places.
+    /// Merged spots, by the caller's numbers and positions.
     #[must_use]
     pub fn merged(&self, problem: &Problem) -> Vec<Merged> {
         self.merged.iter().map(|spot| problem.outward(spot)).collect()
     }
 
-    /// The state at an approach \[m\] in which these asperities are as they were kept, and all others free; `merged` are the spots that
-    /// had become one before.
+    /// State at a mean penetration \[m\] from its rows; all other asperities are free.
+    ///
+    /// `merged` are the merged spots of the state.
     ///
     /// # Errors
-    /// Every asperity and every covering one must be of the problem; a contact radius must be positive.
+    /// Asperity numbers, including absorbing ones, must belong to the problem. A contact radius must be positive.
     pub fn restored(problem: &Problem, approach_m: f64, merged: &[Merged], rows: &[Kept]) -> Result<Self, PhysicsError> {
         let mut state = Self::free(problem, approach_m);
         let inside = problem.places.inside();

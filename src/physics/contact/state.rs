@@ -13,46 +13,49 @@ pub enum Status {
     Free,
     /// In contact, on its own JKR branch.
     Contact,
-    /// Under a greater spot: it carries no load and no area.
+    /// Absorbed by a larger spot: it carries no load and has no area.
     Covered {
-        /// The asperity whose spot covers it.
+        /// Asperity whose spot absorbs it.
         by: usize,
-        /// The radius of that spot below which it is released \[m\]: the distance, or less where covering it made the spot shrink.
+        /// Radius of that spot below which it is released \[m\].
+        ///
+        /// It is the distance of the two, or less if absorption made the spot shrink.
         release_m: f64,
     },
     /// Part of a merged spot.
     Merged {
-        /// That spot.
+        /// Number of the merged spot.
         into: usize,
     },
 }
 
-/// A state along the path. It is all that is needed to go on from there.
+/// State along the path, sufficient to continue from it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct State {
-    /// Approach δ \[m\], 0 at the highest summit.
+    /// Mean penetration Δ \[m\], 0 at the highest summit.
     pub approach_m: f64,
     /// Status of each asperity.
     pub status: Vec<Status>,
     /// Contact radius of each asperity \[m\], 0 out of contact.
     pub radius: Vec<f64>,
-    /// Asperities that left while others still invited them back: they stay free until their penetration falls below the jump-in.
+    /// Asperities blocked from re-entry: they left while their penetration was above the jump-in, and stay free until it falls below.
     pub barred: Vec<bool>,
-    /// Spots that stand for two since these touched, in the order in which they came; their numbers follow those of the summits.
+    /// Merged spots in order of creation; their numbers follow those of the asperities of the surface.
     pub merged: Vec<Merged>,
     /// Asperities in contact, ascending.
     pub contacts: Vec<usize>,
     /// Displacement ŵ at the asperities in contact \[m\], in their order.
     pub displacement: Vec<f64>,
-    /// Worst residual of the equilibrium \[m\].
+    /// Largest residual of the equilibrium \[m\].
     pub residual_m: f64,
-    /// Least eigenvalue of the tangent `∂(δ_JKR + ŵ)/∂a`, each column over its diagonal element: 1 without coupling, 0 at a fold, negative where the
-    /// equilibrium repels.
+    /// Smallest eigenvalue of the tangent `∂(δ_JKR + ŵ)/∂a` with each column divided by its diagonal element.
+    ///
+    /// It is 1 without coupling, 0 at a limit point, and negative for an unstable equilibrium.
     pub stability: f64,
 }
 
 impl State {
-    /// All asperities free.
+    /// State at a mean penetration \[m\] with all asperities free.
     #[must_use]
     pub fn free(problem: &Problem, approach_m: f64) -> Self {
         let n = problem.len();
@@ -69,14 +72,14 @@ impl State {
         }
     }
 
-    /// Greatest contact radius \[m\], 0 without contact.
+    /// Largest contact radius \[m\], 0 without contact.
     pub(crate) fn greatest_radius(&self) -> f64 {
         self.contacts.iter().map(|&i| self.radius[i]).fold(0.0, f64::max)
     }
 
-    /// The spot that an asperity rides with, over others that are covered themselves or part of a merged spot.
+    /// Spot in contact that absorbs an asperity, directly or through absorbed asperities and merged spots.
     pub(crate) fn carrier(&self, mut i: usize) -> Option<usize> {
-        // No longer than there are asperities: where each is covered by the next, none is a spot.
+        // The bound ends a cycle of asperities that absorb one another, in which none is in contact.
         for _ in 0..self.status.len() {
             match self.status[i] {
                 Status::Contact => return Some(i),
@@ -88,12 +91,12 @@ impl State {
         None
     }
 
-    /// True if an asperity is part of a merged spot that has left.
+    /// True if an asperity is part of a merged spot that has left contact.
     pub(crate) fn is_orphan(&self, i: usize) -> bool {
         matches!(self.status[i], Status::Merged { into } if self.status[into] == Status::Free)
     }
 
-    /// One asperity more, free.
+    /// Adds a free asperity.
     pub(crate) fn extend(&mut self) {
         self.status.push(Status::Free);
         self.radius.push(0.0);
@@ -126,12 +129,12 @@ impl State {
 }
 
 impl Problem {
-    /// The spots of a state as sources.
+    /// Spots of a state as sources of displacement.
     pub(crate) fn spots(&self, state: &State, spots: &mut Spots) {
         self.columns(state.contacts.iter().map(|&i| (i, state.radius[i])), spots);
     }
 
-    /// Load, area and potential \[J\] of an equilibrium whose displacements at the spots are known.
+    /// Load, area and potential \[J\] of an equilibrium with known displacements at the spots.
     ///
     /// The potential is `Π = Σ[U(d_i, a_i) − Δγπa_i²] + ½ΣF_iŵ_i`: exact for point interaction.
     pub(crate) fn totals(&self, state: &State) -> (Totals, f64) {

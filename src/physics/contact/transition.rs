@@ -1,42 +1,43 @@
-//! Changes of state: what triggers them, and how they are applied.
+//! Transitions of asperities: triggers, and the resulting status.
 //!
-//! An asperity jumps in where its penetration reaches its jump-in distance; it jumps off where its own branch ends; it is covered where
-//! a greater spot reaches its centre, and uncovered where that spot has withdrawn from it.
+//! An asperity jumps into contact when its penetration reaches its jump-in penetration, and out of contact at the end of its branch.
+//! It is absorbed when a larger spot reaches its centre, and released when that spot has withdrawn from it.
 //!
-//! Covering takes a load away, so it moves the covering spot: if the load was tensile, the spot shrinks and would release the asperity at
-//! once, which would draw the spot out again, for ever. So the radius that the spot has after covering is the one below which it
-//! releases; and where uncovering would only end in being covered again, or in the two changing parts, it is not done, and tried
-//! again when the spot has shrunk by another 3 %. Neither depends on the step of the approach.
+//! Absorption removes a load and so moves the absorbing spot. If the load was tensile, the spot shrinks and would release
+//! the asperity at once, which would enlarge the spot again, in an endless cycle.
+//! Therefore the release radius is lowered to the radius of the spot after absorption, if that is smaller.
+//! A release that would only lead to absorption again, or to an exchange of roles, is not applied.
+//! It is tried again after the spot has shrunk by another 3 %. Neither rule depends on the step of mean penetration.
 
 use super::problem::Problem;
 use super::state::{State, Status};
 use crate::model::Coalescence;
 use serde::{Deserialize, Serialize};
 
-/// A kind of event.
+/// Kind of event.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Kind {
     /// A free asperity jumps into contact.
     JumpIn,
-    /// A spot's branch ends, and it leaves.
+    /// A spot reaches the end of its branch and leaves contact.
     JumpOff,
-    /// A greater spot reaches an asperity's centre.
+    /// A larger spot reaches an asperity's centre and absorbs it.
     Cover,
-    /// The covering spot has withdrawn.
+    /// The absorbing spot has withdrawn, and the asperity is released.
     Uncover,
-    /// The coupled state has a fold, and moves to another equilibrium with the same spots.
+    /// Snap-through at a limit point of the coupled state: same contacts, new equilibrium.
     Snap,
-    /// Two spots that touch become one.
+    /// Two overlapping spots merge.
     Merge,
-    /// They part again.
+    /// A merged spot splits into its parts.
     Split,
 }
 
 impl Kind {
-    /// Every kind, in the order in which they are counted.
+    /// All kinds, in the order of the event counts.
     pub const ALL: [Self; 7] = [Self::JumpIn, Self::JumpOff, Self::Cover, Self::Uncover, Self::Snap, Self::Merge, Self::Split];
 
-    /// The word in the tables.
+    /// Name in the tables.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
@@ -51,23 +52,23 @@ impl Kind {
     }
 }
 
-/// A change of one asperity's state.
+/// Change of one asperity's status.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Transition {
     pub(crate) kind: Kind,
     pub(crate) asperity: usize,
-    /// The covering asperity.
+    /// The absorbing asperity.
     pub(crate) by: Option<usize>,
 }
 
 impl Transition {
-    /// True if this would undo one of the changes that have `moved` in the same avalanche.
+    /// True if this would undo one of the changes `moved` of the same avalanche.
     pub(crate) fn returns(&self, moved: &[Self], state: &State) -> bool {
         let i = self.asperity;
         moved.iter().any(|earlier| match (self.kind, earlier.kind) {
             (Kind::JumpIn, Kind::JumpOff | Kind::Uncover) => earlier.asperity == i,
             (Kind::Cover, Kind::Uncover) => earlier.asperity == i,
-            // Where the covering spot has gone altogether, nothing is left to ride with.
+            // A release is allowed if the absorbing spot itself has left contact.
             (Kind::Uncover, Kind::Cover) => {
                 earlier.asperity == i && matches!(state.status[i], Status::Covered { by, .. } if state.radius[by] > 0.0)
             }
@@ -75,13 +76,13 @@ impl Transition {
         })
     }
 
-    /// True if this covers an asperity that was uncovered, or covers the spot that it was uncovered from by its own.
+    /// True if this undoes a release: by absorbing the released asperity, or the absorbing spot by the released one.
     pub(crate) fn undoes(&self, uncovering: &Self) -> bool {
         let i = uncovering.asperity;
         self.kind == Kind::Cover && (self.asperity == i || (Some(self.asperity) == uncovering.by && self.by == Some(i)))
     }
 
-    /// The status of an asperity that this change takes out of contact.
+    /// Status of an asperity that this change removes from contact.
     pub(crate) fn status(&self, problem: &Problem) -> Status {
         match (self.kind, self.by) {
             (Kind::Cover, Some(by)) => {
@@ -93,16 +94,16 @@ impl Transition {
     }
 }
 
-/// A spot as a relaxation has it: its asperity, its radius \[m\] and its residual \[m\].
+/// Spot during a relaxation: asperity, contact radius \[m\] and residual \[m\].
 pub(crate) type ContactView = (usize, f64, f64);
 
 impl Problem {
-    /// True if spots cover asperities.
+    /// True if the model includes absorption.
     pub(crate) fn covers(&self) -> bool {
         self.rules.coalescence != Coalescence::None
     }
 
-    /// True if an asperity is there to be covered: it is not yet, nor a part of a merged spot, nor one that has parted.
+    /// True if an asperity can be absorbed: not absorbed yet, not part of a merged spot, and not a split one.
     pub(crate) fn can_be_covered(&self, state: &State, i: usize) -> bool {
         match state.status[i] {
             Status::Contact => true,
@@ -111,7 +112,7 @@ impl Problem {
         }
     }
 
-    /// Largest spot over the centre of asperity `i` other than `but`, with its distance.
+    /// Largest spot over the centre of asperity `i`, other than `but`, with its distance.
     pub(crate) fn covering(&self, state: &State, i: usize, but: Option<usize>) -> Option<(usize, f64)> {
         state
             .contacts
@@ -122,8 +123,9 @@ impl Problem {
             .max_by(|(j, _), (k, _)| state.radius[*j].total_cmp(&state.radius[*k]).then(k.cmp(j)))
     }
 
-    /// Who leaves or is covered at this point of a relaxation of `spots` (ascending): the spot furthest below the end of its branch and
-    /// still shrinking, else the spot furthest under a greater one.
+    /// Transition due during a relaxation of `spots` (ascending), if any.
+    ///
+    /// First the spot furthest below the end of its branch that is still shrinking, else the spot furthest inside a larger one.
     pub(crate) fn overtaken(&self, spots: &[ContactView]) -> Option<Transition> {
         let mut found: Option<(f64, Transition)> = None;
         for &(i, a, residual) in spots {
@@ -145,8 +147,10 @@ impl Problem {
         found.map(|(_, change)| change)
     }
 
-    /// Where a relaxation finds no rest because a spot is at the edge of a greater one, and the field jumps in slope there: the smaller of the two
-    /// is covered. `restless` is the asperity with the worst residual.
+    /// Absorption that resolves a relaxation without convergence at the edge of a larger spot.
+    ///
+    /// The slope of the field is discontinuous at the edge. The smaller of the two spots is absorbed.
+    /// `restless` is the asperity with the largest residual.
     pub(crate) fn at_edge(&self, spots: &[ContactView], restless: usize) -> Option<Transition> {
         let mut found: Option<(f64, Transition)> = None;
         let mut offer = |i: usize, j: usize, a: f64, r: f64| {
@@ -170,5 +174,5 @@ impl Problem {
     }
 }
 
-/// How near the edge of a spot counts as at it, of the distance.
+/// Maximum distance from the edge of a spot, relative to the distance of the centres, for [`Problem::at_edge`].
 const EDGE: f64 = 0.02;

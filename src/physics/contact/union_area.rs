@@ -1,7 +1,7 @@
-//! The area of the union of the contact discs, exactly, on the periodic square.
+//! Exact area of the union of the contact discs.
 //!
-//! By Green's theorem the area is `∮ x dy` along the arcs that lie in no other disc. On the periodic square `x` is taken in `[0, L)`; an arc
-//! is cut where it crosses `x = 0`, and the union's share of that line counts with the factor L.
+//! By Green's theorem the area is `∮ x dy` along the arcs that lie in no other disc. On the periodic square `x` is in `[0, L)`.
+//! An arc is cut where it crosses `x = 0`, and the length of that line inside the union is counted with the factor L.
 
 use super::problem::Problem;
 use super::state::State;
@@ -25,12 +25,12 @@ pub fn area(problem: &Problem, state: &State) -> f64 {
         });
         list
     };
-    // The sum of the discs is an upper bound, also of a disc that reaches its own periodic image.
+    // The sum of the disc areas is an upper bound, also for a disc that overlaps its own periodic image.
     let sum: f64 = discs.iter().map(|disc| PI * disc.radius * disc.radius).sum();
     union_area(&discs, problem.length_m, periodic, overlapping).min(sum)
 }
 
-/// A disc of the plane.
+/// A disc in the plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Disc {
     /// Centre \[m\].
@@ -39,8 +39,10 @@ pub struct Disc {
     pub radius: f64,
 }
 
-/// Area of the union of discs \[m²\], periodic with side `length` or in the open plane; `overlapping(k)` names the discs that overlap disc k.
-/// A disc may not reach its own periodic image (radius below half the side); where one does, the union is the sum's upper bound L².
+/// Area of the union of discs \[m²\], periodic with side `length` or in the open plane.
+///
+/// `overlapping(k)` returns the discs that overlap disc k.
+/// A disc must not overlap its own periodic image (radius below half the side); otherwise the result is the upper bound L².
 #[must_use]
 pub fn union_area(discs: &[Disc], length: f64, periodic: bool, overlapping: impl Fn(usize) -> Vec<usize>) -> f64 {
     let mut area = 0.0;
@@ -53,7 +55,7 @@ pub fn union_area(discs: &[Disc], length: f64, periodic: bool, overlapping: impl
         let mut swallowed = false;
         for other in overlapping(k) {
             match hidden_arc(disc, &discs[other], length, periodic) {
-                // Of two equal discs in one place the first stands for both.
+                // Of two identical discs the first is counted.
                 Arc::Whole => swallowed |= discs[other] != *disc || other < k,
                 Arc::Part(from, to) => push_interval(&mut hidden, from, to, TAU),
                 Arc::Nothing => {}
@@ -98,7 +100,7 @@ fn hidden_arc(disc: &Disc, other: &Disc, length: f64, periodic: bool) -> Arc {
     Arc::Part(middle - half, middle + half)
 }
 
-/// The part of the line `x = 0` that a disc covers.
+/// Adds the interval of the line `x = 0` inside a disc.
 fn crossing(disc: &Disc, length: f64, line: &mut Vec<(f64, f64)>) {
     let [x, y] = disc.centre;
     let distance = x.min(length - x);
@@ -121,7 +123,7 @@ fn push_interval(list: &mut Vec<(f64, f64)>, from: f64, to: f64, period: f64) {
     }
 }
 
-/// What a list of intervals leaves of `[0, period]`.
+/// Complement of a list of intervals in `[0, period]`.
 fn complement(list: &mut [(f64, f64)], period: f64) -> Vec<(f64, f64)> {
     list.sort_by(|u, v| u.0.total_cmp(&v.0));
     let mut left = Vec::new();
@@ -148,7 +150,7 @@ fn arc_moment(disc: &Disc, from: f64, to: f64, length: f64, periodic: bool) -> f
     if !periodic {
         return piece(x, from, to);
     }
-    // Angles at which the circle crosses the line, with the shift of x on either side.
+    // Angles at which the circle crosses the line; x is shifted by the period on one side.
     let mut cuts = vec![from, to];
     for edge in [-x, length - x] {
         if edge.abs() < radius {
@@ -166,7 +168,7 @@ fn arc_moment(disc: &Disc, from: f64, to: f64, length: f64, periodic: bool) -> f
         .sum()
 }
 
-/// Plain sum of the areas of discs \[m²\].
+/// Sum of the areas of discs \[m²\], overlaps counted twice.
 #[must_use]
 pub fn plain_area(discs: &[Disc]) -> f64 {
     discs.iter().map(|disc| PI * disc.radius * disc.radius).sum()

@@ -1,4 +1,4 @@
-//! Merging and splitting along a path: located by bisection, applied between two paths.
+//! Merging and splitting along a path: located by bracketing, applied between two paths.
 
 use crate::model::Coalescence;
 use crate::physics::PhysicsError;
@@ -11,11 +11,11 @@ use crate::physics::contact::transition::{Kind, Transition};
 use crate::physics::math::bracket::{End, Illinois};
 use crate::physics::path::{EquilibriumPath, PathCheckpoint};
 
-/// Way within which they merge where they come to touch by a jump, of the rms height.
+/// Location tolerance, relative to the rms height, if spots overlap through a jump.
 const SUDDEN: f64 = 1e-6;
 
 impl EquilibriumPath<'_> {
-    /// The approach \[m\] at which the first of the meetings comes that are due at the end of the last stretch; nothing where none is.
+    /// Mean penetration \[m\] of the first coalescence event within the last increment, if any is pending at its end.
     pub(crate) fn next_coalescence(&self, known: &TouchingPairs) -> Result<Option<f64>, PhysicsError> {
         let problem = self.problem();
         let end = self.state();
@@ -23,11 +23,11 @@ impl EquilibriumPath<'_> {
         let furthest = |state: &State| due.iter().map(|(_, m)| problem.beyond(state, *m)).fold(f64::NEG_INFINITY, f64::max);
         let (Some((over, _)), Some(start)) = (due.first(), self.previous_state()) else { return Ok(None) };
         let (mut low, mut high, mut over) = (start.approach_m, end.approach_m, *over);
-        // What is looked for is a little beyond the meeting.
+        // The target is slightly past the event.
         let aim = |value: f64| value - 0.5 * TOUCH;
         let mut ends = Illinois::new(aim(furthest(start).min(0.0)), aim(over));
         let sudden = SUDDEN * problem.rms_height_m;
-        // Where an event of the spots themselves has brought it about, it is looked for there, on both sides.
+        // If a jump-in or release of the spots themselves caused it, the search begins on both sides of that event.
         let mut sides =
             self.last_event_of(&due).map_or(Vec::new(), |at| vec![at - 0.4 * self.sense() * sudden, at + 0.4 * self.sense() * sudden]);
         sides.retain(|side| (side - low) * self.sense() > 0.0 && (high - side) * self.sense() > 0.0);
@@ -35,7 +35,7 @@ impl EquilibriumPath<'_> {
             if over <= TOUCH || (high - low).abs() <= sudden {
                 break;
             }
-            // Where a straight line does not lead there, one of the ends is before a jump.
+            // If linear interpolation fails, one end of the bracket is before a jump.
             let margin = if round < 3 { 0.02 } else { 0.3 };
             let middle = sides.pop().unwrap_or(low + ends.share(margin) * (high - low));
             let trial = furthest(self.excursion(middle)?.state());
@@ -51,7 +51,7 @@ impl EquilibriumPath<'_> {
         Ok(Some(high))
     }
 
-    /// The approach of the last event within the last stretch by which one of these spots came to be \[m\].
+    /// Mean penetration \[m\] of the last jump-in or release of one of these spots in the last increment.
     fn last_event_of(&self, due: &[(f64, CoalescenceEvent)]) -> Option<f64> {
         let spots = |meeting: &CoalescenceEvent| match *meeting {
             CoalescenceEvent::Touch(i, j) => [i, j],
@@ -62,7 +62,7 @@ impl EquilibriumPath<'_> {
         events.find(|event| due.iter().any(|(_, meeting)| spots(meeting).contains(&event.asperity))).map(|event| event.approach_m)
     }
 
-    /// Meetings that are due where the path is; where none is, what touches there is known from now on.
+    /// Coalescence event due at the current state; if there is none, the overlapping pairs are added to `known`.
     pub(crate) fn due_coalescence(&self, known: &mut TouchingPairs) -> Result<Option<CoalescenceEvent>, PhysicsError> {
         let problem = self.problem();
         if problem.rules.coalescence != Coalescence::Merge {
@@ -76,7 +76,7 @@ impl EquilibriumPath<'_> {
         let touching = problem.touching(state);
         let due = problem.meetings(state, &touching, known).first().map(|(_, meeting)| *meeting);
         if due.is_none() {
-            // A pair of which one is part of another spot has not been apart.
+            // A pair with a part of a merged spot has not been apart.
             known.retain(|(i, j)| [i, j].iter().any(|k| matches!(state.status[**k], Status::Merged { .. })));
             known.extend(touching);
         }
@@ -85,7 +85,7 @@ impl EquilibriumPath<'_> {
 }
 
 impl PathCheckpoint {
-    /// Does what is to be done; `problem` is the path's own.
+    /// Applies a coalescence event; `problem` is the problem of this path.
     pub(crate) fn meet(&mut self, problem: &mut Problem, meeting: CoalescenceEvent, known: &mut TouchingPairs) -> Result<(), PhysicsError> {
         let (kind, asperity) = match meeting {
             CoalescenceEvent::Touch(i, j) => (Kind::Merge, problem.join(&mut self.state, i, j)?),
@@ -93,7 +93,7 @@ impl PathCheckpoint {
                 problem.part(&mut self.state, number);
                 let [i, j] = self.state.merged[number - problem.summits].parts;
                 known.insert((i.min(j), i.max(j)));
-                // Others have grown up to them meanwhile.
+                // Others may have grown to overlap the parts meanwhile.
                 let theirs = |(k, l): &(usize, usize)| [i, j].contains(k) || [i, j].contains(l);
                 known.extend(problem.touching(&self.state).into_iter().filter(theirs));
                 (Kind::Split, number)
@@ -108,7 +108,7 @@ impl PathCheckpoint {
         if !self.log.events.last().is_some_and(follows) {
             self.log.begin_avalanche();
         }
-        // What is lost is charged when the whole contact is in equilibrium again.
+        // The dissipated energy is assigned when the global problem is in equilibrium again.
         self.log.record(&[Transition { kind, asperity, by: None }], here, self.totals, self.totals, 0.0);
         Ok(())
     }

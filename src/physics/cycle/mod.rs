@@ -1,6 +1,7 @@
-//! Loading and unloading: one loading path to the greatest load, and an unloading path from every turning point on it.
+//! Loading and unloading: one loading path to the largest load, and an unloading path from every load reversal.
 //!
-//! The loop begins before the first jump-in and ends with the last separation, so its area is the whole loss `Θ = ∮F dΔ`.
+//! The loop begins before the first jump-in and ends with the last separation.
+//! Its area is therefore the total dissipated energy `Θ = ∮F dΔ`.
 
 mod coalescence;
 mod recorder;
@@ -19,34 +20,34 @@ use serde::{Deserialize, Serialize};
 use soundness::check_energy;
 pub use table::{Branch, Contact, Cycle, MergedAt, Settings, Step};
 
-/// A branch on its way.
+/// Branch in progress.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 struct Leg {
     recorder: Recorder,
     carried: PathCheckpoint,
 }
 
-/// A cycle on its way: all that is needed to go on, in another process and to the same bytes.
+/// Checkpoint of a cycle, sufficient to continue in another process with identical results.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Halfway {
     cycle: Cycle,
-    /// How many branches are behind it, and where the next one is.
+    /// Number of finished branches, and the branch in progress.
     branches: usize,
     leg: Option<Leg>,
 }
 
-/// Loads to the largest of the loads, and unloads from each. `progress` is told how much is done, from 0 to 1.
+/// Loads to the largest of the loads, and unloads from each. `progress` receives the finished fraction, 0 to 1.
 ///
 /// # Errors
-/// A load that is not reached within 100 rms heights; an approach without an equilibrium.
+/// A load that is not reached within 100 rms heights, or a mean penetration without an equilibrium.
 pub fn run(problem: &Problem, settings: &Settings, progress: &dyn Fn(f64)) -> Result<Cycle, PhysicsError> {
     run_from(problem, settings, None, &mut |_| {}, progress)
 }
 
-/// The same, from where it was `halfway`; wherever it rests, `keep` is given what is needed to go on from there.
+/// Continues [`run`] from the checkpoint `halfway`; `keep` receives every new checkpoint.
 ///
 /// # Errors
-/// A load that is not reached within 100 rms heights; an approach without an equilibrium.
+/// A load that is not reached within 100 rms heights, or a mean penetration without an equilibrium.
 pub fn run_from(
     problem: &Problem,
     settings: &Settings,
@@ -86,10 +87,12 @@ pub fn run_from(
     Ok(halfway.cycle)
 }
 
-/// Unloads from a state that was kept at a turning point, `max_load` its `F/(E* A0)`: step by step what [`run`] does from there.
+/// Unloads from a stored state at a load reversal, where `max_load` is its `F/(E* A0)`.
+///
+/// The steps are identical to those of [`run`] from there.
 ///
 /// # Errors
-/// An approach without an equilibrium.
+/// A mean penetration without an equilibrium.
 pub fn unload_from(problem: &Problem, settings: &Settings, max_load: f64, state: State) -> Result<Cycle, PhysicsError> {
     let mut cycle = Cycle::default();
     if problem.is_adhesionless() {
@@ -101,11 +104,12 @@ pub fn unload_from(problem: &Problem, settings: &Settings, max_load: f64, state:
     Ok(cycle)
 }
 
-/// Loads to the approach `turn` \[m\] and unloads from there, under displacement control alone: the load at the turn may be a tension. The
-/// turning loads of the settings are not read; the unloading steps have none.
+/// Loads to the mean penetration `turn` \[m\] and unloads from there, under displacement control alone.
+///
+/// The load at the reversal may be tensile. `max_loads` of the settings is not used, and the unloading steps have none.
 ///
 /// # Errors
-/// An approach without an equilibrium.
+/// A mean penetration without an equilibrium.
 pub fn run_to(problem: &Problem, settings: &Settings, turn: f64) -> Result<Cycle, PhysicsError> {
     let mut cycle = Cycle::default();
     let Leg { mut recorder, carried } = Leg::loading(problem, settings);
@@ -126,7 +130,7 @@ pub fn run_to(problem: &Problem, settings: &Settings, turn: f64) -> Result<Cycle
     Ok(cycle)
 }
 
-/// Unloads from a turning state to the last separation, over all rests.
+/// Unloads from a load reversal to the last separation, continuing after every checkpoint.
 fn unload_through(
     problem: &Problem,
     settings: &Settings,
@@ -142,12 +146,12 @@ fn unload_through(
 }
 
 impl Settings {
-    /// The steps lie on one grid of approaches, the same for both senses and for every turning point.
+    /// Spacing of the grid of mean penetrations \[m\], common to both senses and all load reversals.
     pub(crate) fn grid(&self, problem: &Problem) -> f64 {
         self.approach_step * problem.rms_height_m
     }
 
-    /// True if a path that began or rested at the approach `from` \[m\] is to rest where it is.
+    /// True if a path that began or resumed at the mean penetration `from` \[m\] has reached a checkpoint position.
     fn rests(&self, path: &EquilibriumPath<'_>, from: f64) -> bool {
         let at = path.state().approach_m;
         self.rest_every.is_some_and(|every| path.is_exact() && at != from && is_multiple(at, every * path.problem().rms_height_m))
@@ -155,7 +159,7 @@ impl Settings {
 }
 
 impl Leg {
-    /// From a point of the grid before the first jump-in.
+    /// Loading branch from a grid point before the first jump-in.
     fn loading(problem: &Problem, settings: &Settings) -> Self {
         let spacing = settings.grid(problem);
         let number = (problem.first_contact_m() / spacing).floor() - 1.0;
@@ -163,7 +167,7 @@ impl Leg {
         Self { recorder: Recorder::new(Branch::Loading, None, number, 0), carried: PathCheckpoint::begin(problem, state, 1.0) }
     }
 
-    /// From a turning state, which is all that is needed.
+    /// Unloading branch from a state at a load reversal, which is sufficient.
     fn unloading(problem: &Problem, settings: &Settings, max_load: Option<f64>, state: State) -> Self {
         let number = -(state.approach_m / settings.grid(problem)).ceil();
         let recorder = Recorder::new(Branch::Unloading, max_load, number, state.merged.len());
@@ -171,7 +175,7 @@ impl Leg {
     }
 }
 
-/// Loads until it rests, or to the largest of the loads: then nothing is left.
+/// Loads to the next checkpoint, or to the largest load and returns `None`.
 fn load(problem: &Problem, settings: &Settings, leg: Leg, cycle: &mut Cycle, progress: &dyn Fn(f64)) -> Result<Option<Leg>, PhysicsError> {
     let Leg { mut recorder, carried } = leg;
     let from = carried.state.approach_m;
@@ -193,7 +197,7 @@ fn load(problem: &Problem, settings: &Settings, leg: Leg, cycle: &mut Cycle, pro
     Ok(left.map(|carried| Leg { recorder, carried }))
 }
 
-/// Unloads until it rests, or to the last separation: then nothing is left.
+/// Unloads to the next checkpoint, or to the last separation and returns `None`.
 fn unload(
     problem: &Problem,
     settings: &Settings,
@@ -210,7 +214,7 @@ fn unload(
         progress(1.0 - path.totals().area_m2 / full);
         if path.state().contacts.is_empty() {
             if recorder.lacks_events(path) {
-                // The last spot has gone between two points of the grid.
+                // The last spot has left contact between two grid points.
                 recorder.record(settings, path, None, cycle, false)?;
             }
             return Ok(Next::End);
@@ -226,16 +230,18 @@ fn unload(
     }
 }
 
-/// What is to be done after a look at a path.
+/// Action after a visit of the path.
 enum Next {
     On,
-    /// To begin anew from what is carried.
+    /// Stop at a checkpoint and resume from it.
     Rest,
     End,
 }
 
-/// Goes along a branch from what is carried, but not beyond `bound` \[m\]; spots merge and part on the way. At the beginning, after every
-/// stretch and after every meeting `visit` is shown where the path is, and says what is next. Where it rests, what is to be carried on is returned.
+/// Follows a branch from a checkpoint, at most to `bound` \[m\], with merging and splitting on the way.
+///
+/// `visit` is called with the path at the beginning, after every increment and after every coalescence event.
+/// It returns the next action. The checkpoint is returned if the action is [`Next::Rest`].
 fn travel(
     problem: &Problem,
     mut carried: PathCheckpoint,

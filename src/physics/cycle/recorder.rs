@@ -1,4 +1,4 @@
-//! What is written down of a branch: a step at every point of the grid and at the turning points, with the events since the step before.
+//! Recording of a branch: a step at every grid point and load reversal, with the events since the previous step.
 
 use super::soundness::check_area;
 use super::table::{Branch, Contact, Cycle, MergedAt, Settings, Step};
@@ -12,25 +12,27 @@ use crate::physics::half_space::Effort;
 use crate::physics::path::EquilibriumPath;
 use serde::{Deserialize, Serialize};
 
-/// Writes the steps of one branch down.
+/// Records the steps of one branch.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct Recorder {
     branch: Branch,
     max_load: Option<f64>,
-    /// Number of the last point of the grid, counted in the sense of the path; whether the beginning has been recorded.
+    /// Number of the last grid point, counted in the sense of the path, and whether the beginning has been recorded.
     number: f64,
     begun: bool,
     events_before: usize,
     ways_before: usize,
     merged_before: usize,
     effort_before: Effort,
-    /// Load at the last record \[N\], and the largest tension of all records so far with its spots, while these are to be kept.
+    /// Load of the last record \[N\], and the most negative load of all records with its spots, if these are to be kept.
     load_before: Option<f64>,
     pulled: Option<(f64, Vec<Contact>)>,
 }
 
 impl Recorder {
-    /// Of a branch that begins at a point of the grid, `number`, or between it and the next one, with so many merged spots.
+    /// Recorder of a branch that begins at grid point `number`, or between it and the next.
+    ///
+    /// `merged_before` is the number of merged spots at the beginning.
     pub(crate) fn new(branch: Branch, max_load: Option<f64>, number: f64, merged_before: usize) -> Self {
         let effort_before = Effort::default();
         Self {
@@ -52,7 +54,7 @@ impl Recorder {
         self.events_before < path.log().events.len()
     }
 
-    /// Records the points of the grid that the last stretch has passed, and the beginning.
+    /// Records the beginning, and the grid points passed in the last increment.
     pub(crate) fn grid_points(
         &mut self,
         settings: &Settings,
@@ -90,7 +92,7 @@ impl Recorder {
         }
     }
 
-    /// True if the load has come to half that of a turning point since the last record, or to none on the way back.
+    /// True if the load has passed half of a maximum load since the last record, or zero during unloading.
     fn passes_landmark(&self, settings: &Settings, problem: &Problem, load: f64) -> bool {
         let Some(before) = self.load_before else { return false };
         match self.branch {
@@ -99,12 +101,12 @@ impl Recorder {
         }
     }
 
-    /// Ends the branch: the spots at its greatest tension are kept.
+    /// Ends the branch and keeps the spots at its maximum tensile load.
     pub(crate) fn end(self, cycle: &mut Cycle) {
         cycle.contacts.extend(self.pulled.map(|pulled| pulled.1).unwrap_or_default());
     }
 
-    /// Records a turning point, where the path is or on an excursion from it, and the points of the grid before it.
+    /// Records a load reversal, at the path or at an excursion from it, and the grid points before it.
     pub(crate) fn turn(
         &mut self,
         settings: &Settings,
@@ -177,7 +179,7 @@ impl Recorder {
         let load_before = self.load_before.unwrap_or(0.0);
         let pulls = load < self.pulled.as_ref().map_or(0.0, |pulled| pulled.0);
         if settings.contacts == KeptContacts::Turning && self.branch == Branch::Unloading && pulls {
-            // A step that is kept already need not be kept twice.
+            // The spots of a kept step are stored already.
             self.pulled = Some((load, if keep { Vec::new() } else { spots_of(problem, state, number) }));
         }
         self.load_before = Some(load);
@@ -189,7 +191,7 @@ impl Recorder {
     }
 }
 
-/// How many spots touch another one.
+/// Number of spots that overlap another one.
 fn touching(problem: &Problem, state: &State) -> usize {
     let greatest = state.greatest_radius();
     let touches = |i: usize| {

@@ -1,7 +1,8 @@
 //! Unloading without adhesion: the loading path in reverse.
 //!
-//! At `Δγ = 0` the half-space is elastic and the contact has no memory: its state is a function of the approach alone, and the loop encloses no area. The
-//! unloading branch is therefore the loading branch in reverse. Each event is undone at its approach and gives back the energy that it took: Θ is exactly 0.
+//! At `Δγ = 0` the half-space is elastic and the contact has no memory: its state is a function of the mean penetration alone.
+//! The loop encloses no area, and the unloading branch is the loading branch in reverse.
+//! Each event is reversed at its mean penetration and returns its energy: Θ is exactly 0.
 
 use super::table::{Branch, Contact, Cycle, Step};
 use crate::model::KeptContacts;
@@ -9,7 +10,9 @@ use crate::physics::contact::event::Event;
 use crate::physics::contact::transition::Kind;
 use crate::physics::half_space::Effort;
 
-/// Appends the unloading from the `k`-th load reversal of a loading path without adhesion. `max_load` is its `F/(E* A0)`, null under displacement control.
+/// Appends the unloading from the `k`-th load reversal of a loading path without adhesion.
+///
+/// `max_load` is its `F/(E* A0)`, `None` under displacement control.
 pub(crate) fn retrace(cycle: &mut Cycle, k: usize, max_load: Option<f64>, contacts: KeptContacts) {
     let reversal = cycle.turning[k].0;
     let others: Vec<usize> = cycle.turning[..k].iter().map(|(step, _)| *step).collect();
@@ -20,7 +23,7 @@ pub(crate) fn retrace(cycle: &mut Cycle, k: usize, max_load: Option<f64>, contac
     for at in (0..=reversal).rev() {
         let step = cycle.steps[at].clone();
         least_load_n = least_load_n.min(step.load_n);
-        // Steps at smaller load reversals are not points of the grid of an unloading branch.
+        // Steps at smaller load reversals are not grid points of an unloading branch.
         if !others.contains(&at) {
             let number = cycle.steps.len();
             let undone: Vec<Event> = std::mem::take(&mut pending);
@@ -40,7 +43,7 @@ pub(crate) fn retrace(cycle: &mut Cycle, k: usize, max_load: Option<f64>, contac
     }
 }
 
-/// A loading step as a step of the unloading branch, with the events undone since the step before it.
+/// A loading step as a step of the unloading branch, with the events reversed since the step before it.
 fn reversed(step: &Step, max_load: Option<f64>, undone: &[Event], least_load_n: f64, work_j: f64) -> Step {
     Step {
         branch: Branch::Unloading,

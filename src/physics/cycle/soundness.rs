@@ -1,30 +1,36 @@
-//! What a cycle must satisfy to be a result: a contact area within the nominal one, a dissipated energy that is not negative, and an energy balance.
+//! Validity checks of a cycle: contact area, sign of the dissipated energy, energy balance.
 //!
-//! Each is an identity of any adhesive contact of an elastic half-space. The asperity model violates them where contacts have grown together, since
-//! overlapping discs count an area twice and the absorption rule has no potential. Such a cycle ends with an error, and its tables are not written.
+//! Contact area within the nominal one, dissipated energy not negative, and energy balance hold for any adhesive elastic contact.
+//! The asperity model violates them after strong coalescence: overlapping discs count an area twice, and the absorption rule
+//! has no potential. Such a cycle ends with an error, and its tables are not written.
 
 use super::table::{Branch, Cycle, Step};
 use crate::physics::PhysicsError;
 use crate::physics::contact::problem::Problem;
 
-/// Numerical resolution of the dissipated energy, over the largest work along the loop: Θ is the difference of the works of loading and unloading, and each is
-/// integrated to about 1e-8.
+/// Numerical resolution of the dissipated energy, relative to the largest work along the loop.
+///
+/// Θ is the difference of the works of loading and unloading, and each is integrated to about 1e-8.
 pub const RESOLUTION: f64 = 1e-7;
 
-/// Accuracy of the sum over the events, over the largest work along the loop: the energy of an event is a difference of potentials of a local problem.
+/// Accuracy of the sum over the events, relative to the largest work along the loop.
+///
+/// The energy of an event is a difference of potentials of a local problem.
 pub const EVENT_ACCURACY: f64 = 1e-5;
 
 /// Largest energy-balance error `|Θ − Σ events|` over Θ.
 pub const LARGEST_IMBALANCE: f64 = 0.5;
 
-/// Refuses a step whose contact area Σπa² \[m²\] exceeds the nominal area A0. The area of the union of the contacts is smaller than that sum.
-/// `load_before_n` is the load \[N\] at the step before: the load of a contact that fills the area means nothing.
+/// Refuses a step whose contact area Σπa² \[m²\] exceeds the nominal area A0.
+///
+/// The area of the union of the contacts is smaller than that sum.
+/// `load_before_n` is the load \[N\] at the step before, for the error: the load at the refused step is meaningless.
 ///
 /// # Errors
 /// [`PhysicsError::ExcessArea`].
 pub(crate) fn check_area(problem: &Problem, step: &Step, load_before_n: f64) -> Result<(), PhysicsError> {
     let share = step.area_m2 / (problem.length_m * problem.length_m);
-    // Not a number is refused as well.
+    // NaN is refused as well.
     if share <= 1.0 { Ok(()) } else { Err(PhysicsError::ExcessArea { approach_m: step.approach_m, share, load_before_n }) }
 }
 
@@ -47,7 +53,7 @@ impl LoopEnergy {
     }
 }
 
-/// The energies of the loop to the `k`-th load reversal of a cycle whose unloading from there is the last branch so far.
+/// Energies of the loop to the `k`-th load reversal; its unloading must be the last branch of the cycle so far.
 #[must_use]
 pub fn loop_energy(cycle: &Cycle, k: usize) -> LoopEnergy {
     let reversal = cycle.turning[k].0;
@@ -68,15 +74,15 @@ pub fn loop_energy(cycle: &Cycle, k: usize) -> LoopEnergy {
     }
 }
 
-/// Energy of the events of the loading path to the `k`-th load reversal \[J\].
+/// Dissipated energy of the events of the loading path to the `k`-th load reversal \[J\].
 fn loading_events(cycle: &Cycle, k: usize) -> f64 {
     cycle.steps[..=cycle.turning[k].0].iter().map(|step| step.dissipated_j).sum()
 }
 
-/// Refuses a loop that gives energy, or whose events do not account for at least half of what it dissipates.
+/// Refuses a loop with negative dissipation, or whose energy-balance error exceeds half of the dissipated energy.
 ///
 /// # Errors
-/// [`PhysicsError::NegativeDissipation`], [`PhysicsError::EnergyImbalance`]; neither below the numerical resolution.
+/// [`PhysicsError::NegativeDissipation`] and [`PhysicsError::EnergyImbalance`], neither below the numerical resolution.
 pub fn check_energy(cycle: &Cycle, k: usize) -> Result<(), PhysicsError> {
     let energy = loop_energy(cycle, k);
     let LoopEnergy { loss_j, events_j, work_j } = energy;
@@ -84,7 +90,7 @@ pub fn check_energy(cycle: &Cycle, k: usize) -> Result<(), PhysicsError> {
     if loss_j < -energy.resolution_j() {
         return Err(PhysicsError::NegativeDissipation { max_load, loss_j, fraction: loss_j.abs() / work_j });
     }
-    // Without adhesion events are undone exactly: those of the loading path are compared with the work of loading.
+    // Without adhesion events are reversed exactly; the events of the loading path are compared with the largest work.
     let gap = if loss_j == 0.0 { loading_events(cycle, k).abs() } else { (loss_j - events_j).abs() };
     let scale = if loss_j == 0.0 { work_j } else { loss_j };
     if gap > (LARGEST_IMBALANCE * scale).max(EVENT_ACCURACY * work_j) {

@@ -1,4 +1,4 @@
-//! Rows of a cycle: steps, contacts and events.
+//! Tables of a cycle: steps, contacts and events.
 
 use crate::model::KeptContacts;
 use crate::physics::contact::event::Event;
@@ -11,28 +11,29 @@ use serde::{Deserialize, Serialize};
 /// Settings of a cycle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
-    /// Turning points `F/(E* A0)`, ascending.
+    /// Loads `F/(E* A0)` at the load reversals, ascending.
     pub max_loads: Vec<f64>,
-    /// Step of the approach, of the rms height.
+    /// Step of mean penetration over the rms height.
     pub approach_step: f64,
-    /// Which steps keep their spots.
+    /// Selection of the steps at which spots are stored.
     pub contacts: KeptContacts,
-    /// Approaches, as multiples of so many rms heights, at which the path begins anew from what is to be kept of it, so that it may go on from there in
-    /// another process; where there is none, it goes through.
+    /// Interval of mean penetration, in rms heights, between checkpoints; `None` for a run without checkpoints.
+    ///
+    /// At a checkpoint the path restarts from the stored state, so that another process can continue it.
     pub rest_every: Option<f64>,
 }
 
-/// The sense of the path.
+/// Sense of the path: loading or unloading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Branch {
-    /// Approach grows.
+    /// Increasing mean penetration.
     Loading,
-    /// Approach falls.
+    /// Decreasing mean penetration.
     Unloading,
 }
 
 impl Branch {
-    /// The word in the tables.
+    /// Name in the tables.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
@@ -42,90 +43,91 @@ impl Branch {
     }
 }
 
-/// The contact at one step.
+/// Contact quantities at one step.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Step {
     /// Loading or unloading.
     pub branch: Branch,
-    /// The turning point from which this unloading began; nothing while loading.
+    /// Maximum load `F/(E* A0)` at the reversal before this unloading; `None` while loading.
     pub max_load: Option<f64>,
-    /// Approach δ \[m\], 0 at the highest summit.
+    /// Mean penetration Δ \[m\], 0 at the highest summit.
     pub approach_m: f64,
-    /// Load \[N\].
+    /// Load F \[N\], positive in compression.
     pub load_n: f64,
-    /// Least load since the step before, events included \[N\].
+    /// Smallest load since the step before, events included \[N\].
     pub least_load_n: f64,
     /// Area Σπa² \[m²\].
     pub area_m2: f64,
     /// Area of the union of the discs \[m²\].
     pub area_union_m2: f64,
-    /// Spots in contact.
+    /// Number of contact spots.
     pub contact_count: usize,
-    /// Asperities under a greater spot.
+    /// Number of absorbed asperities.
     pub covered_count: usize,
-    /// Spots that touch another one.
+    /// Number of spots that overlap another one.
     pub touching_count: usize,
-    /// Asperities held as they are, since they flipped between states.
+    /// Number of frozen asperities, which alternated between states.
     pub held_count: usize,
-    /// Events since the step before, in the order of [`Kind::ALL`].
+    /// Numbers of events since the step before, in the order of [`Kind::ALL`].
     pub event_counts: [usize; Kind::ALL.len()],
-    /// Energy lost in them \[J\].
+    /// Energy dissipated in these events \[J\].
     pub dissipated_j: f64,
     /// `∫F dΔ` since the branch began \[J\].
     pub work_j: f64,
-    /// Worst residual \[m\].
+    /// Largest residual \[m\].
     pub residual_m: f64,
-    /// Greatest residual that the whole contact had since the step before, before it was solved \[m\].
+    /// Largest residual of the global problem before a global solve, since the step before \[m\].
     pub drift_m: f64,
-    /// Least eigenvalue of the tangent, as [`State::stability`] has it.
+    /// Smallest eigenvalue of the tangent, as in [`State::stability`].
     pub stability: f64,
     /// Computational effort since the step before.
     pub effort: Effort,
 }
 
-/// A spot at a kept step.
+/// Contact spot or absorbed asperity at a stored step.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Contact {
     /// Number of the step.
     pub step: usize,
     /// The asperity.
     pub asperity: usize,
-    /// True if it is under a greater spot.
+    /// True if it is absorbed by a larger spot.
     pub covered: bool,
-    /// Contact radius \[m\]; 0 if covered.
+    /// Contact radius \[m\]; 0 if absorbed.
     pub contact_radius_m: f64,
-    /// Load \[N\]; 0 if covered.
+    /// Load \[N\]; 0 if absorbed.
     pub load_n: f64,
-    /// Local penetration \[m\]; not known of a covered asperity.
+    /// Local penetration \[m\]; `None` if absorbed.
     pub penetration_m: Option<f64>,
-    /// Displacement by the others ŵ \[m\]; not known of a covered asperity.
+    /// Displacement ŵ by the other spots \[m\]; `None` if absorbed.
     pub interaction_m: Option<f64>,
 }
 
-/// A merged spot, its number, and the number of the step to which its merging belongs. Numbers follow those of the summits; an unloading branch goes on
-/// with those of its turning point.
+/// Merged spot, its number, and the step at which it was created.
+///
+/// Numbers follow those of the asperities of the surface. An unloading branch continues the numbers of its load reversal.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct MergedAt {
     /// Number of the step.
     pub step: usize,
-    /// Own number.
+    /// Number of the merged spot.
     pub asperity: usize,
-    /// The spot.
+    /// The merged spot.
     pub spot: Merged,
 }
 
-/// A cycle: every step, the kept spots, and the events with the step that they belong to.
+/// Results of a cycle: steps, stored spots, and events with the number of their step.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Cycle {
-    /// Steps; the number of a step is its place.
+    /// Steps; the number of a step is its index.
     pub steps: Vec<Step>,
-    /// Spots at the kept steps.
+    /// Spots at the stored steps.
     pub contacts: Vec<Contact>,
-    /// Events, and the number of their step.
+    /// Number of the step, and event.
     pub events: Vec<(usize, Event)>,
-    /// Spots that became one, by branch in the order of their numbers.
+    /// Merged spots, by branch in the order of their numbers.
     pub merged: Vec<MergedAt>,
-    /// For each turning point, its step and its state.
+    /// Step and state of each load reversal.
     pub turning: Vec<(usize, State)>,
 }
 

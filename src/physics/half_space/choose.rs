@@ -1,22 +1,29 @@
-//! Which of the sums: few spots are summed directly, many fast. Both give the same field, so that the choice may change along a path.
+//! Choice of summation method: direct for few contact spots, fast for many.
+//!
+//! Both give the same field, so the choice may change along a path.
 
 use super::{DirectSum, Effort, FastSum, Interaction, PairTable, Spots, Tangent};
 use crate::model::{Boundary, Interaction as Kind, Material, Slips};
 
-/// Spots from which the fast sum is the faster one, measured for the linearisations of one solution and the products that follow them; where there
-/// are no images, a pair costs less and the mesh more.
+/// Numbers of contact spots above which the fast sum is faster, with and without periodic images.
+///
+/// Measured for the linearisations of one solution and the products that follow them.
+/// Without images a pair costs less and the mesh more.
 const MANY: usize = 150;
 const MANY_ALONE: usize = 400;
 
-/// Asperities from which there may be so many spots.
+/// Number of asperities from which the fast sum is set up.
 const ENOUGH: usize = 300;
 
-/// Errors of the fast sum, of the largest displacement: where an equilibrium is met to 1e-10 of the rms height, and where it is met well enough to go on.
+/// Errors of the fast sum relative to the largest displacement.
+///
+/// `TOLERANCE` is for equilibria solved to 1e-10 of the rms height, `ROUGH` for intermediate solutions.
 const TOLERANCE: f64 = 1e-10;
 const ROUGH: f64 = 1e-6;
 
-/// The displacement field of asperities at `positions` \[m\] on the square of side `length_m`, summed in the way that is the faster one for
-/// the number of spots in contact.
+/// Displacement field of asperities at `positions` \[m\] on the square of side `length_m`.
+///
+/// The number of spots in contact selects the faster summation method.
 #[must_use]
 pub fn best(positions: Vec<[f64; 2]>, length_m: f64, material: &Material, kind: Kind, boundary: Boundary, slips: Slips) -> Best {
     let many = positions.len() >= ENOUGH && matches!(kind, Kind::Spots | Kind::Point);
@@ -26,17 +33,17 @@ pub fn best(positions: Vec<[f64; 2]>, length_m: f64, material: &Material, kind: 
     Best { direct: DirectSum::new(positions, length_m, material, kind, boundary, slips), fast, many }
 }
 
-/// The direct sum, and the fast one where there are asperities enough for it.
+/// The direct sum, and the fast sum if there are enough asperities.
 #[derive(Debug, Clone)]
 pub struct Best {
     direct: DirectSum,
     fast: Option<[FastSum; 2]>,
-    /// Spots from which on that one is used.
+    /// Number of contact spots from which the fast sum is used.
     many: usize,
 }
 
 impl Best {
-    /// For the spots themselves; `roughly` with an error of 1e-6 where they are many.
+    /// Sum for targets that are the spots themselves; `roughly` allows an error of 1e-6 if the fast sum is used.
     pub(crate) fn for_spots(&self, spots: &Spots, roughly: bool) -> &dyn Interaction {
         match &self.fast {
             Some(fast) if spots.columns.len() >= self.many => &fast[usize::from(roughly)],
@@ -44,28 +51,28 @@ impl Best {
         }
     }
 
-    /// For other places than the spots: a mesh is worth its while only for many of them.
+    /// Sum for other targets; with few targets the direct sum is cheaper than a mesh.
     pub(crate) fn for_targets(&self, spots: &Spots, targets: &[usize], roughly: bool) -> &dyn Interaction {
         if targets.len() < self.many / 2 { &self.direct } else { self.for_spots(spots, roughly) }
     }
 
-    /// As [`DirectSum::among`] has it.
+    /// Displacements and derivatives among the spots by direct sums, see [`DirectSum::among`].
     pub(crate) fn among(&self, spots: &Spots, table: &mut PairTable, fields: &mut Vec<f64>, slopes: &mut Vec<f64>, effort: &mut Effort) {
         self.direct.among(spots, table, fields, slopes, effort);
     }
 
-    /// The same with a table of what images do, where there are few enough asperities; it is gone where a place is added.
+    /// Tabulates the image sums of all pairs if there are few enough asperities; [`Self::add`] discards the table.
     #[must_use]
     pub fn with_table(self) -> Self {
         Self { direct: self.direct.with_table(), ..self }
     }
 
-    /// The same with the fast sum from another number of spots on.
+    /// Sets the number of spots from which the fast sum is used.
     pub(crate) fn fast_from(self, many: usize) -> Self {
         Self { many, ..self }
     }
 
-    /// Adds a place \[m\], whose number follows the last one.
+    /// Adds an asperity at `place` \[m\]; it gets the next number.
     pub(crate) fn add(&mut self, place: [f64; 2]) {
         self.direct.add(place);
         for fast in self.fast.iter_mut().flatten() {
@@ -73,7 +80,7 @@ impl Best {
         }
     }
 
-    /// As [`DirectSum::rows`] has it.
+    /// Displacements and derivatives at targets by direct sums, see [`DirectSum::rows`].
     pub(crate) fn rows(&self, spots: &Spots, targets: &[usize], rough: bool, effort: &mut Effort, visit: impl FnMut(usize, f64, &[f64])) {
         self.direct.rows(spots, targets, rough, effort, visit);
     }

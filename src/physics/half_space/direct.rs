@@ -1,4 +1,4 @@
-//! Direct sums over all pairs: exact, and the measure of every faster way.
+//! Direct sums over all pairs: exact, and the reference for the fast sum.
 
 use super::ewald::{IMAGES, ORDERS, RemainderSeries};
 use super::multipole::{Moments, product};
@@ -11,10 +11,10 @@ use crate::physics::math::vector::dot;
 use multiversion::multiversion;
 use std::sync::Arc;
 
-/// Up to this many asperities the sums over images of every pair may be kept, 32 bytes each: 32 MB.
+/// Maximum number of asperities for a table of image sums: 32 bytes per pair, 32 MB in all.
 const TABLE_LIMIT: usize = 1000;
 
-/// All pairs, one by one: the exact field of the nearest image of every spot, and of its other images what is seen from afar.
+/// Sum over all pairs: exact field of the nearest image, multipole field of the other images.
 #[derive(Debug, Clone)]
 pub struct DirectSum {
     kind: Kind,
@@ -25,12 +25,12 @@ pub struct DirectSum {
     sag: f64,
     /// `1/(πE*)` \[1/Pa\].
     compliance: f64,
-    /// The sums over images of every pair of asperities, or nothing: then each is computed when needed.
+    /// Image sums of every pair of asperities; empty if they are computed when needed.
     table: Arc<Vec<[f64; ORDERS]>>,
 }
 
 impl DirectSum {
-    /// Asperities at `positions` \[m\] on the square of side `length_m`; of the slips only that of Eq 8 is read.
+    /// Asperities at `positions` \[m\] on the square of side `length_m`; of `slips` only Eq 8 is used.
     #[must_use]
     pub fn new(positions: Vec<[f64; 2]>, length_m: f64, material: &Material, kind: Kind, boundary: Boundary, slips: Slips) -> Self {
         let periodic = boundary == Boundary::Periodic;
@@ -46,7 +46,7 @@ impl DirectSum {
         }
     }
 
-    /// The same, with the sums over images of every pair at hand where there are few enough places.
+    /// Tabulates the image sums of every pair if there are at most [`TABLE_LIMIT`] asperities.
     #[must_use]
     pub fn with_table(self) -> Self {
         let (n, positions) = (self.positions.len(), &self.positions);
@@ -68,19 +68,20 @@ impl DirectSum {
         Self { table: Arc::new(table), ..self }
     }
 
-    /// Adds a place \[m\], whose number follows the last one.
+    /// Adds an asperity at `place` \[m\] with the next number, and discards the table.
     pub(crate) fn add(&mut self, place: [f64; 2]) {
         self.table = Arc::default();
         self.positions.push(place);
     }
 
-    /// What the images of the spots need.
+    /// Multipole moments of the spots, for the fields of their images.
     fn moments(&self, spots: &Spots) -> Moments {
         Moments::of(self.kind, &spots.columns, self.pull, self.compliance, self.length)
     }
 
-    /// Displacement by all spots at each of `targets` \[m\], and its derivatives to the radii of each: `visit` is given the number of the target in the
-    /// list, the displacement and the derivatives. Where `rough`, some digits of what images do are enough.
+    /// Displacement \[m\] by all spots at each of `targets`, and its derivatives to the radii of all spots.
+    ///
+    /// `visit` receives the index in `targets`, the displacement and the derivatives. If `rough`, the image sums have six digits.
     pub(crate) fn rows(
         &self,
         spots: &Spots,
@@ -99,7 +100,7 @@ impl DirectSum {
         effort.pairs += (n * targets.len()) as u64;
     }
 
-    /// Displacements at the spots themselves, with some digits of what images do, and the derivatives to the radii of all, row by row.
+    /// Displacements at the spots themselves, with derivatives to all radii row by row; image sums with six digits.
     pub(crate) fn among(&self, spots: &Spots, table: &mut PairTable, fields: &mut Vec<f64>, slopes: &mut Vec<f64>, effort: &mut Effort) {
         table.find(&spots.index, &self.positions, self.length, self.periodic);
         let moments = self.moments(spots);
@@ -108,7 +109,7 @@ impl DirectSum {
         effort.pairs += (spots.index.len() * spots.index.len()) as u64;
     }
 
-    /// Displacement at asperity `target` by all spots, with its derivatives if they are wanted.
+    /// Displacement at asperity `target` by all spots; with `SLOPES`, also its derivatives to their radii.
     fn row<const SLOPES: bool>(&self, spots: &Spots, moments: &Moments, target: usize, rough: bool, slopes: &mut [f64]) -> f64 {
         let columns = &spots.columns;
         let [x, y] = self.positions[target];
@@ -149,7 +150,7 @@ impl DirectSum {
     }
 }
 
-/// The sum of the fields of all images but the nearest; their derivatives are added.
+/// Field of all images but the nearest; adds its derivatives to `slopes`.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
 fn image_fields<const SLOPES: bool>(place: Place, spots: &SpotColumns, moments: &Moments, slopes: &mut [f64]) -> f64 {
     let images: &RemainderSeries = &IMAGES;
@@ -169,7 +170,7 @@ fn image_fields<const SLOPES: bool>(place: Place, spots: &SpotColumns, moments: 
     all.iter().sum()
 }
 
-/// The same to some digits.
+/// Field of all images but the nearest, with image sums of six digits.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
 fn rough_image_fields<const SLOPES: bool>(place: Place, spots: &SpotColumns, moments: &Moments, slopes: &mut [f64]) -> f64 {
     let centre: &Centre = &CENTRE;
@@ -189,7 +190,7 @@ fn rough_image_fields<const SLOPES: bool>(place: Place, spots: &SpotColumns, mom
     sum
 }
 
-/// The same by the sums that are known.
+/// Field of all images but the nearest, with tabulated image sums.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
 fn known_image_fields<const SLOPES: bool>(index: &[usize], line: &[[f64; ORDERS]], moments: &Moments, slopes: &mut [f64]) -> f64 {
     let mut all = [[0.0; ORDERS]; 2];
@@ -209,7 +210,7 @@ fn gather(all: &mut [f64; ORDERS], sums: &[f64; ORDERS], moments: &[f64; ORDERS]
     }
 }
 
-/// Distances along both directions to the nearest images, in sides.
+/// Components of the distances to the nearest images, in units of the side.
 #[inline(always)]
 fn in_sides(place: Place, x: &[f64; LANES], y: &[f64; LANES]) -> ([f64; LANES], [f64; LANES]) {
     let (mut dx, mut dy) = ([0.0; LANES], [0.0; LANES]);

@@ -1,4 +1,6 @@
-//! The displacement of a periodic lattice of point loads on a half-space, without its mean: the self-balanced load.
+//! Displacement of a half-space by a periodic lattice of point loads, without its mean.
+//!
+//! The mean is removed by a uniform background, so the load is self-balanced.
 //!
 //! In units `πE* = 1`, `L = 1`:
 //! `G(r) = Σ_R erfc(α|r+R|)/|r+R| + 2π Σ_{q≠0} erfc(q/2α) cos(q·r)/q − 2√π/α`, for any `α > 0` (Ewald).
@@ -8,7 +10,7 @@ use multiversion::multiversion;
 use std::f64::consts::PI;
 use std::sync::LazyLock;
 
-/// `erfc(6.2)` is 2e-18: beyond this argument a term is no part of a double.
+/// Argument beyond which terms are below rounding: `erfc(6.2)` is 2e-18.
 const REACH: f64 = 6.2;
 
 /// `G(x, y)` for `0 < x² + y²`, `|x|, |y| ≤ ½`, by Ewald's method with splitting parameter `alpha`.
@@ -18,7 +20,7 @@ pub fn kernel(x: f64, y: f64, alpha: f64) -> f64 {
     near_images(x, y, alpha) + libm::erfc(alpha * r) / r + far_waves(x, y, alpha)
 }
 
-/// `G(x, y) − 1/r`: the displacement of the images and the background at a distance from the load, smooth at `r = 0` too.
+/// `G(x, y) − 1/r`: displacement by the images and the background, smooth at `r = 0`.
 #[must_use]
 pub fn remainder(x: f64, y: f64, alpha: f64) -> f64 {
     let r = x.hypot(y);
@@ -56,7 +58,7 @@ fn far_waves(x: f64, y: f64, alpha: f64) -> f64 {
     2.0 * PI * sum - 2.0 * PI.sqrt() / alpha
 }
 
-/// Orders of [`image_sums`].
+/// Number of orders of [`image_sums`].
 pub const ORDERS: usize = 4;
 
 /// `Γ(m + ½)` for m = 0 … 4.
@@ -65,8 +67,10 @@ const GAMMA: [f64; ORDERS + 1] = {
     [ROOT_PI, 0.5 * ROOT_PI, 0.75 * ROOT_PI, 1.875 * ROOT_PI, 6.5625 * ROOT_PI]
 };
 
-/// What the images of a source whose field is `1/r^(2m+1)` do at a distance from it: `S_m(x, y) = Σ_{R≠0} 1/|r + R|^(2m+1)`, m = 0 … 3, for
-/// `|x|, |y| ≤ ½`, in units of the side. `S_0` has no limit and is the [`remainder`], the sum without its mean.
+/// Image sums `S_m(x, y) = Σ_{R≠0} 1/|r + R|^(2m+1)`, m = 0 … 3, for `|x|, |y| ≤ ½`.
+///
+/// They are the field of the images of a source with the field `1/r^(2m+1)`, in units of the side.
+/// The sum for `S_0` diverges; it is replaced by the [`remainder`], the sum without its mean.
 ///
 /// Ewald's method for powers, with `s = m + ½` and the incomplete gamma functions `Γ(s, v) + γ(s, v) = Γ(s)`:
 /// `S_m = Σ_{R≠0} Γ(s, α²|r+R|²)/(Γ(s)|r+R|^2s) − γ(s, α²r²)/(Γ(s) r^2s) + π/Γ(s)·[Σ_{q≠0} (q/2)^(2s−2) Γ(1−s, q²/4α²) cos(q·r) + α^(2s−2)/(s−1)]`
@@ -128,47 +132,52 @@ pub fn image_sums(x: f64, y: f64, alpha: f64) -> [f64; ORDERS] {
     sums
 }
 
-/// Degree in `(2x)²` and `(2y)²` at which the series has fallen below rounding: the nearest image is a whole side away.
+/// Degree in `(2x)²` and `(2y)²` at which the series is below rounding: the nearest image is a whole side away.
 const DEGREE: usize = 24;
 
-/// Cells on half a side for `S_0`, and terms along each direction: half a cell is 1/80, the nearest image at least ½ away, `80⁻⁸` is 6e-16.
+/// Cells on half a side for `S_0`, and terms along each direction.
+///
+/// Half a cell is 1/80 and the nearest image at least ½ away: `80⁻⁸` is 6e-16.
 const CELLS: usize = 20;
 const TERMS: usize = 8;
 
-/// The same for the higher orders, of which seven digits are enough: they are worth 1e-4 of a displacement and less. Small, since what a loop
-/// over pairs spends is the way of the coefficients from memory.
+/// Cells and terms for the higher orders, of which seven digits are enough.
+///
+/// These contribute 1e-4 of a displacement or less.
+/// The table is small because loading the coefficients from memory dominates the cost of a pair.
 const COARSE_CELLS: usize = 14;
 const COARSE_TERMS: usize = 6;
 const COARSE_ALL: usize = COARSE_TERMS * (COARSE_TERMS + 1) / 2;
 
-/// [`image_sums`] as polynomials on small cells, fast enough to be taken for every pair.
+/// [`image_sums`] as polynomials on small cells, fast enough for every pair.
 #[derive(Debug, Clone)]
 pub struct RemainderSeries {
-    /// Coefficients of `S_0`, of `t^q s^p` by falling q, then falling p, by cells of `0 ≤ y ≤ x ≤ ½`; s and t run from −1 to 1 through a cell.
+    /// Coefficients of `S_0`, of `t^q s^p` by falling q, then falling p, by cells of `0 ≤ y ≤ x ≤ ½`.
+    /// s and t run from −1 to 1 through a cell.
     fine: Vec<[[f64; TERMS]; TERMS]>,
     /// Coefficients of all orders, of `s^p t^q`, `p + q ≤ 5`, by falling p, then falling q.
     coarse: Vec<[[f32; ORDERS]; COARSE_ALL]>,
 }
 
-/// The series of the whole square, from which all polynomials of the sums are made.
+/// Chebyshev series on the whole square, from which all polynomials are derived.
 pub(super) static SERIES: LazyLock<Vec<Vec<[f64; ORDERS]>>> = LazyLock::new(global_series);
 
-/// Points of [`RoughRemainder`] along half a side.
+/// Grid points of [`RoughRemainder`] along half a side.
 const POINTS: usize = 64;
 
-/// `G(x, y) − 1/r` with some digits, where only their order matters: linear between points of a grid.
+/// `G(x, y) − 1/r` by linear interpolation on a grid, for uses where three digits are enough.
 #[derive(Debug, Clone)]
 pub struct RoughRemainder(Vec<f64>);
 
 impl RoughRemainder {
-    /// From the polynomials, over a quarter of the square: the rest follows by symmetry.
+    /// Tabulates a quarter of the square; the rest follows by symmetry.
     #[must_use]
     pub fn new(of: &RemainderSeries) -> Self {
         let at = |k: usize| 0.5 * k as f64 / POINTS as f64;
         Self((0..=POINTS).flat_map(|i| (0..=POINTS).map(move |j| (i, j))).map(|(i, j)| of.at(at(i), at(j))).collect())
     }
 
-    /// For `|x|, |y| ≤ ½`, right to 2e-4; it is between 0.8 and 3.9 in magnitude everywhere.
+    /// Value for `|x|, |y| ≤ ½`, with error 2e-4; its magnitude is between 0.8 and 3.9 everywhere.
     #[must_use]
     pub fn at(&self, x: f64, y: f64) -> f64 {
         let [(i, p), (j, q)] = [x, y].map(|along| {
@@ -182,14 +191,14 @@ impl RoughRemainder {
     }
 }
 
-/// The one table of a process: it depends on nothing.
+/// Table shared by the process; it has no parameters.
 pub(crate) static ROUGH_IMAGES: LazyLock<RoughRemainder> = LazyLock::new(|| RoughRemainder::new(&IMAGES));
 
-/// The one table of a process: it depends on nothing.
+/// Table shared by the process; it has no parameters.
 pub(crate) static IMAGES: LazyLock<RemainderSeries> = LazyLock::new(RemainderSeries::new);
 
 impl RemainderSeries {
-    /// Polynomials through [`image_sums`], by way of one Chebyshev series for the whole square.
+    /// Polynomials through [`image_sums`], derived from one Chebyshev series for the whole square.
     #[must_use]
     pub fn new() -> Self {
         let rows = &SERIES;
@@ -205,14 +214,15 @@ impl RemainderSeries {
         remainder_at(self, x, y)
     }
 
-    /// [`image_sums`] for `|x|, |y| ≤ ½`; the orders above the first to 1e-6.
+    /// [`image_sums`] for `|x|, |y| ≤ ½`; relative error 1e-6 for the orders above the first.
     #[must_use]
     pub fn sums(&self, x: f64, y: f64) -> [f64; ORDERS] {
         sums_at(self, x, y)
     }
 
-    /// All orders at several places, to be built into a loop that is compiled for the machine's vectors. What is stored for every place in
-    /// turn is worked out in vectors; the rest of all places follows.
+    /// All orders at several points, for inlining into a loop compiled for the machine's vectors.
+    ///
+    /// The tabulated coefficients of each point are evaluated in vectors across orders, the remaining steps across points.
     #[inline(always)]
     pub(crate) fn local<const L: usize>(&self, x: &[f64; L], y: &[f64; L]) -> [[f64; ORDERS]; L] {
         let mut sums = [[0.0; ORDERS]; L];
@@ -231,7 +241,7 @@ impl RemainderSeries {
         sums
     }
 
-    /// `S_0`, the same way.
+    /// `S_0` at several points, for inlining into a vectorised loop.
     #[inline(always)]
     fn first<const L: usize>(&self, x: &[f64; L], y: &[f64; L]) -> [f64; L] {
         let mut lanes = [[0.0; TERMS]; L];
@@ -263,7 +273,7 @@ impl Default for RemainderSeries {
     }
 }
 
-/// The cell of a place, and the place in it.
+/// Cell of a point, and the point's coordinates in it.
 #[inline(always)]
 fn cell_of<const N: usize>(x: f64, y: f64) -> (usize, f64, f64) {
     let (x, y) = (x.abs(), y.abs());
@@ -273,13 +283,13 @@ fn cell_of<const N: usize>(x: f64, y: f64) -> (usize, f64, f64) {
     (i * (i + 1) / 2 + j, 2.0 * (u - i as f64) - 1.0, 2.0 * (v - j as f64) - 1.0)
 }
 
-/// `high·t + low`, of all orders.
+/// `high·t + low`, for all orders.
 #[inline(always)]
 fn step(high: [f64; ORDERS], t: f64, low: [f64; ORDERS]) -> [f64; ORDERS] {
     [high[0].mul_add(t, low[0]), high[1].mul_add(t, low[1]), high[2].mul_add(t, low[2]), high[3].mul_add(t, low[3])]
 }
 
-/// The polynomial in t that belongs to `s^(5−R)`: the rows do not wait for one another.
+/// Polynomial in t that multiplies `s^(5−R)`; the rows are independent of one another.
 #[inline(always)]
 fn row<const R: usize>(cell: &[[f32; ORDERS]; COARSE_ALL], t: f64) -> [f64; ORDERS] {
     let from = R * (R + 1) / 2;
@@ -295,7 +305,7 @@ fn long(short: &[f32; ORDERS]) -> [f64; ORDERS] {
     [f64::from(short[0]), f64::from(short[1]), f64::from(short[2]), f64::from(short[3])]
 }
 
-/// The terms of the lowest degrees, in the digits that are kept.
+/// Terms of the lowest degrees, in single precision.
 fn shorten(cell: &[[[f64; ORDERS]; COARSE_TERMS]; COARSE_TERMS]) -> [[f32; ORDERS]; COARSE_ALL] {
     let mut short = [[0.0; ORDERS]; COARSE_ALL];
     for row in 0..COARSE_TERMS {
@@ -317,7 +327,7 @@ fn sums_at(series: &RemainderSeries, x: f64, y: f64) -> [f64; ORDERS] {
     series.local(&[x], &[y])[0]
 }
 
-/// Coefficients of `t^q s^p`, by falling q, then falling p, of the polynomials of `N` terms along each direction on every cell.
+/// Coefficients of `t^q s^p`, by falling q, then falling p, of polynomials with `N` terms per direction on every cell.
 fn fit<const N: usize>(rows: &[Vec<[f64; ORDERS]>], cells: usize) -> Vec<[[[f64; ORDERS]; N]; N]> {
     let angle = |k: usize| PI * (k as f64 + 0.5) / N as f64;
     let monomials = chebyshev_monomials(N);
@@ -362,7 +372,7 @@ pub(super) fn chebyshev_monomials(n: usize) -> Vec<Vec<f64>> {
     all
 }
 
-/// Coefficient of `T_m T_n` of what was sampled at the Chebyshev nodes.
+/// Coefficient of `T_m T_n` of a function sampled at the Chebyshev nodes.
 pub(super) fn chebyshev_coefficient(samples: &[Vec<[f64; ORDERS]>], m: usize, n: usize) -> [f64; ORDERS] {
     let nodes = samples.len();
     let angle = |k: usize| PI * (k as f64 + 0.5) / nodes as f64;
@@ -400,7 +410,7 @@ pub(super) fn global(rows: &[Vec<[f64; ORDERS]>], x: f64, y: f64) -> [f64; ORDER
         let value = [0, 1, 2, 3].map(|k| line[k] + 2.0 * xi * next[k] - after[k]);
         (after, next) = (next, value);
     }
-    // The last step of a Chebyshev sum takes the argument once, not twice.
+    // The last step of the Clenshaw recurrence uses the argument once, not twice.
     [0, 1, 2, 3].map(|k| next[k] - xi * after[k])
 }
 

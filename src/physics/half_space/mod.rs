@@ -1,4 +1,4 @@
-//! The displacement field of contact spots, behind one small trait.
+//! Displacement field of contact spots: direct and fast sums behind one trait.
 
 mod choose;
 mod direct;
@@ -19,22 +19,22 @@ use serde::{Deserialize, Serialize};
 use spot_field::SpotColumns;
 use std::ops::{AddAssign, Sub};
 
-/// The spots in contact: which asperities they are, ascending, and their columns.
+/// Spots in contact: their asperity numbers and their columns.
 #[derive(Debug, Clone, Default)]
 pub struct Spots {
     /// Asperity numbers, ascending.
     pub index: Vec<usize>,
-    /// Their columns, in the same order.
+    /// Columns in the order of `index`.
     pub columns: SpotColumns,
 }
 
-/// `∂ŵ_i/∂a_j` over the spots in contact: what is asked of it is its product with a vector.
+/// Tangent `∂ŵ_i/∂a_j` over the spots in contact, used through products with a vector.
 #[derive(Debug, Clone)]
 pub struct Tangent(Form);
 
 #[derive(Debug, Clone)]
 enum Form {
-    /// Rows of i, so many of each.
+    /// Number of columns, and the rows of i one after another.
     Dense(usize, Vec<f64>),
     /// Near pairs and a mesh.
     Sparse(Box<Sparse>),
@@ -59,7 +59,7 @@ impl Tangent {
         }
     }
 
-    /// Product with full precision: seven digits, against five of the fast product.
+    /// Product with seven digits, against five of [`Self::product`] in the sparse form.
     pub fn fine_product(&mut self, x: &[f64], y: &mut [f64]) {
         match &mut self.0 {
             Form::Sparse(sparse) => sparse.fine_product(x, y),
@@ -67,7 +67,7 @@ impl Tangent {
         }
     }
 
-    /// Transforms of a mesh in one product.
+    /// Number of mesh transforms in one product.
     #[must_use]
     pub fn transforms(&self) -> u64 {
         match &self.0 {
@@ -76,13 +76,13 @@ impl Tangent {
         }
     }
 
-    /// True if it has all digits; made fast, it has some.
+    /// True if the tangent has full precision; the sparse form is approximate.
     #[must_use]
     pub fn is_exact(&self) -> bool {
         matches!(self.0, Form::Dense(..))
     }
 
-    /// `∂ŵ_i/∂a_i`: what a spot's own images and the background do to it.
+    /// `∂ŵ_i/∂a_i`: effect of a spot's own images and of the background on the spot.
     #[must_use]
     pub fn own(&self, i: usize) -> f64 {
         match &self.0 {
@@ -91,7 +91,7 @@ impl Tangent {
         }
     }
 
-    /// Takes the matrix out, as `size` rows of zeros, to be filled and given back by [`Self::set_dense`].
+    /// Moves the matrix out, as `size` rows of zeros; [`Self::set_dense`] puts it back.
     fn take_dense(&mut self, size: usize) -> Vec<f64> {
         let mut matrix = match std::mem::take(self).0 {
             Form::Dense(_, matrix) => matrix,
@@ -106,7 +106,7 @@ impl Tangent {
         self.0 = Form::Dense(size, matrix);
     }
 
-    /// Takes the sparse form out, for its memory; to be filled anew and given back by [`Self::set_sparse`].
+    /// Moves the sparse form out to reuse its memory; [`Self::set_sparse`] puts it back.
     fn take_sparse(&mut self) -> Box<Sparse> {
         match std::mem::take(self).0 {
             Form::Sparse(sparse) => sparse,
@@ -126,7 +126,7 @@ impl Tangent {
     }
 }
 
-/// The places of ascending numbers in another such list.
+/// Position in `others` of each of `numbers`, if present; both lists are ascending.
 pub(crate) fn places_in<'a>(numbers: &'a [usize], others: &'a [usize]) -> impl Iterator<Item = Option<usize>> + 'a {
     let mut at = 0;
     numbers.iter().map(move |number| {
@@ -137,7 +137,7 @@ pub(crate) fn places_in<'a>(numbers: &'a [usize], others: &'a [usize]) -> impl I
     })
 }
 
-/// Computational effort: counted, never timed.
+/// Computational effort in counts of operations, independent of the machine.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Effort {
     /// Pair fields evaluated.
@@ -146,7 +146,7 @@ pub struct Effort {
     pub iterations: u64,
     /// Products of the tangent with a vector, one for each iteration of GMRES.
     pub products: u64,
-    /// Transforms of a mesh, there or back.
+    /// Mesh transforms, forward or inverse.
     pub transforms: u64,
 }
 
@@ -174,19 +174,22 @@ impl Sub for Effort {
 
 /// Displacement of the half-space at contacts and free asperities by other contacts.
 pub trait Interaction: Sync {
-    /// Displacement ŵ \[m\] at each of `targets` (asperity numbers), and in `displacements` in their order. A spot does not act on its own
-    /// centre, but its periodic images and the background do.
+    /// Writes the displacement ŵ \[m\] at each of `targets` (asperity numbers) to `displacements`, in their order.
+    ///
+    /// A spot does not act on its own centre, but its periodic images and the background do.
     fn displacements(&self, spots: &Spots, targets: &[usize], displacements: &mut Vec<f64>, effort: &mut Effort);
 
-    /// Displacements at the spots themselves, with the tangent. What this has kept of places is taken over.
+    /// Displacements at the spots themselves, and the tangent; reuses the geometry cached in `tangent`.
     fn linearise(&self, spots: &Spots, displacements: &mut Vec<f64>, tangent: &mut Tangent, effort: &mut Effort);
 
-    /// Displacements at the spots themselves, by what the tangent, which stays as it is, has kept of their places.
+    /// Displacements at the spots themselves, using the geometry cached in `_tangent`, which is not changed.
     fn again(&self, spots: &Spots, displacements: &mut Vec<f64>, _tangent: &mut Tangent, effort: &mut Effort) {
         self.displacements(spots, &spots.index, displacements, effort);
     }
 
-    /// Displacement at each of `targets` and its derivative along a path on which the radii of the spots change by `rates`:
-    /// `dŵ_i = Σ_j (∂ŵ_i/∂a_j) rates_j`; both into `found`. With `rates` = da_j/dδ it is dŵ_i/dδ. What it finds of places is `kept` for the next time.
+    /// Displacement at each of `targets`, and its derivative along a path with the rates `rates` of the spots' radii.
+    ///
+    /// Writes the displacement and `dŵ_i = Σ_j (∂ŵ_i/∂a_j) rates_j` to `found`. With `rates` = da_j/dδ the latter is dŵ_i/dδ.
+    /// The geometry is cached in `kept` for the next call.
     fn approach(&self, spots: &Spots, rates: &[f64], targets: &[usize], found: [&mut Vec<f64>; 2], kept: &mut Tangent, effort: &mut Effort);
 }

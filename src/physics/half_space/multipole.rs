@@ -1,7 +1,8 @@
-//! A spot seen from afar: `ŵ = Σ_m c_m / r^(2m+1)`, m = 0 … 3.
+//! Far-field multipole expansion of a spot: `ŵ = Σ_m c_m / r^(2m+1)`, m = 0 … 3.
 //!
-//! From the series of Eqs 6 and 7 in `x = a/r`: `[…] = (4/3) x (1 + x²/10 + 9x⁴/280 + 5x⁶/336 + …)` and `asin x = x + x³/6 + 3x⁵/40 + 5x⁷/112 + …`.
-//! `c_0 = F/(πE*)`. What is left out at the distance r is `(a/r)⁸/100` of the whole and less.
+//! The coefficients follow from the series of Eqs 6 and 7 in `x = a/r`:
+//! `[…] = (4/3) x (1 + x²/10 + 9x⁴/280 + 5x⁶/336 + …)` and `asin x = x + x³/6 + 3x⁵/40 + 5x⁷/112 + …`.
+//! `c_0 = F/(πE*)`. The relative truncation error at the distance r is at most `(a/r)⁸/100`.
 
 use super::ewald::ORDERS;
 use super::spot_field::SpotColumns;
@@ -12,7 +13,7 @@ use std::f64::consts::FRAC_1_PI;
 pub(super) const HERTZ: [f64; ORDERS] = [4.0 / 3.0, 4.0 / 30.0, 12.0 / 280.0, 20.0 / 1008.0];
 pub(super) const PUNCH: [f64; ORDERS] = [1.0, 1.0 / 6.0, 3.0 / 40.0, 5.0 / 112.0];
 
-/// `c_m` of every spot over powers of a length `L`, `c_m/L^(2m+1)` \[m\], and their derivatives to the radius of the spot.
+/// Multipole moments of every spot, `c_m/L^(2m+1)` \[m\], and their derivatives to its radius.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Moments {
     pub(crate) value: Vec<[f64; ORDERS]>,
@@ -20,7 +21,9 @@ pub(crate) struct Moments {
 }
 
 impl Moments {
-    /// Of the spots of the columns. `pull` is `sqrt(2πΔγ/E*)` \[m^½\], `compliance` is `1/(πE*)` \[1/Pa\], `length` is L \[m\].
+    /// Moments of the spots in the columns.
+    ///
+    /// `pull` is `sqrt(2πΔγ/E*)` \[m^½\], `compliance` is `1/(πE*)` \[1/Pa\], `length` is L \[m\].
     pub(crate) fn of(kind: Kind, spots: &SpotColumns, pull: f64, compliance: f64, length: f64) -> Self {
         let n = spots.len();
         let mut all = Self { value: Vec::with_capacity(n), slope: Vec::with_capacity(n) };
@@ -40,7 +43,7 @@ impl Moments {
                     for m in 0..ORDERS {
                         let (hertz, punch) = (HERTZ[m] * flat * power, PUNCH[m] * stick * power);
                         value[m] = hertz - punch;
-                        // a³, a^(3/2), and two powers more with every order.
+                        // The terms scale as a³ and a^(3/2), and gain a factor a² with every order.
                         slope[m] = ((2 * m + 3) as f64 * hertz - (2.0 * m as f64 + 1.5) * punch) / a;
                         power *= (a / length) * (a / length);
                     }
@@ -53,7 +56,7 @@ impl Moments {
     }
 }
 
-/// `Σ_m S_m c_m`: what sums of the powers of distance make of the moments of a spot.
+/// `Σ_m S_m c_m`: displacement from sums of powers of distance and the moments of a spot.
 #[inline(always)]
 pub(crate) fn product(sums: &[f64; ORDERS], moments: &[f64; ORDERS]) -> f64 {
     sums[0].mul_add(moments[0], sums[1] * moments[1]) + sums[2].mul_add(moments[2], sums[3] * moments[3])

@@ -1,4 +1,4 @@
-//! The pairs of a neighbourhood: how its spots lie to one another is found once, and serves for all evaluations of it.
+//! Pair distances of a local problem: computed once, reused for all its evaluations.
 
 use super::multipole::Moments;
 use super::rough_images::{CENTRE, Centre};
@@ -6,8 +6,9 @@ use super::spot_field::{AWAY, LANES, SpotColumns, field_at};
 use crate::model::Interaction as Kind;
 use multiversion::multiversion;
 
-/// All pairs of some asperities; of each its distance \[m\], the inverse, and the sums over images of the first two powers, in sides. Rows are filled up to
-/// whole passes.
+/// All pairs of a set of asperities: distance \[m\], its inverse, and the image sums of the first two orders.
+///
+/// The image sums are in units of the side. Rows are padded to whole passes.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct PairTable {
     index: Vec<usize>,
@@ -22,7 +23,7 @@ struct Pass {
 }
 
 impl PairTable {
-    /// Finds the pairs of the asperities `index` at `positions` \[m\], if they are others than before. Six digits of what images do are enough.
+    /// Computes the pairs of the asperities `index` at `positions` \[m\] if the set has changed; image sums have six digits.
     pub(crate) fn find(&mut self, index: &[usize], positions: &[[f64; 2]], length: f64, periodic: bool) {
         if self.index != index {
             self.index.clear();
@@ -32,13 +33,13 @@ impl PairTable {
         }
     }
 
-    /// Displacements at all, and their derivatives to the radii of all, row by row.
+    /// Displacements at all asperities, and their derivatives to all radii row by row.
     pub(crate) fn fields(&self, by: Sources<'_>, fields: &mut Vec<f64>, slopes: &mut Vec<f64>) {
         evaluate(self, by, fields, slopes);
     }
 }
 
-/// What acts.
+/// Sources of the displacement field.
 #[derive(Clone, Copy)]
 pub(crate) struct Sources<'a> {
     pub(crate) kind: Kind,
@@ -67,7 +68,7 @@ fn find(table: &mut PairTable, positions: &[[f64; 2]], length: f64, periodic: bo
                 }
             }
             for (k, source) in sources.iter().enumerate() {
-                // A spot does not act on its own centre, as if that were far away.
+                // A spot does not act on its own centre: its distance there stays at `AWAY`.
                 if *source != target {
                     r[k] = dx[k].mul_add(dx[k], dy[k] * dy[k]).sqrt();
                 }

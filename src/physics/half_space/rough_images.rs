@@ -1,26 +1,31 @@
-//! Image sums to some digits: one polynomial for all pairs, taken for several at once.
+//! Image sums with six digits: one polynomial for all pairs, vectorised.
 //!
-//! What stands around a neighbourhood is held while it is solved, so that six digits of what images do are enough there. The exact sums, cell by
-//! cell or from a table, would be read from slow memory for each pair.
+//! Spots outside a local problem are fixed while it is solved, so six digits of the image sums are enough there.
+//! The exact sums, by cells or from a table, would need a slow memory access for each pair.
 
 use super::ewald::{SERIES, chebyshev_coefficient, chebyshev_monomials, global};
 use super::spot_field::LANES;
 use std::f64::consts::PI;
 use std::sync::LazyLock;
 
-/// Degree in `x²` and `y²` together, of `S_0` and of `S_1`: with `ξ = 8x² − 1` on the square, the nearest image is at an ellipse of 5.8, and `5.8^−8` is
-/// 8e-7 (measured: 1.3e-6 of `S_0`, 2e-3 of `S_1`). `S_1` is worth 1e-4 of that, and the higher orders nothing.
+/// Degree in `x²` and `y²` together, of `S_0` and of `S_1`.
+///
+/// With `ξ = 8x² − 1` on the square, the nearest image is at an ellipse of 5.8, and `5.8^−8` is 8e-7.
+/// The measured errors are 1.3e-6 of `S_0` and 2e-3 of `S_1`.
+/// `S_1` contributes 1e-4 of `S_0`, and the higher orders are neglected.
 const DEGREE: usize = 8;
 const LOW_DEGREE: usize = 4;
 
-/// `Σ c_mn s^m t^n` over `m + n ≤ DEGREE`, rows of m by falling m and falling n; `s = 8x² − 1`, and t of y.
+/// Coefficients of `Σ c_mn s^m t^n` over `m + n ≤ DEGREE`, rows of m by falling m and falling n.
+///
+/// `s = 8x² − 1` and `t = 8y² − 1`.
 #[derive(Debug)]
 pub(super) struct Centre {
     first: [[f64; DEGREE + 1]; DEGREE + 1],
     second: [[f64; LOW_DEGREE + 1]; LOW_DEGREE + 1],
 }
 
-/// The one of a process: it depends on nothing.
+/// Polynomials shared by the process; they have no parameters.
 pub(super) static CENTRE: LazyLock<Centre> = LazyLock::new(Centre::new);
 
 impl Centre {
@@ -46,7 +51,7 @@ impl Centre {
         Self { first, second }
     }
 
-    /// `S_0` and `S_1` for pairs at such distances, in sides; to be built into a loop that is compiled for the machine's vectors.
+    /// `S_0` and `S_1` for pairs at these distances, in units of the side; for inlining into a vectorised loop.
     #[inline(always)]
     pub(super) fn sums(&self, x: &[f64; LANES], y: &[f64; LANES]) -> [[f64; LANES]; 2] {
         let square = |d: &[f64; LANES]| d.map(|d| (d * d).mul_add(8.0, -1.0));
@@ -59,7 +64,7 @@ impl Centre {
 fn polynomial<const N: usize>(rows: &[[f64; N]; N], s: &[f64; LANES], t: &[f64; LANES]) -> [f64; LANES] {
     let mut sum = [0.0_f64; LANES];
     for (m, row) in rows.iter().enumerate() {
-        // Of row m, which belongs to s^(N−1−m), the terms above the degree are nothing.
+        // In row m, which multiplies s^(N−1−m), terms above the degree are zero.
         let mut line = [0.0_f64; LANES];
         for term in &row[N - 1 - m..] {
             for k in 0..LANES {

@@ -1,15 +1,18 @@
-//! The displacement field of one JKR spot (Eqs 6–8), without cancellation.
+//! Displacement field of one JKR contact spot (Eqs 6–8), without cancellation.
 //!
 //! Outside the spot (`r > a`), with `x = a/r` and `w = sqrt(1 − x²)`,
 //! `ŵ = a²/(πR)·[sqrt(r²/a² − 1) + (2 − r²/a²) asin x] − (2/π) sqrt(2πaΔγ/E*) asin x`.
-//! As printed the bracket cancels: its relative error grows as `(r/a)²` and is 1e-4 at `r/a` = 1e6. But `[…]/x` and `asin(x)/x` are
-//! analytic in `w` on `[0, 1]` (the nearest singularity is `w = −1`), so one polynomial in `w` each is right for every `r ≥ a`.
+//! The bracket as printed suffers from cancellation: its relative error grows as `(r/a)²` and is 1e-4 at `r/a` = 1e6.
+//! But `[…]/x` and `asin(x)/x` are analytic in `w` on `[0, 1]` (the nearest singularity is `w = −1`).
+//! One polynomial in `w` for each is therefore accurate for every `r ≥ a`.
 
 use crate::model::Slips;
 use multiversion::multiversion;
 use std::f64::consts::FRAC_1_PI;
 
-/// `[sqrt(1/x² − 1) + (2 − 1/x²) asin x]/x` in powers of `s = w − ½`, highest first: minimax, relative error 9e-17.
+/// `[sqrt(1/x² − 1) + (2 − 1/x²) asin x]/x` in powers of `s = w − ½`, highest first.
+///
+/// Minimax approximation, relative error 9e-17.
 const INDENTATION: [f64; 22] = [
     0.001166020232859638,
     -0.0016236722568745462,
@@ -35,7 +38,9 @@ const INDENTATION: [f64; 22] = [
     1.47279971743743,
 ];
 
-/// `asin(x)/x` in powers of `s = w − ½`, highest first: minimax; 2.4e-15 in all in double precision.
+/// `asin(x)/x` in powers of `s = w − ½`, highest first.
+///
+/// Minimax approximation; total relative error 2.4e-15 in double precision.
 const ADHESION: [f64; 20] = [
     -0.00018447374107194618,
     0.000278513789393206,
@@ -59,8 +64,9 @@ const ADHESION: [f64; 20] = [
     1.209199576156145,
 ];
 
-/// `[…]/x` and `asin(x)/x` at several places at once. Each step takes all lanes and both polynomials: the chains of one lane wait for
-/// themselves, those of many lanes fill the time.
+/// `[…]/x` and `asin(x)/x` at several points at once.
+///
+/// Each step advances all lanes and both polynomials: one Horner chain alone is limited by latency.
 #[inline(always)]
 fn polynomials<const L: usize>(s: &[f64; L]) -> ([f64; L], [f64; L]) {
     let mut indentation = [INDENTATION[0]; L];
@@ -79,7 +85,7 @@ fn polynomials<const L: usize>(s: &[f64; L]) -> ([f64; L], [f64; L]) {
     (indentation, arc)
 }
 
-/// One spot as a source: its radius, its sphere, its load and how that changes with the radius.
+/// One contact spot as a source of displacement.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Spot {
     /// Position x \[m\].
@@ -96,37 +102,40 @@ pub struct Spot {
     pub load_slope: f64,
 }
 
-/// Displacement ŵ \[m\] of the half-space at distance `r > 0` \[m\] from the centre of a spot, and its derivative to the spot's radius.
+/// Displacement ŵ \[m\] at distance `r > 0` \[m\] from the centre of a spot, and its derivative to the spot's radius.
+///
 /// `pull` is `sqrt(2πΔγ/E*)` \[m^½\]. Eqs 6 and 7 outside; inside, `ŵ = a²/R − r²/(2R) − sqrt(2πaΔγ/E*)`.
 ///
 /// # Deviations
-/// The paper's Eq 8 lacks `r²/(2R)` inside, without which the field jumps by `a²/(2R)` at the edge; [`spot_field_as_printed`] can put that back.
+/// The paper's Eq 8 lacks `r²/(2R)` inside, without which the field jumps by `a²/(2R)` at the edge.
+/// [`spot_field_as_printed`] can restore the printed equation.
 #[must_use]
 pub fn spot_field(r: f64, a: f64, radius: f64, pull: f64) -> (f64, f64) {
     spot_field_as_printed(r, a, radius, pull, Slips::NONE)
 }
 
-/// The same, with the printed Eq 8 if that is among `slips`: inside `ŵ = a²/R − sqrt(2πaΔγ/E*)`, wherever in the spot. The derivative to the
-/// spot's radius is the same, but for the jump at the edge, which it does not tell.
+/// [`spot_field`], with Eq 8 as printed if `slips` contains it: inside, `ŵ = a²/R − sqrt(2πaΔγ/E*)` at every r.
+///
+/// The derivative to the spot's radius is unchanged; it does not include the jump at the edge.
 #[must_use]
 pub fn spot_field_as_printed(r: f64, a: f64, radius: f64, pull: f64, slips: Slips) -> (f64, f64) {
     let ([value], [slope]) = field(&[r * r], &[a], &[a.sqrt()], &[1.0 / a.sqrt()], &[1.0 / radius], pull, sag(slips));
     (value, slope)
 }
 
-/// The coefficient of `r²/R` inside a spot: ½, or nothing as printed.
+/// Coefficient of `r²/R` inside a spot: ½, or 0 with Eq 8 as printed.
 pub(crate) fn sag(slips: Slips) -> f64 {
     if slips.eq8 { 0.0 } else { 0.5 }
 }
 
-/// One of two values, both of them known: with a branch, spots would go through one by one.
+/// Selects one of two computed values without a branch, so that the loop vectorises.
 #[inline(always)]
 fn either(first: bool, one: f64, other: f64) -> f64 {
     let mask = u64::from(first).wrapping_neg();
     f64::from_bits((one.to_bits() & mask) | (other.to_bits() & !mask))
 }
 
-/// The fields of several spots by the squares of their distances.
+/// Fields of several spots, from squared distances.
 #[inline(always)]
 pub(crate) fn field<const L: usize>(
     r2: &[f64; L],
@@ -145,7 +154,9 @@ pub(crate) fn field<const L: usize>(
     field_at(&r, &inverse_r, a, root_a, inverse_root_a, curvature, pull, sag)
 }
 
-/// The same by distances and their inverses. Both formulae are taken and one is chosen, so that several spots go through at once.
+/// Fields of several spots, from distances and their inverses.
+///
+/// Both formulae are evaluated and one is selected, so that the loop vectorises.
 #[allow(clippy::too_many_arguments)]
 #[inline(always)]
 pub(crate) fn field_at<const L: usize>(
@@ -160,7 +171,7 @@ pub(crate) fn field_at<const L: usize>(
 ) -> ([f64; L], [f64; L]) {
     let (mut half_chord, mut s) = ([0.0; L], [0.0; L]);
     for k in 0..L {
-        // sqrt(r² − a²): (r − a)(r + a) keeps the digits that 1 − x² would lose near the edge.
+        // `sqrt(r² − a²)` as `(r − a)(r + a)` keeps the digits that `1 − x²` would lose near the edge.
         half_chord[k] = ((r[k] - a[k]) * (r[k] + a[k])).max(0.0).sqrt();
         s[k] = half_chord[k].mul_add(inverse_r[k], -0.5);
     }
@@ -174,7 +185,7 @@ pub(crate) fn field_at<const L: usize>(
         let outer = FRAC_1_PI * (a[k] * flat).mul_add(indentation, -2.0 * pull * root_a[k] * arc);
         let inner = a[k].mul_add(flat, -sag * r[k] * r[k] * curvature[k]) - pull * root_a[k];
         value[k] = either(inside, inner, outer);
-        // At the very edge the slope is infinite; a finite one, as great as rounding tells apart, keeps linear systems of it solvable.
+        // The slope is infinite at the edge; a large finite value keeps linear systems solvable.
         let crack = 0.5 * arc * inverse_root_a[k] + root_a[k] / half_chord[k].max(1e-7 * a[k]);
         let outer_slope = FRAC_1_PI * (4.0 * flat).mul_add(arc, -2.0 * pull * crack);
         let inner_slope = 2.0f64.mul_add(flat, -0.5 * pull * inverse_root_a[k]);
@@ -183,7 +194,7 @@ pub(crate) fn field_at<const L: usize>(
     (value, slope)
 }
 
-/// The `[…]` of Eq 6 and `asin(a/r)`, both functions of `u = r/a ≥ 1` alone: what the tests compare with many digits.
+/// The `[…]` of Eq 6 and `asin(a/r)` as functions of `u = r/a ≥ 1`, for tests in higher precision.
 #[must_use]
 pub fn dimensionless_field(u: f64) -> (f64, f64) {
     let x = 1.0 / u;
@@ -192,14 +203,15 @@ pub fn dimensionless_field(u: f64) -> (f64, f64) {
     (x * indentation, x * arc)
 }
 
-/// So far away no spot has a field \[m\].
+/// Distance \[m\] at which the field of any spot is negligible.
 pub(crate) const AWAY: f64 = 1e30;
 
-/// Sources that one pass takes together; the order of a sum depends on it, and on nothing of the machine.
+/// Number of sources per pass; it fixes the order of summation, independently of the machine.
 pub(crate) const LANES: usize = 8;
 
-/// Sources of a displacement field as columns, so that one instruction takes several. The columns are filled up to whole passes with spots
-/// that have no field; [`Self::len`] counts the true ones.
+/// Sources of a displacement field as columns, for vectorised evaluation.
+///
+/// The columns are padded to whole passes with spots that have no field; [`Self::len`] counts the real ones.
 #[derive(Debug, Clone, Default)]
 pub struct SpotColumns {
     count: usize,
@@ -214,7 +226,7 @@ pub struct SpotColumns {
 }
 
 impl SpotColumns {
-    /// Columns of the given spots.
+    /// Replaces the columns by those of the given spots.
     pub fn set(&mut self, spots: impl Iterator<Item = Spot>) {
         for column in [
             &mut self.x,
@@ -237,7 +249,7 @@ impl SpotColumns {
         self.fill_up();
     }
 
-    /// Fills up the last pass.
+    /// Pads the columns to whole passes.
     fn fill_up(&mut self) {
         while !self.x.len().is_multiple_of(LANES) {
             // A flat spot without adhesion has no field.
@@ -256,7 +268,7 @@ impl SpotColumns {
         self.load_slope.push(load_slope);
     }
 
-    /// The same spots in another order: the numbers that they have now.
+    /// The spots reordered: the new spot k is the old spot `from[k]`.
     pub(crate) fn in_order(&self, from: &[usize]) -> Self {
         let mut found = Self::default();
         for &k in from {
@@ -282,33 +294,34 @@ impl SpotColumns {
         self.count
     }
 
-    /// True if there is none.
+    /// True if there are no spots.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.count == 0
     }
 
-    /// How many there are with those that fill up the last pass.
+    /// Number of entries including the padding.
     pub(crate) fn padded(&self) -> usize {
         self.x.len()
     }
 }
 
-/// Where a field is wanted, and how distances are measured.
+/// Target point of a field, and the parameters of the evaluation.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Place {
     pub(crate) x: f64,
     pub(crate) y: f64,
-    /// Side of the periodic square, and its inverse (0 when isolated, so that no image is nearer).
+    /// Side of the periodic square, and its inverse; the inverse is 0 for an isolated square, which disables image shifts.
     pub(crate) length: f64,
     pub(crate) inverse_length: f64,
     pub(crate) pull: f64,
-    /// What [`sag`] says.
+    /// Coefficient returned by [`sag`].
     pub(crate) sag: f64,
 }
 
-/// The sum of the fields of all sources at one place, but for that of the source at the place itself; where `SLOPES`, the derivative of each to its radius
-/// is written into `slopes`, as long as the filled columns.
+/// Sum of the fields of all sources at one point, without that of a source at the point itself.
+///
+/// With `SLOPES`, the derivative of each field to its spot's radius is written to `slopes`, which has the padded length.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
 pub(crate) fn spot_fields<const SLOPES: bool>(place: Place, spots: &SpotColumns, slopes: &mut [f64]) -> f64 {
     let columns = [&spots.x, &spots.y, &spots.a, &spots.root_a, &spots.inverse_root_a, &spots.inverse_radius];

@@ -73,6 +73,7 @@ mod pending;
 mod predictor;
 mod propagation;
 mod rejection;
+mod resume;
 mod step_control;
 mod triggers;
 mod work;

@@ -1,18 +1,20 @@
-//! Heights and derivatives of a band-limited periodic surface between its grid points.
+//! Interpolation of heights and derivatives of a band-limited periodic surface.
 //!
-//! A surface of Eq 10 has no mode at or above `q1`, so a grid of more than two points per shortest wavelength holds all of it, and any
-//! value between the points is a sum over the grid with the cardinal sine. Cut off by a Kaiser–Bessel window of half width `m` points,
-//! the sum is local; where the grid has `p` points per shortest wavelength its relative error is about `exp(−πm(1 − 2/p))`, and `m` is
-//! chosen so that this is below the rounding of the heights. Derivatives are those of the same sum: spectral ones, without a transform.
+//! A surface of Eq 10 has no mode at or above `q1`, so a grid with more than two points per shortest wavelength determines it.
+//! Any value between the points is a sum over the grid with the cardinal sine.
+//! A Kaiser–Bessel window of half width `m` points makes the sum local.
+//! With `p` points per shortest wavelength its relative error is about `exp(−πm(1 − 2/p))`.
+//! `m` is chosen so that this is below the rounding error of the heights.
+//! Derivatives are those of this sum, with spectral accuracy and without a transform.
 
 use multiversion::multiversion;
 use ndarray::ArrayView2;
 use std::f64::consts::PI;
 
-/// Decay that makes the window's error vanish beside rounding: `exp(−34) = 1.7e-15`.
+/// Exponent at which the window's error is at rounding level: `exp(−34) = 1.7e-15`.
 const DECAY: f64 = 34.0;
 
-/// Height and derivatives at one place.
+/// Height and derivatives at one point.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Jet {
     /// Height h \[m\].
@@ -23,7 +25,7 @@ pub struct Jet {
     pub hessian_1_m: [f64; 3],
 }
 
-/// A periodic grid of heights, read as the band-limited function that it samples.
+/// Periodic grid of heights, interpreted as samples of a band-limited function.
 #[derive(Debug, Clone)]
 pub struct BandLimited<'a> {
     heights: ArrayView2<'a, f64>,
@@ -31,21 +33,23 @@ pub struct BandLimited<'a> {
     taps: Taps,
 }
 
-/// Grid points that a value is a sum over, along one direction, at most: filled up with zeros to whole vectors.
+/// Maximum number of grid points in the sum along one direction; the table is padded to whole vectors.
 const MOST_TAPS: usize = 128;
 const LANES: usize = 8;
 
-/// Terms of the polynomials below: the kernel of half a spacing about a point is that of frequencies below `2π`, so that one term more is worth a factor
-/// of ten and more from the seventh on.
+/// Number of terms of the kernel polynomials.
+///
+/// The kernel within half a spacing of a point has frequencies below `2π`.
+/// From the seventh term on, each term therefore reduces the error by a factor of at least ten.
 const TERMS: usize = 24;
 
-/// The kernel of each grid point around a place and its derivatives, as polynomials in where between two grid points the place is.
+/// Kernel of each nearby grid point and its derivatives, as polynomials in the position between two points.
 #[derive(Debug, Clone)]
 struct Taps {
     half_width: i64,
-    /// Coefficients by power, highest first, each of all points: of the kernel and of its first and second derivative.
+    /// Coefficients by power, highest first, each for all points: of the kernel and of its first and second derivative.
     coefficients: [Vec<f64>; 3],
-    /// Points, and the same filled up.
+    /// Number of points, and the padded number.
     count: usize,
     padded: usize,
 }
@@ -61,8 +65,9 @@ struct Window {
 }
 
 impl<'a> BandLimited<'a> {
-    /// Heights \[m\] on a square grid of side `length_m` with `points_per_shortest_wavelength > 2`. Down to 2.5 points the error is below rounding; nearer
-    /// to 2 it grows, since the sum takes [`MOST_TAPS`] points at most.
+    /// Heights \[m\] on a square grid of side `length_m` with `points_per_shortest_wavelength > 2`.
+    ///
+    /// Down to 2.5 points the error is below rounding. Closer to 2 it grows, since the sum has at most [`MOST_TAPS`] points.
     #[must_use]
     pub fn new(heights: ArrayView2<'a, f64>, length_m: f64, points_per_shortest_wavelength: f64) -> Self {
         let headroom = PI * (1.0 - 2.0 / points_per_shortest_wavelength);
@@ -72,21 +77,21 @@ impl<'a> BandLimited<'a> {
         Self { heights, spacing: length_m / heights.nrows() as f64, taps: Taps::new(&window) }
     }
 
-    /// The jet at (x, y) \[m\], anywhere in the periodic plane.
+    /// Height and derivatives at (x, y) \[m\], anywhere in the periodic plane.
     #[must_use]
     pub fn jet(&self, x: f64, y: f64) -> Jet {
         let (row, across) = self.weights(x);
         let (column, along) = self.weights(y);
         let n = self.heights.nrows();
         let count = self.taps.count;
-        // Over the rows first: sums of all columns at once.
+        // Sum over the rows first, for all columns at once.
         let mut sums = [[0.0; MOST_TAPS]; 3];
         let mut line = [0.0; MOST_TAPS];
         for k in 0..count {
             let heights = self.heights.row((row + k) % n);
             match heights.as_slice().and_then(|line| line.get(column..column + self.taps.padded)) {
                 Some(near) => gather(near, across.of(k), &mut sums),
-                // Over the edge of the square.
+                // Across the edge of the square.
                 None => {
                     for (place, at) in line.iter_mut().zip(column..column + count) {
                         *place = heights[at % n];
@@ -104,7 +109,7 @@ impl<'a> BandLimited<'a> {
         }
     }
 
-    /// The first grid index around a coordinate, and the weights of value, first and second derivative, in units of the spacing.
+    /// First grid index of the sum, and the weights of value, first and second derivative, in units of the spacing.
     fn weights(&self, coordinate: f64) -> (usize, Weights) {
         let n = self.heights.nrows() as i64;
         let place = coordinate / self.spacing;
@@ -121,7 +126,7 @@ impl Weights {
     }
 }
 
-/// Adds a line of heights, times each of three weights.
+/// Adds a line of heights, multiplied by each of three weights.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
 fn gather(line: &[f64], weights: [f64; 3], sums: &mut [[f64; MOST_TAPS]; 3]) {
     let [first, second, third] = sums;
@@ -139,7 +144,7 @@ impl Taps {
         let padded = count.next_multiple_of(LANES);
         let mut coefficients: [Vec<f64>; 3] = std::array::from_fn(|_| vec![0.0; TERMS * padded]);
         for k in 0..count {
-            // The place is between points `half_width − 1` and `half_width`.
+            // The interpolation point lies between points `half_width − 1` and `half_width`.
             let offset = (half_width - 1 - k as i64) as f64 + 0.5;
             for (derivative, column) in coefficients.iter_mut().enumerate() {
                 let polynomial = interpolate(|x| window.kernel(offset + 0.5 * x)[derivative]);
@@ -151,7 +156,7 @@ impl Taps {
         Self { half_width, coefficients, count, padded }
     }
 
-    /// At a share of a spacing from the middle between two grid points.
+    /// Evaluates the weights at the distance `share`, in spacings, from the midpoint between two grid points.
     fn evaluate(&self, share: f64, weights: &mut Weights) {
         for (coefficients, out) in self.coefficients.iter().zip(&mut weights.0) {
             horner(coefficients, self.padded, 2.0 * share, out);
@@ -159,7 +164,7 @@ impl Taps {
     }
 }
 
-/// Values of all polynomials at once.
+/// Evaluates all polynomials at once.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
 fn horner(coefficients: &[f64], padded: usize, x: f64, out: &mut [f64; MOST_TAPS]) {
     for first in (0..padded).step_by(LANES) {
@@ -173,11 +178,11 @@ fn horner(coefficients: &[f64], padded: usize, x: f64, out: &mut [f64; MOST_TAPS
     }
 }
 
-/// Coefficients, lowest power first, of the polynomial that is a function at the zeros of a Chebyshev polynomial of `[−1, 1]`.
+/// Coefficients, lowest power first, of the polynomial that interpolates `f` at the Chebyshev nodes of `[−1, 1]`.
 fn interpolate(f: impl Fn(f64) -> f64) -> [f64; TERMS] {
     let angle = |k: usize| PI * (k as f64 + 0.5) / TERMS as f64;
     let samples: [f64; TERMS] = std::array::from_fn(|k| f(angle(k).cos()));
-    // Chebyshev polynomials by powers, one after the other.
+    // Powers of the Chebyshev polynomials, by recurrence.
     let (mut before, mut now) = ([0.0; TERMS], [0.0; TERMS]);
     let mut sum = [0.0; TERMS];
     now[0] = 1.0;
@@ -222,7 +227,7 @@ impl Window {
 fn cardinal_sine(t: f64) -> [f64; 3] {
     let u = PI * t;
     if u.abs() < 0.5 {
-        // Σ (−1)^k u^2k/(2k+1)!: the quotients below cancel near 0.
+        // Σ (−1)^k u^2k/(2k+1)!: the quotients below suffer from cancellation near 0.
         let (mut s0, mut s1, mut s2) = (0.0, 0.0, 0.0);
         let mut coefficient = 1.0;
         for k in 0..10 {
@@ -241,7 +246,9 @@ fn cardinal_sine(t: f64) -> [f64; 3] {
     [s0, s1, -PI * PI * s0 - 2.0 * s1 / t]
 }
 
-/// `I_order(z)/z^order`, the modified Bessel function of the first kind, by its everywhere convergent series of positive terms.
+/// `I_order(z)/z^order`, with `I` the modified Bessel function of the first kind.
+///
+/// Evaluated by its power series, which converges everywhere and has positive terms.
 fn bessel_i(z: f64, order: u32) -> f64 {
     let quarter = 0.25 * z * z;
     let mut term = 0.5f64.powi(order as i32) / (1..=order).map(f64::from).product::<f64>();

@@ -1,17 +1,17 @@
-//! Levelling of measured heights, and values that cannot be levelled.
+//! Levelling of measured heights, and checks of their range.
 
 use crate::model::Detrend;
 use crate::physics::PhysicsError;
 use ndarray::Array2;
 
-/// Part of the heights that rounding can make of nothing: of their range, and of their mean.
+/// Heights attributed to rounding, relative to their range and to their mean.
 pub(crate) const ROUNDING: f64 = 1e-12;
 const OF_MEAN: f64 = 1e-15;
-/// Heights of a surface at most, and deviations at least \[m\]: their squares are far from the ends of what numbers can be.
+/// Maximum height and minimum deviation \[m\], for which squares neither overflow nor underflow.
 const HIGHEST: f64 = 1e9;
 const LOWEST: f64 = 1e-60;
 
-/// Refuses heights \[m\] whose squares are no numbers, before anything is made of them. Infinite ones are missing.
+/// Refuses heights \[m\] whose squares would overflow. Non-finite heights are missing points.
 pub(crate) fn check_size(heights_m: &Array2<f64>) -> Result<(), PhysicsError> {
     let largest = heights_m.iter().filter(|h| h.is_finite()).fold(0.0_f64, |most, h| most.max(h.abs()));
     if largest <= HIGHEST {
@@ -23,10 +23,10 @@ pub(crate) fn check_size(heights_m: &Array2<f64>) -> Result<(), PhysicsError> {
     })
 }
 
-/// Levels heights \[m\] and gives the rms height of what was removed \[m\].
+/// Levels heights \[m\]; returns the rms height of the removed form \[m\].
 ///
 /// # Errors
-/// If the heights are constant or too small, or if nothing but rounding is left of them.
+/// Constant or too small heights, or heights that are zero to rounding after levelling.
 pub(crate) fn level(heights: &mut Array2<f64>, kind: Detrend) -> Result<f64, PhysicsError> {
     let before = range(heights)?;
     let trend_m = detrend(heights, kind);
@@ -34,14 +34,14 @@ pub(crate) fn level(heights: &mut Array2<f64>, kind: Detrend) -> Result<f64, Phy
     Ok(trend_m)
 }
 
-/// What heights are before they are levelled \[m\].
+/// Mean and range of heights before levelling \[m\].
 struct Range {
     mean: f64,
-    /// Largest distance from the mean.
+    /// Largest deviation from the mean.
     deviation: f64,
 }
 
-/// The range of heights, the squares of which must not vanish.
+/// Mean and range of heights; refuses constant heights and those whose squares would underflow.
 fn range(heights: &Array2<f64>) -> Result<Range, PhysicsError> {
     let (low, high) = heights.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), h| (low.min(*h), high.max(*h)));
     let mean = heights.sum() / heights.len() as f64;
@@ -55,7 +55,7 @@ fn range(heights: &Array2<f64>) -> Result<Range, PhysicsError> {
     if low < high { Ok(Range { mean, deviation }) } else { Err(flat(format!("its heights are constant: all are {low:e} m"))) }
 }
 
-/// Checks that levelled heights are more than what rounding has left.
+/// Checks that levelled heights exceed rounding.
 fn left_over(heights: &Array2<f64>, before: &Range, trend_m: f64) -> Result<(), PhysicsError> {
     let most = heights.iter().fold(0.0_f64, |most, h| most.max(h.abs()));
     if most > ROUNDING * before.deviation + OF_MEAN * before.mean.abs() {
@@ -68,11 +68,11 @@ fn flat(problem: String) -> PhysicsError {
     PhysicsError::Surface { problem, help: "a rough surface is needed: check which field of the file is read, and its units" }
 }
 
-/// Takes a trend off, by least squares, and gives its rms height \[m\] about its mean. The mean goes in any case.
+/// Subtracts a least-squares form; returns its rms height \[m\] about its mean. The mean is always subtracted.
 fn detrend(heights: &mut Array2<f64>, kind: Detrend) -> f64 {
     let n = heights.nrows();
     let count = heights.len() as f64;
-    // On a whole square grid these are orthogonal, so that each coefficient stands by itself.
+    // On a complete square grid these shapes are orthogonal, so each coefficient is independent.
     let at = |k: usize| (2 * k + 1) as f64 / n as f64 - 1.0;
     let mean_square = (0..n).map(|k| at(k).powi(2)).sum::<f64>() / n as f64;
     type Shape<'a> = Box<dyn Fn(f64, f64) -> f64 + 'a>;

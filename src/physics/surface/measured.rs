@@ -1,10 +1,12 @@
-//! A measured surface made fit for the model: a square of it, missing points, its trend, and the waves that are kept.
+//! Import of a measured surface: central crop, harmonic in-fill, levelling and S-filter.
 //!
-//! The model wants what a generated surface is: a band-limited field on a square grid. A scan has noise down to its points, so waves shorter than
-//! `points_per_shortest_wavelength` of them are taken off (sharply, on a disc of wavevectors); what is left determines the summits as on a generated surface.
+//! The model requires a band-limited field on a square grid, as a generated surface is. A scan has noise down to its points.
+//! Wavelengths shorter than `points_per_shortest_wavelength` points are removed, by a sharp cut-off on a disc of wavevectors.
+//! The remaining field determines the summits as on a generated surface.
 //!
-//! A field that does not continue periodically is continued by its mirror images for this: heights stay continuous, where periodic images would jump. Summits nearer
-//! to an edge than half a shortest wavelength are left out, since there the mirror makes ridges of slopes.
+//! A field that does not continue periodically is extended by its mirror images for this.
+//! Heights then stay continuous, whereas periodic images would jump.
+//! Summits closer to an edge than half a shortest wavelength are excluded, since the mirror symmetry creates ridges there.
 
 use crate::physics::PhysicsError;
 
@@ -19,16 +21,16 @@ use crate::model::{Detrend, Missing};
 use crate::physics::memory::zeros;
 use ndarray::{Array2, ArrayView2, s};
 
-/// Points along a side, at least and at most.
+/// Minimum and maximum number of points along a side.
 pub const FEWEST_POINTS: usize = 16;
-/// 1 GiB of heights; the mirror images make four of them while they are filtered.
+/// 1 GiB of heights; the mirror extension needs four times as much during filtering.
 pub const MOST_POINTS: usize = 8192;
 
-/// Largest share of points that may be missing.
+/// Maximum fraction of missing points.
 const MOST_MISSING: f64 = 0.5;
-/// How far the distances of points along the two directions may differ and count as one.
+/// Relative difference of the point spacings below which they count as equal.
 const SQUARE: f64 = 1e-3;
-/// Largest ratio of the two that is resampled.
+/// Maximum ratio of the two spacings that is resampled.
 const MOST_OBLONG: f64 = 16.0;
 
 /// Preprocessing of a measured surface.
@@ -40,38 +42,40 @@ pub struct Treatment {
     pub detrend: Detrend,
     /// True if the field continues periodically.
     pub periodic: bool,
-    /// Shorter waves than so many points are taken off.
+    /// S-filter cut-off: number of points per shortest wavelength that is kept.
     pub points_per_shortest_wavelength: f64,
 }
 
-/// A measured surface that is fit for the model.
+/// Measured surface after import, ready for the model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prepared {
-    /// Heights from their mean \[m\], on a square.
+    /// Heights relative to their mean \[m\], on a square.
     pub heights_m: Array2<f64>,
     /// Side of the square \[m\].
     pub length_m: f64,
-    /// Moments, from its modes.
+    /// Moments of the realised spectrum.
     pub moments: Moments,
-    /// Spectrum before short waves were taken off, in rings.
+    /// Power spectral density before the S-filter, in rings of wavevectors.
     pub rings: Vec<Ring>,
     /// Number of missing points in the square.
     pub missing_count: usize,
-    /// Rms height of what was taken off as trend \[m\].
+    /// Rms height of the form removed by levelling \[m\].
     pub trend_m: f64,
-    /// Rms height of the short waves that were taken off \[m\].
+    /// Rms height of the short wavelengths removed by the S-filter \[m\].
     pub noise_m: f64,
-    /// The wavelength below which they were \[m\].
+    /// S-filter cut-off, the shortest wavelength \[m\].
     pub shortest_wavelength_m: f64,
 }
 
-/// Prepares heights \[m\], missing ones not a number, whose points are `spacing_m` apart along rows and along columns.
+/// Prepares heights \[m\] with spacings `spacing_m` along rows and along columns; missing points are NaN.
 ///
-/// Of a field that is no square the middle one is taken; a periodic one must be square. Where points lie farther apart along one direction, heights between them are
-/// interpolated (polynomials of the fifth degree), and the short waves are those of the greater distance.
+/// A field that is not square is cropped to its central square; a periodic one must be square.
+/// With unequal spacings, heights along the coarser direction are interpolated by polynomials of the fifth degree.
+/// The cut-off then refers to the larger spacing.
 ///
 /// # Errors
-/// Too few or too many points, distances that are not positive or too unequal, too many missing points or any that are to be refused, constant heights, too little memory; the sentence says what is allowed.
+/// Too few or too many points; spacings that are not positive or too unequal; constant heights; too little memory.
+/// Too many missing points, or any if they are refused. The message states the allowed values.
 pub fn prepare(heights_m: Array2<f64>, spacing_m: [f64; 2], treatment: &Treatment) -> Result<Prepared, PhysicsError> {
     let Square { mut heights, fine, coarsening } = square(heights_m, spacing_m, treatment.periodic)?;
     let side = heights.nrows();
@@ -121,12 +125,12 @@ fn domain(quantity: &'static str, value: f64, allowed: &'static str) -> PhysicsE
     PhysicsError::Domain { action: "the measured surface", quantity, value, allowed }
 }
 
-/// The central square of a scan, its points as far apart along both directions.
+/// Central square of a scan, with equal spacings along both directions.
 struct Square {
     heights: Array2<f64>,
-    /// Distance of points \[m\].
+    /// Point spacing \[m\].
     fine: f64,
-    /// The larger distance of points of the scan over the smaller one; 1 where they count as equal.
+    /// Ratio of the larger to the smaller point spacing of the scan; 1 if they count as equal.
     coarsening: f64,
 }
 
@@ -174,7 +178,7 @@ fn square(heights_m: Array2<f64>, spacing_m: [f64; 2], periodic: bool) -> Result
     Ok(Square { heights: middle(heights_m, side)?, fine, coarsening })
 }
 
-/// The central square, in one order in memory, in which sums are then made.
+/// Central square in standard memory order, which fixes the order of sums.
 fn middle(heights_m: Array2<f64>, side: usize) -> Result<Array2<f64>, PhysicsError> {
     let (rows, columns) = heights_m.dim();
     if rows == side && columns == side && heights_m.is_standard_layout() {
@@ -186,8 +190,9 @@ fn middle(heights_m: Array2<f64>, side: usize) -> Result<Array2<f64>, PhysicsErr
     Ok(square)
 }
 
-/// Points between those of each row, `ratio` times as close, from the first on to the last: Lagrange's polynomials through six points. Where one of these is missing, so is
-/// what lies between them.
+/// Interpolates each row to a spacing smaller by `ratio`, by Lagrange polynomials through six points.
+///
+/// A value is missing if one of its six points is missing.
 fn resampled(heights: ArrayView2<'_, f64>, ratio: f64) -> Result<Array2<f64>, PhysicsError> {
     let (rows, columns) = heights.dim();
     if columns < TAPS {
@@ -204,7 +209,7 @@ fn resampled(heights: ArrayView2<'_, f64>, ratio: f64) -> Result<Array2<f64>, Ph
         };
         let weights: [f64; TAPS] = std::array::from_fn(weight);
         for row in 0..rows {
-            // A weight of zero takes nothing, not even what is missing.
+            // A weight of zero excludes a point even if it is missing.
             let near = weights.iter().enumerate().filter(|(_, w)| **w != 0.0);
             fine[[row, k]] = near.map(|(tap, w)| w * heights[[row, first + tap]]).sum();
         }
@@ -212,13 +217,14 @@ fn resampled(heights: ArrayView2<'_, f64>, ratio: f64) -> Result<Array2<f64>, Ph
     Ok(fine)
 }
 
-/// Points that a value between them is made of.
+/// Number of points in the interpolation of a value.
 const TAPS: usize = 6;
-/// Points at most, before a square is taken of them.
+/// Maximum number of points before the crop.
 const MOST_AT_ALL: f64 = (1u64 << 28) as f64;
 
-/// Continues the heights into missing points: their discrete Laplacian vanishes there, as of a membrane that is held at the edges of the hole. At the edges of the
-/// field its slope vanishes, or it continues periodically.
+/// Fills missing points harmonically: the discrete Laplacian vanishes there.
+///
+/// At the edges of the field the slope vanishes, or the field is periodic.
 fn fill(heights: &mut Array2<f64>, periodic: bool) {
     let (rows, columns) = heights.dim();
     let holes: Vec<(usize, usize)> = heights.indexed_iter().filter(|(_, h)| !h.is_finite()).map(|(place, _)| place).collect();
@@ -231,7 +237,7 @@ fn fill(heights: &mut Array2<f64>, periodic: bool) {
     };
     let around =
         |(i, j): (usize, usize)| [(step(i, -1, rows), j), (step(i, 1, rows), j), (i, step(j, -1, columns)), (i, step(j, 1, columns))];
-    // From the edges of the holes inwards, each point the mean of the known ones around it: a start.
+    // Initial values, from the edges of the holes inwards: the mean of the known neighbours.
     let mut open = holes.clone();
     while !open.is_empty() {
         let found: Vec<((usize, usize), f64)> = open
@@ -247,7 +253,7 @@ fn fill(heights: &mut Array2<f64>, periodic: bool) {
         found.iter().for_each(|(place, h)| heights[*place] = *h);
         open.retain(|place| !heights[*place].is_finite());
     }
-    // Then successive over-relaxation, until nothing moves by more than a millionth of the range: far below what a measurement is good for.
+    // Successive over-relaxation until the largest change is below 1e-6 of the range.
     let (low, high) = heights.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), h| (low.min(*h), high.max(*h)));
     let width = (holes.len() as f64).sqrt().min(rows as f64);
     let over = 2.0 / (1.0 + (std::f64::consts::PI / (width + 1.0)).sin());
@@ -265,10 +271,12 @@ fn fill(heights: &mut Array2<f64>, periodic: bool) {
     }
 }
 
-/// Sweeps over the missing points, at most.
+/// Maximum number of sweeps over the missing points.
 const MOST_SWEEPS: usize = 3000;
 
-/// Summits of a prepared surface with so many points to its shortest wavelength, and how many were left out at the edges of one that is not periodic.
+/// Summits of a prepared surface, and the number excluded at the edges of a non-periodic one.
+///
+/// The last argument is whether the surface is periodic, and the number of points per shortest wavelength.
 ///
 /// # Errors
 /// As [`find_summits`].
@@ -290,7 +298,7 @@ pub fn find_measured(
     found.list.retain(|summit| clear(summit.grid_row) && clear(summit.grid_col));
     let edge = all - found.list.len();
     found.unrefined = found.list.iter().filter(|summit| !summit.refined).count();
-    // Each of the four images has them.
+    // The mirror extension counts each four times.
     found.rejected /= 4;
     Ok((found, edge))
 }

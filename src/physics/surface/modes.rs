@@ -1,4 +1,4 @@
-//! The modes of a height field: its transform, and what is told from it.
+//! Fourier modes of a height field, its moments and its power spectral density.
 
 use super::psd_bin::Ring;
 use super::spectrum::Moments;
@@ -11,23 +11,23 @@ use rustfft::FftPlanner;
 use rustfft::num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// Rows that are transformed at a time.
+/// Number of rows transformed at a time.
 const ROWS: usize = 256;
-/// Rings to a doubling of the wavenumber.
+/// Rings per octave of wavenumber.
 const RINGS: f64 = 4.0;
 
-/// The modes `c_k` of `h(x) = Σ_k c_k exp(i k·x)` on a square grid, half of them: the other half are their conjugates.
+/// Modes `c_k` of `h(x) = Σ_k c_k exp(i k·x)` on a square grid; one half, the others are conjugates.
 pub(crate) struct Field {
     /// Points along a side.
     n: usize,
-    /// Wavenumber of the longest waves, `2π/L` \[1/m\].
+    /// Lowest wavenumber, `2π/L` \[1/m\].
     lowest: f64,
-    /// By columns of ky, kx running fastest: n² times the modes.
+    /// Modes times n², by columns of ky, kx running fastest.
     columns: Vec<Complex64>,
 }
 
 impl Field {
-    /// The modes of a square field of side L \[m\] as it is, if it is periodic, and else of its continuation by mirror images, of side 2 L.
+    /// Modes of a square field of side L \[m\] if it is periodic, else of its mirror extension of side 2 L.
     pub(crate) fn of(heights_m: ArrayView2<'_, f64>, length_m: f64, periodic: bool) -> Result<Self, PhysicsError> {
         if periodic { Self::periodic(heights_m, length_m) } else { Self::periodic(mirrored(heights_m)?.view(), 2.0 * length_m) }
     }
@@ -37,7 +37,7 @@ impl Field {
         let half = n / 2 + 1;
         let along_y = RealFftPlanner::<f64>::new().plan_fft_forward(n);
         let mut columns = filled(half * n, Complex64::ZERO)?;
-        // Some rows at a time, so that no second field is in memory.
+        // Blocks of rows avoid a second field in memory.
         let mut rows = filled(half * ROWS.min(n), Complex64::ZERO)?;
         for first in (0..n).step_by(ROWS) {
             let count = ROWS.min(n - first);
@@ -63,8 +63,9 @@ impl Field {
         Ok(Self { n, lowest: TAU / length_m, columns })
     }
 
-    /// Sums over the modes of each column, added up in their order, so that they do not depend on the threads: `add` is given the sum so far, the squared mode
-    /// number, how many modes of the whole plane this one stands for, and `|c_k|²` \[m²\].
+    /// Sums over the modes, by columns that are added in order, so that the result is independent of the threads.
+    ///
+    /// `add` receives the sum so far, the squared mode number, the number of modes that this one represents, and `|c_k|²` \[m²\].
     fn sum<T: Clone + Send + Sync>(&self, zero: &T, add: impl Fn(&mut T, f64, f64, f64) + Sync, join: impl Fn(&mut T, &T)) -> T {
         let n = self.n;
         let unit = 1.0 / (n as f64).powi(4);
@@ -73,7 +74,7 @@ impl Field {
             .par_chunks(n)
             .enumerate()
             .map(|(ky, column)| {
-                // Every column but the first, and the last of an even number of points, stands for its mirror image too.
+                // A column also represents its mirror image, except the first and, for an even number of points, the last.
                 let times = if ky == 0 || 2 * ky == n { 1.0 } else { 2.0 };
                 let mut sum = zero.clone();
                 for (place, value) in column.iter().enumerate() {
@@ -88,7 +89,7 @@ impl Field {
         total
     }
 
-    /// `Σ w(q)|c|²` over all modes but the mean, of weights of the wavenumber q \[1/m\].
+    /// `Σ w(q)|c|²` over all modes but the mean, with weights as functions of the wavenumber q \[1/m\].
     pub(crate) fn weighted<const N: usize>(&self, weights: impl Fn(f64) -> [f64; N] + Sync) -> [f64; N] {
         let add = |sums: &mut [f64; N], squared: f64, times: f64, power: f64| {
             let of_mode = weights(self.lowest * squared.sqrt());
@@ -97,19 +98,19 @@ impl Field {
         self.sum(&[0.0; N], add, |total, sum| total.iter_mut().zip(sum).for_each(|(t, s)| *t += s))
     }
 
-    /// Moments, the mean left out: `m0 = Σ|c|²`, `m2 = ½ Σ q²|c|²`, `m4 = ⅜ Σ q⁴|c|²`.
+    /// Moments without the mean: `m0 = Σ|c|²`, `m2 = ½ Σ q²|c|²`, `m4 = ⅜ Σ q⁴|c|²`.
     pub(crate) fn moments(&self) -> Moments {
         let [m0, slope, laplacian] = self.weighted(|q| [if q > 0.0 { 1.0 } else { 0.0 }, q * q, q.powi(4)]);
         Moments { m0_m2: m0, m2: 0.5 * slope, m4_1_m2: 0.375 * laplacian }
     }
 
-    /// Spectrum in rings of wavevectors; see [`super::periodogram::periodogram`].
+    /// Power spectral density in rings of wavevectors; see [`super::periodogram::periodogram`].
     pub(crate) fn rings(&self) -> Vec<Ring> {
         let reach = self.n as f64 / 2.0;
         let count = (RINGS * reach.log2()).round() as usize + 1;
         let add = |rings: &mut Vec<(f64, f64, f64)>, squared: f64, times: f64, power: f64| {
             let mode = squared.sqrt();
-            // The wavevectors of a disc: corners of the grid have no whole rings.
+            // Wavevectors in a disc: rings in the corners of the grid are incomplete.
             if mode > 0.0 && mode < reach {
                 let ring = &mut rings[(RINGS * mode.log2()).round() as usize];
                 *ring = (ring.0 + times * mode, ring.1 + times * power, ring.2 + times);
@@ -127,7 +128,7 @@ impl Field {
         rings.into_iter().filter(|ring| ring.2 > 0.0).map(mean).collect()
     }
 
-    /// Takes off the mean and every wave that is not longer than so many points.
+    /// Removes the mean and all wavelengths of up to `points` points.
     pub(crate) fn cut(&mut self, points: f64) {
         let n = self.n;
         let most = n as f64 / points;
@@ -142,7 +143,7 @@ impl Field {
         });
     }
 
-    /// The heights \[m\] of its first `side` points along each direction: of the part that is no mirror image.
+    /// Heights \[m\] of the first `side` points along each direction, without the mirror images.
     pub(crate) fn heights(mut self, side: usize) -> Result<Array2<f64>, PhysicsError> {
         let n = self.n;
         let mut heights = zeros((side, side))?;
@@ -159,7 +160,7 @@ impl Field {
             || (along_y.make_input_vec(), along_y.make_output_vec(), along_y.make_scratch_vec()),
             |(half, line, scratch), (x, row)| {
                 half.iter_mut().enumerate().for_each(|(ky, value)| *value = columns[ky * n + x]);
-                // The first and, of an even number, the last line of a real field are real, but for rounding.
+                // The first and, for an even number, the last line of a real field are real, up to rounding.
                 half[0].im = 0.0;
                 if n.is_multiple_of(2) {
                     half[n / 2].im = 0.0;
@@ -173,10 +174,10 @@ impl Field {
     }
 }
 
-/// A field with its mirror images: twice the side, and periodic.
+/// Mirror extension of a field: twice the side, and periodic.
 ///
 /// # Errors
-/// Not enough memory.
+/// Too little memory.
 pub fn mirrored(heights: ArrayView2<'_, f64>) -> Result<Array2<f64>, PhysicsError> {
     let n = heights.nrows();
     let fold = |k: usize| if k < n { k } else { 2 * n - 1 - k };

@@ -1,6 +1,6 @@
 //! One bin of a periodogram.
 
-/// Average over the modes of a ring of wavevectors.
+/// Average power spectral density over a ring of wavevectors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ring {
     /// Mean wavenumber q \[1/m\].

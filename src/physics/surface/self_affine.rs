@@ -1,32 +1,36 @@
-//! A self-affine spectrum that fits a measured one.
+//! Fit of a self-affine spectrum with a roll-off to a measured one.
 
 use super::psd_bin::Ring;
 
-/// `C(q) = C0` up to the roll-off `q_r`, and `C0 (q/q_r)^(−2(H+1))` beyond (Eq 10 with a roll-off).
+/// Self-affine spectrum with a roll-off: `C0` up to `q_r`, then `C0 (q/q_r)^(−2(H+1))` (Eq 10).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SelfAffine {
-    /// Hurst exponent H; outside of (0, 1) the surface is not self-affine in the band.
+    /// Hurst exponent H; a value outside (0, 1) means that the surface is not self-affine in the band.
     pub hurst: f64,
-    /// C0 \[m⁴\].
+    /// Plateau C0 \[m⁴\].
     pub plateau_m4: f64,
-    /// q_r \[1/m\]; the longest waves' wavenumber, if there is no roll-off.
+    /// Roll-off wavenumber q_r \[1/m\]; the lowest wavenumber if there is no roll-off.
     pub roll_off_1_m: f64,
     /// True if there is a roll-off within the band.
     pub rolls_off: bool,
-    /// Rms deviation of log10 C from the fit, rings weighted as in it.
+    /// Weighted rms deviation of log10 C from the fit.
     pub scatter: f64,
 }
 
-/// A roll-off is told only where it lessens the sum of squares to this part.
+/// Ratio of the sums of squares with and without a roll-off below which it is accepted.
 const CLEARLY: f64 = 0.7;
 
-/// The mean of a ring of m modes, half of which are conjugates of the others and which a window joins to their neighbours, scatters by about `sqrt(4/m)`; and no
-/// spectrum is a power of q to better than this part.
+/// Variance of a ring's density, in terms of `OF_MODES`/m for m modes, plus the square of `AT_BEST`.
+///
+/// Half of the modes are conjugates of the others, and a window correlates neighbours: the standard deviation is about `sqrt(4/m)`.
+/// No spectrum is a power law of q to better than `AT_BEST`.
 const OF_MODES: f64 = 4.0;
 const AT_BEST: f64 = 0.1;
 
-/// Fits rings with wavenumbers below `highest_1_m`, where noise or the instrument takes over: least squares in log C over log q, each ring by how well it is known.
-/// The roll-off is sought among the rings, with four or more beyond it; fewer than five rings have no fit.
+/// Least-squares fit of log C over log q to the rings with wavenumbers below `highest_1_m`.
+///
+/// Above it, noise or the instrument dominates. Rings are weighted by the inverse of their variance.
+/// The roll-off is searched among the rings, with at least four beyond it. Fewer than five rings give `None`.
 #[must_use]
 pub fn fit_self_affine(rings: &[Ring], highest_1_m: f64) -> Option<SelfAffine> {
     let points: Vec<Point> = rings
@@ -55,14 +59,14 @@ pub fn fit_self_affine(rings: &[Ring], highest_1_m: f64) -> Option<SelfAffine> {
     })
 }
 
-/// A ring in logarithms.
+/// Wavenumber and density of a ring in logarithms, and its weight.
 struct Point {
     x: f64,
     y: f64,
     weight: f64,
 }
 
-/// A plateau up to a place, and a line from there on, in logarithms.
+/// Plateau up to `from` and a line beyond, in logarithms.
 #[derive(Debug, Clone, Copy)]
 struct Line {
     from: f64,
@@ -73,7 +77,7 @@ struct Line {
 }
 
 impl Line {
-    /// The least squares of `plateau + slope max(x − from, 0)`.
+    /// Least-squares fit of `plateau + slope max(x − from, 0)`.
     fn of(points: &[Point], from: f64) -> Self {
         let whole: f64 = points.iter().map(|p| p.weight).sum();
         let beyond = |p: &Point| (p.x - from).max(0.0);

@@ -1,20 +1,20 @@
-//! The power spectrum of a self-affine surface (Eq 10) and its moments.
+//! Power spectral density of a self-affine surface (Eq 10) and its moments.
 
 use crate::model::{Amplitudes, Normalization};
 use std::f64::consts::PI;
 
-/// Everything that a synthetic surface is made from, but its seed.
+/// Parameters of a synthetic surface, except its seed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spectrum {
     /// Side of the periodic square L \[m\].
     pub length_m: f64,
-    /// Rms height \[m\]: of the realisation or of the spectrum, as `normalization` says.
+    /// Rms height \[m\] of the realisation or of the spectrum, as selected by `normalization`.
     pub rms_height_m: f64,
     /// Hurst exponent H, `0 < H ≤ 1`.
     pub hurst: f64,
     /// Magnification ζ = q1/qL.
     pub magnification: u32,
-    /// What `rms_height_m` is of.
+    /// Quantity that `rms_height_m` refers to.
     pub normalization: Normalization,
     /// Fixed or Rayleigh-distributed moduli.
     pub amplitudes: Amplitudes,
@@ -27,7 +27,7 @@ impl Spectrum {
         2.0 * PI / self.length_m
     }
 
-    /// `C0 = h_rms² H / (π qL² (1 − ζ^(−2H)))` \[m⁴\], per d²q, so that the spectrum's integral is `h_rms²`.
+    /// Prefactor `C0 = h_rms² H / (π qL² (1 − ζ^(−2H)))` \[m⁴\]; the spectrum's integral over d²q is `h_rms²`.
     #[must_use]
     pub fn prefactor(&self) -> f64 {
         let zeta = f64::from(self.magnification);
@@ -35,9 +35,10 @@ impl Spectrum {
         self.rms_height_m.powi(2) * self.hurst / (PI * ql * ql * (1.0 - zeta.powf(-2.0 * self.hurst)))
     }
 
-    /// `C(q) = C0 (q/qL)^(−2(H+1))` for `qL ≤ q < ζ qL`, else 0 \[m⁴\], of the squared mode number `k² = (q/qL)²`. Eq 10.
+    /// Density `C(q) = C0 (q/qL)^(−2(H+1))` \[m⁴\] for `qL ≤ q < ζ qL`, else 0. Eq 10.
     ///
-    /// Half open: the shell `q = qL` is in, `q = q1` is out. In whole numbers the edges are exact.
+    /// The argument is the squared mode number `k² = (q/qL)²`; in integers the band edges are exact.
+    /// The band is half open: it includes the shell `q = qL` and excludes `q = q1`.
     #[must_use]
     pub fn density(&self, mode_squared: u64) -> f64 {
         let zeta = u64::from(self.magnification);
@@ -65,8 +66,9 @@ impl Spectrum {
         }
     }
 
-    /// Moments of the lattice of modes that a periodic square has, with fixed amplitudes and the chosen normalisation: sums in place
-    /// of the integrals of [`Self::moments`].
+    /// Moments of the discrete modes of a periodic square, with fixed amplitudes and the chosen normalisation.
+    ///
+    /// They are sums in place of the integrals of [`Self::moments`].
     #[must_use]
     pub fn lattice_moments(&self) -> Moments {
         let zeta = i64::from(self.magnification);
@@ -86,7 +88,7 @@ impl Spectrum {
 pub(crate) struct MomentSums([f64; 3]);
 
 impl MomentSums {
-    /// One mode of squared mode number `k²` and power `C` \[m⁴\].
+    /// Adds modes of squared mode number `k²` with the power `C` \[m⁴\].
     pub(crate) fn add(&mut self, mode_squared: u64, power: f64) {
         let k2 = mode_squared as f64;
         self.0[0] += power;
@@ -98,7 +100,7 @@ impl MomentSums {
         Self([self.0[0] + other.0[0], self.0[1] + other.0[1], self.0[2] + other.0[2]])
     }
 
-    /// By how much heights are multiplied to have the rms that the normalisation asks for.
+    /// Factor on the heights that yields the rms height selected by the normalisation.
     pub(crate) fn scale(&self, spectrum: &Spectrum) -> f64 {
         let cell = spectrum.lowest_wavenumber().powi(2);
         match spectrum.normalization {

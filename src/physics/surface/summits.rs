@@ -1,18 +1,19 @@
-//! Summits from heights: the asperities of the contact model.
+//! Summits of a height field, the asperities of the contact model.
 //!
-//! A summit is a local maximum over its eight neighbours (four converge to a density 29 % too high), refined to the apex between grid
-//! points. Curvatures are those of the band-limited surface itself, not of differences: with these, at 8 points per shortest
-//! wavelength, curvature would be 3 % low.
+//! A summit is a local maximum over its eight neighbours, refined to the apex between grid points.
+//! With four neighbours the density converges to a value 29 % too high.
+//! Curvatures are those of the band-limited surface. Finite differences would be 3 % low at 8 points per shortest wavelength.
 //!
-//! Plateaus: of equal neighbours the first in grid order is the summit; a flat surface has none. A maximum whose apex cannot be refined
-//! within one grid spacing stays at its grid point, and one whose mean curvature is not positive there is left out; both are counted.
+//! Of equal neighbours the first in grid order is the summit, and a flat surface has none.
+//! A maximum whose apex cannot be refined within one grid spacing stays at its grid point.
+//! It is excluded if its mean curvature there is not positive. Both cases are counted.
 
 use super::band_limited::{BandLimited, Jet};
 use crate::physics::PhysicsError;
 use ndarray::ArrayView2;
 use rayon::prelude::*;
 
-/// One summit.
+/// A local maximum of the surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Summit {
     /// Position x \[m\], in `[0, L)`.
@@ -25,7 +26,7 @@ pub struct Summit {
     pub curvature_1_m: f64,
     /// The smaller principal curvature \[1/m\].
     pub curvature_min_1_m: f64,
-    /// The greater principal curvature \[1/m\].
+    /// The larger principal curvature \[1/m\].
     pub curvature_max_1_m: f64,
     /// Grid row of the maximum.
     pub grid_row: usize,
@@ -43,21 +44,21 @@ impl Summit {
     }
 }
 
-/// The summits of a surface, in grid order, and what was left out.
+/// Summits of a surface in grid order, and the counts of excluded and unrefined maxima.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Summits {
     /// The summits.
     pub list: Vec<Summit>,
-    /// Grid maxima that were left out for want of positive mean curvature.
+    /// Number of grid maxima excluded because their mean curvature is not positive.
     pub rejected: usize,
-    /// Summits that stayed at their grid point.
+    /// Number of summits that stayed at their grid point.
     pub unrefined: usize,
 }
 
-/// The summits of a periodic band-limited surface.
+/// Finds the summits of a periodic band-limited surface.
 ///
 /// # Errors
-/// More than two points per shortest wavelength are needed: with fewer the heights do not determine the surface.
+/// More than two points per shortest wavelength are needed; with fewer the heights do not determine the surface.
 pub fn find_summits(heights_m: ArrayView2<'_, f64>, length_m: f64, points_per_shortest_wavelength: f64) -> Result<Summits, PhysicsError> {
     if !(points_per_shortest_wavelength > 2.0 && points_per_shortest_wavelength.is_finite()) {
         return Err(PhysicsError::Domain {
@@ -90,7 +91,7 @@ fn maxima_of_row(heights: ArrayView2<'_, f64>, row: usize) -> Vec<(usize, usize)
     for column in 0..columns {
         let (left, right) = ((column + columns - 1) % columns, (column + 1) % columns);
         let h = here[column];
-        // Strictly above the neighbours that come before it, at least level with those that follow: one summit to a plateau of two.
+        // Strictly above the preceding neighbours and not below the following ones: one summit per plateau of two points.
         let before = h > above[left] && h > above[column] && h > above[right] && h > here[left];
         if before && h >= here[right] && h >= below[left] && h >= below[column] && h >= below[right] {
             maxima.push((row, column));
@@ -99,7 +100,7 @@ fn maxima_of_row(heights: ArrayView2<'_, f64>, row: usize) -> Vec<(usize, usize)
     maxima
 }
 
-/// The apex near a grid maximum, by Newton's method on the gradient; the grid point itself where that leaves the neighbourhood.
+/// Apex near a grid maximum by Newton's method on the gradient, or the grid point if that leaves the vicinity.
 fn apex(surface: &BandLimited<'_>, row: usize, column: usize, spacing: f64, length: f64) -> Option<Summit> {
     let start = [row as f64 * spacing, column as f64 * spacing];
     let refined = refine(surface, start, spacing);
@@ -120,7 +121,7 @@ fn apex(surface: &BandLimited<'_>, row: usize, column: usize, spacing: f64, leng
     })
 }
 
-/// A coordinate in `[0, length)`: `rem_euclid` of a tiny negative number rounds to the length itself.
+/// Wraps a coordinate to `[0, length)`: `rem_euclid` of a tiny negative number rounds to the length itself.
 fn wrapped(coordinate: f64, length: f64) -> f64 {
     let inside = coordinate.rem_euclid(length);
     if inside < length { inside } else { 0.0 }
@@ -134,7 +135,7 @@ fn refine(surface: &BandLimited<'_>, start: [f64; 2], spacing: f64) -> Option<([
         let [xx, xy, yy] = jet.hessian_1_m;
         let determinant = xx * yy - xy * xy;
         let concave = determinant > 0.0 && xx < 0.0;
-        // Newton's step; uphill along the gradient where the neighbourhood is not concave, since Newton would run to a saddle there.
+        // Newton step, or a step along the gradient if the Hessian is not negative definite, since Newton would converge to a saddle.
         let slope = gx.hypot(gy);
         let mut step = if concave {
             [(xy * gy - yy * gx) / determinant, (xy * gx - xx * gy) / determinant]
@@ -146,13 +147,13 @@ fn refine(surface: &BandLimited<'_>, start: [f64; 2], spacing: f64) -> Option<([
         if concave && step[0].abs().max(step[1].abs()) < 1e-10 * spacing {
             return Some((here, jet));
         }
-        // The height must grow and the neighbourhood not be left: long ridges overshoot.
+        // Halve the step until the height grows within the vicinity: long ridges overshoot.
         let mut moved = None;
         for _ in 0..12 {
             let there = [here[0] + step[0], here[1] + step[1]];
             let inside = (0..2).all(|k| (there[k] - start[k]).abs() <= spacing);
             let next = surface.jet(there[0], there[1]);
-            // Within a thousandth of a spacing rounding decides over heights, and Newton's step can be trusted.
+            // Below a thousandth of a spacing heights differ by rounding only, and the Newton step is accepted.
             if inside && (next.height_m > jet.height_m || step[0].abs().max(step[1].abs()) < 1e-3 * spacing) {
                 moved = Some((there, next));
                 break;

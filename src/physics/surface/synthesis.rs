@@ -1,7 +1,8 @@
-//! Heights from phases: an inverse real Fourier transform of the modes of Eq 10.
+//! Synthesis of surfaces: inverse real Fourier transform of the modes of Eq 10 with random phases.
 //!
-//! **A phase belongs to its wavevector**: it is a function of (seed, kx, ky) and of nothing else, through a counter-based generator. So a
-//! finer grid samples the same continuous surface, and another magnification or Hurst exponent keeps the phases of all modes it shares.
+//! The phase of a mode is a function of (seed, kx, ky) alone, by a counter-based generator.
+//! A finer grid therefore samples the same continuous surface.
+//! Another magnification or Hurst exponent keeps the phases of all common modes.
 
 use super::spectrum::{MomentSums, Moments, Spectrum};
 use crate::model::Amplitudes;
@@ -13,18 +14,18 @@ use realfft::RealFftPlanner;
 use rustfft::{FftPlanner, num_complex::Complex64};
 use std::f64::consts::TAU;
 
-/// A realised surface: heights over its mean plane, and the moments of its own modes.
+/// Realised surface: heights relative to its mean plane, and the moments of its realised spectrum.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surface {
     /// Side of the periodic square L \[m\].
     pub length_m: f64,
-    /// Heights \[m\], N × N; the row is x.
+    /// Heights \[m\], N × N; the row index is x.
     pub heights_m: Array2<f64>,
     /// Moments of the realised modes.
     pub moments: Moments,
 }
 
-/// The seed of a realisation: a hash of the campaign's seed and the realisation's number, never of a position in a list.
+/// Seed of a realisation: a hash of the campaign's seed and the realisation's number, independent of list order.
 #[must_use]
 pub fn realization_seed(campaign_seed: u64, realization: u64) -> [u8; 32] {
     let mut bytes = [0u8; 16];
@@ -33,18 +34,18 @@ pub fn realization_seed(campaign_seed: u64, realization: u64) -> [u8; 32] {
     blake3::derive_key("hysteron 2026 surface phases", &bytes)
 }
 
-/// The random numbers of one row of wavevectors (fixed kx), addressed by ky.
+/// Random numbers of one row of wavevectors (fixed kx), addressed by ky.
 struct Phases(ChaCha8Rng);
 
 impl Phases {
     fn of_row(seed: &[u8; 32], kx: i64) -> Self {
         let mut generator = ChaCha8Rng::from_seed(*seed);
-        // 0, −1, 1, −2, 2 … in 0, 1, 2, 3, 4 …: each row of wavevectors has its own stream.
+        // Maps 0, −1, 1, −2, 2 … to 0, 1, 2, 3, 4 …: each row of wavevectors has its own stream.
         generator.set_stream(((kx << 1) ^ (kx >> 63)).unsigned_abs());
         Self(generator)
     }
 
-    /// Phase in `[0, 2π)` and the mean-one exponential variate of the mode's power. Each mode owns four words of its stream.
+    /// Phase in `[0, 2π)`, and an exponential variate of mean one for the mode's power; four words per mode.
     fn draw(&mut self, ky: u64) -> (f64, f64) {
         self.0.set_word_pos(u128::from(ky) * 4);
         let unit = |word: u64| (word >> 11) as f64 / (1u64 << 53) as f64;
@@ -53,7 +54,7 @@ impl Phases {
     }
 }
 
-/// The complex amplitude of mode (kx, ky) before normalisation, of the half plane `ky > 0`, or `ky = 0` and `kx > 0`.
+/// Complex amplitude of mode (kx, ky) before normalisation, for `ky > 0`, or `ky = 0` and `kx > 0`.
 fn mode(spectrum: &Spectrum, phases: &mut Phases, kx: i64, ky: u64) -> (Complex64, u64, f64) {
     let mode_squared = kx.unsigned_abs().pow(2) + ky * ky;
     let mut power = spectrum.density(mode_squared);
@@ -67,12 +68,12 @@ fn mode(spectrum: &Spectrum, phases: &mut Phases, kx: i64, ky: u64) -> (Complex6
     (Complex64::ZERO, mode_squared, 0.0)
 }
 
-/// The surface of a spectrum and a seed on a grid of `n × n` points: `h(x) = Σ_k c_k exp(i k·x)`, `|c_k|² = C(k) qL²`.
+/// Surface of a spectrum and a seed on `n × n` points: `h(x) = Σ_k c_k exp(i k·x)`, `|c_k|² = C(k) qL²`.
 ///
-/// Hermitian symmetry is exact by construction: only the half plane of wavevectors is drawn, and on the line `ky = 0` the mode `−kx` is
-/// the conjugate of `kx`. All modes lie below the grid's Nyquist wavenumber (`2ζ ≤ n`), so the Nyquist lines are empty.
+/// Hermitian symmetry is exact: only a half plane of wavevectors is drawn, and on the line `ky = 0` the mode `−kx` is
+/// the conjugate of `kx`. All modes lie below the grid's Nyquist wavenumber (`2ζ ≤ n`), so the Nyquist lines are zero.
 ///
-/// Peak memory is the field and a quarter of it, at 8 points per shortest wavelength.
+/// Peak memory is 1.25 times the field at 8 points per shortest wavelength.
 #[must_use]
 pub fn synthesize(spectrum: &Spectrum, seed: &[u8; 32], n: usize) -> Surface {
     let zeta = (spectrum.magnification as usize).min(n.div_ceil(2));
@@ -96,7 +97,7 @@ pub fn synthesize(spectrum: &Spectrum, seed: &[u8; 32], n: usize) -> Surface {
                 for (ky, value) in half.iter_mut().enumerate().take(zeta) {
                     *value = columns[ky * n + x];
                 }
-                // The mean and the Nyquist line of a real transform are real; the first is so up to rounding, the second is 0.
+                // The mean and Nyquist lines of a real transform are real: the first up to rounding, the second is 0.
                 half[0].im = 0.0;
                 let outcome = along_y.process_with_scratch(half, row, scratch);
                 debug_assert!(outcome.is_ok(), "lengths and the real lines are set above");
@@ -106,7 +107,7 @@ pub fn synthesize(spectrum: &Spectrum, seed: &[u8; 32], n: usize) -> Surface {
     Surface { length_m: spectrum.length_m, heights_m: heights, moments: sums.moments(spectrum) }
 }
 
-/// Memory that [`synthesize`] needs at once on a grid of `n × n` points \[bytes\].
+/// Peak memory of [`synthesize`] on a grid of `n × n` points \[bytes\].
 #[must_use]
 pub fn synthesis_bytes(spectrum: &Spectrum, n: usize) -> usize {
     let zeta = (spectrum.magnification as usize).min(n.div_ceil(2));
@@ -116,7 +117,9 @@ pub fn synthesis_bytes(spectrum: &Spectrum, n: usize) -> usize {
     columns.saturating_add(rows.max(heights))
 }
 
-/// Weighted sums `Σ_k w(k²)|c_k|²` \[m²\] over all modes of the surface that [`synthesize`] makes, `k²` the squared mode number: 1 for a weight gives `h_rms²`.
+/// Weighted sums `Σ_k w(k²)|c_k|²` \[m²\] over all modes of the surface of [`synthesize`].
+///
+/// `k²` is the squared mode number. The weight 1 gives `h_rms²`.
 #[must_use]
 pub fn mode_sums<const N: usize>(spectrum: &Spectrum, seed: &[u8; 32], weights: impl Fn(u64) -> [f64; N]) -> [f64; N] {
     let reach = i64::from(spectrum.magnification) - 1;
@@ -137,11 +140,11 @@ pub fn mode_sums<const N: usize>(spectrum: &Spectrum, seed: &[u8; 32], weights: 
     totals.map(|total| total * unit)
 }
 
-/// The modes by columns of fixed ky, kx running fastest in transform order, and the sums of their powers.
+/// Modes by columns of fixed ky, kx running fastest in transform order, and the sums of their powers.
 fn draw_columns(spectrum: &Spectrum, seed: &[u8; 32], n: usize, zeta: usize) -> (Vec<Complex64>, MomentSums) {
     let mut columns = vec![Complex64::ZERO; n * zeta];
     let reach = zeta as i64 - 1;
-    // Rows of wavevectors in parallel, added up in their order, so that the sums do not depend on the threads.
+    // Rows are computed in parallel and added in order, so that the sums are independent of the threads.
     let rows: Vec<(Vec<Complex64>, MomentSums)> = (-reach..=reach)
         .into_par_iter()
         .map(|kx| {

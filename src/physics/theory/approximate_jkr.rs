@@ -1,22 +1,24 @@
-//! Adhesive contact from the load and the area of adhesionless contact.
+//! Approximate adhesive contact from the load and the area of adhesionless contact.
 //!
 //! # Equations
-//! Adhesionless contact at the penetration `δ1` has the load `P1`, the area `A` and the stiffness `S = dP1/dδ1`. Withdraw the surfaces by `x` at a constant contact area:
-//! the load falls to `P = P1 − S x` at the penetration `δ = δ1 − x`, and the energy release rate is `½ x² dS/dA`. Griffith's condition, that it is Δγ, gives
+//! Adhesionless contact at the penetration `δ1` has the load `P1`, the area `A` and the stiffness `S = dP1/dδ1`.
+//! Withdraw the surfaces by `x` at a constant contact area. The load falls to `P = P1 − S x` at the penetration `δ = δ1 − x`.
+//! The energy release rate is `½ x² dS/dA`. Griffith's condition, that it is equal to Δγ, gives
 //!
 //! ```text
 //! x = sqrt(2Δγ/(dS/dA)),   δ = δ1 − x,   P = P1 − S x
 //! ```
 //!
-//! Ciavarella, J. Appl. Mech. 85:011003 (2018), arXiv:1712.05844, with `dS/dA = P1''/A'`. Exact for spheres and sinusoids, whose contact grows through one family of
-//! shapes. On a rough surface it treats all contacts as one with one displacement of withdrawal.
+//! Ciavarella, J. Appl. Mech. 85:011003 (2018), arXiv:1712.05844, with `dS/dA = P1''/A'`.
+//! It is exact for spheres and sinusoids, whose contact grows through one family of shapes.
+//! On a rough surface all contacts have one common displacement of withdrawal.
 
 use std::f64::consts::SQRT_2;
 
-/// Neighbours on either side from which the derivative `dS/dA` is found.
+/// Number of neighbours on either side in the estimate of the derivative `dS/dA`.
 const WINDOW: usize = 4;
 
-/// A state of contact.
+/// Point of a curve of load and contact area over penetration.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct CurvePoint {
     /// Penetration \[m\].
@@ -27,10 +29,13 @@ pub struct CurvePoint {
     pub area_m2: f64,
 }
 
-/// The adhesive states at the contact areas of an adhesionless curve, by ascending area, with `Δγ/E*` \[m\]. Fewer than a point more than the neighbours of a derivative give none.
+/// Adhesive states from an adhesionless curve, by ascending area, with `work_length_m` = `Δγ/E*` \[m\].
 ///
-/// `curve` has ascending penetrations. `S` is the quotient of differences between two points; `dS/dA` is the slope of the straight line of least squares through nine of
-/// them, five at the ends. Points where it is not positive have no adhesive state and are left out.
+/// The areas are the means of neighbouring points. Fewer than five stiffness values give an empty curve.
+///
+/// `curve` has ascending penetrations. `S` is the difference quotient between two points.
+/// `dS/dA` is the slope of a least-squares line through nine of them, five at the ends.
+/// Points where it is not positive have no adhesive state and are omitted.
 #[must_use]
 pub fn adhesive_curve(curve: &[CurvePoint], work_length_m: f64) -> Vec<CurvePoint> {
     let middles: Vec<(CurvePoint, f64)> = curve
@@ -56,7 +61,7 @@ pub fn adhesive_curve(curve: &[CurvePoint], work_length_m: f64) -> Vec<CurvePoin
     middles.iter().enumerate().filter_map(adhesive).collect()
 }
 
-/// Slope of the line of least squares of the stiffness over the area, and its value at an area.
+/// Least-squares line of the stiffness over the area: its slope, and its value at an area.
 fn line(points: &[(CurvePoint, f64)], at_m2: f64) -> Option<(f64, f64)> {
     let count = points.len() as f64;
     let mean = |value: &dyn Fn(&(CurvePoint, f64)) -> f64| points.iter().map(value).sum::<f64>() / count;
@@ -66,7 +71,7 @@ fn line(points: &[(CurvePoint, f64)], at_m2: f64) -> Option<(f64, f64)> {
     (points.len() > WINDOW && slope.is_finite()).then_some((slope, stiffness + slope * (at_m2 - area)))
 }
 
-/// Loading and unloading along an adhesive curve under displacement control, contact forming at zero penetration.
+/// Loading–unloading loop along an adhesive curve under displacement control; contact forms at zero penetration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CurveLoop {
     /// Contact area at the largest load \[m²\].
@@ -77,11 +82,15 @@ pub struct CurveLoop {
     pub loss_m3: f64,
 }
 
-/// The loop to a load over E* \[m²\]; nothing if the curve does not reach it, does not begin below zero penetration, or begins at more than half of the contact area
-/// at that load: the curve then snaps to near full contact, where the approximation has no meaning.
+/// Loop to a maximum load over E* \[m²\], if the approximation is valid on it.
 ///
-/// Unloading follows the curve from the last point below that load down to the smallest penetration before it would rise again, where contact is lost. The dissipated
-/// energy is the integral of the tension from there to zero penetration: what is lost when contact forms at zero penetration and when it separates.
+/// `None` if the curve does not reach the load, or if contact is lost at a penetration that is not negative or at an area
+/// of at least half the area at that load. In the latter case the curve jumps to near full contact.
+///
+/// Unloading follows the curve from the last point at or below that load.
+/// It ends at the smallest penetration before the curve would rise again, where contact is lost.
+/// The dissipated energy is the integral of the tensile load from there to zero penetration.
+/// It is the energy lost when contact forms at zero penetration and when it separates.
 #[must_use]
 pub fn curve_loop(curve: &[CurvePoint], max_load_m2: f64) -> Option<CurveLoop> {
     let end = curve.iter().rposition(|point| point.load_m2 <= max_load_m2)?;

@@ -1,6 +1,6 @@
-//! How far an asperity model holds on a surface: what it costs to flatten the roughness elastically, beside the work of adhesion.
+//! Elastic energy of flattening the roughness, relative to the work of adhesion: range of the asperity model.
 //!
-//! Where flattening costs less than adhesion gains, the half-space conforms to the roughness, and summits are no separate spots any more.
+//! If flattening costs less than adhesion gains, the half-space conforms to the roughness and contact spots are no longer separate.
 
 use crate::physics::PhysicsError;
 use crate::physics::surface::modes::Field;
@@ -9,35 +9,43 @@ use crate::physics::surface::synthesis::mode_sums;
 use ndarray::ArrayView2;
 use std::f64::consts::{PI, TAU};
 
-/// Elastic energy per nominal area that flattens the roughness of a surface wholly.
+/// Elastic energy per nominal area of flattening the roughness of a surface completely.
 ///
-/// A mode of wavevector k and amplitude `c_k` is flattened by a pressure of amplitude `(E*/2) k c_k`, and half of pressure times displacement
-/// is stored: `U/A0 = (E*/4) Σ_k k|c_k|²` over all modes of both signs, or `(E*/4) ∫ q C(q) d²q` of a spectrum.
-/// With `E*` \[Pa\] the contact modulus, `k` and `q` \[1/m\], `c_k` \[m\], `C` \[m⁴\]. Persson & Tosatti, J. Chem. Phys. 115, 5597 (2001).
+/// A mode of wavevector k and amplitude `c_k` is flattened by a pressure of amplitude `(E*/2) k c_k`.
+/// The stored energy is half of pressure times displacement: `U/A0 = (E*/4) Σ_k k|c_k|²` over all modes of both signs,
+/// or `(E*/4) ∫ q C(q) d²q` of a spectrum.
+/// With the reduced modulus `E*` \[Pa\], `k` and `q` \[1/m\], `c_k` \[m\], `C` \[m⁴\].
+/// Persson & Tosatti, J. Chem. Phys. 115, 5597 (2001).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Flattening {
-    /// Of all the roughness, `qL ≤ q < q1` \[J/m²\].
+    /// Energy of all the roughness, `qL ≤ q < q1` \[J/m²\].
     pub whole_j_m2: f64,
-    /// Of its shortest octave, `q1/2 ≤ q < q1` \[J/m²\].
+    /// Energy of its shortest octave, `q1/2 ≤ q < q1` \[J/m²\].
     pub octave_j_m2: f64,
 }
 
 impl Flattening {
-    /// Persson and Tosatti's `U_el/Δγ`, with the work of adhesion Δγ \[J/m²\]: below 1 full contact costs less than adhesion gains, and the surface is sticky.
+    /// Persson and Tosatti's ratio `U_el/Δγ`, with the work of adhesion Δγ \[J/m²\].
+    ///
+    /// Below 1 full contact costs less than adhesion gains, and the surface is sticky.
     #[must_use]
     pub fn persson_tosatti(&self, work_of_adhesion_j_m2: f64) -> f64 {
         self.whole_j_m2 / work_of_adhesion_j_m2
     }
 
-    /// The same ratio for the shortest octave alone: below 1 the half-space conforms to the summits and does not bridge them.
+    /// Ratio `U_el/Δγ` of the shortest octave alone.
+    ///
+    /// Below 1 the half-space conforms to the asperities and does not bridge them.
     #[must_use]
     pub fn conformity(&self, work_of_adhesion_j_m2: f64) -> f64 {
         self.octave_j_m2 / work_of_adhesion_j_m2
     }
 }
 
-/// The energies of the continuous spectrum (Eq 10), with E* \[Pa\]:
-/// `(E*/4) ∫ q C d²q = (π/2) E* C0 qL³ ∫ x^(−2H) dx` with `x = q/qL`, from 1 or from ζ/2 to ζ. At `H = 1/2` the integral is a logarithm.
+/// Flattening energies of the continuous spectrum (Eq 10), with E* \[Pa\].
+///
+/// `(E*/4) ∫ q C d²q = (π/2) E* C0 qL³ ∫ x^(−2H) dx` with `x = q/qL`, from 1 or from ζ/2 to ζ.
+/// At `H = 1/2` the integral is a logarithm.
 #[must_use]
 pub fn flattening(spectrum: &Spectrum, contact_modulus_pa: f64) -> Flattening {
     let zeta = f64::from(spectrum.magnification);
@@ -45,28 +53,30 @@ pub fn flattening(spectrum: &Spectrum, contact_modulus_pa: f64) -> Flattening {
     let exponent = 1.0 - 2.0 * spectrum.hurst;
     let band = |from: f64| {
         let span = (zeta / from).ln();
-        // (ζ^e − x^e)/e without cancellation near e = 0.
+        // `(ζ^e − x^e)/e` without cancellation near e = 0.
         from.powf(exponent) * if exponent == 0.0 { span } else { (exponent * span).exp_m1() / exponent }
     };
     Flattening { whole_j_m2: prefactor * band(1.0), octave_j_m2: prefactor * band((0.5 * zeta).max(1.0)) }
 }
 
-/// The energies of the modes that the surface of a seed has, with E* \[Pa\]: sums in place of the integrals of [`flattening`], of the amplitudes
-/// and the normalisation that the spectrum asks for.
+/// Flattening energies of the realised spectrum of a seed, with E* \[Pa\].
+///
+/// Sums in place of the integrals of [`flattening`], with the amplitudes and normalisation of the spectrum.
 #[must_use]
 pub fn realised_flattening(spectrum: &Spectrum, seed: &[u8; 32], contact_modulus_pa: f64) -> Flattening {
     let unit = 0.25 * contact_modulus_pa * spectrum.lowest_wavenumber();
     let edge = u64::from(spectrum.magnification).pow(2);
     let [whole, octave] = mode_sums(spectrum, seed, |mode_squared| {
         let wavenumber = (mode_squared as f64).sqrt();
-        // In whole numbers the edge of the octave is exact, as that of the band is.
+        // In integers the edge of the octave is exact, as is that of the band.
         [wavenumber, if 4 * mode_squared >= edge { wavenumber } else { 0.0 }]
     });
     Flattening { whole_j_m2: unit * whole, octave_j_m2: unit * octave }
 }
 
-/// The same of heights \[m\] on a square of side L \[m\] whose shortest waves are so long \[m\], with E* \[Pa\]. One that does not continue periodically is taken with
-/// its mirror images.
+/// Flattening energies of heights \[m\] on a square of side L \[m\], with E* \[Pa\].
+///
+/// A field that is not periodic is extended by its mirror images.
 ///
 /// # Errors
 /// Too little memory.

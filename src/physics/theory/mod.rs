@@ -1,8 +1,10 @@
-//! Theories beside a run: Deng and Kesari's estimate of the loss, from Nayak's statistics of summits; what Dalvi and others found of soft solids in full
-//! contact; the area without adhesion; the parameter of Fuller and Tabor.
+//! Analytical models for comparison with a simulated cycle.
 //!
-//! Left out, since their formulae could not be confirmed at their sources: the bearing-area model (Ciavarella 2018) and the criterion of Pastewka and
-//! Robbins (2014). Persson and Tosatti's is in [`flattening`].
+//! Deng and Kesari's dissipated energy from Nayak's statistics of summits, dissipated energy in full contact (Dalvi et al.),
+//! crack-front pinning, contact area without adhesion, and the adhesion parameter of Fuller and Tabor.
+//!
+//! Not included, since their formulae could not be confirmed at their sources: the bearing-area model (Ciavarella 2018)
+//! and the criterion of Pastewka and Robbins (2014). Persson and Tosatti's criterion is in [`flattening`].
 
 pub mod approximate_jkr;
 pub mod flattening;
@@ -13,25 +15,30 @@ use crate::physics::jkr::loop_loss_constant;
 use crate::physics::surface::spectrum::Moments;
 use std::f64::consts::PI;
 
-/// Nayak's density of the reduced summit curvature in the limit that Deng and Kesari use,
-/// `p_k(t) = sqrt(3/(4π)) (t² − 2 + 2e^(−t²/2)) e^(−t²/4)` for `t < 0`, with `t = −sqrt(3/m4) k_m`. Eq A2; it integrates to 1.
+/// Nayak's density of the reduced summit curvature in the limit used by Deng and Kesari. Eq A2.
+///
+/// `p_k(t) = sqrt(3/(4π)) (t² − 2 + 2e^(−t²/2)) e^(−t²/4)` for `t < 0`, with `t = −sqrt(3/m4) k_m`. It integrates to 1.
 ///
 /// # Deviations
-/// The exponent printed in Eq A2 is `8(C1² − C2²)t²/(16C1)`; Nayak's marginal has `(8C1² − C2²)t²/(16C1) = t²/4`, and only this integrates to 1.
-/// [`curvature_decay`] and [`curvature_density_as_printed`] can put the printed one back.
+/// The exponent printed in Eq A2 is `8(C1² − C2²)t²/(16C1)`.
+/// Nayak's marginal has `(8C1² − C2²)t²/(16C1) = t²/4`, and only this integrates to 1.
+/// [`curvature_decay`] and [`curvature_density_as_printed`] can restore the printed equation.
 #[must_use]
 pub fn curvature_density(t: f64) -> f64 {
     curvature_density_as_printed(t, NAYAK_DECAY)
 }
 
-/// `c` in the factor `e^(−ct²)` of the density of curvature.
+/// Decay `c` in the factor `e^(−ct²)` of the density of curvature.
 const NAYAK_DECAY: f64 = 0.25;
 
-/// `c` in the factor `e^(−ct²)` of Eq A2, of Nayak's parameter `α = m0 m4/m2² ≥ 3/2` (dimensionless): `(8C1² − C2²)/(16C1)` with
-/// `C1 = α/(2α − 3)` and `C2 = C1 sqrt(12/α)`, which is ¼ whatever `α` is.
+/// Decay `c` in the factor `e^(−ct²)` of Eq A2, for the bandwidth (Nayak) parameter.
 ///
-/// With the slip of A2 the printed `8(C1² − C2²)/(16C1) = (α − 12)/(2(2α − 3))`: below ¼, which it comes to for great `α` only. The density
-/// then integrates to `(√3/2)(c^(−3/2)/4 − c^(−1/2) + (c + ½)^(−1/2)) > 1`, and for `α ≤ 12` to nothing finite: there is no `c` then.
+/// With `α = m0 m4/m2² ≥ 3/2` (dimensionless) it is `(8C1² − C2²)/(16C1)` with
+/// `C1 = α/(2α − 3)` and `C2 = C1 sqrt(12/α)`, which is ¼ for every `α`.
+///
+/// With Eq A2 as printed it is `8(C1² − C2²)/(16C1) = (α − 12)/(2(2α − 3))`, which is below ¼ and approaches it for large `α`.
+/// The density then integrates to `(√3/2)(c^(−3/2)/4 − c^(−1/2) + (c + ½)^(−1/2)) > 1`.
+/// For `α ≤ 12` the integral diverges, and the result is `None`.
 #[must_use]
 pub fn curvature_decay(nayak_parameter: f64, slips: Slips) -> Option<f64> {
     if !slips.a2 {
@@ -41,15 +48,16 @@ pub fn curvature_decay(nayak_parameter: f64, slips: Slips) -> Option<f64> {
     (nayak_parameter > 12.0 && decay > 0.0).then_some(decay)
 }
 
-/// The density of curvature with another decay in its last factor, `p_k(t) = sqrt(3/(4π)) (t² − 2 + 2e^(−t²/2)) e^(−ct²)` for `t < 0`: Eq A2 as
-/// printed, with `c` of [`curvature_decay`]. It integrates to 1 only with `c = ¼`.
+/// Density of curvature with the decay `c`: Eq A2 as printed, with `c` of [`curvature_decay`].
+///
+/// `p_k(t) = sqrt(3/(4π)) (t² − 2 + 2e^(−t²/2)) e^(−ct²)` for `t < 0`. It integrates to 1 only with `c = ¼`.
 #[must_use]
 pub fn curvature_density_as_printed(t: f64, decay: f64) -> f64 {
     if t >= 0.0 {
         return 0.0;
     }
     let half = 0.5 * t * t;
-    // t² − 2 + 2e^(−t²/2) = 2(h + expm1(−h)), h = t²/2: as printed it cancels near 0.
+    // t² − 2 + 2e^(−t²/2) = 2(h + expm1(−h)), h = t²/2: the printed form suffers from cancellation near 0.
     let bracket = if half < 1e-2 {
         half * half * (1.0 - half / 3.0 + half * half / 12.0 - half.powi(3) / 60.0 + half.powi(4) / 360.0 - half.powi(5) / 2520.0)
     } else {
@@ -58,27 +66,29 @@ pub fn curvature_density_as_printed(t: f64, decay: f64) -> f64 {
     (3.0 / (4.0 * PI)).sqrt() * bracket * (-decay * t * t).exp()
 }
 
-/// Mean loss of one asperity `⟨θ⟩ = ∫ 2E*R³ (πΔγ/(E*R))^(5/3) × 0.5262… p_k(t) dt` \[J\], with `1/R(t) = 1/R_tip + sqrt(m4/3)|t|`. Eq A3.
+/// Mean dissipated energy of one asperity \[J\]. Eq A3.
 ///
-/// `tip_radius_m` is the radius of a spherical indenter \[m\]; nothing for nominally flat surfaces.
+/// `⟨θ⟩ = ∫ 2E*R³ (πΔγ/(E*R))^(5/3) × 0.5262… p_k(t) dt`, with `1/R(t) = 1/R_tip + sqrt(m4/3)|t|`.
+/// `tip_radius_m` is the radius of a spherical indenter \[m\], `None` for nominally flat surfaces.
 ///
 /// # Deviations
-/// The curvature printed below Eq A3 is `sqrt(m4/3t)`; from `t = −sqrt(3/m4) k_m` it is `sqrt(m4/3)·t`. [`mean_loop_loss_as_printed`] can put
-/// that and the printed Eq A2 back.
+/// The curvature printed below Eq A3 is `sqrt(m4/3t)`; from `t = −sqrt(3/m4) k_m` it is `sqrt(m4/3)·t`.
+/// [`mean_loop_loss_as_printed`] can restore this and Eq A2 as printed.
 ///
 /// # Errors
-/// m4 must be positive and finite, and so must the tip's radius.
+/// m4 must be positive and finite, and so must the tip radius.
 pub fn mean_loop_loss(moments: &Moments, material: &Material, tip_radius_m: Option<f64>) -> Result<f64, PhysicsError> {
     mean_loop_loss_as_printed(moments, material, tip_radius_m, Slips::NONE)
 }
 
-/// The same, with the printed Eq A2 ([`curvature_decay`]) and the printed curvature below Eq A3 if they are among `slips`.
+/// [`mean_loop_loss`] with the printed Eq A2 and the printed curvature below Eq A3, if `slips` contains them.
 ///
-/// The printed `1/R(t) = 1/R_tip − sqrt(m4/3t)` is read as `1/R_tip + sqrt((m4/3)|t|)`: the root drawn one symbol too far. The same page
-/// writes `h''_rms = sqrt(8/3m4)` for `sqrt((8/3)m4)`, so that a slash takes one symbol only; and as `t < 0`, no reading has a root without `|t|`.
+/// The printed `1/R(t) = 1/R_tip − sqrt(m4/3t)` is read as `1/R_tip + sqrt((m4/3)|t|)`: the root extends one symbol too far.
+/// The same page writes `h''_rms = sqrt(8/3m4)` for `sqrt((8/3)m4)`, so a slash applies to one symbol only.
+/// As `t < 0`, no reading has a root without `|t|`.
 ///
 /// # Errors
-/// As [`mean_loop_loss`]; with the slip of A2 Nayak's parameter must be above 12 too, since the mean has no end below.
+/// As [`mean_loop_loss`]. With Eq A2 as printed the bandwidth parameter must exceed 12 too, since the mean diverges otherwise.
 pub fn mean_loop_loss_as_printed(
     moments: &Moments,
     material: &Material,
@@ -104,8 +114,8 @@ pub fn mean_loop_loss_as_printed(
     let unit = (moments.m4_1_m2 / 3.0).sqrt();
     // θ(R) = 2·0.5262 E* (πΔγ/E*)^(5/3) R^(4/3).
     let prefactor = 2.0 * loop_loss_constant() * modulus * (PI * adhesion / modulus).powf(5.0 / 3.0);
-    // With t = −y³ the integrand p(t)·(…)^(−4/3) has no fractional power at 0 left but far below its rounding; beyond ct² = 56, which is
-    // |t| = 15, the density is below 1e-21.
+    // With t = −y³ the integrand p(t)·(…)^(−4/3) has no fractional power at 0, except far below its rounding.
+    // Beyond ct² = 56, which is |t| = 15, the density is below 1e-21.
     let most = (7.5 / decay.sqrt()).cbrt();
     let panels = (48.0 * most / 15f64.cbrt()).ceil() as usize;
     let integrand = |y: f64| {
@@ -131,7 +141,9 @@ fn gauss_panels(f: impl Fn(f64) -> f64, from: f64, to: f64, panels: usize) -> f6
         .sum()
 }
 
-/// Deng and Kesari's loss `Θ = η A ⟨θ⟩` \[J\] of the true contact area `A` \[m²\] reached at the end of loading, with Nayak's density η. Eq A4.
+/// Deng and Kesari's dissipated energy `Θ = η A ⟨θ⟩` \[J\], with Nayak's density η. Eq A4.
+///
+/// `A` \[m²\] is the true contact area at the end of loading.
 ///
 /// # Errors
 /// As [`mean_loop_loss`].
@@ -139,7 +151,7 @@ pub fn deng_kesari_loss(moments: &Moments, material: &Material, area_m2: f64) ->
     deng_kesari_loss_as_printed(moments, material, area_m2, Slips::NONE)
 }
 
-/// The same with the slips of A2 and A3, if they are among `slips`.
+/// [`deng_kesari_loss`] with Eqs A2 and A3 as printed, if `slips` contains them.
 ///
 /// # Errors
 /// As [`mean_loop_loss_as_printed`].
@@ -147,9 +159,11 @@ pub fn deng_kesari_loss_as_printed(moments: &Moments, material: &Material, area_
     Ok(moments.summit_density_1_m2() * area_m2 * mean_loop_loss_as_printed(moments, material, None, slips)?)
 }
 
-/// Loss of a contact that forms without loss and parts by its full work of adhesion, `Θ = Δγ A` \[J\]: with the true contact area `A` \[m²\] reached at the end of
-/// loading and Δγ \[J/m²\]. Dalvi et al., PNAS 116:25484 (2019), found it of soft spheres in nearly full contact with nanodiamond; of separate spots it is an upper
-/// bound, since each regains a part of the energy elastically.
+/// Dissipated energy `Θ = Δγ A` \[J\] of a contact that forms without dissipation and separates by its full work of adhesion.
+///
+/// `A` \[m²\] is the true contact area at the end of loading, and Δγ is in J/m².
+/// Dalvi et al., PNAS 116:25484 (2019), found it for soft spheres in nearly full contact with nanodiamond.
+/// For separate contact spots it is an upper bound, since each recovers a part of the energy elastically.
 #[must_use]
 pub fn dalvi_loss(material: &Material, area_m2: f64) -> f64 {
     material.work_of_adhesion_j_m2 * area_m2
@@ -158,45 +172,60 @@ pub fn dalvi_loss(material: &Material, area_m2: f64) -> f64 {
 /// Prefactor k of the work of adhesion of an advancing and a receding contact line, `Δγ ∓ k e_el`.
 const PINNING: f64 = 1.35;
 
-/// Energy dissipated by crack-front pinning over a contact of area A \[m²\], `2 k e_el A` with k = 1.35 \[J\]; `e_el` \[J/m²\] is the elastic energy per area that
-/// flattens the roughness. Nothing where `k e_el ≥ Δγ/2`.
+/// Energy dissipated by crack-front pinning over a contact of area A, `2 k e_el A` with k = 1.35 \[J\].
 ///
-/// Roughness makes the work of adhesion along a contact line random, with the standard deviation `2 sqrt(Δγ e_el)`. The line is elastic, with a stiffness that
-/// falls with the wavelength, and collective pinning changes the apparent work of adhesion in proportion to the variance: a contact that advances has `Δγ − k e_el`,
-/// one that recedes `Δγ + k e_el`. Sanner, Kumar, Dhinojwala, Jacobs and Pastewka, Sci. Adv. 10:eadl1277 (2024), for the proportionality. The prefactor is ours: from
-/// simulated lines of 512 to 1024 points in weak fields, driven slowly, with H = 0.8, between 1.2 and 1.5. One connected contact with weak roughness is assumed.
+/// `A` is in m², and `e_el` \[J/m²\] is the elastic energy per area of flattening the roughness. `None` if `k e_el ≥ Δγ/2`.
+///
+/// Roughness makes the work of adhesion along a contact line random, with the standard deviation `2 sqrt(Δγ e_el)`.
+/// The line is elastic, with a stiffness that decreases with the wavelength.
+/// Collective pinning changes the apparent work of adhesion in proportion to the variance.
+/// An advancing contact has `Δγ − k e_el`, a receding one `Δγ + k e_el`.
+/// The proportionality is from Sanner, Kumar, Dhinojwala, Jacobs and Pastewka, Sci. Adv. 10:eadl1277 (2024).
+/// The prefactor is from our simulations: lines of 512 to 1024 points in weak fields, driven slowly, with H = 0.8, gave 1.2 to 1.5.
+/// One connected contact with weak roughness is assumed.
 #[must_use]
 pub fn pinning_loss(material: &Material, elastic_energy_j_m2: f64, area_m2: f64) -> Option<f64> {
     let shift = PINNING * elastic_energy_j_m2;
     (shift < 0.5 * material.work_of_adhesion_j_m2).then_some(2.0 * shift * area_m2)
 }
 
-/// Wang and Müser's line of sticky surfaces, `e_el/(2Δγ)`, from Persson and Tosatti's ratio `e_el/Δγ`: below 1 the pull-off force of a flat rough contact is high.
+/// Wang and Müser's stickiness parameter `e_el/(2Δγ)`, from Persson and Tosatti's ratio `e_el/Δγ`.
+///
+/// Below 1 the pull-off force of a flat rough contact is high.
 /// Wang and Müser, Front. Mech. Eng. 8:965584 (2022).
 #[must_use]
 pub fn sticky_line(persson_tosatti: f64) -> f64 {
     0.5 * persson_tosatti
 }
 
-/// Contact area over A0 without adhesion, `erf(√2 p/(E* h'_rms))`, of the load `p/E* = F/(E* A0) ≥ 0` and the rms gradient `h'_rms` of the surface (both
-/// dimensionless). Persson, J. Chem. Phys. 115:3840 (2001).
+/// Contact area over A0 without adhesion, `erf(√2 p/(E* h'_rms))`.
 ///
-/// At full contact the pressure of a surface has the variance `E*²h'²_rms/4`, a mode of amplitude c and wavevector k being flattened by `(E*/2) k c`. In Persson's
-/// theory pressures spread by diffusion up to that variance with an absorbing wall at zero, which leaves `erf(p/(√2 E* h'_rms/2))` of the area in contact.
+/// `load` is `p/E* = F/(E* A0) ≥ 0` and `rms_slope` the rms gradient `h'_rms` of the surface (both dimensionless).
+/// Persson, J. Chem. Phys. 115:3840 (2001).
+///
+/// At full contact the pressure has the variance `E*²h'²_rms/4`, since a mode of amplitude c and wavevector k is flattened by
+/// `(E*/2) k c`. In Persson's theory pressures spread by diffusion up to that variance with an absorbing wall at zero.
+/// The remaining area in contact is `erf(p/(√2 E* h'_rms/2))`.
 #[must_use]
 pub fn adhesionless_area(load: f64, rms_slope: f64) -> f64 {
     libm::erf(std::f64::consts::SQRT_2 * load / rms_slope)
 }
 
-/// Contact area over A0 without adhesion, `κ p/(E* h'_rms)` with κ = 2, at small loads: what boundary-element solutions find, between `√(8/π)` of Persson's theory
-/// and `√(2π)` of asperities that do not act on one another (Bush, Gibson and Thomas, Wear 35:87, 1975). Hyun, Pei, Molinari and Robbins, Phys. Rev. E 70:026117 (2004).
+/// Contact area over A0 without adhesion at small loads, `κ p/(E* h'_rms)` with κ = 2.
+///
+/// The value of boundary-element solutions lies between `√(8/π)` of Persson's theory and `√(2π)` of asperities without
+/// elastic interaction (Bush, Gibson and Thomas, Wear 35:87, 1975).
+/// Hyun, Pei, Molinari and Robbins, Phys. Rev. E 70:026117 (2004).
 #[must_use]
 pub fn adhesionless_area_small(load: f64, rms_slope: f64) -> f64 {
     2.0 * load / rms_slope
 }
 
-/// Fuller and Tabor's adhesion parameter `E* σ^(3/2)/(R^(1/2) Δγ)` (dimensionless), with the standard deviation σ \[m\] of the summits' heights and their mean radius
-/// R \[m\]: the load that presses high asperities over the pull that low ones give. Above some 10 adhesion is lost. Fuller and Tabor, Proc. R. Soc. A 345:327 (1975).
+/// Fuller–Tabor adhesion parameter `E* σ^(3/2)/(R^(1/2) Δγ)` (dimensionless).
+///
+/// σ \[m\] is the standard deviation of the summit heights and R \[m\] their mean radius.
+/// It is the ratio of the compressive load of high asperities to the tensile load of low ones. Above about 10 adhesion vanishes.
+/// Fuller and Tabor, Proc. R. Soc. A 345:327 (1975).
 #[must_use]
 pub fn fuller_tabor(material: &Material, height_sd_m: f64, mean_radius_m: f64) -> f64 {
     material.contact_modulus_pa * height_sd_m.powf(1.5) / (mean_radius_m.sqrt() * material.work_of_adhesion_j_m2)

@@ -1,4 +1,4 @@
-//! Where spots and targets lie to one another: all of the field that does not depend on the radii.
+//! Geometry of the fast sum: the part that does not depend on the contact radii.
 
 use super::mesh::{Level, Loads, Reader, Work, read, splines, transform};
 use super::near::{Group, Rest};
@@ -11,25 +11,25 @@ use crate::physics::half_space::{Spots, places_in};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Share of the spots, or of the targets, by which their number may have changed until all is found anew.
+/// Relative change of the number of spots or targets beyond which the geometry is rebuilt.
 const CHANGE: f64 = 0.2;
 
-/// How far the largest radius that a spot's pairs serve may be beyond its own, over what it was when they were found.
+/// Maximum ratio of a spot's radius limit to the limit that a rebuild would assign.
 const LOOSE: f64 = 2.0;
 
-/// Near pairs of all targets, sources on meshes and readers there.
+/// Near pairs of all targets, and mesh weights of sources and targets.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Geometry {
-    /// Of which spots by their ranks, where, and up to which radii it serves \[m\]; at which targets.
+    /// Spots by rank, their positions and the radius limits up to which the geometry is valid \[m\], and the targets.
     index: Vec<usize>,
     places: Vec<[f64; 2]>,
     limits: Vec<f64>,
     targets: Vec<usize>,
     accuracy: Option<Accuracy>,
-    /// The finest reach, and for how many spots and targets it was chosen.
+    /// Finest cutoff, and the numbers of spots and targets for which it was chosen.
     finest: usize,
     chosen_for: [usize; 2],
-    /// So many targets by each, in their order; and what was before.
+    /// Near pairs in chunks of [`TOGETHER`] targets, and those of the previous geometry.
     pairs: Vec<Pairs>,
     old: Vec<Pairs>,
     fine: Meshes<f64, WIDTH, ORDERS>,
@@ -37,7 +37,7 @@ pub(super) struct Geometry {
 }
 
 impl FastSum {
-    /// Finds the geometry of spots and targets, both by their ranks: what it was before is taken over.
+    /// Updates the geometry for spots and targets, both by rank, reusing the previous one where it is valid.
     pub(super) fn place(&self, spots: &Spots, targets: &[usize], geometry: &mut Geometry) {
         let columns = &spots.columns;
         let length = self.measure.length;
@@ -75,7 +75,7 @@ impl FastSum {
         if !large.is_empty() {
             group(Rest::Images, &large);
         }
-        // By its moments a spot is felt that is felt by nothing else: with point interaction all are.
+        // With point interaction, every source acts by its moments only.
         let aloof = if self.measure.kind == super::Kind::Spots { self.accuracy.aloof } else { 0.0 };
         let aloof: Vec<f64> = geometry.limits.iter().map(|limit| aloof * limit).collect();
         std::mem::swap(&mut geometry.pairs, &mut geometry.old);
@@ -99,18 +99,18 @@ impl FastSum {
     }
 }
 
-/// What of a geometry is still as it was.
+/// Parts of the previous geometry that are still valid.
 struct Kept {
-    /// Which spots.
+    /// For each spot, whether its entries are valid.
     stays: Vec<bool>,
-    /// The new numbers of the spots that there were.
+    /// New numbers of the previous spots.
     numbers: Vec<u32>,
-    /// The numbers that targets had.
+    /// Previous number of each target.
     targets: Vec<Option<usize>>,
 }
 
 impl Geometry {
-    /// Goes over to other spots and targets; what is still as it was, if most is.
+    /// Replaces spots and targets; returns the parts that are still valid, if most are.
     fn keep(&mut self, field: &FastSum, spots: &Spots, targets: &[usize]) -> Option<Kept> {
         let columns = &spots.columns;
         let near = |now: usize, then: usize| (now as f64 - then as f64).abs() <= CHANGE * then as f64;
@@ -137,7 +137,7 @@ impl Geometry {
         kept
     }
 
-    /// True if it is that of the spots at themselves, and none of them has grown too large for it.
+    /// True if the geometry belongs to these spots and every radius is within its limit.
     pub(super) fn serves(&self, field: &FastSum, spots: &Spots) -> bool {
         let columns = &spots.columns;
         let place = |j: usize| [columns.x[j], columns.y[j]];
@@ -152,7 +152,7 @@ impl Geometry {
         effort.transforms += self.transforms();
     }
 
-    /// Of each mesh there, and of the finest back.
+    /// Number of mesh transforms: one per mesh forward, and one inverse of the finest.
     pub(super) fn transforms(&self) -> u64 {
         match self.fine.levels.len() {
             0 => 0,
@@ -167,21 +167,23 @@ impl Geometry {
         self.fine.add(Loads { moments: &sources.moments.value, factors: None }, work, values);
     }
 
-    /// The same, and the derivatives for [`Self::product`].
+    /// Displacements at the targets, and the derivatives for [`Self::product`].
     pub(super) fn linearise(&mut self, sources: &Sources, work: &mut Work<f64>, values: &mut [f64], effort: &mut Effort) {
         self.count(effort);
         self.pairs.par_iter_mut().zip(values.par_chunks_mut(TOGETHER)).for_each(|(pairs, values)| pairs.linearise(sources, values));
         self.fine.add(Loads { moments: &sources.moments.value, factors: None }, work, values);
     }
 
-    /// Derivatives times a vector, the factors of the loads, with the digits of displacements but for near pairs, whose derivatives have seven.
+    /// Product of the derivatives with the load factors, on the fine meshes.
+    ///
+    /// Its precision is that of displacements, except for near pairs, whose derivatives have seven digits.
     pub(super) fn fine_product(&self, loads: Loads<'_>, work: &mut Work<f64>, values: &mut [f64]) {
         let Some(x) = loads.factors else { return };
         self.pairs.par_iter().zip(values.par_chunks_mut(TOGETHER)).for_each(|(pairs, values)| pairs.product(x, values));
         self.fine.add(loads, work, values);
     }
 
-    /// The same with the digits that a linear solve needs.
+    /// Product of the derivatives with the load factors, with the precision of a linear solve.
     pub(super) fn product(&self, loads: Loads<'_>, work: &mut Work<f32>, values: &mut [f64]) {
         let Some(x) = loads.factors else { return };
         self.pairs.par_iter().zip(values.par_chunks_mut(TOGETHER)).for_each(|(pairs, values)| pairs.product(x, values));
@@ -189,7 +191,7 @@ impl Geometry {
     }
 }
 
-/// Sources on their meshes and readers there, for displacements or for their derivatives.
+/// Weights of sources and targets on the meshes, for displacements or for derivatives.
 #[derive(Debug, Clone)]
 struct Meshes<T, const W: usize, const O: usize> {
     levels: Vec<Level<T, W, O>>,
@@ -203,7 +205,9 @@ impl<T, const W: usize, const O: usize> Default for Meshes<T, W, O> {
 }
 
 impl<T: Real, const W: usize, const O: usize> Meshes<T, W, O> {
-    /// Of sources by their plans, the finest first, on one of the `meshes` of these, at targets; all places in units of the side.
+    /// Weights of sources by their plans, the finest first, and of targets, in units of the side.
+    ///
+    /// `mesh` selects one of the meshes of a plan.
     fn new(levels: &[(Arc<Plan>, Vec<usize>)], mesh: impl Fn(&Plan) -> &Arc<Mesh<T>>, sources: &[[f64; 2]], targets: &[[f64; 2]]) -> Self {
         let of = |(plan, members): &(Arc<Plan>, Vec<usize>)| {
             let mesh = mesh(plan).clone();

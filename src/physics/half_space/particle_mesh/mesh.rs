@@ -1,4 +1,4 @@
-//! The smooth far field on meshes: sources are spread, waves are weighted, and the field is read at the targets.
+//! Smooth far field on meshes: spread the sources, multiply in Fourier space, interpolate at the targets.
 
 use super::plan::{LAPLACIANS, Mesh, Real};
 use crate::physics::half_space::ewald::ORDERS;
@@ -6,24 +6,25 @@ use multiversion::multiversion;
 use rustfft::num_complex::Complex;
 use std::sync::Arc;
 
-/// Points of a row of a mesh before its first: a spline of so many points reaches beyond the period on both sides.
+/// Mesh points in a row before the first: a spline of this width extends beyond the period on both sides.
 const fn before(width: usize) -> usize {
     width / 2 - 1
 }
 
-/// Where a place lies on a mesh along one direction: the first point that its B-spline of order `W` reaches, the values of that at the points, and its
-/// derivatives of even order, `O` in all.
+/// B-spline weights of order `W` along one direction.
+///
+/// First mesh point, the values at the points, and the derivatives of even order, `O` in all.
 #[derive(Debug, Clone, Copy)]
 struct Spline<T, const W: usize, const O: usize> {
     base: usize,
     all: [[T; W]; O],
 }
 
-/// The same along both directions.
+/// B-spline weights along both directions.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Splines<T, const W: usize, const O: usize>([Spline<T, W, O>; 2]);
 
-/// Places in units of the side, on a mesh.
+/// B-spline weights of points, in units of the side, on a mesh.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
 pub(super) fn splines<T: Real, const W: usize, const O: usize>(places: &[[f64; 2]], mesh: usize) -> Vec<Splines<T, W, O>> {
     places.iter().map(|place| Splines([spline(place[0], mesh), spline(place[1], mesh)])).collect()
@@ -76,7 +77,7 @@ fn shifted<const W: usize>(weights: &[f64; W], by: usize) -> [f64; W] {
     moved
 }
 
-/// A target on a mesh.
+/// Interpolation weights of a target on a mesh.
 #[derive(Debug, Clone)]
 pub(super) struct Reader<T, const W: usize> {
     base: [usize; 2],
@@ -90,7 +91,7 @@ impl<T: Real, const W: usize> Reader<T, W> {
     }
 }
 
-/// Work space of the transforms: used again and again, and no part of any result.
+/// Work space of the transforms; it carries no results between calls.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Work<T> {
     points: Vec<T>,
@@ -100,20 +101,22 @@ pub(super) struct Work<T> {
     scratch: Vec<Complex<T>>,
 }
 
-/// A mesh and its sources.
+/// A mesh with its sources.
 pub(super) type Level<T, const W: usize, const O: usize> = (Arc<Mesh<T>>, Placed<T, W, O>);
 
-/// Numbers of sources, and where they lie.
+/// Numbers of sources, and their spline weights.
 pub(super) type Placed<T, const W: usize, const O: usize> = (Vec<usize>, Vec<Splines<T, W, O>>);
 
-/// What all sources have: their moments, and how much each counts, or once.
+/// Moments of all sources, and an optional factor for each.
 #[derive(Clone, Copy)]
 pub(super) struct Loads<'a> {
     pub(super) moments: &'a [[f64; ORDERS]],
     pub(super) factors: Option<&'a [f64]>,
 }
 
-/// The field of all sources on the finest mesh, which is left in the work space for [`read`]. Sources of each mesh, the finest first.
+/// Field of all sources on the finest mesh, left in the work space for [`read`].
+///
+/// `levels` holds the sources of each mesh, the finest first.
 pub(super) fn transform<T: Real, const W: usize, const O: usize>(levels: &[Level<T, W, O>], loads: Loads<'_>, work: &mut Work<T>) {
     let Some((finest, _)) = levels.first() else { return };
     let n = finest.size;
@@ -126,7 +129,7 @@ pub(super) fn transform<T: Real, const W: usize, const O: usize>(levels: &[Level
                 *value = *value * *wave;
             }
         } else {
-            // The waves of a coarser mesh are the lowest of the finest.
+            // The Fourier modes of a coarser mesh are the lowest modes of the finest.
             let m = mesh.size;
             for ky in 0..m / 2 {
                 for kx in (0..m / 2).chain(m / 2 + 1..m) {
@@ -150,7 +153,7 @@ pub(super) fn transform<T: Real, const W: usize, const O: usize>(levels: &[Level
     let stride = n + W - 1;
     work.points.resize(stride * stride, T::default());
     for (i, line) in work.lines.chunks_mut(half).enumerate() {
-        // Real by symmetry, but for rounding.
+        // Real by symmetry, up to rounding.
         line[0].im = T::default();
         line[half - 1].im = T::default();
         let row = &mut work.points[(i + before(W)) * stride..][..stride];
@@ -165,7 +168,7 @@ pub(super) fn transform<T: Real, const W: usize, const O: usize>(levels: &[Level
     work.points.copy_within(before(W) * stride..(W - 1) * stride, (before(W) + n) * stride);
 }
 
-/// The waves of the sources of one mesh, by ky then kx, into `work.turned`.
+/// Fourier modes of the sources of one mesh, by ky then kx, into `work.turned`.
 fn forward<T: Real, const W: usize, const O: usize>(
     mesh: &Mesh<T>,
     (spots, sources): &Placed<T, W, O>,
@@ -178,7 +181,7 @@ fn forward<T: Real, const W: usize, const O: usize>(
     work.points.clear();
     work.points.resize(stride * stride, T::default());
     spread(spots, sources, loads, n, &mut work.points);
-    // What was spread beyond the period belongs to its other side.
+    // Wrap the points beyond the period to the other side.
     for i in 0..stride {
         let row = &mut work.points[i * stride..(i + 1) * stride];
         for k in 0..before(W) {
@@ -209,7 +212,7 @@ fn forward<T: Real, const W: usize, const O: usize>(
     mesh.columns.process_with_scratch(&mut work.turned, &mut work.scratch);
 }
 
-/// The rows of `from` become the columns of `to`, block by block.
+/// Transposes `from` into `to`, block by block.
 fn turn<T: Copy>(from: &[T], to: &mut [T], rows: usize, columns: usize) {
     const BLOCK: usize = 16;
     for i in (0..rows).step_by(BLOCK) {
@@ -223,7 +226,7 @@ fn turn<T: Copy>(from: &[T], to: &mut [T], rows: usize, columns: usize) {
     }
 }
 
-/// Adds each source to the points: `Σ_m c_m ∇^2m δ/[(2m−1)!!]²`, the Laplacian taken of its spline.
+/// Spreads each source: `Σ_m c_m ∇^2m δ/[(2m−1)!!]²`, with the Laplacian of its spline.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
 fn spread<T: Real, const W: usize, const O: usize>(
     spots: &[usize],
@@ -269,7 +272,7 @@ fn spread<T: Real, const W: usize, const O: usize>(
     }
 }
 
-/// Adds the field in the work space at the targets to `values`.
+/// Adds the field in the work space, interpolated at the targets, to `values`.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
 pub(super) fn read<T: Real, const W: usize>(readers: &[Reader<T, W>], mesh: usize, work: &Work<T>, values: &mut [f64]) {
     let stride = mesh + W - 1;

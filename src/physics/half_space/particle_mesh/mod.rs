@@ -1,15 +1,18 @@
-//! The same field as the direct sum's in n log n: near pairs exactly, the smooth rest by a mesh.
+//! Fast sum in n log n: near pairs exactly, the smooth far field on a mesh.
 //!
-//! Ewald splitting (Darden, York & Pedersen, J. Chem. Phys. 98:10089, 1993; Essmann et al., 103:8577, 1995) of a field that is, from afar,
-//! `Σ_m c_m/r^(2m+1)`, m = 0 … 3 ([`super::multipole`]). As `∇^2m (1/r) = [(2m−1)!!]²/r^(2m+1)` in the plane, the smooth field of a spot is
-//! `Σ_m c_m ∇^2m(erf(αr)/r)/[(2m−1)!!]²`: one kernel, whose sources are a spot's load and Laplacians of it. Within the reach `r_c` of a
-//! source its field is exact, less the smooth field of its nearest image; the smooth fields of all sources and images come from a mesh.
+//! Ewald splitting (Darden, York & Pedersen, J. Chem. Phys. 98:10089, 1993; Essmann et al., 103:8577, 1995) of a field
+//! with the far-field expansion `Σ_m c_m/r^(2m+1)`, m = 0 … 3 ([`super::multipole`]).
+//! As `∇^2m (1/r) = [(2m−1)!!]²/r^(2m+1)` in the plane, the smooth field of a spot is
+//! `Σ_m c_m ∇^2m(erf(αr)/r)/[(2m−1)!!]²`: one kernel, whose sources are a spot's load and Laplacians of it.
+//! Within the cutoff `r_c` of a source its field is exact, less the smooth field of its nearest image.
+//! The smooth fields of all sources and images come from a mesh.
 //!
-//! A spot must be small against its reach. So sources form groups by their radii: every group has twice the reach of the one before and
-//! a mesh half as fine, and one large spot costs one long list. What is too large for any mesh acts on all by its exact field.
+//! The radius of a spot must be small compared with its cutoff, so sources are grouped by radius.
+//! Each group has twice the cutoff of the previous one and a mesh half as fine, so one large spot adds only one long list.
+//! Spots too large for any mesh act on all targets by their exact field.
 //!
-//! An isolated square has no images: it lies in an empty one of [`ROOM`] times its side, and the mesh has of each source what falls off to nothing before
-//! the next image of it begins ([`plan`]).
+//! An isolated square has no images. It is embedded in an empty square of [`ROOM`] times its side.
+//! The smooth field of each source on the mesh is windowed to zero before the next image begins ([`plan`]).
 
 mod geometry;
 mod mesh;
@@ -33,10 +36,10 @@ use std::cell::RefCell;
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 use std::sync::{Arc, OnceLock};
 
-/// The longest reach, in sides: within it no image but the nearest can lie.
+/// Longest cutoff, in sides: only the nearest image lies within it.
 const LONGEST: f64 = 0.45;
 
-/// Reaches to choose from, each `1/√2` of the one before.
+/// Cutoffs to choose from, each `1/√2` of the one before.
 const REACHES: usize = 15;
 const REACH: [f64; REACHES] = {
     let mut all = [LONGEST; REACHES];
@@ -48,19 +51,23 @@ const REACH: [f64; REACHES] = {
     all
 };
 
-/// Sides of the empty square in which an isolated one lies.
+/// Side of the empty square around an isolated one, in units of the side.
 const ROOM: f64 = 3.0;
 
-/// The longest reach there, in sides of the empty square: between what the square needs of a field and its next image this falls off, and rises again.
+/// Longest cutoff for an isolated square, in units of the empty square's side.
+///
+/// The window falls to zero and rises again between the range that the square needs and the next image.
 const LONGEST_ALONE: f64 = 0.5 * (0.5 - 1.0 / ROOM);
 
-/// What is spent for one pair in a solution of some linearisations and the products that follow, in units of one point of a mesh in one transform.
+/// Cost of one pair in units of one mesh point in one transform.
+///
+/// It covers the linearisations of one solution and the products that follow.
 const PAIR_COST: f64 = 8.0;
 
-/// What the radii may grow by until pairs are found anew.
+/// Factor by which radii may grow before pairs are searched again.
 const MARGIN: f64 = 1.05;
 
-/// Near pairs and a mesh.
+/// Fast sum: near pairs and a mesh.
 #[derive(Debug, Clone)]
 pub struct FastSum {
     measure: Measure,
@@ -68,14 +75,15 @@ pub struct FastSum {
     /// `1/(πE*)` \[1/Pa\].
     compliance: f64,
     accuracy: Accuracy,
-    /// What has been made, from the longest reach to the shortest.
+    /// Plans made so far, from the longest cutoff to the shortest.
     plans: [OnceLock<Arc<Plan>>; REACHES],
 }
 
 impl FastSum {
-    /// Asperities at `positions` \[m\] on the square of side `length_m`; every displacement is right to `tolerance` times the
-    /// greatest one. The load of a spot must be the one of its radii by Eq 1; of the
-    /// slips only that of Eq 8 is read.
+    /// Asperities at `positions` \[m\] on the square of side `length_m`.
+    ///
+    /// The error of every displacement is at most `tolerance` times the largest one.
+    /// The load of a spot must follow from its radius by Eq 1. Of `slips` only Eq 8 is used.
     #[must_use]
     pub fn new(
         positions: Vec<[f64; 2]>,
@@ -99,7 +107,7 @@ impl FastSum {
         }
     }
 
-    /// Adds a place \[m\], whose number follows the last one.
+    /// Adds an asperity at `place` \[m\]; it gets the next number.
     pub(crate) fn add(&mut self, place: [f64; 2]) {
         self.order.add(place);
     }
@@ -108,13 +116,13 @@ impl FastSum {
         self.plans[step].get_or_init(|| Arc::new(Plan::new(self.accuracy, REACH[step], self.measure.boundary))).clone()
     }
 
-    /// The shortest of the reaches that a spot of radius `a` \[m\] may have, or nothing if it is too large for all.
+    /// Index of the shortest cutoff allowed for a spot of radius `a` \[m\]; none if the spot is too large for all.
     fn shortest(&self, a: f64) -> Option<usize> {
         let least = if self.measure.kind == Kind::Spots { a / (self.accuracy.girth * self.measure.length) } else { 0.0 };
         REACH.iter().rposition(|reach| *reach >= least).filter(|step| *step >= self.longest())
     }
 
-    /// The longest of the reaches.
+    /// Index of the longest cutoff.
     fn longest(&self) -> usize {
         match self.measure.boundary {
             Boundary::Periodic => 0,
@@ -122,13 +130,15 @@ impl FastSum {
         }
     }
 
-    /// The longest of the reaches `finest`, `finest` − 2, … that is no shorter than `shortest`, if there is one.
+    /// Longest of the cutoffs `finest`, `finest` − 2, … that is no shorter than `shortest`, if any.
     fn level(&self, finest: usize, shortest: usize) -> Option<usize> {
         let step = if finest <= shortest { Some(finest) } else { (shortest + 1 - (finest - shortest) % 2).checked_sub(1) };
         step.filter(|step| *step >= self.longest())
     }
 
-    /// The finest reach that costs least, by the shortest ones that the spots may have, where these lie and the number of targets.
+    /// Index of the finest cutoff with the lowest estimated cost.
+    ///
+    /// The estimate uses the shortest cutoff of each spot, their positions and the number of targets.
     fn finest(&self, shortest: &[Option<usize>], columns: &SpotColumns, targets: usize) -> usize {
         let crowds = crowds(columns, self.measure.length);
         let mut spots = [0usize; REACHES];
@@ -156,7 +166,7 @@ impl FastSum {
         all.min_by(|(_, a), (_, b)| a.total_cmp(b)).map_or(REACHES - 1, |(step, _)| step)
     }
 
-    /// The spots as sources, by exact fields and by moments.
+    /// Sources of the exact fields and of the moments.
     fn sources(&self, spots: &Spots) -> Sources {
         let columns = &spots.columns;
         let shape = |j: usize| [columns.a[j], columns.root_a[j], columns.inverse_root_a[j], columns.inverse_radius[j]];
@@ -173,12 +183,12 @@ impl FastSum {
     }
 }
 
-/// How many times as many spots lie near one of them as if they were spread evenly, within each of the reaches.
+/// Clustering: mean number of spots near a spot relative to a uniform distribution, for each cutoff.
 fn crowds(columns: &SpotColumns, length: f64) -> [f64; REACHES] {
     let n = columns.len();
     let mut counts = Vec::new();
     std::array::from_fn(|step| {
-        // No more cells than spots: within less there are few in any case.
+        // At most as many cells as spots; smaller cells hold few spots in any case.
         let cells = ((1.0 / REACH[step]) as usize).min((n as f64).sqrt() as usize).max(1);
         counts.clear();
         counts.resize(cells * cells, 0u32);
@@ -284,7 +294,7 @@ impl Interaction for FastSum {
 #[derive(Debug, Clone, Default)]
 pub(super) struct Sparse {
     geometry: Geometry,
-    /// Where each of the spots stood among those that were given; all but `own` is in their order.
+    /// Original position of each spot; all fields but `own` are in Z-order.
     from: Vec<usize>,
     /// Derivatives of the moments to the radii.
     slopes: Vec<[f64; ORDERS]>,
@@ -311,7 +321,7 @@ impl Sparse {
         outward(&self.from, &rough.y, y);
     }
 
-    /// The same with more digits.
+    /// Product with higher precision.
     pub(super) fn fine_product(&mut self, x: &[f64], y: &mut [f64]) {
         let rough = self.rough.get_mut();
         inward(&self.from, x, &mut rough.x);

@@ -1,4 +1,4 @@
-//! The near field: pairs within a reach, found by cells, exact, less what the mesh has of them.
+//! Near field: pairs within a cutoff, found by cells; exact field less the smooth field on the mesh.
 
 use super::plan::Plan;
 use crate::model::{Boundary, Interaction as Kind};
@@ -7,32 +7,33 @@ use crate::physics::half_space::spot_field::SpotColumns;
 use multiversion::multiversion;
 use std::sync::Arc;
 
-/// What the exact fields of a group of sources are relative to.
+/// Complement of the exact fields of a group of sources.
 #[derive(Debug, Clone)]
 pub(super) enum Rest {
-    /// Within the reach of a plan; its mesh does the rest.
+    /// Exact fields act within the cutoff of a plan; its mesh supplies the rest.
     Mesh(Arc<Plan>),
-    /// Everywhere, with the sums over images where there are any: for spots too large for any reach.
+    /// Exact fields act everywhere, with image sums if periodic: for spots too large for any cutoff.
     Images,
 }
 
-/// Sources of one group, by cells of the square.
+/// Sources of one group, sorted by cells of the square.
 #[derive(Debug)]
 pub(super) struct Group {
     rest: Rest,
-    /// Cells on a side, and how many cells the reach spans.
+    /// Cells on a side, and number of cells that the cutoff spans.
     cells: usize,
     span: usize,
-    /// First source of each cell, and one past the last of all.
+    /// First source of each cell, and the total number of sources.
     starts: Vec<usize>,
-    /// Spot numbers by cells, and where they are.
+    /// Spot numbers by cell, and their positions.
     pub(super) spots: Vec<usize>,
     x: Vec<f64>,
     y: Vec<f64>,
 }
 
-/// How fields are measured: the kind, what surrounds the square, `sqrt(2πΔγ/E*)` \[m^½\], the factor of `r²/R` inside a spot and the side \[m\], of
-/// the room where the square is isolated.
+/// Parameters of the field: interaction, boundary, `sqrt(2πΔγ/E*)` \[m^½\], factor of `r²/R` inside a spot, side \[m\].
+///
+/// For an isolated square the side is that of the surrounding empty square.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Measure {
     pub(super) kind: Kind,
@@ -43,7 +44,7 @@ pub(super) struct Measure {
 }
 
 impl Measure {
-    /// The sums over all images but the nearest, at a place in units of the side from it.
+    /// Sums over all images but the nearest, at a distance in units of the side.
     pub(super) fn images(self, dx: f64, dy: f64) -> [f64; ORDERS] {
         match self.boundary {
             Boundary::Periodic => IMAGES.sums(dx, dy),
@@ -52,7 +53,7 @@ impl Measure {
     }
 }
 
-/// Sources that were found near a target, and the squares of their distances \[m²\].
+/// Sources near a target, and the squares of their distances \[m²\].
 #[derive(Debug, Default)]
 pub(super) struct Found {
     pub(super) numbers: Vec<usize>,
@@ -66,7 +67,7 @@ impl Group {
             Rest::Mesh(plan) => plan.reach,
             Rest::Images => 1.0,
         };
-        // Three cells to the reach; no more cells than sources.
+        // Three cells per cutoff, but no more cells than sources.
         let cells = ((3.0 / reach) as usize).min((members.len() as f64).sqrt().ceil() as usize).max(1);
         let cell = |j: usize| cell_of(columns.x[j], length, cells) * cells + cell_of(columns.y[j], length, cells);
         let mut starts = vec![0; cells * cells + 1];
@@ -94,7 +95,7 @@ impl Group {
         }
     }
 
-    /// The sources near the place `[x, y]` \[m\].
+    /// Finds the sources near the point `[x, y]` \[m\].
     pub(super) fn find(&self, measure: Measure, place: [f64; 2], found: &mut Found) {
         found.numbers.clear();
         found.r2.clear();
@@ -125,7 +126,7 @@ impl Group {
         }
     }
 
-    /// What the powers of the distance to a source are to be taken with: the mesh has so much of them, or all other images are so much.
+    /// Sum of powers of distance to combine with the moments: minus the mesh field, or the sum over other images.
     #[inline(always)]
     pub(super) fn rest_at(&self, measure: Measure, place: [f64; 2], number: usize, square: f64) -> [f64; ORDERS] {
         match &self.rest {
@@ -151,7 +152,7 @@ fn cell_of(coordinate: f64, length: f64, cells: usize) -> usize {
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
 fn search(x: &[f64], y: &[f64], from: usize, length: f64, place: [f64; 2], reach2: f64, found: &mut Vec<usize>, squares: &mut Vec<f64>) {
     let start = found.len();
-    // All are written and the count goes on where one is near: no branch to be guessed.
+    // Write every candidate and advance the count only for near ones: no unpredictable branch.
     found.resize(start + x.len(), 0);
     squares.resize(start + x.len(), 0.0);
     let (places, distances) = (&mut found[start..], &mut squares[start..]);

@@ -1,20 +1,21 @@
-//! The order in which places are kept: what lies together stands together, so that what a target wants of its sources is at hand. With a million
-//! spots in any other order, a sum waits for the memory seven times as long as it counts.
+//! Z-order of positions: neighbouring points are stored together, for memory locality.
+//!
+//! With a million spots in any other order, a sum waits for memory seven times as long as it computes.
 
 use crate::physics::half_space::Spots;
 
 /// Asperities in the order of the Z-curve (Morton 1966) through the square.
 #[derive(Debug, Clone)]
 pub(super) struct Order {
-    /// Places in order \[m\].
+    /// Positions in Z-order \[m\].
     pub(super) positions: Vec<[f64; 2]>,
-    /// Of each asperity its place in the order.
+    /// Rank of each asperity in the order.
     ranks: Vec<u32>,
     length: f64,
 }
 
 impl Order {
-    /// Of places \[m\] on the periodic square of side `length` \[m\].
+    /// Sorts positions \[m\] on the periodic square of side `length` \[m\].
     pub(super) fn new(given: Vec<[f64; 2]>, length: f64) -> Self {
         let mut numbers: Vec<u32> = (0..given.len() as u32).collect();
         numbers.sort_by_cached_key(|i| (along_the_curve(given[*i as usize], length), *i));
@@ -25,47 +26,47 @@ impl Order {
         Self { positions: numbers.iter().map(|i| given[*i as usize]).collect(), ranks, length }
     }
 
-    /// Adds a place \[m\], whose number follows the last one.
+    /// Adds an asperity at `place` \[m\]; it gets the next number.
     pub(super) fn add(&mut self, place: [f64; 2]) {
         let mut given: Vec<[f64; 2]> = self.ranks.iter().map(|rank| self.positions[*rank as usize]).collect();
         given.push(place);
         *self = Self::new(given, self.length);
     }
 
-    /// Some asperities in order.
+    /// Ranks of the given asperities, sorted.
     pub(super) fn of(&self, numbers: &[usize]) -> Ordered {
         let mut pairs: Vec<(u32, u32)> = numbers.iter().enumerate().map(|(k, i)| (self.ranks[*i], k as u32)).collect();
         pairs.sort_unstable();
         Ordered { ranks: pairs.iter().map(|pair| pair.0 as usize).collect(), from: pairs.iter().map(|pair| pair.1 as usize).collect() }
     }
 
-    /// Spots in order, named by their ranks.
+    /// Spots in Z-order, identified by rank, and their original positions.
     pub(super) fn spots(&self, spots: &Spots) -> (Spots, Vec<usize>) {
         let Ordered { ranks, from } = self.of(&spots.index);
         (Spots { index: ranks, columns: spots.columns.in_order(&from) }, from)
     }
 }
 
-/// Asperities in order: their ranks, ascending, and where each stood among those that were given.
+/// Asperities in Z-order: their ranks, ascending, and their original positions in the list.
 pub(super) struct Ordered {
     pub(super) ranks: Vec<usize>,
     pub(super) from: Vec<usize>,
 }
 
-/// What is given, in order.
+/// Permutes values from the original order to Z-order.
 pub(super) fn inward(from: &[usize], given: &[f64], ordered: &mut Vec<f64>) {
     ordered.clear();
     ordered.extend(from.iter().map(|k| given[*k]));
 }
 
-/// What is in order, as it was given.
+/// Permutes values from Z-order to the original order.
 pub(super) fn outward(from: &[usize], ordered: &[f64], given: &mut [f64]) {
     for (k, value) in from.iter().zip(ordered) {
         given[*k] = *value;
     }
 }
 
-/// How far along the Z-curve a place is.
+/// Index of a point along the Z-curve.
 fn along_the_curve(place: [f64; 2], length: f64) -> u64 {
     let bits = place.map(|p| {
         let share = p / length;

@@ -1,6 +1,6 @@
-//! Near pairs: what of them depends on the positions alone is found once, and serves as long as the same spots are in contact.
+//! Near pairs: data that depend on the positions alone, reused while the same spots are in contact.
 //!
-//! A spot that is some radii away is felt by its moments alone, four numbers of the pair; only those nearer are summed by their exact fields.
+//! Beyond several radii a spot acts by its moments, four numbers per pair. Nearer spots act by their exact fields.
 
 use super::near::{Found, Group, Measure};
 use crate::physics::half_space::ewald::ORDERS;
@@ -8,10 +8,10 @@ use crate::physics::half_space::multipole::{Moments, product};
 use crate::physics::half_space::spot_field::{AWAY, LANES, field_at};
 use multiversion::multiversion;
 
-/// A source as an exact field wants it: a, √a, 1/√a and 1/R.
+/// Shape of a source for the exact field: a, √a, 1/√a and 1/R.
 pub(super) type Shape = [f64; 4];
 
-/// All sources, by their numbers.
+/// All sources, indexed by number.
 #[derive(Debug)]
 pub(super) struct Sources {
     pub(super) measure: Measure,
@@ -19,20 +19,20 @@ pub(super) struct Sources {
     pub(super) moments: Moments,
 }
 
-/// Targets that one thread takes at a time.
+/// Number of targets in one parallel chunk.
 pub(super) const TOGETHER: usize = 64;
 
-/// The new number of a source that is no longer what it was.
+/// Marks a source that is no longer valid.
 pub(super) const GONE: u32 = u32::MAX;
 
-/// A target, and its number when pairs were found last, if it was one.
+/// A target, and its number in the previous search, if any.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Target {
     pub(super) place: [f64; 2],
     pub(super) before: Option<usize>,
 }
 
-/// What was found before: pairs of so many targets by each, the new numbers of its sources, and the sources that are others than then.
+/// Result of the previous search: pairs by chunk, new numbers of the sources, and changed sources.
 #[derive(Clone, Copy)]
 pub(super) struct Known<'a> {
     pub(super) pairs: &'a [Pairs],
@@ -40,28 +40,31 @@ pub(super) struct Known<'a> {
     pub(super) changed: &'a [Group],
 }
 
-/// The near pairs of some targets. The entries of a target are its sources: first those that are felt by their exact fields, then those by moments.
+/// Near pairs of a chunk of targets.
+///
+/// The entries of a target are its sources: first those with exact fields, then those with moments.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Pairs {
-    /// Where the entries of each target begin, and how many exact ones there are before; one past the last of both.
+    /// First entry of each target, and number of exact entries before it; then the totals.
     starts: Vec<usize>,
     exact: Vec<usize>,
-    /// The source of each entry, and the derivative to its radius as it was taken last.
+    /// Source of each entry, and the last computed derivative to its radius.
     spots: Vec<u32>,
     slopes: Vec<f32>,
-    /// Of exact ones the distance, its inverse, and what the powers of it are to be taken with: what the mesh has of them taken off.
+    /// Exact entries: distance, its inverse, and factors of the moments that subtract the mesh field.
     r: Vec<f64>,
     inverse_r: Vec<f64>,
     rest: Vec<[f64; ORDERS]>,
-    /// Of the others the factors of the moments, and what the first lacks for its digits: the higher ones are worth a hundredth and less.
+    /// Moment entries: factors of the moments, and the rounding residual of the first one.
+    /// The higher orders contribute a hundredth or less.
     kernel: Vec<[f32; ORDERS]>,
     low: Vec<f32>,
-    /// Sources of one target by moments, until the exact ones have been entered.
+    /// Moment entries of the current target, appended after the exact ones.
     waiting: Vec<u32>,
 }
 
 impl Pairs {
-    /// Enters the near pairs of some targets anew. A source is felt by its moments from `aloof` \[m\] on, by its number.
+    /// Searches the near pairs of targets. Source k acts by its moments from `aloof[k]` \[m\] on.
     pub(super) fn find(&mut self, targets: impl Iterator<Item = Target>, known: Known<'_>, all: &[Group], measure: Measure, aloof: &[f64]) {
         self.starts.clear();
         self.exact.clear();
@@ -90,7 +93,7 @@ impl Pairs {
         self.exact.push(self.r.len());
     }
 
-    /// Takes over the entries of a target whose sources are still what they were.
+    /// Copies the entries of a target whose sources are still valid.
     fn take(&mut self, known: Known<'_>, target: usize) {
         let (old, k) = (&known.pairs[target / TOGETHER], target % TOGETHER);
         let exact = old.exact[k]..old.exact[k + 1];
@@ -112,7 +115,7 @@ impl Pairs {
         }
     }
 
-    /// Enters a source that is felt by its exact field.
+    /// Adds a source with its exact field.
     #[inline(always)]
     fn push_exact(&mut self, spot: u32, (r, inverse_r): (f64, f64), rest: [f64; ORDERS]) {
         self.spots.push(spot);
@@ -121,7 +124,7 @@ impl Pairs {
         self.rest.push(rest);
     }
 
-    /// Enters a source that is felt by its moments, behind the exact ones.
+    /// Adds a source with its moments, after the exact ones.
     #[inline(always)]
     fn push_far(&mut self, spot: u32, kernel: [f32; ORDERS], low: f32) {
         self.waiting.push(spot);
@@ -129,7 +132,7 @@ impl Pairs {
         self.low.push(low);
     }
 
-    /// Makes room for so many entries of one target.
+    /// Reserves memory for the entries of one target.
     fn reserve(&mut self, count: usize) {
         self.spots.reserve(count);
         self.r.reserve(count);
@@ -150,7 +153,7 @@ impl Pairs {
         evaluate::<false>(self, sources, values, &mut []);
     }
 
-    /// The same, and the derivatives of all entries.
+    /// Displacements at the targets, and the derivatives of all entries.
     pub(super) fn linearise(&mut self, sources: &Sources, values: &mut [f64]) {
         let mut slopes = std::mem::take(&mut self.slopes);
         slopes.resize(self.spots.len(), 0.0);
@@ -158,13 +161,13 @@ impl Pairs {
         self.slopes = slopes;
     }
 
-    /// The derivatives times a vector, at the targets.
+    /// Product of the derivatives with a vector, at the targets.
     pub(super) fn product(&self, x: &[f64], y: &mut [f64]) {
         multiply(&self.starts, &self.spots, &self.slopes, x, y);
     }
 }
 
-/// Enters the sources that were found near a target.
+/// Adds the sources found near a target.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
 fn enter(
     pairs: &mut Pairs,
@@ -177,12 +180,12 @@ fn enter(
 ) {
     let length = measure.length;
     pairs.reserve(found.numbers.len());
-    // All at once, before any branch is to be guessed.
+    // All factors first, in a loop without branches.
     rests.clear();
     rests.extend(found.numbers.iter().zip(&found.r2).map(|(number, square)| group.rest_at(measure, place, *number, *square)));
     for ((&number, &square), &rest) in found.numbers.iter().zip(&found.r2).zip(&*rests) {
         let spot = group.spots[number];
-        // A spot does not act on its own centre: its field is felt there as from far away, and what the mesh has of it is taken off with all digits.
+        // A spot does not act on its own centre: its distance is set to `AWAY`, and the mesh field is subtracted in full precision.
         let r = if square > 0.0 { square.sqrt() } else { AWAY };
         if r < aloof[spot] || square == 0.0 {
             pairs.push_exact(spot as u32, (r, 1.0 / r), rest);

@@ -1,4 +1,6 @@
-//! What depends on the reach of the near field alone: the splitting, the smooth field by radius, the mesh and its waves.
+//! Plans: the part of the fast sum that depends only on the near-field cutoff.
+//!
+//! A plan holds the Ewald splitting, the smooth field by radius, and the meshes with their Fourier modes.
 
 use super::ROOM;
 use crate::model::Boundary;
@@ -11,7 +13,7 @@ use std::f64::consts::{PI, TAU};
 use std::fmt;
 use std::sync::Arc;
 
-/// What a mesh is made of: doubles where displacements are wanted, half as many digits where their derivatives are.
+/// Number type of a mesh: double precision for displacements, single for derivatives.
 pub(super) trait Real: FftNum + Float + Default {
     fn of(value: f64) -> Self;
     fn long(self) -> f64;
@@ -37,43 +39,46 @@ impl Real for f32 {
     }
 }
 
-/// Points of the mesh on which a source is spread along each direction, the order of its B-spline: where displacements are wanted, and where their
-/// derivatives are.
+/// Order of the B-splines, equal to the number of mesh points per direction, for displacements and for derivatives.
 pub(super) const WIDTH: usize = 16;
 pub(super) const ROUGH_WIDTH: usize = 8;
 
-/// Orders of the far field that a mesh has of the derivatives, and their error, of the largest one: linear systems are solved no better.
+/// Orders of the far field on the mesh of derivatives, and its error relative to the largest derivative.
+///
+/// Linear systems are solved no more accurately than this.
 pub(super) const ROUGH_ORDERS: usize = 2;
 const ROUGH: f64 = 1e-5;
 
-/// `[(2m − 1)!!]²`: `∇^2m (1/r)` is so much times `1/r^(2m+1)` in the plane.
+/// `[(2m − 1)!!]²`: `∇^2m (1/r)` is this factor times `1/r^(2m+1)` in the plane.
 pub(super) const LAPLACIANS: [f64; ORDERS] = [1.0, 1.0, 9.0, 225.0];
 
-/// Pieces of the smooth field between its centre and its reach, and terms of each: the argument of the exponentials in it changes by 0.4 within a
-/// piece, so that one term more is worth a factor of some 70.
+/// Pieces of the smooth field between its centre and the cutoff, and terms of each.
+///
+/// The argument of the exponentials changes by 0.4 within a piece, so one more term reduces the error by a factor of about 70.
 const PIECES: usize = 64;
 const TERMS: usize = 7;
 
-/// What a tolerance asks of the splitting.
+/// Splitting parameters that meet a tolerance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Accuracy {
-    /// Splitting parameter times reach, `α r_c`: beyond, `erfc(αr)` is no part of the field.
+    /// Splitting parameter times cutoff, `α r_c`: beyond, `erfc(αr)` is neglected.
     edge: f64,
-    /// Highest wave of the mesh over `2α`: where displacements are wanted, and where their derivatives are.
+    /// Highest wavenumber of the mesh over `2α`, for displacements and for derivatives.
     waves: [f64; 2],
-    /// Greatest radius of a spot over its reach, so that four orders of its far field are enough beyond.
+    /// Maximum contact radius over cutoff for which four orders of the far field are enough beyond the cutoff.
     pub(super) girth: f64,
-    /// Distance over radius from which on a spot's moments are its field.
+    /// Distance over radius from which the moments represent a spot's field.
     pub(super) aloof: f64,
 }
 
 impl Accuracy {
-    /// For displacements that are right to `tolerance` times the largest of them.
+    /// Parameters for displacements with errors up to `tolerance` times the largest one.
     ///
-    /// Beyond the reach `erfc(αr)` of a field is left out. A B-spline of order p takes a wave at the share t of the mesh's highest for its
-    /// alias with the weight `(t/(2 − t))^p`, and `e^(−(q/2α)²)` of a wave is there to be taken. Beyond `r = r_c` the far field lacks
-    /// `0.03 (a/r)⁸`. Each of the three is bound to a field at the reach, which is a small part of the greatest displacement: what comes of
-    /// them is below a fifth of the tolerance in every case measured, and a thirtieth in most.
+    /// Three errors contribute. Beyond the cutoff, `erfc(αr)` of a field is neglected.
+    /// A B-spline of order p aliases a mode at the fraction t of the mesh's highest wavenumber with the weight `(t/(2 − t))^p`,
+    /// while the mode has the amplitude `e^(−(q/2α)²)`. Beyond `r = r_c` the far field lacks `0.03 (a/r)⁸`.
+    /// Each error is relative to a field at the cutoff, which is a small part of the largest displacement.
+    /// The measured total is below a fifth of the tolerance in every case, and a thirtieth in most.
     pub(super) fn of(tolerance: f64) -> Self {
         let tolerance = tolerance.clamp(1e-13, 1e-2);
         let mut edge = 1.0;
@@ -92,13 +97,13 @@ impl Accuracy {
             waves
         };
         let girth = (10.0 * tolerance).powf(0.125).min(0.2);
-        // The field of one spot there is a fourth of the greatest displacement, and less.
+        // The field of one spot there is at most a fourth of the largest displacement.
         let aloof = (0.03 / (4.0 * tolerance)).powf(0.125).max(3.0);
         Self { edge, waves: [waves(WIDTH, tolerance).max(edge), waves(ROUGH_WIDTH, ROUGH.max(tolerance))], girth, aloof }
     }
 }
 
-/// `∇^2m(erf(αr)/r)/[(2m−1)!!]²` for m = 0 … 3 within a reach: what the mesh has of a source, to be taken off its near field.
+/// `∇^2m(erf(αr)/r)/[(2m−1)!!]²` for m = 0 … 3 within a cutoff: the mesh field, subtracted from the near field.
 #[derive(Debug, Clone)]
 pub(super) struct Smooth {
     /// Polynomials in `2·fraction − 1`, highest power first, by pieces of equal `r²`.
@@ -113,7 +118,7 @@ impl Smooth {
                 let samples: Vec<_> = (0..TERMS)
                     .map(|k| smooth(alpha, reach * reach * (piece as f64 + 0.5 + 0.5 * angle(k).cos()) / PIECES as f64))
                     .collect();
-                // A Chebyshev series, then powers by Clenshaw's rule on polynomials.
+                // Chebyshev series, converted to powers by Clenshaw's recurrence on polynomials.
                 let (mut next, mut after) = ([[0.0; ORDERS]; TERMS], [[0.0; ORDERS]; TERMS]);
                 for n in (0..TERMS).rev() {
                     let scale = if n == 0 { 1.0 } else { 2.0 } / TERMS as f64;
@@ -136,7 +141,7 @@ impl Smooth {
         Self { pieces }
     }
 
-    /// At the square of the distance over that of the reach, below 1.
+    /// Value at `share`, the square of the distance over the cutoff, below 1.
     #[inline(always)]
     pub(super) fn at(&self, share: f64) -> [f64; ORDERS] {
         let place = share * PIECES as f64;
@@ -153,7 +158,9 @@ impl Smooth {
     }
 }
 
-/// With `erf(αr)/r = (2α/√π) ∫₀¹ e^(−v t²) dt`, `v = α²r²`, and `∇^2m e^(−βr²) = (−4β)^m m! L_m(βr²) e^(−βr²)` in the plane.
+/// Smooth field and its Laplacians, by `erf(αr)/r = (2α/√π) ∫₀¹ e^(−v t²) dt`, `v = α²r²`.
+///
+/// Uses `∇^2m e^(−βr²) = (−4β)^m m! L_m(βr²) e^(−βr²)` in the plane.
 fn smooth(alpha: f64, r2: f64) -> [f64; ORDERS] {
     /// Coefficients of `m! L_m`.
     const LAGUERRE: [[f64; ORDERS]; ORDERS] = [[1.0, 0.0, 0.0, 0.0], [1.0, -1.0, 0.0, 0.0], [2.0, -4.0, 1.0, 0.0], [6.0, -18.0, 9.0, -1.0]];
@@ -175,23 +182,23 @@ fn smooth(alpha: f64, r2: f64) -> [f64; ORDERS] {
     })
 }
 
-/// A near reach, and the meshes that do the rest. Lengths are in units of the side.
+/// A near-field cutoff and the meshes of the far field; lengths in units of the side.
 #[derive(Debug)]
 pub(super) struct Plan {
     pub(super) reach: f64,
     pub(super) smooth: Smooth,
-    /// For displacements, and for their derivatives.
+    /// Meshes for displacements and for derivatives.
     pub(super) fine: Arc<Mesh<f64>>,
     pub(super) rough: Arc<Mesh<f32>>,
 }
 
-/// A mesh and its waves.
+/// A mesh and its Fourier modes.
 pub(super) struct Mesh<T> {
     /// Points on a side.
     pub(super) size: usize,
-    /// The smooth field's waves over the spread of a source, by ky then kx.
+    /// Fourier modes of the smooth field divided by those of the spline, by ky then kx.
     pub(super) waves: Vec<T>,
-    /// One over the transform of the B-spline, of k = 0 … N − 1; 0 at the highest wave, which has no sign.
+    /// Inverse Fourier transform factors of the B-spline, k = 0 … N − 1; 0 at the Nyquist mode, which has no sign.
     pub(super) sharpen: Vec<T>,
     pub(super) rows: Arc<dyn RealToComplex<T>>,
     pub(super) rows_back: Arc<dyn ComplexToReal<T>>,
@@ -205,14 +212,14 @@ impl<T> fmt::Debug for Mesh<T> {
     }
 }
 
-/// Points that the finer mesh needs on a side for a reach.
+/// Points on a side of the finer mesh for a cutoff.
 pub(super) fn mesh_size(accuracy: Accuracy, reach: f64) -> usize {
     points(accuracy.edge / reach, accuracy.waves[0], WIDTH)
 }
 
-/// Points on a side for waves up to `waves` times 2α, and splines of so many points.
+/// Points on a side for wavenumbers up to `waves` times 2α, and splines of `width` points.
 fn points(alpha: f64, waves: f64, width: usize) -> usize {
-    // The highest wave is πN.
+    // The highest wavenumber is πN.
     let least = (2.0 * alpha * waves / PI).ceil() as usize;
     let smooth = |n: usize| {
         let mut left = n;
@@ -276,12 +283,14 @@ impl<T: Real> Mesh<T> {
     }
 }
 
-/// The wave that a mesh of `n` points has at its k-th place.
+/// Signed mode number at index `k` of a mesh of `n` points.
 fn wave(k: usize, n: usize) -> f64 {
     if 2 * k < n { k as f64 } else { k as f64 - n as f64 }
 }
 
-/// Of `erf(αr)/r` with all its images: `(2π/q) erfc(q/2α)`; at q = 0 what the near fields have of mean taken off. By ky, up to the highest, then kx.
+/// Fourier modes of `erf(αr)/r` with all its images: `(2π/q) erfc(q/2α)`.
+///
+/// At q = 0 the mode is minus the mean of the near fields. By ky, up to the highest, then kx.
 fn waves_of_all(n: usize, alpha: f64) -> Vec<f64> {
     let at = |ky: usize, kx: usize| {
         let q = TAU * wave(kx, n).hypot(ky as f64);
@@ -290,8 +299,10 @@ fn waves_of_all(n: usize, alpha: f64) -> Vec<f64> {
     (0..=n / 2).flat_map(|ky| (0..n).map(move |kx| at(ky, kx))).collect()
 }
 
-/// The same of `erf(αr)/r` alone, as far as an isolated square needs it. From there on it falls off as `erfc(αx)` does, along both directions, so that
-/// a mesh which has the one has the other; between two squares there is a reach for that, and one for the next image to rise.
+/// Fourier modes of `erf(αr)/r` alone, windowed beyond the range that an isolated square needs.
+///
+/// The window falls off as `erfc(αx)` along both directions, so a mesh that resolves the field resolves the window.
+/// The gap between two squares leaves one cutoff for the window to fall and one for the next image to rise.
 fn waves_of_one(n: usize, alpha: f64) -> Vec<f64> {
     let middle = 0.5 * (1.0 / ROOM + 0.5);
     let along = |k: usize| wave(k, n).abs() / n as f64;

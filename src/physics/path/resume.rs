@@ -1,0 +1,92 @@
+//! Checkpoints of a path, taken and resumed.
+
+use super::accuracy::Precision;
+use super::checkpoint::{Checkpoint, PathCheckpoint};
+use super::energy::EnergyLedger;
+use super::equilibrium_path::{EquilibriumPath, Frame};
+use super::predictor::Predictor;
+use super::step_control::StepControl;
+use crate::physics::PhysicsError;
+use crate::physics::contact::{Event, Problem, State};
+
+impl<'p> EquilibriumPath<'p> {
+    /// Resumes a path. The state need not be an equilibrium: the difference of the potential is charged to the last event, and the initial residual is not
+    /// recorded as predictor residual.
+    pub(crate) fn resume(problem: &'p Problem, from: PathCheckpoint) -> Result<Self, PhysicsError> {
+        let (approach, drift) = (from.state.approach_m, from.log.drift_m);
+        let (longest, scale) = from.lengths;
+        let mut predictor = Predictor::new(problem, from.state);
+        predictor.expect_totals(from.totals);
+        let steps = StepControl::new(from.sense, longest, from.halvings);
+        let mut path = Self::new(problem, predictor, Frame { sense: from.sense, scale }, steps);
+        path.solver.effort = from.effort;
+        path.energy = EnergyLedger::new(approach, from.events, from.balance).open(from.events < from.log.events.len());
+        (path.log, path.totals, path.chatter) = (from.log, from.totals, from.chatter);
+        path.chatter.grow(problem.len());
+        path.steps.limit_events(path.log.events.len(), problem.len());
+        match path.correct(approach, false, true, Precision::Exact) {
+            Ok(()) => {
+                path.log.drift_m = drift;
+                Ok(path)
+            }
+            Err(rejection) => Err(path.no_equilibrium(rejection)),
+        }
+    }
+
+    /// Ends here, at a global solve.
+    pub(crate) fn into_checkpoint(self) -> PathCheckpoint {
+        PathCheckpoint {
+            state: self.predictor.state,
+            sense: self.frame.sense,
+            lengths: (self.steps.longest(), self.frame.scale),
+            events: self.log.events.len(),
+            log: self.log,
+            totals: self.totals,
+            balance: self.energy.balance(),
+            halvings: self.steps.halvings(),
+            chatter: self.chatter,
+            effort: self.solver.effort,
+            known: None,
+        }
+    }
+
+    /// The present state, at a global solve.
+    pub(super) fn checkpoint(&self) -> Checkpoint {
+        Checkpoint {
+            predictor: self.predictor.clone(),
+            chatter: self.chatter.clone(),
+            totals: self.totals,
+            balance: self.energy.balance(),
+            log: self.log.clone_without_events(),
+            events: self.log.events.len(),
+            segments: self.log.segments.len(),
+        }
+    }
+
+    /// Goes back to a checkpoint.
+    pub(super) fn restore(&mut self, checkpoint: &Checkpoint) {
+        self.predictor.clone_from(&checkpoint.predictor);
+        self.chatter.clone_from(&checkpoint.chatter);
+        self.totals = checkpoint.totals;
+        self.log.restore(&checkpoint.log, checkpoint.events, checkpoint.segments);
+        self.energy = EnergyLedger::new(self.state().approach_m, self.log.events.len(), checkpoint.balance);
+        self.pending.clear();
+    }
+
+    /// The state before the last increment.
+    pub(crate) fn previous_state(&self) -> Option<&State> {
+        self.checkpoint.as_deref().map(Checkpoint::state)
+    }
+
+    /// Events of the last increment.
+    pub(crate) fn recent_events(&self) -> &[Event] {
+        &self.log.events[self.checkpoint.as_deref().map_or(0, Checkpoint::events)..]
+    }
+
+    /// Undoes the last increment.
+    pub(crate) fn undo_step(&mut self) {
+        if let Some(checkpoint) = self.checkpoint.take() {
+            self.restore(&checkpoint);
+        }
+    }
+}
