@@ -25,6 +25,7 @@ mod labels;
 mod losses;
 #[cfg(feature = "stats")]
 mod panels;
+mod profiles;
 #[cfg(feature = "stats")]
 mod python;
 #[cfg(feature = "stats")]
