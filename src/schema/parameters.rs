@@ -1,100 +1,9 @@
-//! Parameters of a case: column, symbol, axis label and value, each stated once.
+//! Parameters of a case, each stated once.
 
+use super::parameter::ParameterValue::{self, Number, Word};
+use super::parameter::{Parameter, parameter};
 use super::{Column, real, text};
-use crate::model::{Attraction, CaseParams, Choice, ElementParams, ModelParams, SurfaceParams};
-use ParameterValue::{Number, Word};
-
-/// Value of a parameter.
-#[derive(Debug, Clone, PartialEq)]
-pub enum ParameterValue {
-    /// Number in the unit of the column.
-    Number(f64),
-    /// Word.
-    Word(String),
-}
-
-/// Parameters of a case, with those that follow from its files.
-#[derive(Debug, Clone)]
-pub struct CaseFacts<'a> {
-    /// Parameters of the spec.
-    pub params: &'a CaseParams,
-    /// Label of the file of a measured surface.
-    pub surface_file: Option<String>,
-    /// Side of the square \[m\].
-    pub length_m: Option<f64>,
-    /// Root-mean-square height: target of a generated surface, value of a measured one \[m\].
-    pub rms_height_m: Option<f64>,
-    /// Grid points of boundary elements along a side.
-    pub element_points: Option<f64>,
-    /// Range ρ of the Morse law \[m\].
-    pub attraction_range_m: Option<f64>,
-}
-
-impl CaseFacts<'_> {
-    fn measured(&self) -> Option<&SurfaceParams> {
-        Some(&self.params.surface).filter(|surface| surface.is_measured())
-    }
-
-    fn generated(&self) -> Option<&SurfaceParams> {
-        Some(&self.params.surface).filter(|surface| !surface.is_measured())
-    }
-
-    fn asperities(&self) -> Option<&ModelParams> {
-        Some(&self.params.model).filter(|_| !self.params.by_elements())
-    }
-
-    fn elements(&self) -> Option<&ElementParams> {
-        Some(&self.params.boundary_elements).filter(|_| self.params.by_elements())
-    }
-
-    fn bonded(&self) -> Option<&ElementParams> {
-        self.elements().filter(|elements| elements.attraction == Attraction::Bonded)
-    }
-
-    /// Uncorrected equations in use, joined by `+`.
-    fn errata(&self) -> String {
-        self.params.model.as_printed.iter().map(|slip| slip.word()).collect::<Vec<_>>().join("+")
-    }
-
-    fn approach_step(&self) -> f64 {
-        self.elements().map_or(self.params.cycle.approach_step, |elements| elements.approach_step)
-    }
-}
-
-/// One parameter of a case.
-#[derive(Debug, Clone, Copy)]
-pub struct Parameter {
-    /// Column of the tables over realizations.
-    pub column: Column,
-    /// Symbol; a word if there is none.
-    pub symbol: &'static str,
-    /// Label of an axis, with the markup of the figures.
-    pub label: &'static str,
-    /// Place in the labels of cases, from 0.
-    pub rank: u8,
-    /// True if only one of the methods reads it: it varies if it differs between cases of one method.
-    pub of_method: bool,
-    /// Value in a case; nothing if the case has none.
-    pub get: fn(&CaseFacts<'_>) -> Option<ParameterValue>,
-}
-
-impl Parameter {
-    /// The parameter as one that only one of the methods reads.
-    const fn of_method(mut self) -> Self {
-        self.of_method = true;
-        self
-    }
-}
-
-/// A parameter with symbol and label that both methods read.
-const fn parameter(
-    column: Column,
-    [symbol, label]: [&'static str; 2],
-    rank: u8,
-    get: fn(&CaseFacts<'_>) -> Option<ParameterValue>,
-) -> Parameter {
-    Parameter { column, symbol, label, rank, of_method: false, get }
-}
+use crate::model::Choice;
 
 /// Number of parameters.
 const COUNT: usize = 26;
@@ -126,70 +35,231 @@ fn word(choice: impl Choice) -> ParameterValue {
 }
 
 const LIST: [Parameter; COUNT] = [
-    parameter(text("surface_file", "File of a measured surface, with enough of its path to be unique; null for a generated surface").or_null(), ["surface", "surface"], 0, |case| case.surface_file.clone().map(Word)),
-    parameter(text("surface_dataset", "Dataset in that file; null for the only one, and for a generated surface").or_null(), ["dataset", "dataset"], 1, |case| case.measured().map(|surface| &surface.dataset).filter(|name| !name.is_empty()).cloned().map(Word)),
-    parameter(text("detrend", "Levelling of a measured surface: \"mean\", \"plane\" or \"quadratic\" was subtracted; null for a generated surface")
-        .or_null(), ["detrend", "levelling"], 2, |case| case.measured().map(|surface| word(surface.detrend))),
-    parameter(real("hurst", "1", "Hurst exponent H; null for a measured surface").or_null().from("Eq 10"), ["H", "Hurst exponent H"], 4, |case| case.generated().map(|surface| Number(surface.hurst))),
-    parameter(real("magnification", "1", "Magnification ζ, longest over shortest wavelength; null for a measured surface").or_null().from("Eq 10"), ["ζ", "magnification ζ"], 3, |case| case.generated().map(|surface| Number(surface.magnification.into()))),
-    parameter(real("length_m", "m", "Side L of the square; null for a measured surface whose import failed").or_null().from("Eq 10"), ["L", "L [m]"], 6, |case| case.length_m.map(Number)),
-    parameter(real(
-        "rms_height_m",
-        "m",
-        "Rms height h_rms: target of a generated surface, or value of a measured one; null for a measured surface whose import failed",
-    )
-    .or_null(), ["h", "h_{rms} [m]"], 5, |case| case.rms_height_m.map(Number)),
-    parameter(real(
-        "points_per_shortest_wavelength",
-        "1",
-        "Grid points per shortest wavelength; for a measured surface, the S-filter cut-off in pixels",
-    )
-    .or_null(), ["n", "points per shortest wavelength"], 7, |case| Some(Number(case.params.surface.points_per_shortest_wavelength.into()))),
-    parameter(text(
-        "normalization",
-        "Rule for the rms height: \"sample\" (heights rescaled) or \"spectrum\" (integral of the spectrum); null for a measured surface",
-    )
-    .or_null(), ["normalization", "normalization"], 23, |case| case.generated().map(|surface| word(surface.normalization))),
-    parameter(text("amplitudes", "Fourier amplitudes: \"fixed\" or \"gaussian\"; null for a measured surface").or_null(), ["amplitudes", "amplitudes"], 24, |case| case.generated().map(|surface| word(surface.amplitudes))),
-    parameter(real("contact_modulus_pa", "Pa", "Reduced modulus E*, 1/E* = sum of (1 - ν²)/E over both bodies").from("Eq 1"), ["E*", "E^{*} [Pa]"], 8, |case| Some(Number(case.params.material.contact_modulus_pa))),
-    parameter(real("work_of_adhesion_j_m2", "J/m^2", "Work of adhesion Δγ").from("Eq 1"), ["Δγ", "Δγ [J/m^{2}]"], 9, |case| Some(Number(case.params.material.work_of_adhesion_j_m2))),
-    parameter(real("interaction_range_m", "m", "Range of attraction ε").from("Eq 3"), ["ε", "ε [m]"], 10, |case| Some(Number(case.params.material.interaction_range_m))),
-    parameter(text(
-        "interaction",
-        "Elastic interaction between contacts: \"spots\", \"point\" or \"none\"; null for boundary elements",
-    )
-    .or_null()
-    .from("Eqs 6-8"), ["interaction", "interaction"], 19, |case| case.asperities().map(|model| word(model.interaction))).of_method(),
-    parameter(text("boundary", "Boundary condition of the square: \"periodic\" or \"isolated\""), ["boundary", "boundary"], 20, |case| Some(word(case.params.model.boundary))).of_method(),
-    parameter(text("coalescence", "Coalescence rule: \"cover\" (absorption), \"merge\" (equal-area merging) or \"none\"; null for boundary elements")
+    parameter(
+        text("surface_file", "File of a measured surface, with enough of its path to be unique; null for a generated surface").or_null(),
+        ["surface", "surface"],
+        0,
+        |case| case.surface_file.clone().map(Word),
+    ),
+    parameter(
+        text("surface_dataset", "Dataset in that file; null for the only one, and for a generated surface").or_null(),
+        ["dataset", "dataset"],
+        1,
+        |case| case.measured().map(|surface| &surface.dataset).filter(|name| !name.is_empty()).cloned().map(Word),
+    ),
+    parameter(
+        text(
+            "detrend",
+            "Levelling of a measured surface: \"mean\", \"plane\" or \"quadratic\" was subtracted; null for a generated surface",
+        )
+        .or_null(),
+        ["detrend", "levelling"],
+        2,
+        |case| case.measured().map(|surface| word(surface.detrend)),
+    ),
+    parameter(
+        real("hurst", "1", "Hurst exponent H; null for a measured surface").or_null().from("Eq 10"),
+        ["H", "Hurst exponent H"],
+        4,
+        |case| case.generated().map(|surface| Number(surface.hurst)),
+    ),
+    parameter(
+        real(
+            "magnification",
+            "1",
+            "Magnification ζ, longest over shortest wavelength; null for a measured surface",
+        )
         .or_null()
-        .from("Eq 8"), ["coalescence", "coalescence"], 21, |case| case.asperities().map(|model| word(model.coalescence))).of_method(),
-    parameter(text(
-        "jump_in",
-        "Criterion for jump into contact: \"wu\" (at Wu's jump-in distance) or \"jkr\" (at zero penetration); null for boundary elements",
+        .from("Eq 10"),
+        ["ζ", "magnification ζ"],
+        3,
+        |case| case.generated().map(|surface| Number(surface.magnification.into())),
+    ),
+    parameter(
+        real("length_m", "m", "Side L of the square; null for a measured surface whose import failed").or_null().from("Eq 10"),
+        ["L", "L [m]"],
+        6,
+        |case| case.length_m.map(Number),
+    ),
+    parameter(
+        real(
+            "rms_height_m",
+            "m",
+            "Rms height h_rms: target of a generated surface, or value of a measured one; null for a measured surface whose import failed",
+        )
+        .or_null(),
+        ["h", "h_{rms} [m]"],
+        5,
+        |case| case.rms_height_m.map(Number),
+    ),
+    parameter(
+        real(
+            "points_per_shortest_wavelength",
+            "1",
+            "Grid points per shortest wavelength; for a measured surface, the S-filter cut-off in pixels",
+        )
+        .or_null(),
+        ["n", "points per shortest wavelength"],
+        7,
+        |case| Some(Number(case.params.surface.points_per_shortest_wavelength.into())),
+    ),
+    parameter(
+        text(
+            "normalization",
+            "Rule for the rms height: \"sample\" (heights rescaled) or \"spectrum\" (integral of the spectrum); null for a measured surface",
+        )
+        .or_null(),
+        ["normalization", "normalization"],
+        23,
+        |case| case.generated().map(|surface| word(surface.normalization)),
+    ),
+    parameter(
+        text("amplitudes", "Fourier amplitudes: \"fixed\" or \"gaussian\"; null for a measured surface").or_null(),
+        ["amplitudes", "amplitudes"],
+        24,
+        |case| case.generated().map(|surface| word(surface.amplitudes)),
+    ),
+    parameter(
+        real("contact_modulus_pa", "Pa", "Reduced modulus E*, 1/E* = sum of (1 - ν²)/E over both bodies").from("Eq 1"),
+        ["E*", "E^{*} [Pa]"],
+        8,
+        |case| Some(Number(case.params.material.contact_modulus_pa)),
+    ),
+    parameter(
+        real("work_of_adhesion_j_m2", "J/m^2", "Work of adhesion Δγ").from("Eq 1"),
+        ["Δγ", "Δγ [J/m^{2}]"],
+        9,
+        |case| Some(Number(case.params.material.work_of_adhesion_j_m2)),
+    ),
+    parameter(
+        real("interaction_range_m", "m", "Range of attraction ε").from("Eq 3"),
+        ["ε", "ε [m]"],
+        10,
+        |case| Some(Number(case.params.material.interaction_range_m)),
+    ),
+    parameter(
+        text(
+            "interaction",
+            "Elastic interaction between contacts: \"spots\", \"point\" or \"none\"; null for boundary elements",
+        )
+        .or_null()
+        .from("Eqs 6-8"),
+        ["interaction", "interaction"],
+        19,
+        |case| case.asperities().map(|model| word(model.interaction)),
     )
-    .or_null()
-    .from("Eq 3"), ["jump_in", "jump-in criterion"], 22, |case| case.asperities().map(|model| word(model.jump_in))).of_method(),
-    parameter(text("as_printed", "Uncorrected equations of the paper that are in use, joined by +; empty if none"), ["as_printed", "uncorrected equations"], 25, |case| Some(Word(case.errata()))),
-    parameter(real(
-        "approach_step",
-        "1",
-        "Maximum output step of the mean penetration, over h_rms; of boundary elements, step of the mean penetration",
-    ), ["step", "output step/h_{rms}"], 11, |case| Some(Number(case.approach_step()))).of_method(),
-    parameter(text("method", "Method: \"asperities\" or \"boundary_elements\""), ["method", "method"], 12, |case| Some(word(case.params.model.method))),
-    parameter(real("element_points", "1", "Grid points of boundary elements along a side; null for asperities").or_null(), ["N", "grid points along a side"], 13, |case| case.element_points.map(Number)).of_method(),
-    parameter(text("attraction", "Attraction of boundary elements: \"bonded\" (JKR limit) or \"range\" (Morse); null for asperities").or_null(), ["attraction", "attraction"], 14, |case| case.elements().map(|elements| word(elements.attraction))).of_method(),
-    parameter(real("attraction_range_m", "m", "Range ρ of the Morse law; null without one").or_null(), ["ρ", "ρ [m]"], 15, |case| case.attraction_range_m.map(Number)).of_method(),
-    parameter(text(
-        "nucleation",
-        "Gap at which a point of boundary elements comes into contact: \"touch\" or \"wu\"; null for asperities and with a range",
+    .of_method(),
+    parameter(
+        text("boundary", "Boundary condition of the square: \"periodic\" or \"isolated\""),
+        ["boundary", "boundary"],
+        20,
+        |case| Some(word(case.params.model.boundary)),
     )
-    .or_null(), ["nucleation", "nucleation"], 16, |case| case.bonded().map(|elements| word(elements.nucleation))).of_method(),
-    parameter(text(
-        "opening",
-        "Where contact of boundary elements opens: \"strength\", \"edges\" or \"anywhere\"; null for asperities and with a range",
+    .of_method(),
+    parameter(
+        text(
+            "coalescence",
+            "Coalescence rule: \"cover\" (absorption), \"merge\" (equal-area merging) or \"none\"; null for boundary elements",
+        )
+        .or_null()
+        .from("Eq 8"),
+        ["coalescence", "coalescence"],
+        21,
+        |case| case.asperities().map(|model| word(model.coalescence)),
     )
-    .or_null(), ["opening", "opening"], 17, |case| case.bonded().map(|elements| word(elements.opening))).of_method(),
-    parameter(real("precision", "1", "Tolerance of an equilibrium of boundary elements: rms residual over the maximum tension; null for asperities")
-        .or_null(), ["precision", "precision"], 18, |case| case.elements().map(|elements| Number(elements.precision))).of_method(),
+    .of_method(),
+    parameter(
+        text(
+            "jump_in",
+            "Criterion for jump into contact: \"wu\" (at Wu's jump-in distance) or \"jkr\" (at zero penetration); null for boundary elements",
+        )
+        .or_null()
+        .from("Eq 3"),
+        ["jump_in", "jump-in criterion"],
+        22,
+        |case| case.asperities().map(|model| word(model.jump_in)),
+    )
+    .of_method(),
+    parameter(
+        text("as_printed", "Uncorrected equations of the paper that are in use, joined by +; empty if none"),
+        ["as_printed", "uncorrected equations"],
+        25,
+        |case| Some(Word(case.errata())),
+    ),
+    parameter(
+        real(
+            "approach_step",
+            "1",
+            "Maximum output step of the mean penetration, over h_rms; of boundary elements, step of the mean penetration",
+        ),
+        ["step", "output step/h_{rms}"],
+        11,
+        |case| Some(Number(case.approach_step())),
+    )
+    .of_method(),
+    parameter(
+        text("method", "Method: \"asperities\" or \"boundary_elements\""),
+        ["method", "method"],
+        12,
+        |case| Some(word(case.params.model.method)),
+    ),
+    parameter(
+        real("element_points", "1", "Grid points of boundary elements along a side; null for asperities").or_null(),
+        ["N", "grid points along a side"],
+        13,
+        |case| case.element_points.map(Number),
+    )
+    .of_method(),
+    parameter(
+        text(
+            "attraction",
+            "Attraction of boundary elements: \"bonded\" (JKR limit) or \"range\" (Morse); null for asperities",
+        )
+        .or_null(),
+        ["attraction", "attraction"],
+        14,
+        |case| case.elements().map(|elements| word(elements.attraction)),
+    )
+    .of_method(),
+    parameter(
+        real("attraction_range_m", "m", "Range ρ of the Morse law; null without one").or_null(),
+        ["ρ", "ρ [m]"],
+        15,
+        |case| case.attraction_range_m.map(Number),
+    )
+    .of_method(),
+    parameter(
+        text(
+            "nucleation",
+            "Gap at which a point of boundary elements comes into contact: \"touch\" or \"wu\"; null for asperities and with a range",
+        )
+        .or_null(),
+        ["nucleation", "nucleation"],
+        16,
+        |case| case.bonded().map(|elements| word(elements.nucleation)),
+    )
+    .of_method(),
+    parameter(
+        text(
+            "opening",
+            "Where contact of boundary elements opens: \"strength\", \"edges\" or \"anywhere\"; null for asperities and with a range",
+        )
+        .or_null(),
+        ["opening", "opening"],
+        17,
+        |case| case.bonded().map(|elements| word(elements.opening)),
+    )
+    .of_method(),
+    parameter(
+        real(
+            "precision",
+            "1",
+            "Tolerance of an equilibrium of boundary elements: rms residual over the maximum tension; null for asperities",
+        )
+        .or_null(),
+        ["precision", "precision"],
+        18,
+        |case| case.elements().map(|elements| Number(elements.precision)),
+    )
+    .of_method(),
 ];

@@ -5,7 +5,7 @@ use polars::prelude::{Column, DataFrame, GroupsIndicator, IdxSize, IntoColumn, N
 /// Column of the numbers of the rows.
 const ROW: &str = "row";
 
-/// Rows with equal keys. The columns are the keys and the columns by which the rows of a group are sorted; rows that are equal in the latter keep their order.
+/// Rows with equal keys. The columns are the keys and the columns of the order within a group; rows with an equal order keep theirs.
 /// The groups are in the order of their first rows.
 pub(super) fn grouped(mut columns: Vec<Column>, keys: &[&str], order: &[&str]) -> PolarsResult<Vec<Vec<usize>>> {
     let count = columns.first().map_or(0, Column::len);

@@ -1,0 +1,96 @@
+//! A parameter of a case: column, symbol, axis label and value.
+
+use super::Column;
+use crate::model::{Attraction, CaseParams, Choice, ElementParams, ModelParams, SurfaceParams};
+
+/// Value of a parameter.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ParameterValue {
+    /// Number in the unit of the column.
+    Number(f64),
+    /// Word.
+    Word(String),
+}
+
+/// Parameters of a case, with those that follow from its files.
+#[derive(Debug, Clone)]
+pub struct CaseFacts<'a> {
+    /// Parameters of the spec.
+    pub params: &'a CaseParams,
+    /// Label of the file of a measured surface.
+    pub surface_file: Option<String>,
+    /// Side of the square \[m\].
+    pub length_m: Option<f64>,
+    /// Root-mean-square height: target of a generated surface, value of a measured one \[m\].
+    pub rms_height_m: Option<f64>,
+    /// Grid points of boundary elements along a side.
+    pub element_points: Option<f64>,
+    /// Range ρ of the Morse law \[m\].
+    pub attraction_range_m: Option<f64>,
+}
+
+impl CaseFacts<'_> {
+    pub(super) fn measured(&self) -> Option<&SurfaceParams> {
+        Some(&self.params.surface).filter(|surface| surface.is_measured())
+    }
+
+    pub(super) fn generated(&self) -> Option<&SurfaceParams> {
+        Some(&self.params.surface).filter(|surface| !surface.is_measured())
+    }
+
+    pub(super) fn asperities(&self) -> Option<&ModelParams> {
+        Some(&self.params.model).filter(|_| !self.params.by_elements())
+    }
+
+    pub(super) fn elements(&self) -> Option<&ElementParams> {
+        Some(&self.params.boundary_elements).filter(|_| self.params.by_elements())
+    }
+
+    pub(super) fn bonded(&self) -> Option<&ElementParams> {
+        self.elements().filter(|elements| elements.attraction == Attraction::Bonded)
+    }
+
+    /// Uncorrected equations in use, joined by `+`.
+    pub(super) fn errata(&self) -> String {
+        self.params.model.as_printed.iter().map(|slip| slip.word()).collect::<Vec<_>>().join("+")
+    }
+
+    pub(super) fn approach_step(&self) -> f64 {
+        self.elements().map_or(self.params.cycle.approach_step, |elements| elements.approach_step)
+    }
+}
+
+/// One parameter of a case.
+#[derive(Debug, Clone, Copy)]
+pub struct Parameter {
+    /// Column of the tables over realizations.
+    pub column: Column,
+    /// Symbol; a word if there is none.
+    pub symbol: &'static str,
+    /// Label of an axis, with the markup of the figures.
+    pub label: &'static str,
+    /// Place in the labels of cases, from 0.
+    pub rank: u8,
+    /// True if only one of the methods reads it: it varies if it differs between cases of one method.
+    pub of_method: bool,
+    /// Value in a case; nothing if the case has none.
+    pub get: fn(&CaseFacts<'_>) -> Option<ParameterValue>,
+}
+
+impl Parameter {
+    /// The parameter as one that only one of the methods reads.
+    pub(super) const fn of_method(mut self) -> Self {
+        self.of_method = true;
+        self
+    }
+}
+
+/// A parameter with symbol and label that both methods read.
+pub(super) const fn parameter(
+    column: Column,
+    [symbol, label]: [&'static str; 2],
+    rank: u8,
+    get: fn(&CaseFacts<'_>) -> Option<ParameterValue>,
+) -> Parameter {
+    Parameter { column, symbol, label, rank, of_method: false, get }
+}
