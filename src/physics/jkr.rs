@@ -51,8 +51,9 @@ impl Asperity {
         Self::as_printed(radius_m, material, Slips::NONE)
     }
 
-    /// Asperity with the end of the branch by Eq 9 as printed, if `slips` contains it; see the head of this module.
+    /// Asperity with the end of the branch by Eq 9 as printed, if `slips` contains it.
     ///
+    /// See the head of this module.
     /// It changes only [`Self::jump_off_radius`], [`Self::jump_off_penetration`], [`Self::loop_loss_from`] and the domain of
     /// [`Self::radius_at_penetration`].
     ///
@@ -127,7 +128,8 @@ impl Asperity {
     /// `dδ/da = 2a/R − sqrt(πΔγ/(2E*a))` (dimensionless), at contact radius `a > 0` \[m\]. Derivative of Eq 2.
     ///
     /// # Deviations
-    /// The denominator of the paper's Eq 9 has `sqrt(πΔγ/(E*a))`, which is not the derivative of Eq 2: it vanishes before the true jump-off.
+    /// The denominator of the paper's Eq 9 has `sqrt(πΔγ/(E*a))`,
+    /// which is not the derivative of Eq 2: it vanishes before the true jump-off.
     /// This function is correct also with Eq 9 as printed, since equilibria are solved with it.
     #[must_use]
     pub fn penetration_slope(&self, a: f64) -> f64 {

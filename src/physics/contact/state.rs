@@ -40,7 +40,9 @@ pub struct State {
     pub radius: Vec<f64>,
     /// Asperities blocked from re-entry: they left while their penetration was above the jump-in, and stay free until it falls below.
     pub barred: Vec<bool>,
-    /// Merged spots in order of creation; their numbers follow those of the asperities of the surface.
+    /// Merged spots in order of creation.
+    ///
+    /// Their numbers follow those of the asperities of the surface.
     pub merged: Vec<Merged>,
     /// Asperities in contact, ascending.
     pub contacts: Vec<usize>,

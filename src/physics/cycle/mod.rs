@@ -36,7 +36,9 @@ pub struct Halfway {
     leg: Option<Leg>,
 }
 
-/// Loads to the largest of the loads, and unloads from each. `progress` receives the finished fraction, 0 to 1.
+/// Loads to the largest of the loads, and unloads from each.
+///
+/// `progress` receives the finished fraction, 0 to 1.
 ///
 /// # Errors
 /// A load that is not reached within 100 rms heights, or a mean penetration without an equilibrium.
@@ -44,7 +46,9 @@ pub fn run(problem: &Problem, settings: &Settings, progress: &dyn Fn(f64)) -> Re
     run_from(problem, settings, None, &mut |_| {}, progress)
 }
 
-/// Continues [`run`] from the checkpoint `halfway`; `keep` receives every new checkpoint.
+/// Continues [`run`] from the checkpoint `halfway`.
+///
+/// `keep` receives every new checkpoint.
 ///
 /// # Errors
 /// A load that is not reached within 100 rms heights, or a mean penetration without an equilibrium.

@@ -153,7 +153,7 @@ impl Recorder {
             area_union_m2: crate::physics::contact::union_area::area(problem, state),
             contact_count: state.contacts.len(),
             covered_count: state.covered_count(),
-            touching_count: touching(problem, state),
+            touching_count: overlapping_count(problem, state),
             held_count: at.frozen_count(),
             event_counts: Kind::ALL.map(count),
             dissipated_j: recent.iter().map(|event| event.energy_lost_j).sum(),
@@ -192,7 +192,7 @@ impl Recorder {
 }
 
 /// Number of spots that overlap another one.
-fn touching(problem: &Problem, state: &State) -> usize {
+fn overlapping_count(problem: &Problem, state: &State) -> usize {
     let greatest = state.greatest_radius();
     let touches = |i: usize| {
         let a = state.radius[i];

@@ -53,7 +53,9 @@ impl LoopEnergy {
     }
 }
 
-/// Energies of the loop to the `k`-th load reversal; its unloading must be the last branch of the cycle so far.
+/// Energies of the loop to the `k`-th load reversal.
+///
+/// Its unloading must be the last branch of the cycle so far.
 #[must_use]
 pub fn loop_energy(cycle: &Cycle, k: usize) -> LoopEnergy {
     let reversal = cycle.turning[k].0;

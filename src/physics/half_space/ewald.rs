@@ -177,7 +177,9 @@ impl RoughRemainder {
         Self((0..=POINTS).flat_map(|i| (0..=POINTS).map(move |j| (i, j))).map(|(i, j)| of.at(at(i), at(j))).collect())
     }
 
-    /// Value for `|x|, |y| ≤ ½`, with error 2e-4; its magnitude is between 0.8 and 3.9 everywhere.
+    /// Value for `|x|, |y| ≤ ½`, with error 2e-4.
+    ///
+    /// Its magnitude is between 0.8 and 3.9 everywhere.
     #[must_use]
     pub fn at(&self, x: f64, y: f64) -> f64 {
         let [(i, p), (j, q)] = [x, y].map(|along| {
@@ -214,7 +216,9 @@ impl RemainderSeries {
         remainder_at(self, x, y)
     }
 
-    /// [`image_sums`] for `|x|, |y| ≤ ½`; relative error 1e-6 for the orders above the first.
+    /// [`image_sums`] for `|x|, |y| ≤ ½`.
+    ///
+    /// The relative error is 1e-6 for the orders above the first.
     #[must_use]
     pub fn sums(&self, x: f64, y: f64) -> [f64; ORDERS] {
         sums_at(self, x, y)
@@ -289,7 +293,9 @@ fn step(high: [f64; ORDERS], t: f64, low: [f64; ORDERS]) -> [f64; ORDERS] {
     [high[0].mul_add(t, low[0]), high[1].mul_add(t, low[1]), high[2].mul_add(t, low[2]), high[3].mul_add(t, low[3])]
 }
 
-/// Polynomial in t that multiplies `s^(5−R)`; the rows are independent of one another.
+/// Polynomial in t that multiplies `s^(5−R)`.
+///
+/// The rows are independent of one another.
 #[inline(always)]
 fn row<const R: usize>(cell: &[[f32; ORDERS]; COARSE_ALL], t: f64) -> [f64; ORDERS] {
     let from = R * (R + 1) / 2;

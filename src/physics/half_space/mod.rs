@@ -106,7 +106,9 @@ impl Tangent {
         self.0 = Form::Dense(size, matrix);
     }
 
-    /// Moves the sparse form out to reuse its memory; [`Self::set_sparse`] puts it back.
+    /// Moves the sparse form out to reuse its memory.
+    ///
+    /// [`Self::set_sparse`] puts it back.
     fn take_sparse(&mut self) -> Box<Sparse> {
         match std::mem::take(self).0 {
             Form::Sparse(sparse) => sparse,
@@ -179,7 +181,9 @@ pub trait Interaction: Sync {
     /// A spot does not act on its own centre, but its periodic images and the background do.
     fn displacements(&self, spots: &Spots, targets: &[usize], displacements: &mut Vec<f64>, effort: &mut Effort);
 
-    /// Displacements at the spots themselves, and the tangent; reuses the geometry cached in `tangent`.
+    /// Displacements at the spots themselves, and the tangent.
+    ///
+    /// Reuses the geometry cached in `tangent`.
     fn linearise(&self, spots: &Spots, displacements: &mut Vec<f64>, tangent: &mut Tangent, effort: &mut Effort);
 
     /// Displacements at the spots themselves, using the geometry cached in `_tangent`, which is not changed.

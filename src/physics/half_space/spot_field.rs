@@ -206,7 +206,9 @@ pub fn dimensionless_field(u: f64) -> (f64, f64) {
 /// Distance \[m\] at which the field of any spot is negligible.
 pub(crate) const AWAY: f64 = 1e30;
 
-/// Number of sources per pass; it fixes the order of summation, independently of the machine.
+/// Number of sources per pass.
+///
+/// It fixes the order of summation, independently of the machine.
 pub(crate) const LANES: usize = 8;
 
 /// Sources of a displacement field as columns, for vectorised evaluation.
@@ -311,7 +313,9 @@ impl SpotColumns {
 pub(crate) struct Place {
     pub(crate) x: f64,
     pub(crate) y: f64,
-    /// Side of the periodic square, and its inverse; the inverse is 0 for an isolated square, which disables image shifts.
+    /// Side of the periodic square, and its inverse.
+    ///
+    /// The inverse is 0 for an isolated square, which disables image shifts.
     pub(crate) length: f64,
     pub(crate) inverse_length: f64,
     pub(crate) pull: f64,

@@ -16,7 +16,9 @@ const ROWS: usize = 256;
 /// Rings per octave of wavenumber.
 const RINGS: f64 = 4.0;
 
-/// Modes `c_k` of `h(x) = Σ_k c_k exp(i k·x)` on a square grid; one half, the others are conjugates.
+/// Modes `c_k` of `h(x) = Σ_k c_k exp(i k·x)` on a square grid.
+///
+/// It stores one half of them; the others are conjugates.
 pub(crate) struct Field {
     /// Points along a side.
     n: usize,
@@ -104,7 +106,9 @@ impl Field {
         Moments { m0_m2: m0, m2: 0.5 * slope, m4_1_m2: 0.375 * laplacian }
     }
 
-    /// Power spectral density in rings of wavevectors; see [`super::periodogram::periodogram`].
+    /// Power spectral density in rings of wavevectors.
+    ///
+    /// See [`super::periodogram::periodogram`].
     pub(crate) fn rings(&self) -> Vec<Ring> {
         let reach = self.n as f64 / 2.0;
         let count = (RINGS * reach.log2()).round() as usize + 1;

@@ -45,7 +45,9 @@ impl Phases {
         Self(generator)
     }
 
-    /// Phase in `[0, 2π)`, and an exponential variate of mean one for the mode's power; four words per mode.
+    /// Phase in `[0, 2π)`, and an exponential variate of mean one for the mode's power.
+    ///
+    /// Each mode has four words of its stream.
     fn draw(&mut self, ky: u64) -> (f64, f64) {
         self.0.set_word_pos(u128::from(ky) * 4);
         let unit = |word: u64| (word >> 11) as f64 / (1u64 << 53) as f64;

@@ -71,7 +71,9 @@ fn line(points: &[(CurvePoint, f64)], at_m2: f64) -> Option<(f64, f64)> {
     (points.len() > WINDOW && slope.is_finite()).then_some((slope, stiffness + slope * (at_m2 - area)))
 }
 
-/// Loading–unloading loop along an adhesive curve under displacement control; contact forms at zero penetration.
+/// Loading–unloading loop along an adhesive curve under displacement control.
+///
+/// Contact forms at zero penetration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CurveLoop {
     /// Contact area at the largest load \[m²\].

@@ -142,7 +142,6 @@ fn gauss_panels(f: impl Fn(f64) -> f64, from: f64, to: f64, panels: usize) -> f6
 }
 
 /// Deng and Kesari's dissipated energy `Θ = η A ⟨θ⟩` \[J\], with Nayak's density η. Eq A4.
-///
 /// `A` \[m²\] is the true contact area at the end of loading.
 ///
 /// # Errors

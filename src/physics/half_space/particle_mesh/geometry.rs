@@ -12,10 +12,10 @@ use rayon::prelude::*;
 use std::sync::Arc;
 
 /// Relative change of the number of spots or targets beyond which the geometry is rebuilt.
-const CHANGE: f64 = 0.2;
+const MAX_CHANGE: f64 = 0.2;
 
 /// Maximum ratio of a spot's radius limit to the limit that a rebuild would assign.
-const LOOSE: f64 = 2.0;
+const MAX_LOOSENESS: f64 = 2.0;
 
 /// Near pairs of all targets, and mesh weights of sources and targets.
 #[derive(Debug, Clone, Default)]
@@ -113,7 +113,7 @@ impl Geometry {
     /// Replaces spots and targets; returns the parts that are still valid, if most are.
     fn keep(&mut self, field: &FastSum, spots: &Spots, targets: &[usize]) -> Option<Kept> {
         let columns = &spots.columns;
-        let near = |now: usize, then: usize| (now as f64 - then as f64).abs() <= CHANGE * then as f64;
+        let near = |now: usize, then: usize| (now as f64 - then as f64).abs() <= MAX_CHANGE * then as f64;
         let same = self.accuracy == Some(field.accuracy);
         let serves = same && near(spots.index.len(), self.chosen_for[0]) && near(targets.len(), self.chosen_for[1]);
         let places: Vec<[f64; 2]> = (0..columns.len()).map(|j| [columns.x[j], columns.y[j]]).collect();
@@ -127,7 +127,7 @@ impl Geometry {
             for (j, before) in places_in(&spots.index, &self.index).enumerate() {
                 let Some(before) = before else { continue };
                 let limit = self.limits[before];
-                if self.places[before] == places[j] && (columns.a[j]..LOOSE * limits[j]).contains(&limit) {
+                if self.places[before] == places[j] && (columns.a[j]..MAX_LOOSENESS * limits[j]).contains(&limit) {
                     (kept.stays[j], kept.numbers[before], limits[j]) = (true, j as u32, limit);
                 }
             }

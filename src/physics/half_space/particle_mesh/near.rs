@@ -1,4 +1,6 @@
-//! Near field: pairs within a cutoff, found by cells; exact field less the smooth field on the mesh.
+//! Near field: pairs within a cutoff, found by cells.
+//!
+//! It contains the exact field less the smooth field on the mesh.
 
 use super::plan::Plan;
 use crate::model::{Boundary, Interaction as Kind};

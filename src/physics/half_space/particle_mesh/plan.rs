@@ -182,7 +182,9 @@ fn smooth(alpha: f64, r2: f64) -> [f64; ORDERS] {
     })
 }
 
-/// A near-field cutoff and the meshes of the far field; lengths in units of the side.
+/// A near-field cutoff and the meshes of the far field.
+///
+/// Lengths are in units of the side.
 #[derive(Debug)]
 pub(super) struct Plan {
     pub(super) reach: f64,
@@ -198,7 +200,9 @@ pub(super) struct Mesh<T> {
     pub(super) size: usize,
     /// Fourier modes of the smooth field divided by those of the spline, by ky then kx.
     pub(super) waves: Vec<T>,
-    /// Inverse Fourier transform factors of the B-spline, k = 0 … N − 1; 0 at the Nyquist mode, which has no sign.
+    /// Inverse Fourier transform factors of the B-spline, k = 0 … N − 1.
+    ///
+    /// It is 0 at the Nyquist mode, which has no sign.
     pub(super) sharpen: Vec<T>,
     pub(super) rows: Arc<dyn RealToComplex<T>>,
     pub(super) rows_back: Arc<dyn ComplexToReal<T>>,
