@@ -101,7 +101,9 @@ impl Asperity {
         self.radius
     }
 
-    /// Adhesion length scale `sqrt(2πΔγ/E*)` \[m^½\]: adhesion reduces the penetration by this times `sqrt(a)`.
+    /// Adhesion length scale `sqrt(2πΔγ/E*)` \[m^½\].
+    ///
+    /// Adhesion reduces the penetration by this times `sqrt(a)`.
     #[must_use]
     pub fn pull_sqrt_m(&self) -> f64 {
         self.pull
@@ -226,7 +228,9 @@ impl Asperity {
         (1.0 - 2.641 * self.tabor(range).powf(3.0 / 7.0)) * range
     }
 
-    /// Dissipated energy `θ = 2E*R³ (πΔγ/(E*R))^(5/3) × 0.5262…` \[J\] of a loop with jump-in at `δ = 0`. Eq A1.
+    /// Dissipated energy \[J\] of a loop with jump-in at `δ = 0`.
+    ///
+    /// `θ = 2E*R³ (πΔγ/(E*R))^(5/3) × 0.5262…`. Eq A1.
     ///
     /// # Deviations
     /// The constant is exact here, `2^⅔ (3/10 + (1/5) 16^(−⅔))`. The paper prints 0.5262. Eq 9 as printed has no effect.

@@ -7,8 +7,8 @@
 //!
 //! Spots merge in equilibrium, when they begin to overlap, one pair at a time and the largest overlap first.
 //! Merging during the solution for an equilibrium is unstable.
-//! An asperity is absorbed as with `cover` if a larger spot reaches its centre before they have merged, which happens
-//! if the asperity is free or during the solution for an equilibrium.
+//! An asperity is absorbed as with `cover` if a larger spot reaches its centre before they have merged.
+//! This happens if the asperity is free, or during the solution for an equilibrium.
 //! A pair whose tensile load would put the merged spot beyond the end of its branch merges only when this is no longer so.
 //! A pair that has split must have been apart before it merges again.
 //!

@@ -3,7 +3,9 @@
 use crate::physics::PhysicsError;
 use crate::physics::surface::summits::Summit;
 
-/// Position quantum relative to the side: far below the grid spacing, far above the rounding error of a shift.
+/// Position quantum relative to the side.
+///
+/// It is far below the grid spacing and far above the rounding error of a shift.
 const POSITION_QUANTUM: f64 = 1.0 / (1u64 << 40) as f64;
 
 /// Conversion between the caller's numbers and positions and the internal ones.

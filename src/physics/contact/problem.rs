@@ -66,9 +66,7 @@ const DEEPEST_JUMP_IN: f64 = 0.95;
 
 /// Number of spots in the local problem of an event.
 ///
-/// They lie within about five screening lengths of it.
-///
-/// All other spots respond to first order.
+/// They lie within about five screening lengths of it. All other spots respond to first order.
 const SPOTS_IN_PATCH: usize = 24;
 
 impl Problem {

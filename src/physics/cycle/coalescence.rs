@@ -15,7 +15,7 @@ use crate::physics::path::{EquilibriumPath, PathCheckpoint};
 const JUMP_TOLERANCE: f64 = 1e-6;
 
 impl EquilibriumPath<'_> {
-    /// Mean penetration \[m\] of the first coalescence event within the last increment, if any is pending at its end.
+    /// Mean penetration \[m\] of the first coalescence event in the last increment, if any.
     pub(crate) fn next_coalescence(&self, known: &TouchingPairs) -> Result<Option<f64>, PhysicsError> {
         let problem = self.problem();
         let end = self.state();

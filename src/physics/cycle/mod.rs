@@ -1,4 +1,4 @@
-//! Loading and unloading: one loading path to the largest load, and an unloading path from every load reversal.
+//! Loading–unloading cycles: one loading path, and an unloading path from every load reversal.
 //!
 //! The loop begins before the first jump-in and ends with the last separation.
 //! Its area is therefore the total dissipated energy `Θ = ∮F dΔ`.
@@ -155,7 +155,7 @@ impl Settings {
         self.approach_step * problem.rms_height_m
     }
 
-    /// True if a path that began or resumed at the mean penetration `from` \[m\] has reached a checkpoint position.
+    /// True if the path has reached a checkpoint position other than `from` \[m\].
     fn rests(&self, path: &EquilibriumPath<'_>, from: f64) -> bool {
         let at = path.state().approach_m;
         self.rest_every.is_some_and(|every| path.is_exact() && at != from && is_multiple(at, every * path.problem().rms_height_m))
@@ -242,7 +242,9 @@ enum Next {
     End,
 }
 
-/// Follows a branch from a checkpoint, at most to `bound` \[m\], with merging and splitting on the way.
+/// Follows a branch from a checkpoint, at most to `bound` \[m\].
+///
+/// It applies merging and splitting on the way.
 ///
 /// `visit` is called with the path at the beginning, after every increment and after every coalescence event.
 /// It returns the next action. The checkpoint is returned if the action is [`Next::Rest`].

@@ -1,4 +1,4 @@
-//! Recording of a branch: a step at every grid point and load reversal, with the events since the previous step.
+//! Recording of a branch: steps at grid points and load reversals, and events.
 
 use super::soundness::check_area;
 use super::table::{Branch, Contact, Cycle, MergedAt, Settings, Step};
@@ -17,14 +17,14 @@ use serde::{Deserialize, Serialize};
 pub(crate) struct Recorder {
     branch: Branch,
     max_load: Option<f64>,
-    /// Number of the last grid point, counted in the sense of the path, and whether the beginning has been recorded.
+    /// Number of the last grid point in the sense of the path; true after the first record.
     number: f64,
     begun: bool,
     events_before: usize,
     ways_before: usize,
     merged_before: usize,
     effort_before: Effort,
-    /// Load of the last record \[N\], and the most negative load of all records with its spots, if these are to be kept.
+    /// Load of the last record \[N\]; most negative load of all records, with its spots.
     load_before: Option<f64>,
     pulled: Option<(f64, Vec<Contact>)>,
 }

@@ -81,7 +81,9 @@ fn loading_events(cycle: &Cycle, k: usize) -> f64 {
     cycle.steps[..=cycle.turning[k].0].iter().map(|step| step.dissipated_j).sum()
 }
 
-/// Refuses a loop with negative dissipation, or whose energy-balance error exceeds half of the dissipated energy.
+/// Refuses a loop with negative dissipation or a large energy-balance error.
+///
+/// The limit of the error is half of the dissipated energy.
 ///
 /// # Errors
 /// [`PhysicsError::NegativeDissipation`] and [`PhysicsError::EnergyImbalance`], neither below the numerical resolution.

@@ -132,7 +132,9 @@ pub fn image_sums(x: f64, y: f64, alpha: f64) -> [f64; ORDERS] {
     sums
 }
 
-/// Degree in `(2x)²` and `(2y)²` at which the series is below rounding: the nearest image is a whole side away.
+/// Degree in `(2x)²` and `(2y)²` at which the series is below rounding.
+///
+/// The nearest image is a whole side away.
 const DEGREE: usize = 24;
 
 /// Cells on half a side for `S_0`, and terms along each direction.
@@ -333,7 +335,9 @@ fn sums_at(series: &RemainderSeries, x: f64, y: f64) -> [f64; ORDERS] {
     series.local(&[x], &[y])[0]
 }
 
-/// Coefficients of `t^q s^p`, by falling q, then falling p, of polynomials with `N` terms per direction on every cell.
+/// Coefficients of `t^q s^p`, by falling q, then falling p, on every cell.
+///
+/// The polynomials have `N` terms per direction.
 fn fit<const N: usize>(rows: &[Vec<[f64; ORDERS]>], cells: usize) -> Vec<[[[f64; ORDERS]; N]; N]> {
     let angle = |k: usize| PI * (k as f64 + 0.5) / N as f64;
     let monomials = chebyshev_monomials(N);

@@ -176,7 +176,9 @@ impl Sub for Effort {
 
 /// Displacement of the half-space at contacts and free asperities by other contacts.
 pub trait Interaction: Sync {
-    /// Writes the displacement ŵ \[m\] at each of `targets` (asperity numbers) to `displacements`, in their order.
+    /// Writes the displacement ŵ \[m\] at each of `targets` to `displacements`.
+    ///
+    /// Targets are asperity numbers, and their order is kept.
     ///
     /// A spot does not act on its own centre, but its periodic images and the background do.
     fn displacements(&self, spots: &Spots, targets: &[usize], displacements: &mut Vec<f64>, effort: &mut Effort);
@@ -191,7 +193,9 @@ pub trait Interaction: Sync {
         self.displacements(spots, &spots.index, displacements, effort);
     }
 
-    /// Displacement at each of `targets`, and its derivative along a path with the rates `rates` of the spots' radii.
+    /// Displacement at each of `targets`, and its derivative along a path.
+    ///
+    /// `rates` are the derivatives of the spots' radii along the path.
     ///
     /// Writes the displacement and `dŵ_i = Σ_j (∂ŵ_i/∂a_j) rates_j` to `found`. With `rates` = da_j/dδ the latter is dŵ_i/dδ.
     /// The geometry is cached in `kept` for the next call.

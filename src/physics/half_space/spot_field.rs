@@ -102,7 +102,9 @@ pub struct Spot {
     pub load_slope: f64,
 }
 
-/// Displacement ŵ \[m\] at distance `r > 0` \[m\] from the centre of a spot, and its derivative to the spot's radius.
+/// Displacement ŵ \[m\] by a spot, and its derivative to the spot's radius.
+///
+/// `r > 0` \[m\] is the distance from the centre of the spot.
 ///
 /// `pull` is `sqrt(2πΔγ/E*)` \[m^½\]. Eqs 6 and 7 outside; inside, `ŵ = a²/R − r²/(2R) − sqrt(2πaΔγ/E*)`.
 ///
@@ -114,7 +116,9 @@ pub fn spot_field(r: f64, a: f64, radius: f64, pull: f64) -> (f64, f64) {
     spot_field_as_printed(r, a, radius, pull, Slips::NONE)
 }
 
-/// [`spot_field`], with Eq 8 as printed if `slips` contains it: inside, `ŵ = a²/R − sqrt(2πaΔγ/E*)` at every r.
+/// [`spot_field`], with Eq 8 as printed if `slips` contains it.
+///
+/// The printed equation is `ŵ = a²/R − sqrt(2πaΔγ/E*)` at every r inside.
 ///
 /// The derivative to the spot's radius is unchanged; it does not include the jump at the edge.
 #[must_use]

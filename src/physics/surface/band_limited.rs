@@ -49,7 +49,9 @@ const TERMS: usize = 24;
 #[derive(Debug, Clone)]
 struct Taps {
     half_width: i64,
-    /// Coefficients by power, highest first, each for all points: of the kernel and of its first and second derivative.
+    /// Coefficients of the kernel and of its first and second derivative.
+    ///
+    /// They are stored by power, highest first, each for all points.
     coefficients: [Vec<f64>; 3],
     /// Number of points, and the padded number.
     count: usize,
@@ -111,7 +113,9 @@ impl<'a> BandLimited<'a> {
         }
     }
 
-    /// First grid index of the sum, and the weights of value, first and second derivative, in units of the spacing.
+    /// First grid index of the sum, and the weights of value and derivatives.
+    ///
+    /// The weights of the first and second derivative are in units of the spacing.
     fn weights(&self, coordinate: f64) -> (usize, Weights) {
         let n = self.heights.nrows() as i64;
         let place = coordinate / self.spacing;
@@ -180,7 +184,7 @@ fn horner(coefficients: &[f64], padded: usize, x: f64, out: &mut [f64; MAX_TAPS]
     }
 }
 
-/// Coefficients, lowest power first, of the polynomial that interpolates `f` at the Chebyshev nodes of `[−1, 1]`.
+/// Polynomial that interpolates `f` at the Chebyshev nodes of `[−1, 1]`, lowest power first.
 fn interpolate(f: impl Fn(f64) -> f64) -> [f64; TERMS] {
     let angle = |k: usize| PI * (k as f64 + 0.5) / TERMS as f64;
     let samples: [f64; TERMS] = std::array::from_fn(|k| f(angle(k).cos()));

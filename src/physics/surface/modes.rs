@@ -65,7 +65,9 @@ impl Field {
         Ok(Self { n, lowest: TAU / length_m, columns })
     }
 
-    /// Sums over the modes, by columns that are added in order, so that the result is independent of the threads.
+    /// Sums over the modes.
+    ///
+    /// Columns are added in order, so that the result is independent of the threads.
     ///
     /// `add` receives the sum so far, the squared mode number, the number of modes that this one represents, and `|c_k|²` \[m²\].
     fn sum<T: Clone + Send + Sync>(&self, zero: &T, add: impl Fn(&mut T, f64, f64, f64) + Sync, join: impl Fn(&mut T, &T)) -> T {

@@ -68,7 +68,9 @@ impl Spectrum {
         }
     }
 
-    /// Moments of the discrete modes of a periodic square, with fixed amplitudes and the chosen normalisation.
+    /// Moments of the discrete modes of a periodic square.
+    ///
+    /// The amplitudes are fixed, with the chosen normalisation.
     ///
     /// They are sums in place of the integrals of [`Self::moments`].
     #[must_use]

@@ -25,7 +25,7 @@ pub struct Surface {
     pub moments: Moments,
 }
 
-/// Seed of a realisation: a hash of the campaign's seed and the realisation's number, independent of list order.
+/// Seed of a realisation: a hash of the campaign's seed and the realisation's number.
 #[must_use]
 pub fn realization_seed(campaign_seed: u64, realization: u64) -> [u8; 32] {
     let mut bytes = [0u8; 16];

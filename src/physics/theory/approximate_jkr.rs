@@ -86,7 +86,8 @@ pub struct CurveLoop {
 
 /// Loop to a maximum load over E* \[m²\], if the approximation is valid on it.
 ///
-/// `None` if the curve does not reach the load, or if contact is lost at a penetration that is not negative or at an area
+/// `None` if the curve does not reach the load, or if contact is lost at a penetration that is not negative.
+/// It is `None` too if contact is lost at an area
 /// of at least half the area at that load. In the latter case the curve jumps to near full contact.
 ///
 /// Unloading follows the curve from the last point at or below that load.

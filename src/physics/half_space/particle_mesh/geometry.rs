@@ -20,7 +20,9 @@ const MAX_LOOSENESS: f64 = 2.0;
 /// Near pairs of all targets, and mesh weights of sources and targets.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Geometry {
-    /// Spots by rank, their positions and the radius limits up to which the geometry is valid \[m\], and the targets.
+    /// Spots by rank, their positions and radius limits \[m\], and the targets.
+    ///
+    /// The geometry is valid up to these radii.
     index: Vec<usize>,
     places: Vec<[f64; 2]>,
     limits: Vec<f64>,
@@ -37,7 +39,9 @@ pub(super) struct Geometry {
 }
 
 impl FastSum {
-    /// Updates the geometry for spots and targets, both by rank, reusing the previous one where it is valid.
+    /// Updates the geometry for spots and targets, both by rank.
+    ///
+    /// Entries of the previous geometry are reused where they are valid.
     pub(super) fn place(&self, spots: &Spots, targets: &[usize], geometry: &mut Geometry) {
         let columns = &spots.columns;
         let length = self.measure.length;
