@@ -26,6 +26,8 @@ pub struct Surface {
 }
 
 /// Seed of a realisation: a hash of the campaign's seed and the realisation's number.
+///
+/// It does not depend on any position in a list.
 #[must_use]
 pub fn realization_seed(campaign_seed: u64, realization: u64) -> [u8; 32] {
     let mut bytes = [0u8; 16];
