@@ -51,8 +51,9 @@ impl Asperity {
         Self::as_printed(radius_m, material, Slips::NONE)
     }
 
-    /// Asperity with the end of the branch by Eq 9 as printed, if `slips` contains it; see the head of this module.
+    /// Asperity with the end of the branch by Eq 9 as printed, if `slips` contains it.
     ///
+    /// See the head of this module.
     /// It changes only [`Self::jump_off_radius`], [`Self::jump_off_penetration`], [`Self::loop_loss_from`] and the domain of
     /// [`Self::radius_at_penetration`].
     ///
@@ -100,7 +101,9 @@ impl Asperity {
         self.radius
     }
 
-    /// Adhesion length scale `sqrt(2πΔγ/E*)` \[m^½\]: adhesion reduces the penetration by this times `sqrt(a)`.
+    /// Adhesion length scale `sqrt(2πΔγ/E*)` \[m^½\].
+    ///
+    /// Adhesion reduces the penetration by this times `sqrt(a)`.
     #[must_use]
     pub fn pull_sqrt_m(&self) -> f64 {
         self.pull
@@ -127,7 +130,8 @@ impl Asperity {
     /// `dδ/da = 2a/R − sqrt(πΔγ/(2E*a))` (dimensionless), at contact radius `a > 0` \[m\]. Derivative of Eq 2.
     ///
     /// # Deviations
-    /// The denominator of the paper's Eq 9 has `sqrt(πΔγ/(E*a))`, which is not the derivative of Eq 2: it vanishes before the true jump-off.
+    /// The denominator of the paper's Eq 9 has `sqrt(πΔγ/(E*a))`,
+    /// which is not the derivative of Eq 2: it vanishes before the true jump-off.
     /// This function is correct also with Eq 9 as printed, since equilibria are solved with it.
     #[must_use]
     pub fn penetration_slope(&self, a: f64) -> f64 {
@@ -224,7 +228,9 @@ impl Asperity {
         (1.0 - 2.641 * self.tabor(range).powf(3.0 / 7.0)) * range
     }
 
-    /// Dissipated energy `θ = 2E*R³ (πΔγ/(E*R))^(5/3) × 0.5262…` \[J\] of a loop with jump-in at `δ = 0`. Eq A1.
+    /// Dissipated energy \[J\] of a loop with jump-in at `δ = 0`.
+    ///
+    /// `θ = 2E*R³ (πΔγ/(E*R))^(5/3) × 0.5262…`. Eq A1.
     ///
     /// # Deviations
     /// The constant is exact here, `2^⅔ (3/10 + (1/5) 16^(−⅔))`. The paper prints 0.5262. Eq 9 as printed has no effect.

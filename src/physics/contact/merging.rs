@@ -1,13 +1,14 @@
 //! Equal-area merging of overlapping spots and their splitting, for coalescence `merge`.
 //!
-//! Two spots with `r < a_i + a_j` merge into one of the same area and load at their area-weighted centre: `a² = a_i² + a_j²`, `F = F_i + F_j`.
+//! Two spots with `r < a_i + a_j` merge into one of the same area and load, at their area-weighted centre:
+//! `a² = a_i² + a_j²`, `F = F_i + F_j`.
 //! The radius of its sphere is `R = (4/3)E*a³/(F + sqrt(8πE*Δγa³))` (Eq 1), and its height makes it an equilibrium (Eqs 2 and 5).
 //! From then on it is an asperity, which may merge again. It splits when its area has returned to the value at merging.
 //!
 //! Spots merge in equilibrium, when they begin to overlap, one pair at a time and the largest overlap first.
 //! Merging during the solution for an equilibrium is unstable.
-//! An asperity is absorbed as with `cover` if a larger spot reaches its centre before they have merged, which happens
-//! if the asperity is free or during the solution for an equilibrium.
+//! An asperity is absorbed as with `cover` if a larger spot reaches its centre before they have merged.
+//! This happens if the asperity is free, or during the solution for an equilibrium.
 //! A pair whose tensile load would put the merged spot beyond the end of its branch merges only when this is no longer so.
 //! A pair that has split must have been apart before it merges again.
 //!
@@ -28,13 +29,15 @@ use crate::physics::jkr::Asperity;
 pub(crate) const TOUCH: f64 = 1e-3;
 
 /// Factor on the relative distance to the release radius, which tightens the tolerance for splitting.
-const NEARER: f64 = 10.0;
+const SPLIT_FACTOR: f64 = 10.0;
 
 /// Relative change of a contact radius below the accuracy of an equilibrium.
 pub(crate) const ROUNDING: f64 = 1e-8;
 
-/// Maximum tensile load of a merged spot, relative to `sqrt(8πE*Δγa³)`. The branch ends at 5/6.
-const TENSEST: f64 = 0.8;
+/// Maximum tensile load of a merged spot, relative to `sqrt(8πE*Δγa³)`.
+///
+/// The branch ends at 5/6.
+const MAX_TENSILE_LOAD: f64 = 0.8;
 
 /// A pending change of the merged spots.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -92,10 +95,10 @@ impl Problem {
             CoalescenceEvent::Touch(i, j) if state.radius[i] > 0.0 && state.radius[j] > 0.0 => {
                 let overlap = (state.radius[i] + state.radius[j]) / self.neighbours.distance(&self.positions[i], &self.positions[j]) - 1.0;
                 let (load, root) = self.joint_load(state, i, j);
-                if root > 0.0 { overlap.min(load / root + TENSEST) } else { overlap }
+                if root > 0.0 { overlap.min(load / root + MAX_TENSILE_LOAD) } else { overlap }
             }
             CoalescenceEvent::Part(m) if state.radius[m] > 0.0 => {
-                NEARER * (1.0 - state.radius[m] / state.merged[m - self.summits].release_m)
+                SPLIT_FACTOR * (1.0 - state.radius[m] / state.merged[m - self.summits].release_m)
             }
             _ => -1.0,
         }

@@ -96,7 +96,9 @@ impl Neighbours {
         })
     }
 
-    /// Displacement kernel \[1/m\] at `p` of a load at `q` and all its images: `1/r` plus the approximate image sum.
+    /// Displacement kernel \[1/m\] at `p` of a load at `q` and all its images.
+    ///
+    /// It is `1/r` plus the approximate image sum.
     pub(crate) fn kernel(&self, p: &[f64; 2], q: &[f64; 2]) -> f64 {
         1.0 / self.distance(p, q) + self.image_kernel(p, q)
     }

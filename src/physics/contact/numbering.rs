@@ -3,8 +3,10 @@
 use crate::physics::PhysicsError;
 use crate::physics::surface::summits::Summit;
 
-/// Position quantum relative to the side: far below the grid spacing, far above the rounding error of a shift.
-const GRAIN: f64 = 1.0 / (1u64 << 40) as f64;
+/// Position quantum relative to the side.
+///
+/// It is far below the grid spacing and far above the rounding error of a shift.
+const POSITION_QUANTUM: f64 = 1.0 / (1u64 << 40) as f64;
 
 /// Conversion between the caller's numbers and positions and the internal ones.
 #[derive(Debug, Clone)]
@@ -41,9 +43,9 @@ impl Places {
     pub(crate) fn inward(&self, place: [f64; 2]) -> [f64; 2] {
         [0, 1].map(|k| {
             let share = (place[k] - self.origin[k]) / self.length;
-            let grains = ((if self.periodic { share - share.floor() } else { share }) / GRAIN).round();
-            let grains = if self.periodic && grains * GRAIN >= 1.0 { 0.0 } else { grains };
-            grains * GRAIN * self.length
+            let grains = ((if self.periodic { share - share.floor() } else { share }) / POSITION_QUANTUM).round();
+            let grains = if self.periodic && grains * POSITION_QUANTUM >= 1.0 { 0.0 } else { grains };
+            grains * POSITION_QUANTUM * self.length
         })
     }
 

@@ -64,20 +64,23 @@ pub struct Problem {
 /// An asperity that formed a contact there would leave at once. At its lower bound, μ = 2, the criterion gives 0.79.
 const DEEPEST_JUMP_IN: f64 = 0.95;
 
-/// Number of spots in the local problem of an event: a radius of about five screening lengths.
+/// Number of spots in the local problem of an event.
 ///
-/// All other spots respond to first order.
+/// They lie within about five screening lengths of it. All other spots respond to first order.
 const SPOTS_IN_PATCH: usize = 24;
 
 impl Problem {
-    /// Sets the number of spots in local problems; with `usize::MAX` every event is solved globally.
+    /// Sets the number of spots in local problems.
+    ///
+    /// With `usize::MAX` every event is solved globally.
     #[must_use]
     pub fn with_patches_of(self, spots: usize) -> Self {
         Self { spots_in_patch: spots.max(1), ..self }
     }
 
-    /// Sets the number of spots from which fast sums are used; with `usize::MAX` all sums are direct.
+    /// Sets the number of spots from which fast sums are used.
     ///
+    /// With `usize::MAX` all sums are direct.
     /// It has no effect on a problem of few asperities, which has no fast sums.
     #[must_use]
     pub fn with_fast_sums_from(self, spots: usize) -> Self {
@@ -172,7 +175,9 @@ impl Problem {
         self.heights.is_empty()
     }
 
-    /// The caller's number of an asperity; merged spots have the same number internally and externally.
+    /// The caller's number of an asperity.
+    ///
+    /// Merged spots have the same number internally and externally.
     #[must_use]
     pub fn number(&self, i: usize) -> usize {
         self.places.numbers.get(i).copied().unwrap_or(i)

@@ -84,7 +84,7 @@ impl State {
 }
 
 impl Status {
-    /// The same with another numbering of the asperities.
+    /// Status with renumbered asperities.
     fn renumbered(self, number: impl Fn(usize) -> usize) -> Self {
         match self {
             Self::Covered { by, release_m } => Self::Covered { by: number(by), release_m },

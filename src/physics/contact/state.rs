@@ -38,9 +38,13 @@ pub struct State {
     pub status: Vec<Status>,
     /// Contact radius of each asperity \[m\], 0 out of contact.
     pub radius: Vec<f64>,
-    /// Asperities blocked from re-entry: they left while their penetration was above the jump-in, and stay free until it falls below.
+    /// Asperities blocked from re-entry after they left contact.
+    ///
+    /// They left while their penetration was above the jump-in, and stay free until it falls below.
     pub barred: Vec<bool>,
-    /// Merged spots in order of creation; their numbers follow those of the asperities of the surface.
+    /// Merged spots in order of creation.
+    ///
+    /// Their numbers follow those of the asperities of the surface.
     pub merged: Vec<Merged>,
     /// Asperities in contact, ascending.
     pub contacts: Vec<usize>,
@@ -48,7 +52,9 @@ pub struct State {
     pub displacement: Vec<f64>,
     /// Largest residual of the equilibrium \[m\].
     pub residual_m: f64,
-    /// Smallest eigenvalue of the tangent `∂(δ_JKR + ŵ)/∂a` with each column divided by its diagonal element.
+    /// Smallest eigenvalue of the scaled tangent `∂(δ_JKR + ŵ)/∂a`.
+    ///
+    /// Each column of the tangent is divided by its diagonal element.
     ///
     /// It is 1 without coupling, 0 at a limit point, and negative for an unstable equilibrium.
     pub stability: f64,

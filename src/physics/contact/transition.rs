@@ -76,7 +76,9 @@ impl Transition {
         })
     }
 
-    /// True if this undoes a release: by absorbing the released asperity, or the absorbing spot by the released one.
+    /// True if this undoes a release.
+    ///
+    /// It absorbs the released asperity, or the formerly absorbing spot into the released one.
     pub(crate) fn undoes(&self, uncovering: &Self) -> bool {
         let i = uncovering.asperity;
         self.kind == Kind::Cover && (self.asperity == i || (Some(self.asperity) == uncovering.by && self.by == Some(i)))
@@ -103,7 +105,9 @@ impl Problem {
         self.rules.coalescence != Coalescence::None
     }
 
-    /// True if an asperity can be absorbed: not absorbed yet, not part of a merged spot, and not a split one.
+    /// True if an asperity can be absorbed.
+    ///
+    /// It must not be absorbed already, part of a merged spot, or a merged spot that has split.
     pub(crate) fn can_be_covered(&self, state: &State, i: usize) -> bool {
         match state.status[i] {
             Status::Contact => true,

@@ -12,10 +12,10 @@ use crate::physics::math::bracket::{End, Illinois};
 use crate::physics::path::{EquilibriumPath, PathCheckpoint};
 
 /// Location tolerance, relative to the rms height, if spots overlap through a jump.
-const SUDDEN: f64 = 1e-6;
+const JUMP_TOLERANCE: f64 = 1e-6;
 
 impl EquilibriumPath<'_> {
-    /// Mean penetration \[m\] of the first coalescence event within the last increment, if any is pending at its end.
+    /// Mean penetration \[m\] of the first coalescence event in the last increment, if any.
     pub(crate) fn next_coalescence(&self, known: &TouchingPairs) -> Result<Option<f64>, PhysicsError> {
         let problem = self.problem();
         let end = self.state();
@@ -26,7 +26,7 @@ impl EquilibriumPath<'_> {
         // The target is slightly past the event.
         let aim = |value: f64| value - 0.5 * TOUCH;
         let mut ends = Illinois::new(aim(furthest(start).min(0.0)), aim(over));
-        let sudden = SUDDEN * problem.rms_height_m;
+        let sudden = JUMP_TOLERANCE * problem.rms_height_m;
         // If a jump-in or release of the spots themselves caused it, the search begins on both sides of that event.
         let mut sides =
             self.last_event_of(&due).map_or(Vec::new(), |at| vec![at - 0.4 * self.sense() * sudden, at + 0.4 * self.sense() * sudden]);
@@ -62,7 +62,9 @@ impl EquilibriumPath<'_> {
         events.find(|event| due.iter().any(|(_, meeting)| spots(meeting).contains(&event.asperity))).map(|event| event.approach_m)
     }
 
-    /// Coalescence event due at the current state; if there is none, the overlapping pairs are added to `known`.
+    /// Coalescence event due at the current state.
+    ///
+    /// If there is none, the overlapping pairs are added to `known`.
     pub(crate) fn due_coalescence(&self, known: &mut TouchingPairs) -> Result<Option<CoalescenceEvent>, PhysicsError> {
         let problem = self.problem();
         if problem.rules.coalescence != Coalescence::Merge {

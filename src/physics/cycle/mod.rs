@@ -1,4 +1,4 @@
-//! Loading and unloading: one loading path to the largest load, and an unloading path from every load reversal.
+//! Loading–unloading cycles: one loading path, and an unloading path from every load reversal.
 //!
 //! The loop begins before the first jump-in and ends with the last separation.
 //! Its area is therefore the total dissipated energy `Θ = ∮F dΔ`.
@@ -36,7 +36,9 @@ pub struct Halfway {
     leg: Option<Leg>,
 }
 
-/// Loads to the largest of the loads, and unloads from each. `progress` receives the finished fraction, 0 to 1.
+/// Loads to the largest of the loads, and unloads from each.
+///
+/// `progress` receives the finished fraction, 0 to 1.
 ///
 /// # Errors
 /// A load that is not reached within 100 rms heights, or a mean penetration without an equilibrium.
@@ -44,7 +46,9 @@ pub fn run(problem: &Problem, settings: &Settings, progress: &dyn Fn(f64)) -> Re
     run_from(problem, settings, None, &mut |_| {}, progress)
 }
 
-/// Continues [`run`] from the checkpoint `halfway`; `keep` receives every new checkpoint.
+/// Continues [`run`] from the checkpoint `halfway`.
+///
+/// `keep` receives every new checkpoint.
 ///
 /// # Errors
 /// A load that is not reached within 100 rms heights, or a mean penetration without an equilibrium.
@@ -151,7 +155,7 @@ impl Settings {
         self.approach_step * problem.rms_height_m
     }
 
-    /// True if a path that began or resumed at the mean penetration `from` \[m\] has reached a checkpoint position.
+    /// True if the path has reached a checkpoint position other than `from` \[m\].
     fn rests(&self, path: &EquilibriumPath<'_>, from: f64) -> bool {
         let at = path.state().approach_m;
         self.rest_every.is_some_and(|every| path.is_exact() && at != from && is_multiple(at, every * path.problem().rms_height_m))
@@ -238,7 +242,9 @@ enum Next {
     End,
 }
 
-/// Follows a branch from a checkpoint, at most to `bound` \[m\], with merging and splitting on the way.
+/// Follows a branch from a checkpoint, at most to `bound` \[m\].
+///
+/// It applies merging and splitting on the way.
 ///
 /// `visit` is called with the path at the beginning, after every increment and after every coalescence event.
 /// It returns the next action. The checkpoint is returned if the action is [`Next::Rest`].

@@ -1,4 +1,4 @@
-//! Recording of a branch: a step at every grid point and load reversal, with the events since the previous step.
+//! Recording of a branch: steps at grid points and load reversals, and events.
 
 use super::soundness::check_area;
 use super::table::{Branch, Contact, Cycle, MergedAt, Settings, Step};
@@ -17,14 +17,14 @@ use serde::{Deserialize, Serialize};
 pub(crate) struct Recorder {
     branch: Branch,
     max_load: Option<f64>,
-    /// Number of the last grid point, counted in the sense of the path, and whether the beginning has been recorded.
+    /// Number of the last grid point in the sense of the path; true after the first record.
     number: f64,
     begun: bool,
     events_before: usize,
     ways_before: usize,
     merged_before: usize,
     effort_before: Effort,
-    /// Load of the last record \[N\], and the most negative load of all records with its spots, if these are to be kept.
+    /// Load of the last record \[N\]; most negative load of all records, with its spots.
     load_before: Option<f64>,
     pulled: Option<(f64, Vec<Contact>)>,
 }
@@ -153,7 +153,7 @@ impl Recorder {
             area_union_m2: crate::physics::contact::union_area::area(problem, state),
             contact_count: state.contacts.len(),
             covered_count: state.covered_count(),
-            touching_count: touching(problem, state),
+            touching_count: overlapping_count(problem, state),
             held_count: at.frozen_count(),
             event_counts: Kind::ALL.map(count),
             dissipated_j: recent.iter().map(|event| event.energy_lost_j).sum(),
@@ -192,7 +192,7 @@ impl Recorder {
 }
 
 /// Number of spots that overlap another one.
-fn touching(problem: &Problem, state: &State) -> usize {
+fn overlapping_count(problem: &Problem, state: &State) -> usize {
     let greatest = state.greatest_radius();
     let touches = |i: usize| {
         let a = state.radius[i];

@@ -53,7 +53,9 @@ impl LoopEnergy {
     }
 }
 
-/// Energies of the loop to the `k`-th load reversal; its unloading must be the last branch of the cycle so far.
+/// Energies of the loop to the `k`-th load reversal.
+///
+/// Its unloading must be the last branch of the cycle so far.
 #[must_use]
 pub fn loop_energy(cycle: &Cycle, k: usize) -> LoopEnergy {
     let reversal = cycle.turning[k].0;
@@ -79,7 +81,9 @@ fn loading_events(cycle: &Cycle, k: usize) -> f64 {
     cycle.steps[..=cycle.turning[k].0].iter().map(|step| step.dissipated_j).sum()
 }
 
-/// Refuses a loop with negative dissipation, or whose energy-balance error exceeds half of the dissipated energy.
+/// Refuses a loop with negative dissipation or a large energy-balance error.
+///
+/// The limit of the error is half of the dissipated energy.
 ///
 /// # Errors
 /// [`PhysicsError::NegativeDissipation`] and [`PhysicsError::EnergyImbalance`], neither below the numerical resolution.

@@ -17,8 +17,9 @@ pub struct Settings {
     pub approach_step: f64,
     /// Selection of the steps at which spots are stored.
     pub contacts: KeptContacts,
-    /// Interval of mean penetration, in rms heights, between checkpoints; `None` for a run without checkpoints.
+    /// Interval of mean penetration, in rms heights, between checkpoints.
     ///
+    /// `None` for a run without checkpoints.
     /// At a checkpoint the path restarts from the stored state, so that another process can continue it.
     pub rest_every: Option<f64>,
 }
@@ -48,7 +49,9 @@ impl Branch {
 pub struct Step {
     /// Loading or unloading.
     pub branch: Branch,
-    /// Maximum load `F/(E* A0)` at the reversal before this unloading; `None` while loading.
+    /// Maximum load `F/(E* A0)` at the reversal before this unloading.
+    ///
+    /// `None` while loading.
     pub max_load: Option<f64>,
     /// Mean penetration Δ \[m\], 0 at the highest summit.
     pub approach_m: f64,

@@ -9,27 +9,27 @@ use crate::model::{Boundary, Interaction as Kind, Material, Slips};
 ///
 /// Measured for the linearisations of one solution and the products that follow them.
 /// Without images a pair costs less and the mesh more.
-const MANY: usize = 150;
-const MANY_ALONE: usize = 400;
+const FAST_FROM_PERIODIC: usize = 150;
+const FAST_FROM_ISOLATED: usize = 400;
 
 /// Number of asperities from which the fast sum is set up.
-const ENOUGH: usize = 300;
+const MIN_ASPERITIES: usize = 300;
 
 /// Errors of the fast sum relative to the largest displacement.
 ///
-/// `TOLERANCE` is for equilibria solved to 1e-10 of the rms height, `ROUGH` for intermediate solutions.
+/// `TOLERANCE` is for equilibria solved to 1e-10 of the rms height, `ROUGH_TOLERANCE` for intermediate solutions.
 const TOLERANCE: f64 = 1e-10;
-const ROUGH: f64 = 1e-6;
+const ROUGH_TOLERANCE: f64 = 1e-6;
 
 /// Displacement field of asperities at `positions` \[m\] on the square of side `length_m`.
 ///
 /// The number of spots in contact selects the faster summation method.
 #[must_use]
 pub fn best(positions: Vec<[f64; 2]>, length_m: f64, material: &Material, kind: Kind, boundary: Boundary, slips: Slips) -> Best {
-    let many = positions.len() >= ENOUGH && matches!(kind, Kind::Spots | Kind::Point);
+    let many = positions.len() >= MIN_ASPERITIES && matches!(kind, Kind::Spots | Kind::Point);
     let to = |tolerance| FastSum::new(positions.clone(), length_m, material, kind, boundary, slips, tolerance);
-    let fast = many.then(|| [to(TOLERANCE), to(ROUGH)]);
-    let many = if boundary == Boundary::Periodic { MANY } else { MANY_ALONE };
+    let fast = many.then(|| [to(TOLERANCE), to(ROUGH_TOLERANCE)]);
+    let many = if boundary == Boundary::Periodic { FAST_FROM_PERIODIC } else { FAST_FROM_ISOLATED };
     Best { direct: DirectSum::new(positions, length_m, material, kind, boundary, slips), fast, many }
 }
 
@@ -43,7 +43,9 @@ pub struct Best {
 }
 
 impl Best {
-    /// Sum for targets that are the spots themselves; `roughly` allows an error of 1e-6 if the fast sum is used.
+    /// Sum for targets that are the spots themselves.
+    ///
+    /// `roughly` allows an error of 1e-6 if the fast sum is used.
     pub(crate) fn for_spots(&self, spots: &Spots, roughly: bool) -> &dyn Interaction {
         match &self.fast {
             Some(fast) if spots.columns.len() >= self.many => &fast[usize::from(roughly)],
@@ -61,7 +63,9 @@ impl Best {
         self.direct.among(spots, table, fields, slopes, effort);
     }
 
-    /// Tabulates the image sums of all pairs if there are few enough asperities; [`Self::add`] discards the table.
+    /// Tabulates the image sums of all pairs if there are few enough asperities.
+    ///
+    /// Adding an asperity discards the table.
     #[must_use]
     pub fn with_table(self) -> Self {
         Self { direct: self.direct.with_table(), ..self }

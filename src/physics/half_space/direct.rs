@@ -30,7 +30,9 @@ pub struct DirectSum {
 }
 
 impl DirectSum {
-    /// Asperities at `positions` \[m\] on the square of side `length_m`; of `slips` only Eq 8 is used.
+    /// Asperities at `positions` \[m\] on the square of side `length_m`.
+    ///
+    /// Of `slips` only Eq 8 is used.
     #[must_use]
     pub fn new(positions: Vec<[f64; 2]>, length_m: f64, material: &Material, kind: Kind, boundary: Boundary, slips: Slips) -> Self {
         let periodic = boundary == Boundary::Periodic;
@@ -46,7 +48,7 @@ impl DirectSum {
         }
     }
 
-    /// Tabulates the image sums of every pair if there are at most [`TABLE_LIMIT`] asperities.
+    /// Tabulates the image sums of every pair if there are at most `TABLE_LIMIT` asperities.
     #[must_use]
     pub fn with_table(self) -> Self {
         let (n, positions) = (self.positions.len(), &self.positions);
@@ -100,7 +102,9 @@ impl DirectSum {
         effort.pairs += (n * targets.len()) as u64;
     }
 
-    /// Displacements at the spots themselves, with derivatives to all radii row by row; image sums with six digits.
+    /// Displacements at the spots themselves, with derivatives to all radii row by row.
+    ///
+    /// The image sums have six digits.
     pub(crate) fn among(&self, spots: &Spots, table: &mut PairTable, fields: &mut Vec<f64>, slopes: &mut Vec<f64>, effort: &mut Effort) {
         table.find(&spots.index, &self.positions, self.length, self.periodic);
         let moments = self.moments(spots);
@@ -109,7 +113,9 @@ impl DirectSum {
         effort.pairs += (spots.index.len() * spots.index.len()) as u64;
     }
 
-    /// Displacement at asperity `target` by all spots; with `SLOPES`, also its derivatives to their radii.
+    /// Displacement at asperity `target` by all spots.
+    ///
+    /// With `SLOPES`, also its derivatives to their radii.
     fn row<const SLOPES: bool>(&self, spots: &Spots, moments: &Moments, target: usize, rough: bool, slopes: &mut [f64]) -> f64 {
         let columns = &spots.columns;
         let [x, y] = self.positions[target];

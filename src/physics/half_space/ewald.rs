@@ -132,7 +132,9 @@ pub fn image_sums(x: f64, y: f64, alpha: f64) -> [f64; ORDERS] {
     sums
 }
 
-/// Degree in `(2x)²` and `(2y)²` at which the series is below rounding: the nearest image is a whole side away.
+/// Degree in `(2x)²` and `(2y)²` at which the series is below rounding.
+///
+/// The nearest image is a whole side away.
 const DEGREE: usize = 24;
 
 /// Cells on half a side for `S_0`, and terms along each direction.
@@ -177,7 +179,9 @@ impl RoughRemainder {
         Self((0..=POINTS).flat_map(|i| (0..=POINTS).map(move |j| (i, j))).map(|(i, j)| of.at(at(i), at(j))).collect())
     }
 
-    /// Value for `|x|, |y| ≤ ½`, with error 2e-4; its magnitude is between 0.8 and 3.9 everywhere.
+    /// Value for `|x|, |y| ≤ ½`, with error 2e-4.
+    ///
+    /// Its magnitude is between 0.8 and 3.9 everywhere.
     #[must_use]
     pub fn at(&self, x: f64, y: f64) -> f64 {
         let [(i, p), (j, q)] = [x, y].map(|along| {
@@ -214,7 +218,9 @@ impl RemainderSeries {
         remainder_at(self, x, y)
     }
 
-    /// [`image_sums`] for `|x|, |y| ≤ ½`; relative error 1e-6 for the orders above the first.
+    /// [`image_sums`] for `|x|, |y| ≤ ½`.
+    ///
+    /// The relative error is 1e-6 for the orders above the first.
     #[must_use]
     pub fn sums(&self, x: f64, y: f64) -> [f64; ORDERS] {
         sums_at(self, x, y)
@@ -289,7 +295,9 @@ fn step(high: [f64; ORDERS], t: f64, low: [f64; ORDERS]) -> [f64; ORDERS] {
     [high[0].mul_add(t, low[0]), high[1].mul_add(t, low[1]), high[2].mul_add(t, low[2]), high[3].mul_add(t, low[3])]
 }
 
-/// Polynomial in t that multiplies `s^(5−R)`; the rows are independent of one another.
+/// Polynomial in t that multiplies `s^(5−R)`.
+///
+/// The rows are independent of one another.
 #[inline(always)]
 fn row<const R: usize>(cell: &[[f32; ORDERS]; COARSE_ALL], t: f64) -> [f64; ORDERS] {
     let from = R * (R + 1) / 2;
@@ -327,7 +335,9 @@ fn sums_at(series: &RemainderSeries, x: f64, y: f64) -> [f64; ORDERS] {
     series.local(&[x], &[y])[0]
 }
 
-/// Coefficients of `t^q s^p`, by falling q, then falling p, of polynomials with `N` terms per direction on every cell.
+/// Coefficients of `t^q s^p`, by falling q, then falling p, on every cell.
+///
+/// The polynomials have `N` terms per direction.
 fn fit<const N: usize>(rows: &[Vec<[f64; ORDERS]>], cells: usize) -> Vec<[[[f64; ORDERS]; N]; N]> {
     let angle = |k: usize| PI * (k as f64 + 0.5) / N as f64;
     let monomials = chebyshev_monomials(N);

@@ -106,7 +106,9 @@ impl Tangent {
         self.0 = Form::Dense(size, matrix);
     }
 
-    /// Moves the sparse form out to reuse its memory; [`Self::set_sparse`] puts it back.
+    /// Moves the sparse form out to reuse its memory.
+    ///
+    /// [`Self::set_sparse`] puts it back.
     fn take_sparse(&mut self) -> Box<Sparse> {
         match std::mem::take(self).0 {
             Form::Sparse(sparse) => sparse,
@@ -174,12 +176,16 @@ impl Sub for Effort {
 
 /// Displacement of the half-space at contacts and free asperities by other contacts.
 pub trait Interaction: Sync {
-    /// Writes the displacement ŵ \[m\] at each of `targets` (asperity numbers) to `displacements`, in their order.
+    /// Writes the displacement ŵ \[m\] at each of `targets` to `displacements`.
+    ///
+    /// Targets are asperity numbers, and their order is kept.
     ///
     /// A spot does not act on its own centre, but its periodic images and the background do.
     fn displacements(&self, spots: &Spots, targets: &[usize], displacements: &mut Vec<f64>, effort: &mut Effort);
 
-    /// Displacements at the spots themselves, and the tangent; reuses the geometry cached in `tangent`.
+    /// Displacements at the spots themselves, and the tangent.
+    ///
+    /// Reuses the geometry cached in `tangent`.
     fn linearise(&self, spots: &Spots, displacements: &mut Vec<f64>, tangent: &mut Tangent, effort: &mut Effort);
 
     /// Displacements at the spots themselves, using the geometry cached in `_tangent`, which is not changed.
@@ -187,7 +193,9 @@ pub trait Interaction: Sync {
         self.displacements(spots, &spots.index, displacements, effort);
     }
 
-    /// Displacement at each of `targets`, and its derivative along a path with the rates `rates` of the spots' radii.
+    /// Displacement at each of `targets`, and its derivative along a path.
+    ///
+    /// `rates` are the derivatives of the spots' radii along the path.
     ///
     /// Writes the displacement and `dŵ_i = Σ_j (∂ŵ_i/∂a_j) rates_j` to `found`. With `rates` = da_j/dδ the latter is dŵ_i/dδ.
     /// The geometry is cached in `kept` for the next call.

@@ -23,7 +23,9 @@ struct Pass {
 }
 
 impl PairTable {
-    /// Computes the pairs of the asperities `index` at `positions` \[m\] if the set has changed; image sums have six digits.
+    /// Computes the pairs of the asperities `index` if the set has changed.
+    ///
+    /// `positions` are in m, and the image sums have six digits.
     pub(crate) fn find(&mut self, index: &[usize], positions: &[[f64; 2]], length: f64, periodic: bool) {
         if self.index != index {
             self.index.clear();

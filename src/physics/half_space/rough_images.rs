@@ -51,7 +51,9 @@ impl Centre {
         Self { first, second }
     }
 
-    /// `S_0` and `S_1` for pairs at these distances, in units of the side; for inlining into a vectorised loop.
+    /// `S_0` and `S_1` for pairs at these distances, in units of the side.
+    ///
+    /// Inlined into a vectorised loop.
     #[inline(always)]
     pub(super) fn sums(&self, x: &[f64; LANES], y: &[f64; LANES]) -> [[f64; LANES]; 2] {
         let square = |d: &[f64; LANES]| d.map(|d| (d * d).mul_add(8.0, -1.0));

@@ -102,7 +102,9 @@ pub struct Spot {
     pub load_slope: f64,
 }
 
-/// Displacement ŵ \[m\] at distance `r > 0` \[m\] from the centre of a spot, and its derivative to the spot's radius.
+/// Displacement ŵ \[m\] by a spot, and its derivative to the spot's radius.
+///
+/// `r > 0` \[m\] is the distance from the centre of the spot.
 ///
 /// `pull` is `sqrt(2πΔγ/E*)` \[m^½\]. Eqs 6 and 7 outside; inside, `ŵ = a²/R − r²/(2R) − sqrt(2πaΔγ/E*)`.
 ///
@@ -114,7 +116,9 @@ pub fn spot_field(r: f64, a: f64, radius: f64, pull: f64) -> (f64, f64) {
     spot_field_as_printed(r, a, radius, pull, Slips::NONE)
 }
 
-/// [`spot_field`], with Eq 8 as printed if `slips` contains it: inside, `ŵ = a²/R − sqrt(2πaΔγ/E*)` at every r.
+/// [`spot_field`], with Eq 8 as printed if `slips` contains it.
+///
+/// The printed equation is `ŵ = a²/R − sqrt(2πaΔγ/E*)` at every r inside.
 ///
 /// The derivative to the spot's radius is unchanged; it does not include the jump at the edge.
 #[must_use]
@@ -206,7 +210,9 @@ pub fn dimensionless_field(u: f64) -> (f64, f64) {
 /// Distance \[m\] at which the field of any spot is negligible.
 pub(crate) const AWAY: f64 = 1e30;
 
-/// Number of sources per pass; it fixes the order of summation, independently of the machine.
+/// Number of sources per pass.
+///
+/// It fixes the order of summation, independently of the machine.
 pub(crate) const LANES: usize = 8;
 
 /// Sources of a displacement field as columns, for vectorised evaluation.
@@ -311,7 +317,9 @@ impl SpotColumns {
 pub(crate) struct Place {
     pub(crate) x: f64,
     pub(crate) y: f64,
-    /// Side of the periodic square, and its inverse; the inverse is 0 for an isolated square, which disables image shifts.
+    /// Side of the periodic square, and its inverse.
+    ///
+    /// The inverse is 0 for an isolated square, which disables image shifts.
     pub(crate) length: f64,
     pub(crate) inverse_length: f64,
     pub(crate) pull: f64,

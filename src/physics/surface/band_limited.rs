@@ -33,8 +33,10 @@ pub struct BandLimited<'a> {
     taps: Taps,
 }
 
-/// Maximum number of grid points in the sum along one direction; the table is padded to whole vectors.
-const MOST_TAPS: usize = 128;
+/// Maximum number of grid points in the sum along one direction.
+///
+/// The table is padded to whole vectors.
+const MAX_TAPS: usize = 128;
 const LANES: usize = 8;
 
 /// Number of terms of the kernel polynomials.
@@ -47,7 +49,9 @@ const TERMS: usize = 24;
 #[derive(Debug, Clone)]
 struct Taps {
     half_width: i64,
-    /// Coefficients by power, highest first, each for all points: of the kernel and of its first and second derivative.
+    /// Coefficients of the kernel and of its first and second derivative.
+    ///
+    /// They are stored by power, highest first, each for all points.
     coefficients: [Vec<f64>; 3],
     /// Number of points, and the padded number.
     count: usize,
@@ -55,7 +59,7 @@ struct Taps {
 }
 
 /// Value, first and second derivative of the kernel at each point.
-struct Weights([[f64; MOST_TAPS]; 3]);
+struct Weights([[f64; MAX_TAPS]; 3]);
 
 #[derive(Debug, Clone, Copy)]
 struct Window {
@@ -67,11 +71,11 @@ struct Window {
 impl<'a> BandLimited<'a> {
     /// Heights \[m\] on a square grid of side `length_m` with `points_per_shortest_wavelength > 2`.
     ///
-    /// Down to 2.5 points the error is below rounding. Closer to 2 it grows, since the sum has at most [`MOST_TAPS`] points.
+    /// Down to 2.5 points the error is below rounding. Closer to 2 it grows, since the sum has at most [`MAX_TAPS`] points.
     #[must_use]
     pub fn new(heights: ArrayView2<'a, f64>, length_m: f64, points_per_shortest_wavelength: f64) -> Self {
         let headroom = PI * (1.0 - 2.0 / points_per_shortest_wavelength);
-        let half_width = (DECAY / headroom).ceil().min(0.5 * MOST_TAPS as f64);
+        let half_width = (DECAY / headroom).ceil().min(0.5 * MAX_TAPS as f64);
         let beta = half_width * headroom;
         let window = Window { half_width, beta, norm: 1.0 / bessel_i(beta, 0) };
         Self { heights, spacing: length_m / heights.nrows() as f64, taps: Taps::new(&window) }
@@ -85,8 +89,8 @@ impl<'a> BandLimited<'a> {
         let n = self.heights.nrows();
         let count = self.taps.count;
         // Sum over the rows first, for all columns at once.
-        let mut sums = [[0.0; MOST_TAPS]; 3];
-        let mut line = [0.0; MOST_TAPS];
+        let mut sums = [[0.0; MAX_TAPS]; 3];
+        let mut line = [0.0; MAX_TAPS];
         for k in 0..count {
             let heights = self.heights.row((row + k) % n);
             match heights.as_slice().and_then(|line| line.get(column..column + self.taps.padded)) {
@@ -109,12 +113,14 @@ impl<'a> BandLimited<'a> {
         }
     }
 
-    /// First grid index of the sum, and the weights of value, first and second derivative, in units of the spacing.
+    /// First grid index of the sum, and the weights of value and derivatives.
+    ///
+    /// The weights of the first and second derivative are in units of the spacing.
     fn weights(&self, coordinate: f64) -> (usize, Weights) {
         let n = self.heights.nrows() as i64;
         let place = coordinate / self.spacing;
         let base = place.floor();
-        let mut weights = Weights([[0.0; MOST_TAPS]; 3]);
+        let mut weights = Weights([[0.0; MAX_TAPS]; 3]);
         self.taps.evaluate(place - base - 0.5, &mut weights);
         ((base as i64 + 1 - self.taps.half_width).rem_euclid(n) as usize, weights)
     }
@@ -128,7 +134,7 @@ impl Weights {
 
 /// Adds a line of heights, multiplied by each of three weights.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-fn gather(line: &[f64], weights: [f64; 3], sums: &mut [[f64; MOST_TAPS]; 3]) {
+fn gather(line: &[f64], weights: [f64; 3], sums: &mut [[f64; MAX_TAPS]; 3]) {
     let [first, second, third] = sums;
     for (((h, s0), s1), s2) in line.iter().zip(first).zip(second).zip(third) {
         *s0 = h.mul_add(weights[0], *s0);
@@ -166,7 +172,7 @@ impl Taps {
 
 /// Evaluates all polynomials at once.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-fn horner(coefficients: &[f64], padded: usize, x: f64, out: &mut [f64; MOST_TAPS]) {
+fn horner(coefficients: &[f64], padded: usize, x: f64, out: &mut [f64; MAX_TAPS]) {
     for first in (0..padded).step_by(LANES) {
         let mut value = [0.0f64; LANES];
         for power in coefficients.chunks_exact(padded) {
@@ -178,7 +184,7 @@ fn horner(coefficients: &[f64], padded: usize, x: f64, out: &mut [f64; MOST_TAPS
     }
 }
 
-/// Coefficients, lowest power first, of the polynomial that interpolates `f` at the Chebyshev nodes of `[−1, 1]`.
+/// Polynomial that interpolates `f` at the Chebyshev nodes of `[−1, 1]`, lowest power first.
 fn interpolate(f: impl Fn(f64) -> f64) -> [f64; TERMS] {
     let angle = |k: usize| PI * (k as f64 + 0.5) / TERMS as f64;
     let samples: [f64; TERMS] = std::array::from_fn(|k| f(angle(k).cos()));

@@ -6,19 +6,21 @@ use ndarray::Array2;
 
 /// Heights attributed to rounding, relative to their range and to their mean.
 pub(crate) const ROUNDING: f64 = 1e-12;
-const OF_MEAN: f64 = 1e-15;
+const ROUNDING_OF_MEAN: f64 = 1e-15;
 /// Maximum height and minimum deviation \[m\], for which squares neither overflow nor underflow.
-const HIGHEST: f64 = 1e9;
-const LOWEST: f64 = 1e-60;
+const MAX_HEIGHT: f64 = 1e9;
+const MIN_DEVIATION: f64 = 1e-60;
 
-/// Refuses heights \[m\] whose squares would overflow. Non-finite heights are missing points.
+/// Refuses heights \[m\] whose squares would overflow.
+///
+/// Non-finite heights are missing points.
 pub(crate) fn check_size(heights_m: &Array2<f64>) -> Result<(), PhysicsError> {
     let largest = heights_m.iter().filter(|h| h.is_finite()).fold(0.0_f64, |most, h| most.max(h.abs()));
-    if largest <= HIGHEST {
+    if largest <= MAX_HEIGHT {
         return Ok(());
     }
     Err(PhysicsError::Surface {
-        problem: format!("heights too large: up to {largest:.1e} m (limit {HIGHEST:e} m)"),
+        problem: format!("heights too large: up to {largest:.1e} m (limit {MAX_HEIGHT:e} m)"),
         help: "check the unit of the heights (--unit, surface.unit), and that no value marks missing points",
     })
 }
@@ -41,12 +43,14 @@ struct Range {
     deviation: f64,
 }
 
-/// Mean and range of heights; refuses constant heights and those whose squares would underflow.
+/// Mean and range of heights.
+///
+/// Refuses constant heights and those whose squares would underflow.
 fn range(heights: &Array2<f64>) -> Result<Range, PhysicsError> {
     let (low, high) = heights.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), h| (low.min(*h), high.max(*h)));
     let mean = heights.sum() / heights.len() as f64;
     let deviation = (high - mean).max(mean - low);
-    if low < high && deviation < LOWEST {
+    if low < high && deviation < MIN_DEVIATION {
         return Err(PhysicsError::Surface {
             problem: format!("height range too small: {:.1e} m", high - low),
             help: "check the unit of the heights (--unit, surface.unit)",
@@ -58,7 +62,7 @@ fn range(heights: &Array2<f64>) -> Result<Range, PhysicsError> {
 /// Checks that levelled heights exceed rounding.
 fn left_over(heights: &Array2<f64>, before: &Range, trend_m: f64) -> Result<(), PhysicsError> {
     let most = heights.iter().fold(0.0_f64, |most, h| most.max(h.abs()));
-    if most > ROUNDING * before.deviation + OF_MEAN * before.mean.abs() {
+    if most > ROUNDING * before.deviation + ROUNDING_OF_MEAN * before.mean.abs() {
         return Ok(());
     }
     Err(flat(format!("it is flat to rounding: nothing is left after levelling, which removed {trend_m:.3e} m rms")))
@@ -68,7 +72,9 @@ fn flat(problem: String) -> PhysicsError {
     PhysicsError::Surface { problem, help: "a rough surface is needed: check which field of the file is read, and its units" }
 }
 
-/// Subtracts a least-squares form; returns its rms height \[m\] about its mean. The mean is always subtracted.
+/// Subtracts a least-squares form; returns its rms height \[m\] about its mean.
+///
+/// The mean is always subtracted.
 fn detrend(heights: &mut Array2<f64>, kind: Detrend) -> f64 {
     let n = heights.nrows();
     let count = heights.len() as f64;

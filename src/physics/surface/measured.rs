@@ -23,15 +23,17 @@ use ndarray::{Array2, ArrayView2, s};
 
 /// Minimum and maximum number of points along a side.
 pub const FEWEST_POINTS: usize = 16;
-/// 1 GiB of heights; the mirror extension needs four times as much during filtering.
+/// 1 GiB of heights.
+///
+/// The mirror extension needs four times as much during filtering.
 pub const MOST_POINTS: usize = 8192;
 
 /// Maximum fraction of missing points.
-const MOST_MISSING: f64 = 0.5;
+const MAX_MISSING_FRACTION: f64 = 0.5;
 /// Relative difference of the point spacings below which they count as equal.
-const SQUARE: f64 = 1e-3;
+const SPACING_TOLERANCE: f64 = 1e-3;
 /// Maximum ratio of the two spacings that is resampled.
-const MOST_OBLONG: f64 = 16.0;
+const MAX_SPACING_RATIO: f64 = 16.0;
 
 /// Preprocessing of a measured surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,8 +69,9 @@ pub struct Prepared {
     pub shortest_wavelength_m: f64,
 }
 
-/// Prepares heights \[m\] with spacings `spacing_m` along rows and along columns; missing points are NaN.
+/// Prepares heights \[m\] with spacings `spacing_m` along rows and along columns.
 ///
+/// Missing points are NaN.
 /// A field that is not square is cropped to its central square; a periodic one must be square.
 /// With unequal spacings, heights along the coarser direction are interpolated by polynomials of the fifth degree.
 /// The cut-off then refers to the larger spacing.
@@ -88,7 +91,7 @@ pub fn prepare(heights_m: Array2<f64>, spacing_m: [f64; 2], treatment: &Treatmen
             "none, or missing = \"fill\" (--fill; fill=True in Python) for harmonic in-fill",
         ));
     }
-    if share > MOST_MISSING {
+    if share > MAX_MISSING_FRACTION {
         return Err(domain("the number of missing points", missing_count as f64, "up to half of all"));
     }
     fill(&mut heights, treatment.periodic);
@@ -130,7 +133,9 @@ struct Square {
     heights: Array2<f64>,
     /// Point spacing \[m\].
     fine: f64,
-    /// Ratio of the larger to the smaller point spacing of the scan; 1 if they count as equal.
+    /// Ratio of the larger to the smaller point spacing of the scan.
+    ///
+    /// It is 1 if they count as equal.
     coarsening: f64,
 }
 
@@ -142,16 +147,16 @@ fn square(heights_m: Array2<f64>, spacing_m: [f64; 2], periodic: bool) -> Result
     check_size(&heights_m)?;
     let fine = spacing_m[0].min(spacing_m[1]);
     let ratio = spacing_m[0].max(spacing_m[1]) / fine;
-    if ratio > MOST_OBLONG {
+    if ratio > MAX_SPACING_RATIO {
         return Err(domain("the ratio of the pixel sizes along both axes", ratio, "up to 16"));
     }
-    let oblong = ratio > 1.0 + SQUARE;
+    let oblong = ratio > 1.0 + SPACING_TOLERANCE;
     let coarsening = if oblong { ratio } else { 1.0 };
     if oblong && periodic {
         return Err(domain("the ratio of the pixel sizes along both axes", ratio, "1 for a periodic surface, or periodic = false"));
     }
     let largest = heights_m.len() as f64 * coarsening;
-    if largest > MOST_AT_ALL {
+    if largest > MAX_POINTS_BEFORE_CROP {
         return Err(domain("the number of points", largest, "up to 2^28"));
     }
     let heights_m = match oblong {
@@ -220,7 +225,7 @@ fn resampled(heights: ArrayView2<'_, f64>, ratio: f64) -> Result<Array2<f64>, Ph
 /// Number of points in the interpolation of a value.
 const TAPS: usize = 6;
 /// Maximum number of points before the crop.
-const MOST_AT_ALL: f64 = (1u64 << 28) as f64;
+const MAX_POINTS_BEFORE_CROP: f64 = (1u64 << 28) as f64;
 
 /// Fills missing points harmonically: the discrete Laplacian vanishes there.
 ///
@@ -257,7 +262,7 @@ fn fill(heights: &mut Array2<f64>, periodic: bool) {
     let (low, high) = heights.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), h| (low.min(*h), high.max(*h)));
     let width = (holes.len() as f64).sqrt().min(rows as f64);
     let over = 2.0 / (1.0 + (std::f64::consts::PI / (width + 1.0)).sin());
-    for _ in 0..MOST_SWEEPS {
+    for _ in 0..MAX_SWEEPS {
         let mut moved = 0.0_f64;
         for place in &holes {
             let mean = around(*place).into_iter().map(|at| heights[at]).sum::<f64>() / 4.0;
@@ -272,7 +277,7 @@ fn fill(heights: &mut Array2<f64>, periodic: bool) {
 }
 
 /// Maximum number of sweeps over the missing points.
-const MOST_SWEEPS: usize = 3000;
+const MAX_SWEEPS: usize = 3000;
 
 /// Summits of a prepared surface, and the number excluded at the edges of a non-periodic one.
 ///

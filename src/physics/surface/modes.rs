@@ -16,7 +16,9 @@ const ROWS: usize = 256;
 /// Rings per octave of wavenumber.
 const RINGS: f64 = 4.0;
 
-/// Modes `c_k` of `h(x) = Σ_k c_k exp(i k·x)` on a square grid; one half, the others are conjugates.
+/// Modes `c_k` of `h(x) = Σ_k c_k exp(i k·x)` on a square grid.
+///
+/// It stores one half of them; the others are conjugates.
 pub(crate) struct Field {
     /// Points along a side.
     n: usize,
@@ -63,7 +65,9 @@ impl Field {
         Ok(Self { n, lowest: TAU / length_m, columns })
     }
 
-    /// Sums over the modes, by columns that are added in order, so that the result is independent of the threads.
+    /// Sums over the modes.
+    ///
+    /// Columns are added in order, so that the result is independent of the threads.
     ///
     /// `add` receives the sum so far, the squared mode number, the number of modes that this one represents, and `|c_k|²` \[m²\].
     fn sum<T: Clone + Send + Sync>(&self, zero: &T, add: impl Fn(&mut T, f64, f64, f64) + Sync, join: impl Fn(&mut T, &T)) -> T {
@@ -104,7 +108,9 @@ impl Field {
         Moments { m0_m2: m0, m2: 0.5 * slope, m4_1_m2: 0.375 * laplacian }
     }
 
-    /// Power spectral density in rings of wavevectors; see [`super::periodogram::periodogram`].
+    /// Power spectral density in rings of wavevectors.
+    ///
+    /// See [`super::periodogram::periodogram`].
     pub(crate) fn rings(&self) -> Vec<Ring> {
         let reach = self.n as f64 / 2.0;
         let count = (RINGS * reach.log2()).round() as usize + 1;

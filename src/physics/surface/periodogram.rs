@@ -23,7 +23,9 @@ pub fn periodogram(heights_m: ArrayView2<'_, f64>, length_m: f64) -> Result<Vec<
     if n == 0 || n != across { Ok(Vec::new()) } else { Ok(Field::of(heights_m, length_m, true)?.rings()) }
 }
 
-/// Power spectral density of a non-periodic surface, under a Hann window `w = (1 − cos 2πx/L)(1 − cos 2πy/L)`.
+/// Power spectral density of a non-periodic surface under a Hann window.
+///
+/// The window is `w = (1 − cos 2πx/L)(1 − cos 2πy/L)`.
 ///
 /// Division by the mean of w² makes the sum equal to h_rms² on average (Jacobs, Junge and Pastewka, Surf. Topogr. 5:013001, 2017).
 /// The window spreads each mode over its neighbours, and the lowest wavenumbers contribute to the mean.

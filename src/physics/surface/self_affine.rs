@@ -5,7 +5,9 @@ use super::psd_bin::Ring;
 /// Self-affine spectrum with a roll-off: `C0` up to `q_r`, then `C0 (q/q_r)^(−2(H+1))` (Eq 10).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SelfAffine {
-    /// Hurst exponent H; a value outside (0, 1) means that the surface is not self-affine in the band.
+    /// Hurst exponent H.
+    ///
+    /// A value outside (0, 1) means that the surface is not self-affine in the band.
     pub hurst: f64,
     /// Plateau C0 \[m⁴\].
     pub plateau_m4: f64,
@@ -18,14 +20,14 @@ pub struct SelfAffine {
 }
 
 /// Ratio of the sums of squares with and without a roll-off below which it is accepted.
-const CLEARLY: f64 = 0.7;
+const ROLL_OFF_RATIO: f64 = 0.7;
 
-/// Variance of a ring's density, in terms of `OF_MODES`/m for m modes, plus the square of `AT_BEST`.
+/// Variance of a ring's density, in terms of `MODE_VARIANCE`/m for m modes, plus the square of `MODEL_DEVIATION`.
 ///
 /// Half of the modes are conjugates of the others, and a window correlates neighbours: the standard deviation is about `sqrt(4/m)`.
-/// No spectrum is a power law of q to better than `AT_BEST`.
-const OF_MODES: f64 = 4.0;
-const AT_BEST: f64 = 0.1;
+/// No spectrum is a power law of q to better than `MODEL_DEVIATION`.
+const MODE_VARIANCE: f64 = 4.0;
+const MODEL_DEVIATION: f64 = 0.1;
 
 /// Least-squares fit of log C over log q to the rings with wavenumbers below `highest_1_m`.
 ///
@@ -39,7 +41,7 @@ pub fn fit_self_affine(rings: &[Ring], highest_1_m: f64) -> Option<SelfAffine> {
         .map(|ring| Point {
             x: ring.wavenumber_1_m.log10(),
             y: ring.density_m4.log10(),
-            weight: 1.0 / (OF_MODES / ring.mode_count as f64 + AT_BEST * AT_BEST),
+            weight: 1.0 / (MODE_VARIANCE / ring.mode_count as f64 + MODEL_DEVIATION * MODEL_DEVIATION),
         })
         .collect();
     if points.len() < 5 {
@@ -48,7 +50,7 @@ pub fn fit_self_affine(rings: &[Ring], highest_1_m: f64) -> Option<SelfAffine> {
     let fits: Vec<Line> = (0..points.len() - 4).map(|k| Line::of(&points, points[k].x)).collect();
     let straight = *fits.first()?;
     let best = fits.into_iter().min_by(|a, b| a.squares.total_cmp(&b.squares))?;
-    let rolls_off = best.squares < CLEARLY * straight.squares;
+    let rolls_off = best.squares < ROLL_OFF_RATIO * straight.squares;
     let chosen = if rolls_off { best } else { straight };
     Some(SelfAffine {
         hurst: -0.5 * chosen.slope - 1.0,

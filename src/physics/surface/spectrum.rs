@@ -27,7 +27,9 @@ impl Spectrum {
         2.0 * PI / self.length_m
     }
 
-    /// Prefactor `C0 = h_rms² H / (π qL² (1 − ζ^(−2H)))` \[m⁴\]; the spectrum's integral over d²q is `h_rms²`.
+    /// Prefactor `C0 = h_rms² H / (π qL² (1 − ζ^(−2H)))` \[m⁴\].
+    ///
+    /// The spectrum's integral over d²q is `h_rms²`.
     #[must_use]
     pub fn prefactor(&self) -> f64 {
         let zeta = f64::from(self.magnification);
@@ -66,7 +68,9 @@ impl Spectrum {
         }
     }
 
-    /// Moments of the discrete modes of a periodic square, with fixed amplitudes and the chosen normalisation.
+    /// Moments of the discrete modes of a periodic square.
+    ///
+    /// The amplitudes are fixed, with the chosen normalisation.
     ///
     /// They are sums in place of the integrals of [`Self::moments`].
     #[must_use]

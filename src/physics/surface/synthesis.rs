@@ -25,7 +25,9 @@ pub struct Surface {
     pub moments: Moments,
 }
 
-/// Seed of a realisation: a hash of the campaign's seed and the realisation's number, independent of list order.
+/// Seed of a realisation: a hash of the campaign's seed and the realisation's number.
+///
+/// It does not depend on any position in a list.
 #[must_use]
 pub fn realization_seed(campaign_seed: u64, realization: u64) -> [u8; 32] {
     let mut bytes = [0u8; 16];
@@ -45,7 +47,9 @@ impl Phases {
         Self(generator)
     }
 
-    /// Phase in `[0, 2π)`, and an exponential variate of mean one for the mode's power; four words per mode.
+    /// Phase in `[0, 2π)`, and an exponential variate of mean one for the mode's power.
+    ///
+    /// Each mode has four words of its stream.
     fn draw(&mut self, ky: u64) -> (f64, f64) {
         self.0.set_word_pos(u128::from(ky) * 4);
         let unit = |word: u64| (word >> 11) as f64 / (1u64 << 53) as f64;

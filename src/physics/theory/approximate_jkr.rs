@@ -71,7 +71,9 @@ fn line(points: &[(CurvePoint, f64)], at_m2: f64) -> Option<(f64, f64)> {
     (points.len() > WINDOW && slope.is_finite()).then_some((slope, stiffness + slope * (at_m2 - area)))
 }
 
-/// Loading–unloading loop along an adhesive curve under displacement control; contact forms at zero penetration.
+/// Loading–unloading loop along an adhesive curve under displacement control.
+///
+/// Contact forms at zero penetration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CurveLoop {
     /// Contact area at the largest load \[m²\].
@@ -84,7 +86,8 @@ pub struct CurveLoop {
 
 /// Loop to a maximum load over E* \[m²\], if the approximation is valid on it.
 ///
-/// `None` if the curve does not reach the load, or if contact is lost at a penetration that is not negative or at an area
+/// `None` if the curve does not reach the load, or if contact is lost at a penetration that is not negative.
+/// It is `None` too if contact is lost at an area
 /// of at least half the area at that load. In the latter case the curve jumps to near full contact.
 ///
 /// Unloading follows the curve from the last point at or below that load.

@@ -1,4 +1,4 @@
-//! Elastic energy of flattening the roughness, relative to the work of adhesion: range of the asperity model.
+//! Elastic energy of flattening the roughness, and range of the asperity model.
 //!
 //! If flattening costs less than adhesion gains, the half-space conforms to the roughness and contact spots are no longer separate.
 

@@ -1,6 +1,6 @@
 //! Analytical models for comparison with a simulated cycle.
 //!
-//! Deng and Kesari's dissipated energy from Nayak's statistics of summits, dissipated energy in full contact (Dalvi et al.),
+//! Dissipated energy from Nayak's statistics of summits (Deng and Kesari) and in full contact (Dalvi et al.),
 //! crack-front pinning, contact area without adhesion, and the adhesion parameter of Fuller and Tabor.
 //!
 //! Not included, since their formulae could not be confirmed at their sources: the bearing-area model (Ciavarella 2018)
@@ -142,7 +142,6 @@ fn gauss_panels(f: impl Fn(f64) -> f64, from: f64, to: f64, panels: usize) -> f6
 }
 
 /// Deng and Kesari's dissipated energy `Θ = η A ⟨θ⟩` \[J\], with Nayak's density η. Eq A4.
-///
 /// `A` \[m²\] is the true contact area at the end of loading.
 ///
 /// # Errors
@@ -159,7 +158,9 @@ pub fn deng_kesari_loss_as_printed(moments: &Moments, material: &Material, area_
     Ok(moments.summit_density_1_m2() * area_m2 * mean_loop_loss_as_printed(moments, material, None, slips)?)
 }
 
-/// Dissipated energy `Θ = Δγ A` \[J\] of a contact that forms without dissipation and separates by its full work of adhesion.
+/// Dissipated energy `Θ = Δγ A` \[J\] of separation by the full work of adhesion.
+///
+/// The contact forms without dissipation.
 ///
 /// `A` \[m²\] is the true contact area at the end of loading, and Δγ is in J/m².
 /// Dalvi et al., PNAS 116:25484 (2019), found it for soft spheres in nearly full contact with nanodiamond.
@@ -172,9 +173,9 @@ pub fn dalvi_loss(material: &Material, area_m2: f64) -> f64 {
 /// Prefactor k of the work of adhesion of an advancing and a receding contact line, `Δγ ∓ k e_el`.
 const PINNING: f64 = 1.35;
 
-/// Energy dissipated by crack-front pinning over a contact of area A, `2 k e_el A` with k = 1.35 \[J\].
+/// Energy dissipated by crack-front pinning, `2 k e_el A` with k = 1.35 \[J\].
 ///
-/// `A` is in m², and `e_el` \[J/m²\] is the elastic energy per area of flattening the roughness. `None` if `k e_el ≥ Δγ/2`.
+/// `A` is the contact area \[m²\], and `e_el` \[J/m²\] is the elastic energy per area of flattening the roughness. `None` if `k e_el ≥ Δγ/2`.
 ///
 /// Roughness makes the work of adhesion along a contact line random, with the standard deviation `2 sqrt(Δγ e_el)`.
 /// The line is elastic, with a stiffness that decreases with the wavelength.

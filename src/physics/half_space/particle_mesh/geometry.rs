@@ -12,15 +12,17 @@ use rayon::prelude::*;
 use std::sync::Arc;
 
 /// Relative change of the number of spots or targets beyond which the geometry is rebuilt.
-const CHANGE: f64 = 0.2;
+const MAX_CHANGE: f64 = 0.2;
 
 /// Maximum ratio of a spot's radius limit to the limit that a rebuild would assign.
-const LOOSE: f64 = 2.0;
+const MAX_LOOSENESS: f64 = 2.0;
 
 /// Near pairs of all targets, and mesh weights of sources and targets.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Geometry {
-    /// Spots by rank, their positions and the radius limits up to which the geometry is valid \[m\], and the targets.
+    /// Spots by rank, their positions and radius limits \[m\], and the targets.
+    ///
+    /// The geometry is valid up to these radii.
     index: Vec<usize>,
     places: Vec<[f64; 2]>,
     limits: Vec<f64>,
@@ -37,7 +39,9 @@ pub(super) struct Geometry {
 }
 
 impl FastSum {
-    /// Updates the geometry for spots and targets, both by rank, reusing the previous one where it is valid.
+    /// Updates the geometry for spots and targets, both by rank.
+    ///
+    /// Entries of the previous geometry are reused where they are valid.
     pub(super) fn place(&self, spots: &Spots, targets: &[usize], geometry: &mut Geometry) {
         let columns = &spots.columns;
         let length = self.measure.length;
@@ -113,7 +117,7 @@ impl Geometry {
     /// Replaces spots and targets; returns the parts that are still valid, if most are.
     fn keep(&mut self, field: &FastSum, spots: &Spots, targets: &[usize]) -> Option<Kept> {
         let columns = &spots.columns;
-        let near = |now: usize, then: usize| (now as f64 - then as f64).abs() <= CHANGE * then as f64;
+        let near = |now: usize, then: usize| (now as f64 - then as f64).abs() <= MAX_CHANGE * then as f64;
         let same = self.accuracy == Some(field.accuracy);
         let serves = same && near(spots.index.len(), self.chosen_for[0]) && near(targets.len(), self.chosen_for[1]);
         let places: Vec<[f64; 2]> = (0..columns.len()).map(|j| [columns.x[j], columns.y[j]]).collect();
@@ -127,7 +131,7 @@ impl Geometry {
             for (j, before) in places_in(&spots.index, &self.index).enumerate() {
                 let Some(before) = before else { continue };
                 let limit = self.limits[before];
-                if self.places[before] == places[j] && (columns.a[j]..LOOSE * limits[j]).contains(&limit) {
+                if self.places[before] == places[j] && (columns.a[j]..MAX_LOOSENESS * limits[j]).contains(&limit) {
                     (kept.stays[j], kept.numbers[before], limits[j]) = (true, j as u32, limit);
                 }
             }

@@ -37,12 +37,12 @@ use std::f64::consts::{FRAC_1_SQRT_2, PI};
 use std::sync::{Arc, OnceLock};
 
 /// Longest cutoff, in sides: only the nearest image lies within it.
-const LONGEST: f64 = 0.45;
+const LONGEST_CUTOFF: f64 = 0.45;
 
 /// Cutoffs to choose from, each `1/√2` of the one before.
 const REACHES: usize = 15;
-const REACH: [f64; REACHES] = {
-    let mut all = [LONGEST; REACHES];
+const CUTOFF: [f64; REACHES] = {
+    let mut all = [LONGEST_CUTOFF; REACHES];
     let mut step = 1;
     while step < REACHES {
         all[step] = all[step - 1] * FRAC_1_SQRT_2;
@@ -57,7 +57,7 @@ const ROOM: f64 = 3.0;
 /// Longest cutoff for an isolated square, in units of the empty square's side.
 ///
 /// The window falls to zero and rises again between the range that the square needs and the next image.
-const LONGEST_ALONE: f64 = 0.5 * (0.5 - 1.0 / ROOM);
+const LONGEST_CUTOFF_ISOLATED: f64 = 0.5 * (0.5 - 1.0 / ROOM);
 
 /// Cost of one pair in units of one mesh point in one transform.
 ///
@@ -113,20 +113,22 @@ impl FastSum {
     }
 
     fn plan(&self, step: usize) -> Arc<Plan> {
-        self.plans[step].get_or_init(|| Arc::new(Plan::new(self.accuracy, REACH[step], self.measure.boundary))).clone()
+        self.plans[step].get_or_init(|| Arc::new(Plan::new(self.accuracy, CUTOFF[step], self.measure.boundary))).clone()
     }
 
-    /// Index of the shortest cutoff allowed for a spot of radius `a` \[m\]; none if the spot is too large for all.
+    /// Index of the shortest cutoff allowed for a spot of radius `a` \[m\].
+    ///
+    /// `None` if the spot is too large for all.
     fn shortest(&self, a: f64) -> Option<usize> {
         let least = if self.measure.kind == Kind::Spots { a / (self.accuracy.girth * self.measure.length) } else { 0.0 };
-        REACH.iter().rposition(|reach| *reach >= least).filter(|step| *step >= self.longest())
+        CUTOFF.iter().rposition(|reach| *reach >= least).filter(|step| *step >= self.longest())
     }
 
     /// Index of the longest cutoff.
     fn longest(&self) -> usize {
         match self.measure.boundary {
             Boundary::Periodic => 0,
-            Boundary::Isolated => REACH.iter().position(|reach| *reach <= LONGEST_ALONE).unwrap_or(REACHES - 1),
+            Boundary::Isolated => CUTOFF.iter().position(|reach| *reach <= LONGEST_CUTOFF_ISOLATED).unwrap_or(REACHES - 1),
         }
     }
 
@@ -140,7 +142,7 @@ impl FastSum {
     ///
     /// The estimate uses the shortest cutoff of each spot, their positions and the number of targets.
     fn finest(&self, shortest: &[Option<usize>], columns: &SpotColumns, targets: usize) -> usize {
-        let crowds = crowds(columns, self.measure.length);
+        let clustering = clustering(columns, self.measure.length);
         let mut spots = [0usize; REACHES];
         for step in shortest.iter().flatten() {
             spots[*step] += 1;
@@ -156,8 +158,8 @@ impl FastSum {
             counts[finest] = counts[finest].max(1);
             let mut cost = PAIR_COST * (targets * large) as f64;
             for (step, count) in counts.iter().enumerate().filter(|(_, count)| **count > 0) {
-                let mesh = mesh_size(self.accuracy, REACH[step]) as f64;
-                let pairs = crowds[step] * PI * REACH[step] * REACH[step] * (count * targets) as f64;
+                let mesh = mesh_size(self.accuracy, CUTOFF[step]) as f64;
+                let pairs = clustering[step] * PI * CUTOFF[step] * CUTOFF[step] * (count * targets) as f64;
                 cost += PAIR_COST * pairs + mesh * mesh * mesh.log2() * 2.0;
             }
             cost
@@ -184,12 +186,12 @@ impl FastSum {
 }
 
 /// Clustering: mean number of spots near a spot relative to a uniform distribution, for each cutoff.
-fn crowds(columns: &SpotColumns, length: f64) -> [f64; REACHES] {
+fn clustering(columns: &SpotColumns, length: f64) -> [f64; REACHES] {
     let n = columns.len();
     let mut counts = Vec::new();
     std::array::from_fn(|step| {
         // At most as many cells as spots; smaller cells hold few spots in any case.
-        let cells = ((1.0 / REACH[step]) as usize).min((n as f64).sqrt() as usize).max(1);
+        let cells = ((1.0 / CUTOFF[step]) as usize).min((n as f64).sqrt() as usize).max(1);
         counts.clear();
         counts.resize(cells * cells, 0u32);
         let cell = |p: f64| (((p / length).rem_euclid(1.0) * cells as f64) as usize).min(cells - 1);

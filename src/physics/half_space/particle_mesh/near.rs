@@ -1,4 +1,6 @@
-//! Near field: pairs within a cutoff, found by cells; exact field less the smooth field on the mesh.
+//! Near field: pairs within a cutoff, found by cells.
+//!
+//! It contains the exact field less the smooth field on the mesh.
 
 use super::plan::Plan;
 use crate::model::{Boundary, Interaction as Kind};
@@ -31,7 +33,9 @@ pub(super) struct Group {
     y: Vec<f64>,
 }
 
-/// Parameters of the field: interaction, boundary, `sqrt(2πΔγ/E*)` \[m^½\], factor of `r²/R` inside a spot, side \[m\].
+/// Parameters of the field.
+///
+/// Interaction, boundary, `sqrt(2πΔγ/E*)` \[m^½\], factor of `r²/R` inside a spot, and side \[m\].
 ///
 /// For an isolated square the side is that of the surrounding empty square.
 #[derive(Debug, Clone, Copy)]
@@ -126,7 +130,9 @@ impl Group {
         }
     }
 
-    /// Sum of powers of distance to combine with the moments: minus the mesh field, or the sum over other images.
+    /// Factors of the moments at a distance from a source.
+    ///
+    /// They are minus the mesh field, or the sums over the other images.
     #[inline(always)]
     pub(super) fn rest_at(&self, measure: Measure, place: [f64; 2], number: usize, square: f64) -> [f64; ORDERS] {
         match &self.rest {

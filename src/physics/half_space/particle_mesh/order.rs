@@ -18,7 +18,7 @@ impl Order {
     /// Sorts positions \[m\] on the periodic square of side `length` \[m\].
     pub(super) fn new(given: Vec<[f64; 2]>, length: f64) -> Self {
         let mut numbers: Vec<u32> = (0..given.len() as u32).collect();
-        numbers.sort_by_cached_key(|i| (along_the_curve(given[*i as usize], length), *i));
+        numbers.sort_by_cached_key(|i| (z_index(given[*i as usize], length), *i));
         let mut ranks = vec![0; given.len()];
         for (rank, i) in numbers.iter().enumerate() {
             ranks[*i as usize] = rank as u32;
@@ -67,7 +67,7 @@ pub(super) fn outward(from: &[usize], ordered: &[f64], given: &mut [f64]) {
 }
 
 /// Index of a point along the Z-curve.
-fn along_the_curve(place: [f64; 2], length: f64) -> u64 {
+fn z_index(place: [f64; 2], length: f64) -> u64 {
     let bits = place.map(|p| {
         let share = p / length;
         let cell = ((share - share.floor()) * 65536.0) as u64 & 0xFFFF;

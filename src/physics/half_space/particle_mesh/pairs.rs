@@ -45,7 +45,9 @@ pub(super) struct Known<'a> {
 /// The entries of a target are its sources: first those with exact fields, then those with moments.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Pairs {
-    /// First entry of each target, and number of exact entries before it; then the totals.
+    /// First entry of each target, and number of exact entries before it.
+    ///
+    /// The last entries are the totals.
     starts: Vec<usize>,
     exact: Vec<usize>,
     /// Source of each entry, and the last computed derivative to its radius.
@@ -64,7 +66,9 @@ pub(super) struct Pairs {
 }
 
 impl Pairs {
-    /// Searches the near pairs of targets. Source k acts by its moments from `aloof[k]` \[m\] on.
+    /// Searches the near pairs of targets.
+    ///
+    /// Source k acts by its moments from `aloof[k]` \[m\] on.
     pub(super) fn find(&mut self, targets: impl Iterator<Item = Target>, known: Known<'_>, all: &[Group], measure: Measure, aloof: &[f64]) {
         self.starts.clear();
         self.exact.clear();

@@ -39,7 +39,9 @@ impl Real for f32 {
     }
 }
 
-/// Order of the B-splines, equal to the number of mesh points per direction, for displacements and for derivatives.
+/// Order of the B-splines for displacements and for derivatives.
+///
+/// It is the number of mesh points per direction over which a source is spread.
 pub(super) const WIDTH: usize = 16;
 pub(super) const ROUGH_WIDTH: usize = 8;
 
@@ -75,8 +77,8 @@ impl Accuracy {
     /// Parameters for displacements with errors up to `tolerance` times the largest one.
     ///
     /// Three errors contribute. Beyond the cutoff, `erfc(αr)` of a field is neglected.
-    /// A B-spline of order p aliases a mode at the fraction t of the mesh's highest wavenumber with the weight `(t/(2 − t))^p`,
-    /// while the mode has the amplitude `e^(−(q/2α)²)`. Beyond `r = r_c` the far field lacks `0.03 (a/r)⁸`.
+    /// A B-spline of order p aliases a mode at the fraction t of the mesh's highest wavenumber with the weight `(t/(2 − t))^p`.
+    /// The mode itself has the amplitude `e^(−(q/2α)²)`. Beyond `r = r_c` the far field lacks `0.03 (a/r)⁸`.
     /// Each error is relative to a field at the cutoff, which is a small part of the largest displacement.
     /// The measured total is below a fifth of the tolerance in every case, and a thirtieth in most.
     pub(super) fn of(tolerance: f64) -> Self {
@@ -103,7 +105,9 @@ impl Accuracy {
     }
 }
 
-/// `∇^2m(erf(αr)/r)/[(2m−1)!!]²` for m = 0 … 3 within a cutoff: the mesh field, subtracted from the near field.
+/// Mesh field within a cutoff, which is subtracted from the near field.
+///
+/// It is `∇^2m(erf(αr)/r)/[(2m−1)!!]²` for m = 0 … 3.
 #[derive(Debug, Clone)]
 pub(super) struct Smooth {
     /// Polynomials in `2·fraction − 1`, highest power first, by pieces of equal `r²`.
@@ -182,7 +186,9 @@ fn smooth(alpha: f64, r2: f64) -> [f64; ORDERS] {
     })
 }
 
-/// A near-field cutoff and the meshes of the far field; lengths in units of the side.
+/// A near-field cutoff and the meshes of the far field.
+///
+/// Lengths are in units of the side.
 #[derive(Debug)]
 pub(super) struct Plan {
     pub(super) reach: f64,
@@ -198,7 +204,9 @@ pub(super) struct Mesh<T> {
     pub(super) size: usize,
     /// Fourier modes of the smooth field divided by those of the spline, by ky then kx.
     pub(super) waves: Vec<T>,
-    /// Inverse Fourier transform factors of the B-spline, k = 0 … N − 1; 0 at the Nyquist mode, which has no sign.
+    /// Inverse Fourier transform factors of the B-spline, k = 0 … N − 1.
+    ///
+    /// It is 0 at the Nyquist mode, which has no sign.
     pub(super) sharpen: Vec<T>,
     pub(super) rows: Arc<dyn RealToComplex<T>>,
     pub(super) rows_back: Arc<dyn ComplexToReal<T>>,
