@@ -3,7 +3,7 @@
 //! An event moves its neighbours by much and the rest of the contact by little, since what one spot gains its neighbours lose: the response
 //! falls off beyond a few spacings. So each event is solved among its nearest spots, with the displacement by all others as it was and as
 //! it changes with the approach; the whole contact is solved again at the end of each stretch of the path, and the difference is measured
-//! (see [`crate::physics::path::equilibrium_path`]). Where a patch holds all spots there is no difference.
+//! (see [`crate::physics::path`]). Where a patch holds all spots there is no difference.
 
 pub(crate) mod curve;
 pub(crate) mod outside;
