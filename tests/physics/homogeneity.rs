@@ -130,7 +130,7 @@ fn law_spectrum_and_theory_scale() {
             scaled("C0", q.prefactor(), p.prefactor(), 4.0, 0.0);
             scaled("C", q.density(123), p.density(123), 4.0, 0.0);
             for (m, n) in [(p.moments(), q.moments()), (p.lattice_moments(), q.lattice_moments())] {
-                let pairs: [(Moment, f64); 8] = [
+                let pairs: [(Moment, f64); 9] = [
                     (|m| m.m0_m2, 2.0),
                     (|m| m.m2, 0.0),
                     (|m| m.m4_1_m2, -2.0),
@@ -139,6 +139,7 @@ fn law_spectrum_and_theory_scale() {
                     (Moments::rms_curvature_1_m, -1.0),
                     (Moments::nayak_parameter, 0.0),
                     (Moments::summit_density_1_m2, -2.0),
+                    (Moments::curvature_unit_1_m, -1.0),
                 ];
                 for (k, (moment, dimension)) in pairs.into_iter().enumerate() {
                     scaled(&format!("moment {k}"), moment(&n), moment(&m), dimension, 0.0);

@@ -3,7 +3,7 @@
 use crate::reference::table;
 use crate::support::{LENGTH, RMS, close, near, paper_spectrum};
 use hysteron::model::Normalization;
-use hysteron::physics::surface::spectrum::Spectrum;
+use hysteron::physics::surface::spectrum::{Moments, Spectrum};
 use std::f64::consts::PI;
 
 #[test]
@@ -128,6 +128,17 @@ fn val_a_lattice_weighs_the_first_shells_more() {
     close("sample", realised(Normalization::Sample).rms_height_m(), RMS, 1e-14);
     // The sheet's 735 per mm², to its last digit.
     near("eta of the lattice", realised(Normalization::Sample).summit_density_1_m2() * 1e-6, 735.0, 0.5);
+}
+
+#[test]
+fn law_moments_follow_from_rms_values() {
+    let moments = paper_spectrum(0.8, 64).moments();
+    let found = Moments::of_rms(moments.rms_height_m(), moments.rms_slope(), moments.rms_curvature_1_m());
+    // Squares of square roots.
+    close("m0", found.m0_m2, moments.m0_m2, 1e-15);
+    close("m2", found.m2, moments.m2, 1e-15);
+    close("m4", found.m4_1_m2, moments.m4_1_m2, 1e-15);
+    close("unit of curvature", moments.curvature_unit_1_m().powi(2), moments.m4_1_m2 / 3.0, 1e-15);
 }
 
 #[test]

@@ -65,7 +65,6 @@ impl Problem {
 
     fn add(&mut self, merged: &Merged) -> Result<(), PhysicsError> {
         let asperity = Asperity::as_printed(merged.radius_m, &self.material, self.rules.slips)?;
-        self.tabor.push(asperity.tabor(self.material.interaction_range_m));
         self.asperities.push(asperity);
         self.heights.push(merged.height_m);
         self.positions.push(merged.place_m);
@@ -98,7 +97,7 @@ impl Problem {
                 if root > 0.0 { overlap.min(load / root + MAX_TENSILE_LOAD) } else { overlap }
             }
             CoalescenceEvent::Part(m) if state.radius[m] > 0.0 => {
-                SPLIT_FACTOR * (1.0 - state.radius[m] / state.merged[m - self.summits].release_m)
+                SPLIT_FACTOR * (1.0 - state.radius[m] / state.merged[m - self.summits()].release_m)
             }
             _ => -1.0,
         }
@@ -124,7 +123,7 @@ impl Problem {
     /// Pending coalescence events, the furthest past first, given the overlapping pairs.
     pub(crate) fn meetings(&self, state: &State, touching: &TouchingPairs, known: &TouchingPairs) -> Vec<(f64, CoalescenceEvent)> {
         let touching = touching.difference(known).map(|(i, j)| CoalescenceEvent::Touch(*i, *j));
-        let parting = (self.summits..self.len()).map(CoalescenceEvent::Part);
+        let parting = (self.summits()..self.len()).map(CoalescenceEvent::Part);
         let mut due: Vec<(f64, CoalescenceEvent)> =
             touching.chain(parting).map(|m| (self.beyond(state, m), m)).filter(|due| due.0 >= 0.0).collect();
         due.sort_by(|u, v| v.0.total_cmp(&u.0).then(u.1.cmp(&v.1)));
@@ -164,7 +163,7 @@ impl Problem {
 
     /// Splits a merged spot of a state into its parts, with its current area.
     pub(crate) fn part(&self, state: &mut State, number: usize) {
-        let merged = state.merged[number - self.summits];
+        let merged = state.merged[number - self.summits()];
         let share = state.radius[number] / merged.contact_radius_m();
         state.set(number, Status::Free, 0.0);
         for (part, radius) in merged.parts.into_iter().zip(merged.radii_m) {
@@ -178,7 +177,7 @@ impl Problem {
         for i in (0..state.status.len()).rev() {
             if state.is_orphan(i) {
                 state.set(i, Status::Free, 0.0);
-                state.barred[i] = i < self.summits;
+                state.barred[i] = i < self.summits();
             }
         }
     }

@@ -43,13 +43,10 @@ pub struct Problem {
     ///
     /// Without adhesion they are slightly positive.
     pub(crate) jump_in: Vec<f64>,
-    pub(crate) tabor: Vec<f64>,
     pub(crate) material: Material,
     pub(crate) rules: Rules,
     pub(crate) field: Best,
     pub(crate) neighbours: Neighbours,
-    /// Number of asperities of the surface; merged spots have higher numbers.
-    pub(crate) summits: usize,
     /// Number of spots in the local problem of an event.
     pub(crate) spots_in_patch: usize,
     /// Side of the square L \[m\].
@@ -125,11 +122,9 @@ impl Problem {
         Ok(Self {
             heights: summits.iter().map(|s| s.height_m - highest).collect(),
             jump_in,
-            tabor,
             field: if rules.coalescence == Coalescence::Merge { field } else { field.with_table() },
             neighbours: Neighbours::new(&positions, length_m, periodic),
             spots_in_patch: SPOTS_IN_PATCH,
-            summits: asperities.len(),
             places,
             asperities,
             positions,
@@ -148,7 +143,7 @@ impl Problem {
 
     /// True if local problems contain all asperities of the surface.
     pub(crate) fn solves_whole(&self) -> bool {
-        self.spots_in_patch >= self.summits
+        self.spots_in_patch >= self.summits()
     }
 
     /// Residual below which a state is an equilibrium \[m\].
@@ -185,8 +180,13 @@ impl Problem {
 
     /// Tabor parameters of the asperities, from the highest down.
     #[must_use]
-    pub fn tabor(&self) -> &[f64] {
-        &self.tabor
+    pub fn tabor(&self) -> Vec<f64> {
+        self.asperities.iter().map(|asperity| asperity.tabor(self.material.interaction_range_m)).collect()
+    }
+
+    /// Number of asperities of the surface; merged contacts have higher numbers.
+    pub(crate) fn summits(&self) -> usize {
+        self.places.numbers.len()
     }
 
     /// Unit of load, `E* A0` \[N\].

@@ -111,7 +111,7 @@ impl Problem {
     pub(crate) fn can_be_covered(&self, state: &State, i: usize) -> bool {
         match state.status[i] {
             Status::Contact => true,
-            Status::Free => i < self.summits,
+            Status::Free => i < self.summits(),
             Status::Covered { .. } | Status::Merged { .. } => false,
         }
     }

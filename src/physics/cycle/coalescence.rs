@@ -72,7 +72,7 @@ impl EquilibriumPath<'_> {
         }
         problem.check_room(self.state(), self.totals().area_m2)?;
         let state = self.state();
-        if (0..problem.summits + state.merged.len()).any(|i| state.is_orphan(i)) {
+        if (0..problem.summits() + state.merged.len()).any(|i| state.is_orphan(i)) {
             return Ok(Some(CoalescenceEvent::Leave));
         }
         let touching = problem.touching(state);
@@ -93,7 +93,7 @@ impl PathCheckpoint {
             CoalescenceEvent::Touch(i, j) => (Kind::Merge, problem.join(&mut self.state, i, j)?),
             CoalescenceEvent::Part(number) => {
                 problem.part(&mut self.state, number);
-                let [i, j] = self.state.merged[number - problem.summits].parts;
+                let [i, j] = self.state.merged[number - problem.summits()].parts;
                 known.insert((i.min(j), i.max(j)));
                 // Others may have grown to overlap the parts meanwhile.
                 let theirs = |(k, l): &(usize, usize)| [i, j].contains(k) || [i, j].contains(l);

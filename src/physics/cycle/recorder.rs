@@ -184,7 +184,11 @@ impl Recorder {
         }
         self.load_before = Some(load);
         let merged = state.merged.iter().enumerate().skip(self.merged_before);
-        cycle.merged.extend(merged.map(|(k, spot)| MergedAt { step: number, asperity: problem.summits + k, spot: problem.outward(spot) }));
+        cycle.merged.extend(merged.map(|(k, spot)| MergedAt {
+            step: number,
+            asperity: problem.summits() + k,
+            spot: problem.outward(spot),
+        }));
         self.merged_before = state.merged.len();
         path.begin_record();
         check_area(problem, &cycle.steps[number], load_before)

@@ -98,6 +98,72 @@ impl Projection {
     }
 }
 
+/// Least-squares problem of the Hessenberg matrix, kept triangular by Givens rotations.
+struct Triangular {
+    columns: Vec<Vec<f64>>,
+    rotations: Vec<(f64, f64)>,
+    rhs: Vec<f64>,
+}
+
+impl Triangular {
+    fn new(norm: f64) -> Self {
+        Self { columns: Vec::new(), rotations: Vec::new(), rhs: vec![norm] }
+    }
+
+    /// Adds a column with its subdiagonal element last; false if it vanishes.
+    fn add(&mut self, mut column: Vec<f64>) -> bool {
+        let k = self.columns.len();
+        for (i, (cosine, sine)) in self.rotations.iter().enumerate() {
+            let (upper, lower) = (column[i], column[i + 1]);
+            column[i] = cosine * upper + sine * lower;
+            column[i + 1] = cosine * lower - sine * upper;
+        }
+        let length = column[k + 1];
+        let radius = column[k].hypot(length);
+        if radius == 0.0 {
+            return false;
+        }
+        let (cosine, sine) = (column[k] / radius, length / radius);
+        column[k] = radius;
+        column.truncate(k + 1);
+        self.columns.push(column);
+        self.rotations.push((cosine, sine));
+        self.rhs.push(-sine * self.rhs[k]);
+        self.rhs[k] *= cosine;
+        true
+    }
+
+    /// Norm of the residual.
+    fn residual(&self) -> f64 {
+        self.rhs[self.columns.len()].abs()
+    }
+
+    /// Coefficients of the solution in the basis.
+    fn solve(&self) -> Vec<f64> {
+        let m = self.columns.len();
+        let mut y = vec![0.0; m];
+        for i in (0..m).rev() {
+            let tail: f64 = (i + 1..m).map(|j| self.columns[j][i] * y[j]).sum();
+            y[i] = (self.rhs[i] - tail) / self.columns[i][i];
+        }
+        y
+    }
+}
+
+/// Orthogonalises a vector against a basis by the modified Gram–Schmidt method; its components and its remaining length are returned.
+fn orthogonalise(w: &mut [f64], basis: &[Vec<f64>]) -> Vec<f64> {
+    let mut column = Vec::with_capacity(basis.len() + 1);
+    for v in basis {
+        let h = dot(v, w);
+        for (wi, vi) in w.iter_mut().zip(v) {
+            *wi -= h * vi;
+        }
+        column.push(h);
+    }
+    column.push(dot(w, w).sqrt());
+    column
+}
+
 /// Solves, with the projection of the matrix if that is wanted.
 fn solve(
     matrix: &impl LinearOperator,
@@ -114,9 +180,7 @@ fn solve(
     }
     let scale: Vec<f64> = (0..n).map(|i| bounded_inverse(matrix.diagonal(i))).collect();
     let mut basis: Vec<Vec<f64>> = vec![rhs.iter().map(|v| v / beta).collect()];
-    let mut hessenberg: Vec<Vec<f64>> = Vec::new();
-    let (mut cosines, mut sines): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
-    let mut g = vec![beta];
+    let mut triangular = Triangular::new(beta);
     let mut scaled = vec![0.0; n];
     let mut answers: Vec<Vec<f64>> = Vec::new();
     let mut products = 0;
@@ -125,50 +189,21 @@ fn solve(
         let mut w = vec![0.0; n];
         matrix.product(&scaled, &mut w);
         products += 1;
-        let mut column = Vec::with_capacity(k + 2);
-        for v in &basis {
-            let h = dot(v, &w);
-            for (wi, vi) in w.iter_mut().zip(v) {
-                *wi -= h * vi;
-            }
-            column.push(h);
-        }
-        let length = dot(&w, &w).sqrt();
+        let column = orthogonalise(&mut w, &basis);
+        let length = column[k + 1];
         if let Some(seen) = &mut seen {
-            seen.matrix.push(column.iter().copied().chain([length]).collect());
+            seen.matrix.push(column.clone());
             answers.push(scaled.iter().zip(&scale).map(|(z, s)| z / s).collect());
         }
-        for i in 0..k {
-            let (upper, lower) = (column[i], column[i + 1]);
-            column[i] = cosines[i] * upper + sines[i] * lower;
-            column[i + 1] = cosines[i] * lower - sines[i] * upper;
-        }
-        let radius = column[k].hypot(length);
-        if radius == 0.0 {
-            break;
-        }
-        let (c, s) = (column[k] / radius, length / radius);
-        column[k] = radius;
-        hessenberg.push(column);
-        cosines.push(c);
-        sines.push(s);
-        g.push(-s * g[k]);
-        g[k] *= c;
-        if g[k + 1].abs() <= limits.tolerance * beta || length <= 1e-300 {
+        if !triangular.add(column) || triangular.residual() <= limits.tolerance * beta || length <= 1e-300 {
             break;
         }
         basis.push(w.iter().map(|wi| wi / length).collect());
     }
-    let m = hessenberg.len();
     if let Some(seen) = seen {
         seen.diagonal = answers.iter().map(|answer| basis.iter().take(answers.len()).map(|v| dot(v, answer)).collect()).collect();
     }
-    let mut y = vec![0.0; m];
-    for i in (0..m).rev() {
-        let tail: f64 = (i + 1..m).map(|j| hessenberg[j][i] * y[j]).sum();
-        y[i] = (g[i] - tail) / hessenberg[i][i];
-    }
-    for (v, yk) in basis.iter().zip(&y) {
+    for (v, yk) in basis.iter().zip(triangular.solve()) {
         for (xi, vi) in x.iter_mut().zip(v) {
             *xi += yk * vi;
         }

@@ -67,7 +67,7 @@ pub(crate) struct PathCheckpoint {
 impl PathCheckpoint {
     /// The beginning of a path.
     pub(crate) fn begin(problem: &Problem, state: State, sense: f64) -> Self {
-        let summits = &problem.asperities[..problem.summits];
+        let summits = &problem.asperities[..problem.summits()];
         let off = summits.iter().map(|a| a.jump_off_penetration().abs()).sum::<f64>() / summits.len() as f64;
         // Where adhesion is weak, the roughness sets the scale.
         let off = off.max(LEAST_SCALE * problem.rms_height_m);

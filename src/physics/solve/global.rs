@@ -12,13 +12,13 @@ use super::local::{Hold, LocalProblem};
 use super::newton::{Damping, NonlinearSystem, Worst, damped_newton};
 use super::relaxation::{Relaxing, relax};
 use super::residual::{NotConverged, STRIDE};
-use super::schwarz::LocalInverse;
+use super::schwarz::CachedInverse;
 use super::trace::PenetrationTrace;
 use crate::physics::contact::problem::Problem;
 use crate::physics::contact::state::{State, Status};
 use crate::physics::contact::transition::{ContactView, Transition};
 use crate::physics::half_space::{Effort, Interaction as _, Spots, Tangent};
-use crate::physics::math::gmres::{Limits, Preconditioner, Solution, bounded_inverse, gmres, gmres_and_least};
+use crate::physics::math::gmres::{Limits, Solution, gmres, gmres_and_least};
 use crate::physics::math::vector::dot;
 
 /// Products at most in one linear solve.
@@ -45,8 +45,14 @@ const ROUGH_RATES: f64 = 3e-4;
 /// Way between two evaluations of all free asperities, in rms heights.
 const BLOCK: f64 = 0.05;
 
-/// Solutions that one approximate inverse serves.
-const OLD: usize = 4;
+/// Tangents of one precision.
+#[derive(Debug, Default)]
+struct Tangents {
+    /// At the contacts.
+    contacts: Tangent,
+    /// Positions of free asperities relative to the contacts.
+    free: Tangent,
+}
 
 /// Solves for the radii of a state; keeps its work space from one solve to the next.
 pub(crate) struct GlobalSolver<'p> {
@@ -55,16 +61,12 @@ pub(crate) struct GlobalSolver<'p> {
     spots: Spots,
     /// True if the present solution is only to be good enough to go on: sums are rough then.
     roughly: bool,
-    /// The tangent of the present solution, and what is known of the places of free asperities against the spots; the same of the last solution of
-    /// the other kind, for what it knows of places.
-    tangent: Tangent,
-    watched: Tangent,
-    others: [Tangent; 2],
+    /// Tangents of the present precision, and of the other one for the positions that they have found.
+    tangents: Tangents,
+    others: Tangents,
     /// Mean penetration at which all free asperities were evaluated last \[m\].
     swept_at: Option<f64>,
-    /// An approximate inverse of the tangent as it was, and how many solutions have begun since: it only makes them short.
-    inverse: Option<LocalInverse>,
-    age: usize,
+    inverse: CachedInverse,
     /// True if the tangent is that of the state that was evaluated last.
     fresh: bool,
     /// Residuals of the spots that were evaluated last \[m\].
@@ -81,12 +83,10 @@ impl<'p> GlobalSolver<'p> {
             effort: Effort::default(),
             spots: Spots::default(),
             roughly: false,
-            tangent: Tangent::default(),
-            watched: Tangent::default(),
-            others: Default::default(),
+            tangents: Tangents::default(),
+            others: Tangents::default(),
             swept_at: None,
-            inverse: None,
-            age: 0,
+            inverse: CachedInverse::default(),
             fresh: false,
             residual: Vec::new(),
             diagonal: Vec::new(),
@@ -96,12 +96,10 @@ impl<'p> GlobalSolver<'p> {
 
     /// Before a solution.
     pub(crate) fn begin(&mut self, roughly: bool) {
-        self.age += 1;
+        self.inverse.begin();
         if self.roughly != roughly {
             self.roughly = roughly;
-            let [tangent, watched] = &mut self.others;
-            std::mem::swap(&mut self.tangent, tangent);
-            std::mem::swap(&mut self.watched, watched);
+            std::mem::swap(&mut self.tangents, &mut self.others);
         }
     }
 
@@ -110,7 +108,7 @@ impl<'p> GlobalSolver<'p> {
         let problem = self.problem;
         problem.spots(state, &mut self.spots);
         let field = problem.field.for_spots(&self.spots, self.roughly);
-        field.linearise(&self.spots, &mut state.displacement, &mut self.tangent, &mut self.effort);
+        field.linearise(&self.spots, &mut state.displacement, &mut self.tangents.contacts, &mut self.effort);
         self.fresh = true;
         self.compare(state)
     }
@@ -120,7 +118,7 @@ impl<'p> GlobalSolver<'p> {
         let problem = self.problem;
         problem.spots(state, &mut self.spots);
         let field = problem.field.for_spots(&self.spots, self.roughly);
-        field.again(&self.spots, &mut state.displacement, &mut self.tangent, &mut self.effort);
+        field.again(&self.spots, &mut state.displacement, &mut self.tangents.contacts, &mut self.effort);
         self.fresh = false;
         self.compare(state)
     }
@@ -172,34 +170,17 @@ impl<'p> GlobalSolver<'p> {
     /// Counts the products of a solution.
     fn count(&mut self, found: Solution) -> Vec<f64> {
         self.effort.products += found.products;
-        self.effort.transforms += found.products * self.tangent.transforms();
+        self.effort.transforms += found.products * self.tangents.contacts.transforms();
         found.x
     }
 
     /// The step of Newton's method, to this share of the residual.
     fn newton_step(&mut self, state: &State, wanted: f64) -> Vec<f64> {
-        self.invert(state);
-        let Self { tangent, inverse, diagonal, residual, .. } = self;
-        let inverse = inverse.as_ref().map(|inverse| inverse as &dyn Preconditioner);
-        let found = gmres(&Jacobian { tangent, diagonal }, inverse, residual, Limits { tolerance: wanted, products: PRODUCTS });
+        let Self { problem, tangents, inverse, diagonal, residual, .. } = self;
+        let jacobian = Jacobian { tangent: &tangents.contacts, diagonal };
+        let inverse = inverse.of(problem, state, &jacobian);
+        let found = gmres(&jacobian, inverse, residual, Limits { tolerance: wanted, products: PRODUCTS });
         self.count(found)
-    }
-
-    /// Makes an approximate inverse of the tangent, if there is none of these spots.
-    fn invert(&mut self, state: &State) {
-        let Self { problem, tangent, inverse, age, diagonal, .. } = self;
-        if tangent.is_exact() {
-            // A dense tangent is of so few spots that its products cost nothing.
-            *inverse = None;
-            return;
-        }
-        let own = |k: usize| bounded_inverse(diagonal[k] + tangent.own(k));
-        let known = inverse.take().filter(|_| *age < OLD);
-        *inverse = known.and_then(|known| if known.serves(&state.contacts) { Some(known) } else { known.carried(&state.contacts, own) });
-        if inverse.is_none() {
-            *age = 0;
-            *inverse = Some(LocalInverse::new(problem, state, tangent, diagonal));
-        }
     }
 
     /// Solves the neighbourhood of a spot with the displacement by all others held; says whether it has an equilibrium.
@@ -235,21 +216,21 @@ impl<'p> GlobalSolver<'p> {
             // At the edge of a spot the slope of its field is without bound, and the tangent of one step before is none.
             self.evaluate(state);
         }
-        if self.tangent.is_exact() {
+        if self.tangents.contacts.is_exact() {
             return self.rates_to(RATES, false, state);
         }
         let mut rates = self.rates_to(LEAST, false, state);
         // Solved for once more, with what those products lack of digits.
         let mut left = vec![0.0; rates.len()];
-        self.tangent.fine_product(&rates, &mut left);
+        self.tangents.contacts.fine_product(&rates, &mut left);
         self.effort.products += 1;
-        self.effort.transforms += self.tangent.transforms();
+        self.effort.transforms += self.tangents.contacts.transforms();
         for ((left, rate), own) in left.iter_mut().zip(&rates).zip(&self.diagonal) {
             *left = 1.0 - (*left + own * rate);
         }
         let share = (dot(&left, &left) / left.len().max(1) as f64).sqrt();
         let limits = Limits { tolerance: (RATES / share).clamp(LEAST, 0.5), products: PRODUCTS };
-        let more = gmres(&Jacobian { tangent: &self.tangent, diagonal: &self.diagonal }, None, &left, limits);
+        let more = gmres(&Jacobian { tangent: &self.tangents.contacts, diagonal: &self.diagonal }, None, &left, limits);
         let more = self.count(more);
         for (rate, more) in rates.iter_mut().zip(more) {
             *rate += more;
@@ -262,17 +243,17 @@ impl<'p> GlobalSolver<'p> {
         if !self.fresh {
             self.evaluate(state);
         }
-        self.invert(state);
         self.rates_to(ROUGH_RATES, true, state)
     }
 
     /// Both, to a relative residual; `short` with the approximate inverse.
     fn rates_to(&mut self, wanted: f64, short: bool, state: &mut State) -> Vec<f64> {
         let ones = vec![1.0; state.contacts.len()];
-        let Self { tangent, inverse, diagonal, .. } = self;
-        let inverse = inverse.as_ref().filter(|_| short).map(|inverse| inverse as &dyn Preconditioner);
+        let Self { problem, tangents, inverse, diagonal, .. } = self;
+        let jacobian = Jacobian { tangent: &tangents.contacts, diagonal };
+        let inverse = if short { inverse.of(problem, state, &jacobian) } else { None };
         let limits = Limits { tolerance: wanted, products: PRODUCTS };
-        let (rates, least) = gmres_and_least(&Jacobian { tangent, diagonal }, inverse, &ones, limits);
+        let (rates, least) = gmres_and_least(&jacobian, inverse, &ones, limits);
         state.stability = least;
         self.count(rates)
     }
@@ -294,7 +275,7 @@ impl<'p> GlobalSolver<'p> {
         let (mut displacement, mut slopes) = (Vec::new(), Vec::new());
         let found = [&mut displacement, &mut slopes];
         let field = problem.field.for_targets(&self.spots, wanted, self.roughly);
-        field.approach(&self.spots, rates, wanted, found, &mut self.watched, &mut self.effort);
+        field.approach(&self.spots, rates, wanted, found, &mut self.tangents.free, &mut self.effort);
         let at = state.approach_m;
         let pairs = displacement.iter().zip(&slopes).zip(wanted);
         pairs.map(|((w, slope), &i)| PenetrationTrace { at, value: at + problem.heights[i] - w, rate: 1.0 - slope }).collect()
@@ -392,10 +373,10 @@ impl Relaxing for Whole<'_, '_> {
     }
 
     fn step(&mut self, time: f64) -> (Vec<f64>, bool) {
-        let GlobalSolver { tangent, diagonal, residual, .. } = &*self.solver;
+        let GlobalSolver { tangents, diagonal, residual, .. } = &*self.solver;
         let damped: Vec<f64> = diagonal.iter().map(|d| d + 1.0 / time).collect();
         let limits = Limits { tolerance: 1e-3, products: PRODUCTS };
-        let step = gmres(&Jacobian { tangent, diagonal: &damped }, None, residual, limits);
+        let step = gmres(&Jacobian { tangent: &tangents.contacts, diagonal: &damped }, None, residual, limits);
         (self.solver.count(step), true)
     }
 

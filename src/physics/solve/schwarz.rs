@@ -4,11 +4,12 @@
 //! Restricted additive Schwarz (Cai & Sarkis, SIAM J. Sci. Comput. 21:792, 1999): the spots are parted into small groups; each is solved for
 //! itself with the spots around it, and what comes out for the group itself is kept.
 
+use super::jacobian::Jacobian;
 use crate::physics::contact::problem::Problem;
 use crate::physics::contact::state::{State, Status};
 use crate::physics::half_space::{Tangent, places_in};
 use crate::physics::math::dense::Lu;
-use crate::physics::math::gmres::Preconditioner;
+use crate::physics::math::gmres::{LinearOperator as _, Preconditioner, bounded_inverse};
 
 /// Spots in one group, at most, and spots that are solved together for it.
 const GROUP: usize = 24;
@@ -22,6 +23,41 @@ const CHANGES: usize = 20;
 
 /// Distance over radius from which on a spot is felt by its load.
 const ALOOF: f64 = 2.0;
+
+/// Solutions that one approximate inverse serves.
+const MOST_SOLUTIONS: usize = 4;
+
+/// An approximate inverse that serves several solutions: it only makes them short.
+#[derive(Debug, Default)]
+pub(super) struct CachedInverse {
+    inverse: Option<LocalInverse>,
+    /// Solutions that have begun since it was computed.
+    solutions: usize,
+}
+
+impl CachedInverse {
+    /// Begins a solution.
+    pub(super) fn begin(&mut self) {
+        self.solutions += 1;
+    }
+
+    /// An approximate inverse of a Jacobian; none for a dense one, whose products cost little.
+    pub(super) fn of(&mut self, problem: &Problem, state: &State, jacobian: &Jacobian<'_>) -> Option<&dyn Preconditioner> {
+        if jacobian.tangent.is_exact() {
+            self.inverse = None;
+            return None;
+        }
+        let own = |k: usize| bounded_inverse(jacobian.diagonal(k));
+        let contacts = &state.contacts;
+        let known = self.inverse.take().filter(|_| self.solutions < MOST_SOLUTIONS);
+        let known = known.and_then(|known| if known.serves(contacts) { Some(known) } else { known.carried(contacts, own) });
+        if known.is_none() {
+            self.solutions = 0;
+        }
+        let inverse = known.unwrap_or_else(|| LocalInverse::new(problem, state, jacobian.tangent, jacobian.diagonal));
+        Some(self.inverse.insert(inverse))
+    }
+}
 
 /// Rows of the approximate inverse.
 #[derive(Debug, Default)]

@@ -68,13 +68,22 @@ pub(crate) struct LocalProblem {
     local: bool,
     /// Where the patch has been on its way to an event, if it was followed there by a radius.
     pub(crate) way: Vec<CurveState>,
-    pub(crate) spots: Spots,
-    pairs: PairTable,
     /// Displacement at the members by one another \[m\], and its derivatives to their radii.
     field: Vec<f64>,
     slopes: Vec<f64>,
     residual: Vec<f64>,
+    work: Workspace,
+}
+
+/// Work space of a local problem.
+#[derive(Debug, Clone, Default)]
+struct Workspace {
+    /// The members as sources, and how they lie to one another.
+    spots: Spots,
+    pairs: PairTable,
+    /// Derivatives of the displacement at one asperity to the radii of the members.
     row: Vec<f64>,
+    /// Jacobian and its factors.
     matrix: Vec<f64>,
     lu: Lu,
 }
@@ -112,7 +121,7 @@ impl LocalProblem {
         }
         self.watched.clear();
         let places: Vec<usize> = free.iter().map(|(i, _)| *i).collect();
-        problem.field.rows(&self.spots, &places, self.local, effort, |k, field, slopes| {
+        problem.field.rows(&self.work.spots, &places, self.local, effort, |k, field, slopes| {
             let (i, trace) = free[k];
             let by_members: f64 = slopes.iter().zip(&speeds).map(|(s, v)| s * v).sum();
             let displaced = approach + problem.heights[i] - trace.ahead(approach);
@@ -178,10 +187,10 @@ impl LocalProblem {
     /// Displacement at an asperity by the members \[m\]; the derivatives to their radii are left in `row`.
     fn field_at(&mut self, problem: &Problem, asperity: usize, effort: &mut Effort) -> f64 {
         let mut field = 0.0;
-        problem.field.rows(&self.spots, &[asperity], self.local, effort, |_, sum, slopes| {
+        problem.field.rows(&self.work.spots, &[asperity], self.local, effort, |_, sum, slopes| {
             field = sum;
-            self.row.clear();
-            self.row.extend_from_slice(slopes);
+            self.work.row.clear();
+            self.work.row.extend_from_slice(slopes);
         });
         field
     }
@@ -194,15 +203,15 @@ impl LocalProblem {
     /// Fields, slopes and residuals of the members at their radii; the worst residual and whose it is.
     pub(crate) fn evaluate(&mut self, problem: &Problem, effort: &mut Effort) -> NotConverged {
         let n = self.members.len();
-        problem.columns(self.members.iter().map(|m| m.asperity).zip(self.radius.iter().copied()), &mut self.spots);
+        problem.columns(self.members.iter().map(|m| m.asperity).zip(self.radius.iter().copied()), &mut self.work.spots);
         self.field.clear();
         self.slopes.clear();
         self.residual.clear();
         let mut worst = NotConverged::residual(0.0, self.members.first().map_or(0, |m| m.asperity));
         if self.local {
-            problem.field.among(&self.spots, &mut self.pairs, &mut self.field, &mut self.slopes, effort);
+            problem.field.among(&self.work.spots, &mut self.work.pairs, &mut self.field, &mut self.slopes, effort);
         } else {
-            problem.field.rows(&self.spots, &self.spots.index, false, effort, |_, sum, slopes| {
+            problem.field.rows(&self.work.spots, &self.work.spots.index, false, effort, |_, sum, slopes| {
                 self.field.push(sum);
                 self.slopes.extend_from_slice(slopes);
             });
@@ -226,10 +235,10 @@ impl LocalProblem {
     /// The Jacobian `∂(δ_JKR + ŵ)/∂a`, with `1/time` on its diagonal.
     fn assemble(&mut self, problem: &Problem, damping: f64) {
         let n = self.members.len();
-        self.matrix.clear();
-        self.matrix.extend_from_slice(&self.slopes);
+        self.work.matrix.clear();
+        self.work.matrix.extend_from_slice(&self.slopes);
         for (k, (member, a)) in self.members.iter().zip(&self.radius).enumerate() {
-            self.matrix[k * n + k] += problem.asperities[member.asperity].penetration_slope(*a) + damping;
+            self.work.matrix[k * n + k] += problem.asperities[member.asperity].penetration_slope(*a) + damping;
         }
     }
 
@@ -237,7 +246,7 @@ impl LocalProblem {
     fn exchange(&mut self, at: usize) {
         let n = self.members.len();
         for (k, member) in self.members.iter().enumerate() {
-            self.matrix[k * n + at] = member.drift - 1.0;
+            self.work.matrix[k * n + at] = member.drift - 1.0;
         }
     }
 
@@ -248,15 +257,15 @@ impl LocalProblem {
         match hold {
             Hold::Approach => {
                 self.assemble(problem, 0.0);
-                self.lu.factor(&self.matrix, n);
-                self.lu.solve(&mut step);
+                self.work.lu.factor(&self.work.matrix, n);
+                self.work.lu.solve(&mut step);
                 (step, 0.0)
             }
             Hold::Radius(at) => {
                 self.assemble(problem, 0.0);
                 self.exchange(at);
-                self.lu.factor(&self.matrix, n);
-                self.lu.solve(&mut step);
+                self.work.lu.factor(&self.work.matrix, n);
+                self.work.lu.solve(&mut step);
                 let approach = std::mem::replace(&mut step[at], 0.0);
                 (step, approach)
             }
@@ -266,14 +275,14 @@ impl LocalProblem {
                 self.assemble(problem, 0.0);
                 let mut bordered = Vec::with_capacity((n + 1) * (n + 1));
                 for (k, member) in self.members.iter().enumerate() {
-                    bordered.extend_from_slice(&self.matrix[k * n..(k + 1) * n]);
+                    bordered.extend_from_slice(&self.work.matrix[k * n..(k + 1) * n]);
                     bordered.push(member.drift - 1.0);
                 }
-                bordered.extend(self.row[..n].iter().map(|s| -s));
+                bordered.extend(self.work.row[..n].iter().map(|s| -s));
                 bordered.push(1.0 - place.drift);
                 step.push(-off);
-                self.lu.factor(&bordered, n + 1);
-                self.lu.solve(&mut step);
+                self.work.lu.factor(&bordered, n + 1);
+                self.work.lu.solve(&mut step);
                 let approach = step.pop().unwrap_or(0.0);
                 (step, approach)
             }
@@ -297,9 +306,9 @@ impl LocalProblem {
     pub(crate) fn rates(&mut self, problem: &Problem) -> (Vec<f64>, bool) {
         let mut rates: Vec<f64> = self.members.iter().map(|m| 1.0 - m.drift).collect();
         self.assemble(problem, 0.0);
-        self.lu.factor(&self.matrix, self.members.len());
-        self.lu.solve(&mut rates);
-        let stable = self.lu.sign() > 0.0 && rates.iter().all(|rate| rate.is_finite());
+        self.work.lu.factor(&self.work.matrix, self.members.len());
+        self.work.lu.solve(&mut rates);
+        let stable = self.work.lu.sign() > 0.0 && rates.iter().all(|rate| rate.is_finite());
         (rates, stable)
     }
 
@@ -307,10 +316,10 @@ impl LocalProblem {
     pub(crate) fn along(&mut self, problem: &Problem, at: usize) -> (Vec<f64>, f64) {
         let n = self.members.len();
         self.assemble(problem, 0.0);
-        let mut direction: Vec<f64> = (0..n).map(|k| -self.matrix[k * n + at]).collect();
+        let mut direction: Vec<f64> = (0..n).map(|k| -self.work.matrix[k * n + at]).collect();
         self.exchange(at);
-        self.lu.factor(&self.matrix, n);
-        self.lu.solve(&mut direction);
+        self.work.lu.factor(&self.work.matrix, n);
+        self.work.lu.solve(&mut direction);
         let approach = std::mem::replace(&mut direction[at], 1.0);
         (direction, approach)
     }
@@ -326,7 +335,7 @@ impl LocalProblem {
     pub(crate) fn watch(&self, problem: &Problem, rates: &[f64], effort: &mut Effort) -> Vec<PenetrationTrace> {
         let places: Vec<usize> = self.watched.iter().map(|place| place.asperity).collect();
         let mut traces = Vec::with_capacity(places.len());
-        problem.field.rows(&self.spots, &places, self.local, effort, |k, field, slopes| {
+        problem.field.rows(&self.work.spots, &places, self.local, effort, |k, field, slopes| {
             let place = &self.watched[k];
             let value = self.approach + problem.heights[place.asperity] - self.outside(place) - field;
             let by_members: f64 = slopes.iter().zip(rates).map(|(s, v)| s * v).sum();

@@ -55,10 +55,10 @@ impl Relaxing for Part<'_> {
     fn step(&mut self, time: f64) -> (Vec<f64>, bool) {
         let patch = &mut *self.patch;
         patch.assemble(self.problem, 1.0 / time);
-        patch.lu.factor(&patch.matrix, patch.members.len());
+        patch.work.lu.factor(&patch.work.matrix, patch.members.len());
         let mut step = patch.residual.clone();
-        patch.lu.solve(&mut step);
-        (step, patch.lu.sign() > 0.0)
+        patch.work.lu.solve(&mut step);
+        (step, patch.work.lu.sign() > 0.0)
     }
 
     fn advance(&mut self, step: &[f64], share: f64) {
