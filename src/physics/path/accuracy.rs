@@ -1,7 +1,7 @@
 //! Accuracy of a path.
 //!
-//! Lengths are in units of the scale of the path, the mean jump-off penetration rounded down. Halving all of them changes no result beyond the digits that
-//! the tests state.
+//! Lengths are in units of the scale of the path, the mean jump-off penetration rounded down. Halving all of them changes no result beyond
+//! the digits that the tests state.
 
 /// Maximum root-mean-square predictor residual at the end of an increment.
 pub const DRIFT: f64 = 1e-2;

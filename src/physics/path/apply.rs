@@ -144,8 +144,8 @@ impl EquilibriumPath<'_> {
         covered_again || applied.iter().any(|transition| transition.undoes(uncovering))
     }
 
-    /// Postpones an uncovering until the covering contact has shrunk further. Where that has left, the asperity is absorbed by the contact that covers it; without
-    /// one it is free, and blocked until its penetration falls below the jump-in.
+    /// Postpones an uncovering until the covering contact has shrunk further. Where that has left, the asperity is absorbed by the contact
+    /// that covers it; without one it is free, and blocked until its penetration falls below the jump-in.
     pub(super) fn keep_covered(&mut self, i: usize, approach: f64) {
         let Status::Covered { by, release_m } = self.predictor.state.status[i] else { return };
         let radius = &self.predictor.state.radius;

@@ -1,7 +1,8 @@
 //! Avalanches: all transitions at one mean penetration that follow from an event.
 //!
-//! One transition is applied at a time, the most overdue first, and the local problem relaxes before the next is chosen. An asperity that has left contact
-//! does not return within the avalanche. Contacts with a large pending displacement are solved in local problems of their own, the largest first.
+//! One transition is applied at a time, the most overdue first, and the local problem relaxes before the next is chosen. An asperity that
+//! has left contact does not return within the avalanche. Contacts with a large pending displacement are solved in local problems of their
+//! own, the largest first.
 
 use super::equilibrium_path::EquilibriumPath;
 use super::rejection::Rejection;
@@ -36,9 +37,9 @@ impl EquilibriumPath<'_> {
         self.run_avalanche(avalanche).map(|_| ())
     }
 
-    /// Applies what is due among the open asperities until nothing is, and no pending displacement exceeds the limit; the touched asperities are returned. A
-    /// transition that would undo an earlier one waits for the path to continue. Nothing is returned if the propagation does not end: the global problem is to
-    /// be solved.
+    /// Applies what is due among the open asperities until nothing is, and no pending displacement exceeds the limit; the touched
+    /// asperities are returned. A transition that would undo an earlier one waits for the path to continue. Nothing is returned if the
+    /// propagation does not end: the global problem is to be solved.
     pub(super) fn run_avalanche(&mut self, mut avalanche: Avalanche) -> Result<Option<Vec<usize>>, Rejection> {
         let problem = self.problem();
         let approach = self.neighbourhood.local.approach;
@@ -106,8 +107,9 @@ impl EquilibriumPath<'_> {
         }
     }
 
-    /// Transitions that are due, but for those of asperities that change to and fro: such an asperity is frozen for a while, and counted. Two contacts that each
-    /// grow with the other and shrink without it have no stable state otherwise; nor have three of which each absorbs the next.
+    /// Transitions that are due, but for those of asperities that change to and fro: such an asperity is frozen for a while, and counted.
+    /// Two contacts that each grow with the other and shrink without it have no stable state otherwise; nor have three of which each
+    /// absorbs the next.
     pub(super) fn due_transitions(&mut self, touched: &[usize], free: &[usize]) -> Vec<Trigger> {
         let mut due = self.problem().triggers(&self.predictor, touched, free);
         let state = &self.predictor.state;

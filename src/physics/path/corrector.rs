@@ -19,7 +19,8 @@ enum Since {
     Growth,
     /// Growth, and events whose pending displacements are known.
     Events,
-    /// A jump of the contact at the present mean penetration; with the potential before it, less the work of the loads on the residuals \[J\].
+    /// A jump of the contact at the present mean penetration; with the potential before it, less the work of the loads on the residuals
+    /// \[J\].
     Jump(f64),
 }
 
@@ -30,8 +31,8 @@ struct Uncovering {
 }
 
 impl EquilibriumPath<'_> {
-    /// Solves the global problem at a mean penetration \[m\], from the predictors, and applies the transitions that are overdue there. If `strict`, the solution is
-    /// rejected where the predictors are too far from it.
+    /// Solves the global problem at a mean penetration \[m\], from the predictors, and applies the transitions that are overdue there. If
+    /// `strict`, the solution is rejected where the predictors are too far from it.
     ///
     /// After a jump of the contact (`jump`) it followed its predictors up to here. Otherwise the difference grew along the increment.
     pub(super) fn correct(&mut self, target: f64, strict: bool, jump: bool, precision: Precision) -> Result<(), Rejection> {
@@ -195,8 +196,8 @@ impl EquilibriumPath<'_> {
         self.predict_jump_ins(rates);
     }
 
-    /// Replaces the predictors of all contacts, and counts their work. The energy of their response to pending displacements \[J\] is returned, and the change of
-    /// their load beyond the prediction \[N\], added to `grown`.
+    /// Replaces the predictors of all contacts, and counts their work. The energy of their response to pending displacements \[J\] is
+    /// returned, and the change of their load beyond the prediction \[N\], added to `grown`.
     fn replace_traces(&mut self, rates: &[f64], jump: bool, pending: &[f64], mut grown: f64) -> (f64, f64) {
         let problem = self.problem();
         let target = self.state().approach_m;
@@ -220,8 +221,8 @@ impl EquilibriumPath<'_> {
         (relaxed, grown)
     }
 
-    /// Replaces the predictors of the free asperities that may jump into contact. All of them are evaluated on a grid of mean penetrations; in between, only those
-    /// that can have come near: no penetration grows by more than three times the way.
+    /// Replaces the predictors of the free asperities that may jump into contact. All of them are evaluated on a grid of mean penetrations;
+    /// in between, only those that can have come near: no penetration grows by more than three times the way.
     fn predict_jump_ins(&mut self, rates: &[f64]) {
         let problem = self.problem();
         let (target, scale) = (self.state().approach_m, self.frame.scale);
@@ -255,8 +256,8 @@ impl EquilibriumPath<'_> {
         late
     }
 
-    /// Relaxes the contact where Newton's method finds no equilibrium. Contacts that leave or are absorbed on the way belong to the present avalanche; it is charged
-    /// with the loss of the potential at the next global solve.
+    /// Relaxes the contact where Newton's method finds no equilibrium. Contacts that leave or are absorbed on the way belong to the present
+    /// avalanche; it is charged with the loss of the potential at the next global solve.
     fn relax_contact(&mut self, target: f64) -> Result<(), Rejection> {
         let before = self.predictor.totals(target);
         let changes = self.solver.relax(&mut self.predictor.state)?;

@@ -118,8 +118,8 @@ impl<'p> EquilibriumPath<'p> {
         self.chatter.clear_frozen();
     }
 
-    /// Ends a coalescence, after which the contact is in equilibrium. A contact that has become smaller by merging does not split again at once: its radius of
-    /// release is at most its radius, to rounding.
+    /// Ends a coalescence, after which the contact is in equilibrium. A contact that has become smaller by merging does not split again at
+    /// once: its radius of release is at most its radius, to rounding.
     pub(crate) fn finish_coalescence(&mut self, rounding: f64) {
         let (totals, summits, state) = (self.totals, self.solver.problem.summits(), &mut self.predictor.state);
         for (k, spot) in state.merged.iter_mut().enumerate().filter(|(_, spot)| spot.approach_m == state.approach_m) {

@@ -1,36 +1,36 @@
-//! What a path leaves behind: its events, its work, and the way of its load.
+//! Record of a path: events, work, and segments of the load.
 
 use crate::physics::contact::event::Event;
 use crate::physics::contact::problem::Totals;
 use crate::physics::contact::transition::Transition;
 use serde::{Deserialize, Serialize};
 
-/// What a path has left behind.
+/// Events, work and load along a branch.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(crate) struct EventLog {
     pub(crate) events: Vec<Event>,
-    /// Which of them has the energy of the last relaxation.
+    /// Position of the event that has the energy of the last relaxation.
     charged: usize,
     /// `∫F dΔ` since the branch began \[J\].
     pub(crate) work_j: f64,
     avalanches: u64,
-    /// True if the next event is of another avalanche.
+    /// True if the next event begins an avalanche.
     fresh: bool,
-    /// The way of the load, from event to event.
+    /// Segments of the load between events.
     pub(crate) segments: Vec<LoadSegment>,
-    /// Load where it was known last \[N\].
+    /// Load at the end of the last segment \[N\].
     last: f64,
-    /// Greatest residual before the whole contact was solved, since this was asked last \[m\].
+    /// Largest predictor residual before a global solve since the last record \[m\].
     pub(crate) drift_m: f64,
 }
 
-/// A part of the way of the load on which it does not jump.
+/// Segment of the path on which the load does not jump.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub(crate) struct LoadSegment {
-    /// Approach and load at its end \[m, N\].
+    /// Mean penetration and load at its end \[m, N\].
     pub(crate) approach: f64,
     pub(crate) load: f64,
-    /// Least load on it \[N\].
+    /// Smallest load on it \[N\].
     pub(crate) least: f64,
 }
 
@@ -42,12 +42,12 @@ impl EventLog {
         }
     }
 
-    /// The next event is of another avalanche.
+    /// Begins an avalanche.
     pub(crate) fn begin_avalanche(&mut self) {
         self.fresh = true;
     }
 
-    /// Writes changes of one relaxation down; its energy is the first one's.
+    /// Records the transitions of one relaxation; the first has its energy.
     pub(crate) fn record(&mut self, moved: &[Transition], approach: f64, before: Totals, after: Totals, energy: f64) {
         if moved.is_empty() {
             return;
@@ -60,7 +60,7 @@ impl EventLog {
         }
     }
 
-    /// Writes a change down that moves nothing; what is charged belongs to the last relaxation still.
+    /// Records a transition without a change of load; later charges still belong to the last relaxation.
     pub(crate) fn note(&mut self, change: Transition, approach: f64, totals: Totals) {
         self.avalanches += u64::from(std::mem::take(&mut self.fresh));
         self.enter(&change, approach, totals, totals, 0.0);
@@ -71,19 +71,19 @@ impl EventLog {
         self.events.push(Event { kind, asperity, approach_m, avalanche, before, after, energy_lost_j });
     }
 
-    /// The load has gone on without a jump; it is known at the ends of the parts of a stretch, a twentieth of a jump-off penetration apart.
+    /// Ends a segment without a jump of the load, which is known at its ends only.
     pub(crate) fn pass(&mut self, approach: f64, load: f64) {
         self.segments.push(LoadSegment { approach, load, least: load.min(self.last) });
         self.last = load;
     }
 
-    /// The load has jumped.
+    /// Begins a segment after a jump of the load.
     pub(crate) fn restart(&mut self, approach: f64, load: f64) {
         self.segments.push(LoadSegment { approach, load, least: load });
         self.last = load;
     }
 
-    /// Back to what it `was` when it had so many events and segments.
+    /// Restores an earlier log with its numbers of events and segments.
     pub(crate) fn restore(&mut self, was: &Self, events: usize, segments: usize) {
         self.events.truncate(events);
         self.segments.truncate(segments);
@@ -91,7 +91,7 @@ impl EventLog {
         *self = Self { events, segments, ..*was };
     }
 
-    /// The same, of a path that has had no event.
+    /// Copy without events and segments.
     pub(crate) fn clone_without_events(&self) -> Self {
         Self { events: Vec::new(), segments: Vec::new(), ..*self }
     }

@@ -1,4 +1,5 @@
-//! Events of an increment, in their order: predicted, located on the solution curve of their local problem, applied, and followed by their avalanche.
+//! Events of an increment, in their order: predicted, located on the solution curve of their local problem, applied, and followed by their
+//! avalanche.
 
 use super::accuracy::EVENT_TOLERANCE;
 use super::avalanche::Avalanche;
@@ -32,8 +33,8 @@ enum Outcome {
 }
 
 impl EquilibriumPath<'_> {
-    /// Finds and applies the events before `target` \[m\], in their order. Where one has changed more than local solves can propagate, its mean penetration is
-    /// returned: the global problem is to be solved there.
+    /// Finds and applies the events before `target` \[m\], in their order. Where one has changed more than local solves can propagate, its
+    /// mean penetration is returned: the global problem is to be solved there.
     pub(super) fn run_events(&mut self, target: f64) -> Result<Option<f64>, Rejection> {
         let problem = self.problem();
         let mut queue = self.expect_events(target);
@@ -103,7 +104,8 @@ impl EquilibriumPath<'_> {
         Ok(self.run_avalanche(avalanche)?.map_or(Outcome::Unpropagated, Outcome::Touched))
     }
 
-    /// Moves the local problem along its solution curve to an event, just before it; nothing if the event does not occur before `target` \[m\].
+    /// Moves the local problem along its solution curve to an event, just before it; nothing if the event does not occur before `target`
+    /// \[m\].
     fn locate(&mut self, event: &PredictedEvent, target: f64) -> Option<Located> {
         self.neighbourhood.set_origin();
         let (problem, sense) = (self.problem(), self.frame.sense);

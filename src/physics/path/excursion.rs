@@ -80,8 +80,8 @@ impl EquilibriumPath<'_> {
         Ok((found.totals.load_n >= load - LOAD_TOLERANCE * load.abs()).then_some(found))
     }
 
-    /// The state of the last increment at a mean penetration or soon after it with a load of at least `load` \[N\]: an excursion may meet a jump a little later
-    /// than the increment did. Without one, the state with the largest load.
+    /// The state of the last increment at a mean penetration or soon after it with a load of at least `load` \[N\]: an excursion may meet a
+    /// jump a little later than the increment did. Without one, the state with the largest load.
     fn reaching(&mut self, mut at: f64, load: f64) -> Result<Self, PhysicsError> {
         let (end, sense) = (self.state().approach_m, self.frame.sense);
         let mut further = LOAD_TOLERANCE * self.problem().rms_height_m;

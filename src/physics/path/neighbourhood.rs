@@ -1,7 +1,7 @@
 //! Local problem around an event, and the shell of asperities next to it.
 //!
-//! The contacts of the local problem are solved together, with the displacement by all others to first order in the mean penetration. Asperities of the
-//! shell receive the change of the field by the event: free ones at once, contacts as a pending displacement.
+//! The contacts of the local problem are solved together, with the displacement by all others to first order in the mean penetration.
+//! Asperities of the shell receive the change of the field by the event: free ones at once, contacts as a pending displacement.
 
 use super::pending::PendingField;
 use super::predictor::Predictor;
@@ -14,7 +14,8 @@ use crate::physics::solve::local::LocalProblem;
 /// Contacts of local problem and shell, over those of the local problem.
 const SHELL: usize = 5;
 
-/// Free asperities next to an event are followed from so many length scales before their jump-in: an event moves them by some jump-off penetrations.
+/// Free asperities next to an event are followed from so many length scales before their jump-in: an event moves them by some jump-off
+/// penetrations.
 const SPAN: f64 = 5.0;
 
 /// Local problem of an event with its shell.

@@ -1,8 +1,8 @@
 //! Displacements caused by events that are not yet in the penetrations of all asperities.
 //!
-//! An event changes the field everywhere. Next to it the change is known exactly and stored per contact (`near`). Far from it the change is that of a
-//! point load (`far`), evaluated when the displacement of an asperity is needed. A local solve applies what its members have pending; a global solve
-//! accounts for all of it.
+//! An event changes the field everywhere. Next to it the change is known exactly and stored per contact (`near`). Far from it the change is
+//! that of a point load (`far`), evaluated when the displacement of an asperity is needed. A local solve applies what its members have
+//! pending; a global solve accounts for all of it.
 
 use crate::physics::contact::{Problem, Status};
 use crate::physics::solve::local::LocalProblem;

@@ -1,43 +1,44 @@
-//! The front: the state of the contact as it is known between two solutions of the whole, each asperity since its own last event.
+//! Linear predictors: the contact between two global solves.
 //!
-//! A spot's penetration is nearly linear in the approach, up to the end of its branch; its radius is not. So every asperity has a
-//! [`PenetrationTrace`] of its penetration, taken when the whole contact was solved or when an event next to it was, and what it is at a later
-//! approach follows from there.
+//! The penetration of a contact is nearly linear in the mean penetration, up to the end of its branch; its radius is not. Each asperity has
+//! a [`PenetrationTrace`] from the last global solve, or from the last event next to it. Its state at a later mean penetration follows from
+//! there.
 
 use crate::physics::contact::problem::{Problem, Totals};
 use crate::physics::contact::state::{State, Status};
 use crate::physics::contact::transition::{Kind, Transition};
 use crate::physics::solve::trace::{PenetrationTrace, STEEPEST};
 
-/// A rate of penetration beyond this tells of a fold: it grows as the inverse root of the distance to it, and is below 1.2 elsewhere.
+/// Rate of a penetration above which a fold is near. The rate is below 1.2 elsewhere, and grows as the inverse root of the distance to the
+/// fold.
 const STEEP: f64 = 2.5;
 
-/// A spot's end is sought when its penetration would be there within this many times the way that is left: before a fold the penetration
-/// goes as a root, and moves as far again as its rate tells.
+/// Distance to the end of a branch, over the way that is left, within which it is looked for: near a fold the penetration varies as a
+/// square root, so linear extrapolation overestimates the distance by about two.
 const REACH: f64 = 2.2;
 
-/// Share of their distance at which the radii of two spots bring them near a fold: the field of each is steep there.
+/// Radius over distance at which two contacts are near a common fold, since the field of each is steep there.
 const TWINS: f64 = 0.95;
 
-/// A change expected on the way, and the approach at which it is \[m\].
+/// Transition that is expected, with its mean penetration \[m\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct PredictedEvent {
     pub(crate) approach: f64,
     pub(crate) transition: Transition,
 }
 
-/// The contact as it is known.
+/// Contact as it is known between two global solves.
 #[derive(Debug, Clone)]
 pub(crate) struct Predictor {
-    /// Status of each asperity, and radii at their traces.
+    /// Status of each asperity, and radii at their predictors.
     pub(crate) state: State,
-    /// What is known of asperities in contact and of free ones that are near their jump-in.
+    /// Predictors of contacts and of free asperities near their jump-in.
     pub(crate) traces: Vec<PenetrationTrace>,
     /// Free asperities that are near their jump-in, ascending.
     pub(crate) candidates: Vec<usize>,
-    /// Covered asperities under their covering spot: `(by, covered)`, ascending.
+    /// Absorbed asperities by absorbing contact: `(by, absorbed)`, ascending.
     covered_by: Vec<(usize, usize)>,
-    /// Load and area, and their derivatives to the approach, at the approach at which they were last changed.
+    /// Load and area, with their derivatives, at the mean penetration of the last change.
     sums: Sums,
 }
 
@@ -88,39 +89,39 @@ impl Predictor {
         self.state.set(i, status, radius);
     }
 
-    /// Asperities under spot `by`, ascending.
+    /// Asperities absorbed by contact `by`, ascending.
     pub(crate) fn covered_by(&self, by: usize) -> impl Iterator<Item = usize> + '_ {
         let from = self.covered_by.partition_point(|(j, _)| *j < by);
         self.covered_by[from..].iter().take_while(move |(j, _)| *j == by).map(|(_, i)| *i)
     }
 
-    /// `da/dδ` of a spot at its trace.
+    /// `da/dΔ` of a contact at its predictor.
     pub(crate) fn radius_rate(&self, problem: &Problem, i: usize) -> f64 {
         let trace = self.traces[i];
         PenetrationTrace { rate: trace.rate.clamp(-STEEPEST, STEEPEST), ..trace }.speed(&problem.asperities[i], self.state.radius[i])
     }
 
-    /// How the load of a spot goes on with the approach \[N/m\], no faster than that of a flat punch of thrice its size: at the end of its branch it
-    /// is infinite, but not for long.
+    /// `dF/dΔ` of a contact \[N/m\], at most that of a flat punch of three times its size: it is infinite at the end of the branch, over a
+    /// short way.
     pub(crate) fn load_rate(&self, problem: &Problem, i: usize) -> f64 {
         let (asperity, a) = (&problem.asperities[i], self.state.radius[i]);
         let most = 6.0 * problem.material.contact_modulus_pa * a;
         (asperity.load_slope(a) * self.radius_rate(problem, i)).clamp(-most, most)
     }
 
-    /// Contact radius of a spot expected at an approach \[m\]. Where it is known it may be beyond the end of its branch, where the penetration
-    /// tells another radius.
+    /// Predicted contact radius at a mean penetration \[m\]. At the predictor's own it may lie beyond the end of the branch, where the
+    /// penetration has another radius.
     pub(crate) fn radius(&self, problem: &Problem, i: usize, approach: f64) -> f64 {
         let trace = self.traces[i];
         if trace.at == approach { self.state.radius[i] } else { trace.radius_ahead(&problem.asperities[i], approach) }
     }
 
-    /// Contact radii expected at an approach \[m\].
+    /// Predicted contact radii at a mean penetration \[m\].
     pub(crate) fn radii(&self, problem: &Problem, approach: f64) -> Vec<(usize, f64)> {
         self.state.contacts.iter().map(|&i| (i, self.radius(problem, i, approach))).collect()
     }
 
-    /// All spots at an approach as it is expected \[m\].
+    /// Moves all contacts to their predicted states at a mean penetration \[m\].
     pub(crate) fn go_to(&mut self, problem: &Problem, approach: f64) {
         self.state.approach_m = approach;
         for (i, a) in self.radii(problem, approach) {
@@ -130,7 +131,7 @@ impl Predictor {
         }
     }
 
-    /// Load and area of a spot at its trace, and their derivatives to the approach.
+    /// Load and area of a contact at its predictor, with their derivatives.
     fn share(&self, problem: &Problem, i: usize) -> Sums {
         let (asperity, a, speed) = (&problem.asperities[i], self.state.radius[i], self.radius_rate(problem, i));
         let load_rate = self.load_rate(problem, i);
@@ -138,13 +139,13 @@ impl Predictor {
         Sums { at: self.traces[i].at, load: asperity.load(a), load_rate, area: 0.5 * turn * a, area_rate: turn * speed }
     }
 
-    /// Load and area expected at an approach.
+    /// Predicted load and area at a mean penetration.
     pub(crate) fn totals(&self, approach: f64) -> Totals {
         let way = approach - self.sums.at;
         Totals { load_n: self.sums.load + self.sums.load_rate * way, area_m2: self.sums.area + self.sums.area_rate * way }
     }
 
-    /// Takes a spot out of the sums (−1), or puts it in (+1), as its trace has it at an approach.
+    /// Removes a contact from the sums (−1) or adds it (+1), as predicted at a mean penetration.
     pub(crate) fn count(&mut self, problem: &Problem, i: usize, sign: f64, approach: f64) {
         let way = approach - self.sums.at;
         self.sums.load += self.sums.load_rate * way;
@@ -175,12 +176,12 @@ impl Predictor {
         self.sums.load += load;
     }
 
-    /// Load and area at the present approach, before any trace is known.
+    /// Sets load and area before any predictor is known.
     pub(crate) fn expect_totals(&mut self, totals: Totals) {
         self.sums = Sums { at: self.state.approach_m, load: totals.load_n, area: totals.area_m2, ..Sums::default() };
     }
 
-    /// Sums anew, all traces being of the same approach.
+    /// Recomputes the sums when all predictors are at one mean penetration.
     pub(crate) fn recount(&mut self, problem: &Problem) {
         let mut sums = Sums { at: self.state.approach_m, ..Sums::default() };
         for &i in &self.state.contacts {
@@ -193,7 +194,7 @@ impl Predictor {
         self.sums = sums;
     }
 
-    /// What is expected of asperity `i` on the way to `target`, in the sense `sign`.
+    /// Adds the events expected of asperity `i` before `target`, in the sense `sign`.
     pub(crate) fn expect(&self, problem: &Problem, i: usize, target: f64, sign: f64, due: &mut Vec<PredictedEvent>) {
         match self.state.status[i] {
             Status::Free => self.expect_jump_in(problem, i, target, sign, due),
@@ -211,7 +212,7 @@ impl Predictor {
         let speed = sign * trace.rate;
         let way = if left <= 0.0 { 0.0 } else { left / speed };
         let left = (target - trace.at) * sign;
-        // A curved way may come a little earlier than a straight one.
+        // A curved way may end a little earlier than a straight one.
         if (left > 0.0 && speed > 0.0 || way == 0.0) && way <= 1.1 * left {
             due.push(PredictedEvent {
                 approach: trace.at + sign * way,
@@ -232,7 +233,7 @@ impl Predictor {
             if way <= REACH * left || -speed > STEEP {
                 offer(way.min(left), Kind::JumpOff, j, None);
             }
-            // A fold comes before what such a rate promises.
+            // The fold comes before the position that such a rate predicts.
             let speed = speed.max(-STEEP);
             for i in self.covered_by(j) {
                 if let Status::Covered { release_m, .. } = self.state.status[i] {
@@ -252,7 +253,7 @@ impl Predictor {
                 let Some(reach) = asperity.radius_at_penetration(most) else { return };
                 problem.neighbours.within(j, reach / TWINS, |r, i| {
                     let open = problem.can_be_covered(&self.state, i) && self.state.radius[i] < r;
-                    // Two spots that reach for one another's centres have a fold before they get there.
+                    // Two contacts that grow towards one another's centres have a fold before they reach them.
                     let reached = reach >= r || self.state.radius[i] > TWINS * r;
                     if open && r >= a && reached {
                         offer(((asperity.penetration(r) - trace.value) / speed).min(left), Kind::Cover, i, Some(j));

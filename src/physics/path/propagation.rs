@@ -1,8 +1,9 @@
 //! Propagation of an event to the rest of the contact.
 //!
-//! A local problem changes the field around it. Free asperities of its shell take the change at once. Contacts have it as a pending displacement until they
-//! are members of a local problem, or until the global solve; a sequence of local solves continues while a pending displacement exceeds the limit. The load
-//! with which they will respond is counted before, to first order: by reciprocity it is the effect of the rest of the contact on the loads of the members.
+//! A local problem changes the field around it. Free asperities of its shell take the change at once. Contacts have it as a pending
+//! displacement until they are members of a local problem, or until the global solve; a sequence of local solves continues while a pending
+//! displacement exceeds the limit. The load with which they will respond is counted before, to first order: by reciprocity it is the effect
+//! of the rest of the contact on the loads of the members.
 
 use super::avalanche::Avalanche;
 use super::equilibrium_path::EquilibriumPath;
@@ -53,8 +54,8 @@ impl EquilibriumPath<'_> {
         self.pending.worst(&self.predictor.state.status, limit)
     }
 
-    /// Applies the pending displacements of the members of the neighbourhood of a transition, and solves it. Contacts that leave or are absorbed by that are
-    /// transitions of the avalanche.
+    /// Applies the pending displacements of the members of the neighbourhood of a transition, and solves it. Contacts that leave or are
+    /// absorbed by that are transitions of the avalanche.
     pub(super) fn apply_pending(&mut self, transition: &Transition, avalanche: &mut Avalanche) -> Result<(), Rejection> {
         let problem = self.problem();
         let approach = self.neighbourhood.local.approach;
@@ -203,8 +204,8 @@ impl EquilibriumPath<'_> {
         self.predictor.set(i, now, 0.0);
     }
 
-    /// Changes the field around the local problem by `changes` at the shell \[m\], since its load has changed by `load`. The load of the contact will change by
-    /// `response` \[N\] when the pending displacements are applied.
+    /// Changes the field around the local problem by `changes` at the shell \[m\], since its load has changed by `load`. The load of the
+    /// contact will change by `response` \[N\] when the pending displacements are applied.
     fn propagate(&mut self, changes: &[f64], load: f64, response: f64, avalanche: &mut Avalanche) {
         let limit = self.pending_limit();
         let problem = self.problem();
@@ -225,7 +226,8 @@ impl EquilibriumPath<'_> {
         self.expect_load(self.neighbourhood.local.approach, response);
     }
 
-    /// Propagates the difference between the solution curve of a local problem and its linear prediction, which the rest of the contact does not have.
+    /// Propagates the difference between the solution curve of a local problem and its linear prediction, which the rest of the contact
+    /// does not have.
     pub(super) fn propagate_curve(&mut self, curve: &[CurveState], avalanche: &mut Avalanche) {
         let near = &self.neighbourhood;
         if near.shell.is_empty() {
@@ -247,13 +249,15 @@ impl EquilibriumPath<'_> {
         self.log.work_j += grown * mean_square(curve, way);
     }
 
-    /// Counts the work of the load that contacts will have when pending displacements are applied; from here on it is larger by `more` \[N\].
+    /// Counts the work of the load that contacts will have when pending displacements are applied; from here on it is larger by `more`
+    /// \[N\].
     pub(super) fn expect_load(&mut self, approach: f64, more: f64) {
         self.log.work_j += self.energy.expect_load(approach, more);
         self.predictor.add_load(more);
     }
 
-    /// Advances the predictors of the members to a located event and counts the work, along a solution curve if there is one. At a fold the rates are infinite.
+    /// Advances the predictors of the members to a located event and counts the work, along a solution curve if there is one. At a fold the
+    /// rates are infinite.
     pub(super) fn advance_predictors(&mut self, curve: &[CurveState], fold: bool) {
         let problem = self.problem();
         let (approach, reference) = (self.neighbourhood.local.approach, self.neighbourhood.reference);

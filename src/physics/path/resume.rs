@@ -10,8 +10,8 @@ use crate::physics::PhysicsError;
 use crate::physics::contact::{Event, Problem, State};
 
 impl<'p> EquilibriumPath<'p> {
-    /// Resumes a path. The state need not be an equilibrium: the difference of the potential is charged to the last event, and the initial residual is not
-    /// recorded as predictor residual.
+    /// Resumes a path. The state need not be an equilibrium: the difference of the potential is charged to the last event, and the initial
+    /// residual is not recorded as predictor residual.
     pub(crate) fn resume(problem: &'p Problem, from: PathCheckpoint) -> Result<Self, PhysicsError> {
         let (approach, drift) = (from.state.approach_m, from.log.drift_m);
         let (longest, scale) = from.lengths;

@@ -1,7 +1,7 @@
 //! Length of the path increments.
 //!
-//! An increment ends on a multiple of `h = h_0/2^k`. A rejected one is halved; an accepted one may be followed by one of twice the length where that ends on
-//! a multiple of itself. So the increments do not depend on where a path began.
+//! An increment ends on a multiple of `h = h_0/2^k`. A rejected one is halved; an accepted one may be followed by one of twice the length
+//! where that ends on a multiple of itself. So the increments do not depend on where a path began.
 
 use super::rejection::Rejection;
 use crate::physics::PhysicsError;
@@ -93,8 +93,8 @@ impl StepControl {
         is_multiple(target, self.longest)
     }
 
-    /// Chooses the next attempt after a rejection of the increment from `here` \[m\]; `uncovered` if asperities were uncovered in it that are absorbed at its
-    /// beginning.
+    /// Chooses the next attempt after a rejection of the increment from `here` \[m\]; `uncovered` if asperities were uncovered in it that
+    /// are absorbed at its beginning.
     pub(super) fn reject(&mut self, here: f64, rejection: &Rejection, uncovered: bool) -> Recovery {
         if self.add_missed(rejection) {
             return Recovery::Repeat;

@@ -5,7 +5,7 @@ use crate::physics::contact::problem::Problem;
 use crate::physics::contact::state::Status;
 use crate::physics::contact::transition::{Kind, Transition};
 
-/// A change that is due, and by how much: a dimensionless measure that is 0 at the event and positive beyond.
+/// Transition that is due, with its overshoot: dimensionless, 0 at the event and positive beyond.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Trigger {
     pub(crate) transition: Transition,
@@ -13,8 +13,8 @@ pub(crate) struct Trigger {
 }
 
 impl Problem {
-    /// All changes that are due among these asperities: of spots and of what they cover (`touched`), and of free ones (`free`), whose
-    /// penetrations are known at the present approach.
+    /// All transitions that are due among contacts and absorbed asperities (`touched`) and free asperities (`free`), whose penetrations are
+    /// known at the present mean penetration.
     pub(crate) fn triggers(&self, predictor: &Predictor, touched: &[usize], free: &[usize]) -> Vec<Trigger> {
         let mut due = Vec::new();
         let mut add = |change: Transition| {
@@ -50,7 +50,7 @@ impl Problem {
         due
     }
 
-    /// True if a change that was due still is.
+    /// True if a transition that was due still is.
     pub(crate) fn is_due(&self, change: &Transition, predictor: &Predictor) -> bool {
         let (i, state) = (change.asperity, &predictor.state);
         let possible = match (change.kind, state.status[i], change.by) {
@@ -63,7 +63,7 @@ impl Problem {
         possible && self.overshoot(change, predictor) >= 0.0
     }
 
-    /// How far a state is beyond a change: negative before it.
+    /// Overshoot of a state beyond a transition; negative before it.
     pub(crate) fn overshoot(&self, change: &Transition, predictor: &Predictor) -> f64 {
         let (i, state) = (change.asperity, &predictor.state);
         match (change.kind, change.by) {
@@ -74,7 +74,7 @@ impl Problem {
                 state.radius[by] / distance - 1.0
             }
             (Kind::Uncover, _) => match state.status[i] {
-                // A covering asperity that is itself no spot any more covers nothing.
+                // An asperity that is not in contact absorbs none.
                 Status::Covered { by, release_m } => 1.0 - state.radius[by] / release_m,
                 _ => f64::NAN,
             },
@@ -82,7 +82,7 @@ impl Problem {
         }
     }
 
-    /// How late a change is, as a penetration \[m\].
+    /// Lateness of a transition, as a penetration \[m\].
     pub(crate) fn lateness(&self, trigger: &Trigger, predictor: &Predictor) -> f64 {
         let (i, state) = (trigger.transition.asperity, &predictor.state);
         let between = |j: usize, radius: f64| {

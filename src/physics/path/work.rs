@@ -18,7 +18,8 @@ pub(super) fn work(problem: &Problem, i: usize, from: PenetrationTrace, to: Pene
     })
 }
 
-/// `∫F dΔ` of a member of a local problem along a solution curve, with radius and mean penetration as cubics in the radius that was followed \[J\].
+/// `∫F dΔ` of a member of a local problem along a solution curve, with radius and mean penetration as cubics in the radius that was
+/// followed \[J\].
 pub(super) fn work_along(problem: &Problem, i: usize, member: usize, curve: &[CurveState]) -> f64 {
     let asperity = &problem.asperities[i];
     let part = |pair: &[CurveState]| {
@@ -32,7 +33,8 @@ pub(super) fn work_along(problem: &Problem, i: usize, member: usize, curve: &[Cu
     curve.windows(2).map(part).sum()
 }
 
-/// `∫s² dΔ` along a solution curve, or a way \[m\] without one, on which s rises from 0 to 1 in proportion to the radius that was followed, or to Δ \[m\].
+/// `∫s² dΔ` along a solution curve, or a way \[m\] without one, on which s rises from 0 to 1 in proportion to the radius that was followed,
+/// or to Δ \[m\].
 pub(super) fn mean_square(curve: &[CurveState], way: f64) -> f64 {
     let (Some(first), Some(last)) = (curve.first(), curve.last()) else { return way / 3.0 };
     let whole = last.at - first.at;

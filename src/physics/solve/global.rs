@@ -1,11 +1,11 @@
-//! The equilibrium of the spots in contact at one approach.
+//! Global problem: equilibrium of all contacts at one mean penetration.
 //!
-//! Unknowns are the contact radii; the residual of each is `D_i − ŵ_i − δ_JKR(a_i)`, with `D_i = δ + z_i`. The paper's Eq 9 is one
-//! diagonal-Newton update of this system, all spots at once; it diverges. Here:
-//! - [`GlobalSolver::newton`]: Newton's method with GMRES, steps limited to 20 % of each radius, accepted only where they descend. Where a step does not
-//!   descend, it is mostly for one spot at the edge of another, where the slope of the field is infinite: the few spots around it are solved for
-//!   themselves with dense matrices, and the whole goes on from there (nonlinear elimination, Lanzkron, Rose & Wilkes, SIAM J. Sci. Comput. 17:538, 1996);
-//! - [`GlobalSolver::relax`]: where Newton finds nothing (a fold, or after a jump), overdamped relaxation ([`super::relaxation`]).
+//! Unknowns are the contact radii; the residual of each is `D_i − ŵ_i − δ_JKR(a_i)`, with `D_i = Δ + z_i`. The paper's Eq 9 is a diagonal
+//! Newton update of all contacts at once; it diverges. Here:
+//! - [`GlobalSolver::newton`]: Newton's method with GMRES. A step that does not reduce the residual mostly fails for one contact at the
+//!   edge of another, where the slope of the field is infinite: a local problem around it is solved first (nonlinear elimination, Lanzkron,
+//!   Rose & Wilkes, SIAM J. Sci. Comput. 17:538, 1996);
+//! - [`GlobalSolver::relax`]: overdamped relaxation ([`super::relaxation`]), where Newton's method fails at a fold or after a jump.
 
 use super::jacobian::Jacobian;
 use super::local::{Hold, LocalProblem};
@@ -21,24 +21,23 @@ use crate::physics::half_space::{Effort, Interaction as _, Spots, Tangent};
 use crate::physics::math::gmres::{Limits, Solution, gmres, gmres_and_least};
 use crate::physics::math::vector::dot;
 
-/// Products at most in one linear solve.
+/// Maximum number of products in one linear solve.
 const PRODUCTS: usize = 120;
 
-/// Neighbourhoods that are solved for themselves on the way of one solution of the whole.
+/// Maximum number of local problems in one global solve.
 const MENDS: usize = 6;
 
-/// Share of the residual that a step with an earlier tangent must leave less than, or the next one has a tangent of its own.
+/// Residual over the last one above which a step with an earlier tangent is followed by one with its own.
 const WORTH: f64 = 0.03;
 
-/// Relative residuals to which linear systems are solved.
+/// Relative residuals of linear solves.
 const MOST: f64 = 3e-3;
 const LEAST: f64 = 1e-5;
 
-/// The same where the whole contact is solved well enough to go on.
+/// The largest of them where the precision is only sufficient.
 const ROUGH: f64 = 3e-2;
 
-/// The relative residual of rates where the whole contact is solved to the last digits, and where it is solved well enough to go on. What is next to happen is
-/// told by them.
+/// Relative residual of the rates, at exact and at sufficient precision: predictions depend on them.
 const RATES: f64 = 1e-6;
 const ROUGH_RATES: f64 = 3e-4;
 
@@ -54,12 +53,12 @@ struct Tangents {
     free: Tangent,
 }
 
-/// Solves for the radii of a state; keeps its work space from one solve to the next.
+/// Solver of the global problem, with its work space.
 pub(crate) struct GlobalSolver<'p> {
     pub(crate) problem: &'p Problem,
     pub(crate) effort: Effort,
     spots: Spots,
-    /// True if the present solution is only to be good enough to go on: sums are rough then.
+    /// True if the precision is only sufficient: sums are less accurate then.
     roughly: bool,
     /// Tangents of the present precision, and of the other one for the positions that they have found.
     tangents: Tangents,
@@ -67,12 +66,12 @@ pub(crate) struct GlobalSolver<'p> {
     /// Mean penetration at which all free asperities were evaluated last \[m\].
     swept_at: Option<f64>,
     inverse: CachedInverse,
-    /// True if the tangent is that of the state that was evaluated last.
+    /// True if the tangent belongs to the state that was evaluated last.
     fresh: bool,
-    /// Residuals of the spots that were evaluated last \[m\].
+    /// Residuals of the contacts that were evaluated last \[m\].
     pub(crate) residual: Vec<f64>,
     diagonal: Vec<f64>,
-    /// The neighbourhood that is solved where Newton's method on the whole does not descend.
+    /// Local problem around a contact for which Newton's method does not descend.
     patch: LocalProblem,
 }
 
@@ -94,7 +93,7 @@ impl<'p> GlobalSolver<'p> {
         }
     }
 
-    /// Before a solution.
+    /// Begins a solution.
     pub(crate) fn begin(&mut self, roughly: bool) {
         self.inverse.begin();
         if self.roughly != roughly {
@@ -103,7 +102,7 @@ impl<'p> GlobalSolver<'p> {
         }
     }
 
-    /// Displacements, residuals and tangent of a state; its worst residual and whose it is.
+    /// Evaluates displacements, residuals and tangent of a state; returns the largest residual with its asperity.
     pub(crate) fn evaluate(&mut self, state: &mut State) -> NotConverged {
         let problem = self.problem;
         problem.spots(state, &mut self.spots);
@@ -113,7 +112,7 @@ impl<'p> GlobalSolver<'p> {
         self.compare(state)
     }
 
-    /// The same with the tangent left as it is.
+    /// Evaluates a state without its tangent.
     fn reevaluate(&mut self, state: &mut State) -> NotConverged {
         let problem = self.problem;
         problem.spots(state, &mut self.spots);
@@ -123,7 +122,7 @@ impl<'p> GlobalSolver<'p> {
         self.compare(state)
     }
 
-    /// Residuals of a state whose displacements are known; the worst and whose it is.
+    /// Residuals of a state with known displacements.
     fn compare(&mut self, state: &mut State) -> NotConverged {
         let problem = self.problem;
         self.residual.clear();
@@ -143,15 +142,15 @@ impl<'p> GlobalSolver<'p> {
         worst
     }
 
-    /// Newton's method on the radii, from those of `state`, at its approach, with its spots; it was evaluated last. Where `patient`, it is tried
-    /// again in short steps before it fails.
+    /// Newton's method at the mean penetration of a state that was evaluated last. If `patient`, it is repeated in short steps before it
+    /// fails.
     pub(crate) fn newton(&mut self, state: &mut State, first: NotConverged, patient: bool, tolerance: f64) -> Result<(), NotConverged> {
         let start: Vec<f64> = state.contacts.iter().map(|&i| state.radius[i]).collect();
         self.descend(state, first, Damping::NORMAL, tolerance).or_else(|unsettled| {
             if !patient {
                 return Err(unsettled);
             }
-            // Near the edge of a spot, where the slope of its field is infinite, only short steps descend.
+            // Near the edge of a contact, where the slope of its field is infinite, only short steps descend.
             for (&i, a) in state.contacts.iter().zip(&start) {
                 state.radius[i] = *a;
             }
@@ -174,7 +173,7 @@ impl<'p> GlobalSolver<'p> {
         found.x
     }
 
-    /// The step of Newton's method, to this share of the residual.
+    /// Newton step with a relative residual of the linear solve.
     fn newton_step(&mut self, state: &State, wanted: f64) -> Vec<f64> {
         let Self { problem, tangents, inverse, diagonal, residual, .. } = self;
         let jacobian = Jacobian { tangent: &tangents.contacts, diagonal };
@@ -183,7 +182,7 @@ impl<'p> GlobalSolver<'p> {
         self.count(found)
     }
 
-    /// Solves the neighbourhood of a spot with the displacement by all others held; says whether it has an equilibrium.
+    /// Solves the local problem around a contact with the displacement by all others held; false if it has no equilibrium.
     fn mend(&mut self, state: &mut State, asperity: usize) -> bool {
         let problem = self.problem;
         let near = problem
@@ -204,23 +203,23 @@ impl<'p> GlobalSolver<'p> {
         true
     }
 
-    /// Relaxes from the radii of `state`, at its approach. Spots that leave or are covered on the way are returned.
+    /// Relaxes from a state; the transitions on the way are returned.
     pub(crate) fn relax(&mut self, state: &mut State) -> Result<Vec<Transition>, NotConverged> {
         let problem = self.problem;
         relax(&mut Whole { solver: self, state }, problem, None)
     }
 
-    /// `da_i/dδ` of the spots at the equilibrium that was evaluated last. Its stability is entered into the state.
+    /// `da_i/dΔ` at the equilibrium that was evaluated last. The stability is entered into the state.
     pub(crate) fn rates(&mut self, state: &mut State) -> Vec<f64> {
         if !self.fresh {
-            // At the edge of a spot the slope of its field is without bound, and the tangent of one step before is none.
+            // At the edge of a contact the slope of its field is unbounded, and the tangent of the last step is not valid.
             self.evaluate(state);
         }
         if self.tangents.contacts.is_exact() {
             return self.rates_to(RATES, false, state);
         }
         let mut rates = self.rates_to(LEAST, false, state);
-        // Solved for once more, with what those products lack of digits.
+        // A second solve adds the digits that fast products lack.
         let mut left = vec![0.0; rates.len()];
         self.tangents.contacts.fine_product(&rates, &mut left);
         self.effort.products += 1;
@@ -238,7 +237,7 @@ impl<'p> GlobalSolver<'p> {
         rates
     }
 
-    /// The same with fewer digits. Of the stability the sign is known: where the least eigenvalue is small, it is in the space of the solution.
+    /// Rates of sufficient precision. The sign of the stability is right: where the least eigenvalue is small, it is in the Krylov space.
     pub(crate) fn rough_rates(&mut self, state: &mut State) -> Vec<f64> {
         if !self.fresh {
             self.evaluate(state);
@@ -246,7 +245,7 @@ impl<'p> GlobalSolver<'p> {
         self.rates_to(ROUGH_RATES, true, state)
     }
 
-    /// Both, to a relative residual; `short` with the approximate inverse.
+    /// Rates and stability, to a relative residual; `short` with the approximate inverse.
     fn rates_to(&mut self, wanted: f64, short: bool, state: &mut State) -> Vec<f64> {
         let ones = vec![1.0; state.contacts.len()];
         let Self { problem, tangents, inverse, diagonal, .. } = self;
@@ -268,7 +267,7 @@ impl<'p> GlobalSolver<'p> {
         begins
     }
 
-    /// Penetrations `D_i − ŵ_i` of asperities that are not in contact, with their rates, in an equilibrium and its rates.
+    /// Penetrations `D_i − ŵ_i` of free asperities, with their rates, at an equilibrium with given rates.
     pub(crate) fn penetrations(&mut self, state: &State, rates: &[f64], wanted: &[usize]) -> Vec<PenetrationTrace> {
         let problem = self.problem;
         problem.spots(state, &mut self.spots);
@@ -281,7 +280,7 @@ impl<'p> GlobalSolver<'p> {
         pairs.map(|((w, slope), &i)| PenetrationTrace { at, value: at + problem.heights[i] - w, rate: 1.0 - slope }).collect()
     }
 
-    /// Displacement at one asperity by spots of these radii \[m\].
+    /// Displacement at one asperity by contacts of these radii \[m\].
     pub(crate) fn displacement(&mut self, spots: &[(usize, f64)], asperity: usize) -> f64 {
         self.problem.columns(spots.iter().copied(), &mut self.spots);
         let mut displacement = Vec::new();
@@ -324,7 +323,7 @@ impl NonlinearSystem for Descent<'_, '_> {
     }
 
     fn begin_step(&mut self, round: usize, worst: &Worst) {
-        // The first step leaves the square of the residual, however well it is solved for; the next ones are to be the last.
+        // The first step reduces the residual to its square at best; the next ones are to be the last.
         let wanted = match (self.exact, round) {
             (true, 0) => MOST,
             (true, _) => (0.1 * self.tolerance / worst.largest_m).clamp(LEAST, MOST),
@@ -342,7 +341,7 @@ impl NonlinearSystem for Descent<'_, '_> {
     }
 }
 
-/// The whole contact on its way to rest.
+/// Global problem during a relaxation.
 struct Whole<'a, 'p> {
     solver: &'a mut GlobalSolver<'p>,
     state: &'a mut State,
@@ -387,7 +386,7 @@ impl Relaxing for Whole<'_, '_> {
     }
 }
 
-/// Shortens a step to the largest relative change of a radius that is let pass.
+/// Shortens a step to a largest relative change of a radius.
 fn limit(step: &mut [f64], state: &State, most: f64) {
     let stride = state.contacts.iter().zip(&*step).map(|(&i, s)| s.abs() / state.radius[i]).fold(0.0, f64::max);
     if stride > most {

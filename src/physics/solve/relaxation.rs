@@ -1,7 +1,8 @@
-//! Overdamped relaxation `da_i/dt = residual_i`, where Newton's method finds no equilibrium: after a fold, or a jump.
+//! Overdamped relaxation `da_i/dt = residual_i` (pseudo-transient continuation), where Newton's method finds no equilibrium: after a fold
+//! or a jump.
 //!
-//! Implicit Euler steps, that grow as the contact comes to rest. On the way a spot whose own branch has ended leaves, and one that a greater spot has
-//! reached is covered: the flow decides who, without reference to the step of the approach. For `point` it is a gradient flow of the potential.
+//! Implicit Euler steps grow as the residual falls. A contact whose branch has ended leaves, and a contact that a larger one has reached is
+//! absorbed. The order follows from the flow and not from the output steps. For point interaction it is a gradient flow of the potential.
 
 use super::residual::{NotConverged, STRIDE};
 use crate::physics::Reason;
@@ -9,43 +10,42 @@ use crate::physics::contact::problem::Problem;
 use crate::physics::contact::transition::{ContactView, Transition};
 use crate::physics::math::vector::dot;
 
-/// Steps at most since a spot was taken out last: however many go, each is a step towards rest.
+/// Maximum number of steps since the last transition.
 const STEPS: usize = 1000;
 
-/// Steps without rest after which a spot at the edge of another is covered.
+/// Number of steps after which a contact at the edge of another is absorbed.
 const RESTLESS: usize = 200;
 
-/// Time after which Newton's method may finish, and how much longer the flow goes on where it does not.
+/// Pseudo-time after which Newton's method may finish, and the factor by which it is extended if that fails.
 const NEARLY: f64 = 100.0;
 const LONGER: f64 = 1e3;
 
-/// The longest step of time, and how much longer each is than the one before.
+/// Longest pseudo-time step, and the growth of the steps.
 const LONGEST: f64 = 1e9;
 const GROWTH: f64 = 3.0;
 
-/// Attempts at a step, each a quarter as long as the one before.
+/// Maximum number of attempts at a step, each a quarter as long as the last.
 const ATTEMPTS: usize = 24;
 
-/// A contact, or a part of one, at an approach.
+/// A contact, or a local problem, at one mean penetration.
 pub(crate) trait Relaxing {
-    /// Evaluates fields and residuals; the worst residual, and whose it is.
+    /// Evaluates fields and residuals; returns the largest residual with its asperity.
     fn evaluate(&mut self) -> NotConverged;
-    /// The spots, ascending, as they were evaluated last.
+    /// Contacts as they were evaluated last, ascending.
     fn spots(&self) -> Vec<ContactView>;
-    /// Applies a change that takes a spot out.
+    /// Removes a contact.
     fn take_out(&mut self, change: &Transition);
-    /// Tries to finish by Newton's method in short steps; where that does not lead to rest, all is as before.
+    /// Tries to finish by Newton's method in short steps; without success nothing is changed.
     fn finish(&mut self) -> bool;
-    /// The implicit step over a time, and whether the flow is stable over it as far as is known.
+    /// Implicit step over a pseudo-time, and whether the flow is stable over it as far as is known.
     fn step(&mut self, time: f64) -> (Vec<f64>, bool);
-    /// Changes the radii by a share of a step.
+    /// Moves the radii by a share of a step.
     fn advance(&mut self, step: &[f64], share: f64);
 }
 
-/// Relaxes. Spots that leave or are covered on the way are taken out, and returned.
+/// Relaxes to an equilibrium; the transitions on the way are returned.
 ///
-/// Where an asperity has just been uncovered (`uncovered`) and is covered again on the way, or exchanges parts with the spot that covered it, the rest
-/// of the way is of no interest, and the relaxation ends there.
+/// It ends early where an asperity that has just been uncovered (`uncovered`) is absorbed again, or absorbs the contact that covered it.
 pub(crate) fn relax(
     contact: &mut impl Relaxing,
     problem: &Problem,
@@ -76,8 +76,9 @@ pub(crate) fn relax(
             continue;
         }
         if time > finish {
-            // Nearly at rest: Newton's method finishes, unless it is led to an equilibrium that repels. At the edge of a spot, where the slope of its
-            // field jumps, implicit steps would go to and fro for ever, while short steps that descend arrive.
+            // Near the equilibrium Newton's method finishes, unless the equilibrium is unstable. At the edge of a contact, where the slope
+            // of its
+            // field jumps, implicit steps would alternate without end, while short descending steps converge.
             if contact.finish() {
                 continue;
             }
@@ -90,7 +91,7 @@ pub(crate) fn relax(
         for _ in 0..ATTEMPTS {
             let stable;
             (step, stable) = contact.step(time);
-            // With too long a step a saddle attracts: the step must go along the flow.
+            // With too long a step a saddle attracts: the step must follow the flow.
             if stable && stride(&step) <= STRIDE && dot(&step, &residual) > 0.0 {
                 break;
             }

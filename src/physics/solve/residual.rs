@@ -2,10 +2,10 @@
 
 use crate::physics::Reason;
 
-/// Greatest relative change of a radius in one iteration, here as in Newton's method.
+/// Largest relative change of a radius in one iteration.
 pub(crate) const STRIDE: f64 = 0.2;
 
-/// A state that is not in equilibrium: the worst residual and its asperity, and what else prevents an equilibrium.
+/// State without equilibrium: largest residual with its asperity, or another reason.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct NotConverged {
     pub(crate) residual_m: f64,
@@ -14,7 +14,7 @@ pub(crate) struct NotConverged {
 }
 
 impl NotConverged {
-    /// The worst residual \[m\] and its asperity.
+    /// Largest residual \[m\] and its asperity.
     pub(crate) fn residual(residual_m: f64, asperity: usize) -> Self {
         Self { residual_m, asperity, reason: Reason::Residual }
     }

@@ -1,8 +1,8 @@
-//! An approximate inverse of the tangent, spot by spot: what a spot answers is decided among its neighbours, since what one of them gains the
-//! others lose. It makes linear solves of the whole contact short.
+//! Approximate inverse of the Jacobian, by groups of contacts.
 //!
-//! Restricted additive Schwarz (Cai & Sarkis, SIAM J. Sci. Comput. 21:792, 1999): the spots are parted into small groups; each is solved for
-//! itself with the spots around it, and what comes out for the group itself is kept.
+//! Restricted additive Schwarz method (Cai & Sarkis, SIAM J. Sci. Comput. 21:792, 1999): contacts are divided into small groups. Each is
+//! solved with the contacts around it, and the solution for the group itself is kept. The response of a contact is determined by its
+//! neighbours, which lose what it gains.
 
 use super::jacobian::Jacobian;
 use crate::physics::contact::problem::Problem;
@@ -11,17 +11,17 @@ use crate::physics::half_space::{Tangent, places_in};
 use crate::physics::math::dense::Lu;
 use crate::physics::math::gmres::{LinearOperator as _, Preconditioner, bounded_inverse};
 
-/// Spots in one group, at most, and spots that are solved together for it.
+/// Maximum number of contacts in a group, and number of contacts that are solved together for it.
 const GROUP: usize = 24;
 const TOGETHER: usize = 44;
 
-/// The new place of a spot that has gone.
+/// Position of a contact that has left.
 const GONE: u32 = u32::MAX;
 
-/// One in so many spots may have come or gone until it is made anew.
+/// Inverse of the fraction of contacts that may change before the inverse is computed again.
 const CHANGES: usize = 20;
 
-/// Distance over radius from which on a spot is felt by its load.
+/// Distance over radius beyond which a contact acts by its load alone.
 const ALOOF: f64 = 2.0;
 
 /// Solutions that one approximate inverse serves.
@@ -59,10 +59,10 @@ impl CachedInverse {
     }
 }
 
-/// Rows of the approximate inverse.
+/// Rows of an approximate inverse.
 #[derive(Debug, Default)]
 pub(crate) struct LocalInverse {
-    /// The asperities in contact.
+    /// Asperities in contact.
     index: Vec<usize>,
     starts: Vec<usize>,
     spots: Vec<u32>,
@@ -70,7 +70,7 @@ pub(crate) struct LocalInverse {
 }
 
 impl LocalInverse {
-    /// Of a tangent, and of the diagonal that is added to it, at the spots in contact.
+    /// Approximate inverse of a tangent and a diagonal, at the contacts of a state.
     pub(crate) fn new(problem: &Problem, state: &State, tangent: &Tangent, diagonal: &[f64]) -> Self {
         let mut groups = Vec::new();
         let mut all: Vec<usize> = (0..state.contacts.len()).collect();
@@ -106,12 +106,12 @@ impl LocalInverse {
         found
     }
 
-    /// True if it is of these spots.
+    /// True if it belongs to these contacts.
     pub(crate) fn serves(&self, contacts: &[usize]) -> bool {
         self.index == contacts
     }
 
-    /// The same for other spots, if most are those that it is of: those that have come answer for themselves, by `own`, their place among all given.
+    /// Inverse for other contacts, if most are the same; new ones have their own diagonal element, by `own` of their position.
     pub(crate) fn carried(&self, contacts: &[usize], own: impl Fn(usize) -> f64) -> Option<Self> {
         let mut places = vec![GONE; self.index.len()];
         let rows: Vec<Option<usize>> = places_in(contacts, &self.index).collect();
@@ -164,7 +164,7 @@ impl Preconditioner for LocalInverse {
     }
 }
 
-/// Parts spots into groups by halving them across their longer side; the groups are ranges of what `all` is put in order to.
+/// Divides contacts into groups by bisection across their longer side; groups are ranges of `all`, which is put in order.
 fn part(all: &mut [usize], place: &dyn Fn(usize, usize) -> f64, groups: &mut Vec<std::ops::Range<usize>>) {
     fn halve(all: &mut [usize], from: usize, place: &dyn Fn(usize, usize) -> f64, groups: &mut Vec<std::ops::Range<usize>>) {
         if all.len() <= GROUP {
@@ -186,7 +186,7 @@ fn part(all: &mut [usize], place: &dyn Fn(usize, usize) -> f64, groups: &mut Vec
     halve(all, 0, place, groups);
 }
 
-/// A group of spots and those around it, each with its place against the middle of the group \[m\].
+/// A group of contacts and those around it, each with its position relative to the centre of the group \[m\].
 fn around(problem: &Problem, state: &State, group: &[usize]) -> Vec<(usize, [f64; 2])> {
     let place = |k: usize| problem.positions[state.contacts[k]];
     let count = group.len() as f64;
@@ -199,14 +199,14 @@ fn around(problem: &Problem, state: &State, group: &[usize]) -> Vec<(usize, [f64
     spots.into_iter().map(|k| (k, problem.neighbours.apart(&place(k), &centre))).collect()
 }
 
-/// The tangent among some spots with its diagonal, columns one after another.
+/// Jacobian among some contacts, column by column.
 fn transposed(problem: &Problem, state: &State, spots: &[(usize, [f64; 2])], tangent: &Tangent, diagonal: &[f64]) -> Vec<f64> {
     let mut matrix = Vec::with_capacity(spots.len() * spots.len());
     for (j, [x, y]) in spots {
         let i = state.contacts[*j];
         let a = state.radius[i];
         let slope = problem.material.compliance() * problem.asperities[i].load_slope(a);
-        // What images do is nearly the same for all of them.
+        // Image fields are nearly the same for all of them.
         let images = tangent.own(*j);
         for (k, [u, v]) in spots {
             let r = ((u - x) * (u - x) + (v - y) * (v - y)).sqrt();

@@ -1,8 +1,8 @@
-//! Where the curve of equilibria of a patch meets an event.
+//! Events on the solution curve of a local problem.
 //!
-//! Along the curve a radius is the better parameter: at a fold the approach turns round and the radius goes on, and where a spot
-//! reaches the centre of another the field has an infinite slope in that radius alone. So events of a spot are found by holding its
-//! radius and solving for the approach; a fold is where `dδ/da` of a spot that moves with it vanishes.
+//! The radius of a contact is the better parameter of the curve: at a fold Δ reverses and the radius continues; where a contact reaches the
+//! centre of another, the field has an infinite slope in that radius alone. So an event of a contact is found with its radius held and Δ
+//! unknown; a fold is a zero of `dΔ/da`.
 
 use super::{CurveState, Hold, LocalProblem};
 use crate::physics::Reason;
@@ -11,33 +11,33 @@ use crate::physics::half_space::Effort;
 use crate::physics::math::bracket::{End, Illinois};
 use crate::physics::solve::residual::NotConverged;
 
-/// Shortest part of a way that is tried where the whole is too long.
+/// Smallest share of a way that is tried.
 const SHORTEST: f64 = 1e-3;
 
-/// Greatest relative change of a radius on a way that is trusted to be without a fold.
+/// Largest relative change of a radius over which no fold is assumed.
 const NEAR: f64 = 0.3;
 
-/// Points of one way, and parts of one march, after which no shorter ones are tried.
+/// Maximum number of points of a curve, and of parts of one continuation.
 const STATIONS: usize = 50;
 
-/// Where a spot's way ends.
+/// End of a search along the curve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum CurveEnd {
-    /// The fold is met, and the patch stands there.
+    /// At a fold; the local problem is there.
     Fold,
-    /// The radius that bounds the search is met first, and the patch stands there.
+    /// At the radius that bounds the search; the local problem is there.
     Bound,
-    /// Neither comes before the approach at which the search ends.
+    /// Neither occurs before the end of the search.
     Beyond,
 }
 
 impl LocalProblem {
-    /// Follows the curve until the radius of member `at` is `value` \[m\], from an equilibrium that was evaluated last.
+    /// Continues along the curve until the radius of member `at` is `value` \[m\], from an equilibrium that was evaluated last.
     pub(crate) fn continue_to_radius(&mut self, problem: &Problem, at: usize, value: f64, effort: &mut Effort) -> Result<(), NotConverged> {
         let mut share = 1.0;
         let mut parts = 0;
         while self.radius[at] != value {
-            // Where the field itself jumps, as with the printed Eq 8, ever shorter parts lead to the jump and not beyond.
+            // Where the field itself jumps, as with the uncorrected Eq 8, shorter parts lead to the jump and not beyond.
             parts += 1;
             if parts > STATIONS {
                 return Err(NotConverged::because(Reason::EndlessPath, self.members[at].asperity));
@@ -47,7 +47,7 @@ impl LocalProblem {
             let whole = value - self.radius[at];
             let span = if share < 1.0 { share * whole } else { whole };
             for (radius, d) in self.radius.iter_mut().zip(&direction) {
-                // A spot at its end has no tangent in the radius of another.
+                // A contact at the end of its branch has no tangent in the radius of another.
                 let change = (d * span).clamp(-0.3 * *radius, 0.3 * *radius);
                 *radius += change;
             }
@@ -68,7 +68,7 @@ impl LocalProblem {
         Ok(())
     }
 
-    /// The radii at another approach \[m\], if the patch gets there without a fold on the way; it stays where it is.
+    /// Radii at another mean penetration \[m\], if no fold lies before it; the local problem stays.
     pub(crate) fn probe(&mut self, problem: &Problem, approach: f64, effort: &mut Effort) -> Option<Vec<f64>> {
         let start = (self.radius.clone(), self.approach);
         self.ahead(problem, approach);
@@ -80,8 +80,7 @@ impl LocalProblem {
         (arrived && near).then_some(there)
     }
 
-    /// Follows member `at` in the sense of `sense` (the sign of its change) up to the radius `bound` \[m\], until the approach turns round or
-    /// has passed `target` \[m\] in the sense of the path, `sign`.
+    /// Follows member `at` to the radius `bound` \[m\], until Δ reverses or has passed `target` \[m\] in the sense `sign` of the path.
     pub(crate) fn trace_curve(
         &mut self,
         problem: &Problem,
@@ -96,10 +95,10 @@ impl LocalProblem {
         let mut before = self.point(problem, at);
         self.way.push(before.clone());
         if before.slope * ahead <= 0.0 {
-            // It goes the other way by now.
+            // It moves away from the bound.
             return Ok(CurveEnd::Beyond);
         }
-        // At a fold the radius has gone twice as far as its rate tells.
+        // Near a fold the radius changes twice as fast as its rate predicts.
         let left = (target - self.approach).abs();
         let mut stride = (2.0 * left / before.slope.abs()).clamp(1e-4 * self.radius[at], 0.2 * self.radius[at]);
         let beyond = loop {
@@ -134,7 +133,7 @@ impl LocalProblem {
         Ok(if (self.approach - target) * sign > 0.0 { CurveEnd::Beyond } else { CurveEnd::Fold })
     }
 
-    /// The fold between two points of the curve, by the Illinois rule on `dδ/da`.
+    /// The fold between two states of the curve, by the Illinois rule on `dΔ/da`.
     fn bracket(
         &mut self,
         problem: &Problem,

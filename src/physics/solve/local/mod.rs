@@ -1,9 +1,8 @@
-//! The neighbourhood of an event: the spots next to it as unknowns, all others by the field that they have there.
+//! Local problem of an event: the contacts next to it as unknowns, the displacement by all others to first order in Δ.
 //!
-//! An event moves its neighbours by much and the rest of the contact by little, since what one spot gains its neighbours lose: the response
-//! falls off beyond a few spacings. So each event is solved among its nearest spots, with the displacement by all others as it was and as
-//! it changes with the approach; the whole contact is solved again at the end of each stretch of the path, and the difference is measured
-//! (see [`crate::physics::path`]). Where a patch holds all spots there is no difference.
+//! An event changes its neighbours strongly and the rest of the contact weakly, since its neighbours lose what it gains: the response
+//! decays within a few spacings. The global problem is solved at the end of each increment, and the difference is measured (see
+//! [`crate::physics::path`]). A local problem that holds all contacts has no difference.
 
 pub(crate) mod curve;
 pub(crate) mod outside;
@@ -17,58 +16,58 @@ use crate::physics::half_space::{Effort, PairTable, Spots};
 use crate::physics::math::dense::Lu;
 use std::f64::consts::PI;
 
-/// What is outside a patch follows the approach by a part of it; next to a fold of the whole it would go further, but not far.
+/// Bounded rate of the displacement by the outside: next to a global fold the estimate diverges.
 fn bounded(drift: f64) -> f64 {
     drift.clamp(-2.0, 3.0)
 }
 
-/// An asperity of the patch: what the rest of the contact does to it.
+/// Displacement at an asperity by the contacts outside the local problem.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct OutsideField {
     pub(crate) asperity: usize,
-    /// Displacement by the spots outside the patch at the reference approach \[m\].
+    /// Displacement at the reference mean penetration \[m\].
     pub(crate) outside: f64,
-    /// Derivative to the approach.
+    /// Derivative to the mean penetration.
     pub(crate) drift: f64,
 }
 
-/// A state of a patch on the curve of equilibria, with its direction.
+/// State on the solution curve, with its tangent.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct CurveState {
     pub(crate) radius: Vec<f64>,
     pub(crate) approach: f64,
-    /// Derivatives of the radii and of the approach to the radius of the spot that is followed, `at` \[m\].
+    /// Derivatives of radii and mean penetration to the radius `at` \[m\] of the member that is followed.
     pub(crate) direction: Vec<f64>,
     pub(crate) slope: f64,
     pub(crate) at: f64,
 }
 
-/// What is held while a patch is solved; the approach is an unknown unless it is what is held.
+/// Quantity that is held while a local problem is solved. Unless it is the mean penetration, that is an unknown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Hold {
-    /// The approach.
+    /// Mean penetration.
     Approach,
-    /// The radius of the member of this number.
+    /// Radius of a member, by its position.
     Radius(usize),
-    /// The penetration of the watched asperity of this number \[m\].
+    /// Penetration of a watched asperity, by its position \[m\].
     Penetration(usize, f64),
 }
 
-/// The spots around an event, ascending, and the free asperities among them.
+/// Contacts around an event, ascending, and the free asperities among them.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct LocalProblem {
-    /// Approach \[m\].
+    /// Mean penetration \[m\].
     pub(crate) approach: f64,
     reference: f64,
     pub(crate) members: Vec<OutsideField>,
     /// Contact radii of the members \[m\].
     pub(crate) radius: Vec<f64>,
     pub(crate) watched: Vec<OutsideField>,
-    /// True if there are spots outside it: what they do is held, and some digits of what images do are enough.
+    /// True if there are contacts outside: image sums of reduced accuracy are sufficient then.
     local: bool,
-    /// Where the patch has been on its way to an event, if it was followed there by a radius.
+    /// States on the way to an event, if a radius was followed.
     pub(crate) way: Vec<CurveState>,
-    /// Displacement at the members by one another \[m\], and its derivatives to their radii.
+    /// Displacements at the members by one another \[m\], and their derivatives to the radii.
     field: Vec<f64>,
     slopes: Vec<f64>,
     residual: Vec<f64>,
@@ -78,7 +77,7 @@ pub(crate) struct LocalProblem {
 /// Work space of a local problem.
 #[derive(Debug, Clone, Default)]
 struct Workspace {
-    /// The members as sources, and how they lie to one another.
+    /// Members as sources, and their pairs.
     spots: Spots,
     pairs: PairTable,
     /// Derivatives of the displacement at one asperity to the radii of the members.
@@ -89,7 +88,8 @@ struct Workspace {
 }
 
 impl LocalProblem {
-    /// The patch of these spots and free asperities at an approach \[m\], each with its trace, the spots with their radii \[m\]; both lists ascending.
+    /// Gathers contacts and free asperities at a mean penetration \[m\], with their predictors and the radii of the contacts \[m\]; both
+    /// lists ascend.
     pub(crate) fn gather(
         &mut self,
         problem: &Problem,
@@ -130,8 +130,7 @@ impl LocalProblem {
         });
     }
 
-    /// The patch of these spots (ascending) at an approach \[m\], each with its radius and its displacement by all \[m\], which need be no
-    /// equilibrium.
+    /// Gathers contacts, ascending, with radius and displacement \[m\]; the state need not be an equilibrium.
     pub(crate) fn fix(&mut self, problem: &Problem, spots: &[(usize, f64, f64)], approach: f64, effort: &mut Effort) {
         (self.approach, self.reference, self.local) = (approach, approach, false);
         self.way.clear();
@@ -146,12 +145,12 @@ impl LocalProblem {
         }
     }
 
-    /// Where a member stands.
+    /// Position of a member.
     pub(crate) fn find(&self, asperity: usize) -> Option<usize> {
         self.members.binary_search_by_key(&asperity, |m| m.asperity).ok()
     }
 
-    /// Puts an asperity into contact; what acts on it from outside is known from watching it, or given.
+    /// Inserts an asperity in contact.
     pub(crate) fn insert(&mut self, place: OutsideField, radius: f64) {
         if let Err(at) = self.members.binary_search_by_key(&place.asperity, |m| m.asperity) {
             self.members.insert(at, place);
@@ -160,7 +159,7 @@ impl LocalProblem {
         }
     }
 
-    /// Takes a member out of contact; if it is free then, it is watched.
+    /// Removes a member; a free one is watched.
     pub(crate) fn remove(&mut self, asperity: usize, free: bool) {
         if let Some(at) = self.find(asperity) {
             let place = self.members.remove(at);
@@ -171,7 +170,7 @@ impl LocalProblem {
         }
     }
 
-    /// An asperity whose whole displacement is known at the present approach \[m\], with the rate of what is outside, as one of the patch.
+    /// An asperity with a known displacement at the present mean penetration \[m\], and the rate of its part by the outside.
     pub(crate) fn place(
         &mut self,
         problem: &Problem,
@@ -195,12 +194,12 @@ impl LocalProblem {
         field
     }
 
-    /// Displacement by what is outside, at the present approach \[m\].
+    /// Displacement by the outside at the present mean penetration \[m\].
     fn outside(&self, place: &OutsideField) -> f64 {
         place.outside + place.drift * (self.approach - self.reference)
     }
 
-    /// Fields, slopes and residuals of the members at their radii; the worst residual and whose it is.
+    /// Evaluates fields, slopes and residuals of the members; returns the largest residual with its asperity.
     pub(crate) fn evaluate(&mut self, problem: &Problem, effort: &mut Effort) -> NotConverged {
         let n = self.members.len();
         problem.columns(self.members.iter().map(|m| m.asperity).zip(self.radius.iter().copied()), &mut self.work.spots);
@@ -242,7 +241,7 @@ impl LocalProblem {
         }
     }
 
-    /// Puts `−∂residual/∂δ` into column `at` of the Jacobian, for an approach that is an unknown in the place of a radius.
+    /// Puts `−∂residual/∂Δ` into column `at` of the Jacobian, where Δ is an unknown instead of a radius.
     fn exchange(&mut self, at: usize) {
         let n = self.members.len();
         for (k, member) in self.members.iter().enumerate() {
@@ -250,7 +249,7 @@ impl LocalProblem {
         }
     }
 
-    /// The step of Newton's method, of the radii and of the approach.
+    /// Newton step of the radii and of the mean penetration.
     fn newton_step(&mut self, problem: &Problem, hold: Hold, effort: &mut Effort) -> (Vec<f64>, f64) {
         let n = self.members.len();
         let mut step = self.residual.clone();
@@ -294,15 +293,15 @@ impl LocalProblem {
         self.solve_with(problem, hold, Damping::LOCAL, effort)
     }
 
-    /// The same with other limits.
+    /// Newton's method with other limits.
     pub(crate) fn solve_with(&mut self, problem: &Problem, hold: Hold, damping: Damping, effort: &mut Effort) -> Result<(), NotConverged> {
         let mut descent = Descent { local: self, problem, hold, effort, step: (Vec::new(), 0.0), start: (Vec::new(), 0.0) };
         let first = descent.evaluate(0);
         damped_newton(&mut descent, first, damping, problem.tolerance_m())
     }
 
-    /// `da_i/dδ` of the members at the equilibrium that was evaluated last, and whether it is on the stable side of every fold: the sign of
-    /// the Jacobian's determinant.
+    /// `da_i/dΔ` of the members at the equilibrium that was evaluated last, and whether it is stable: the sign of the determinant of the
+    /// Jacobian.
     pub(crate) fn rates(&mut self, problem: &Problem) -> (Vec<f64>, bool) {
         let mut rates: Vec<f64> = self.members.iter().map(|m| 1.0 - m.drift).collect();
         self.assemble(problem, 0.0);
@@ -312,7 +311,7 @@ impl LocalProblem {
         (rates, stable)
     }
 
-    /// Derivatives along the curve of equilibria to the radius of member `at`: of the other radii, and of the approach.
+    /// Tangent of the solution curve: derivatives of the other radii and of Δ to the radius of member `at`.
     pub(crate) fn along(&mut self, problem: &Problem, at: usize) -> (Vec<f64>, f64) {
         let n = self.members.len();
         self.assemble(problem, 0.0);
@@ -331,7 +330,7 @@ impl LocalProblem {
         self.approach + problem.heights[place.asperity] - self.outside(&place) - field
     }
 
-    /// Penetration and its rate of each watched asperity, given the rates of the members.
+    /// Penetrations of the watched asperities, with their rates for given rates of the members.
     pub(crate) fn watch(&self, problem: &Problem, rates: &[f64], effort: &mut Effort) -> Vec<PenetrationTrace> {
         let places: Vec<usize> = self.watched.iter().map(|place| place.asperity).collect();
         let mut traces = Vec::with_capacity(places.len());
@@ -344,9 +343,11 @@ impl LocalProblem {
         traces
     }
 
-    /// Load of the members \[N\], and the part of the potential that changes with them \[J\]:
-    /// `Σ[U(d_i, a_i) − Δγπa_i²] + ½ΣF_iŵ_i`, ŵ by one another. What acts from outside is held, and `Π` is stationary, so that its change
-    /// is the whole one's to second order in what the rest of the contact does.
+    /// Load of the members \[N\], and the part of the potential that changes with them \[J\]: `Σ[U(d_i, a_i) − Δγπa_i²] + ½ΣF_iŵ_i`, with ŵ
+    /// by one another.
+    ///
+    /// The displacement by the outside is held, and `Π` is stationary: the change is that of the whole potential to second order in the
+    /// response of the outside.
     pub(crate) fn totals(&self, problem: &Problem) -> (f64, f64) {
         let (mut whole, mut potential) = (0.0, 0.0);
         for ((member, &a), field) in self.members.iter().zip(&self.radius).zip(&self.field) {
@@ -360,13 +361,13 @@ impl LocalProblem {
         (whole, potential)
     }
 
-    /// `∂Π/∂δ` at the radii that are: the loads, less what the field from outside takes up \[N\].
+    /// `∂Π/∂Δ` at fixed radii: the loads, less the part that the displacement by the outside takes up \[N\].
     pub(crate) fn potential_slope(&self, problem: &Problem) -> f64 {
         let pairs = self.members.iter().zip(&self.radius);
         pairs.map(|(member, a)| problem.asperities[member.asperity].load(*a) * (1.0 - member.drift)).sum()
     }
 
-    /// Sets out for another approach \[m\], every penetration going on at its rate.
+    /// Moves to another mean penetration \[m\] by linear extrapolation of the penetrations.
     pub(crate) fn ahead(&mut self, problem: &Problem, approach: f64) {
         let (rates, _) = self.rates(problem);
         let way = approach - self.approach;
@@ -378,7 +379,7 @@ impl LocalProblem {
         self.approach = approach;
     }
 
-    /// Moves the patch over the fold at which it stands: member `at` by this share of its radius, the others with it, the approach by `gap` \[m\].
+    /// Moves over a fold: member `at` by a share of its radius, the others along the tangent, Δ by `gap` \[m\].
     pub(crate) fn step_over_fold(&mut self, problem: &Problem, at: usize, share: f64, gap: f64) {
         let (direction, _) = self.along(problem, at);
         let span = share * self.radius[at];

@@ -1,29 +1,29 @@
-//! What a neighbourhood does to those outside it, and they to its load.
+//! Effect of a local problem on the contacts outside it, and of these on its load.
 
 use super::{LocalProblem, OutsideField};
 use crate::physics::contact::problem::Problem;
 use crate::physics::jkr::Asperity;
 
-/// A member as it stood.
+/// Member before a change.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ReferenceState {
     pub(crate) asperity: usize,
     pub(crate) sphere: Asperity,
     /// Radius \[m\].
     pub(crate) radius: f64,
-    /// By how much that was expected to change \[m\].
+    /// Expected change of the radius \[m\].
     pub(crate) more: f64,
 }
 
 impl ReferenceState {
-    /// The load that was expected of it \[N\].
+    /// Expected load \[N\].
     fn load(&self) -> f64 {
         let (sphere, was) = (&self.sphere, self.radius);
         sphere.load(was) + self.more * sphere.load_slope(was)
     }
 }
 
-/// A member as those outside feel it: now and before, out of contact perhaps, and how much more load it has than expected \[N\].
+/// Member as a source for the outside: present state, state before, and load beyond the expected one \[N\].
 struct Source {
     asperity: usize,
     now: Option<(Asperity, f64)>,
@@ -31,7 +31,7 @@ struct Source {
     load: f64,
 }
 
-/// Distance over radius from which on a spot's load alone is felt: what else there is is 2 % of it there, and less beyond.
+/// Distance over radius beyond which a contact acts by its load alone: the rest is 2 % there, and less beyond.
 const ALOOF: f64 = 2.0;
 
 impl Source {
@@ -48,7 +48,7 @@ impl Source {
         self.load += sphere.load(radius);
     }
 
-    /// What it does at a place beyond what was expected \[m\], without images.
+    /// Displacement at a place beyond the expected one \[m\], without images.
     fn field(&self, problem: &Problem, place: &[f64; 2], compliance: f64) -> f64 {
         let r = problem.neighbours.distance(place, &problem.positions[self.asperity]);
         let (radius, was) = (self.now.map_or(0.0, |now| now.1), self.before.map_or(0.0, |before| before.radius));
@@ -62,13 +62,13 @@ impl Source {
     }
 }
 
-/// How much of the way of the approach what is outside takes up, where it tells how loads answer.
+/// Bounded share of Δ that the displacement by the outside takes up, in estimates of the response of loads.
 fn part(drift: f64) -> f64 {
     drift.clamp(-1.0, 2.0)
 }
 
 impl LocalProblem {
-    /// How the members stand, as [`Self::displacement_changes`] wants it, if nothing more is expected of them.
+    /// Members before a change, as [`Self::displacement_changes`] needs them, without expected changes.
     pub(crate) fn reference_states(&self, problem: &Problem) -> Vec<ReferenceState> {
         let stood = |(member, a): (&OutsideField, &f64)| ReferenceState {
             asperity: member.asperity,
@@ -79,8 +79,8 @@ impl LocalProblem {
         self.members.iter().zip(&self.radius).map(stood).collect()
     }
 
-    /// By how much the displacements at asperities are other than they were expected to be, when members stood as they did before \[m\]: what the loads
-    /// do from their centres, and near a spot, where that is not enough, its field.
+    /// Changes of the displacements at asperities beyond the expected ones \[m\]: of the loads as points, and next to a contact of its
+    /// field.
     pub(crate) fn displacement_changes(
         &self,
         problem: &Problem,
@@ -106,14 +106,12 @@ impl LocalProblem {
         asperities.iter().map(of).collect()
     }
 
-    /// What the spots outside do to the loads of the members as the approach goes on, `Σ F_i ∂ŵ_i/∂δ`; by reciprocity, what these loads do to the
-    /// load of the others \[N\].
+    /// `Σ F_i ∂ŵ_i/∂Δ` of the members by the outside \[N\]: by reciprocity, the effect of these loads on the load of the outside.
     pub(crate) fn reciprocal_load_rate(&self, problem: &Problem) -> f64 {
         self.members.iter().zip(&self.radius).map(|(m, a)| part(m.drift) * problem.asperities[m.asperity].load(*a)).sum()
     }
 
-    /// By how much the load of the members is other than it was expected to be, and by how much what the spots outside do to it is, both as the
-    /// radii were to change \[N\].
+    /// Load of the members beyond the expected one, and the same for its effect on the load of the outside \[N\].
     pub(crate) fn unexpected_load(&self, before: &[ReferenceState]) -> (f64, f64) {
         let (mut load, mut pull) = (0.0, 0.0);
         for ((member, &a), stood) in self.members.iter().zip(&self.radius).zip(before) {

@@ -1,4 +1,4 @@
-//! A patch on its way to rest ([`crate::physics::solve::relaxation`]).
+//! Relaxation of a local problem ([`crate::physics::solve::relaxation`]).
 
 use super::{Hold, LocalProblem};
 use crate::physics::contact::problem::Problem;
@@ -9,7 +9,7 @@ use crate::physics::solve::relaxation::{Relaxing, relax};
 use crate::physics::solve::residual::NotConverged;
 
 impl LocalProblem {
-    /// Relaxes at the present approach ([`crate::physics::solve::relaxation`]). Spots that leave or are covered on the way are taken out, and returned.
+    /// Relaxes at the present mean penetration ([`crate::physics::solve::relaxation`]); the transitions on the way are returned.
     pub(crate) fn relax(
         &mut self,
         problem: &Problem,
@@ -20,7 +20,7 @@ impl LocalProblem {
     }
 }
 
-/// A patch on its way to rest.
+/// Local problem during a relaxation.
 struct Part<'a> {
     patch: &'a mut LocalProblem,
     problem: &'a Problem,
