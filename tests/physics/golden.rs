@@ -63,3 +63,18 @@ fn reg_whole_cycles() {
         close(&format!("{what}: dissipated energy"), found_loss, loss, 1e-7);
     }
 }
+
+/// Effort of three cycles: iterations, and products of the tangent with a vector.
+#[test]
+fn reg_effort_of_whole_cycles() {
+    for (at, iterations, products) in [(0, 3501, 8051), (1, 12366, 13775), (5, 6467, 10124)] {
+        let (what, (zeta, realization, rules, adhesion, patch), _) = setups().swap_remove(at);
+        let material = Material { work_of_adhesion_j_m2: adhesion, ..PAPER };
+        let problem = Problem::new(&paper_summits(zeta, realization), LENGTH, RMS, material, rules).unwrap().with_patches_of(patch);
+        let cycle = run(&problem, &[0.0071], 0.04, KeptContacts::Turning);
+        let sum = |of: fn(&Effort) -> u64| cycle.steps.iter().map(|step| of(&step.effort)).sum::<u64>() as f64;
+        // Rounding on another processor changes a few iterations; a change of the method changes more.
+        close(&format!("{what}: iterations"), sum(|effort| effort.iterations), f64::from(iterations), 0.02);
+        close(&format!("{what}: products"), sum(|effort| effort.products), f64::from(products), 0.02);
+    }
+}

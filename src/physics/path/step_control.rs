@@ -174,11 +174,14 @@ mod tests {
         assert_eq!(control.reject(0.3, &failed(), false), Recovery::Halve);
         // Half an increment from 0.3 ends at 0 too; a quarter ends at 0.25.
         assert_eq!((control.halvings(), control.target(0.3, None)), (2, 0.25));
-        // The next quarter ends at 0 and so does the next half: it may be tried.
+        // The next quarter ends at 0 and so does the next half: it is tried.
         assert!(!control.accept(0.25));
-        assert_eq!(control.halvings(), 2);
+        assert_eq!(control.halvings(), 1);
+        // The next half ends at −½ and the next full increment at −1: it waits.
         assert!(control.accept(0.0));
         assert_eq!(control.halvings(), 1);
+        assert!(!control.accept(-0.5));
+        assert_eq!(control.halvings(), 0);
     }
 
     #[test]
