@@ -1,10 +1,10 @@
-//! The spectrum of a self-affine surface, its moments, and what it costs to flatten it: `hysteron::physics::surface::spectrum` and `theory::flattening`, by name.
+//! Spectrum of a self-affine surface, its moments, and the energy that flattens it: `surface::spectrum` and `theory::flattening` by name.
 
 use crate::columns::{Column, Values, allowed, each, each_many, positive};
 use hysteron::model::{Amplitudes, Normalization};
 use hysteron::physics::PhysicsError;
 use hysteron::physics::surface::spectrum::{Moments, Spectrum};
-use hysteron::physics::theory::flattening::{self, Flattening};
+use hysteron::physics::theory::flattening::{Flattening, flattening as energies};
 use pyo3::prelude::*;
 
 const ACTION: &str = "the spectrum (Eq 10)";
@@ -126,7 +126,7 @@ fn flattening_ratios<'py>(
 
 fn energy([length, height, hurst, magnification, modulus]: [f64; 5]) -> Result<Flattening, PhysicsError> {
     let of = spectrum([length, height, hurst, magnification], Normalization::Spectrum)?;
-    Ok(validity::flattening(&of, positive(FLATTENING, "the contact modulus [Pa]", modulus)?))
+    Ok(energies(&of, positive(FLATTENING, "the contact modulus [Pa]", modulus)?))
 }
 
 /// Adds them to the module.
