@@ -2,70 +2,32 @@
 
 use super::StageError;
 use super::done::Outcome;
-use super::failure::in_the_way;
-use super::runner::{Context, Tasks};
-use super::surface::Surfaces;
-use crate::campaign::{Campaign, CycleUnit, Stage, Standing, SurfaceUnit, Unit};
+use super::surface::SurfaceStage;
+use crate::campaign::{Campaign, Stage, SurfaceUnit, Unit};
 use crate::physics::surface::measured::find_measured;
 use crate::physics::surface::summits::{Summit, find_summits};
 use crate::schema;
 use crate::store::hdf5::read_surface;
 use crate::store::{Frame, FrameError, parquet};
-use serde_json::{Map, Value};
 use std::iter::repeat_n;
 use std::path::Path;
 
-/// Tasks of the stage extract: one for each surface.
-pub(super) struct Extract<'a>(Surfaces<'a>);
+/// The stage extract.
+pub(super) struct Extract;
 
-impl<'a> Extract<'a> {
-    pub(super) fn of(context: Context<'a>) -> Self {
-        Self(Surfaces::of(context))
-    }
-}
-
-impl Tasks for Extract<'_> {
-    type Of = SurfaceUnit;
-
+impl SurfaceStage for Extract {
     const STAGE: Stage = Stage::Extract;
 
-    fn selected(&self) -> Vec<&SurfaceUnit> {
-        self.0.selected()
-    }
-
-    fn unit<'a>(&self, of: &'a SurfaceUnit) -> Unit<'a> {
+    fn unit(of: &SurfaceUnit) -> Unit<'_> {
         of.asperities()
     }
 
-    fn key_inputs(&self, of: &SurfaceUnit) -> Map<String, Value> {
-        self.0.context.campaign.surface_preimages(of, Self::STAGE)
+    fn input(of: &SurfaceUnit) -> Option<Unit<'_>> {
+        Some(of.surface())
     }
 
-    fn standing(&self, of: &SurfaceUnit) -> Standing {
-        self.0.context.campaign.standing(&of.asperities(), self.0.context.task.check)
-    }
-
-    fn is_given_up(&self, of: &SurfaceUnit, _: &Standing) -> bool {
-        self.0.is_given_up(of, Self::STAGE)
-    }
-
-    fn input(&self, of: &SurfaceUnit) -> Option<(String, Standing)> {
-        Some((of.id.clone(), self.0.context.campaign.standing(&of.surface(), self.0.context.task.check)))
-    }
-
-    fn compute(&self, of: &SurfaceUnit) -> Result<Outcome, StageError> {
-        let Context { campaign, watch, .. } = self.0.context;
-        let outcome = in_the_way(campaign, &of.asperities()).and_then(|()| extract(campaign, of));
-        watch.progress(Self::STAGE, 1.0);
-        outcome
-    }
-
-    fn cycles<'a>(&'a self, of: &'a SurfaceUnit) -> Vec<&'a CycleUnit> {
-        self.0.cycles(of).to_vec()
-    }
-
-    fn clean_up(&self, of: &SurfaceUnit) {
-        self.0.forget(of, Self::STAGE);
+    fn compute(campaign: &Campaign, of: &SurfaceUnit) -> Result<Outcome, StageError> {
+        extract(campaign, of)
     }
 }
 

@@ -2,71 +2,33 @@
 
 use super::StageError;
 use super::done::Outcome;
-use super::failure::in_the_way;
 use super::measure::{Imported, measure};
-use super::runner::{Context, Tasks};
-use super::surface::{Surfaces, spectrum};
-use crate::campaign::{Campaign, CycleUnit, Stage, Standing, SurfaceUnit, Unit};
+use super::surface::{SurfaceStage, spectrum};
+use crate::campaign::{Campaign, Stage, SurfaceUnit, Unit};
 use crate::formats::recognize;
 use crate::keys::digest_of_file;
 use crate::physics::PhysicsError;
 use crate::physics::memory;
 use crate::physics::surface::synthesis::{realization_seed, synthesis_bytes, synthesize};
 use crate::store::hdf5::{Generated, SurfaceHeader, write_surface};
-use serde_json::{Map, Value};
 use std::path::Path;
 
-/// Tasks of the stage generate: one for each surface.
-pub(super) struct Generate<'a>(Surfaces<'a>);
+/// The stage generate.
+pub(super) struct Generate;
 
-impl<'a> Generate<'a> {
-    pub(super) fn of(context: Context<'a>) -> Self {
-        Self(Surfaces::of(context))
-    }
-}
-
-impl Tasks for Generate<'_> {
-    type Of = SurfaceUnit;
-
+impl SurfaceStage for Generate {
     const STAGE: Stage = Stage::Generate;
 
-    fn selected(&self) -> Vec<&SurfaceUnit> {
-        self.0.selected()
-    }
-
-    fn unit<'a>(&self, of: &'a SurfaceUnit) -> Unit<'a> {
+    fn unit(of: &SurfaceUnit) -> Unit<'_> {
         of.surface()
     }
 
-    fn key_inputs(&self, of: &SurfaceUnit) -> Map<String, Value> {
-        self.0.context.campaign.surface_preimages(of, Self::STAGE)
-    }
-
-    fn standing(&self, of: &SurfaceUnit) -> Standing {
-        self.0.context.campaign.standing(&of.surface(), self.0.context.task.check)
-    }
-
-    fn is_given_up(&self, of: &SurfaceUnit, _: &Standing) -> bool {
-        self.0.is_given_up(of, Self::STAGE)
-    }
-
-    fn input(&self, _: &SurfaceUnit) -> Option<(String, Standing)> {
+    fn input(_: &SurfaceUnit) -> Option<Unit<'_>> {
         None
     }
 
-    fn compute(&self, of: &SurfaceUnit) -> Result<Outcome, StageError> {
-        let Context { campaign, watch, .. } = self.0.context;
-        let outcome = in_the_way(campaign, &of.surface()).and_then(|()| generate(campaign, of));
-        watch.progress(Self::STAGE, 1.0);
-        outcome
-    }
-
-    fn cycles<'a>(&'a self, of: &'a SurfaceUnit) -> Vec<&'a CycleUnit> {
-        self.0.cycles(of).to_vec()
-    }
-
-    fn clean_up(&self, of: &SurfaceUnit) {
-        self.0.forget(of, Self::STAGE);
+    fn compute(campaign: &Campaign, of: &SurfaceUnit) -> Result<Outcome, StageError> {
+        generate(campaign, of)
     }
 }
 

@@ -4,6 +4,7 @@ use super::done::{Clock, Outcome};
 use super::extract::Extract;
 use super::generate::Generate;
 use super::runner::{Context, run_stage};
+use super::surface::Surfaces;
 use super::{StageError, Tally, Task, Watch, aggregate, cycle, report, sampled};
 use crate::campaign::{Campaign, Stage};
 use crate::store::{Check, commit};
@@ -48,8 +49,8 @@ fn wanted(task: &Task, stages: &[Stage]) -> Vec<Stage> {
 fn compute(context: Context<'_>, tallies: &mut Tallies) -> Result<(), StageError> {
     for stage in wanted(context.task, &[Stage::Generate, Stage::Extract, Stage::Cycle]) {
         let tally = match stage {
-            Stage::Generate => run_stage(&Generate::of(context), context)?,
-            Stage::Extract => run_stage(&Extract::of(context), context)?,
+            Stage::Generate => run_stage(&Surfaces::<Generate>::of(context), context)?,
+            Stage::Extract => run_stage(&Surfaces::<Extract>::of(context), context)?,
             _ => run_stage(&cycle::Cycles::of(context), context)?,
         };
         match tallies.iter_mut().find(|(known, _)| *known == stage) {

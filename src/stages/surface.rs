@@ -1,12 +1,16 @@
 //! Surfaces of a run: spectrum, scale and tasks.
 
-use super::runner::Context;
+use super::done::Outcome;
+use super::failure::in_the_way;
+use super::runner::{Context, Tasks};
 use super::{StageError, failure};
-use crate::campaign::{Campaign, CycleUnit, Stage, SurfaceUnit};
+use crate::campaign::{Campaign, CycleUnit, Stage, Standing, SurfaceUnit, Unit};
 use crate::physics::surface::spectrum::Spectrum;
 use crate::spec::{CaseParams, SurfaceParams};
 use crate::store::hdf5::{SurfaceHeader, read_header};
+use serde_json::{Map, Value};
 use std::collections::HashMap;
+use std::marker::PhantomData;
 
 /// Target spectrum of a generated surface.
 pub(super) fn spectrum(params: &SurfaceParams) -> Spectrum {
@@ -43,34 +47,82 @@ pub(super) fn scale(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Scale, St
     Ok(Scale { length_m: unit.params.length_m, rms_height_m: unit.params.rms_height_m })
 }
 
-/// Selected surfaces, with the cycles that need them.
-pub(super) struct Surfaces<'a> {
-    pub(super) context: Context<'a>,
-    cycles: HashMap<&'a str, Vec<&'a CycleUnit>>,
+/// A stage with one task for each surface.
+pub(super) trait SurfaceStage {
+    /// The stage.
+    const STAGE: Stage;
+
+    /// Identity of the task of a surface.
+    fn unit(of: &SurfaceUnit) -> Unit<'_>;
+
+    /// Task of an earlier stage that writes the input.
+    fn input(of: &SurfaceUnit) -> Option<Unit<'_>>;
+
+    /// Computes the task of a surface and writes its files.
+    fn compute(campaign: &Campaign, of: &SurfaceUnit) -> Result<Outcome, StageError>;
 }
 
-impl<'a> Surfaces<'a> {
+/// Tasks of a stage: one for each selected surface, with the cycles that need it.
+pub(super) struct Surfaces<'a, S> {
+    context: Context<'a>,
+    cycles: HashMap<&'a str, Vec<&'a CycleUnit>>,
+    stage: PhantomData<fn() -> S>,
+}
+
+impl<'a, S> Surfaces<'a, S> {
     pub(super) fn of(context: Context<'a>) -> Self {
-        Self { context, cycles: failure::by_surface(context.campaign) }
+        Self { context, cycles: failure::by_surface(context.campaign), stage: PhantomData }
     }
 
-    pub(super) fn selected(&self) -> Vec<&SurfaceUnit> {
+    /// Cycles of a surface.
+    fn cycles_of(&self, unit: &SurfaceUnit) -> &[&'a CycleUnit] {
+        self.cycles.get(unit.id.as_str()).map_or(&[], Vec::as_slice)
+    }
+}
+
+impl<S: SurfaceStage> Tasks for Surfaces<'_, S> {
+    type Of = SurfaceUnit;
+
+    const STAGE: Stage = S::STAGE;
+
+    fn selected(&self) -> Vec<&SurfaceUnit> {
         let Context { campaign, task, .. } = self.context;
         campaign.surfaces.iter().enumerate().filter(|(place, _)| task.shard.holds(*place)).map(|(_, unit)| unit).collect()
     }
 
-    /// Cycles of a surface.
-    pub(super) fn cycles(&self, unit: &SurfaceUnit) -> &[&'a CycleUnit] {
-        self.cycles.get(unit.id.as_str()).map_or(&[], Vec::as_slice)
+    fn unit<'a>(&self, of: &'a SurfaceUnit) -> Unit<'a> {
+        S::unit(of)
     }
 
-    /// True if a stage is not tried for a surface.
-    pub(super) fn is_given_up(&self, unit: &SurfaceUnit, stage: Stage) -> bool {
-        failure::given_up(self.context.campaign, self.cycles(unit), stage, &self.context.task.retried)
+    fn key_inputs(&self, of: &SurfaceUnit) -> Map<String, Value> {
+        self.context.campaign.surface_preimages(of, S::STAGE)
     }
 
-    /// Removes the records of earlier failures at a stage.
-    pub(super) fn forget(&self, unit: &SurfaceUnit, stage: Stage) {
-        failure::forget(self.context.campaign, self.cycles(unit), stage);
+    fn standing(&self, of: &SurfaceUnit) -> Standing {
+        self.context.campaign.standing(&S::unit(of), self.context.task.check)
+    }
+
+    fn is_given_up(&self, of: &SurfaceUnit, _: &Standing) -> bool {
+        failure::given_up(self.context.campaign, self.cycles_of(of), S::STAGE, &self.context.task.retried)
+    }
+
+    fn input(&self, of: &SurfaceUnit) -> Option<(String, Standing)> {
+        let Context { campaign, task, .. } = self.context;
+        S::input(of).map(|unit| (of.id.clone(), campaign.standing(&unit, task.check)))
+    }
+
+    fn compute(&self, of: &SurfaceUnit) -> Result<Outcome, StageError> {
+        let Context { campaign, watch, .. } = self.context;
+        let outcome = in_the_way(campaign, &S::unit(of)).and_then(|()| S::compute(campaign, of));
+        watch.progress(S::STAGE, 1.0);
+        outcome
+    }
+
+    fn cycles<'a>(&'a self, of: &'a SurfaceUnit) -> Vec<&'a CycleUnit> {
+        self.cycles_of(of).to_vec()
+    }
+
+    fn clean_up(&self, of: &SurfaceUnit) {
+        failure::forget(self.context.campaign, self.cycles_of(of), S::STAGE);
     }
 }
