@@ -21,8 +21,9 @@ impl EquilibriumPath<'_> {
         let mut before = self.begin();
         let applied = match located {
             Some(Located::Fold(at)) => {
+                let leader = self.neighbourhood.local.members[at].asperity;
                 before.potential += self.step_over_fold(at);
-                self.relax_after_fold(at)?
+                self.relax_or_snap(leader)?
             }
             _ => match self.change_status(transition)? {
                 Some(applied) => applied,
@@ -44,16 +45,6 @@ impl EquilibriumPath<'_> {
         self.log.work_j += gap * local.totals(problem).0;
         local.step_over_fold(problem, at, sense * STEP_OVER_FOLD, gap);
         potential
-    }
-
-    /// Relaxes the local problem beyond a fold: without a change of status the transition is a snap of the member that was followed.
-    fn relax_after_fold(&mut self, at: usize) -> Result<Vec<Transition>, Rejection> {
-        let leader = self.neighbourhood.local.members[at].asperity;
-        let mut applied = self.neighbourhood.local.relax(self.problem(), None, &mut self.solver.effort)?;
-        if applied.is_empty() {
-            applied.push(Transition { kind: Kind::Snap, asperity: leader, by: None });
-        }
-        Ok(applied)
     }
 
     /// Changes the status of an asperity and solves the local problem; all transitions on the way are returned, nothing if none is applied.

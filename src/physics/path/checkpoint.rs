@@ -23,24 +23,9 @@ pub(crate) struct Checkpoint {
 }
 
 impl Checkpoint {
-    /// Number of events.
-    pub(super) fn events(&self) -> usize {
-        self.events
-    }
-
-    /// Number of load segments.
-    pub(super) fn segments(&self) -> usize {
-        self.segments
-    }
-
     /// State of the contact.
     pub(super) fn state(&self) -> &State {
         &self.predictor.state
-    }
-
-    /// Load and area.
-    pub(super) fn totals(&self) -> Totals {
-        self.totals
     }
 }
 

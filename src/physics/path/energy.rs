@@ -17,7 +17,7 @@ pub(super) struct EnergyLedger {
     balance: f64,
     /// If set, the last event is charged with the difference at the next global solve.
     open: bool,
-    /// Transition of the load that contacts will have when pending displacements are applied \[N\].
+    /// Change of the load that contacts will have when pending displacements are applied \[N\].
     expected_n: f64,
     /// Mean penetration up to which the work of that change is counted \[m\].
     expected_at: f64,

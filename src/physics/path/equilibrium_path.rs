@@ -17,7 +17,7 @@ use crate::physics::solve::global::GlobalSolver;
 use crate::physics::solve::residual::NotConverged;
 use crate::physics::{PhysicsError, Reason};
 
-/// A contact on its way along one branch; see [`super`].
+/// A contact along one branch; see [`super`].
 pub(crate) struct EquilibriumPath<'p> {
     pub(super) solver: GlobalSolver<'p>,
     /// The contact as it is known between two global solves.
@@ -157,7 +157,7 @@ impl<'p> EquilibriumPath<'p> {
         loop {
             let here = self.state().approach_m;
             let target = self.steps.target(here, bound);
-            let attempt = self.run_and_correct(target, bound).and_then(|()| self.check_numbers(checkpoint.events()));
+            let attempt = self.run_and_correct(target, bound).and_then(|()| self.check_numbers(checkpoint.events));
             let rejection = match attempt {
                 Ok(()) => {
                     if self.steps.accept(target) {
@@ -178,7 +178,7 @@ impl<'p> EquilibriumPath<'p> {
                     checkpoint = self.checkpoint();
                 }
                 Recovery::RelaxGlobally => {
-                    let relaxed = self.relax_globally(target).and_then(|()| self.check_numbers(checkpoint.events()));
+                    let relaxed = self.relax_globally(target).and_then(|()| self.check_numbers(checkpoint.events));
                     match relaxed {
                         Ok(()) => break,
                         Err(Rejection::Failed(error)) => return Err(error),
@@ -193,7 +193,7 @@ impl<'p> EquilibriumPath<'p> {
 
     /// Asperities that were uncovered since a checkpoint, and were absorbed there.
     fn uncovered_since(&self, checkpoint: &Checkpoint) -> Vec<usize> {
-        let events = self.log.events[checkpoint.events()..].iter();
+        let events = self.log.events[checkpoint.events..].iter();
         let uncovered = events.filter(|event| event.kind == Kind::Uncover).map(|event| event.asperity);
         uncovered.filter(|i| matches!(checkpoint.state().status[*i], Status::Covered { .. })).collect()
     }

@@ -38,8 +38,8 @@ impl EquilibriumPath<'_> {
     /// The part of the last increment in which the load reaches `load` \[N\].
     fn crossing(&self, load: f64) -> Option<Crossing> {
         let checkpoint = self.checkpoint.as_deref()?;
-        let mut before = (checkpoint.state().approach_m, checkpoint.totals().load_n);
-        for segment in &self.log.segments[checkpoint.segments()..] {
+        let mut before = (checkpoint.state().approach_m, checkpoint.totals.load_n);
+        for segment in &self.log.segments[checkpoint.segments..] {
             if segment.load >= load {
                 return Some(Crossing { ends: [before.0, segment.approach], excess: [before.1 - load, segment.load - load] });
             }

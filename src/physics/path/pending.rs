@@ -16,7 +16,7 @@ pub(super) struct Monopole {
     pub(super) place: [f64; 2],
     /// Distance within which the change is stored per contact instead \[m\].
     pub(super) reach: f64,
-    /// Transition of the load \[N\].
+    /// Change of the load \[N\].
     pub(super) load_n: f64,
 }
 

@@ -57,23 +57,19 @@ impl EquilibriumPath<'_> {
     /// Applies the pending displacements of the members of the neighbourhood of a transition, and solves it. Contacts that leave or are
     /// absorbed by that are transitions of the avalanche.
     pub(super) fn apply_pending(&mut self, transition: &Transition, avalanche: &mut Avalanche) -> Result<(), Rejection> {
-        let problem = self.problem();
-        let approach = self.neighbourhood.local.approach;
-        let (before, start) = match self.solve_pending() {
-            (before, start, true) => (before, start),
+        let (mut before, mut start, mut solved) = self.solve_pending();
+        if !solved && self.neighbourhood.local.members.len() < self.state().contacts.len() {
             // Few contacts may have no equilibrium where more have.
-            (.., false) if self.neighbourhood.local.members.len() < self.state().contacts.len() => {
-                self.gather(transition, Some(approach), problem.spots_in_patch.saturating_mul(WIDER));
-                match self.solve_pending() {
-                    (before, start, true) => (before, start),
-                    (before, start, false) => return self.relax_pending(transition, before, start, avalanche),
-                }
-            }
-            (before, start, false) => return self.relax_pending(transition, before, start, avalanche),
-        };
+            let approach = self.neighbourhood.local.approach;
+            self.gather(transition, Some(approach), self.problem().spots_in_patch.saturating_mul(WIDER));
+            (before, start, solved) = self.solve_pending();
+        }
+        let applied = if solved { Vec::new() } else { self.relax_pending(transition, &start)? };
         let energy = self.settle_pending(&before, start);
-        self.log.charge(energy);
-        self.finish(&before, Vec::new(), energy, avalanche);
+        if applied.is_empty() {
+            self.log.charge(energy);
+        }
+        self.finish(&before, applied, energy, avalanche);
         Ok(())
     }
 
@@ -100,24 +96,20 @@ impl EquilibriumPath<'_> {
     }
 
     /// Relaxes the local problem with the pending displacements applied.
-    fn relax_pending(
-        &mut self,
-        transition: &Transition,
-        before: Before,
-        start: Vec<Pending>,
-        avalanche: &mut Avalanche,
-    ) -> Result<(), Rejection> {
-        let local = &mut self.neighbourhood.local;
-        for (radius, from) in local.radius.iter_mut().zip(&start) {
+    fn relax_pending(&mut self, transition: &Transition, start: &[Pending]) -> Result<Vec<Transition>, Rejection> {
+        for (radius, from) in self.neighbourhood.local.radius.iter_mut().zip(start) {
             *radius = from.radius;
         }
-        let mut applied = local.relax(self.solver.problem, None, &mut self.solver.effort)?;
+        self.relax_or_snap(transition.asperity)
+    }
+
+    /// Relaxes the local problem: without a change of status the transition is a snap of `leader`.
+    pub(super) fn relax_or_snap(&mut self, leader: usize) -> Result<Vec<Transition>, Rejection> {
+        let mut applied = self.neighbourhood.local.relax(self.solver.problem, None, &mut self.solver.effort)?;
         if applied.is_empty() {
-            applied.push(Transition { kind: Kind::Snap, asperity: transition.asperity, by: None });
+            applied.push(Transition { kind: Kind::Snap, asperity: leader, by: None });
         }
-        let energy = self.settle_pending(&before, start);
-        self.finish(&before, applied, energy, avalanche);
-        Ok(())
+        Ok(applied)
     }
 
     /// Marks the pending displacements as applied; the energy that the local problem has lost beyond their work is returned \[J\].
@@ -142,7 +134,7 @@ impl EquilibriumPath<'_> {
         let totals = self.predictor.totals(local.approach);
         self.log.pass(local.approach, totals.load_n);
         let (load, potential) = local.totals(problem);
-        Before { totals, potential, load, members: local.reference_states(problem), reciprocal_load: local.reciprocal_load_rate(problem) }
+        Before { totals, potential, load, members: local.reference_states(), reciprocal_load: local.reciprocal_load_rate(problem) }
     }
 
     /// Updates the predictor after the local problem has changed, and records the transitions with the energy that it has lost \[J\].
@@ -237,11 +229,11 @@ impl EquilibriumPath<'_> {
         let way = near.local.approach - near.reference;
         let reference = |(member, a): (&OutsideField, &f64)| {
             let i = member.asperity;
-            ReferenceState { asperity: i, sphere: problem.asperities[i], radius: *a, more: self.predictor.radius_rate(problem, i) * way }
+            ReferenceState { asperity: i, radius: *a, more: self.predictor.radius_rate(problem, i) * way }
         };
         let members: Vec<ReferenceState> = near.local.members.iter().zip(&near.origin).map(reference).collect();
         let changes = near.local.displacement_changes(problem, &near.shell, &near.centre, &members);
-        let (load, reciprocal_load) = near.local.unexpected_load(&members);
+        let (load, reciprocal_load) = near.local.unexpected_load(problem, &members);
         let before = self.energy.expected_n();
         self.propagate(&changes, load, -reciprocal_load, avalanche);
         // It has grown on the way, slowly at first.

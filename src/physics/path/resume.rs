@@ -80,7 +80,7 @@ impl<'p> EquilibriumPath<'p> {
 
     /// Events of the last increment.
     pub(crate) fn recent_events(&self) -> &[Event] {
-        &self.log.events[self.checkpoint.as_deref().map_or(0, Checkpoint::events)..]
+        &self.log.events[self.checkpoint.as_deref().map_or(0, |checkpoint| checkpoint.events)..]
     }
 
     /// Undoes the last increment.

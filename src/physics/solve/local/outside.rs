@@ -2,13 +2,11 @@
 
 use super::{LocalProblem, OutsideField};
 use crate::physics::contact::problem::Problem;
-use crate::physics::jkr::Asperity;
 
 /// Member before a change.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ReferenceState {
     pub(crate) asperity: usize,
-    pub(crate) sphere: Asperity,
     /// Radius \[m\].
     pub(crate) radius: f64,
     /// Expected change of the radius \[m\].
@@ -17,16 +15,16 @@ pub(crate) struct ReferenceState {
 
 impl ReferenceState {
     /// Expected load \[N\].
-    fn load(&self) -> f64 {
-        let (sphere, was) = (&self.sphere, self.radius);
-        sphere.load(was) + self.more * sphere.load_slope(was)
+    fn load(&self, problem: &Problem) -> f64 {
+        let asperity = &problem.asperities[self.asperity];
+        asperity.load(self.radius) + self.more * asperity.load_slope(self.radius)
     }
 }
 
-/// Member as a source for the outside: present state, state before, and load beyond the expected one \[N\].
+/// Member as a source for the outside: present radius \[m\], state before, and load beyond the expected one \[N\].
 struct Source {
     asperity: usize,
-    now: Option<(Asperity, f64)>,
+    now: Option<f64>,
     before: Option<ReferenceState>,
     load: f64,
 }
@@ -35,30 +33,30 @@ struct Source {
 const ALOOF: f64 = 2.0;
 
 impl Source {
-    fn before(stood: &ReferenceState) -> Self {
-        Self { asperity: stood.asperity, now: None, before: Some(*stood), load: -stood.load() }
+    fn before(problem: &Problem, state: &ReferenceState) -> Self {
+        Self { asperity: state.asperity, now: None, before: Some(*state), load: -state.load(problem) }
     }
 
     fn new(asperity: usize) -> Self {
         Self { asperity, now: None, before: None, load: 0.0 }
     }
 
-    fn become_of(&mut self, sphere: Asperity, radius: f64) {
-        self.now = Some((sphere, radius));
-        self.load += sphere.load(radius);
+    fn set_now(&mut self, problem: &Problem, radius: f64) {
+        self.now = Some(radius);
+        self.load += problem.asperities[self.asperity].load(radius);
     }
 
     /// Displacement at a place beyond the expected one \[m\], without images.
     fn field(&self, problem: &Problem, place: &[f64; 2], compliance: f64) -> f64 {
         let r = problem.neighbours.distance(place, &problem.positions[self.asperity]);
-        let (radius, was) = (self.now.map_or(0.0, |now| now.1), self.before.map_or(0.0, |before| before.radius));
+        let (radius, was) = (self.now.unwrap_or(0.0), self.before.map_or(0.0, |before| before.radius));
         if r > ALOOF * radius.max(was) {
             return compliance * self.load / r;
         }
-        let field = |sphere: &Asperity, a: f64| problem.spot_field(sphere, r, a);
-        let (was, slope) = self.before.map_or((0.0, 0.0), |before| field(&before.sphere, before.radius));
+        let field = |a: f64| problem.spot_field(&problem.asperities[self.asperity], r, a);
+        let (was, slope) = self.before.map_or((0.0, 0.0), |before| field(before.radius));
         let more = self.before.map_or(0.0, |before| before.more);
-        self.now.map_or(0.0, |(sphere, a)| field(&sphere, a).0) - was - more * slope
+        self.now.map_or(0.0, |a| field(a).0) - was - more * slope
     }
 }
 
@@ -69,14 +67,9 @@ fn part(drift: f64) -> f64 {
 
 impl LocalProblem {
     /// Members before a change, as [`Self::displacement_changes`] needs them, without expected changes.
-    pub(crate) fn reference_states(&self, problem: &Problem) -> Vec<ReferenceState> {
-        let stood = |(member, a): (&OutsideField, &f64)| ReferenceState {
-            asperity: member.asperity,
-            sphere: problem.asperities[member.asperity],
-            radius: *a,
-            more: 0.0,
-        };
-        self.members.iter().zip(&self.radius).map(stood).collect()
+    pub(crate) fn reference_states(&self) -> Vec<ReferenceState> {
+        let state = |(member, a): (&OutsideField, &f64)| ReferenceState { asperity: member.asperity, radius: *a, more: 0.0 };
+        self.members.iter().zip(&self.radius).map(state).collect()
     }
 
     /// Changes of the displacements at asperities beyond the expected ones \[m\]: of the loads as points, and next to a contact of its
@@ -88,13 +81,13 @@ impl LocalProblem {
         centre: &[f64; 2],
         before: &[ReferenceState],
     ) -> Vec<f64> {
-        let mut sources: Vec<Source> = before.iter().map(Source::before).collect();
+        let mut sources: Vec<Source> = before.iter().map(|state| Source::before(problem, state)).collect();
         for (member, &a) in self.members.iter().zip(&self.radius) {
-            let at = before.binary_search_by_key(&member.asperity, |stood| stood.asperity).unwrap_or_else(|_| {
+            let at = before.binary_search_by_key(&member.asperity, |state| state.asperity).unwrap_or_else(|_| {
                 sources.push(Source::new(member.asperity));
                 sources.len() - 1
             });
-            sources[at].become_of(problem.asperities[member.asperity], a);
+            sources[at].set_now(problem, a);
         }
         let whole: f64 = sources.iter().map(|source| source.load).sum();
         let compliance = problem.material.compliance();
@@ -112,11 +105,11 @@ impl LocalProblem {
     }
 
     /// Load of the members beyond the expected one, and the same for its effect on the load of the outside \[N\].
-    pub(crate) fn unexpected_load(&self, before: &[ReferenceState]) -> (f64, f64) {
+    pub(crate) fn unexpected_load(&self, problem: &Problem, before: &[ReferenceState]) -> (f64, f64) {
         let (mut load, mut pull) = (0.0, 0.0);
-        for ((member, &a), stood) in self.members.iter().zip(&self.radius).zip(before) {
-            let (sphere, was) = (&stood.sphere, stood.radius);
-            let off = sphere.load(a) - sphere.load(was) - stood.more * sphere.load_slope(was);
+        for ((member, &a), state) in self.members.iter().zip(&self.radius).zip(before) {
+            let (asperity, was) = (&problem.asperities[member.asperity], state.radius);
+            let off = asperity.load(a) - asperity.load(was) - state.more * asperity.load_slope(was);
             load += off;
             pull += part(member.drift) * off;
         }
