@@ -109,9 +109,9 @@ impl Problem {
         if self.rules.coalescence != Coalescence::Merge {
             return pairs;
         }
-        let greatest = state.greatest_radius();
+        let largest = state.largest_radius();
         for &i in &state.contacts {
-            self.neighbours.within(i, state.radius[i] + greatest, |_, j| {
+            self.neighbours.within(i, state.radius[i] + largest, |_, j| {
                 if j > i && self.beyond(state, CoalescenceEvent::Touch(i, j)) >= 0.0 {
                     pairs.insert((i, j));
                 }
@@ -193,7 +193,7 @@ impl Problem {
     /// Refuses a state whose area \[m²\] reaches the nominal area or whose largest spot spans the square.
     pub(crate) fn check_room(&self, state: &State, area: f64) -> Result<(), PhysicsError> {
         let share = area / (self.length_m * self.length_m);
-        if share < 1.0 && state.greatest_radius() < 0.5 * self.length_m {
+        if share < 1.0 && state.largest_radius() < 0.5 * self.length_m {
             return Ok(());
         }
         Err(PhysicsError::FullContact { approach_m: state.approach_m, share })

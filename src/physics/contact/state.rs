@@ -79,7 +79,7 @@ impl State {
     }
 
     /// Largest contact radius \[m\], 0 without contact.
-    pub(crate) fn greatest_radius(&self) -> f64 {
+    pub(crate) fn largest_radius(&self) -> f64 {
         self.contacts.iter().map(|&i| self.radius[i]).fold(0.0, f64::max)
     }
 

@@ -168,8 +168,8 @@ impl Problem {
         }
         let radius = |i: usize| spots.binary_search_by_key(&i, |spot| spot.0).ok().map(|k| spots[k].1);
         let mine = radius(restless)?;
-        let greatest = spots.iter().map(|spot| spot.1).fold(0.0, f64::max);
-        self.neighbours.within(restless, 1.1 * greatest, |r, other| match radius(other) {
+        let largest = spots.iter().map(|spot| spot.1).fold(0.0, f64::max);
+        self.neighbours.within(restless, 1.1 * largest, |r, other| match radius(other) {
             Some(a) if a > mine => offer(restless, other, a, r),
             Some(a) if a < mine => offer(other, restless, mine, r),
             _ => {}

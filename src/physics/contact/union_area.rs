@@ -13,10 +13,10 @@ use std::f64::consts::{PI, TAU};
 pub fn area(problem: &Problem, state: &State) -> f64 {
     let discs: Vec<Disc> = state.contacts.iter().map(|&i| Disc { centre: problem.positions[i], radius: state.radius[i] }).collect();
     let periodic = problem.rules.boundary == Boundary::Periodic;
-    let greatest = discs.iter().map(|d| d.radius).fold(0.0, f64::max);
+    let largest = discs.iter().map(|d| d.radius).fold(0.0, f64::max);
     let overlapping = |k: usize| {
         let mut list = Vec::new();
-        problem.neighbours.within(state.contacts[k], discs[k].radius + greatest, |r, i| {
+        problem.neighbours.within(state.contacts[k], discs[k].radius + largest, |r, i| {
             if let Ok(other) = state.contacts.binary_search(&i)
                 && r < discs[k].radius + discs[other].radius
             {

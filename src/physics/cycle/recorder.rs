@@ -197,11 +197,11 @@ impl Recorder {
 
 /// Number of spots that overlap another one.
 fn overlapping_count(problem: &Problem, state: &State) -> usize {
-    let greatest = state.greatest_radius();
+    let largest = state.largest_radius();
     let touches = |i: usize| {
         let a = state.radius[i];
         let mut found = false;
-        problem.neighbours.within(i, a + greatest, |r, j| found |= state.radius[j] > 0.0 && r < a + state.radius[j]);
+        problem.neighbours.within(i, a + largest, |r, j| found |= state.radius[j] > 0.0 && r < a + state.radius[j]);
         found
     };
     state.contacts.iter().filter(|i| touches(**i)).count()

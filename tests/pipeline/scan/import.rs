@@ -59,13 +59,13 @@ fn imported() -> (tempfile::TempDir, Value) {
     fs::write(folder.path().join("scan.npy"), bytes(&part())).unwrap();
     let output = import(folder.path(), &[&["scan.npy", "--json"], &TOLD[..]].concat());
     assert_eq!(code(&output), 0, "{}", stderr(&output));
-    let told = serde_json::from_str(&stdout(&output)).unwrap();
-    (folder, told)
+    let answer = serde_json::from_str(&stdout(&output)).unwrap();
+    (folder, answer)
 }
 
 #[test]
 fn e2e_a_scan_is_taken_and_told() {
-    let (folder, told) = imported();
+    let (folder, answer) = imported();
     let (header, heights) = read_surface(&folder.path().join("scan.h5")).unwrap();
     // The middle square of 96 by 100 points.
     assert_eq!((heights.dim(), header.periodic), ((96, 96), false));
@@ -84,7 +84,7 @@ fn e2e_a_scan_is_taken_and_told() {
         ("nayak_parameter", header.nayak_parameter),
     ] {
         // The last digit is that of the reader of JSON.
-        assert!((told[name].as_f64().unwrap() / value - 1.0).abs() < 1e-14, "{name}");
+        assert!((answer[name].as_f64().unwrap() / value - 1.0).abs() < 1e-14, "{name}");
     }
     // H, of a part large enough to have a spectrum, its shortest waves 38 to its side. Six such parts gave 0.82 ± 0.08: rings of long waves have few modes.
     fs::write(folder.path().join("large.npy"), bytes(&cut(64, 304))).unwrap();
@@ -92,7 +92,7 @@ fn e2e_a_scan_is_taken_and_told() {
     let large: Value = serde_json::from_str(&stdout(&large)).unwrap();
     let hurst = large["self_affine"]["hurst"].as_f64().unwrap();
     assert!((hurst - 0.8).abs() < 0.2, "{hurst}");
-    assert!(told["spectrum"].as_array().unwrap().len() > 10 && told["summit_count"].as_u64().unwrap() > 5);
+    assert!(answer["spectrum"].as_array().unwrap().len() > 10 && answer["summit_count"].as_u64().unwrap() > 5);
 }
 
 #[test]
