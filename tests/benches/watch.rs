@@ -20,11 +20,13 @@ pub fn once<T>(mut work: impl FnMut() -> T) -> f64 {
     start.elapsed().as_secs_f64()
 }
 
-/// Processor time of one call in this thread \[s\]; where the system does not tell, what the call takes.
+/// Processor time of the program during one call \[s\], in steps of 10 ms; where the system does not tell, the time of the call.
 pub fn cpu<T>(mut work: impl FnMut() -> T) -> f64 {
+    // The 14th and 15th of its fields, behind the name in brackets, are hundredths of a second for programs and for the system.
     let spent = || -> Option<f64> {
-        let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
-        Some(1e-9 * text.split_whitespace().next()?.parse::<f64>().ok()?)
+        let text = std::fs::read_to_string("/proc/self/stat").ok()?;
+        let fields = text.rsplit_once(')')?.1.split_whitespace();
+        fields.skip(11).take(2).map(|field| Some(0.01 * field.parse::<f64>().ok()?)).sum()
     };
     let (start, before) = (Instant::now(), spent());
     black_box(work());
