@@ -121,24 +121,23 @@ impl EquilibriumPath<'_> {
                 (by, problem.neighbours.distance(&problem.positions[i], &problem.positions[by]))
             }
             (Kind::Uncover, Status::Covered { by, release_m }) => (by, release_m),
-            (Kind::Snap, _) => (i, 1.5 * local.radius[local.find(i)?]),
             _ => return None,
         };
         let at = local.find(spot)?;
-        let grows = matches!(kind, Kind::Cover | Kind::Snap);
+        let grows = kind == Kind::Cover;
         let there = if grows { local.radius[at] >= bound } else { local.radius[at] <= bound };
         if there {
             return Some(Located::Point);
         }
         // Most predicted events do not occur: where the local problem reaches the target without a fold, only the bound matters.
         if let Some(radius) = local.probe(problem, target, effort)
-            && (kind == Kind::Snap || if grows { radius[at] < bound } else { radius[at] > bound })
+            && if grows { radius[at] < bound } else { radius[at] > bound }
         {
             return None;
         }
         match local.trace_curve(problem, at, bound, (target, sense), effort) {
             Ok(CurveEnd::Fold) => Some(Located::Fold(at)),
-            Ok(CurveEnd::Bound) if kind != Kind::Snap && (local.approach - target) * sense <= 0.0 => Some(Located::Point),
+            Ok(CurveEnd::Bound) if (local.approach - target) * sense <= 0.0 => Some(Located::Point),
             _ => None,
         }
     }

@@ -9,10 +9,6 @@ use crate::physics::contact::state::{State, Status};
 use crate::physics::contact::transition::{Kind, Transition};
 use crate::physics::solve::trace::{PenetrationTrace, STEEPEST};
 
-/// Rate of a penetration above which a fold is near. The rate is below 1.2 elsewhere, and grows as the inverse root of the distance to the
-/// fold.
-const STEEP: f64 = 2.5;
-
 /// Distance to the end of a branch, over the way that is left, within which it is looked for: near a fold the penetration varies as a
 /// square root, so linear extrapolation overestimates the distance by about two.
 const REACH: f64 = 2.2;
@@ -230,11 +226,9 @@ impl Predictor {
         };
         if speed < 0.0 {
             let way = (trace.value - asperity.jump_off_penetration()) / -speed;
-            if way <= REACH * left || -speed > STEEP {
+            if way <= REACH * left {
                 offer(way.min(left), Kind::JumpOff, j, None);
             }
-            // The fold comes before the position that such a rate predicts.
-            let speed = speed.max(-STEEP);
             for i in self.covered_by(j) {
                 if let Status::Covered { release_m, .. } = self.state.status[i] {
                     let way = (trace.value - asperity.penetration(release_m)) / -speed;
@@ -243,23 +237,16 @@ impl Predictor {
                     }
                 }
             }
-        } else if speed > 0.0 {
-            if speed > STEEP {
-                offer(left, Kind::Snap, j, None);
-            }
-            let speed = speed.min(STEEP);
-            if problem.covers() {
-                let most = trace.value + 1.1 * speed * left;
-                let Some(reach) = asperity.radius_at_penetration(most) else { return };
-                problem.neighbours.within(j, reach / TWINS, |r, i| {
-                    let open = problem.can_be_covered(&self.state, i) && self.state.radius[i] < r;
-                    // Two contacts that grow towards one another's centres have a fold before they reach them.
-                    let reached = reach >= r || self.state.radius[i] > TWINS * r;
-                    if open && r >= a && reached {
-                        offer(((asperity.penetration(r) - trace.value) / speed).min(left), Kind::Cover, i, Some(j));
-                    }
-                });
-            }
+        } else if speed > 0.0 && problem.covers() {
+            let most = trace.value + 1.1 * speed * left;
+            let Some(reach) = asperity.radius_at_penetration(most) else { return };
+            problem.neighbours.within(j, reach / TWINS, |r, i| {
+                let open = problem.can_be_covered(&self.state, i) && self.state.radius[i] < r;
+                // Two contacts that grow towards one another's centres have a fold before they reach them.
+                if open && r >= a && (reach >= r || self.state.radius[i] > TWINS * r) {
+                    offer(((asperity.penetration(r) - trace.value) / speed).min(left), Kind::Cover, i, Some(j));
+                }
+            });
         }
     }
 }
