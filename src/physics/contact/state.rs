@@ -97,16 +97,17 @@ impl State {
         None
     }
 
-    /// True if an asperity is part of a merged spot that has left contact.
-    pub(crate) fn is_orphan(&self, i: usize) -> bool {
-        matches!(self.status[i], Status::Merged { into } if self.status[into] == Status::Free)
+    /// Radius at which a merged contact splits \[m\].
+    pub(crate) fn release_of_merged(&self, problem: &Problem, i: usize) -> Option<f64> {
+        Some(self.merged.get(i.checked_sub(problem.summits())?)?.release_m)
     }
 
-    /// Adds a free asperity.
-    pub(crate) fn extend(&mut self) {
+    /// Adds a merged contact, which is free until it is set.
+    pub(crate) fn extend(&mut self, merged: Merged) {
         self.status.push(Status::Free);
         self.radius.push(0.0);
         self.barred.push(false);
+        self.merged.push(merged);
     }
 
     pub(crate) fn set(&mut self, i: usize, status: Status, radius: f64) {
@@ -152,8 +153,7 @@ impl Problem {
             let spot = PI * a * a;
             totals.load_n += load;
             totals.area_m2 += spot;
-            let energy = asperity.stored_energy(asperity.penetration(a), a) - self.material.work_of_adhesion_j_m2 * spot;
-            potential += energy + 0.5 * load * w;
+            potential += self.self_potential(i, a) + 0.5 * load * w;
         }
         (totals, potential)
     }

@@ -68,6 +68,7 @@ mod equilibrium_path;
 mod event_log;
 mod events;
 mod excursion;
+mod merging;
 mod neighbourhood;
 mod pending;
 mod predictor;
