@@ -57,6 +57,10 @@ impl EquilibriumPath {
             // Contacts meet in equilibrium: where others have yet to respond, they have grown too far.
             let next = next.or_else(|| most_overdue(&due, is_coalescence).filter(|_| response.is_none()));
             let Some(transition) = response.or(next) else { break };
+            if is_coalescence(transition.kind) && !self.neighbourhood.is_whole() {
+                propagated = false;
+                break;
+            }
             applied += 1;
             self.check_event_count(approach, transition.asperity)?;
             if applied > bound {
@@ -158,6 +162,6 @@ fn most_overdue(due: &[Trigger], of: impl Fn(Kind) -> bool) -> Option<Transition
 }
 
 /// True for merging and splitting.
-fn is_coalescence(kind: Kind) -> bool {
+pub(super) fn is_coalescence(kind: Kind) -> bool {
     matches!(kind, Kind::Merge | Kind::Split)
 }

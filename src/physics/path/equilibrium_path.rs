@@ -182,7 +182,7 @@ impl EquilibriumPath {
     fn uncovered_since(&self, checkpoint: &Checkpoint) -> Vec<usize> {
         let events = self.log.events[checkpoint.events..].iter();
         let uncovered = events.filter(|event| event.kind == Kind::Uncover).map(|event| event.asperity);
-        uncovered.filter(|i| matches!(checkpoint.state().status[*i], Status::Covered { .. })).collect()
+        uncovered.filter(|i| matches!(checkpoint.state().status.get(*i), Some(Status::Covered { .. }))).collect()
     }
 
     /// Runs the events before `target` and solves the global problem there; in between too, after events that move all of the contact.

@@ -70,7 +70,9 @@ impl EquilibriumPath {
     /// Events that are predicted before `target` \[m\], and those that an earlier attempt has missed.
     fn expect_events(&self, target: f64) -> Vec<PredictedEvent> {
         let approach = self.state().approach_m;
-        let missed = self.steps.missed().iter().map(|transition| PredictedEvent { approach, transition: *transition });
+        // Merged contacts of an earlier attempt may be gone.
+        let exists = |transition: &&Transition| transition.asperity.max(transition.by.unwrap_or(0)) < self.solver.problem.len();
+        let missed = self.steps.missed().iter().filter(exists).map(|transition| PredictedEvent { approach, transition: *transition });
         let mut queue: Vec<PredictedEvent> = missed.collect();
         for &i in self.state().contacts.iter().chain(&self.predictor.candidates) {
             self.predictor.expect(&self.problem(), i, target, self.frame.sense, &mut queue);

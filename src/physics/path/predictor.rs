@@ -5,6 +5,7 @@
 //! there.
 
 use crate::physics::contact::merged_spot::{Merged, TouchingPairs};
+use crate::physics::contact::merging::ROUNDING;
 use crate::physics::contact::problem::{Problem, Totals};
 use crate::physics::contact::state::{State, Status};
 use crate::physics::contact::transition::{Kind, Transition};
@@ -217,6 +218,17 @@ impl Predictor {
         let is_part = |i: usize| matches!(state.status[i], Status::Merged { .. });
         let overlaps = |i: usize, j: usize| problem.meeting([i, j], [state.radius[i], state.radius[j]]) >= 0.0;
         self.parted.retain(|(i, j)| is_part(*i) || is_part(*j) || overlaps(*i, *j));
+    }
+
+    /// A contact that has become smaller by merging does not split at once: its radius of release is at most its radius, to rounding.
+    pub(crate) fn keep_merged(&mut self, summits: usize) {
+        let State { merged, radius, approach_m, .. } = &mut self.state;
+        for (k, spot) in merged.iter_mut().enumerate().filter(|(_, spot)| spot.approach_m == *approach_m) {
+            let a = radius[summits + k];
+            if a > 0.0 {
+                spot.release_m = spot.release_m.min((1.0 - ROUNDING) * a);
+            }
+        }
     }
 
     /// True if two contacts may merge when they touch.
