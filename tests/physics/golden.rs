@@ -1,6 +1,7 @@
 //! Whole cycles, pinned: a change of the solver that moves a result shows here first.
 //!
-//! With `HYSTERON_DIGESTS=1` and `--nocapture` the test also prints the BLAKE3 digest of every cycle, to compare two builds on one machine byte by byte.
+//! With `HYSTERON_DIGESTS=1` and `--nocapture` the tests print the results, the effort and the BLAKE3 digest of every cycle instead, to compare two builds on one
+//! machine byte by byte.
 
 use crate::support::{DEFAULT, LENGTH, PAPER, RMS, close, loop_of, paper_summits, run};
 use hysteron::model::{Boundary, Coalescence, Interaction, JumpIn, KeptContacts, Material};
@@ -21,8 +22,8 @@ fn setups() -> Vec<(&'static str, Setup, Pinned)> {
     let isolated = Rules { boundary: Boundary::Isolated, ..DEFAULT };
     let jkr = Rules { jump_in: JumpIn::Jkr, ..DEFAULT };
     vec![
-        ("cover, zeta 16", (16, 0, DEFAULT, 0.07, 24), (94, 3.677862353902e-1, 1.183319520590e-3, 1.571030260368e-3)),
-        ("cover, zeta 32", (32, 1, DEFAULT, 0.07, 24), (331, 3.694690189638e-1, 7.631878441501e-4, 1.978508572429e-3)),
+        ("cover, zeta 16", (16, 0, DEFAULT, 0.07, 24), (94, 3.677862353902e-1, 1.183319520590e-3, 1.570939652865e-3)),
+        ("cover, zeta 32", (32, 1, DEFAULT, 0.07, 24), (331, 3.694690189638e-1, 7.631878441501e-4, 1.978435183906e-3)),
         ("cover, local problems of 3", (16, 1, DEFAULT, 0.07, 3), (96, 4.059902235198e-1, 8.521168830823e-4, 1.710849332221e-3)),
         (
             "cover, all contacts in one problem",
@@ -30,11 +31,11 @@ fn setups() -> Vec<(&'static str, Setup, Pinned)> {
             (96, 4.059902235198e-1, 8.499241918691e-4, 1.710097405786e-3),
         ),
         ("cover, weak adhesion", (16, 0, DEFAULT, 1e-3, 24), (82, 1.557304951904e-1, 1.271672677095e-6, 1.085022312793e-6)),
-        ("merge", (16, 0, merge, 0.07, 24), (210, 5.467996697049e-1, 1.200344010658e-3, 1.587960526279e-3)),
+        ("merge", (16, 0, merge, 0.07, 24), (210, 5.467996697049e-1, 1.200344010658e-3, 1.587960526937e-3)),
         ("no interaction", (16, 0, alone, 0.07, 24), (96, 3.485415168642e-1, 1.209450779577e-3, 1.539783209210e-3)),
         ("point loads", (16, 0, point, 0.07, 24), (94, 3.677670707883e-1, 1.198677882806e-3, 1.547585202508e-3)),
         ("isolated", (16, 0, isolated, 0.07, 24), (90, 3.855806283037e-1, 1.031359464757e-3, 1.682534727925e-3)),
-        ("jump-in of JKR", (16, 0, jkr, 0.07, 24), (94, 3.677862353902e-1, 1.183319520590e-3, 1.612698303180e-3)),
+        ("jump-in of JKR", (16, 0, jkr, 0.07, 24), (94, 3.677862353902e-1, 1.183319520590e-3, 1.612607708510e-3)),
     ]
 }
 
@@ -55,6 +56,7 @@ fn reg_whole_cycles() {
             let bytes = postcard::to_stdvec(&(&steps, &cycle.contacts, &cycle.events, &cycle.merged, turning)).unwrap();
             let digest = blake3::hash(&bytes).to_hex();
             eprintln!("{what}: {} {found_area:.12e} {found_pull_off:.12e} {found_loss:.12e} {digest}", cycle.events.len());
+            continue;
         }
         // The order of sums differs between processors in the last digits only; a change of one event moves the last result by 1e-4 and more.
         assert_eq!(cycle.events.len(), events, "{what}: number of events");
@@ -67,12 +69,16 @@ fn reg_whole_cycles() {
 /// Effort of three cycles: iterations, and products of the tangent with a vector.
 #[test]
 fn reg_effort_of_whole_cycles() {
-    for (at, iterations, products) in [(0, 3501, 8051), (1, 12366, 13775), (5, 6467, 10124)] {
+    for (at, iterations, products) in [(0, 2982, 8005), (1, 12260, 13842), (5, 5709, 10090)] {
         let (what, (zeta, realization, rules, adhesion, patch), _) = setups().swap_remove(at);
         let material = Material { work_of_adhesion_j_m2: adhesion, ..PAPER };
         let problem = Problem::new(&paper_summits(zeta, realization), LENGTH, RMS, material, rules).unwrap().with_patches_of(patch);
         let cycle = run(&problem, &[0.0071], 0.04, KeptContacts::Turning);
         let sum = |of: fn(&Effort) -> u64| cycle.steps.iter().map(|step| of(&step.effort)).sum::<u64>() as f64;
+        if std::env::var_os("HYSTERON_DIGESTS").is_some() {
+            eprintln!("effort of {what}: {} {}", sum(|effort| effort.iterations), sum(|effort| effort.products));
+            continue;
+        }
         // Rounding on another processor changes a few iterations; a change of the method changes more.
         close(&format!("{what}: iterations"), sum(|effort| effort.iterations), f64::from(iterations), 0.02);
         close(&format!("{what}: products"), sum(|effort| effort.products), f64::from(products), 0.02);
