@@ -10,7 +10,7 @@ use hysteron::physics::half_space::{DirectSum, Effort, Interaction};
 use hysteron::physics::surface::summits::find_summits;
 use hysteron::physics::surface::synthesis::{realization_seed, synthesize};
 
-const SURFACES: u64 = 3;
+const SURFACES: u64 = 1;
 
 pub fn run() {
     let named: Vec<u32> = std::env::args().filter_map(|word| word.parse().ok()).collect();
@@ -23,7 +23,7 @@ pub fn run() {
         "zeta", "rule", "events", "A", "F_po", "loop", "iterations", "products", "pairs/1e6", "seconds", "direct"
     );
     for zeta in magnifications {
-        for (name, rule) in [("cover", Coalescence::Cover), ("merge", Coalescence::Merge)] {
+        for (name, rule) in [("merge", Coalescence::Merge)] {
             let mut sum = Sum::default();
             for realization in 0..SURFACES {
                 sum.add(zeta, realization, rule);

@@ -168,6 +168,11 @@ impl Neighbours {
         list
     }
 
+    /// True if the asperities within `radius` \[m\] of another are listed.
+    pub(crate) fn lists(&self, radius: f64) -> bool {
+        radius <= self.side
+    }
+
     /// Calls `visit(distance, asperity)` for every other asperity within `radius` of asperity `j`; those of the surface are the first, nearest
     /// first.
     pub(crate) fn within(&self, j: usize, radius: f64, mut visit: impl FnMut(f64, usize)) {

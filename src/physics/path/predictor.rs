@@ -239,11 +239,21 @@ impl Predictor {
 
     /// Pairs of a contact with those near enough to touch it if it has the radius `reach` \[m\].
     pub(crate) fn pairs(&self, problem: &Problem, j: usize, reach: f64, mut visit: impl FnMut(usize)) {
-        problem.neighbours.within(j, reach + 1.2 * self.largest, |_, i| {
-            if self.may_merge(i, j) {
+        let (most, place) = (reach + 1.2 * self.largest, &problem.positions[j]);
+        if problem.neighbours.lists(most) {
+            problem.neighbours.within(j, most, |_, i| {
+                if self.may_merge(i, j) {
+                    visit(i);
+                }
+            });
+            return;
+        }
+        // Contacts are few among the asperities within a long way.
+        for &i in &self.state.contacts {
+            if i != j && problem.neighbours.distance(place, &problem.positions[i]) <= most && self.may_merge(i, j) {
                 visit(i);
             }
-        });
+        }
     }
 
     /// The merging of two contacts: the smaller one, by the larger one.
