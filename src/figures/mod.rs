@@ -1,7 +1,7 @@
 //! Figures: five panels for each sweep, in the style of Figs 3 to 5 of the paper, and panels of a single cycle.
 //!
-//! Loading is green and dashed, unloading red and solid, the estimate of Deng and Kesari blue and dashed. The hues are distinct with any
-//! colour vision, and the strokes without colour. In a sweep, later cases are darker, and each curve has its label at the end.
+//! The colour is the case (palette of Okabe and Ito), the dash is the branch: loading dashed, unloading solid. Analytical models are black. Lower loads of one case
+//! are lighter, and each curve has its label at the end.
 
 mod axis;
 mod both;

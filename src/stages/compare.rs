@@ -52,7 +52,7 @@ pub fn compare(folders: &[PathBuf], out: &Path, force: bool) -> Result<Compariso
     let names = names(&sides, &matched)?;
     let mut drawings: Vec<(String, Vec<Panel>)> = Vec::new();
     for (number, (group, name)) in matched.groups.iter().zip(&names).enumerate() {
-        drawings.push((name.clone(), panels(&sides, group, (name, &format!("compare{number}")))?));
+        drawings.push((name.clone(), panels(&sides, group, &format!("compare{number}"))?));
     }
     for panel in drawings.iter().flat_map(|(_, panels)| panels) {
         if matched.groups.len() > MOST_IN_ALL_FORMATS {
@@ -121,7 +121,7 @@ fn names(sides: &[Side], matched: &Matched) -> Result<Vec<String>, StageError> {
 }
 
 /// The panels of one group, its campaigns over one another.
-fn panels(sides: &[Side], group: &Group, (name, stem): (&str, &str)) -> Result<Vec<Panel>, StageError> {
+fn panels(sides: &[Side], group: &Group, stem: &str) -> Result<Vec<Panel>, StageError> {
     let (mut cases, mut curves, mut realizations) = (Vec::new(), Vec::new(), Vec::new());
     for (number, (side, row)) in sides.iter().zip(&group.rows).enumerate() {
         let id = side.cases.text("case_id")?[*row];
@@ -137,5 +137,5 @@ fn panels(sides: &[Side], group: &Group, (name, stem): (&str, &str)) -> Result<V
     }
     let labels: Vec<String> = sides.iter().map(|side| side.label.clone()).collect();
     let (cases, curves, realizations) = (stats::together(&cases)?, stats::together(&curves)?, stats::together(&realizations)?);
-    Ok(compared(&Tables { cases: &cases, curves: &curves, realizations: &realizations }, &labels, (name, stem))?)
+    Ok(compared(&Tables { cases: &cases, curves: &curves, realizations: &realizations }, &labels, stem)?)
 }
