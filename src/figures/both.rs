@@ -4,6 +4,7 @@ use super::axis::Axis;
 use super::closer::plot;
 use super::curve::{Stroke, XyPlot};
 use super::cycle_loop::SpotTables;
+use super::drawing::Drawing;
 use super::map::{ABOVE, GAP, LEGEND, PULLED, PUSHED, SIDE, circles, legend, scale_bar, sheet};
 use super::markup::described;
 use super::panels::Panel;
@@ -39,7 +40,7 @@ pub struct Both<'a> {
 ///
 /// # Errors
 /// If a table lacks a column.
-pub fn both(of: &Both<'_>) -> Result<String, FigureError> {
+pub fn both(of: &Both<'_>, caption: String) -> Result<Drawing, FigureError> {
     let (width, height) = (2.0 * SIDE + 3.0 * GAP, SIDE + ABOVE + GAP + LEGEND);
     let (spots, _) = circles(&of.spots, of.length_m, of.periodic, of.step)?;
     let mut svg = sheet((width, height), "both", of.heights_m);
@@ -59,7 +60,7 @@ pub fn both(of: &Both<'_>) -> Result<String, FigureError> {
         );
     }
     svg += &legend(height - LEGEND + 14.0, of.heights_m);
-    Ok(markup::render(&svg))
+    Ok(Drawing::new("contact_maps", caption, &markup::render(&svg)))
 }
 
 /// Cells in compression and in tension, a path for each.

@@ -5,6 +5,7 @@ use super::axis::Axis;
 use super::captions::of_cycle;
 use super::curve::{Curve, Stroke, XyPlot};
 use super::cycle_loop::{Closer, Landmark, step_of};
+use super::drawing::Drawing;
 use super::map::map;
 use super::markup::described;
 use super::panels::Panel;
@@ -28,7 +29,7 @@ const BARS: usize = 40;
 ///
 /// # Errors
 /// If a table lacks a column.
-pub fn closer(of: &Closer<'_>, heights_m: ArrayView2<'_, f64>) -> Result<(Vec<Panel>, Option<String>), FigureError> {
+pub fn closer(of: &Closer<'_>, heights_m: ArrayView2<'_, f64>) -> Result<(Vec<Panel>, Option<Drawing>), FigureError> {
     let kept = of.landmarks()?;
     let branches = branches(of, step_of(&kept, Landmark::Turning))?;
     let panel = |name: &str, plot: XyPlot| panel(name, of_cycle(name, of), plot);

@@ -1,6 +1,7 @@
 //! Maps of the contact spots on the surface, at four points of the loop.
 
 use super::cycle_loop::{Closer, Kept, SpotTables};
+use super::drawing::Drawing;
 use super::{FigureError, markup};
 use crate::stats::{labels_with_unit, significant};
 use crate::store::Frame;
@@ -31,7 +32,7 @@ pub(super) const PULLED: &str = "#d55e00";
 ///
 /// # Errors
 /// If a table lacks a column.
-pub(super) fn map(of: &Closer<'_>, landmarks: &[Kept], heights_m: ArrayView2<'_, f64>) -> Result<Option<String>, FigureError> {
+pub(super) fn map(of: &Closer<'_>, landmarks: &[Kept], heights_m: ArrayView2<'_, f64>) -> Result<Option<Drawing>, FigureError> {
     if landmarks.is_empty() {
         return Ok(None);
     }
@@ -61,7 +62,13 @@ pub(super) fn map(of: &Closer<'_>, landmarks: &[Kept], heights_m: ArrayView2<'_,
         );
     }
     svg += &legend(height - LEGEND + 14.0, heights_m);
-    Ok(Some(markup::render(&svg)))
+    let caption = format!(
+        "Contact spots at {} of the loop, for {}. Circles have the contact radius; where they overlap, A counts the area once for each. Heights from their mean. Table \
+         contacts: contact_radius_m, load_n, state.",
+        counted(landmarks.len(), "point"),
+        of.parameters
+    );
+    Ok(Some(Drawing::new("closer_map", caption, &markup::render(&svg))))
 }
 
 /// Beginning of an SVG of maps: the heights and the edge of a map are its definitions `<prefix>-heights` and `<prefix>-edge`.

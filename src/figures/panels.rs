@@ -7,7 +7,7 @@ use super::markup::described;
 use super::paths::paths;
 use super::plot::{plot_xy, width_beside};
 use super::results::{Measured, Predicted, results};
-use super::sweep::{Sweep, Tables};
+use super::sweep::{Member, Sweep, Tables};
 use crate::store::Frame;
 
 const LOSS: &str = "Θ/(E^{*}A_{0}h_{rms})";
@@ -64,7 +64,13 @@ fn drawn(tables: &Tables<'_>, found: &Sweep, stem: &str) -> Result<Vec<Panel>, F
     let plots = plots(tables, found)?;
     // Panels that stand side by side have one size.
     let margin = plots.iter().map(|(_, plot)| width_beside(plot)).fold(0.0, f64::max);
-    let cases: Vec<(String, String)> = found.members.iter().map(|member| (member.label.clone(), member.colour.clone())).collect();
+    // Where only the load varies, labels are numbers.
+    let named = |member: &Member| match (member.label.as_str(), found.differing.is_empty()) {
+        ("", _) => "simulation".to_owned(),
+        (load, true) => format!("F_{{max}}/(E*A_{{0}}) = {load}"),
+        (label, false) => label.to_owned(),
+    };
+    let cases: Vec<(String, String)> = found.members.iter().map(|member| (named(member), member.colour.clone())).collect();
     let panel = |(letter, plot): (char, XyPlot)| {
         let stem = format!("{stem}_{letter}");
         let plot = XyPlot { letter, stem: stem.clone(), margin, ..plot };

@@ -1,6 +1,6 @@
 //! Page of a comparison of finished runs.
 
-use super::layout::{document, grid, heading, prose, wide};
+use super::layout::{document, grid, heading, legend, prose, wide};
 use super::numbers::{Shown, shown};
 use crate::figures::Panel;
 use crate::stats::{Matched, Side, StatsError};
@@ -37,11 +37,11 @@ pub fn comparison_page(of: &Compared<'_>) -> Result<String, StatsError> {
     let body = html! {
         h1 { (title) } "\n"
         p { (note(of, &labels)) } "\n"
-        (wide(&head, &rows(of)?))
+        (wide("comparison", &head, &rows(of)?))
         p { (prose("Differences larger than their half-width are bold. Data: `comparison.parquet`.")) } "\n"
         @for (number, (name, panels)) in of.drawings.iter().enumerate() {
             (heading(name))
-            (grid(number + 1, panels))
+            section { (legend(panels.first().map_or(&[], |panel| &panel.cases))) (grid(number + 1, panels)) }
         }
     };
     Ok(document(&title, None, &body))

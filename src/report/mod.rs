@@ -5,6 +5,7 @@
 mod cases;
 mod comparison;
 mod data;
+mod header;
 mod layout;
 mod methods;
 mod numbers;
@@ -15,17 +16,17 @@ mod theories;
 mod validity;
 
 pub use comparison::{Compared, comparison_page};
-pub use methods::{ContactMaps, MethodFigures};
+pub use methods::MethodFigures;
 pub use single_cycle::SingleCycle;
 
-use crate::figures::Panel;
-use crate::stats::{StatsError, summary};
+use crate::figures::{Drawing, Panel};
+use crate::stats::StatsError;
 use crate::store::Frame;
 use crate::store::hdf5::SurfaceHeader;
 use crate::text::counted;
 use cases::Cases;
-use layout::{document, grid, heading, prose};
-use maud::{Markup, html};
+use layout::{Numbers, document, grid, heading, legend, prose};
+use maud::{Markup, PreEscaped, html};
 
 /// Content of the report of a run.
 #[derive(Debug, Clone, Copy)]
@@ -36,6 +37,8 @@ pub struct Report<'a> {
     pub key: &'a str,
     /// Numbers of cases by the asperity model and by boundary elements.
     pub case_counts: [usize; 2],
+    /// Seed of the surfaces.
+    pub seed: u64,
     /// Number of realizations in words.
     pub realizations_text: &'a str,
     /// Table `cases`.
@@ -44,6 +47,8 @@ pub struct Report<'a> {
     pub realizations: &'a Frame,
     /// Table `methods`.
     pub methods: &'a Frame,
+    /// Relative differences from the reference case.
+    pub sensitivity: Option<&'a Drawing>,
     /// Figures of both methods.
     pub method_figures: &'a MethodFigures,
     /// Files of the measured surfaces.
@@ -64,26 +69,45 @@ pub struct Report<'a> {
 /// If a table lacks a column.
 pub fn page(report: &Report<'_>) -> Result<String, StatsError> {
     let cases = Cases::of(report.cases, report.realizations)?;
+    let numbers = Numbers::default();
     let body = html! {
-        h1 { (report.name) } "\n"
-        p { (introduction(report)) } "\n"
-        pre { (summary(report.cases)?) } "\n"
         (results::results(&cases)?)
-        (methods::side_by_side(&cases, report.methods, report.method_figures)?)
+        (results::changes(&cases)?)
+        @if let Some(chart) = report.sensitivity { (heading("Sensitivity")) (layout::figure(numbers.next(), chart)) }
+        (methods::side_by_side(&cases, report.methods, report.method_figures, &numbers)?)
         (scans::scans(report.scans))
-        @for (number, sweep) in report.sweeps.iter().enumerate() {
-            (heading(&if sweep.is_empty() { "Figures".to_owned() } else { format!("Sweep {sweep}") }))
-            (grid(number + 1, report.drawings.iter().filter(|(of, _)| of == sweep).map(|(_, panel)| panel)))
-        }
-        @if let Some(cycle) = report.cycle { (single_cycle::section(report.sweeps.len() + 1, cycle)) }
+        @for sweep in report.sweeps { (figures(report, sweep, numbers.next())) }
+        @if let Some(cycle) = report.cycle { (single_cycle::section(&numbers, cycle)) }
         (theories::theories(&cases)?)
         (validity::budget(&cases)?)
         (validity::validity(&cases)?)
+        (data::methods(report)?)
         (data::usage())
         (heading("Spec with all defaults"))
-        pre { (report.spec) } "\n"
+        details { summary { "TOML" } pre { (report.spec) } } "\n"
     };
-    Ok(document(&format!("{}: adhesive hysteresis", report.name), Some(report.key), &body))
+    let body = body.into_string();
+    let page = html! {
+        header {
+            h1 { (report.name) } "\n"
+            p { (introduction(report)) } "\n"
+            (header::banner(report.cases)?)
+            (header::facts(report.cases, report.seed, report.realizations_text)?)
+            (header::contents(&body))
+        }
+        "\n"
+        (PreEscaped(&body))
+    };
+    Ok(document(&format!("{}: adhesive hysteresis", report.name), Some(report.key), &page))
+}
+
+/// The figures of a sweep with their legend.
+fn figures(report: &Report<'_>, sweep: &str, number: usize) -> Markup {
+    let panels: Vec<&Panel> = report.drawings.iter().filter(|(of, _)| of == sweep).map(|(_, panel)| panel).collect();
+    html! {
+        (heading(&if sweep.is_empty() { "Figures".to_owned() } else { format!("Sweep {sweep}") }))
+        section { (legend(panels.first().map_or(&[], |panel| &panel.cases))) (grid(number, panels)) } "\n"
+    }
 }
 
 const SYMBOLS: &str = "E*: reduced modulus; A_{0}: nominal area; h_{rms}: root-mean-square height; Δγ: work of adhesion; Δ: mean penetration; \

@@ -45,7 +45,7 @@ pub(super) fn budget(cases: &Cases<'_>) -> Result<Markup, StatsError> {
         @for kind in &kinds { th { (kind_name(kind)) } }
     };
     let rows = cases.rows().iter().map(|listed| budget_row(cases, listed, &kinds)).collect::<Result<Vec<_>, _>>()?;
-    Ok(html! { (heading("Energy budget")) p { (prose(BUDGET_NOTE)) } "\n" (wide(&head, &rows)) })
+    Ok(html! { (heading("Energy budget")) p { (prose(BUDGET_NOTE)) } "\n" (wide("energy", &head, &rows)) })
 }
 
 fn budget_row(cases: &Cases<'_>, listed: &Listed, kinds: &[&str]) -> Result<Markup, StatsError> {
@@ -101,9 +101,9 @@ pub(super) fn validity(cases: &Cases<'_>) -> Result<Markup, StatsError> {
     };
     let rows = cases.rows().iter().map(row).collect::<Result<Vec<_>, _>>()?;
     Ok(html! {
-        h2 id="validity" { "Model validity" } "\n"
+        (heading("Model validity"))
         p { (prose(VALIDITY_NOTE)) } "\n"
-        (wide(&head, &rows))
+        (wide("validity", &head, &rows))
         (warning_table(cases)?)
     })
 }

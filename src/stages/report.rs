@@ -7,7 +7,7 @@ use super::runner::{Context, Single, run_single};
 use super::single_cycle::look;
 use super::{StageError, Tally};
 use crate::campaign::{Campaign, REPORT_PAGE, STATISTICS, Stage, Standing, Unit};
-use crate::figures::{Panel, Tables, method_ratios, panels, pdf, png, table};
+use crate::figures::{Drawing, Panel, Tables, method_ratios, panels, pdf, png, sensitivity, table};
 use crate::report::{self, MethodFigures, Report, SingleCycle};
 use crate::schema;
 use crate::store::commit::Written;
@@ -41,6 +41,7 @@ struct Drawings {
     panels: Vec<(String, Panel)>,
     cycle: Option<SingleCycle>,
     methods: MethodFigures,
+    sensitivity: Option<Drawing>,
 }
 
 impl Drawings {
@@ -55,16 +56,17 @@ impl Drawings {
             panels: drawn,
             cycle: look(campaign, standings, cases)?,
             methods: MethodFigures { ratios: method_ratios(methods)?, maps: contact_maps(campaign, standings, methods)? },
+            sensitivity: sensitivity(cases, realizations)?,
         })
     }
 
     /// Every figure: stem of its file, and drawing.
     fn figures(&self) -> impl Iterator<Item = (&str, &str)> {
         let cycle = self.cycle.iter().flat_map(|cycle| &cycle.panels);
-        let map = self.cycle.iter().filter_map(|cycle| cycle.map.as_deref()).map(|map| ("closer_map", map));
-        let maps = self.methods.maps.iter().map(|maps| ("contact_maps", maps.svg.as_str()));
+        let map = self.cycle.iter().filter_map(|cycle| cycle.map.as_ref());
+        let others = map.chain(&self.methods.maps).chain(&self.sensitivity).map(|drawing| (drawing.stem, drawing.svg.as_str()));
         let panels = self.panels.iter().map(|(_, panel)| panel).chain(cycle);
-        panels.map(drawing).chain(map).chain(maps).chain(self.methods.ratios.as_ref().map(drawing))
+        panels.map(drawing).chain(others).chain(self.methods.ratios.as_ref().map(drawing))
     }
 
     /// All panels with the names of their sweeps; those of the single cycle have none.
@@ -116,10 +118,12 @@ fn page(campaign: &Campaign, key: &str, statistics: &Statistics, drawings: &Draw
         name: &campaign.spec.name,
         key,
         case_counts: [campaign.cases.len() - elements, elements],
+        seed: campaign.spec.seed,
         realizations_text: &campaign.realizations_in_words(),
         cases: &statistics.cases,
         realizations: &statistics.realizations,
         methods: &statistics.methods,
+        sensitivity: drawings.sensitivity.as_ref(),
         method_figures: &drawings.methods,
         scans: &scans(campaign)?,
         sweeps: &sweeps(campaign),
