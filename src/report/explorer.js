@@ -6,7 +6,9 @@
   const { cycles, kinds, letters } = JSON.parse(source.textContent);
   const SIDE = 400;
   const COLOURS = { push: "#0072b2", pull: "#d55e00", unknown: "#777777", in: "#009e73", out: "#cc79a7", other: "#e69f00" };
-  const state = { cycle: 0, loop: 0, k: 0, avalanche: -1, least: 2, layer: "pressure", absorbed: true, timer: 0 };
+  const state = { cycle: 0, loop: 0, k: 0, avalanche: -1, least: 2, layer: "pressure", absorbed: true, timer: 0, hidden: new Set() };
+
+  const NAMES = { jump_in: "jump into contact", jump_off: "jump out of contact", cover: "absorption", uncover: "release", snap: "snap-through", merge: "merging", split: "splitting" };
 
   // Elements.
   const html = (name, attributes = {}, ...children) => {
@@ -193,7 +195,15 @@
     state.timer = 0;
     play.textContent = "Play";
   };
-  const swatch = (colour, text) => html("li", {}, html("i", { style: "background:" + colour }), text);
+  const swatch = (colour, text) => {
+    const toggle = html("button", { type: "button", "aria-pressed": "true" }, html("i", { style: "background:" + colour }), text);
+    toggle.addEventListener("click", () => {
+      state.hidden.has(colour) ? state.hidden.delete(colour) : state.hidden.add(colour);
+      toggle.setAttribute("aria-pressed", String(!state.hidden.has(colour)));
+      draw();
+    });
+    return html("li", {}, toggle);
+  };
   const legend = html("ul", { class: "legend" }, swatch(COLOURS.push, "compressive"), swatch(COLOURS.pull, "tensile"), swatch(COLOURS.unknown, "load not stored"),
     swatch(COLOURS.in, "jump into contact, release"), swatch(COLOURS.out, "jump out of contact"), swatch(COLOURS.other, "absorption, merging, splitting, snap-through"));
   host.append(
@@ -245,13 +255,20 @@
       chart.append(svg("path", { d: path(of, 0, of.up), fill: "none", stroke: colour, "stroke-width": 2, "stroke-dasharray": "7 4" }));
       chart.append(svg("path", { d: path(of, of.up - 1, of.f.length), fill: "none", stroke: colour, "stroke-width": 2 }));
     }
+    chart.append(svg("text", { id: "explorer-tip", x: frame.left + 8, y: frame.top + 18, "font-size": 13 }));
     chart.append(svg("circle", { id: "explorer-dot", r: 6, fill: COLOURS.pull, stroke: "white" }));
   };
-  chart.addEventListener("click", (event) => {
+  const nearest = (event) => {
     const place = chart.getBoundingClientRect();
     const [x, y] = [((event.clientX - place.left) * 420) / place.width, ((event.clientY - place.top) * 400) / place.height];
     const far = (k) => Math.hypot(axes.x(loop().d[k]) - x, axes.y(loop().f[k]) - y);
-    move(loop().f.reduce((best, _, k) => (far(k) < far(best) ? k : best), 0));
+    return loop().f.reduce((best, _, k) => (far(k) < far(best) ? k : best), 0);
+  };
+  chart.addEventListener("click", (event) => move(nearest(event)));
+  chart.addEventListener("pointermove", (event) => {
+    const k = nearest(event);
+    const tip = document.getElementById("explorer-tip");
+    tip.textContent = `step ${loop().s[k]}: Δ/h_rms = ${number(loop().d[k])}, F/(E*A₀) = ${number(loop().f[k])}`;
   });
 
   // Maps.
@@ -283,8 +300,10 @@
       count += 1;
       sizes.set(spot, r);
       const [x, y] = at(spot);
+      const fill = sign > 0 ? COLOURS.push : sign < 0 ? COLOURS.pull : COLOURS.unknown;
+      if (state.hidden.has(fill)) continue;
       images(x, y, r * SIDE).forEach(([u, v], copy) => {
-        const circle = svg("circle", { cx: u.toFixed(2), cy: v.toFixed(2), r: (r * SIDE).toFixed(2), fill: sign > 0 ? COLOURS.push : sign < 0 ? COLOURS.pull : COLOURS.unknown });
+        const circle = svg("circle", { cx: u.toFixed(2), cy: v.toFixed(2), r: (r * SIDE).toFixed(2), fill });
         if (!copy) circle.setAttribute("data-spot", of.ids[spot]);
         circle.append(svg("title", {}, `asperity ${of.ids[spot]}: contact radius ${length(r * of.length_m)}, ${sign > 0 ? "compressive" : sign < 0 ? "tensile" : "load not stored"}`));
         spots.append(circle);
@@ -298,7 +317,7 @@
       if (spot < 0) continue;
       const [x, y] = at(spot);
       const colour = isIn(kinds[kind]) ? COLOURS.in : kinds[kind] === "jump_off" ? COLOURS.out : COLOURS.other;
-      lit.append(svg("circle", { cx: x.toFixed(2), cy: y.toFixed(2), r: ((sizes.get(spot) || 0.006) * SIDE + 4).toFixed(2), stroke: colour, "data-event": of.ids[spot] }));
+      if (!state.hidden.has(colour)) lit.append(svg("circle", { cx: x.toFixed(2), cy: y.toFixed(2), r: ((sizes.get(spot) || 0.006) * SIDE + 4).toFixed(2), stroke: colour, "data-event": of.ids[spot] }));
     }
     map.append(lit, bar(of.length_m));
     const exact = loop().frames[state.k];
@@ -327,7 +346,7 @@
     const own = current();
     const counts = new Map();
     own.forEach((event) => counts.set(kinds[event[1]], (counts.get(kinds[event[1]]) || 0) + 1));
-    const said = Array.from(counts, ([kind, count]) => `${count} × ${kind.replace("_", " ")}`).join(", ");
+    const said = Array.from(counts, ([kind, count]) => `${count} × ${NAMES[kind] || kind}`).join(", ");
     const energy = own.reduce((sum, event) => sum + event[4], 0);
     const place = state.avalanche < 0 ? "at this step" : `avalanche ${state.avalanche}`;
     readout.textContent = `Step ${of.s[state.k]}, ${branch}: F/(E*A₀) = ${number(of.f[state.k])}, Δ/h_rms = ${number(of.d[state.k])}, A/A₀ = ${number(of.a[state.k])}, ${of.n[state.k]} contacts. ` +

@@ -59,6 +59,8 @@ pub struct Report<'a> {
     pub drawings: &'a [(String, Panel)],
     /// A single cycle.
     pub cycle: Option<&'a SingleCycle>,
+    /// Data of the explorer as JSON.
+    pub explorer: Option<&'a str>,
     /// Spec with all defaults.
     pub spec: &'a str,
 }
@@ -78,6 +80,7 @@ pub fn page(report: &Report<'_>) -> Result<String, StatsError> {
         (scans::scans(report.scans))
         @for sweep in report.sweeps { (figures(report, sweep, numbers.next())) }
         @if let Some(cycle) = report.cycle { (single_cycle::section(&numbers, cycle)) }
+        @if let Some(data) = report.explorer { (explorer(data)) }
         (theories::theories(&cases)?)
         (validity::budget(&cases)?)
         (validity::validity(&cases)?)
@@ -99,6 +102,23 @@ pub fn page(report: &Report<'_>) -> Result<String, StatsError> {
         (PreEscaped(&body))
     };
     Ok(document(&format!("{}: adhesive hysteresis", report.name), Some(report.key), &page))
+}
+
+const EXPLORER_NOTE: &str = "One cycle of each case. The slider moves along the loop. Rings mark the events of a step or of an avalanche. Contacts between stored \
+    steps follow from the events; `contacts = \"all\"` in the spec stores every step.";
+
+/// The explorer of a loop, which needs a browser with scripts.
+fn explorer(data: &str) -> Markup {
+    html! {
+        section.screen {
+            (heading("Loop explorer"))
+            p { (prose(EXPLORER_NOTE)) } "\n"
+            div #explorer { noscript { p { "This part needs a browser with scripts." } } } "\n"
+            script #explorer-data type="application/json" { (PreEscaped(data)) } "\n"
+            script { (PreEscaped(include_str!("explorer.js"))) } "\n"
+        }
+        "\n"
+    }
 }
 
 /// The figures of a sweep with their legend.

@@ -10,6 +10,8 @@ mod cycle_input;
 mod datapackage;
 mod done;
 mod error;
+mod explorer;
+mod explorer_maps;
 mod extract;
 mod failure;
 mod foreseen;

@@ -3,6 +3,7 @@
 use super::contact_maps::contact_maps;
 use super::done::Clock;
 use super::error::incomplete;
+use super::explorer::explorer;
 use super::runner::{Context, Single, run_single};
 use super::single_cycle::look;
 use super::{StageError, Tally};
@@ -105,14 +106,19 @@ fn write(campaign: &Campaign, standings: &[Standing], key: &str) -> Result<Vec<W
     for (stem, svg) in drawings.figures() {
         files.extend(write_picture(&campaign.dir, stem, svg)?);
     }
-    let page = page(campaign, key, &statistics, &drawings)?;
+    let page = page((campaign, standings), key, &statistics, &drawings)?;
     let panels = table(&drawings.all_panels())?;
     files.push(parquet::write_table(&campaign.statistics_path("panels"), &panels, &[("key", key.to_owned())])?);
     files.push(commit::commit_bytes("write the report", &campaign.dir.join("report.html"), page.as_bytes())?);
     Ok(files)
 }
 
-fn page(campaign: &Campaign, key: &str, statistics: &Statistics, drawings: &Drawings) -> Result<String, StageError> {
+fn page(
+    (campaign, standings): (&Campaign, &[Standing]),
+    key: &str,
+    statistics: &Statistics,
+    drawings: &Drawings,
+) -> Result<String, StageError> {
     let elements = campaign.cases.iter().filter(|unit| unit.case.params.by_elements()).count();
     Ok(report::page(&Report {
         name: &campaign.spec.name,
@@ -129,6 +135,7 @@ fn page(campaign: &Campaign, key: &str, statistics: &Statistics, drawings: &Draw
         sweeps: &sweeps(campaign),
         drawings: &drawings.panels,
         cycle: drawings.cycle.as_ref(),
+        explorer: explorer(campaign, standings, &statistics.cases, &statistics.methods)?.as_deref(),
         spec: &campaign.spec.to_toml(),
     })?)
 }
