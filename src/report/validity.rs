@@ -134,16 +134,30 @@ fn warning_table(cases: &Cases<'_>) -> Result<Markup, StatsError> {
     })
 }
 
+/// Cases that a warning lists; of more, it states the number.
+const MOST_PLACES: usize = 6;
+
 /// The rows of a warning.
 fn places(cases: &Cases<'_>, rows: &[usize]) -> Markup {
     if rows.len() == cases.rows().len() {
         return html! { "all" };
     }
-    let listed = cases.rows().iter().filter(|listed| rows.contains(&listed.row));
+    // The loads of one label together.
+    let mut groups: Vec<(&str, Vec<&str>)> = Vec::new();
+    for listed in cases.rows().iter().filter(|listed| rows.contains(&listed.row)) {
+        match groups.iter_mut().find(|(label, _)| *label == listed.label) {
+            Some((_, loads)) => loads.push(cases.load(listed.row)),
+            None => groups.push((&listed.label, vec![cases.load(listed.row)])),
+        }
+    }
+    let list = html! {
+        @for (place, (label, loads)) in groups.iter().enumerate() { @if place > 0 { br; } (label) " at " (loads.join(", ")) }
+    };
     html! {
-        @for (place, listed) in listed.enumerate() {
-            @if place > 0 { br; }
-            (listed.label) " at " (cases.load(listed.row))
+        @if groups.len() > MOST_PLACES {
+            details { summary { (rows.len()) " of " (cases.rows().len()) " rows" } (list) }
+        } @else {
+            (list)
         }
     }
 }
