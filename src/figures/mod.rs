@@ -30,7 +30,7 @@ pub use closer::closer;
 pub use curve::{Curve, KeyEntry, Note, Stroke, XyPlot};
 pub use cycle_loop::{Closer, SpotTables};
 pub use drawing::Drawing;
-pub use formats::{pdf, png};
+pub use formats::{pdf, png, with_font};
 pub use markup::described;
 pub use panels::{Panel, compared, panels};
 pub use plot::plot_xy;

@@ -46,15 +46,31 @@ pub(super) fn anchor(title: &str) -> String {
     parts.map(str::to_lowercase).collect::<Vec<_>>().join("-")
 }
 
-/// Numbers of the figures, in their order.
-#[derive(Debug, Default)]
-pub(super) struct Numbers(Cell<usize>);
+/// Numbers of the figures, in their order, and the formats of their files.
+#[derive(Debug)]
+pub(super) struct Numbers<'a> {
+    last: Cell<usize>,
+    formats: &'a [&'static str],
+}
 
-impl Numbers {
-    /// The next number.
-    pub(super) fn next(&self) -> usize {
-        self.0.set(self.0.get() + 1);
-        self.0.get()
+impl<'a> Numbers<'a> {
+    pub(super) fn of(formats: &'a [&'static str]) -> Self {
+        Self { last: Cell::new(0), formats }
+    }
+
+    fn next(&self) -> usize {
+        self.last.set(self.last.get() + 1);
+        self.last.get()
+    }
+
+    /// Links to the files of a figure.
+    fn links(&self, stem: &str) -> Markup {
+        html! {
+            @for (place, format) in self.formats.iter().enumerate() {
+                @if place > 0 { " · " }
+                a href={ "figures/" (stem) "." (format) } { (format.to_uppercase()) }
+            }
+        }
     }
 }
 
@@ -94,18 +110,9 @@ pub(super) fn plain(text: &str) -> Markup {
     prose(&symbols.into_iter().fold(text.to_owned(), |text, (plain, marked)| text.replace(plain, marked)))
 }
 
-/// Links to the files of a figure.
-fn links(stem: &str) -> Markup {
-    html! {
-        @for (place, format) in ["SVG", "PNG", "PDF"].into_iter().enumerate() {
-            @if place > 0 { " · " }
-            a href={ "figures/" (stem) "." (format.to_lowercase()) } { (format) }
-        }
-    }
-}
-
 /// Panels in a grid, each with number, caption and links to its files.
-pub(super) fn grid<'a>(number: usize, panels: impl IntoIterator<Item = &'a Panel>) -> Markup {
+pub(super) fn grid<'a>(numbers: &Numbers<'_>, panels: impl IntoIterator<Item = &'a Panel>) -> Markup {
+    let number = numbers.next();
     let label = |name: &str| if name.chars().count() > 1 { format!(", {name}") } else { name.to_owned() };
     html! {
         div.panels {
@@ -113,7 +120,7 @@ pub(super) fn grid<'a>(number: usize, panels: impl IntoIterator<Item = &'a Panel
             @for Panel { stem, name, caption, svg, .. } in panels {
                 figure {
                     (PreEscaped(svg))
-                    figcaption { b { "Fig. " (number) (label(name)) "." } " " (plain(caption)) " " (links(stem)) }
+                    figcaption { b { "Fig. " (number) (label(name)) "." } " " (plain(caption)) " " (numbers.links(stem)) }
                 }
                 "\n"
             }
@@ -123,9 +130,9 @@ pub(super) fn grid<'a>(number: usize, panels: impl IntoIterator<Item = &'a Panel
 }
 
 /// A single wide figure with number, caption and links to its files.
-pub(super) fn figure(number: usize, drawing: &Drawing) -> Markup {
+pub(super) fn figure(numbers: &Numbers<'_>, drawing: &Drawing) -> Markup {
     html! {
-        figure.map { (PreEscaped(&drawing.svg)) figcaption { b { "Fig. " (number) "." } " " (plain(&drawing.caption)) " " (links(drawing.stem)) } } "\n"
+        figure.map { (PreEscaped(&drawing.svg)) figcaption { b { "Fig. " (numbers.next()) "." } " " (plain(&drawing.caption)) " " (numbers.links(drawing.stem)) } } "\n"
     }
 }
 

@@ -26,7 +26,12 @@ const NOTE: &str = "Means over the surfaces that both methods have finished, and
     confidence intervals.";
 
 /// A table of the means of both methods and their ratios; empty without cases of the same surfaces by both methods.
-pub(super) fn side_by_side(cases: &Cases<'_>, methods: &Frame, figures: &MethodFigures, numbers: &Numbers) -> Result<Markup, StatsError> {
+pub(super) fn side_by_side(
+    cases: &Cases<'_>,
+    methods: &Frame,
+    figures: &MethodFigures,
+    numbers: &Numbers<'_>,
+) -> Result<Markup, StatsError> {
     let pairs = method_pairs(methods)?;
     if pairs.is_empty() {
         return Ok(Markup::default());
@@ -43,8 +48,8 @@ pub(super) fn side_by_side(cases: &Cases<'_>, methods: &Frame, figures: &MethodF
         (heading("Asperity model and boundary elements"))
         p { (prose(NOTE)) } "\n"
         (wide("methods", &head(&scales), &rows))
-        @if let Some(ratios) = &figures.ratios { (grid(numbers.next(), [ratios])) }
-        @if let Some(maps) = &figures.maps { (figure(numbers.next(), maps)) }
+        @if let Some(ratios) = &figures.ratios { (grid(numbers, [ratios])) }
+        @if let Some(maps) = &figures.maps { (figure(numbers, maps)) }
     })
 }
 

@@ -47,6 +47,8 @@ pub struct Report<'a> {
     pub realizations: &'a Frame,
     /// Table `methods`.
     pub methods: &'a Frame,
+    /// Formats of the files of the figures.
+    pub formats: &'a [&'static str],
     /// Relative differences from the reference case.
     pub sensitivity: Option<&'a Drawing>,
     /// Figures of both methods.
@@ -71,14 +73,14 @@ pub struct Report<'a> {
 /// If a table lacks a column.
 pub fn page(report: &Report<'_>) -> Result<String, StatsError> {
     let cases = Cases::of(report.cases, report.realizations)?;
-    let numbers = Numbers::default();
+    let numbers = Numbers::of(report.formats);
     let body = html! {
         (results::results(&cases)?)
         (results::changes(&cases)?)
-        @if let Some(chart) = report.sensitivity { (heading("Sensitivity")) (layout::figure(numbers.next(), chart)) }
+        @if let Some(chart) = report.sensitivity { (heading("Sensitivity")) (layout::figure(&numbers, chart)) }
         (methods::side_by_side(&cases, report.methods, report.method_figures, &numbers)?)
         (scans::scans(report.scans))
-        @for sweep in report.sweeps { (figures(report, sweep, numbers.next())) }
+        @for sweep in report.sweeps { (figures(report, sweep, &numbers)) }
         @if let Some(cycle) = report.cycle { (single_cycle::section(&numbers, cycle)) }
         @if let Some(data) = report.explorer { (explorer(data)) }
         (theories::theories(&cases)?)
@@ -122,11 +124,11 @@ fn explorer(data: &str) -> Markup {
 }
 
 /// The figures of a sweep with their legend.
-fn figures(report: &Report<'_>, sweep: &str, number: usize) -> Markup {
+fn figures(report: &Report<'_>, sweep: &str, numbers: &Numbers<'_>) -> Markup {
     let panels: Vec<&Panel> = report.drawings.iter().filter(|(of, _)| of == sweep).map(|(_, panel)| panel).collect();
     html! {
         (heading(&if sweep.is_empty() { "Figures".to_owned() } else { format!("Sweep {sweep}") }))
-        section { (legend(panels.first().map_or(&[], |panel| &panel.cases))) (grid(number, panels)) } "\n"
+        section { (legend(panels.first().map_or(&[], |panel| &panel.cases))) (grid(numbers, panels)) } "\n"
     }
 }
 

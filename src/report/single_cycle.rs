@@ -20,7 +20,7 @@ pub struct SingleCycle {
 }
 
 /// The section of the report.
-pub(super) fn section(numbers: &Numbers, cycle: &SingleCycle) -> Markup {
+pub(super) fn section(numbers: &Numbers<'_>, cycle: &SingleCycle) -> Markup {
     html! {
         (heading("Single cycle"))
         p {
@@ -28,7 +28,7 @@ pub(super) fn section(numbers: &Numbers, cycle: &SingleCycle) -> Markup {
             (prose(". The table `events` of the cycle holds all events, the table `contacts` the contact spots."))
         }
         "\n"
-        (grid(numbers.next(), &cycle.panels))
-        @if let Some(map) = &cycle.map { (figure(numbers.next(), map)) }
+        (grid(numbers, &cycle.panels))
+        @if let Some(map) = &cycle.map { (figure(numbers, map)) }
     }
 }

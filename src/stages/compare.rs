@@ -5,6 +5,7 @@ use super::report::write_picture;
 use crate::figures::{Panel, Tables, compared};
 use crate::report::{Compared, comparison_page};
 use crate::schema::{self, COMPARISON};
+use crate::spec::Figures;
 use crate::stats::{self, Group, Matched, Side, varying};
 use crate::store::{Frame, commit, parquet};
 use std::path::{Path, PathBuf};
@@ -59,7 +60,7 @@ pub fn compare(folders: &[PathBuf], out: &Path, force: bool) -> Result<Compariso
             let path = out.join("figures").join(format!("{}.svg", panel.stem));
             commit::commit_bytes("write a figure", &path, panel.svg.as_bytes())?;
         } else {
-            write_picture(out, &panel.stem, &panel.svg)?;
+            write_picture(out, &panel.stem, &panel.svg, &Figures::default())?;
         }
     }
     parquet::write_table(&file, &table, &[])?;

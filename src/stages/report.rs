@@ -8,9 +8,10 @@ use super::runner::{Context, Single, run_single};
 use super::single_cycle::look;
 use super::{StageError, Tally};
 use crate::campaign::{Campaign, REPORT_PAGE, STATISTICS, Stage, Standing, Unit};
-use crate::figures::{Drawing, Panel, Tables, method_ratios, panels, pdf, png, sensitivity, table};
+use crate::figures::{Drawing, Panel, Tables, method_ratios, panels, pdf, png, sensitivity, table, with_font};
 use crate::report::{self, MethodFigures, Report, SingleCycle};
 use crate::schema;
+use crate::spec::Figures;
 use crate::store::commit::Written;
 use crate::store::hdf5::{SurfaceHeader, read_header};
 use crate::store::{Check, Frame, commit, parquet};
@@ -104,7 +105,7 @@ fn write(campaign: &Campaign, standings: &[Standing], key: &str) -> Result<Vec<W
     let drawings = Drawings::of(campaign, standings, &statistics)?;
     let mut files = Vec::new();
     for (stem, svg) in drawings.figures() {
-        files.extend(write_picture(&campaign.dir, stem, svg)?);
+        files.extend(write_picture(&campaign.dir, stem, svg, &campaign.spec.figures)?);
     }
     let page = page((campaign, standings), key, &statistics, &drawings)?;
     let panels = table(&drawings.all_panels())?;
@@ -129,6 +130,7 @@ fn page(
         cases: &statistics.cases,
         realizations: &statistics.realizations,
         methods: &statistics.methods,
+        formats: &campaign.spec.figures.format,
         sensitivity: drawings.sensitivity.as_ref(),
         method_figures: &drawings.methods,
         scans: &scans(campaign)?,
@@ -147,11 +149,19 @@ fn scans(campaign: &Campaign) -> Result<Vec<SurfaceHeader>, StageError> {
     Ok(paths.map(|path| read_header(&path)).collect::<Result<_, _>>()?)
 }
 
-/// A figure in `figures/` of a folder, in all formats.
-pub(super) fn write_picture(dir: &Path, stem: &str, svg: &str) -> Result<[Written; 3], StageError> {
-    let write =
-        |ending: &str, bytes: &[u8]| commit::commit_bytes("write a figure", &dir.join("figures").join(format!("{stem}.{ending}")), bytes);
-    Ok([write("svg", svg.as_bytes())?, write("png", &png(svg)?)?, write("pdf", &pdf(svg)?)?])
+/// A figure in `figures/` of a folder.
+pub(super) fn write_picture(dir: &Path, stem: &str, svg: &str, files: &Figures) -> Result<Vec<Written>, StageError> {
+    let mut written = Vec::new();
+    for format in &files.format {
+        let bytes = match *format {
+            "png" => png(svg, files.width_mm)?,
+            "pdf" => pdf(svg, files.width_mm)?,
+            _ => with_font(svg, &files.font).into_bytes(),
+        };
+        let path = dir.join("figures").join(format!("{stem}.{format}"));
+        written.push(commit::commit_bytes("write a figure", &path, &bytes)?);
+    }
+    Ok(written)
 }
 
 fn sweeps(campaign: &Campaign) -> Vec<String> {

@@ -305,3 +305,24 @@ fn e2e_campaigns_are_compared_case_by_case() {
     let said = stderr(&compare(&[&spots, &Bench::new(SPEC)], &out));
     assert!(said.starts_with("error: cannot") && said.contains("statistics/cases.parquet"), "{said}");
 }
+
+#[test]
+fn e2e_the_spec_chooses_the_files_of_the_figures() {
+    let chosen =
+        SPEC.replace("seed = 7", "seed = 7\nfigures = { format = [\"svg\", \"png\"], width_mm = 120, font = \"Latin Modern Sans\" }");
+    let bench = Bench::new(&chosen);
+    let ended = bench.verb("run", &[]);
+    assert_eq!(code(&ended), 0, "{}", stderr(&ended));
+    let written = files(&bench.out());
+    assert!(
+        written.contains_key(Path::new("figures/zeta_A.png")) && !written.keys().any(|path| path.extension().is_some_and(|of| of == "pdf"))
+    );
+    let page = fs::read_to_string(bench.out().join("report.html")).unwrap();
+    assert!(page.contains("href=\"figures/zeta_A.png\"") && !page.contains(".pdf\""));
+    let svg = fs::read_to_string(bench.out().join("figures/zeta_A.svg")).unwrap();
+    assert!(svg.contains("font-family=\"Latin Modern Sans, DejaVu Sans, "));
+    // Dots per metre: three to a pixel, 480 pixels on 120 mm.
+    let png = fs::read(bench.out().join("figures/zeta_A.png")).unwrap();
+    let at = png.windows(4).position(|four| four == b"pHYs").unwrap() + 4;
+    assert_eq!(u32::from_be_bytes(png[at..at + 4].try_into().unwrap()), 12_000);
+}
