@@ -6,7 +6,7 @@
   const { cycles, kinds, letters } = JSON.parse(source.textContent);
   const SIDE = 400;
   const COLOURS = { push: "#0072b2", pull: "#d55e00", unknown: "#777777", in: "#009e73", out: "#cc79a7", other: "#e69f00" };
-  const state = { cycle: 0, loop: 0, k: 0, avalanche: -1, least: 2, layer: "pressure", absorbed: true, timer: 0, hidden: new Set() };
+  const state = { cycle: 0, loop: 0, k: 0, avalanche: -1, smallest: 2, layer: "pressure", absorbed: true, timer: 0, hidden: new Set() };
 
   const NAMES = { jump_in: "jump into contact", jump_off: "jump out of contact", cover: "absorption", uncover: "release", snap: "snap-through", merge: "merging", split: "splitting" };
 
@@ -165,10 +165,10 @@
   // The page.
   const [cycleChoice, cycleLabel] = choice("cycle", "Cycle", (value) => choose(Number(value), 0));
   const [loopChoice, loopLabel] = choice("load", "F_max/(E*A₀)", (value) => choose(state.cycle, Number(value)));
-  const [leastChoice, leastLabel] = choice("least", "avalanches of at least", (value) => (state.least = Number(value)));
+  const [smallestChoice, smallestLabel] = choice("smallest", "avalanches of at least", (value) => (state.smallest = Number(value)));
   const [layerChoice, layerLabel] = choice("layer", "Boundary elements", (value) => { state.layer = value; draw(); });
-  for (const [value, text] of [[1, "1 event"], [2, "2 events"], [5, "5 events"], [10, "10 events"]]) leastChoice.append(html("option", { value }, text));
-  leastChoice.value = "2";
+  for (const [value, text] of [[1, "1 event"], [2, "2 events"], [5, "5 events"], [10, "10 events"]]) smallestChoice.append(html("option", { value }, text));
+  smallestChoice.value = "2";
   for (const value of ["pressure", "gap"]) layerChoice.append(html("option", { value }, value));
   cycles.forEach((cycle, at) => cycleChoice.append(html("option", { value: at }, cycle.name)));
   const slider = html("input", { type: "range", min: 0, max: 1, value: 0, id: "explorer-step", "aria-label": "Position along the loop" });
@@ -209,7 +209,7 @@
   host.append(
     html("p", { class: "controls" }, cycleLabel, loopLabel),
     html("p", { class: "controls" }, button("back", "◀", "Previous step", () => move(state.k - 1)), slider, button("next", "▶", "Next step", () => move(state.k + 1)), play),
-    html("p", { class: "controls" }, button("previous-avalanche", "◀ avalanche", "Previous avalanche", () => avalanche(-1)), button("next-avalanche", "avalanche ▶", "Next avalanche", () => avalanche(1)), leastLabel, absorbedLabel,
+    html("p", { class: "controls" }, button("previous-avalanche", "◀ avalanche", "Previous avalanche", () => avalanche(-1)), button("next-avalanche", "avalanche ▶", "Next avalanche", () => avalanche(1)), smallestLabel, absorbedLabel,
       button("in", "+", "Zoom in", () => zoom(0.6)), button("out", "−", "Zoom out", () => zoom(1 / 0.6)), layerLabel),
     readout,
     html("div", { class: "views" }, html("figure", {}, chart, html("figcaption", {}, "Loop: loading dashed, unloading solid; grey: the other method on this surface. A click moves to the nearest step.")), mapFigure, fieldFigure),
@@ -370,7 +370,7 @@
     stop();
     const sizes = new Map();
     loop().events.forEach((event) => sizes.set(event[3], (sizes.get(event[3]) || 0) + 1));
-    const order = Array.from(sizes.keys()).filter((id) => sizes.get(id) >= state.least);
+    const order = Array.from(sizes.keys()).filter((id) => sizes.get(id) >= state.smallest);
     const first = (id) => loop().events.find((event) => event[3] === id)[0];
     const here = order.indexOf(state.avalanche);
     let next = here + way;

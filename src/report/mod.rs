@@ -7,6 +7,7 @@ mod comparison;
 mod data;
 mod header;
 mod layout;
+mod live;
 mod methods;
 mod numbers;
 mod results;
@@ -16,6 +17,7 @@ mod theories;
 mod validity;
 
 pub use comparison::{Compared, comparison_page};
+pub use live::{LiveLoop, LiveRun, LiveStage, live_page};
 pub use methods::MethodFigures;
 pub use single_cycle::SingleCycle;
 

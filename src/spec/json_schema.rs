@@ -143,7 +143,7 @@ fn figures() -> Value {
         "properties": {
             "format": { "anyOf": [format, { "type": "array", "items": format, "minItems": 1 }], "default": default.format, "description": "File formats of the figures." },
             "width_mm": { "type": "number", "minimum": WIDTH.low, "maximum": WIDTH.high, "default": default.width_mm, "description": "Width of a panel in PNG and PDF files [mm]." },
-            "font": { "type": "string", "pattern": format!("^[A-Za-z0-9 -]{{1,{LONGEST_FONT}}}$"), "default": default.font, "description": "Font family of the SVG files; PNG and PDF files have DejaVu Sans." },
+            "font": { "type": "string", "pattern": PLAIN, "minLength": 1, "maxLength": LONGEST_FONT, "default": default.font, "description": "Font family of the SVG files; PNG and PDF files have DejaVu Sans." },
         },
         "description": "Files of the figures.",
     })

@@ -17,6 +17,7 @@ mod failure;
 mod foreseen;
 mod generate;
 mod identity;
+mod live;
 mod measure;
 mod pipeline;
 mod report;

@@ -113,7 +113,7 @@ fn e2e_the_slider_moves_the_contact_map() {
 
 /// A click shows the events of the next avalanche, and no others.
 fn avalanche(bench: &Bench, page: &str, of: &Loop) {
-    let script = format!("{} set('explorer-least', 1, 'change'); document.getElementById('explorer-next-avalanche').click();", moved(1));
+    let script = format!("{} set('explorer-smallest', 1, 'change'); document.getElementById('explorer-next-avalanche').click();", moved(1));
     let driven = after(page, bench.folder.path(), &script).unwrap();
     let readout = text(&driven, "explorer-readout");
     let id: i64 = readout.split("avalanche ").nth(1).unwrap().split(':').next().unwrap().parse().unwrap();

@@ -326,3 +326,18 @@ fn e2e_the_spec_chooses_the_files_of_the_figures() {
     let at = png.windows(4).position(|four| four == b"pHYs").unwrap() + 4;
     assert_eq!(u32::from_be_bytes(png[at..at + 4].try_into().unwrap()), 12_000);
 }
+
+#[test]
+fn e2e_a_page_of_progress_is_there_until_the_run_ends() {
+    let bench = Bench::new(SPEC);
+    let page = bench.out().join("progress.html");
+    let mut child = bench.command("run").stderr(std::process::Stdio::null()).stdout(std::process::Stdio::null()).spawn().unwrap();
+    let mut seen = String::new();
+    while child.try_wait().unwrap().is_none() {
+        seen = fs::read_to_string(&page).unwrap_or(seen);
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    assert!(child.wait().unwrap().success());
+    assert!(seen.contains("<meta http-equiv=\"refresh\" content=\"5\">") && seen.contains("<td>generate</td><td>"), "{seen}");
+    assert!(!page.exists() && bench.out().join("report.html").is_file());
+}
