@@ -17,7 +17,6 @@ from maturin import (
     get_requires_for_build_editable,
     get_requires_for_build_sdist,
     get_requires_for_build_wheel,
-    prepare_metadata_for_build_wheel,
 )
 
 __all__ = [
@@ -72,6 +71,12 @@ def _pack() -> None:
         script = subprocess.run([str(program), "completions", shell], check=True, stdout=subprocess.PIPE).stdout
         (share / path).parent.mkdir(parents=True, exist_ok=True)
         (share / path).write_bytes(script)
+
+
+def prepare_metadata_for_build_wheel(metadata_directory: str, config_settings: dict | None = None) -> str:
+    """Writes the metadata; maturin refuses a folder of files that is not there."""
+    DATA.mkdir(parents=True, exist_ok=True)
+    return maturin.prepare_metadata_for_build_wheel(metadata_directory, config_settings)
 
 
 def build_wheel(wheel_directory: str, config_settings: dict | None = None, metadata_directory: str | None = None) -> str:
