@@ -134,7 +134,12 @@
   // Zoom by the view box: buttons, drag, wheel with Ctrl.
   const zoomable = (drawing, side) => {
     const box = { x: 0, y: 0, w: side };
-    const apply = () => drawing.setAttribute("viewBox", `${box.x} ${box.y} ${box.w} ${box.w}`);
+    drawing.view = box;
+    const apply = () => {
+      drawing.setAttribute("viewBox", `${box.x} ${box.y} ${box.w} ${box.w}`);
+      const old = drawing.querySelector(".bar");
+      if (old) old.replaceWith(bar(drawing));
+    };
     const zoom = (factor, at = [0.5, 0.5]) => {
       const w = Math.min(side, Math.max(side / 16, box.w * factor));
       box.x = Math.min(side - w, Math.max(0, box.x + at[0] * (box.w - w)));
@@ -280,11 +285,13 @@
   const at = (spot) => [(cycle().x[spot] * SIDE) / 1e4, SIDE - (cycle().y[spot] * SIDE) / 1e4];
   const isIn = (kind) => kind === "jump_in" || kind === "uncover";
   const current = () => loop().events.filter((event) => (state.avalanche < 0 ? event[0] === state.k : event[3] === state.avalanche));
-  const bar = (side) => {
+  const bar = (drawing) => {
+    const box = drawing.view;
+    const side = (cycle().length_m * box.w) / SIDE;
     const power = 10 ** Math.floor(Math.log10(side / 4));
     const size = [5, 2, 1].map((n) => n * power).find((n) => n <= (side / 4) * (1 + 1e-9));
     const width = (SIDE * size) / side;
-    const group = svg("g");
+    const group = svg("g", { class: "bar", transform: `translate(${box.x} ${box.y}) scale(${box.w / SIDE})` });
     group.append(svg("rect", { x: 6, y: SIDE - 34, width: width + 12, height: 28, fill: "white", "fill-opacity": 0.85 }), svg("rect", { x: 12, y: SIDE - 14, width, height: 3 }), svg("text", { x: 12, y: SIDE - 19, "font-size": 13 }, length(size)));
     return group;
   };
@@ -319,7 +326,7 @@
       const colour = isIn(kinds[kind]) ? COLOURS.in : kinds[kind] === "jump_off" ? COLOURS.out : COLOURS.other;
       if (!state.hidden.has(colour)) lit.append(svg("circle", { cx: x.toFixed(2), cy: y.toFixed(2), r: ((sizes.get(spot) || 0.006) * SIDE + 4).toFixed(2), stroke: colour, "data-event": of.ids[spot] }));
     }
-    map.append(lit, bar(of.length_m));
+    map.append(lit, bar(map));
     const exact = loop().frames[state.k];
     mapNote.textContent = `Asperity model: ${count} contact spots, ${absorbed.length} absorbed. ` +
       (exact ? "Stored step: radii and loads from the table contacts." : "Between stored steps: contacts from the events, radii interpolated and scaled to the contact area.");
@@ -331,7 +338,7 @@
     if (!best) return (fieldNote.textContent = "Boundary elements: no stored map.");
     const key = state.layer + "_image";
     if (!best[key]) best[key] = picture(best[state.layer], state.layer === "gap" ? grey : pressure);
-    field.append(svg("image", { id: "explorer-field-image", href: best[key], width: SIDE, height: SIDE, preserveAspectRatio: "none", "data-step": other.s[best.k] }), bar(of.length_m));
+    field.append(svg("image", { id: "explorer-field-image", href: best[key], width: SIDE, height: SIDE, preserveAspectRatio: "none", "data-step": other.s[best.k] }), bar(field));
     fieldNote.textContent = `Boundary elements, ${best.k < other.up ? "loading" : "unloading"}: nearest stored map, Δ/h_rms = ${number(other.d[best.k])}, F/(E*A₀) = ${number(other.f[best.k])}. ` +
       (state.layer === "gap" ? `Gap from 0 (dark) to ${length(best.gap_m)} (light).` : `Pressure from ${number(best.low_pa)} Pa (orange) to ${number(best.high_pa)} Pa (blue).`);
   };

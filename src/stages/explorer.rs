@@ -32,7 +32,7 @@ pub(super) fn explorer(campaign: &Campaign, standings: &[Standing], cases: &Fram
         of["name"] = json!(name(campaign, unit, cases, &list)?);
         let by_elements = |unit: &CycleUnit| campaign.cases[unit.case].case.params.by_elements();
         let partner = |other: &&CycleUnit| other.surface == unit.surface && by_elements(other);
-        if let Some(place) = picked.iter().position(|other| partner(&other)).filter(|_| !by_elements(unit)) {
+        if let Some(place) = picked.iter().position(partner).filter(|_| !by_elements(unit)) {
             of["other"] = json!(place);
         }
         all.push(of);

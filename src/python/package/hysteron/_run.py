@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 
 from . import _program
 
-
 #: Columns of the table of means that a notebook shows.
 _SHOWN = ("case_id", "max_load", "done_count", "area_at_max_load_mean", "pull_off_load_mean", "loss_mean", "loss_sd", "caution")
 
