@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use crate::bench::{Bench, SPEC, code, stderr};
+use crate::bench::{Bench, SPEC, code, skip, stderr};
 use hysteron::schema;
 use hysteron::store::Frame;
 use hysteron::store::parquet::read_table;
@@ -94,7 +94,7 @@ fn e2e_the_slider_moves_the_contact_map() {
     let kept = rows.iter().position(|row| branches[*row] == "unloading" && stored.contains(&numbers[*row])).unwrap();
     for place in [0, rows.len() / 4, rows.len() / 2, kept, (kept + rows.len()) / 2, rows.len() - 1] {
         let Some(driven) = after(&page, bench.folder.path(), &moved(place)) else {
-            println!("no browser: the explorer is not driven");
+            skip("browser", "no Chromium or Chrome: the explorer is not driven");
             return;
         };
         let row = rows[place];
