@@ -1,8 +1,8 @@
 //! Parts of the report: data access and citation.
 
-use super::Report;
 use super::layout::{heading, line, prose};
 use crate::stats::{StatsError, labels_with_unit};
+use crate::store::Frame;
 use maud::{Markup, html};
 
 const DATA: &str = "All numbers of this report are in the tables of this folder. `datapackage.json` describes each column with unit and \
@@ -42,10 +42,20 @@ const BIBTEX: &str = r#"@software{hysteron,
   doi     = {10.3390/lubricants9010007}
 }"#;
 
+/// What a study consists of.
+pub(super) struct Study<'a> {
+    /// Numbers of cases by the asperity model and by boundary elements.
+    pub(super) case_counts: [usize; 2],
+    /// Number of realizations in words.
+    pub(super) realizations_text: &'a str,
+    pub(super) seed: u64,
+    /// True if surfaces are measured.
+    pub(super) is_measured: bool,
+}
+
 /// A paragraph that describes the method, to be adapted for a publication.
-pub(super) fn methods(report: &Report<'_>) -> Result<Markup, StatsError> {
-    let [asperities, elements] = report.case_counts;
-    let cases = report.cases;
+pub(super) fn methods(cases: &Frame, study: &Study<'_>) -> Result<Markup, StatsError> {
+    let [asperities, elements] = study.case_counts;
     let range = |column: &str| -> Result<Option<String>, StatsError> {
         let values: Vec<f64> = cases.f64_or_null(column)?.iter().flatten().copied().collect();
         let [low, high] = [f64::min, f64::max].map(|pick: fn(f64, f64) -> f64| values.iter().copied().reduce(pick));
@@ -59,10 +69,10 @@ pub(super) fn methods(report: &Report<'_>) -> Result<Markup, StatsError> {
         text += &format!(
             "Self-affine rough surfaces with Hurst exponent H = {hurst} and magnification ζ = {zeta} were generated from their power spectrum \
              ({} per case, seed {}). ",
-            report.realizations_text, report.seed
+            study.realizations_text, study.seed
         );
     }
-    if !report.scans.is_empty() {
+    if study.is_measured {
         text += "Measured surfaces were levelled, filtered and cropped as listed in this report. ";
     }
     let program = concat!("hysteron ", env!("CARGO_PKG_VERSION"));

@@ -27,6 +27,7 @@ use crate::store::Frame;
 use crate::store::hdf5::SurfaceHeader;
 use crate::text::counted;
 use cases::Cases;
+use data::Study;
 use layout::{Numbers, document, grid, heading, legend, prose};
 use maud::{Markup, PreEscaped, html};
 
@@ -76,6 +77,12 @@ pub struct Report<'a> {
 pub fn page(report: &Report<'_>) -> Result<String, StatsError> {
     let cases = Cases::of(report.cases, report.realizations)?;
     let numbers = Numbers::of(report.formats);
+    let study = Study {
+        case_counts: report.case_counts,
+        realizations_text: report.realizations_text,
+        seed: report.seed,
+        is_measured: !report.scans.is_empty(),
+    };
     let body = html! {
         (results::results(&cases)?)
         (results::changes(&cases)?)
@@ -88,7 +95,7 @@ pub fn page(report: &Report<'_>) -> Result<String, StatsError> {
         (theories::theories(&cases)?)
         (validity::budget(&cases)?)
         (validity::validity(&cases)?)
-        (data::methods(report)?)
+        (data::methods(report.cases, &study)?)
         (data::usage())
         (heading("Spec with all defaults"))
         details { summary { "TOML" } pre { (report.spec) } } "\n"

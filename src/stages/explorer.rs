@@ -1,7 +1,7 @@
 //! Data of the explorer of the report: loops, events, contact spots and maps of one cycle for each case.
 
 use super::StageError;
-use super::explorer_maps::{LETTERS, ground, stored_maps};
+use super::explorer_maps::{LETTERS, ground, rounded, stored_maps};
 use crate::campaign::{Campaign, CycleUnit, Standing};
 use crate::model::Boundary;
 use crate::schema::{self, Table};
@@ -69,11 +69,6 @@ fn name(campaign: &Campaign, unit: &CycleUnit, cases: &Frame, list: &Listing) ->
     let label = list.rows.iter().find(|listed| ids[listed.row] == case.id).map_or("", |listed| listed.label.as_str());
     let label = if label.is_empty() { case.id.as_str() } else { label };
     Ok(format!("{label}, realization {}", campaign.surfaces[unit.surface].realization))
-}
-
-/// A number with five digits.
-pub(super) fn rounded(number: f64) -> f64 {
-    significant(number, 5).parse().unwrap_or(number)
 }
 
 /// Tables of a cycle.

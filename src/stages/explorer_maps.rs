@@ -1,7 +1,7 @@
 //! Maps of the explorer of the report as text, one letter for each cell.
 
 use super::StageError;
-use super::explorer::rounded;
+use crate::stats::significant;
 use crate::store::read_maps;
 use ndarray::ArrayView2;
 use serde_json::{Value, json};
@@ -12,6 +12,11 @@ pub(super) const LETTERS: &str = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrst
 /// Cells along a side of the heights and of a map, at most.
 const GROUND: usize = 64;
 const CELLS: usize = 96;
+
+/// A number with five digits.
+pub(super) fn rounded(number: f64) -> f64 {
+    significant(number, 5).parse().unwrap_or(number)
+}
 
 /// Cells of a map: the middle of each cell stands for it.
 fn cells<T: Copy>(of: ArrayView2<'_, T>, most: usize, level: impl Fn(T) -> f64) -> String {
