@@ -116,6 +116,8 @@ pub struct KeyEntry {
     pub stroke: Option<Stroke>,
     /// True if the sample has a marker.
     pub marked: bool,
+    /// True if the sample has a line; false for categories.
+    pub joined: bool,
 }
 
 /// A text at the end of a curve.

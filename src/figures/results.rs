@@ -119,7 +119,7 @@ fn predict(
         drawn.curves.push(line);
     }
     if any {
-        drawn.key.push(entry(text, THEORY, Some(stroke), marked));
+        drawn.key.push(KeyEntry { joined: sweep.is_joined(), ..entry(text, THEORY, Some(stroke), marked) });
     }
     Ok(())
 }
@@ -159,7 +159,7 @@ fn measure(tables: &Tables<'_>, sweep: &Sweep, series: &[&str], of: &Measured, d
         }
     }
     let text = if spread { format!("{text}, ± one standard deviation") } else { text.to_owned() };
-    drawn.key.push(entry(&text, NEUTRAL, Some(stroke), true));
+    drawn.key.push(KeyEntry { joined: sweep.is_joined(), ..entry(&text, NEUTRAL, Some(stroke), true) });
     Ok(())
 }
 

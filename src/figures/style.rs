@@ -46,5 +46,5 @@ pub(super) fn curve((name, of): (&str, &str), points: Vec<(f64, f64)>, colour: S
 }
 
 pub(super) fn entry(text: &str, hue: [u8; 3], stroke: Option<Stroke>, marked: bool) -> KeyEntry {
-    KeyEntry { text: text.to_owned(), colour: shade(hue, 0, 1), stroke, marked }
+    KeyEntry { text: text.to_owned(), colour: shade(hue, 0, 1), stroke, marked, joined: true }
 }

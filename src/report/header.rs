@@ -21,7 +21,7 @@ pub(super) fn facts(cases: &Frame, seed: u64, realizations: &str) -> Result<Mark
     for parameter in parameters_by_rank() {
         // Values have their units.
         let label = parameter.label.split_once(" [").map_or(parameter.label, |(label, _)| label);
-        facts.extend(values(cases, parameter)?.map(|values| (label.to_owned(), values)));
+        facts.extend(values(cases, parameter)?.map(|values| (label.replace("^{*}", "*"), values)));
     }
     let loads = crate::stats::labels(&cases.f64("max_load")?);
     facts.push(("F_{max}/(E*A_{0})".to_owned(), listed(loads)));

@@ -136,7 +136,8 @@ fn explorer(data: &str) -> Markup {
 fn figures(report: &Report<'_>, sweep: &str, numbers: &Numbers<'_>) -> Markup {
     let panels: Vec<&Panel> = report.drawings.iter().filter(|(of, _)| of == sweep).map(|(_, panel)| panel).collect();
     html! {
-        (heading(&if sweep.is_empty() { "Figures".to_owned() } else { format!("Sweep {sweep}") }))
+        // A run without sweeps has the cases of its base.
+        (heading(&if matches!(sweep, "" | "base") { "Figures".to_owned() } else { format!("Sweep {sweep}") }))
         section { (legend(panels.first().map_or(&[], |panel| &panel.cases))) (grid(numbers, panels)) } "\n"
     }
 }

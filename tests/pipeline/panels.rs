@@ -59,7 +59,8 @@ fn wide(positive: bool, band: bool) -> XyPlot {
         joined: true,
         marked: true,
     };
-    let key = vec![KeyEntry { text: "area".to_owned(), colour: "#cc3311".to_owned(), stroke: Some(Stroke::Solid), marked: true }];
+    let key =
+        vec![KeyEntry { text: "area".to_owned(), colour: "#cc3311".to_owned(), stroke: Some(Stroke::Solid), marked: true, joined: true }];
     let (x, y) = (Axis::holding("x", [1.0, 2.0], false), Axis::holding("y", [-1.0, 1.5], true));
     XyPlot { stem: "wide".to_owned(), letter: 'A', title: String::new(), x, y, curves: vec![curve], key, notes: Vec::new(), margin: 0.0 }
 }
