@@ -12,15 +12,16 @@
 //! A pair whose tensile load would put the merged spot beyond the end of its branch merges only when this is no longer so.
 //! A pair that has split must have been apart before it merges again.
 //!
-//! A merged spot is a different sphere from its two parts, and has a different potential.
-//! The decrease of the potential at merging is therefore not dissipation alone, since splitting returns it.
-//! Only the sum over both is a dissipated energy.
+//! A merged spot is a different sphere from its two parts, and its potential on its branch is another one. The difference at merging is a
+//! constant of the merged spot and part of its potential: the potentials of the parts and their interaction are functions of their radii
+//! alone, which are the same again when it splits. So merging and splitting alone dissipate nothing; what they change is the interaction
+//! with other contacts, which respond to it.
 
 use super::merged_spot::Merged;
 use super::merged_spot::TouchingPairs;
 use super::problem::Problem;
 use super::state::{State, Status};
-use crate::model::Coalescence;
+use crate::model::{Coalescence, Interaction};
 use crate::physics::PhysicsError;
 use crate::physics::half_space::{Effort, Interaction as _, Spots};
 use crate::physics::jkr::Asperity;
@@ -65,7 +66,12 @@ impl Problem {
 
     fn add(&mut self, merged: &Merged) -> Result<(), PhysicsError> {
         let asperity = Asperity::as_printed(merged.radius_m, &self.material, self.rules.slips)?;
+        let number = self.len();
         self.asperities.push(asperity);
+        self.potential_offset.push(0.0);
+        let ([i, j], [a, b]) = (merged.parts, merged.radii_m);
+        let parts = self.self_potential(i, a) + self.self_potential(j, b) + self.interaction_energy([i, j], [a, b]);
+        self.potential_offset[number] = parts - self.self_potential(number, merged.contact_radius_m());
         self.heights.push(merged.height_m);
         self.positions.push(merged.place_m);
         // After splitting, it cannot form a contact again.
@@ -73,6 +79,16 @@ impl Problem {
         self.field.add(merged.place_m);
         self.neighbours.add(merged.place_m);
         Ok(())
+    }
+
+    /// `½(F_i ŵ_ij + F_j ŵ_ji)` of two spots of these radii \[J\].
+    fn interaction_energy(&self, [i, j]: [usize; 2], [a, b]: [f64; 2]) -> f64 {
+        if self.rules.interaction == Interaction::None {
+            return 0.0;
+        }
+        let r = self.neighbours.distance(&self.positions[i], &self.positions[j]);
+        let (one, other) = (&self.asperities[i], &self.asperities[j]);
+        0.5 * (one.load(a) * self.spot_field(other, r, b).0 + other.load(b) * self.spot_field(one, r, a).0)
     }
 
     /// Load of the spot that two spots would merge into, and its adhesive part `sqrt(8πE*Δγa³)` \[N\].

@@ -43,6 +43,8 @@ pub struct Problem {
     ///
     /// Without adhesion they are slightly positive.
     pub(crate) jump_in: Vec<f64>,
+    /// Constants of the potentials of merged contacts, 0 for the asperities of the surface \[J\].
+    pub(crate) potential_offset: Vec<f64>,
     pub(crate) material: Material,
     pub(crate) rules: Rules,
     pub(crate) field: Best,
@@ -108,7 +110,7 @@ impl Problem {
             let smallest = tabor.iter().copied().fold(f64::INFINITY, f64::min);
             return Err(PhysicsError::LowTabor { smallest, below, all: tabor.len() });
         }
-        let jump_in = asperities
+        let jump_in: Vec<f64> = asperities
             .iter()
             .map(|a| match rules.jump_in {
                 // Without adhesion there is no jump: contact begins above the penetration at which it ends, beyond rounding.
@@ -121,6 +123,7 @@ impl Problem {
         let field = best(positions.clone(), length_m, &material, rules.interaction, rules.boundary, rules.slips);
         Ok(Self {
             heights: summits.iter().map(|s| s.height_m - highest).collect(),
+            potential_offset: vec![0.0; jump_in.len()],
             jump_in,
             field: if rules.coalescence == Coalescence::Merge { field } else { field.with_table() },
             neighbours: Neighbours::new(&positions, length_m, periodic),
@@ -204,6 +207,13 @@ impl Problem {
             let [x, y] = self.positions[i];
             Spot { x, y, a, radius: asperity.radius_m(), load: asperity.load(a), load_slope: asperity.load_slope(a) }
         }));
+    }
+
+    /// Potential of a contact of radius `a` \[m\] on its branch, without its interaction \[J\]: `U(δ(a), a) − Δγπa²`.
+    pub(crate) fn self_potential(&self, i: usize, a: f64) -> f64 {
+        let asperity = &self.asperities[i];
+        let adhesion = self.material.work_of_adhesion_j_m2 * PI * a * a;
+        asperity.stored_energy(asperity.penetration(a), a) - adhesion + self.potential_offset[i]
     }
 
     /// Displacement \[m\] at distance r \[m\] from a spot of radius `a` \[m\], and its derivative to `a`.

@@ -152,8 +152,7 @@ impl Problem {
             let spot = PI * a * a;
             totals.load_n += load;
             totals.area_m2 += spot;
-            let energy = asperity.stored_energy(asperity.penetration(a), a) - self.material.work_of_adhesion_j_m2 * spot;
-            potential += energy + 0.5 * load * w;
+            potential += self.self_potential(i, a) + 0.5 * load * w;
         }
         (totals, potential)
     }

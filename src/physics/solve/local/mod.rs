@@ -14,7 +14,6 @@ use super::trace::PenetrationTrace;
 use crate::physics::contact::problem::Problem;
 use crate::physics::half_space::{Effort, PairTable, Spots};
 use crate::physics::math::dense::Lu;
-use std::f64::consts::PI;
 
 /// Bounded rate of the displacement by the outside: next to a global fold the estimate diverges.
 fn bounded(drift: f64) -> f64 {
@@ -353,10 +352,8 @@ impl LocalProblem {
         for ((member, &a), field) in self.members.iter().zip(&self.radius).zip(&self.field) {
             let asperity = &problem.asperities[member.asperity];
             let load = asperity.load(a);
-            let spot = PI * a * a;
             whole += load;
-            potential +=
-                asperity.stored_energy(asperity.penetration(a), a) - problem.material.work_of_adhesion_j_m2 * spot + 0.5 * load * field;
+            potential += problem.self_potential(member.asperity, a) + 0.5 * load * field;
         }
         (whole, potential)
     }
