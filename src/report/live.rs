@@ -52,12 +52,12 @@ pub fn live_page(run: &LiveRun) -> String {
     let body = html! {
         h1 { (run.name) ": in progress" } "\n"
         p { "This page reloads itself every " (RELOAD_SECONDS) " s. At the end of the run, " a href="report.html" { "report.html" } " has the results." } "\n"
-        table {
+        div.scroll role="region" aria-label="Table of stages" tabindex="0" { table {
             tr { th { "stage" } th { "finished" } th { "running" } }
             @for stage in &run.stages {
                 tr { td { (stage.name) } td { (stage.done) " of " (counted(stage.all, "task")) } td { (stage.running.join(", ")) } }
             }
-        }
+        } }
         "\n"
         @if !run.notices.is_empty() {
             h2 { "Failures and notices" } "\n"

@@ -116,7 +116,7 @@ fn warning_table(cases: &Cases<'_>) -> Result<Markup, StatsError> {
         @if found.is_empty() {
             p { "None." } "\n"
         } @else {
-            table {
+            div.scroll role="region" aria-label="Table of warnings" tabindex="0" { table {
                 "\n"
                 tr { th { "warning (code)" } th { "measured" } th { "consequence and action" } th { "cases, at " (prose(LOAD)) } } "\n"
                 @for Warning { kind, measured, rows } in &found {
@@ -128,7 +128,7 @@ fn warning_table(cases: &Cases<'_>) -> Result<Markup, StatsError> {
                     }
                     "\n"
                 }
-            }
+            } }
             "\n"
         }
     })
