@@ -12,38 +12,30 @@ const KEY: &str = "hysteron-key";
 
 /// A page with the style of the report alone; where `reload` is set, it is loaded again after so many seconds.
 pub(super) fn styled((title, reload): (&str, Option<u32>), body: &Markup) -> String {
-    let page = html! {
-        (DOCTYPE) "\n"
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width";
-                @if let Some(seconds) = reload { meta http-equiv="refresh" content=(seconds); }
-                title { (title) }
-                style { (PreEscaped(STYLE)) }
-            }
-            "\n"
-            body { "\n" main { (body) } }
-        }
-        "\n"
-    };
-    page.into_string()
+    let meta = html! { @if let Some(seconds) = reload { meta http-equiv="refresh" content=(seconds); } };
+    page(title, &meta, &html! { main { (body) } })
 }
 
 /// A whole page; `key` is the key of the report.
 pub(super) fn document(title: &str, key: Option<&str>, body: &Markup) -> String {
+    let meta = html! { @if let Some(key) = key { meta name=(KEY) content=(key); } };
+    page(title, &meta, &html! { main { (body) } script { (PreEscaped(SCRIPT)) } })
+}
+
+/// A page with its metadata.
+fn page(title: &str, meta: &Markup, body: &Markup) -> String {
     let page = html! {
         (DOCTYPE) "\n"
         html lang="en" {
             head {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width";
-                @if let Some(key) = key { meta name=(KEY) content=(key); }
+                (meta)
                 title { (title) }
                 style { (PreEscaped(STYLE)) }
             }
             "\n"
-            body { "\n" main { (body) } script { (PreEscaped(SCRIPT)) } }
+            body { "\n" (body) }
         }
         "\n"
     };
