@@ -25,6 +25,7 @@ pages!(
     reference_spec,
     reference_cli,
     tables,
+    report,
     python,
     performance,
     contributing,

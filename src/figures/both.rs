@@ -4,10 +4,12 @@ use super::axis::Axis;
 use super::closer::plot;
 use super::curve::{Stroke, XyPlot};
 use super::cycle_loop::SpotTables;
-use super::map::{ABOVE, GAP, PULLED, PUSHED, SIDE, circles, legend, sheet};
+use super::drawing::Drawing;
+use super::map::{ABOVE, GAP, LEGEND, PULLED, PUSHED, SIDE, circles, legend, scale_bar, sheet};
+use super::markup::described;
 use super::panels::Panel;
 use super::plot::plot_xy;
-use super::style::{LOADING, THEORY, UNLOADING, curve, shade};
+use super::style::{OTHER, RESULT, THEORY, curve, shade};
 use super::{FigureError, markup};
 use crate::store::{Frame, ReversalMap};
 use ndarray::ArrayView2;
@@ -38,8 +40,8 @@ pub struct Both<'a> {
 ///
 /// # Errors
 /// If a table lacks a column.
-pub fn both(of: &Both<'_>) -> Result<String, FigureError> {
-    let (width, height) = (2.0 * SIDE + 3.0 * GAP, SIDE + ABOVE + GAP + 10.0);
+pub fn both(of: &Both<'_>, caption: String) -> Result<Drawing, FigureError> {
+    let (width, height) = (2.0 * SIDE + 3.0 * GAP, SIDE + ABOVE + GAP + LEGEND);
     let (spots, _) = circles(&of.spots, of.length_m, of.periodic, of.step)?;
     let mut svg = sheet((width, height), "both", of.heights_m);
     let contact = cells(of.elements);
@@ -51,13 +53,14 @@ pub fn both(of: &Both<'_>) -> Result<String, FigureError> {
             svg,
             "<text x=\"{left}\" y=\"{}\" font-size=\"14\">{name}: A/A_{{0}} = {area:.3}</text>\
              <g transform=\"translate({left} {})\"><g clip-path=\"url(#both-edge)\"><use xlink:href=\"#both-heights\"/>{drawn}</g>\
-             <rect x=\"0\" y=\"0\" width=\"{SIDE}\" height=\"{SIDE}\" fill=\"none\" stroke=\"black\"/></g>",
+             <rect x=\"0\" y=\"0\" width=\"{SIDE}\" height=\"{SIDE}\" fill=\"none\" stroke=\"black\"/>{}</g>",
             ABOVE - 12.0,
-            ABOVE - 4.0
+            ABOVE - 4.0,
+            scale_bar(of.length_m)
         );
     }
-    svg += &legend(height - 8.0);
-    Ok(markup::render(&svg))
+    svg += &legend(height - LEGEND + 14.0, of.heights_m);
+    Ok(Drawing::new("contact_maps", caption, &markup::render(&svg)))
 }
 
 /// Cells in compression and in tension, a path for each.
@@ -99,9 +102,9 @@ fn cells(map: &ReversalMap) -> String {
 pub fn method_ratios(methods: &Frame) -> Result<Option<Panel>, FigureError> {
     let x = methods.f64_or_null("persson_tosatti_realised")?;
     let columns = [
-        ("A", "area_at_max_load", LOADING, Stroke::Points),
-        ("F_{po}", "pull_off_load", THEORY, Stroke::Crosses),
-        ("Θ", "loss", UNLOADING, Stroke::Crosses),
+        ("A", "area_at_max_load", THEORY, Stroke::Points),
+        ("F_{po}", "pull_off_load", RESULT, Stroke::Crosses),
+        ("Θ", "loss", OTHER, Stroke::Diamonds),
     ];
     let mut curves = Vec::new();
     for (name, column, hue, stroke) in columns {
@@ -123,5 +126,12 @@ pub fn method_ratios(methods: &Frame) -> Result<Option<Panel>, FigureError> {
     let drawn = XyPlot { stem: "method_ratios".to_owned(), ..drawn };
     let caption = "Area, pull-off force and dissipated energy of the asperity model over those of boundary elements, each surface a point. Table methods: \
                    area_at_max_load_ratio, pull_off_load_ratio, loss_ratio over persson_tosatti_realised.";
-    Ok(Some(Panel { stem: drawn.stem.clone(), name: "ratios".to_owned(), caption: caption.to_owned(), svg: plot_xy(&drawn), plot: drawn }))
+    Ok(Some(Panel {
+        stem: drawn.stem.clone(),
+        name: "ratios".to_owned(),
+        svg: described(&plot_xy(&drawn), caption),
+        caption: caption.to_owned(),
+        cases: Vec::new(),
+        plot: drawn,
+    }))
 }

@@ -5,10 +5,12 @@ use super::axis::Axis;
 use super::captions::of_cycle;
 use super::curve::{Curve, Stroke, XyPlot};
 use super::cycle_loop::{Closer, Landmark, step_of};
+use super::drawing::Drawing;
 use super::map::map;
+use super::markup::described;
 use super::panels::Panel;
 use super::plot::plot_xy;
-use super::style::{LOADING, THEORY, UNLOADING, curve, entry, shade};
+use super::style::{OTHER, RESULT, THEORY, curve, entry, shade};
 use crate::stats::significant;
 use crate::text::counted;
 use ndarray::ArrayView2;
@@ -27,13 +29,13 @@ const BARS: usize = 40;
 ///
 /// # Errors
 /// If a table lacks a column.
-pub fn closer(of: &Closer<'_>, heights_m: ArrayView2<'_, f64>) -> Result<(Vec<Panel>, Option<String>), FigureError> {
+pub fn closer(of: &Closer<'_>, heights_m: ArrayView2<'_, f64>) -> Result<(Vec<Panel>, Option<Drawing>), FigureError> {
     let kept = of.landmarks()?;
     let branches = branches(of, step_of(&kept, Landmark::Turning))?;
     let panel = |name: &str, plot: XyPlot| panel(name, of_cycle(name, of), plot);
     let mut panels =
         vec![panel("loop", of_loop(of)?), panel("events", events(of, &branches)?), panel("avalanches", avalanches(of, &branches)?)];
-    let styles = [(Landmark::Turning, LOADING, Stroke::Solid), (Landmark::PullOff, UNLOADING, Stroke::Dashed)];
+    let styles = [(Landmark::Turning, RESULT, Stroke::Solid), (Landmark::PullOff, OTHER, Stroke::Dashed)];
     let end = |(landmark, hue, stroke)| step_of(&kept, landmark).map(|step| (landmark, step, hue, stroke));
     let ends: Vec<End> = styles.into_iter().filter_map(end).collect();
     if !ends.is_empty() {
@@ -51,13 +53,13 @@ type End = (Landmark, i64, [u8; 3], Stroke);
 fn panel(name: &str, caption: String, plot: XyPlot) -> Panel {
     let stem = format!("closer_{name}");
     let plot = XyPlot { stem: stem.clone(), ..plot };
-    Panel { stem, name: name.to_owned(), caption, svg: plot_xy(&plot), plot }
+    Panel { stem, name: name.to_owned(), svg: described(&plot_xy(&plot), &caption), caption, cases: Vec::new(), plot }
 }
 
 pub(super) fn plot(title: String, x: Axis, y: Axis, curves: Vec<Curve>, key: &[(&str, [u8; 3], Stroke)]) -> XyPlot {
     let marked = |colour: &str, stroke: Stroke| curves.iter().any(|of| of.colour == colour && of.stroke == stroke && of.is_marked());
     let key = key.iter().map(|(text, hue, stroke)| entry(text, *hue, Some(*stroke), marked(&shade(*hue, 0, 1), *stroke))).collect();
-    XyPlot { stem: String::new(), letter: ' ', title, x, y, curves, key, notes: Vec::new() }
+    XyPlot { stem: String::new(), letter: ' ', title, x, y, curves, key, notes: Vec::new(), margin: 0.0 }
 }
 
 /// A branch, its hue, and its events as places in their table.
@@ -71,7 +73,7 @@ fn branches(of: &Closer<'_>, turning: Option<i64>) -> Result<[OfBranch; 2], Figu
     let all = || 0..of.events.row_count();
     let loading = all().filter(|k| branches[*k] == "loading" && steps[*k] <= turning).collect();
     let unloading = all().filter(|k| branches[*k] == "unloading" && max_loads[*k] == Some(of.max_load)).collect();
-    Ok([("loading", LOADING, loading), ("unloading", UNLOADING, unloading)])
+    Ok([("loading", OTHER, loading), ("unloading", RESULT, unloading)])
 }
 
 /// The loop itself: the load over the approach, up to the turning point and back.
@@ -91,10 +93,10 @@ fn of_loop(of: &Closer<'_>) -> Result<XyPlot, FigureError> {
         Axis::holding("F/(E^{*}A_{0})", all().map(|point| point.1), true).with_headroom(0.1),
     );
     let curves = vec![
-        curve(("loading", ""), loading.clone(), shade(LOADING, 0, 1), Stroke::Dashed),
-        curve(("unloading", ""), unloading.clone(), shade(UNLOADING, 0, 1), Stroke::Solid),
+        curve(("loading", ""), loading.clone(), shade(RESULT, 0, 1), Stroke::Dashed),
+        curve(("unloading", ""), unloading.clone(), shade(RESULT, 0, 1), Stroke::Solid),
     ];
-    Ok(plot("hysteresis loop".to_owned(), x, y, curves, &[("loading", LOADING, Stroke::Dashed), ("unloading", UNLOADING, Stroke::Solid)]))
+    Ok(plot(String::new(), x, y, curves, &[("loading", RESULT, Stroke::Dashed), ("unloading", RESULT, Stroke::Solid)]))
 }
 
 /// Energy that each event lost, over the approach.
@@ -108,7 +110,8 @@ fn events(of: &Closer<'_>, branches: &[OfBranch; 2]) -> Result<XyPlot, FigureErr
         lost.sort_by(|u, v| v.1.total_cmp(&u.1).then(u.0.total_cmp(&v.0)));
         lost.truncate(MOST_POINTS);
         drawn += lost.len();
-        curves.push(curve((name, ""), lost, shade(*hue, 0, 1), Stroke::Points));
+        let stroke = if *hue == OTHER { Stroke::Diamonds } else { Stroke::Points };
+        curves.push(curve((name, ""), lost, shade(*hue, 0, 1), stroke));
     }
     let points = || curves.iter().flat_map(|curve: &Curve| curve.points.iter());
     let (x, y) = (
@@ -116,7 +119,7 @@ fn events(of: &Closer<'_>, branches: &[OfBranch; 2]) -> Result<XyPlot, FigureErr
         Axis::of_decades("dissipated energy/(E^{*}A_{0}h_{rms})", points().map(|point| point.1)).with_headroom(0.12),
     );
     let title = if drawn < all { format!("the largest {drawn} of {all} dissipative events") } else { counted(all, "dissipative event") };
-    Ok(plot(title, x, y, curves, &[("loading", LOADING, Stroke::Points), ("unloading", UNLOADING, Stroke::Points)]))
+    Ok(plot(title, x, y, curves, &[("loading", OTHER, Stroke::Diamonds), ("unloading", RESULT, Stroke::Points)]))
 }
 
 /// Number of avalanches with at least as many events.
@@ -134,7 +137,7 @@ fn avalanches(of: &Closer<'_>, branches: &[OfBranch; 2]) -> Result<XyPlot, Figur
         total += sizes.len();
         let mut points: Vec<(f64, f64)> = sizes.iter().enumerate().map(|(k, size)| (*size as f64, (sizes.len() - k) as f64)).collect();
         points.dedup_by_key(|point| point.0);
-        let stroke = if *hue == LOADING { Stroke::Dashed } else { Stroke::Solid };
+        let stroke = if *hue == OTHER { Stroke::Dashed } else { Stroke::Solid };
         curves.push(Curve { marked: true, ..curve((name, ""), points, shade(*hue, 0, 1), stroke) });
     }
     let points = || curves.iter().flat_map(|curve: &Curve| curve.points.iter());
@@ -142,7 +145,7 @@ fn avalanches(of: &Closer<'_>, branches: &[OfBranch; 2]) -> Result<XyPlot, Figur
         Axis::of_decades("events per avalanche, s", points().map(|point| point.0)),
         Axis::of_decades("avalanches with at least s events", points().map(|point| point.1)),
     );
-    Ok(plot(counted(total, "avalanche"), x, y, curves, &[("loading", LOADING, Stroke::Dashed), ("unloading", UNLOADING, Stroke::Solid)]))
+    Ok(plot(counted(total, "avalanche"), x, y, curves, &[("loading", OTHER, Stroke::Dashed), ("unloading", RESULT, Stroke::Solid)]))
 }
 
 /// The cumulative distribution of a value of each spot at the turning point and at the pull-off.
@@ -199,7 +202,7 @@ fn spectrum(of: &Closer<'_>) -> XyPlot {
     let found: Vec<(f64, f64)> = of.found.iter().filter(|point| point.1 > 1e-14 * most).copied().collect();
     // The target lies on the realised spectrum, and is painted over it.
     let curves = vec![
-        Curve { marked: true, ..curve(("realised", ""), found, shade(UNLOADING, 0, 1), Stroke::Solid) },
+        Curve { marked: true, ..curve(("realised", ""), found, shade(RESULT, 0, 1), Stroke::Solid) },
         curve(("target", ""), of.asked.to_vec(), shade(THEORY, 0, 1), Stroke::Dashed),
     ];
     let points = || curves.iter().flat_map(|curve: &Curve| curve.points.iter());
@@ -208,9 +211,9 @@ fn spectrum(of: &Closer<'_>) -> XyPlot {
         Axis::of_decades("C q_{L}^{2}/h_{rms}^{2}", points().map(|point| point.1)).with_headroom(0.06),
     );
     let target = of.asked_factor.map(|factor| format!("target: {} × Eq 10", significant(factor, 3)));
-    let mut key = vec![("realised", UNLOADING, Stroke::Solid)];
+    let mut key = vec![("realised", RESULT, Stroke::Solid)];
     key.extend(target.as_deref().map(|text| (text, THEORY, Stroke::Dashed)));
-    plot("power spectral density of the heights".to_owned(), x, y, curves, &key)
+    plot(String::new(), x, y, curves, &key)
 }
 
 /// Curvatures of the summits over Nayak's density.
@@ -227,7 +230,7 @@ fn summits(of: &Closer<'_>) -> Result<XyPlot, FigureError> {
     let bars = counts.iter().enumerate().flat_map(|(k, count)| [k, k + 1].map(|at| (at as f64 * width, *count as f64 * unit)));
     let curves = vec![
         curve(("nayak", ""), of.nayak.to_vec(), shade(THEORY, 0, 1), Stroke::Dashed),
-        curve(("realised", ""), bars.collect(), shade(UNLOADING, 0, 1), Stroke::Solid),
+        curve(("realised", ""), bars.collect(), shade(RESULT, 0, 1), Stroke::Solid),
     ];
     let points = || curves.iter().flat_map(|curve: &Curve| curve.points.iter());
     let (x, y) = (
@@ -236,5 +239,5 @@ fn summits(of: &Closer<'_>) -> Result<XyPlot, FigureError> {
     );
     let [found, nayak] = of.densities_1_m2.map(|density| density * of.length_m * of.length_m);
     let title = format!("{}; Nayak: {nayak:.0}", counted(found.round() as usize, "summit"));
-    Ok(plot(title, x, y, curves, &[("this surface", UNLOADING, Stroke::Solid), ("Nayak, Eq A2", THEORY, Stroke::Dashed)]))
+    Ok(plot(title, x, y, curves, &[("this surface", RESULT, Stroke::Solid), ("Nayak, Eq A2", THEORY, Stroke::Dashed)]))
 }

@@ -21,6 +21,8 @@ pub enum Stroke {
     Dotted,
     /// No line: the points alone, small.
     Points,
+    /// No line: small diamonds.
+    Diamonds,
     /// No line: a cross at each point.
     Crosses,
 }
@@ -28,7 +30,7 @@ pub enum Stroke {
 impl Stroke {
     pub(super) fn dashes(self) -> Option<&'static str> {
         match self {
-            Self::Solid | Self::Points | Self::Crosses => None,
+            Self::Solid | Self::Points | Self::Diamonds | Self::Crosses => None,
             Self::Dashed => Some("7 4"),
             Self::Dotted => Some("1.5 3.5"),
         }
@@ -36,7 +38,7 @@ impl Stroke {
 
     /// True if its points are joined.
     pub(super) fn is_line(self) -> bool {
-        !matches!(self, Self::Points | Self::Crosses)
+        !matches!(self, Self::Points | Self::Diamonds | Self::Crosses)
     }
 }
 
@@ -57,16 +59,30 @@ pub struct Curve {
     pub positive: bool,
     /// A CSS colour.
     pub colour: String,
+    /// Colours of the single points with their marks and bars; empty if all have the colour of the curve.
+    pub mark_colours: Vec<String>,
     /// Stroke.
     pub stroke: Stroke,
+    /// True if a line joins the points; false for categories.
+    pub joined: bool,
     /// True if each point has a marker.
     pub marked: bool,
 }
 
 impl Curve {
+    /// True if a line joins the points.
+    pub(super) fn has_line(&self) -> bool {
+        self.joined && self.stroke.is_line()
+    }
+
+    /// The colour of a point.
+    pub(super) fn mark_colour(&self, place: usize) -> &str {
+        self.mark_colours.get(place).unwrap_or(&self.colour)
+    }
+
     /// True if each point is drawn with a mark: a line of one point would not be seen.
     pub(super) fn is_marked(&self) -> bool {
-        self.marked || self.points.len() == 1 || !self.stroke.is_line()
+        self.marked || self.points.len() == 1 || !self.has_line()
     }
 
     /// The ends of a point's error bar, or the edges of the band there.
@@ -100,6 +116,8 @@ pub struct KeyEntry {
     pub stroke: Option<Stroke>,
     /// True if the sample has a marker.
     pub marked: bool,
+    /// True if the sample has a line; false for categories.
+    pub joined: bool,
 }
 
 /// A text at the end of a curve.
@@ -132,6 +150,8 @@ pub struct XyPlot {
     pub key: Vec<KeyEntry>,
     /// Texts at the ends of curves.
     pub notes: Vec<Note>,
+    /// Minimum width of the texts beside the plot, in pixels: panels that stand side by side have one size.
+    pub margin: f64,
 }
 
 /// Adds a text of the size of notes.

@@ -6,11 +6,19 @@ use std::sync::{Arc, LazyLock};
 use svg2pdf::usvg::{Options, Tree, fontdb::Database};
 use svg2pdf::{ConversionOptions, PageOptions};
 
-/// Dots of a PNG for each pixel of the picture: some 420 to the inch where a panel is one column of a journal wide.
+/// Dots of a PNG for each pixel of the picture: about 420 dpi where a panel is one column of a journal wide.
 const DOTS: f32 = 3.0;
 
-/// Pixels of the picture to the inch on paper: a panel without notes beside it is 88 mm wide, one column of a journal.
-const PIXELS_PER_INCH: f32 = 480.0 / (88.0 / 25.4);
+/// Pixels of the picture to the inch on paper, where a panel without notes beside it has this width \[mm\].
+fn pixels_per_inch(width_mm: f64) -> f32 {
+    (480.0 / (width_mm / 25.4)) as f32
+}
+
+/// The SVG with another font family before those that it has.
+#[must_use]
+pub fn with_font(svg: &str, font: &str) -> String {
+    svg.replacen("font-family=\"", &format!("font-family=\"{font}, "), 1).replacen(&format!("{font}, {font}, "), &format!("{font}, "), 1)
+}
 
 /// The letters that figures use, of DejaVu Sans.
 static FONTS: LazyLock<Arc<Database>> = LazyLock::new(|| {
@@ -30,7 +38,7 @@ fn tree(svg: &str) -> Result<Tree, FigureError> {
 ///
 /// # Errors
 /// If the text is no SVG, or asks for a picture that memory does not hold.
-pub fn png(svg: &str) -> Result<Vec<u8>, FigureError> {
+pub fn png(svg: &str, width_mm: f64) -> Result<Vec<u8>, FigureError> {
     let tree = tree(svg)?;
     let size = tree.size();
     let [width, height] = [size.width(), size.height()].map(|pixels| (pixels * DOTS).ceil() as u32);
@@ -39,16 +47,16 @@ pub fn png(svg: &str) -> Result<Vec<u8>, FigureError> {
     dots.fill(Color::WHITE);
     resvg::render(&tree, Transform::from_scale(DOTS, DOTS), &mut dots.as_mut());
     let colours: Vec<u8> = dots.pixels().iter().flat_map(|dot| [dot.red(), dot.green(), dot.blue()]).collect();
-    encode(&colours, width, height).map_err(|error| FigureError::Format(error.to_string()))
+    encode(&colours, (width, height), pixels_per_inch(width_mm)).map_err(|error| FigureError::Format(error.to_string()))
 }
 
-fn encode(colours: &[u8], width: u32, height: u32) -> Result<Vec<u8>, png::EncodingError> {
+fn encode(colours: &[u8], (width, height): (u32, u32), pixels_per_inch: f32) -> Result<Vec<u8>, png::EncodingError> {
     let mut file = Vec::new();
     let mut encoder = png::Encoder::new(&mut file, width, height);
     encoder.set_color(png::ColorType::Rgb);
     // Flat colours: this is small, and many times as fast as the default.
     encoder.set_compression(png::Compression::Fast);
-    let per_metre = (DOTS * PIXELS_PER_INCH / 0.0254).round() as u32;
+    let per_metre = (DOTS * pixels_per_inch / 0.0254).round() as u32;
     encoder.set_pixel_dims(Some(png::PixelDimensions { xppu: per_metre, yppu: per_metre, unit: png::Unit::Meter }));
     encoder.write_header()?.write_image_data(colours)?;
     Ok(file)
@@ -58,8 +66,8 @@ fn encode(colours: &[u8], width: u32, height: u32) -> Result<Vec<u8>, png::Encod
 ///
 /// # Errors
 /// If the text is no SVG.
-pub fn pdf(svg: &str) -> Result<Vec<u8>, FigureError> {
-    let page = PageOptions { dpi: PIXELS_PER_INCH };
+pub fn pdf(svg: &str, width_mm: f64) -> Result<Vec<u8>, FigureError> {
+    let page = PageOptions { dpi: pixels_per_inch(width_mm) };
     // The library writes several fonts in an order that differs from run to run: one face is enough for a letter beside a picture.
     let svg = svg.replace(" font-weight=\"bold\"", "");
     let file = svg2pdf::to_pdf(&tree(&svg)?, ConversionOptions::default(), page).map_err(|error| FigureError::Format(error.to_string()))?;

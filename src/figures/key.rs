@@ -21,7 +21,7 @@ pub(super) fn add(scene: &mut Scene, frame: &ComputedLayout, plot: &XyPlot) {
             text(scene, (left, y + 4.5), &entry.text, TextAnchor::Start);
             continue;
         };
-        if stroke.is_line() {
+        if stroke.is_line() && entry.joined {
             scene.add(Primitive::Line {
                 x1: left,
                 y1: y,

@@ -1,8 +1,9 @@
 //! Maps of the contact spots on the surface, at four points of the loop.
 
 use super::cycle_loop::{Closer, Kept, SpotTables};
+use super::drawing::Drawing;
 use super::{FigureError, markup};
-use crate::stats::significant;
+use crate::stats::{labels_with_unit, significant};
 use crate::store::Frame;
 use crate::text::counted;
 use ndarray::ArrayView2;
@@ -13,29 +14,33 @@ use std::fmt::Write as _;
 pub(super) const SIDE: f64 = 300.0;
 pub(super) const GAP: f64 = 16.0;
 pub(super) const ABOVE: f64 = 42.0;
+/// Height of the legend.
+pub(super) const LEGEND: f64 = 46.0;
 
 /// Cells of the heights along a side, and shades of grey.
 const CELLS: usize = 75;
-const SHADES: usize = 7;
+const SHADES: usize = 12;
 
 /// Spots on one map, at most: the largest are drawn.
 const MOST_SPOTS: usize = 4000;
 
-pub(super) const PUSHED: &str = "#0077bb";
-pub(super) const PULLED: &str = "#cc3311";
+pub(super) const PUSHED: &str = "#0072b2";
+pub(super) const PULLED: &str = "#d55e00";
 
-/// The spots at each landmark whose spots were kept, over the heights as shades of grey, the lower the darker; nothing where none were kept.
+/// The contact spots at each landmark whose spots were kept, over the heights as shades of grey, the lower the darker, with crosses at the absorbed asperities; nothing where
+/// none were kept.
 ///
 /// # Errors
 /// If a table lacks a column.
-pub(super) fn map(of: &Closer<'_>, landmarks: &[Kept], heights_m: ArrayView2<'_, f64>) -> Result<Option<String>, FigureError> {
+pub(super) fn map(of: &Closer<'_>, landmarks: &[Kept], heights_m: ArrayView2<'_, f64>) -> Result<Option<Drawing>, FigureError> {
     if landmarks.is_empty() {
         return Ok(None);
     }
     let (loads, penetrations) = (of.steps.f64("load")?, of.steps.f64("penetration")?);
     let rows = landmarks.len().div_ceil(2) as f64;
-    let (width, height) = (2.0 * SIDE + 3.0 * GAP, rows * (SIDE + ABOVE) + GAP + 20.0);
+    let (width, height) = (2.0 * SIDE + 3.0 * GAP, rows * (SIDE + ABOVE) + GAP + LEGEND);
     let mut svg = sheet((width, height), "map", heights_m);
+    let bar = scale_bar(of.length_m);
     for (k, (landmark, step)) in landmarks.iter().enumerate() {
         let (left, top) = (GAP + (k % 2) as f64 * (SIDE + GAP), ABOVE + (k / 2) as f64 * (SIDE + ABOVE));
         let at = usize::try_from(*step).unwrap_or_default();
@@ -47,17 +52,23 @@ pub(super) fn map(of: &Closer<'_>, landmarks: &[Kept], heights_m: ArrayView2<'_,
             "<text x=\"{left}\" y=\"{}\" font-size=\"14\">{}: {}</text>\
              <text x=\"{left}\" y=\"{}\" font-size=\"13\">F/(E^{{*}}A_{{0}}) = {}, Δ/h_{{rms}} = {:.2}</text>\
              <g transform=\"translate({left} {top})\"><g clip-path=\"url(#map-edge)\"><use xlink:href=\"#map-heights\"/>{spots}</g>\
-             <rect x=\"0\" y=\"0\" width=\"{SIDE}\" height=\"{SIDE}\" fill=\"none\" stroke=\"black\"/></g>",
+             <rect x=\"0\" y=\"0\" width=\"{SIDE}\" height=\"{SIDE}\" fill=\"none\" stroke=\"black\"/>{bar}</g>",
             top - 23.0,
             landmark.words(),
             counted(count, "contact spot"),
             top - 6.0,
-            significant(number(&loads), 3).replace('-', "−"),
+            power(number(&loads)),
             number(&penetrations)
         );
     }
-    svg += &legend(height - 12.0);
-    Ok(Some(markup::render(&svg)))
+    svg += &legend(height - LEGEND + 14.0, heights_m);
+    let caption = format!(
+        "Contact spots at {} of the loop, for {}. Circles have the contact radius; where they overlap, A counts the area once for each. Heights from their mean. Table \
+         contacts: contact_radius_m, load_n, state.",
+        counted(landmarks.len(), "point"),
+        of.parameters
+    );
+    Ok(Some(Drawing::new("closer_map", caption, &markup::render(&svg))))
 }
 
 /// Beginning of an SVG of maps: the heights and the edge of a map are its definitions `<prefix>-heights` and `<prefix>-edge`.
@@ -71,18 +82,77 @@ pub(super) fn sheet((width, height): (f64, f64), prefix: &str, heights_m: ArrayV
     )
 }
 
-/// Meaning of the colours, with its base line at `foot`, and the end of the SVG.
-pub(super) fn legend(foot: f64) -> String {
+/// A number with three digits and, where it is small, a power of ten, with the markup of the figures.
+fn power(number: f64) -> String {
+    let text = significant(number, 3);
+    let text = text.split_once('e').map_or(text.clone(), |(digits, exponent)| format!("{digits} × 10^{{{exponent}}}"));
+    text.replace('-', "−")
+}
+
+/// A scale bar and the directions of the axes, in the lower left corner of a map.
+pub(super) fn scale_bar(length_m: f64) -> String {
+    // The largest of 1, 2 and 5 times a power of ten that is at most a quarter of the side.
+    let power = 10f64.powf((0.25 * length_m).log10().floor());
+    let bar = [5.0, 2.0, 1.0].into_iter().map(|factor| factor * power).find(|bar| *bar <= 0.25 * length_m * (1.0 + 1e-9)).unwrap_or(power);
+    let (width, foot) = (SIDE * bar / length_m, SIDE - 8.0);
+    let text = labels_with_unit("length_m", &[bar]).concat();
     format!(
+        "<rect x=\"4\" y=\"{}\" width=\"{:.2}\" height=\"36\" fill=\"white\" fill-opacity=\"0.85\"/>\
+         <rect x=\"10\" y=\"{}\" width=\"{width:.2}\" height=\"3\"/><text x=\"10\" y=\"{}\" font-size=\"12\">{text}</text>\
+         <text x=\"{:.2}\" y=\"{}\" font-size=\"12\">x →</text><text x=\"{:.2}\" y=\"{}\" font-size=\"12\">y ↑</text>",
+        SIDE - 40.0,
+        width + 48.0,
+        foot - 3.0,
+        foot - 8.0,
+        width + 18.0,
+        foot,
+        width + 18.0,
+        foot - 14.0
+    )
+}
+
+/// Meaning of the colours and greys, with its first base line at `foot`, and the end of the SVG.
+pub(super) fn legend(foot: f64, heights_m: ArrayView2<'_, f64>) -> String {
+    let (low, high) = extent(heights_m);
+    let rounded = |height: f64| significant(height, 3).parse().unwrap_or(height);
+    let [low, high] = [low, high].map(|height| labels_with_unit("height_m", &[rounded(height)]).concat().replace('-', "−"));
+    let mut svg = format!(
         "<circle cx=\"{}\" cy=\"{}\" r=\"5\" fill=\"{PUSHED}\"/><text x=\"{}\" y=\"{foot}\" font-size=\"13\">compressive</text>\
-         <circle cx=\"{}\" cy=\"{}\" r=\"5\" fill=\"{PULLED}\"/><text x=\"{}\" y=\"{foot}\" font-size=\"13\">tensile; darker grey: lower heights</text></svg>",
+         <circle cx=\"{}\" cy=\"{}\" r=\"5\" fill=\"{PULLED}\"/><text x=\"{}\" y=\"{foot}\" font-size=\"13\">tensile</text>\
+         <path d=\"M{} {}l6 6m0 -6l-6 6\" stroke=\"black\"/><text x=\"{}\" y=\"{foot}\" font-size=\"13\">absorbed by a larger contact</text>",
         GAP + 5.0,
         foot - 4.5,
         GAP + 15.0,
         GAP + 115.0,
         foot - 4.5,
-        GAP + 125.0
-    )
+        GAP + 125.0,
+        GAP + 185.0,
+        foot - 7.5,
+        GAP + 197.0
+    );
+    let top = foot + 8.0;
+    for k in 0..SHADES {
+        let at = GAP + k as f64 * 10.0;
+        let _ = write!(svg, "<rect x=\"{at}\" y=\"{top}\" width=\"10.5\" height=\"12\" fill=\"{}\"/>", grey(k));
+    }
+    let _ = write!(
+        svg,
+        "<text x=\"{}\" y=\"{}\" font-size=\"13\">height: {low} (dark) to {high} (light)</text></svg>",
+        GAP + SHADES as f64 * 10.0 + 8.0,
+        top + 11.0
+    );
+    svg
+}
+
+/// Grey of a shade of the heights.
+fn grey(shade: usize) -> String {
+    format!("#{0:02x}{0:02x}{0:02x}", 150 + 105 * shade / SHADES)
+}
+
+/// Minimum and maximum of the known heights: measured surfaces may lack points.
+fn extent(heights: ArrayView2<'_, f64>) -> (f64, f64) {
+    let known = heights.iter().copied().filter(|height| height.is_finite());
+    known.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), h| (low.min(h), high.max(h)))
 }
 
 /// The heights in shades of grey, a path for each shade.
@@ -92,9 +162,7 @@ fn ground(heights: ArrayView2<'_, f64>) -> String {
     if cells == 0 {
         return String::new();
     }
-    // Measured surfaces may lack points.
-    let known = || heights.iter().copied().filter(|height| height.is_finite());
-    let (low, high) = known().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), h| (low.min(h), high.max(h)));
+    let (low, high) = extent(heights);
     let shade = |i: usize, j: usize| {
         // The middle of the cell stands for it.
         let height = heights[[(2 * i + 1) * rows / (2 * cells), (2 * j + 1) * columns / (2 * cells)]];
@@ -121,10 +189,7 @@ fn ground(heights: ArrayView2<'_, f64>) -> String {
             );
         }
     }
-    let fill = |(k, path): (usize, String)| {
-        let grey = 150 + 105 * k / SHADES;
-        format!("<path fill=\"#{grey:02x}{grey:02x}{grey:02x}\" d=\"{path}\"/>")
-    };
+    let fill = |(k, path): (usize, String)| format!("<path fill=\"{}\" d=\"{path}\"/>", grey(k));
     paths.into_iter().enumerate().map(fill).collect()
 }
 
@@ -152,6 +217,14 @@ pub(super) fn circles(tables: &SpotTables<'_>, length_m: f64, periodic: bool, st
     let merged = merged_centres(merged, first.map(|row| contacts.f64_or_null("max_load").map(|loads| loads[row])).transpose()?.flatten())?;
     let mut spots: Vec<(f64, f64, f64, bool)> = Vec::new();
     let mut count = 0;
+    let absorbed = |k: &usize| steps[*k] == step && states[*k] == "covered";
+    let absorbed: Vec<(f64, f64)> = (0..steps.len())
+        .filter(absorbed)
+        .filter_map(|k| {
+            let asperity = usize::try_from(ids[k]).ok().filter(|id| *id < x.len())?;
+            Some((x[asperity] * unit, SIDE - y[asperity] * unit))
+        })
+        .collect();
     for k in (0..steps.len()).filter(|k| steps[*k] == step && states[*k] == "contact") {
         count += 1;
         let asperity = usize::try_from(ids[k]).ok().filter(|id| *id < x.len());
@@ -173,6 +246,13 @@ pub(super) fn circles(tables: &SpotTables<'_>, length_m: f64, periodic: bool, st
             }
         }
         svg.push_str("</g>");
+    }
+    if !absorbed.is_empty() {
+        svg.push_str("<path stroke=\"black\" stroke-width=\"1.1\" d=\"");
+        for (x, y) in absorbed.iter().take(MOST_SPOTS) {
+            let _ = write!(svg, "M{:.1} {:.1}l4 4m0 -4l-4 4", x - 2.0, y - 2.0);
+        }
+        svg.push_str("\"/>");
     }
     Ok((svg, count))
 }

@@ -16,7 +16,7 @@ impl Stroke {
         match self {
             Self::Solid | Self::Points => MarkerShape::Circle,
             Self::Dashed => MarkerShape::Square,
-            Self::Dotted => MarkerShape::Diamond,
+            Self::Dotted | Self::Diamonds => MarkerShape::Diamond,
             Self::Crosses => MarkerShape::Cross,
         }
     }
@@ -24,6 +24,7 @@ impl Stroke {
     fn size(self) -> f64 {
         match self {
             Self::Points => SPECK,
+            Self::Diamonds => 1.6 * SPECK,
             Self::Crosses => CROSS,
             // A square is wider than a disc of the same radius.
             Self::Dashed => 0.85 * MARK,
@@ -32,10 +33,15 @@ impl Stroke {
     }
 }
 
-/// The points of a curve as marks.
-pub(super) fn marks(curve: &Curve, points: Vec<(f64, f64)>) -> Plot {
-    let marks = ScatterPlot::new().with_data(points).with_color(curve.colour.clone()).with_size(curve.stroke.size());
-    Plot::Scatter(marks.with_marker(curve.stroke.shape()))
+/// The points of a curve as marks, a plot for each run of points of one colour.
+pub(super) fn marks(curve: &Curve, points: &[(f64, f64)]) -> Vec<Plot> {
+    let coloured: Vec<(&str, (f64, f64))> = points.iter().enumerate().map(|(place, point)| (curve.mark_colour(place), *point)).collect();
+    let plot = |run: &[(&str, (f64, f64))]| {
+        let colour = run.first().map_or("", |(colour, _)| colour).to_owned();
+        let marks = ScatterPlot::new().with_data(run.iter().map(|(_, point)| *point)).with_color(colour).with_size(curve.stroke.size());
+        Plot::Scatter(marks.with_marker(curve.stroke.shape()))
+    };
+    coloured.chunk_by(|a, b| a.0 == b.0).map(plot).collect()
 }
 
 /// One mark of a stroke in the key.
@@ -46,7 +52,9 @@ pub(super) fn sample(scene: &mut Scene, (x, y): (f64, f64), stroke: Stroke, colo
             Primitive::Circle { cx: x, cy: y, r: size, fill: colour.into(), fill_opacity: None, stroke: None, stroke_width: None }
         }
         Stroke::Dashed => path(format!("M {0} {1} h {2} v {2} h -{2} Z", x - size, y - size, 2.0 * size), colour, false),
-        Stroke::Dotted => path(format!("M {x} {0} L {1} {y} L {x} {2} L {3} {y} Z", y - size, x + size, y + size, x - size), colour, false),
+        Stroke::Dotted | Stroke::Diamonds => {
+            path(format!("M {x} {0} L {1} {y} L {x} {2} L {3} {y} Z", y - size, x + size, y + size, x - size), colour, false)
+        }
         Stroke::Crosses => {
             let arm = 0.9 * size;
             path(format!("M {0} {1} l {2} {2} m 0 -{2} l -{2} {2}", x - arm, y - arm, 2.0 * arm), colour, true)

@@ -21,6 +21,12 @@ pub fn render(svg: &str) -> String {
     out
 }
 
+/// An SVG document with a description for readers who do not see it.
+pub fn described(svg: &str, description: &str) -> String {
+    let escaped = description.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;");
+    svg.replacen("<svg ", &format!("<svg role=\"img\" aria-label=\"{escaped}\" "), 1)
+}
+
 /// The size that a text's tag states. Spans need it: shares of a size mean different things to different viewers.
 fn font_size(tag: &str) -> f64 {
     let stated = tag.split_once("font-size=\"").and_then(|(_, after)| after.split_once('"'));

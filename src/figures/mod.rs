@@ -1,7 +1,7 @@
 //! Figures: five panels for each sweep, in the style of Figs 3 to 5 of the paper, and panels of a single cycle.
 //!
-//! Loading is green and dashed, unloading red and solid, the estimate of Deng and Kesari blue and dashed. The hues are distinct with any
-//! colour vision, and the strokes without colour. In a sweep, later cases are darker, and each curve has its label at the end.
+//! The colour is the case (palette of Okabe and Ito), the dash is the branch: loading dashed, unloading solid. Analytical models are black. Lower loads of one case
+//! are lighter, and each curve has its label at the end.
 
 mod axis;
 mod both;
@@ -9,6 +9,7 @@ mod captions;
 mod closer;
 mod curve;
 mod cycle_loop;
+mod drawing;
 mod formats;
 mod key;
 mod map;
@@ -18,6 +19,7 @@ mod panels;
 mod paths;
 mod plot;
 mod results;
+mod sensitivity;
 mod style;
 mod sweep;
 mod table;
@@ -27,9 +29,12 @@ pub use both::{Both, both, method_ratios};
 pub use closer::closer;
 pub use curve::{Curve, KeyEntry, Note, Stroke, XyPlot};
 pub use cycle_loop::{Closer, SpotTables};
-pub use formats::{pdf, png};
+pub use drawing::Drawing;
+pub use formats::{pdf, png, with_font};
+pub use markup::described;
 pub use panels::{Panel, compared, panels};
 pub use plot::plot_xy;
+pub use sensitivity::sensitivity;
 pub use sweep::Tables;
 pub use table::table;
 

@@ -3,11 +3,11 @@
 use super::FigureError;
 use super::captions::{data, of_sweep};
 use super::curve::{Stroke, XyPlot};
+use super::markup::described;
 use super::paths::paths;
-use super::plot::plot_xy;
-use super::results::{Measured, results};
-use super::style::{LOADING, UNLOADING};
-use super::sweep::{Sweep, Tables};
+use super::plot::{plot_xy, width_beside};
+use super::results::{Measured, Predicted, results};
+use super::sweep::{Member, Sweep, Tables};
 use crate::store::Frame;
 
 const LOSS: &str = "Θ/(E^{*}A_{0}h_{rms})";
@@ -21,6 +21,8 @@ pub struct Panel {
     pub name: String,
     /// Caption.
     pub caption: String,
+    /// Labels and colours of the cases of a sweep.
+    pub cases: Vec<(String, String)>,
     /// The drawing.
     pub svg: String,
     /// Contents of the plot.
@@ -31,7 +33,7 @@ pub struct Panel {
 /// `<sweep>_C` penetration over load, `<sweep>_D` energy lost, with the prediction of Deng and Kesari, `<sweep>_E` how much of it is lost on each branch.
 ///
 /// B, D and E stand over the parameter that varies; over the area at the end of loading if only the turning point varies. If several
-/// parameters vary, the first one is the axis, the title names the others, and only cases that differ in nothing else are joined. A case without
+/// parameters vary, the first one is the axis, the caption names the others, and only cases that differ in nothing else are joined. A case without
 /// finished realizations has no curve and no point. Error bars and bands are one standard deviation; those of quantities that cannot be negative end at 0. Results of
 /// fewer than five surfaces have crosses at the single surfaces instead of bars.
 ///
@@ -39,12 +41,11 @@ pub struct Panel {
 /// If no case belongs to the sweep, or a table lacks a column.
 pub fn panels(tables: &Tables<'_>, sweep: &str) -> Result<Vec<Panel>, FigureError> {
     let found = Sweep::find(tables.cases, sweep)?;
-    let heading = heading(tables.cases, &found, sweep)?;
     let stem: String = if sweep.is_empty() { "run" } else { sweep }
         .chars()
         .map(|letter| if letter.is_ascii_alphanumeric() || letter == '-' { letter } else { '_' })
         .collect();
-    let mut panels = drawn(tables, &found, (&heading, &stem))?;
+    let mut panels = drawn(tables, &found, &stem)?;
     panels.iter_mut().for_each(|panel| panel.caption += &data(&panel.name));
     Ok(panels)
 }
@@ -54,51 +55,49 @@ pub fn panels(tables: &Tables<'_>, sweep: &str) -> Result<Vec<Panel>, FigureErro
 ///
 /// # Errors
 /// If a table lacks a column.
-pub fn compared(tables: &Tables<'_>, labels: &[String], (heading, stem): (&str, &str)) -> Result<Vec<Panel>, FigureError> {
-    drawn(tables, &Sweep::side_by_side(tables.cases, labels)?, (heading, stem))
+pub fn compared(tables: &Tables<'_>, labels: &[String], stem: &str) -> Result<Vec<Panel>, FigureError> {
+    drawn(tables, &Sweep::side_by_side(tables.cases, labels)?, stem)
 }
 
-fn drawn(tables: &Tables<'_>, found: &Sweep, (heading, stem): (&str, &str)) -> Result<Vec<Panel>, FigureError> {
+fn drawn(tables: &Tables<'_>, found: &Sweep, stem: &str) -> Result<Vec<Panel>, FigureError> {
     let surfaces = surfaces(tables.cases, found)?;
-    let panel = |letter: char, plot: XyPlot| {
-        let stem = format!("{stem}_{letter}");
-        let plot = XyPlot { letter, title: heading.to_owned(), stem: stem.clone(), ..plot };
-        let caption = of_sweep(letter, found, &surfaces, &plot);
-        Panel { stem, name: letter.to_string(), caption, svg: plot_xy(&plot), plot }
+    let plots = plots(tables, found)?;
+    // Panels that stand side by side have one size.
+    let margin = plots.iter().map(|(_, plot)| width_beside(plot)).fold(0.0, f64::max);
+    // Where only the load varies, labels are numbers.
+    let named = |member: &Member| match (member.label.as_str(), found.differing.is_empty()) {
+        ("", _) => "simulation".to_owned(),
+        (load, true) => format!("F_{{max}}/(E*A_{{0}}) = {load}"),
+        (label, false) => label.to_owned(),
     };
+    let cases: Vec<(String, String)> = found.members.iter().map(|member| (named(member), member.colour.clone())).collect();
+    let panel = |(letter, plot): (char, XyPlot)| {
+        let stem = format!("{stem}_{letter}");
+        let plot = XyPlot { letter, stem: stem.clone(), margin, ..plot };
+        let caption = of_sweep(letter, found, &surfaces, &plot);
+        Panel { stem, name: letter.to_string(), svg: described(&plot_xy(&plot), &caption), caption, cases: cases.clone(), plot }
+    };
+    Ok(plots.into_iter().map(panel).collect())
+}
+
+/// The contents of the panels, by letter.
+fn plots(tables: &Tables<'_>, found: &Sweep) -> Result<Vec<(char, XyPlot)>, FigureError> {
     // Releasing absorbed asperities has no potential, so that one branch may gain energy.
-    let branch = |name, text, hue, stroke| Measured { name, text, hue, stroke, positive: false };
-    let computed = |name: &'static str| Measured { name, text: "simulation", hue: UNLOADING, stroke: Stroke::Solid, positive: true };
+    let branch = |name, text, stroke| Measured { name, text, stroke, positive: false };
+    let computed = |name: &'static str| Measured { name, text: "simulation", stroke: Stroke::Solid, positive: true };
+    let theories = [
+        Predicted { name: "loss_dk", stroke: Stroke::Dashed, text: "Deng–Kesari, target spectrum", abbreviation: "DK target" },
+        Predicted {
+            name: "loss_dk_realised", stroke: Stroke::Dotted, text: "Deng–Kesari, realised spectrum", abbreviation: "DK realised"
+        },
+    ];
+    let branches = [branch("dissipated_unloading", "unloading", Stroke::Solid), branch("dissipated_loading", "loading", Stroke::Dashed)];
     Ok(vec![
-        panel('A', paths(tables.curves, found, ("area", "A/A_{0}"), true)?),
-        panel('B', results(tables, found, "F_{po}/(E^{*}A_{0})", &[computed("pull_off_load")], &[])?),
-        panel('C', paths(tables.curves, found, ("penetration", "Δ/h_{rms}"), false)?),
-        panel(
-            'D',
-            results(
-                tables,
-                found,
-                LOSS,
-                &[computed("loss")],
-                &[
-                    ("loss_dk", Stroke::Dashed, "Deng–Kesari, target spectrum"),
-                    ("loss_dk_realised", Stroke::Dotted, "Deng–Kesari, realised spectrum"),
-                ],
-            )?,
-        ),
-        panel(
-            'E',
-            results(
-                tables,
-                found,
-                LOSS,
-                &[
-                    branch("dissipated_unloading", "unloading", UNLOADING, Stroke::Solid),
-                    branch("dissipated_loading", "loading", LOADING, Stroke::Dashed),
-                ],
-                &[],
-            )?,
-        ),
+        ('A', paths(tables.curves, found, ("area", "A/A_{0}"), true)?),
+        ('B', results(tables, found, "F_{po}/(E^{*}A_{0})", &[computed("pull_off_load")], &[])?),
+        ('C', paths(tables.curves, found, ("penetration", "Δ/h_{rms}"), false)?),
+        ('D', results(tables, found, LOSS, &[computed("loss")], &theories)?),
+        ('E', results(tables, found, LOSS, &branches, &[])?),
     ])
 }
 
@@ -114,18 +113,5 @@ fn surfaces(cases: &Frame, sweep: &Sweep) -> Result<String, FigureError> {
         (0, _) => format!("mean of up to {most} surfaces"),
         _ if least == most => format!("mean of {most} surfaces"),
         _ => format!("mean of {least} to {most} surfaces"),
-    })
-}
-
-fn heading(cases: &Frame, sweep: &Sweep, name: &str) -> Result<String, FigureError> {
-    let surfaces = surfaces(cases, sweep)?;
-    let mut others: Vec<&str> = sweep.differing.iter().skip(1).map(|parameter| parameter.symbol).collect();
-    if sweep.many_loads && !sweep.differing.is_empty() {
-        others.push("F_{max}");
-    }
-    let name = if name.is_empty() { String::new() } else { format!("{name}: ") };
-    Ok(match (sweep.differing.first(), others.is_empty()) {
-        (Some(first), false) => format!("{name}{surfaces}, over {}; varied: {}", first.symbol, others.join(", ")),
-        _ => format!("{name}{surfaces}"),
     })
 }

@@ -3,7 +3,7 @@
 use super::FigureError;
 use super::axis::Axis;
 use super::curve::{Curve, Note, Stroke, XyPlot};
-use super::style::{LOADING, MOST_NOTES, UNLOADING, curve, entry, shade};
+use super::style::{MOST_NOTES, NEUTRAL, curve, entry};
 use super::sweep::{Member, Sweep};
 use crate::store::Frame;
 
@@ -27,15 +27,16 @@ pub(super) fn paths(table: &Frame, sweep: &Sweep, (column, label): (&str, &str),
     let (mut curves, mut notes, mut drawn) = (Vec::new(), Vec::new(), Vec::new());
     let beside = !sweep.differing.is_empty();
     let every = sweep.members.len().div_ceil(MOST_NOTES);
-    for (at, member) in sweep.members.iter().enumerate() {
-        // One loading path serves all turning points of a case.
+    // One loading path serves all load reversals of a case: it has the colour of the largest load.
+    for member in sweep.members.iter().rev() {
         if !drawn.contains(&member.case_id) {
-            let colour = shade(LOADING, at, if beside { sweep.members.len() } else { 1 });
-            curves.push(picked(member, "loading", None, colour, Stroke::Dashed));
+            curves.push(picked(member, "loading", None, member.colour.clone(), Stroke::Dashed));
             drawn.push(member.case_id.clone());
         }
-        let colour = shade(UNLOADING, at, sweep.members.len());
-        let unloading = picked(member, "unloading", Some(member.max_load), colour, Stroke::Solid);
+    }
+    curves.reverse();
+    for (at, member) in sweep.members.iter().enumerate() {
+        let unloading = picked(member, "unloading", Some(member.max_load), member.colour.clone(), Stroke::Solid);
         if let Some(end) = unloading.points.first()
             && sweep.members.len() > 1
             && at % every == 0
@@ -44,13 +45,13 @@ pub(super) fn paths(table: &Frame, sweep: &Sweep, (column, label): (&str, &str),
         }
         curves.push(unloading);
     }
-    let mut key = vec![entry("loading", LOADING, Some(Stroke::Dashed), false), entry("unloading", UNLOADING, Some(Stroke::Solid), false)];
+    let mut key = vec![entry("loading", NEUTRAL, Some(Stroke::Dashed), false), entry("unloading", NEUTRAL, Some(Stroke::Solid), false)];
     if curves.iter().any(|curve| curve.band) {
         let cut = if curves.iter().any(Curve::is_cut) { ", end at 0" } else { "" };
-        key.push(entry(&format!("bands: ± one standard deviation{cut}"), LOADING, None, false));
+        key.push(entry(&format!("bands: ± one standard deviation{cut}"), NEUTRAL, None, false));
     }
     if !beside && !notes.is_empty() {
-        key.push(entry("numbers: F_{max}/(E^{*}A_{0})", LOADING, None, false));
+        key.push(entry("numbers: F_{max}/(E^{*}A_{0})", NEUTRAL, None, false));
     }
     let all = || curves.iter().flat_map(|curve: &Curve| curve.points.iter());
     // Numbers at the ends need room to the right of the last one.
@@ -59,5 +60,5 @@ pub(super) fn paths(table: &Frame, sweep: &Sweep, (column, label): (&str, &str),
         Axis::holding(LOAD, all().map(|point| point.0), true).with_headroom(room),
         Axis::holding(label, curves.iter().flat_map(Curve::heights), true),
     );
-    Ok(XyPlot { stem: String::new(), letter: ' ', title: String::new(), x, y, curves, key, notes })
+    Ok(XyPlot { stem: String::new(), letter: ' ', title: String::new(), x, y, curves, key, notes, margin: 0.0 })
 }

@@ -68,7 +68,7 @@ fn own_clips(svg: &str, stem: &str) -> String {
 }
 
 fn layout(plot: &XyPlot) -> Layout {
-    let beside = plot.notes.iter().filter(|note| note.beside).map(|note| markup::width(&note.text, NOTE)).fold(0.0, f64::max);
+    let beside = width_beside(plot).max(plot.margin);
     let (x, y) = (&plot.x, &plot.y);
     let labels = |axis: &Axis| {
         let axis = axis.clone();
@@ -97,6 +97,11 @@ fn layout(plot: &XyPlot) -> Layout {
         .with_force_margins(left, 18.0 + if beside > 0.0 { beside + 6.0 } else { 0.0 })
 }
 
+/// Width of the texts beside the plot, in pixels.
+pub(super) fn width_beside(plot: &XyPlot) -> f64 {
+    plot.notes.iter().filter(|note| note.beside).map(|note| markup::width(&note.text, NOTE)).fold(0.0, f64::max)
+}
+
 /// Band of the errors of a curve.
 fn band(curve: &Curve, plot: &XyPlot) -> Plot {
     let (mut at, mut low, mut high) = (Vec::new(), Vec::new(), Vec::new());
@@ -118,7 +123,7 @@ fn drawn(curve: &Curve, plot: &XyPlot) -> Vec<Plot> {
         Some(dashes) => kuva::plot::line::LineStyle::Custom(dashes.to_owned()),
     };
     let mut plots = Vec::new();
-    if curve.stroke.is_line() {
+    if curve.has_line() {
         let line = LinePlot::new().with_data(points.clone()).with_color(curve.colour.clone()).with_stroke_width(2.0).with_line_style(style);
         plots.push(Plot::Line(line));
     }
@@ -126,12 +131,12 @@ fn drawn(curve: &Curve, plot: &XyPlot) -> Vec<Plot> {
         if let Some((low, high)) = curve.ends(place) {
             let y = curve.points[place].1;
             let arms = (plot.y.drawn_length(y - low), plot.y.drawn_length(high - y));
-            let bar = LinePlot::new().with_data([*point]).with_color(curve.colour.clone());
+            let bar = LinePlot::new().with_data([*point]).with_color(curve.mark_colour(place).to_owned());
             plots.push(Plot::Line(bar.with_y_err_asymmetric([arms])));
         }
     }
     if curve.is_marked() {
-        plots.push(marks(curve, points));
+        plots.extend(marks(curve, &points));
     }
     plots
 }

@@ -3,7 +3,7 @@
 use super::FigureError;
 use super::axis::Axis;
 use super::curve::{Curve, KeyEntry, Note, Stroke, XyPlot};
-use super::style::{MOST_NOTES, THEORY, curve, entry, shade};
+use super::style::{MOST_NOTES, NEUTRAL, THEORY, curve, entry, shade};
 use super::sweep::{Member, Sweep, Tables};
 use crate::stats::{FEW, singles};
 
@@ -13,11 +13,24 @@ pub(super) struct Measured {
     /// A column of the table `cases` without `_mean`.
     pub(super) name: &'static str,
     pub(super) text: &'static str,
-    pub(super) hue: [u8; 3],
     pub(super) stroke: Stroke,
     /// True if it cannot be negative.
     pub(super) positive: bool,
 }
+
+/// A prediction to be drawn, and how.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Predicted {
+    /// A column of the table `cases` without `_mean`.
+    pub(super) name: &'static str,
+    pub(super) stroke: Stroke,
+    pub(super) text: &'static str,
+    /// Name at the end of a line of one series.
+    pub(super) abbreviation: &'static str,
+}
+
+/// Series of which each line of a prediction has a name.
+const MOST_LABELLED: usize = 4;
 
 /// Curves with their entries of the key and the notes at their ends.
 #[derive(Default)]
@@ -33,7 +46,7 @@ pub(super) fn results(
     sweep: &Sweep,
     label: &str,
     measured: &[Measured],
-    theories: &[(&str, Stroke, &str)],
+    theories: &[Predicted],
 ) -> Result<XyPlot, FigureError> {
     let mut series: Vec<&str> = sweep.members.iter().map(|member| member.series.as_str()).collect();
     series.sort_unstable();
@@ -54,18 +67,27 @@ pub(super) fn results(
     let cut = computed.curves.iter().any(Curve::is_cut);
     let mut key = computed.key;
     if crosses {
-        // The crosses have the hues of their means.
-        key.push(KeyEntry { colour: "#555555".to_owned(), ..entry("single surfaces", THEORY, Some(Stroke::Crosses), true) });
+        key.push(entry("single surfaces", NEUTRAL, Some(Stroke::Crosses), true));
     }
     if cut {
-        key.push(entry("bars end at 0", THEORY, None, false));
+        key.push(entry("bars end at 0", NEUTRAL, None, false));
     }
     key.extend(predicted.key);
     let curves: Vec<Curve> = predicted.curves.into_iter().chain(computed.curves).collect();
     let room = 0.07 * key.len() as f64 + 0.04;
     let y = Axis::holding(label, curves.iter().flat_map(Curve::heights), true).with_headroom(room);
     let x = sweep.axis.clone();
-    Ok(XyPlot { stem: String::new(), letter: ' ', title: String::new(), x, y, curves, key, notes: computed.notes })
+    Ok(XyPlot {
+        stem: String::new(),
+        letter: ' ',
+        title: String::new(),
+        x,
+        y,
+        curves,
+        key,
+        notes: [computed.notes, predicted.notes].concat(),
+        margin: 0.0,
+    })
 }
 
 /// The members that one line joins.
@@ -78,27 +100,33 @@ fn predict(
     tables: &Tables<'_>,
     sweep: &Sweep,
     series: &[&str],
-    (theory, stroke, text): (&str, Stroke, &str),
+    Predicted { name: theory, stroke, text, abbreviation }: Predicted,
     drawn: &mut Drawn,
 ) -> Result<(), FigureError> {
     let means = tables.cases.f64_or_null(&format!("{theory}_mean"))?;
     let (mut any, mut marked) = (false, false);
     for (at, name) in series.iter().enumerate() {
         let points: Vec<(f64, f64)> = joined(sweep, name).filter_map(|member| point(means, member)).collect();
-        let line = curve((theory, name), points, shade(THEORY, at, series.len()), stroke);
+        if let Some(end) = points.last()
+            && series.len() > 1
+            && series.len() <= MOST_LABELLED
+        {
+            drawn.notes.push(Note { at: *end, text: format!("{abbreviation}, {name}"), beside: true });
+        }
+        let line = Curve { joined: sweep.is_joined(), ..curve((theory, name), points, shade(THEORY, at, series.len()), stroke) };
         any |= !line.points.is_empty();
         marked |= line.is_marked();
         drawn.curves.push(line);
     }
     if any {
-        drawn.key.push(entry(text, THEORY, Some(stroke), marked));
+        drawn.key.push(KeyEntry { joined: sweep.is_joined(), ..entry(text, THEORY, Some(stroke), marked) });
     }
     Ok(())
 }
 
 /// Means of a result with error bars, or with crosses where there are too few surfaces for these.
 fn measure(tables: &Tables<'_>, sweep: &Sweep, series: &[&str], of: &Measured, drawn: &mut Drawn) -> Result<(), FigureError> {
-    let Measured { name, text, hue, stroke, positive } = *of;
+    let Measured { name, text, stroke, positive } = *of;
     let column = |end: &str| tables.cases.f64_or_null(&format!("{name}_{end}"));
     let (means, sds) = (column("mean")?, column("sd")?);
     let mut spread = false;
@@ -111,24 +139,27 @@ fn measure(tables: &Tables<'_>, sweep: &Sweep, series: &[&str], of: &Measured, d
         {
             drawn.notes.push(Note { at: *end, text: (*series_name).to_owned(), beside: true });
         }
-        let (mut errors, mut crosses) = (Vec::new(), Vec::new());
+        let (mut errors, mut crosses, mut hues) = (Vec::new(), Vec::new(), Vec::new());
         for member in &members {
             let values = singles(tables.cases, tables.realizations, member.row, name)?;
             let few = values.len() < FEW;
             errors.push(sds.get(member.row).copied().flatten().filter(|_| !few));
             // The mark of one surface is its mean.
-            crosses.extend(values.iter().filter(|_| few && values.len() > 1).map(|value| (member.x, *value)));
+            let own = values.iter().filter(|_| few && values.len() > 1).map(|value| (member.x, *value));
+            crosses.extend(own);
+            hues.resize(crosses.len(), member.colour.clone());
         }
         spread |= errors.iter().any(Option::is_some);
-        let colour = shade(hue, at, series.len());
-        let mean = curve((name, series_name), points, colour.clone(), stroke);
-        drawn.curves.push(Curve { errors, positive, marked: true, ..mean });
+        let mean = curve((name, series_name), points, shade(NEUTRAL, 0, 1), stroke);
+        let mark_colours = members.iter().map(|member| member.colour.clone()).collect();
+        drawn.curves.push(Curve { errors, positive, marked: true, mark_colours, joined: sweep.is_joined(), ..mean });
         if !crosses.is_empty() {
-            drawn.curves.push(curve((&format!("{name}_single"), series_name), crosses, colour, Stroke::Crosses));
+            let single = curve((&format!("{name}_single"), series_name), crosses, shade(NEUTRAL, 0, 1), Stroke::Crosses);
+            drawn.curves.push(Curve { mark_colours: hues, ..single });
         }
     }
     let text = if spread { format!("{text}, ± one standard deviation") } else { text.to_owned() };
-    drawn.key.push(entry(&text, hue, Some(stroke), true));
+    drawn.key.push(KeyEntry { joined: sweep.is_joined(), ..entry(&text, NEUTRAL, Some(stroke), true) });
     Ok(())
 }
 

@@ -1,26 +1,50 @@
-//! The hues and strokes of the panels.
+//! The hues and strokes of the figures: the colour is the case, the dash is the branch.
 
 use super::curve::{Curve, KeyEntry, Stroke};
 
-pub(super) const LOADING: [u8; 3] = [0x00, 0x8a, 0x5e];
-pub(super) const UNLOADING: [u8; 3] = [0xcc, 0x33, 0x11];
-pub(super) const THEORY: [u8; 3] = [0x00, 0x77, 0xbb];
+/// Colours of cases, distinct with any colour vision (Okabe and Ito); yellow is left out, since it is too pale on white.
+const PALETTE: [[u8; 3]; 7] = [
+    [0x00, 0x72, 0xb2],
+    [0xd5, 0x5e, 0x00],
+    [0x00, 0x9e, 0x73],
+    [0xcc, 0x79, 0xa7],
+    [0x56, 0xb4, 0xe9],
+    [0xe6, 0x9f, 0x00],
+    [0x00, 0x00, 0x00],
+];
+
+/// Simulation results of a figure with one case.
+pub(super) const RESULT: [u8; 3] = PALETTE[0];
+/// Second quantity of a figure with one case.
+pub(super) const OTHER: [u8; 3] = PALETTE[1];
+/// Analytical models.
+pub(super) const THEORY: [u8; 3] = [0x00, 0x00, 0x00];
+/// Lines that join results of several cases, and samples of a stroke.
+pub(super) const NEUTRAL: [u8; 3] = [0x59, 0x59, 0x59];
 /// As many names as fit beside a panel.
 pub(super) const MOST_NOTES: usize = 14;
 
 /// A hue, the lighter the earlier of several.
 pub(super) fn shade(hue: [u8; 3], at: usize, of: usize) -> String {
-    let white = if of < 2 { 0.0 } else { 0.55 * (of - 1 - at) as f64 / (of - 1) as f64 };
+    let white = if of < 2 { 0.0 } else { 0.4 * (of - 1 - at) as f64 / (of - 1) as f64 };
     let [red, green, blue] = hue.map(|part| (f64::from(part) + white * (255.0 - f64::from(part))).round() as u8);
     format!("#{red:02x}{green:02x}{blue:02x}")
+}
+
+/// The colour of a case by its place, and of one of its loads: the lighter the lower. After the last colour of the palette they begin again, darker.
+pub(super) fn case_colour(place: usize, load: usize, loads: usize) -> String {
+    let hue = PALETTE[place % PALETTE.len()];
+    let dark = 0.6_f64.powi((place / PALETTE.len()) as i32);
+    shade(hue.map(|part| (f64::from(part) * dark).round() as u8), load, loads)
 }
 
 /// A curve without errors, of something and by its name.
 pub(super) fn curve((name, of): (&str, &str), points: Vec<(f64, f64)>, colour: String, stroke: Stroke) -> Curve {
     let [name, of] = [name, of].map(str::to_owned);
-    Curve { name, of, points, errors: Vec::new(), band: false, positive: false, colour, stroke, marked: false }
+    let mark_colours = Vec::new();
+    Curve { name, of, points, errors: Vec::new(), band: false, positive: false, colour, mark_colours, stroke, joined: true, marked: false }
 }
 
 pub(super) fn entry(text: &str, hue: [u8; 3], stroke: Option<Stroke>, marked: bool) -> KeyEntry {
-    KeyEntry { text: text.to_owned(), colour: shade(hue, 0, 1), stroke, marked }
+    KeyEntry { text: text.to_owned(), colour: shade(hue, 0, 1), stroke, marked, joined: true }
 }

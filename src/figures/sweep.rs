@@ -2,6 +2,7 @@
 
 use super::FigureError;
 use super::axis::Axis;
+use super::style::case_colour;
 use crate::stats::{Values, Varying, labels, varying};
 use crate::store::Frame;
 
@@ -26,6 +27,8 @@ pub(super) struct Member {
     pub(super) x: f64,
     /// Label of its curves.
     pub(super) label: String,
+    /// Colour of its curves and points.
+    pub(super) colour: String,
     /// Parameters besides `x`: members that share them are joined by a line.
     pub(super) series: String,
 }
@@ -86,14 +89,28 @@ impl Sweep {
             let case_id = ids.get(*row).copied().unwrap_or_default().to_owned();
             let series = series.join(", ");
             // Without a place, a member has curves but no point; NaN is left out of every axis.
-            members.push(Member { row: *row, case_id, max_load: load, x: x.unwrap_or(f64::NAN), label: parts.join(", "), series });
+            members.push(Member {
+                row: *row,
+                case_id,
+                max_load: load,
+                x: x.unwrap_or(f64::NAN),
+                label: parts.join(", "),
+                colour: String::new(),
+                series,
+            });
         }
         let order = |member: &Member| {
             if differing.is_empty() { member.max_load } else { member.x }
         };
         members.sort_by(|a, b| order(a).total_cmp(&order(b)).then(a.max_load.total_cmp(&b.max_load)).then(a.case_id.cmp(&b.case_id)));
         let axis = axis(&differing, words, &members);
+        colour(&mut members, differing.is_empty());
         Ok(Self { members, differing, many_loads, axis })
+    }
+
+    /// True if lines join the results: not between categories.
+    pub(super) fn is_joined(&self) -> bool {
+        !matches!(self.differing.first().map(|first| &first.values), Some(Values::Words(_)))
     }
 
     /// One case in several campaigns: a row for each, in the order of their names.
@@ -105,12 +122,29 @@ impl Sweep {
             max_load: loads.get(row).copied().unwrap_or_default(),
             x: row as f64,
             label: label.clone(),
+            colour: case_colour(row, 0, 1),
             // Runs are not joined by a line.
             series: label.clone(),
         };
         let differing = vec![Varying::named_as(["campaign", "run", "run"], Values::Words(labels.to_vec()))];
         let members: Vec<Member> = labels.iter().enumerate().map(member).collect();
         Ok(Self { members, differing, many_loads: false, axis: Axis::of_words("run", labels.to_vec()) })
+    }
+}
+
+/// Colours the members: one colour for each case, or for each load where only the load varies.
+fn colour(members: &mut [Member], by_load: bool) {
+    let mut loads: Vec<f64> = members.iter().map(|member| member.max_load).collect();
+    loads.sort_by(f64::total_cmp);
+    loads.dedup();
+    let mut cases: Vec<String> = Vec::new();
+    for member in members {
+        if !cases.contains(&member.case_id) {
+            cases.push(member.case_id.clone());
+        }
+        let case = cases.iter().position(|id| *id == member.case_id).unwrap_or_default();
+        let load = loads.iter().position(|load| *load == member.max_load).unwrap_or_default();
+        member.colour = if by_load { case_colour(load, 0, 1) } else { case_colour(case, load, loads.len()) };
     }
 }
 

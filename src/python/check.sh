@@ -26,7 +26,15 @@ cargo metadata --locked --format-version 1 --manifest-path "$root/src/python/Car
 cargo fmt --check --manifest-path "$root/src/python/Cargo.toml"
 python3 -m venv --clear "$folder/venv"
 python="$folder/venv/bin/python"
+# The wheel holds the program that the tests run, or the one of an earlier build; without HYSTERON it is built.
+if [ -n "${HYSTERON:-}" ]; then
+    HYSTERON_PROGRAM=$HYSTERON
+    export HYSTERON_PROGRAM
+fi
 "$python" -m pip install -q "$root"
+"$folder/venv/bin/hysteron" --version
+test -f "$folder/venv/share/man/man1/hysteron.1"
+test -f "$folder/venv/share/bash-completion/completions/hysteron"
 "$python" -m pip install -q -r "$root/tests/python/package/requirements.txt"
 cd "$root"
 "$python" -m ruff check --no-cache src/python/package tests/python/package

@@ -1,8 +1,9 @@
 //! Page of a comparison of finished runs.
 
-use super::layout::{document, grid, heading, prose, wide};
+use super::layout::{Numbers, document, grid, heading, legend, prose, wide};
 use super::numbers::{Shown, shown};
 use crate::figures::Panel;
+use crate::spec::FORMATS;
 use crate::stats::{Matched, Side, StatsError};
 use crate::store::Frame;
 use maud::{Markup, html};
@@ -34,14 +35,15 @@ pub fn comparison_page(of: &Compared<'_>) -> Result<String, StatsError> {
         th { "case" } th { "quantity" } th { "run" } th { "mean" } th { "mean of " (reference) }
         th { "difference" } th { "relative difference" } th { "realizations" }
     };
+    let numbers = Numbers::of(&FORMATS);
     let body = html! {
         h1 { (title) } "\n"
         p { (note(of, &labels)) } "\n"
-        (wide(&head, &rows(of)?))
+        (wide("comparison", &head, &rows(of)?))
         p { (prose("Differences larger than their half-width are bold. Data: `comparison.parquet`.")) } "\n"
-        @for (number, (name, panels)) in of.drawings.iter().enumerate() {
+        @for (name, panels) in of.drawings {
             (heading(name))
-            (grid(number + 1, panels))
+            section { (legend(panels.first().map_or(&[], |panel| &panel.cases))) (grid(&numbers, panels)) }
         }
     };
     Ok(document(&title, None, &body))

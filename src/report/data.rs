@@ -1,6 +1,8 @@
 //! Parts of the report: data access and citation.
 
 use super::layout::{heading, line, prose};
+use crate::stats::{StatsError, labels_with_unit};
+use crate::store::Frame;
 use maud::{Markup, html};
 
 const DATA: &str = "All numbers of this report are in the tables of this folder. `datapackage.json` describes each column with unit and \
@@ -20,15 +22,93 @@ const CITATION: &str = "Model: G. Violano and L. Afferrante, “Roughness-induce
     Lubricants 9(1):7, 2021, with corrected equations; the guide of hysteron lists the corrections. The provenance records in `receipts/` state program, \
     commit and compiler of each file.";
 
+/// Files and folders of the run that the page links.
+const FILES: [&str; 5] = ["campaign.toml", "datapackage.json", "statistics/", "figures/", "receipts/"];
+
+const BIBTEX: &str = r#"@software{hysteron,
+  title   = {hysteron: adhesive hysteresis of rough surfaces},
+  author  = {{The hysteron developers}},
+  version = {VERSION},
+  year    = {2026}
+}
+@article{violano2021,
+  title   = {Roughness-induced adhesive hysteresis in self-affine fractal surfaces},
+  author  = {Violano, G. and Afferrante, L.},
+  journal = {Lubricants},
+  volume  = {9},
+  number  = {1},
+  pages   = {7},
+  year    = {2021},
+  doi     = {10.3390/lubricants9010007}
+}"#;
+
+/// What a study consists of.
+pub(super) struct Study<'a> {
+    /// Numbers of cases by the asperity model and by boundary elements.
+    pub(super) case_counts: [usize; 2],
+    /// Number of realizations in words.
+    pub(super) realizations_text: &'a str,
+    pub(super) seed: u64,
+    /// True if surfaces are measured.
+    pub(super) is_measured: bool,
+}
+
+/// A paragraph that describes the method, to be adapted for a publication.
+pub(super) fn methods(cases: &Frame, study: &Study<'_>) -> Result<Markup, StatsError> {
+    let [asperities, elements] = study.case_counts;
+    let range = |column: &str| -> Result<Option<String>, StatsError> {
+        let values: Vec<f64> = cases.f64_or_null(column)?.iter().flatten().copied().collect();
+        let [low, high] = [f64::min, f64::max].map(|pick: fn(f64, f64) -> f64| values.iter().copied().reduce(pick));
+        Ok(low.zip(high).map(|(low, high)| {
+            let texts = labels_with_unit(column, &[low, high]);
+            if low == high { texts[..1].concat() } else { texts.join(" to ") }
+        }))
+    };
+    let mut text = String::new();
+    if let (Some(zeta), Some(hurst)) = (range("magnification")?, range("hurst")?) {
+        text += &format!(
+            "Self-affine rough surfaces with Hurst exponent H = {hurst} and magnification ζ = {zeta} were generated from their power spectrum \
+             ({} per case, seed {}). ",
+            study.realizations_text, study.seed
+        );
+    }
+    if study.is_measured {
+        text += "Measured surfaces were levelled, filtered and cropped as listed in this report. ";
+    }
+    let program = concat!("hysteron ", env!("CARGO_PKG_VERSION"));
+    if asperities > 0 {
+        text += &format!(
+            "Loading–unloading cycles of elastically interacting JKR asperities were computed with {program} after Violano and Afferrante (2021), with \
+             corrected equations. "
+        );
+    }
+    if elements > 0 {
+        text += &format!("Adhesive boundary-element cycles under displacement control were computed with {program}. ");
+    }
+    for (words, column) in [
+        ("The reduced modulus was E* = ", "contact_modulus_pa"),
+        ("the work of adhesion Δγ = ", "work_of_adhesion_j_m2"),
+        ("the rms height h_rms = ", "rms_height_m"),
+        ("the side of the nominal area L = ", "length_m"),
+    ] {
+        text += &range(column)?.map_or_else(String::new, |range| format!("{words}{range}, "));
+    }
+    text += &format!("the maximum load F_max/(E*A₀) = {}. ", range("max_load")?.unwrap_or_default());
+    text += "The dissipated energy Θ is the area of the force–penetration loop. Values are means over surfaces with 95 % confidence intervals (Student).";
+    Ok(html! { (heading("Methods paragraph")) pre.text.copy { (text) } "\n" })
+}
+
 /// Data access and citation.
 pub(super) fn usage() -> Markup {
     html! {
         (heading("Data"))
         (line(&html! { p { (prose(DATA)) } }))
-        (line(&html! { pre { (PYTHON) } }))
+        (line(&html! { pre.copy { (PYTHON) } }))
         (line(&html! { p { (prose("In R, after `hysteron export csv .`:")) } }))
         (line(&html! { pre { (R) } }))
         (heading("Citation"))
         (line(&html! { p { "Computed with hysteron " (env!("CARGO_PKG_VERSION")) " (MIT OR Apache-2.0). " (prose(CITATION)) } }))
+        (line(&html! { pre.copy { (BIBTEX.replace("VERSION", env!("CARGO_PKG_VERSION"))) } }))
+        (line(&html! { p { "Files: " @for (place, name) in FILES.iter().enumerate() { @if place > 0 { " · " } a href=(name) { (name) } } } }))
     }
 }

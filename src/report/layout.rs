@@ -1,31 +1,36 @@
 //! Common parts of HTML pages: document, style, text markup and grids of figures.
 
-use crate::figures::Panel;
+use crate::figures::{Drawing, Panel};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use std::cell::Cell;
 
-const STYLE: &str = "body{font:16px/1.5 system-ui,sans-serif;max-width:72rem;margin:2rem auto;padding:0 1rem;color:#1a1a1a;background:#fff}\
-h1,h2{line-height:1.2}pre{overflow-x:auto;background:#f4f4f2;padding:1rem;font-size:.85rem}\
-.panels{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(24rem,100%),1fr));gap:1rem}\
-figure{margin:0}figcaption{font-size:.8rem}.panels svg,.map svg{width:100%;height:auto;background:#fff}.map{max-width:48rem}table{border-collapse:collapse;font-size:.9rem}\
-td,th{padding:.2rem .7rem;border-bottom:1px solid #ccc;text-align:left;vertical-align:top}\
-.wide{overflow-x:auto}.wide table{font-size:.82rem}.wide td{white-space:nowrap}.wide td,.wide th{padding:.2rem .45rem}\
-.wide :is(td,th):nth-child(n+2){text-align:right}.clear{font-weight:700}.beyond{font-weight:700;color:#b3261e}\
-@media(prefers-color-scheme:dark){body{color:#e6e6e6;background:#161616}pre{background:#242424}.beyond{color:#ff8a80}}\
-@media print{body{max-width:none;margin:0;font-size:11pt}.wide{overflow:visible}.wide table{font-size:6.5pt}\
-.wide td{white-space:normal}.panels{grid-template-columns:1fr 1fr}.panels>figure,.map,tr{break-inside:avoid}}";
+const STYLE: &str = include_str!("page.css");
+const SCRIPT: &str = include_str!("page.js");
 
 /// Name of the metadata with the key of the report.
 const KEY: &str = "hysteron-key";
 
+/// A page with the style of the report alone; where `reload` is set, it is loaded again after so many seconds.
+pub(super) fn styled((title, reload): (&str, Option<u32>), body: &Markup) -> String {
+    let meta = html! { @if let Some(seconds) = reload { meta http-equiv="refresh" content=(seconds); } };
+    page(title, &meta, &html! { main { (body) } })
+}
+
 /// A whole page; `key` is the key of the report.
 pub(super) fn document(title: &str, key: Option<&str>, body: &Markup) -> String {
+    let meta = html! { @if let Some(key) = key { meta name=(KEY) content=(key); } };
+    page(title, &meta, &html! { main { (body) } script { (PreEscaped(SCRIPT)) } })
+}
+
+/// A page with its metadata.
+fn page(title: &str, meta: &Markup, body: &Markup) -> String {
     let page = html! {
         (DOCTYPE) "\n"
         html lang="en" {
             head {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width";
-                @if let Some(key) = key { meta name=(KEY) content=(key); }
+                (meta)
                 title { (title) }
                 style { (PreEscaped(STYLE)) }
             }
@@ -44,12 +49,51 @@ pub(super) fn line(block: &Markup) -> Markup {
 
 /// Heading of a section.
 pub(super) fn heading(title: &str) -> Markup {
-    html! { h2 { (title) } "\n" }
+    html! { h2 id=(anchor(title)) { (title) } "\n" }
+}
+
+/// The identifier of a heading: `Model validity` becomes `model-validity`.
+pub(super) fn anchor(title: &str) -> String {
+    let parts = title.split(|c: char| !c.is_alphanumeric()).filter(|part| !part.is_empty());
+    parts.map(str::to_lowercase).collect::<Vec<_>>().join("-")
+}
+
+/// Numbers of the figures, in their order, and the formats of their files.
+#[derive(Debug)]
+pub(super) struct Numbers<'a> {
+    last: Cell<usize>,
+    formats: &'a [&'static str],
+}
+
+impl<'a> Numbers<'a> {
+    pub(super) fn of(formats: &'a [&'static str]) -> Self {
+        Self { last: Cell::new(0), formats }
+    }
+
+    fn next(&self) -> usize {
+        self.last.set(self.last.get() + 1);
+        self.last.get()
+    }
+
+    /// Links to the files of a figure.
+    fn links(&self, stem: &str) -> Markup {
+        html! {
+            @for (place, format) in self.formats.iter().enumerate() {
+                @if place > 0 { " · " }
+                a href={ "figures/" (stem) "." (format) } { (format.to_uppercase()) }
+            }
+        }
+    }
 }
 
 /// A wide table: cells of the head, and the cells of each row.
-pub(super) fn wide(head: &Markup, rows: &[Markup]) -> Markup {
-    html! { div.wide { table { "\n" tr { (head) } "\n" @for row in rows { tr { (row) } "\n" } } } "\n" }
+pub(super) fn wide(name: &str, head: &Markup, rows: &[Markup]) -> Markup {
+    html! {
+        div.wide role="region" aria-label={ "Table " (name) } tabindex="0" data-name=(name) {
+            table { "\n" thead { tr { (head) } } "\n" tbody { "\n" @for row in rows { tr { (row) } "\n" } } }
+        }
+        "\n"
+    }
 }
 
 /// Marks of [`prose`]: start, end and element.
@@ -72,18 +116,15 @@ pub(super) fn prose(text: &str) -> Markup {
     }
 }
 
-/// Links to the files of a figure.
-fn links(stem: &str) -> Markup {
-    html! {
-        @for (place, format) in ["SVG", "PNG", "PDF"].into_iter().enumerate() {
-            @if place > 0 { " · " }
-            a href={ "figures/" (stem) "." (format.to_lowercase()) } { (format) }
-        }
-    }
+/// Plain text with the subscripts of symbols.
+pub(super) fn plain(text: &str) -> Markup {
+    let symbols = [("F_po", "F_{po}"), ("F_max", "F_{max}"), ("h_rms", "h_{rms}"), ("U_el", "U_{el}")];
+    prose(&symbols.into_iter().fold(text.to_owned(), |text, (plain, marked)| text.replace(plain, marked)))
 }
 
 /// Panels in a grid, each with number, caption and links to its files.
-pub(super) fn grid<'a>(number: usize, panels: impl IntoIterator<Item = &'a Panel>) -> Markup {
+pub(super) fn grid<'a>(numbers: &Numbers<'_>, panels: impl IntoIterator<Item = &'a Panel>) -> Markup {
+    let number = numbers.next();
     let label = |name: &str| if name.chars().count() > 1 { format!(", {name}") } else { name.to_owned() };
     html! {
         div.panels {
@@ -91,7 +132,7 @@ pub(super) fn grid<'a>(number: usize, panels: impl IntoIterator<Item = &'a Panel
             @for Panel { stem, name, caption, svg, .. } in panels {
                 figure {
                     (PreEscaped(svg))
-                    figcaption { b { "Fig. " (number) (label(name)) "." } " " (caption) " " (links(stem)) }
+                    figcaption { b { "Fig. " (number) (label(name)) "." } " " (plain(caption)) " " (numbers.links(stem)) }
                 }
                 "\n"
             }
@@ -100,7 +141,23 @@ pub(super) fn grid<'a>(number: usize, panels: impl IntoIterator<Item = &'a Panel
     }
 }
 
-/// A single wide figure with caption and links to its files.
-pub(super) fn figure(stem: &str, svg: &str, caption: &str) -> Markup {
-    html! { figure.map { (PreEscaped(svg)) figcaption { (caption) " " (links(stem)) } } "\n" }
+/// A single wide figure with number, caption and links to its files.
+pub(super) fn figure(numbers: &Numbers<'_>, drawing: &Drawing) -> Markup {
+    html! {
+        figure.map { (PreEscaped(&drawing.svg)) figcaption { b { "Fig. " (numbers.next()) "." } " " (plain(&drawing.caption)) " " (numbers.links(drawing.stem)) } } "\n"
+    }
+}
+
+/// Colours of the cases and dashes of the branches, for all figures of a sweep.
+pub(super) fn legend(cases: &[(String, String)]) -> Markup {
+    let dash = |dashes: &str| html! { svg viewBox="0 0 32 8" aria-hidden="true" { path d="M0 4h32" stroke-dasharray=(dashes) {} } };
+    html! {
+        ul.legend {
+            "\n"
+            @for (label, colour) in cases { li data-colour=(colour) { i style={ "background:" (colour) } {} (prose(label)) } "\n" }
+            li { (dash("7 4")) "loading" } "\n"
+            li { (dash("none")) "unloading" } "\n"
+        }
+        "\n"
+    }
 }

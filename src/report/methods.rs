@@ -1,9 +1,9 @@
 //! Part of the report: both methods on the same surfaces.
 
 use super::cases::{Cases, LOAD};
-use super::layout::{figure, heading, prose, wide};
+use super::layout::{Numbers, figure, grid, heading, prose, wide};
 use super::numbers::{Scale, Shown, scaled, shown};
-use crate::figures::Panel;
+use crate::figures::{Drawing, Panel};
 use crate::stats::{MethodPair, StatsError, labels, method_pairs, names_of_pairs};
 use crate::store::Frame;
 use maud::{Markup, html};
@@ -12,22 +12,13 @@ use maud::{Markup, html};
 const QUANTITIES: [(&str, &str); 3] =
     [("A/A_{0}", "area_at_max_load"), ("F_{po}/(E*A_{0})", "pull_off_load"), ("Θ/(E*A_{0}h_{rms})", "loss")];
 
-/// Contact of both methods on one surface.
-#[derive(Debug, Clone)]
-pub struct ContactMaps {
-    /// Drawing.
-    pub svg: String,
-    /// Caption.
-    pub caption: String,
-}
-
 /// Figures of both methods: ratios over U_el/Δγ, and contact on one surface.
 #[derive(Debug, Clone, Default)]
 pub struct MethodFigures {
     /// Ratios of the asperity model to boundary elements.
     pub ratios: Option<Panel>,
     /// Contact maps.
-    pub maps: Option<ContactMaps>,
+    pub maps: Option<Drawing>,
 }
 
 const NOTE: &str = "Means over the surfaces that both methods have finished, and the ratio of the asperity model to \
@@ -35,7 +26,12 @@ const NOTE: &str = "Means over the surfaces that both methods have finished, and
     confidence intervals.";
 
 /// A table of the means of both methods and their ratios; empty without cases of the same surfaces by both methods.
-pub(super) fn side_by_side(cases: &Cases<'_>, methods: &Frame, figures: &MethodFigures) -> Result<Markup, StatsError> {
+pub(super) fn side_by_side(
+    cases: &Cases<'_>,
+    methods: &Frame,
+    figures: &MethodFigures,
+    numbers: &Numbers<'_>,
+) -> Result<Markup, StatsError> {
     let pairs = method_pairs(methods)?;
     if pairs.is_empty() {
         return Ok(Markup::default());
@@ -48,13 +44,12 @@ pub(super) fn side_by_side(cases: &Cases<'_>, methods: &Frame, figures: &MethodF
     let loads = labels(&pairs.iter().map(|pair| pair.max_load).collect::<Vec<f64>>());
     let rows: Vec<Markup> =
         pairs.iter().zip(names.iter().zip(&loads)).map(|(pair, (name, load))| row(pair, [name, load], &scales)).collect();
-    let ratios = figures.ratios.as_ref().map(|panel| figure(&panel.stem, &panel.svg, &panel.caption));
-    let maps = figures.maps.as_ref().map(|maps| figure("contact_maps", &maps.svg, &maps.caption));
     Ok(html! {
         (heading("Asperity model and boundary elements"))
         p { (prose(NOTE)) } "\n"
-        (wide(&head(&scales), &rows))
-        @for figure in [ratios, maps].into_iter().flatten() { (figure) }
+        (wide("methods", &head(&scales), &rows))
+        @if let Some(ratios) = &figures.ratios { (grid(numbers, [ratios])) }
+        @if let Some(maps) = &figures.maps { (figure(numbers, maps)) }
     })
 }
 

@@ -5,7 +5,9 @@
 mod cases;
 mod comparison;
 mod data;
+mod header;
 mod layout;
+mod live;
 mod methods;
 mod numbers;
 mod results;
@@ -15,17 +17,19 @@ mod theories;
 mod validity;
 
 pub use comparison::{Compared, comparison_page};
-pub use methods::{ContactMaps, MethodFigures};
+pub use live::{LiveLoop, LiveRun, LiveStage, live_page};
+pub use methods::MethodFigures;
 pub use single_cycle::SingleCycle;
 
-use crate::figures::Panel;
-use crate::stats::{StatsError, summary};
+use crate::figures::{Drawing, Panel};
+use crate::stats::StatsError;
 use crate::store::Frame;
 use crate::store::hdf5::SurfaceHeader;
 use crate::text::counted;
 use cases::Cases;
-use layout::{document, grid, heading, prose};
-use maud::{Markup, html};
+use data::Study;
+use layout::{Numbers, document, grid, heading, legend, prose};
+use maud::{Markup, PreEscaped, html};
 
 /// Content of the report of a run.
 #[derive(Debug, Clone, Copy)]
@@ -36,6 +40,8 @@ pub struct Report<'a> {
     pub key: &'a str,
     /// Numbers of cases by the asperity model and by boundary elements.
     pub case_counts: [usize; 2],
+    /// Seed of the surfaces.
+    pub seed: u64,
     /// Number of realizations in words.
     pub realizations_text: &'a str,
     /// Table `cases`.
@@ -44,6 +50,10 @@ pub struct Report<'a> {
     pub realizations: &'a Frame,
     /// Table `methods`.
     pub methods: &'a Frame,
+    /// Formats of the files of the figures.
+    pub formats: &'a [&'static str],
+    /// Relative differences from the reference case.
+    pub sensitivity: Option<&'a Drawing>,
     /// Figures of both methods.
     pub method_figures: &'a MethodFigures,
     /// Files of the measured surfaces.
@@ -54,6 +64,8 @@ pub struct Report<'a> {
     pub drawings: &'a [(String, Panel)],
     /// A single cycle.
     pub cycle: Option<&'a SingleCycle>,
+    /// Data of the explorer as JSON.
+    pub explorer: Option<&'a str>,
     /// Spec with all defaults.
     pub spec: &'a str,
 }
@@ -64,26 +76,70 @@ pub struct Report<'a> {
 /// If a table lacks a column.
 pub fn page(report: &Report<'_>) -> Result<String, StatsError> {
     let cases = Cases::of(report.cases, report.realizations)?;
+    let numbers = Numbers::of(report.formats);
+    let study = Study {
+        case_counts: report.case_counts,
+        realizations_text: report.realizations_text,
+        seed: report.seed,
+        is_measured: !report.scans.is_empty(),
+    };
     let body = html! {
-        h1 { (report.name) } "\n"
-        p { (introduction(report)) } "\n"
-        pre { (summary(report.cases)?) } "\n"
         (results::results(&cases)?)
-        (methods::side_by_side(&cases, report.methods, report.method_figures)?)
+        (results::changes(&cases)?)
+        @if let Some(chart) = report.sensitivity { (heading("Sensitivity")) (layout::figure(&numbers, chart)) }
+        (methods::side_by_side(&cases, report.methods, report.method_figures, &numbers)?)
         (scans::scans(report.scans))
-        @for (number, sweep) in report.sweeps.iter().enumerate() {
-            (heading(&if sweep.is_empty() { "Figures".to_owned() } else { format!("Sweep {sweep}") }))
-            (grid(number + 1, report.drawings.iter().filter(|(of, _)| of == sweep).map(|(_, panel)| panel)))
-        }
-        @if let Some(cycle) = report.cycle { (single_cycle::section(report.sweeps.len() + 1, cycle)) }
+        @for sweep in report.sweeps { (figures(report, sweep, &numbers)) }
+        @if let Some(cycle) = report.cycle { (single_cycle::section(&numbers, cycle)) }
+        @if let Some(data) = report.explorer { (explorer(data)) }
         (theories::theories(&cases)?)
         (validity::budget(&cases)?)
         (validity::validity(&cases)?)
+        (data::methods(report.cases, &study)?)
         (data::usage())
         (heading("Spec with all defaults"))
-        pre { (report.spec) } "\n"
+        details { summary { "TOML" } pre { (report.spec) } } "\n"
     };
-    Ok(document(&format!("{}: adhesive hysteresis", report.name), Some(report.key), &body))
+    let body = body.into_string();
+    let page = html! {
+        header {
+            h1 { (report.name) } "\n"
+            p { (introduction(report)) } "\n"
+            (header::banner(report.cases)?)
+            (header::facts(report.cases, report.seed, report.realizations_text)?)
+            (header::contents(&body))
+        }
+        "\n"
+        (PreEscaped(&body))
+    };
+    Ok(document(&format!("{}: adhesive hysteresis", report.name), Some(report.key), &page))
+}
+
+const EXPLORER_NOTE: &str = "One cycle of each case. The slider moves along the loop. Rings mark the events of a step or of an avalanche. Contacts between stored \
+    steps follow from the events; `contacts = \"all\"` in the spec stores every step.";
+
+/// The explorer of a loop, which needs a browser with scripts.
+fn explorer(data: &str) -> Markup {
+    html! {
+        section.screen {
+            (heading("Loop explorer"))
+            p { (prose(EXPLORER_NOTE)) } "\n"
+            div #explorer { noscript { p { "This part needs a browser with scripts." } } } "\n"
+            script #explorer-data type="application/json" { (PreEscaped(data)) } "\n"
+            script { (PreEscaped(include_str!("explorer.js"))) } "\n"
+        }
+        "\n"
+    }
+}
+
+/// The figures of a sweep with their legend.
+fn figures(report: &Report<'_>, sweep: &str, numbers: &Numbers<'_>) -> Markup {
+    let panels: Vec<&Panel> = report.drawings.iter().filter(|(of, _)| of == sweep).map(|(_, panel)| panel).collect();
+    html! {
+        // A run without sweeps has the cases of its base.
+        (heading(&if matches!(sweep, "" | "base") { "Figures".to_owned() } else { format!("Sweep {sweep}") }))
+        section { (legend(panels.first().map_or(&[], |panel| &panel.cases))) (grid(numbers, panels)) } "\n"
+    }
 }
 
 const SYMBOLS: &str = "E*: reduced modulus; A_{0}: nominal area; h_{rms}: root-mean-square height; Δγ: work of adhesion; Δ: mean penetration; \

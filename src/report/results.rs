@@ -38,7 +38,7 @@ pub(super) fn results(cases: &Cases<'_>) -> Result<Markup, StatsError> {
         @for ((heading, ..), scale) in RESULTS.iter().zip(&scales) { th { (prose(heading)) (scale.head()) } }
     };
     let rows = cases.rows().iter().map(|listed| row(cases, listed, &scales)).collect::<Result<Vec<_>, _>>()?;
-    Ok(html! { (heading("Results")) p { (note(cases.reference())) } "\n" (wide(&head, &rows)) (changes(cases)?) })
+    Ok(html! { (heading("Results")) p { (note(cases.reference())) } "\n" (wide("results", &head, &rows)) })
 }
 
 fn note(reference: Option<&str>) -> Markup {
@@ -82,9 +82,9 @@ fn result(cases: &Cases<'_>, row: usize, column: &str, (scale, positive): (Scale
         (scaled(mean, scale))
         @match (low, high) {
             (Some(_), Some(_)) if values.len() < FEW => {
-                " {" @for (place, value) in values.iter().enumerate() { @if place > 0 { "; " } (text(*value)) } "}"
+                " " small { "{" @for (place, value) in values.iter().enumerate() { @if place > 0 { "; " } (text(*value)) } "}" }
             }
-            (Some(low), Some(high)) => { " [" @if is_cut(low) { "0†" } @else { (text(low)) } ", " (text(high)) "]" }
+            (Some(low), Some(high)) => { " " small { "[" @if is_cut(low) { "0†" } @else { (text(low)) } ", " (text(high)) "]" } }
             _ => {}
         }
     })
@@ -95,7 +95,7 @@ const CHANGES_NOTE: &str = "Difference of the means from the reference case at t
     (Welch). Differences larger than their half-width are bold.";
 
 /// Differences of the means of each case from those of the reference case at the same load; empty without such a case.
-fn changes(cases: &Cases<'_>) -> Result<Markup, StatsError> {
+pub(super) fn changes(cases: &Cases<'_>) -> Result<Markup, StatsError> {
     let compared = cases.rows().iter().filter_map(|listed| listed.reference.map(|reference| (listed, reference)));
     let mut rows = Vec::new();
     for (listed, reference) in compared {
@@ -109,7 +109,7 @@ fn changes(cases: &Cases<'_>) -> Result<Markup, StatsError> {
         return Ok(Markup::default());
     }
     let head = html! { (name_heads()) @for (heading, _) in CHANGES { th { (prose(heading)) } } };
-    Ok(html! { (heading("Differences from the reference case")) p { (CHANGES_NOTE) } "\n" (wide(&head, &rows)) })
+    Ok(html! { (heading("Differences from the reference case")) p { (CHANGES_NOTE) } "\n" (wide("differences", &head, &rows)) })
 }
 
 /// A relative difference with the half-width of its interval; bold if it is larger than that.

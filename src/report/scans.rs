@@ -31,7 +31,7 @@ pub(super) fn scans(surfaces: &[SurfaceHeader]) -> Markup {
         return Markup::default();
     }
     let head = html! { @for name in HEADS { th { (prose(name)) } } };
-    html! { (heading("Measured surfaces")) p { (prose(NOTE)) } "\n" (wide(&head, &rows)) }
+    html! { (heading("Measured surfaces")) p { (prose(NOTE)) } "\n" (wide("surfaces", &head, &rows)) }
 }
 
 fn row(header: &SurfaceHeader, of: &Measured) -> Markup {

@@ -1,8 +1,8 @@
 //! Part of the report: a single cycle.
 
-use super::layout::{grid, heading, prose};
-use crate::figures::Panel;
-use maud::{Markup, PreEscaped, html};
+use super::layout::{Numbers, figure, grid, heading, plain, prose};
+use crate::figures::{Drawing, Panel};
+use maud::{Markup, html};
 
 /// Figures of one cycle.
 #[derive(Debug, Clone)]
@@ -16,19 +16,19 @@ pub struct SingleCycle {
     /// Panels.
     pub panels: Vec<Panel>,
     /// Maps of the contact spots, if these are stored.
-    pub map: Option<String>,
+    pub map: Option<Drawing>,
 }
 
 /// The section of the report.
-pub(super) fn section(number: usize, cycle: &SingleCycle) -> Markup {
+pub(super) fn section(numbers: &Numbers<'_>, cycle: &SingleCycle) -> Markup {
     html! {
         (heading("Single cycle"))
         p {
-            (prose("The case with the largest mean Θ/(E*A_{0}h_{rms}): ")) (cycle.parameters) ". Cycle " (cycle.id) ", realization " (cycle.realization)
+            (prose("The case with the largest mean Θ/(E*A_{0}h_{rms}): ")) (plain(&cycle.parameters)) ". Cycle " (cycle.id) ", realization " (cycle.realization)
             (prose(". The table `events` of the cycle holds all events, the table `contacts` the contact spots."))
         }
         "\n"
-        (grid(number, &cycle.panels))
-        @if let Some(map) = &cycle.map { div.map { (PreEscaped(map)) } "\n" }
+        (grid(numbers, &cycle.panels))
+        @if let Some(map) = &cycle.map { (figure(numbers, map)) }
     }
 }

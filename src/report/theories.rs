@@ -55,6 +55,6 @@ pub(super) fn theories(cases: &Cases<'_>) -> Result<Markup, StatsError> {
         (heading("Comparison with analytical models"))
         p { (prose(NOTE)) } "\n"
         ul { "\n" @for model in MODELS { li { (prose(model)) } "\n" } } "\n"
-        (wide(&head, &rows))
+        (wide("models", &head, &rows))
     })
 }

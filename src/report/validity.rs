@@ -45,7 +45,7 @@ pub(super) fn budget(cases: &Cases<'_>) -> Result<Markup, StatsError> {
         @for kind in &kinds { th { (kind_name(kind)) } }
     };
     let rows = cases.rows().iter().map(|listed| budget_row(cases, listed, &kinds)).collect::<Result<Vec<_>, _>>()?;
-    Ok(html! { (heading("Energy budget")) p { (prose(BUDGET_NOTE)) } "\n" (wide(&head, &rows)) })
+    Ok(html! { (heading("Energy budget")) p { (prose(BUDGET_NOTE)) } "\n" (wide("energy", &head, &rows)) })
 }
 
 fn budget_row(cases: &Cases<'_>, listed: &Listed, kinds: &[&str]) -> Result<Markup, StatsError> {
@@ -101,9 +101,9 @@ pub(super) fn validity(cases: &Cases<'_>) -> Result<Markup, StatsError> {
     };
     let rows = cases.rows().iter().map(row).collect::<Result<Vec<_>, _>>()?;
     Ok(html! {
-        h2 id="validity" { "Model validity" } "\n"
+        (heading("Model validity"))
         p { (prose(VALIDITY_NOTE)) } "\n"
-        (wide(&head, &rows))
+        (wide("validity", &head, &rows))
         (warning_table(cases)?)
     })
 }
@@ -116,7 +116,7 @@ fn warning_table(cases: &Cases<'_>) -> Result<Markup, StatsError> {
         @if found.is_empty() {
             p { "None." } "\n"
         } @else {
-            table {
+            div.scroll role="region" aria-label="Table of warnings" tabindex="0" { table {
                 "\n"
                 tr { th { "warning (code)" } th { "measured" } th { "consequence and action" } th { "cases, at " (prose(LOAD)) } } "\n"
                 @for Warning { kind, measured, rows } in &found {
@@ -128,22 +128,36 @@ fn warning_table(cases: &Cases<'_>) -> Result<Markup, StatsError> {
                     }
                     "\n"
                 }
-            }
+            } }
             "\n"
         }
     })
 }
+
+/// Cases that a warning lists; of more, it states the number.
+const MOST_PLACES: usize = 6;
 
 /// The rows of a warning.
 fn places(cases: &Cases<'_>, rows: &[usize]) -> Markup {
     if rows.len() == cases.rows().len() {
         return html! { "all" };
     }
-    let listed = cases.rows().iter().filter(|listed| rows.contains(&listed.row));
+    // The loads of one label together.
+    let mut groups: Vec<(&str, Vec<&str>)> = Vec::new();
+    for listed in cases.rows().iter().filter(|listed| rows.contains(&listed.row)) {
+        match groups.iter_mut().find(|(label, _)| *label == listed.label) {
+            Some((_, loads)) => loads.push(cases.load(listed.row)),
+            None => groups.push((&listed.label, vec![cases.load(listed.row)])),
+        }
+    }
+    let list = html! {
+        @for (place, (label, loads)) in groups.iter().enumerate() { @if place > 0 { br; } (label) " at " (loads.join(", ")) }
+    };
     html! {
-        @for (place, listed) in listed.enumerate() {
-            @if place > 0 { br; }
-            (listed.label) " at " (cases.load(listed.row))
+        @if groups.len() > MOST_PLACES {
+            details { summary { (rows.len()) " of " (cases.rows().len()) " rows" } (list) }
+        } @else {
+            (list)
         }
     }
 }

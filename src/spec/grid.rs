@@ -21,7 +21,7 @@ const BASE: &str = "base";
 
 /// Multiplies the sweeps out. Nothing, with the faults added, if there are too many cases or the draft has no name.
 pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
-    let Draft { name, seed, realizations, realizations_at, base, origins, sweeps, files } = draft;
+    let Draft { name, seed, realizations, figures, realizations_at, base, origins, sweeps, files } = draft;
     let read: Vec<&SweepDraft> = sweeps.iter().flatten().collect();
     if too_many(&read, faults) {
         return None;
@@ -53,7 +53,7 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
     let first = read.first().map(|sweep| &sweep.span);
     bound_tasks(&cases.list, realizations, realizations_at.as_ref().or(first), faults);
     let sweeps = read.into_iter().map(sweep).collect();
-    Some(Spec { name: name?, seed, realizations, cases: cases.list, base, sweeps, files })
+    Some(Spec { name: name?, seed, realizations, figures, cases: cases.list, base, sweeps, files })
 }
 
 /// True if the sweeps make more cases than allowed, found without making them.

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 use serde_json::{Value, json};
 
+use super::figures::{FORMATS, Figures, LONGEST_FONT, WIDTH};
 use super::keys::{KEYS, Key, Kind, Limits, TABLES, words};
 use super::realizations::{DEFAULT, DEFAULT_BOUNDS, LEAST, PRECISION};
 use super::reference::described;
@@ -58,6 +59,7 @@ pub fn json_schema() -> String {
     let seed = json!({ "type": "integer", "minimum": 0, "maximum": i64::MAX, "default": DEFAULT_SEED, "description": "Seed of all generated surfaces." });
     properties.insert("seed", seed);
     properties.insert("realizations", realizations());
+    properties.insert("figures", figures());
     let sweep = json!({ "type": "object", "required": ["name"], "additionalProperties": false, "properties": in_sweep });
     properties.insert(
         "sweep",
@@ -130,6 +132,21 @@ fn definition(key: &Key) -> Value {
 fn number(limits: &Limits) -> Value {
     let low = if limits.above { "exclusiveMinimum" } else { "minimum" };
     json!({ "type": "number", low: limits.low, "maximum": limits.high })
+}
+
+fn figures() -> Value {
+    let default = Figures::default();
+    let format = json!({ "type": "string", "enum": FORMATS });
+    json!({
+        "type": "object",
+        "additionalProperties": false,
+        "properties": {
+            "format": { "anyOf": [format, { "type": "array", "items": format, "minItems": 1 }], "default": default.format, "description": "File formats of the figures." },
+            "width_mm": { "type": "number", "minimum": WIDTH.low, "maximum": WIDTH.high, "default": default.width_mm, "description": "Width of a panel in PNG and PDF files [mm]." },
+            "font": { "type": "string", "pattern": PLAIN, "minLength": 1, "maxLength": LONGEST_FONT, "default": default.font, "description": "Font family of the SVG files; PNG and PDF files have DejaVu Sans." },
+        },
+        "description": "Files of the figures.",
+    })
 }
 
 fn realizations() -> Value {

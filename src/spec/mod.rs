@@ -6,6 +6,7 @@
 mod elements;
 mod entries;
 mod fault;
+mod figures;
 mod files;
 mod grid;
 mod json_schema;
@@ -32,6 +33,7 @@ pub use crate::model::{CaseParams, CycleParams, ElementParams, ModelParams, Surf
 pub use crate::text::quoted;
 pub use elements::{FEWEST_PER_WAVELENGTH, MAX_ELEMENTS, MOST_MESH_NUMBER, PER_WAVELENGTH, mesh_number};
 pub use fault::{Fault, Place, SpecErrors};
+pub use figures::{FORMATS, Figures};
 pub use json_schema::{SCHEMA_FILE, json_schema};
 pub use keys::{GENERATED, MEASURED};
 pub use realizations::{Realizations, Until};
@@ -61,6 +63,8 @@ pub struct Spec {
     pub seed: u64,
     /// Realisations of each surface.
     pub realizations: Realizations,
+    /// Files of the figures.
+    pub figures: Figures,
     /// The cases: every different one once, in the order in which the sweeps first ask for it.
     pub cases: Vec<Case>,
     /// Parameters that the sweeps override; a case of its own only without a sweep.

@@ -1,5 +1,6 @@
 //! The reference page of the keys of a spec, from the table of keys.
 
+use super::figures::{DEFAULT_FONT, LONGEST_FONT, WIDTH};
 use super::keys::{KEYS, Key, Kind, Limits, MEASURED, TABLES};
 use super::number::short;
 use super::realizations::{DEFAULT, DEFAULT_BOUNDS, LEAST, PRECISION};
@@ -85,6 +86,9 @@ fn top() -> String {
 | `realizations.of` | string | | `\"{}\"` |
 | `realizations.min` | integer | {LEAST} to {MAX_REALIZATIONS} | `{least}` |
 | `realizations.max` | integer | `min` to {MAX_REALIZATIONS} | `{most}` |
+| `figures.format` | string or array of strings | | `[\"svg\", \"png\", \"pdf\"]` |
+| `figures.width_mm` | float | {} | `88` |
+| `figures.font` | string | 1 to {LONGEST_FONT} bytes | `\"{DEFAULT_FONT}\"` |
 
 - `name`: Name of the run and of its default output directory.
 - `seed`: Seed of all generated surfaces. The same seed gives the same surfaces.
@@ -95,9 +99,14 @@ fn top() -> String {
 - `realizations.of`: Quantity whose mean is considered.
 ",
         range(&PRECISION),
-        Goal::Loss.word()
+        Goal::Loss.word(),
+        range(&WIDTH)
     );
-    text + &goals + "- `realizations.min`, `realizations.max`: Minimum and maximum number of realizations.\n"
+    text + &goals
+        + "- `realizations.min`, `realizations.max`: Minimum and maximum number of realizations.\n\
+           - `figures.format`: File formats of the figures.\n\
+           - `figures.width_mm`: Width in millimetres of a panel in PNG and PDF files. Labels next to a\n  panel add to it.\n\
+           - `figures.font`: Font family of the SVG files. PNG and PDF files have DejaVu Sans.\n"
 }
 
 /// A table of the spec: an overview, then the meaning of each key.

@@ -8,6 +8,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::entries::{Entry, entries, keys, lost, shown};
 use super::fault::Faults;
+use super::figures::{Figures, figures};
 use super::files::files;
 use super::keys::{KEYS, TABLES};
 use super::realizations::{DEFAULT, Realizations, realizations};
@@ -19,6 +20,7 @@ pub(super) struct Draft {
     pub(super) name: Option<String>,
     pub(super) seed: u64,
     pub(super) realizations: Realizations,
+    pub(super) figures: Figures,
     pub(super) base: CaseParams,
     /// Origin of the base's value of each key, in the order of [`KEYS`].
     pub(super) origins: Vec<Origin>,
@@ -50,7 +52,8 @@ pub(super) fn written(key: Option<usize>, origins: &[Origin]) -> Option<Range<us
 }
 
 /// Keys at the top of a spec.
-const TOP: [&str; 10] = ["name", "seed", "realizations", "surface", "material", "model", "boundary_elements", "cycle", "sweep", "files"];
+const TOP: [&str; 11] =
+    ["name", "seed", "realizations", "figures", "surface", "material", "model", "boundary_elements", "cycle", "sweep", "files"];
 
 /// Reads a whole spec. Nothing, with the faults added, if it is no TOML.
 pub(super) fn document(text: &str, faults: &mut Faults<'_>) -> Option<Draft> {
@@ -71,6 +74,7 @@ pub(super) fn document(text: &str, faults: &mut Faults<'_>) -> Option<Draft> {
         name: None,
         seed: top::DEFAULT_SEED,
         realizations: Realizations::Exactly(DEFAULT),
+        figures: Figures::default(),
         realizations_at: None,
         base: CaseParams::default(),
         origins: vec![Origin::Default; KEYS.len()],
@@ -97,6 +101,7 @@ pub(super) fn enter((key, span, written): Entry<'_, '_>, draft: &mut Draft, faul
             draft.realizations_at = Some(written.span());
             draft.realizations = realizations(written, faults).unwrap_or(draft.realizations);
         }
+        "figures" => draft.figures = figures(written, faults).unwrap_or_default(),
         "files" => draft.files = files(written, &span, faults),
         "sweep" => sweeps(written, &span, &mut draft.sweeps, faults),
         table if TABLES.contains(&table) => base(table, written, &span, draft, faults),

@@ -19,6 +19,7 @@ fn write(spec: &Spec, text: &mut String) -> Result<(), Error> {
     writeln!(text, "name = \"{}\"", spec.name)?;
     writeln!(text, "seed = {}", spec.seed)?;
     writeln!(text, "realizations = {}", spec.realizations)?;
+    writeln!(text, "figures = {}", spec.figures)?;
     for table in TABLES {
         writeln!(text, "\n[{table}]")?;
         for key in KEYS.iter().filter(|key| key.table == table && is_read(key, &spec.base) && !follows(key, spec)) {

@@ -5,6 +5,7 @@ use super::report::write_picture;
 use crate::figures::{Panel, Tables, compared};
 use crate::report::{Compared, comparison_page};
 use crate::schema::{self, COMPARISON};
+use crate::spec::Figures;
 use crate::stats::{self, Group, Matched, Side, varying};
 use crate::store::{Frame, commit, parquet};
 use std::path::{Path, PathBuf};
@@ -52,14 +53,14 @@ pub fn compare(folders: &[PathBuf], out: &Path, force: bool) -> Result<Compariso
     let names = names(&sides, &matched)?;
     let mut drawings: Vec<(String, Vec<Panel>)> = Vec::new();
     for (number, (group, name)) in matched.groups.iter().zip(&names).enumerate() {
-        drawings.push((name.clone(), panels(&sides, group, (name, &format!("compare{number}")))?));
+        drawings.push((name.clone(), panels(&sides, group, &format!("compare{number}"))?));
     }
     for panel in drawings.iter().flat_map(|(_, panels)| panels) {
         if matched.groups.len() > MOST_IN_ALL_FORMATS {
             let path = out.join("figures").join(format!("{}.svg", panel.stem));
             commit::commit_bytes("write a figure", &path, panel.svg.as_bytes())?;
         } else {
-            write_picture(out, &panel.stem, &panel.svg)?;
+            write_picture(out, &panel.stem, &panel.svg, &Figures::default())?;
         }
     }
     parquet::write_table(&file, &table, &[])?;
@@ -121,7 +122,7 @@ fn names(sides: &[Side], matched: &Matched) -> Result<Vec<String>, StageError> {
 }
 
 /// The panels of one group, its campaigns over one another.
-fn panels(sides: &[Side], group: &Group, (name, stem): (&str, &str)) -> Result<Vec<Panel>, StageError> {
+fn panels(sides: &[Side], group: &Group, stem: &str) -> Result<Vec<Panel>, StageError> {
     let (mut cases, mut curves, mut realizations) = (Vec::new(), Vec::new(), Vec::new());
     for (number, (side, row)) in sides.iter().zip(&group.rows).enumerate() {
         let id = side.cases.text("case_id")?[*row];
@@ -137,5 +138,5 @@ fn panels(sides: &[Side], group: &Group, (name, stem): (&str, &str)) -> Result<V
     }
     let labels: Vec<String> = sides.iter().map(|side| side.label.clone()).collect();
     let (cases, curves, realizations) = (stats::together(&cases)?, stats::together(&curves)?, stats::together(&realizations)?);
-    Ok(compared(&Tables { cases: &cases, curves: &curves, realizations: &realizations }, &labels, (name, stem))?)
+    Ok(compared(&Tables { cases: &cases, curves: &curves, realizations: &realizations }, &labels, stem)?)
 }

@@ -2,9 +2,8 @@
 
 use super::StageError;
 use crate::campaign::{Campaign, CycleUnit, Standing};
-use crate::figures::{Both, SpotTables, both};
+use crate::figures::{Both, Drawing, SpotTables, both};
 use crate::model::Boundary;
-use crate::report::ContactMaps;
 use crate::schema;
 use crate::stats::significant;
 use crate::store::hdf5::read_surface;
@@ -13,7 +12,7 @@ use crate::store::{Frame, read_reversal_map};
 
 /// The contact of the pair of cycles with the largest Θ by boundary elements on a periodic surface, at that load reversal; nothing without one, and where its contacts
 /// or maps are not kept.
-pub(super) fn contact_maps(campaign: &Campaign, standings: &[Standing], methods: &Frame) -> Result<Option<ContactMaps>, StageError> {
+pub(super) fn contact_maps(campaign: &Campaign, standings: &[Standing], methods: &Frame) -> Result<Option<Drawing>, StageError> {
     let (first, second, surfaces) = (methods.text("asperities_case_id")?, methods.text("elements_case_id")?, methods.text("surface_id")?);
     let (loads, losses) = (methods.f64("max_load")?, methods.f64("loss_elements")?);
     let areas = [methods.f64("area_at_max_load_asperities")?, methods.f64("area_at_max_load_elements")?];
@@ -36,7 +35,13 @@ pub(super) fn contact_maps(campaign: &Campaign, standings: &[Standing], methods:
     let kept = contacts.i64("step")?;
     let Some(step) = reversal.map(|step| step as i64).filter(|step| kept.contains(step)) else { return Ok(None) };
     let params = &campaign.cases[asperities.case].case.params;
-    let svg = both(&Both {
+    let caption = format!(
+        "Contact of surface {} at F_max/(E*A₀) = {}. Left: contact spots of the asperity model. Right: grid points of boundary elements. Table realizations: \
+         area_at_max_load; maps.h5: pressure_pa.",
+        surfaces[row],
+        significant(loads[row], 4)
+    );
+    let content = Both {
         heights_m: heights.view(),
         length_m: header.length_m,
         periodic: params.model.boundary == Boundary::Periodic,
@@ -44,12 +49,6 @@ pub(super) fn contact_maps(campaign: &Campaign, standings: &[Standing], methods:
         step,
         areas: areas.map(|areas| areas[row]),
         elements: &map,
-    })?;
-    let caption = format!(
-        "Contact of surface {} at F_max/(E*A₀) = {}. Left: contact spots of the asperity model. Right: grid points of boundary elements. Table realizations: \
-         area_at_max_load; maps.h5: pressure_pa.",
-        surfaces[row],
-        significant(loads[row], 4)
-    );
-    Ok(Some(ContactMaps { svg, caption }))
+    };
+    Ok(Some(both(&content, caption)?))
 }

@@ -3,6 +3,7 @@
 use super::done::{Clock, Outcome};
 use super::extract::Extract;
 use super::generate::Generate;
+use super::live::Live;
 use super::runner::{Context, run_stage};
 use super::surface::Surfaces;
 use super::{StageError, Tally, Task, Watch, aggregate, cycle, report, sampled};
@@ -22,6 +23,9 @@ pub fn run(campaign: Campaign, task: &Task, watch: &dyn Watch) -> Result<(Campai
         return Err(StageError::NoRun { stage: task.from.word(), path: campaign.dir });
     }
     prepare(&campaign)?;
+    // Jobs that share a folder would write one page.
+    let live = (task.shard.is_whole() && task.from < task.until).then(|| Live::of(&campaign, watch));
+    let watch: &dyn Watch = live.as_ref().map_or(watch, |live| live);
     let mut campaign = campaign;
     let mut tallies = Tallies::new();
     loop {

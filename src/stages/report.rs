@@ -3,13 +3,15 @@
 use super::contact_maps::contact_maps;
 use super::done::Clock;
 use super::error::incomplete;
+use super::explorer::explorer;
 use super::runner::{Context, Single, run_single};
 use super::single_cycle::look;
 use super::{StageError, Tally};
 use crate::campaign::{Campaign, REPORT_PAGE, STATISTICS, Stage, Standing, Unit};
-use crate::figures::{Panel, Tables, method_ratios, panels, pdf, png, table};
+use crate::figures::{Drawing, Panel, Tables, method_ratios, panels, pdf, png, sensitivity, table, with_font};
 use crate::report::{self, MethodFigures, Report, SingleCycle};
 use crate::schema;
+use crate::spec::Figures;
 use crate::store::commit::Written;
 use crate::store::hdf5::{SurfaceHeader, read_header};
 use crate::store::{Check, Frame, commit, parquet};
@@ -41,6 +43,7 @@ struct Drawings {
     panels: Vec<(String, Panel)>,
     cycle: Option<SingleCycle>,
     methods: MethodFigures,
+    sensitivity: Option<Drawing>,
 }
 
 impl Drawings {
@@ -55,16 +58,17 @@ impl Drawings {
             panels: drawn,
             cycle: look(campaign, standings, cases)?,
             methods: MethodFigures { ratios: method_ratios(methods)?, maps: contact_maps(campaign, standings, methods)? },
+            sensitivity: sensitivity(cases, realizations)?,
         })
     }
 
     /// Every figure: stem of its file, and drawing.
     fn figures(&self) -> impl Iterator<Item = (&str, &str)> {
         let cycle = self.cycle.iter().flat_map(|cycle| &cycle.panels);
-        let map = self.cycle.iter().filter_map(|cycle| cycle.map.as_deref()).map(|map| ("closer_map", map));
-        let maps = self.methods.maps.iter().map(|maps| ("contact_maps", maps.svg.as_str()));
+        let map = self.cycle.iter().filter_map(|cycle| cycle.map.as_ref());
+        let others = map.chain(&self.methods.maps).chain(&self.sensitivity).map(|drawing| (drawing.stem, drawing.svg.as_str()));
         let panels = self.panels.iter().map(|(_, panel)| panel).chain(cycle);
-        panels.map(drawing).chain(map).chain(maps).chain(self.methods.ratios.as_ref().map(drawing))
+        panels.map(drawing).chain(others).chain(self.methods.ratios.as_ref().map(drawing))
     }
 
     /// All panels with the names of their sweeps; those of the single cycle have none.
@@ -101,30 +105,39 @@ fn write(campaign: &Campaign, standings: &[Standing], key: &str) -> Result<Vec<W
     let drawings = Drawings::of(campaign, standings, &statistics)?;
     let mut files = Vec::new();
     for (stem, svg) in drawings.figures() {
-        files.extend(write_picture(&campaign.dir, stem, svg)?);
+        files.extend(write_picture(&campaign.dir, stem, svg, &campaign.spec.figures)?);
     }
-    let page = page(campaign, key, &statistics, &drawings)?;
+    let page = page((campaign, standings), key, &statistics, &drawings)?;
     let panels = table(&drawings.all_panels())?;
     files.push(parquet::write_table(&campaign.statistics_path("panels"), &panels, &[("key", key.to_owned())])?);
     files.push(commit::commit_bytes("write the report", &campaign.dir.join("report.html"), page.as_bytes())?);
     Ok(files)
 }
 
-fn page(campaign: &Campaign, key: &str, statistics: &Statistics, drawings: &Drawings) -> Result<String, StageError> {
+fn page(
+    (campaign, standings): (&Campaign, &[Standing]),
+    key: &str,
+    statistics: &Statistics,
+    drawings: &Drawings,
+) -> Result<String, StageError> {
     let elements = campaign.cases.iter().filter(|unit| unit.case.params.by_elements()).count();
     Ok(report::page(&Report {
         name: &campaign.spec.name,
         key,
         case_counts: [campaign.cases.len() - elements, elements],
+        seed: campaign.spec.seed,
         realizations_text: &campaign.realizations_in_words(),
         cases: &statistics.cases,
         realizations: &statistics.realizations,
         methods: &statistics.methods,
+        formats: &campaign.spec.figures.format,
+        sensitivity: drawings.sensitivity.as_ref(),
         method_figures: &drawings.methods,
         scans: &scans(campaign)?,
         sweeps: &sweeps(campaign),
         drawings: &drawings.panels,
         cycle: drawings.cycle.as_ref(),
+        explorer: explorer(campaign, standings, &statistics.cases, &statistics.methods)?.as_deref(),
         spec: &campaign.spec.to_toml(),
     })?)
 }
@@ -136,11 +149,19 @@ fn scans(campaign: &Campaign) -> Result<Vec<SurfaceHeader>, StageError> {
     Ok(paths.map(|path| read_header(&path)).collect::<Result<_, _>>()?)
 }
 
-/// A figure in `figures/` of a folder, in all formats.
-pub(super) fn write_picture(dir: &Path, stem: &str, svg: &str) -> Result<[Written; 3], StageError> {
-    let write =
-        |ending: &str, bytes: &[u8]| commit::commit_bytes("write a figure", &dir.join("figures").join(format!("{stem}.{ending}")), bytes);
-    Ok([write("svg", svg.as_bytes())?, write("png", &png(svg)?)?, write("pdf", &pdf(svg)?)?])
+/// A figure in `figures/` of a folder.
+pub(super) fn write_picture(dir: &Path, stem: &str, svg: &str, files: &Figures) -> Result<Vec<Written>, StageError> {
+    let mut written = Vec::new();
+    for format in &files.format {
+        let bytes = match *format {
+            "png" => png(svg, files.width_mm)?,
+            "pdf" => pdf(svg, files.width_mm)?,
+            _ => with_font(svg, &files.font).into_bytes(),
+        };
+        let path = dir.join("figures").join(format!("{stem}.{format}"));
+        written.push(commit::commit_bytes("write a figure", &path, &bytes)?);
+    }
+    Ok(written)
 }
 
 fn sweeps(campaign: &Campaign) -> Vec<String> {

@@ -103,8 +103,10 @@ fn compute<T: Tasks>(tasks: &T, open: &[&T::Of], (context, planned): (Context<'_
     watch.begin(T::STAGE, before, planned);
     let one = |of: &T::Of| -> Result<(), StageError> {
         let (clock, unit) = (Clock::start(), tasks.unit(of));
+        watch.started(T::STAGE, unit.id);
         let outcome = tasks.compute(of);
         if let Err(error) = &outcome {
+            watch.failed(T::STAGE, unit.id);
             failure::report(campaign, (unit.id, &tasks.cycles(of)), T::STAGE, error, watch)?;
         }
         clock.receipt(campaign, &unit, tasks.key_inputs(of), &outcome?)?;

@@ -8,6 +8,10 @@ use std::collections::HashSet;
 pub trait Watch: Sync {
     /// A stage begins: how many of its units are done already, and how many there are.
     fn begin(&self, stage: Stage, done: usize, all: usize);
+    /// A task has begun.
+    fn started(&self, _stage: Stage, _id: &str) {}
+    /// A task has failed.
+    fn failed(&self, _stage: Stage, _id: &str) {}
     /// A part of a unit is done: the parts of a unit add up to 1.
     fn progress(&self, stage: Stage, part: f64);
     /// A unit is done.

@@ -143,8 +143,11 @@ fn change(own: f64, reference: f64) -> Option<String> {
     percent.is_finite().then(|| if text == "-0.0" || text == "+0.0" { "0.0".to_owned() } else { text })
 }
 
-/// Expected ratios of the results of the asperity model to those of boundary elements.
-fn model_lines(cases: &Frame) -> Result<Vec<String>, StatsError> {
+/// Expected ratios of the results of the asperity model to those of boundary elements, as a sentence; nothing without an expectation.
+///
+/// # Errors
+/// If the table lacks a column.
+pub fn expected_ratios(cases: &Frame) -> Result<Option<String>, StatsError> {
     let mut parts = Vec::new();
     for (name, column) in ["A", "F_po", "Θ"].into_iter().zip(COLUMNS) {
         let values: Vec<f64> = cases.f64_or_null(column)?.iter().copied().flatten().collect();
@@ -153,12 +156,15 @@ fn model_lines(cases: &Frame) -> Result<Vec<String>, StatsError> {
         let (low, high) = (format!("{low:.2}"), format!("{high:.2}"));
         parts.push(if low == high { format!("{name} {low}") } else { format!("{name} {low} to {high}") });
     }
-    if parts.is_empty() {
-        return Ok(Vec::new());
-    }
-    let text =
-        format!("Expected ratio of the asperity model to boundary elements: {} (U_el/Δγ of each case, guide: Validity).", parts.join(", "));
-    Ok(std::iter::once(String::new()).chain(wrapped(&text)).collect())
+    let parts = parts.join(", ");
+    let text = format!("Expected ratio of the asperity model to boundary elements: {parts} (U_el/Δγ of each case, guide: Validity).");
+    Ok((!parts.is_empty()).then_some(text))
+}
+
+/// The sentence of [`expected_ratios`] as lines.
+fn model_lines(cases: &Frame) -> Result<Vec<String>, StatsError> {
+    let text = expected_ratios(cases)?;
+    Ok(text.map_or_else(Vec::new, |text| std::iter::once(String::new()).chain(wrapped(&text)).collect()))
 }
 
 /// One paragraph per warning, with its rows.

@@ -98,6 +98,35 @@ pub fn read_reversal_map(path: &Path, max_load: f64) -> Result<Option<ReversalMa
     library(find).map_err(|cause| StoreError::new("read the contact maps from", path, cause))
 }
 
+/// Gap and pressure of a stored step, rows along x.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StoredMap {
+    /// Number of the step in the table `steps`.
+    pub step: i64,
+    /// Gap \[m\].
+    pub gap_m: Array2<f32>,
+    /// Pressure, compression positive \[Pa\].
+    pub pressure_pa: Array2<f32>,
+}
+
+/// All maps of a file, by step.
+///
+/// # Errors
+/// If the file cannot be read.
+pub fn read_maps(path: &Path) -> Result<Vec<StoredMap>, StoreError> {
+    let read = || -> Result<Vec<StoredMap>, Cause> {
+        let mut maps = Vec::new();
+        for group in open(path)?.groups()? {
+            let step = group.attr("step")?.read_scalar::<i64>()?;
+            let [gap_m, pressure_pa] = [FIELDS[0].0, FIELDS[1].0].map(|name| group.dataset(name).and_then(|data| data.read_2d()));
+            maps.push(StoredMap { step, gap_m: gap_m?, pressure_pa: pressure_pa? });
+        }
+        maps.sort_by_key(|map| map.step);
+        Ok(maps)
+    };
+    library(read).map_err(|cause| StoreError::new("read the contact maps from", path, cause))
+}
+
 /// Name of the group of a step.
 fn group_name(map: &ContactMap) -> String {
     format!("step_{:06}", map.step)

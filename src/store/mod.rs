@@ -22,5 +22,5 @@ pub use builder::FrameBuilder;
 pub use error::{FrameError, StoreError};
 pub use frame::{ColumnData, Frame};
 pub use halfway::{CHECKPOINT_VERSION, is_halfway, read_halfway, write_halfway, write_state};
-pub use maps::{ContactMap, FIELDS as MAP_FIELDS, MapsHeader, ReversalMap, read_reversal_map, write_maps};
+pub use maps::{ContactMap, FIELDS as MAP_FIELDS, MapsHeader, ReversalMap, StoredMap, read_maps, read_reversal_map, write_maps};
 pub use receipt::{Check, Fault, Found, Kept, Made, RECEIPT_VERSION, Receipt, read_receipt, write_receipt};

@@ -77,7 +77,7 @@ impl Sum {
         self.area += turn.area_m2 / (problem.length_m * problem.length_m);
         self.pull_off -=
             done.steps.iter().filter(|step| step.branch == Branch::Unloading).map(|step| step.least_load_n).fold(0.0, f64::min) / unit;
-        let work = |branch| done.steps.iter().filter(|step| step.branch == branch).last().map_or(0.0, |step| step.work_j);
+        let work = |branch| done.steps.iter().rfind(|step| step.branch == branch).map_or(0.0, |step| step.work_j);
         self.loss += (work(Branch::Loading) + work(Branch::Unloading)) / (unit * problem.rms_height_m);
         for step in &done.steps {
             self.effort += step.effort;

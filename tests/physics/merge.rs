@@ -64,8 +64,12 @@ fn law_merging_and_parting_of_a_pair_costs_nothing() {
     let [merge, split] = [2, 3].map(|k| cycle.events[k].1);
     // It parts at the radius at which it merged, to 1e-4: twice that of the way of 1e-5 m that a²/R has made.
     near("approach", split.approach_m, merge.approach_m, 2e-9);
-    // What the potential loses at one it gains at the other; the loads are equal where both are, so that the difference is of second order.
-    near("energy", split.energy_lost_j, -merge.energy_lost_j, 1e-5 * merge.energy_lost_j.abs());
+    // The constant of the merged spot takes up the difference of the potentials: neither costs anything, to the rounding of the sums (1e-16 of
+    // the energies of its parts).
+    let scale: f64 = pair().iter().map(|s| Asperity::new(s.radius_m(), &PAPER).unwrap().loop_loss()).sum();
+    near("merging", merge.energy_lost_j, 0.0, 1e-9 * scale);
+    // It splits a rounding of its radius below the one at which it merged.
+    near("splitting", split.energy_lost_j, 0.0, 1e-6 * scale);
     // The loop loses what its jumps lose: by plain JKR each jumps in at δ = 0 and off at the end of its branch.
     let sums = loop_of(&cycle, 0);
     let want: f64 = pair().iter().map(|s| Asperity::new(s.radius_m(), &PAPER).unwrap().loop_loss()).sum();
@@ -87,6 +91,20 @@ fn law_with_point_interaction_the_loop_loses_what_its_events_lose() {
         // The audit's tolerance: folds are passed by 1e-6 of the rms height, work is a sum of fourth order.
         close("events", sums.events, sums.loss, most);
         assert!(cycle.steps.iter().all(|s| s.residual_m <= 1e-8 * RMS));
+    }
+}
+
+#[test]
+fn law_merging_and_splitting_exchange_energy_with_other_spots_alone() {
+    // Without interaction there is none but the rounding of the radius of release. With it the field of one spot replaces that of two, at others within a few radii.
+    // Over the dissipated energy, the magnitudes sum to 0.80 (spots) and 0.46 (point); without the constants of the merged spots to 4.8, 2.6 and 1.4 (none).
+    for (rules, most) in [(MERGE, 1.0), (Rules { interaction: Interaction::Point, ..MERGE }, 0.6), (MERGE_ALONE, 1e-6)] {
+        let problem = Problem::new(&paper_summits(16, 0), LENGTH, RMS, PAPER, rules).unwrap();
+        let cycle = run(&problem, &[0.0071], 0.04, KeptContacts::None);
+        let coalescence = cycle.events.iter().filter(|(_, e)| matches!(e.kind, Kind::Merge | Kind::Split));
+        let exchanged: f64 = coalescence.map(|(_, e)| e.energy_lost_j.abs()).sum();
+        let share = exchanged / loop_of(&cycle, 0).loss;
+        assert!(share < most, "{:?}: {share:e}", rules.interaction);
     }
 }
 

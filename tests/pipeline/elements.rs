@@ -98,6 +98,21 @@ fn e2e_both_methods_side_by_side() {
     assert_eq!(code(&bench.look("verify", &["--deep"])), 0);
     let gc = bench.look("gc", &["--dry-run"]);
     assert!(!stdout(&gc).contains("maps.h5") && !stdout(&gc).contains("turning.bin"), "{}", stdout(&gc));
+    // The explorer shows the map of boundary elements beside the contact spots of the same surface.
+    let page = fs::read_to_string(bench.out().join("report.html")).unwrap();
+    let data = page.split("type=\"application/json\">").nth(1).unwrap().split("</script>").next().unwrap();
+    let data: serde_json::Value = serde_json::from_str(data).unwrap();
+    let [first, second] = [&data["cycles"][0], &data["cycles"][1]];
+    assert_eq!((&first["other"], second["loops"].as_array().unwrap().len()), (&serde_json::json!(1), 2));
+    for of in second["loops"].as_array().unwrap() {
+        let maps = of["maps"].as_array().unwrap();
+        let reversal = maps.iter().find(|map| map["k"].as_u64() == Some(of["up"].as_u64().unwrap() - 1)).unwrap();
+        let cells = reversal["pressure"].as_str().unwrap();
+        // Letters beyond the middle one are compressive: about the contact area.
+        let compressive = cells.chars().filter(|letter| "ghijklmnopqrstuvwxyz0123456789+/".contains(*letter) && *letter != 'g').count();
+        let area = of["a"][of["up"].as_u64().unwrap() as usize - 1].as_f64().unwrap();
+        assert!(cells.len() == 64 * 64 && (compressive as f64 / 4096.0 - area).abs() < 0.5 * area, "{compressive} of {area}");
+    }
 }
 
 #[test]

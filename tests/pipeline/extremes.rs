@@ -104,7 +104,8 @@ fn e2e_the_share_of_coalescence_is_a_share_with_merging() {
     let shares = frame.f64("absorption_share").unwrap();
     assert!(shares.iter().all(|share| (0.0..0.1).contains(share)), "{shares:?}");
     let (merged, loss) = (frame.f64("dissipated_merge").unwrap(), frame.f64("loss").unwrap());
-    assert!(merged[2].abs() > 10.0 * loss[2], "energies far above Θ cancel");
+    // Without the constants of the merged contacts it was above ten times Θ on one surface.
+    assert!(merged.iter().zip(&loss).all(|(merged, loss)| merged.abs() < *loss), "{merged:?} {loss:?}");
 }
 
 /// Version 0.1.0 did not end here, and its memory grew.

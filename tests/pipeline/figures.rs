@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use hysteron::figures::{FigureError, Panel, Tables, panels, plot_xy, table};
+use hysteron::figures::{FigureError, Panel, Stroke, Tables, panels, table};
+use hysteron::figures::{described, plot_xy};
 use hysteron::stats::{CaseInput, cases, curves, realizations};
 use hysteron::store::Frame;
 
@@ -108,6 +109,7 @@ fn e2e_every_panel_is_drawn_again_from_its_table() {
     let (x, y, spread) = (frame.f64("x").unwrap(), frame.f64("y").unwrap(), frame.f64_or_null("y_sd").unwrap());
     for (_, panel) in &drawn {
         let mut plot = panel.plot.clone();
+        let caption = panel.caption.split(" Data: ").next().unwrap();
         for (number, curve) in plot.curves.iter_mut().enumerate() {
             let rows: Vec<usize> =
                 (0..frame.row_count()).filter(|k| letters[*k] == panel.plot.letter.to_string() && curves[*k] == number as i64).collect();
@@ -119,9 +121,9 @@ fn e2e_every_panel_is_drawn_again_from_its_table() {
             let bars = |errors: &[Option<f64>]| errors.iter().flatten().copied().collect::<Vec<f64>>();
             assert_eq!(bars(&curve.errors), bars(&drawn.errors), "{}", panel.stem);
         }
-        assert!(plot_xy(&panel.plot) == panel.svg, "{} is another picture when it is drawn twice", panel.stem);
+        assert!(described(&plot_xy(&panel.plot), caption) == panel.svg, "{} is another picture when it is drawn twice", panel.stem);
         assert!(plot.curves.iter().any(|curve| curve.points.len() > 1), "{}", panel.stem);
-        assert!(plot_xy(&plot) == panel.svg, "{} is another picture", panel.stem);
+        assert!(described(&plot_xy(&plot), caption) == panel.svg, "{} is another picture", panel.stem);
     }
     let names: std::collections::BTreeSet<&str> = frame.text("name").unwrap().into_iter().collect();
     assert_eq!(
@@ -137,7 +139,7 @@ fn e2e_magnification_sweep_has_five_panels() {
     assert_eq!(stems, ["fig4_A", "fig4_B", "fig4_C", "fig4_D", "fig4_E"]);
     for (at, label) in [(0, "A/A0"), (1, "Fpo/(E*A0)"), (2, "Δ/hrms"), (3, "Θ/(E*A0hrms)")] {
         let text = read(&drawn[at].1);
-        assert!(text.contains(label) && text.contains("mean of 6 surfaces"), "{text}");
+        assert!(text.contains(label) && drawn[at].1.contains("mean of 6 surfaces"), "{text}");
     }
     for panel in [0, 2] {
         assert_eq!((paths(&drawn[panel].1, Some("7 4")), paths(&drawn[panel].1, None)), (4, 4));
@@ -183,7 +185,7 @@ fn e2e_one_case_one_surface() {
     let drawn = draw(&tables(&[(case("a", "", 0.8, 128.0, &[0.0071]), (0.133, 5e-4, 4.9e-4, 2.5))], 1), "");
     assert_eq!(drawn[0].0, "run_A");
     assert_eq!((paths(&drawn[0].1, Some("7 4")), paths(&drawn[0].1, None)), (1, 1));
-    assert!(read(&drawn[0].1).contains("one surface"));
+    assert!(drawn[0].1.contains("one surface"));
 }
 
 #[test]
@@ -198,7 +200,7 @@ fn e2e_two_parameters_are_named() {
         })
         .collect();
     let drawn = draw(&tables(&inputs, 2), "grid");
-    assert!(read(&drawn[1].1).contains("over ζ; varied: H"));
+    assert!(drawn[1].1.contains("for ζ = 64, 128; H = 0.6, 0.8"));
     assert_eq!(paths(&drawn[1].1, None), 2);
     assert!(read(&drawn[0].1).contains("ζ = 64, H = 0.6"));
 }
@@ -214,8 +216,32 @@ fn e2e_words_stand_on_an_axis() {
             (input, (0.13 + 0.02 * at as f64, 5e-4, 5e-4, 2.5))
         })
         .collect();
-    let text = read(&draw(&tables(&inputs, 3), "models")[1].1);
+    let made = tables(&inputs, 3);
+    let text = read(&draw(&made, "models")[1].1);
     assert!(["spots", "point", "none"].iter().all(|word| text.contains(word)), "{text}");
+    // No line joins categories.
+    let made = panels_of(&made, "models").unwrap();
+    assert!(made[1].plot.curves.iter().all(|curve| !curve.joined || curve.stroke == Stroke::Crosses));
+}
+
+#[test]
+fn law_the_colour_is_the_case_and_the_dash_is_the_branch() {
+    let drawn = panels_of(&fig4(), "fig4").unwrap();
+    let cases = &drawn[0].cases;
+    assert_eq!(cases.iter().map(|(label, _)| label.as_str()).collect::<Vec<_>>(), ["ζ = 64", "ζ = 128", "ζ = 256", "ζ = 512"]);
+    let colours: std::collections::BTreeSet<&str> = cases.iter().map(|(_, colour)| colour.as_str()).collect();
+    assert_eq!(colours.len(), 4);
+    for panel in [&drawn[0], &drawn[2]] {
+        for curve in &panel.plot.curves {
+            assert_eq!(curve.stroke, if curve.name == "loading" { Stroke::Dashed } else { Stroke::Solid });
+            assert!(cases.contains(&(curve.of.clone(), curve.colour.clone())), "{} is {}", curve.of, curve.colour);
+        }
+    }
+    let own: Vec<&str> = cases.iter().map(|(_, colour)| colour.as_str()).collect();
+    assert_eq!(drawn[1].plot.curves[0].mark_colours, own);
+    // Panels that stand side by side have one size, and a description.
+    let size = |svg: &str| svg.split(" width=\"").nth(1).unwrap().split('"').next().unwrap().to_owned();
+    assert!(drawn.iter().all(|panel| size(&panel.svg) == size(&drawn[0].svg) && panel.svg.contains("role=\"img\" aria-label=\"")));
 }
 
 #[test]

@@ -12,6 +12,8 @@ mod e2e;
 #[cfg(feature = "stats")]
 mod elements;
 #[cfg(feature = "stats")]
+mod explorer;
+#[cfg(feature = "stats")]
 mod extremes;
 #[cfg(feature = "stats")]
 mod figures;

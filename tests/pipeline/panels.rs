@@ -54,12 +54,15 @@ fn wide(positive: bool, band: bool) -> XyPlot {
         band,
         positive,
         colour: "#cc3311".to_owned(),
+        mark_colours: Vec::new(),
         stroke: Stroke::Solid,
+        joined: true,
         marked: true,
     };
-    let key = vec![KeyEntry { text: "area".to_owned(), colour: "#cc3311".to_owned(), stroke: Some(Stroke::Solid), marked: true }];
+    let key =
+        vec![KeyEntry { text: "area".to_owned(), colour: "#cc3311".to_owned(), stroke: Some(Stroke::Solid), marked: true, joined: true }];
     let (x, y) = (Axis::holding("x", [1.0, 2.0], false), Axis::holding("y", [-1.0, 1.5], true));
-    XyPlot { stem: "wide".to_owned(), letter: 'A', title: String::new(), x, y, curves: vec![curve], key, notes: Vec::new() }
+    XyPlot { stem: "wide".to_owned(), letter: 'A', title: String::new(), x, y, curves: vec![curve], key, notes: Vec::new(), margin: 0.0 }
 }
 
 #[test]
@@ -151,12 +154,12 @@ fn law_labels_of_a_sweep_have_no_float_noise() {
 fn law_counts_of_surfaces_are_sentences() {
     let inputs = [64.0, 128.0].map(|zeta| (case(&format!("z{zeta}"), "s", 0.8, zeta, &[0.0071]), (0.1, 1e-4, 1e-4, 2.0)));
     let (cases, curves, realizations) = tables(&inputs, 2);
-    let titles = |counts: [i64; 2]| {
+    let captions = |counts: [i64; 2]| {
         let cases = replaced(&replaced(&cases, "done_count", 0, counts[0] as f64), "done_count", 1, counts[1] as f64);
-        panels_of(&(cases, curves.clone(), realizations.clone()), "s").unwrap()[0].plot.title.clone()
+        panels_of(&(cases, curves.clone(), realizations.clone()), "s").unwrap()[0].caption.clone()
     };
-    assert_eq!(titles([0, 1]), "s: at most one surface");
-    assert_eq!(titles([0, 6]), "s: mean of up to 6 surfaces");
-    assert_eq!(titles([1, 1]), "s: one surface");
-    assert_eq!(titles([1, 3]), "s: mean of 1 to 3 surfaces");
+    assert!(captions([0, 1]).contains("; at most one surface"));
+    assert!(captions([0, 6]).contains("; mean of up to 6 surfaces"));
+    assert!(captions([1, 1]).contains("; one surface"));
+    assert!(captions([1, 3]).contains("; mean of 1 to 3 surfaces"));
 }

@@ -72,13 +72,13 @@ fn e2e_the_closer_look_is_in_the_table_of_panels() {
     let largest = (0..losses.len()).max_by(|u, v| losses[*u].total_cmp(&losses[*v])).unwrap();
     let (zeta, max_load) = (cases.f64("magnification").unwrap()[largest], cases.f64("max_load").unwrap()[largest]);
     let page = fs::read_to_string(bench.out().join("report.html")).unwrap();
-    let section = page.split("<h2>Single cycle").nth(1).unwrap();
-    let parameters = format!("ζ = {zeta}, H = 0.8, h_rms = 5 µm, L = 1 mm, E* = 1 MPa, Δγ = 0.07 J/m²");
+    let section = page.split(">Single cycle</h2>").nth(1).unwrap();
+    let parameters = format!("ζ = {zeta}, H = 0.8, h<sub>rms</sub> = 5 µm, L = 1 mm, E* = 1 MPa, Δγ = 0.07 J/m²");
     assert!(
         section.contains(&format!("the load reversal and back, for {parameters}"))
-            && section.starts_with("</h2>\n<p>The case with the largest mean Θ")
+            && section.starts_with("\n<p>The case with the largest mean Θ")
     );
-    assert!(section.matches(&format!("F_max/(E*A₀) = {max_load}")).count() == 2, "{zeta} {max_load}");
+    assert!(section.matches(&format!("F<sub>max</sub>/(E*A₀) = {max_load}")).count() == 3, "{zeta} {max_load}");
     // The loop is closed at its turning point, from where the load falls below none.
     let (up, down) = (of("loop", "loading"), of("loop", "unloading"));
     assert!(up.len() > 5 && down.len() > 5 && down.iter().any(|point| point.1 < 0.0));
@@ -134,7 +134,7 @@ fn e2e_a_page_without_spots_or_results_is_still_a_page() {
     let report = nothing.verb("report", &[]);
     assert_eq!(code(&report), 0, "{}", stderr(&report));
     let page = fs::read_to_string(nothing.out().join("report.html")).unwrap();
-    assert!(page.contains("0 of 2") && !page.contains("<h2>Single cycle"));
+    assert!(page.contains("0 of 2") && !page.contains(">Single cycle</h2>"));
     assert!(page.contains("no surface finished"));
 }
 
@@ -170,19 +170,22 @@ fn e2e_tables_of_the_report_name_cases_by_what_varies() {
     let ended = bench.verb("run", &[]);
     assert_eq!(code(&ended), 0, "{}", stderr(&ended));
     let page = fs::read_to_string(bench.out().join("report.html")).unwrap();
-    for heading in ["<h2>Results", "<h2>Comparison with analytical models", "<h2>Energy budget", ">Model validity"] {
+    for heading in [">Results</h2>", ">Comparison with analytical models</h2>", ">Energy budget</h2>", ">Model validity</h2>"] {
         let names: Vec<String> = cells(&page, heading).into_iter().map(|row| row[0].clone()).collect();
         assert_eq!(names, ["reference", "ζ = 6", "ε = 2 nm"], "{heading}");
     }
     assert!(page.contains("Reference case: ζ = 8, ε = 1 nm."), "the reference case is not defined");
     let table = read_table(&bench.out().join("statistics/cases.parquet"), &schema::CASES).unwrap();
-    let body = page.split("<h2>Data").next().unwrap().split("</style>").nth(1).unwrap();
-    let hidden = body.split("<h2>Single cycle").next().unwrap();
+    let body = page.split(">Data</h2>").next().unwrap().split("</style>").nth(1).unwrap();
+    let hidden = body.split(">Single cycle</h2>").next().unwrap();
     for id in table.text("case_id").unwrap() {
-        assert!(!hidden.contains(id) && !page.split("<h2>Comparison with").nth(1).unwrap().contains(id), "{id} names a row");
+        assert!(
+            !hidden.contains(id) && !page.split(">Comparison with analytical models</h2>").nth(1).unwrap().contains(id),
+            "{id} names a row"
+        );
     }
     // Differences: of the losses, surface by surface.
-    let changes = cells(&page, "<h2>Differences from the reference case");
+    let changes = cells(&page, ">Differences from the reference case</h2>");
     let (ids, zetas, ranges) =
         (table.text("case_id").unwrap(), table.f64("magnification").unwrap(), table.f64("interaction_range_m").unwrap());
     let case = |zeta: f64, range: f64| ids[(0..ids.len()).find(|k| zetas[*k] == zeta && ranges[*k] == range).unwrap()];
@@ -206,7 +209,7 @@ fn e2e_few_surfaces_are_listed_and_no_interval_of_a_positive_quantity_is_negativ
         let (lows, means) = (table.f64("pull_off_load_ci95_low").unwrap(), table.f64("pull_off_load_mean").unwrap());
         assert!(means.iter().all(|mean| *mean > 0.0));
         let negative = lows.iter().filter(|low| **low < 0.0).count();
-        let rows = cells(&page, "<h2>Results");
+        let rows = cells(&page, ">Results</h2>");
         for row in &rows {
             assert_eq!(row[5].matches(';').count(), if listed { count - 1 } else { 0 }, "{row:?}");
             // A/A0, F_po, Θ, Θ_DK and Θ/Θ_DK.
@@ -301,4 +304,40 @@ fn e2e_campaigns_are_compared_case_by_case() {
     assert!(said.contains("no case with otherwise equal parameters is in all runs"), "{said}");
     let said = stderr(&compare(&[&spots, &Bench::new(SPEC)], &out));
     assert!(said.starts_with("error: cannot") && said.contains("statistics/cases.parquet"), "{said}");
+}
+
+#[test]
+fn e2e_the_spec_chooses_the_files_of_the_figures() {
+    let chosen =
+        SPEC.replace("seed = 7", "seed = 7\nfigures = { format = [\"svg\", \"png\"], width_mm = 120, font = \"Latin Modern Sans\" }");
+    let bench = Bench::new(&chosen);
+    let ended = bench.verb("run", &[]);
+    assert_eq!(code(&ended), 0, "{}", stderr(&ended));
+    let written = files(&bench.out());
+    assert!(
+        written.contains_key(Path::new("figures/zeta_A.png")) && !written.keys().any(|path| path.extension().is_some_and(|of| of == "pdf"))
+    );
+    let page = fs::read_to_string(bench.out().join("report.html")).unwrap();
+    assert!(page.contains("href=\"figures/zeta_A.png\"") && !page.contains(".pdf\""));
+    let svg = fs::read_to_string(bench.out().join("figures/zeta_A.svg")).unwrap();
+    assert!(svg.contains("font-family=\"Latin Modern Sans, DejaVu Sans, "));
+    // Dots per metre: three to a pixel, 480 pixels on 120 mm.
+    let png = fs::read(bench.out().join("figures/zeta_A.png")).unwrap();
+    let at = png.windows(4).position(|four| four == b"pHYs").unwrap() + 4;
+    assert_eq!(u32::from_be_bytes(png[at..at + 4].try_into().unwrap()), 12_000);
+}
+
+#[test]
+fn e2e_a_page_of_progress_is_there_until_the_run_ends() {
+    let bench = Bench::new(SPEC);
+    let page = bench.out().join("progress.html");
+    let mut child = bench.command("run").stderr(std::process::Stdio::null()).stdout(std::process::Stdio::null()).spawn().unwrap();
+    let mut seen = String::new();
+    while child.try_wait().unwrap().is_none() {
+        seen = fs::read_to_string(&page).unwrap_or(seen);
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    assert!(child.wait().unwrap().success());
+    assert!(seen.contains("<meta http-equiv=\"refresh\" content=\"5\">") && seen.contains("<td>generate</td><td>"), "{seen}");
+    assert!(!page.exists() && bench.out().join("report.html").is_file());
 }

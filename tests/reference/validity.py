@@ -2,7 +2,7 @@
 
     hysteron run pipelines/validity.toml --out out && python tests/reference/validity.py out > src/stats/model_error.csv
 
-Ratios of both methods on the same surface, averaged over surfaces and magnifications whose U_el/Δγ is nearest to one power of two. Of boundary elements the
+Ratios of both methods on the same surface, averaged over the surfaces and magnifications of one work of adhesion. Of boundary elements the
 cases with 16 points per shortest wavelength are taken. A ratio whose standard deviation exceeds its mean is left out.
 """
 import math
@@ -14,17 +14,17 @@ import polars as pl
 folder = Path(sys.argv[1])
 pairs = pl.read_parquet(folder / "statistics" / "methods.parquet")
 cases = pl.read_parquet(folder / "statistics" / "cases.parquet")
-asperities = cases.select(pl.col("case_id").alias("asperities_case_id"), "coalescence", "magnification")
+asperities = cases.select(pl.col("case_id").alias("asperities_case_id"), "coalescence", "magnification", "work_of_adhesion_j_m2")
 elements = cases.filter(
     (pl.col("elements_per_wavelength_mean") == 16) & (pl.col("opening") == "strength")
 ).select(pl.col("case_id").alias("elements_case_id"))
 table = pairs.join(asperities, on="asperities_case_id").join(elements, on="elements_case_id")
 ratios = [f"{name}_ratio" for name in ("area_at_max_load", "pull_off_load", "loss")]
-table = table.drop_nulls(ratios).with_columns(bin=pl.col("persson_tosatti_realised").log(2).round())
+table = table.drop_nulls(ratios)
 print("# Asperity model over boundary elements: area, pull-off force and dissipated energy, means over surfaces; their standard deviations and number.")
 print(f"# hysteron run pipelines/validity.toml; magnifications {sorted(table['magnification'].unique().to_list())}; program {cases['program'][0] if 'program' in cases.columns else '0.1.0'}")
 print("coalescence,persson_tosatti,area,pull_off,loss,area_sd,pull_off_sd,loss_sd,count")
-for (rule, _), part in sorted(table.group_by("coalescence", "bin")):
+for (rule, _), part in sorted(table.group_by("coalescence", -pl.col("work_of_adhesion_j_m2"))):
     middle = math.exp(part["persson_tosatti_realised"].log().mean())
     means = [part[ratio].mean() for ratio in ratios]
     sds = [part[ratio].std() or 0.0 for ratio in ratios]

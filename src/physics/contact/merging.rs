@@ -11,18 +11,17 @@
 //! A pair whose tensile load would put the merged contact beyond the end of its branch merges only when this is no longer so.
 //! A pair that has split must have been apart before it merges again.
 //!
-//! A merged contact is a different sphere from its two parts, and its potential on its branch is another one. The difference at merging is
-//! a constant of the merged contact and part of its potential: the self-potentials of the parts and their interaction are functions of
-//! their radii alone, which are the same again when it splits. What merging changes is then the interaction with other contacts, and that
-//! is the energy of the event.
+//! A merged spot is a different sphere from its two parts, and its potential on its branch is another one. The difference at merging is a
+//! constant of the merged spot and part of its potential: the potentials of the parts and their interaction are functions of their radii
+//! alone, which are the same again when it splits. So merging and splitting alone dissipate nothing; what they change is the interaction
+//! with other contacts, which respond to it.
 
 use super::merged_spot::{Merged, TouchingPairs};
 use super::problem::Problem;
 use super::state::State;
-use crate::model::Coalescence;
+use crate::model::{Coalescence, Interaction};
 use crate::physics::PhysicsError;
 use crate::physics::jkr::Asperity;
-use std::f64::consts::PI;
 
 /// Relative change of a contact radius below the accuracy of an equilibrium.
 pub(crate) const ROUNDING: f64 = 1e-8;
@@ -50,14 +49,12 @@ impl Problem {
     /// Adds a merged contact; it gets the next number.
     pub(crate) fn add(&mut self, merged: &Merged) -> Result<(), PhysicsError> {
         let asperity = Asperity::as_printed(merged.radius_m, &self.material, self.rules.slips)?;
-        let [a, b] = merged.radii_m;
-        let [i, j] = merged.parts;
-        let radius = merged.contact_radius_m();
-        let energy =
-            asperity.stored_energy(asperity.penetration(radius), radius) - self.material.work_of_adhesion_j_m2 * PI * radius * radius;
-        let parts = self.self_potential(i, a) + self.self_potential(j, b) + self.interaction_energy([i, j], [a, b]);
-        self.potential_offset.push(parts - energy);
+        let number = self.len();
         self.asperities.push(asperity);
+        self.potential_offset.push(0.0);
+        let ([i, j], [a, b]) = (merged.parts, merged.radii_m);
+        let parts = self.self_potential(i, a) + self.self_potential(j, b) + self.interaction_energy([i, j], [a, b]);
+        self.potential_offset[number] = parts - self.self_potential(number, merged.contact_radius_m());
         self.heights.push(merged.height_m);
         self.positions.push(merged.place_m);
         // After splitting, it cannot form a contact again.
@@ -67,9 +64,9 @@ impl Problem {
         Ok(())
     }
 
-    /// `½(F_i ŵ_ij + F_j ŵ_ji)` of two contacts \[J\].
+    /// `½(F_i ŵ_ij + F_j ŵ_ji)` of two spots of these radii \[J\].
     fn interaction_energy(&self, [i, j]: [usize; 2], [a, b]: [f64; 2]) -> f64 {
-        if self.rules.interaction == crate::model::Interaction::None {
+        if self.rules.interaction == Interaction::None {
             return 0.0;
         }
         let r = self.neighbours.distance(&self.positions[i], &self.positions[j]);

@@ -23,8 +23,9 @@ fn keys(campaign: &Campaign) -> [Vec<String>; 5] {
 }
 
 /// Another value for every key of a spec, and the first stage that reads it: 0 generate, 2 cycle, 3 aggregate, 4 report.
-const OTHERS: [(&str, &str, usize); 29] = [
+const OTHERS: [(&str, &str, usize); 30] = [
     ("name", "\"y\"", 3),
+    ("figures", "{ format = [\"svg\"], width_mm = 88.0, font = \"DejaVu Sans\" }", 4),
     ("seed", "2022", 0),
     ("surface.length_m", "0.002", 0),
     ("surface.rms_height_m", "6e-6", 0),

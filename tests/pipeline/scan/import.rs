@@ -194,7 +194,7 @@ fn e2e_a_scan_goes_through_all_stages() {
     // Energy by the areas of the loop is that of its events.
     let loss = cases.f64_or_null("loss_mean").unwrap()[0].unwrap();
     assert!(loss > 0.0 && cases.f64_or_null("audit_gap_mean").unwrap()[0].unwrap() < 0.05);
-    assert!(fs::read_to_string(bench.out().join("report.html")).unwrap().contains("<h2>Measured surfaces</h2>"));
+    assert!(fs::read_to_string(bench.out().join("report.html")).unwrap().contains(">Measured surfaces</h2>"));
     // What flattens the roughness is summed over the modes that the surface has.
     let realizations = read_table(&bench.out().join("statistics/realizations.parquet"), &schema::REALIZATIONS).unwrap();
     let energy = |column: &str| realizations.f64_or_null(column).unwrap()[0];

@@ -141,6 +141,7 @@ def test_where_the_program_is_looked_for(tmp_path, monkeypatch):
     within = tmp_path / "clone" / "data" / "deep"
     within.mkdir(parents=True)
     monkeypatch.delenv("HYSTERON", raising=False)
+    monkeypatch.setattr(_program.sysconfig, "get_path", lambda _: str(tmp_path / "scripts"))
     monkeypatch.setenv("PATH", str(tmp_path / "empty"))
     monkeypatch.chdir(tmp_path)
     with pytest.raises(FileNotFoundError, match="cannot find the program hysteron: .*\nhelp: run `cargo install --path .`"):

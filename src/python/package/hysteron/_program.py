@@ -8,6 +8,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import sysconfig
 import tempfile
 import warnings
 from collections.abc import Iterator, Mapping
@@ -17,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import _toml
+from . import _notebook, _toml
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -49,7 +50,11 @@ class FailedCases(UserWarning):
 
 
 def find() -> Path:
-    """Path of the program: environment variable HYSTERON, else `hysteron` on PATH, else target/release/hysteron in the working directory or above."""
+    """Path of the program.
+
+    In this order: environment variable HYSTERON, `hysteron` on PATH, the program of the installed package, target/release/hysteron in the working
+    directory or above.
+    """
     named = os.environ.get("HYSTERON")
     if named:
         path = Path(named).absolute()
@@ -59,8 +64,12 @@ def find() -> Path:
     found = shutil.which("hysteron")
     if found:
         return Path(found).absolute()
-    here = Path.cwd()
     name = "hysteron.exe" if os.name == "nt" else "hysteron"
+    # An environment that is not activated is not on PATH.
+    own = Path(sysconfig.get_path("scripts")) / name
+    if own.is_file():
+        return own
+    here = Path.cwd()
     for folder in (here, *here.parents):
         path = folder / "target" / "release" / name
         if path.is_file():
@@ -77,15 +86,37 @@ def run(
     jobs: int | None = None,
     until: str | None = None,
 ) -> Run:
-    """Runs all pending tasks of a spec, as `hysteron run`, and opens the output directory.
+    """Runs all pending tasks of a spec, as `hysteron run`, and opens the output directory. The same call resumes the run.
 
-    `spec` is the path of a spec, the text of one (a text of more than one line, or with a `=`), or a nested dict of the same keys, such as
-    `{"name": "mine", "surface": {"magnification": 32}, "sweep": [{"surface": {"hurst": [0.7, 0.8]}}]}`. `out` is the output directory;
-    the default is `data/runs/<name of the spec>` below the working directory, as on the command line. `jobs` is the number of threads (default: number
-    of cores). `until` is the last stage: generate, extract, cycle, aggregate or report.
+    Progress is written to `sys.stderr`, in a notebook as a progress bar.
 
-    Progress is written to `sys.stderr`. Raises `Failed` with the message of the program after an error, and `Interrupted` after an interrupt; warns
-    with `FailedCases` if some cases failed. The same call resumes the run.
+    Parameters
+    ----------
+    spec : path, str or mapping
+        Path of a spec, the text of one (a text of more than one line, or with a `=`), or a nested dict of the same keys, such as
+        `{"name": "mine", "surface": {"magnification": 32}, "sweep": [{"surface": {"hurst": [0.7, 0.8]}}]}`.
+    out : path, optional
+        Output directory. Default: `data/runs/<name of the spec>` below the working directory, as on the command line.
+    jobs : int, optional
+        Number of threads. Default: number of cores.
+    until : str, optional
+        Last stage: generate, extract, cycle, aggregate or report.
+
+    Returns
+    -------
+    Run
+
+    Raises
+    ------
+    HysteronError
+        With the message of the program after an error.
+    Interrupted
+        After an interrupt.
+
+    Warns
+    -----
+    FailedCasesWarning
+        If some cases failed.
     """
     program = find()
     with _file(spec) as path:
@@ -129,11 +160,31 @@ def take(
 ) -> dict[str, Any]:
     """Imports a measured surface, as `hysteron import`, and returns its moments, spectrum and self-affine fit.
 
-    `file` is a path of HDF5 (select the field with `dataset`), NetCDF-3, X3P, .npy or text; or an array of heights, in which masked values and NaN are
-    missing points. `pixel_m` is the pixel size [m] and `unit` the unit of the heights, for files without them. `fill` interpolates missing points
-    (harmonic in-fill). `detrend` selects the levelling: mean, plane (default) or quadratic; mean only for a periodic surface. `points` is the S-filter
-    cut-off in pixels. With `out` the surface is written there, replacing an existing file, for use as `surface.file` in a spec; without it no file is
-    written.
+    Parameters
+    ----------
+    file : path or array
+        Path of HDF5, NetCDF-3, X3P, .npy or text; or an array of heights, in which masked values and NaN are missing points.
+    out : path, optional
+        The surface is written there, replacing an existing file, for use as `surface.file` in a spec. Default: no file is written.
+    dataset : str, optional
+        Field of an HDF5 file.
+    pixel_m : float, optional
+        Pixel size [m], for files without it.
+    unit : str, optional
+        Unit of the heights, for files without it.
+    fill : bool
+        Interpolates missing points (harmonic in-fill).
+    detrend : str, optional
+        Levelling: mean, plane (default) or quadratic; mean only for a periodic surface.
+    periodic : bool
+        True for a periodic surface.
+    points : int
+        S-filter cut-off in pixels.
+
+    Returns
+    -------
+    dict
+        Output of `hysteron import --json`.
     """
     command = [str(find()), "import", "--json", f"--points={points}"]
     command += ["--dry-run"] if out is None else [f"--out={os.fspath(out)}", "--force"]
@@ -192,6 +243,7 @@ def _file(spec: str | os.PathLike[str] | Mapping[str, Any]) -> Iterator[str]:
 def _watched(command: list[str]) -> tuple[int, str, str]:
     """Runs a command and forwards its standard error line by line; returns exit code, output and standard error."""
     told: list[str] = []
+    bar = _notebook.bar()
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding="utf-8", errors="replace") as process:
         assert process.stdout is not None and process.stderr is not None
         interrupted = False
@@ -200,8 +252,9 @@ def _watched(command: list[str]) -> tuple[int, str, str]:
                 # The answer is a few hundred bytes at the end: it waits in its pipe.
                 for line in process.stderr:
                     told.append(line)
-                    sys.stderr.write(line)
-                    sys.stderr.flush()
+                    if bar is None or not bar.line(line):
+                        sys.stderr.write(line)
+                        sys.stderr.flush()
                 said = process.stdout.read()
                 code = process.wait()
                 break

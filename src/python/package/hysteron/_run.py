@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import difflib
+import html
 import json
 import os
+import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -15,6 +17,9 @@ import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from . import _program
+
+#: Columns of the table of means that a notebook shows.
+_SHOWN = ("case_id", "max_load", "done_count", "area_at_max_load_mean", "pull_off_load_mean", "loss_mean", "loss_sd", "caution")
 
 
 class Description(NamedTuple):
@@ -40,7 +45,17 @@ def describe(table: pa.Table | pa.Schema | pa.RecordBatch) -> dict[str, Descript
 
 
 def load(dir: str | os.PathLike[str]) -> Run:
-    """Opens the output directory of a run. Tables are read on access; tables of an unfinished run appear as they are written."""
+    """Opens the output directory of a run. Tables are read on access; tables of an unfinished run appear as they are written.
+
+    Parameters
+    ----------
+    dir : path
+        Output directory of a run.
+
+    Returns
+    -------
+    Run
+    """
     path = Path(dir).absolute()
     if not path.is_dir():
         raise FileNotFoundError(f"cannot load {path}: no such directory\nhelp: give the output directory of a run")
@@ -63,6 +78,40 @@ class Run(Mapping[str, pa.Table]):
 
     def __repr__(self) -> str:
         return f"hysteron.load({str(self.dir)!r})"
+
+    def _repr_html_(self) -> str:
+        """The run in a notebook: state, link to the report, and the main columns of the table of means."""
+        title = f"<b>{html.escape(self.name)}</b> ({html.escape(str(self.dir))})"
+        if self.report.is_file():
+            title += f' <a href="{html.escape(self.report.as_uri())}">report.html</a>'
+        if "statistics/cases" not in self:
+            return f"<p>{title}: {len(self.cycle_ids)} cycles are finished, no table of means yet.</p>"
+        cases = self.cases
+        columns = [name for name in _SHOWN if name in cases.schema.names]
+        head = "".join(f"<th>{name}</th>" for name in columns)
+
+        def cell(value: Any) -> str:
+            return f"{value:.4g}" if isinstance(value, float) else html.escape(str(value))
+
+        rows = ("".join(f"<td>{cell(row[name])}</td>" for name in columns) for row in cases.select(columns).slice(0, 20).to_pylist())
+        body = "".join(f"<tr>{row}</tr>" for row in rows)
+        return f"<p>{title}: {cases.num_rows} rows of means.</p><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+
+    @property
+    def spec(self) -> str:
+        """Spec of the run with all defaults, as TOML."""
+        return (self.dir / "campaign.toml").read_text(encoding="utf-8")
+
+    @property
+    def name(self) -> str:
+        """Name of the run."""
+        found = re.search(r'^name = "([^"]*)"', self.spec, re.MULTILINE)
+        return found[1] if found else self.dir.name
+
+    @property
+    def report(self) -> Path:
+        """Path of the report."""
+        return self.dir / "report.html"
 
     def __getitem__(self, name: str) -> pa.Table:
         path = self.dir / f"{name}.parquet"
@@ -127,9 +176,33 @@ class Run(Mapping[str, pa.Table]):
         """Output steps of the cycle `id`: loading, and unloading from each load reversal."""
         return self[f"cycles/{id}/steps"]
 
-    def events(self, id: str) -> pa.Table:
-        """Events of the cycle `id`: one row per change of state of an asperity."""
-        return self[f"cycles/{id}/events"]
+    def events(self, id: str | None = None) -> pa.Table:
+        """Events: one row per change of state of an asperity.
+
+        Parameters
+        ----------
+        id : str, optional
+            Cycle. Default: all finished cycles, with the parameters of the cycle in each row.
+
+        Returns
+        -------
+        pyarrow.Table
+        """
+        if id is not None:
+            return self[f"cycles/{id}/events"]
+        cycles = self["statistics/cycles"]
+        rows: dict[str, int] = {}
+        for row, name in enumerate(cycles["cycle_id"].to_pylist()):
+            # Cases that share a cycle have one row each.
+            rows.setdefault(name, row)
+        parts = []
+        for name in self.cycle_ids:
+            part = self.events(name)
+            for field in cycles.schema:
+                if field.name not in part.schema.names and name in rows:
+                    part = part.append_column(field, pa.repeat(cycles[field.name][rows[name]], part.num_rows))
+            parts.append(part)
+        return pa.concat_tables(parts, promote_options="default")
 
     def contacts(self, id: str) -> pa.Table:
         """Contact spots of the cycle `id` at the steps selected by `cycle.contacts`."""

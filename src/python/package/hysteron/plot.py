@@ -1,0 +1,216 @@
+"""Plots of a run with matplotlib: `pip install "hysteron[plot]"`.
+
+    import hysteron
+    run = hysteron.load("data/runs/quickstart")
+    hysteron.plot.loop(run)
+
+The colour is the case (palette of Okabe and Ito), the dash is the branch: loading dashed, unloading solid. Each function draws into `ax`, or into new axes,
+and returns the axes.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from ._run import Run
+
+#: Colours of cases.
+PALETTE = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000")
+
+
+def _axes(ax: Axes | None) -> Axes:
+    if ax is not None:
+        return ax
+    try:
+        import matplotlib.pyplot as plt
+    except ImportError:
+        raise ImportError('cannot plot: matplotlib is not installed\nhelp: pip install "hysteron[plot]"') from None
+    return plt.subplots(layout="constrained")[1]
+
+
+def _cycle(run: Run, id: str | None) -> str:
+    ids = run.cycle_ids
+    if not ids:
+        raise ValueError(f"cannot plot {run.dir}: no cycle is finished\nhelp: run `hysteron run SPEC`")
+    return ids[0] if id is None else id
+
+
+def _columns(table: Any, *names: str) -> list[Any]:
+    return [np.array(table[name].to_pylist(), dtype=object if table[name].type == "string" else None) for name in names]
+
+
+def _paths(table: Any, max_load: float | None) -> tuple[float, Any, Any]:
+    """The load reversal, and the rows of loading up to it and of unloading."""
+    branch, of, load = _columns(table, "branch", "max_load", "load")
+    of = of.astype(float)
+    largest = np.nanmax(of) if max_load is None else max_load
+    up = np.flatnonzero(branch == "loading")
+    down = np.flatnonzero((branch == "unloading") & np.isclose(of, largest, rtol=1e-9, atol=0))
+    if not down.size:
+        raise ValueError(f"no unloading from F_max/(E* A0) = {largest}\nhelp: use one of {sorted(set(of[np.isfinite(of)]))}")
+    return float(largest), up[: np.argmin(np.abs(load[up] - largest)) + 1], down
+
+
+def loop(run: Run, id: str | None = None, max_load: float | None = None, ax: Axes | None = None) -> Axes:
+    """Normal force against mean penetration of one cycle.
+
+    Parameters
+    ----------
+    run : Run
+        Output directory of a run.
+    id : str, optional
+        Cycle. Default: the first finished one.
+    max_load : float, optional
+        Load reversal F_max/(E* A0). Default: the largest one.
+    ax : matplotlib.axes.Axes, optional
+        Axes to draw into.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    ax = _axes(ax)
+    steps = run.steps(_cycle(run, id))
+    largest, up, down = _paths(steps, max_load)
+    penetration, load = _columns(steps, "penetration", "load")
+    ax.plot(penetration[up], load[up], "--", color=PALETTE[0], label="loading")
+    ax.plot(penetration[down], load[down], "-", color=PALETTE[0], label="unloading")
+    ax.set(xlabel=r"$\Delta/h_\mathrm{rms}$", ylabel="$F/(E^*A_0)$", title=rf"$F_\mathrm{{max}}/(E^*A_0)$ = {largest:.4g}")
+    ax.legend(frameon=False)
+    return ax
+
+
+def curves(run: Run, quantity: str = "area", ax: Axes | None = None) -> Axes:
+    """Mean curves of all cases against the normal force, with bands of one standard deviation.
+
+    Parameters
+    ----------
+    run : Run
+        Output directory of a run.
+    quantity : str
+        "area" (A/A0) or "penetration" (Δ/h_rms).
+    ax : matplotlib.axes.Axes, optional
+        Axes to draw into.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    ax = _axes(ax)
+    table = run.curves
+    case, branch, of, load, mean, sd = _columns(table, "case_id", "branch", "max_load", "load", f"{quantity}_mean", f"{quantity}_sd")
+    of, sd = of.astype(float), sd.astype(float)
+    for place, name in enumerate(dict.fromkeys(case)):
+        colour = PALETTE[place % len(PALETTE)]
+        rows = np.flatnonzero((case == name) & (branch == "loading"))
+        ax.plot(load[rows], mean[rows], "--", color=colour)
+        loads = of[(case == name) & (branch == "unloading")]
+        for max_load in sorted(set(loads)):
+            rows = np.flatnonzero((case == name) & (branch == "unloading") & (of == max_load))
+            low = mean[rows] - sd[rows]
+            ax.fill_between(load[rows], np.maximum(low, 0) if quantity == "area" else low, mean[rows] + sd[rows], color=colour, alpha=0.13, lw=0)
+            ax.plot(load[rows], mean[rows], "-", color=colour, label=name if max_load == max(loads) else None)
+    ax.set(xlabel="$F/(E^*A_0)$", ylabel={"area": "$A/A_0$", "penetration": r"$\Delta/h_\mathrm{rms}$"}[quantity])
+    ax.legend(frameon=False)
+    return ax
+
+
+def contacts(run: Run, id: str | None = None, step: int | None = None, ax: Axes | None = None) -> Axes:
+    """Contact spots of one cycle of the asperity model at a stored step, blue if compressive and orange if tensile.
+
+    Parameters
+    ----------
+    run : Run
+        Output directory of a run.
+    id : str, optional
+        Cycle. Default: the first finished one.
+    step : int, optional
+        Stored step, one of the column `step` of the table `contacts`. Default: the one with the most contact spots.
+    ax : matplotlib.axes.Axes, optional
+        Axes to draw into.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    ax = _axes(ax)
+    from matplotlib.collections import EllipseCollection
+
+    cycle = _cycle(run, id)
+    table = run.contacts(cycle)
+    number, state, asperity, radius, load = _columns(table, "step", "state", "asperity_id", "contact_radius_m", "load_n")
+    touching = state == "contact"
+    if step is None:
+        known, counts = np.unique(number[touching], return_counts=True)
+        if not known.size:
+            raise ValueError(f"the cycle {cycle} has no stored contacts\nhelp: set `cycle.contacts` to \"turning\" or \"all\" in the spec")
+        step = int(known[np.argmax(counts)])
+    rows = np.flatnonzero(touching & (number == step))
+    centres = _centres(run, cycle, asperity[rows])
+    colours = np.where(load[rows].astype(float) < 0, PALETTE[1], PALETTE[0])
+    diameter = 2e6 * radius[rows].astype(float)
+    spots = EllipseCollection(diameter, diameter, np.zeros(rows.size), units="xy", offsets=1e6 * centres, facecolors=colours, alpha=0.85)
+    ax.add_collection(spots)
+    spots.set_offset_transform(ax.transData)
+    side = 1e6 * _side(run, cycle)
+    ax.set(xlim=(0, side), ylim=(0, side), aspect="equal", xlabel="x [µm]", ylabel="y [µm]", title=f"step {step}: {rows.size} contact spots")
+    return ax
+
+
+def _facts(run: Run, cycle: str, column: str) -> Any:
+    table = run["statistics/cycles"]
+    return table[column][table["cycle_id"].to_pylist().index(cycle)].as_py()
+
+
+def _side(run: Run, cycle: str) -> float:
+    return float(_facts(run, cycle, "length_m"))
+
+
+def _centres(run: Run, cycle: str, ids: Any) -> Any:
+    """Centres of asperities and merged contacts [m]."""
+    x, y = _columns(run.asperities(_facts(run, cycle, "surface_id")), "x_m", "y_m")
+    merged = {row["asperity_id"]: (row["x_m"], row["y_m"]) for row in run.merged(cycle).to_pylist()}
+    return np.array([(x[int(of)], y[int(of)]) if int(of) < len(x) else merged[int(of)] for of in ids]).reshape(-1, 2)
+
+
+def spectrum(run: Run, id: str | None = None, ax: Axes | None = None) -> Axes:
+    """Radially averaged power spectral density of the heights of a surface. Requires h5py.
+
+    Parameters
+    ----------
+    run : Run
+        Output directory of a run.
+    id : str, optional
+        Surface. Default: the first one.
+    ax : matplotlib.axes.Axes, optional
+        Axes to draw into.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    ax = _axes(ax)
+    import h5py
+
+    name = run.surface_ids[0] if id is None else id
+    heights = run.surface(name)
+    with h5py.File(run.dir / "surfaces" / f"{name}.h5") as file:
+        side = float(file.attrs["length_m"])
+    points = heights.shape[0]
+    power = np.abs(np.fft.fft2(heights - heights.mean())) ** 2 / points**4 * (side / (2 * np.pi)) ** 2
+    index = np.fft.fftfreq(points, 1 / points)
+    radius = np.hypot(*np.meshgrid(index, index))
+    rings = np.round(4 * np.log2(np.maximum(radius, 1))).astype(int)
+    inside = (radius >= 1) & (radius <= points / 2)
+    count = np.bincount(rings[inside])
+    mean = np.bincount(rings[inside], power[inside]) / np.maximum(count, 1)
+    wavenumber = 2 * np.pi / side * np.bincount(rings[inside], radius[inside]) / np.maximum(count, 1)
+    shown = (count > 0) & (mean > 1e-14 * mean.max())
+    ax.loglog(wavenumber[shown], mean[shown], "o-", color=PALETTE[0], ms=4)
+    ax.set(xlabel="q [1/m]", ylabel="C [m$^4$]", title=name)
+    return ax

@@ -1,0 +1,119 @@
+//! Head of the report: parameters, model validity and contents.
+
+use super::layout::{plain, prose};
+use crate::schema::{Parameter, parameters_by_rank};
+use crate::stats::{LIMITS, StatsError, Values, Varying, expected_ratios, significant, warnings};
+use crate::store::{ColumnData, Frame};
+use maud::{Markup, PreEscaped, html};
+
+/// Values of a parameter that the table lists; of more, it states the range.
+const MOST_VALUES: usize = 6;
+
+/// Warnings whose measured values decide whether results are inside the validated range of the asperity model.
+const DECIDING: [&str; 2] = ["sticky", "touching"];
+
+/// Warnings of the range of the asperity model.
+const OF_RANGE: [&str; 7] = ["sticky", "area", "conformed", "covered", "absorption", "touching", "tabor"];
+
+/// Parameters with their values, and the version of the program.
+pub(super) fn facts(cases: &Frame, seed: u64, realizations: &str) -> Result<Markup, StatsError> {
+    let mut facts = Vec::new();
+    for parameter in parameters_by_rank() {
+        // Values have their units.
+        let label = parameter.label.split_once(" [").map_or(parameter.label, |(label, _)| label);
+        facts.extend(values(cases, parameter)?.map(|values| (label.replace("^{*}", "*"), values)));
+    }
+    let loads = crate::stats::labels(&cases.f64("max_load")?);
+    facts.push(("F_{max}/(E*A_{0})".to_owned(), listed(loads)));
+    facts.push(("realizations".to_owned(), realizations.trim_end_matches(" realizations").trim_end_matches(" realization").to_owned()));
+    facts.push(("seed".to_owned(), seed.to_string()));
+    facts.push(("hysteron".to_owned(), env!("CARGO_PKG_VERSION").to_owned()));
+    Ok(html! {
+        dl.facts { "\n" @for (name, values) in &facts { div { dt { (prose(name)) } dd { (values) } } "\n" } } "\n"
+    })
+}
+
+/// The values of a parameter in all cases; nothing where no case has it.
+fn values(cases: &Frame, parameter: &'static Parameter) -> Result<Option<String>, StatsError> {
+    let values = match cases.column(parameter.column.name)? {
+        ColumnData::F64(all) => Values::Numbers(all.iter().filter(|value| value.is_some()).copied().collect()),
+        ColumnData::Text(all) => Values::Words(all.iter().flatten().filter(|word| !word.is_empty()).cloned().collect()),
+        ColumnData::I64(_) | ColumnData::Bool(_) => return Ok(None),
+    };
+    let count = match &values {
+        Values::Numbers(numbers) => numbers.len(),
+        Values::Words(words) => words.len(),
+    };
+    let varying = Varying::new(parameter, values);
+    let texts: Vec<String> = (0..count).map(|row| varying.text(row).to_owned()).collect();
+    Ok(Some(listed(texts)).filter(|text| !text.is_empty()))
+}
+
+/// Different values in their order; of many, the first and the last.
+fn listed(texts: Vec<String>) -> String {
+    let mut different: Vec<String> = Vec::new();
+    for text in texts {
+        if !different.contains(&text) {
+            different.push(text);
+        }
+    }
+    match different.as_slice() {
+        [first, .., last] if different.len() > MOST_VALUES => format!("{first} … {last} ({} values)", different.len()),
+        all => all.join(", "),
+    }
+}
+
+/// Verdict on model validity with the two deciding numbers.
+pub(super) fn banner(cases: &Frame) -> Result<Markup, StatsError> {
+    let found = warnings(cases)?;
+    let all = cases.row_count();
+    let mut outside: Vec<usize> = found.iter().filter(|of| OF_RANGE.contains(&of.kind.code)).flat_map(|of| of.rows.clone()).collect();
+    outside.sort_unstable();
+    outside.dedup();
+    let (colour, verdict) = match (outside.len(), found.is_empty()) {
+        (0, true) => ("green", "No warnings: all rows are inside the validated range.".to_owned()),
+        (0, false) => ("amber", "Inside the validated range, with warnings.".to_owned()),
+        (count, _) if count == all => ("red", "All rows are outside the validated range of the asperity model.".to_owned()),
+        (count, _) => ("amber", format!("{count} of {all} rows are outside the validated range of the asperity model.")),
+    };
+    let mut numbers = Vec::new();
+    for code in DECIDING {
+        numbers.extend(deciding(cases, code)?);
+    }
+    let labels: Vec<&str> = found.iter().map(|of| of.kind.label).collect();
+    Ok(html! {
+        div class={ "banner " (colour) } role="note" {
+            p { b { (verdict) } " " (plain(&numbers.join("; "))) @if !numbers.is_empty() { "." } }
+            @if !labels.is_empty() { p { "Warnings: " (labels.join(", ")) ". " a href="#model-validity" { "Model validity" } } }
+            @if let Some(ratios) = expected_ratios(cases)? { p { (plain(&ratios)) } }
+        }
+        "\n"
+    })
+}
+
+/// The range of the number that a warning compares with its limit, over all rows.
+fn deciding(cases: &Frame, code: &str) -> Result<Option<String>, StatsError> {
+    let Some(limit) = LIMITS.iter().find(|limit| limit.caution == code) else { return Ok(None) };
+    let values: Vec<f64> = cases.f64_or_null(limit.column)?.iter().flatten().copied().collect();
+    let [low, high] = [f64::min, f64::max].map(|pick: fn(f64, f64) -> f64| values.iter().copied().reduce(pick));
+    let Some((low, high)) = low.zip(high) else { return Ok(None) };
+    let number = |value: f64| if limit.at_least { significant(value, 3) } else { significant(100.0 * value, 2) };
+    let range = if number(low) == number(high) { number(low) } else { format!("{} to {}", number(low), number(high)) };
+    Ok(Some(if limit.at_least {
+        format!("U_el/Δγ = {range} (limit ≥ {})", limit.bound)
+    } else {
+        format!("{range} % of contact spots overlap a neighbour (limit {} %)", significant(100.0 * limit.bound, 2))
+    }))
+}
+
+/// Links to the sections of the page.
+pub(super) fn contents(body: &str) -> Markup {
+    let section = |piece: &str| -> Option<(String, String)> {
+        let (id, rest) = piece.split_once("\">")?;
+        Some((id.to_owned(), rest.split_once("</h2>")?.0.to_owned()))
+    };
+    let sections: Vec<(String, String)> = body.split("<h2 id=\"").skip(1).filter_map(section).collect();
+    html! {
+        nav aria-label="Contents" { ul { "\n" @for (id, title) in &sections { li { a href={ "#" (id) } { (PreEscaped(title)) } } "\n" } } } "\n"
+    }
+}

@@ -1,0 +1,211 @@
+//! Data of the explorer of the report: loops, events, contact spots and maps of one cycle for each case.
+
+use super::StageError;
+use super::explorer_maps::{LETTERS, ground, rounded, stored_maps};
+use crate::campaign::{Campaign, CycleUnit, Standing};
+use crate::model::Boundary;
+use crate::schema::{self, Table};
+use crate::stats::{Listing, listing, significant};
+use crate::store::hdf5::read_surface;
+use crate::store::parquet::read_table;
+use crate::store::{Frame, FrameError};
+use serde_json::{Map, Value, json};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Cycles, at most.
+const MOST_CYCLES: usize = 12;
+/// Points of a surface along a side, at most.
+const MOST_POINTS: u64 = 8192;
+/// Contact spots of all stored steps of a loop, at most: of more, evenly spaced steps are shown.
+const MOST_SPOTS: usize = 40_000;
+/// Kinds of events, by their numbers in the data.
+const KINDS: [&str; 12] =
+    ["jump_in", "jump_off", "cover", "uncover", "snap", "merge", "split", "grown", "shrunk", "formed", "joined", "parted"];
+
+/// The data as JSON; nothing without a finished cycle.
+pub(super) fn explorer(campaign: &Campaign, standings: &[Standing], cases: &Frame, methods: &Frame) -> Result<Option<String>, StageError> {
+    let picked = pick(campaign, standings, methods)?;
+    let list = listing(cases)?;
+    let mut all = Vec::new();
+    for unit in &picked {
+        let mut of = cycle(campaign, unit)?;
+        of["name"] = json!(name(campaign, unit, cases, &list)?);
+        let by_elements = |unit: &CycleUnit| campaign.cases[unit.case].case.params.by_elements();
+        let partner = |other: &&CycleUnit| other.surface == unit.surface && by_elements(other);
+        if let Some(place) = picked.iter().position(partner).filter(|_| !by_elements(unit)) {
+            of["other"] = json!(place);
+        }
+        all.push(of);
+    }
+    if all.is_empty() {
+        return Ok(None);
+    }
+    // No text of the data ends the element that holds it.
+    Ok(Some(json!({ "cycles": all, "kinds": KINDS, "letters": LETTERS }).to_string().replace('<', "\\u003c")))
+}
+
+/// One finished cycle of each case: where both methods have finished a surface, on that one.
+fn pick<'a>(campaign: &'a Campaign, standings: &[Standing], methods: &Frame) -> Result<Vec<&'a CycleUnit>, StageError> {
+    let (pairs, surfaces) = ([methods.text("asperities_case_id")?, methods.text("elements_case_id")?], methods.text("surface_id")?);
+    let finished = |unit: &CycleUnit| campaign.surfaces[unit.surface].params.grid() <= MOST_POINTS;
+    let done: Vec<&CycleUnit> =
+        campaign.cycles.iter().zip(standings).filter(|(_, of)| **of == Standing::Done).map(|(unit, _)| unit).collect();
+    let mut picked: Vec<&CycleUnit> = Vec::new();
+    for (place, case) in campaign.cases.iter().enumerate() {
+        let of_case = || done.iter().filter(|unit| unit.case == place && finished(unit));
+        let row = (0..surfaces.len()).find(|row| pairs.iter().any(|ids| ids[*row] == case.id));
+        let paired = row.and_then(|row| of_case().find(|unit| campaign.surfaces[unit.surface].id == surfaces[row]));
+        let Some(unit) = paired.or_else(|| of_case().next()) else { continue };
+        if picked.iter().all(|other| other.id != unit.id) && picked.len() < MOST_CYCLES {
+            picked.push(unit);
+        }
+    }
+    Ok(picked)
+}
+
+/// Name of a cycle: the label of its case, the method where both are there, and the realization.
+fn name(campaign: &Campaign, unit: &CycleUnit, cases: &Frame, list: &Listing) -> Result<String, StageError> {
+    let (ids, case) = (cases.text("case_id")?, &campaign.cases[unit.case]);
+    let label = list.rows.iter().find(|listed| ids[listed.row] == case.id).map_or("", |listed| listed.label.as_str());
+    let label = if label.is_empty() { case.id.as_str() } else { label };
+    Ok(format!("{label}, realization {}", campaign.surfaces[unit.surface].realization))
+}
+
+/// Tables of a cycle.
+struct Tables {
+    steps: Frame,
+    events: Frame,
+    contacts: Frame,
+    merged: Option<Frame>,
+}
+
+fn cycle(campaign: &Campaign, unit: &CycleUnit) -> Result<Value, StageError> {
+    let (surface, params) = (&campaign.surfaces[unit.surface], &campaign.cases[unit.case].case.params);
+    let folder = campaign.cycle_dir(unit);
+    let table = |table: &'static Table| read_table(&folder.join(format!("{}.parquet", table.name)), table);
+    let merged = if params.by_elements() { None } else { Some(table(&schema::MERGED)?) };
+    let tables = Tables { steps: table(&schema::STEPS)?, events: table(&schema::EVENTS)?, contacts: table(&schema::CONTACTS)?, merged };
+    let (header, heights) = read_surface(&campaign.surface_path(surface))?;
+    let mut of = json!({ "id": unit.id, "length_m": header.length_m });
+    let energy = params.material.contact_modulus_pa * header.length_m.powi(2) * header.rms_height_m;
+    let mut spots = Spots::default();
+    if params.by_elements() {
+        of["loops"] = loops(&tables, &spots, energy, header.length_m)?;
+        stored_maps(&folder.join("maps.h5"), &mut of["loops"])?;
+        return Ok(of);
+    }
+    spots.find(&tables, &read_table(&campaign.asperities_path(surface), &schema::ASPERITIES)?, header.length_m)?;
+    of["loops"] = loops(&tables, &spots, energy, header.length_m)?;
+    of["ground"] = json!(ground(heights.view()));
+    of["periodic"] = json!(params.model.boundary == Boundary::Periodic);
+    of["ids"] = json!(spots.ids.keys().collect::<Vec<_>>());
+    of["x"] = json!(spots.at.iter().map(|at| at.0).collect::<Vec<_>>());
+    of["y"] = json!(spots.at.iter().map(|at| at.1).collect::<Vec<_>>());
+    of["merged"] = Value::Object(spots.merged);
+    Ok(of)
+}
+
+/// Contact spots of a cycle.
+#[derive(Default)]
+struct Spots {
+    /// Numbers of the asperities and merged contacts, and their places in the data.
+    ids: BTreeMap<i64, usize>,
+    /// Centres in 10⁻⁴ of the side of the square.
+    at: Vec<(i64, i64)>,
+    /// Places of the two parts of each merged contact.
+    merged: Map<String, Value>,
+}
+
+impl Spots {
+    /// The asperities and merged contacts that have an event or are stored in contact.
+    fn find(&mut self, tables: &Tables, asperities: &Frame, length_m: f64) -> Result<(), FrameError> {
+        let mut used: BTreeSet<i64> = tables.events.i64_or_null("asperity_id")?.iter().flatten().copied().collect();
+        used.extend(tables.contacts.i64_or_null("asperity_id")?.iter().flatten());
+        let mut parts: BTreeMap<i64, ([i64; 2], (f64, f64))> = BTreeMap::new();
+        if let Some(merged) = &tables.merged {
+            let [ids, first, second] = [merged.i64("asperity_id")?, merged.i64("first_id")?, merged.i64("second_id")?];
+            let (x, y) = (merged.f64("x_m")?, merged.f64("y_m")?);
+            for row in 0..ids.len() {
+                parts.entry(ids[row]).or_insert(([first[row], second[row]], (x[row], y[row])));
+                used.extend([first[row], second[row]]);
+            }
+        }
+        let (x, y) = (asperities.f64("x_m")?, asperities.f64("y_m")?);
+        for id in used {
+            let own = usize::try_from(id).ok().and_then(|id| x.get(id).copied().zip(y.get(id).copied()));
+            if let Some((x, y)) = own.or_else(|| parts.get(&id).map(|(_, at)| *at)) {
+                self.ids.insert(id, self.at.len());
+                self.at.push(((x / length_m * 1e4).round() as i64, (y / length_m * 1e4).round() as i64));
+            }
+        }
+        for (id, (of, _)) in &parts {
+            if let Some(place) = self.ids.get(id) {
+                self.merged.insert(place.to_string(), json!(of.iter().filter_map(|part| self.ids.get(part)).collect::<Vec<_>>()));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The loops of all load reversals: loading up to the reversal, and unloading from it.
+fn loops(tables: &Tables, spots: &Spots, energy_j: f64, length_m: f64) -> Result<Value, FrameError> {
+    let steps = &tables.steps;
+    let (numbers, branches, of) = (steps.i64("step")?, steps.text("branch")?, steps.f64_or_null("max_load")?);
+    let (load, penetration, area, count) = (steps.f64("load")?, steps.f64("penetration")?, steps.f64("area")?, steps.i64("contact_count")?);
+    let mut reversals: Vec<f64> = of.iter().flatten().copied().collect();
+    reversals.sort_by(f64::total_cmp);
+    reversals.dedup();
+    let mut all = Vec::new();
+    for max_load in reversals {
+        let off = |row: &usize| (load[*row] - max_load).abs();
+        let up = (0..numbers.len()).filter(|row| branches[*row] == "loading");
+        let Some(reversal) = up.clone().min_by(|a, b| off(a).total_cmp(&off(b))) else { continue };
+        let loading: Vec<usize> = up.take_while(|row| *row <= reversal).collect();
+        let down = (0..numbers.len()).filter(|row| branches[*row] == "unloading" && of[*row] == Some(max_load));
+        let rows: Vec<usize> = loading.iter().copied().chain(down).collect();
+        let places: BTreeMap<i64, usize> = rows.iter().enumerate().map(|(k, row)| (numbers[*row], k)).collect();
+        let column = |values: &[f64]| rows.iter().map(|row| rounded(values[*row])).collect::<Vec<f64>>();
+        all.push(json!({
+            "load": max_load,
+            "up": loading.len(),
+            "s": rows.iter().map(|row| numbers[*row]).collect::<Vec<_>>(),
+            "f": column(&load),
+            "d": column(&penetration),
+            "a": column(&area),
+            "n": rows.iter().map(|row| count[*row]).collect::<Vec<_>>(),
+            "events": events(&tables.events, spots, &places, energy_j)?,
+            "frames": frames(&tables.contacts, spots, &places, length_m)?,
+        }));
+    }
+    Ok(Value::Array(all))
+}
+
+/// Events of a loop: place of the step, kind, spot or -1, avalanche, dissipated energy over `E* A0 h_rms`.
+fn events(events: &Frame, spots: &Spots, places: &BTreeMap<i64, usize>, energy_j: f64) -> Result<Value, FrameError> {
+    let (steps, kinds, ids) = (events.i64("step")?, events.text("kind")?, events.i64_or_null("asperity_id")?);
+    let (avalanches, energies) = (events.i64("avalanche_id")?, events.f64_or_null("energy_lost_j")?);
+    let mut rows: Vec<(usize, Value)> = Vec::new();
+    for row in 0..steps.len() {
+        let (Some(k), Some(kind)) = (places.get(&steps[row]), KINDS.iter().position(|kind| *kind == kinds[row])) else { continue };
+        let spot = ids[row].and_then(|id| spots.ids.get(&id)).map_or(-1, |spot| *spot as i64);
+        let energy = significant(energies[row].unwrap_or_default() / energy_j, 3).parse::<f64>().unwrap_or_default();
+        rows.push((*k, json!([k, kind, spot, avalanches[row], energy])));
+    }
+    rows.sort_by_key(|(k, _)| *k);
+    Ok(rows.into_iter().map(|(_, row)| row).collect())
+}
+
+/// Contact spots of the stored steps of a loop: spot, and radius in 10⁻⁵ of the side, negative for a tensile load.
+fn frames(contacts: &Frame, spots: &Spots, places: &BTreeMap<i64, usize>, length_m: f64) -> Result<Value, FrameError> {
+    let (steps, states, ids) = (contacts.i64("step")?, contacts.text("state")?, contacts.i64_or_null("asperity_id")?);
+    let (radii, loads) = (contacts.f64_or_null("contact_radius_m")?, contacts.f64_or_null("load_n")?);
+    let mut frames: BTreeMap<usize, Vec<i64>> = BTreeMap::new();
+    for row in (0..steps.len()).filter(|row| states[*row] == "contact") {
+        let (Some(k), Some(spot)) = (places.get(&steps[row]), ids[row].and_then(|id| spots.ids.get(&id))) else { continue };
+        let radius = ((radii[row].unwrap_or_default() / length_m * 1e5).round() as i64).max(1);
+        frames.entry(*k).or_default().extend([*spot as i64, if loads[row].unwrap_or_default() < 0.0 { -radius } else { radius }]);
+    }
+    let every = (frames.values().map(Vec::len).sum::<usize>() / 2).div_ceil(MOST_SPOTS).max(1);
+    let kept = frames.into_iter().enumerate().filter(|(place, _)| place % every == 0);
+    Ok(Value::Object(kept.map(|(_, (k, frame))| (k.to_string(), json!(frame))).collect()))
+}
