@@ -10,22 +10,22 @@ use hysteron::physics::half_space::{DirectSum, Effort, Interaction};
 use hysteron::physics::surface::summits::find_summits;
 use hysteron::physics::surface::synthesis::{realization_seed, synthesize};
 
-const SURFACES: u64 = 1;
+static SURFACES: std::sync::LazyLock<u64> = std::sync::LazyLock::new(|| std::env::var("SURF").map_or(3, |s| s.parse().unwrap()));
 
 pub fn run() {
     let named: Vec<u32> = std::env::args().filter_map(|word| word.parse().ok()).collect();
     let magnifications = if named.is_empty() { vec![32, 64] } else { named };
     println!(
-        "\ncycle: to 0.0071, 0.01 h_rms a step; {SURFACES} surfaces of seed 2021; A/A0, F_po/(E* A0) and loop area/(E* A0 h_rms) in 1e-3"
+        "\ncycle: to 0.0071, 0.01 h_rms a step; {} surfaces of seed 2021; A/A0, F_po/(E* A0)and loop area/(E* A0 h_rms) in 1e-3", *SURFACES
     );
     println!(
         "{:>4} {:>6} {:>7} {:>9} {:>9} {:>9} {:>10} {:>9} {:>9} {:>8} {:>9}",
         "zeta", "rule", "events", "A", "F_po", "loop", "iterations", "products", "pairs/1e6", "seconds", "direct"
     );
     for zeta in magnifications {
-        for (name, rule) in [("merge", Coalescence::Merge)] {
+        for (name, rule) in [("cover", Coalescence::Cover), ("merge", Coalescence::Merge)].into_iter().filter(|(name, _)| std::env::var("RULE").is_ok_and(|rule| rule == *name)) {
             let mut sum = Sum::default();
-            for realization in 0..SURFACES {
+            for realization in 0..*SURFACES {
                 sum.add(zeta, realization, rule);
             }
             sum.print(zeta, name);
@@ -59,11 +59,12 @@ impl Sum {
         let spectrum = spectrum(zeta);
         let surface = synthesize(&spectrum, &realization_seed(2021, realization), 8 * zeta as usize);
         let summits = find_summits(surface.heights_m.view(), spectrum.length_m, 8.0).unwrap().list;
-        let problem = Problem::new(&summits, spectrum.length_m, spectrum.rms_height_m, MATERIAL, rules).unwrap();
+        let problem = Problem::new(&summits, spectrum.length_m, spectrum.rms_height_m, MATERIAL, rules).unwrap(); let problem = if let Ok(n) = std::env::var("PATCH") { problem.with_patches_of(n.parse().unwrap()) } else { problem };
         let settings = Settings { max_loads: vec![0.0071], approach_step: 0.01, contacts: KeptContacts::None, rest_every: None };
         let mut done = None;
         let seconds = cpu(|| done = Some(cycle(&problem, &settings, &|_| {})));
         match done {
+            Some(Ok(done)) if std::env::var("DUMP").is_ok() => { for (_, e) in &done.events { eprintln!("{:?} {} at {:.6e} load {:.5e}->{:.5e} av {:?}", e.kind, e.asperity, e.approach_m, e.before.load_n, e.after.load_n, e.avalanche); } self.count(&done, seconds, &problem) }
             Some(Ok(done)) => self.count(&done, seconds, &problem),
             Some(Err(error)) => println!("{zeta:>4} {coalescence:?}, surface {realization}: {error}"),
             None => {}
@@ -88,7 +89,7 @@ impl Sum {
     }
 
     fn print(&self, zeta: u32, name: &str) {
-        let count = SURFACES as f64;
+        let count = *SURFACES as f64;
         let Effort { iterations, products, pairs, .. } = self.effort;
         println!(
             "{zeta:>4} {name:>6} {:>7.0} {:>9.3} {:>9.5} {:>9.5} {:>10} {:>9} {:>9} {:>8.2} {:>9.0}{}",
@@ -96,9 +97,9 @@ impl Sum {
             1e3 * self.area / count,
             1e3 * self.pull_off / count,
             1e3 * self.loss / count,
-            iterations / SURFACES,
-            products / SURFACES,
-            pairs / SURFACES / 1_000_000,
+            iterations / *SURFACES,
+            products / *SURFACES,
+            pairs / *SURFACES / 1_000_000,
             self.seconds / count,
             self.evaluations / count,
             if self.frozen > 0 { format!("  frozen {}", self.frozen) } else { String::new() },

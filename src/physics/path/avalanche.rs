@@ -57,10 +57,6 @@ impl EquilibriumPath {
             // Contacts meet in equilibrium: where others have yet to respond, they have grown too far.
             let next = next.or_else(|| most_overdue(&due, is_coalescence).filter(|_| response.is_none()));
             let Some(transition) = response.or(next) else { break };
-            if is_coalescence(transition.kind) && !self.neighbourhood.is_whole() {
-                propagated = false;
-                break;
-            }
             applied += 1;
             self.check_event_count(approach, transition.asperity)?;
             if applied > bound {
@@ -130,7 +126,7 @@ impl EquilibriumPath {
         let mut carried: Vec<usize> = Vec::new();
         due.retain(|trigger| {
             let i = trigger.transition.asperity;
-            let mut allowed = trigger.transition.kind == Kind::JumpOff || chatter.allows(i);
+            let mut allowed = chatter.allows(&trigger.transition);
             if let Status::Covered { by, .. } = state.status[i]
                 && state.radius[by] == 0.0
                 && !allowed

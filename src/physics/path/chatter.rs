@@ -1,5 +1,6 @@
 //! Guard against asperities that change their status to and fro.
 
+use crate::physics::contact::transition::{Kind, Transition};
 use serde::{Deserialize, Serialize};
 
 /// Changes other than jumps out of contact that an asperity may have within one longest increment.
@@ -19,9 +20,20 @@ impl ChatterGuard {
         self.changes.resize(n, 0);
     }
 
-    /// True if an asperity may change again.
-    pub(super) fn allows(&self, i: usize) -> bool {
-        self.changes[i] < MOST_CHANGES
+    /// Makes room for a merged contact, which goes on with the changes of its parts: it is a new one after every merging.
+    pub(super) fn join(&mut self, parts: [usize; 2]) {
+        self.changes.push(parts.map(|part| self.changes[part]).into_iter().max().unwrap_or(0));
+        parts.iter().for_each(|part| self.count(*part));
+    }
+
+    /// True if a transition may be applied.
+    pub(super) fn allows(&self, transition: &Transition) -> bool {
+        let may_change = |i: usize| self.changes[i] < MOST_CHANGES;
+        match (transition.kind, transition.by) {
+            (Kind::JumpOff, _) => true,
+            (Kind::Merge, Some(by)) => may_change(transition.asperity) && may_change(by),
+            _ => may_change(transition.asperity),
+        }
     }
 
     /// Counts a change.

@@ -42,7 +42,7 @@ impl EquilibriumPath {
         self.predictor.extend(merged);
         self.pending.grow(problem.len());
         self.pending.set_applied(number);
-        self.chatter.grow(problem.len());
+        self.chatter.join(pair);
         Ok(Transition { kind: Kind::Merge, asperity: number, by: None })
     }
 

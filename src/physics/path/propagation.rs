@@ -189,7 +189,6 @@ impl EquilibriumPath {
             (Kind::Merge, Some(parts)) => {
                 for part in parts {
                     self.enter_status(part, Status::Merged { into: i });
-                    self.chatter.count(part);
                 }
                 self.enter_status(i, Status::Contact);
             }
@@ -316,7 +315,7 @@ impl EquilibriumPath {
 
     /// Records the transitions of one relaxation; its energy is that of the first.
     pub(super) fn record(&mut self, applied: &[Transition], approach: f64, before: Totals, after: Totals, energy: f64) {
-        for transition in applied.iter().filter(|transition| transition.kind != Kind::JumpOff) {
+        for transition in applied.iter().filter(|transition| !matches!(transition.kind, Kind::JumpOff | Kind::Merge)) {
             self.chatter.count(transition.asperity);
         }
         self.log.record(applied, approach, before, after, energy);
