@@ -80,6 +80,7 @@ impl Sum {
             done.steps.iter().filter(|step| step.branch == Branch::Unloading).map(|step| step.least_load_n).fold(0.0, f64::min) / unit;
         let work = |branch| done.steps.iter().rfind(|step| step.branch == branch).map_or(0.0, |step| step.work_j);
         self.loss += (work(Branch::Loading) + work(Branch::Unloading)) / (unit * problem.rms_height_m);
+        { use std::collections::BTreeMap; let theta = work(Branch::Loading) + work(Branch::Unloading); let mut by: BTreeMap<String, (f64,f64,usize)> = BTreeMap::new(); for (_, e) in &done.events { let b = by.entry(format!("{:?}", e.kind)).or_default(); b.0 += e.energy_lost_j / theta; b.1 += e.energy_lost_j.abs() / theta; b.2 += 1; } eprintln!("AUDIT {:.5} {by:.4?}", by.values().map(|b| b.0).sum::<f64>()); if std::env::var("BIG").is_ok() { for (_, e) in &done.events { if e.energy_lost_j.abs() > 0.1 * theta { eprintln!("BIG {:?}", e); } } } }
         for step in &done.steps {
             self.effort += step.effort;
             self.frozen += step.held_count as u64;

@@ -71,22 +71,40 @@ impl ChatterGuard {
 
 #[cfg(test)]
 mod tests {
-    use super::{ChatterGuard, MOST_CHANGES};
+    use super::{ChatterGuard, Kind, MOST_CHANGES, Transition};
+
+    #[test]
+    fn law_a_merged_contact_goes_on_with_the_changes_of_its_parts() {
+        let mut guard = ChatterGuard::default();
+        guard.grow(2);
+        let merge = Transition { kind: Kind::Merge, asperity: 0, by: Some(1) };
+        // Each merging of the same pair makes a new contact; its splitting is counted with it.
+        for number in 2..2 + usize::from(MOST_CHANGES) {
+            assert!(guard.allows(&merge));
+            guard.join([0, 1]);
+            let split = Transition { kind: Kind::Split, asperity: number, by: None };
+            assert!(guard.allows(&split));
+            guard.count(number);
+        }
+        assert!(!guard.allows(&merge));
+    }
 
     #[test]
     fn law_an_asperity_is_frozen_after_its_changes_until_the_next_increment() {
         let mut guard = ChatterGuard::default();
         guard.grow(2);
+        let change = |asperity| Transition { kind: Kind::Cover, asperity, by: Some(2) };
         for _ in 0..MOST_CHANGES {
-            assert!(guard.allows(1));
+            assert!(guard.allows(&change(1)));
             guard.count(1);
         }
-        assert!(!guard.allows(1) && guard.allows(0));
+        assert!(!guard.allows(&change(1)) && guard.allows(&change(0)));
+        assert!(guard.allows(&Transition { kind: Kind::JumpOff, ..change(1) }));
         guard.freeze(1);
         guard.freeze(1);
         assert_eq!(guard.frozen_count(), 1);
         guard.restart();
-        assert!(guard.allows(1));
+        assert!(guard.allows(&change(1)));
         guard.clear_frozen();
         assert_eq!(guard.frozen_count(), 0);
     }

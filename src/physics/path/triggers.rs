@@ -82,6 +82,8 @@ impl Problem {
             (Kind::Merge, Some(by)) => self.meeting([i, by], [state.radius[i], state.radius[by]]),
             (Kind::Split, _) => state.release_of_merged(self, i).map_or(f64::NAN, |release_m| 1.0 - state.radius[i] / release_m),
             (Kind::Uncover, _) => match state.status[i] {
+                // The footprint of a part of a merged contact stays covered until it splits.
+                Status::Covered { by, .. } if matches!(state.status[by], Status::Merged { .. }) => f64::NAN,
                 // An asperity that is not in contact absorbs none.
                 Status::Covered { by, release_m } => 1.0 - state.radius[by] / release_m,
                 _ => f64::NAN,
