@@ -10,22 +10,22 @@ use hysteron::physics::half_space::{DirectSum, Effort, Interaction};
 use hysteron::physics::surface::summits::find_summits;
 use hysteron::physics::surface::synthesis::{realization_seed, synthesize};
 
-static SURFACES: std::sync::LazyLock<u64> = std::sync::LazyLock::new(|| std::env::var("SURF").map_or(3, |s| s.parse().unwrap()));
+const SURFACES: u64 = 6;
 
 pub fn run() {
     let named: Vec<u32> = std::env::args().filter_map(|word| word.parse().ok()).collect();
     let magnifications = if named.is_empty() { vec![32, 64] } else { named };
     println!(
-        "\ncycle: to 0.0071, 0.01 h_rms a step; {} surfaces of seed 2021; A/A0, F_po/(E* A0)and loop area/(E* A0 h_rms) in 1e-3", *SURFACES
+        "\ncycle: to 0.0071, 0.01 h_rms a step; {SURFACES} surfaces of seed 2021; A/A0, F_po/(E* A0) and loop area/(E* A0 h_rms) in 1e-3"
     );
     println!(
         "{:>4} {:>6} {:>7} {:>9} {:>9} {:>9} {:>10} {:>9} {:>9} {:>8} {:>9}",
         "zeta", "rule", "events", "A", "F_po", "loop", "iterations", "products", "pairs/1e6", "seconds", "direct"
     );
     for zeta in magnifications {
-        for (name, rule) in [("cover", Coalescence::Cover), ("merge", Coalescence::Merge)].into_iter().filter(|(name, _)| std::env::var("RULE").is_ok_and(|rule| rule == *name)) {
+        for (name, rule) in [("cover", Coalescence::Cover)] {
             let mut sum = Sum::default();
-            for realization in 0..*SURFACES {
+            for realization in 0..SURFACES {
                 sum.add(zeta, realization, rule);
             }
             sum.print(zeta, name);
@@ -59,12 +59,11 @@ impl Sum {
         let spectrum = spectrum(zeta);
         let surface = synthesize(&spectrum, &realization_seed(2021, realization), 8 * zeta as usize);
         let summits = find_summits(surface.heights_m.view(), spectrum.length_m, 8.0).unwrap().list;
-        let problem = Problem::new(&summits, spectrum.length_m, spectrum.rms_height_m, MATERIAL, rules).unwrap(); let problem = if let Ok(n) = std::env::var("PATCH") { problem.with_patches_of(n.parse().unwrap()) } else { problem };
+        let problem = Problem::new(&summits, spectrum.length_m, spectrum.rms_height_m, MATERIAL, rules).unwrap();
         let settings = Settings { max_loads: vec![0.0071], approach_step: 0.01, contacts: KeptContacts::None, rest_every: None };
         let mut done = None;
         let seconds = cpu(|| done = Some(cycle(&problem, &settings, &|_| {})));
         match done {
-            Some(Ok(done)) if std::env::var("DUMP").is_ok() => { for (_, e) in &done.events { eprintln!("{:?} {} at {:.6e} load {:.5e}->{:.5e} av {:?}", e.kind, e.asperity, e.approach_m, e.before.load_n, e.after.load_n, e.avalanche); } self.count(&done, seconds, &problem) }
             Some(Ok(done)) => self.count(&done, seconds, &problem),
             Some(Err(error)) => println!("{zeta:>4} {coalescence:?}, surface {realization}: {error}"),
             None => {}
@@ -80,7 +79,6 @@ impl Sum {
             done.steps.iter().filter(|step| step.branch == Branch::Unloading).map(|step| step.least_load_n).fold(0.0, f64::min) / unit;
         let work = |branch| done.steps.iter().rfind(|step| step.branch == branch).map_or(0.0, |step| step.work_j);
         self.loss += (work(Branch::Loading) + work(Branch::Unloading)) / (unit * problem.rms_height_m);
-        { use std::collections::BTreeMap; let theta = work(Branch::Loading) + work(Branch::Unloading); let mut by: BTreeMap<String, (f64,f64,usize)> = BTreeMap::new(); for (_, e) in &done.events { let b = by.entry(format!("{:?}", e.kind)).or_default(); b.0 += e.energy_lost_j / theta; b.1 += e.energy_lost_j.abs() / theta; b.2 += 1; } eprintln!("AUDIT {:.5} {by:.4?}", by.values().map(|b| b.0).sum::<f64>()); if std::env::var("BIG").is_ok() { for (_, e) in &done.events { if e.energy_lost_j.abs() > 0.1 * theta { eprintln!("BIG {:?}", e); } } } }
         for step in &done.steps {
             self.effort += step.effort;
             self.frozen += step.held_count as u64;
@@ -90,7 +88,7 @@ impl Sum {
     }
 
     fn print(&self, zeta: u32, name: &str) {
-        let count = *SURFACES as f64;
+        let count = SURFACES as f64;
         let Effort { iterations, products, pairs, .. } = self.effort;
         println!(
             "{zeta:>4} {name:>6} {:>7.0} {:>9.3} {:>9.5} {:>9.5} {:>10} {:>9} {:>9} {:>8.2} {:>9.0}{}",
@@ -98,9 +96,9 @@ impl Sum {
             1e3 * self.area / count,
             1e3 * self.pull_off / count,
             1e3 * self.loss / count,
-            iterations / *SURFACES,
-            products / *SURFACES,
-            pairs / *SURFACES / 1_000_000,
+            iterations / SURFACES,
+            products / SURFACES,
+            pairs / SURFACES / 1_000_000,
             self.seconds / count,
             self.evaluations / count,
             if self.frozen > 0 { format!("  frozen {}", self.frozen) } else { String::new() },

@@ -118,6 +118,8 @@ impl EquilibriumPath {
         // The displacement by the outside changes here as it does at the covering contact.
         let drift = transition.by.and_then(|by| local.find(by)).map_or(0.0, |k| local.members[k].drift);
         let place = local.place(problem, i, (displacement, drift), &mut self.solver.effort);
+        // The displacement by contacts as they are predicted contains what is pending for it.
+        self.pending.set_applied(i);
         match problem.asperities[i].radius_at_penetration(approach + problem.heights[i] - displacement) {
             Some(radius) => local.insert(place, radius),
             None => local.watched.push(place),

@@ -1,6 +1,7 @@
 //! Avalanches: all transitions at one mean penetration that follow from an event.
 //!
-//! One transition is applied at a time, the most overdue first, and the local problem relaxes before the next is chosen. An asperity that
+//! One transition is applied at a time, the most overdue first, and the local problem relaxes before the next is chosen. Contacts merge and
+//! split only when nothing else is due. An asperity that
 //! has left contact does not return within the avalanche. Contacts with a large pending displacement are solved in local problems of their
 //! own, the largest first.
 
@@ -9,7 +10,6 @@ use super::rejection::Rejection;
 use super::triggers::Trigger;
 use crate::physics::PhysicsError;
 use crate::physics::contact::Status;
-use crate::physics::contact::merging::ROUNDING;
 use crate::physics::contact::transition::{Kind, Transition};
 
 /// Relative change of a radius that an equilibrium does not resolve.
@@ -51,12 +51,12 @@ impl EquilibriumPath {
             avalanche.open.sort();
             avalanche.open.dedup();
             let due = self.due_in(&avalanche);
-            let next = most_overdue(&due, |kind| !is_coalescence(kind));
             let pending = |asperity| Transition { kind: Kind::Snap, asperity, by: None };
-            let response = next.or_else(|| self.worst_pending().map(pending));
-            // Contacts meet in equilibrium: where others have yet to respond, they have grown too far.
-            let next = next.or_else(|| most_overdue(&due, is_coalescence).filter(|_| response.is_none()));
-            let Some(transition) = response.or(next) else { break };
+            // Contacts merge and split in equilibrium: where others have yet to respond, they have grown too far.
+            let next = most_overdue(&due, |kind| !is_coalescence(kind))
+                .or_else(|| self.worst_pending().map(pending))
+                .or_else(|| most_overdue(&due, is_coalescence));
+            let Some(transition) = next else { break };
             applied += 1;
             self.check_event_count(approach, transition.asperity)?;
             if applied > bound {
@@ -64,7 +64,7 @@ impl EquilibriumPath {
                 return Err(PhysicsError::EndlessAvalanche { approach_m: approach, events: applied, asperity }.into());
             }
             self.gather(&transition, Some(approach), self.problem().spots_in_patch);
-            if next.is_none() || self.has_pending() {
+            if transition.kind == Kind::Snap || self.has_pending() {
                 solves += 1;
                 propagated = solves <= MOST_SOLVES.max(self.state().contacts.len() / MOST_SOLVES);
                 if !propagated {
@@ -92,12 +92,8 @@ impl EquilibriumPath {
         let problem = &*self.problem();
         for transition in moved {
             let i = transition.asperity;
-            if let Some(k) = i.checked_sub(problem.summits()) {
-                // A merged contact that has become smaller by merging does not split at once.
-                let (radius, merged) = (self.predictor.state.radius[i], &mut self.predictor.state.merged[k]);
-                if transition.kind == Kind::Merge && radius > 0.0 {
-                    merged.release_m = merged.release_m.min((1.0 - ROUNDING) * radius);
-                }
+            if transition.kind == Kind::Merge {
+                self.predictor.keep_merged(problem, i);
             }
             match self.predictor.state.status[i] {
                 Status::Covered { by, release_m } => {

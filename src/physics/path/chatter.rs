@@ -1,4 +1,4 @@
-//! Guard against asperities that change their status to and fro.
+//! Guard against asperities that change their status to and fro, and contacts that merge and split to and fro.
 
 use crate::physics::contact::transition::{Kind, Transition};
 use serde::{Deserialize, Serialize};

@@ -78,7 +78,10 @@ impl EquilibriumPath {
             };
             self.restart_predictors(&rates, since, &pending);
             let due = self.overdue();
-            let Some(worst) = due.first() else { return Ok(()) };
+            let Some(worst) = due.first() else {
+                self.predictor.forget_parted(&self.solver.problem);
+                return Ok(());
+            };
             if strict && rounds == 0 {
                 self.reject_late(&due)?;
             }
@@ -197,8 +200,10 @@ impl EquilibriumPath {
         } else {
             self.log.pass(target, load);
         }
-        self.predictor.keep_merged(problem.summits());
-        self.predictor.forget_parted(problem);
+        let merged_here = |number: &usize| self.state().merged[number - problem.summits()].approach_m == target;
+        for number in (problem.summits()..problem.len()).filter(merged_here).collect::<Vec<_>>() {
+            self.predictor.keep_merged(problem, number);
+        }
         self.predict_jump_ins(rates);
     }
 

@@ -212,7 +212,7 @@ impl EquilibriumPath {
         if local.approach != high {
             go_to(local, high)?;
         }
-        Some(Located::Point)
+        local.rates(problem).1.then_some(Located::Point)
     }
 
     /// Advances the predictor of the members to a located event, and counts the work.

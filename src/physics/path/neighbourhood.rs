@@ -104,11 +104,6 @@ impl Neighbourhood {
         self.reference = self.local.approach;
     }
 
-    /// True if there are no contacts outside.
-    pub(super) fn is_whole(&self) -> bool {
-        self.shell.is_empty()
-    }
-
     /// True if a member has a pending displacement above `limit` \[m\].
     pub(super) fn has_pending(&self, limit: f64) -> bool {
         self.to_apply.iter().any(|displacement| displacement.abs() > limit)

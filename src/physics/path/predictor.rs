@@ -221,13 +221,10 @@ impl Predictor {
     }
 
     /// A contact that has become smaller by merging does not split at once: its radius of release is at most its radius, to rounding.
-    pub(crate) fn keep_merged(&mut self, summits: usize) {
-        let State { merged, radius, approach_m, .. } = &mut self.state;
-        for (k, spot) in merged.iter_mut().enumerate().filter(|(_, spot)| spot.approach_m == *approach_m) {
-            let a = radius[summits + k];
-            if a > 0.0 {
-                spot.release_m = spot.release_m.min((1.0 - ROUNDING) * a);
-            }
+    pub(crate) fn keep_merged(&mut self, problem: &Problem, number: usize) {
+        let (radius, merged) = (self.state.radius[number], &mut self.state.merged[number - problem.summits()]);
+        if radius > 0.0 {
+            merged.release_m = merged.release_m.min((1.0 - ROUNDING) * radius);
         }
     }
 
