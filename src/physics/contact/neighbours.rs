@@ -1,7 +1,10 @@
 //! Neighbour search by a grid of cells.
 
 use crate::physics::half_space::ewald::ROUGH_IMAGES;
+use crate::physics::math::grown::Grown;
+use std::collections::BTreeMap;
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 /// Shortest periodic equivalent of a component of the distance between two points on the square.
 ///
@@ -19,12 +22,20 @@ fn nearest_image(way: f64, side: f64) -> f64 {
 /// Asperities on the square, sorted by cells of two mean spacings.
 #[derive(Clone)]
 pub(crate) struct Neighbours {
-    positions: Vec<[f64; 2]>,
+    positions: Grown<[f64; 2]>,
     length: f64,
     periodic: bool,
     /// Number of cells on a side, and the side of a cell \[m\].
     cells: usize,
     side: f64,
+    surface: Arc<Table>,
+    /// Merged contacts by cell.
+    added: Arc<BTreeMap<usize, Vec<u32>>>,
+}
+
+/// Asperities of the surface.
+#[derive(Default)]
+struct Table {
     /// Asperities by cell, and the first entry of each cell.
     members: Vec<u32>,
     starts: Vec<usize>,
@@ -33,22 +44,22 @@ pub(crate) struct Neighbours {
 }
 
 impl Neighbours {
-    pub(crate) fn new(positions: &[[f64; 2]], length: f64, periodic: bool) -> Self {
+    pub(crate) fn new(positions: Vec<[f64; 2]>, length: f64, periodic: bool) -> Self {
         let reach = (2.0 * length / (positions.len() as f64).sqrt()).min(0.5 * length);
         let cells = ((length / reach) as usize).max(1);
         let mut found = Self {
-            positions: positions.to_vec(),
+            positions: positions.into(),
             length,
             periodic,
             cells,
             side: length / cells as f64,
-            members: Vec::new(),
-            starts: vec![0; cells * cells + 1],
-            near: Vec::new(),
+            surface: Arc::default(),
+            added: Arc::default(),
         };
-        let cell = |p: &[f64; 2]| found.cell(p[0]) * cells + found.cell(p[1]);
-        let mut order: Vec<u32> = (0..positions.len() as u32).collect();
-        order.sort_by_key(|i| (cell(&positions[*i as usize]), *i));
+        let positions = found.positions.base();
+        let cell = |p: &[f64; 2]| found.cell(p);
+        let mut members: Vec<u32> = (0..positions.len() as u32).collect();
+        members.sort_by_key(|i| (cell(&positions[*i as usize]), *i));
         let mut starts = vec![0; cells * cells + 1];
         for p in positions {
             starts[cell(p) + 1] += 1;
@@ -56,31 +67,25 @@ impl Neighbours {
         for k in 0..cells * cells {
             starts[k + 1] += starts[k];
         }
-        (found.members, found.starts) = (order, starts);
+        found.surface = Arc::new(Table { members: members.clone(), starts: starts.clone(), near: Vec::new() });
         // Most searches at each step are within this radius.
-        found.near = (0..positions.len()).map(|i| found.others(i, found.side)).collect();
+        let near = (0..found.positions.len()).map(|i| found.others(i, found.side)).collect();
+        found.surface = Arc::new(Table { members, starts, near });
         found
     }
 
-    /// Adds an asperity at `place` \[m\]; it gets the next number.
+    /// Adds a merged contact at `place` \[m\]; it gets the next number.
     pub(crate) fn add(&mut self, place: [f64; 2]) {
-        let number = self.positions.len();
-        let cell = self.cell(place[0]) * self.cells + self.cell(place[1]);
-        self.members.insert(self.starts[cell + 1], number as u32);
-        for start in &mut self.starts[cell + 1..] {
-            *start += 1;
-        }
+        let number = self.positions.len() as u32;
+        let cell = self.cell(&place);
+        Arc::make_mut(&mut self.added).entry(cell).or_default().push(number);
         self.positions.push(place);
-        let others = self.others(number, self.side);
-        for &(r, i) in &others {
-            let at = self.near[i].partition_point(|other| other.0 <= r);
-            self.near[i].insert(at, (r, number));
-        }
-        self.near.push(others);
     }
 
-    fn cell(&self, coordinate: f64) -> usize {
-        ((coordinate / self.side) as usize).min(self.cells - 1)
+    /// Cell of a place.
+    fn cell(&self, place: &[f64; 2]) -> usize {
+        let [x, y] = place.map(|coordinate| ((coordinate / self.side) as usize).min(self.cells - 1));
+        x * self.cells + y
     }
 
     pub(crate) fn distance(&self, p: &[f64; 2], q: &[f64; 2]) -> f64 {
@@ -129,16 +134,24 @@ impl Neighbours {
 
     /// Calls `visit(distance, asperity)` for every asperity within `radius` of `place`, in no order.
     pub(crate) fn around(&self, place: &[f64; 2], radius: f64, mut visit: impl FnMut(f64, usize)) {
+        let Table { members, starts, .. } = &*self.surface;
+        self.visit_cells(place, radius, |cell| {
+            let added = self.added.get(&cell).into_iter().flatten();
+            for &i in members[starts[cell]..starts[cell + 1]].iter().chain(added) {
+                let r = self.distance(place, &self.positions[i as usize]);
+                if r <= radius {
+                    visit(r, i as usize);
+                }
+            }
+        });
+    }
+
+    /// Calls `visit` for every cell that a circle may intersect.
+    fn visit_cells(&self, place: &[f64; 2], radius: f64, mut visit: impl FnMut(usize)) {
         let columns = self.lines(place[1], radius);
         for x in self.lines(place[0], radius) {
             for &y in &columns {
-                let cell = x * self.cells + y;
-                for &i in &self.members[self.starts[cell]..self.starts[cell + 1]] {
-                    let r = self.distance(place, &self.positions[i as usize]);
-                    if r <= radius {
-                        visit(r, i as usize);
-                    }
-                }
+                visit(x * self.cells + y);
             }
         }
     }
@@ -155,16 +168,34 @@ impl Neighbours {
         list
     }
 
-    /// Calls `visit(distance, asperity)` for every other asperity within `radius` of asperity `j`, nearest first.
+    /// True if the asperities within `radius` \[m\] of another are listed.
+    pub(crate) fn lists(&self, radius: f64) -> bool {
+        radius <= self.side
+    }
+
+    /// Calls `visit(distance, asperity)` for every other asperity within `radius` of asperity `j`; those of the surface are the first, nearest
+    /// first.
     pub(crate) fn within(&self, j: usize, radius: f64, mut visit: impl FnMut(f64, usize)) {
-        if radius <= self.side {
-            for &(r, i) in self.near[j].iter().take_while(|(r, _)| *r <= radius) {
-                visit(r, i);
-            }
-        } else {
+        let near = self.surface.near.get(j).filter(|_| radius <= self.side);
+        let Some(near) = near else {
             for (r, i) in self.others(j, radius) {
                 visit(r, i);
             }
+            return;
+        };
+        for &(r, i) in near.iter().take_while(|(r, _)| *r <= radius) {
+            visit(r, i);
+        }
+        if !self.added.is_empty() {
+            let place = &self.positions[j];
+            self.visit_cells(place, radius, |cell| {
+                for &i in self.added.get(&cell).into_iter().flatten() {
+                    let r = self.distance(place, &self.positions[i as usize]);
+                    if r <= radius {
+                        visit(r, i as usize);
+                    }
+                }
+            });
         }
     }
 
@@ -205,7 +236,7 @@ mod tests {
     fn law_the_nearest_are_those_of_a_search_through_all() {
         let all = places(200);
         for periodic in [true, false] {
-            let neighbours = Neighbours::new(&all, 1.0, periodic);
+            let neighbours = Neighbours::new(all.clone(), 1.0, periodic);
             for place in [[0.01, 0.99], [0.5, 0.5], [0.3, 0.02]] {
                 let mut expected: Vec<(f64, usize)> = all.iter().enumerate().map(|(i, p)| (neighbours.distance(p, &place), i)).collect();
                 expected.sort_by(|u, v| u.0.total_cmp(&v.0));
@@ -222,8 +253,8 @@ mod tests {
 
     #[test]
     fn law_distances_are_to_the_nearest_image() {
-        let periodic = Neighbours::new(&places(4), 1.0, true);
+        let periodic = Neighbours::new(places(4), 1.0, true);
         assert!((periodic.distance(&[0.05, 0.5], &[0.95, 0.5]) - 0.1).abs() < 1e-15);
-        assert!((Neighbours::new(&places(4), 1.0, false).distance(&[0.05, 0.5], &[0.95, 0.5]) - 0.9).abs() < 1e-15);
+        assert!((Neighbours::new(places(4), 1.0, false).distance(&[0.05, 0.5], &[0.95, 0.5]) - 0.9).abs() < 1e-15);
     }
 }

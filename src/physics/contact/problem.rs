@@ -7,9 +7,11 @@ use crate::physics::PhysicsError;
 use crate::physics::half_space::spot_field::{Spot, spot_field_as_printed};
 use crate::physics::half_space::{Best, Spots, best};
 use crate::physics::jkr::{Asperity, LEAST_TABOR};
+use crate::physics::math::grown::Grown;
 use crate::physics::surface::summits::Summit;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 /// Options of the contact model.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,18 +35,18 @@ pub struct Rules {
 /// Module `contact::merging` adds and describes the merged spots.
 #[derive(Clone)]
 pub struct Problem {
-    pub(crate) asperities: Vec<Asperity>,
+    pub(crate) asperities: Grown<Asperity>,
     /// Caller's numbers and positions.
-    pub(crate) places: Places,
+    pub(crate) places: Arc<Places>,
     /// Heights relative to the highest asperity \[m\]: zero or negative.
-    pub(crate) heights: Vec<f64>,
-    pub(crate) positions: Vec<[f64; 2]>,
+    pub(crate) heights: Grown<f64>,
+    pub(crate) positions: Grown<[f64; 2]>,
     /// Jump-in penetrations \[m\]: zero or negative, never below the end of the branch.
     ///
     /// Without adhesion they are slightly positive.
-    pub(crate) jump_in: Vec<f64>,
+    pub(crate) jump_in: Grown<f64>,
     /// Constants of the potentials of merged contacts, 0 for the asperities of the surface \[J\].
-    pub(crate) potential_offset: Vec<f64>,
+    pub(crate) potential_offset: Grown<f64>,
     pub(crate) material: Material,
     pub(crate) rules: Rules,
     pub(crate) field: Best,
@@ -123,14 +125,14 @@ impl Problem {
         let field = best(positions.clone(), length_m, &material, rules.interaction, rules.boundary, rules.slips);
         Ok(Self {
             heights: summits.iter().map(|s| s.height_m - highest).collect(),
-            potential_offset: vec![0.0; jump_in.len()],
-            jump_in,
+            potential_offset: vec![0.0; jump_in.len()].into(),
+            jump_in: jump_in.into(),
             field: if rules.coalescence == Coalescence::Merge { field } else { field.with_table() },
-            neighbours: Neighbours::new(&positions, length_m, periodic),
+            neighbours: Neighbours::new(positions.clone(), length_m, periodic),
             spots_in_patch: SPOTS_IN_PATCH,
-            places,
-            asperities,
-            positions,
+            places: Arc::new(places),
+            asperities: asperities.into(),
+            positions: positions.into(),
             material,
             rules,
             length_m,
@@ -158,7 +160,7 @@ impl Problem {
     /// Mean penetration at which the first asperity jumps into contact \[m\]: below zero with Wu's rule.
     #[must_use]
     pub fn first_contact_m(&self) -> f64 {
-        self.jump_in.iter().zip(&self.heights).map(|(jump, z)| jump - z).fold(f64::INFINITY, f64::min)
+        self.jump_in.iter().zip(self.heights.iter()).map(|(jump, z)| jump - z).fold(f64::INFINITY, f64::min)
     }
 
     /// Number of asperities, including merged spots.

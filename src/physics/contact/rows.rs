@@ -55,8 +55,7 @@ impl State {
         let inside = problem.places.inside();
         let number = |i: usize| inside.get(i).copied().unwrap_or(i);
         for spot in merged {
-            state.extend();
-            state.merged.push(Merged { parts: spot.parts.map(number), place_m: problem.places.inward(spot.place_m), ..*spot });
+            state.extend(Merged { parts: spot.parts.map(number), place_m: problem.places.inward(spot.place_m), ..*spot });
         }
         let count = state.status.len();
         for row in rows {

@@ -97,16 +97,17 @@ impl State {
         None
     }
 
-    /// True if an asperity is part of a merged spot that has left contact.
-    pub(crate) fn is_orphan(&self, i: usize) -> bool {
-        matches!(self.status[i], Status::Merged { into } if self.status[into] == Status::Free)
+    /// Radius at which a merged contact splits \[m\].
+    pub(crate) fn release_of_merged(&self, problem: &Problem, i: usize) -> Option<f64> {
+        Some(self.merged.get(i.checked_sub(problem.summits())?)?.release_m)
     }
 
-    /// Adds a free asperity.
-    pub(crate) fn extend(&mut self) {
+    /// Adds a merged contact, which is free until it is set.
+    pub(crate) fn extend(&mut self, merged: Merged) {
         self.status.push(Status::Free);
         self.radius.push(0.0);
         self.barred.push(false);
+        self.merged.push(merged);
     }
 
     pub(crate) fn set(&mut self, i: usize, status: Status, radius: f64) {

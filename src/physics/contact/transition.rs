@@ -57,7 +57,7 @@ impl Kind {
 pub(crate) struct Transition {
     pub(crate) kind: Kind,
     pub(crate) asperity: usize,
-    /// The absorbing asperity.
+    /// The absorbing asperity; the other contact of a pair that is to merge.
     pub(crate) by: Option<usize>,
 }
 
@@ -67,7 +67,7 @@ impl Transition {
         let i = self.asperity;
         moved.iter().any(|earlier| match (self.kind, earlier.kind) {
             (Kind::JumpIn, Kind::JumpOff | Kind::Uncover) => earlier.asperity == i,
-            (Kind::Cover, Kind::Uncover) => earlier.asperity == i,
+            (Kind::Cover, Kind::Uncover) | (Kind::Split, Kind::Merge) => earlier.asperity == i,
             // A release is allowed if the absorbing spot itself has left contact.
             (Kind::Uncover, Kind::Cover) => {
                 earlier.asperity == i && matches!(state.status[i], Status::Covered { by, .. } if state.radius[by] > 0.0)

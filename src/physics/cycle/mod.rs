@@ -3,14 +3,12 @@
 //! The loop begins before the first jump-in and ends with the last separation.
 //! Its area is therefore the total dissipated energy `Θ = ∮F dΔ`.
 
-mod coalescence;
 mod recorder;
 mod reversal;
 pub mod soundness;
 mod table;
 
 use crate::physics::PhysicsError;
-use crate::physics::contact::merging::ROUNDING;
 use crate::physics::contact::problem::Problem;
 use crate::physics::contact::state::State;
 use crate::physics::path::{EquilibriumPath, PathCheckpoint, is_multiple};
@@ -18,6 +16,7 @@ use recorder::Recorder;
 use reversal::retrace;
 use serde::{Deserialize, Serialize};
 use soundness::check_energy;
+use std::sync::Arc;
 pub use table::{Branch, Contact, Cycle, MergedAt, Settings, Step};
 
 /// Branch in progress.
@@ -156,7 +155,7 @@ impl Settings {
     }
 
     /// True if the path has reached a checkpoint position other than `from` \[m\].
-    fn rests(&self, path: &EquilibriumPath<'_>, from: f64) -> bool {
+    fn rests(&self, path: &EquilibriumPath, from: f64) -> bool {
         let at = path.state().approach_m;
         self.rest_every.is_some_and(|every| path.is_exact() && at != from && is_multiple(at, every * path.problem().rms_height_m))
     }
@@ -244,47 +243,25 @@ enum Next {
 
 /// Follows a branch from a checkpoint, at most to `bound` \[m\].
 ///
-/// It applies merging and splitting on the way.
-///
-/// `visit` is called with the path at the beginning, after every increment and after every coalescence event.
+/// `visit` is called with the path at the beginning and after every increment.
 /// It returns the next action. The checkpoint is returned if the action is [`Next::Rest`].
 fn travel(
     problem: &Problem,
-    mut carried: PathCheckpoint,
+    carried: PathCheckpoint,
     bound: Option<f64>,
-    visit: &mut dyn FnMut(&mut EquilibriumPath<'_>) -> Result<Next, PhysicsError>,
+    visit: &mut dyn FnMut(&mut EquilibriumPath) -> Result<Next, PhysicsError>,
 ) -> Result<Option<PathCheckpoint>, PhysicsError> {
-    let mut own = problem.grown(&carried.state.merged)?;
-    let mut known = carried.known.take().unwrap_or_else(|| own.as_ref().unwrap_or(problem).touching(&carried.state));
+    let grown = problem.grown(&carried.state.merged)?;
+    let mut path = EquilibriumPath::resume(Arc::new(grown), carried)?;
     loop {
-        let mut path = EquilibriumPath::resume(own.as_ref().unwrap_or(problem), carried)?;
-        path.finish_coalescence(ROUNDING);
-        let meeting = loop {
-            match visit(&mut path)? {
-                Next::On => {}
-                Next::Rest => {
-                    carried = path.into_checkpoint();
-                    carried.known = Some(known);
-                    return Ok(Some(carried));
-                }
-                Next::End => return Ok(None),
-            }
-            if let Some(meeting) = path.due_coalescence(&mut known)? {
-                break meeting;
-            }
-            let mut bound = bound;
-            loop {
-                path.step(bound)?;
-                match path.next_coalescence(&known)? {
-                    Some(at) if at != path.state().approach_m => {
-                        path.undo_step();
-                        bound = Some(at);
-                    }
-                    _ => break,
-                }
-            }
-        };
-        carried = path.into_checkpoint();
-        carried.meet(own.get_or_insert_with(|| problem.clone()), meeting, &mut known)?;
+        match visit(&mut path)? {
+            Next::On => {}
+            Next::Rest => return Ok(Some(path.into_checkpoint())),
+            Next::End => return Ok(None),
+        }
+        path.step(bound)?;
+        if problem.merges() {
+            problem.check_room(path.state(), path.totals().area_m2)?;
+        }
     }
 }

@@ -50,17 +50,12 @@ impl Recorder {
     }
 
     /// True if events have happened since the last record.
-    pub(crate) fn lacks_events(&self, path: &EquilibriumPath<'_>) -> bool {
+    pub(crate) fn lacks_events(&self, path: &EquilibriumPath) -> bool {
         self.events_before < path.log().events.len()
     }
 
     /// Records the beginning, and the grid points passed in the last increment.
-    pub(crate) fn grid_points(
-        &mut self,
-        settings: &Settings,
-        path: &mut EquilibriumPath<'_>,
-        cycle: &mut Cycle,
-    ) -> Result<(), PhysicsError> {
+    pub(crate) fn grid_points(&mut self, settings: &Settings, path: &mut EquilibriumPath, cycle: &mut Cycle) -> Result<(), PhysicsError> {
         let end = path.state().approach_m;
         self.grid_points_until(end, settings, path, cycle)
     }
@@ -69,13 +64,13 @@ impl Recorder {
         &mut self,
         end: f64,
         settings: &Settings,
-        path: &mut EquilibriumPath<'_>,
+        path: &mut EquilibriumPath,
         cycle: &mut Cycle,
     ) -> Result<(), PhysicsError> {
         if !std::mem::replace(&mut self.begun, true) {
             self.record(settings, path, None, cycle, false)?;
         }
-        let spacing = settings.grid(path.problem());
+        let spacing = settings.grid(&path.problem());
         loop {
             let next = (self.number + 1.0) * path.sense() * spacing;
             if (next - end) * path.sense() > 1e-9 * spacing {
@@ -110,8 +105,8 @@ impl Recorder {
     pub(crate) fn turn(
         &mut self,
         settings: &Settings,
-        path: &mut EquilibriumPath<'_>,
-        excursion: Option<&EquilibriumPath<'_>>,
+        path: &mut EquilibriumPath,
+        excursion: Option<&EquilibriumPath>,
         cycle: &mut Cycle,
     ) -> Result<(), PhysicsError> {
         let state = excursion.map_or_else(|| path.state().clone(), |at| at.state().clone());
@@ -128,13 +123,14 @@ impl Recorder {
     pub(crate) fn record(
         &mut self,
         settings: &Settings,
-        path: &mut EquilibriumPath<'_>,
-        excursion: Option<&EquilibriumPath<'_>>,
+        path: &mut EquilibriumPath,
+        excursion: Option<&EquilibriumPath>,
         cycle: &mut Cycle,
         turning: bool,
     ) -> Result<(), PhysicsError> {
-        let (number, problem) = (cycle.steps.len(), path.problem());
+        let number = cycle.steps.len();
         let at = excursion.unwrap_or(path);
+        let problem = &*at.problem();
         let state = at.state();
         let passed = |approach: f64| excursion.is_none() || (approach - state.approach_m) * path.sense() <= 0.0;
         let recent: Vec<Event> =

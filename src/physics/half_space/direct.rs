@@ -7,6 +7,7 @@ use super::rough_images::{CENTRE, Centre};
 use super::spot_field::{LANES, Place, SpotColumns, sag, spot_fields};
 use super::{Effort, Interaction, Spots, Tangent};
 use crate::model::{Boundary, Interaction as Kind, Material, Slips};
+use crate::physics::math::grown::Grown;
 use crate::physics::math::vector::dot;
 use multiversion::multiversion;
 use std::sync::Arc;
@@ -19,7 +20,7 @@ const TABLE_LIMIT: usize = 1000;
 pub struct DirectSum {
     kind: Kind,
     periodic: bool,
-    positions: Vec<[f64; 2]>,
+    positions: Grown<[f64; 2]>,
     length: f64,
     pull: f64,
     sag: f64,
@@ -39,7 +40,7 @@ impl DirectSum {
         Self {
             kind,
             periodic,
-            positions,
+            positions: positions.into(),
             length: length_m,
             pull: material.pull(),
             sag: sag(slips),

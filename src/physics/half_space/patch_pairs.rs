@@ -4,6 +4,7 @@ use super::multipole::Moments;
 use super::rough_images::{CENTRE, Centre};
 use super::spot_field::{AWAY, LANES, SpotColumns, field_at};
 use crate::model::Interaction as Kind;
+use crate::physics::math::grown::Grown;
 use multiversion::multiversion;
 
 /// All pairs of a set of asperities: distance \[m\], its inverse, and the image sums of the first two orders.
@@ -26,7 +27,7 @@ impl PairTable {
     /// Computes the pairs of the asperities `index` if the set has changed.
     ///
     /// `positions` are in m, and the image sums have six digits.
-    pub(crate) fn find(&mut self, index: &[usize], positions: &[[f64; 2]], length: f64, periodic: bool) {
+    pub(crate) fn find(&mut self, index: &[usize], positions: &Grown<[f64; 2]>, length: f64, periodic: bool) {
         if self.index != index {
             self.index.clear();
             self.index.extend_from_slice(index);
@@ -54,7 +55,7 @@ pub(crate) struct Sources<'a> {
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-fn find(table: &mut PairTable, positions: &[[f64; 2]], length: f64, periodic: bool) {
+fn find(table: &mut PairTable, positions: &Grown<[f64; 2]>, length: f64, periodic: bool) {
     let centre: &Centre = &CENTRE;
     for &target in &table.index {
         let [x, y] = positions[target];

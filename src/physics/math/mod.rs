@@ -3,5 +3,6 @@
 pub(crate) mod bracket;
 pub(crate) mod dense;
 pub(crate) mod gmres;
+pub(crate) mod grown;
 pub(crate) mod quadrature;
 pub(crate) mod vector;

@@ -5,6 +5,7 @@ use super::avalanche::Avalanche;
 use super::equilibrium_path::EquilibriumPath;
 use super::events::Located;
 use super::rejection::Rejection;
+use crate::physics::PhysicsError;
 use crate::physics::contact::Status;
 use crate::physics::contact::transition::{Kind, Transition};
 use crate::physics::solve::local::Hold;
@@ -15,7 +16,7 @@ const STEP_OVER_FOLD: f64 = 1e-3;
 /// An asperity whose uncovering would be undone at once is tried again when the covering contact has shrunk to this share of its radius.
 const RETRY: f64 = 0.97;
 
-impl EquilibriumPath<'_> {
+impl EquilibriumPath {
     /// Applies a transition in the local problem that is at it, relaxes the local problem, and records both.
     pub(super) fn apply(&mut self, transition: Transition, located: Option<Located>, avalanche: &mut Avalanche) -> Result<(), Rejection> {
         let mut before = self.begin();
@@ -30,14 +31,14 @@ impl EquilibriumPath<'_> {
                 None => return Ok(()),
             },
         };
-        let energy = before.potential - self.neighbourhood.local.totals(self.problem()).1;
+        let energy = before.potential - self.neighbourhood.local.totals(&self.problem()).1;
         self.finish(&before, applied, energy, avalanche);
         Ok(())
     }
 
     /// Moves the local problem over the fold at which it is; the change of the potential on the way is returned \[J\].
     fn step_over_fold(&mut self, at: usize) -> f64 {
-        let problem = self.problem();
+        let problem = &*self.problem();
         let local = &mut self.neighbourhood.local;
         let sense = if local.radius[at] > self.neighbourhood.origin[at] { 1.0 } else { -1.0 };
         let gap = self.frame.sense * EVENT_TOLERANCE * problem.rms_height_m;
@@ -49,13 +50,11 @@ impl EquilibriumPath<'_> {
 
     /// Changes the status of an asperity and solves the local problem; all transitions on the way are returned, nothing if none is applied.
     fn change_status(&mut self, transition: Transition) -> Result<Option<Vec<Transition>>, Rejection> {
-        let problem = self.problem();
-        if !self.insert_or_remove(transition) {
-            return Ok(None);
-        }
+        let Some(entered) = self.insert_or_remove(transition)? else { return Ok(None) };
+        let problem = &*self.problem();
         let uncovers = transition.kind == Kind::Uncover;
         let approach = self.neighbourhood.local.approach;
-        let mut applied = vec![transition];
+        let mut applied = vec![entered];
         let (local, effort) = (&mut self.neighbourhood.local, &mut self.solver.effort);
         let start = local.radius.clone();
         if !(local.solve(problem, Hold::Approach, effort).is_ok() && local.rates(problem).1) {
@@ -76,9 +75,10 @@ impl EquilibriumPath<'_> {
         Ok(Some(applied))
     }
 
-    /// Inserts an asperity into the local problem or removes it, without solving; true if there is anything to solve or record.
-    fn insert_or_remove(&mut self, transition: Transition) -> bool {
-        let problem = self.problem();
+    /// Inserts an asperity into the local problem or removes it, without solving; the transition is returned as it is recorded, nothing if
+    /// there is nothing to solve or record.
+    fn insert_or_remove(&mut self, transition: Transition) -> Result<Option<Transition>, PhysicsError> {
+        let problem = &*self.problem();
         let i = transition.asperity;
         let asperity = &problem.asperities[i];
         match transition.kind {
@@ -96,18 +96,20 @@ impl EquilibriumPath<'_> {
                 if let Some((by, release_m)) = problem.covering(&self.predictor.state, i, transition.by) {
                     // Another contact covers it as well: nothing moves.
                     self.predictor.set(i, Status::Covered { by, release_m }, 0.0);
-                    return false;
+                    return Ok(None);
                 }
                 self.insert_uncovered(transition);
             }
-            Kind::Snap | Kind::Merge | Kind::Split => {}
+            Kind::Merge => return self.merge(transition).map(Some),
+            Kind::Split => self.split(i),
+            Kind::Snap => {}
         }
-        true
+        Ok(Some(transition))
     }
 
     /// Inserts an asperity that was absorbed, in contact or free.
     fn insert_uncovered(&mut self, transition: Transition) {
-        let problem = self.problem();
+        let problem = &*self.problem();
         let i = transition.asperity;
         let approach = self.neighbourhood.local.approach;
         let contacts: Vec<(usize, f64)> = self.predictor.radii(problem, approach);
@@ -116,6 +118,8 @@ impl EquilibriumPath<'_> {
         // The displacement by the outside changes here as it does at the covering contact.
         let drift = transition.by.and_then(|by| local.find(by)).map_or(0.0, |k| local.members[k].drift);
         let place = local.place(problem, i, (displacement, drift), &mut self.solver.effort);
+        // The displacement by contacts as they are predicted contains what is pending for it.
+        self.pending.set_applied(i);
         match problem.asperities[i].radius_at_penetration(approach + problem.heights[i] - displacement) {
             Some(radius) => local.insert(place, radius),
             None => local.watched.push(place),
@@ -124,7 +128,7 @@ impl EquilibriumPath<'_> {
 
     /// True if an uncovering was undone on the way, or would be at once.
     fn would_be_undone(&self, uncovering: &Transition, applied: &[Transition]) -> bool {
-        let problem = self.problem();
+        let problem = &*self.problem();
         let local = &self.neighbourhood.local;
         let Some(by) = uncovering.by else { return false };
         let i = uncovering.asperity;

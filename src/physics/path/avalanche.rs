@@ -1,6 +1,7 @@
 //! Avalanches: all transitions at one mean penetration that follow from an event.
 //!
-//! One transition is applied at a time, the most overdue first, and the local problem relaxes before the next is chosen. An asperity that
+//! One transition is applied at a time, the most overdue first, and the local problem relaxes before the next is chosen. Contacts merge and
+//! split only when nothing else is due. An asperity that
 //! has left contact does not return within the avalanche. Contacts with a large pending displacement are solved in local problems of their
 //! own, the largest first.
 
@@ -26,7 +27,7 @@ pub(super) struct Avalanche {
     pub(super) open: Vec<usize>,
 }
 
-impl EquilibriumPath<'_> {
+impl EquilibriumPath {
     /// Applies a transition that is due at the present mean penetration, with its avalanche.
     pub(super) fn start_avalanche(&mut self, first: Transition) -> Result<(), Rejection> {
         self.log.begin_avalanche();
@@ -41,26 +42,29 @@ impl EquilibriumPath<'_> {
     /// asperities are returned. A transition that would undo an earlier one waits for the path to continue. Nothing is returned if the
     /// propagation does not end: the global problem is to be solved.
     pub(super) fn run_avalanche(&mut self, mut avalanche: Avalanche) -> Result<Option<Vec<usize>>, Rejection> {
-        let problem = self.problem();
         let approach = self.neighbourhood.local.approach;
-        let bound = 10 * problem.len() + 100;
+        let bound = 10 * self.problem().len() + 100;
         let (mut applied, mut solves) = (0, 0);
         let mut propagated = true;
         loop {
             // Most of them are in order: a stable sort makes use of it.
             avalanche.open.sort();
             avalanche.open.dedup();
-            let next = self.most_overdue(&avalanche);
+            let due = self.due_in(&avalanche);
             let pending = |asperity| Transition { kind: Kind::Snap, asperity, by: None };
-            let Some(transition) = next.or_else(|| self.worst_pending().map(pending)) else { break };
+            // Contacts merge and split in equilibrium: where others have yet to respond, they have grown too far.
+            let next = most_overdue(&due, |kind| !is_coalescence(kind))
+                .or_else(|| self.worst_pending().map(pending))
+                .or_else(|| most_overdue(&due, is_coalescence));
+            let Some(transition) = next else { break };
             applied += 1;
             self.check_event_count(approach, transition.asperity)?;
             if applied > bound {
-                let asperity = problem.number(transition.asperity);
+                let asperity = self.problem().number(transition.asperity);
                 return Err(PhysicsError::EndlessAvalanche { approach_m: approach, events: applied, asperity }.into());
             }
-            self.gather(&transition, Some(approach), problem.spots_in_patch);
-            if next.is_none() || self.has_pending() {
+            self.gather(&transition, Some(approach), self.problem().spots_in_patch);
+            if transition.kind == Kind::Snap || self.has_pending() {
                 solves += 1;
                 propagated = solves <= MOST_SOLVES.max(self.state().contacts.len() / MOST_SOLVES);
                 if !propagated {
@@ -76,20 +80,21 @@ impl EquilibriumPath<'_> {
         Ok(propagated.then_some(avalanche.open))
     }
 
-    /// The most overdue transition among the open asperities that does not undo one of the avalanche.
-    fn most_overdue(&mut self, avalanche: &Avalanche) -> Option<Transition> {
-        let due = self.due_transitions(&avalanche.open, &avalanche.open);
-        due.into_iter()
-            .filter(|trigger| !trigger.transition.returns(&avalanche.moved, &self.predictor.state))
-            .max_by(|u, v| u.overshoot.total_cmp(&v.overshoot).then(v.transition.asperity.cmp(&u.transition.asperity)))
-            .map(|trigger| trigger.transition)
+    /// Transitions that are due among the open asperities and do not undo one of the avalanche.
+    fn due_in(&mut self, avalanche: &Avalanche) -> Vec<Trigger> {
+        let mut due = self.due_transitions(&avalanche.open, &avalanche.open);
+        due.retain(|trigger| !trigger.transition.returns(&avalanche.moved, &self.predictor.state));
+        due
     }
 
     /// Sets the radii of release of absorbed asperities and blocks those that have left, at the end of an avalanche.
     fn close_avalanche(&mut self, moved: &[Transition]) {
-        let problem = self.problem();
+        let problem = &*self.problem();
         for transition in moved {
             let i = transition.asperity;
+            if transition.kind == Kind::Merge {
+                self.predictor.keep_merged(problem, i);
+            }
             match self.predictor.state.status[i] {
                 Status::Covered { by, release_m } => {
                     let edge = (1.0 - EDGE) * release_m;
@@ -117,7 +122,7 @@ impl EquilibriumPath<'_> {
         let mut carried: Vec<usize> = Vec::new();
         due.retain(|trigger| {
             let i = trigger.transition.asperity;
-            let mut allowed = trigger.transition.kind == Kind::JumpOff || chatter.allows(i);
+            let mut allowed = chatter.allows(&trigger.transition);
             if let Status::Covered { by, .. } = state.status[i]
                 && state.radius[by] == 0.0
                 && !allowed
@@ -138,4 +143,17 @@ impl EquilibriumPath<'_> {
         }
         due
     }
+}
+
+/// The most overdue transition of some kinds.
+fn most_overdue(due: &[Trigger], of: impl Fn(Kind) -> bool) -> Option<Transition> {
+    due.iter()
+        .filter(|trigger| of(trigger.transition.kind))
+        .max_by(|u, v| u.overshoot.total_cmp(&v.overshoot).then(v.transition.asperity.cmp(&u.transition.asperity)))
+        .map(|trigger| trigger.transition)
+}
+
+/// True for merging and splitting.
+pub(super) fn is_coalescence(kind: Kind) -> bool {
+    matches!(kind, Kind::Merge | Kind::Split)
 }

@@ -1,5 +1,6 @@
-//! Guard against asperities that change their status to and fro.
+//! Guard against asperities that change their status to and fro, and contacts that merge and split to and fro.
 
+use crate::physics::contact::transition::{Kind, Transition};
 use serde::{Deserialize, Serialize};
 
 /// Changes other than jumps out of contact that an asperity may have within one longest increment.
@@ -19,9 +20,20 @@ impl ChatterGuard {
         self.changes.resize(n, 0);
     }
 
-    /// True if an asperity may change again.
-    pub(super) fn allows(&self, i: usize) -> bool {
-        self.changes[i] < MOST_CHANGES
+    /// Makes room for a merged contact, which goes on with the changes of its parts: it is a new one after every merging.
+    pub(super) fn join(&mut self, parts: [usize; 2]) {
+        self.changes.push(parts.map(|part| self.changes[part]).into_iter().max().unwrap_or(0));
+        parts.iter().for_each(|part| self.count(*part));
+    }
+
+    /// True if a transition may be applied.
+    pub(super) fn allows(&self, transition: &Transition) -> bool {
+        let may_change = |i: usize| self.changes[i] < MOST_CHANGES;
+        match (transition.kind, transition.by) {
+            (Kind::JumpOff, _) => true,
+            (Kind::Merge, Some(by)) => may_change(transition.asperity) && may_change(by),
+            _ => may_change(transition.asperity),
+        }
     }
 
     /// Counts a change.
@@ -59,22 +71,40 @@ impl ChatterGuard {
 
 #[cfg(test)]
 mod tests {
-    use super::{ChatterGuard, MOST_CHANGES};
+    use super::{ChatterGuard, Kind, MOST_CHANGES, Transition};
+
+    #[test]
+    fn law_a_merged_contact_goes_on_with_the_changes_of_its_parts() {
+        let mut guard = ChatterGuard::default();
+        guard.grow(2);
+        let merge = Transition { kind: Kind::Merge, asperity: 0, by: Some(1) };
+        // Each merging of the same pair makes a new contact; its splitting is counted with it.
+        for number in 2..2 + usize::from(MOST_CHANGES) {
+            assert!(guard.allows(&merge));
+            guard.join([0, 1]);
+            let split = Transition { kind: Kind::Split, asperity: number, by: None };
+            assert!(guard.allows(&split));
+            guard.count(number);
+        }
+        assert!(!guard.allows(&merge));
+    }
 
     #[test]
     fn law_an_asperity_is_frozen_after_its_changes_until_the_next_increment() {
         let mut guard = ChatterGuard::default();
         guard.grow(2);
+        let change = |asperity| Transition { kind: Kind::Cover, asperity, by: Some(2) };
         for _ in 0..MOST_CHANGES {
-            assert!(guard.allows(1));
+            assert!(guard.allows(&change(1)));
             guard.count(1);
         }
-        assert!(!guard.allows(1) && guard.allows(0));
+        assert!(!guard.allows(&change(1)) && guard.allows(&change(0)));
+        assert!(guard.allows(&Transition { kind: Kind::JumpOff, ..change(1) }));
         guard.freeze(1);
         guard.freeze(1);
         assert_eq!(guard.frozen_count(), 1);
         guard.restart();
-        assert!(guard.allows(1));
+        assert!(guard.allows(&change(1)));
         guard.clear_frozen();
         assert_eq!(guard.frozen_count(), 0);
     }

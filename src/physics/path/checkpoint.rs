@@ -8,9 +8,12 @@ use crate::physics::contact::merged_spot::TouchingPairs;
 use crate::physics::contact::{Problem, State, Totals};
 use crate::physics::half_space::Effort;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// A path at a global solve, to go back to.
 pub(crate) struct Checkpoint {
+    /// The problem with its merged contacts.
+    pub(super) problem: Arc<Problem>,
     pub(super) predictor: Predictor,
     pub(super) chatter: ChatterGuard,
     pub(super) totals: Totals,
@@ -45,14 +48,14 @@ pub(crate) struct PathCheckpoint {
     pub(super) halvings: u32,
     pub(super) chatter: ChatterGuard,
     pub(super) effort: Effort,
-    /// Touching pairs that do not merge, where a cycle was interrupted.
-    pub(crate) known: Option<TouchingPairs>,
+    /// Pairs that overlap and do not merge before they have been apart; at the beginning of a path, those that overlap there.
+    pub(super) parted: Option<TouchingPairs>,
 }
 
 impl PathCheckpoint {
     /// The beginning of a path.
     pub(crate) fn begin(problem: &Problem, state: State, sense: f64) -> Self {
-        let summits = &problem.asperities[..problem.summits()];
+        let summits = problem.asperities.base();
         let off = summits.iter().map(|a| a.jump_off_penetration().abs()).sum::<f64>() / summits.len() as f64;
         // Where adhesion is weak, the roughness sets the scale.
         let off = off.max(LEAST_SCALE * problem.rms_height_m);
@@ -71,7 +74,7 @@ impl PathCheckpoint {
             halvings: 0,
             chatter: ChatterGuard::default(),
             effort: Effort::default(),
-            known: None,
+            parted: None,
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Global corrector: the contact solved at the end of an increment, and new predictors of everything.
 
 use super::accuracy::{DRIFT, LATENESS, Precision, SUFFICIENT, WORST_RESIDUAL};
+use super::avalanche::is_coalescence;
 use super::checkpoint::Checkpoint;
 use super::equilibrium_path::EquilibriumPath;
 use super::rejection::Rejection;
@@ -30,26 +31,25 @@ struct Uncovering {
     asperities: Vec<usize>,
 }
 
-impl EquilibriumPath<'_> {
+impl EquilibriumPath {
     /// Solves the global problem at a mean penetration \[m\], from the predictors, and applies the transitions that are overdue there. If
     /// `strict`, the solution is rejected where the predictors are too far from it.
     ///
     /// After a jump of the contact (`jump`) it followed its predictors up to here. Otherwise the difference grew along the increment.
     pub(super) fn correct(&mut self, target: f64, strict: bool, jump: bool, precision: Precision) -> Result<(), Rejection> {
-        let problem = self.problem();
         self.precision = precision;
-        let pending = self.pending.of_contacts(problem, &self.state().contacts);
+        let pending = self.pending.of_contacts(&self.problem(), &self.state().contacts);
         self.solver.begin(precision == Precision::Sufficient);
         let mut rounds = 0;
         let mut uncovering: Option<Uncovering> = None;
         loop {
-            self.predictor.go_to(problem, target);
+            self.predictor.go_to(&self.problem(), target);
             let first = self.solver.evaluate(&mut self.predictor.state);
             if strict && rounds == 0 && (first.residual_m.is_nan() || self.is_astray(&pending)) {
                 return Err(first.into());
             }
             // The present state is an equilibrium at mean penetrations that differ by the residuals.
-            let shifted = problem.totals(&self.predictor.state).1 + self.work_on_residuals();
+            let shifted = self.problem().totals(&self.predictor.state).1 + self.work_on_residuals();
             if !first.residual_m.is_nan() {
                 self.log.drift_m = self.log.drift_m.max(first.residual_m);
             }
@@ -78,7 +78,10 @@ impl EquilibriumPath<'_> {
             };
             self.restart_predictors(&rates, since, &pending);
             let due = self.overdue();
-            let Some(worst) = due.first() else { return Ok(()) };
+            let Some(worst) = due.first() else {
+                self.predictor.forget_parted(&self.solver.problem);
+                return Ok(());
+            };
             if strict && rounds == 0 {
                 self.reject_late(&due)?;
             }
@@ -129,7 +132,11 @@ impl EquilibriumPath<'_> {
 
     /// Applies overdue transitions, each with its avalanche, if it is still due.
     fn apply_overdue(&mut self, due: Vec<(f64, Transition)>) -> Result<(), Rejection> {
-        for (_, transition) in due {
+        // Contacts meet in equilibrium, one pair at a time.
+        let all_meet = due.iter().all(|(_, transition)| is_coalescence(transition.kind));
+        let meets = |transition: &Transition| is_coalescence(transition.kind);
+        let count = if all_meet { 1 } else { due.len() };
+        for (_, transition) in due.into_iter().filter(|(_, transition)| all_meet || !meets(transition)).take(count) {
             if self.problem().is_due(&transition, &self.predictor) {
                 self.start_avalanche(transition)?;
             }
@@ -148,7 +155,7 @@ impl EquilibriumPath<'_> {
 
     /// `Σ F r` over the residuals that were evaluated last \[J\].
     fn work_on_residuals(&self) -> f64 {
-        let (problem, state) = (self.problem(), self.state());
+        let (problem, state) = (&*self.problem(), self.state());
         let load = |i: usize| problem.asperities[i].load(state.radius[i]);
         state.contacts.iter().zip(&self.solver.residual).map(|(&i, residual)| load(i) * residual).sum()
     }
@@ -164,7 +171,7 @@ impl EquilibriumPath<'_> {
 
     /// Replaces all predictors after a global solve, and counts the work since the last one.
     fn restart_predictors(&mut self, rates: &[f64], since: Since, pending: &[f64]) {
-        let problem = self.problem();
+        let problem = &*self.problem();
         let target = self.state().approach_m;
         let jump = since != Since::Growth;
         if jump {
@@ -193,13 +200,17 @@ impl EquilibriumPath<'_> {
         } else {
             self.log.pass(target, load);
         }
+        let merged_here = |number: &usize| self.state().merged[number - problem.summits()].approach_m == target;
+        for number in (problem.summits()..problem.len()).filter(merged_here).collect::<Vec<_>>() {
+            self.predictor.keep_merged(problem, number);
+        }
         self.predict_jump_ins(rates);
     }
 
     /// Replaces the predictors of all contacts, and counts their work. The energy of their response to pending displacements \[J\] is
     /// returned, and the change of their load beyond the prediction \[N\], added to `grown`.
     fn replace_traces(&mut self, rates: &[f64], jump: bool, pending: &[f64], mut grown: f64) -> (f64, f64) {
-        let problem = self.problem();
+        let problem = &*self.problem();
         let target = self.state().approach_m;
         let mut relaxed = 0.0;
         for (k, rate) in rates.iter().enumerate() {
@@ -212,7 +223,8 @@ impl EquilibriumPath<'_> {
                 self.log.work_j += work(problem, i, from, to);
                 if jump {
                     let more = asperity.load(a) - asperity.load(asperity.radius_ahead(to.value));
-                    relaxed += 0.5 * pending[i] * more;
+                    // A contact that has merged since has nothing pending.
+                    relaxed += 0.5 * pending.get(i).copied().unwrap_or(0.0) * more;
                     grown += more;
                 }
             }
@@ -224,7 +236,7 @@ impl EquilibriumPath<'_> {
     /// Replaces the predictors of the free asperities that may jump into contact. All of them are evaluated on a grid of mean penetrations;
     /// in between, only those that can have come near: no penetration grows by more than three times the way.
     fn predict_jump_ins(&mut self, rates: &[f64]) {
-        let problem = self.problem();
+        let problem = &*self.problem();
         let (target, scale) = (self.state().approach_m, self.frame.scale);
         let all = self.solver.begins_block(target);
         let near = |i: &usize| {
@@ -247,7 +259,7 @@ impl EquilibriumPath<'_> {
 
     /// Transitions that are due anywhere, the most overdue first, each with its lateness \[m\].
     fn overdue(&mut self) -> Vec<(f64, Transition)> {
-        let problem = self.problem();
+        let problem = &*self.problem();
         let contacts = self.state().contacts.clone();
         let candidates = self.predictor.candidates.clone();
         let due = self.due_transitions(&contacts, &candidates);
@@ -263,7 +275,7 @@ impl EquilibriumPath<'_> {
         let changes = self.solver.relax(&mut self.predictor.state)?;
         for change in &changes {
             self.predictor.traces[change.asperity].value = f64::NAN;
-            self.predictor.set(change.asperity, change.status(self.problem()), 0.0);
+            self.predictor.set(change.asperity, change.status(&self.problem()), 0.0);
         }
         let (after, _) = self.problem().totals(self.state());
         self.record(&changes, target, before, after, 0.0);
@@ -276,7 +288,7 @@ impl EquilibriumPath<'_> {
         self.log.begin_avalanche();
         let events = self.log.events.len();
         let asperity = self.state().contacts.first().copied().unwrap_or(0);
-        self.predictor.go_to(self.problem(), target);
+        self.predictor.go_to(&self.problem(), target);
         self.relax_contact(target)?;
         if self.log.events.len() == events {
             let (before, (after, _)) = (self.totals, self.problem().totals(self.state()));

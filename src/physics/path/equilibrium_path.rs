@@ -16,10 +16,11 @@ use crate::physics::half_space::Effort;
 use crate::physics::solve::global::GlobalSolver;
 use crate::physics::solve::residual::NotConverged;
 use crate::physics::{PhysicsError, Reason};
+use std::sync::Arc;
 
 /// A contact along one branch; see [`super`].
-pub(crate) struct EquilibriumPath<'p> {
-    pub(super) solver: GlobalSolver<'p>,
+pub(crate) struct EquilibriumPath {
+    pub(super) solver: GlobalSolver,
     /// The contact as it is known between two global solves.
     pub(super) predictor: Predictor,
     /// Displacements that are not yet in the predictor.
@@ -49,9 +50,9 @@ pub(super) struct Frame {
     pub(super) scale: f64,
 }
 
-impl<'p> EquilibriumPath<'p> {
+impl EquilibriumPath {
     /// A path without a history.
-    pub(super) fn new(problem: &'p Problem, predictor: Predictor, frame: Frame, steps: StepControl) -> Self {
+    pub(super) fn new(problem: Arc<Problem>, predictor: Predictor, frame: Frame, steps: StepControl) -> Self {
         let (n, approach) = (problem.len(), predictor.state.approach_m);
         let mut chatter = ChatterGuard::default();
         chatter.grow(n);
@@ -71,8 +72,9 @@ impl<'p> EquilibriumPath<'p> {
         }
     }
 
-    pub(crate) fn problem(&self) -> &'p Problem {
-        self.solver.problem
+    /// The problem with the merged contacts so far.
+    pub(crate) fn problem(&self) -> Arc<Problem> {
+        Arc::clone(&self.solver.problem)
     }
 
     pub(crate) fn state(&self) -> &State {
@@ -118,21 +120,6 @@ impl<'p> EquilibriumPath<'p> {
         self.chatter.clear_frozen();
     }
 
-    /// Ends a coalescence, after which the contact is in equilibrium. A contact that has become smaller by merging does not split again at
-    /// once: its radius of release is at most its radius, to rounding.
-    pub(crate) fn finish_coalescence(&mut self, rounding: f64) {
-        let (totals, summits, state) = (self.totals, self.solver.problem.summits(), &mut self.predictor.state);
-        for (k, spot) in state.merged.iter_mut().enumerate().filter(|(_, spot)| spot.approach_m == state.approach_m) {
-            let radius = state.radius[summits + k];
-            if radius > 0.0 {
-                spot.release_m = spot.release_m.min((1.0 - rounding) * radius);
-            }
-        }
-        if let Some(event) = self.log.events.last_mut().filter(|event| matches!(event.kind, Kind::Merge | Kind::Split)) {
-            event.after = totals;
-        }
-    }
-
     /// Maximum pending displacement of a contact \[m\].
     pub(super) fn pending_limit(&self) -> f64 {
         PENDING * self.frame.scale
@@ -141,7 +128,7 @@ impl<'p> EquilibriumPath<'p> {
     /// Gathers the neighbourhood of a transition, of `contacts` contacts, at a mean penetration \[m\] or where they were known last.
     pub(super) fn gather(&mut self, transition: &Transition, approach: Option<f64>, contacts: usize) {
         let within = Surroundings {
-            problem: self.solver.problem,
+            problem: &self.solver.problem,
             predictor: &self.predictor,
             pending: &self.pending,
             sense: self.frame.sense,
@@ -195,7 +182,7 @@ impl<'p> EquilibriumPath<'p> {
     fn uncovered_since(&self, checkpoint: &Checkpoint) -> Vec<usize> {
         let events = self.log.events[checkpoint.events..].iter();
         let uncovered = events.filter(|event| event.kind == Kind::Uncover).map(|event| event.asperity);
-        uncovered.filter(|i| matches!(checkpoint.state().status[*i], Status::Covered { .. })).collect()
+        uncovered.filter(|i| matches!(checkpoint.state().status.get(*i), Some(Status::Covered { .. }))).collect()
     }
 
     /// Runs the events before `target` and solves the global problem there; in between too, after events that move all of the contact.
@@ -235,7 +222,7 @@ impl<'p> EquilibriumPath<'p> {
 
     /// Ends an increment whose events go on without end.
     pub(super) fn check_event_count(&self, approach_m: f64, asperity: usize) -> Result<(), Rejection> {
-        let problem = self.problem();
+        let problem = &*self.problem();
         Ok(self.steps.check_events(self.log.events.len(), problem.len(), approach_m, problem.number(asperity))?)
     }
 

@@ -2,16 +2,23 @@
 //! avalanche.
 
 use super::accuracy::EVENT_TOLERANCE;
-use super::avalanche::Avalanche;
+use super::avalanche::{Avalanche, is_coalescence};
 use super::equilibrium_path::EquilibriumPath;
 use super::predictor::PredictedEvent;
 use super::rejection::Rejection;
 use crate::physics::Reason;
 use crate::physics::contact::Status;
 use crate::physics::contact::transition::{Kind, Transition};
-use crate::physics::solve::local::Hold;
+use crate::physics::math::bracket::{End, Illinois};
 use crate::physics::solve::local::curve::CurveEnd;
+use crate::physics::solve::local::{Hold, LocalProblem};
 use crate::physics::solve::residual::NotConverged;
+
+/// Overlap at merging, relative to the distance of the contacts: at most so much.
+const TOUCH: f64 = 1e-6;
+
+/// Maximum number of local solves that locate a merging.
+const MOST_TRIALS: usize = 40;
 
 /// Position of an event on the solution curve: the local problem is there.
 #[derive(Debug, Clone, Copy)]
@@ -32,17 +39,16 @@ enum Outcome {
     Unpropagated,
 }
 
-impl EquilibriumPath<'_> {
+impl EquilibriumPath {
     /// Finds and applies the events before `target` \[m\], in their order. Where one has changed more than local solves can propagate, its
     /// mean penetration is returned: the global problem is to be solved there.
     pub(super) fn run_events(&mut self, target: f64) -> Result<Option<f64>, Rejection> {
-        let problem = self.problem();
         let mut queue = self.expect_events(target);
         let mut attempts = 0;
         while let Some(at) = self.earliest(&queue) {
             let event = queue.swap_remove(at);
             attempts += 1;
-            if attempts > 100 * (problem.len() + 100) {
+            if attempts > 100 * (self.problem().len() + 100) {
                 return Err(NotConverged::because(Reason::EndlessEvents, event.transition.asperity).into());
             }
             self.check_event_count(event.approach, event.transition.asperity)?;
@@ -55,7 +61,7 @@ impl EquilibriumPath<'_> {
             let is_touched = |i: usize| touched.binary_search(&i).is_ok();
             queue.retain(|event| !is_touched(event.transition.asperity) && !event.transition.by.is_some_and(is_touched));
             for &i in &touched {
-                self.predictor.expect(problem, i, target, self.frame.sense, &mut queue);
+                self.predictor.expect(&self.solver.problem, i, target, self.frame.sense, &mut queue);
             }
         }
         Ok(None)
@@ -64,10 +70,12 @@ impl EquilibriumPath<'_> {
     /// Events that are predicted before `target` \[m\], and those that an earlier attempt has missed.
     fn expect_events(&self, target: f64) -> Vec<PredictedEvent> {
         let approach = self.state().approach_m;
-        let missed = self.steps.missed().iter().map(|transition| PredictedEvent { approach, transition: *transition });
+        // Merged contacts of an earlier attempt may be gone.
+        let exists = |transition: &&Transition| transition.asperity.max(transition.by.unwrap_or(0)) < self.solver.problem.len();
+        let missed = self.steps.missed().iter().filter(exists).map(|transition| PredictedEvent { approach, transition: *transition });
         let mut queue: Vec<PredictedEvent> = missed.collect();
         for &i in self.state().contacts.iter().chain(&self.predictor.candidates) {
-            self.predictor.expect(self.problem(), i, target, self.frame.sense, &mut queue);
+            self.predictor.expect(&self.problem(), i, target, self.frame.sense, &mut queue);
         }
         queue
     }
@@ -84,6 +92,10 @@ impl EquilibriumPath<'_> {
     /// Locates and applies an event with its avalanche.
     fn run_event(&mut self, event: PredictedEvent, target: f64, queue: &mut Vec<PredictedEvent>) -> Result<Outcome, Rejection> {
         let transition = event.transition;
+        if is_coalescence(transition.kind) && !self.chatter.allows(&transition) {
+            self.chatter.freeze(transition.asperity);
+            return Ok(Outcome::Absent);
+        }
         self.gather(&transition, None, self.problem().spots_in_patch);
         let mut avalanche = Avalanche::default();
         self.log.begin_avalanche();
@@ -108,11 +120,14 @@ impl EquilibriumPath<'_> {
     /// \[m\].
     fn locate(&mut self, event: &PredictedEvent, target: f64) -> Option<Located> {
         self.neighbourhood.set_origin();
-        let (problem, sense) = (self.problem(), self.frame.sense);
+        let (problem, sense) = (&*self.problem(), self.frame.sense);
         let (local, effort) = (&mut self.neighbourhood.local, &mut self.solver.effort);
         let Transition { kind, asperity: i, by } = event.transition;
         if kind == Kind::JumpIn {
             return self.locate_jump_in(event, target);
+        }
+        if kind == Kind::Merge {
+            return self.locate_merging(i, by?, target);
         }
         let (spot, bound) = match (kind, self.predictor.state.status[i]) {
             (Kind::JumpOff, _) => (i, problem.asperities[i].jump_off_radius()),
@@ -121,6 +136,7 @@ impl EquilibriumPath<'_> {
                 (by, problem.neighbours.distance(&problem.positions[i], &problem.positions[by]))
             }
             (Kind::Uncover, Status::Covered { by, release_m }) => (by, release_m),
+            (Kind::Split, _) => (i, self.predictor.state.release_of_merged(problem, i)?),
             _ => return None,
         };
         let at = local.find(spot)?;
@@ -144,7 +160,7 @@ impl EquilibriumPath<'_> {
 
     /// Locates a jump into contact, where the penetration of the asperity reaches its jump-in distance.
     fn locate_jump_in(&mut self, event: &PredictedEvent, target: f64) -> Option<Located> {
-        let (problem, sense) = (self.problem(), self.frame.sense);
+        let (problem, sense) = (&*self.problem(), self.frame.sense);
         let (local, effort) = (&mut self.neighbourhood.local, &mut self.solver.effort);
         let (i, start) = (event.transition.asperity, local.approach);
         let watched = local.watched.iter().position(|place| place.asperity == i)?;
@@ -157,6 +173,46 @@ impl EquilibriumPath<'_> {
         let way = (local.approach - start) * sense;
         let inside = way >= -EVENT_TOLERANCE * problem.rms_height_m && (local.approach - target) * sense <= 0.0;
         inside.then_some(Located::Point)
+    }
+
+    /// Locates a merging, where two contacts touch, by bracketing on the solution curve.
+    fn locate_merging(&mut self, i: usize, j: usize, target: f64) -> Option<Located> {
+        let problem = &*self.problem();
+        let (local, effort) = (&mut self.neighbourhood.local, &mut self.solver.effort);
+        let pair = [local.find(i)?, local.find(j)?];
+        let meeting = |local: &LocalProblem| problem.meeting([i, j], pair.map(|at| local.radius[at]));
+        let (mut low, mut high) = (local.approach, target);
+        let first = meeting(local);
+        if first >= 0.0 {
+            return Some(Located::Point);
+        }
+        let mut go_to = |local: &mut LocalProblem, approach: f64| {
+            local.ahead(problem, approach);
+            local.solve(problem, Hold::Approach, effort).ok()?;
+            Some(meeting(local))
+        };
+        let end = go_to(local, high).filter(|end| *end >= 0.0)?;
+        let mut ends = Illinois::new(first, end);
+        let mut now = end;
+        for _ in 0..MOST_TRIALS {
+            if (0.0..=TOUCH).contains(&now) || (high - low).abs() <= EVENT_TOLERANCE * problem.rms_height_m {
+                break;
+            }
+            // The aim lies slightly beyond touching.
+            let middle = low + ends.share(0.02) * (high - low);
+            let trial = go_to(local, middle)?;
+            if trial < 0.0 {
+                low = middle;
+                ends.narrow(End::Low, trial - 0.5 * TOUCH);
+            } else {
+                (high, now) = (middle, trial);
+                ends.narrow(End::High, trial - 0.5 * TOUCH);
+            }
+        }
+        if local.approach != high {
+            go_to(local, high)?;
+        }
+        local.rates(problem).1.then_some(Located::Point)
     }
 
     /// Advances the predictor of the members to a located event, and counts the work.

@@ -15,7 +15,7 @@ struct Crossing {
     excess: [f64; 2],
 }
 
-impl EquilibriumPath<'_> {
+impl EquilibriumPath {
     /// A path from before the last increment to `target` within it.
     pub(crate) fn excursion(&self, target: f64) -> Result<Self, PhysicsError> {
         let steps = StepControl::new(self.frame.sense, self.steps.longest(), 0);

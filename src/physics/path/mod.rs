@@ -21,13 +21,15 @@
 //!  7      while the queue has an earliest event e:                                          run_events
 //!  8        P ← 24 contacts nearest to e, and the free asperities among them                Neighbourhood::gather
 //!  9        if members have pending displacements: apply them, solve P, predict again       apply_pending
-//! 10        locate e on the solution curve of P (a radius or a penetration is held)         locate
+//! 10        locate e on the solution curve of P (a radius or a penetration is held, or a     locate
+//!            touch is bracketed)
 //! 11        none before Δ*: drop e; another one is earlier: put e back at its position
 //! 12        predictors of P to e, work of their loads; apply e, Newton or relaxation of P   finish_location, apply
 //! 13        avalanche, at constant Δ:                                                       run_avalanche
 //! 14          change of the field: next to P pending per contact, beyond one point load     propagate
 //! 15          next: the most overdue transition that does not undo one of the avalanche,    most_overdue
-//! 16          or the contact with the largest pending displacement above the limit          worst_pending
+//! 16          or the contact with the largest pending displacement above the limit,         worst_pending
+//!            or else the most overdue merging or splitting
 //! 17          none: the avalanche ends; too many solves: global solve here, back to 6
 //! 18          gather P there, apply, solve; energy dissipated += −change of the potential   finish
 //! 19        predict the touched asperities again
@@ -38,7 +40,6 @@
 //! 24      new predictors; close the energy balance with the potential                       restart_predictors
 //! 25      record grid points inside the increment on an excursion from the checkpoint       excursion
 //! 26      load reversals by bracketing on excursions                                        turning
-//! 27      coalescence `merge`: bracket the first touch; the path resumes with the new contact   cycle::coalescence
 //! ```
 //!
 //! An increment does not depend on the output steps: these are read off the path.
@@ -68,6 +69,7 @@ mod equilibrium_path;
 mod event_log;
 mod events;
 mod excursion;
+mod merging;
 mod neighbourhood;
 mod pending;
 mod predictor;

@@ -68,7 +68,7 @@ impl Neighbourhood {
     ) {
         let Surroundings { problem, predictor, pending, sense, .. } = within;
         let centre = match transition.kind {
-            Kind::Cover | Kind::Uncover => transition.by.unwrap_or(transition.asperity),
+            Kind::Cover | Kind::Uncover | Kind::Merge => transition.by.unwrap_or(transition.asperity),
             _ => transition.asperity,
         };
         self.centre = problem.positions[centre];

@@ -51,6 +51,12 @@ impl PendingField {
         Self { near: vec![0.0; n], far: Vec::new(), applied: vec![0; n], over_limit: Vec::new() }
     }
 
+    /// Makes room for `n` asperities.
+    pub(super) fn grow(&mut self, n: usize) {
+        self.near.resize(n, 0.0);
+        self.applied.resize(n, 0);
+    }
+
     /// Discards all pending displacements, since a global solve has accounted for them.
     pub(super) fn clear(&mut self) {
         self.near.fill(0.0);

@@ -4,6 +4,8 @@
 //! a [`PenetrationTrace`] from the last global solve, or from the last event next to it. Its state at a later mean penetration follows from
 //! there.
 
+use crate::physics::contact::merged_spot::{Merged, TouchingPairs};
+use crate::physics::contact::merging::ROUNDING;
 use crate::physics::contact::problem::{Problem, Totals};
 use crate::physics::contact::state::{State, Status};
 use crate::physics::contact::transition::{Kind, Transition};
@@ -34,6 +36,10 @@ pub(crate) struct Predictor {
     pub(crate) candidates: Vec<usize>,
     /// Absorbed asperities by absorbing contact: `(by, absorbed)`, ascending.
     covered_by: Vec<(usize, usize)>,
+    /// Pairs that overlap and do not merge before they have been apart.
+    pub(crate) parted: TouchingPairs,
+    /// An upper bound of the radii of the contacts \[m\].
+    largest: f64,
     /// Load and area, with their derivatives, at the mean penetration of the last change.
     sums: Sums,
 }
@@ -60,7 +66,15 @@ impl Predictor {
             })
             .collect();
         covered_by.sort_unstable();
-        Self { traces: vec![unknown; problem.len()], candidates: Vec::new(), covered_by, sums: Sums::default(), state }
+        Self {
+            traces: vec![unknown; problem.len()],
+            candidates: Vec::new(),
+            covered_by,
+            parted: TouchingPairs::new(),
+            largest: state.largest_radius(),
+            sums: Sums::default(),
+            state,
+        }
     }
 
     /// Changes the status of an asperity.
@@ -162,6 +176,7 @@ impl Predictor {
                 self.count(problem, *i, -1.0, trace.at);
             }
             self.state.radius[*i] = *a;
+            self.largest = self.largest.max(*a);
             self.traces[*i] = *trace;
             self.count(problem, *i, 1.0, trace.at);
         }
@@ -188,13 +203,94 @@ impl Predictor {
             sums.area_rate += share.area_rate;
         }
         self.sums = sums;
+        self.largest = self.state.largest_radius();
+    }
+
+    /// Adds a merged contact; it gets the next number.
+    pub(crate) fn extend(&mut self, merged: Merged) {
+        self.traces.push(PenetrationTrace::unknown(self.state.approach_m));
+        self.state.extend(merged);
+    }
+
+    /// Allows pairs to merge again that have been apart since they split.
+    pub(crate) fn forget_parted(&mut self, problem: &Problem) {
+        let state = &self.state;
+        let is_part = |i: usize| matches!(state.status[i], Status::Merged { .. });
+        let overlaps = |i: usize, j: usize| problem.meeting([i, j], [state.radius[i], state.radius[j]]) >= 0.0;
+        self.parted.retain(|(i, j)| is_part(*i) || is_part(*j) || overlaps(*i, *j));
+    }
+
+    /// A contact that has become smaller by merging does not split at once: its radius of release is at most its radius, to rounding.
+    pub(crate) fn keep_merged(&mut self, problem: &Problem, number: usize) {
+        let (radius, merged) = (self.state.radius[number], &mut self.state.merged[number - problem.summits()]);
+        if radius > 0.0 {
+            merged.release_m = merged.release_m.min((1.0 - ROUNDING) * radius);
+        }
+    }
+
+    /// True if two contacts may merge when they touch.
+    pub(crate) fn may_merge(&self, i: usize, j: usize) -> bool {
+        let both = self.state.status[i] == Status::Contact && self.state.status[j] == Status::Contact;
+        both && !self.parted.contains(&(i.min(j), i.max(j)))
+    }
+
+    /// Pairs of a contact with those near enough to touch it if it has the radius `reach` \[m\].
+    pub(crate) fn pairs(&self, problem: &Problem, j: usize, reach: f64, mut visit: impl FnMut(usize)) {
+        let (most, place) = (reach + 1.2 * self.largest, &problem.positions[j]);
+        if problem.neighbours.lists(most) {
+            problem.neighbours.within(j, most, |_, i| {
+                if self.may_merge(i, j) {
+                    visit(i);
+                }
+            });
+            return;
+        }
+        // Contacts are few among the asperities within a long way.
+        for &i in &self.state.contacts {
+            if i != j && problem.neighbours.distance(place, &problem.positions[i]) <= most && self.may_merge(i, j) {
+                visit(i);
+            }
+        }
+    }
+
+    /// The merging of two contacts: the smaller one, by the larger one.
+    pub(crate) fn merging(&self, i: usize, j: usize) -> Transition {
+        let radius = &self.state.radius;
+        let first = (radius[i], j) < (radius[j], i);
+        let (asperity, by) = if first { (i, j) } else { (j, i) };
+        Transition { kind: Kind::Merge, asperity, by: Some(by) }
+    }
+
+    /// Adds the merging that is expected of contact `j` before `target`.
+    fn expect_merging(&self, problem: &Problem, j: usize, target: f64, sign: f64, due: &mut Vec<PredictedEvent>) {
+        let (here, there) = (self.state.radius[j], self.radius(problem, j, target));
+        let mut found = Vec::new();
+        self.pairs(problem, j, here.max(there), |i| found.push(i));
+        for i in found {
+            let at = self.traces[j].at;
+            let (start, end) = (
+                problem.meeting([j, i], [here, self.radius(problem, i, at)]),
+                problem.meeting([j, i], [there, self.radius(problem, i, target)]),
+            );
+            let transition = self.merging(i, j);
+            let ends = start + 1.1 * (end - start);
+            if (start >= 0.0 || ends >= 0.0) && !due.iter().any(|event| event.transition == transition) {
+                let share = if start >= 0.0 { 0.0 } else { (start / (start - end)).clamp(0.0, 1.0) };
+                due.push(PredictedEvent { approach: at + sign * share * ((target - at) * sign).max(0.0), transition });
+            }
+        }
     }
 
     /// Adds the events expected of asperity `i` before `target`, in the sense `sign`.
     pub(crate) fn expect(&self, problem: &Problem, i: usize, target: f64, sign: f64, due: &mut Vec<PredictedEvent>) {
         match self.state.status[i] {
             Status::Free => self.expect_jump_in(problem, i, target, sign, due),
-            Status::Contact => self.expect_of_spot(problem, i, target, sign, due),
+            Status::Contact => {
+                self.expect_of_spot(problem, i, target, sign, due);
+                if problem.merges() {
+                    self.expect_merging(problem, i, target, sign, due);
+                }
+            }
             Status::Covered { .. } | Status::Merged { .. } => {}
         }
     }
@@ -228,6 +324,12 @@ impl Predictor {
             let way = (trace.value - asperity.jump_off_penetration()) / -speed;
             if way <= REACH * left {
                 offer(way.min(left), Kind::JumpOff, j, None);
+            }
+            if let Some(release_m) = self.state.release_of_merged(problem, j) {
+                let way = (trace.value - asperity.penetration(release_m)) / -speed;
+                if a <= release_m || way <= 1.1 * left {
+                    offer(if a <= release_m { 0.0 } else { way }, Kind::Split, j, None);
+                }
             }
             for i in self.covered_by(j) {
                 if let Status::Covered { release_m, .. } = self.state.status[i] {

@@ -42,7 +42,7 @@ struct Pending {
     displacement: f64,
 }
 
-impl EquilibriumPath<'_> {
+impl EquilibriumPath {
     /// True if members have pending displacements that matter.
     pub(super) fn has_pending(&self) -> bool {
         self.neighbourhood.has_pending(NEGLIGIBLE * self.pending_limit())
@@ -75,7 +75,7 @@ impl EquilibriumPath<'_> {
 
     /// Solves the local problem with the pending displacements applied; false if it has no stable equilibrium nearby.
     fn solve_pending(&mut self) -> (Before, Vec<Pending>, bool) {
-        let problem = self.problem();
+        let problem = &*self.problem();
         self.advance_members();
         let before = self.begin();
         let near = &mut self.neighbourhood;
@@ -105,7 +105,7 @@ impl EquilibriumPath<'_> {
 
     /// Relaxes the local problem: without a change of status the transition is a snap of `leader`.
     pub(super) fn relax_or_snap(&mut self, leader: usize) -> Result<Vec<Transition>, Rejection> {
-        let mut applied = self.neighbourhood.local.relax(self.solver.problem, None, &mut self.solver.effort)?;
+        let mut applied = self.neighbourhood.local.relax(&self.solver.problem, None, &mut self.solver.effort)?;
         if applied.is_empty() {
             applied.push(Transition { kind: Kind::Snap, asperity: leader, by: None });
         }
@@ -116,12 +116,12 @@ impl EquilibriumPath<'_> {
     ///
     /// The event that caused them was charged as if the loads here had not changed, so the work of these loads is not part of the energy.
     fn settle_pending(&mut self, before: &Before, start: Vec<Pending>) -> f64 {
-        let mut energy = before.potential - self.neighbourhood.local.totals(self.problem()).1;
+        let mut energy = before.potential - self.neighbourhood.local.totals(&self.problem()).1;
         let mut expected = 0.0;
         for member in start {
             self.pending.set_applied(member.asperity);
             energy -= member.displacement * member.load;
-            expected += self.predictor.load_rate(self.problem(), member.asperity) * member.displacement;
+            expected += self.predictor.load_rate(&self.problem(), member.asperity) * member.displacement;
         }
         self.expect_load(self.neighbourhood.local.approach, expected);
         energy
@@ -129,7 +129,7 @@ impl EquilibriumPath<'_> {
 
     /// Remembers the local problem before it changes.
     pub(super) fn begin(&mut self) -> Before {
-        let problem = self.problem();
+        let problem = &*self.problem();
         let local = &self.neighbourhood.local;
         let totals = self.predictor.totals(local.approach);
         self.log.pass(local.approach, totals.load_n);
@@ -139,7 +139,7 @@ impl EquilibriumPath<'_> {
 
     /// Updates the predictor after the local problem has changed, and records the transitions with the energy that it has lost \[J\].
     pub(super) fn finish(&mut self, before: &Before, applied: Vec<Transition>, energy: f64, avalanche: &mut Avalanche) {
-        let problem = self.problem();
+        let problem = &*self.problem();
         let near = &self.neighbourhood;
         let approach = near.local.approach;
         let changes = near.local.displacement_changes(problem, &near.shell, &near.centre, &before.members);
@@ -167,7 +167,7 @@ impl EquilibriumPath<'_> {
 
     /// Updates the free asperities of the local problem.
     fn finish_free(&mut self, rates: &[f64], avalanche: &mut Avalanche) {
-        let problem = self.problem();
+        let problem = &*self.problem();
         let traces = self.neighbourhood.local.watch(problem, rates, &mut self.solver.effort);
         for (place, trace) in self.neighbourhood.local.watched.iter().zip(traces) {
             let i = place.asperity;
@@ -180,16 +180,39 @@ impl EquilibriumPath<'_> {
 
     /// Enters the status after a transition into the predictor.
     fn enter(&mut self, transition: &Transition, avalanche: &mut Avalanche) {
-        let problem = self.problem();
+        let problem = &*self.problem();
         let i = transition.asperity;
         avalanche.open.push(i);
-        let now = match transition.kind {
-            Kind::Snap => return,
-            Kind::JumpIn | Kind::Uncover if self.neighbourhood.local.find(i).is_some() => Status::Contact,
-            _ => transition.status(problem),
-        };
+        let parts = i.checked_sub(problem.summits()).map(|k| self.predictor.state.merged[k].parts);
+        match (transition.kind, parts) {
+            (Kind::Snap, _) => {}
+            (Kind::Merge, Some(parts)) => {
+                for part in parts {
+                    self.enter_status(part, Status::Merged { into: i });
+                }
+                self.enter_status(i, Status::Contact);
+            }
+            (Kind::Split, Some(parts)) => {
+                self.enter_status(i, Status::Free);
+                for part in parts {
+                    self.enter_status(part, Status::Contact);
+                }
+                avalanche.open.extend(parts);
+            }
+            (Kind::JumpIn | Kind::Uncover, _) if self.neighbourhood.local.find(i).is_some() => self.enter_status(i, Status::Contact),
+            (Kind::JumpOff, Some(_)) => {
+                self.enter_status(i, Status::Free);
+                avalanche.open.extend(self.free_parts(i));
+            }
+            _ => self.enter_status(i, transition.status(problem)),
+        }
+    }
+
+    /// Enters a status into the predictor.
+    fn enter_status(&mut self, i: usize, now: Status) {
         if self.predictor.state.status[i] == Status::Contact && now != Status::Contact && !self.predictor.traces[i].value.is_nan() {
-            self.predictor.count(problem, i, -1.0, self.neighbourhood.local.approach);
+            let approach = self.neighbourhood.local.approach;
+            self.predictor.count(&self.solver.problem, i, -1.0, approach);
         }
         self.pending.drop_near(i);
         self.predictor.traces[i].value = f64::NAN;
@@ -200,7 +223,7 @@ impl EquilibriumPath<'_> {
     /// contact will change by `response` \[N\] when the pending displacements are applied.
     fn propagate(&mut self, changes: &[f64], load: f64, response: f64, avalanche: &mut Avalanche) {
         let limit = self.pending_limit();
-        let problem = self.problem();
+        let problem = &*self.problem();
         let near = &self.neighbourhood;
         for (&j, &change) in near.shell.iter().zip(changes) {
             if self.predictor.state.status[j] == Status::Contact {
@@ -225,7 +248,7 @@ impl EquilibriumPath<'_> {
         if near.shell.is_empty() {
             return;
         }
-        let problem = self.problem();
+        let problem = &*self.problem();
         let way = near.local.approach - near.reference;
         let reference = |(member, a): (&OutsideField, &f64)| {
             let i = member.asperity;
@@ -251,7 +274,7 @@ impl EquilibriumPath<'_> {
     /// Advances the predictors of the members to a located event and counts the work, along a solution curve if there is one. At a fold the
     /// rates are infinite.
     pub(super) fn advance_predictors(&mut self, curve: &[CurveState], fold: bool) {
-        let problem = self.problem();
+        let problem = &*self.problem();
         let (approach, reference) = (self.neighbourhood.local.approach, self.neighbourhood.reference);
         let rates = if fold { None } else { Some(self.neighbourhood.local.rates(problem).0) };
         let local = &self.neighbourhood.local;
@@ -275,7 +298,7 @@ impl EquilibriumPath<'_> {
 
     /// Advances members that were known at an earlier mean penetration to the present one, and counts the work.
     pub(super) fn advance_members(&mut self) {
-        let problem = self.problem();
+        let problem = &*self.problem();
         let local = &self.neighbourhood.local;
         let mut traces = Vec::new();
         for (member, a) in local.members.iter().zip(&local.radius) {
@@ -292,7 +315,7 @@ impl EquilibriumPath<'_> {
 
     /// Records the transitions of one relaxation; its energy is that of the first.
     pub(super) fn record(&mut self, applied: &[Transition], approach: f64, before: Totals, after: Totals, energy: f64) {
-        for transition in applied.iter().filter(|transition| transition.kind != Kind::JumpOff) {
+        for transition in applied.iter().filter(|transition| !matches!(transition.kind, Kind::JumpOff | Kind::Merge)) {
             self.chatter.count(transition.asperity);
         }
         self.log.record(applied, approach, before, after, energy);

@@ -4,26 +4,30 @@ use super::accuracy::Precision;
 use super::checkpoint::{Checkpoint, PathCheckpoint};
 use super::energy::EnergyLedger;
 use super::equilibrium_path::{EquilibriumPath, Frame};
+use super::neighbourhood::Neighbourhood;
 use super::predictor::Predictor;
 use super::step_control::StepControl;
 use crate::physics::PhysicsError;
-use crate::physics::contact::{Event, Problem, State};
+use crate::physics::contact::Problem;
+use std::sync::Arc;
 
-impl<'p> EquilibriumPath<'p> {
+impl EquilibriumPath {
     /// Resumes a path. The state need not be an equilibrium: the difference of the potential is charged to the last event, and the initial
     /// residual is not recorded as predictor residual.
-    pub(crate) fn resume(problem: &'p Problem, from: PathCheckpoint) -> Result<Self, PhysicsError> {
+    pub(crate) fn resume(problem: Arc<Problem>, from: PathCheckpoint) -> Result<Self, PhysicsError> {
         let (approach, drift) = (from.state.approach_m, from.log.drift_m);
         let (longest, scale) = from.lengths;
-        let mut predictor = Predictor::new(problem, from.state);
+        let parted = from.parted.unwrap_or_else(|| problem.touching(&from.state));
+        let mut predictor = Predictor::new(&problem, from.state);
+        predictor.parted = parted;
         predictor.expect_totals(from.totals);
         let steps = StepControl::new(from.sense, longest, from.halvings);
         let mut path = Self::new(problem, predictor, Frame { sense: from.sense, scale }, steps);
         path.solver.effort = from.effort;
         path.energy = EnergyLedger::new(approach, from.events, from.balance).open(from.events < from.log.events.len());
         (path.log, path.totals, path.chatter) = (from.log, from.totals, from.chatter);
-        path.chatter.grow(problem.len());
-        path.steps.limit_events(path.log.events.len(), problem.len());
+        path.chatter.grow(path.problem().len());
+        path.steps.limit_events(path.log.events.len(), path.problem().len());
         match path.correct(approach, false, true, Precision::Exact) {
             Ok(()) => {
                 path.log.drift_m = drift;
@@ -46,13 +50,14 @@ impl<'p> EquilibriumPath<'p> {
             halvings: self.steps.halvings(),
             chatter: self.chatter,
             effort: self.solver.effort,
-            known: None,
+            parted: Some(self.predictor.parted),
         }
     }
 
     /// The present state, at a global solve.
     pub(super) fn checkpoint(&self) -> Checkpoint {
         Checkpoint {
+            problem: self.problem(),
             predictor: self.predictor.clone(),
             chatter: self.chatter.clone(),
             totals: self.totals,
@@ -65,28 +70,16 @@ impl<'p> EquilibriumPath<'p> {
 
     /// Goes back to a checkpoint.
     pub(super) fn restore(&mut self, checkpoint: &Checkpoint) {
+        if !Arc::ptr_eq(&self.solver.problem, &checkpoint.problem) {
+            // Merged contacts of the same numbers may have other places.
+            self.solver.replace_problem(Arc::clone(&checkpoint.problem));
+            self.neighbourhood = Neighbourhood::default();
+        }
         self.predictor.clone_from(&checkpoint.predictor);
         self.chatter.clone_from(&checkpoint.chatter);
         self.totals = checkpoint.totals;
         self.log.restore(&checkpoint.log, checkpoint.events, checkpoint.segments);
         self.energy = EnergyLedger::new(self.state().approach_m, self.log.events.len(), checkpoint.balance);
         self.pending.clear();
-    }
-
-    /// The state before the last increment.
-    pub(crate) fn previous_state(&self) -> Option<&State> {
-        self.checkpoint.as_deref().map(Checkpoint::state)
-    }
-
-    /// Events of the last increment.
-    pub(crate) fn recent_events(&self) -> &[Event] {
-        &self.log.events[self.checkpoint.as_deref().map_or(0, |checkpoint| checkpoint.events)..]
-    }
-
-    /// Undoes the last increment.
-    pub(crate) fn undo_step(&mut self) {
-        if let Some(checkpoint) = self.checkpoint.take() {
-            self.restore(&checkpoint);
-        }
     }
 }

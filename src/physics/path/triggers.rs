@@ -33,6 +33,10 @@ impl Problem {
                 continue;
             }
             add(Transition { kind: Kind::JumpOff, asperity: j, by: None });
+            if self.merges() {
+                add(Transition { kind: Kind::Split, asperity: j, by: None });
+                predictor.pairs(self, j, state.radius[j], |i| add(predictor.merging(i, j)));
+            }
             if self.covers() {
                 self.neighbours.within(j, state.radius[j], |_, i| {
                     if self.can_be_covered(state, i) && state.radius[i] < state.radius[j] {
@@ -58,6 +62,8 @@ impl Problem {
             (Kind::JumpOff, Status::Contact, _) => true,
             (Kind::Uncover, Status::Covered { by, .. }, _) => Some(by) == change.by,
             (Kind::Cover, Status::Free | Status::Contact, Some(by)) => state.radius[i] < state.radius[by],
+            (Kind::Merge, _, Some(by)) => predictor.may_merge(i, by),
+            (Kind::Split, Status::Contact, _) => true,
             _ => false,
         };
         possible && self.overshoot(change, predictor) >= 0.0
@@ -73,7 +79,11 @@ impl Problem {
                 let distance = self.neighbours.distance(&self.positions[i], &self.positions[by]);
                 state.radius[by] / distance - 1.0
             }
+            (Kind::Merge, Some(by)) => self.meeting([i, by], [state.radius[i], state.radius[by]]),
+            (Kind::Split, _) => state.release_of_merged(self, i).map_or(f64::NAN, |release_m| 1.0 - state.radius[i] / release_m),
             (Kind::Uncover, _) => match state.status[i] {
+                // The footprint of a part of a merged contact stays covered until it splits.
+                Status::Covered { by, .. } if matches!(state.status[by], Status::Merged { .. }) => f64::NAN,
                 // An asperity that is not in contact absorbs none.
                 Status::Covered { by, release_m } => 1.0 - state.radius[by] / release_m,
                 _ => f64::NAN,
@@ -94,6 +104,8 @@ impl Problem {
             (Kind::Cover, Some(by), _) => between(by, self.neighbours.distance(&self.positions[i], &self.positions[by])),
             (Kind::Uncover, _, Status::Covered { by, release_m }) if state.radius[by] > 0.0 => between(by, release_m),
             (Kind::JumpIn, ..) => trigger.overshoot * self.asperities[i].jump_off_penetration().abs(),
+            (Kind::Merge, Some(by), _) => between(by, state.radius[by] * (1.0 - trigger.overshoot)),
+            (Kind::Split, ..) => between(i, state.radius[i] / (1.0 - trigger.overshoot)),
             _ => 0.0,
         }
     }

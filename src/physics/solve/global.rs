@@ -20,6 +20,7 @@ use crate::physics::contact::transition::{ContactView, Transition};
 use crate::physics::half_space::{Effort, Interaction as _, Spots, Tangent};
 use crate::physics::math::gmres::{Limits, Solution, gmres, gmres_and_least};
 use crate::physics::math::vector::dot;
+use std::sync::Arc;
 
 /// Maximum number of products in one linear solve.
 const PRODUCTS: usize = 120;
@@ -54,8 +55,8 @@ struct Tangents {
 }
 
 /// Solver of the global problem, with its work space.
-pub(crate) struct GlobalSolver<'p> {
-    pub(crate) problem: &'p Problem,
+pub(crate) struct GlobalSolver {
+    pub(crate) problem: Arc<Problem>,
     pub(crate) effort: Effort,
     spots: Spots,
     /// True if the precision is only sufficient: sums are less accurate then.
@@ -75,8 +76,8 @@ pub(crate) struct GlobalSolver<'p> {
     patch: LocalProblem,
 }
 
-impl<'p> GlobalSolver<'p> {
-    pub(crate) fn new(problem: &'p Problem) -> Self {
+impl GlobalSolver {
+    pub(crate) fn new(problem: Arc<Problem>) -> Self {
         Self {
             problem,
             effort: Effort::default(),
@@ -93,6 +94,11 @@ impl<'p> GlobalSolver<'p> {
         }
     }
 
+    /// Goes on with another number of merged contacts.
+    pub(crate) fn replace_problem(&mut self, problem: Arc<Problem>) {
+        *self = Self { effort: self.effort, swept_at: self.swept_at, roughly: self.roughly, ..Self::new(problem) };
+    }
+
     /// Begins a solution.
     pub(crate) fn begin(&mut self, roughly: bool) {
         self.inverse.begin();
@@ -104,7 +110,7 @@ impl<'p> GlobalSolver<'p> {
 
     /// Evaluates displacements, residuals and tangent of a state; returns the largest residual with its asperity.
     pub(crate) fn evaluate(&mut self, state: &mut State) -> NotConverged {
-        let problem = self.problem;
+        let problem = &*Arc::clone(&self.problem);
         problem.spots(state, &mut self.spots);
         let field = problem.field.for_spots(&self.spots, self.roughly);
         field.linearise(&self.spots, &mut state.displacement, &mut self.tangents.contacts, &mut self.effort);
@@ -114,7 +120,7 @@ impl<'p> GlobalSolver<'p> {
 
     /// Evaluates a state without its tangent.
     fn reevaluate(&mut self, state: &mut State) -> NotConverged {
-        let problem = self.problem;
+        let problem = &*Arc::clone(&self.problem);
         problem.spots(state, &mut self.spots);
         let field = problem.field.for_spots(&self.spots, self.roughly);
         field.again(&self.spots, &mut state.displacement, &mut self.tangents.contacts, &mut self.effort);
@@ -124,7 +130,7 @@ impl<'p> GlobalSolver<'p> {
 
     /// Residuals of a state with known displacements.
     fn compare(&mut self, state: &mut State) -> NotConverged {
-        let problem = self.problem;
+        let problem = &*Arc::clone(&self.problem);
         self.residual.clear();
         self.diagonal.clear();
         let mut worst = NotConverged::residual(0.0, state.contacts.first().copied().unwrap_or(0));
@@ -184,7 +190,7 @@ impl<'p> GlobalSolver<'p> {
 
     /// Solves the local problem around a contact with the displacement by all others held; false if it has no equilibrium.
     fn mend(&mut self, state: &mut State, asperity: usize) -> bool {
-        let problem = self.problem;
+        let problem = &*Arc::clone(&self.problem);
         let near = problem
             .neighbours
             .nearest(&problem.positions[asperity], problem.spots_in_patch, state.contacts.len(), |i| state.status[i] == Status::Contact);
@@ -205,7 +211,7 @@ impl<'p> GlobalSolver<'p> {
 
     /// Relaxes from a state; the transitions on the way are returned.
     pub(crate) fn relax(&mut self, state: &mut State) -> Result<Vec<Transition>, NotConverged> {
-        let problem = self.problem;
+        let problem = &*Arc::clone(&self.problem);
         relax(&mut Whole { solver: self, state }, problem, None)
     }
 
@@ -269,7 +275,7 @@ impl<'p> GlobalSolver<'p> {
 
     /// Penetrations `D_i − ŵ_i` of free asperities, with their rates, at an equilibrium with given rates.
     pub(crate) fn penetrations(&mut self, state: &State, rates: &[f64], wanted: &[usize]) -> Vec<PenetrationTrace> {
-        let problem = self.problem;
+        let problem = &*Arc::clone(&self.problem);
         problem.spots(state, &mut self.spots);
         let (mut displacement, mut slopes) = (Vec::new(), Vec::new());
         let found = [&mut displacement, &mut slopes];
@@ -290,8 +296,8 @@ impl<'p> GlobalSolver<'p> {
 }
 
 /// Newton's method on all contacts of a state.
-struct Descent<'a, 'p> {
-    solver: &'a mut GlobalSolver<'p>,
+struct Descent<'a> {
+    solver: &'a mut GlobalSolver,
     state: &'a mut State,
     exact: bool,
     tolerance: f64,
@@ -301,7 +307,7 @@ struct Descent<'a, 'p> {
     mends: usize,
 }
 
-impl NonlinearSystem for Descent<'_, '_> {
+impl NonlinearSystem for Descent<'_> {
     fn evaluate(&mut self, round: usize) -> Worst {
         self.solver.effort.iterations += 1;
         // The first step leads near enough for the tangent there to serve to the end.
@@ -342,12 +348,12 @@ impl NonlinearSystem for Descent<'_, '_> {
 }
 
 /// Global problem during a relaxation.
-struct Whole<'a, 'p> {
-    solver: &'a mut GlobalSolver<'p>,
+struct Whole<'a> {
+    solver: &'a mut GlobalSolver,
     state: &'a mut State,
 }
 
-impl Relaxing for Whole<'_, '_> {
+impl Relaxing for Whole<'_> {
     fn evaluate(&mut self) -> NotConverged {
         self.solver.effort.iterations += 1;
         self.solver.evaluate(self.state)
@@ -358,7 +364,7 @@ impl Relaxing for Whole<'_, '_> {
     }
 
     fn take_out(&mut self, change: &Transition) {
-        self.state.set(change.asperity, change.status(self.solver.problem), 0.0);
+        self.state.set(change.asperity, change.status(&self.solver.problem), 0.0);
     }
 
     fn finish(&mut self) -> bool {

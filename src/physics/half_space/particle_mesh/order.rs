@@ -3,15 +3,15 @@
 //! With a million spots in any other order, a sum waits for memory seven times as long as it computes.
 
 use crate::physics::half_space::Spots;
+use crate::physics::math::grown::Grown;
 
 /// Asperities in the order of the Z-curve (Morton 1966) through the square.
 #[derive(Debug, Clone)]
 pub(super) struct Order {
     /// Positions in Z-order \[m\].
-    pub(super) positions: Vec<[f64; 2]>,
+    pub(super) positions: Grown<[f64; 2]>,
     /// Rank of each asperity in the order.
-    ranks: Vec<u32>,
-    length: f64,
+    ranks: Grown<u32>,
 }
 
 impl Order {
@@ -23,14 +23,13 @@ impl Order {
         for (rank, i) in numbers.iter().enumerate() {
             ranks[*i as usize] = rank as u32;
         }
-        Self { positions: numbers.iter().map(|i| given[*i as usize]).collect(), ranks, length }
+        Self { positions: numbers.iter().map(|i| given[*i as usize]).collect(), ranks: ranks.into() }
     }
 
-    /// Adds an asperity at `place` \[m\]; it gets the next number.
+    /// Adds an asperity at `place` \[m\]; it gets the next number and the last rank.
     pub(super) fn add(&mut self, place: [f64; 2]) {
-        let mut given: Vec<[f64; 2]> = self.ranks.iter().map(|rank| self.positions[*rank as usize]).collect();
-        given.push(place);
-        *self = Self::new(given, self.length);
+        self.ranks.push(self.positions.len() as u32);
+        self.positions.push(place);
     }
 
     /// Ranks of the given asperities, sorted.
