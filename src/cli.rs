@@ -13,8 +13,8 @@ mod verbs;
 pub use reference::{GUIDE, generated};
 
 use arguments::{
-    CampaignArguments, CompareArguments, CsvArguments, ExportArguments, FolderArguments, HowArguments, ImportArguments, JobsArguments,
-    OutputArguments, ShardsArguments, TalkArguments,
+    CampaignArguments, CompareArguments, CsvArguments, ExportArguments, FindingsArguments, FolderArguments, HowArguments, ImportArguments,
+    JobsArguments, OutputArguments, ShardsArguments, TalkArguments,
 };
 use clap::{Parser, Subcommand};
 use std::path::PathBuf;
@@ -145,6 +145,9 @@ enum Verb {
     },
     /// Compare finished runs with the first one
     Compare(CompareArguments),
+    /// Judge the findings of the paper by the cases of runs
+    #[command(long_about = help::FINDINGS)]
+    Findings(FindingsArguments),
     /// Print one case or task: parameters, results, warnings, files
     Show {
         #[command(flatten)]

@@ -91,6 +91,16 @@ pub(super) struct CompareArguments {
 }
 
 #[derive(Debug, Args)]
+pub(super) struct FindingsArguments {
+    /// Output folders of runs, or their specs
+    #[arg(required = true, value_name = "DIR")]
+    pub(super) runs: Vec<PathBuf>,
+    /// Print JSON
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+#[derive(Debug, Args)]
 pub(super) struct CsvArguments {
     /// Output folder of a run, or its spec
     pub(super) dir: PathBuf,

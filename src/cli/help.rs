@@ -48,10 +48,18 @@ NumPy .npy, and text with one line for each row. A scan that is not square is
 cropped to its central square. Name the output as surface.file in a spec. A
 spec may also name the original file, with the same options as keys.";
 
+/// The description of `findings`.
+pub(super) const FINDINGS: &str = "\
+Judge the findings of the paper by the cases of runs
+
+The paper is Violano & Afferrante, Lubricants 9:7 (2021). Cases that differ only
+in maximum load, magnification and Hurst exponent form a reading. Each reading
+has a verdict on each finding, with the numbers behind it.";
+
 /// The commands by task, in the order of the help.
 const GROUPS: [(&str, &[&str]); 6] = [
     ("Simulate", &["init", "run", "plan", "status", "retry", "submit"]),
-    ("Results", &["report", "compare", "show", "export"]),
+    ("Results", &["report", "compare", "findings", "show", "export"]),
     ("Measured surfaces", &["import"]),
     ("Maintenance", &["verify", "explain", "gc"]),
     ("Single stages", &["generate", "extract", "cycle", "aggregate"]),

@@ -6,6 +6,7 @@ mod causes;
 mod csv;
 mod ending;
 mod export;
+mod findings;
 mod measured;
 mod place;
 mod show;
@@ -89,6 +90,7 @@ fn performed(verb: &Verb) -> Result<u8, Fault> {
             work::compare(&runs, campaign.output.out.as_deref(), *force, campaign.output.json, *open)
         }
         Verb::Compare(asked) => work::compare(&asked.runs, asked.out.as_deref(), asked.force, asked.json, asked.open),
+        Verb::Findings(asked) => findings::findings(&asked.runs, asked.json),
         Verb::Show { folder, id } => show::show(folder, id),
         Verb::Plan { spec, output } => survey::plan(spec, output),
         Verb::Status { folder, watch } => survey::status(folder, *watch),
