@@ -100,6 +100,13 @@ pub struct Reading {
     pub findings: [Option<Judged>; 7],
 }
 
+impl Reading {
+    /// True if a finding was judged over a series; the third one needs none.
+    fn has_series(&self) -> bool {
+        self.findings.iter().enumerate().any(|(number, judged)| number != 2 && judged.is_some())
+    }
+}
+
 /// A row of the table `cases`.
 #[derive(Debug, Clone, Copy)]
 struct Case {
@@ -139,7 +146,7 @@ pub fn findings(cases: &Frame, realizations: &Frame) -> Result<Vec<Reading>, Sta
         let words = differing.iter().filter(|parameter| !parameter.is_absent(place)).map(|parameter| parameter.named(place));
         let name = words.collect::<Vec<_>>().join(", ");
         let reading = Judge { cases, realizations, rows }.reading(name)?;
-        found.extend(Some(reading).filter(|reading| reading.findings.iter().any(Option::is_some)));
+        found.extend(Some(reading).filter(Reading::has_series));
     }
     Ok(found)
 }

@@ -1,6 +1,7 @@
 //! The command line: help, templates, options, and what is printed at the end.
 
 mod ending;
+mod findings;
 mod places;
 mod results;
 mod settings;
