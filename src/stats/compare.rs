@@ -39,8 +39,8 @@ pub struct Matched {
     pub left_over: Vec<usize>,
 }
 
-/// A value as one tells it from others.
-fn written(frame: &Frame, column: &str, row: usize) -> Result<String, StatsError> {
+/// The value of a cell as a text, equal for equal values.
+pub(super) fn written(frame: &Frame, column: &str, row: usize) -> Result<String, StatsError> {
     Ok(match frame.column(column)? {
         ColumnData::F64(values) => format!("{:?}", values.get(row).copied().flatten()),
         ColumnData::I64(values) => format!("{:?}", values.get(row).copied().flatten()),
@@ -50,7 +50,7 @@ fn written(frame: &Frame, column: &str, row: usize) -> Result<String, StatsError
 }
 
 /// Columns of the parameters, in the order of labels.
-fn names() -> impl Iterator<Item = &'static str> {
+pub(super) fn names() -> impl Iterator<Item = &'static str> {
     parameters_by_rank().into_iter().map(|parameter| parameter.column.name)
 }
 

@@ -4,12 +4,11 @@
 //! over one of these, so a reading is judged from its widest series over each.
 
 use super::StatsError;
-use super::compare::{difference_of, singles};
+use super::compare::{difference_of, names, singles, written};
 use super::digits::significant;
 use super::student::Sample;
 use super::varying::varying;
-use crate::schema::parameters_by_rank;
-use crate::store::{ColumnData, Frame};
+use crate::store::Frame;
 
 /// What the paper states, by number.
 pub const FINDINGS: [&str; 7] = [
@@ -156,16 +155,7 @@ const SERIES: [&str; 2] = ["magnification", "hurst"];
 
 /// The values of all parameters but those of the series.
 fn choices(cases: &Frame, row: usize) -> Result<Vec<String>, StatsError> {
-    let names = parameters_by_rank().into_iter().map(|parameter| parameter.column.name).filter(|name| !SERIES.contains(name));
-    let value = |name| {
-        Ok(match cases.column(name)? {
-            ColumnData::F64(values) => format!("{:?}", values[row]),
-            ColumnData::Text(values) => values[row].clone().unwrap_or_default(),
-            ColumnData::I64(values) => format!("{:?}", values[row]),
-            ColumnData::Bool(values) => format!("{:?}", values[row]),
-        })
-    };
-    names.map(value).collect()
+    names().filter(|name| !SERIES.contains(name)).map(|name| written(cases, name, row)).collect()
 }
 
 /// The cases of one reading.
@@ -230,7 +220,7 @@ impl Judge<'_> {
     /// Finding 1: `(max − min)/mean` of the mean pull-off forces.
     fn constant_pull_off(&self, loads: &[Case]) -> Result<Option<Judged>, StatsError> {
         let Some(means) = self.means(loads, 1, 2)? else { return Ok(None) };
-        let (least, most) = means.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(*value), high.max(*value)));
+        let (least, most) = extremes(&means);
         let spread = (most - least) * means.len() as f64 / means.iter().sum::<f64>();
         Ok(Some(Judged { verdict: Verdict::within(spread, SPREADS), numbers: vec![spread], text: percent(spread) }))
     }
@@ -254,7 +244,7 @@ impl Judge<'_> {
         if ratios.is_empty() {
             return Ok(None);
         }
-        let (least, most) = ratios.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), value| (low.min(*value), high.max(*value)));
+        let (least, most) = extremes(&ratios);
         let verdict = Verdict::within(most.max(1.0 / least), FACTORS);
         Ok(Some(Judged { verdict, numbers: vec![least, most], text: format!("{}–{}", significant(least, 2), significant(most, 2)) }))
     }
@@ -307,6 +297,11 @@ impl Judge<'_> {
         };
         Ok(Some(Judged { verdict, numbers: vec![larger as f64, all as f64], text: format!("{larger} of {all}") }))
     }
+}
+
+/// The least and the largest value.
+fn extremes(values: &[f64]) -> (f64, f64) {
+    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(*value), high.max(*value)))
 }
 
 fn percent(share: f64) -> String {

@@ -11,8 +11,8 @@
 //! A pair whose tensile load would put the merged contact beyond the end of its branch merges only when this is no longer so.
 //! A pair that has split must have been apart before it merges again.
 //!
-//! A merged spot is a different sphere from its two parts, and its potential on its branch is another one. The difference at merging is a
-//! constant of the merged spot and part of its potential: the potentials of the parts and their interaction are functions of their radii
+//! A merged contact is a different sphere from its two parts, and its potential on its branch is another one. The difference at merging is a
+//! constant of the merged contact and part of its potential: the potentials of the parts and their interaction are functions of their radii
 //! alone, which are the same again when it splits. So merging and splitting alone dissipate nothing; what they change is the interaction
 //! with other contacts, which respond to it.
 
@@ -64,7 +64,7 @@ impl Problem {
         Ok(())
     }
 
-    /// `½(F_i ŵ_ij + F_j ŵ_ji)` of two spots of these radii \[J\].
+    /// `½(F_i ŵ_ij + F_j ŵ_ji)` of two contacts of these radii \[J\].
     fn interaction_energy(&self, [i, j]: [usize; 2], [a, b]: [f64; 2]) -> f64 {
         if self.rules.interaction == Interaction::None {
             return 0.0;
@@ -129,7 +129,7 @@ impl Problem {
         }
     }
 
-    /// Refuses a state whose area \[m²\] reaches the nominal area or whose largest spot spans the square.
+    /// Refuses a state whose area \[m²\] reaches the nominal area or whose largest contact spans the square.
     pub(crate) fn check_room(&self, state: &State, area: f64) -> Result<(), PhysicsError> {
         let share = area / (self.length_m * self.length_m);
         if share < 1.0 && state.largest_radius() < 0.5 * self.length_m {

@@ -37,6 +37,11 @@ impl Kind {
     /// All kinds, in the order of the event counts.
     pub const ALL: [Self; 7] = [Self::JumpIn, Self::JumpOff, Self::Cover, Self::Uncover, Self::Snap, Self::Merge, Self::Split];
 
+    /// True for merging and splitting.
+    pub(crate) fn is_coalescence(self) -> bool {
+        matches!(self, Self::Merge | Self::Split)
+    }
+
     /// Name in the tables.
     #[must_use]
     pub fn word(self) -> &'static str {

@@ -53,9 +53,9 @@ impl EquilibriumPath {
             let due = self.due_in(&avalanche);
             let pending = |asperity| Transition { kind: Kind::Snap, asperity, by: None };
             // Contacts merge and split in equilibrium: where others have yet to respond, they have grown too far.
-            let next = most_overdue(&due, |kind| !is_coalescence(kind))
+            let next = most_overdue(&due, |kind| !kind.is_coalescence())
                 .or_else(|| self.worst_pending().map(pending))
-                .or_else(|| most_overdue(&due, is_coalescence));
+                .or_else(|| most_overdue(&due, Kind::is_coalescence));
             let Some(transition) = next else { break };
             applied += 1;
             self.check_event_count(approach, transition.asperity)?;
@@ -151,9 +151,4 @@ fn most_overdue(due: &[Trigger], of: impl Fn(Kind) -> bool) -> Option<Transition
         .filter(|trigger| of(trigger.transition.kind))
         .max_by(|u, v| u.overshoot.total_cmp(&v.overshoot).then(v.transition.asperity.cmp(&u.transition.asperity)))
         .map(|trigger| trigger.transition)
-}
-
-/// True for merging and splitting.
-pub(super) fn is_coalescence(kind: Kind) -> bool {
-    matches!(kind, Kind::Merge | Kind::Split)
 }

@@ -1,7 +1,6 @@
 //! Global corrector: the contact solved at the end of an increment, and new predictors of everything.
 
 use super::accuracy::{DRIFT, LATENESS, Precision, SUFFICIENT, WORST_RESIDUAL};
-use super::avalanche::is_coalescence;
 use super::checkpoint::Checkpoint;
 use super::equilibrium_path::EquilibriumPath;
 use super::rejection::Rejection;
@@ -133,10 +132,9 @@ impl EquilibriumPath {
     /// Applies overdue transitions, each with its avalanche, if it is still due.
     fn apply_overdue(&mut self, due: Vec<(f64, Transition)>) -> Result<(), Rejection> {
         // Contacts meet in equilibrium, one pair at a time.
-        let all_meet = due.iter().all(|(_, transition)| is_coalescence(transition.kind));
-        let meets = |transition: &Transition| is_coalescence(transition.kind);
-        let count = if all_meet { 1 } else { due.len() };
-        for (_, transition) in due.into_iter().filter(|(_, transition)| all_meet || !meets(transition)).take(count) {
+        let (mut coalescing, others): (Vec<_>, Vec<_>) = due.into_iter().partition(|(_, transition)| transition.kind.is_coalescence());
+        coalescing.truncate(1);
+        for (_, transition) in if others.is_empty() { coalescing } else { others } {
             if self.problem().is_due(&transition, &self.predictor) {
                 self.start_avalanche(transition)?;
             }

@@ -2,7 +2,7 @@
 //! avalanche.
 
 use super::accuracy::EVENT_TOLERANCE;
-use super::avalanche::{Avalanche, is_coalescence};
+use super::avalanche::Avalanche;
 use super::equilibrium_path::EquilibriumPath;
 use super::predictor::PredictedEvent;
 use super::rejection::Rejection;
@@ -92,7 +92,7 @@ impl EquilibriumPath {
     /// Locates and applies an event with its avalanche.
     fn run_event(&mut self, event: PredictedEvent, target: f64, queue: &mut Vec<PredictedEvent>) -> Result<Outcome, Rejection> {
         let transition = event.transition;
-        if is_coalescence(transition.kind) && !self.chatter.allows(&transition) {
+        if transition.kind.is_coalescence() && !self.chatter.allows(&transition) {
             self.chatter.freeze(transition.asperity);
             return Ok(Outcome::Absent);
         }

@@ -84,7 +84,7 @@ fn e2e_findings_are_judged_from_the_tables() {
     }
     let said = stdout(&hysteron(&bench, &["findings", "out"]));
     assert!(said.lines().all(|line| line.chars().count() <= 80) && said.contains("yes"), "{said}");
-    // Two runs are told apart.
+    // With two runs, the folder is part of the name.
     let both = stdout(&hysteron(&bench, &["findings", "out", "./out"]));
     assert!(both.contains("out: cover"), "{both}");
 }
