@@ -205,6 +205,20 @@ fn e2e_schema_prints_one_file_and_writes_schemas_only() {
     assert_eq!(values.last(), Some(&root()));
 }
 
+#[test]
+fn e2e_source_modules_of_the_guide_exist() {
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut count = 0;
+    for page in pages() {
+        for span in page.spans.iter().filter(|span| span.starts_with("physics::")) {
+            let module = source.join(span.replace("::", "/"));
+            assert!(module.is_dir() || module.with_extension("rs").is_file(), "{}: there is no module {span}", page.name);
+            count += 1;
+        }
+    }
+    assert!(count >= 10, "{count}");
+}
+
 /// The pages as the build script hands them to rustdoc.
 #[test]
 fn e2e_links_between_modules_lead_to_modules() {
