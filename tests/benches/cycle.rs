@@ -1,4 +1,4 @@
-//! Whole cycles with coalescence `cover` and `merge`: means over three surfaces, effort, and the time in direct evaluations of all contacts, of which a plain
+//! Whole cycles with coalescence `cover` and `merge`: means over six surfaces, effort, and the time in direct evaluations of all contacts, of which a plain
 //! iteration of some hundred steps would take many thousands. `cargo bench -- cycle 64 128` names the magnifications.
 
 use crate::paper::{MATERIAL, spectrum};
@@ -23,7 +23,7 @@ pub fn run() {
         "zeta", "rule", "events", "A", "F_po", "loop", "iterations", "products", "pairs/1e6", "seconds", "direct"
     );
     for zeta in magnifications {
-        for (name, rule) in [("cover", Coalescence::Cover)] {
+        for (name, rule) in [("cover", Coalescence::Cover), ("merge", Coalescence::Merge)] {
             let mut sum = Sum::default();
             for realization in 0..SURFACES {
                 sum.add(zeta, realization, rule);

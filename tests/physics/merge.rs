@@ -1,6 +1,8 @@
 //! Touching spots become one of the same area and load, and part again.
 
-use crate::support::{ALONE, DEFAULT, Dice, LENGTH, PAPER, RMS, asperity, close, loop_of, near, paper_summits, run, turning, unloading};
+use crate::support::{
+    ALONE, DEFAULT, Dice, LENGTH, PAPER, RMS, asperity, close, loop_of, near, paper_cycle, paper_summits, run, turning, unloading,
+};
 use hysteron::model::{Coalescence, Interaction, KeptContacts};
 use hysteron::physics::PhysicsError;
 use hysteron::physics::contact::Kind;
@@ -122,6 +124,19 @@ fn law_area_and_load_are_continuous_at_every_merger() {
         compared += 1;
     }
     assert!(compared > 20, "{compared}");
+}
+
+#[test]
+fn law_a_released_asperity_does_not_merge_with_the_contacts_around_it() {
+    // They overlap where it is released, as at a split. Merging there would be undone within nanometres.
+    let cycle = paper_cycle(&paper_summits(16, 0), MERGE, &[0.0071], 0.01);
+    let released: Vec<(usize, f64)> =
+        cycle.events.iter().filter(|(_, e)| e.kind == Kind::Uncover).map(|(_, e)| (e.asperity, e.approach_m)).collect();
+    assert!(released.len() >= 5, "{}", released.len());
+    for (asperity, approach) in released {
+        let merges = cycle.merged.iter().any(|spot| spot.spot.parts.contains(&asperity) && spot.spot.approach_m == approach);
+        assert!(!merges, "{asperity} at {approach:e} m");
+    }
 }
 
 #[test]

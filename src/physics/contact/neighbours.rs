@@ -168,9 +168,9 @@ impl Neighbours {
         list
     }
 
-    /// True if the asperities within `radius` \[m\] of another are listed.
-    pub(crate) fn lists(&self, radius: f64) -> bool {
-        radius <= self.side
+    /// Distance \[m\] up to which the asperities next to another are listed.
+    pub(crate) fn listed_m(&self) -> f64 {
+        self.side
     }
 
     /// Calls `visit(distance, asperity)` for every other asperity within `radius` of asperity `j`; those of the surface are the first, nearest

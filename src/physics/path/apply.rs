@@ -121,7 +121,12 @@ impl EquilibriumPath {
         // The displacement by contacts as they are predicted contains what is pending for it.
         self.pending.set_applied(i);
         match problem.asperities[i].radius_at_penetration(approach + problem.heights[i] - displacement) {
-            Some(radius) => local.insert(place, radius),
+            Some(radius) => {
+                local.insert(place, radius);
+                if problem.merges() {
+                    self.part_pairs(i, radius, i);
+                }
+            }
             None => local.watched.push(place),
         }
     }

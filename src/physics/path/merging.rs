@@ -63,7 +63,11 @@ impl EquilibriumPath {
         local.insert(first, share * merged.radii_m[0]);
         local.insert(second, share * merged.radii_m[1]);
         merged.parts.iter().for_each(|part| self.pending.set_applied(*part));
-        self.part_pairs(number, [0, 1].map(|k| (merged.parts[k], share * merged.radii_m[k])));
+        let parts = [0, 1].map(|k| (merged.parts[k], share * merged.radii_m[k]));
+        self.part_pairs(parts[0].0, parts[0].1, number);
+        self.part_pairs(parts[1].0, parts[1].1, number);
+        let [i, j] = merged.parts;
+        self.predictor.parted.insert((i.min(j), i.max(j)));
     }
 
     /// Contacts and their predicted radii at a mean penetration \[m\], without some.
@@ -90,19 +94,17 @@ impl EquilibriumPath {
         freed
     }
 
-    /// Pairs that a split leaves overlapping, which do not merge before they have been apart: the parts, and others with them.
-    fn part_pairs(&mut self, number: usize, parts: [(usize, f64); 2]) {
+    /// Pairs of a contact of radius `a` \[m\], which has just come into being, with those that it overlaps but for `left`: they do not merge
+    /// before they have been apart.
+    pub(super) fn part_pairs(&mut self, part: usize, a: f64, left: usize) {
         let problem = &*self.problem();
-        let pair = |i: usize, j: usize| (i.min(j), i.max(j));
-        let mut parted = vec![pair(parts[0].0, parts[1].0)];
-        for (part, a) in parts {
-            problem.neighbours.within(part, a + self.predictor.state.largest_radius(), |_, i| {
-                let radius = self.predictor.state.radius[i];
-                if i != number && radius > 0.0 && problem.meeting([part, i], [a, radius]) >= 0.0 {
-                    parted.push(pair(part, i));
-                }
-            });
-        }
+        let mut parted = Vec::new();
+        problem.neighbours.within(part, a + self.predictor.state.largest_radius(), |_, i| {
+            let radius = self.predictor.state.radius[i];
+            if i != left && radius > 0.0 && problem.meeting([part, i], [a, radius]) >= 0.0 {
+                parted.push((part.min(i), part.max(i)));
+            }
+        });
         self.predictor.parted.extend(parted);
     }
 }

@@ -18,6 +18,9 @@ const REACH: f64 = 2.2;
 /// Radius over distance at which two contacts are near a common fold, since the field of each is steep there.
 const TWINS: f64 = 0.95;
 
+/// Radius of a neighbour at the end of an increment, over its present one, up to which its merging is looked for.
+const GROWTH: f64 = 1.2;
+
 /// Transition that is expected, with its mean penetration \[m\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct PredictedEvent {
@@ -38,8 +41,6 @@ pub(crate) struct Predictor {
     covered_by: Vec<(usize, usize)>,
     /// Pairs that overlap and do not merge before they have been apart.
     pub(crate) parted: TouchingPairs,
-    /// An upper bound of the radii of the contacts \[m\].
-    largest: f64,
     /// Load and area, with their derivatives, at the mean penetration of the last change.
     sums: Sums,
 }
@@ -71,7 +72,6 @@ impl Predictor {
             candidates: Vec::new(),
             covered_by,
             parted: TouchingPairs::new(),
-            largest: state.largest_radius(),
             sums: Sums::default(),
             state,
         }
@@ -176,7 +176,6 @@ impl Predictor {
                 self.count(problem, *i, -1.0, trace.at);
             }
             self.state.radius[*i] = *a;
-            self.largest = self.largest.max(*a);
             self.traces[*i] = *trace;
             self.count(problem, *i, 1.0, trace.at);
         }
@@ -203,7 +202,6 @@ impl Predictor {
             sums.area_rate += share.area_rate;
         }
         self.sums = sums;
-        self.largest = self.state.largest_radius();
     }
 
     /// Adds a merged contact; it gets the next number.
@@ -234,22 +232,27 @@ impl Predictor {
         both && !self.parted.contains(&(i.min(j), i.max(j)))
     }
 
-    /// Pairs of a contact with those near enough to touch it if it has the radius `reach` \[m\].
-    pub(crate) fn pairs(&self, problem: &Problem, j: usize, reach: f64, mut visit: impl FnMut(usize)) {
-        let (most, place) = (reach + 1.2 * self.largest, &problem.positions[j]);
-        if problem.neighbours.lists(most) {
-            problem.neighbours.within(j, most, |_, i| {
-                if self.may_merge(i, j) {
-                    visit(i);
+    /// Calls `visit(i, distance)` for the contacts that may merge with contact `j` and would touch it if it had the radius `reach` \[m\] and
+    /// they grew by a fifth.
+    pub(crate) fn pairs(&self, problem: &Problem, j: usize, reach: f64, mut visit: impl FnMut(usize, f64)) {
+        let radius = &self.state.radius;
+        let mut offer = |i: usize, r: f64| {
+            if i != j && r <= reach + GROWTH * radius[i] && self.may_merge(i, j) {
+                visit(i, r);
+            }
+        };
+        // Small contacts are found by their place. Few are large.
+        let listed = problem.neighbours.listed_m();
+        let small = ((listed - reach) / GROWTH).max(0.0);
+        if small > 0.0 {
+            problem.neighbours.within(j, listed, |r, i| {
+                if radius[i] > 0.0 && radius[i] <= small {
+                    offer(i, r);
                 }
             });
-            return;
         }
-        // Contacts are few among the asperities within a long way.
-        for &i in &self.state.contacts {
-            if i != j && problem.neighbours.distance(place, &problem.positions[i]) <= most && self.may_merge(i, j) {
-                visit(i);
-            }
+        for &i in self.state.contacts.iter().filter(|i| radius[**i] > small) {
+            offer(i, problem.neighbours.distance(&problem.positions[j], &problem.positions[i]));
         }
     }
 
@@ -265,7 +268,7 @@ impl Predictor {
     fn expect_merging(&self, problem: &Problem, j: usize, target: f64, sign: f64, due: &mut Vec<PredictedEvent>) {
         let (here, there) = (self.state.radius[j], self.radius(problem, j, target));
         let mut found = Vec::new();
-        self.pairs(problem, j, here.max(there), |i| found.push(i));
+        self.pairs(problem, j, here.max(there), |i, _| found.push(i));
         for i in found {
             let at = self.traces[j].at;
             let (start, end) = (

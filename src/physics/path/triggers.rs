@@ -35,7 +35,11 @@ impl Problem {
             add(Transition { kind: Kind::JumpOff, asperity: j, by: None });
             if self.merges() {
                 add(Transition { kind: Kind::Split, asperity: j, by: None });
-                predictor.pairs(self, j, state.radius[j], |i| add(predictor.merging(i, j)));
+                predictor.pairs(self, j, state.radius[j], |i, r| {
+                    if r <= state.radius[i] + state.radius[j] {
+                        add(predictor.merging(i, j));
+                    }
+                });
             }
             if self.covers() {
                 self.neighbours.within(j, state.radius[j], |_, i| {
