@@ -1,5 +1,6 @@
 //! Whole cycles with coalescence `cover` and `merge`: means over six surfaces, effort, and the time in direct evaluations of all contacts, of which a plain
-//! iteration of some hundred steps would take many thousands. `cargo bench -- cycle 64 128` names the magnifications.
+//! iteration of some hundred steps would take many thousands. `cargo bench -- cycle cover 64 128` names rule and
+//! magnifications.
 
 use crate::paper::{MATERIAL, spectrum};
 use crate::watch::{cpu, once};
@@ -14,6 +15,11 @@ const SURFACES: u64 = 6;
 
 pub fn run() {
     let named: Vec<u32> = std::env::args().filter_map(|word| word.parse().ok()).collect();
+    let mut rules = vec![("cover", Coalescence::Cover), ("merge", Coalescence::Merge)];
+    let is_named = |name: &str| std::env::args().any(|word| word == name);
+    if rules.iter().any(|(name, _)| is_named(name)) {
+        rules.retain(|(name, _)| is_named(name));
+    }
     let magnifications = if named.is_empty() { vec![32, 64] } else { named };
     println!(
         "\ncycle: to 0.0071, 0.01 h_rms a step; {SURFACES} surfaces of seed 2021; A/A0, F_po/(E* A0) and loop area/(E* A0 h_rms) in 1e-3"
@@ -23,7 +29,7 @@ pub fn run() {
         "zeta", "rule", "events", "A", "F_po", "loop", "iterations", "products", "pairs/1e6", "seconds", "direct"
     );
     for zeta in magnifications {
-        for (name, rule) in [("cover", Coalescence::Cover), ("merge", Coalescence::Merge)] {
+        for (name, rule) in rules.iter().copied() {
             let mut sum = Sum::default();
             for realization in 0..SURFACES {
                 sum.add(zeta, realization, rule);
