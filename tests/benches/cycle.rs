@@ -86,11 +86,11 @@ impl Sum {
         let work = |branch| done.steps.iter().rfind(|step| step.branch == branch).map_or(0.0, |step| step.work_j);
         self.loss += (work(Branch::Loading) + work(Branch::Unloading)) / (unit * problem.rms_height_m);
         for step in &done.steps {
-            self.effort += step.effort;
-            self.frozen += step.held_count as u64;
+            self.effort += step.numerics.effort;
+            self.frozen += step.counts.held as u64;
         }
         self.seconds += seconds;
-        self.evaluations += seconds / evaluation(turn.contact_count);
+        self.evaluations += seconds / evaluation(turn.counts.contacts);
     }
 
     fn print(&self, zeta: u32, name: &str) {

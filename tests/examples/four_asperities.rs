@@ -49,14 +49,14 @@ fn main() -> Result<(), PhysicsError> {
     let cycle = run()?;
     println!("{:<10} {:>8} {:>9} {:>9} {:>9} {:>7} {:>12}", "branch", "Δ [nm]", "F [µN]", "A [µm²]", "contacts", "events", "Θ [fJ]");
     for step in &cycle.steps {
-        let events: usize = step.event_counts.iter().sum();
+        let events: usize = step.counts.events.iter().sum();
         println!(
             "{:<10} {:>8.1} {:>9.3} {:>9.2} {:>9} {:>7} {:>12.3}",
             step.branch.word(),
             step.approach_m * 1e9,
             step.load_n * 1e6,
             step.area_m2 * 1e12,
-            step.contact_count,
+            step.counts.contacts,
             events,
             // The sum over no event is a negative zero.
             step.dissipated_j.abs() * 1e15

@@ -51,7 +51,7 @@ pub fn run() -> Result<Observed, PhysicsError> {
     let mut later = 0;
     let resumed = run_from(&problem, &settings, middle, &mut |_| later += 1, &|_| {})?;
     let effort = first.steps.iter().fold(Effort::default(), |mut sum, step| {
-        sum += step.effort;
+        sum += step.numerics.effort;
         sum
     });
     Ok(Observed { cycles: [first, resumed], progress: progress.into_inner(), checkpoints: [kept.len(), later], effort })

@@ -64,7 +64,7 @@ fn law_without_interaction_the_load_is_a_sum() {
                 count += 1;
             }
         }
-        assert_eq!(step.contact_count, count);
+        assert_eq!(step.counts.contacts, count);
         // Each spot is met to 1e-10 of the rms height, 5e-16 m, with stiffnesses of some 100 N/m.
         near("load", step.load_n, load, 1e-11);
         near("area", step.area_m2, area, 1e-8 * area);
@@ -123,13 +123,13 @@ fn law_the_turning_point_is_at_the_load_itself() {
             close("F_max", turning(&cycle, k).load_n, load * PAPER.contact_modulus_pa * LENGTH * LENGTH, 1e-8);
             let back = unloading(&cycle, k);
             close("area where unloading begins", back[0].area_m2, turning(&cycle, k).area_m2, 1e-9);
-            assert_eq!(back.last().unwrap().contact_count, 0, "unloading ends free");
+            assert_eq!(back.last().unwrap().counts.contacts, 0, "unloading ends free");
             near("and unloaded", back.last().unwrap().load_n, 0.0, 0.0);
         }
         // Every equilibrium met.
-        assert!(cycle.steps.iter().all(|s| s.residual_m <= 1e-8 * RMS));
+        assert!(cycle.steps.iter().all(|s| s.numerics.residual_m <= 1e-8 * RMS));
         // The loop begins free, before the first jump-in.
-        assert_eq!(cycle.steps[0].contact_count, 0);
+        assert_eq!(cycle.steps[0].counts.contacts, 0);
         assert!(cycle.steps[0].approach_m < 0.0);
     }
 }
@@ -160,7 +160,7 @@ fn same_whatever_the_step(magnification: u32, max_load: f64, steps: [f64; 2]) {
     close("pull-off", coarse.pull_off, fine.pull_off, 1e-12);
     for cycle in cycles {
         assert!(
-            cycle.steps.iter().all(|step| step.residual_m <= 1e-10 * RMS && step.stability > 0.0),
+            cycle.steps.iter().all(|step| step.numerics.residual_m <= 1e-10 * RMS && step.numerics.stability > 0.0),
             "every step is a stable equilibrium"
         );
     }
@@ -262,10 +262,10 @@ fn e2e_the_paper_at_zeta_64_lies_where_an_independent_program_found_it() {
     within("area", sums.area / (LENGTH * LENGTH), 0.32, 0.39);
     within("pull-off", sums.pull_off / unit, 0.5e-3, 1.2e-3);
     within("loss", sums.loss / (unit * RMS), 1.5e-3, 2.2e-3);
-    within("contacts", turning(&cycle, 0).contact_count as f64, 270.0, 350.0);
+    within("contacts", turning(&cycle, 0).counts.contacts as f64, 270.0, 350.0);
     let realised = surface(&paper_spectrum(0.8, 64), 0, 8).moments;
     within("loss over Deng and Kesari's", sums.loss / deng_kesari_loss(&realised, &PAPER, sums.area).unwrap(), 1.4, 1.7);
-    assert!(cycle.steps.iter().all(|step| step.residual_m <= 1e-8 * RMS), "every step is an equilibrium");
+    assert!(cycle.steps.iter().all(|step| step.numerics.residual_m <= 1e-8 * RMS), "every step is an equilibrium");
 }
 
 #[test]
@@ -308,11 +308,11 @@ fn reg_three_spots_of_which_each_covers_the_next_come_to_rest() {
         let problem = Problem::new(&summits, LENGTH, RMS, PAPER, rules).unwrap();
         let settings = Settings { max_loads: Vec::new(), approach_step: 0.05, contacts: KeptContacts::None, rest_every: None };
         let cycle = run_to(&problem, &settings, 0.5 * RMS).unwrap();
-        assert!(cycle.steps.iter().all(|step| step.residual_m <= 1e-10 * RMS));
+        assert!(cycle.steps.iter().all(|step| step.numerics.residual_m <= 1e-10 * RMS));
         // Nothing silent: whoever is held as it is stands in the data, and all have left in the end.
-        assert!(cycle.steps.iter().any(|step| step.held_count > 0));
+        assert!(cycle.steps.iter().any(|step| step.counts.held > 0));
         let last = cycle.steps.last().unwrap();
-        assert_eq!((last.contact_count, last.covered_count, last.load_n), (0, 0, 0.0));
+        assert_eq!((last.counts.contacts, last.counts.covered, last.load_n), (0, 0, 0.0));
     }
 }
 
@@ -371,9 +371,9 @@ fn law_the_spots_are_kept_at_the_landmarks_of_the_loop() {
 fn law_nobody_is_covered_where_nobody_touches() {
     for realization in [0, 1] {
         let cycle = paper_cycle(&paper_summits(64, realization), DEFAULT, &[0.002], 0.04);
-        assert!(cycle.steps.iter().any(|step| step.covered_count > 20));
+        assert!(cycle.steps.iter().any(|step| step.counts.covered > 20));
         let last = cycle.steps.last().unwrap();
-        assert_eq!((last.contact_count, last.covered_count), (0, 0), "realization {realization}");
+        assert_eq!((last.counts.contacts, last.counts.covered), (0, 0), "realization {realization}");
         // Whoever was covered has been uncovered, each as often.
         let of = |kind: Kind| {
             let mut asperities: Vec<usize> = cycle.events.iter().filter(|(_, e)| e.kind == kind).map(|(_, e)| e.asperity).collect();

@@ -31,9 +31,9 @@ fn law_example_of_a_jkr_loop() {
 #[test]
 fn law_example_of_four_asperities() {
     let cycle = four_asperities::run().unwrap();
-    assert_eq!(cycle.steps[cycle.turning[0].0].contact_count, 4);
+    assert_eq!(cycle.steps[cycle.turning[0].0].counts.contacts, 4);
     let last = cycle.steps.last().unwrap();
-    assert_eq!((last.branch, last.contact_count, last.load_n), (Branch::Unloading, 0, 0.0));
+    assert_eq!((last.branch, last.counts.contacts, last.load_n), (Branch::Unloading, 0, 0.0));
     // The highest asperity jumps into contact where Wu's criterion has it: no other contact displaces the surface before.
     let [_, _, _, radius] = four_asperities::ASPERITIES[0];
     let material = four_asperities::MATERIAL;

@@ -33,7 +33,7 @@ fn reg_low_tabor_parameters_end() {
         let problem = Problem::new(&summits, LENGTH, RMS, material, rules).unwrap();
         let cycle = attempt(&problem, 0.002).unwrap();
         assert!(cycle.events.len() <= 8 * summits.len(), "{} events of {} asperities", cycle.events.len(), summits.len());
-        assert!(cycle.steps.iter().any(|step| step.contact_count > 0) && cycle.steps.last().unwrap().contact_count == 0);
+        assert!(cycle.steps.iter().any(|step| step.counts.contacts > 0) && cycle.steps.last().unwrap().counts.contacts == 0);
     }
 }
 
@@ -50,10 +50,10 @@ fn lim_without_adhesion() {
             let back = unloading(&cycle, k);
             assert_eq!(loop_of(&cycle, k).loss, 0.0);
             assert_eq!(loop_of(&cycle, k).pull_off, 0.0);
-            assert_eq!(back.last().unwrap().contact_count, 0);
+            assert_eq!(back.last().unwrap().counts.contacts, 0);
             for again in back {
                 let there = cycle.steps.iter().find(|step| step.branch == Branch::Loading && step.approach_m == again.approach_m).unwrap();
-                assert_eq!((there.load_n, there.area_m2, there.contact_count), (again.load_n, again.area_m2, again.contact_count));
+                assert_eq!((there.load_n, there.area_m2, there.counts.contacts), (again.load_n, again.area_m2, again.counts.contacts));
             }
             // Events are undone: those of the unloading give back what those of the loading took, but for the order of the sum.
             near("events", loop_of(&cycle, k).events, 0.0, 1e-12 * loop_energy(&cycle, k).work_j.max(1e-12));
@@ -70,7 +70,7 @@ fn lim_hertz() {
     let problem = Problem::new(&[asperity(5e-4, 5e-4, height, radius)], LENGTH, RMS, material, rules).unwrap();
     let cycle = run(&problem, &[1e-4], 0.05, KeptContacts::None);
     assert!(cycle.steps.len() > 20);
-    for step in cycle.steps.iter().filter(|step| step.contact_count > 0) {
+    for step in cycle.steps.iter().filter(|step| step.counts.contacts > 0) {
         let depth = step.approach_m;
         // A step is in equilibrium to 1e-10 of the rms height, 5e-16 m of depths from 1e-7 m on.
         close("load", step.load_n, 4.0 / 3.0 * 1e6 * radius.sqrt() * depth.powf(1.5), 1e-8);

@@ -306,7 +306,7 @@ fn law_whole_cycles_are_the_same_with_fast_sums() {
             run(&problem, &[0.001], 0.02, KeptContacts::None)
         };
         let (direct, fast) = (cycle(usize::MAX), cycle(20));
-        let transforms = |cycle: &Cycle| cycle.steps.iter().map(|step| step.effort.transforms).sum::<u64>();
+        let transforms = |cycle: &Cycle| cycle.steps.iter().map(|step| step.numerics.effort.transforms).sum::<u64>();
         assert!(transforms(&direct) == 0 && transforms(&fast) > 1000);
         // Within an avalanche two that are overdue by nearly as much may change places.
         let events = |cycle: &Cycle| {

@@ -6,7 +6,7 @@
 use crate::support::{DEFAULT, LENGTH, PAPER, RMS, close, loop_of, paper_summits, run};
 use hysteron::model::{Boundary, Coalescence, Interaction, JumpIn, KeptContacts, Material};
 use hysteron::physics::contact::{Problem, Rules};
-use hysteron::physics::cycle::Step;
+use hysteron::physics::cycle::{Step, StepNumerics};
 use hysteron::physics::half_space::Effort;
 
 /// Magnification, realization, rules, work of adhesion \[J/m²\], contacts in a local problem.
@@ -57,7 +57,11 @@ fn reg_whole_cycles() {
             let turning: Vec<_> =
                 cycle.turning.iter().map(|(step, state)| (step, state.approach_m, &state.radius, &state.barred)).collect();
             // The effort is no result.
-            let steps: Vec<_> = cycle.steps.iter().map(|step| Step { effort: Effort::default(), ..step.clone() }).collect();
+            let steps: Vec<_> = cycle
+                .steps
+                .iter()
+                .map(|step| Step { numerics: StepNumerics { effort: Effort::default(), ..step.numerics.clone() }, ..step.clone() })
+                .collect();
             let bytes = postcard::to_stdvec(&(&steps, &cycle.contacts, &cycle.events, &cycle.merged, turning)).unwrap();
             let digest = blake3::hash(&bytes).to_hex();
             eprintln!("{what}: {} {found_area:.12e} {found_pull_off:.12e} {found_loss:.12e} {digest}", cycle.events.len());
@@ -79,7 +83,7 @@ fn reg_effort_of_whole_cycles() {
         let material = Material { work_of_adhesion_j_m2: adhesion, ..PAPER };
         let problem = Problem::new(&paper_summits(zeta, realization), LENGTH, RMS, material, rules).unwrap().with_patches_of(patch);
         let cycle = run(&problem, &[0.0071], 0.04, KeptContacts::Turning);
-        let sum = |of: fn(&Effort) -> u64| cycle.steps.iter().map(|step| of(&step.effort)).sum::<u64>() as f64;
+        let sum = |of: fn(&Effort) -> u64| cycle.steps.iter().map(|step| of(&step.numerics.effort)).sum::<u64>() as f64;
         if std::env::var_os("HYSTERON_DIGESTS").is_some() {
             eprintln!("effort of {what}: {} {}", sum(|effort| effort.iterations), sum(|effort| effort.products));
             continue;

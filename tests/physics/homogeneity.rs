@@ -218,7 +218,7 @@ fn law_a_whole_cycle_scales() {
     for rules in [ALONE, cover, Rules { interaction: Interaction::Point, ..cover }, others] {
         let base = Problem::new(&summits, LENGTH, RMS, PAPER, rules).unwrap();
         let want = run(&base, &[1e-4, 2e-4], 0.05, KeptContacts::None);
-        assert!(want.steps.iter().map(|s| s.event_counts.iter().sum::<usize>()).sum::<usize>() > 10);
+        assert!(want.steps.iter().map(|s| s.counts.events.iter().sum::<usize>()).sum::<usize>() > 10);
         for units in several().into_iter().take(4) {
             let scaled: Vec<Summit> = summits.iter().map(|s| units.summit(s)).collect();
             let problem = Problem::new(&scaled, LENGTH * units.length, RMS * units.length, units.material(PAPER), rules).unwrap();
@@ -229,8 +229,8 @@ fn law_a_whole_cycle_scales() {
             assert_eq!(got.steps.len(), want.steps.len(), "{units:?}");
             for (s, t) in got.steps.iter().zip(&want.steps) {
                 assert_eq!(
-                    (s.branch, s.contact_count, s.covered_count, s.event_counts),
-                    (t.branch, t.contact_count, t.covered_count, t.event_counts)
+                    (s.branch, s.counts.contacts, s.counts.covered, s.counts.events),
+                    (t.branch, t.counts.contacts, t.counts.covered, t.counts.events)
                 );
                 // Equilibria are met to 1e-10 of the rms height, the turning load to 1e-9 of itself; approaches there follow.
                 let load = base.load_unit_n() * 2e-4;

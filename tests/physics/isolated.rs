@@ -93,13 +93,13 @@ fn law_a_shift_changes_nothing() {
         summits.iter().map(|s| Summit { x_m: s.x_m + dx * LENGTH, y_m: s.y_m + dy * LENGTH, ..*s }).collect()
     };
     let here = cycle(&summits, LENGTH, rules, 8e-5);
-    assert!(here.steps.iter().any(|s| s.covered_count == 1), "one is covered on the way");
+    assert!(here.steps.iter().any(|s| s.counts.covered == 1), "one is covered on the way");
     // Across one edge, into a corner, and out of the square altogether.
     for (dx, dy) in [(-0.48, 0.1), (0.45, 0.46), (0.3, -0.49), (-7.3, 12.6)] {
         let there = cycle(&moved(dx, dy), LENGTH, rules, 8e-5);
         assert_eq!(there.steps.len(), here.steps.len());
         for (s, t) in here.steps.iter().zip(&there.steps) {
-            assert_eq!((s.contact_count, s.covered_count, s.event_counts), (t.contact_count, t.covered_count, t.event_counts));
+            assert_eq!((s.counts.contacts, s.counts.covered, s.counts.events), (t.counts.contacts, t.counts.covered, t.counts.events));
             // Differences of coordinates are rounded at 1e-16 of 1e-2 m: 1e-13 of distances of 1e-5 m; an equilibrium is met to 1e-17 m, of
             // which a turning point makes 1e-9 of its load.
             near("load", t.load_n, s.load_n, 1e-8 * 8e-5);
@@ -118,8 +118,8 @@ fn law_opposite_edges_do_not_see_each_other() {
     let apart = cycle(&summits, LENGTH, rules, load);
     let wrapped = cycle(&summits, LENGTH, Rules { boundary: Boundary::Periodic, ..rules }, load);
     let (top, meets) = (turning(&apart, 0), turning(&wrapped, 0));
-    assert_eq!((top.contact_count, top.covered_count, top.touching_count), (2, 0, 0));
-    assert_eq!((meets.contact_count, meets.covered_count), (1, 1));
+    assert_eq!((top.counts.contacts, top.counts.covered, top.counts.touching), (2, 0, 0));
+    assert_eq!((meets.counts.contacts, meets.counts.covered), (1, 1));
     // No overlap: a sum of two discs both ways.
     close("union", top.area_union_m2, top.area_m2, 1e-12);
     let spots: Vec<&Contact> = apart.contacts.iter().filter(|c| c.step == apart.turning[0].0).collect();
@@ -139,7 +139,7 @@ fn law_point_interaction_loses_what_its_events_lose_without_images_too() {
     let sums = loop_of(&cycle, 0);
     // As with images: quadrature of the load between events, and the places of the events.
     close("audit", sums.loss, sums.events, 1e-4);
-    assert!(cycle.steps.iter().all(|step| step.residual_m <= 1e-8 * RMS));
+    assert!(cycle.steps.iter().all(|step| step.numerics.residual_m <= 1e-8 * RMS));
 }
 
 #[test]
@@ -147,7 +147,7 @@ fn e2e_the_surface_as_a_patch() {
     let summits = paper_summits(16, 0);
     let [patch, square] =
         [Boundary::Isolated, Boundary::Periodic].map(|boundary| paper_cycle(&summits, Rules { boundary, ..DEFAULT }, &[0.0071], 0.04));
-    assert!(patch.steps.iter().all(|step| step.residual_m <= 1e-8 * RMS));
+    assert!(patch.steps.iter().all(|step| step.numerics.residual_m <= 1e-8 * RMS));
     // One load sinks the patch as a whole: by F/(πE*) ⟨1/r⟩, with ⟨1/r⟩ = 2.97/L over a square, 4 ln(1 + √2) − 4(√2 − 1)/3; the periodic square does
     // not sink. The rest, a load that is not spread evenly and the shape of the sunken patch, is some tenths of that.
     let load = turning(&patch, 0).load_n;

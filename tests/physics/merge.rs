@@ -58,7 +58,7 @@ fn law_two_spots_that_touch_become_one_of_their_area_and_load() {
     let a = whole.radius_at_penetration(top.approach_m + spot.height_m).unwrap();
     close("area at the turning point", top.area_m2, std::f64::consts::PI * a * a, 1e-8);
     close("load at the turning point", top.load_n, whole.load(a), 1e-8);
-    assert_eq!(top.contact_count, 1);
+    assert_eq!(top.counts.contacts, 1);
 }
 
 #[test]
@@ -93,7 +93,7 @@ fn law_with_point_interaction_the_loop_loses_what_its_events_lose() {
         assert!(count(Kind::Merge) > 20 && count(Kind::Split) > 20, "{:?}", rules.interaction);
         // The audit's tolerance: folds are passed by 1e-6 of the rms height, work is a sum of fourth order.
         close("events", sums.events, sums.loss, most);
-        assert!(cycle.steps.iter().all(|s| s.residual_m <= 1e-8 * RMS));
+        assert!(cycle.steps.iter().all(|s| s.numerics.residual_m <= 1e-8 * RMS));
     }
 }
 

@@ -78,7 +78,7 @@ fn val_the_curves_are_those_of_an_independent_solver() {
                 // The turning approach itself is met from its load.
                 continue;
             };
-            assert_eq!(step.contact_count, row.number("contacts") as usize, "{surface} at {delta:e}");
+            assert_eq!(step.counts.contacts, row.number("contacts") as usize, "{surface} at {delta:e}");
             // An equilibrium is met to 5e-16 m; stiffnesses are of 100 N/m, `dA/dδ` of 1e-3 m.
             near("F", step.load_n, row.number("F"), 5e-13);
             close("A", step.area_m2, row.number("A"), 1e-9);

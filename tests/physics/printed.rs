@@ -163,7 +163,7 @@ fn e2e_a_cycle_with_a_slip_of_the_contact() {
     let right = paper_cycle(&summits, DEFAULT, &[0.0071], 0.04);
     for slips in [EQ8, EQ9] {
         let cycle = paper_cycle(&summits, Rules { slips, ..DEFAULT }, &[0.0071], 0.04);
-        assert!(cycle.steps.iter().all(|step| step.residual_m <= 1e-8 * RMS));
+        assert!(cycle.steps.iter().all(|step| step.numerics.residual_m <= 1e-8 * RMS));
         let (p, q) = (loop_of(&right, 0), loop_of(&cycle, 0));
         // It is another loop, and a near one: few summits lie within a spot and are not covered (Eq 8: 0.3 % of the loss), and a branch loses its
         // last corner, and some spots leave in another order (Eq 9: 6 %). The area at the turning point knows no end of a branch.

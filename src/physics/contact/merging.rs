@@ -56,7 +56,6 @@ impl Problem {
         let parts = self.self_potential(i, a) + self.self_potential(j, b) + self.interaction_energy([i, j], [a, b]);
         self.potential_offset[number] = parts - self.self_potential(number, merged.contact_radius_m());
         self.heights.push(merged.height_m);
-        self.positions.push(merged.place_m);
         // After splitting, it cannot form a contact again.
         self.jump_in.push(f64::INFINITY);
         self.field.add(merged.place_m);
@@ -69,7 +68,7 @@ impl Problem {
         if self.rules.interaction == Interaction::None {
             return 0.0;
         }
-        let r = self.neighbours.distance(&self.positions[i], &self.positions[j]);
+        let r = self.distance(i, j);
         let (one, other) = (&self.asperities[i], &self.asperities[j]);
         0.5 * (one.load(a) * self.spot_field(other, r, b).0 + other.load(b) * self.spot_field(one, r, a).0)
     }
@@ -89,7 +88,7 @@ impl Problem {
     /// Overlap of two contacts of these radii \[m\] over their distance, or the distance of their joint load from the limit if that is
     /// less: negative as long as they do not merge.
     pub(crate) fn meeting(&self, pair: [usize; 2], radii: [f64; 2]) -> f64 {
-        let overlap = (radii[0] + radii[1]) / self.neighbours.distance(&self.positions[pair[0]], &self.positions[pair[1]]) - 1.0;
+        let overlap = (radii[0] + radii[1]) / self.distance(pair[0], pair[1]) - 1.0;
         let (load, root) = self.joint_load(pair, radii);
         if root > 0.0 { overlap.min(load / root + MAX_TENSILE_LOAD) } else { overlap }
     }
@@ -115,7 +114,7 @@ impl Problem {
     pub(crate) fn merged(&self, [i, j]: [usize; 2], [a, b]: [f64; 2], approach_m: f64) -> Merged {
         let radius = a.hypot(b);
         let (load, root) = self.joint_load([i, j], [a, b]);
-        let (from, way) = (self.positions[i], self.neighbours.apart(&self.positions[j], &self.positions[i]));
+        let (from, way) = (*self.place(i), self.neighbours.apart(self.place(j), self.place(i)));
         let between = [0, 1].map(|k| from[k] + b * b / (radius * radius) * way[k]);
         Merged {
             parts: [i, j],

@@ -82,6 +82,11 @@ impl Neighbours {
         self.positions.push(place);
     }
 
+    /// Position of an asperity \[m\].
+    pub(crate) fn place(&self, i: usize) -> &[f64; 2] {
+        &self.positions[i]
+    }
+
     /// Cell of a place.
     fn cell(&self, place: &[f64; 2]) -> usize {
         let [x, y] = place.map(|coordinate| ((coordinate / self.side) as usize).min(self.cells - 1));

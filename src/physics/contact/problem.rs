@@ -40,7 +40,6 @@ pub struct Problem {
     pub(crate) places: Arc<Places>,
     /// Heights relative to the highest asperity \[m\]: zero or negative.
     pub(crate) heights: Grown<f64>,
-    pub(crate) positions: Grown<[f64; 2]>,
     /// Jump-in penetrations \[m\]: zero or negative, never below the end of the branch.
     ///
     /// Without adhesion they are slightly positive.
@@ -128,11 +127,10 @@ impl Problem {
             potential_offset: vec![0.0; jump_in.len()].into(),
             jump_in: jump_in.into(),
             field: if rules.coalescence == Coalescence::Merge { field } else { field.with_table() },
-            neighbours: Neighbours::new(positions.clone(), length_m, periodic),
+            neighbours: Neighbours::new(positions, length_m, periodic),
             spots_in_patch: SPOTS_IN_PATCH,
             places: Arc::new(places),
             asperities: asperities.into(),
-            positions: positions.into(),
             material,
             rules,
             length_m,
@@ -200,13 +198,23 @@ impl Problem {
         self.material.contact_modulus_pa * self.length_m * self.length_m
     }
 
+    /// Position of an asperity \[m\].
+    pub(crate) fn place(&self, i: usize) -> &[f64; 2] {
+        self.neighbours.place(i)
+    }
+
+    /// Distance of two asperities \[m\], of their nearest images if the square is periodic.
+    pub(crate) fn distance(&self, i: usize, j: usize) -> f64 {
+        self.neighbours.distance(self.place(i), self.place(j))
+    }
+
     /// Source columns of asperities, ascending, with their contact radii \[m\].
     pub(crate) fn columns(&self, of: impl Iterator<Item = (usize, f64)> + Clone, spots: &mut Spots) {
         spots.index.clear();
         spots.index.extend(of.clone().map(|(i, _)| i));
         spots.columns.set(of.map(|(i, a)| {
             let asperity = &self.asperities[i];
-            let [x, y] = self.positions[i];
+            let [x, y] = *self.place(i);
             Spot { x, y, a, radius: asperity.radius_m(), load: asperity.load(a), load_slope: asperity.load_slope(a) }
         }));
     }

@@ -93,7 +93,7 @@ impl Transition {
     pub(crate) fn status(&self, problem: &Problem) -> Status {
         match (self.kind, self.by) {
             (Kind::Cover, Some(by)) => {
-                let release_m = problem.neighbours.distance(&problem.positions[self.asperity], &problem.positions[by]);
+                let release_m = problem.distance(self.asperity, by);
                 Status::Covered { by, release_m }
             }
             _ => Status::Free,
@@ -127,7 +127,7 @@ impl Problem {
             .contacts
             .iter()
             .filter(|j| **j != i && Some(**j) != but)
-            .map(|&j| (j, self.neighbours.distance(&self.positions[i], &self.positions[j])))
+            .map(|&j| (j, self.distance(i, j)))
             .filter(|(j, r)| state.radius[*j] >= *r)
             .max_by(|(j, _), (k, _)| state.radius[*j].total_cmp(&state.radius[*k]).then(k.cmp(j)))
     }

@@ -11,7 +11,7 @@ use std::f64::consts::{PI, TAU};
 /// Area of the union of the discs of a state \[m²\].
 #[must_use]
 pub fn area(problem: &Problem, state: &State) -> f64 {
-    let discs: Vec<Disc> = state.contacts.iter().map(|&i| Disc { centre: problem.positions[i], radius: state.radius[i] }).collect();
+    let discs: Vec<Disc> = state.contacts.iter().map(|&i| Disc { centre: *problem.place(i), radius: state.radius[i] }).collect();
     let periodic = problem.rules.boundary == Boundary::Periodic;
     let largest = discs.iter().map(|d| d.radius).fold(0.0, f64::max);
     let overlapping = |k: usize| {

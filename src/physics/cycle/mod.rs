@@ -17,7 +17,7 @@ use reversal::retrace;
 use serde::{Deserialize, Serialize};
 use soundness::check_energy;
 use std::sync::Arc;
-pub use table::{Branch, Contact, Cycle, MergedAt, Settings, Step};
+pub use table::{Branch, Contact, Cycle, MergedAt, Settings, Step, StepCounts, StepNumerics};
 
 /// Branch in progress.
 #[derive(Debug, Clone, Serialize, Deserialize)]

@@ -1,7 +1,7 @@
 //! Recording of a branch: steps at grid points and load reversals, and events.
 
 use super::soundness::check_area;
-use super::table::{Branch, Contact, Cycle, MergedAt, Settings, Step};
+use super::table::{Branch, Contact, Cycle, MergedAt, Settings, Step, StepCounts, StepNumerics};
 use crate::model::KeptContacts;
 use crate::physics::PhysicsError;
 use crate::physics::contact::event::Event;
@@ -147,17 +147,21 @@ impl Recorder {
             least_load_n: ways.iter().copied().fold(at.totals().load_n, f64::min),
             area_m2: at.totals().area_m2,
             area_union_m2: crate::physics::contact::union_area::area(problem, state),
-            contact_count: state.contacts.len(),
-            covered_count: state.covered_count(),
-            touching_count: overlapping_count(problem, state),
-            held_count: at.frozen_count(),
-            event_counts: Kind::ALL.map(count),
+            counts: StepCounts {
+                contacts: state.contacts.len(),
+                covered: state.covered_count(),
+                touching: overlapping_count(problem, state),
+                held: at.frozen_count(),
+                events: Kind::ALL.map(count),
+            },
             dissipated_j: recent.iter().map(|event| event.energy_lost_j).sum(),
             work_j: at.log().work_j,
-            residual_m: state.residual_m,
-            drift_m: path.log().drift_m,
-            stability: state.stability,
-            effort: effort - self.effort_before,
+            numerics: StepNumerics {
+                residual_m: state.residual_m,
+                drift_m: path.log().drift_m,
+                stability: state.stability,
+                effort: effort - self.effort_before,
+            },
         });
         self.events_before += recent.len();
         self.ways_before += ways.len();

@@ -4,7 +4,7 @@
 //! The loop encloses no area, and the unloading branch is the loading branch in reverse.
 //! Each event is reversed at its mean penetration and returns its energy: Θ is exactly 0.
 
-use super::table::{Branch, Contact, Cycle, Step};
+use super::table::{Branch, Contact, Cycle, Step, StepCounts, StepNumerics};
 use crate::model::KeptContacts;
 use crate::physics::contact::event::Event;
 use crate::physics::contact::transition::Kind;
@@ -34,7 +34,7 @@ pub(crate) fn retrace(cycle: &mut Cycle, k: usize, max_load: Option<f64>, contac
                 cycle.contacts.extend(kept);
             }
             least_load_n = step.load_n;
-            if at < reversal && step.contact_count == 0 {
+            if at < reversal && step.counts.contacts == 0 {
                 return;
             }
         }
@@ -49,12 +49,14 @@ fn reversed(step: &Step, max_load: Option<f64>, undone: &[Event], least_load_n: 
         branch: Branch::Unloading,
         max_load,
         least_load_n,
-        event_counts: Kind::ALL.map(|kind| undone.iter().filter(|event| event.kind == kind).count()),
+        counts: StepCounts {
+            held: 0,
+            events: Kind::ALL.map(|kind| undone.iter().filter(|event| event.kind == kind).count()),
+            ..step.counts.clone()
+        },
         dissipated_j: undone.iter().map(|event| event.energy_lost_j).sum(),
         work_j: step.work_j - work_j,
-        drift_m: 0.0,
-        held_count: 0,
-        effort: Effort::default(),
+        numerics: StepNumerics { drift_m: 0.0, effort: Effort::default(), ..step.numerics.clone() },
         ..step.clone()
     }
 }

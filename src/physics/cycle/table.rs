@@ -44,6 +44,34 @@ impl Branch {
     }
 }
 
+/// Numbers of contacts and events of one step.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StepCounts {
+    /// Contact spots.
+    pub contacts: usize,
+    /// Absorbed asperities.
+    pub covered: usize,
+    /// Spots that overlap another one.
+    pub touching: usize,
+    /// Frozen asperities, which alternated between states.
+    pub held: usize,
+    /// Events since the step before, in the order of [`Kind::ALL`].
+    pub events: [usize; Kind::ALL.len()],
+}
+
+/// Accuracy and effort of one step.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StepNumerics {
+    /// Largest residual \[m\].
+    pub residual_m: f64,
+    /// Largest residual of the global problem before a global solve, since the step before \[m\].
+    pub drift_m: f64,
+    /// Smallest eigenvalue of the tangent, as in [`State::stability`].
+    pub stability: f64,
+    /// Computational effort since the step before.
+    pub effort: Effort,
+}
+
 /// Contact quantities at one step.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Step {
@@ -63,28 +91,14 @@ pub struct Step {
     pub area_m2: f64,
     /// Area of the union of the discs \[m²\].
     pub area_union_m2: f64,
-    /// Number of contact spots.
-    pub contact_count: usize,
-    /// Number of absorbed asperities.
-    pub covered_count: usize,
-    /// Number of spots that overlap another one.
-    pub touching_count: usize,
-    /// Number of frozen asperities, which alternated between states.
-    pub held_count: usize,
-    /// Numbers of events since the step before, in the order of [`Kind::ALL`].
-    pub event_counts: [usize; Kind::ALL.len()],
+    /// Numbers of contacts and events.
+    pub counts: StepCounts,
     /// Energy dissipated in these events \[J\].
     pub dissipated_j: f64,
     /// `∫F dΔ` since the branch began \[J\].
     pub work_j: f64,
-    /// Largest residual \[m\].
-    pub residual_m: f64,
-    /// Largest residual of the global problem before a global solve, since the step before \[m\].
-    pub drift_m: f64,
-    /// Smallest eigenvalue of the tangent, as in [`State::stability`].
-    pub stability: f64,
-    /// Computational effort since the step before.
-    pub effort: Effort,
+    /// Accuracy and effort.
+    pub numerics: StepNumerics,
 }
 
 /// Contact spot or absorbed asperity at a stored step.

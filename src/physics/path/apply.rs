@@ -138,7 +138,7 @@ impl EquilibriumPath {
         let Some(by) = uncovering.by else { return false };
         let i = uncovering.asperity;
         let radius = |j: usize| local.find(j).map_or(0.0, |k| local.radius[k]);
-        let distance = problem.neighbours.distance(&problem.positions[i], &problem.positions[by]);
+        let distance = problem.distance(i, by);
         let (mine, its) = (radius(i), radius(by));
         let covered_again = (its >= distance && mine < its) || (mine >= distance && its < mine);
         covered_again || applied.iter().any(|transition| transition.undoes(uncovering))

@@ -133,7 +133,7 @@ impl EquilibriumPath {
             (Kind::JumpOff, _) => (i, problem.asperities[i].jump_off_radius()),
             (Kind::Cover, _) => {
                 let by = by?;
-                (by, problem.neighbours.distance(&problem.positions[i], &problem.positions[by]))
+                (by, problem.distance(i, by))
             }
             (Kind::Uncover, Status::Covered { by, release_m }) => (by, release_m),
             (Kind::Split, _) => (i, self.predictor.state.release_of_merged(problem, i)?),

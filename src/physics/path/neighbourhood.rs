@@ -71,7 +71,7 @@ impl Neighbourhood {
             Kind::Cover | Kind::Uncover | Kind::Merge => transition.by.unwrap_or(transition.asperity),
             _ => transition.asperity,
         };
-        self.centre = problem.positions[centre];
+        self.centre = *problem.place(centre);
         let Selection { members, mut watched, shell, reach } = within.select(transition, &self.centre, contacts);
         (self.shell, self.reach) = (shell, reach);
         if transition.kind == Kind::JumpIn

@@ -101,7 +101,7 @@ impl PendingField {
 
     /// Pending displacement of a contact, near and far \[m\].
     fn of(&self, problem: &Problem, i: usize) -> f64 {
-        let place = &problem.positions[i];
+        let place = problem.place(i);
         let far = self.far[self.applied[i]..].iter().filter(|change| change.acts_on(problem, place));
         self.near[i] + far.map(|change| change.field(problem, place)).sum::<f64>()
     }
@@ -132,7 +132,7 @@ impl PendingField {
             let uniform = problem.neighbours.distance(centre, &change.place) > UNIFORM * change.reach;
             let everywhere = if uniform { Some(change.field(problem, centre)) } else { None };
             let at = |i: usize| {
-                let place = &problem.positions[i];
+                let place = problem.place(i);
                 let pending = self.applied[i] <= number && (uniform || change.acts_on(problem, place));
                 if pending { everywhere.unwrap_or_else(|| change.field(problem, place)) } else { 0.0 }
             };

@@ -252,7 +252,7 @@ impl Predictor {
             });
         }
         for &i in self.state.contacts.iter().filter(|i| radius[**i] > small) {
-            offer(i, problem.neighbours.distance(&problem.positions[j], &problem.positions[i]));
+            offer(i, problem.distance(j, i));
         }
     }
 

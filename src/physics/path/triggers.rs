@@ -80,7 +80,7 @@ impl Problem {
             (Kind::JumpOff, _) => 1.0 - state.radius[i] / self.asperities[i].jump_off_radius(),
             (Kind::JumpIn, _) => (predictor.traces[i].value - self.jump_in[i]) / self.asperities[i].jump_off_penetration().abs(),
             (Kind::Cover, Some(by)) => {
-                let distance = self.neighbours.distance(&self.positions[i], &self.positions[by]);
+                let distance = self.distance(i, by);
                 state.radius[by] / distance - 1.0
             }
             (Kind::Merge, Some(by)) => self.meeting([i, by], [state.radius[i], state.radius[by]]),
@@ -105,7 +105,7 @@ impl Problem {
         };
         match (trigger.transition.kind, trigger.transition.by, state.status[i]) {
             (Kind::JumpOff, ..) => between(i, self.asperities[i].jump_off_radius()),
-            (Kind::Cover, Some(by), _) => between(by, self.neighbours.distance(&self.positions[i], &self.positions[by])),
+            (Kind::Cover, Some(by), _) => between(by, self.distance(i, by)),
             (Kind::Uncover, _, Status::Covered { by, release_m }) if state.radius[by] > 0.0 => between(by, release_m),
             (Kind::JumpIn, ..) => trigger.overshoot * self.asperities[i].jump_off_penetration().abs(),
             (Kind::Merge, Some(by), _) => between(by, state.radius[by] * (1.0 - trigger.overshoot)),

@@ -193,7 +193,7 @@ impl GlobalSolver {
         let problem = &*Arc::clone(&self.problem);
         let near = problem
             .neighbours
-            .nearest(&problem.positions[asperity], problem.spots_in_patch, state.contacts.len(), |i| state.status[i] == Status::Contact);
+            .nearest(problem.place(asperity), problem.spots_in_patch, state.contacts.len(), |i| state.status[i] == Status::Contact);
         let mut spots: Vec<(usize, f64, f64)> = near
             .into_iter()
             .filter_map(|(_, i)| state.contacts.binary_search(&i).ok().map(|k| (i, state.radius[i], state.displacement[k])))

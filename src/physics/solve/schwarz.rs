@@ -74,7 +74,7 @@ impl LocalInverse {
     pub(crate) fn new(problem: &Problem, state: &State, tangent: &Tangent, diagonal: &[f64]) -> Self {
         let mut groups = Vec::new();
         let mut all: Vec<usize> = (0..state.contacts.len()).collect();
-        part(&mut all, &|k, along| problem.positions[state.contacts[k]][along], &mut groups);
+        part(&mut all, &|k, along| problem.place(state.contacts[k])[along], &mut groups);
         let mut rows: Vec<(usize, Vec<f32>)> = Vec::with_capacity(all.len());
         let mut members: Vec<Vec<u32>> = Vec::with_capacity(groups.len());
         let (mut lu, mut unit) = (Lu::default(), Vec::new());
@@ -188,7 +188,7 @@ fn part(all: &mut [usize], place: &dyn Fn(usize, usize) -> f64, groups: &mut Vec
 
 /// A group of contacts and those around it, each with its position relative to the centre of the group \[m\].
 fn around(problem: &Problem, state: &State, group: &[usize]) -> Vec<(usize, [f64; 2])> {
-    let place = |k: usize| problem.positions[state.contacts[k]];
+    let place = |k: usize| *problem.place(state.contacts[k]);
     let count = group.len() as f64;
     let centre = [0, 1].map(|along| group.iter().map(|k| place(*k)[along]).sum::<f64>() / count);
     let near = problem.neighbours.nearest(&centre, TOGETHER, state.contacts.len(), |i| state.status[i] == Status::Contact);

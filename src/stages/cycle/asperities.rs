@@ -64,7 +64,7 @@ pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> R
 /// Effort of a cycle, for its receipt.
 fn effort(cycle: &Cycle, problem: &Problem) -> Map<String, Value> {
     let all = cycle.steps.iter().fold(Effort::default(), |mut sum, step| {
-        sum += step.effort;
+        sum += step.numerics.effort;
         sum
     });
     effort_of(&[

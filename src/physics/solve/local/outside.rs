@@ -48,7 +48,7 @@ impl Source {
 
     /// Displacement at a place beyond the expected one \[m\], without images.
     fn field(&self, problem: &Problem, place: &[f64; 2], compliance: f64) -> f64 {
-        let r = problem.neighbours.distance(place, &problem.positions[self.asperity]);
+        let r = problem.neighbours.distance(place, problem.place(self.asperity));
         let (radius, was) = (self.now.unwrap_or(0.0), self.before.map_or(0.0, |before| before.radius));
         if r > ALOOF * radius.max(was) {
             return compliance * self.load / r;
@@ -92,7 +92,7 @@ impl LocalProblem {
         let whole: f64 = sources.iter().map(|source| source.load).sum();
         let compliance = problem.material.compliance();
         let of = |&i: &usize| {
-            let place = &problem.positions[i];
+            let place = problem.place(i);
             let near: f64 = sources.iter().map(|source| source.field(problem, place, compliance)).sum();
             near + compliance * whole * problem.neighbours.image_kernel(place, centre)
         };
