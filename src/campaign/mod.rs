@@ -61,7 +61,7 @@ impl Stage {
             Self::Generate | Self::Extract => 2,
             Self::Cycle => 15,
             Self::Aggregate => 9,
-            Self::Report => 13,
+            Self::Report => 14,
         }
     }
 }

@@ -66,6 +66,7 @@ fn end(teller: &Teller, notice: &str) {
     teller.clear();
     teller.notice(notice);
     let _still = commit::quiet();
+    teller.remove_page();
     hdf5::alone(|| std::process::exit(INTERRUPTED));
 }
 

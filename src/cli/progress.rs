@@ -4,9 +4,10 @@ use super::arguments::TalkArguments;
 use super::colour::painted;
 use crate::campaign::Stage;
 use crate::stages::Watch;
-use crate::text::{counted, printable};
+use crate::text::{counted, printable, shown};
 use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 use std::io::{IsTerminal, Write};
+use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
@@ -37,13 +38,22 @@ pub(super) struct Teller {
     every: Duration,
     began: Instant,
     now: Mutex<Option<Now>>,
+    /// Page of progress of this run.
+    page: Mutex<Option<PathBuf>>,
 }
 
 impl Teller {
     pub(super) fn new(talk: TalkArguments) -> Self {
         let seconds = std::env::var(PERIOD).ok().and_then(|text| text.trim().parse().ok()).filter(|seconds: &f64| *seconds >= 0.0);
         let every = seconds.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok()).unwrap_or(EVERY);
-        Self { terminal: std::io::stderr().is_terminal(), talk, every, began: Instant::now(), now: Mutex::new(None) }
+        Self {
+            terminal: std::io::stderr().is_terminal(),
+            talk,
+            every,
+            began: Instant::now(),
+            now: Mutex::new(None),
+            page: Mutex::new(None),
+        }
     }
 
     /// Time since the command began.
@@ -62,6 +72,14 @@ impl Teller {
     /// Removes the bar.
     pub(super) fn clear(&self) {
         self.with(|now| now.bar.finish_and_clear());
+    }
+
+    /// Removes the page of progress, where the run ends without its destructors.
+    pub(super) fn remove_page(&self) {
+        let page = self.page.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        if let Some(path) = page.as_deref() {
+            let _ = std::fs::remove_file(path);
+        }
     }
 
     /// True if there are lines for tasks and progress: always with --verbose; otherwise where there is no bar, unless --quiet.
@@ -152,6 +170,13 @@ impl Watch for Teller {
         match held.as_ref() {
             Some(now) if self.terminal && !now.bar.is_finished() => now.bar.suspend(|| self.line(text)),
             _ => self.line(text),
+        }
+    }
+
+    fn page(&self, path: &Path) {
+        *self.page.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(path.to_path_buf());
+        if !self.talk.quiet {
+            self.notice(&format!("progress page: {}", shown(path)));
         }
     }
 

@@ -8,7 +8,8 @@
   const COLOURS = { push: "#0072b2", pull: "#d55e00", unknown: "#777777", in: "#009e73", out: "#cc79a7", other: "#e69f00" };
   const state = { cycle: 0, loop: 0, k: 0, avalanche: -1, smallest: 2, layer: "pressure", absorbed: true, timer: 0, hidden: new Set() };
 
-  const NAMES = { jump_in: "jump into contact", jump_off: "jump out of contact", cover: "absorption", uncover: "release", snap: "snap-through", merge: "merging", split: "splitting" };
+  const NAMES = { jump_in: "jump into contact", jump_off: "jump out of contact", cover: "absorption", uncover: "release", snap: "snap-through", merge: "merging", split: "splitting",
+    formed: "region formed", lost: "region lost", joined: "regions joined", parted: "region parted", grown: "region grown", shrunk: "region shrunk" };
 
   // Elements.
   const html = (name, attributes = {}, ...children) => {
@@ -31,7 +32,9 @@
   const choice = (id, label, act) => {
     const select = html("select", { id: "explorer-" + id });
     select.addEventListener("change", () => act(select.value));
-    return [select, html("label", {}, label + " ", select)];
+    const named = rich(html("label"), label + " ");
+    named.append(select);
+    return [select, named];
   };
   const number = (value, digits = 3) => {
     if (value === 0) return "0";
@@ -43,6 +46,19 @@
   const length = (metres) => {
     const [unit, scale] = metres >= 1e-3 ? ["mm", 1e3] : metres >= 1e-6 ? ["µm", 1e6] : ["nm", 1e9];
     return number(metres * scale) + " " + unit;
+  };
+
+  const pascal = (value) => {
+    const [unit, scale] = [["GPa", 1e9], ["MPa", 1e6], ["kPa", 1e3]].find((of) => Math.abs(value) >= of[1]) || ["Pa", 1];
+    return number(value / scale) + " " + unit;
+  };
+  // Text with the subscripts of symbols, in HTML and in drawings.
+  const parts = (text) => text.split(/_(rms|max)/);
+  const rich = (element, text) => (element.replaceChildren(...parts(text).map((part, n) => (n % 2 ? html("sub", {}, part) : part))), element);
+  const drawn = (element, text) => {
+    const pieces = parts(text).map((part, n) => svg("tspan", n % 2 ? { dy: 4, "font-size": "75%" } : n ? { dy: -4 } : {}, part));
+    element.replaceChildren(...pieces);
+    return element;
   };
 
   // Contact sets of all steps of a loop: events are replayed, stored steps are taken as they are.
@@ -168,7 +184,10 @@
   };
 
   // The page.
-  const [cycleChoice, cycleLabel] = choice("cycle", "Cycle", (value) => choose(Number(value), 0));
+  const [cycleChoice, cycleLabel] = choice("cycle", "Cycle", (value) => {
+    const load = loop().load;
+    choose(Number(value), Math.max(0, cycles[value].loops.findIndex((of) => of.load === load)));
+  });
   const [loopChoice, loopLabel] = choice("load", "F_max/(E*A₀)", (value) => choose(state.cycle, Number(value)));
   const [smallestChoice, smallestLabel] = choice("smallest", "avalanches of at least", (value) => (state.smallest = Number(value)));
   const [layerChoice, layerLabel] = choice("layer", "Boundary elements", (value) => { state.layer = value; draw(); });
@@ -185,6 +204,7 @@
   const field = svg("svg", { viewBox: `0 0 ${SIDE} ${SIDE}`, role: "img", "aria-label": "Map of boundary elements", id: "explorer-field" });
   const zooms = [zoomable(map, SIDE), zoomable(field, SIDE)];
   const zoom = (factor) => zooms.forEach((of) => of(factor));
+  const chartNote = html("figcaption");
   const mapNote = html("figcaption", { id: "explorer-map-note" });
   const fieldNote = html("figcaption", { id: "explorer-field-note" });
   const mapFigure = html("figure", {}, map, mapNote);
@@ -217,7 +237,7 @@
     html("p", { class: "controls" }, button("previous-avalanche", "◀ avalanche", "Previous avalanche", () => avalanche(-1)), button("next-avalanche", "avalanche ▶", "Next avalanche", () => avalanche(1)), smallestLabel, absorbedLabel,
       button("in", "+", "Zoom in", () => zoom(0.6)), button("out", "−", "Zoom out", () => zoom(1 / 0.6)), layerLabel),
     readout,
-    html("div", { class: "views" }, html("figure", {}, chart, html("figcaption", {}, "Loop: loading dashed, unloading solid; grey: the other method on this surface. A click moves to the nearest step.")), mapFigure, fieldFigure),
+    html("div", { class: "views" }, html("figure", {}, chart, chartNote), mapFigure, fieldFigure),
     legend,
   );
   slider.addEventListener("input", () => move(Number(slider.value)));
@@ -226,6 +246,8 @@
   const loop = () => cycle().loops[state.loop];
   const partner = () => (cycle().other === undefined ? undefined : cycles[cycle().other]);
   const partnerLoop = () => partner() && partner().loops.find((of) => of.load === loop().load);
+  // The loop of boundary elements with stored maps.
+  const elementsLoop = () => [cycle().x ? partnerLoop() : loop()].find((of) => of && of.maps && of.maps.length);
 
   // Chart.
   const frame = { left: 58, top: 12, width: 350, height: 330 };
@@ -254,13 +276,16 @@
     for (const value of ticks(...y)) chart.append(svg("path", { d: `M${frame.left} ${axes.y(value)}h-5`, stroke: "black" }), svg("text", { x: frame.left - 8, y: axes.y(value) + 4.5, "text-anchor": "end", "font-size": 13 }, number(value / 10 ** power)));
     const label = svg("text", { transform: `translate(18 ${frame.top + frame.height / 2}) rotate(-90)`, "text-anchor": "middle", "font-size": 15 }, "F/(E*A₀)");
     label.append(svg("tspan", {}, "  [10"), svg("tspan", { dy: -5, "font-size": 11 }, String(power).replace("-", "−")), svg("tspan", { dy: 5 }, "]"));
-    chart.append(label, svg("text", { x: frame.left + frame.width / 2, y: 392, "text-anchor": "middle", "font-size": 15 }, "Δ/h_rms"));
+    chart.append(label, drawn(svg("text", { x: frame.left + frame.width / 2, y: 388, "text-anchor": "middle", "font-size": 15 }), "Δ/h_rms"));
+    const [grey, ring] = [partnerLoop() ? "; grey: the other method on this surface" : "", elementsLoop() ? ". Ring: stored map of boundary elements" : ""];
+    chartNote.textContent = `Loop: loading dashed, unloading solid${grey}${ring}. A click moves to the nearest step.`;
     for (const of of loops.slice().reverse()) {
       const colour = of === loop() ? COLOURS.push : "#999999";
       chart.append(svg("path", { d: path(of, 0, of.up), fill: "none", stroke: colour, "stroke-width": 2, "stroke-dasharray": "7 4" }));
       chart.append(svg("path", { d: path(of, of.up - 1, of.f.length), fill: "none", stroke: colour, "stroke-width": 2 }));
     }
     chart.append(svg("text", { id: "explorer-tip", x: frame.left + 8, y: frame.top + 18, "font-size": 13 }));
+    chart.append(svg("circle", { id: "explorer-map-dot", r: 0, fill: "none", stroke: "black", "stroke-width": 2 }));
     chart.append(svg("circle", { id: "explorer-dot", r: 6, fill: COLOURS.pull, stroke: "white" }));
   };
   const nearest = (event) => {
@@ -273,7 +298,7 @@
   chart.addEventListener("pointermove", (event) => {
     const k = nearest(event);
     const tip = document.getElementById("explorer-tip");
-    tip.textContent = `step ${loop().s[k]}: Δ/h_rms = ${number(loop().d[k])}, F/(E*A₀) = ${number(loop().f[k])}`;
+    drawn(tip, `step ${loop().s[k]}: Δ/h_rms = ${number(loop().d[k])}, F/(E*A₀) = ${number(loop().f[k])}`);
   });
 
   // Maps.
@@ -338,9 +363,11 @@
     if (!best) return (fieldNote.textContent = "Boundary elements: no stored map.");
     const key = state.layer + "_image";
     if (!best[key]) best[key] = picture(best[state.layer], state.layer === "gap" ? grey : pressure);
-    field.append(svg("image", { id: "explorer-field-image", href: best[key], width: SIDE, height: SIDE, preserveAspectRatio: "none", "data-step": other.s[best.k] }), bar(field));
-    fieldNote.textContent = `Boundary elements, ${best.k < other.up ? "loading" : "unloading"}: nearest stored map, Δ/h_rms = ${number(other.d[best.k])}, F/(E*A₀) = ${number(other.f[best.k])}. ` +
-      (state.layer === "gap" ? `Gap from 0 (dark) to ${length(best.gap_m)} (light).` : `Pressure from ${number(best.low_pa)} Pa (orange) to ${number(best.high_pa)} Pa (blue).`);
+    field.append(svg("image", { id: "explorer-field-image", style: "image-rendering:pixelated", href: best[key], width: SIDE, height: SIDE, preserveAspectRatio: "none", "data-step": other.s[best.k] }), bar(field));
+    const dot = document.getElementById("explorer-map-dot");
+    for (const [name, value] of [["cx", axes.x(other.d[best.k])], ["cy", axes.y(other.f[best.k])], ["r", 6]]) dot.setAttribute(name, value);
+    rich(fieldNote, `Boundary elements, ${best.k < other.up ? "loading" : "unloading"}: nearest stored map, Δ/h_rms = ${number(other.d[best.k])}, F/(E*A₀) = ${number(other.f[best.k])}. ` +
+      (state.layer === "gap" ? `Gap from 0 (dark) to ${length(best.gap_m)} (light).` : `Pressure from ${pascal(best.low_pa)} (orange) to ${pascal(best.high_pa)} (blue).`));
   };
   const draw = () => {
     const of = loop();
@@ -356,14 +383,14 @@
     const said = Array.from(counts, ([kind, count]) => `${count} × ${NAMES[kind] || kind}`).join(", ");
     const energy = own.reduce((sum, event) => sum + event[4], 0);
     const place = state.avalanche < 0 ? "at this step" : `avalanche ${state.avalanche}`;
-    readout.textContent = `Step ${of.s[state.k]}, ${branch}: F/(E*A₀) = ${number(of.f[state.k])}, Δ/h_rms = ${number(of.d[state.k])}, A/A₀ = ${number(of.a[state.k])}, ${of.n[state.k]} contacts. ` +
-      `Events, ${place}: ${own.length ? said + `; dissipated energy/(E*A₀h_rms) = ${number(energy)}` : "none"}.`;
-    const field = cycle().x ? partnerLoop() : of;
+    rich(readout, `Step ${of.s[state.k]}, ${branch}: F/(E*A₀) = ${number(of.f[state.k])}, Δ/h_rms = ${number(of.d[state.k])}, A/A₀ = ${number(of.a[state.k])}, ${of.n[state.k]} contact${of.n[state.k] === 1 ? "" : "s"}. ` +
+      `Events, ${place}: ${own.length ? said + `; dissipated energy/(E*A₀h_rms) = ${number(energy)}` : "none"}.`);
+    const field = elementsLoop();
     mapFigure.hidden = !cycle().x;
-    fieldFigure.hidden = layerLabel.hidden = !(field && field.maps && field.maps.length);
+    fieldFigure.hidden = layerLabel.hidden = !field;
     absorbedLabel.hidden = legend.hidden = !cycle().x;
     if (cycle().x) drawSpots();
-    if (!fieldFigure.hidden) {
+    if (field) {
       const up = state.k < of.up;
       drawField(cycle(), field, (one) => Math.abs(field.d[one.k] - of.d[state.k]) + (one.k < field.up === up ? 0 : 1e3));
     }

@@ -74,6 +74,12 @@
     svg.addEventListener("keydown", (event) => event.key === "Enter" && toggle());
   }
 
+  // On paper, details are open.
+  const closed = () => all(document, "details:not([open])");
+  let opened = [];
+  addEventListener("beforeprint", () => (opened = closed()).forEach((of) => (of.open = true)));
+  addEventListener("afterprint", () => opened.forEach((of) => (of.open = false)));
+
   // Text to copy.
   for (const block of all(document, "pre.copy")) {
     const tools = make("p", "", { class: "tools" });

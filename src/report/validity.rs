@@ -1,7 +1,7 @@
 //! Parts of the report: energy budget, model validity and warnings.
 
 use super::cases::{Cases, LOAD, name_heads};
-use super::layout::{heading, prose, wide};
+use super::layout::{heading, plain, prose, wide};
 use super::numbers::{Shown, scaled, shown, with_aside};
 use crate::schema::EVENT_KINDS;
 use crate::stats::{LIMITS, Limit, Listed, StatsError, Warning, warnings};
@@ -118,15 +118,17 @@ fn warning_table(cases: &Cases<'_>) -> Result<Markup, StatsError> {
         } @else {
             div.scroll role="region" aria-label="Table of warnings" tabindex="0" { table {
                 "\n"
-                tr { th { "warning (code)" } th { "measured" } th { "consequence and action" } th { "cases, at " (prose(LOAD)) } } "\n"
+                thead { tr { th { "warning (code)" } th { "measured" } th { "consequence and action" } th { "cases, at " (prose(LOAD)) } } } "\n"
+                tbody {
                 @for Warning { kind, measured, rows } in &found {
                     tr {
                         td { (kind.label) " (" (kind.code) ")" }
-                        td { (prose(measured)) }
+                        td { (plain(measured)) }
                         td { (prose(kind.consequence)) " " (prose(kind.action)) }
                         td { (places(cases, rows)) }
                     }
                     "\n"
+                }
                 }
             } }
             "\n"

@@ -19,20 +19,19 @@ const MOST_POINTS: u64 = 8192;
 /// Contact spots of all stored steps of a loop, at most: of more, evenly spaced steps are shown.
 const MOST_SPOTS: usize = 40_000;
 /// Kinds of events, by their numbers in the data.
-const KINDS: [&str; 12] =
-    ["jump_in", "jump_off", "cover", "uncover", "snap", "merge", "split", "grown", "shrunk", "formed", "joined", "parted"];
+const KINDS: [&str; 13] =
+    ["jump_in", "jump_off", "cover", "uncover", "snap", "merge", "split", "formed", "lost", "joined", "parted", "grown", "shrunk"];
 
 /// The data as JSON; nothing without a finished cycle.
 pub(super) fn explorer(campaign: &Campaign, standings: &[Standing], cases: &Frame, methods: &Frame) -> Result<Option<String>, StageError> {
-    let picked = pick(campaign, standings, methods)?;
+    let pairs = Pairs::of(methods)?;
+    let picked = pick(campaign, standings, &pairs);
     let list = listing(cases)?;
     let mut all = Vec::new();
     for unit in &picked {
         let mut of = cycle(campaign, unit)?;
         of["name"] = json!(name(campaign, unit, cases, &list)?);
-        let by_elements = |unit: &CycleUnit| campaign.cases[unit.case].case.params.by_elements();
-        let partner = |other: &&CycleUnit| other.surface == unit.surface && by_elements(other);
-        if let Some(place) = picked.iter().position(partner).filter(|_| !by_elements(unit)) {
+        if let Some(place) = picked.iter().position(|other| pairs.holds(campaign, unit, other)) {
             of["other"] = json!(place);
         }
         all.push(of);
@@ -44,23 +43,50 @@ pub(super) fn explorer(campaign: &Campaign, standings: &[Standing], cases: &Fram
     Ok(Some(json!({ "cycles": all, "kinds": KINDS, "letters": LETTERS }).to_string().replace('<', "\\u003c")))
 }
 
+/// Cases of the two methods with otherwise equal parameters, for each surface that both have finished.
+struct Pairs<'a> {
+    cases: [Vec<&'a str>; 2],
+    surfaces: Vec<&'a str>,
+}
+
+impl<'a> Pairs<'a> {
+    fn of(methods: &'a Frame) -> Result<Self, FrameError> {
+        let cases = [methods.text("asperities_case_id")?, methods.text("elements_case_id")?];
+        Ok(Self { cases, surfaces: methods.text("surface_id")? })
+    }
+
+    /// Surface of the first pair with this case.
+    fn surface(&self, case: &str) -> Option<&str> {
+        (0..self.surfaces.len()).find(|row| self.cases.iter().any(|ids| ids[*row] == case)).map(|row| self.surfaces[row])
+    }
+
+    /// True if two cycles are one case by both methods on one surface.
+    fn holds(&self, campaign: &Campaign, one: &CycleUnit, other: &CycleUnit) -> bool {
+        let surface = &campaign.surfaces[one.surface].id;
+        let [first, second] = [one, other].map(|unit| campaign.cases[unit.case].id.as_str());
+        let of_row = |row: usize| {
+            let pair = [self.cases[0][row], self.cases[1][row]];
+            self.surfaces[row] == surface && (pair == [first, second] || pair == [second, first])
+        };
+        one.surface == other.surface && (0..self.surfaces.len()).any(of_row)
+    }
+}
+
 /// One finished cycle of each case: where both methods have finished a surface, on that one.
-fn pick<'a>(campaign: &'a Campaign, standings: &[Standing], methods: &Frame) -> Result<Vec<&'a CycleUnit>, StageError> {
-    let (pairs, surfaces) = ([methods.text("asperities_case_id")?, methods.text("elements_case_id")?], methods.text("surface_id")?);
+fn pick<'a>(campaign: &'a Campaign, standings: &[Standing], pairs: &Pairs<'_>) -> Vec<&'a CycleUnit> {
     let finished = |unit: &CycleUnit| campaign.surfaces[unit.surface].params.grid() <= MOST_POINTS;
     let done: Vec<&CycleUnit> =
         campaign.cycles.iter().zip(standings).filter(|(_, of)| **of == Standing::Done).map(|(unit, _)| unit).collect();
     let mut picked: Vec<&CycleUnit> = Vec::new();
     for (place, case) in campaign.cases.iter().enumerate() {
         let of_case = || done.iter().filter(|unit| unit.case == place && finished(unit));
-        let row = (0..surfaces.len()).find(|row| pairs.iter().any(|ids| ids[*row] == case.id));
-        let paired = row.and_then(|row| of_case().find(|unit| campaign.surfaces[unit.surface].id == surfaces[row]));
+        let paired = pairs.surface(&case.id).and_then(|id| of_case().find(|unit| campaign.surfaces[unit.surface].id == id));
         let Some(unit) = paired.or_else(|| of_case().next()) else { continue };
         if picked.iter().all(|other| other.id != unit.id) && picked.len() < MOST_CYCLES {
             picked.push(unit);
         }
     }
-    Ok(picked)
+    picked
 }
 
 /// Name of a cycle: the label of its case, the method where both are there, and the realization.

@@ -7,8 +7,8 @@ use crate::schema;
 use crate::store::commit;
 use crate::store::parquet::read_table;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant, SystemTime};
 
 /// Name of the page.
 const PAGE: &str = "progress.html";
@@ -27,20 +27,27 @@ pub(super) struct Live<'a> {
 struct State {
     run: LiveRun,
     written: Option<Instant>,
+    /// True after the path of the page was reported.
+    is_named: bool,
 }
 
 impl<'a> Live<'a> {
     pub(super) fn of(campaign: &Campaign, inner: &'a dyn Watch) -> Self {
         let run = LiveRun { name: campaign.spec.name.clone(), ..LiveRun::default() };
-        Self { inner, dir: campaign.dir.clone(), state: Mutex::new(State { run, written: None }) }
+        Self { inner, dir: campaign.dir.clone(), state: Mutex::new(State { run, written: None, is_named: false }) }
+    }
+
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Changes the state, and writes the page if the last version is old enough or `now` is set.
     fn change(&self, now: bool, change: impl FnOnce(&mut LiveRun)) {
-        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut state = self.state();
         change(&mut state.run);
         if now || state.written.is_none_or(|at| at.elapsed() >= PERIOD) {
             state.written = Some(Instant::now());
+            state.run.updated = now_text();
             // The run does not depend on this page: a disk that is full ends it elsewhere.
             let _ = commit::commit_bytes("write the page of progress", &self.dir.join(PAGE), live_page(&state.run).as_bytes());
         }
@@ -63,10 +70,14 @@ fn stage_of(run: &mut LiveRun, stage: Stage) -> Option<&mut LiveStage> {
 
 impl Watch for Live<'_> {
     fn begin(&self, stage: Stage, done: usize, all: usize) {
+        // A run with nothing to do has no page to look at.
+        if done < all && !std::mem::replace(&mut self.state().is_named, true) {
+            self.inner.page(&self.dir.join(PAGE));
+        }
         self.inner.begin(stage, done, all);
         self.change(true, |run| {
             if let Some(of) = stage_of(run, stage) {
-                (of.done, of.all) = (done, all);
+                (of.done, of.all, of.work) = (done, all, done as f64);
             }
         });
     }
@@ -82,7 +93,11 @@ impl Watch for Live<'_> {
 
     fn progress(&self, stage: Stage, part: f64) {
         self.inner.progress(stage, part);
-        self.change(false, |_| {});
+        self.change(false, |run| {
+            if let Some(of) = stage_of(run, stage) {
+                of.work += part;
+            }
+        });
     }
 
     fn finished(&self, stage: Stage, id: &str) {
@@ -114,6 +129,11 @@ impl Watch for Live<'_> {
     fn end(&self, stage: Stage) {
         self.inner.end(stage);
     }
+}
+
+/// The present time: "2026-01-31 12:00:00 UTC".
+fn now_text() -> String {
+    humantime::format_rfc3339_seconds(SystemTime::now()).to_string().replace('T', " ").replace('Z', " UTC")
 }
 
 /// The loop of a finished cycle up to its largest load.

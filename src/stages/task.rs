@@ -3,6 +3,7 @@
 use crate::campaign::{Shard, Stage};
 use crate::store::Check;
 use std::collections::HashSet;
+use std::path::Path;
 
 /// Receiver of the progress of stages.
 pub trait Watch: Sync {
@@ -18,6 +19,8 @@ pub trait Watch: Sync {
     fn finished(&self, stage: Stage, id: &str);
     /// Something to be seen: a damaged file, a failed case.
     fn notice(&self, text: &str);
+    /// The page of progress is written at this path from now on.
+    fn page(&self, _path: &Path) {}
     /// A stage ends.
     fn end(&self, stage: Stage);
 }

@@ -104,6 +104,11 @@ fn e2e_both_methods_side_by_side() {
     let data: serde_json::Value = serde_json::from_str(data).unwrap();
     let [first, second] = [&data["cycles"][0], &data["cycles"][1]];
     assert_eq!((&first["other"], second["loops"].as_array().unwrap().len()), (&serde_json::json!(1), 2));
+    assert_eq!(second["other"], 0);
+    // Events of all kinds have their place in the data.
+    for word in ["formed", "lost", "joined", "parted", "grown", "shrunk"] {
+        assert!(data["kinds"].as_array().unwrap().iter().any(|kind| kind == word), "{word}");
+    }
     for of in second["loops"].as_array().unwrap() {
         let maps = of["maps"].as_array().unwrap();
         let reversal = maps.iter().find(|map| map["k"].as_u64() == Some(of["up"].as_u64().unwrap() - 1)).unwrap();
@@ -112,6 +117,24 @@ fn e2e_both_methods_side_by_side() {
         let compressive = cells.chars().filter(|letter| "ghijklmnopqrstuvwxyz0123456789+/".contains(*letter) && *letter != 'g').count();
         let area = of["a"][of["up"].as_u64().unwrap() as usize - 1].as_f64().unwrap();
         assert!(cells.len() == 64 * 64 && (compressive as f64 / 4096.0 - area).abs() < 0.5 * area, "{compressive} of {area}");
+    }
+}
+
+#[test]
+fn e2e_the_explorer_pairs_cases_of_equal_parameters() {
+    let spec = SPEC.replace("realizations = 2", "realizations = 1").replace("[0.002, 0.004]", "[0.002]");
+    let bench = Bench::new(&(spec + "material.work_of_adhesion_j_m2 = [0.03, 0.07]\n"));
+    let run = bench.verb("run", &[]);
+    assert_eq!(code(&run), 0, "{}", stderr(&run));
+    let page = fs::read_to_string(bench.out().join("report.html")).unwrap();
+    let data = page.split("type=\"application/json\">").nth(1).unwrap().split("</script>").next().unwrap();
+    let data: serde_json::Value = serde_json::from_str(data).unwrap();
+    let cycles = data["cycles"].as_array().unwrap();
+    assert_eq!(cycles.len(), 4);
+    let name = |of: &serde_json::Value| of["name"].as_str().unwrap().replace("boundary_elements", "asperities");
+    for (place, of) in cycles.iter().enumerate() {
+        let other = of["other"].as_u64().unwrap() as usize;
+        assert!(other != place && name(&cycles[other]) == name(of), "{} with {}", of["name"], cycles[other]["name"]);
     }
 }
 

@@ -65,3 +65,15 @@ fn law_the_minimum_rust_version_is_the_one_that_is_used() {
     let guide = include_str!("../../src/guide/contributing.md");
     assert!(guide.contains(&format!("minimum Rust version of `Cargo.toml` ({minimum})")), "src/guide/contributing.md has another version");
 }
+
+#[test]
+fn law_the_packages_have_the_version_of_the_program() {
+    let version = env!("CARGO_PKG_VERSION");
+    assert_eq!(read("src/python/Cargo.toml")["package"]["version"].as_str(), Some(version));
+    let recipe = Path::new(env!("CARGO_MANIFEST_DIR")).join(".ci/conda/recipe.yaml");
+    // A published crate has no recipe.
+    if let Ok(recipe) = std::fs::read_to_string(recipe) {
+        assert!(recipe.contains(&format!("\n  version: \"{version}\"\n")), "{recipe}");
+    }
+    assert!(include_str!("../../CITATION.cff").contains(&format!("\nversion: {version}\n")));
+}

@@ -47,6 +47,7 @@ fn e2e_an_interrupt_loses_no_file_and_the_same_command_goes_on() {
             assert_eq!(code(&ended), 0, "{said}");
         }
         assert!(files(&bench.out()).keys().all(|path| !path.to_string_lossy().contains(".tmp")), "a temporary file was left");
+        assert!(!bench.out().join("progress.html").exists(), "the page of progress was left");
     }
     assert!(interrupts > 0);
     assert_eq!(code(&bench.verb("run", &[])), 0);

@@ -74,6 +74,11 @@ fn e2e_quiet_and_verbose() {
     assert_eq!((code(&quiet), stdout(&quiet).as_str(), stderr(&quiet).as_str()), (0, "", ""));
     let verbose = bench.verb("run", &["-v", "--until", "cycle"]);
     let said = stderr(&verbose);
+    // The page of progress is named once, before the first stage with pending tasks.
+    let page = format!("\nprogress page: {}\ncycle: 2 tasks, 0 done before", bench.out().join("progress.html").display());
+    assert!(said.contains(&page) && said.matches("progress page").count() == 1, "{said}");
+    // A run with nothing to do has none.
+    assert!(!stderr(&bench.verb("run", &["--until", "cycle"])).contains("progress page"));
     assert!(said.lines().any(|line| line.starts_with("cycle: 2/2 H0.80_z6_r") && line.ends_with(" s)")), "{said}");
     assert_eq!(code(&bench.verb("run", &["-q", "-v"])), 2);
     // Failures are told all the same.

@@ -6,7 +6,10 @@ import html
 import re
 from typing import Any
 
-_TASKS = re.compile(r"^(\w+): (\d+)/(\d+)\b")
+_STAGES = "generate|extract|cycle|aggregate|report"
+_TASKS = re.compile(rf"^({_STAGES}): (\d+)/(\d+)\b")
+_BEGIN = re.compile(rf"^({_STAGES}): (\d+) tasks?, (\d+) done before$")
+_PAGE = re.compile(r"^progress page: ")
 
 
 def bar() -> Bar | None:
@@ -36,8 +39,10 @@ class Bar:
 
     def line(self, line: str) -> bool:
         """Shows a line of progress; false for any other line."""
-        found = _TASKS.match(line)
-        if found is None:
-            return False
-        self._handle.update(_html(found[1], int(found[2]), int(found[3])))
-        return True
+        found, begin = _TASKS.match(line), _BEGIN.match(line)
+        if found is not None:
+            self._handle.update(_html(found[1], int(found[2]), int(found[3])))
+        elif begin is not None:
+            self._handle.update(_html(begin[1], int(begin[3]), int(begin[2])))
+        # The bar replaces the page of progress.
+        return found is not None or begin is not None or _PAGE.match(line) is not None

@@ -19,7 +19,43 @@ from numpy.typing import NDArray
 from . import _program
 
 #: Columns of the table of means that a notebook shows.
-_SHOWN = ("case_id", "max_load", "done_count", "area_at_max_load_mean", "pull_off_load_mean", "loss_mean", "loss_sd", "caution")
+_SHOWN = ("max_load", "done_count", "area_at_max_load_mean", "pull_off_load_mean", "loss_mean", "loss_sd", "caution")
+
+
+#: Symbols and units of parameters in the names of cases.
+_SYMBOLS = {
+    "magnification": ("ζ", ""),
+    "hurst": ("H", ""),
+    "length_m": ("L", " m"),
+    "rms_height_m": ("h_rms", " m"),
+    "contact_modulus_pa": ("E*", " Pa"),
+    "work_of_adhesion_j_m2": ("Δγ", " J/m²"),
+    "interaction_range_m": ("ε", " m"),
+}
+
+
+def case_names(cases: pa.Table) -> dict[str, str]:
+    """Name of each case of the table `cases`: the fewest varying parameters by which all cases differ."""
+    names = cases.schema.names
+    rows = {row["case_id"]: row for row in cases.select(names[: names.index("max_load")]).to_pylist()}
+    columns = [name for name in names[: names.index("max_load")] if name not in ("case_id", "sweep")]
+    # Of columns with as many values, the method and the quantities with symbols come first.
+    known = ["method", *_SYMBOLS]
+    columns.sort(key=lambda name: (-len({row[name] for row in rows.values()}), known.index(name) if name in known else len(known)))
+    chosen: list[str] = []
+
+    def groups(of: list[str]) -> int:
+        return len({tuple(row[name] for name in of) for row in rows.values()})
+
+    for name in columns:
+        if groups([*chosen, name]) > groups(chosen):
+            chosen.append(name)
+
+    def part(name: str, value: Any) -> str:
+        symbol, unit = _SYMBOLS.get(name, (name, ""))
+        return f"{symbol} = {f'{value:.4g}' if isinstance(value, float) else value}{unit}"
+
+    return {case: ", ".join(part(name, row[name]) for name in chosen) or case for case, row in rows.items()}
 
 
 class Description(NamedTuple):
@@ -88,12 +124,15 @@ class Run(Mapping[str, pa.Table]):
             return f"<p>{title}: {len(self.cycle_ids)} cycles are finished, no table of means yet.</p>"
         cases = self.cases
         columns = [name for name in _SHOWN if name in cases.schema.names]
-        head = "".join(f"<th>{name}</th>" for name in columns)
+        head = "".join(f"<th>{name}</th>" for name in ("case", *columns))
+        names = case_names(cases)
 
         def cell(value: Any) -> str:
             return f"{value:.4g}" if isinstance(value, float) else html.escape(str(value))
 
-        rows = ("".join(f"<td>{cell(row[name])}</td>" for name in columns) for row in cases.select(columns).slice(0, 20).to_pylist())
+        first = cases.slice(0, 20).select(["case_id", *columns]).to_pylist()
+        name_cell = '<td style="white-space:nowrap">'
+        rows = (f"{name_cell}{cell(names[row['case_id']])}</td>" + "".join(f"<td>{cell(row[name])}</td>" for name in columns) for row in first)
         body = "".join(f"<tr>{row}</tr>" for row in rows)
         return f"<p>{title}: {cases.num_rows} rows of means.</p><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
 

@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ._run import case_names
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
@@ -34,10 +36,19 @@ def _axes(ax: Axes | None) -> Axes:
 
 
 def _cycle(run: Run, id: str | None) -> str:
+    """A cycle; by default the one of the report."""
     ids = run.cycle_ids
     if not ids:
         raise ValueError(f"cannot plot {run.dir}: no cycle is finished\nhelp: run `hysteron run SPEC`")
-    return ids[0] if id is None else id
+    if id is not None or "statistics/cases" not in run:
+        return ids[0] if id is None else id
+    case, method, loss = _columns(run.cases, "case_id", "method", "loss_mean")
+    means = np.where(np.isnan(loss.astype(float)), -np.inf, loss.astype(float))
+    order = np.lexsort((-means, method != "asperities"))
+    cycles = run["statistics/cycles"]
+    of_case, names = _columns(cycles, "case_id", "cycle_id")
+    found = (name for row in order for name in names[of_case == case[row]] if name in ids)
+    return str(next(found, ids[0]))
 
 
 def _columns(table: Any, *names: str) -> list[Any]:
@@ -64,7 +75,7 @@ def loop(run: Run, id: str | None = None, max_load: float | None = None, ax: Axe
     run : Run
         Output directory of a run.
     id : str, optional
-        Cycle. Default: the first finished one.
+        Cycle. Default: the one of the report, of the case with the largest mean dissipated energy.
     max_load : float, optional
         Load reversal F_max/(E* A0). Default: the largest one.
     ax : matplotlib.axes.Axes, optional
@@ -105,6 +116,7 @@ def curves(run: Run, quantity: str = "area", ax: Axes | None = None) -> Axes:
     table = run.curves
     case, branch, of, load, mean, sd = _columns(table, "case_id", "branch", "max_load", "load", f"{quantity}_mean", f"{quantity}_sd")
     of, sd = of.astype(float), sd.astype(float)
+    names = case_names(run.cases)
     for place, name in enumerate(dict.fromkeys(case)):
         colour = PALETTE[place % len(PALETTE)]
         rows = np.flatnonzero((case == name) & (branch == "loading"))
@@ -114,7 +126,7 @@ def curves(run: Run, quantity: str = "area", ax: Axes | None = None) -> Axes:
             rows = np.flatnonzero((case == name) & (branch == "unloading") & (of == max_load))
             low = mean[rows] - sd[rows]
             ax.fill_between(load[rows], np.maximum(low, 0) if quantity == "area" else low, mean[rows] + sd[rows], color=colour, alpha=0.13, lw=0)
-            ax.plot(load[rows], mean[rows], "-", color=colour, label=name if max_load == max(loads) else None)
+            ax.plot(load[rows], mean[rows], "-", color=colour, label=names[name] if max_load == max(loads) else None)
     ax.set(xlabel="$F/(E^*A_0)$", ylabel={"area": "$A/A_0$", "penetration": r"$\Delta/h_\mathrm{rms}$"}[quantity])
     ax.legend(frameon=False)
     return ax
@@ -128,7 +140,7 @@ def contacts(run: Run, id: str | None = None, step: int | None = None, ax: Axes 
     run : Run
         Output directory of a run.
     id : str, optional
-        Cycle. Default: the first finished one.
+        Cycle. Default: the one of the report, of the case with the largest mean dissipated energy.
     step : int, optional
         Stored step, one of the column `step` of the table `contacts`. Default: the one with the most contact spots.
     ax : matplotlib.axes.Axes, optional
