@@ -137,7 +137,6 @@ impl Recorder {
             path.log().events[self.events_before..].iter().take_while(|event| passed(event.approach_m)).copied().collect();
         let ways: Vec<f64> =
             path.log().segments[self.ways_before..].iter().take_while(|way| passed(way.approach)).map(|way| way.least).collect();
-        let count = |kind: Kind| recent.iter().filter(|event| event.kind == kind).count();
         let effort = path.effort();
         cycle.steps.push(Step {
             branch: self.branch,
@@ -147,13 +146,7 @@ impl Recorder {
             least_load_n: ways.iter().copied().fold(at.totals().load_n, f64::min),
             area_m2: at.totals().area_m2,
             area_union_m2: crate::physics::contact::union_area::area(problem, state),
-            counts: StepCounts {
-                contacts: state.contacts.len(),
-                covered: state.covered_count(),
-                touching: overlapping_count(problem, state),
-                held: at.frozen_count(),
-                events: Kind::ALL.map(count),
-            },
+            counts: counts(at, &recent),
             dissipated_j: recent.iter().map(|event| event.energy_lost_j).sum(),
             work_j: at.log().work_j,
             numerics: StepNumerics {
@@ -192,6 +185,18 @@ impl Recorder {
         self.merged_before = state.merged.len();
         path.begin_record();
         check_area(problem, &cycle.steps[number], load_before)
+    }
+}
+
+/// Numbers of contacts, and of the events since the step before.
+fn counts(at: &EquilibriumPath, recent: &[Event]) -> StepCounts {
+    let state = at.state();
+    StepCounts {
+        contacts: state.contacts.len(),
+        covered: state.covered_count(),
+        touching: overlapping_count(&at.problem(), state),
+        held: at.frozen_count(),
+        events: Kind::ALL.map(|kind| recent.iter().filter(|event| event.kind == kind).count()),
     }
 }
 
