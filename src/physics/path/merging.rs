@@ -3,6 +3,7 @@
 use super::equilibrium_path::EquilibriumPath;
 use crate::physics::PhysicsError;
 use crate::physics::contact::Status;
+use crate::physics::contact::merged_spot::pair_of;
 use crate::physics::contact::transition::{Kind, Transition};
 use std::sync::Arc;
 
@@ -67,7 +68,7 @@ impl EquilibriumPath {
         self.part_pairs(parts[0].0, parts[0].1, number);
         self.part_pairs(parts[1].0, parts[1].1, number);
         let [i, j] = merged.parts;
-        self.predictor.parted.insert((i.min(j), i.max(j)));
+        self.predictor.parted.insert(pair_of(i, j));
     }
 
     /// Contacts and their predicted radii at a mean penetration \[m\], without some.
@@ -102,7 +103,7 @@ impl EquilibriumPath {
         problem.neighbours.within(part, a + self.predictor.state.largest_radius(), |_, i| {
             let radius = self.predictor.state.radius[i];
             if i != left && radius > 0.0 && problem.meeting([part, i], [a, radius]) >= 0.0 {
-                parted.push((part.min(i), part.max(i)));
+                parted.push(pair_of(part, i));
             }
         });
         self.predictor.parted.extend(parted);

@@ -4,7 +4,7 @@
 //! a [`PenetrationTrace`] from the last global solve, or from the last event next to it. Its state at a later mean penetration follows from
 //! there.
 
-use crate::physics::contact::merged_spot::{Merged, TouchingPairs};
+use crate::physics::contact::merged_spot::{Merged, TouchingPairs, pair_of};
 use crate::physics::contact::merging::ROUNDING;
 use crate::physics::contact::problem::{Problem, Totals};
 use crate::physics::contact::state::{State, Status};
@@ -229,7 +229,7 @@ impl Predictor {
     /// True if two contacts may merge when they touch.
     pub(crate) fn may_merge(&self, i: usize, j: usize) -> bool {
         let both = self.state.status[i] == Status::Contact && self.state.status[j] == Status::Contact;
-        both && !self.parted.contains(&(i.min(j), i.max(j)))
+        both && !self.parted.contains(&pair_of(i, j))
     }
 
     /// Calls `visit(i, distance)` for the contacts that may merge with contact `j` and would touch it if it had the radius `reach` \[m\] and
