@@ -1,13 +1,12 @@
 //! Recording of a branch: steps at grid points and load reversals, and events.
 
 use super::soundness::check_area;
-use super::table::{Branch, Contact, Cycle, MergedAt, Settings, Step, StepCounts, StepNumerics};
+use super::table::{Branch, Contact, Cycle, MergedAt, Settings, Step, StepCounts, StepNumerics, event_counts};
 use crate::model::KeptContacts;
 use crate::physics::PhysicsError;
 use crate::physics::contact::event::Event;
 use crate::physics::contact::problem::Problem;
 use crate::physics::contact::state::{State, Status};
-use crate::physics::contact::transition::Kind;
 use crate::physics::half_space::Effort;
 use crate::physics::path::EquilibriumPath;
 use serde::{Deserialize, Serialize};
@@ -196,7 +195,7 @@ fn counts(at: &EquilibriumPath, recent: &[Event]) -> StepCounts {
         covered: state.covered_count(),
         touching: overlapping_count(&at.problem(), state),
         held: at.frozen_count(),
-        events: Kind::ALL.map(|kind| recent.iter().filter(|event| event.kind == kind).count()),
+        events: event_counts(recent),
     }
 }
 

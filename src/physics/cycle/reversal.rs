@@ -4,7 +4,7 @@
 //! The loop encloses no area, and the unloading branch is the loading branch in reverse.
 //! Each event is reversed at its mean penetration and returns its energy: Θ is exactly 0.
 
-use super::table::{Branch, Contact, Cycle, Step, StepCounts, StepNumerics};
+use super::table::{Branch, Contact, Cycle, Step, StepCounts, StepNumerics, event_counts};
 use crate::model::KeptContacts;
 use crate::physics::contact::event::Event;
 use crate::physics::contact::transition::Kind;
@@ -49,11 +49,7 @@ fn reversed(step: &Step, max_load: Option<f64>, undone: &[Event], least_load_n: 
         branch: Branch::Unloading,
         max_load,
         least_load_n,
-        counts: StepCounts {
-            held: 0,
-            events: Kind::ALL.map(|kind| undone.iter().filter(|event| event.kind == kind).count()),
-            ..step.counts.clone()
-        },
+        counts: StepCounts { held: 0, events: event_counts(undone), ..step.counts.clone() },
         dissipated_j: undone.iter().map(|event| event.energy_lost_j).sum(),
         work_j: step.work_j - work_j,
         numerics: StepNumerics { drift_m: 0.0, effort: Effort::default(), ..step.numerics.clone() },

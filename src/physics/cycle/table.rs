@@ -59,6 +59,11 @@ pub struct StepCounts {
     pub events: [usize; Kind::ALL.len()],
 }
 
+/// Numbers of events of each kind, in the order of [`Kind::ALL`].
+pub(super) fn event_counts(events: &[Event]) -> [usize; Kind::ALL.len()] {
+    Kind::ALL.map(|kind| events.iter().filter(|event| event.kind == kind).count())
+}
+
 /// Accuracy and effort of one step.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StepNumerics {

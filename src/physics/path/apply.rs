@@ -124,7 +124,7 @@ impl EquilibriumPath {
             Some(radius) => {
                 local.insert(place, radius);
                 if problem.merges() {
-                    self.part_pairs(i, radius, i);
+                    self.part_pairs(i, radius, None);
                 }
             }
             None => local.watched.push(place),

@@ -65,8 +65,7 @@ impl EquilibriumPath {
         local.insert(second, share * merged.radii_m[1]);
         merged.parts.iter().for_each(|part| self.pending.set_applied(*part));
         let parts = [0, 1].map(|k| (merged.parts[k], share * merged.radii_m[k]));
-        self.part_pairs(parts[0].0, parts[0].1, number);
-        self.part_pairs(parts[1].0, parts[1].1, number);
+        parts.into_iter().for_each(|(part, a)| self.part_pairs(part, a, Some(number)));
         let [i, j] = merged.parts;
         self.predictor.parted.insert(pair_of(i, j));
     }
@@ -95,14 +94,13 @@ impl EquilibriumPath {
         freed
     }
 
-    /// Pairs of a contact of radius `a` \[m\], which has just come into being, with those that it overlaps but for `left`: they do not merge
-    /// before they have been apart.
-    pub(super) fn part_pairs(&mut self, part: usize, a: f64, left: usize) {
+    /// Pairs of a contact of radius `a` \[m\], which has just come into being, with those that it overlaps but for one that it replaces: they
+    /// do not merge before they have been apart.
+    pub(super) fn part_pairs(&mut self, part: usize, a: f64, replaced: Option<usize>) {
         let problem = &*self.problem();
         let mut parted = Vec::new();
-        problem.neighbours.within(part, a + self.predictor.state.largest_radius(), |_, i| {
-            let radius = self.predictor.state.radius[i];
-            if i != left && radius > 0.0 && problem.meeting([part, i], [a, radius]) >= 0.0 {
+        self.predictor.near(problem, part, a, |i, _| {
+            if replaced != Some(i) && problem.meeting([part, i], [a, self.predictor.state.radius[i]]) >= 0.0 {
                 parted.push(pair_of(part, i));
             }
         });

@@ -232,12 +232,20 @@ impl Predictor {
         both && !self.parted.contains(&pair_of(i, j))
     }
 
-    /// Calls `visit(i, distance)` for the contacts that may merge with contact `j` and would touch it if it had the radius `reach` \[m\] and
-    /// they grew by a fifth.
+    /// Calls `visit(i, distance)` for those contacts of [`Self::near`] that may merge with contact `j`.
     pub(crate) fn pairs(&self, problem: &Problem, j: usize, reach: f64, mut visit: impl FnMut(usize, f64)) {
+        self.near(problem, j, reach, |i, r| {
+            if self.may_merge(i, j) {
+                visit(i, r);
+            }
+        });
+    }
+
+    /// Calls `visit(i, distance)` for the contacts that would touch asperity `j` if it had the radius `reach` \[m\] and they grew by a fifth.
+    pub(crate) fn near(&self, problem: &Problem, j: usize, reach: f64, mut visit: impl FnMut(usize, f64)) {
         let radius = &self.state.radius;
         let mut offer = |i: usize, r: f64| {
-            if i != j && r <= reach + GROWTH * radius[i] && self.may_merge(i, j) {
+            if i != j && r <= reach + GROWTH * radius[i] {
                 visit(i, r);
             }
         };
