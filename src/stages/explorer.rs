@@ -4,6 +4,8 @@ use super::StageError;
 use super::explorer_maps::{LETTERS, ground, rounded, stored_maps};
 use crate::campaign::{Campaign, CycleUnit, Standing};
 use crate::model::Boundary;
+use crate::physics::boundary_elements::regions::Change;
+use crate::physics::contact::Kind;
 use crate::schema::{self, Table};
 use crate::stats::{Listing, listing, significant};
 use crate::store::hdf5::read_surface;
@@ -18,9 +20,10 @@ const MOST_CYCLES: usize = 12;
 const MOST_POINTS: u64 = 8192;
 /// Contact spots of all stored steps of a loop, at most: of more, evenly spaced steps are shown.
 const MOST_SPOTS: usize = 40_000;
-/// Kinds of events, by their numbers in the data.
-const KINDS: [&str; 13] =
-    ["jump_in", "jump_off", "cover", "uncover", "snap", "merge", "split", "formed", "lost", "joined", "parted", "grown", "shrunk"];
+/// Kinds of events of both methods, by their numbers in the data.
+fn kinds() -> Vec<&'static str> {
+    Kind::ALL.map(Kind::word).into_iter().chain(Change::ALL.map(Change::word)).collect()
+}
 
 /// The data as JSON; nothing without a finished cycle.
 pub(super) fn explorer(campaign: &Campaign, standings: &[Standing], cases: &Frame, methods: &Frame) -> Result<Option<String>, StageError> {
@@ -40,7 +43,7 @@ pub(super) fn explorer(campaign: &Campaign, standings: &[Standing], cases: &Fram
         return Ok(None);
     }
     // No text of the data ends the element that holds it.
-    Ok(Some(json!({ "cycles": all, "kinds": KINDS, "letters": LETTERS }).to_string().replace('<', "\\u003c")))
+    Ok(Some(json!({ "cycles": all, "kinds": kinds(), "letters": LETTERS }).to_string().replace('<', "\\u003c")))
 }
 
 /// Cases of the two methods with otherwise equal parameters, for each surface that both have finished.
@@ -208,11 +211,12 @@ fn loops(tables: &Tables, spots: &Spots, energy_j: f64, length_m: f64) -> Result
 
 /// Events of a loop: place of the step, kind, spot or -1, avalanche, dissipated energy over `E* A0 h_rms`.
 fn events(events: &Frame, spots: &Spots, places: &BTreeMap<i64, usize>, energy_j: f64) -> Result<Value, FrameError> {
+    let numbered = kinds();
     let (steps, kinds, ids) = (events.i64("step")?, events.text("kind")?, events.i64_or_null("asperity_id")?);
     let (avalanches, energies) = (events.i64("avalanche_id")?, events.f64_or_null("energy_lost_j")?);
     let mut rows: Vec<(usize, Value)> = Vec::new();
     for row in 0..steps.len() {
-        let (Some(k), Some(kind)) = (places.get(&steps[row]), KINDS.iter().position(|kind| *kind == kinds[row])) else { continue };
+        let (Some(k), Some(kind)) = (places.get(&steps[row]), numbered.iter().position(|kind| *kind == kinds[row])) else { continue };
         let spot = ids[row].and_then(|id| spots.ids.get(&id)).map_or(-1, |spot| *spot as i64);
         let energy = significant(energies[row].unwrap_or_default() / energy_j, 3).parse::<f64>().unwrap_or_default();
         rows.push((*k, json!([k, kind, spot, avalanches[row], energy])));
