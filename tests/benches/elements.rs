@@ -1,4 +1,5 @@
-//! A whole loop by boundary elements at ζ = 8, in bare Fourier transforms of its grid. `cargo bench -- elements 512 1024` names the grids.
+//! A whole loop by boundary elements, in bare Fourier transforms of its grid. `cargo bench -- elements 512 1024` names the grids, `16:256` a magnification
+//! other than 8 too.
 
 use crate::paper::{MATERIAL, spectrum};
 use crate::watch::{heading, line, once, plain};
@@ -15,16 +16,19 @@ use hysteron::physics::surface::synthesis::{realization_seed, synthesize};
 const LOAD: f64 = 0.0071;
 
 pub fn run() {
-    let named: Vec<usize> = std::env::args().filter_map(|word| word.parse().ok()).collect();
-    let grids = if named.is_empty() { vec![64, 128, 256] } else { named };
-    heading("boundary elements: zeta = 8 to 0.0071, 0.03 h_rms a step", "in bare transforms");
-    for n in grids {
-        one(n);
+    let case = |word: String| match word.split_once(':') {
+        Some((zeta, grid)) => Some((zeta.parse().ok()?, grid.parse().ok()?)),
+        None => Some((8, word.parse().ok()?)),
+    };
+    let named: Vec<(u32, usize)> = std::env::args().filter_map(case).collect();
+    heading("boundary elements: loop to 0.0071, 0.03 h_rms a step", "in bare transforms");
+    for (zeta, n) in if named.is_empty() { vec![(8, 64), (8, 128), (8, 256)] } else { named } {
+        one(zeta, n);
     }
 }
 
-fn one(n: usize) {
-    let spectrum = Spectrum { normalization: Normalization::Spectrum, ..spectrum(8) };
+fn one(zeta: u32, n: usize) {
+    let spectrum = Spectrum { normalization: Normalization::Spectrum, ..spectrum(zeta) };
     let surface = synthesize(&spectrum, &realization_seed(2021, 3), n);
     let spacing = spectrum.length_m / n as f64;
     let top = surface.heights_m.iter().copied().fold(f64::MIN, f64::max);
@@ -51,7 +55,7 @@ fn one(n: usize) {
     let whole = once(|| done = Some(cycle(&problem, &settings, None, &mut |_| {}, &|_| {}).unwrap()));
     let steps = done.unwrap().steps;
     let transforms: u64 = steps.iter().map(|step| step.transforms).sum();
-    plain(&format!("{n} x {n}, one transform"), bare);
+    plain(&format!("zeta = {zeta}, {n} x {n}, one transform"), bare);
     line(&format!("{} steps, {transforms} transforms", steps.len()), whole, whole / bare);
     let loss: f64 = steps.iter().map(|step| step.dissipated).sum::<f64>() / (points * rms);
     let pull_off = -steps.iter().map(|step| step.totals.load).fold(0.0, f64::min) / points;

@@ -32,10 +32,10 @@ pub fn load_freely(
     let mut before = state.displacement.clone();
     let mut steps: Vec<FreeStep> = Vec::new();
     loop {
-        let transforms = minimiser.transforms();
+        let transformed = minimiser.transformed();
         let outcome = minimiser.equilibrium(problem, &mut state, accuracy)?;
         let totals = problem.totals(&state);
-        let transforms = minimiser.transforms() - transforms;
+        let transforms = minimiser.transforms(transformed);
         steps.push(FreeStep { approach: state.approach, totals, transforms, converged: outcome.converged });
         if totals.contact == problem.half_space.points() || enough(&steps) {
             return Ok(steps);

@@ -170,23 +170,25 @@ impl Problem {
     }
 
     /// Bonds the free points within the margin of a contact and opens the sealed ones within the margin of an open point; with `nucleate` free points
-    /// that touch are a contact too, and sealed points whose tension exceeds the strength open. None of this raises the energy. Whether a bond has changed.
-    pub fn update_bonds(&self, state: &mut State, nucleate: bool) -> bool {
-        let Attraction::Bonded { margin, nucleation, strength } = self.attraction else { return false };
+    /// that touch are a contact too, and sealed points whose tension exceeds the strength open. None of this raises the energy. The points whose bond has changed.
+    pub fn update_bonds(&self, state: &mut State, nucleate: bool) -> Vec<usize> {
+        let Attraction::Bonded { margin, nucleation, strength } = self.attraction else { return Vec::new() };
         let touching = self.map(state, |bonding, gap| match bonding {
             Bonding::Free => u8::from(nucleate && gap <= nucleation),
             _ => u8::from(self.touches(bonding, gap)),
         });
         let (near, edge) = self.surroundings(&touching, margin);
         let torn = |gap: f64| nucleate && self.law.sealed(gap).tension > strength;
-        let mut changed = false;
+        let mut changed = Vec::new();
         for (k, (near, edge)) in near.iter().zip(&edge).enumerate() {
             let next = match state.bonds[k] {
                 Bonding::Free if *near == 1 => Bonding::Bonded,
                 Bonding::Sealed if *edge == 1 || torn(self.gap(state, k)) => Bonding::Bonded,
                 as_it_is => as_it_is,
             };
-            changed |= next != state.bonds[k];
+            if next != state.bonds[k] {
+                changed.push(k);
+            }
             state.bonds[k] = next;
         }
         changed
@@ -219,23 +221,28 @@ impl Problem {
         (self.within(touching, margin), self.within(&open, margin))
     }
 
-    /// Points in a square of half side `margin` around marked points, on the periodic grid.
+    /// Points in a square of half side `margin` around marked points: across the edges of a periodic grid, and not of a patch.
     fn within(&self, marked: &[u8], margin: usize) -> Vec<u8> {
         let (rows, columns) = (self.half_space.rows(), self.half_space.columns());
+        let periodic = !self.half_space.is_patch();
         let mut along = vec![0; marked.len()];
         along.par_chunks_mut(columns).zip(marked.par_chunks(columns)).with_min_len(grain(columns)).for_each(|(to, from)| {
             for shift in 0..=margin.min(columns - 1) {
                 or(&mut to[shift..], &from[..columns - shift]);
-                or(&mut to[..shift], &from[columns - shift..]);
                 or(&mut to[..columns - shift], &from[shift..]);
-                or(&mut to[columns - shift..], &from[..shift]);
+                if periodic {
+                    or(&mut to[..shift], &from[columns - shift..]);
+                    or(&mut to[columns - shift..], &from[..shift]);
+                }
             }
         });
         let mut near = vec![0; marked.len()];
         near.par_chunks_mut(columns).enumerate().with_min_len(grain(columns)).for_each(|(row, to)| {
             for shift in 0..=2 * margin.min(rows / 2) {
-                let from = (row + rows + shift - margin.min(rows / 2)) % rows;
-                or(to, &along[from * columns..][..columns]);
+                let from = row + rows + shift - margin.min(rows / 2);
+                if periodic || (rows..2 * rows).contains(&from) {
+                    or(to, &along[from % rows * columns..][..columns]);
+                }
             }
         });
         near

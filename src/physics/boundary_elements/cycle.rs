@@ -59,7 +59,7 @@ pub struct Step {
     pub work: f64,
     /// Iterations and transforms, those of halved steps included.
     pub iterations: u64,
-    /// Transforms.
+    /// Transforms of the grid; those of patches count by their points.
     pub transforms: u64,
     /// Root mean square of the residual, of the maximum tension.
     pub residual: f64,
@@ -365,12 +365,12 @@ impl<'a> Walk<'a> {
             }
         }
         state.approach = approach;
-        let before = self.minimiser.transforms();
+        let before = self.minimiser.transformed();
         let mut iterations = 0;
         let outcome = loop {
             let outcome = self.minimiser.equilibrium(self.problem, &mut state, accuracy)?;
             iterations += outcome.iterations as u64;
-            if !self.problem.update_bonds(&mut state, true) {
+            if self.problem.update_bonds(&mut state, true).is_empty() {
                 break outcome;
             }
         };
@@ -393,7 +393,7 @@ impl<'a> Walk<'a> {
             uncertainty,
             work: from.work + work,
             iterations,
-            transforms: self.minimiser.transforms() - before,
+            transforms: self.minimiser.transforms(before),
             residual: outcome.residual,
             converged: outcome.converged,
         };

@@ -2,6 +2,9 @@
 //!
 //! The displacement `u` of a half-space under the pressure `p` satisfies `p(q) = (E*/2)|q| u(q)` for every wavevector but zero. Lengths in this module
 //! are in grid spacings and pressures in E*, so the operator is `K = |q|/2` and its elastic energy `½ u·K u` in `E* dx³`.
+//!
+//! On a *patch*, a square of the grid outside of which displacements vanish, the pressure is the same: a convolution with the pressure around one displaced
+//! point, by transforms of twice the side.
 
 use super::sums::{PANEL, grain, sums};
 use crate::physics::PhysicsError;
@@ -19,10 +22,13 @@ const SHIFT: f64 = 0.15;
 /// Columns of wavevectors that are transformed together.
 const BLOCK: usize = 8;
 
-/// A periodic grid of `rows × columns` points with one spacing, and the elastic operator on it, in double and in single precision.
+/// A grid of `rows × columns` points with one spacing, periodic or a patch of a periodic one, and the elastic operator on it, in double and in single
+/// precision.
 pub struct HalfSpace {
     rows: usize,
     columns: usize,
+    /// Rows and columns of the transforms: of a periodic grid its own, of a patch twice those.
+    padded: (usize, usize),
     double: Plans<f64>,
     single: Plans<f32>,
 }
@@ -62,7 +68,7 @@ pub struct Plans<T> {
     inverse_row: Arc<dyn ComplexToReal<T>>,
     forward_column: Arc<dyn Fft<T>>,
     inverse_column: Arc<dyn Fft<T>>,
-    /// `|q|/2` over the number of points, by columns.
+    /// The operator in the space of wavevectors over the number of points, by columns: `|q|/2` of a periodic grid.
     stiffness: Vec<T>,
 }
 
@@ -86,7 +92,7 @@ pub enum Operator {
 }
 
 impl<T: Real> Plans<T> {
-    fn new(rows: usize, columns: usize) -> Result<Self, PhysicsError> {
+    fn new(rows: usize, columns: usize, of: impl Fn(usize, usize) -> f64 + Sync) -> Result<Self, PhysicsError> {
         let mut real = RealFftPlanner::<T>::new();
         let mut complex = FftPlanner::<T>::new();
         let blocks = (columns / 2 + 1).div_ceil(BLOCK);
@@ -94,10 +100,8 @@ impl<T: Real> Plans<T> {
         let points = (rows * columns) as f64;
         stiffness.par_chunks_mut(rows * BLOCK).enumerate().for_each(|(block, values)| {
             for (k, value) in values.iter_mut().enumerate() {
-                let (row, column) = (k % rows, block * BLOCK + k / rows);
-                let qx = TAU * row.min(rows - row) as f64 / rows as f64;
-                let qy = TAU * column as f64 / columns as f64;
-                *value = T::nearest(0.5 * qx.hypot(qy) / points);
+                let column = block * BLOCK + k / rows;
+                *value = if column > columns / 2 { T::zero() } else { T::nearest(of(k % rows, column) / points) };
             }
         });
         Ok(Self {
@@ -116,7 +120,63 @@ impl HalfSpace {
     /// # Errors
     /// Not enough memory.
     pub fn new(rows: usize, columns: usize) -> Result<Self, PhysicsError> {
-        Ok(Self { rows, columns, double: Plans::new(rows, columns)?, single: Plans::new(rows, columns)? })
+        let of = |row: usize, column: usize| {
+            let qx = TAU * row.min(rows - row) as f64 / rows as f64;
+            let qy = TAU * column as f64 / columns as f64;
+            0.5 * qx.hypot(qy)
+        };
+        Ok(Self { rows, columns, padded: (rows, columns), double: Plans::new(rows, columns, of)?, single: Plans::new(rows, columns, of)? })
+    }
+
+    /// Pressure around a unit displacement of one point of a periodic grid, at each offset.
+    ///
+    /// # Errors
+    /// Not enough memory.
+    pub fn kernel(&self) -> Result<Vec<f64>, PhysicsError> {
+        let (mut unit, mut pressure) = (filled(self.points(), 0.0)?, filled(self.points(), 0.0)?);
+        unit[0] = 1.0;
+        self.apply(Operator::Stiffness, &unit, &mut pressure, &mut self.waves::<f64>()?);
+        Ok(pressure)
+    }
+
+    /// Operator on a square of this grid, of at most half its side, with the grid's [`Self::kernel`]. The displacement vanishes outside the square.
+    ///
+    /// # Errors
+    /// Not enough memory.
+    pub fn patch(&self, side: usize, kernel: &[f64]) -> Result<Self, PhysicsError> {
+        let size = 2 * side;
+        let mut waves = filled(size * size, Complex::zero())?;
+        for (k, wave) in waves.iter_mut().enumerate() {
+            let [row, column] = [k / size, k % size].map(|offset| offset.min(size - offset));
+            wave.re = kernel[row * self.columns + column];
+        }
+        let plan = FftPlanner::new().plan_fft_forward(size);
+        // The kernel is symmetric, so that its rows are its columns.
+        for _ in 0..2 {
+            plan.process(&mut waves);
+            for row in 0..size {
+                (0..row).for_each(|column| waves.swap(row * size + column, column * size + row));
+            }
+        }
+        let of = |row: usize, column: usize| waves[row * size + column].re;
+        Ok(Self {
+            rows: side,
+            columns: side,
+            padded: (size, size),
+            double: Plans::new(size, size, of)?,
+            single: Plans::new(size, size, of)?,
+        })
+    }
+
+    /// Whether the grid is a patch.
+    #[must_use]
+    pub fn is_patch(&self) -> bool {
+        self.padded.0 > self.rows
+    }
+
+    /// Points of a transform.
+    pub(super) fn transformed(&self) -> usize {
+        self.padded.0 * self.padded.1
     }
 
     /// Number of rows.
@@ -142,7 +202,7 @@ impl HalfSpace {
     /// # Errors
     /// Not enough memory.
     pub fn waves<T: Real>(&self) -> Result<Waves<T>, PhysicsError> {
-        let half = self.columns / 2 + 1;
+        let half = self.padded.1 / 2 + 1;
         Ok(Waves {
             by_row: filled(self.rows * half, Complex::zero())?,
             by_block: filled(half.div_ceil(BLOCK) * self.rows * BLOCK, Complex::zero())?,
@@ -150,40 +210,43 @@ impl HalfSpace {
         })
     }
 
-    /// Applies an operator to `field` and writes the result to `result`. Neither has a component at `q = 0`.
+    /// Applies an operator to `field` and writes the result to `result`. On a periodic grid neither has a component at `q = 0`; on a patch the inverse
+    /// operators are approximate.
     pub fn apply<T: Real>(&self, operator: Operator, field: &[T], result: &mut [T], waves: &mut Waves<T>) {
-        let half = self.columns / 2 + 1;
+        let half = self.padded.1 / 2 + 1;
         let plans = T::plans(self);
         let Waves { by_row, by_block, transforms } = waves;
         *transforms += 2;
         by_row.par_chunks_mut(half).zip(field.par_chunks(self.columns)).with_min_len(grain(self.columns)).for_each_init(
             || (plans.forward_row.make_input_vec(), plans.forward_row.make_scratch_vec()),
             |(input, scratch), (row, values)| {
-                input.copy_from_slice(values);
+                input[..self.columns].copy_from_slice(values);
+                input[self.columns..].fill(T::zero());
                 let done = plans.forward_row.process_with_scratch(input, row, scratch);
                 debug_assert!(done.is_ok(), "lengths of the plan");
             },
         );
         let by_row: &[Complex<T>] = by_row;
-        let chunks = by_block.par_chunks_mut(self.rows * BLOCK).zip(plans.stiffness.par_chunks(self.rows * BLOCK)).enumerate();
+        let chunks = by_block.par_chunks_mut(self.rows * BLOCK).zip(plans.stiffness.par_chunks(self.padded.0 * BLOCK)).enumerate();
         chunks.with_min_len(grain(self.rows * BLOCK)).for_each_init(
             || self.column_space::<T>(),
             |space, (block, (waves, stiffness))| self.block(operator, by_row, block, waves, stiffness, space),
         );
         let by_block: &[Complex<T>] = by_block;
         result.par_chunks_mut(self.columns).enumerate().with_min_len(grain(self.columns)).for_each_init(
-            || (plans.inverse_row.make_input_vec(), plans.inverse_row.make_scratch_vec()),
-            |(input, scratch), (row, values)| {
+            || (plans.inverse_row.make_input_vec(), plans.inverse_row.make_scratch_vec(), plans.inverse_row.make_output_vec()),
+            |(input, scratch, output), (row, values)| {
                 for (block, part) in input.chunks_mut(BLOCK).enumerate() {
                     let from = (block * self.rows + row) * BLOCK;
                     part.copy_from_slice(&by_block[from..from + part.len()]);
                 }
                 input[0].im = T::zero();
-                if self.columns.is_multiple_of(2) {
+                if self.padded.1.is_multiple_of(2) {
                     input[half - 1].im = T::zero();
                 }
-                let done = plans.inverse_row.process_with_scratch(input, values, scratch);
+                let done = plans.inverse_row.process_with_scratch(input, output, scratch);
                 debug_assert!(done.is_ok(), "lengths of the plan");
+                values.copy_from_slice(&output[..self.columns]);
             },
         );
     }
@@ -191,7 +254,7 @@ impl HalfSpace {
     fn column_space<T: Real>(&self) -> ColumnSpace<T> {
         let plans = T::plans(self);
         let scratch = plans.forward_column.get_inplace_scratch_len().max(plans.inverse_column.get_inplace_scratch_len());
-        (vec![Complex::zero(); self.rows * BLOCK], vec![Complex::zero(); scratch])
+        (vec![Complex::zero(); self.padded.0 * BLOCK], vec![Complex::zero(); scratch])
     }
 
     /// Transforms the columns of one block, multiplies by the operator and transforms back.
@@ -204,16 +267,17 @@ impl HalfSpace {
         stiffness: &[T],
         (columns, scratch): &mut ColumnSpace<T>,
     ) {
-        let (half, plans) = (self.columns / 2 + 1, T::plans(self));
+        let (half, rows, plans) = (self.padded.1 / 2 + 1, self.padded.0, T::plans(self));
         let (first, count) = (block * BLOCK, BLOCK.min(half - block * BLOCK));
-        let columns = &mut columns[..count * self.rows];
+        let columns = &mut columns[..count * rows];
+        columns.chunks_mut(rows).for_each(|column| column[self.rows..].fill(Complex::zero()));
         for (row, values) in by_row.chunks(half).enumerate() {
             for (k, value) in values[first..first + count].iter().enumerate() {
-                columns[k * self.rows + row] = *value;
+                columns[k * rows + row] = *value;
             }
         }
         plans.forward_column.process_with_scratch(columns, scratch);
-        let points = self.points() as f64;
+        let points = self.transformed() as f64;
         let (unit, shift) = (T::nearest(points.powi(-2)), T::nearest(SHIFT / points));
         let inverse = |stiff: T| if stiff > T::zero() { unit / stiff } else { T::zero() };
         match operator {
@@ -224,7 +288,7 @@ impl HalfSpace {
         plans.inverse_column.process_with_scratch(columns, scratch);
         for (row, values) in waves.chunks_mut(BLOCK).enumerate() {
             for (k, value) in values[..count].iter_mut().enumerate() {
-                *value = columns[k * self.rows + row];
+                *value = columns[k * rows + row];
             }
         }
     }

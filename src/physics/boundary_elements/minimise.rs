@@ -4,12 +4,15 @@
 //! nearly fixed by the wall, and on the open points `O` the inverse of the elastic operator is the opposite-order (Calderón) preconditioner of the
 //! hypersingular operator. So the iterations grow only with log² of the grid. An iteration is two operator applications, four transforms.
 //!
+//! Where bonds change in one place only, as in most events, that place is brought to equilibrium first, on a [patch](super::patch) of the grid.
+//!
 //! The state, its energy and its residual are in double precision; directions and what they are made of in single precision. The pressure that the
 //! increments have added up to is replaced by that of the displacement before a state counts as an equilibrium.
 
 use super::contact::{Problem, State};
 use super::grid::{Operator, Waves};
 use super::pairs::{Gradient, Pairs};
+use super::patch::Patches;
 use super::sums::{PANEL, grain, panel_largest, panel_sums, panel_work, total};
 use crate::physics::PhysicsError;
 use crate::physics::memory::filled;
@@ -21,7 +24,9 @@ const ADDED: f32 = 0.7;
 /// Change of the displacement after which bonds are looked at, of the reach of the law.
 const LOOK: f64 = 0.02;
 /// Largest residual, of the maximum tension, at which bonds are looked at: far from equilibrium edges of contact lie where no equilibrium has them.
-const NEAR: f64 = 0.2;
+const NEAR: f64 = 0.4;
+/// Iterations on the whole grid before an event counts as one: the first follow the approach everywhere.
+const EVERYWHERE: usize = 8;
 /// Shortenings of a step that would raise the energy.
 const SHORTENINGS: u32 = 30;
 
@@ -74,11 +79,13 @@ pub(super) struct Descent {
 /// Work space.
 pub struct Minimiser {
     double: Waves<f64>,
+    /// Points of one transform.
+    transformed: u64,
     pub(super) single: Waves<f32>,
     pub(super) gradient: Gradient,
     previous: Gradient,
-    /// Mean of pressure and tension that is subtracted before the gradient is rounded.
-    centre: f64,
+    /// Mean of pressure and tension of the whole grid, which is subtracted before the gradient is rounded.
+    pub(super) centre: f64,
     pub(super) slopes: Vec<f32>,
     pub(super) direction: Vec<f32>,
     pub(super) response: Vec<f32>,
@@ -86,6 +93,8 @@ pub struct Minimiser {
     pairs: Pairs,
     /// Whether the points in contact have a preconditioner of their own; else that of the open points, shifted, is used for all.
     pub split: bool,
+    /// Where events are followed on a part of the grid; without any, they are followed on all of it.
+    pub patches: Patches,
 }
 
 impl Minimiser {
@@ -99,6 +108,7 @@ impl Minimiser {
         let gradient = || Ok::<_, PhysicsError>(Gradient { values: field()?, mean: 0.0 });
         Ok(Self {
             double: problem.half_space.waves()?,
+            transformed: problem.half_space.transformed() as u64,
             single: problem.half_space.waves()?,
             gradient: gradient()?,
             previous: gradient()?,
@@ -109,13 +119,20 @@ impl Minimiser {
             masked: field()?,
             pairs: Pairs::new(points)?,
             split: true,
+            patches: Patches::new(problem)?,
         })
     }
 
-    /// Real transforms so far, in both precisions.
+    /// Points of the real transforms so far, in both precisions, those of patches included.
     #[must_use]
-    pub fn transforms(&self) -> u64 {
-        self.double.transforms + self.single.transforms
+    pub fn transformed(&self) -> u64 {
+        (self.double.transforms + self.single.transforms) * self.transformed + self.patches.transformed()
+    }
+
+    /// Real transforms of the grid since so many points were transformed; those of patches count by their points.
+    #[must_use]
+    pub fn transforms(&self, since: u64) -> u64 {
+        (self.transformed() - since).div_ceil(self.transformed)
     }
 
     /// Moves `state` to the local minimum of the energy at its approach; bonds around contacts grow on the way.
@@ -129,7 +146,7 @@ impl Minimiser {
             (outcome.residual, outcome.converged) = (here.rms / stress, here.within(accuracy, stress));
             if outcome.converged && !exact {
                 // By the increments of the pressure, for the bonds as they were.
-                exact = !problem.update_bonds(state, false);
+                exact = problem.update_bonds(state, false).is_empty();
                 here = self.begin(problem, state);
                 moved = 0.0;
                 self.pairs.face(&self.gradient);
@@ -148,11 +165,24 @@ impl Minimiser {
             if look {
                 moved = 0.0;
             }
-            if look && problem.update_bonds(state, false) {
+            let changed = if look { problem.update_bonds(state, false) } else { Vec::new() };
+            if outcome.iterations >= EVERYWHERE && self.relax(problem, state, &changed, accuracy) {
+                here = self.begin(problem, state);
+                self.pairs.clear();
+                continue;
+            }
+            if !changed.is_empty() {
                 here = self.evaluate(problem, state, 0.0, 0.0);
             }
             self.pairs.remember(&mut self.direction, descent.mean, step.length, &self.gradient, &self.previous);
         }
+    }
+
+    /// Brings the place around the largest residual of the points whose bonds have changed to equilibrium: whether the state has moved.
+    fn relax(&mut self, problem: &Problem, state: &mut State, changed: &[usize], accuracy: Accuracy) -> bool {
+        let residual = |point: &usize| (self.gradient.values[*point] - self.gradient.mean as f32).abs();
+        let first = changed.iter().copied().max_by(|a, b| residual(a).total_cmp(&residual(b)));
+        first.is_some_and(|first| self.patches.relax((problem, state), (first, changed), self.centre, accuracy))
     }
 
     /// Moves `state` to a local minimum by [`Self::minimise`] and, where that does not end, by [`Self::newton`]; the iterations are those of both.
@@ -165,11 +195,25 @@ impl Minimiser {
         Ok(Outcome { iterations: first.iterations + second.iterations, ..second })
     }
 
-    /// Pressure without the rounding of its increments, and gradient of a state.
+    /// Pressure without the rounding of its increments, and gradient of a state. A patch keeps the pressure and the mean of the whole grid.
     pub(super) fn begin(&mut self, problem: &Problem, state: &mut State) -> Here {
-        problem.refresh(state, &mut self.double);
-        self.centre = -problem.totals(state).load / self.slopes.len() as f64;
+        if !problem.half_space.is_patch() {
+            problem.refresh(state, &mut self.double);
+            self.centre = -problem.totals(state).load / self.slopes.len() as f64;
+        }
         self.evaluate(problem, state, 0.0, 0.0)
+    }
+
+    /// Adds the pressure of a displacement that the state has moved by.
+    pub(super) fn press(&mut self, problem: &Problem, state: &mut State, moved: &[f64]) {
+        let mut added = vec![0.0; moved.len()];
+        problem.half_space.apply(Operator::Stiffness, moved, &mut added, &mut self.double);
+        state.pressure.iter_mut().zip(&added).for_each(|(pressure, added)| *pressure += added);
+    }
+
+    /// Mean of a field of which the sum is given, to be subtracted: none on a patch, where the mean is not fixed.
+    fn mean(&self, problem: &Problem, sum: f64) -> f64 {
+        if problem.half_space.is_patch() { 0.0 } else { sum / self.slopes.len() as f64 }
     }
 
     /// Moves the state by `length` along the direction less its mean, and computes the gradient and the slopes of the law there.
@@ -207,7 +251,7 @@ impl Minimiser {
         let [energy, scale, sum, square, largest] = parts.iter().fold([0.0; 5], |all: [f64; 5], part| {
             [all[0] + part[0], all[1] + part[1], all[2] + part[2], all[3] + part[3], all[4].max(part[4])]
         });
-        let mean = sum / points;
+        let mean = self.mean(problem, sum);
         self.gradient.mean = mean;
         self.centre += mean;
         Here { energy, scale, rms: (square / points - mean * mean).max(0.0).sqrt(), largest: largest + mean.abs() }
@@ -217,14 +261,20 @@ impl Minimiser {
     fn search(&mut self, problem: &Problem) -> Descent {
         let weights = self.pairs.first();
         let onto = self.precondition(problem, weights);
-        let (mean, slope) = self.pairs.finish(&mut self.direction, self.pairs.second(weights, onto), &self.gradient);
-        if slope < 0.0 {
-            return Descent { mean, slope };
+        let descent = self.finish(problem, self.pairs.second(weights, onto));
+        if descent.slope < 0.0 {
+            return descent;
         }
         self.pairs.clear();
         self.precondition(problem, [0.0; 3]);
-        let (mean, slope) = self.pairs.finish(&mut self.direction, [0.0; 3], &self.gradient);
-        Descent { mean, slope }
+        self.finish(problem, [0.0; 3])
+    }
+
+    /// Adds the weighted steps of the pairs to the direction.
+    fn finish(&mut self, problem: &Problem, weights: [f64; 3]) -> Descent {
+        let [sum, product] = self.pairs.finish(&mut self.direction, weights, &self.gradient);
+        let mean = self.mean(problem, sum);
+        Descent { mean, slope: product - self.slopes.len() as f64 * mean * self.gradient.mean }
     }
 
     /// `direction ← M⁻¹ (gradient − Σ weights_i y_i)`: its products with the changes `y`.
@@ -276,10 +326,12 @@ impl Minimiser {
     /// and the energy and residual after it. Without such a step the state stays.
     pub(super) fn descend(&mut self, problem: &Problem, state: &mut State, here: Here, descent: Descent) -> Option<(Taken, Here)> {
         let Descent { mean, slope } = descent;
+        // On a patch the direction has a mean, which moves the rest of the grid against the mean of the whole.
+        let against = if problem.half_space.is_patch() { self.centre } else { 0.0 };
         let fields = (self.direction.par_chunks(PANEL), self.response.par_chunks(PANEL), state.pressure.par_chunks(PANEL));
         let parts = fields.into_par_iter().map(|(d, k, p)| {
-            let [quadratic] = panel_sums([d, k], |[d, k]| [d * k]);
-            [panel_work(d, p), quadratic, panel_largest(d)]
+            let [quadratic, sum] = panel_sums([d, k], |[d, k]| [d * k, d]);
+            [panel_work(d, p) - against * sum, quadratic, panel_largest(d)]
         });
         let parts: Vec<[f64; 3]> = parts.with_min_len(grain(PANEL)).collect();
         let [linear, quadratic, largest] =

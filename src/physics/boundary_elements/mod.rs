@@ -10,6 +10,7 @@ pub mod law;
 pub mod minimise;
 mod newton;
 mod pairs;
+pub mod patch;
 pub mod regions;
 pub mod resample;
 mod sums;

@@ -129,9 +129,8 @@ impl Pairs {
         [0, 1, 2].map(|k| self.pairs[k].change.as_slice())
     }
 
-    /// `direction ← −(direction + Σ weights_i s_i)`: its mean and its product with the gradient, both less their means.
-    pub(super) fn finish(&self, direction: &mut [f32], weights: [f64; PAIRS], gradient: &Gradient) -> (f64, f64) {
-        let points = direction.len() as f64;
+    /// `direction ← −(direction + Σ weights_i s_i)`: its sum and its product with the gradient's values.
+    pub(super) fn finish(&self, direction: &mut [f32], weights: [f64; PAIRS], gradient: &Gradient) -> [f64; 2] {
         let [wa, wb, wc] = weights.map(|weight| weight as f32);
         let [a, b, c] = &self.pairs;
         let fields = (
@@ -141,13 +140,11 @@ impl Pairs {
             c.step.par_chunks(PANEL),
             gradient.values.par_chunks(PANEL),
         );
-        let [sum, slope] = total(fields.into_par_iter().with_min_len(grain(PANEL)).map(|(d, a, b, c, g)| {
+        total(fields.into_par_iter().with_min_len(grain(PANEL)).map(|(d, a, b, c, g)| {
             for (((d, a), b), c) in d.iter_mut().zip(a).zip(b).zip(c) {
                 *d = -(*d + wa * a + wb * b + wc * c);
             }
             panel_sums([&*d, g], |[d, g]| [d, d * g])
-        }));
-        let mean = sum / points;
-        (mean, slope - points * mean * gradient.mean)
+        }))
     }
 }

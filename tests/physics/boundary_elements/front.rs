@@ -70,7 +70,7 @@ fn amplitude(rows: usize) -> (f64, [f64; 2]) {
         state.approach = height + 0.05 * h * f64::from(step);
         loop {
             assert!(minimiser.minimise(&problem, &mut state, accuracy(1e-6)).converged);
-            if !problem.update_bonds(&mut state, true) {
+            if problem.update_bonds(&mut state, true).is_empty() {
                 break;
             }
         }

@@ -34,6 +34,25 @@ fn val_plane_wave_of_the_half_space() {
     }
 }
 
+/// On a patch the pressure is that of the whole grid, whose displacement vanishes elsewhere. Rounding only.
+#[test]
+fn val_pressure_on_a_patch_is_that_of_the_grid() {
+    for (rows, columns, side) in [(32, 32, 8), (48, 64, 16), (27, 33, 5)] {
+        let whole = HalfSpace::new(rows, columns).unwrap();
+        let patch = whole.patch(side, &whole.kernel().unwrap()).unwrap();
+        assert!(patch.is_patch() && !whole.is_patch());
+        let inside: Vec<f64> = (0..side * side).map(|k| 1.0 + (1.7 * k as f64).sin()).collect();
+        let mut u = vec![0.0; rows * columns];
+        let place = |k: usize| k / side * columns + k % side;
+        inside.iter().enumerate().for_each(|(k, value)| u[place(k)] = *value);
+        let (mut expected, mut found) = (u.clone(), inside.clone());
+        whole.apply(Operator::Stiffness, &u, &mut expected, &mut whole.waves().unwrap());
+        patch.apply(Operator::Stiffness, &inside, &mut found, &mut patch.waves().unwrap());
+        let worst = found.iter().enumerate().map(|(k, p)| (p - expected[place(k)]).abs()).fold(0.0, f64::max);
+        assert!(worst < 1e-13, "pressure off by {worst:e} on {rows} x {columns}, patch {side}");
+    }
+}
+
 /// The work of the law is Δγ, its energy is the integral of the tension, and its slope the derivative (differences of 1e-6 are good to 1e-8).
 #[test]
 fn law_of_attraction_is_consistent() {

@@ -13,7 +13,7 @@ fn advance(problem: &Problem, minimiser: &mut Minimiser, state: &mut State, appr
     let accuracy = Accuracy { rms: 1e-7, largest: 1e-5, iterations: 20_000 };
     loop {
         assert!(minimiser.minimise(problem, state, accuracy).converged);
-        if !problem.update_bonds(state, true) {
+        if problem.update_bonds(state, true).is_empty() {
             break;
         }
     }

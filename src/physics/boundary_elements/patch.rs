@@ -1,0 +1,192 @@
+//! Events on a part of the grid.
+//!
+//! In most events bonds change in one place, and far from it the displacement hardly does. There the minimisation goes on for that place alone: for
+//! displacements that vanish outside a square, a *patch*, with the exact elastic operator. This is a descent of the energy of the whole grid within a
+//! subspace, by steps of the same limited length, so that no barrier is passed over that the whole grid would not pass over. One iteration costs as much
+//! less as the patch is smaller. Where bonds change at the border of a patch, one of twice the side goes on. The whole grid then has the rest of the way.
+//!
+//! Displacements on the patch have a mean, the zero of which is restored by a shift of the whole grid. Its energy counts to first order: the shift times
+//! the mean of pressure and tension. The second order is left to the whole grid.
+
+use super::contact::{Attraction, Bonding, Problem, State};
+use super::grid::HalfSpace;
+use super::minimise::{Accuracy, Minimiser};
+use crate::physics::PhysicsError;
+use crate::physics::memory::filled;
+
+/// Side of the smallest patch, and how many times smaller than the grid the largest is.
+const SMALLEST: usize = 32;
+const PARTS: usize = 4;
+/// Part of the side of a patch that is its border.
+const BORDER: usize = 8;
+/// Side of a patch at first: this many times the extent of the changed bonds, and points.
+const ROOM: (usize, usize) = (2, 8);
+/// Largest residual at which a patch is left, of that of an equilibrium, and iterations at most.
+const FINISH: f64 = 3.0;
+const ITERATIONS: usize = 600;
+
+/// Patches of growing size.
+pub struct Patches(Vec<Patch>);
+
+struct Patch {
+    problem: Problem,
+    state: State,
+    /// Displacement of the whole grid.
+    start: Vec<f64>,
+    minimiser: Minimiser,
+}
+
+/// A place of a patch on the grid: its middle, in rows and columns.
+type Place = [usize; 2];
+
+impl Patches {
+    /// Patches for a grid; none for one that is small, is itself a patch, or has attraction everywhere.
+    ///
+    /// # Errors
+    /// Not enough memory.
+    pub fn new(problem: &Problem) -> Result<Self, PhysicsError> {
+        let grid = &problem.half_space;
+        let largest = grid.rows().min(grid.columns()) / PARTS;
+        if largest < SMALLEST || grid.is_patch() || !matches!(problem.attraction, Attraction::Bonded { .. }) {
+            return Ok(Self::none());
+        }
+        let kernel = grid.kernel()?;
+        let sides = std::iter::successors(Some(SMALLEST), |side| Some(2 * side)).take_while(|side| *side <= largest);
+        sides.map(|side| Patch::new(problem, side, &kernel)).collect::<Result<_, _>>().map(Self)
+    }
+
+    /// No patches.
+    #[must_use]
+    pub fn none() -> Self {
+        Self(Vec::new())
+    }
+
+    /// Points of the transforms so far.
+    pub(super) fn transformed(&self) -> u64 {
+        self.0.iter().map(|patch| patch.minimiser.transformed()).sum()
+    }
+
+    /// Brings the place around `first` to equilibrium, if most of the bonds that have changed are there: whether the state has moved. `centre` is the
+    /// mean of pressure and tension of the whole grid.
+    pub(super) fn relax(
+        &mut self,
+        (whole, state): (&Problem, &mut State),
+        (first, changed): (usize, &[usize]),
+        centre: f64,
+        accuracy: Accuracy,
+    ) -> bool {
+        let Some(largest) = self.0.last() else { return false };
+        let Some((place, extent)) = surroundings(&whole.half_space, first, changed, largest.side() / 4) else { return false };
+        let accuracy = Accuracy { rms: f64::INFINITY, largest: FINISH * accuracy.largest, iterations: ITERATIONS };
+        let enough = ROOM.0 * extent + ROOM.1;
+        let smallest = self.0.iter().position(|patch| patch.side() >= enough).unwrap_or(self.0.len() - 1);
+        self.0[smallest].cut(whole, state, place);
+        for k in smallest..self.0.len() {
+            let (smaller, larger) = self.0.split_at_mut(k + 1);
+            let patch = &mut smaller[k];
+            patch.minimiser.centre = centre;
+            let outcome = patch.minimiser.minimise(&patch.problem, &mut patch.state, accuracy);
+            if k == smallest && outcome.iterations == 0 {
+                return false;
+            }
+            match larger.first_mut() {
+                Some(larger) if patch.has_changed_at_border(whole, state, place) => {
+                    larger.cut(whole, state, place);
+                    larger.take_over(patch);
+                }
+                _ => {
+                    patch.paste(whole, state, place);
+                    break;
+                }
+            }
+        }
+        true
+    }
+}
+
+impl Patch {
+    fn new(whole: &Problem, side: usize, kernel: &[f64]) -> Result<Self, PhysicsError> {
+        let field = || filled(side * side, 0.0);
+        let problem = Problem {
+            half_space: whole.half_space.patch(side, kernel)?,
+            law: whole.law.clone(),
+            heights: field()?,
+            attraction: whole.attraction,
+        };
+        let state = State { approach: 0.0, displacement: field()?, pressure: field()?, bonds: filled(side * side, Bonding::Free)? };
+        Ok(Self { minimiser: Minimiser::new(&problem)?, problem, state, start: field()? })
+    }
+
+    fn side(&self) -> usize {
+        self.problem.half_space.rows()
+    }
+
+    /// Points of the whole grid, in the order of the patch.
+    fn points(&self, grid: &HalfSpace, place: Place) -> impl Iterator<Item = usize> + use<> {
+        let (side, rows, columns) = (self.side(), grid.rows(), grid.columns());
+        let [row, column] = [place[0] + rows - side / 2, place[1] + columns - side / 2];
+        (0..side * side).map(move |k| (row + k / side) % rows * columns + (column + k % side) % columns)
+    }
+
+    /// Takes heights and state from the whole grid.
+    fn cut(&mut self, whole: &Problem, state: &State, place: Place) {
+        for (k, from) in self.points(&whole.half_space, place).enumerate() {
+            self.problem.heights[k] = whole.heights[from];
+            self.start[k] = state.displacement[from];
+            self.state.displacement[k] = state.displacement[from];
+            self.state.pressure[k] = state.pressure[from];
+            self.state.bonds[k] = state.bonds[from];
+        }
+        self.state.approach = state.approach;
+    }
+
+    /// Takes over what has happened on a smaller patch with the same middle.
+    fn take_over(&mut self, smaller: &Self) {
+        let (side, inner) = (self.side(), smaller.side());
+        let first = side / 2 - inner / 2;
+        let mut moved = vec![0.0; side * side];
+        for k in 0..inner * inner {
+            let to = (k / inner + first) * side + k % inner + first;
+            moved[to] = smaller.state.displacement[k] - smaller.start[k];
+            self.state.displacement[to] += moved[to];
+            self.state.bonds[to] = smaller.state.bonds[k];
+        }
+        self.minimiser.press(&self.problem, &mut self.state, &moved);
+    }
+
+    fn has_changed_at_border(&self, whole: &Problem, state: &State, place: Place) -> bool {
+        let side = self.side();
+        let inside = side / BORDER..side - side / BORDER;
+        self.points(&whole.half_space, place).enumerate().any(|(k, at)| {
+            let at_border = !inside.contains(&(k / side)) || !inside.contains(&(k % side));
+            at_border && self.state.bonds[k] != state.bonds[at]
+        })
+    }
+
+    /// Gives displacement and bonds to the whole grid.
+    fn paste(&self, whole: &Problem, state: &mut State, place: Place) {
+        for (k, to) in self.points(&whole.half_space, place).enumerate() {
+            state.displacement[to] = self.state.displacement[k];
+            state.bonds[to] = self.state.bonds[k];
+        }
+    }
+}
+
+/// Middle and extent of the points within `reach` of the first, if they are the most of all.
+fn surroundings(grid: &HalfSpace, first: usize, points: &[usize], reach: usize) -> Option<(Place, usize)> {
+    let size = [grid.rows(), grid.columns()];
+    let place = |point: usize| [point / grid.columns(), point % grid.columns()];
+    // Offsets from the first point, to which half the size is added.
+    let offset = |point: usize| [0, 1].map(|k| (place(point)[k] + size[k] + size[k] / 2 - place(first)[k]) % size[k]);
+    let (mut low, mut high, mut near) = (size.map(|n| n / 2), size.map(|n| n / 2), 0);
+    for at in points.iter().map(|point| offset(*point)) {
+        if (0..2).all(|k| at[k].abs_diff(size[k] / 2) <= reach) {
+            near += 1;
+            low = [0, 1].map(|k| low[k].min(at[k]));
+            high = [0, 1].map(|k| high[k].max(at[k]));
+        }
+    }
+    let middle = [0, 1].map(|k| (place(first)[k] + (low[k] + high[k]) / 2 + size[k] - size[k] / 2) % size[k]);
+    let extent = (0..2).map(|k| high[k] - low[k] + 1).max().unwrap_or(1);
+    (2 * near >= points.len()).then_some((middle, extent))
+}
