@@ -1,7 +1,9 @@
 //! Loading without adhesion, under displacement control.
 
 use super::contact::{Problem, Totals};
-use super::minimise::{Accuracy, Minimiser};
+use super::equilibrium::Equilibrium;
+use super::minimise::Accuracy;
+use super::patch::Patches;
 use crate::physics::PhysicsError;
 
 /// An equilibrium without adhesion.
@@ -27,15 +29,15 @@ pub fn load_freely(
     accuracy: Accuracy,
     enough: &mut dyn FnMut(&[FreeStep]) -> bool,
 ) -> Result<Vec<FreeStep>, PhysicsError> {
-    let mut minimiser = Minimiser::new(problem)?;
+    let mut equilibrium = Equilibrium::new(problem, Patches::none())?;
     let mut state = problem.apart(0.0)?;
     let mut before = state.displacement.clone();
     let mut steps: Vec<FreeStep> = Vec::new();
     loop {
-        let transformed = minimiser.transformed();
-        let outcome = minimiser.equilibrium(problem, &mut state, accuracy)?;
+        let transformed = equilibrium.transformed();
+        let outcome = equilibrium.find(problem, &mut state, accuracy)?;
         let totals = problem.totals(&state);
-        let transforms = minimiser.transforms(transformed);
+        let transforms = equilibrium.transforms(transformed);
         steps.push(FreeStep { approach: state.approach, totals, transforms, converged: outcome.converged });
         if totals.contact == problem.half_space.points() || enough(&steps) {
             return Ok(steps);

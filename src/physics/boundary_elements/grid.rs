@@ -175,8 +175,8 @@ impl HalfSpace {
     }
 
     /// Points of a transform.
-    pub(super) fn transformed(&self) -> usize {
-        self.padded.0 * self.padded.1
+    pub(super) fn transformed(&self) -> u64 {
+        (self.padded.0 * self.padded.1) as u64
     }
 
     /// Number of rows.

@@ -12,15 +12,12 @@
 use super::contact::{Problem, State};
 use super::grid::{Operator, Waves};
 use super::pairs::{Gradient, Pairs};
-use super::patch::Patches;
+use super::preconditioner::Preconditioner;
 use super::sums::{PANEL, grain, panel_largest, panel_sums, panel_work, total};
 use crate::physics::PhysicsError;
 use crate::physics::memory::filled;
 use rayon::prelude::*;
 
-/// Slope of the law from which a point counts as in contact, and the addition to it, in E*/dx.
-const STIFF: f32 = 0.3;
-const ADDED: f32 = 0.7;
 /// Change of the displacement after which bonds are looked at, of the reach of the law.
 const LOOK: f64 = 0.02;
 /// Largest residual, of the maximum tension, at which bonds are looked at: far from equilibrium edges of contact lie where no equilibrium has them.
@@ -79,8 +76,6 @@ pub(super) struct Descent {
 /// Work space.
 pub struct Minimiser {
     double: Waves<f64>,
-    /// Points of one transform.
-    transformed: u64,
     pub(super) single: Waves<f32>,
     pub(super) gradient: Gradient,
     previous: Gradient,
@@ -89,12 +84,23 @@ pub struct Minimiser {
     pub(super) slopes: Vec<f32>,
     pub(super) direction: Vec<f32>,
     pub(super) response: Vec<f32>,
-    masked: Vec<f32>,
     pairs: Pairs,
-    /// Whether the points in contact have a preconditioner of their own; else that of the open points, shifted, is used for all.
-    pub split: bool,
-    /// Where events are followed on a part of the grid; without any, they are followed on all of it.
-    pub patches: Patches,
+    /// Preconditioner.
+    pub preconditioner: Preconditioner,
+}
+
+/// What follows an event in the place where it happens.
+pub(super) trait Follow {
+    /// Brings the place around the point `first` to equilibrium, if most of the points whose bonds have changed are there: whether the state has moved.
+    /// `centre` is the mean of pressure and tension of the grid.
+    fn follow(&mut self, on: (&Problem, &mut State), changed: (usize, &[usize]), centre: f64, accuracy: Accuracy) -> bool;
+}
+
+/// Nothing: events are followed on the whole grid.
+impl Follow for () {
+    fn follow(&mut self, _: (&Problem, &mut State), _: (usize, &[usize]), _: f64, _: Accuracy) -> bool {
+        false
+    }
 }
 
 impl Minimiser {
@@ -108,7 +114,6 @@ impl Minimiser {
         let gradient = || Ok::<_, PhysicsError>(Gradient { values: field()?, mean: 0.0 });
         Ok(Self {
             double: problem.half_space.waves()?,
-            transformed: problem.half_space.transformed() as u64,
             single: problem.half_space.waves()?,
             gradient: gradient()?,
             previous: gradient()?,
@@ -116,27 +121,24 @@ impl Minimiser {
             slopes: field()?,
             direction: field()?,
             response: field()?,
-            masked: field()?,
             pairs: Pairs::new(points)?,
-            split: true,
-            patches: Patches::new(problem)?,
+            preconditioner: Preconditioner::new(points)?,
         })
     }
 
-    /// Points of the real transforms so far, in both precisions, those of patches included.
+    /// Real transforms so far, in both precisions.
     #[must_use]
-    pub fn transformed(&self) -> u64 {
-        (self.double.transforms + self.single.transforms) * self.transformed + self.patches.transformed()
-    }
-
-    /// Real transforms of the grid since so many points were transformed; those of patches count by their points.
-    #[must_use]
-    pub fn transforms(&self, since: u64) -> u64 {
-        (self.transformed() - since).div_ceil(self.transformed)
+    pub fn transforms(&self) -> u64 {
+        self.double.transforms + self.single.transforms
     }
 
     /// Moves `state` to the local minimum of the energy at its approach; bonds around contacts grow on the way.
     pub fn minimise(&mut self, problem: &Problem, state: &mut State, accuracy: Accuracy) -> Outcome {
+        self.minimise_with(problem, state, accuracy, &mut ())
+    }
+
+    /// As [`Self::minimise`], with events followed by `events` first.
+    pub(super) fn minimise_with(&mut self, problem: &Problem, state: &mut State, accuracy: Accuracy, events: &mut dyn Follow) -> Outcome {
         let stress = problem.stress();
         let mut outcome = Outcome::default();
         self.pairs.clear();
@@ -166,7 +168,8 @@ impl Minimiser {
                 moved = 0.0;
             }
             let changed = if look { problem.update_bonds(state, false) } else { Vec::new() };
-            if outcome.iterations >= EVERYWHERE && self.relax(problem, state, &changed, accuracy) {
+            let first = self.foremost(&changed).filter(|_| outcome.iterations >= EVERYWHERE);
+            if first.is_some_and(|first| events.follow((problem, state), (first, &changed), self.centre, accuracy)) {
                 here = self.begin(problem, state);
                 self.pairs.clear();
                 continue;
@@ -178,21 +181,10 @@ impl Minimiser {
         }
     }
 
-    /// Brings the place around the largest residual of the points whose bonds have changed to equilibrium: whether the state has moved.
-    fn relax(&mut self, problem: &Problem, state: &mut State, changed: &[usize], accuracy: Accuracy) -> bool {
+    /// The point with the largest residual of those given.
+    fn foremost(&self, points: &[usize]) -> Option<usize> {
         let residual = |point: &usize| (self.gradient.values[*point] - self.gradient.mean as f32).abs();
-        let first = changed.iter().copied().max_by(|a, b| residual(a).total_cmp(&residual(b)));
-        first.is_some_and(|first| self.patches.relax((problem, state), (first, changed), self.centre, accuracy))
-    }
-
-    /// Moves `state` to a local minimum by [`Self::minimise`] and, where that does not end, by [`Self::newton`]; the iterations are those of both.
-    pub(super) fn equilibrium(&mut self, problem: &Problem, state: &mut State, accuracy: Accuracy) -> Result<Outcome, PhysicsError> {
-        let first = self.minimise(problem, state, accuracy);
-        if first.converged {
-            return Ok(first);
-        }
-        let second = self.newton(problem, state, accuracy)?;
-        Ok(Outcome { iterations: first.iterations + second.iterations, ..second })
+        points.iter().copied().max_by(|a, b| residual(a).total_cmp(&residual(b)))
     }
 
     /// Pressure without the rounding of its increments, and gradient of a state. A patch keeps the pressure and the mean of the whole grid.
@@ -302,24 +294,8 @@ impl Minimiser {
 
     /// `direction ← M⁻¹ direction`.
     pub(super) fn divide(&mut self, problem: &Problem) {
-        if !self.split {
-            problem.half_space.apply(Operator::Shifted, &self.direction, &mut self.response, &mut self.single);
-            self.direction.copy_from_slice(&self.response);
-            return;
-        }
-        let fields = (self.masked.par_chunks_mut(PANEL), self.direction.par_chunks(PANEL), self.slopes.par_chunks(PANEL));
-        fields.into_par_iter().with_min_len(grain(PANEL)).for_each(|(to, from, slopes)| {
-            for ((x, y), slope) in to.iter_mut().zip(from).zip(slopes) {
-                *x = if *slope > STIFF { 0.0 } else { *y };
-            }
-        });
-        problem.half_space.apply(Operator::Compliance, &self.masked, &mut self.response, &mut self.single);
-        let fields = (self.direction.par_chunks_mut(PANEL), self.response.par_chunks(PANEL), self.slopes.par_chunks(PANEL));
-        fields.into_par_iter().with_min_len(grain(PANEL)).for_each(|(d, open, slopes)| {
-            for ((x, y), slope) in d.iter_mut().zip(open).zip(slopes) {
-                *x = if *slope > STIFF { *x / (slope + ADDED) } else { *y };
-            }
-        });
+        let Self { preconditioner, single, direction, response, slopes, .. } = self;
+        preconditioner.divide(problem, single, (direction, response), slopes);
     }
 
     /// Moves the state along the direction, whose elastic response is known, by at most the reach of the law and so far that the energy falls: the step

@@ -5,13 +5,17 @@
 pub mod adhesionless;
 pub mod contact;
 pub mod cycle;
+pub mod equilibrium;
 pub mod grid;
 pub mod law;
 pub mod minimise;
 mod newton;
 mod pairs;
 pub mod patch;
+pub mod preconditioner;
+pub mod records;
 pub mod regions;
 pub mod resample;
+mod step;
 mod sums;
 pub mod work;

@@ -10,7 +10,7 @@
 
 use super::contact::{Attraction, Bonding, Problem, State};
 use super::grid::HalfSpace;
-use super::minimise::{Accuracy, Minimiser};
+use super::minimise::{Accuracy, Follow, Minimiser};
 use crate::physics::PhysicsError;
 use crate::physics::memory::filled;
 
@@ -63,12 +63,12 @@ impl Patches {
 
     /// Points of the transforms so far.
     pub(super) fn transformed(&self) -> u64 {
-        self.0.iter().map(|patch| patch.minimiser.transformed()).sum()
+        self.0.iter().map(|patch| patch.minimiser.transforms() * patch.problem.half_space.transformed()).sum()
     }
+}
 
-    /// Brings the place around `first` to equilibrium, if most of the bonds that have changed are there: whether the state has moved. `centre` is the
-    /// mean of pressure and tension of the whole grid.
-    pub(super) fn relax(
+impl Follow for Patches {
+    fn follow(
         &mut self,
         (whole, state): (&Problem, &mut State),
         (first, changed): (usize, &[usize]),

@@ -2,6 +2,7 @@
 
 use super::{BONDED, cycle, problem, sums};
 use hysteron::physics::boundary_elements::cycle::{Settings, run, unload_from};
+use hysteron::physics::boundary_elements::equilibrium::Equilibrium;
 use hysteron::physics::boundary_elements::law::Law;
 use hysteron::physics::boundary_elements::minimise::Minimiser;
 use hysteron::physics::boundary_elements::patch::Patches;
@@ -83,7 +84,7 @@ fn law_three_minimisers_reach_one_state() {
     let problem = problem(n, n, |r, c| wavy(n, r, c), Law::crack(0.02), BONDED);
     let state_of = |split: bool, newton: bool| {
         let mut minimiser = Minimiser::new(&problem).unwrap();
-        minimiser.split = split;
+        minimiser.preconditioner.split = split;
         let mut state = problem.apart(0.0).unwrap();
         for k in 0..12 {
             state.approach = 0.08 * f64::from(k);
@@ -101,7 +102,7 @@ fn law_three_minimisers_reach_one_state() {
             }
             problem.settle_bonds(&mut state);
         }
-        (problem.totals(&state), minimiser.transforms(0))
+        (problem.totals(&state), minimiser.transforms())
     };
     let [split, spectral, newton] = [(true, false), (false, false), (true, true)].map(|(split, newton)| state_of(split, newton));
     for (name, other) in [("spectral", spectral), ("Newton", newton)] {
@@ -119,16 +120,14 @@ fn law_events_on_patches_end_as_on_the_whole_grid() {
     let rough = |r: usize, c: usize| 6.0 * wavy(n, r, c) + 1.2 * wavy(n, 5 * r % n, 5 * c % n);
     let problem = problem(n, n, rough, Law::crack(0.8), BONDED);
     let loading = |patches: bool| {
-        let mut minimiser = Minimiser::new(&problem).unwrap();
-        if !patches {
-            minimiser.patches = Patches::none();
-        }
+        let patches = if patches { Patches::new(&problem).unwrap() } else { Patches::none() };
+        let mut equilibrium = Equilibrium::new(&problem, patches).unwrap();
         let mut state = problem.apart(0.0).unwrap();
         let mut path = Vec::new();
         for k in 0..40 {
             state.approach = 0.4 * f64::from(k);
             loop {
-                assert!(minimiser.minimise(&problem, &mut state, super::accuracy(1e-5)).converged);
+                assert!(equilibrium.find(&problem, &mut state, super::accuracy(1e-5)).unwrap().converged);
                 if problem.update_bonds(&mut state, true).is_empty() {
                     break;
                 }
@@ -136,7 +135,7 @@ fn law_events_on_patches_end_as_on_the_whole_grid() {
             problem.settle_bonds(&mut state);
             path.push(problem.totals(&state));
         }
-        (path, minimiser.transforms(0))
+        (path, equilibrium.transforms(0))
     };
     let ((with, few), (without, many)) = (loading(true), loading(false));
     for (k, (a, b)) in with.iter().zip(&without).enumerate() {

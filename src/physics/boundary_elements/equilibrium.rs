@@ -1,0 +1,49 @@
+//! Equilibrium on a grid: L-BFGS with events followed on patches, and Newton's method where that does not end.
+
+use super::contact::{Problem, State};
+use super::minimise::{Accuracy, Minimiser, Outcome};
+use super::patch::Patches;
+use crate::physics::PhysicsError;
+
+/// Work space for the equilibria of one problem.
+pub struct Equilibrium {
+    minimiser: Minimiser,
+    patches: Patches,
+    /// Points of one transform of the grid.
+    points: u64,
+}
+
+impl Equilibrium {
+    /// Work space for a problem, with patches or [none](Patches::none).
+    ///
+    /// # Errors
+    /// Not enough memory.
+    pub fn new(problem: &Problem, patches: Patches) -> Result<Self, PhysicsError> {
+        Ok(Self { minimiser: Minimiser::new(problem)?, patches, points: problem.half_space.transformed() })
+    }
+
+    /// Moves `state` to the local minimum of the energy at its approach; bonds around contacts grow on the way. The iterations are those on the whole grid.
+    ///
+    /// # Errors
+    /// Not enough memory.
+    pub fn find(&mut self, problem: &Problem, state: &mut State, accuracy: Accuracy) -> Result<Outcome, PhysicsError> {
+        let first = self.minimiser.minimise_with(problem, state, accuracy, &mut self.patches);
+        if first.converged {
+            return Ok(first);
+        }
+        let second = self.minimiser.newton(problem, state, accuracy)?;
+        Ok(Outcome { iterations: first.iterations + second.iterations, ..second })
+    }
+
+    /// Points of the real transforms so far, those of patches included.
+    #[must_use]
+    pub fn transformed(&self) -> u64 {
+        self.minimiser.transforms() * self.points + self.patches.transformed()
+    }
+
+    /// Real transforms of the grid since so many points were transformed; those of patches count by their points.
+    #[must_use]
+    pub fn transforms(&self, since: u64) -> u64 {
+        (self.transformed() - since).div_ceil(self.points)
+    }
+}

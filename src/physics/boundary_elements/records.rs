@@ -1,0 +1,105 @@
+//! What a cycle consists of: steps, events, maps and states at load reversals.
+
+use super::contact::{State, Totals};
+use super::regions::{Change, Region};
+use serde::{Deserialize, Serialize};
+
+/// An equilibrium on the path and the energy dissipated since the one before.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Step {
+    /// Load reversal from which the step unloads; none while loading.
+    pub reversal: Option<usize>,
+    /// Approach Δ \[dx\].
+    pub approach: f64,
+    /// Load, energy and area.
+    pub totals: Totals,
+    /// Connected regions of contact.
+    pub regions: usize,
+    /// Energy dissipated in events since the step before \[E* dx³\]: `∫F dΔ − ΔΠ` if that exceeds the error of the integral.
+    pub dissipated: f64,
+    /// `∫F dΔ − ΔΠ` since the step before \[E* dx³\], its error included.
+    pub imbalance: f64,
+    /// Estimated error of that integral, a third of the difference of parabola and trapezoid \[E* dx³\]; 0 without an estimate, after an event.
+    pub uncertainty: f64,
+    /// Work since the branch began \[E* dx³\]: the change of the energy, and `∫F dΔ` over steps with an event.
+    pub work: f64,
+    /// Iterations and transforms, those of halved steps included.
+    pub iterations: u64,
+    /// Transforms of the grid; those of patches count by their points.
+    pub transforms: u64,
+    /// Root mean square of the residual, of the maximum tension.
+    pub residual: f64,
+    /// Whether the accuracy was reached.
+    pub converged: bool,
+}
+
+/// A sudden change of the contact.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Event {
+    /// Number of the step at whose approach the event is over.
+    pub step: usize,
+    /// What happened to the region whose area changed most.
+    pub kind: Change,
+    /// State before and after.
+    pub before: Totals,
+    /// State after.
+    pub after: Totals,
+    /// Dissipated energy \[E* dx³\].
+    pub dissipated: f64,
+}
+
+/// Gap and pressure at a step.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Map {
+    /// Number of the step.
+    pub step: usize,
+    /// Gap \[dx\].
+    pub gap: Vec<f32>,
+    /// Pressure, compression positive \[E*\].
+    pub pressure: Vec<f32>,
+}
+
+/// A state at a load reversal, from which another process unloads to the same bytes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Turning {
+    /// Number of its step.
+    pub step: usize,
+    /// The state.
+    pub state: State,
+    /// Its step.
+    pub last: Step,
+    /// Energy dissipated so far \[E* dx³\].
+    pub dissipated: f64,
+}
+
+/// A cycle: every step, the events, regions and maps.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Cycle {
+    /// Steps; the number of a step is its place.
+    pub steps: Vec<Step>,
+    /// Events.
+    pub events: Vec<Event>,
+    /// Regions of the kept steps, with the number of the step.
+    pub regions: Vec<(usize, Region)>,
+    /// Maps at the load reversals and at the maximum tensile load of each unloading.
+    pub maps: Vec<Map>,
+    /// States at the load reversals.
+    pub turning: Vec<Turning>,
+}
+
+impl Cycle {
+    /// The load reversal at a step.
+    #[must_use]
+    pub fn reversal_at(&self, step: usize) -> Option<usize> {
+        self.turning.iter().position(|turning| turning.step == step)
+    }
+
+    pub(super) fn keep(&mut self, map: Map, found: Vec<Region>) {
+        self.keep_regions(map.step, found);
+        self.maps.push(map);
+    }
+
+    pub(super) fn keep_regions(&mut self, step: usize, found: Vec<Region>) {
+        self.regions.extend(found.into_iter().map(|region| (step, region)));
+    }
+}

@@ -1,0 +1,262 @@
+//! One step of a cycle: an equilibrium at an approach near the one before, and the energy dissipated in between.
+//!
+//! Between events the states are a continuous curve on which `F = dΠ/dΔ`, so that `∫F dΔ − ΔΠ` vanishes; in an event the energy falls at one approach, by
+//! the energy dissipated. A step that dissipates more than [`LARGE`] of the energy dissipated so far is halved until the event is located.
+
+use super::contact::{Attraction, Problem, State};
+use super::equilibrium::Equilibrium;
+use super::minimise::Accuracy;
+use super::patch::Patches;
+use super::records::{Cycle, Event, Map, Step};
+use super::regions::{Labels, Region, change, label, regions};
+use super::work::{work_after, work_between};
+use crate::physics::PhysicsError;
+use serde::{Deserialize, Serialize};
+
+/// Dissipated energy of an event, and of one that is located by halving the step, of the energy dissipated so far.
+const EVENT: f64 = 3e-5;
+const LARGE: f64 = 3e-3;
+/// Halvings of a step at most, as long as they reduce the error of the integral of the load.
+const DEEPEST: u32 = 5;
+/// Relative accuracy of the load at a reversal, how much more exact than elsewhere the equilibria in its search are, and how many there are at most.
+const LOAD_ACCURACY: f64 = 1e-5;
+const SHARPER: f64 = 0.02;
+const SEARCHED: u32 = 40;
+
+/// Settings of a path.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Settings {
+    /// Loads at which the path reverses \[E* dx²\], ascending.
+    pub max_loads: Vec<f64>,
+    /// Step of the approach \[dx\].
+    pub step: f64,
+    /// How often a step with a large event is halved.
+    pub halvings: u32,
+    /// Accuracy of an equilibrium.
+    pub accuracy: Accuracy,
+    /// Whether the regions of every step are kept; else those of the maps.
+    pub all_regions: bool,
+}
+
+/// An unfinished cycle: all that is needed to continue in another process, to the same bytes.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Halfway {
+    pub(super) cycle: Cycle,
+    /// Branches that are complete.
+    pub(super) branches: usize,
+    pub(super) state: State,
+    /// The state one step before, if no event lies between.
+    pub(super) before: Option<Before>,
+    pub(super) last: Step,
+    pub(super) dissipated: f64,
+    pub(super) level: u32,
+    /// Map and regions at the maximum tensile load of the branch so far.
+    pub(super) tensest: Option<(f64, Map, Vec<Region>)>,
+    /// Contact of the state, from which it follows.
+    #[serde(skip)]
+    pub(super) labels: Labels,
+}
+
+/// A state one step before.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct Before {
+    approach: f64,
+    load: f64,
+    displacement: Vec<f64>,
+}
+
+impl Halfway {
+    /// Steps so far.
+    #[must_use]
+    pub fn steps(&self) -> &[Step] {
+        &self.cycle.steps
+    }
+
+    /// Regions of contact of the last step.
+    #[must_use]
+    pub fn labels(&self) -> &Labels {
+        &self.labels
+    }
+}
+
+/// A cycle on its way.
+pub(super) struct Walk<'a> {
+    pub(super) problem: &'a Problem,
+    pub(super) settings: &'a Settings,
+    equilibrium: Equilibrium,
+    pub(super) at: Halfway,
+}
+
+impl<'a> Walk<'a> {
+    /// A cycle from the beginning or from `halfway`.
+    pub(super) fn begin(problem: &'a Problem, settings: &'a Settings, halfway: Option<Halfway>) -> Result<Self, PhysicsError> {
+        let start = match problem.attraction {
+            Attraction::Bonded { nucleation, .. } => -nucleation,
+            Attraction::Range => -problem.law.end_gap(),
+            Attraction::None => 0.0,
+        };
+        let mut at = match halfway {
+            Some(halfway) => halfway,
+            None => Halfway {
+                cycle: Cycle::default(),
+                branches: 0,
+                state: problem.apart(start)?,
+                before: None,
+                last: Step { approach: start, ..Step::default() },
+                dissipated: 0.0,
+                level: 0,
+                tensest: None,
+                labels: Labels::default(),
+            },
+        };
+        at.labels = label(problem, &at.state);
+        Ok(Self { problem, settings, equilibrium: Equilibrium::new(problem, Patches::new(problem)?)?, at })
+    }
+
+    /// Regions of contact of the last state.
+    pub(super) fn regions(&self) -> Vec<Region> {
+        regions(self.problem, &self.at.state, &self.at.labels)
+    }
+
+    /// Equilibrium at an approach, from the last state extrapolated, with all contacts that form there.
+    pub(super) fn attempt(&mut self, approach: f64, accuracy: Accuracy) -> Result<(State, Step), PhysicsError> {
+        let mut state = self.at.state.clone();
+        if let Some(before) = &self.at.before {
+            let ratio = (approach - state.approach) / (state.approach - before.approach);
+            for (to, from) in state.displacement.iter_mut().zip(&before.displacement) {
+                *to += ratio * (*to - from);
+            }
+        }
+        state.approach = approach;
+        let before = self.equilibrium.transformed();
+        let mut iterations = 0;
+        let outcome = loop {
+            let outcome = self.equilibrium.find(self.problem, &mut state, accuracy)?;
+            iterations += outcome.iterations as u64;
+            if self.problem.update_bonds(&mut state, true).is_empty() {
+                break outcome;
+            }
+        };
+        let totals = self.problem.totals(&state);
+        self.problem.settle_bonds(&mut state);
+        let from = &self.at.last;
+        let (start, end) = ((from.approach, from.totals.load), (approach, totals.load));
+        let change = totals.energy - from.totals.energy;
+        let quiet = self.at.before.as_ref().map(|before| work_after((before.approach, before.load), start, end));
+        // Where the load jumps, the points before do not tell how it goes on.
+        let uncertainty = quiet.map_or(0.0, |quiet| (quiet - work_between(start, end)).abs() / 3.0);
+        let work = quiet.filter(|work| (work - change).abs() <= self.resolution(uncertainty)).unwrap_or_else(|| work_between(start, end));
+        let step = Step {
+            reversal: from.reversal,
+            approach,
+            totals,
+            regions: 0,
+            dissipated: 0.0,
+            imbalance: work - change,
+            uncertainty,
+            work: from.work + work,
+            iterations,
+            transforms: self.equilibrium.transforms(before),
+            residual: outcome.residual,
+            converged: outcome.converged,
+        };
+        Ok((state, step))
+    }
+
+    /// Imbalance up to which a step has no event, with the uncertainty of its integral \[E* dx³\].
+    fn resolution(&self, uncertainty: f64) -> f64 {
+        uncertainty.max(EVENT * self.at.dissipated)
+    }
+
+    pub(super) fn accept(&mut self, state: State, mut step: Step) {
+        let event = step.imbalance > self.resolution(step.uncertainty);
+        let labels = label(self.problem, &state);
+        step.regions = labels.count;
+        // Without an event the work is the change of the energy, exactly; the load is integrated for comparison only.
+        if !event {
+            step.work = self.at.last.work + step.totals.energy - self.at.last.totals.energy;
+        } else {
+            step.dissipated = step.imbalance;
+            self.at.dissipated += step.imbalance;
+            self.at.cycle.events.push(Event {
+                step: self.at.cycle.steps.len(),
+                kind: change(&self.at.labels, &labels),
+                before: self.at.last.totals,
+                after: step.totals,
+                dissipated: step.imbalance,
+            });
+        }
+        self.at.labels = labels;
+        let old = std::mem::replace(&mut self.at.state, state);
+        let load = self.at.last.totals.load;
+        let follows = !event && old.approach != self.at.state.approach;
+        self.at.before = follows.then_some(Before { approach: old.approach, load, displacement: old.displacement });
+        self.at.last = step;
+        if self.settings.all_regions {
+            let (step, found) = (self.at.cycle.steps.len(), self.regions());
+            self.at.cycle.keep_regions(step, found);
+        }
+        self.at.cycle.steps.push(step);
+    }
+
+    /// One step along the path; one with a large event is halved, one across `max_load` ends there: whether it does.
+    pub(super) fn advance(&mut self, sense: f64, max_load: Option<f64>) -> Result<bool, PhysicsError> {
+        let (mut iterations, mut transforms) = (0, 0);
+        let mut coarser = f64::INFINITY;
+        loop {
+            let length = sense * self.settings.step / f64::from(1_u32 << self.at.level);
+            let (mut state, mut step) = self.attempt(self.at.state.approach + length, self.settings.accuracy)?;
+            let large = step.imbalance.abs() > LARGE * self.at.dissipated;
+            // The error of the integral falls by halving the step, an event does not.
+            let falls = step.imbalance.abs() < 0.25 * coarser && self.at.level < DEEPEST;
+            if large && (self.at.level < self.settings.halvings || falls) {
+                coarser = step.imbalance.abs();
+                (iterations, transforms) = (iterations + step.iterations, transforms + step.transforms);
+                self.at.level += 1;
+                continue;
+            }
+            let across = max_load.filter(|most| step.totals.load > *most);
+            if let Some(max_load) = across {
+                (iterations, transforms) = (iterations + step.iterations, transforms + step.transforms);
+                (state, step) = self.reach(max_load, step)?;
+            } else {
+                let small = step.imbalance.abs() < LARGE / 8.0 * self.at.dissipated;
+                self.at.level = match (large, small) {
+                    (true, _) => self.settings.halvings.min(1),
+                    (false, true) => self.at.level.saturating_sub(1),
+                    (false, false) => self.at.level,
+                };
+            }
+            step.iterations += iterations;
+            step.transforms += transforms;
+            self.accept(state, step);
+            return Ok(across.is_some());
+        }
+    }
+
+    /// The equilibrium at `max_load` between the last state and a step beyond it, to the accuracy of the load or of the search.
+    fn reach(&mut self, max_load: f64, beyond: Step) -> Result<(State, Step), PhysicsError> {
+        let (mut low, mut high) = ((self.at.last.approach, self.at.last.totals.load), (beyond.approach, beyond.totals.load));
+        let (mut iterations, mut transforms) = (0, 0);
+        let Accuracy { rms, largest, iterations: most } = self.settings.accuracy;
+        let accuracy = Accuracy { rms: SHARPER * rms, largest: SHARPER * largest, iterations: most };
+        let mut searched = 0_u32;
+        loop {
+            searched += 1;
+            // The secant, and bisection where that does not help.
+            let secant = ((max_load - low.1) / (high.1 - low.1)).clamp(0.02, 0.98);
+            let part = if searched.is_multiple_of(3) { 0.5 } else { secant };
+            let approach = low.0 + part * (high.0 - low.0);
+            let (state, mut step) = self.attempt(approach, accuracy)?;
+            (iterations, transforms) = (iterations + step.iterations, transforms + step.transforms);
+            let load = step.totals.load;
+            let reached = (load / max_load - 1.0).abs() < LOAD_ACCURACY;
+            if reached || searched == SEARCHED {
+                step.converged &= reached;
+                (step.iterations, step.transforms) = (iterations, transforms);
+                return Ok((state, step));
+            }
+            if load > max_load { high = (approach, load) } else { low = (approach, load) }
+        }
+    }
+}
