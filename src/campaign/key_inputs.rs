@@ -180,12 +180,15 @@ pub(super) fn read_by_cycle(params: &CaseParams) -> CaseParams {
     params
 }
 
+/// Version of the cycles by boundary elements in their keys, beside that of the stage.
+const ELEMENTS_VERSION: u32 = 2;
+
 /// Inputs of a cycle in its key, besides the asperities. Those of the asperity model are the same as before there was another method.
 fn of_case(params: &CaseParams) -> Vec<(&'static str, Value)> {
     let params = read_by_cycle(params);
     let [material, mut model, mut cycle] = [plain(&params.material), plain(&params.model), plain(&params.cycle)];
     if params.by_elements() {
-        model = json!({ "method": model["method"] });
+        model = json!({ "method": model["method"], "method_version": ELEMENTS_VERSION });
         remove(&mut cycle, "approach_step");
         return vec![("material", material), ("model", model), ("boundary_elements", plain(&params.boundary_elements)), ("cycle", cycle)];
     }

@@ -117,7 +117,7 @@ pub static STEPS: Table = Table {
         count("iteration_count", "Iterations of Newton's method and of relaxation since the previous step, in local and global problems"),
         count("pair_evaluation_count", "Evaluations of the displacement of one contact by another since the previous step"),
         count("product_count", "Matrix-vector products of the tangent since the previous step, one per Krylov iteration"),
-        count("transform_count", "Fourier transforms of a mesh or grid since the previous step"),
+        count("transform_count", "Fourier transforms of a mesh or grid since the previous step; those of a patch count by their points"),
         real("load", "1", "Normal load F/(E* A0); positive in compression"),
         real("area", "1", "Contact area A/A0, summed over the discs of all contact spots"),
         real("penetration", "1", "Mean penetration Δ/h_rms"),

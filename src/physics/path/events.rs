@@ -3,11 +3,11 @@
 
 use super::accuracy::EVENT_TOLERANCE;
 use super::avalanche::Avalanche;
+use super::conditions::Condition;
 use super::equilibrium_path::EquilibriumPath;
-use super::predictor::PredictedEvent;
+use super::expectation::PredictedEvent;
 use super::rejection::Rejection;
 use crate::physics::Reason;
-use crate::physics::contact::Status;
 use crate::physics::contact::transition::{Kind, Transition};
 use crate::physics::math::bracket::{End, Illinois};
 use crate::physics::solve::local::curve::CurveEnd;
@@ -120,27 +120,19 @@ impl EquilibriumPath {
     /// \[m\].
     fn locate(&mut self, event: &PredictedEvent, target: f64) -> Option<Located> {
         self.neighbourhood.set_origin();
+        match self.problem().condition(&event.transition, &self.predictor.state)? {
+            Condition::Penetration { .. } => self.locate_jump_in(event, target),
+            Condition::Touching { pair: [i, by] } => self.locate_merging(i, by, target),
+            Condition::Shrinking { contact, value_m } => self.locate_radius(contact, value_m, false, target),
+            Condition::Growing { contact, value_m } => self.locate_radius(contact, value_m, true, target),
+        }
+    }
+
+    /// Locates where the radius of a contact reaches `bound` \[m\], growing or shrinking, or a fold before that.
+    fn locate_radius(&mut self, spot: usize, bound: f64, grows: bool, target: f64) -> Option<Located> {
         let (problem, sense) = (&*self.problem(), self.frame.sense);
         let (local, effort) = (&mut self.neighbourhood.local, &mut self.solver.effort);
-        let Transition { kind, asperity: i, by } = event.transition;
-        if kind == Kind::JumpIn {
-            return self.locate_jump_in(event, target);
-        }
-        if kind == Kind::Merge {
-            return self.locate_merging(i, by?, target);
-        }
-        let (spot, bound) = match (kind, self.predictor.state.status[i]) {
-            (Kind::JumpOff, _) => (i, problem.asperities[i].jump_off_radius()),
-            (Kind::Cover, _) => {
-                let by = by?;
-                (by, problem.distance(i, by))
-            }
-            (Kind::Uncover, Status::Covered { by, release_m }) => (by, release_m),
-            (Kind::Split, _) => (i, self.predictor.state.release_of_merged(problem, i)?),
-            _ => return None,
-        };
         let at = local.find(spot)?;
-        let grows = kind == Kind::Cover;
         let there = if grows { local.radius[at] >= bound } else { local.radius[at] <= bound };
         if there {
             return Some(Located::Point);

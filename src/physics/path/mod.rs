@@ -55,20 +55,23 @@
 //! | [`event_log::EventLog`] | events, work, and segments of the load |
 //! | [`checkpoint::Checkpoint`] | a path at a global solve, to go back to |
 //!
-//! An event kind is added in [`crate::physics::contact::transition`] (kind, status after it, what it undoes), `triggers` (when it is due), `predictor` (when it
-//! is expected), `events` (where it is on the solution curve) and `apply` (what it changes).
+//! An event kind is added as a line of [`crate::physics::contact::transition`] (name, status after it, what it undoes) and one of `conditions`: what reaches
+//! which value. How late it is, whether it is due and where it lies on the solution curve follow from the condition. What it changes stands in `apply`, the
+//! response of the asperities outside the local problem in `propagation`, and for which asperities it is looked for in `triggers` and `expectation`.
 
 mod accuracy;
 mod apply;
 mod avalanche;
 mod chatter;
 mod checkpoint;
+mod conditions;
 mod corrector;
 mod energy;
 mod equilibrium_path;
 mod event_log;
 mod events;
 mod excursion;
+mod expectation;
 mod merging;
 mod neighbourhood;
 mod pending;

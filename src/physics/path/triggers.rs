@@ -1,5 +1,6 @@
-//! Conditions under which a change of state is due.
+//! Changes of state that are due.
 
+use super::conditions::Condition;
 use super::predictor::Predictor;
 use crate::physics::contact::problem::Problem;
 use crate::physics::contact::state::Status;
@@ -62,54 +63,42 @@ impl Problem {
     pub(crate) fn is_due(&self, change: &Transition, predictor: &Predictor) -> bool {
         let (i, state) = (change.asperity, &predictor.state);
         let possible = match (change.kind, state.status[i], change.by) {
-            (Kind::JumpIn, Status::Free, _) => !state.barred[i],
-            (Kind::JumpOff, Status::Contact, _) => true,
+            (Kind::JumpIn, ..) => !state.barred[i],
             (Kind::Uncover, Status::Covered { by, .. }, _) => Some(by) == change.by,
-            (Kind::Cover, Status::Free | Status::Contact, Some(by)) => state.radius[i] < state.radius[by],
+            (Kind::Cover, _, Some(by)) => state.radius[i] < state.radius[by],
             (Kind::Merge, _, Some(by)) => predictor.may_merge(i, by),
-            (Kind::Split, Status::Contact, _) => true,
-            _ => false,
+            _ => true,
         };
         possible && self.overshoot(change, predictor) >= 0.0
     }
 
     /// Overshoot of a state beyond a transition; negative before it.
-    pub(crate) fn overshoot(&self, change: &Transition, predictor: &Predictor) -> f64 {
-        let (i, state) = (change.asperity, &predictor.state);
-        match (change.kind, change.by) {
-            (Kind::JumpOff, _) => 1.0 - state.radius[i] / self.asperities[i].jump_off_radius(),
-            (Kind::JumpIn, _) => (predictor.traces[i].value - self.jump_in[i]) / self.asperities[i].jump_off_penetration().abs(),
-            (Kind::Cover, Some(by)) => {
-                let distance = self.distance(i, by);
-                state.radius[by] / distance - 1.0
+    fn overshoot(&self, change: &Transition, predictor: &Predictor) -> f64 {
+        let state = &predictor.state;
+        match self.condition(change, state) {
+            Some(Condition::Penetration { asperity, value_m }) => {
+                (predictor.traces[asperity].value - value_m) / self.asperities[asperity].jump_off_penetration().abs()
             }
-            (Kind::Merge, Some(by)) => self.meeting([i, by], [state.radius[i], state.radius[by]]),
-            (Kind::Split, _) => state.release_of_merged(self, i).map_or(f64::NAN, |release_m| 1.0 - state.radius[i] / release_m),
-            (Kind::Uncover, _) => match state.status[i] {
-                // The footprint of a part of a merged contact stays covered until it splits.
-                Status::Covered { by, .. } if matches!(state.status[by], Status::Merged { .. }) => f64::NAN,
-                // An asperity that is not in contact absorbs none.
-                Status::Covered { by, release_m } => 1.0 - state.radius[by] / release_m,
-                _ => f64::NAN,
-            },
-            _ => f64::NAN,
+            Some(Condition::Shrinking { contact, value_m }) => 1.0 - state.radius[contact] / value_m,
+            Some(Condition::Growing { contact, value_m }) => state.radius[contact] / value_m - 1.0,
+            Some(Condition::Touching { pair }) => self.meeting(pair, pair.map(|i| state.radius[i])),
+            None => f64::NAN,
         }
     }
 
     /// Lateness of a transition, as a penetration \[m\].
     pub(crate) fn lateness(&self, trigger: &Trigger, predictor: &Predictor) -> f64 {
-        let (i, state) = (trigger.transition.asperity, &predictor.state);
+        let state = &predictor.state;
         let between = |j: usize, radius: f64| {
             let asperity = &self.asperities[j];
             (asperity.penetration(state.radius[j]) - asperity.penetration(radius)).abs()
         };
-        match (trigger.transition.kind, trigger.transition.by, state.status[i]) {
-            (Kind::JumpOff, ..) => between(i, self.asperities[i].jump_off_radius()),
-            (Kind::Cover, Some(by), _) => between(by, self.distance(i, by)),
-            (Kind::Uncover, _, Status::Covered { by, release_m }) if state.radius[by] > 0.0 => between(by, release_m),
-            (Kind::JumpIn, ..) => trigger.overshoot * self.asperities[i].jump_off_penetration().abs(),
-            (Kind::Merge, Some(by), _) => between(by, state.radius[by] * (1.0 - trigger.overshoot)),
-            (Kind::Split, ..) => between(i, state.radius[i] / (1.0 - trigger.overshoot)),
+        match self.condition(&trigger.transition, state) {
+            Some(Condition::Penetration { asperity, .. }) => trigger.overshoot * self.asperities[asperity].jump_off_penetration().abs(),
+            Some(Condition::Shrinking { contact, value_m } | Condition::Growing { contact, value_m }) if state.radius[contact] > 0.0 => {
+                between(contact, value_m)
+            }
+            Some(Condition::Touching { pair: [_, by] }) => between(by, state.radius[by] * (1.0 - trigger.overshoot)),
             _ => 0.0,
         }
     }

@@ -1,0 +1,40 @@
+//! Condition of each kind of event: what reaches which value. Triggers, predictions and the location of events follow from it.
+
+use crate::physics::contact::problem::Problem;
+use crate::physics::contact::state::{State, Status};
+use crate::physics::contact::transition::{Kind, Transition};
+
+/// What reaches which value at an event.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Condition {
+    /// The penetration of an asperity out of contact, \[m\].
+    Penetration { asperity: usize, value_m: f64 },
+    /// The radius of a contact that shrinks, \[m\].
+    Shrinking { contact: usize, value_m: f64 },
+    /// The radius of a contact that grows, \[m\].
+    Growing { contact: usize, value_m: f64 },
+    /// Two contacts touch.
+    Touching { pair: [usize; 2] },
+}
+
+impl Problem {
+    /// Condition of a transition; none if the status of its asperity does not permit it.
+    pub(crate) fn condition(&self, change: &Transition, state: &State) -> Option<Condition> {
+        let i = change.asperity;
+        match (change.kind, state.status[i], change.by) {
+            (Kind::JumpIn, Status::Free, _) => Some(Condition::Penetration { asperity: i, value_m: self.jump_in[i] }),
+            (Kind::JumpOff, Status::Contact, _) => Some(Condition::Shrinking { contact: i, value_m: self.asperities[i].jump_off_radius() }),
+            (Kind::Cover, Status::Free | Status::Contact, Some(by)) => {
+                Some(Condition::Growing { contact: by, value_m: self.distance(i, by) })
+            }
+            // The footprint of a part of a merged contact stays covered until it splits.
+            (Kind::Uncover, Status::Covered { by, .. }, _) if matches!(state.status[by], Status::Merged { .. }) => None,
+            (Kind::Uncover, Status::Covered { by, release_m }, _) => Some(Condition::Shrinking { contact: by, value_m: release_m }),
+            (Kind::Merge, _, Some(by)) => Some(Condition::Touching { pair: [i, by] }),
+            (Kind::Split, Status::Contact, _) => {
+                state.release_of_merged(self, i).map(|value_m| Condition::Shrinking { contact: i, value_m })
+            }
+            _ => None,
+        }
+    }
+}
