@@ -89,16 +89,16 @@ pub struct Minimiser {
     pub preconditioner: Preconditioner,
 }
 
-/// What follows an event in the place where it happens.
+/// What follows events in the places where they happen.
 pub(super) trait Follow {
-    /// Brings the place around the point `first` to equilibrium, if most of the points whose bonds have changed are there: whether the state has moved.
-    /// `centre` is the mean of pressure and tension of the grid.
-    fn follow(&mut self, on: (&Problem, &mut State), changed: (usize, &[usize]), centre: f64, accuracy: Accuracy) -> bool;
+    /// Brings the places around the points whose bonds have changed to equilibrium, given from the largest residual to the smallest: whether the state has
+    /// moved. `centre` is the mean of pressure and tension of the grid.
+    fn follow(&mut self, on: (&Problem, &mut State), changed: &[usize], centre: f64, accuracy: Accuracy) -> bool;
 }
 
 /// Nothing: events are followed on the whole grid.
 impl Follow for () {
-    fn follow(&mut self, _: (&Problem, &mut State), _: (usize, &[usize]), _: f64, _: Accuracy) -> bool {
+    fn follow(&mut self, _: (&Problem, &mut State), _: &[usize], _: f64, _: Accuracy) -> bool {
         false
     }
 }
@@ -167,9 +167,9 @@ impl Minimiser {
             if look {
                 moved = 0.0;
             }
-            let changed = if look { problem.update_bonds(state, false) } else { Vec::new() };
-            let first = self.foremost(&changed).filter(|_| outcome.iterations >= EVERYWHERE);
-            if first.is_some_and(|first| events.follow((problem, state), (first, &changed), self.centre, accuracy)) {
+            let mut changed = if look { problem.update_bonds(state, false) } else { Vec::new() };
+            self.sort(&mut changed);
+            if outcome.iterations >= EVERYWHERE && events.follow((problem, state), &changed, self.centre, accuracy) {
                 here = self.begin(problem, state);
                 self.pairs.clear();
                 continue;
@@ -181,10 +181,10 @@ impl Minimiser {
         }
     }
 
-    /// The point with the largest residual of those given.
-    fn foremost(&self, points: &[usize]) -> Option<usize> {
+    /// Sorts points from the largest residual to the smallest.
+    fn sort(&self, points: &mut [usize]) {
         let residual = |point: &usize| (self.gradient.values[*point] - self.gradient.mean as f32).abs();
-        points.iter().copied().max_by(|a, b| residual(a).total_cmp(&residual(b)))
+        points.sort_by(|a, b| residual(b).total_cmp(&residual(a)));
     }
 
     /// Pressure without the rounding of its increments, and gradient of a state. A patch keeps the pressure and the mean of the whole grid.

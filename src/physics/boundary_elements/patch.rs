@@ -1,9 +1,10 @@
 //! Events on a part of the grid.
 //!
-//! In most events bonds change in one place, and far from it the displacement hardly does. There the minimisation goes on for that place alone: for
+//! In most events bonds change in a few places, and far from them the displacement hardly does. There the minimisation goes on for one place alone: for
 //! displacements that vanish outside a square, a *patch*, with the exact elastic operator. This is a descent of the energy of the whole grid within a
 //! subspace, by steps of the same limited length, so that no barrier is passed over that the whole grid would not pass over. One iteration costs as much
-//! less as the patch is smaller. Where bonds change at the border of a patch, one of twice the side goes on. The whole grid then has the rest of the way.
+//! less as the patch is smaller. Where bonds change at the border of a patch, one of twice the side goes on. Patches of several places do not overlap
+//! and do not see one another. The whole grid then has the rest of the way.
 //!
 //! Displacements on the patch have a mean, the zero of which is restored by a shift of the whole grid. Its energy counts to first order: the shift times
 //! the mean of pressure and tension. The second order is left to the whole grid.
@@ -17,6 +18,9 @@ use crate::physics::memory::filled;
 /// Side of the smallest patch, and how many times smaller than the grid the largest is.
 const SMALLEST: usize = 32;
 const PARTS: usize = 4;
+/// Places at most that are followed at once, and the distance up to which points belong to one.
+const PLACES: usize = 8;
+const NEAR: usize = 12;
 /// Part of the side of a patch that is its border.
 const BORDER: usize = 8;
 /// Side of a patch at first: this many times the extent of the changed bonds, and points.
@@ -68,39 +72,61 @@ impl Patches {
 }
 
 impl Follow for Patches {
-    fn follow(
+    /// Places follow one another in the order of their largest residuals; one that would overlap an earlier one is left to the whole grid.
+    fn follow(&mut self, (whole, state): (&Problem, &mut State), changed: &[usize], centre: f64, accuracy: Accuracy) -> bool {
+        let grid = &whole.half_space;
+        let accuracy = Accuracy { rms: f64::INFINITY, largest: FINISH * accuracy.largest, iterations: ITERATIONS };
+        let mut rest = changed.to_vec();
+        let mut done: Vec<(Place, usize)> = Vec::new();
+        while let Some(first) = rest.first().copied().filter(|_| done.len() < PLACES && !self.0.is_empty()) {
+            let (place, extent) = surroundings(grid, first, &rest);
+            rest.retain(|point| !is_near(grid, *point, first));
+            let is_open = |side: usize| done.iter().all(|(other, its)| distance(grid, place, *other) >= side.midpoint(*its));
+            let enough = ROOM.0 * extent + ROOM.1;
+            let smallest = self.0.iter().position(|patch| patch.side() >= enough).unwrap_or(self.0.len() - 1);
+            if is_open(self.0[smallest].side())
+                && let Some(side) = self.relax((whole, state), place, smallest, is_open, (centre, accuracy))
+            {
+                done.push((place, side));
+            }
+        }
+        !done.is_empty()
+    }
+}
+
+impl Patches {
+    /// Brings a place to equilibrium, on patches from the `smallest` on, of sides that are `open`: the side of the last, or nothing if the state has not
+    /// moved.
+    fn relax(
         &mut self,
         (whole, state): (&Problem, &mut State),
-        (first, changed): (usize, &[usize]),
-        centre: f64,
-        accuracy: Accuracy,
-    ) -> bool {
-        let Some(largest) = self.0.last() else { return false };
-        let Some((place, extent)) = surroundings(&whole.half_space, first, changed, largest.side() / 4) else { return false };
-        let accuracy = Accuracy { rms: f64::INFINITY, largest: FINISH * accuracy.largest, iterations: ITERATIONS };
-        let enough = ROOM.0 * extent + ROOM.1;
-        let smallest = self.0.iter().position(|patch| patch.side() >= enough).unwrap_or(self.0.len() - 1);
-        self.0[smallest].cut(whole, state, place);
-        for k in smallest..self.0.len() {
+        place: Place,
+        smallest: usize,
+        is_open: impl Fn(usize) -> bool,
+        (centre, accuracy): (f64, Accuracy),
+    ) -> Option<usize> {
+        let mut k = smallest;
+        self.0[k].cut(whole, state, place);
+        loop {
             let (smaller, larger) = self.0.split_at_mut(k + 1);
             let patch = &mut smaller[k];
             patch.minimiser.centre = centre;
             let outcome = patch.minimiser.minimise(&patch.problem, &mut patch.state, accuracy);
             if k == smallest && outcome.iterations == 0 {
-                return false;
+                return None;
             }
             match larger.first_mut() {
-                Some(larger) if patch.has_changed_at_border(whole, state, place) => {
+                Some(larger) if is_open(larger.side()) && patch.has_changed_at_border(whole, state, place) => {
                     larger.cut(whole, state, place);
                     larger.take_over(patch);
+                    k += 1;
                 }
                 _ => {
                     patch.paste(whole, state, place);
-                    break;
+                    return Some(patch.side());
                 }
             }
         }
-        true
     }
 }
 
@@ -172,21 +198,35 @@ impl Patch {
     }
 }
 
-/// Middle and extent of the points within `reach` of the first, if they are the most of all.
-fn surroundings(grid: &HalfSpace, first: usize, points: &[usize], reach: usize) -> Option<(Place, usize)> {
-    let size = [grid.rows(), grid.columns()];
-    let place = |point: usize| [point / grid.columns(), point % grid.columns()];
-    // Offsets from the first point, to which half the size is added.
-    let offset = |point: usize| [0, 1].map(|k| (place(point)[k] + size[k] + size[k] / 2 - place(first)[k]) % size[k]);
-    let (mut low, mut high, mut near) = (size.map(|n| n / 2), size.map(|n| n / 2), 0);
-    for at in points.iter().map(|point| offset(*point)) {
-        if (0..2).all(|k| at[k].abs_diff(size[k] / 2) <= reach) {
-            near += 1;
-            low = [0, 1].map(|k| low[k].min(at[k]));
-            high = [0, 1].map(|k| high[k].max(at[k]));
+/// Difference of two places along one direction of a periodic grid of `size` points.
+fn apart(a: usize, b: usize, size: usize) -> usize {
+    let way = a.abs_diff(b);
+    way.min(size - way)
+}
+
+/// Larger of the differences of two places along rows and columns.
+fn distance(grid: &HalfSpace, a: Place, b: Place) -> usize {
+    apart(a[0], b[0], grid.rows()).max(apart(a[1], b[1], grid.columns()))
+}
+
+fn place(grid: &HalfSpace, point: usize) -> Place {
+    [point / grid.columns(), point % grid.columns()]
+}
+
+fn is_near(grid: &HalfSpace, point: usize, first: usize) -> bool {
+    distance(grid, place(grid, point), place(grid, first)) <= NEAR
+}
+
+/// Middle and extent of the points near the first.
+fn surroundings(grid: &HalfSpace, first: usize, points: &[usize]) -> (Place, usize) {
+    let (size, first) = ([grid.rows(), grid.columns()], place(grid, first));
+    let (mut low, mut high) = ([NEAR; 2], [NEAR; 2]);
+    for at in points.iter().map(|point| place(grid, *point)).filter(|at| distance(grid, *at, first) <= NEAR) {
+        for k in 0..2 {
+            let offset = (at[k] + size[k] + NEAR - first[k]) % size[k];
+            (low[k], high[k]) = (low[k].min(offset), high[k].max(offset));
         }
     }
-    let middle = [0, 1].map(|k| (place(first)[k] + (low[k] + high[k]) / 2 + size[k] - size[k] / 2) % size[k]);
-    let extent = (0..2).map(|k| high[k] - low[k] + 1).max().unwrap_or(1);
-    (2 * near >= points.len()).then_some((middle, extent))
+    let middle = [0, 1].map(|k| (first[k] + (low[k] + high[k]) / 2 + size[k] - NEAR) % size[k]);
+    (middle, (0..2).map(|k| high[k] - low[k] + 1).max().unwrap_or(1))
 }
