@@ -21,7 +21,6 @@ from . import _program
 #: Columns of the table of means that a notebook shows.
 _SHOWN = ("max_load", "done_count", "area_at_max_load_mean", "pull_off_load_mean", "loss_mean", "loss_sd", "caution")
 
-
 #: Symbols and units of parameters in the names of cases.
 _SYMBOLS = {
     "magnification": ("ζ", ""),
@@ -37,8 +36,9 @@ _SYMBOLS = {
 def case_names(cases: pa.Table) -> dict[str, str]:
     """Name of each case of the table `cases`: the fewest varying parameters by which all cases differ."""
     names = cases.schema.names
-    rows = {row["case_id"]: row for row in cases.select(names[: names.index("max_load")]).to_pylist()}
-    columns = [name for name in names[: names.index("max_load")] if name not in ("case_id", "sweep")]
+    parameters = names[: names.index("max_load")]
+    rows = {row["case_id"]: row for row in cases.select(parameters).to_pylist()}
+    columns = [name for name in parameters if name not in ("case_id", "sweep")]
     # Of columns with as many values, the method and the quantities with symbols come first.
     known = ["method", *_SYMBOLS]
     columns.sort(key=lambda name: (-len({row[name] for row in rows.values()}), known.index(name) if name in known else len(known)))

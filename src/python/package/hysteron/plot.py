@@ -40,8 +40,10 @@ def _cycle(run: Run, id: str | None) -> str:
     ids = run.cycle_ids
     if not ids:
         raise ValueError(f"cannot plot {run.dir}: no cycle is finished\nhelp: run `hysteron run SPEC`")
-    if id is not None or "statistics/cases" not in run:
-        return ids[0] if id is None else id
+    if id is not None:
+        return id
+    if "statistics/cases" not in run:
+        return ids[0]
     case, method, loss = _columns(run.cases, "case_id", "method", "loss_mean")
     means = np.where(np.isnan(loss.astype(float)), -np.inf, loss.astype(float))
     order = np.lexsort((-means, method != "asperities"))
