@@ -2,6 +2,7 @@
 
 use super::neighbours::Neighbours;
 use super::numbering::Places;
+use super::numerics::{Accuracy, Numerics};
 use crate::model::{Boundary, Coalescence, Interaction as Kind, JumpIn, Material, Slips};
 use crate::physics::PhysicsError;
 use crate::physics::half_space::spot_field::{Spot, spot_field_as_printed};
@@ -50,8 +51,7 @@ pub struct Problem {
     pub(crate) rules: Rules,
     pub(crate) field: Best,
     pub(crate) neighbours: Neighbours,
-    /// Number of spots in the local problem of an event.
-    pub(crate) spots_in_patch: usize,
+    pub(crate) numerics: Numerics,
     /// Side of the square L \[m\].
     pub length_m: f64,
     /// Rms height, unit of the mean penetration \[m\].
@@ -64,18 +64,19 @@ pub struct Problem {
 /// An asperity that formed a contact there would leave at once. At its lower bound, μ = 2, the criterion gives 0.79.
 const DEEPEST_JUMP_IN: f64 = 0.95;
 
-/// Number of spots in the local problem of an event.
-///
-/// They lie within about five screening lengths of it. All other spots respond to first order.
-const SPOTS_IN_PATCH: usize = 24;
-
 impl Problem {
     /// Sets the number of spots in local problems.
     ///
     /// With `usize::MAX` every event is solved globally.
     #[must_use]
     pub fn with_patches_of(self, spots: usize) -> Self {
-        Self { spots_in_patch: spots.max(1), ..self }
+        Self { numerics: Numerics { spots_in_patch: spots.max(1), ..self.numerics }, ..self }
+    }
+
+    /// Sets the tolerance of the path between exact global solves, in units of its scale; 0.01 by default.
+    #[must_use]
+    pub fn with_tolerance(self, tolerance: f64) -> Self {
+        Self { numerics: Numerics { accuracy: Accuracy(tolerance), ..self.numerics }, ..self }
     }
 
     /// Sets the number of spots from which fast sums are used.
@@ -128,7 +129,7 @@ impl Problem {
             jump_in: jump_in.into(),
             field: if rules.coalescence == Coalescence::Merge { field } else { field.with_table() },
             neighbours: Neighbours::new(positions, length_m, periodic),
-            spots_in_patch: SPOTS_IN_PATCH,
+            numerics: Numerics::default(),
             places: Arc::new(places),
             asperities: asperities.into(),
             material,
@@ -146,7 +147,7 @@ impl Problem {
 
     /// True if local problems contain all asperities of the surface.
     pub(crate) fn solves_whole(&self) -> bool {
-        self.spots_in_patch >= self.summits()
+        self.numerics.spots_in_patch >= self.summits()
     }
 
     /// Residual below which a state is an equilibrium \[m\].

@@ -31,7 +31,7 @@ impl EquilibriumPath {
     /// Applies a transition that is due at the present mean penetration, with its avalanche.
     pub(super) fn start_avalanche(&mut self, first: Transition) -> Result<(), Rejection> {
         self.log.begin_avalanche();
-        self.gather(&first, Some(self.state().approach_m), self.problem().spots_in_patch);
+        self.gather(&first, Some(self.state().approach_m), self.problem().numerics.spots_in_patch);
         self.advance_members();
         let mut avalanche = Avalanche::default();
         self.apply(first, None, &mut avalanche)?;
@@ -63,7 +63,7 @@ impl EquilibriumPath {
                 let asperity = self.problem().number(transition.asperity);
                 return Err(PhysicsError::EndlessAvalanche { approach_m: approach, events: applied, asperity }.into());
             }
-            self.gather(&transition, Some(approach), self.problem().spots_in_patch);
+            self.gather(&transition, Some(approach), self.problem().numerics.spots_in_patch);
             if transition.kind == Kind::Snap || self.has_pending() {
                 solves += 1;
                 propagated = solves <= MOST_SOLVES.max(self.state().contacts.len() / MOST_SOLVES);

@@ -1,6 +1,6 @@
 //! Checkpoints of a path: in memory, to repeat an increment, and as a record that another process resumes.
 
-use super::accuracy::{EXACT_GRID, FINE_INCREMENT, LEAST_SCALE, LONGEST_INCREMENT};
+use super::accuracy::{EXACT_GRID, LEAST_SCALE};
 use super::chatter::ChatterGuard;
 use super::event_log::EventLog;
 use super::predictor::Predictor;
@@ -61,7 +61,7 @@ impl PathCheckpoint {
         let off = off.max(LEAST_SCALE * problem.rms_height_m);
         // A power of two of the grid, so that round output steps end increments.
         let unit = EXACT_GRID * problem.rms_height_m;
-        let share = if problem.solves_whole() { FINE_INCREMENT } else { LONGEST_INCREMENT };
+        let share = problem.numerics.accuracy.longest_increment(problem.solves_whole());
         let longest = unit * (share * off / unit).log2().floor().exp2();
         Self {
             state,

@@ -1,6 +1,6 @@
 //! Global corrector: the contact solved at the end of an increment, and new predictors of everything.
 
-use super::accuracy::{DRIFT, LATENESS, Precision, SUFFICIENT, WORST_RESIDUAL};
+use super::accuracy::Precision;
 use super::checkpoint::Checkpoint;
 use super::equilibrium_path::EquilibriumPath;
 use super::rejection::Rejection;
@@ -95,7 +95,7 @@ impl EquilibriumPath {
     fn solve_globally(&mut self, first: NotConverged, strict: bool) -> Result<Vec<f64>, NotConverged> {
         let tolerance = match self.precision {
             Precision::Exact => self.problem().tolerance_m(),
-            Precision::Sufficient => SUFFICIENT * self.frame.scale,
+            Precision::Sufficient => self.accuracy().sufficient() * self.frame.scale,
         };
         self.solver.newton(&mut self.predictor.state, first, !strict, tolerance)?;
         let rates = self.finite_rates(first)?;
@@ -105,7 +105,8 @@ impl EquilibriumPath {
 
     /// Rejects an increment with transitions that were found too late.
     fn reject_late(&self, due: &[(f64, Transition)]) -> Result<(), Rejection> {
-        let is_late = |lateness: f64| lateness > LATENESS * self.frame.scale;
+        let latest = self.accuracy().lateness() * self.frame.scale;
+        let is_late = |lateness: f64| lateness > latest;
         let late: Vec<Transition> = due.iter().filter(|(lateness, _)| is_late(*lateness)).map(|(_, transition)| *transition).collect();
         match due.first() {
             Some(worst) if !late.is_empty() => Err(Rejection::Late(late, NotConverged::residual(worst.0, worst.1.asperity))),
@@ -164,7 +165,7 @@ impl EquilibriumPath {
         let off: Vec<f64> = contacts.iter().zip(&self.solver.residual).map(|(&i, residual)| residual + pending[i]).collect();
         let worst = off.iter().map(|r| r.abs()).fold(0.0, f64::max);
         let rms = (dot(&off, &off) / off.len().max(1) as f64).sqrt();
-        worst > WORST_RESIDUAL * self.frame.scale || rms > DRIFT * self.frame.scale
+        worst > self.accuracy().worst_residual() * self.frame.scale || rms > self.accuracy().drift() * self.frame.scale
     }
 
     /// Replaces all predictors after a global solve, and counts the work since the last one.

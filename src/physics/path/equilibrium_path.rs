@@ -1,6 +1,6 @@
 //! State of a path, and its increments.
 
-use super::accuracy::{EXACT_GRID, PENDING, Precision};
+use super::accuracy::{EXACT_GRID, Precision};
 use super::chatter::ChatterGuard;
 use super::checkpoint::Checkpoint;
 use super::energy::EnergyLedger;
@@ -10,6 +10,7 @@ use super::pending::PendingField;
 use super::predictor::Predictor;
 use super::rejection::Rejection;
 use super::step_control::{Recovery, StepControl, is_multiple};
+use crate::physics::contact::numerics::Accuracy;
 use crate::physics::contact::transition::{Kind, Transition};
 use crate::physics::contact::{Event, Problem, State, Status, Totals};
 use crate::physics::half_space::Effort;
@@ -120,9 +121,14 @@ impl EquilibriumPath {
         self.chatter.clear_frozen();
     }
 
+    /// Accuracy between exact global solves.
+    pub(super) fn accuracy(&self) -> Accuracy {
+        self.problem().numerics.accuracy
+    }
+
     /// Maximum pending displacement of a contact \[m\].
     pub(super) fn pending_limit(&self) -> f64 {
-        PENDING * self.frame.scale
+        self.accuracy().pending() * self.frame.scale
     }
 
     /// Gathers the neighbourhood of a transition, of `contacts` contacts, at a mean penetration \[m\] or where they were known last.

@@ -96,7 +96,7 @@ impl EquilibriumPath {
             self.chatter.freeze(transition.asperity);
             return Ok(Outcome::Absent);
         }
-        self.gather(&transition, None, self.problem().spots_in_patch);
+        self.gather(&transition, None, self.problem().numerics.spots_in_patch);
         let mut avalanche = Avalanche::default();
         self.log.begin_avalanche();
         if self.has_pending() {

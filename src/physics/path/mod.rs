@@ -83,7 +83,7 @@ mod step_control;
 mod triggers;
 mod work;
 
-pub use accuracy::{DRIFT, EVENT_TOLERANCE};
+pub use accuracy::EVENT_TOLERANCE;
 pub(crate) use checkpoint::PathCheckpoint;
 pub(crate) use equilibrium_path::EquilibriumPath;
 pub(crate) use step_control::is_multiple;

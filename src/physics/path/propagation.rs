@@ -61,7 +61,7 @@ impl EquilibriumPath {
         if !solved && self.neighbourhood.local.members.len() < self.state().contacts.len() {
             // Few contacts may have no equilibrium where more have.
             let approach = self.neighbourhood.local.approach;
-            self.gather(transition, Some(approach), self.problem().spots_in_patch.saturating_mul(WIDER));
+            self.gather(transition, Some(approach), self.problem().numerics.spots_in_patch.saturating_mul(WIDER));
             (before, start, solved) = self.solve_pending();
         }
         let applied = if solved { Vec::new() } else { self.relax_pending(transition, &start)? };

@@ -191,9 +191,9 @@ impl GlobalSolver {
     /// Solves the local problem around a contact with the displacement by all others held; false if it has no equilibrium.
     fn mend(&mut self, state: &mut State, asperity: usize) -> bool {
         let problem = &*Arc::clone(&self.problem);
-        let near = problem
-            .neighbours
-            .nearest(problem.place(asperity), problem.spots_in_patch, state.contacts.len(), |i| state.status[i] == Status::Contact);
+        let near = problem.neighbours.nearest(problem.place(asperity), problem.numerics.spots_in_patch, state.contacts.len(), |i| {
+            state.status[i] == Status::Contact
+        });
         let mut spots: Vec<(usize, f64, f64)> = near
             .into_iter()
             .filter_map(|(_, i)| state.contacts.binary_search(&i).ok().map(|k| (i, state.radius[i], state.displacement[k])))
