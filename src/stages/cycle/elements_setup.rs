@@ -28,8 +28,8 @@ const PEAK: f64 = 100.0;
 const MOST_ITERATIONS: usize = 3000;
 /// Points around a contact that are bonded.
 const MARGIN: usize = 2;
-/// Fields of numbers that the solver needs, and those of a load reversal with its maps and checkpoint.
-const FIELDS: usize = 26;
+/// Fields of numbers that the solver needs, its patches included, and those of a load reversal with its maps and checkpoint.
+const FIELDS: usize = 28;
 const FIELDS_OF_REVERSAL: usize = 9;
 
 /// Units of the solver in SI units.
