@@ -22,6 +22,10 @@ const DEEPEST: u32 = 5;
 const LOAD_ACCURACY: f64 = 1e-5;
 const SHARPER: f64 = 0.02;
 const SEARCHED: u32 = 40;
+/// Where the load jumps across that of a reversal: the bracket of the approach, in steps, at which the search ends, and the relative jump that counts as
+/// reached.
+const CLOSED: f64 = 1e-6;
+const JUMP: f64 = 1e-3;
 
 /// Settings of a path.
 #[derive(Debug, Clone, PartialEq)]
@@ -250,13 +254,19 @@ impl<'a> Walk<'a> {
             let (state, mut step) = self.attempt(approach, accuracy)?;
             (iterations, transforms) = (iterations + step.iterations, transforms + step.transforms);
             let load = step.totals.load;
-            let reached = (load / max_load - 1.0).abs() < LOAD_ACCURACY;
+            if load > max_load {
+                high = (approach, load)
+            } else {
+                low = (approach, load)
+            }
+            let error = (load / max_load - 1.0).abs();
+            let jumps = high.0 - low.0 < CLOSED * self.settings.step && error < JUMP;
+            let reached = error < LOAD_ACCURACY || jumps;
             if reached || searched == SEARCHED {
                 step.converged &= reached;
                 (step.iterations, step.transforms) = (iterations, transforms);
                 return Ok((state, step));
             }
-            if load > max_load { high = (approach, load) } else { low = (approach, load) }
         }
     }
 }
