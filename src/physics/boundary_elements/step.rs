@@ -255,9 +255,9 @@ impl<'a> Walk<'a> {
             (iterations, transforms) = (iterations + step.iterations, transforms + step.transforms);
             let load = step.totals.load;
             if load > max_load {
-                high = (approach, load)
+                high = (approach, load);
             } else {
-                low = (approach, load)
+                low = (approach, load);
             }
             let error = (load / max_load - 1.0).abs();
             let jumps = high.0 - low.0 < CLOSED * self.settings.step && error < JUMP;
