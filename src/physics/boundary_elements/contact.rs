@@ -170,7 +170,8 @@ impl Problem {
     }
 
     /// Bonds the free points within the margin of a contact and opens the sealed ones within the margin of an open point; with `nucleate` free points
-    /// that touch are a contact too, and sealed points whose tension exceeds the strength open. None of this raises the energy. The points whose bond has changed.
+    /// that touch are a contact too, and sealed points whose tension exceeds the strength open. None of this raises the energy. The points whose bond has
+    /// changed.
     pub fn update_bonds(&self, state: &mut State, nucleate: bool) -> Vec<usize> {
         let Attraction::Bonded { margin, nucleation, strength } = self.attraction else { return Vec::new() };
         let touching = self.map(state, |bonding, gap| match bonding {

@@ -4,7 +4,7 @@
 //! nearly fixed by the wall, and on the open points `O` the inverse of the elastic operator is the opposite-order (Calderón) preconditioner of the
 //! hypersingular operator. So the iterations grow only with log² of the grid. An iteration is two operator applications, four transforms.
 //!
-//! Where bonds change in one place only, as in most events, that place is brought to equilibrium first, on a [patch](super::patch) of the grid.
+//! Where bonds change in a few places, as in most events, these are brought to equilibrium first, on [patches](super::patch) of the grid.
 //!
 //! The state, its energy and its residual are in double precision; directions and what they are made of in single precision. The pressure that the
 //! increments have added up to is replaced by that of the displacement before a state counts as an equilibrium.
@@ -168,8 +168,8 @@ impl Minimiser {
                 moved = 0.0;
             }
             let mut changed = if look { problem.update_bonds(state, false) } else { Vec::new() };
-            self.sort(&mut changed);
-            if outcome.iterations >= EVERYWHERE && events.follow((problem, state), &changed, self.centre, accuracy) {
+            let event = outcome.iterations >= EVERYWHERE && !changed.is_empty();
+            if event && events.follow((problem, state), self.sorted(&mut changed), self.centre, accuracy) {
                 here = self.begin(problem, state);
                 self.pairs.clear();
                 continue;
@@ -181,10 +181,11 @@ impl Minimiser {
         }
     }
 
-    /// Sorts points from the largest residual to the smallest.
-    fn sort(&self, points: &mut [usize]) {
+    /// Points from the largest residual to the smallest.
+    fn sorted<'p>(&self, points: &'p mut [usize]) -> &'p [usize] {
         let residual = |point: &usize| (self.gradient.values[*point] - self.gradient.mean as f32).abs();
         points.sort_by(|a, b| residual(b).total_cmp(&residual(a)));
+        points
     }
 
     /// Pressure without the rounding of its increments, and gradient of a state. A patch keeps the pressure and the mean of the whole grid.

@@ -69,32 +69,7 @@ impl Patches {
     pub(super) fn transformed(&self) -> u64 {
         self.0.iter().map(|patch| patch.minimiser.transforms() * patch.problem.half_space.transformed()).sum()
     }
-}
 
-impl Follow for Patches {
-    /// Places follow one another in the order of their largest residuals; one that would overlap an earlier one is left to the whole grid.
-    fn follow(&mut self, (whole, state): (&Problem, &mut State), changed: &[usize], centre: f64, accuracy: Accuracy) -> bool {
-        let grid = &whole.half_space;
-        let accuracy = Accuracy { rms: f64::INFINITY, largest: FINISH * accuracy.largest, iterations: ITERATIONS };
-        let mut rest = changed.to_vec();
-        let mut done: Vec<(Place, usize)> = Vec::new();
-        while let Some(first) = rest.first().copied().filter(|_| done.len() < PLACES && !self.0.is_empty()) {
-            let (place, extent) = surroundings(grid, first, &rest);
-            rest.retain(|point| !is_near(grid, *point, first));
-            let is_open = |side: usize| done.iter().all(|(other, its)| distance(grid, place, *other) >= side.midpoint(*its));
-            let enough = ROOM.0 * extent + ROOM.1;
-            let smallest = self.0.iter().position(|patch| patch.side() >= enough).unwrap_or(self.0.len() - 1);
-            if is_open(self.0[smallest].side())
-                && let Some(side) = self.relax((whole, state), place, smallest, is_open, (centre, accuracy))
-            {
-                done.push((place, side));
-            }
-        }
-        !done.is_empty()
-    }
-}
-
-impl Patches {
     /// Brings a place to equilibrium, on patches from the `smallest` on, of sides that are `open`: the side of the last, or nothing if the state has not
     /// moved.
     fn relax(
@@ -127,6 +102,30 @@ impl Patches {
                 }
             }
         }
+    }
+}
+
+impl Follow for Patches {
+    /// Places follow one another in the order of their largest residuals; one that would overlap an earlier one is left to the whole grid.
+    fn follow(&mut self, (whole, state): (&Problem, &mut State), changed: &[usize], centre: f64, accuracy: Accuracy) -> bool {
+        let grid = &whole.half_space;
+        let accuracy = Accuracy { rms: f64::INFINITY, largest: FINISH * accuracy.largest, iterations: ITERATIONS };
+        let mut rest = changed.to_vec();
+        let mut done: Vec<(Place, usize)> = Vec::new();
+        while let Some(first) = rest.first().copied().filter(|_| done.len() < PLACES && !self.0.is_empty()) {
+            let (near, others) = rest.into_iter().partition(|point| distance(grid, place(grid, *point), place(grid, first)) <= NEAR);
+            rest = others;
+            let (place, extent) = surroundings(grid, first, near);
+            let is_open = |side: usize| done.iter().all(|(other, its)| distance(grid, place, *other) >= side.midpoint(*its));
+            let enough = ROOM.0 * extent + ROOM.1;
+            let smallest = self.0.iter().position(|patch| patch.side() >= enough).unwrap_or(self.0.len() - 1);
+            if is_open(self.0[smallest].side())
+                && let Some(side) = self.relax((whole, state), place, smallest, is_open, (centre, accuracy))
+            {
+                done.push((place, side));
+            }
+        }
+        !done.is_empty()
     }
 }
 
@@ -198,30 +197,21 @@ impl Patch {
     }
 }
 
-/// Difference of two places along one direction of a periodic grid of `size` points.
-fn apart(a: usize, b: usize, size: usize) -> usize {
-    let way = a.abs_diff(b);
-    way.min(size - way)
-}
-
-/// Larger of the differences of two places along rows and columns.
+/// Larger of the differences of two places along rows and columns of the periodic grid.
 fn distance(grid: &HalfSpace, a: Place, b: Place) -> usize {
-    apart(a[0], b[0], grid.rows()).max(apart(a[1], b[1], grid.columns()))
+    let along = |a: usize, b: usize, size: usize| a.abs_diff(b).min(size - a.abs_diff(b));
+    along(a[0], b[0], grid.rows()).max(along(a[1], b[1], grid.columns()))
 }
 
 fn place(grid: &HalfSpace, point: usize) -> Place {
     [point / grid.columns(), point % grid.columns()]
 }
 
-fn is_near(grid: &HalfSpace, point: usize, first: usize) -> bool {
-    distance(grid, place(grid, point), place(grid, first)) <= NEAR
-}
-
-/// Middle and extent of the points near the first.
-fn surroundings(grid: &HalfSpace, first: usize, points: &[usize]) -> (Place, usize) {
+/// Middle and extent of points that are near the first.
+fn surroundings(grid: &HalfSpace, first: usize, near: Vec<usize>) -> (Place, usize) {
     let (size, first) = ([grid.rows(), grid.columns()], place(grid, first));
     let (mut low, mut high) = ([NEAR; 2], [NEAR; 2]);
-    for at in points.iter().map(|point| place(grid, *point)).filter(|at| distance(grid, *at, first) <= NEAR) {
+    for at in near.into_iter().map(|point| place(grid, point)) {
         for k in 0..2 {
             let offset = (at[k] + size[k] + NEAR - first[k]) % size[k];
             (low[k], high[k]) = (low[k].min(offset), high[k].max(offset));

@@ -83,7 +83,7 @@ impl Halfway {
     }
 }
 
-/// A cycle on its way.
+/// An unfinished cycle with its problem and work space.
 pub(super) struct Walk<'a> {
     pub(super) problem: &'a Problem,
     pub(super) settings: &'a Settings,

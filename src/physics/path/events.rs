@@ -121,7 +121,7 @@ impl EquilibriumPath {
     fn locate(&mut self, event: &PredictedEvent, target: f64) -> Option<Located> {
         self.neighbourhood.set_origin();
         match self.problem().condition(&event.transition, &self.predictor.state)? {
-            Condition::Penetration { .. } => self.locate_jump_in(event, target),
+            Condition::Penetration { asperity, value_m } => self.locate_penetration(asperity, value_m, event.approach, target),
             Condition::Touching { pair: [i, by] } => self.locate_merging(i, by, target),
             Condition::Shrinking { contact, value_m } => self.locate_radius(contact, value_m, false, target),
             Condition::Growing { contact, value_m } => self.locate_radius(contact, value_m, true, target),
@@ -150,17 +150,17 @@ impl EquilibriumPath {
         }
     }
 
-    /// Locates a jump into contact, where the penetration of the asperity reaches its jump-in distance.
-    fn locate_jump_in(&mut self, event: &PredictedEvent, target: f64) -> Option<Located> {
+    /// Locates where the penetration of an asperity out of contact reaches `bound` \[m\], near the mean penetration `predicted` \[m\].
+    fn locate_penetration(&mut self, i: usize, bound: f64, predicted: f64, target: f64) -> Option<Located> {
         let (problem, sense) = (&*self.problem(), self.frame.sense);
         let (local, effort) = (&mut self.neighbourhood.local, &mut self.solver.effort);
-        let (i, start) = (event.transition.asperity, local.approach);
+        let start = local.approach;
         let watched = local.watched.iter().position(|place| place.asperity == i)?;
-        if local.penetration_of(problem, watched, effort) < problem.jump_in[i] {
+        if local.penetration_of(problem, watched, effort) < bound {
             // From near the predicted position, for a short way of Newton's method.
-            let guess = if (event.approach - start) * sense > 0.0 { event.approach } else { start };
+            let guess = if (predicted - start) * sense > 0.0 { predicted } else { start };
             local.ahead(problem, guess);
-            local.solve(problem, Hold::Penetration(watched, problem.jump_in[i]), effort).ok()?;
+            local.solve(problem, Hold::Penetration(watched, bound), effort).ok()?;
         }
         let way = (local.approach - start) * sense;
         let inside = way >= -EVENT_TOLERANCE * problem.rms_height_m && (local.approach - target) * sense <= 0.0;

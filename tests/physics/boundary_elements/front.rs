@@ -4,7 +4,7 @@
 //! `½ q b K0 cos qz` (Rice 1985), and by the growth κ b of the straight contact, with κ between `½ d ln K0/da`, one edge alone, and `d ln K0/da`, both edges together. With
 //! `K0 = sqrt(2E*Δγ)` equilibrium has `b (½ q + κ) = ½ ε sqrt(q E*/Δγ)`.
 
-use super::{BONDED, accuracy, problem};
+use super::{BONDED, accuracy, problem, settle};
 use hysteron::physics::boundary_elements::contact::{Problem, State};
 use hysteron::physics::boundary_elements::law::Law;
 use hysteron::physics::boundary_elements::minimise::Minimiser;
@@ -68,13 +68,7 @@ fn amplitude(rows: usize) -> (f64, [f64; 2]) {
     let mut state = problem.apart(0.0).unwrap();
     for step in 0..=6 {
         state.approach = height + 0.05 * h * f64::from(step);
-        loop {
-            assert!(minimiser.minimise(&problem, &mut state, accuracy(1e-6)).converged);
-            if problem.update_bonds(&mut state, true).is_empty() {
-                break;
-            }
-        }
-        problem.settle_bonds(&mut state);
+        settle(&problem, &mut state, |state| minimiser.minimise(&problem, state, accuracy(1e-6)));
     }
     let widths: Vec<f64> = (0..rows).map(|row| half_width(&problem, &state, row)).collect();
     let mean = widths.iter().sum::<f64>() / rows as f64;

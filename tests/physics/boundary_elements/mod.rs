@@ -8,11 +8,11 @@ mod rough;
 mod sphere;
 mod trapping;
 
-use hysteron::physics::boundary_elements::contact::{Attraction, Problem};
+use hysteron::physics::boundary_elements::contact::{Attraction, Problem, State, Totals};
 use hysteron::physics::boundary_elements::cycle::{Cycle, Settings, run};
 use hysteron::physics::boundary_elements::grid::HalfSpace;
 use hysteron::physics::boundary_elements::law::Law;
-use hysteron::physics::boundary_elements::minimise::Accuracy;
+use hysteron::physics::boundary_elements::minimise::{Accuracy, Outcome};
 
 /// The JKR limit: bonds within two points of contact, formed by touch.
 const BONDED: Attraction = Attraction::Bonded { margin: 2, nucleation: 0.0, strength: f64::INFINITY };
@@ -27,6 +27,18 @@ fn problem(rows: usize, columns: usize, heights: impl Fn(usize, usize) -> f64, l
     let top = heights.iter().copied().fold(f64::MIN, f64::max);
     heights.iter_mut().for_each(|z| *z -= top);
     Problem { half_space: HalfSpace::new(rows, columns).unwrap(), law, heights, attraction }
+}
+
+/// The equilibrium that `find` leads to, with all contacts that form there.
+fn settle(problem: &Problem, state: &mut State, mut find: impl FnMut(&mut State) -> Outcome) -> Totals {
+    loop {
+        assert!(find(state).converged);
+        if problem.update_bonds(state, true).is_empty() {
+            break;
+        }
+    }
+    problem.settle_bonds(state);
+    problem.totals(state)
 }
 
 fn cycle(problem: &Problem, max_load: f64, step: f64, halvings: u32) -> Cycle {

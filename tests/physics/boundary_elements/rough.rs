@@ -1,6 +1,6 @@
 //! A rough surface: energy balance, threads, shifts.
 
-use super::{BONDED, cycle, problem, sums};
+use super::{BONDED, cycle, problem, settle, sums};
 use hysteron::physics::boundary_elements::cycle::{Settings, run, unload_from};
 use hysteron::physics::boundary_elements::equilibrium::Equilibrium;
 use hysteron::physics::boundary_elements::law::Law;
@@ -88,19 +88,11 @@ fn law_three_minimisers_reach_one_state() {
         let mut state = problem.apart(0.0).unwrap();
         for k in 0..12 {
             state.approach = 0.08 * f64::from(k);
-            loop {
-                let accuracy = super::accuracy(1e-7);
-                let outcome = if newton {
-                    minimiser.newton(&problem, &mut state, accuracy).unwrap()
-                } else {
-                    minimiser.minimise(&problem, &mut state, accuracy)
-                };
-                assert!(outcome.converged);
-                if problem.update_bonds(&mut state, true).is_empty() {
-                    break;
-                }
-            }
-            problem.settle_bonds(&mut state);
+            let accuracy = super::accuracy(1e-7);
+            settle(&problem, &mut state, |state| match newton {
+                true => minimiser.newton(&problem, state, accuracy).unwrap(),
+                false => minimiser.minimise(&problem, state, accuracy),
+            });
         }
         (problem.totals(&state), minimiser.transforms())
     };
@@ -126,14 +118,7 @@ fn law_events_on_patches_end_as_on_the_whole_grid() {
         let mut path = Vec::new();
         for k in 0..40 {
             state.approach = 0.4 * f64::from(k);
-            loop {
-                assert!(equilibrium.find(&problem, &mut state, super::accuracy(1e-5)).unwrap().converged);
-                if problem.update_bonds(&mut state, true).is_empty() {
-                    break;
-                }
-            }
-            problem.settle_bonds(&mut state);
-            path.push(problem.totals(&state));
+            path.push(settle(&problem, &mut state, |state| equilibrium.find(&problem, state, super::accuracy(1e-5)).unwrap()));
         }
         (path, equilibrium.transforms(0))
     };

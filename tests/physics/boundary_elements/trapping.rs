@@ -1,6 +1,6 @@
 //! Lattice trapping: a straight front that moves on and back loses no energy.
 
-use super::{BONDED, problem};
+use super::{BONDED, problem, settle};
 use hysteron::physics::boundary_elements::contact::{Problem, State};
 use hysteron::physics::boundary_elements::law::Law;
 use hysteron::physics::boundary_elements::minimise::{Accuracy, Minimiser};
@@ -11,14 +11,7 @@ const ALPHA: f64 = 0.3;
 fn advance(problem: &Problem, minimiser: &mut Minimiser, state: &mut State, approach: f64) -> f64 {
     state.approach = approach;
     let accuracy = Accuracy { rms: 1e-7, largest: 1e-5, iterations: 20_000 };
-    loop {
-        assert!(minimiser.minimise(problem, state, accuracy).converged);
-        if problem.update_bonds(state, true).is_empty() {
-            break;
-        }
-    }
-    problem.settle_bonds(state);
-    problem.totals(state).load
+    settle(problem, state, |state| minimiser.minimise(problem, state, accuracy)).load
 }
 
 /// Energy lost over a sub-cycle on the stable branch, over Δγ and the area that the two fronts sweep.
