@@ -19,7 +19,7 @@ pub struct FreeStep {
     pub converged: bool,
 }
 
-/// Loads a problem without attraction in steps of the approach \[dx\] until `enough` says so of the steps, or all points are in contact.
+/// Loads a problem without attraction in steps of the approach \[dx\] until `enough` is true for the steps so far, or all points are in contact.
 ///
 /// # Errors
 /// Not enough memory.

@@ -7,7 +7,7 @@ use super::step::Walk;
 pub use super::step::{Halfway, Settings};
 use crate::physics::PhysicsError;
 
-/// Approach at which a load counts as not reached and, behind the origin, the surfaces as inseparable, in ranges of the heights.
+/// Magnitude of the approach, in ranges of the heights, beyond which a load counts as not reached and, at negative approach, the surfaces as inseparable.
 const FARTHEST: f64 = 20.0;
 
 /// Loads to the largest of the loads and unloads from each, from the beginning or from `halfway`. After each step `keep` is given what is needed to
@@ -75,7 +75,7 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// Approach beyond which no load is reached and, behind the origin, nothing holds \[dx\].
+    /// Magnitude of the approach beyond which the search for a load or for the last separation ends \[dx\].
     fn farthest(&self) -> f64 {
         FARTHEST * self.problem.range()
     }

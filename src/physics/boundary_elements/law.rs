@@ -69,7 +69,8 @@ pub struct Morse {
     range: f64,
 }
 
-/// Convolution of `2 y^(p)` type edge functions with the Gaussian: `∫₀^∞ W(x − t²) {2t², 2, 2 W'/W} dt`.
+/// Convolutions of the Gaussian `W` with the fields of the front at the distance `x`: of `√y`, of `1/√y`, and the derivative of the latter to `x`. With
+/// `y = t²` they are `∫₀^∞ 2t² W dt`, `∫₀^∞ 2 W dt` and `∫₀^∞ 2 W' dt`, where `W = W(x − t²)`.
 fn edge(x: f64) -> [f64; 3] {
     // The integrand is even and entire in t, so that the trapezoid rule converges exponentially.
     let end = (x.max(0.0) + 9.0 * WIDTH).sqrt();

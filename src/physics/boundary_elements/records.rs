@@ -19,13 +19,14 @@ pub struct Step {
     pub dissipated: f64,
     /// `∫F dΔ − ΔΠ` since the step before \[E* dx³\], its error included.
     pub imbalance: f64,
-    /// Estimated error of that integral, a third of the difference of parabola and trapezoid \[E* dx³\]; 0 without an estimate, after an event.
+    /// Estimated error of that integral: a third of the difference between parabola and trapezoid \[E* dx³\]; 0 after an event, where there is no
+    /// estimate.
     pub uncertainty: f64,
     /// Work since the branch began \[E* dx³\]: the change of the energy, and `∫F dΔ` over steps with an event.
     pub work: f64,
-    /// Iterations and transforms, those of halved steps included.
+    /// Iterations on the whole grid, those of halved steps included.
     pub iterations: u64,
-    /// Transforms of the grid; those of patches count by their points.
+    /// Real transforms of the grid, those of halved steps included; transforms of patches count by their points.
     pub transforms: u64,
     /// Root mean square of the residual, of the maximum tension.
     pub residual: f64,
@@ -40,9 +41,9 @@ pub struct Event {
     pub step: usize,
     /// What happened to the region whose area changed most.
     pub kind: Change,
-    /// State before and after.
+    /// Load, energy and area before.
     pub before: Totals,
-    /// State after.
+    /// Load, energy and area after.
     pub after: Totals,
     /// Dissipated energy \[E* dx³\].
     pub dissipated: f64,
@@ -64,9 +65,9 @@ pub struct Map {
 pub struct Turning {
     /// Number of its step.
     pub step: usize,
-    /// The state.
+    /// State at the reversal.
     pub state: State,
-    /// Its step.
+    /// Step that led to it.
     pub last: Step,
     /// Energy dissipated so far \[E* dx³\].
     pub dissipated: f64,

@@ -13,7 +13,8 @@ pub struct Region {
     pub load: f64,
     /// Length of the edge \[dx\], by Crofton's formula along the rows, the columns and the diagonals.
     pub perimeter: f64,
-    /// Centroid, row and column \[dx\]; of a region around the whole square one of its points of reference.
+    /// Centroid, row and column \[dx\]: the mean direction on a circle of the length of the square. It has no meaning along a direction in which the
+    /// region closes on itself across the edges.
     pub centroid: [f64; 2],
 }
 

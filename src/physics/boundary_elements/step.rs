@@ -16,9 +16,9 @@ use serde::{Deserialize, Serialize};
 /// Dissipated energy of an event, and of one that is located by halving the step, of the energy dissipated so far.
 const EVENT: f64 = 3e-5;
 const LARGE: f64 = 3e-3;
-/// Halvings of a step at most, as long as they reduce the error of the integral of the load.
+/// Most halvings of a step, as long as each reduces the error of the integral of the load.
 const DEEPEST: u32 = 5;
-/// Relative accuracy of the load at a reversal, how much more exact than elsewhere the equilibria in its search are, and how many there are at most.
+/// Relative accuracy of the load at a reversal; tolerance of the equilibria in its search, of that elsewhere; most equilibria of a search.
 const LOAD_ACCURACY: f64 = 1e-5;
 const SHARPER: f64 = 0.02;
 const SEARCHED: u32 = 40;
