@@ -6,7 +6,7 @@ use super::minimise::Accuracy;
 use super::patch::Patches;
 use crate::physics::PhysicsError;
 
-/// An equilibrium without adhesion.
+/// An equilibrium without adhesion, of [`Attraction::None`](super::contact::Attraction::None).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FreeStep {
     /// Approach Δ \[dx\].

@@ -14,7 +14,7 @@ const FARTHEST: f64 = 20.0;
 /// continue from there, and `progress` the completed fraction.
 ///
 /// # Errors
-/// Not enough memory; a load that is not reached; full contact at a reversal.
+/// Not enough memory; a load that is not reached; full contact at a reversal; surfaces that do not separate.
 pub fn run(
     problem: &Problem,
     settings: &Settings,
@@ -42,7 +42,7 @@ pub fn run(
 /// Unloads from a state at a load reversal: the steps, events, regions and maps that [`run`] has from there, numbered from 0.
 ///
 /// # Errors
-/// Not enough memory.
+/// Not enough memory; surfaces that do not separate.
 pub fn unload_from(problem: &Problem, settings: &Settings, reversal: usize, turning: &Turning) -> Result<Cycle, PhysicsError> {
     rayon::scope(|_| {
         let mut walk = Walk::begin(problem, settings, None)?;

@@ -41,7 +41,7 @@ impl Equilibrium {
         self.minimiser.transforms() * self.points + self.patches.transformed()
     }
 
-    /// Real transforms of the grid since so many points were transformed; those of patches count by their points.
+    /// Real transforms since [`Self::transformed`] was `since`, in those of the whole grid and rounded up.
     #[must_use]
     pub fn transforms(&self, since: u64) -> u64 {
         (self.transformed() - since).div_ceil(self.points)

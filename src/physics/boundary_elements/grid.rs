@@ -128,7 +128,7 @@ impl HalfSpace {
         Ok(Self { rows, columns, padded: (rows, columns), double: Plans::new(rows, columns, of)?, single: Plans::new(rows, columns, of)? })
     }
 
-    /// Pressure around a unit displacement of one point of a periodic grid, at each offset.
+    /// Pressure around a unit displacement of one point of a periodic grid, at each offset \[E*/dx\]: `rows × columns` values, row by row.
     ///
     /// # Errors
     /// Not enough memory.
@@ -210,8 +210,9 @@ impl HalfSpace {
         })
     }
 
-    /// Applies an operator to `field` and writes the result to `result`. On a periodic grid neither has a component at `q = 0`; on a patch the inverse
-    /// operators are approximate.
+    /// Applies an operator to `field` and writes the result to `result`, both of `rows × columns` values, row by row.
+    ///
+    /// On a periodic grid the mean of `field` does not matter but to [`Operator::Shifted`]. On a patch the inverse operators are approximate.
     pub fn apply<T: Real>(&self, operator: Operator, field: &[T], result: &mut [T], waves: &mut Waves<T>) {
         let half = self.padded.1 / 2 + 1;
         let plans = T::plans(self);

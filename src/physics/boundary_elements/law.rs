@@ -200,7 +200,7 @@ impl Morse {
 }
 
 impl Law {
-    /// Law of the band-limited crack for the work of adhesion `work` \[E* dx\]; 0 for the wall alone.
+    /// Law of the band-limited crack for the work of adhesion `work` \[E* dx\]. With 0 only [`Self::wall`] is defined.
     #[must_use]
     pub fn crack(work: f64) -> Self {
         Self::Crack(Crack::new(work))

@@ -1,8 +1,9 @@
 //! Equilibrium at a fixed approach: a local minimum of the energy, reached without passing over a barrier.
 //!
-//! L-BFGS with three pairs and a *split* preconditioner, `M⁻¹ = P_O K⁻¹ P_O + P_C (max(V'', 0) + 0.7)⁻¹ P_C` in E*/dx: points in contact `C` are
-//! nearly fixed by the wall, and on the open points `O` the inverse of the elastic operator is the opposite-order (Calderón) preconditioner of the
-//! hypersingular operator. So the iterations grow only with log² of the grid. An iteration is two operator applications, four transforms.
+//! L-BFGS with three pairs and a *split* preconditioner, `M⁻¹ = P_O K⁻¹ P_O + P_C (V'' + 0.7)⁻¹ P_C` with `M` in E*/dx. Points in contact `C`, of
+//! `V'' > 0.3 E*/dx`, are nearly fixed by the wall. On the open points `O` the inverse of the elastic operator is the opposite-order (Calderón)
+//! preconditioner of the hypersingular operator. The condition number grows only as log² of the number of points along a side. An iteration is two
+//! operator applications, four transforms.
 //!
 //! Where bonds change in a few places, as in most events, these are brought to equilibrium first, on [patches](super::patch) of the grid.
 //!
@@ -18,21 +19,22 @@ use crate::physics::PhysicsError;
 use crate::physics::memory::filled;
 use rayon::prelude::*;
 
-/// Change of the displacement after which bonds are looked at, of the reach of the law.
+/// Change of the displacement between two updates of the bonds, relative to the reach of the law.
 const LOOK: f64 = 0.02;
-/// Largest residual, of the maximum tension, at which bonds are looked at: far from equilibrium edges of contact lie where no equilibrium has them.
+/// Largest residual at which bonds are updated, relative to [`Problem::stress`]. Far from equilibrium, edges of contact lie where no equilibrium has
+/// them.
 const NEAR: f64 = 0.4;
 /// Iterations on the whole grid before an event counts as one: the first follow the approach everywhere.
 const EVERYWHERE: usize = 8;
 /// Shortenings of a step that would raise the energy.
 const SHORTENINGS: u32 = 30;
 
-/// How exactly, and how long.
+/// Criteria of convergence.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Accuracy {
-    /// Root mean square of the residual, of the maximum tension.
+    /// Root mean square of the residual, relative to [`Problem::stress`].
     pub rms: f64,
-    /// Largest residual, of the maximum tension.
+    /// Largest residual, relative to [`Problem::stress`].
     pub largest: f64,
     /// Most iterations.
     pub iterations: usize,
@@ -41,9 +43,9 @@ pub struct Accuracy {
 /// Result of a minimisation.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Outcome {
-    /// Iterations.
+    /// Iterations of L-BFGS, or of conjugate gradients by [`Minimiser::newton`].
     pub iterations: usize,
-    /// Root mean square of the residual, of the maximum tension.
+    /// Root mean square of the residual, relative to [`Problem::stress`].
     pub residual: f64,
     /// Whether the accuracy was reached.
     pub converged: bool,
@@ -89,7 +91,7 @@ pub struct Minimiser {
     pub preconditioner: Preconditioner,
 }
 
-/// What follows events in the places where they happen.
+/// Local relaxation after events.
 pub(super) trait Follow {
     /// Brings the places around the points whose bonds have changed to equilibrium, given from the largest residual to the smallest: whether the state has
     /// moved. `centre` is the mean of pressure and tension of the grid.
@@ -147,7 +149,7 @@ impl Minimiser {
         loop {
             (outcome.residual, outcome.converged) = (here.rms / stress, here.within(accuracy, stress));
             if outcome.converged && !exact {
-                // By the increments of the pressure, for the bonds as they were.
+                // Converged with the accumulated pressure and the bonds so far: checked once more with both renewed.
                 exact = problem.update_bonds(state, false).is_empty();
                 here = self.begin(problem, state);
                 moved = 0.0;
@@ -321,7 +323,7 @@ impl Minimiser {
             let there = self.evaluate(problem, state, step - taken, mean);
             taken = step;
             let change = there.energy - here.energy;
-            // Below rounding of the energies the slope alone decides.
+            // Armijo's condition; a rise below the rounding of the energy is accepted.
             if step * (linear + 0.5 * step * quadratic) + change <= 1e-4 * step * slope + 1e-13 * here.scale {
                 return Some((Taken { length: step, largest: step * largest }, there));
             }

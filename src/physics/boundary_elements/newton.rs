@@ -12,9 +12,9 @@ use crate::physics::PhysicsError;
 use crate::physics::memory::filled;
 use rayon::prelude::*;
 
-/// Steps of conjugate gradients to one of Newton.
+/// Most iterations of conjugate gradients in a step of Newton's method.
 const INNER: usize = 80;
-/// Decrease of the residual by conjugate gradients.
+/// Relative residual at which conjugate gradients end.
 const FORCING: f64 = 0.05;
 
 /// Fields of the inner iteration.
@@ -55,7 +55,7 @@ impl Minimiser {
         }
     }
 
-    /// The step within the reach of the law, and the iterations it took.
+    /// Computes the step within the reach of the law and its response, in `inner`, and returns the iterations of conjugate gradients.
     fn conjugate_gradients(&mut self, problem: &Problem, inner: &mut Inner) -> usize {
         inner.step.fill(0.0);
         inner.response.fill(0.0);

@@ -1,13 +1,13 @@
 //! Events on a part of the grid.
 //!
-//! In most events bonds change in a few places, and far from them the displacement hardly does. There the minimisation goes on for one place alone: for
-//! displacements that vanish outside a square, a *patch*, with the exact elastic operator. This is a descent of the energy of the whole grid within a
-//! subspace, by steps of the same limited length, so that no barrier is passed over that the whole grid would not pass over. One iteration costs as much
-//! less as the patch is smaller. Where bonds change at the border of a patch, one of twice the side goes on. Patches of several places do not overlap
-//! and do not see one another. The whole grid then has the rest of the way.
+//! In most events bonds change in a few places, and the displacement changes little elsewhere. Each place is then relaxed alone: the energy of the whole
+//! grid is minimised over displacements that vanish outside a square, a *patch*, with the exact elastic operator. This is a descent within a
+//! subspace, by steps of the same limited length, so that it passes over no barrier that the whole grid would not pass over. The cost of an iteration is
+//! proportional to the area of the patch. If bonds change at the border of a patch, a patch of twice the side replaces it. Patches of several places do
+//! not overlap, and their interaction is neglected until the whole grid is relaxed, which follows.
 //!
-//! Displacements on the patch have a mean, the zero of which is restored by a shift of the whole grid. Its energy counts to first order: the shift times
-//! the mean of pressure and tension. The second order is left to the whole grid.
+//! The displacement of a patch may have a mean. A uniform shift of the whole grid removes it. The energy of the shift is included to first order: the
+//! shift times the mean of pressure and tension. The second order follows with the whole grid.
 
 use super::contact::{Attraction, Bonding, Problem, State};
 use super::grid::HalfSpace;
@@ -15,18 +15,21 @@ use super::minimise::{Accuracy, Follow, Minimiser};
 use crate::physics::PhysicsError;
 use crate::physics::memory::filled;
 
-/// Side of the smallest patch, and how many times smaller than the grid the largest is.
+/// Side of the smallest patch.
 const SMALLEST: usize = 32;
+/// Least side of the grid, in sides of a patch.
 const PARTS: usize = 4;
-/// Places at most that are followed at once, and the distance up to which points belong to one.
+/// Most places that are followed at once.
 const PLACES: usize = 8;
+/// Distance from its first point up to which points belong to a place.
 const NEAR: usize = 12;
-/// Part of the side of a patch that is its border.
+/// The border of a patch has the width of its side over this.
 const BORDER: usize = 8;
 /// Side of a patch at first: this many times the extent of the changed bonds, and points.
 const ROOM: (usize, usize) = (2, 8);
-/// Largest residual at which a patch is left, of that of an equilibrium, and iterations at most.
+/// Largest residual of a relaxed patch, relative to that of an equilibrium.
 const FINISH: f64 = 3.0;
+/// Most iterations on a patch.
 const ITERATIONS: usize = 600;
 
 /// Patches of growing size.
@@ -35,7 +38,7 @@ pub struct Patches(Vec<Patch>);
 struct Patch {
     problem: Problem,
     state: State,
-    /// Displacement of the whole grid.
+    /// Displacement at the points of the patch when it was cut out \[dx\].
     start: Vec<f64>,
     minimiser: Minimiser,
 }
@@ -70,7 +73,7 @@ impl Patches {
         self.0.iter().map(|patch| patch.minimiser.transforms() * patch.problem.half_space.transformed()).sum()
     }
 
-    /// Brings a place to equilibrium, on patches from the `smallest` on, of sides that are `open`: the side of the last, or nothing if the state has not
+    /// Relaxes around a place on patches of increasing side, from the `smallest` on, as long as the next `is_open`. The side of the last; `None` if nothing
     /// moved.
     fn relax(
         &mut self,

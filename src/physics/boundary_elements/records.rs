@@ -24,11 +24,11 @@ pub struct Step {
     pub uncertainty: f64,
     /// Work since the branch began \[E* dx³\]: the change of the energy, and `∫F dΔ` over steps with an event.
     pub work: f64,
-    /// Iterations on the whole grid, those of halved steps included.
+    /// Iterations on the whole grid, those of discarded longer steps included.
     pub iterations: u64,
     /// Real transforms of the grid, those of halved steps included; transforms of patches count by their points.
     pub transforms: u64,
-    /// Root mean square of the residual, of the maximum tension.
+    /// Root mean square of the residual, relative to the maximum tension, and without adhesion to the height range over the side.
     pub residual: f64,
     /// Whether the accuracy was reached.
     pub converged: bool,

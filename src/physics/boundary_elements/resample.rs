@@ -6,7 +6,8 @@ use ndarray::{Array2, ArrayView2};
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex64;
 
-/// Heights of a periodic square field on `n × n` points of the same square: its Fourier interpolation, without the waves that the new grid does not hold.
+/// Heights of a periodic square field on `n × n` points of the same square, in the same unit: Fourier interpolation with the wavevectors below both
+/// Nyquist wavenumbers.
 ///
 /// # Errors
 /// Not enough memory.

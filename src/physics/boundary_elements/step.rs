@@ -1,7 +1,8 @@
 //! One step of a cycle: an equilibrium at an approach near the one before, and the energy dissipated in between.
 //!
 //! Between events the states are a continuous curve on which `F = dΠ/dΔ`, so that `∫F dΔ − ΔΠ` vanishes; in an event the energy falls at one approach, by
-//! the energy dissipated. A step that dissipates more than [`LARGE`] of the energy dissipated so far is halved until the event is located.
+//! the energy dissipated. A step that dissipates more than [`LARGE`] of the energy dissipated so far is halved: [`Settings::halvings`] times, and
+//! further while the error of the integral falls.
 
 use super::contact::{Attraction, Problem, State};
 use super::equilibrium::Equilibrium;
@@ -13,8 +14,9 @@ use super::work::{work_after, work_between};
 use crate::physics::PhysicsError;
 use serde::{Deserialize, Serialize};
 
-/// Dissipated energy of an event, and of one that is located by halving the step, of the energy dissipated so far.
+/// Least imbalance of an event, relative to the energy dissipated so far.
 const EVENT: f64 = 3e-5;
+/// Imbalance from which on a step is halved, relative to the same.
 const LARGE: f64 = 3e-3;
 /// Most halvings of a step, as long as each reduces the error of the integral of the load.
 const DEEPEST: u32 = 5;
@@ -52,11 +54,13 @@ pub struct Halfway {
     /// The state one step before, if no event lies between.
     pub(super) before: Option<Before>,
     pub(super) last: Step,
+    /// Energy dissipated so far \[E* dx³\].
     pub(super) dissipated: f64,
+    /// Halvings of the next step.
     pub(super) level: u32,
     /// Map and regions at the maximum tensile load of the branch so far.
     pub(super) tensest: Option<(f64, Map, Vec<Region>)>,
-    /// Contact of the state, from which it follows.
+    /// Regions of contact of the state; computed again on resuming.
     #[serde(skip)]
     pub(super) labels: Labels,
 }
@@ -64,8 +68,11 @@ pub struct Halfway {
 /// A state one step before.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Before {
+    /// Approach Δ \[dx\].
     approach: f64,
+    /// Load \[E* dx²\].
     load: f64,
+    /// Displacement at each point \[dx\].
     displacement: Vec<f64>,
 }
 
@@ -147,7 +154,7 @@ impl<'a> Walk<'a> {
         let (start, end) = ((from.approach, from.totals.load), (approach, totals.load));
         let change = totals.energy - from.totals.energy;
         let quiet = self.at.before.as_ref().map(|before| work_after((before.approach, before.load), start, end));
-        // Where the load jumps, the points before do not tell how it goes on.
+        // After a jump of the load the points before are no basis for the parabola.
         let uncertainty = quiet.map_or(0.0, |quiet| (quiet - work_between(start, end)).abs() / 3.0);
         let work = quiet.filter(|work| (work - change).abs() <= self.resolution(uncertainty)).unwrap_or_else(|| work_between(start, end));
         let step = Step {
@@ -203,7 +210,7 @@ impl<'a> Walk<'a> {
         self.at.cycle.steps.push(step);
     }
 
-    /// One step along the path; one with a large event is halved, one across `max_load` ends there: whether it does.
+    /// Advances by one step, which is halved for a large event and ends at `max_load` if it would cross it. True if it ends there.
     pub(super) fn advance(&mut self, sense: f64, max_load: Option<f64>) -> Result<bool, PhysicsError> {
         let (mut iterations, mut transforms) = (0, 0);
         let mut coarser = f64::INFINITY;

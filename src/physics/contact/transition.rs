@@ -1,4 +1,4 @@
-//! Transitions of asperities: triggers, and the resulting status.
+//! Transitions of asperities: their kinds, the resulting status, and those that are met during a relaxation.
 //!
 //! An asperity jumps into contact when its penetration reaches its jump-in penetration, and out of contact at the end of its branch.
 //! It is absorbed when a larger spot reaches its centre, and released when that spot has withdrawn from it.
@@ -25,7 +25,8 @@ pub enum Kind {
     Cover,
     /// The absorbing spot has withdrawn, and the asperity is released.
     Uncover,
-    /// Snap-through at a limit point of the coupled state: same contacts, new equilibrium.
+    /// Snap-through at a limit point of the coupled state: same contacts, new equilibrium. In the code also a change of a local problem without a
+    /// change of status, such as the response to a pending displacement.
     Snap,
     /// Two overlapping spots merge.
     Merge,
@@ -96,7 +97,7 @@ impl Transition {
                 let release_m = problem.distance(self.asperity, by);
                 Status::Covered { by, release_m }
             }
-            _ => Status::Free,
+            (Kind::JumpIn | Kind::JumpOff | Kind::Cover | Kind::Uncover | Kind::Snap | Kind::Merge | Kind::Split, _) => Status::Free,
         }
     }
 }

@@ -17,7 +17,8 @@ const STEP_OVER_FOLD: f64 = 1e-3;
 const RETRY: f64 = 0.97;
 
 impl EquilibriumPath {
-    /// Applies a transition in the local problem that is at it, relaxes the local problem, and records both.
+    /// Applies a transition in the local problem that is at it, relaxes the local problem, and records both; nothing if the transition would be undone
+    /// at once.
     pub(super) fn apply(&mut self, transition: Transition, located: Option<Located>, avalanche: &mut Avalanche) -> Result<(), Rejection> {
         let mut before = self.begin();
         let applied = match located {
@@ -48,7 +49,7 @@ impl EquilibriumPath {
         potential
     }
 
-    /// Changes the status of an asperity and solves the local problem; all transitions on the way are returned, nothing if none is applied.
+    /// Inserts or removes an asperity and solves the local problem; all transitions on the way are returned, nothing if none is applied.
     fn change_status(&mut self, transition: Transition) -> Result<Option<Vec<Transition>>, Rejection> {
         let Some(entered) = self.insert_or_remove(transition)? else { return Ok(None) };
         let problem = &*self.problem();

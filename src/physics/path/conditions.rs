@@ -1,4 +1,4 @@
-//! Condition of each kind of event: what reaches which value. Triggers, predictions and the location of events follow from it.
+//! Condition of each kind of event: what reaches which value. Whether it is due, how late it is and where it is located follow from it.
 
 use crate::physics::contact::problem::Problem;
 use crate::physics::contact::state::{State, Status};
@@ -34,7 +34,7 @@ impl Problem {
             (Kind::Split, Status::Contact, _) => {
                 state.release_of_merged(self, i).map(|value_m| Condition::Shrinking { contact: i, value_m })
             }
-            _ => None,
+            (Kind::JumpIn | Kind::JumpOff | Kind::Cover | Kind::Uncover | Kind::Snap | Kind::Merge | Kind::Split, ..) => None,
         }
     }
 }

@@ -56,8 +56,13 @@
 //! | [`checkpoint::Checkpoint`] | a path at a global solve, to go back to |
 //!
 //! An event kind is added as a line of [`crate::physics::contact::transition`] (name, status after it, what it undoes) and one of `conditions`: what reaches
-//! which value. How late it is, whether it is due and where it lies on the solution curve follow from the condition. What it changes stands in `apply`, the
-//! response of the asperities outside the local problem in `propagation`, and for which asperities it is looked for in `triggers` and `expectation`.
+//! which value. How late it is, whether it is due and where it lies on the solution curve follow from the condition. The compiler then asks for what it
+//! changes in the local problem (`apply`), the status after it (`propagation`) and its inverse (`cycle::reversal`). It does not ask for:
+//!
+//! - the asperities for which the event is looked for: `triggers`, `expectation`, and `overtaken` during a relaxation;
+//! - pairs of kinds that undo each other: `Transition::returns`;
+//! - the offset of the potential if a load law changes: `Problem::self_potential`;
+//! - the columns that count events: `schema::avalanches` and `schema::run`.
 
 mod accuracy;
 mod apply;

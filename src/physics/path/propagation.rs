@@ -1,4 +1,4 @@
-//! Propagation of an event to the rest of the contact.
+//! What follows a change of a local problem: status of its members, energy of the event, and propagation to the rest of the contact.
 //!
 //! A local problem changes the field around it. Free asperities of its shell take the change at once. Contacts have it as a pending
 //! displacement until they are members of a local problem, or until the global solve; a sequence of local solves continues while a pending
@@ -204,7 +204,9 @@ impl EquilibriumPath {
                 self.enter_status(i, Status::Free);
                 avalanche.open.extend(self.free_parts(i));
             }
-            _ => self.enter_status(i, transition.status(problem)),
+            (Kind::JumpIn | Kind::JumpOff | Kind::Cover | Kind::Uncover | Kind::Merge | Kind::Split, _) => {
+                self.enter_status(i, transition.status(problem));
+            }
         }
     }
 

@@ -67,7 +67,8 @@ impl Problem {
             (Kind::Uncover, Status::Covered { by, .. }, _) => Some(by) == change.by,
             (Kind::Cover, _, Some(by)) => state.radius[i] < state.radius[by],
             (Kind::Merge, _, Some(by)) => predictor.may_merge(i, by),
-            _ => true,
+            (Kind::Uncover, ..) => false,
+            (Kind::JumpOff | Kind::Cover | Kind::Snap | Kind::Merge | Kind::Split, ..) => true,
         };
         possible && self.overshoot(change, predictor) >= 0.0
     }
@@ -99,7 +100,7 @@ impl Problem {
                 between(contact, value_m)
             }
             Some(Condition::Touching { pair: [_, by] }) => between(by, state.radius[by] * (1.0 - trigger.overshoot)),
-            _ => 0.0,
+            Some(Condition::Shrinking { .. } | Condition::Growing { .. }) | None => 0.0,
         }
     }
 }
