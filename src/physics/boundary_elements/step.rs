@@ -20,9 +20,11 @@ const EVENT: f64 = 3e-5;
 const LARGE: f64 = 3e-3;
 /// Most halvings of a step, as long as each reduces the error of the integral of the load.
 const DEEPEST: u32 = 5;
-/// Relative accuracy of the load at a reversal; tolerance of the equilibria in its search, of that elsewhere; most equilibria of a search.
+/// Relative accuracy of the load at a reversal.
 const LOAD_ACCURACY: f64 = 1e-5;
+/// Tolerance of the equilibria in the search for that load, relative to that elsewhere.
 const SHARPER: f64 = 0.02;
+/// Most equilibria of a search.
 const SEARCHED: u32 = 40;
 /// Where the load jumps across that of a reversal: the bracket of the approach, in steps, at which the search ends, and the relative jump that counts as
 /// reached.
