@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::time::Duration;
 
 use tempfile::TempDir;
 
@@ -49,12 +51,12 @@ impl Bench {
 
     /// Runs a verb on the spec, with more arguments.
     pub fn verb(&self, verb: &str, more: &[&str]) -> Output {
-        self.command(verb).args(more).output().unwrap()
+        output(self.command(verb).args(more))
     }
 
     /// Runs a verb on the output folder, with more arguments.
     pub fn look(&self, verb: &str, more: &[&str]) -> Output {
-        Command::new(env!("CARGO_BIN_EXE_hysteron")).arg(verb).arg(self.out()).args(more).output().unwrap()
+        output(Command::new(env!("CARGO_BIN_EXE_hysteron")).arg(verb).arg(self.out()).args(more))
     }
 
     /// Receipts by path, with their bytes.
@@ -66,6 +68,22 @@ impl Bench {
             .map(|path| (path.clone(), fs::read(&path).unwrap()))
             .collect()
     }
+}
+
+/// Runs a command. After ten minutes it is killed, so that a program that hangs fails its test by name, and not the gate without one.
+pub fn output(command: &mut Command) -> Output {
+    let child = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let id = child.id().to_string();
+    let (running, ended) = channel::<()>();
+    let watch = std::thread::spawn(move || {
+        if ended.recv_timeout(Duration::from_secs(600)) == Err(RecvTimeoutError::Timeout) {
+            Command::new("kill").args(["-KILL", &id]).status().unwrap();
+        }
+    });
+    let output = child.wait_with_output().unwrap();
+    drop(running);
+    watch.join().unwrap();
+    output
 }
 
 /// Reports a test that is skipped because a tool is missing; fails if `HYSTERON_REQUIRE`, names with commas between them, holds the tool.

@@ -182,7 +182,8 @@ fn commands(bench: &Bench, scripts: &[(&str, &str)]) -> String {
 #[cfg(unix)]
 #[test]
 fn e2e_a_job_without_progress_is_not_requeued() {
-    for (progress, requeues) in [(true, true), (false, false)] {
+    // The last one is signalled by the program itself, about when the shell learns its number.
+    for (progress, at_once) in [(true, false), (false, false), (false, true)] {
         let bench = Bench::new(SMALL);
         let campaign = Campaign::new(Spec::parse(SMALL, "x.toml").unwrap(), bench.out());
         std::fs::create_dir_all(bench.out().join("slurm/log")).unwrap();
@@ -191,21 +192,26 @@ fn e2e_a_job_without_progress_is_not_requeued() {
         let at = |name: &str| bench.folder.path().join(name);
         let write =
             if progress { format!("sleep 0.05; : >'{}'", bench.out().join("receipts/cycle/x.json").display()) } else { String::new() };
+        let signal = if at_once { "kill -USR1 $PPID" } else { "" };
         // Ends with the signal as the program does.
-        let program = format!("{write}\ntrap 'exit 130' TERM\n: >'{}'\nwhile :; do sleep 0.05; done", at("started").display());
+        let program = format!("{signal}\n{write}\ntrap 'exit 130' TERM\n: >'{}'\nwhile :; do sleep 0.05; done", at("started").display());
         let path = commands(&bench, &[("program", &program), ("scontrol", &format!("echo \"$@\" >>'{}'", at("requeued").display()))]);
         let order = Order { program: at("bin/program"), ..order(vec![(Stage::Cycle, vec![0])], 1000) };
         std::fs::write(at("job"), script(&campaign, Stage::Cycle, &order)).unwrap();
         let mut command = Command::new("bash");
         command.arg(at("job")).env("PATH", path).env("SLURM_ARRAY_JOB_ID", "5").env("SLURM_ARRAY_TASK_ID", "2").env("HYSTERON_FIRST", "0");
         let child = command.stdout(std::process::Stdio::piped()).stderr(std::process::Stdio::piped()).spawn().unwrap();
-        while !at("started").exists() {
+        let began = Instant::now();
+        while !at_once && !at("started").exists() {
+            assert!(began.elapsed() < Duration::from_secs(60), "it was never started");
             std::thread::sleep(Duration::from_millis(20));
         }
-        assert!(Command::new("kill").args(["-USR1", &child.id().to_string()]).status().unwrap().success());
+        if !at_once {
+            assert!(Command::new("kill").args(["-USR1", &child.id().to_string()]).status().unwrap().success());
+        }
         let ended = child.wait_with_output().unwrap();
-        assert_eq!(at("requeued").exists(), requeues, "{}", stderr(&ended));
-        if requeues {
+        assert_eq!(at("requeued").exists(), progress, "{}", stderr(&ended));
+        if progress {
             assert_eq!(std::fs::read_to_string(at("requeued")).unwrap(), "requeue 5_2\n");
         } else {
             assert_eq!(code(&ended), 1);
