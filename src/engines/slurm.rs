@@ -148,9 +148,9 @@ pub fn script(campaign: &Campaign, stage: Stage, order: &Order) -> String {
     let [records, cycles] = ["receipts", "cycles"].map(|name| shell_path(&campaign.dir.join(name)));
     text.push_str(&format!(
         "set -u\nthis={this}\nbegan={mark}-$this.began\n: >\"$began\"\nchild= again=0 stop=0 code=0\n\
+         end() {{ stop=1; [ -z \"$child\" ] || kill -TERM \"$child\"; }}\n\
          # Slurm sends USR1 before the time limit: the current file is finished, and the task returns to the queue.\n\
          trap 'again=1; end' USR1\ntrap end TERM\n\
-         end() {{ stop=1; [ -z \"$child\" ] || kill -TERM \"$child\"; }}\n\
          # A signal that comes before the number of the program is known is passed on as soon as it is.\n\
          work() {{\n  \"$@\" &\n  child=$! code=129\n  [ \"$stop\" = 0 ] || kill -TERM \"$child\"\n  \
          while [ \"$code\" -gt 128 ] && kill -0 \"$child\" 2>/dev/null; do wait \"$child\"; code=$?; done\n  child=\n}}\n\

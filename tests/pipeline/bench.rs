@@ -71,7 +71,7 @@ impl Bench {
 }
 
 /// Runs a command. After ten minutes it is killed, so that a program that hangs fails its test by name, and not the gate without one.
-pub fn output(command: &mut Command) -> Output {
+fn output(command: &mut Command) -> Output {
     let child = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let id = child.id().to_string();
     let (running, ended) = channel::<()>();

@@ -193,20 +193,21 @@ fn e2e_a_job_without_progress_is_not_requeued() {
         let write =
             if progress { format!("sleep 0.05; : >'{}'", bench.out().join("receipts/cycle/x.json").display()) } else { String::new() };
         let signal = if at_once { "kill -USR1 $PPID" } else { "" };
-        // Ends with the signal as the program does.
-        let program = format!("{signal}\n{write}\ntrap 'exit 130' TERM\n: >'{}'\nwhile :; do sleep 0.05; done", at("started").display());
+        // Ends with the signal as the program does; without one after a minute, so that a signal that is lost fails the test.
+        let wait = "n=0; while [ $n -lt 1200 ]; do sleep 0.05; n=$((n + 1)); done; exit 77";
+        let program = format!("{signal}\n{write}\ntrap 'exit 130' TERM\n: >'{}'\n{wait}", at("started").display());
         let path = commands(&bench, &[("program", &program), ("scontrol", &format!("echo \"$@\" >>'{}'", at("requeued").display()))]);
         let order = Order { program: at("bin/program"), ..order(vec![(Stage::Cycle, vec![0])], 1000) };
         std::fs::write(at("job"), script(&campaign, Stage::Cycle, &order)).unwrap();
         let mut command = Command::new("bash");
         command.arg(at("job")).env("PATH", path).env("SLURM_ARRAY_JOB_ID", "5").env("SLURM_ARRAY_TASK_ID", "2").env("HYSTERON_FIRST", "0");
         let child = command.stdout(std::process::Stdio::piped()).stderr(std::process::Stdio::piped()).spawn().unwrap();
-        let began = Instant::now();
-        while !at_once && !at("started").exists() {
-            assert!(began.elapsed() < Duration::from_secs(60), "it was never started");
-            std::thread::sleep(Duration::from_millis(20));
-        }
         if !at_once {
+            let began = Instant::now();
+            while !at("started").exists() {
+                assert!(began.elapsed() < Duration::from_secs(60), "it was never started");
+                std::thread::sleep(Duration::from_millis(20));
+            }
             assert!(Command::new("kill").args(["-USR1", &child.id().to_string()]).status().unwrap().success());
         }
         let ended = child.wait_with_output().unwrap();
