@@ -9,21 +9,21 @@ pub enum PhysicsError {
     /// A quantity outside the domain of its equation.
     #[error("cannot evaluate {action}: {quantity} is {}\nhelp: expected {allowed}", short(*value))]
     Domain {
-        /// What was to be evaluated.
+        /// Quantity that was to be evaluated.
         action: &'static str,
         /// The quantity, with its unit.
         quantity: &'static str,
         /// Value.
         value: f64,
-        /// What the equation allows.
+        /// Range of the equation.
         allowed: &'static str,
     },
     /// A surface that cannot be used.
     #[error("{problem}\nhelp: {help}")]
     Surface {
-        /// What is wrong with it, with its numbers.
+        /// Fault, with its numbers.
         problem: String,
-        /// What to do.
+        /// Recommended action.
         help: &'static str,
     },
     /// A surface without asperities.
@@ -39,7 +39,7 @@ pub enum PhysicsError {
     LowTabor {
         /// Minimum Tabor parameter.
         smallest: f64,
-        /// How many asperities lie below 2.
+        /// Number of asperities below 2.
         below: usize,
         /// Number of asperities.
         all: usize,
@@ -53,7 +53,7 @@ pub enum PhysicsError {
     NoEquilibrium {
         /// Mean penetration Δ \[m\].
         approach_m: f64,
-        /// What prevents it.
+        /// Reason.
         reason: Reason,
         /// The largest residual \[m\]; not a number for another reason.
         residual_m: f64,
@@ -160,7 +160,7 @@ pub enum PhysicsError {
     },
 }
 
-/// What helps where the contact area exceeds the nominal one after a step at a load \[N\].
+/// Recommended action where the contact area exceeds the nominal one after a step at a load \[N\].
 fn excess_help(load_before_n: f64) -> &'static str {
     if load_before_n > 0.0 {
         "reduce cycle.max_load, increase the reduced modulus or reduce the work of adhesion"
@@ -179,8 +179,6 @@ pub enum Reason {
     Unstable,
     /// A load or an energy is not a number.
     NotANumber,
-    /// The search for the next event does not end.
-    EndlessEvents,
     /// The solution curve to the next event does not end.
     EndlessPath,
 }
@@ -193,7 +191,6 @@ impl Reason {
             Self::Residual => format!("the largest residual stays at {residual_m:e} m"),
             Self::Unstable => "the equilibrium found is unstable".to_owned(),
             Self::NotANumber => "a load or an energy is not a number".to_owned(),
-            Self::EndlessEvents => "the search for the next event does not end".to_owned(),
             Self::EndlessPath => "the solution curve to the next event does not end".to_owned(),
         }
     }

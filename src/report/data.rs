@@ -42,7 +42,7 @@ const BIBTEX: &str = r#"@software{hysteron,
   doi     = {10.3390/lubricants9010007}
 }"#;
 
-/// What a study consists of.
+/// Parts of a study.
 pub(super) struct Study<'a> {
     /// Numbers of cases by the asperity model and by boundary elements.
     pub(super) case_counts: [usize; 2],

@@ -10,7 +10,7 @@ use super::student::Sample;
 use super::varying::varying;
 use crate::store::Frame;
 
-/// What the paper states, by number.
+/// Statements of the paper, by number.
 pub const FINDINGS: [&str; 7] = [
     "F_po does not depend on F_max",
     "Θ is linear in A at load reversal",
@@ -33,7 +33,7 @@ const RESIDUALS: [f64; 2] = [0.03, 0.1];
 /// Factor between Θ and its estimate: at most so much for yes, and for partly.
 const FACTORS: [f64; 2] = [1.25, 2.0];
 
-/// How far a finding holds.
+/// Extent to which a finding holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
     /// It holds.
@@ -76,7 +76,7 @@ impl Verdict {
 /// A finding as one reading shows it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Judged {
-    /// How far it holds.
+    /// Extent to which it holds.
     pub verdict: Verdict,
     /// The numbers that it was judged by, see the guide.
     pub numbers: Vec<f64>,
@@ -114,7 +114,7 @@ struct Case {
     at: [f64; 3],
 }
 
-/// What a series varies: place in [`Case::at`].
+/// Quantity that a series varies: place in [`Case::at`].
 const LOAD: usize = 0;
 const MAGNIFICATION: usize = 1;
 const HURST: usize = 2;

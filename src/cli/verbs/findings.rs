@@ -9,7 +9,7 @@ use crate::text::{counted, shown, visible, wrapped};
 use serde_json::{Value, json};
 use std::path::PathBuf;
 
-/// What the numbers under the verdicts are, by finding.
+/// Meaning of the numbers under the verdicts, by finding.
 const NUMBERS: [&str; 7] = [
     "(max − min)/mean of F_po over F_max",
     "largest distance from a straight line, over the largest Θ",

@@ -15,7 +15,7 @@ pub struct FreeStep {
     pub totals: Totals,
     /// Real transforms.
     pub transforms: u64,
-    /// Whether the accuracy was reached.
+    /// True if the accuracy was reached.
     pub converged: bool,
 }
 

@@ -80,7 +80,7 @@ pub struct Totals {
 }
 
 impl Problem {
-    /// Whether a point is in contact at the gap.
+    /// True if a point is in contact at the gap.
     #[inline(always)]
     pub(super) fn touches(&self, bonding: Bonding, gap: f64) -> bool {
         match bonding {
@@ -163,7 +163,7 @@ impl Problem {
         self.half_space.apply(Operator::Stiffness, &state.displacement, &mut state.pressure, waves);
     }
 
-    /// Whether no point is bonded.
+    /// True if no point is bonded.
     pub(super) fn is_free(&self, state: &State) -> bool {
         state.bonds.iter().all(|bonding| *bonding == Bonding::Free)
     }

@@ -168,7 +168,7 @@ impl HalfSpace {
         })
     }
 
-    /// Whether the grid is a patch.
+    /// True if the grid is a patch.
     #[must_use]
     pub fn is_patch(&self) -> bool {
         self.padded.0 > self.rows

@@ -1,14 +1,16 @@
 //! Traction–separation laws of adhesion.
 //!
 //! # Law of the band-limited crack
-//! The front of a crack between a rigid flat and a half-space, at the energy release rate Δγ, has the gap `g(x) = 4 sqrt(Δγ x/(πE*))` on the open side
-//! (`x > 0`) and the tension `σ(x) = sqrt(E*Δγ/(π|x|))` on the closed side. Convolve both with one even kernel `W`: the operator `E*|q|/2` is diagonal in
+//! The front of a crack between a rigid flat and a half-space, at the energy release rate Δγ, has the near-tip field of Irwin (J. Appl. Mech. 24:361, 1957):
+//! the gap `g(x) = 4 sqrt(Δγ x/(πE*))` on the open side (`x > 0`) and the tension `σ(x) = sqrt(E*Δγ/(π|x|))` on the closed side. Convolve both with one
+//! even kernel `W`: the operator `E*|q|/2` is diagonal in
 //! the wavevector, so the convolved fields satisfy it too. If the spectrum of `W` vanishes above the Nyquist wavenumber of a grid, their values at the grid
 //! points satisfy the equations of the grid exactly, at every position of the front between two points and at every orientation.
 //! Eliminating `x` gives a law `σ(g)` under which a straight front has a continuous family of equilibria: no lattice trapping. By the J integral
 //! `∫σ dg = Δγ`.
 //!
-//! `W` is a Gaussian of width `s = 0.6` grid spacings, whose spectrum is 0.17 at the Nyquist wavenumber. In units of `ℓ = sqrt(Δγ dx/E*)` for gaps and
+//! `W` is a Gaussian of width `s = 0.6` grid spacings. Its spectrum is not 0 but 0.17 at the Nyquist wavenumber, so the last two statements hold
+//! approximately: the trapping that is left is below 1e-3 of Δγ (measured in the tests). In units of `ℓ = sqrt(Δγ dx/E*)` for gaps and
 //! `E* ℓ/dx` for stresses the law does not depend on the material. Its tension rises from 0 at `g = 0` with an infinite slope; that start is
 //! replaced by the spring `σ = k g` with `k = 4 E*/dx`, which is the stiffness of the wall for `g < 0` as well, and the tension beyond is
 //! scaled by a factor near 1 so that `∫σ dg = Δγ` exactly.

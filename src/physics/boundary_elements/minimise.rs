@@ -47,7 +47,7 @@ pub struct Outcome {
     pub iterations: usize,
     /// Root mean square of the residual, relative to [`Problem::stress`].
     pub residual: f64,
-    /// Whether the accuracy was reached.
+    /// True if the accuracy was reached.
     pub converged: bool,
 }
 

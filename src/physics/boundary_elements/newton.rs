@@ -1,4 +1,5 @@
-//! Newton's method with truncated conjugate gradients (Steihaug): the second way to an equilibrium, where L-BFGS does not end.
+//! Newton's method with truncated conjugate gradients (Steihaug, SIAM J. Numer. Anal. 20:626, 1983): the second way to an equilibrium, where L-BFGS
+//! does not end.
 //!
 //! The model of the energy is `g·p + ½ p·(K + V'')p`. Its minimum is approached by conjugate gradients with the split preconditioner, until a direction has
 //! a negative curvature or the step would exceed the reach of the law; such a step ends at that reach.

@@ -14,7 +14,7 @@ const ADDED: f32 = 0.7;
 /// The split preconditioner, or the spectral one to compare it with.
 pub struct Preconditioner {
     masked: Vec<f32>,
-    /// Whether the points in contact have a preconditioner of their own; else that of the open points, shifted, is used for all.
+    /// True if the points in contact have a preconditioner of their own; else that of the open points, shifted, is used for all.
     pub split: bool,
 }
 

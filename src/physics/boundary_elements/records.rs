@@ -30,7 +30,7 @@ pub struct Step {
     pub transforms: u64,
     /// Root mean square of the residual, relative to the maximum tension, and without adhesion to the height range over the side.
     pub residual: f64,
-    /// Whether the accuracy was reached.
+    /// True if the accuracy was reached.
     pub converged: bool,
 }
 
@@ -39,7 +39,7 @@ pub struct Step {
 pub struct Event {
     /// Number of the step at whose approach the event is over.
     pub step: usize,
-    /// What happened to the region whose area changed most.
+    /// Change of the region whose area has changed most.
     pub kind: Change,
     /// Load, energy and area before.
     pub before: Totals,

@@ -11,7 +11,8 @@ pub struct Region {
     pub points: usize,
     /// Sum of the pressures, compression positive \[E* dx²\].
     pub load: f64,
-    /// Length of the edge \[dx\], by Crofton's formula along the rows, the columns and the diagonals.
+    /// Length of the edge \[dx\], by Crofton's formula along the rows, the columns and the diagonals (Ohser & Mücklich,
+    /// *Statistical Analysis of Microstructures in Materials Science*, Wiley 2000).
     pub perimeter: f64,
     /// Centroid, row and column \[dx\]: the mean direction on a circle of the length of the square. It has no meaning along a direction in which the
     /// region closes on itself across the edges.

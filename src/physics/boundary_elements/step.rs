@@ -38,11 +38,11 @@ pub struct Settings {
     pub max_loads: Vec<f64>,
     /// Step of the approach \[dx\].
     pub step: f64,
-    /// How often a step with a large event is halved.
+    /// Maximum number of halvings of a step with a large event.
     pub halvings: u32,
     /// Accuracy of an equilibrium.
     pub accuracy: Accuracy,
-    /// Whether the regions of every step are kept; else those of the maps.
+    /// True if the regions of every step are kept; else those of the maps.
     pub all_regions: bool,
 }
 

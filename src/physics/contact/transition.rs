@@ -156,33 +156,4 @@ impl Problem {
         }
         found.map(|(_, change)| change)
     }
-
-    /// Absorption that resolves a relaxation without convergence at the edge of a larger spot.
-    ///
-    /// The slope of the field is discontinuous at the edge. The smaller of the two spots is absorbed.
-    /// `restless` is the asperity with the largest residual.
-    pub(crate) fn at_edge(&self, spots: &[ContactView], restless: usize) -> Option<Transition> {
-        let mut found: Option<(f64, Transition)> = None;
-        let mut offer = |i: usize, j: usize, a: f64, r: f64| {
-            let off = (a / r - 1.0).abs();
-            if off < EDGE && found.is_none_or(|(least, _)| off < least) {
-                found = Some((off, Transition { kind: Kind::Cover, asperity: i, by: Some(j) }));
-            }
-        };
-        if !self.covers() {
-            return None;
-        }
-        let radius = |i: usize| spots.binary_search_by_key(&i, |spot| spot.0).ok().map(|k| spots[k].1);
-        let mine = radius(restless)?;
-        let largest = spots.iter().map(|spot| spot.1).fold(0.0, f64::max);
-        self.neighbours.within(restless, 1.1 * largest, |r, other| match radius(other) {
-            Some(a) if a > mine => offer(restless, other, a, r),
-            Some(a) if a < mine => offer(other, restless, mine, r),
-            _ => {}
-        });
-        found.map(|(_, change)| change)
-    }
 }
-
-/// Maximum distance from the edge of a spot, relative to the distance of the centres, for [`Problem::at_edge`].
-const EDGE: f64 = 0.02;

@@ -167,12 +167,4 @@ impl EquilibriumPath {
             }
         }
     }
-
-    /// Keeps asperities absorbed that have no equilibrium where they are uncovered; they are counted as frozen.
-    pub(super) fn keep_all_covered(&mut self, uncovered: &[usize]) {
-        for &i in uncovered {
-            self.keep_covered(i, self.state().approach_m);
-            self.chatter.freeze_again(i);
-        }
-    }
 }

@@ -8,7 +8,6 @@
 use super::equilibrium_path::EquilibriumPath;
 use super::rejection::Rejection;
 use super::triggers::Trigger;
-use crate::physics::PhysicsError;
 use crate::physics::contact::Status;
 use crate::physics::contact::transition::{Kind, Transition};
 
@@ -31,7 +30,7 @@ impl EquilibriumPath {
     /// Applies a transition that is due at the present mean penetration, with its avalanche.
     pub(super) fn start_avalanche(&mut self, first: Transition) -> Result<(), Rejection> {
         self.log.begin_avalanche();
-        self.gather(&first, Some(self.state().approach_m), self.problem().numerics.spots_in_patch);
+        self.gather(&first, Some(self.state().approach_m));
         self.advance_members();
         let mut avalanche = Avalanche::default();
         self.apply(first, None, &mut avalanche)?;
@@ -43,8 +42,7 @@ impl EquilibriumPath {
     /// propagation does not end: the global problem is to be solved.
     pub(super) fn run_avalanche(&mut self, mut avalanche: Avalanche) -> Result<Option<Vec<usize>>, Rejection> {
         let approach = self.neighbourhood.local.approach;
-        let bound = 10 * self.problem().len() + 100;
-        let (mut applied, mut solves) = (0, 0);
+        let mut solves = 0;
         let mut propagated = true;
         loop {
             // Most of them are in order: a stable sort makes use of it.
@@ -57,13 +55,8 @@ impl EquilibriumPath {
                 .or_else(|| self.worst_pending().map(pending))
                 .or_else(|| most_overdue(&due, Kind::is_coalescence));
             let Some(transition) = next else { break };
-            applied += 1;
-            self.check_event_count(approach, transition.asperity)?;
-            if applied > bound {
-                let asperity = self.problem().number(transition.asperity);
-                return Err(PhysicsError::EndlessAvalanche { approach_m: approach, events: applied, asperity }.into());
-            }
-            self.gather(&transition, Some(approach), self.problem().numerics.spots_in_patch);
+            self.count_trial(approach, transition.asperity)?;
+            self.gather(&transition, Some(approach));
             if transition.kind == Kind::Snap || self.has_pending() {
                 solves += 1;
                 propagated = solves <= MOST_SOLVES.max(self.state().contacts.len() / MOST_SOLVES);

@@ -53,11 +53,6 @@ impl ChatterGuard {
         }
     }
 
-    /// Marks an asperity as frozen by the step control, once for each rejection.
-    pub(super) fn freeze_again(&mut self, i: usize) {
-        self.frozen.push(i);
-    }
-
     /// Number of frozen asperities since the last record.
     pub(crate) fn frozen_count(&self) -> usize {
         self.frozen.len()

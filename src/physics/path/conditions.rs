@@ -4,7 +4,7 @@ use crate::physics::contact::problem::Problem;
 use crate::physics::contact::state::{State, Status};
 use crate::physics::contact::transition::{Kind, Transition};
 
-/// What reaches which value at an event.
+/// Quantity that reaches a value at an event.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Condition {
     /// The penetration of an asperity out of contact, \[m\].

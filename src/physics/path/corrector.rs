@@ -1,16 +1,16 @@
 //! Global corrector: the contact solved at the end of an increment, and new predictors of everything.
 
 use super::accuracy::Precision;
-use super::checkpoint::Checkpoint;
 use super::equilibrium_path::EquilibriumPath;
 use super::rejection::Rejection;
 use super::work::work;
+use crate::physics::Reason;
 use crate::physics::contact::Status;
 use crate::physics::contact::transition::{Kind, Transition};
 use crate::physics::math::vector::dot;
+use crate::physics::solve::newton::Damping;
 use crate::physics::solve::residual::NotConverged;
 use crate::physics::solve::trace::PenetrationTrace;
-use crate::physics::{PhysicsError, Reason};
 
 /// Reason for the difference between the predictors and the solution.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,12 +24,6 @@ enum Since {
     Jump(f64),
 }
 
-/// Asperities that are uncovered at once, and the state before.
-struct Uncovering {
-    before: Checkpoint,
-    asperities: Vec<usize>,
-}
-
 impl EquilibriumPath {
     /// Solves the global problem at a mean penetration \[m\], from the predictors, and applies the transitions that are overdue there. If
     /// `strict`, the solution is rejected where the predictors are too far from it.
@@ -37,10 +31,9 @@ impl EquilibriumPath {
     /// After a jump of the contact (`jump`) it followed its predictors up to here. Otherwise the difference grew along the increment.
     pub(super) fn correct(&mut self, target: f64, strict: bool, jump: bool, precision: Precision) -> Result<(), Rejection> {
         self.precision = precision;
-        let pending = self.pending.of_contacts(&self.problem(), &self.state().contacts);
+        let pending = self.pending.all().to_vec();
         self.solver.begin(precision == Precision::Sufficient);
         let mut rounds = 0;
-        let mut uncovering: Option<Uncovering> = None;
         loop {
             self.predictor.go_to(&self.problem(), target);
             let first = self.solver.evaluate(&mut self.predictor.state);
@@ -53,15 +46,9 @@ impl EquilibriumPath {
                 self.log.drift_m = self.log.drift_m.max(first.residual_m);
             }
             let start = if strict { Vec::new() } else { self.state().radius.clone() };
-            let rates = match self.solve_globally(first, strict) {
+            let rates = match self.solve_globally(first) {
                 Ok(rates) => rates,
                 Err(reason) => {
-                    if let Some(Uncovering { before, asperities }) = uncovering.take() {
-                        // There is no equilibrium with these asperities at the edge of a contact.
-                        self.restore(&before);
-                        self.keep_all_covered(&asperities);
-                        continue;
-                    }
                     if strict {
                         return Err(reason.into());
                     }
@@ -77,57 +64,29 @@ impl EquilibriumPath {
             };
             self.restart_predictors(&rates, since, &pending);
             let due = self.overdue();
-            let Some(worst) = due.first() else {
+            let Some(&(lateness, worst)) = due.first() else {
                 self.predictor.forget_parted(&self.solver.problem);
                 return Ok(());
             };
-            if strict && rounds == 0 {
-                self.reject_late(&due)?;
+            if strict && rounds == 0 && lateness > self.accuracy().lateness() * self.frame.scale {
+                return Err(NotConverged::residual(lateness, worst.asperity).into());
             }
             rounds += 1;
-            self.check_rounds(target, rounds, worst.1.asperity)?;
-            uncovering = self.uncovering(&due);
+            self.count_trial(target, worst.asperity)?;
             self.apply_overdue(due)?;
         }
     }
 
     /// Solves the global problem from the state that was evaluated last; its rates are returned if it is stable.
-    fn solve_globally(&mut self, first: NotConverged, strict: bool) -> Result<Vec<f64>, NotConverged> {
+    fn solve_globally(&mut self, first: NotConverged) -> Result<Vec<f64>, NotConverged> {
         let tolerance = match self.precision {
             Precision::Exact => self.problem().tolerance_m(),
             Precision::Sufficient => self.accuracy().sufficient() * self.frame.scale,
         };
-        self.solver.newton(&mut self.predictor.state, first, !strict, tolerance)?;
+        self.solver.newton(&mut self.predictor.state, first, Damping::NORMAL, tolerance)?;
         let rates = self.finite_rates(first)?;
         let stable = self.state().stability > 0.0;
         if stable { Ok(rates) } else { Err(NotConverged::because(Reason::Unstable, first.asperity)) }
-    }
-
-    /// Rejects an increment with transitions that were found too late.
-    fn reject_late(&self, due: &[(f64, Transition)]) -> Result<(), Rejection> {
-        let latest = self.accuracy().lateness() * self.frame.scale;
-        let is_late = |lateness: f64| lateness > latest;
-        let late: Vec<Transition> = due.iter().filter(|(lateness, _)| is_late(*lateness)).map(|(_, transition)| *transition).collect();
-        match due.first() {
-            Some(worst) if !late.is_empty() => Err(Rejection::Late(late, NotConverged::residual(worst.0, worst.1.asperity))),
-            _ => Ok(()),
-        }
-    }
-
-    /// Ends a correction whose overdue transitions go on without end.
-    fn check_rounds(&self, approach_m: f64, rounds: usize, asperity: usize) -> Result<(), Rejection> {
-        self.check_event_count(approach_m, asperity)?;
-        if rounds > 10 * self.problem().len() + 100 {
-            return Err(PhysicsError::EndlessAvalanche { approach_m, events: rounds, asperity: self.problem().number(asperity) }.into());
-        }
-        Ok(())
-    }
-
-    /// Asperities that are uncovered among overdue transitions, with the state before.
-    fn uncovering(&self, due: &[(f64, Transition)]) -> Option<Uncovering> {
-        let uncovered = due.iter().filter(|(_, transition)| transition.kind == Kind::Uncover);
-        let asperities: Vec<usize> = uncovered.map(|(_, transition)| transition.asperity).collect();
-        (!asperities.is_empty()).then(|| Uncovering { before: self.checkpoint(), asperities })
     }
 
     /// Applies overdue transitions, each with its avalanche, if it is still due.
@@ -145,10 +104,7 @@ impl EquilibriumPath {
 
     /// Rates of the contacts at the equilibrium that was evaluated last; where they are not numbers, the reason is `first`.
     fn finite_rates(&mut self, first: NotConverged) -> Result<Vec<f64>, NotConverged> {
-        let rates = match self.precision {
-            Precision::Exact => self.solver.rates(&mut self.predictor.state),
-            Precision::Sufficient => self.solver.rough_rates(&mut self.predictor.state),
-        };
+        let rates = self.solver.rates(&mut self.predictor.state, self.precision == Precision::Exact);
         if rates.iter().all(|rate| rate.is_finite()) { Ok(rates) } else { Err(first) }
     }
 

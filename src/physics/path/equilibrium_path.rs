@@ -9,10 +9,10 @@ use super::neighbourhood::{Neighbourhood, Surroundings};
 use super::pending::PendingField;
 use super::predictor::Predictor;
 use super::rejection::Rejection;
-use super::step_control::{Recovery, StepControl, is_multiple};
+use super::step_control::{StepControl, is_multiple};
 use crate::physics::contact::numerics::Accuracy;
-use crate::physics::contact::transition::{Kind, Transition};
-use crate::physics::contact::{Event, Problem, State, Status, Totals};
+use crate::physics::contact::transition::Transition;
+use crate::physics::contact::{Event, Problem, State, Totals};
 use crate::physics::half_space::Effort;
 use crate::physics::solve::global::GlobalSolver;
 use crate::physics::solve::residual::NotConverged;
@@ -131,8 +131,8 @@ impl EquilibriumPath {
         self.accuracy().pending() * self.frame.scale
     }
 
-    /// Gathers the neighbourhood of a transition, of `contacts` contacts, at a mean penetration \[m\] or where they were known last.
-    pub(super) fn gather(&mut self, transition: &Transition, approach: Option<f64>, contacts: usize) {
+    /// Gathers the neighbourhood of a transition at a mean penetration \[m\] or where its contacts were known last.
+    pub(super) fn gather(&mut self, transition: &Transition, approach: Option<f64>) {
         let within = Surroundings {
             problem: &self.solver.problem,
             predictor: &self.predictor,
@@ -140,14 +140,14 @@ impl EquilibriumPath {
             sense: self.frame.sense,
             scale: self.frame.scale,
         };
-        self.neighbourhood.gather(&within, transition, approach, contacts, &mut self.solver.effort);
+        self.neighbourhood.gather(&within, transition, approach, &mut self.solver.effort);
     }
 
     /// Advances by one increment, not beyond `bound` \[m\].
     pub(crate) fn step(&mut self, bound: Option<f64>) -> Result<(), PhysicsError> {
-        let mut checkpoint = self.checkpoint();
-        self.steps.limit_events(self.log.events.len(), self.problem().len());
+        let checkpoint = self.checkpoint();
         loop {
+            self.steps.begin_attempt();
             let here = self.state().approach_m;
             let target = self.steps.target(here, bound);
             let attempt = self.run_and_correct(target, bound).and_then(|()| self.check_numbers(checkpoint.events));
@@ -161,34 +161,18 @@ impl EquilibriumPath {
                 Err(Rejection::Failed(error)) => return Err(error),
                 Err(rejection) => rejection,
             };
-            let uncovered = self.uncovered_since(&checkpoint);
             self.restore(&checkpoint);
-            match self.steps.reject(here, &rejection, !uncovered.is_empty()) {
-                Recovery::Repeat | Recovery::Halve => {}
-                Recovery::KeepCovered => {
-                    // At the edge of a contact the field is steepest, and there may be no equilibrium with an asperity there.
-                    self.keep_all_covered(&uncovered);
-                    checkpoint = self.checkpoint();
-                }
-                Recovery::RelaxGlobally => {
-                    let relaxed = self.relax_globally(target).and_then(|()| self.check_numbers(checkpoint.events));
-                    match relaxed {
-                        Ok(()) => break,
-                        Err(Rejection::Failed(error)) => return Err(error),
-                        Err(_) => return Err(self.no_equilibrium(rejection)),
-                    }
+            if !self.steps.halve(here) {
+                let relaxed = self.relax_globally(target).and_then(|()| self.check_numbers(checkpoint.events));
+                match relaxed {
+                    Ok(()) => break,
+                    Err(Rejection::Failed(error)) => return Err(error),
+                    Err(_) => return Err(self.no_equilibrium(rejection)),
                 }
             }
         }
         self.checkpoint = Some(Box::new(checkpoint));
         Ok(())
-    }
-
-    /// Asperities that were uncovered since a checkpoint, and were absorbed there.
-    fn uncovered_since(&self, checkpoint: &Checkpoint) -> Vec<usize> {
-        let events = self.log.events[checkpoint.events..].iter();
-        let uncovered = events.filter(|event| event.kind == Kind::Uncover).map(|event| event.asperity);
-        uncovered.filter(|i| matches!(checkpoint.state().status.get(*i), Some(Status::Covered { .. }))).collect()
     }
 
     /// Runs the events before `target` and solves the global problem there; in between too, after events that move all of the contact.
@@ -226,17 +210,17 @@ impl EquilibriumPath {
         Err(NotConverged::because(Reason::NotANumber, asperity).into())
     }
 
-    /// Ends an increment whose events go on without end.
-    pub(super) fn check_event_count(&self, approach_m: f64, asperity: usize) -> Result<(), Rejection> {
+    /// Counts the trial of a transition, and ends an increment whose trials go on without end.
+    pub(super) fn count_trial(&mut self, approach_m: f64, asperity: usize) -> Result<(), PhysicsError> {
         let problem = &*self.problem();
-        Ok(self.steps.check_events(self.log.events.len(), problem.len(), approach_m, problem.number(asperity))?)
+        self.steps.count_trial(problem.len(), approach_m, problem.number(asperity))
     }
 
     /// The error of an increment that was rejected for good.
     pub(super) fn no_equilibrium(&self, rejection: Rejection) -> PhysicsError {
         let reason = match rejection {
             Rejection::Failed(error) => return error,
-            Rejection::NotConverged(reason) | Rejection::Late(_, reason) => reason,
+            Rejection::NotConverged(reason) => reason,
         };
         PhysicsError::NoEquilibrium {
             approach_m: self.state().approach_m,

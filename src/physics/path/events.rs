@@ -7,12 +7,10 @@ use super::conditions::Condition;
 use super::equilibrium_path::EquilibriumPath;
 use super::expectation::PredictedEvent;
 use super::rejection::Rejection;
-use crate::physics::Reason;
-use crate::physics::contact::transition::{Kind, Transition};
+use crate::physics::contact::transition::Kind;
 use crate::physics::math::bracket::{End, Illinois};
 use crate::physics::solve::local::curve::CurveEnd;
 use crate::physics::solve::local::{Hold, LocalProblem};
-use crate::physics::solve::residual::NotConverged;
 
 /// Overlap at merging, relative to the distance of the contacts: at most so much.
 const TOUCH: f64 = 1e-6;
@@ -44,14 +42,9 @@ impl EquilibriumPath {
     /// mean penetration is returned: the global problem is to be solved there.
     pub(super) fn run_events(&mut self, target: f64) -> Result<Option<f64>, Rejection> {
         let mut queue = self.expect_events(target);
-        let mut attempts = 0;
         while let Some(at) = self.earliest(&queue) {
             let event = queue.swap_remove(at);
-            attempts += 1;
-            if attempts > 100 * (self.problem().len() + 100) {
-                return Err(NotConverged::because(Reason::EndlessEvents, event.transition.asperity).into());
-            }
-            self.check_event_count(event.approach, event.transition.asperity)?;
+            self.count_trial(event.approach, event.transition.asperity)?;
             let touched = match self.run_event(event, target, &mut queue)? {
                 Outcome::Absent => continue,
                 Outcome::Touched(touched) => touched,
@@ -67,13 +60,9 @@ impl EquilibriumPath {
         Ok(None)
     }
 
-    /// Events that are predicted before `target` \[m\], and those that an earlier attempt has missed.
+    /// Events that are predicted before `target` \[m\].
     fn expect_events(&self, target: f64) -> Vec<PredictedEvent> {
-        let approach = self.state().approach_m;
-        // Merged contacts of an earlier attempt may be gone.
-        let exists = |transition: &&Transition| transition.asperity.max(transition.by.unwrap_or(0)) < self.solver.problem.len();
-        let missed = self.steps.missed().iter().filter(exists).map(|transition| PredictedEvent { approach, transition: *transition });
-        let mut queue: Vec<PredictedEvent> = missed.collect();
+        let mut queue = Vec::new();
         for &i in self.state().contacts.iter().chain(&self.predictor.candidates) {
             self.predictor.expect(&self.problem(), i, target, self.frame.sense, &mut queue);
         }
@@ -96,7 +85,7 @@ impl EquilibriumPath {
             self.chatter.freeze(transition.asperity);
             return Ok(Outcome::Absent);
         }
-        self.gather(&transition, None, self.problem().numerics.spots_in_patch);
+        self.gather(&transition, None);
         let mut avalanche = Avalanche::default();
         self.log.begin_avalanche();
         if self.has_pending() {
@@ -136,12 +125,6 @@ impl EquilibriumPath {
         let there = if grows { local.radius[at] >= bound } else { local.radius[at] <= bound };
         if there {
             return Some(Located::Point);
-        }
-        // Most predicted events do not occur: where the local problem reaches the target without a fold, only the bound matters.
-        if let Some(radius) = local.probe(problem, target, effort)
-            && if grows { radius[at] < bound } else { radius[at] > bound }
-        {
-            return None;
         }
         match local.trace_curve(problem, at, bound, (target, sense), effort) {
             Ok(CurveEnd::Fold) => Some(Located::Fold(at)),

@@ -57,22 +57,15 @@ struct Selection {
 }
 
 impl Neighbourhood {
-    /// Gathers the `contacts` contacts nearest to a transition, at a mean penetration \[m\] or where they were known last.
-    pub(super) fn gather(
-        &mut self,
-        within: &Surroundings<'_>,
-        transition: &Transition,
-        approach: Option<f64>,
-        contacts: usize,
-        effort: &mut Effort,
-    ) {
+    /// Gathers the contacts nearest to a transition, at a mean penetration \[m\] or where they were known last.
+    pub(super) fn gather(&mut self, within: &Surroundings<'_>, transition: &Transition, approach: Option<f64>, effort: &mut Effort) {
         let Surroundings { problem, predictor, pending, sense, .. } = within;
         let centre = match transition.kind {
             Kind::Cover | Kind::Uncover | Kind::Merge => transition.by.unwrap_or(transition.asperity),
             _ => transition.asperity,
         };
         self.centre = *problem.place(centre);
-        let Selection { members, mut watched, shell, reach } = within.select(transition, &self.centre, contacts);
+        let Selection { members, mut watched, shell, reach } = within.select(transition, &self.centre);
         (self.shell, self.reach) = (shell, reach);
         if transition.kind == Kind::JumpIn
             && let Err(at) = watched.binary_search(&transition.asperity)
@@ -90,12 +83,8 @@ impl Neighbourhood {
         let watched: Vec<_> = watched.into_iter().map(|i| (i, traces[i])).collect();
         let is_part = members.len() < predictor.state.contacts.len();
         self.local.gather(problem, &members, &watched, approach, is_part, effort);
-        let (to_apply, of_free) = pending.of_local(problem, &self.local, &self.centre);
-        self.to_apply = to_apply;
-        // A free asperity has no response: its pending displacement is applied at once.
-        for (place, pending) in self.local.watched.iter_mut().zip(of_free) {
-            place.outside += pending;
-        }
+        self.to_apply.clear();
+        self.to_apply.extend(self.local.members.iter().map(|member| pending.of(member.asperity)));
     }
 
     /// Remembers where the members were known, before an event is located.
@@ -103,20 +92,15 @@ impl Neighbourhood {
         self.origin.clone_from(&self.local.radius);
         self.reference = self.local.approach;
     }
-
-    /// True if a member has a pending displacement above `limit` \[m\].
-    pub(super) fn has_pending(&self, limit: f64) -> bool {
-        self.to_apply.iter().any(|displacement| displacement.abs() > limit)
-    }
 }
 
 impl Surroundings<'_> {
     /// Chooses members, free asperities and shell around a place \[m\]; all lists but the shell ascend.
-    fn select(&self, transition: &Transition, place: &[f64; 2], contacts: usize) -> Selection {
+    fn select(&self, transition: &Transition, place: &[f64; 2]) -> Selection {
         let problem = self.problem;
         let (state, traces) = (&self.predictor.state, &self.predictor.traces);
         let alone = problem.rules.interaction == Interaction::None;
-        let most = if alone { 1 } else { contacts };
+        let most = if alone { 1 } else { problem.numerics.spots_in_patch };
         let span = SPAN * self.scale;
         let near_jump_in = |i: &usize| state.status[*i] == Status::Free && traces[*i].value > problem.jump_in[*i] - span;
         if state.contacts.len() <= most {

@@ -190,6 +190,12 @@ impl Predictor {
         self.sums = sums;
     }
 
+    /// Changes the displacement of a free asperity \[m\].
+    pub(crate) fn displace(&mut self, problem: &Problem, i: usize, change: f64) {
+        self.traces[i].value -= change;
+        self.state.barred[i] &= self.traces[i].value >= problem.jump_in[i];
+    }
+
     /// Adds a merged contact; it gets the next number.
     pub(crate) fn extend(&mut self, merged: Merged) {
         self.traces.push(PenetrationTrace::unknown(self.state.approach_m));

@@ -7,7 +7,6 @@
 
 use super::avalanche::Avalanche;
 use super::equilibrium_path::EquilibriumPath;
-use super::pending::Monopole;
 use super::rejection::Rejection;
 use super::work::{mean_square, work, work_along};
 use crate::physics::contact::transition::{Kind, Transition};
@@ -15,9 +14,6 @@ use crate::physics::contact::{Status, Totals};
 use crate::physics::solve::local::outside::ReferenceState;
 use crate::physics::solve::local::{CurveState, Hold, OutsideField};
 use crate::physics::solve::trace::PenetrationTrace;
-
-/// Contacts of a local problem that has no equilibrium with few, over the usual number.
-const WIDER: usize = 4;
 
 /// Pending displacement that a member may have when its local problem is solved, over the limit.
 const NEGLIGIBLE: f64 = 0.1;
@@ -45,7 +41,8 @@ struct Pending {
 impl EquilibriumPath {
     /// True if members have pending displacements that matter.
     pub(super) fn has_pending(&self) -> bool {
-        self.neighbourhood.has_pending(NEGLIGIBLE * self.pending_limit())
+        let limit = NEGLIGIBLE * self.pending_limit();
+        self.neighbourhood.to_apply.iter().any(|displacement| displacement.abs() > limit)
     }
 
     /// Contact with the largest pending displacement above the limit.
@@ -57,14 +54,13 @@ impl EquilibriumPath {
     /// Applies the pending displacements of the members of the neighbourhood of a transition, and solves it. Contacts that leave or are
     /// absorbed by that are transitions of the avalanche.
     pub(super) fn apply_pending(&mut self, transition: &Transition, avalanche: &mut Avalanche) -> Result<(), Rejection> {
-        let (mut before, mut start, mut solved) = self.solve_pending();
-        if !solved && self.neighbourhood.local.members.len() < self.state().contacts.len() {
-            // Few contacts may have no equilibrium where more have.
-            let approach = self.neighbourhood.local.approach;
-            self.gather(transition, Some(approach), self.problem().numerics.spots_in_patch.saturating_mul(WIDER));
-            (before, start, solved) = self.solve_pending();
-        }
-        let applied = if solved { Vec::new() } else { self.relax_pending(transition, &start)? };
+        let (before, start, solved) = self.solve_pending();
+        let applied = if solved {
+            Vec::new()
+        } else {
+            self.neighbourhood.local.radius.iter_mut().zip(&start).for_each(|(radius, from)| *radius = from.radius);
+            self.relax_or_snap(transition.asperity)?
+        };
         let energy = self.settle_pending(&before, start);
         if applied.is_empty() {
             self.log.charge(energy);
@@ -93,14 +89,6 @@ impl EquilibriumPath {
             .collect();
         let solved = near.local.solve(problem, Hold::Approach, &mut self.solver.effort).is_ok() && near.local.rates(problem).1;
         (before, start, solved)
-    }
-
-    /// Relaxes the local problem with the pending displacements applied.
-    fn relax_pending(&mut self, transition: &Transition, start: &[Pending]) -> Result<Vec<Transition>, Rejection> {
-        for (radius, from) in self.neighbourhood.local.radius.iter_mut().zip(start) {
-            *radius = from.radius;
-        }
-        self.relax_or_snap(transition.asperity)
     }
 
     /// Relaxes the local problem: without a change of status the transition is a snap of `leader`.
@@ -172,7 +160,6 @@ impl EquilibriumPath {
         for (place, trace) in self.neighbourhood.local.watched.iter().zip(traces) {
             let i = place.asperity;
             self.predictor.traces[i] = trace;
-            self.pending.set_far_applied(i);
             self.predictor.state.barred[i] &= trace.value >= problem.jump_in[i];
             avalanche.open.push(i);
         }
@@ -216,7 +203,7 @@ impl EquilibriumPath {
             let approach = self.neighbourhood.local.approach;
             self.predictor.count(&self.solver.problem, i, -1.0, approach);
         }
-        self.pending.drop_near(i);
+        self.pending.set_applied(i);
         self.predictor.traces[i].value = f64::NAN;
         self.predictor.set(i, now, 0.0);
     }
@@ -231,14 +218,23 @@ impl EquilibriumPath {
             if self.predictor.state.status[j] == Status::Contact {
                 self.pending.add_near(j, change, limit);
             } else {
-                let trace = &mut self.predictor.traces[j];
-                trace.value -= change;
-                self.predictor.state.barred[j] &= trace.value >= problem.jump_in[j];
+                self.predictor.displace(problem, j, change);
                 avalanche.open.push(j);
             }
         }
         if !near.shell.is_empty() {
-            self.pending.add_far(Monopole { place: near.centre, reach: near.reach, load_n: load });
+            let far = |i: usize| {
+                let place = problem.place(i);
+                let is_far = problem.neighbours.distance(place, &near.centre) > near.reach;
+                is_far.then(|| load * problem.material.compliance() * problem.neighbours.kernel(place, &near.centre))
+            };
+            for &i in &self.predictor.state.contacts {
+                far(i).into_iter().for_each(|change| self.pending.add_far(i, change));
+            }
+            for k in 0..self.predictor.candidates.len() {
+                let i = self.predictor.candidates[k];
+                far(i).into_iter().for_each(|change| self.predictor.displace(problem, i, change));
+            }
         }
         self.expect_load(self.neighbourhood.local.approach, response);
     }

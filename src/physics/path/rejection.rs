@@ -1,16 +1,13 @@
 //! Reasons to reject an attempt of a path increment.
 
 use crate::physics::PhysicsError;
-use crate::physics::contact::transition::Transition;
 use crate::physics::solve::residual::NotConverged;
 
 /// Why an increment was rejected.
 #[derive(Debug)]
 pub(super) enum Rejection {
-    /// It is too long, or leads to no equilibrium.
+    /// It is too long, leads to no equilibrium, or an event was found too late.
     NotConverged(NotConverged),
-    /// These transitions were found too late.
-    Late(Vec<Transition>, NotConverged),
     /// It cannot succeed.
     Failed(PhysicsError),
 }

@@ -27,7 +27,6 @@ impl EquilibriumPath {
         path.energy = EnergyLedger::new(approach, from.events, from.balance).open(from.events < from.log.events.len());
         (path.log, path.totals, path.chatter) = (from.log, from.totals, from.chatter);
         path.chatter.grow(path.problem().len());
-        path.steps.limit_events(path.log.events.len(), path.problem().len());
         match path.correct(approach, false, true, Precision::Exact) {
             Ok(()) => {
                 path.log.drift_m = drift;

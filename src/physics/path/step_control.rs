@@ -3,9 +3,7 @@
 //! An increment ends on a multiple of `h = h_0/2^k`. A rejected one is halved; an accepted one may be followed by one of twice the length
 //! where that ends on a multiple of itself. So the increments do not depend on where a path began.
 
-use super::rejection::Rejection;
 use crate::physics::PhysicsError;
-use crate::physics::contact::transition::Transition;
 
 /// Maximum number of halvings before the global problem is relaxed instead.
 const MOST_HALVINGS: u32 = 14;
@@ -13,10 +11,10 @@ const MOST_HALVINGS: u32 = 14;
 /// Number of halvings from which on the predictor residual is accepted.
 const ACCEPTS_RESIDUAL: u32 = 6;
 
-/// Maximum number of changes of status within one increment, per asperity: [`super::chatter::ChatterGuard`] allows each asperity a few.
-const MOST_EVENTS: usize = 20;
+/// Maximum number of trials of transitions within one attempt, per asperity: [`super::chatter::ChatterGuard`] allows each asperity a few changes.
+const MOST_TRIALS: usize = 100;
 
-/// Lengths of the increments and the events that earlier attempts have missed.
+/// Lengths of the increments.
 #[derive(Debug, Clone)]
 pub(super) struct StepControl {
     /// Sense of the path: 1 loading, −1 unloading.
@@ -25,28 +23,13 @@ pub(super) struct StepControl {
     longest: f64,
     /// Number of halvings k.
     halvings: u32,
-    /// Transitions that were found too late in earlier attempts of this increment.
-    missed: Vec<Transition>,
-    /// Number of events at which this increment ends with an error.
-    event_limit: usize,
-}
-
-/// Next attempt after a rejected increment.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Recovery {
-    /// The same increment with the missed transitions in the queue.
-    Repeat,
-    /// Half the increment.
-    Halve,
-    /// The longest increment with uncovered asperities kept absorbed.
-    KeepCovered,
-    /// Relaxation of the global problem at the end of the increment.
-    RelaxGlobally,
+    /// Trials of transitions within this attempt.
+    trials: usize,
 }
 
 impl StepControl {
     pub(super) fn new(sense: f64, longest: f64, halvings: u32) -> Self {
-        Self { sense, longest, halvings, missed: Vec::new(), event_limit: usize::MAX }
+        Self { sense, longest, halvings, trials: 0 }
     }
 
     /// Longest increment \[m\].
@@ -57,11 +40,6 @@ impl StepControl {
     /// Number of halvings.
     pub(super) fn halvings(&self) -> u32 {
         self.halvings
-    }
-
-    /// Transitions that earlier attempts have missed.
-    pub(super) fn missed(&self) -> &[Transition] {
-        &self.missed
     }
 
     /// True if the predictor residual must be small for the increment to be accepted.
@@ -89,23 +67,14 @@ impl StepControl {
         if self.halvings > 0 && next_multiple(target, size, self.sense) == next_multiple(target, 2.0 * size, self.sense) {
             self.halvings -= 1;
         }
-        self.missed.clear();
         is_multiple(target, self.longest)
     }
 
-    /// Chooses the next attempt after a rejection of the increment from `here` \[m\]; `uncovered` if asperities were uncovered in it that
-    /// are absorbed at its beginning.
-    pub(super) fn reject(&mut self, here: f64, rejection: &Rejection, uncovered: bool) -> Recovery {
-        if self.add_missed(rejection) {
-            return Recovery::Repeat;
-        }
-        if !self.is_strict() && uncovered {
-            self.halvings = 0;
-            return Recovery::KeepCovered;
-        }
+    /// Halves the increment from `here` \[m\] after a rejection; false if the global problem is to be relaxed instead.
+    pub(super) fn halve(&mut self, here: f64) -> bool {
         if self.halvings >= MOST_HALVINGS {
             self.halvings = MOST_HALVINGS / 2;
-            return Recovery::RelaxGlobally;
+            return false;
         }
         // Half an increment may end where the full one did.
         let end = |control: &Self, halvings: u32| next_multiple(here, control.size(halvings), control.sense);
@@ -114,32 +83,19 @@ impl StepControl {
         while end(self, self.halvings) == ended && self.halvings < MOST_HALVINGS {
             self.halvings += 1;
         }
-        Recovery::Halve
+        true
     }
 
-    /// Adds the transitions that the attempt has found too late; true if one is new.
-    fn add_missed(&mut self, rejection: &Rejection) -> bool {
-        let Rejection::Late(late, _) = rejection else { return false };
-        let known = self.missed.len();
-        for transition in late {
-            if !self.missed.contains(transition) {
-                self.missed.push(*transition);
-            }
-        }
-        self.missed.len() > known
+    /// Begins an attempt.
+    pub(super) fn begin_attempt(&mut self) {
+        self.trials = 0;
     }
 
-    /// Begins to count the events of an increment of a path with `events` events and `n` asperities.
-    pub(super) fn limit_events(&mut self, events: usize, n: usize) {
-        self.event_limit = events + MOST_EVENTS * (n + 10);
-    }
-
-    /// Ends an increment whose events go on without end; `asperity` is the caller's number of the one that changed last.
-    pub(super) fn check_events(&self, events: usize, n: usize, approach_m: f64, asperity: usize) -> Result<(), PhysicsError> {
-        if events <= self.event_limit {
-            return Ok(());
-        }
-        Err(PhysicsError::EndlessAvalanche { approach_m, events: MOST_EVENTS * (n + 10), asperity })
+    /// Counts a trial on a path of `n` asperities; `asperity` is the caller's number of the one that is to change.
+    pub(super) fn count_trial(&mut self, n: usize, approach_m: f64, asperity: usize) -> Result<(), PhysicsError> {
+        self.trials += 1;
+        let most = MOST_TRIALS * (n + 100);
+        if self.trials <= most { Ok(()) } else { Err(PhysicsError::EndlessAvalanche { approach_m, events: most, asperity }) }
     }
 }
 
@@ -158,20 +114,14 @@ fn next_multiple(here: f64, size: f64, sense: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{MOST_HALVINGS, Recovery, Rejection, StepControl};
-    use crate::physics::contact::transition::{Kind, Transition};
-    use crate::physics::solve::residual::NotConverged;
-
-    fn failed() -> Rejection {
-        Rejection::NotConverged(NotConverged::residual(1.0, 0))
-    }
+    use super::{MOST_HALVINGS, StepControl};
 
     #[test]
     fn law_increments_end_on_multiples_and_grow_back() {
         let mut control = StepControl::new(-1.0, 1.0, 0);
         assert_eq!(control.target(0.3, None), 0.0);
         assert_eq!(control.target(0.3, Some(0.1)), 0.1);
-        assert_eq!(control.reject(0.3, &failed(), false), Recovery::Halve);
+        assert!(control.halve(0.3));
         // Half an increment from 0.3 ends at 0 too; a quarter ends at 0.25.
         assert_eq!((control.halvings(), control.target(0.3, None)), (2, 0.25));
         // The next quarter ends at 0 and so does the next half: it is tried.
@@ -187,18 +137,11 @@ mod tests {
     #[test]
     fn law_a_rejected_increment_has_an_end() {
         let mut control = StepControl::new(1.0, 1.0, 0);
-        let late = |asperity| Rejection::Late(vec![Transition { kind: Kind::JumpIn, asperity, by: None }], NotConverged::residual(1.0, 0));
-        assert_eq!(control.reject(0.0, &late(3), false), Recovery::Repeat);
-        assert_eq!(control.missed().len(), 1);
-        // The same transition again is no news.
-        assert_eq!(control.reject(0.0, &late(3), false), Recovery::Halve);
         let mut rejections = 0;
-        while control.reject(0.0, &failed(), false) != Recovery::RelaxGlobally {
+        while control.halve(0.0) {
             rejections += 1;
             assert!(rejections <= MOST_HALVINGS);
         }
         assert_eq!(control.halvings(), MOST_HALVINGS / 2);
-        assert_eq!(control.reject(0.0, &failed(), true), Recovery::KeepCovered);
-        assert_eq!(control.halvings(), 0);
     }
 }

@@ -2,34 +2,24 @@
 //!
 //! Unknowns are the contact radii; the residual of each is `D_i − ŵ_i − δ_JKR(a_i)`, with `D_i = Δ + z_i`. The paper's Eq 9 is a diagonal
 //! Newton update of all contacts at once; it diverges. Here:
-//! - [`GlobalSolver::newton`]: Newton's method with GMRES. A step that does not reduce the residual mostly fails for one contact at the
-//!   edge of another, where the slope of the field is infinite: a local problem around it is solved first (nonlinear elimination, Lanzkron,
-//!   Rose & Wilkes, SIAM J. Sci. Comput. 17:538, 1996);
+//! - [`GlobalSolver::newton`]: Newton's method with GMRES;
 //! - [`GlobalSolver::relax`]: overdamped relaxation ([`super::relaxation`]), where Newton's method fails at a fold or after a jump.
 
 use super::jacobian::Jacobian;
-use super::local::{Hold, LocalProblem};
 use super::newton::{Damping, NonlinearSystem, Worst, damped_newton};
 use super::relaxation::{Relaxing, relax};
 use super::residual::{NotConverged, STRIDE};
 use super::schwarz::CachedInverse;
 use super::trace::PenetrationTrace;
 use crate::physics::contact::problem::Problem;
-use crate::physics::contact::state::{State, Status};
+use crate::physics::contact::state::State;
 use crate::physics::contact::transition::{ContactView, Transition};
 use crate::physics::half_space::{Effort, Interaction as _, Spots, Tangent};
 use crate::physics::math::gmres::{Limits, Solution, gmres, gmres_and_least};
-use crate::physics::math::vector::dot;
 use std::sync::Arc;
 
 /// Maximum number of products in one linear solve.
 const PRODUCTS: usize = 120;
-
-/// Maximum number of local problems in one global solve.
-const MENDS: usize = 6;
-
-/// Residual over the last one above which a step with an earlier tangent is followed by one with its own.
-const WORTH: f64 = 0.03;
 
 /// Relative residuals of linear solves.
 const MOST: f64 = 3e-3;
@@ -72,8 +62,6 @@ pub(crate) struct GlobalSolver {
     /// Residuals of the contacts that were evaluated last \[m\].
     pub(crate) residual: Vec<f64>,
     diagonal: Vec<f64>,
-    /// Local problem around a contact for which Newton's method does not descend.
-    patch: LocalProblem,
 }
 
 impl GlobalSolver {
@@ -90,7 +78,6 @@ impl GlobalSolver {
             fresh: false,
             residual: Vec::new(),
             diagonal: Vec::new(),
-            patch: LocalProblem::default(),
         }
     }
 
@@ -110,21 +97,21 @@ impl GlobalSolver {
 
     /// Evaluates displacements, residuals and tangent of a state; returns the largest residual with its asperity.
     pub(crate) fn evaluate(&mut self, state: &mut State) -> NotConverged {
-        let problem = &*Arc::clone(&self.problem);
-        problem.spots(state, &mut self.spots);
-        let field = problem.field.for_spots(&self.spots, self.roughly);
-        field.linearise(&self.spots, &mut state.displacement, &mut self.tangents.contacts, &mut self.effort);
-        self.fresh = true;
-        self.compare(state)
+        self.evaluate_with(state, true)
     }
 
-    /// Evaluates a state without its tangent.
-    fn reevaluate(&mut self, state: &mut State) -> NotConverged {
+    /// Evaluates a state, with its tangent or with that of an earlier state.
+    fn evaluate_with(&mut self, state: &mut State, tangent: bool) -> NotConverged {
         let problem = &*Arc::clone(&self.problem);
         problem.spots(state, &mut self.spots);
         let field = problem.field.for_spots(&self.spots, self.roughly);
-        field.again(&self.spots, &mut state.displacement, &mut self.tangents.contacts, &mut self.effort);
-        self.fresh = false;
+        let into = (&mut state.displacement, &mut self.tangents.contacts, &mut self.effort);
+        if tangent {
+            field.linearise(&self.spots, into.0, into.1, into.2);
+        } else {
+            field.again(&self.spots, into.0, into.1, into.2);
+        }
+        self.fresh = tangent;
         self.compare(state)
     }
 
@@ -148,27 +135,10 @@ impl GlobalSolver {
         worst
     }
 
-    /// Newton's method at the mean penetration of a state that was evaluated last. If `patient`, it is repeated in short steps before it
-    /// fails.
-    pub(crate) fn newton(&mut self, state: &mut State, first: NotConverged, patient: bool, tolerance: f64) -> Result<(), NotConverged> {
-        let start: Vec<f64> = state.contacts.iter().map(|&i| state.radius[i]).collect();
-        self.descend(state, first, Damping::NORMAL, tolerance).or_else(|unsettled| {
-            if !patient {
-                return Err(unsettled);
-            }
-            // Near the edge of a contact, where the slope of its field is infinite, only short steps descend.
-            for (&i, a) in state.contacts.iter().zip(&start) {
-                state.radius[i] = *a;
-            }
-            let first = self.evaluate(state);
-            self.descend(state, first, Damping::CAREFUL, tolerance)
-        })
-    }
-
-    /// Newton's method from a state that was evaluated last.
-    fn descend(&mut self, state: &mut State, first: NotConverged, damping: Damping, tolerance: f64) -> Result<(), NotConverged> {
+    /// Newton's method at the mean penetration of a state that was evaluated last.
+    pub(crate) fn newton(&mut self, state: &mut State, first: NotConverged, damping: Damping, tolerance: f64) -> Result<(), NotConverged> {
         let exact = tolerance <= self.problem.tolerance_m();
-        let mut descent = Descent { solver: self, state, exact, tolerance, step: Vec::new(), start: Vec::new(), mends: 0 };
+        let mut descent = Descent { solver: self, state, exact, tolerance, step: Vec::new(), start: Vec::new() };
         damped_newton(&mut descent, first.into(), damping, tolerance)
     }
 
@@ -188,76 +158,24 @@ impl GlobalSolver {
         self.count(found)
     }
 
-    /// Solves the local problem around a contact with the displacement by all others held; false if it has no equilibrium.
-    fn mend(&mut self, state: &mut State, asperity: usize) -> bool {
-        let problem = &*Arc::clone(&self.problem);
-        let near = problem.neighbours.nearest(problem.place(asperity), problem.numerics.spots_in_patch, state.contacts.len(), |i| {
-            state.status[i] == Status::Contact
-        });
-        let mut spots: Vec<(usize, f64, f64)> = near
-            .into_iter()
-            .filter_map(|(_, i)| state.contacts.binary_search(&i).ok().map(|k| (i, state.radius[i], state.displacement[k])))
-            .collect();
-        spots.sort_unstable_by_key(|spot| spot.0);
-        self.patch.fix(problem, &spots, state.approach_m, &mut self.effort);
-        if self.patch.solve_with(problem, Hold::Approach, Damping::CAREFUL, &mut self.effort).is_err() {
-            return false;
-        }
-        for (member, a) in self.patch.members.iter().zip(&self.patch.radius) {
-            state.radius[member.asperity] = *a;
-        }
-        true
-    }
-
     /// Relaxes from a state; the transitions on the way are returned.
     pub(crate) fn relax(&mut self, state: &mut State) -> Result<Vec<Transition>, NotConverged> {
         let problem = &*Arc::clone(&self.problem);
         relax(&mut Whole { solver: self, state }, problem, None)
     }
 
-    /// `da_i/dΔ` at the equilibrium that was evaluated last. The stability is entered into the state.
-    pub(crate) fn rates(&mut self, state: &mut State) -> Vec<f64> {
+    /// `da_i/dΔ` at the equilibrium that was evaluated last; `exact`, or of sufficient precision. The stability is entered into the state: its sign is
+    /// right at either precision, since the least eigenvalue is in the Krylov space where it is small.
+    pub(crate) fn rates(&mut self, state: &mut State, exact: bool) -> Vec<f64> {
         if !self.fresh {
             // At the edge of a contact the slope of its field is unbounded, and the tangent of the last step is not valid.
             self.evaluate(state);
         }
-        if self.tangents.contacts.is_exact() {
-            return self.rates_to(RATES, false, state);
-        }
-        let mut rates = self.rates_to(LEAST, false, state);
-        // A second solve adds the digits that fast products lack.
-        let mut left = vec![0.0; rates.len()];
-        self.tangents.contacts.fine_product(&rates, &mut left);
-        self.effort.products += 1;
-        self.effort.transforms += self.tangents.contacts.transforms();
-        for ((left, rate), own) in left.iter_mut().zip(&rates).zip(&self.diagonal) {
-            *left = 1.0 - (*left + own * rate);
-        }
-        let share = (dot(&left, &left) / left.len().max(1) as f64).sqrt();
-        let limits = Limits { tolerance: (RATES / share).clamp(LEAST, 0.5), products: PRODUCTS };
-        let more = gmres(&Jacobian { tangent: &self.tangents.contacts, diagonal: &self.diagonal }, None, &left, limits);
-        let more = self.count(more);
-        for (rate, more) in rates.iter_mut().zip(more) {
-            *rate += more;
-        }
-        rates
-    }
-
-    /// Rates of sufficient precision. The sign of the stability is right: where the least eigenvalue is small, it is in the Krylov space.
-    pub(crate) fn rough_rates(&mut self, state: &mut State) -> Vec<f64> {
-        if !self.fresh {
-            self.evaluate(state);
-        }
-        self.rates_to(ROUGH_RATES, true, state)
-    }
-
-    /// Rates and stability, to a relative residual; `short` with the approximate inverse.
-    fn rates_to(&mut self, wanted: f64, short: bool, state: &mut State) -> Vec<f64> {
         let ones = vec![1.0; state.contacts.len()];
         let Self { problem, tangents, inverse, diagonal, .. } = self;
         let jacobian = Jacobian { tangent: &tangents.contacts, diagonal };
-        let inverse = if short { inverse.of(problem, state, &jacobian) } else { None };
-        let limits = Limits { tolerance: wanted, products: PRODUCTS };
+        let inverse = if exact { None } else { inverse.of(problem, state, &jacobian) };
+        let limits = Limits { tolerance: if exact { RATES } else { ROUGH_RATES }, products: PRODUCTS };
         let (rates, least) = gmres_and_least(&jacobian, inverse, &ones, limits);
         state.stability = least;
         self.count(rates)
@@ -303,29 +221,13 @@ struct Descent<'a> {
     tolerance: f64,
     step: Vec<f64>,
     start: Vec<f64>,
-    /// Local problems solved so far.
-    mends: usize,
 }
 
 impl NonlinearSystem for Descent<'_> {
     fn evaluate(&mut self, round: usize) -> Worst {
         self.solver.effort.iterations += 1;
         // The first step leads near enough for the tangent there to serve to the end.
-        if self.exact && round == 0 { self.solver.evaluate(self.state) } else { self.solver.reevaluate(self.state) }.into()
-    }
-
-    fn improve(&mut self, mut worst: Worst, best: f64) -> Worst {
-        if !self.solver.fresh && worst.largest_m > WORTH * best {
-            worst = self.solver.evaluate(self.state).into();
-        }
-        if worst.largest_m >= best && self.mends < MENDS {
-            // At one contact the field is not a smooth function of the radii: the contacts around it are solved for themselves.
-            self.mends += 1;
-            if self.solver.mend(self.state, worst.contact.asperity) {
-                worst = self.solver.evaluate(self.state).into();
-            }
-        }
-        worst
+        self.solver.evaluate_with(self.state, self.exact && round == 0).into()
     }
 
     fn begin_step(&mut self, round: usize, worst: &Worst) {
@@ -370,7 +272,7 @@ impl Relaxing for Whole<'_> {
     fn finish(&mut self) -> bool {
         let mut end = self.state.clone();
         let first = self.solver.evaluate(&mut end);
-        let found = self.solver.descend(&mut end, first, Damping::FINISH, self.solver.problem.tolerance_m()).is_ok();
+        let found = self.solver.newton(&mut end, first, Damping::FINISH, self.solver.problem.tolerance_m()).is_ok();
         if found {
             *self.state = end;
         }

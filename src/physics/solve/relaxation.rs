@@ -13,9 +13,6 @@ use crate::physics::math::vector::dot;
 /// Maximum number of steps since the last transition.
 const STEPS: usize = 1000;
 
-/// Number of steps after which a contact at the edge of another is absorbed.
-const RESTLESS: usize = 200;
-
 /// Pseudo-time after which Newton's method may finish, and the factor by which it is extended if that fails.
 const NEARLY: f64 = 100.0;
 const LONGER: f64 = 1e3;
@@ -65,8 +62,7 @@ pub(crate) fn relax(
             return Err(last);
         }
         let spots = contact.spots();
-        let restless = if round.is_multiple_of(RESTLESS) { problem.at_edge(&spots, last.asperity) } else { None };
-        if let Some(change) = problem.overtaken(&spots).or(restless) {
+        if let Some(change) = problem.overtaken(&spots) {
             contact.take_out(&change);
             changes.push(change);
             if uncovered.is_some_and(|earlier| change.undoes(earlier)) {
@@ -77,8 +73,7 @@ pub(crate) fn relax(
         }
         if time > finish {
             // Near the equilibrium Newton's method finishes, unless the equilibrium is unstable. At the edge of a contact, where the slope
-            // of its
-            // field jumps, implicit steps would alternate without end, while short descending steps converge.
+            // of its field jumps, implicit steps would alternate without end, while short descending steps converge.
             if contact.finish() {
                 continue;
             }

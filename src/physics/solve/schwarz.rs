@@ -7,19 +7,13 @@
 use super::jacobian::Jacobian;
 use crate::physics::contact::problem::Problem;
 use crate::physics::contact::state::{State, Status};
-use crate::physics::half_space::{Tangent, places_in};
+use crate::physics::half_space::Tangent;
 use crate::physics::math::dense::Lu;
-use crate::physics::math::gmres::{LinearOperator as _, Preconditioner, bounded_inverse};
+use crate::physics::math::gmres::Preconditioner;
 
 /// Maximum number of contacts in a group, and number of contacts that are solved together for it.
 const GROUP: usize = 24;
 const TOGETHER: usize = 44;
-
-/// Position of a contact that has left.
-const GONE: u32 = u32::MAX;
-
-/// Inverse of the fraction of contacts that may change before the inverse is computed again.
-const CHANGES: usize = 20;
 
 /// Distance over radius beyond which a contact acts by its load alone.
 const ALOOF: f64 = 2.0;
@@ -47,14 +41,11 @@ impl CachedInverse {
             self.inverse = None;
             return None;
         }
-        let own = |k: usize| bounded_inverse(jacobian.diagonal(k));
-        let contacts = &state.contacts;
-        let known = self.inverse.take().filter(|_| self.solutions < MOST_SOLUTIONS);
-        let known = known.and_then(|known| if known.serves(contacts) { Some(known) } else { known.carried(contacts, own) });
-        if known.is_none() {
+        let serves = |known: &LocalInverse| self.solutions < MOST_SOLUTIONS && known.serves(&state.contacts);
+        let inverse = self.inverse.take().filter(serves).unwrap_or_else(|| {
             self.solutions = 0;
-        }
-        let inverse = known.unwrap_or_else(|| LocalInverse::new(problem, state, jacobian.tangent, jacobian.diagonal));
+            LocalInverse::new(problem, state, jacobian.tangent, jacobian.diagonal)
+        });
         Some(self.inverse.insert(inverse))
     }
 }
@@ -109,39 +100,6 @@ impl LocalInverse {
     /// True if it belongs to these contacts.
     pub(crate) fn serves(&self, contacts: &[usize]) -> bool {
         self.index == contacts
-    }
-
-    /// Inverse for other contacts, if most are the same; new ones have their own diagonal element, by `own` of their position.
-    pub(crate) fn carried(&self, contacts: &[usize], own: impl Fn(usize) -> f64) -> Option<Self> {
-        let mut places = vec![GONE; self.index.len()];
-        let rows: Vec<Option<usize>> = places_in(contacts, &self.index).collect();
-        let mut changes = contacts.len() + self.index.len();
-        for (k, old) in rows.iter().enumerate().filter_map(|(k, old)| old.map(|old| (k, old))) {
-            places[old] = k as u32;
-            changes -= 2;
-        }
-        if changes * CHANGES > contacts.len() {
-            return None;
-        }
-        let mut found = Self { index: contacts.to_vec(), starts: vec![0], ..Self::default() };
-        found.spots.reserve(self.spots.len());
-        found.values.reserve(self.values.len());
-        for (k, row) in rows.into_iter().enumerate() {
-            if let Some(old) = row {
-                for at in self.starts[old]..self.starts[old + 1] {
-                    let place = places[self.spots[at] as usize];
-                    if place != GONE {
-                        found.spots.push(place);
-                        found.values.push(self.values[at]);
-                    }
-                }
-            } else {
-                found.spots.push(k as u32);
-                found.values.push(own(k) as f32);
-            }
-            found.starts.push(found.spots.len());
-        }
-        Some(found)
     }
 }
 

@@ -14,9 +14,6 @@ use crate::physics::solve::residual::NotConverged;
 /// Smallest share of a way that is tried.
 const SHORTEST: f64 = 1e-3;
 
-/// Largest relative change of a radius over which no fold is assumed.
-const NEAR: f64 = 0.3;
-
 /// Maximum number of points of a curve, and of parts of one continuation.
 const STATIONS: usize = 50;
 
@@ -66,18 +63,6 @@ impl LocalProblem {
             }
         }
         Ok(())
-    }
-
-    /// Radii at another mean penetration \[m\], if no fold lies before it; the local problem stays.
-    pub(crate) fn probe(&mut self, problem: &Problem, approach: f64, effort: &mut Effort) -> Option<Vec<f64>> {
-        let start = (self.radius.clone(), self.approach);
-        self.ahead(problem, approach);
-        let arrived = self.solve(problem, Hold::Approach, effort).is_ok() && self.rates(problem).1;
-        let near = self.radius.iter().zip(&start.0).all(|(a, from)| (a / from - 1.0).abs() < NEAR);
-        let there = std::mem::replace(&mut self.radius, start.0);
-        self.approach = start.1;
-        self.evaluate(problem, effort);
-        (arrived && near).then_some(there)
     }
 
     /// Follows member `at` to the radius `bound` \[m\], until Δ reverses or has passed `target` \[m\] in the sense `sign` of the path.

@@ -129,21 +129,6 @@ impl LocalProblem {
         });
     }
 
-    /// Gathers contacts, ascending, with radius and displacement \[m\]; the state need not be an equilibrium.
-    pub(crate) fn fix(&mut self, problem: &Problem, spots: &[(usize, f64, f64)], approach: f64, effort: &mut Effort) {
-        (self.approach, self.reference, self.local) = (approach, approach, false);
-        self.way.clear();
-        self.watched.clear();
-        self.members.clear();
-        self.members.extend(spots.iter().map(|spot| OutsideField { asperity: spot.0, outside: 0.0, drift: 0.0 }));
-        self.radius.clear();
-        self.radius.extend(spots.iter().map(|spot| spot.1));
-        self.evaluate(problem, effort);
-        for ((member, spot), field) in self.members.iter_mut().zip(spots).zip(&self.field) {
-            member.outside = spot.2 - field;
-        }
-    }
-
     /// Position of a member.
     pub(crate) fn find(&self, asperity: usize) -> Option<usize> {
         self.members.binary_search_by_key(&asperity, |m| m.asperity).ok()
