@@ -31,7 +31,7 @@ impl EquilibriumPath {
     pub(super) fn start_avalanche(&mut self, first: Transition) -> Result<(), Rejection> {
         self.log.begin_avalanche();
         self.gather(&first, Some(self.state().approach_m));
-        self.advance_members();
+        self.advance_members(&[], None);
         let mut avalanche = Avalanche::default();
         self.apply(first, None, &mut avalanche)?;
         self.run_avalanche(avalanche).map(|_| ())
@@ -65,7 +65,7 @@ impl EquilibriumPath {
                 }
                 self.apply_pending(&transition, &mut avalanche)?;
             } else {
-                self.advance_members();
+                self.advance_members(&[], None);
                 self.apply(transition, None, &mut avalanche)?;
             }
         }

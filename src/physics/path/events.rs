@@ -196,6 +196,8 @@ impl EquilibriumPath {
         // Near the end of a branch the state is smooth in the radius; at the edge of a contact it is smooth in the mean penetration.
         let curve = if fold || kind == Kind::JumpOff { std::mem::take(&mut self.neighbourhood.local.way) } else { Vec::new() };
         self.propagate_curve(&curve, avalanche);
-        self.advance_predictors(&curve, fold);
+        // At a fold they are infinite.
+        let rates = (!fold).then(|| self.neighbourhood.local.rates(&self.solver.problem).0);
+        self.advance_members(&curve, rates.as_deref());
     }
 }

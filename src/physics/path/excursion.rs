@@ -1,7 +1,6 @@
 //! Excursions: a second path through the last increment, to a state between its ends.
 
 use super::accuracy::LOAD_TOLERANCE;
-use super::energy::EnergyLedger;
 use super::equilibrium_path::EquilibriumPath;
 use super::step_control::StepControl;
 use crate::physics::PhysicsError;
@@ -22,11 +21,7 @@ impl EquilibriumPath {
         let mut other = Self::new(self.problem(), self.predictor.clone(), self.frame, steps);
         match self.checkpoint.as_deref() {
             Some(checkpoint) => other.restore(checkpoint),
-            None => {
-                other.log = self.log.clone_without_events();
-                other.energy = EnergyLedger::new(self.energy.at(), 0, self.energy.balance());
-                (other.totals, other.chatter) = (self.totals, self.chatter.clone());
-            }
+            None => other.restore(&self.checkpoint()),
         }
         other.chatter.clear_frozen();
         while other.state().approach_m != target {

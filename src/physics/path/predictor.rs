@@ -40,6 +40,24 @@ struct Sums {
     area_rate: f64,
 }
 
+impl Sums {
+    /// Extrapolates to a mean penetration \[m\].
+    fn go_to(&mut self, approach: f64) {
+        let way = approach - self.at;
+        self.load += self.load_rate * way;
+        self.area += self.area_rate * way;
+        self.at = approach;
+    }
+
+    /// Adds (1) or subtracts (−1) other sums at the same mean penetration.
+    fn add(&mut self, other: &Self, sign: f64) {
+        self.load += sign * other.load;
+        self.load_rate += sign * other.load_rate;
+        self.area += sign * other.area;
+        self.area_rate += sign * other.area_rate;
+    }
+}
+
 impl Predictor {
     pub(crate) fn new(problem: &Problem, state: State) -> Self {
         let unknown = PenetrationTrace::unknown(state.approach_m);
@@ -137,22 +155,17 @@ impl Predictor {
 
     /// Predicted load and area at a mean penetration.
     pub(crate) fn totals(&self, approach: f64) -> Totals {
-        let way = approach - self.sums.at;
-        Totals { load_n: self.sums.load + self.sums.load_rate * way, area_m2: self.sums.area + self.sums.area_rate * way }
+        let mut sums = self.sums;
+        sums.go_to(approach);
+        Totals { load_n: sums.load, area_m2: sums.area }
     }
 
     /// Removes a contact from the sums (−1) or adds it (+1), as predicted at a mean penetration.
     pub(crate) fn count(&mut self, problem: &Problem, i: usize, sign: f64, approach: f64) {
-        let way = approach - self.sums.at;
-        self.sums.load += self.sums.load_rate * way;
-        self.sums.area += self.sums.area_rate * way;
-        self.sums.at = approach;
-        let share = self.share(problem, i);
-        let way = approach - share.at;
-        self.sums.load += sign * (share.load + share.load_rate * way);
-        self.sums.load_rate += sign * share.load_rate;
-        self.sums.area += sign * (share.area + share.area_rate * way);
-        self.sums.area_rate += sign * share.area_rate;
+        let mut share = self.share(problem, i);
+        share.go_to(approach);
+        self.sums.go_to(approach);
+        self.sums.add(&share, sign);
     }
 
     /// Replaces the predictors of contacts: asperity, radius \[m\], trace.
@@ -181,11 +194,7 @@ impl Predictor {
     pub(crate) fn recount(&mut self, problem: &Problem) {
         let mut sums = Sums { at: self.state.approach_m, ..Sums::default() };
         for &i in &self.state.contacts {
-            let share = self.share(problem, i);
-            sums.load += share.load;
-            sums.load_rate += share.load_rate;
-            sums.area += share.area;
-            sums.area_rate += share.area_rate;
+            sums.add(&self.share(problem, i), 1.0);
         }
         self.sums = sums;
     }

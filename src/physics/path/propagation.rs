@@ -72,7 +72,7 @@ impl EquilibriumPath {
     /// Solves the local problem with the pending displacements applied; false if it has no stable equilibrium nearby.
     fn solve_pending(&mut self) -> (Before, Vec<Pending>, bool) {
         let problem = &*self.problem();
-        self.advance_members();
+        self.advance_members(&[], None);
         let before = self.begin();
         let near = &mut self.neighbourhood;
         for (member, displacement) in near.local.members.iter_mut().zip(&near.to_apply) {
@@ -269,44 +269,22 @@ impl EquilibriumPath {
         self.predictor.add_load(more);
     }
 
-    /// Advances the predictors of the members to a located event and counts the work, along a solution curve if there is one. At a fold the
-    /// rates are infinite.
-    pub(super) fn advance_predictors(&mut self, curve: &[CurveState], fold: bool) {
+    /// Advances the predictors of the members to the mean penetration of the local problem, and counts the work: along a solution curve if there is one.
+    /// Without new `rates` they keep theirs.
+    pub(super) fn advance_members(&mut self, curve: &[CurveState], rates: Option<&[f64]>) {
         let problem = &*self.problem();
-        let (approach, reference) = (self.neighbourhood.local.approach, self.neighbourhood.reference);
-        let rates = if fold { None } else { Some(self.neighbourhood.local.rates(problem).0) };
         let local = &self.neighbourhood.local;
         let mut traces = Vec::with_capacity(local.members.len());
         for (k, (member, a)) in local.members.iter().zip(&local.radius).enumerate() {
             let i = member.asperity;
-            let asperity = &problem.asperities[i];
-            let from = self.predictor.traces[i];
-            let value = asperity.penetration(*a);
-            let trace = match &rates {
-                Some(rates) => PenetrationTrace::of(asperity, approach, *a, rates[k]),
-                None if approach == from.at => PenetrationTrace { value, ..from },
-                None => PenetrationTrace { at: approach, value, rate: (value - from.value) / (approach - from.at) },
+            let (asperity, from) = (&problem.asperities[i], self.predictor.traces[i]);
+            let trace = match rates {
+                Some(rates) => PenetrationTrace::of(asperity, local.approach, *a, rates[k]),
+                None => PenetrationTrace { at: local.approach, value: asperity.penetration(*a), ..from },
             };
-            let along_curve = from.at == reference && curve.len() > 1;
+            let along_curve = from.at == self.neighbourhood.reference && curve.len() > 1;
             self.log.work_j += if along_curve { work_along(problem, i, k, curve) } else { work(problem, i, from, trace) };
             traces.push((i, *a, trace));
-        }
-        self.predictor.replace_all(problem, &traces);
-    }
-
-    /// Advances members that were known at an earlier mean penetration to the present one, and counts the work.
-    pub(super) fn advance_members(&mut self) {
-        let problem = &*self.problem();
-        let local = &self.neighbourhood.local;
-        let mut traces = Vec::new();
-        for (member, a) in local.members.iter().zip(&local.radius) {
-            let i = member.asperity;
-            let from = self.predictor.traces[i];
-            if from.at != local.approach {
-                let to = PenetrationTrace { at: local.approach, value: problem.asperities[i].penetration(*a), ..from };
-                self.log.work_j += work(problem, i, from, to);
-                traces.push((i, *a, to));
-            }
         }
         self.predictor.replace_all(problem, &traces);
     }

@@ -5,7 +5,6 @@
 //! - [`GlobalSolver::newton`]: Newton's method with GMRES;
 //! - [`GlobalSolver::relax`]: overdamped relaxation ([`super::relaxation`]), where Newton's method fails at a fold or after a jump.
 
-use super::jacobian::Jacobian;
 use super::newton::{Damping, NonlinearSystem, Worst, damped_newton};
 use super::relaxation::{Relaxing, relax};
 use super::residual::{NotConverged, STRIDE};
@@ -15,7 +14,7 @@ use crate::physics::contact::problem::Problem;
 use crate::physics::contact::state::State;
 use crate::physics::contact::transition::{ContactView, Transition};
 use crate::physics::half_space::{Effort, Interaction as _, Spots, Tangent};
-use crate::physics::math::gmres::{Limits, Solution, gmres, gmres_and_least};
+use crate::physics::math::gmres::{Limits, LinearOperator, Solution, gmres, gmres_and_least};
 use std::sync::Arc;
 
 /// Maximum number of products in one linear solve.
@@ -153,7 +152,7 @@ impl GlobalSolver {
     fn newton_step(&mut self, state: &State, wanted: f64) -> Vec<f64> {
         let Self { problem, tangents, inverse, diagonal, residual, .. } = self;
         let jacobian = Jacobian { tangent: &tangents.contacts, diagonal };
-        let inverse = inverse.of(problem, state, &jacobian);
+        let inverse = inverse.of(problem, state, &tangents.contacts, diagonal);
         let found = gmres(&jacobian, inverse, residual, Limits { tolerance: wanted, products: PRODUCTS });
         self.count(found)
     }
@@ -174,7 +173,7 @@ impl GlobalSolver {
         let ones = vec![1.0; state.contacts.len()];
         let Self { problem, tangents, inverse, diagonal, .. } = self;
         let jacobian = Jacobian { tangent: &tangents.contacts, diagonal };
-        let inverse = if exact { None } else { inverse.of(problem, state, &jacobian) };
+        let inverse = if exact { None } else { inverse.of(problem, state, &tangents.contacts, diagonal) };
         let limits = Limits { tolerance: if exact { RATES } else { ROUGH_RATES }, products: PRODUCTS };
         let (rates, least) = gmres_and_least(&jacobian, inverse, &ones, limits);
         state.stability = least;
@@ -210,6 +209,25 @@ impl GlobalSolver {
         let mut displacement = Vec::new();
         self.problem.field.displacements(&self.spots, &[asperity], &mut displacement, &mut self.effort);
         displacement.first().copied().unwrap_or(0.0)
+    }
+}
+
+/// Jacobian `∂(δ_JKR + ŵ)/∂a`: the slopes `dδ/da` of the asperities and the tangent of the field.
+struct Jacobian<'a> {
+    tangent: &'a Tangent,
+    diagonal: &'a [f64],
+}
+
+impl LinearOperator for Jacobian<'_> {
+    fn product(&self, x: &[f64], y: &mut [f64]) {
+        self.tangent.product(x, y);
+        for (yi, (di, xi)) in y.iter_mut().zip(self.diagonal.iter().zip(x)) {
+            *yi += di * xi;
+        }
+    }
+
+    fn diagonal(&self, i: usize) -> f64 {
+        self.diagonal[i] + self.tangent.own(i)
     }
 }
 

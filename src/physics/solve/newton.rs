@@ -31,9 +31,7 @@ pub(crate) struct Damping {
 
 impl Damping {
     /// Away from edges of contacts.
-    pub(crate) const NORMAL: Self = Self { least_share: 0.2, rounds: 20 };
-    /// The same for a local problem.
-    pub(crate) const LOCAL: Self = Self { least_share: 0.2, rounds: 24 };
+    pub(crate) const NORMAL: Self = Self { least_share: 0.2, rounds: 24 };
     /// At the end of a relaxation.
     pub(crate) const FINISH: Self = Self { least_share: 1e-4, rounds: 40 };
 }

@@ -4,7 +4,6 @@
 //! solved with the contacts around it, and the solution for the group itself is kept. The response of a contact is determined by its
 //! neighbours, which lose what it gains.
 
-use super::jacobian::Jacobian;
 use crate::physics::contact::problem::Problem;
 use crate::physics::contact::state::{State, Status};
 use crate::physics::half_space::Tangent;
@@ -35,16 +34,16 @@ impl CachedInverse {
         self.solutions += 1;
     }
 
-    /// An approximate inverse of a Jacobian; none for a dense one, whose products cost little.
-    pub(super) fn of(&mut self, problem: &Problem, state: &State, jacobian: &Jacobian<'_>) -> Option<&dyn Preconditioner> {
-        if jacobian.tangent.is_exact() {
+    /// An approximate inverse of a tangent and a diagonal; none for a dense one, whose products cost little.
+    pub(super) fn of(&mut self, problem: &Problem, state: &State, tangent: &Tangent, diagonal: &[f64]) -> Option<&dyn Preconditioner> {
+        if tangent.is_exact() {
             self.inverse = None;
             return None;
         }
-        let serves = |known: &LocalInverse| self.solutions < MOST_SOLUTIONS && known.serves(&state.contacts);
+        let serves = |known: &LocalInverse| self.solutions < MOST_SOLUTIONS && known.index == state.contacts;
         let inverse = self.inverse.take().filter(serves).unwrap_or_else(|| {
             self.solutions = 0;
-            LocalInverse::new(problem, state, jacobian.tangent, jacobian.diagonal)
+            LocalInverse::new(problem, state, tangent, diagonal)
         });
         Some(self.inverse.insert(inverse))
     }
@@ -95,11 +94,6 @@ impl LocalInverse {
             found.starts.push(found.spots.len());
         }
         found
-    }
-
-    /// True if it belongs to these contacts.
-    pub(crate) fn serves(&self, contacts: &[usize]) -> bool {
-        self.index == contacts
     }
 }
 

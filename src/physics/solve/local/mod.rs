@@ -237,44 +237,39 @@ impl LocalProblem {
     fn newton_step(&mut self, problem: &Problem, hold: Hold, effort: &mut Effort) -> (Vec<f64>, f64) {
         let n = self.members.len();
         let mut step = self.residual.clone();
-        match hold {
+        self.assemble(problem, 0.0);
+        let approach = match hold {
             Hold::Approach => {
-                self.assemble(problem, 0.0);
                 self.work.lu.factor(&self.work.matrix, n);
                 self.work.lu.solve(&mut step);
-                (step, 0.0)
+                0.0
             }
             Hold::Radius(at) => {
-                self.assemble(problem, 0.0);
                 self.exchange(at);
                 self.work.lu.factor(&self.work.matrix, n);
                 self.work.lu.solve(&mut step);
-                let approach = std::mem::replace(&mut step[at], 0.0);
-                (step, approach)
+                std::mem::replace(&mut step[at], 0.0)
             }
             Hold::Penetration(watched, wanted) => {
-                let place = self.watched[watched];
-                let off = self.penetration_of(problem, watched, effort) - wanted;
-                self.assemble(problem, 0.0);
+                step.push(wanted - self.penetration_of(problem, watched, effort));
                 let mut bordered = Vec::with_capacity((n + 1) * (n + 1));
                 for (k, member) in self.members.iter().enumerate() {
                     bordered.extend_from_slice(&self.work.matrix[k * n..(k + 1) * n]);
                     bordered.push(member.drift - 1.0);
                 }
                 bordered.extend(self.work.row[..n].iter().map(|s| -s));
-                bordered.push(1.0 - place.drift);
-                step.push(-off);
+                bordered.push(1.0 - self.watched[watched].drift);
                 self.work.lu.factor(&bordered, n + 1);
                 self.work.lu.solve(&mut step);
-                let approach = step.pop().unwrap_or(0.0);
-                (step, approach)
+                step.pop().unwrap_or(0.0)
             }
-        }
+        };
+        (step, approach)
     }
 
     /// Newton's method from the present radii and mean penetration.
     pub(crate) fn solve(&mut self, problem: &Problem, hold: Hold, effort: &mut Effort) -> Result<(), NotConverged> {
-        self.solve_with(problem, hold, Damping::LOCAL, effort)
+        self.solve_with(problem, hold, Damping::NORMAL, effort)
     }
 
     /// Newton's method with other limits.
