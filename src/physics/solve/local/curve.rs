@@ -5,16 +5,12 @@
 //! unknown; a fold is a zero of `dΔ/da`.
 
 use super::{CurveState, Hold, LocalProblem};
-use crate::physics::Reason;
 use crate::physics::contact::problem::Problem;
 use crate::physics::half_space::Effort;
 use crate::physics::math::bracket::{End, Illinois};
 use crate::physics::solve::residual::NotConverged;
 
-/// Smallest share of a way that is tried.
-const SHORTEST: f64 = 1e-3;
-
-/// Maximum number of points of a curve, and of parts of one continuation.
+/// Maximum number of points of a curve.
 const STATIONS: usize = 50;
 
 /// End of a search along the curve.
@@ -31,38 +27,16 @@ pub(crate) enum CurveEnd {
 impl LocalProblem {
     /// Continues along the curve until the radius of member `at` is `value` \[m\], from an equilibrium that was evaluated last.
     pub(crate) fn continue_to_radius(&mut self, problem: &Problem, at: usize, value: f64, effort: &mut Effort) -> Result<(), NotConverged> {
-        let mut share = 1.0;
-        let mut parts = 0;
-        while self.radius[at] != value {
-            // Where the field itself jumps, as with the uncorrected Eq 8, shorter parts lead to the jump and not beyond.
-            parts += 1;
-            if parts > STATIONS {
-                return Err(NotConverged::because(Reason::EndlessPath, self.members[at].asperity));
-            }
-            let from = (self.radius.clone(), self.approach);
-            let (direction, rate) = self.along(problem, at);
-            let whole = value - self.radius[at];
-            let span = if share < 1.0 { share * whole } else { whole };
-            for (radius, d) in self.radius.iter_mut().zip(&direction) {
-                // A contact at the end of its branch has no tangent in the radius of another.
-                let change = (d * span).clamp(-0.3 * *radius, 0.3 * *radius);
-                *radius += change;
-            }
-            self.radius[at] = if share < 1.0 { from.0[at] + span } else { value };
-            self.approach += rate * span;
-            match self.solve(problem, Hold::Radius(at), effort) {
-                Ok(()) => share = (2.0 * share).min(1.0),
-                Err(unsettled) => {
-                    (self.radius, self.approach) = from;
-                    self.evaluate(problem, effort);
-                    share *= 0.25;
-                    if share < SHORTEST {
-                        return Err(unsettled);
-                    }
-                }
-            }
+        let (direction, rate) = self.along(problem, at);
+        let span = value - self.radius[at];
+        for (radius, d) in self.radius.iter_mut().zip(&direction) {
+            // A contact at the end of its branch has no tangent in the radius of another.
+            let change = (d * span).clamp(-0.3 * *radius, 0.3 * *radius);
+            *radius += change;
         }
-        Ok(())
+        self.radius[at] = value;
+        self.approach += rate * span;
+        self.solve(problem, Hold::Radius(at), effort)
     }
 
     /// Follows member `at` to the radius `bound` \[m\], until Δ reverses or has passed `target` \[m\] in the sense `sign` of the path.
