@@ -179,8 +179,6 @@ pub enum Reason {
     Unstable,
     /// A load or an energy is not a number.
     NotANumber,
-    /// The solution curve to the next event does not end.
-    EndlessPath,
 }
 
 impl Reason {
@@ -191,7 +189,6 @@ impl Reason {
             Self::Residual => format!("the largest residual stays at {residual_m:e} m"),
             Self::Unstable => "the equilibrium found is unstable".to_owned(),
             Self::NotANumber => "a load or an energy is not a number".to_owned(),
-            Self::EndlessPath => "the solution curve to the next event does not end".to_owned(),
         }
     }
 }

@@ -47,7 +47,7 @@ impl Default for Tangent {
 }
 
 impl Tangent {
-    /// `y = ∂ŵ/∂a · x`.
+    /// `y = ∂ŵ/∂a · x`, in the sparse form to five digits.
     pub fn product(&self, x: &[f64], y: &mut [f64]) {
         match &self.0 {
             Form::Dense(size, matrix) => {
@@ -56,14 +56,6 @@ impl Tangent {
                 }
             }
             Form::Sparse(sparse) => sparse.product(x, y),
-        }
-    }
-
-    /// Product with seven digits, against five of [`Self::product`] in the sparse form.
-    pub fn fine_product(&mut self, x: &[f64], y: &mut [f64]) {
-        match &mut self.0 {
-            Form::Sparse(sparse) => sparse.fine_product(x, y),
-            Form::Dense(..) => self.product(x, y),
         }
     }
 

@@ -81,7 +81,7 @@ impl EquilibriumPath {
     /// Locates and applies an event with its avalanche.
     fn run_event(&mut self, event: PredictedEvent, target: f64, queue: &mut Vec<PredictedEvent>) -> Result<Outcome, Rejection> {
         let transition = event.transition;
-        if transition.kind.is_coalescence() && !self.chatter.allows(&transition) {
+        if !self.chatter.allows(&transition) {
             self.chatter.freeze(transition.asperity);
             return Ok(Outcome::Absent);
         }

@@ -17,7 +17,7 @@
 //!  3    solve the global problem; predictors δ_i(Δ) of contacts and near jump-ins           EquilibriumPath::resume
 //!  4    until the branch ends:                                                              EquilibriumPath::step
 //!  5      checkpoint; Δ* ← next multiple of h = h_0/2^k                                     StepControl::target
-//!  6      queue ← events predicted before Δ*, and those that an attempt has missed          expect_events
+//!  6      queue ← events predicted before Δ*                                                expect_events
 //!  7      while the queue has an earliest event e:                                          run_events
 //!  8        P ← 24 contacts nearest to e, and the free asperities among them                Neighbourhood::gather
 //!  9        if members have pending displacements: apply them, solve P, predict again       apply_pending
@@ -34,9 +34,9 @@
 //! 18          gather P there, apply, solve; energy dissipated += −change of the potential   finish
 //! 19        predict the touched asperities again
 //! 20      solve the global problem at Δ* (Newton, GMRES)                                    correct
-//! 21      reject if predictors were too far, an event is overdue, or no stable solution     is_astray, reject_late
-//! 22        missed events go into the queue, with the same h; otherwise k ← k + 1           StepControl::reject
-//! 23        k = 6: keep uncovered asperities absorbed; k = 14: relax all contacts at Δ*     Recovery
+//! 21      reject if predictors were too far, an event is overdue, or no stable solution     is_astray, overdue
+//! 22        rejected: back to the checkpoint, k ← k + 1                                     StepControl::halve
+//! 23        from k = 6 the predictor residual is accepted; k = 14: relax all at Δ*          relax_globally
 //! 24      new predictors; close the energy balance with the potential                       restart_predictors
 //! 25      record grid points inside the increment on an excursion from the checkpoint       excursion
 //! 26      load reversals by bracketing on excursions                                        turning
@@ -50,7 +50,7 @@
 //! | [`pending::PendingField`] | displacements by events that are not yet in the predictors |
 //! | [`neighbourhood::Neighbourhood`] | local problem of the present event, and the shell around it |
 //! | [`energy::EnergyLedger`] | energy balance since the last global solve |
-//! | [`step_control::StepControl`] | lengths of increments, recovery from rejections |
+//! | [`step_control::StepControl`] | lengths of increments, limit of the trials in one |
 //! | [`chatter::ChatterGuard`] | asperities that change to and fro |
 //! | [`event_log::EventLog`] | events, work, and segments of the load |
 //! | [`checkpoint::Checkpoint`] | a path at a global solve, to go back to |

@@ -323,16 +323,6 @@ impl Sparse {
         outward(&self.from, &rough.y, y);
     }
 
-    /// Product with higher precision.
-    pub(super) fn fine_product(&mut self, x: &[f64], y: &mut [f64]) {
-        let rough = self.rough.get_mut();
-        inward(&self.from, x, &mut rough.x);
-        rough.y.clear();
-        rough.y.resize(x.len(), 0.0);
-        self.geometry.fine_product(Loads { moments: &self.slopes, factors: Some(&rough.x) }, &mut self.fine, &mut rough.y);
-        outward(&self.from, &rough.y, y);
-    }
-
     pub(super) fn own(&self, i: usize) -> f64 {
         self.own[i]
     }
