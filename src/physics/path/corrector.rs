@@ -46,7 +46,7 @@ impl EquilibriumPath {
                 self.log.drift_m = self.log.drift_m.max(first.residual_m);
             }
             let start = if strict { Vec::new() } else { self.state().radius.clone() };
-            let rates = match self.solve_globally(first) {
+            let rates = match self.solve_globally(first, strict) {
                 Ok(rates) => rates,
                 Err(reason) => {
                     if strict {
@@ -78,12 +78,13 @@ impl EquilibriumPath {
     }
 
     /// Solves the global problem from the state that was evaluated last; its rates are returned if it is stable.
-    fn solve_globally(&mut self, first: NotConverged) -> Result<Vec<f64>, NotConverged> {
+    fn solve_globally(&mut self, first: NotConverged, strict: bool) -> Result<Vec<f64>, NotConverged> {
         let tolerance = match self.precision {
             Precision::Exact => self.problem().tolerance_m(),
             Precision::Sufficient => self.accuracy().sufficient() * self.frame.scale,
         };
-        self.solver.newton(&mut self.predictor.state, first, Damping::NORMAL, tolerance)?;
+        let damping = if strict { Damping::NORMAL } else { Damping::PATIENT };
+        self.solver.newton(&mut self.predictor.state, first, damping, tolerance)?;
         let rates = self.finite_rates(first)?;
         let stable = self.state().stability > 0.0;
         if stable { Ok(rates) } else { Err(NotConverged::because(Reason::Unstable, first.asperity)) }

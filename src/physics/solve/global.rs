@@ -137,7 +137,7 @@ impl GlobalSolver {
     /// Newton's method at the mean penetration of a state that was evaluated last.
     pub(crate) fn newton(&mut self, state: &mut State, first: NotConverged, damping: Damping, tolerance: f64) -> Result<(), NotConverged> {
         let exact = tolerance <= self.problem.tolerance_m();
-        let mut descent = Descent { solver: self, state, exact, tolerance, step: Vec::new(), start: Vec::new() };
+        let mut descent = Descent { solver: self, state, exact, tolerance, step: Vec::new(), start: Vec::new(), shortened: false };
         damped_newton(&mut descent, first.into(), damping, tolerance)
     }
 
@@ -239,13 +239,15 @@ struct Descent<'a> {
     tolerance: f64,
     step: Vec<f64>,
     start: Vec<f64>,
+    /// True if the last step was shortened.
+    shortened: bool,
 }
 
 impl NonlinearSystem for Descent<'_> {
     fn evaluate(&mut self, round: usize) -> Worst {
         self.solver.effort.iterations += 1;
-        // The first step leads near enough for the tangent there to serve to the end.
-        self.solver.evaluate_with(self.state, self.exact && round == 0).into()
+        // The first step leads near enough for the tangent there to serve to the end, unless it was too long.
+        self.solver.evaluate_with(self.state, self.shortened || self.exact && round == 0).into()
     }
 
     fn begin_step(&mut self, round: usize, worst: &Worst) {
@@ -261,6 +263,7 @@ impl NonlinearSystem for Descent<'_> {
     }
 
     fn advance(&mut self, share: f64) {
+        self.shortened = share < 1.0;
         for ((&i, s), from) in self.state.contacts.iter().zip(&self.step).zip(&self.start) {
             self.state.radius[i] = from + share * s;
         }
@@ -290,7 +293,7 @@ impl Relaxing for Whole<'_> {
     fn finish(&mut self) -> bool {
         let mut end = self.state.clone();
         let first = self.solver.evaluate(&mut end);
-        let found = self.solver.newton(&mut end, first, Damping::FINISH, self.solver.problem.tolerance_m()).is_ok();
+        let found = self.solver.newton(&mut end, first, Damping::PATIENT, self.solver.problem.tolerance_m()).is_ok();
         if found {
             *self.state = end;
         }
