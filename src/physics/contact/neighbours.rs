@@ -2,7 +2,6 @@
 
 use crate::physics::half_space::ewald::ROUGH_IMAGES;
 use crate::physics::math::grown::Grown;
-use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -29,8 +28,8 @@ pub(crate) struct Neighbours {
     cells: usize,
     side: f64,
     surface: Arc<Table>,
-    /// Merged contacts by cell.
-    added: Arc<BTreeMap<usize, Vec<u32>>>,
+    /// Merged contacts by cell; empty without any.
+    added: Arc<Vec<Vec<u32>>>,
 }
 
 /// Asperities of the surface.
@@ -78,8 +77,16 @@ impl Neighbours {
     pub(crate) fn add(&mut self, place: [f64; 2]) {
         let number = self.positions.len() as u32;
         let cell = self.cell(&place);
-        Arc::make_mut(&mut self.added).entry(cell).or_default().push(number);
+        let added = Arc::make_mut(&mut self.added);
+        added.resize(self.cells * self.cells, Vec::new());
+        added[cell].push(number);
         self.positions.push(place);
+    }
+
+    /// Takes a merged contact that is gone for good out of all searches.
+    pub(crate) fn remove(&mut self, number: usize) {
+        let cell = self.cell(&self.positions[number]);
+        Arc::make_mut(&mut self.added)[cell].retain(|added| *added as usize != number);
     }
 
     /// Position of an asperity \[m\].
@@ -141,7 +148,7 @@ impl Neighbours {
     pub(crate) fn around(&self, place: &[f64; 2], radius: f64, mut visit: impl FnMut(f64, usize)) {
         let Table { members, starts, .. } = &*self.surface;
         self.visit_cells(place, radius, |cell| {
-            let added = self.added.get(&cell).into_iter().flatten();
+            let added = self.added.get(cell).into_iter().flatten();
             for &i in members[starts[cell]..starts[cell + 1]].iter().chain(added) {
                 let r = self.distance(place, &self.positions[i as usize]);
                 if r <= radius {
@@ -178,14 +185,15 @@ impl Neighbours {
         self.side
     }
 
-    /// Calls `visit(distance, asperity)` for every other asperity within `radius` of asperity `j`; those of the surface are the first, nearest
-    /// first.
+    /// Calls `visit(distance, asperity)` for every other asperity within `radius` of asperity `j`, in no order.
     pub(crate) fn within(&self, j: usize, radius: f64, mut visit: impl FnMut(f64, usize)) {
         let near = self.surface.near.get(j).filter(|_| radius <= self.side);
         let Some(near) = near else {
-            for (r, i) in self.others(j, radius) {
-                visit(r, i);
-            }
+            self.around(&self.positions[j], radius, |r, i| {
+                if i != j {
+                    visit(r, i);
+                }
+            });
             return;
         };
         for &(r, i) in near.iter().take_while(|(r, _)| *r <= radius) {
@@ -194,7 +202,7 @@ impl Neighbours {
         if !self.added.is_empty() {
             let place = &self.positions[j];
             self.visit_cells(place, radius, |cell| {
-                for &i in self.added.get(&cell).into_iter().flatten() {
+                for &i in self.added.get(cell).into_iter().flatten() {
                     let r = self.distance(place, &self.positions[i as usize]);
                     if r <= radius {
                         visit(r, i as usize);

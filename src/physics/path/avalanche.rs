@@ -10,6 +10,7 @@ use super::rejection::Rejection;
 use super::triggers::Trigger;
 use crate::physics::contact::Status;
 use crate::physics::contact::transition::{Kind, Transition};
+use std::sync::Arc;
 
 /// Relative change of a radius that an equilibrium does not resolve.
 const EDGE: f64 = 1e-8;
@@ -80,8 +81,13 @@ impl EquilibriumPath {
         due
     }
 
-    /// Sets the radii of release of absorbed asperities and blocks those that have left, at the end of an avalanche.
+    /// At the end of an avalanche: sets the radii of release of absorbed asperities, blocks those that have left, and forgets merged contacts that
+    /// are gone.
     fn close_avalanche(&mut self, moved: &[Transition]) {
+        let (status, summits) = (&self.predictor.state.status, self.solver.problem.summits());
+        for i in moved.iter().map(|transition| transition.asperity).filter(|i| *i >= summits && status[*i] == Status::Free) {
+            Arc::make_mut(&mut self.solver.problem).neighbours.remove(i);
+        }
         let problem = &*self.problem();
         for transition in moved {
             let i = transition.asperity;

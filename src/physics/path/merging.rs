@@ -19,7 +19,7 @@ impl EquilibriumPath {
         let radii = [local.radius[first], local.radius[second]];
         let share = radii.map(|a| a * a / (radii[0] * radii[0] + radii[1] * radii[1]));
         let drift = share[0] * local.members[first].drift + share[1] * local.members[second].drift;
-        let mut contacts: Vec<(usize, f64)> = self.contacts_without(&pair, approach);
+        let contacts: Vec<(usize, f64)> = self.contacts_without(&pair, approach);
         let mut merged = problem.merged(pair, radii, approach);
         let number = problem.len();
         drop(problem);
@@ -27,8 +27,7 @@ impl EquilibriumPath {
         grown.add(&merged)?;
         let by_others = self.solver.displacement(&contacts, number);
         // The images of the merged contact displace it as well.
-        contacts.push((number, merged.contact_radius_m()));
-        let displacement = self.solver.displacement(&contacts, number);
+        let displacement = by_others + self.solver.displacement(&[(number, merged.contact_radius_m())], number);
         let grown = Arc::make_mut(&mut self.solver.problem);
         merged.height_m = grown.asperities[number].penetration(merged.contact_radius_m()) + displacement - approach;
         grown.heights[number] = merged.height_m;
