@@ -17,6 +17,11 @@ const MAX_CHANGE: f64 = 0.2;
 /// Maximum ratio of a spot's radius limit to the limit that a rebuild would assign.
 const MAX_LOOSENESS: f64 = 2.0;
 
+/// Number of targets from which on their chunks are distributed over threads, and number of chunks that one thread takes at least: fewer cost less than
+/// waking another thread.
+const MANY: usize = 2048;
+const AT_LEAST: usize = 16;
+
 /// Near pairs of all targets, and mesh weights of sources and targets.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Geometry {
@@ -87,13 +92,18 @@ impl FastSum {
         let numbers = kept.as_ref().map_or(&[][..], |kept| &kept.numbers);
         let known = Known { pairs: &geometry.old, numbers, changed: &others };
         geometry.pairs.resize_with(targets.len().div_ceil(TOGETHER), Pairs::default);
-        geometry.pairs.par_iter_mut().enumerate().zip(targets.par_chunks(TOGETHER)).for_each(|((chunk, pairs), targets)| {
+        let find = |((chunk, pairs), targets): ((usize, &mut Pairs), &[usize])| {
             let target = |(k, target): (usize, &usize)| Target {
                 place: self.order.positions[*target],
                 before: before.and_then(|before| before[chunk * TOGETHER + k]),
             };
             pairs.find(targets.iter().enumerate().map(target), known, &all, self.measure, &aloof);
-        });
+        };
+        if targets.len() < MANY {
+            geometry.pairs.iter_mut().enumerate().zip(targets.chunks(TOGETHER)).for_each(find);
+        } else {
+            geometry.pairs.par_iter_mut().enumerate().zip(targets.par_chunks(TOGETHER)).with_min_len(AT_LEAST).for_each(find);
+        }
         geometry.targets.clear();
         geometry.targets.extend_from_slice(targets);
         let targets: Vec<[f64; 2]> = targets.iter().map(|target| self.order.positions[*target].map(|p| p / length)).collect();
@@ -167,14 +177,14 @@ impl Geometry {
     /// Displacements at the targets.
     pub(super) fn displacements(&self, sources: &Sources, work: &mut Work<f64>, values: &mut [f64], effort: &mut Effort) {
         self.count(effort);
-        self.pairs.par_iter().zip(values.par_chunks_mut(TOGETHER)).for_each(|(pairs, values)| pairs.sums(sources, values));
+        for_chunks(&self.pairs, values, |pairs, values| pairs.sums(sources, values));
         self.fine.add(Loads { moments: &sources.moments.value, factors: None }, work, values);
     }
 
     /// Displacements at the targets, and the derivatives for [`Self::product`].
     pub(super) fn linearise(&mut self, sources: &Sources, work: &mut Work<f64>, values: &mut [f64], effort: &mut Effort) {
         self.count(effort);
-        self.pairs.par_iter_mut().zip(values.par_chunks_mut(TOGETHER)).for_each(|(pairs, values)| pairs.linearise(sources, values));
+        for_chunks(&mut self.pairs, values, |pairs, values| pairs.linearise(sources, values));
         self.fine.add(Loads { moments: &sources.moments.value, factors: None }, work, values);
     }
 
@@ -183,15 +193,28 @@ impl Geometry {
     /// Its precision is that of displacements, except for near pairs, whose derivatives have seven digits.
     pub(super) fn fine_product(&self, loads: Loads<'_>, work: &mut Work<f64>, values: &mut [f64]) {
         let Some(x) = loads.factors else { return };
-        self.pairs.par_iter().zip(values.par_chunks_mut(TOGETHER)).for_each(|(pairs, values)| pairs.product(x, values));
+        for_chunks(&self.pairs, values, |pairs, values| pairs.product(x, values));
         self.fine.add(loads, work, values);
     }
 
     /// Product of the derivatives with the load factors, with the precision of a linear solve.
     pub(super) fn product(&self, loads: Loads<'_>, work: &mut Work<f32>, values: &mut [f64]) {
         let Some(x) = loads.factors else { return };
-        self.pairs.par_iter().zip(values.par_chunks_mut(TOGETHER)).for_each(|(pairs, values)| pairs.product(x, values));
+        for_chunks(&self.pairs, values, |pairs, values| pairs.product(x, values));
         self.rough.add(loads, work, values);
+    }
+}
+
+/// Applies an operation to each chunk of targets and their values, on several threads if there are many.
+fn for_chunks<P>(pairs: P, values: &mut [f64], each: impl Fn(<P as IntoIterator>::Item, &mut [f64]) + Sync)
+where
+    P: IntoIterator<Item: Send> + IntoParallelIterator<Item = <P as IntoIterator>::Item, Iter: IndexedParallelIterator>,
+{
+    if values.len() < MANY {
+        pairs.into_iter().zip(values.chunks_mut(TOGETHER)).for_each(|(pairs, values)| each(pairs, values));
+    } else {
+        let chunks = pairs.into_par_iter().zip(values.par_chunks_mut(TOGETHER)).with_min_len(AT_LEAST);
+        chunks.for_each(|(pairs, values)| each(pairs, values));
     }
 }
 
