@@ -41,7 +41,7 @@ const COUNTS: [usize; 4] = [1_000, 10_000, 100_000, 1_000_000];
 const MOST: usize = 10_000;
 
 pub fn run() {
-    heading("sums: displacements of n spots at all of them", "over 1000, per spot");
+    heading("sums: displacements of n spots at all of them, with the tangent", "over 1000, per spot");
     let mut all = Vec::new();
     for count in COUNTS {
         let contact = contact(count);
@@ -51,7 +51,7 @@ pub fn run() {
         let places = once(|| fast.linearise(spots, &mut found, &mut tangent, &mut effort));
         let rounds = if count < 100_000 { 5 } else { 1 };
         let least = |mut work: Box<dyn FnMut() + '_>| (0..rounds).map(|_| once(&mut work)).fold(f64::INFINITY, f64::min);
-        let again = least(Box::new(|| fast.again(spots, &mut found, &mut tangent, &mut effort)));
+        let again = least(Box::new(|| fast.linearise(spots, &mut found, &mut tangent, &mut effort)));
         let (x, mut y) = (vec![1.0; count], vec![0.0; count]);
         let product = least(Box::new(|| tangent.product(&x, &mut y)));
         all.push((count as f64, again));

@@ -99,10 +99,6 @@ impl Interaction for Best {
         self.for_spots(spots, false).linearise(spots, displacements, tangent, effort);
     }
 
-    fn again(&self, spots: &Spots, displacements: &mut Vec<f64>, tangent: &mut Tangent, effort: &mut Effort) {
-        self.for_spots(spots, false).again(spots, displacements, tangent, effort);
-    }
-
     fn approach(
         &self,
         spots: &Spots,

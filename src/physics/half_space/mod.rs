@@ -108,13 +108,6 @@ impl Tangent {
         }
     }
 
-    fn sparse(&mut self) -> Option<&mut Sparse> {
-        match &mut self.0 {
-            Form::Sparse(sparse) => Some(sparse),
-            Form::Dense(..) => None,
-        }
-    }
-
     fn set_sparse(&mut self, sparse: Box<Sparse>) {
         self.0 = Form::Sparse(sparse);
     }
@@ -179,11 +172,6 @@ pub trait Interaction: Sync {
     ///
     /// Reuses the geometry cached in `tangent`.
     fn linearise(&self, spots: &Spots, displacements: &mut Vec<f64>, tangent: &mut Tangent, effort: &mut Effort);
-
-    /// Displacements at the spots themselves, using the geometry cached in `_tangent`, which is not changed.
-    fn again(&self, spots: &Spots, displacements: &mut Vec<f64>, _tangent: &mut Tangent, effort: &mut Effort) {
-        self.displacements(spots, &spots.index, displacements, effort);
-    }
 
     /// Displacement at each of `targets`, and its derivative along a path.
     ///

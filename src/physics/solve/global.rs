@@ -56,8 +56,6 @@ pub(crate) struct GlobalSolver {
     /// Mean penetration at which all free asperities were evaluated last \[m\].
     swept_at: Option<f64>,
     inverse: CachedInverse,
-    /// True if the tangent belongs to the state that was evaluated last.
-    fresh: bool,
     /// Residuals of the contacts that were evaluated last \[m\].
     pub(crate) residual: Vec<f64>,
     diagonal: Vec<f64>,
@@ -74,7 +72,6 @@ impl GlobalSolver {
             others: Tangents::default(),
             swept_at: None,
             inverse: CachedInverse::default(),
-            fresh: false,
             residual: Vec::new(),
             diagonal: Vec::new(),
         }
@@ -96,21 +93,10 @@ impl GlobalSolver {
 
     /// Evaluates displacements, residuals and tangent of a state; returns the largest residual with its asperity.
     pub(crate) fn evaluate(&mut self, state: &mut State) -> NotConverged {
-        self.evaluate_with(state, true)
-    }
-
-    /// Evaluates a state, with its tangent or with that of an earlier state.
-    fn evaluate_with(&mut self, state: &mut State, tangent: bool) -> NotConverged {
         let problem = &*Arc::clone(&self.problem);
         problem.spots(state, &mut self.spots);
         let field = problem.field.for_spots(&self.spots, self.roughly);
-        let into = (&mut state.displacement, &mut self.tangents.contacts, &mut self.effort);
-        if tangent {
-            field.linearise(&self.spots, into.0, into.1, into.2);
-        } else {
-            field.again(&self.spots, into.0, into.1, into.2);
-        }
-        self.fresh = tangent;
+        field.linearise(&self.spots, &mut state.displacement, &mut self.tangents.contacts, &mut self.effort);
         self.compare(state)
     }
 
@@ -137,7 +123,7 @@ impl GlobalSolver {
     /// Newton's method at the mean penetration of a state that was evaluated last.
     pub(crate) fn newton(&mut self, state: &mut State, first: NotConverged, damping: Damping, tolerance: f64) -> Result<(), NotConverged> {
         let exact = tolerance <= self.problem.tolerance_m();
-        let mut descent = Descent { solver: self, state, exact, tolerance, step: Vec::new(), start: Vec::new(), shortened: false };
+        let mut descent = Descent { solver: self, state, exact, tolerance, step: Vec::new(), start: Vec::new() };
         damped_newton(&mut descent, first.into(), damping, tolerance)
     }
 
@@ -166,14 +152,10 @@ impl GlobalSolver {
     /// `da_i/dΔ` at the equilibrium that was evaluated last; `exact`, or of sufficient precision. The stability is entered into the state: its sign is
     /// right at either precision, since the least eigenvalue is in the Krylov space where it is small.
     pub(crate) fn rates(&mut self, state: &mut State, exact: bool) -> Vec<f64> {
-        if !self.fresh {
-            // At the edge of a contact the slope of its field is unbounded, and the tangent of the last step is not valid.
-            self.evaluate(state);
-        }
         let ones = vec![1.0; state.contacts.len()];
         let Self { problem, tangents, inverse, diagonal, .. } = self;
         let jacobian = Jacobian { tangent: &tangents.contacts, diagonal };
-        let inverse = if exact { None } else { inverse.of(problem, state, &tangents.contacts, diagonal) };
+        let inverse = inverse.of(problem, state, &tangents.contacts, diagonal);
         let limits = Limits { tolerance: if exact { RATES } else { ROUGH_RATES }, products: PRODUCTS };
         let (rates, least) = gmres_and_least(&jacobian, inverse, &ones, limits);
         state.stability = least;
@@ -239,15 +221,12 @@ struct Descent<'a> {
     tolerance: f64,
     step: Vec<f64>,
     start: Vec<f64>,
-    /// True if the last step was shortened.
-    shortened: bool,
 }
 
 impl NonlinearSystem for Descent<'_> {
-    fn evaluate(&mut self, round: usize) -> Worst {
+    fn evaluate(&mut self) -> Worst {
         self.solver.effort.iterations += 1;
-        // The first step leads near enough for the tangent there to serve to the end, unless it was too long.
-        self.solver.evaluate_with(self.state, self.shortened || self.exact && round == 0).into()
+        self.solver.evaluate(self.state).into()
     }
 
     fn begin_step(&mut self, round: usize, worst: &Worst) {
@@ -263,7 +242,6 @@ impl NonlinearSystem for Descent<'_> {
     }
 
     fn advance(&mut self, share: f64) {
-        self.shortened = share < 1.0;
         for ((&i, s), from) in self.state.contacts.iter().zip(&self.step).zip(&self.start) {
             self.state.radius[i] = from + share * s;
         }

@@ -38,8 +38,8 @@ impl Damping {
 
 /// A system of equations with its present unknowns.
 pub(crate) trait NonlinearSystem {
-    /// Evaluates the residual after a step.
-    fn evaluate(&mut self, round: usize) -> Worst;
+    /// Evaluates the residual.
+    fn evaluate(&mut self) -> Worst;
 
     /// Computes a step from the present unknowns.
     fn begin_step(&mut self, round: usize, worst: &Worst);
@@ -72,7 +72,7 @@ pub(crate) fn damped_newton(
             }
         }
         system.advance(share);
-        worst = system.evaluate(round);
+        worst = system.evaluate();
     }
     if worst.largest_m <= tolerance_m { Ok(()) } else { Err(worst.contact) }
 }
@@ -90,7 +90,7 @@ mod tests {
     }
 
     impl NonlinearSystem for Arc {
-        fn evaluate(&mut self, _round: usize) -> Worst {
+        fn evaluate(&mut self) -> Worst {
             NotConverged::residual(self.x.atan().abs(), 0).into()
         }
 
@@ -107,7 +107,7 @@ mod tests {
     fn law_damping_makes_steps_descend() {
         let solve = |damping| {
             let mut arc = Arc { x: 5.0, start: 0.0, step: 0.0 };
-            let first = arc.evaluate(0);
+            let first = arc.evaluate();
             damped_newton(&mut arc, first, damping, 1e-12).map(|()| arc.x)
         };
         assert!(solve(Damping::PATIENT).is_ok_and(|x| x.abs() < 1e-12));

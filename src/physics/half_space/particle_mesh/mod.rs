@@ -275,21 +275,6 @@ impl Interaction for FastSum {
         sparse.slopes = sources.moments.slope;
         tangent.set_sparse(sparse);
     }
-
-    fn again(&self, spots: &Spots, displacements: &mut Vec<f64>, tangent: &mut Tangent, effort: &mut Effort) {
-        if let Some(sparse) = tangent.sparse().filter(|_| self.acts(spots)) {
-            let (spots, from) = self.order.spots(spots);
-            if sparse.geometry.serves(self, &spots) {
-                let mut values = vec![0.0; from.len()];
-                sparse.geometry.displacements(&self.sources(&spots), &mut sparse.fine, &mut values, effort);
-                displacements.clear();
-                displacements.resize(from.len(), 0.0);
-                outward(&from, &values, displacements);
-                return;
-            }
-        }
-        self.displacements(spots, &spots.index, displacements, effort);
-    }
 }
 
 /// `∂ŵ/∂a` as near pairs and a mesh.

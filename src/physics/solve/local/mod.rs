@@ -275,7 +275,7 @@ impl LocalProblem {
     /// Newton's method with other limits.
     pub(crate) fn solve_with(&mut self, problem: &Problem, hold: Hold, damping: Damping, effort: &mut Effort) -> Result<(), NotConverged> {
         let mut descent = Descent { local: self, problem, hold, effort, step: (Vec::new(), 0.0), start: (Vec::new(), 0.0) };
-        let first = descent.evaluate(0);
+        let first = descent.evaluate();
         damped_newton(&mut descent, first, damping, problem.tolerance_m())
     }
 
@@ -379,7 +379,7 @@ struct Descent<'a> {
 }
 
 impl NonlinearSystem for Descent<'_> {
-    fn evaluate(&mut self, _round: usize) -> Worst {
+    fn evaluate(&mut self) -> Worst {
         self.effort.iterations += 1;
         let contact = self.local.evaluate(self.problem, self.effort);
         let mut largest_m = contact.residual_m;
