@@ -144,12 +144,12 @@ impl Neighbours {
         }
     }
 
-    /// Calls `visit(distance, asperity)` for every asperity within `radius` of `place`, in no order.
-    pub(crate) fn around(&self, place: &[f64; 2], radius: f64, mut visit: impl FnMut(f64, usize)) {
+    /// Calls `visit(distance, asperity)` for every asperity within `radius` of `place` that is `wanted`, in no order.
+    pub(crate) fn around(&self, place: &[f64; 2], radius: f64, wanted: impl Fn(usize) -> bool, mut visit: impl FnMut(f64, usize)) {
         let Table { members, starts, .. } = &*self.surface;
         self.visit_cells(place, radius, |cell| {
             let added = self.added.get(cell).into_iter().flatten();
-            for &i in members[starts[cell]..starts[cell + 1]].iter().chain(added) {
+            for &i in members[starts[cell]..starts[cell + 1]].iter().chain(added).filter(|i| wanted(**i as usize)) {
                 let r = self.distance(place, &self.positions[i as usize]);
                 if r <= radius {
                     visit(r, i as usize);
@@ -171,11 +171,7 @@ impl Neighbours {
     /// Other asperities within `radius` of asperity `j`, nearest first.
     fn others(&self, j: usize, radius: f64) -> Vec<(f64, usize)> {
         let mut list = Vec::new();
-        self.around(&self.positions[j], radius, |r, i| {
-            if i != j {
-                list.push((r, i));
-            }
-        });
+        self.around(&self.positions[j], radius, |i| i != j, |r, i| list.push((r, i)));
         list.sort_by(|u, v| u.0.total_cmp(&v.0).then(u.1.cmp(&v.1)));
         list
     }
@@ -189,11 +185,7 @@ impl Neighbours {
     pub(crate) fn within(&self, j: usize, radius: f64, mut visit: impl FnMut(f64, usize)) {
         let near = self.surface.near.get(j).filter(|_| radius <= self.side);
         let Some(near) = near else {
-            self.around(&self.positions[j], radius, |r, i| {
-                if i != j {
-                    visit(r, i);
-                }
-            });
+            self.around(&self.positions[j], radius, |i| i != j, visit);
             return;
         };
         for &(r, i) in near.iter().take_while(|(r, _)| *r <= radius) {
@@ -221,11 +213,7 @@ impl Neighbours {
         loop {
             let mut list = Vec::new();
             let whole = radius >= self.length;
-            self.around(place, if whole { f64::INFINITY } else { radius }, |r, i| {
-                if wanted(i) {
-                    list.push((r, i));
-                }
-            });
+            self.around(place, if whole { f64::INFINITY } else { radius }, &wanted, |r, i| list.push((r, i)));
             if list.len() >= count || whole {
                 list.sort_by(|u, v| u.0.total_cmp(&v.0).then(u.1.cmp(&v.1)));
                 list.truncate(count);
@@ -256,7 +244,7 @@ mod tests {
                 let found = neighbours.nearest(&place, 12, all.len(), |_| true);
                 assert_eq!(found, expected[..12], "{place:?}, periodic {periodic}");
                 let mut around = Vec::new();
-                neighbours.around(&place, 0.2, |r, i| around.push((r, i)));
+                neighbours.around(&place, 0.2, |_| true, |r, i| around.push((r, i)));
                 around.sort_by(|u, v| u.0.total_cmp(&v.0));
                 let within: Vec<(f64, usize)> = expected.iter().copied().filter(|(r, _)| *r <= 0.2).collect();
                 assert_eq!(around, within, "{place:?}, periodic {periodic}");

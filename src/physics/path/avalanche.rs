@@ -8,8 +8,8 @@
 use super::equilibrium_path::EquilibriumPath;
 use super::rejection::Rejection;
 use super::triggers::Trigger;
-use crate::physics::contact::Status;
 use crate::physics::contact::transition::{Kind, Transition};
+use crate::physics::contact::{State, Status};
 use std::sync::Arc;
 
 /// Relative change of a radius that an equilibrium does not resolve.
@@ -49,12 +49,12 @@ impl EquilibriumPath {
             // Most of them are in order: a stable sort makes use of it.
             avalanche.open.sort();
             avalanche.open.dedup();
-            let due = self.due_in(&avalanche);
+            let due = self.due_transitions(&avalanche.open, &avalanche.open);
             let pending = |asperity| Transition { kind: Kind::Snap, asperity, by: None };
             // Contacts merge and split in equilibrium: where others have yet to respond, they have grown too far.
-            let next = most_overdue(&due, |kind| !kind.is_coalescence())
+            let next = most_overdue(&due, &avalanche.moved, self.state())
                 .or_else(|| self.worst_pending().map(pending))
-                .or_else(|| most_overdue(&due, Kind::is_coalescence));
+                .or_else(|| most_overdue(&self.due_coalescence(&avalanche.open), &avalanche.moved, self.state()));
             let Some(transition) = next else { break };
             self.count_trial(approach, transition.asperity)?;
             self.gather(&transition, Some(approach));
@@ -72,13 +72,6 @@ impl EquilibriumPath {
         }
         self.close_avalanche(&avalanche.moved);
         Ok(propagated.then_some(avalanche.open))
-    }
-
-    /// Transitions that are due among the open asperities and do not undo one of the avalanche.
-    fn due_in(&mut self, avalanche: &Avalanche) -> Vec<Trigger> {
-        let mut due = self.due_transitions(&avalanche.open, &avalanche.open);
-        due.retain(|trigger| !trigger.transition.returns(&avalanche.moved, &self.predictor.state));
-        due
     }
 
     /// At the end of an avalanche: sets the radii of release of absorbed asperities, blocks those that have left, and forgets merged contacts that
@@ -111,7 +104,14 @@ impl EquilibriumPath {
         }
     }
 
-    /// Transitions that are due, but for those of asperities that change to and fro: such an asperity is frozen for a while, and counted.
+    /// Merging and splitting that are due, but for those of asperities that change to and fro.
+    pub(super) fn due_coalescence(&mut self, touched: &[usize]) -> Vec<Trigger> {
+        let mut due = self.problem().coalescing(&self.predictor, touched);
+        due.retain(|trigger| self.chatter.admit(&trigger.transition));
+        due
+    }
+
+    /// Other transitions that are due, but for those of asperities that change to and fro: such an asperity is frozen for a while, and counted.
     /// Two contacts that each grow with the other and shrink without it have no stable state otherwise; nor have three of which each
     /// absorbs the next.
     pub(super) fn due_transitions(&mut self, touched: &[usize], free: &[usize]) -> Vec<Trigger> {
@@ -144,10 +144,10 @@ impl EquilibriumPath {
     }
 }
 
-/// The most overdue transition of some kinds.
-fn most_overdue(due: &[Trigger], of: impl Fn(Kind) -> bool) -> Option<Transition> {
+/// The most overdue transition that does not undo one of an avalanche.
+fn most_overdue(due: &[Trigger], moved: &[Transition], state: &State) -> Option<Transition> {
     due.iter()
-        .filter(|trigger| of(trigger.transition.kind))
+        .filter(|trigger| !trigger.transition.returns(moved, state))
         .max_by(|u, v| u.overshoot.total_cmp(&v.overshoot).then(v.transition.asperity.cmp(&u.transition.asperity)))
         .map(|trigger| trigger.transition)
 }

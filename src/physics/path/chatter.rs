@@ -36,6 +36,15 @@ impl ChatterGuard {
         }
     }
 
+    /// True if a transition may be applied; otherwise its asperity is frozen.
+    pub(super) fn admit(&mut self, transition: &Transition) -> bool {
+        let allowed = self.allows(transition);
+        if !allowed {
+            self.freeze(transition.asperity);
+        }
+        allowed
+    }
+
     /// Counts a change.
     pub(super) fn count(&mut self, i: usize) {
         self.changes[i] = self.changes[i].saturating_add(1);

@@ -218,7 +218,8 @@ impl EquilibriumPath {
         let problem = &*self.problem();
         let contacts = self.state().contacts.clone();
         let candidates = self.predictor.candidates.clone();
-        let due = self.due_transitions(&contacts, &candidates);
+        let mut due = self.due_transitions(&contacts, &candidates);
+        due.extend(self.due_coalescence(&contacts));
         let mut late: Vec<(f64, Transition)> = due.iter().map(|t| (problem.lateness(t, &self.predictor), t.transition)).collect();
         late.sort_by(|u, v| v.0.total_cmp(&u.0).then(u.1.asperity.cmp(&v.1.asperity)));
         late

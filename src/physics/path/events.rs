@@ -81,8 +81,7 @@ impl EquilibriumPath {
     /// Locates and applies an event with its avalanche.
     fn run_event(&mut self, event: PredictedEvent, target: f64, queue: &mut Vec<PredictedEvent>) -> Result<Outcome, Rejection> {
         let transition = event.transition;
-        if !self.chatter.allows(&transition) {
-            self.chatter.freeze(transition.asperity);
+        if !self.chatter.admit(&transition) {
             return Ok(Outcome::Absent);
         }
         self.gather(&transition, None);

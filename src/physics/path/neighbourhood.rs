@@ -121,11 +121,14 @@ impl Surroundings<'_> {
         let (mut watched, mut shell) = (Vec::new(), Vec::new());
         if !alone {
             shell.extend(near[most..].iter().map(|(_, i)| *i).filter(|i| members.binary_search(i).is_err()));
-            problem.neighbours.around(place, reach, |r, i| {
-                if near_jump_in(&i) {
+            problem.neighbours.around(
+                place,
+                reach,
+                |i| near_jump_in(&i),
+                |r, i| {
                     if r <= inner { &mut watched } else { &mut shell }.push(i);
-                }
-            });
+                },
+            );
         }
         watched.sort_unstable();
         Selection { members, watched, shell, reach }

@@ -14,8 +14,8 @@ pub(crate) struct Trigger {
 }
 
 impl Problem {
-    /// All transitions that are due among contacts and absorbed asperities (`touched`) and free asperities (`free`), whose penetrations are
-    /// known at the present mean penetration.
+    /// Transitions that are due among contacts and absorbed asperities (`touched`) and free asperities (`free`), whose penetrations are
+    /// known at the present mean penetration; but for merging and splitting.
     pub(crate) fn triggers(&self, predictor: &Predictor, touched: &[usize], free: &[usize]) -> Vec<Trigger> {
         let mut due = Vec::new();
         let mut add = |change: Transition| {
@@ -34,14 +34,6 @@ impl Problem {
                 continue;
             }
             add(Transition { kind: Kind::JumpOff, asperity: j, by: None });
-            if self.merges() {
-                add(Transition { kind: Kind::Split, asperity: j, by: None });
-                predictor.pairs(self, j, state.radius[j], |i, r| {
-                    if r <= state.radius[i] + state.radius[j] {
-                        add(predictor.merging(i, j));
-                    }
-                });
-            }
             if self.covers() {
                 self.neighbours.within(j, state.radius[j], |_, i| {
                     if self.can_be_covered(state, i) && state.radius[i] < state.radius[j] {
@@ -55,6 +47,30 @@ impl Problem {
             if state.status[i] == Status::Free && !state.barred[i] && !inside.contains(&i) {
                 add(Transition { kind: Kind::JumpIn, asperity: i, by: None });
             }
+        }
+        due
+    }
+
+    /// Merging and splitting that are due among contacts (`touched`).
+    pub(crate) fn coalescing(&self, predictor: &Predictor, touched: &[usize]) -> Vec<Trigger> {
+        let state = &predictor.state;
+        let mut due = Vec::new();
+        if !self.merges() {
+            return due;
+        }
+        let mut add = |transition: Transition| {
+            let overshoot = self.overshoot(&transition, predictor);
+            if overshoot >= 0.0 {
+                due.push(Trigger { transition, overshoot });
+            }
+        };
+        for &j in touched.iter().filter(|j| state.status[**j] == Status::Contact) {
+            add(Transition { kind: Kind::Split, asperity: j, by: None });
+            predictor.pairs(self, j, state.radius[j], |i, r| {
+                if r <= state.radius[i] + state.radius[j] {
+                    add(predictor.merging(i, j));
+                }
+            });
         }
         due
     }
