@@ -104,12 +104,18 @@ impl FastSum {
         } else {
             geometry.pairs.par_iter_mut().enumerate().zip(targets.par_chunks(TOGETHER)).with_min_len(AT_LEAST).for_each(find);
         }
+        self.place_meshes(&levels, targets, geometry);
+    }
+
+    /// Weights of spots and targets on the meshes.
+    fn place_meshes(&self, levels: &[(Arc<Plan>, Vec<usize>)], targets: &[usize], geometry: &mut Geometry) {
+        let length = self.measure.length;
         geometry.targets.clear();
         geometry.targets.extend_from_slice(targets);
         let targets: Vec<[f64; 2]> = targets.iter().map(|target| self.order.positions[*target].map(|p| p / length)).collect();
         let sources: Vec<[f64; 2]> = geometry.places.iter().map(|place| place.map(|p| p / length)).collect();
-        geometry.fine = Meshes::new(&levels, |plan| &plan.fine, &sources, &targets);
-        geometry.rough = Meshes::new(&levels, |plan| &plan.rough, &sources, &targets);
+        geometry.fine = Meshes::new(levels, |plan| &plan.fine, &sources, &targets);
+        geometry.rough = Meshes::new(levels, |plan| &plan.rough, &sources, &targets);
     }
 }
 
