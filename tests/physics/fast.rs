@@ -280,14 +280,15 @@ fn reg_the_best_sum_is_the_same_field_for_few_and_many() {
 
 #[test]
 fn law_the_number_of_threads_changes_no_digit() {
-    let (positions, spots) = contact(12, 1200, 900, 3e-5);
+    // So many that several threads take part.
+    let (positions, spots) = contact(12, 6000, 5000, 1e-5);
     let fast = FastSum::new(positions, LENGTH, &PAPER, Kind::Spots, Boundary::Periodic, Slips::default(), 1e-9);
-    let x = vec![1.0; 900];
+    let x = vec![1.0; 5000];
     let found = [1, 4].map(|threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
             let (displacements, tangent) = linearised(&fast, &spots);
-            let mut product = vec![0.0; 900];
+            let mut product = vec![0.0; 5000];
             tangent.product(&x, &mut product);
             (displacements, product)
         })
