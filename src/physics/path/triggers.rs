@@ -18,12 +18,7 @@ impl Problem {
     /// known at the present mean penetration; but for merging and splitting.
     pub(crate) fn triggers(&self, predictor: &Predictor, touched: &[usize], free: &[usize]) -> Vec<Trigger> {
         let mut due = Vec::new();
-        let mut add = |change: Transition| {
-            let overshoot = self.overshoot(&change, predictor);
-            if overshoot >= 0.0 {
-                due.push(Trigger { transition: change, overshoot });
-            }
-        };
+        let mut add = |transition: Transition| due.extend(self.trigger(transition, predictor));
         let state = &predictor.state;
         let mut inside = Vec::new();
         for &j in touched {
@@ -58,12 +53,7 @@ impl Problem {
         if !self.merges() {
             return due;
         }
-        let mut add = |transition: Transition| {
-            let overshoot = self.overshoot(&transition, predictor);
-            if overshoot >= 0.0 {
-                due.push(Trigger { transition, overshoot });
-            }
-        };
+        let mut add = |transition: Transition| due.extend(self.trigger(transition, predictor));
         for &j in touched.iter().filter(|j| state.status[**j] == Status::Contact) {
             add(Transition { kind: Kind::Split, asperity: j, by: None });
             predictor.pairs(self, j, state.radius[j], |i, r| {
@@ -87,6 +77,12 @@ impl Problem {
             (Kind::JumpOff | Kind::Cover | Kind::Snap | Kind::Merge | Kind::Split, ..) => true,
         };
         possible && self.overshoot(change, predictor) >= 0.0
+    }
+
+    /// A transition with its overshoot, if it is due.
+    fn trigger(&self, transition: Transition, predictor: &Predictor) -> Option<Trigger> {
+        let overshoot = self.overshoot(&transition, predictor);
+        (overshoot >= 0.0).then_some(Trigger { transition, overshoot })
     }
 
     /// Overshoot of a state beyond a transition; negative before it.
