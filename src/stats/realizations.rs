@@ -5,7 +5,7 @@ use super::events::{Events, Lost};
 use super::rows::{Rows, Value};
 use super::walk::Point;
 use super::{CaseInput, CycleInput, Given, StatsError};
-use crate::physics::boundary_elements::work::{work_after, work_between};
+use crate::physics::boundary_elements::work::{OnLoop, work_between};
 use crate::physics::cycle::soundness::RESOLUTION;
 use crate::schema::{EVENT_KINDS, REALIZATIONS};
 use crate::store::Frame;
@@ -105,19 +105,23 @@ fn by_elements(case: &CaseInput) -> bool {
 }
 
 /// Energy-balance error of boundary elements over |Θ|. Between events their work is the change of the energy, so that Θ is the sum of the events; the
-/// independent value is the integral of the load over the mean penetration, by parabolas through three points and, next to events, by trapezoids.
-/// Null for Θ = 0.
+/// independent value is the integral of the load over the mean penetration. Null for Θ = 0.
 fn balance(loading: &Branch, turning: usize, unloading: &Branch, results: &Given, input: &CycleInput) -> Option<f64> {
     let number = |name: &str| results.iter().find(|(known, _)| known == name).and_then(|(_, value)| value.number());
     let (loss, dissipated) = (number("loss_j")?, number("dissipated_j")?);
-    let points: Vec<Point> = loading.points().take(turning + 1).chain(unloading.points()).collect();
-    let events: Vec<f64> = loading.dissipated_j.iter().take(turning + 1).chain(&unloading.dissipated_j).copied().collect();
-    let at = |k: usize| (points[k].penetration, points[k].load);
-    let follows = |k: usize| {
-        k > 1 && k != turning + 1 && events[k] == 0.0 && events[k - 1] == 0.0 && points[k - 1].penetration != points[k - 2].penetration
+    let points = loading.points().take(turning + 1).chain(unloading.points());
+    let stiffness = loading.stiffness.iter().take(turning + 1).chain(&unloading.stiffness);
+    let on = |(point, stiffness): (Point, &Option<f64>)| OnLoop {
+        approach: point.penetration,
+        load: point.load,
+        stiffness: stiffness.unwrap_or_default(),
     };
-    let part = |k: usize| if follows(k) { work_after(at(k - 2), at(k - 1), at(k)) } else { work_between(at(k - 1), at(k)) };
-    let integral = (1..points.len()).map(part).sum::<f64>() * input.energy_scale_j;
+    let points: Vec<OnLoop> = points.zip(stiffness).map(on).collect();
+    let part = |pair: &[OnLoop]| {
+        let (straight, bend) = work_between(pair[0], pair[1]);
+        straight + bend
+    };
+    let integral = points.windows(2).map(part).sum::<f64>() * input.energy_scale_j;
     (loss != 0.0).then(|| ((integral - dissipated) / loss).abs())
 }
 

@@ -101,6 +101,8 @@ pub fn write_counts(path: &Path, steps: &[Step], [contacts, covered, touching]: 
         .f64("penetration", reals(|step| step.4))
         .text("method", vec!["asperities"; steps.len()])
         .f64("residual", vec![None; steps.len()])
+        .f64("stiffness_n_m", vec![None; steps.len()])
+        .f64("stiffness", vec![None; steps.len()])
         .f64("reversal_load", vec![None; steps.len()])
         .build()
         .unwrap();

@@ -5,6 +5,7 @@
 
 use super::grid::remove_mean;
 use super::grid::{HalfSpace, Operator, Waves};
+pub use super::law::Bonding;
 use super::law::{Bond, Law};
 use super::sums::{grain, sums};
 use crate::physics::PhysicsError;
@@ -57,17 +58,6 @@ pub struct State {
     pub bonds: Vec<Bonding>,
 }
 
-/// Bond of a point.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Bonding {
-    /// None: the wall alone acts.
-    Free,
-    /// The law acts.
-    Bonded,
-    /// The law acts without a limit of strength: the point is inside a contact, away from its edges.
-    Sealed,
-}
-
 /// Sums over a state.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Totals {
@@ -93,11 +83,7 @@ impl Problem {
     /// Law at a point.
     #[inline(always)]
     pub(super) fn bond(&self, bonding: Bonding, gap: f64) -> Bond {
-        match bonding {
-            Bonding::Free => self.law.wall(gap),
-            Bonding::Bonded => self.law.bonded(gap),
-            Bonding::Sealed => self.law.sealed(gap),
-        }
+        self.law.bond(bonding, gap)
     }
 
     /// Undeformed and out of contact at an approach.
@@ -172,26 +158,56 @@ impl Problem {
     /// that touch are a contact too, and sealed points whose tension exceeds the strength open. None of this raises the energy. The points whose bond has
     /// changed.
     pub fn update_bonds(&self, state: &mut State, nucleate: bool) -> Vec<usize> {
-        let Attraction::Bonded { margin, nucleation, strength } = self.attraction else { return Vec::new() };
+        let Attraction::Bonded { nucleation, strength, .. } = self.attraction else { return Vec::new() };
         let touching = self.map(state, |bonding, gap| match bonding {
             Bonding::Free => u8::from(nucleate && gap <= nucleation),
             _ => u8::from(self.touches(bonding, gap)),
         });
-        let (near, edge) = self.surroundings(&touching, margin);
-        let torn = |gap: f64| nucleate && self.law.sealed(gap).tension > strength;
-        let mut changed = Vec::new();
-        for (k, (near, edge)) in near.iter().zip(&edge).enumerate() {
-            let next = match state.bonds[k] {
-                Bonding::Free if *near == 1 => Bonding::Bonded,
-                Bonding::Sealed if *edge == 1 || torn(self.gap(state, k)) => Bonding::Bonded,
-                as_it_is => as_it_is,
-            };
-            if next != state.bonds[k] {
+        let mut torn = Vec::new();
+        if nucleate && strength.is_finite() {
+            let tears = |k: &usize| state.bonds[*k] == Bonding::Sealed && self.law.sealed(self.gap(state, *k)).tension > strength;
+            torn.par_extend((0..touching.len()).into_par_iter().with_min_len(grain(1)).filter(tears));
+        }
+        let mut changed = self.spread_bonds(&mut state.bonds, &touching, &mut vec![true; self.half_space.rows()]);
+        for k in torn {
+            if state.bonds[k] == Bonding::Sealed {
+                state.bonds[k] = Bonding::Bonded;
                 changed.push(k);
             }
-            state.bonds[k] = next;
         }
         changed
+    }
+
+    /// Bonds the free points within the margin of touching points and opens the sealed ones within the margin of an open point, in the rows around those
+    /// that are `stale`, which they are not afterwards. The points whose bond has changed.
+    pub(super) fn spread_bonds(&self, bonds: &mut [Bonding], touching: &[u8], stale: &mut [bool]) -> Vec<usize> {
+        let Attraction::Bonded { margin, .. } = self.attraction else { return Vec::new() };
+        if !stale.contains(&true) {
+            return Vec::new();
+        }
+        let columns = self.half_space.columns();
+        let near_stale = |row: usize| self.rows_around(row, margin).any(|row| stale[row]);
+        let rows = bonds.par_chunks_mut(columns).enumerate().with_min_len(grain(columns)).filter(|(row, _)| near_stale(*row));
+        let changed: Vec<Vec<usize>> = rows
+            .map(|(row, bonds)| {
+                let (near, edge) = self.surroundings_in(row, touching, margin);
+                let mut changed = Vec::new();
+                for (k, bonding) in bonds.iter_mut().enumerate() {
+                    let next = match *bonding {
+                        Bonding::Free if near[k] == 1 => Bonding::Bonded,
+                        Bonding::Sealed if edge[k] == 1 => Bonding::Bonded,
+                        as_it_is => as_it_is,
+                    };
+                    if next != *bonding {
+                        *bonding = next;
+                        changed.push(row * columns + k);
+                    }
+                }
+                changed
+            })
+            .collect();
+        stale.fill(false);
+        changed.concat()
     }
 
     /// Ends the bonds of points that have separated, beyond the end of the law and of the margin, and seals those inside contacts at which the law is
@@ -199,53 +215,61 @@ impl Problem {
     pub fn settle_bonds(&self, state: &mut State) {
         let Attraction::Bonded { margin, strength, .. } = self.attraction else { return };
         let touching = self.map(state, |bonding, gap| u8::from(self.touches(bonding, gap)));
-        let (near, edge) = self.surroundings(&touching, margin);
         let (end, spring) = (self.law.end_gap(), self.law.spring_gap());
-        for k in 0..near.len() {
-            let gap = self.gap(state, k);
-            match state.bonds[k] {
-                Bonding::Bonded if near[k] == 0 && gap >= end => state.bonds[k] = Bonding::Free,
-                Bonding::Bonded if strength > 0.0 && edge[k] == 0 && gap <= spring => state.bonds[k] = Bonding::Sealed,
-                _ => {}
+        let columns = self.half_space.columns();
+        let approach = state.approach;
+        let rows = (state.bonds.par_chunks_mut(columns), state.displacement.par_chunks(columns), self.heights.par_chunks(columns));
+        rows.into_par_iter().enumerate().with_min_len(grain(columns)).for_each(|(row, (bonds, displacement, heights))| {
+            let (near, edge) = self.surroundings_in(row, &touching, margin);
+            for (k, bonding) in bonds.iter_mut().enumerate() {
+                let gap = displacement[k] - approach - heights[k];
+                match *bonding {
+                    Bonding::Bonded if near[k] == 0 && gap >= end => *bonding = Bonding::Free,
+                    Bonding::Bonded if strength > 0.0 && edge[k] == 0 && gap <= spring => *bonding = Bonding::Sealed,
+                    _ => {}
+                }
             }
-        }
+        });
     }
 
     fn map(&self, state: &State, value: impl Fn(Bonding, f64) -> u8 + Sync) -> Vec<u8> {
         (0..self.half_space.points()).into_par_iter().with_min_len(grain(1)).map(|k| value(state.bonds[k], self.gap(state, k))).collect()
     }
 
-    /// Points within the margin of a touching point, and those within the margin of an open one.
-    fn surroundings(&self, touching: &[u8], margin: usize) -> (Vec<u8>, Vec<u8>) {
-        let open: Vec<u8> = touching.par_iter().with_min_len(grain(1)).map(|t| 1 - t).collect();
-        (self.within(touching, margin), self.within(&open, margin))
+    /// Rows within the margin of a row: across the edges of a periodic grid, and not of a patch.
+    fn rows_around(&self, row: usize, margin: usize) -> impl Iterator<Item = usize> + use<> {
+        let (rows, periodic) = (self.half_space.rows(), !self.half_space.is_patch());
+        let margin = margin.min(rows / 2);
+        let first = row + rows - margin;
+        (first..=first + 2 * margin).filter(move |row| periodic || (rows..2 * rows).contains(row)).map(move |row| row % rows)
     }
 
-    /// Points in a square of half side `margin` around marked points: across the edges of a periodic grid, and not of a patch.
-    fn within(&self, marked: &[u8], margin: usize) -> Vec<u8> {
-        let (rows, columns) = (self.half_space.rows(), self.half_space.columns());
-        let periodic = !self.half_space.is_patch();
-        let mut along = vec![0; marked.len()];
-        along.par_chunks_mut(columns).zip(marked.par_chunks(columns)).with_min_len(grain(columns)).for_each(|(to, from)| {
-            for shift in 0..=margin.min(columns - 1) {
-                or(&mut to[shift..], &from[..columns - shift]);
-                or(&mut to[..columns - shift], &from[shift..]);
-                if periodic {
-                    or(&mut to[..shift], &from[columns - shift..]);
-                    or(&mut to[columns - shift..], &from[..shift]);
-                }
+    /// Points of a row within a square of half side `margin` around a touching point, and those around an open one.
+    fn surroundings_in(&self, row: usize, touching: &[u8], margin: usize) -> (Vec<u8>, Vec<u8>) {
+        let columns = self.half_space.columns();
+        let (mut near, mut edge) = (vec![0; columns], vec![0; columns]);
+        for row in self.rows_around(row, margin) {
+            for ((near, edge), touches) in near.iter_mut().zip(&mut edge).zip(&touching[row * columns..][..columns]) {
+                *near |= touches;
+                *edge |= 1 - touches;
             }
-        });
-        let mut near = vec![0; marked.len()];
-        near.par_chunks_mut(columns).enumerate().with_min_len(grain(columns)).for_each(|(row, to)| {
-            for shift in 0..=2 * margin.min(rows / 2) {
-                let from = row + rows + shift - margin.min(rows / 2);
-                if periodic || (rows..2 * rows).contains(&from) {
-                    or(to, &along[from % rows * columns..][..columns]);
-                }
+        }
+        (self.widened(&near, margin), self.widened(&edge, margin))
+    }
+
+    /// Points of a row within `margin` of a marked one.
+    fn widened(&self, marked: &[u8], margin: usize) -> Vec<u8> {
+        let columns = marked.len();
+        let mut wide = marked.to_vec();
+        for shift in 1..=margin.min(columns - 1) {
+            or(&mut wide[shift..], &marked[..columns - shift]);
+            or(&mut wide[..columns - shift], &marked[shift..]);
+            if !self.half_space.is_patch() {
+                or(&mut wide[..shift], &marked[columns - shift..]);
+                or(&mut wide[columns - shift..], &marked[..shift]);
             }
-        });
-        near
+        }
+        wide
     }
 }
 

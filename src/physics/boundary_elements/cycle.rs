@@ -56,8 +56,8 @@ impl Walk<'_> {
     /// Loads to the largest of the loads.
     fn load(&mut self, keep: &mut dyn FnMut(&Halfway), progress: &dyn Fn(f64)) -> Result<(), PhysicsError> {
         if self.at.cycle.steps.is_empty() {
-            let (state, step) = self.attempt(self.at.state.approach, self.settings.accuracy)?;
-            self.accept(state, step);
+            let first = self.attempt(self.at.state.approach, self.settings.accuracy)?;
+            self.accept(first);
         }
         let farthest = self.farthest();
         let last = self.settings.max_loads.last().copied().unwrap_or(0.0);
@@ -103,7 +103,7 @@ impl Walk<'_> {
             self.at.state = turning.state.clone();
             self.at.last = Step { reversal: Some(reversal), work: 0.0, ..turning.last };
             self.at.dissipated = turning.dissipated;
-            (self.at.before, self.at.level, self.at.tensest) = (None, 0, None);
+            (self.rate, self.at.level, self.at.tensest) = (None, 0, None);
             self.at.labels = label(self.problem, &self.at.state);
         }
         let branches = self.settings.max_loads.len() as f64;

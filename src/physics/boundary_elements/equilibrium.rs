@@ -1,7 +1,8 @@
 //! Equilibrium on a grid: L-BFGS with events followed on patches, and Newton's method where that does not end.
 
 use super::contact::{Problem, State};
-use super::minimise::{Accuracy, Minimiser, Outcome};
+use super::minimise::{Accuracy, Follow, Minimiser, Outcome};
+use super::newton::Rate;
 use super::patch::Patches;
 use crate::physics::PhysicsError;
 
@@ -27,12 +28,21 @@ impl Equilibrium {
     /// # Errors
     /// Not enough memory.
     pub fn find(&mut self, problem: &Problem, state: &mut State, accuracy: Accuracy) -> Result<Outcome, PhysicsError> {
-        let first = self.minimiser.minimise_with(problem, state, accuracy, &mut self.patches);
+        let events: Option<&mut dyn Follow> = if self.patches.are_none() { None } else { Some(&mut self.patches) };
+        let first = self.minimiser.minimise_with(problem, state, accuracy, events);
         if first.converged {
             return Ok(first);
         }
         let second = self.minimiser.newton(problem, state, accuracy)?;
         Ok(Outcome { iterations: first.iterations + second.iterations, ..second })
+    }
+
+    /// Rate at which an equilibrium follows the approach.
+    ///
+    /// # Errors
+    /// Not enough memory.
+    pub(super) fn rate(&mut self, problem: &Problem, state: &State) -> Result<Rate, PhysicsError> {
+        self.minimiser.rate(problem, state)
     }
 
     /// Points of the real transforms so far, those of patches included.

@@ -214,19 +214,48 @@ impl HalfSpace {
     ///
     /// On a periodic grid the mean of `field` does not matter but to [`Operator::Shifted`]. On a patch the inverse operators are approximate.
     pub fn apply<T: Real>(&self, operator: Operator, field: &[T], result: &mut [T], waves: &mut Waves<T>) {
+        self.forward(waves, field.par_chunks(self.columns), |from, row| row.copy_from_slice(from));
+        self.backward(operator, waves, result.par_chunks_mut(self.columns), |to, row| to.copy_from_slice(row));
+    }
+
+    /// First half of an application: `fill` writes each row of the field, from the item of `rows` for it, and the row is transformed. What `fill` returns,
+    /// in the order of the rows.
+    pub(super) fn forward<T: Real, Row: Send, Part: Send>(
+        &self,
+        waves: &mut Waves<T>,
+        rows: impl IndexedParallelIterator<Item = Row>,
+        fill: impl Fn(Row, &mut [T]) -> Part + Sync,
+    ) -> Vec<Part> {
+        let half = self.padded.1 / 2 + 1;
+        let plans = T::plans(self);
+        waves.transforms += 1;
+        let rows = waves.by_row.par_chunks_mut(half).zip(rows).with_min_len(grain(self.columns));
+        let parts = rows.map_init(
+            || (plans.forward_row.make_input_vec(), plans.forward_row.make_scratch_vec()),
+            |(input, scratch), (wave, row)| {
+                let part = fill(row, &mut input[..self.columns]);
+                input[self.columns..].fill(T::zero());
+                let done = plans.forward_row.process_with_scratch(input, wave, scratch);
+                debug_assert!(done.is_ok(), "lengths of the plan");
+                part
+            },
+        );
+        parts.collect()
+    }
+
+    /// Second half: the operator, and the transform back, of which `take` is given each row with the item of `rows` for it. What `take` returns, in the
+    /// order of the rows.
+    pub(super) fn backward<T: Real, Row: Send, Part: Send>(
+        &self,
+        operator: Operator,
+        waves: &mut Waves<T>,
+        rows: impl IndexedParallelIterator<Item = Row>,
+        take: impl Fn(Row, &[T]) -> Part + Sync,
+    ) -> Vec<Part> {
         let half = self.padded.1 / 2 + 1;
         let plans = T::plans(self);
         let Waves { by_row, by_block, transforms } = waves;
-        *transforms += 2;
-        by_row.par_chunks_mut(half).zip(field.par_chunks(self.columns)).with_min_len(grain(self.columns)).for_each_init(
-            || (plans.forward_row.make_input_vec(), plans.forward_row.make_scratch_vec()),
-            |(input, scratch), (row, values)| {
-                input[..self.columns].copy_from_slice(values);
-                input[self.columns..].fill(T::zero());
-                let done = plans.forward_row.process_with_scratch(input, row, scratch);
-                debug_assert!(done.is_ok(), "lengths of the plan");
-            },
-        );
+        *transforms += 1;
         let by_row: &[Complex<T>] = by_row;
         let chunks = by_block.par_chunks_mut(self.rows * BLOCK).zip(plans.stiffness.par_chunks(self.padded.0 * BLOCK)).enumerate();
         chunks.with_min_len(grain(self.rows * BLOCK)).for_each_init(
@@ -234,9 +263,9 @@ impl HalfSpace {
             |space, (block, (waves, stiffness))| self.block(operator, by_row, block, waves, stiffness, space),
         );
         let by_block: &[Complex<T>] = by_block;
-        result.par_chunks_mut(self.columns).enumerate().with_min_len(grain(self.columns)).for_each_init(
+        let parts = rows.enumerate().with_min_len(grain(self.columns)).map_init(
             || (plans.inverse_row.make_input_vec(), plans.inverse_row.make_scratch_vec(), plans.inverse_row.make_output_vec()),
-            |(input, scratch, output), (row, values)| {
+            |(input, scratch, output), (row, item)| {
                 for (block, part) in input.chunks_mut(BLOCK).enumerate() {
                     let from = (block * self.rows + row) * BLOCK;
                     part.copy_from_slice(&by_block[from..from + part.len()]);
@@ -247,9 +276,10 @@ impl HalfSpace {
                 }
                 let done = plans.inverse_row.process_with_scratch(input, output, scratch);
                 debug_assert!(done.is_ok(), "lengths of the plan");
-                values.copy_from_slice(&output[..self.columns]);
+                take(item, &output[..self.columns])
             },
         );
+        parts.collect()
     }
 
     fn column_space<T: Real>(&self) -> ColumnSpace<T> {

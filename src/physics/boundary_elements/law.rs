@@ -18,6 +18,7 @@
 //! # Morse
 //! `V(g) = Δγ (e^(−2g/ρ) − 2e^(−g/ρ))`: attraction of a range ρ, for finite Tabor parameters and comparison with other programs.
 
+use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// Width of the Gaussian kernel, in grid spacings.
@@ -30,6 +31,19 @@ const PER_UNIT: f64 = 100.0;
 /// Tension at which the table ends, in E*ℓ/dx.
 const END: f64 = 1e-7;
 
+/// A law in the pieces that a pass over many points distinguishes, for a free, a bonded and a sealed point \[dx\].
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Pieces {
+    /// Stiffness of the spring \[E*/dx\].
+    pub(super) stiffness: f32,
+    /// Gap below which the spring acts. Above it the tension vanishes, but for the gaps of `curved`.
+    pub(super) spring: [f32; 3],
+    /// First and last gap at which the law itself has to be evaluated.
+    pub(super) curved: [[f32; 2]; 3],
+    /// Gap below which a point is in contact.
+    pub(super) contact: [f32; 3],
+}
+
 /// Energy, tension and its slope at a gap: `V` in E* dx, `V' = σ` in E*, `V'' = dσ/dg` in E*/dx.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Bond {
@@ -39,6 +53,17 @@ pub struct Bond {
     pub tension: f64,
     /// Slope of the tension.
     pub slope: f64,
+}
+
+/// Bond of a point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Bonding {
+    /// None: the wall alone acts.
+    Free,
+    /// The law acts.
+    Bonded,
+    /// The law acts without a limit of strength: the point is inside a contact, away from its edges.
+    Sealed,
 }
 
 /// A traction–separation law. Gaps in grid spacings, energies per area in E* dx.
@@ -214,6 +239,17 @@ impl Law {
         Self::Morse(Morse { work, range })
     }
 
+    /// Energy, tension and slope at a point.
+    #[must_use]
+    #[inline(always)]
+    pub fn bond(&self, bonding: Bonding, gap: f64) -> Bond {
+        match bonding {
+            Bonding::Free => self.wall(gap),
+            Bonding::Bonded => self.bonded(gap),
+            Bonding::Sealed => self.sealed(gap),
+        }
+    }
+
     /// Energy, tension and slope at a gap of a bonded point.
     #[must_use]
     #[inline(always)]
@@ -233,6 +269,23 @@ impl Law {
             Self::Morse(law) => {
                 let slope = 2.0 * law.work / (law.range * law.range);
                 if gap <= 0.0 { law.at(gap) } else { Bond { energy: 0.5 * slope * gap * gap - law.work, tension: slope * gap, slope } }
+            }
+        }
+    }
+
+    /// The law in pieces.
+    pub(super) fn pieces(&self) -> Pieces {
+        let (never, always) = (f32::NEG_INFINITY, f32::INFINITY);
+        let contact = [f32::MIN_POSITIVE, self.contact_gap() as f32, always];
+        match self {
+            Self::Crack(_) => Pieces {
+                stiffness: SPRING as f32,
+                spring: [0.0, self.spring_gap() as f32, always],
+                curved: [[always, never], [self.spring_gap() as f32, self.end_gap() as f32], [always, never]],
+                contact,
+            },
+            Self::Morse(_) => {
+                Pieces { stiffness: 0.0, spring: [never; 3], curved: [[never, 0.0], [never, always], [never, always]], contact }
             }
         }
     }

@@ -12,9 +12,11 @@
 
 use super::contact::{Problem, State};
 use super::grid::{Operator, Waves};
+use super::law::{Bonding, Pieces};
 use super::pairs::{Gradient, Pairs};
+use super::passes::{Found, Points, Right, Stride, advance, descending};
 use super::preconditioner::Preconditioner;
-use super::sums::{PANEL, grain, panel_largest, panel_sums, panel_work, total};
+use super::sums::{PANEL, grain};
 use crate::physics::PhysicsError;
 use crate::physics::memory::filled;
 use rayon::prelude::*;
@@ -26,6 +28,8 @@ const LOOK: f64 = 0.02;
 const NEAR: f64 = 0.4;
 /// Iterations on the whole grid before an event counts as one: the first follow the approach everywhere.
 const EVERYWHERE: usize = 8;
+/// Residual, relative to that at the beginning of the way, at which the pressure is computed anew: single precision has seven digits.
+const RENEWED: f64 = 1e-3;
 /// Shortenings of a step that would raise the energy.
 const SHORTENINGS: u32 = 30;
 
@@ -51,12 +55,9 @@ pub struct Outcome {
     pub converged: bool,
 }
 
-/// Energy of the law and residual at a state.
+/// Residual at a state.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Here {
-    /// Energy of the law, and the sum of its magnitudes.
-    energy: f64,
-    scale: f64,
     /// Root mean square of the residual and a bound of its largest magnitude.
     pub(super) rms: f64,
     pub(super) largest: f64,
@@ -68,11 +69,12 @@ impl Here {
     }
 }
 
-/// A direction of descent: its mean, which is no part of it, and the slope of the energy along it.
+/// A direction of descent: its mean, which is no part of it, the slope of the energy along it, and its largest magnitude.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Descent {
     pub(super) mean: f64,
     pub(super) slope: f64,
+    pub(super) largest: f64,
 }
 
 /// Work space.
@@ -86,23 +88,60 @@ pub struct Minimiser {
     pub(super) slopes: Vec<f32>,
     pub(super) direction: Vec<f32>,
     pub(super) response: Vec<f32>,
-    pairs: Pairs,
+    way: Way,
+    pub(super) pairs: Pairs,
     /// Preconditioner.
     pub preconditioner: Preconditioner,
 }
 
-/// Local relaxation after events.
-pub(super) trait Follow {
-    /// Brings the places around the points whose bonds have changed to equilibrium, given from the largest residual to the smallest: whether the state has
-    /// moved. `centre` is the mean of pressure and tension of the grid.
-    fn follow(&mut self, on: (&Problem, &mut State), changed: &[usize], centre: f64, accuracy: Accuracy) -> bool;
+/// The way from a state in double precision: gap and residual there, displacement and pressure since, in single precision.
+struct Way {
+    gap: Vec<f32>,
+    residual: Vec<f32>,
+    moved: Vec<f32>,
+    pressed: Vec<f32>,
+    /// 1 at points in contact.
+    touching: Vec<u8>,
+    /// Rows with points that have come into contact or left it since bonds were updated.
+    stale: Vec<bool>,
+    /// Mean that is subtracted from the residual.
+    centre: f64,
+    pieces: Pieces,
 }
 
-/// Nothing: events are followed on the whole grid.
-impl Follow for () {
-    fn follow(&mut self, _: (&Problem, &mut State), _: &[usize], _: f64, _: Accuracy) -> bool {
-        false
+impl Way {
+    /// From here on.
+    fn depart(&mut self, problem: &Problem, state: &State, centre: f64) {
+        self.centre = centre;
+        self.stale.fill(true);
+        let approach = state.approach;
+        let fields = (
+            self.gap.par_chunks_mut(PANEL),
+            self.residual.par_chunks_mut(PANEL),
+            self.moved.par_chunks_mut(PANEL),
+            self.pressed.par_chunks_mut(PANEL),
+            state.displacement.par_chunks(PANEL),
+            state.pressure.par_chunks(PANEL),
+            problem.heights.par_chunks(PANEL),
+            state.bonds.par_chunks(PANEL),
+        );
+        fields.into_par_iter().with_min_len(grain(PANEL)).for_each(|(gap, residual, moved, pressed, u, p, z, bonds)| {
+            for (k, (gap, residual)) in gap.iter_mut().zip(residual).enumerate() {
+                let exact = u[k] - approach - z[k];
+                *gap = exact as f32;
+                *residual = (p[k] + problem.bond(bonds[k], exact).tension - centre) as f32;
+            }
+            moved.fill(0.0);
+            pressed.fill(0.0);
+        });
     }
+}
+
+/// Local relaxation after events.
+pub(super) trait Follow {
+    /// Brings the places around the points whose bonds have changed to equilibrium, given from the largest residual to the smallest. `centre` is the mean
+    /// of pressure and tension of the grid.
+    fn follow(&mut self, on: (&Problem, &mut State), changed: &[usize], centre: f64, accuracy: Accuracy);
 }
 
 impl Minimiser {
@@ -123,8 +162,18 @@ impl Minimiser {
             slopes: field()?,
             direction: field()?,
             response: field()?,
+            way: Way {
+                gap: field()?,
+                residual: field()?,
+                moved: field()?,
+                pressed: field()?,
+                touching: filled(points, 0)?,
+                stale: filled(problem.half_space.rows(), true)?,
+                centre: 0.0,
+                pieces: problem.law.pieces(),
+            },
             pairs: Pairs::new(points)?,
-            preconditioner: Preconditioner::new(points)?,
+            preconditioner: Preconditioner { split: true },
         })
     }
 
@@ -136,48 +185,67 @@ impl Minimiser {
 
     /// Moves `state` to the local minimum of the energy at its approach; bonds around contacts grow on the way.
     pub fn minimise(&mut self, problem: &Problem, state: &mut State, accuracy: Accuracy) -> Outcome {
-        self.minimise_with(problem, state, accuracy, &mut ())
+        self.minimise_with(problem, state, accuracy, None)
     }
 
     /// As [`Self::minimise`], with events followed by `events` first.
-    pub(super) fn minimise_with(&mut self, problem: &Problem, state: &mut State, accuracy: Accuracy, events: &mut dyn Follow) -> Outcome {
+    pub(super) fn minimise_with(
+        &mut self,
+        problem: &Problem,
+        state: &mut State,
+        accuracy: Accuracy,
+        mut events: Option<&mut dyn Follow>,
+    ) -> Outcome {
         let stress = problem.stress();
         let mut outcome = Outcome::default();
         self.pairs.clear();
         let mut here = self.begin(problem, state);
-        let (mut moved, mut exact) = (0.0, true);
+        let (mut moved, mut exact, mut first) = (0.0, true, here.rms);
         loop {
             (outcome.residual, outcome.converged) = (here.rms / stress, here.within(accuracy, stress));
-            if outcome.converged && !exact {
-                // Converged with the accumulated pressure and the bonds so far: checked once more with both renewed.
+            if !exact && (outcome.converged || here.rms < RENEWED * first) {
+                // Checked once more with the pressure without rounding and with bonds renewed, or continued from there.
+                self.arrive(state);
                 exact = problem.update_bonds(state, false).is_empty();
                 here = self.begin(problem, state);
-                moved = 0.0;
+                (moved, first) = (0.0, here.rms);
                 self.pairs.face(&self.gradient);
                 continue;
             }
             if outcome.converged || outcome.iterations >= accuracy.iterations {
+                self.arrive(state);
                 return outcome;
             }
             outcome.iterations += 1;
             let descent = self.search(problem);
-            problem.half_space.apply(Operator::Stiffness, &self.direction, &mut self.response, &mut self.single);
-            let Some((step, there)) = self.descend(problem, state, here, descent) else { return outcome };
-            (here, exact) = (there, false);
-            moved += step.largest;
-            let look = moved > LOOK * problem.reach() && here.largest <= NEAR * stress;
-            if look {
-                moved = 0.0;
-            }
-            let mut changed = if look { problem.update_bonds(state, false) } else { Vec::new() };
-            let event = outcome.iterations >= EVERYWHERE && !changed.is_empty();
-            if event && events.follow((problem, state), self.sorted(&mut changed), self.centre, accuracy) {
+            let Some((step, there)) = self.descend(problem, state, descent) else {
+                self.arrive(state);
+                if exact {
+                    return outcome;
+                }
+                // The energy falls by less than its rounding.
                 here = self.begin(problem, state);
+                (exact, first) = (true, here.rms);
                 self.pairs.clear();
                 continue;
-            }
-            if !changed.is_empty() {
-                here = self.evaluate(problem, state, 0.0, 0.0);
+            };
+            (here, exact) = (there, false);
+            moved += step.largest;
+            if moved > LOOK * problem.reach() && here.largest <= NEAR * stress {
+                moved = 0.0;
+                let mut changed = problem.spread_bonds(&mut state.bonds, &self.way.touching, &mut self.way.stale);
+                if !changed.is_empty() {
+                    if outcome.iterations >= EVERYWHERE
+                        && let Some(events) = events.as_mut()
+                    {
+                        self.arrive(state);
+                        events.follow((problem, state), self.sorted(&mut changed), self.centre, accuracy);
+                        here = self.begin(problem, state);
+                        self.pairs.clear();
+                        continue;
+                    }
+                    here = self.here(problem, state);
+                }
             }
             self.pairs.remember(&mut self.direction, descent.mean, step.length, &self.gradient, &self.previous);
         }
@@ -196,7 +264,25 @@ impl Minimiser {
             problem.refresh(state, &mut self.double);
             self.centre = -problem.totals(state).load / self.slopes.len() as f64;
         }
-        self.evaluate(problem, state, 0.0, 0.0)
+        self.way.depart(problem, state, self.centre);
+        self.here(problem, state)
+    }
+
+    /// Evaluates the law at a state that stays.
+    pub(super) fn look(&mut self, problem: &Problem, state: &State) {
+        self.centre = 0.0;
+        self.way.depart(problem, state, 0.0);
+        self.here(problem, state);
+    }
+
+    /// Adds the way to the state.
+    pub(super) fn arrive(&mut self, state: &mut State) {
+        let Way { moved, pressed, .. } = &self.way;
+        let fields = (&mut state.displacement, &mut state.pressure, moved, pressed).into_par_iter().with_min_len(grain(1));
+        fields.for_each(|(u, p, moved, pressed)| {
+            *u += f64::from(*moved);
+            *p += f64::from(*pressed);
+        });
     }
 
     /// Adds the pressure of a displacement that the state has moved by.
@@ -211,126 +297,171 @@ impl Minimiser {
         if problem.half_space.is_patch() { 0.0 } else { sum / self.slopes.len() as f64 }
     }
 
-    /// Moves the state by `length` along the direction less its mean, and computes the gradient and the slopes of the law there.
-    fn evaluate(&mut self, problem: &Problem, state: &mut State, length: f64, mean: f64) -> Here {
-        let centre = self.centre;
-        let points = self.slopes.len() as f64;
-        let fields = (
-            state.displacement.par_chunks_mut(PANEL),
-            state.pressure.par_chunks_mut(PANEL),
-            state.bonds.par_chunks(PANEL),
-            problem.heights.par_chunks(PANEL),
-            self.direction.par_chunks(PANEL),
-            self.response.par_chunks(PANEL),
-            self.gradient.values.par_chunks_mut(PANEL),
-            self.slopes.par_chunks_mut(PANEL),
-        );
-        let approach = state.approach;
-        let parts = fields.into_par_iter().map(|(u, p, bonds, z, d, k, g, slopes)| {
-            if length != 0.0 {
-                u.iter_mut().zip(d).for_each(|(u, d)| *u += length * (f64::from(*d) - mean));
-                p.iter_mut().zip(k).for_each(|(p, k)| *p += length * f64::from(*k));
-            }
-            let (mut energy, mut scale) = (0.0, 0.0);
-            let points = u.iter().zip(p.iter()).zip(bonds.iter().zip(z)).zip(g.iter_mut().zip(slopes));
-            for (((u, p), (bonding, z)), (g, slope)) in points {
-                let bond = problem.bond(*bonding, u - approach - z);
-                (*g, *slope) = ((p + bond.tension - centre) as f32, bond.slope as f32);
-                energy += bond.energy;
-                scale += bond.energy.abs();
-            }
-            let [sum, square] = panel_sums([&*g], |[g]| [g, g * g]);
-            [energy, scale, sum, square, panel_largest(g)]
-        });
-        let parts: Vec<[f64; 5]> = parts.with_min_len(grain(PANEL)).collect();
-        let [energy, scale, sum, square, largest] = parts.iter().fold([0.0; 5], |all: [f64; 5], part| {
-            [all[0] + part[0], all[1] + part[1], all[2] + part[2], all[3] + part[3], all[4].max(part[4])]
-        });
-        let mean = self.mean(problem, sum);
-        self.gradient.mean = mean;
-        self.centre += mean;
-        Here { energy, scale, rms: (square / points - mean * mean).max(0.0).sqrt(), largest: largest + mean.abs() }
+    /// The rows of the state on its way.
+    fn rows<'a>(
+        (way, direction): (&'a mut Way, &'a [f32]),
+        (gradient, slopes): (&'a mut [f32], &'a mut [f32]),
+        (bonds, columns): (&'a [Bonding], usize),
+    ) -> impl IndexedParallelIterator<Item = (Points<'a>, &'a mut bool)> {
+        let Way { gap, residual, moved, pressed, touching, stale, .. } = way;
+        let before = gap.par_chunks(columns).zip(residual.par_chunks(columns)).zip(direction.par_chunks(columns));
+        let after = moved.par_chunks_mut(columns).zip(pressed.par_chunks_mut(columns)).zip(touching.par_chunks_mut(columns));
+        let law = gradient.par_chunks_mut(columns).zip(slopes.par_chunks_mut(columns)).zip(bonds.par_chunks(columns));
+        before.zip(after).zip(law).zip(stale).map(
+            |(((((gap, residual), direction), ((moved, pressed), touching)), ((gradient, slopes), bonds)), stale)| {
+                (Points { gap, residual, moved, pressed, bonds, direction, gradient, slopes, touching }, stale)
+            },
+        )
     }
 
-    /// A direction of descent, by the pairs if they give one.
+    /// Moves the state by `length` along the direction less its mean, and computes the gradient and the slopes of the law there. The elastic response is
+    /// that kept, or with `transform` comes from the wave of the direction.
+    fn evaluate(&mut self, problem: &Problem, state: &State, (length, mean): (f64, f64), transform: bool) -> There {
+        let columns = problem.half_space.columns();
+        let stride = Stride { length: length as f32, mean: mean as f32, centre: (self.centre - self.way.centre) as f32 };
+        let pieces = self.way.pieces;
+        let rows = Self::rows((&mut self.way, &self.direction), (&mut self.gradient.values, &mut self.slopes), (&state.bonds, columns));
+        let take = |(mut points, stale): (Points<'_>, &mut bool), response: &[f32]| {
+            let found = advance(&mut points, response, stride, &problem.law, &pieces);
+            *stale |= found.changed;
+            found
+        };
+        let parts: Vec<Found> = if transform {
+            let rows = rows.zip(self.response.par_chunks_mut(columns));
+            problem.half_space.backward(Operator::Stiffness, &mut self.single, rows, |(row, kept), response| {
+                kept.copy_from_slice(response);
+                take(row, response)
+            })
+        } else {
+            rows.zip(self.response.par_chunks(columns)).with_min_len(grain(columns)).map(|(row, response)| take(row, response)).collect()
+        };
+        let mut all = Found::default();
+        parts.iter().for_each(|part| all.add(part));
+        let (points, [sum, square]) = (self.slopes.len() as f64, all.gradient);
+        let lowered = self.mean(problem, sum);
+        self.gradient.mean = lowered;
+        self.centre += lowered;
+        let rms = (square / points - lowered * lowered).max(0.0).sqrt();
+        There {
+            residual: Here { rms, largest: all.largest + lowered.abs() },
+            slope: all.slope - points * mean * lowered,
+            curvature: all.curvature,
+            beyond: all.beyond,
+        }
+    }
+
+    /// Residual of the state.
+    fn here(&mut self, problem: &Problem, state: &State) -> Here {
+        self.evaluate(problem, state, (0.0, 0.0), false).residual
+    }
+
+    /// A direction of descent, by the pairs if they give one, and its wave.
     fn search(&mut self, problem: &Problem) -> Descent {
         let weights = self.pairs.first();
         let onto = self.precondition(problem, weights);
-        let descent = self.finish(problem, self.pairs.second(weights, onto));
+        let descent = self.descent(problem, self.pairs.second(weights, onto));
         if descent.slope < 0.0 {
             return descent;
         }
         self.pairs.clear();
         self.precondition(problem, [0.0; 3]);
-        self.finish(problem, [0.0; 3])
-    }
-
-    /// Adds the weighted steps of the pairs to the direction.
-    fn finish(&mut self, problem: &Problem, weights: [f64; 3]) -> Descent {
-        let [sum, product] = self.pairs.finish(&mut self.direction, weights, &self.gradient);
-        let mean = self.mean(problem, sum);
-        Descent { mean, slope: product - self.slopes.len() as f64 * mean * self.gradient.mean }
+        self.descent(problem, [0.0; 3])
     }
 
     /// `direction ← M⁻¹ (gradient − Σ weights_i y_i)`: its products with the changes `y`.
     fn precondition(&mut self, problem: &Problem, weights: [f64; 3]) -> [f64; 3] {
-        let [wa, wb, wc] = weights.map(|weight| weight as f32);
-        let mean = self.gradient.mean as f32;
-        let [a, b, c] = self.pairs.changes();
-        let fields = (
-            self.direction.par_chunks_mut(PANEL),
-            self.gradient.values.par_chunks(PANEL),
-            a.par_chunks(PANEL),
-            b.par_chunks(PANEL),
-            c.par_chunks(PANEL),
-        );
-        fields.into_par_iter().with_min_len(grain(PANEL)).for_each(|(d, g, a, b, c)| {
-            for ((((d, g), a), b), c) in d.iter_mut().zip(g).zip(a).zip(b).zip(c) {
-                *d = g - mean - wa * a - wb * b - wc * c;
-            }
-        });
-        self.divide(problem);
-        let [a, b, c] = self.pairs.changes();
-        let fields = (self.direction.par_chunks(PANEL), a.par_chunks(PANEL), b.par_chunks(PANEL), c.par_chunks(PANEL));
-        total(fields.into_par_iter().map(|(d, a, b, c)| panel_sums([d, a, b, c], |[d, a, b, c]| [d * a, d * b, d * c])))
+        let Self { preconditioner, single, direction, gradient, pairs, slopes, .. } = self;
+        let weights = weights.map(|weight| weight as f32);
+        let right = Right { field: &gradient.values, mean: gradient.mean as f32, changes: pairs.changes(), weights };
+        preconditioner.divide(problem, single, direction, &right, slopes)
     }
 
-    /// `direction ← M⁻¹ direction`.
-    pub(super) fn divide(&mut self, problem: &Problem) {
-        let Self { preconditioner, single, direction, response, slopes, .. } = self;
-        preconditioner.divide(problem, single, (direction, response), slopes);
-    }
-
-    /// Moves the state along the direction, whose elastic response is known, by at most the reach of the law and so far that the energy falls: the step
-    /// and the energy and residual after it. Without such a step the state stays.
-    pub(super) fn descend(&mut self, problem: &Problem, state: &mut State, here: Here, descent: Descent) -> Option<(Taken, Here)> {
-        let Descent { mean, slope } = descent;
-        // On a patch the direction has a mean, which moves the rest of the grid against the mean of the whole.
-        let against = if problem.half_space.is_patch() { self.centre } else { 0.0 };
-        let fields = (self.direction.par_chunks(PANEL), self.response.par_chunks(PANEL), state.pressure.par_chunks(PANEL));
-        let parts = fields.into_par_iter().map(|(d, k, p)| {
-            let [quadratic, sum] = panel_sums([d, k], |[d, k]| [d * k, d]);
-            [panel_work(d, p) - against * sum, quadratic, panel_largest(d)]
+    /// Adds the weighted steps of the pairs to the direction and transforms its rows.
+    fn descent(&mut self, problem: &Problem, weights: [f64; 3]) -> Descent {
+        let columns = problem.half_space.columns();
+        let weights = weights.map(|weight| weight as f32);
+        let [a, b, c] = self.pairs.steps().map(|step| step.par_chunks(columns));
+        let rows = self.direction.par_chunks_mut(columns).zip(a.zip(b).zip(c)).zip(self.gradient.values.par_chunks(columns));
+        let parts = problem.half_space.forward(&mut self.single, rows, |((direction, ((a, b), c)), gradient), to| {
+            descending(direction, to, [a, b, c], weights, gradient)
         });
-        let parts: Vec<[f64; 3]> = parts.with_min_len(grain(PANEL)).collect();
-        let [linear, quadratic, largest] =
+        let [sum, product, largest] =
             parts.iter().fold([0.0; 3], |all: [f64; 3], part| [all[0] + part[0], all[1] + part[1], all[2].max(part[2])]);
+        let mean = self.mean(problem, sum);
+        Descent { mean, slope: product - self.slopes.len() as f64 * mean * self.gradient.mean, largest: largest + mean.abs() }
+    }
+
+    /// Moves the state along the direction, whose wave is known, by at most the reach of the law and so far that the energy falls: the step and the
+    /// residual after it. Without such a step the state stays.
+    fn descend(&mut self, problem: &Problem, state: &State, descent: Descent) -> Option<(Taken, Here)> {
+        let mut trial = Trial::new(descent);
+        let length = (problem.reach() / descent.largest).min(1.0);
         std::mem::swap(&mut self.gradient, &mut self.previous);
-        let largest = largest + mean.abs();
-        let mut step = (problem.reach() / largest).min(1.0);
-        let mut taken = 0.0;
-        for _ in 0..SHORTENINGS {
-            let there = self.evaluate(problem, state, step - taken, mean);
-            taken = step;
-            let change = there.energy - here.energy;
-            // Armijo's condition; a rise below the rounding of the energy is accepted.
-            if step * (linear + 0.5 * step * quadratic) + change <= 1e-4 * step * slope + 1e-13 * here.scale {
-                return Some((Taken { length: step, largest: step * largest }, there));
-            }
-            step *= 0.4;
+        let there = self.evaluate(problem, state, (length, descent.mean), true);
+        if trial.suffices(length, &there) {
+            return Some((Taken { length, largest: length * descent.largest }, there.residual));
         }
-        self.evaluate(problem, state, -taken, mean);
+        self.shorten(problem, state, trial)
+    }
+
+    /// As [`Self::descend`], with a known response and after a first trial.
+    fn shorten(&mut self, problem: &Problem, state: &State, mut trial: Trial) -> Option<(Taken, Here)> {
+        let Descent { mean, largest, .. } = trial.descent;
+        for _ in 0..SHORTENINGS {
+            let shorter = trial.shorter();
+            let there = self.evaluate(problem, state, (shorter - trial.length, mean), false);
+            if trial.suffices(shorter, &there) {
+                return Some((Taken { length: shorter, largest: shorter * largest }, there.residual));
+            }
+        }
+        self.evaluate(problem, state, (-trial.length, mean), false);
         None
+    }
+
+    /// Moves the state along the direction, whose response is known. False if the energy does not fall.
+    pub(super) fn move_along(&mut self, problem: &Problem, state: &State, descent: Descent) -> bool {
+        let mut trial = Trial::new(descent);
+        let length = (problem.reach() / descent.largest).min(1.0);
+        let there = self.evaluate(problem, state, (length, descent.mean), false);
+        trial.suffices(length, &there) || self.shorten(problem, state, trial).is_some()
+    }
+}
+
+/// A state after a step: its residual, slope and elastic curvature of the energy along the direction, and the change of the energy of the law in the step
+/// beyond first order.
+struct There {
+    residual: Here,
+    slope: f64,
+    curvature: f64,
+    beyond: f64,
+}
+
+/// The last trial of a step: its length, and energy and slope there.
+struct Trial {
+    descent: Descent,
+    length: f64,
+    energy: f64,
+    slope: f64,
+}
+
+impl Trial {
+    fn new(descent: Descent) -> Self {
+        Self { descent, length: 0.0, energy: 0.0, slope: descent.slope }
+    }
+
+    /// Goes on to a trial of another length: true if the energy falls enough (Armijo). Its change is of first order, elastic, and that of the law beyond
+    /// first order, from one trial to the next.
+    fn suffices(&mut self, length: f64, there: &There) -> bool {
+        let by = length - self.length;
+        self.energy += by * (self.slope + 0.5 * by * there.curvature) + there.beyond;
+        (self.length, self.slope) = (length, there.slope);
+        self.energy <= 1e-4 * length * self.descent.slope
+    }
+
+    /// The minimum of the parabola through the energies, in bounds.
+    fn shorter(&self) -> f64 {
+        let first = self.descent.slope * self.length;
+        self.length * (-0.5 * first / (self.energy - first)).clamp(0.15, 0.6)
     }
 }
 

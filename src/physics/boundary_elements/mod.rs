@@ -11,6 +11,7 @@ pub mod law;
 pub mod minimise;
 mod newton;
 mod pairs;
+mod passes;
 pub mod patch;
 pub mod preconditioner;
 pub mod records;

@@ -8,6 +8,7 @@ use super::contact::{Problem, State};
 use super::grid::Operator;
 use super::grid::remove_mean;
 use super::minimise::{Accuracy, Descent, Minimiser, Outcome};
+use super::passes::Right;
 use super::sums::{add, dot, grain, largest};
 use crate::physics::PhysicsError;
 use crate::physics::memory::filled;
@@ -17,6 +18,9 @@ use rayon::prelude::*;
 const INNER: usize = 80;
 /// Relative residual at which conjugate gradients end.
 const FORCING: f64 = 0.05;
+
+/// Relative residual of the rate of an equilibrium.
+const RATE: f64 = 0.01;
 
 /// Fields of the inner iteration.
 struct Inner {
@@ -28,15 +32,29 @@ struct Inner {
     curved: Vec<f32>,
 }
 
+impl Inner {
+    fn new(problem: &Problem) -> Result<Self, PhysicsError> {
+        let field = || filled(problem.half_space.points(), 0.0_f32);
+        Ok(Self { step: field()?, response: field()?, residual: field()?, search: field()?, stiff: field()?, curved: field()? })
+    }
+}
+
+/// Change of an equilibrium with the approach.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Rate {
+    /// `du/dΔ` at each point.
+    pub(super) displacement: Vec<f32>,
+    /// `dF/dΔ` \[E* dx\].
+    pub(super) stiffness: f64,
+}
+
 impl Minimiser {
     /// Moves `state` to a local minimum as [`Self::minimise`] does, by Newton's method.
     ///
     /// # Errors
     /// Not enough memory.
     pub fn newton(&mut self, problem: &Problem, state: &mut State, accuracy: Accuracy) -> Result<Outcome, PhysicsError> {
-        let field = || filled(problem.half_space.points(), 0.0_f32);
-        let mut inner =
-            Inner { step: field()?, response: field()?, residual: field()?, search: field()?, stiff: field()?, curved: field()? };
+        let mut inner = Inner::new(problem)?;
         let stress = problem.stress();
         let mut outcome = Outcome::default();
         loop {
@@ -49,11 +67,30 @@ impl Minimiser {
             outcome.iterations += self.conjugate_gradients(problem, &mut inner);
             std::mem::swap(&mut self.direction, &mut inner.step);
             std::mem::swap(&mut self.response, &mut inner.response);
-            let descent = Descent { mean: 0.0, slope: dot(&self.direction, &self.gradient.values) };
-            if self.descend(problem, state, here, descent).is_none() {
+            let descent = Descent { mean: 0.0, slope: dot(&self.direction, &self.gradient.values), largest: largest(&self.direction) };
+            let falls = self.move_along(problem, state, descent);
+            self.arrive(state);
+            if !falls {
                 return Ok(outcome);
             }
         }
+    }
+
+    /// Rate at which the displacement follows the approach at an equilibrium, and the stiffness `dF/dΔ` of the contact: `(K + V'')·rate = V''` for
+    /// displacements of zero mean, by conjugate gradients. The stiffness `Σ V''·(1 − rate)` has an error of second order in that of the rate.
+    ///
+    /// # Errors
+    /// Not enough memory.
+    pub(super) fn rate(&mut self, problem: &Problem, state: &State) -> Result<Rate, PhysicsError> {
+        let mut inner = Inner::new(problem)?;
+        self.look(problem, state);
+        inner.residual.copy_from_slice(&self.slopes);
+        let total = dot(&self.slopes, &vec![1.0; self.slopes.len()]);
+        remove_mean(&mut inner.residual);
+        let right = inner.residual.clone();
+        let goal = RATE * dot(&right, &right).sqrt();
+        self.solve(problem, &mut inner, (f64::INFINITY, goal));
+        Ok(Rate { stiffness: total - dot(&right, &inner.step), displacement: inner.step })
     }
 
     /// Computes the step within the reach of the law and its response, in `inner`, and returns the iterations of conjugate gradients.
@@ -64,16 +101,26 @@ impl Minimiser {
         let fields = (&mut inner.residual, &self.gradient.values).into_par_iter().with_min_len(grain(1));
         fields.for_each(|(to, from)| *to = mean - from);
         let goal = FORCING * dot(&inner.residual, &inner.residual).sqrt();
+        self.solve(problem, inner, (problem.reach(), goal))
+    }
+
+    /// Solves `(K + V'') step = residual` from a step of 0, up to a length of the step and a norm of the residual: the iterations.
+    fn solve(&mut self, problem: &Problem, inner: &mut Inner, (reach, goal): (f64, f64)) -> usize {
+        if dot(&inner.residual, &inner.residual).sqrt() <= goal {
+            return 0;
+        }
         self.precondition_from(problem, &inner.residual);
         inner.search.copy_from_slice(&self.direction);
         let mut product = dot(&inner.residual, &self.direction);
-        let reach = problem.reach();
         for iteration in 1..=INNER {
             problem.half_space.apply(Operator::Stiffness, &inner.search, &mut inner.stiff, &mut self.single);
             self.curve(inner);
             let curvature = dot(&inner.search, &inner.curved);
             let room = (reach - largest(&inner.step)).max(0.0) / largest(&inner.search).max(f64::MIN_POSITIVE);
             let length = product / curvature;
+            if curvature <= 0.0 && reach.is_infinite() {
+                return iteration;
+            }
             if curvature <= 0.0 || length > room {
                 // Along a direction of descent as far as the law reaches.
                 add(&mut inner.step, room, &inner.search);
@@ -105,8 +152,8 @@ impl Minimiser {
 
     /// `direction ← M⁻¹ field`, without its mean.
     fn precondition_from(&mut self, problem: &Problem, field: &[f32]) {
-        self.direction.copy_from_slice(field);
-        self.divide(problem);
+        let right = Right { field, mean: 0.0, changes: self.pairs.changes(), weights: [0.0; 3] };
+        self.preconditioner.divide(problem, &mut self.single, &mut self.direction, &right, &self.slopes);
         remove_mean(&mut self.direction);
     }
 }

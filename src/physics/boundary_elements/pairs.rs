@@ -1,7 +1,8 @@
 //! Pairs of steps and gradient changes of L-BFGS. Their products are kept, so that a direction takes one pass over the fields for a new pair and one for
 //! each of the two loops.
 
-use super::sums::{PANEL, grain, panel_sums, total};
+use super::passes::{new_pair, products};
+use super::sums::{PANEL, total};
 use crate::physics::PhysicsError;
 use crate::physics::memory::filled;
 use rayon::prelude::*;
@@ -70,12 +71,8 @@ impl Pairs {
             two.step.par_chunks(PANEL),
             two.change.par_chunks(PANEL),
         );
-        let sums: [f64; 9] = total(fields.into_par_iter().map(|(y, g, old, s, sa, ya, sb, yb)| {
-            y.iter_mut().zip(g.iter().zip(old)).for_each(|(y, (g, old))| *y = (g - old - shift) * unit);
-            panel_sums([&*y, g, s, sa, ya, sb, yb], |[y, g, s, sa, ya, sb, yb]| {
-                [s * y, s * s, s * ya, s * yb, y * sa, y * sb, g * s, g * sa, g * sb]
-            })
-        }));
+        let sums: [f64; 9] =
+            total(fields.into_par_iter().map(|(y, g, old, s, sa, ya, sb, yb)| new_pair(y, [g, old, s, sa, ya, sb, yb], shift, unit)));
         self.pairs[place].change = change;
         let [own, square, with_a, with_b, of_a, of_b, onto, onto_a, onto_b] = sums;
         self.products[place][place] = own;
@@ -90,9 +87,8 @@ impl Pairs {
 
     /// Products of the steps with a gradient that no step has led to.
     pub(super) fn face(&mut self, gradient: &Gradient) {
-        let [a, b, c] = &self.pairs;
-        let fields = (gradient.values.par_chunks(PANEL), a.step.par_chunks(PANEL), b.step.par_chunks(PANEL), c.step.par_chunks(PANEL));
-        self.onto = total(fields.into_par_iter().map(|(g, a, b, c)| panel_sums([g, a, b, c], |[g, a, b, c]| [g * a, g * b, g * c])));
+        let [a, b, c] = self.steps().map(|step| step.par_chunks(PANEL));
+        self.onto = total((gradient.values.par_chunks(PANEL), a, b, c).into_par_iter().map(|(g, a, b, c)| products(g, [a, b, c])));
         self.centre(gradient);
     }
 
@@ -129,22 +125,8 @@ impl Pairs {
         [0, 1, 2].map(|k| self.pairs[k].change.as_slice())
     }
 
-    /// `direction ← −(direction + Σ weights_i s_i)`: its sum and its product with the gradient's values.
-    pub(super) fn finish(&self, direction: &mut [f32], weights: [f64; PAIRS], gradient: &Gradient) -> [f64; 2] {
-        let [wa, wb, wc] = weights.map(|weight| weight as f32);
-        let [a, b, c] = &self.pairs;
-        let fields = (
-            direction.par_chunks_mut(PANEL),
-            a.step.par_chunks(PANEL),
-            b.step.par_chunks(PANEL),
-            c.step.par_chunks(PANEL),
-            gradient.values.par_chunks(PANEL),
-        );
-        total(fields.into_par_iter().with_min_len(grain(PANEL)).map(|(d, a, b, c, g)| {
-            for (((d, a), b), c) in d.iter_mut().zip(a).zip(b).zip(c) {
-                *d = -(*d + wa * a + wb * b + wc * c);
-            }
-            panel_sums([&*d, g], |[d, g]| [d, d * g])
-        }))
+    /// The steps, in the order of the weights.
+    pub(super) fn steps(&self) -> [&[f32]; PAIRS] {
+        [0, 1, 2].map(|k| self.pairs[k].step.as_slice())
     }
 }

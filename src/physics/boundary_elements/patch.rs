@@ -68,6 +68,11 @@ impl Patches {
         Self(Vec::new())
     }
 
+    /// True if there are no patches.
+    pub(super) fn are_none(&self) -> bool {
+        self.0.is_empty()
+    }
+
     /// Points of the transforms so far.
     pub(super) fn transformed(&self) -> u64 {
         self.0.iter().map(|patch| patch.minimiser.transforms() * patch.problem.half_space.transformed()).sum()
@@ -110,12 +115,12 @@ impl Patches {
 
 impl Follow for Patches {
     /// Places follow one another in the order of their largest residuals; one that would overlap an earlier one is left to the whole grid.
-    fn follow(&mut self, (whole, state): (&Problem, &mut State), changed: &[usize], centre: f64, accuracy: Accuracy) -> bool {
+    fn follow(&mut self, (whole, state): (&Problem, &mut State), changed: &[usize], centre: f64, accuracy: Accuracy) {
         let grid = &whole.half_space;
         let accuracy = Accuracy { rms: f64::INFINITY, largest: FINISH * accuracy.largest, iterations: ITERATIONS };
         let mut rest = changed.to_vec();
         let mut done: Vec<(Place, usize)> = Vec::new();
-        while let Some(first) = rest.first().copied().filter(|_| done.len() < PLACES && !self.0.is_empty()) {
+        while let Some(first) = rest.first().copied().filter(|_| done.len() < PLACES) {
             let (near, others) = rest.into_iter().partition(|point| distance(grid, place(grid, *point), place(grid, first)) <= NEAR);
             rest = others;
             let (place, extent) = surroundings(grid, first, near);
@@ -128,7 +133,6 @@ impl Follow for Patches {
                 done.push((place, side));
             }
         }
-        !done.is_empty()
     }
 }
 

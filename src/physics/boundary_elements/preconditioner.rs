@@ -2,52 +2,38 @@
 
 use super::contact::Problem;
 use super::grid::{Operator, Waves};
-use super::sums::{PANEL, grain};
-use crate::physics::PhysicsError;
-use crate::physics::memory::filled;
+use super::passes::{Right, Split, divided, open_part};
 use rayon::prelude::*;
 
-/// Slope of the law from which a point counts as in contact, and the addition to it, in E*/dx.
-const STIFF: f32 = 0.3;
-const ADDED: f32 = 0.7;
+/// Points in contact, of a slope of the law above `stiff`, are nearly fixed by the wall; at open points the law softens near a front of contact.
+const SPLIT: Split = Split { stiff: 0.3, added: 0.7, softening: 1.0 };
+/// All points as open ones.
+const WHOLE: Split = Split { stiff: f32::INFINITY, added: 0.0, softening: 0.0 };
 
 /// The split preconditioner, or the spectral one to compare it with.
 pub struct Preconditioner {
-    masked: Vec<f32>,
     /// True if the points in contact have a preconditioner of their own; else that of the open points, shifted, is used for all.
     pub split: bool,
 }
 
 impl Preconditioner {
-    pub(super) fn new(points: usize) -> Result<Self, PhysicsError> {
-        Ok(Self { masked: filled(points, 0.0)?, split: true })
-    }
-
-    /// `direction ← M⁻¹ direction` at given slopes of the law; what `response` holds then has no meaning.
+    /// `direction ← M⁻¹ right` at given slopes of the law: its products with the changes of `right`.
     pub(super) fn divide(
-        &mut self,
+        &self,
         problem: &Problem,
         waves: &mut Waves<f32>,
-        (direction, response): (&mut [f32], &mut [f32]),
+        direction: &mut [f32],
+        right: &Right<'_>,
         slopes: &[f32],
-    ) {
-        if !self.split {
-            problem.half_space.apply(Operator::Shifted, direction, response, waves);
-            direction.copy_from_slice(response);
-            return;
-        }
-        let fields = (self.masked.par_chunks_mut(PANEL), direction.par_chunks(PANEL), slopes.par_chunks(PANEL));
-        fields.into_par_iter().with_min_len(grain(PANEL)).for_each(|(to, from, slopes)| {
-            for ((x, y), slope) in to.iter_mut().zip(from).zip(slopes) {
-                *x = if *slope > STIFF { 0.0 } else { *y };
-            }
+    ) -> [f64; 3] {
+        let (split, operator) = if self.split { (SPLIT, Operator::Compliance) } else { (WHOLE, Operator::Shifted) };
+        let half_space = &problem.half_space;
+        let columns = half_space.columns();
+        let rows = || right.rows(columns).zip(slopes.par_chunks(columns));
+        half_space.forward(waves, rows(), |(right, slopes), to| open_part(to, &right, slopes, split));
+        let parts = half_space.backward(operator, waves, direction.par_chunks_mut(columns).zip(rows()), |(to, (right, slopes)), open| {
+            divided(to, open, &right, slopes, split)
         });
-        problem.half_space.apply(Operator::Compliance, &self.masked, response, waves);
-        let fields = (direction.par_chunks_mut(PANEL), response.par_chunks(PANEL), slopes.par_chunks(PANEL));
-        fields.into_par_iter().with_min_len(grain(PANEL)).for_each(|(d, open, slopes)| {
-            for ((x, y), slope) in d.iter_mut().zip(open).zip(slopes) {
-                *x = if *slope > STIFF { *x / (slope + ADDED) } else { *y };
-            }
-        });
+        parts.iter().fold([0.0; 3], |all, part| [all[0] + part[0], all[1] + part[1], all[2] + part[2]])
     }
 }

@@ -13,14 +13,15 @@ pub struct Step {
     pub approach: f64,
     /// Load, energy and area.
     pub totals: Totals,
+    /// Stiffness `dF/dΔ` at constant bonds \[E* dx\].
+    pub stiffness: f64,
     /// Connected regions of contact.
     pub regions: usize,
     /// Energy dissipated in events since the step before \[E* dx³\]: `∫F dΔ − ΔΠ` if that exceeds the error of the integral.
     pub dissipated: f64,
     /// `∫F dΔ − ΔΠ` since the step before \[E* dx³\], its error included.
     pub imbalance: f64,
-    /// Estimated error of that integral: a third of the difference between parabola and trapezoid \[E* dx³\]; 0 after an event, where there is no
-    /// estimate.
+    /// Estimated error of that integral \[E* dx³\]: a part of the difference between the cubic through loads and stiffnesses and the trapezoid.
     pub uncertainty: f64,
     /// Work since the branch began \[E* dx³\]: the change of the energy, and `∫F dΔ` over steps with an event.
     pub work: f64,

@@ -7,19 +7,24 @@
 use super::contact::{Attraction, Problem, State};
 use super::equilibrium::Equilibrium;
 use super::minimise::Accuracy;
+use super::newton::Rate;
 use super::patch::Patches;
 use super::records::{Cycle, Event, Map, Step};
 use super::regions::{Labels, Region, change, label, regions};
-use super::work::{work_after, work_between};
+use super::work::{OnLoop, work_between};
 use crate::physics::PhysicsError;
 use serde::{Deserialize, Serialize};
 
 /// Least imbalance of an event, relative to the energy dissipated so far.
-const EVENT: f64 = 3e-5;
+const EVENT: f64 = 1e-5;
+/// Error of the integral of the load, relative to the part of it that comes from the slopes of the load.
+const BEND: f64 = 0.05;
 /// Imbalance from which on a step is halved, relative to the same.
 const LARGE: f64 = 3e-3;
+/// Apparent gain of energy from which on a step is halved, relative to the same.
+const GAIN: f64 = 5e-5;
 /// Most halvings of a step, as long as each reduces the error of the integral of the load.
-const DEEPEST: u32 = 5;
+const DEEPEST: u32 = 6;
 /// Relative accuracy of the load at a reversal.
 const LOAD_ACCURACY: f64 = 1e-5;
 /// Tolerance of the equilibria in the search for that load, relative to that elsewhere.
@@ -53,8 +58,6 @@ pub struct Halfway {
     /// Branches that are complete.
     pub(super) branches: usize,
     pub(super) state: State,
-    /// The state one step before, if no event lies between.
-    pub(super) before: Option<Before>,
     pub(super) last: Step,
     /// Energy dissipated so far \[E* dx³\].
     pub(super) dissipated: f64,
@@ -65,17 +68,6 @@ pub struct Halfway {
     /// Regions of contact of the state; computed again on resuming.
     #[serde(skip)]
     pub(super) labels: Labels,
-}
-
-/// A state one step before.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub(super) struct Before {
-    /// Approach Δ \[dx\].
-    approach: f64,
-    /// Load \[E* dx²\].
-    load: f64,
-    /// Displacement at each point \[dx\].
-    displacement: Vec<f64>,
 }
 
 impl Halfway {
@@ -92,12 +84,21 @@ impl Halfway {
     }
 }
 
+/// An equilibrium that may become the next step.
+pub(super) struct Attempt {
+    state: State,
+    pub(super) step: Step,
+    rate: Rate,
+}
+
 /// An unfinished cycle with its problem and work space.
 pub(super) struct Walk<'a> {
     pub(super) problem: &'a Problem,
     pub(super) settings: &'a Settings,
     equilibrium: Equilibrium,
     pub(super) at: Halfway,
+    /// Rate of the state, once it has been needed.
+    pub(super) rate: Option<Rate>,
 }
 
 impl<'a> Walk<'a> {
@@ -114,7 +115,6 @@ impl<'a> Walk<'a> {
                 cycle: Cycle::default(),
                 branches: 0,
                 state: problem.apart(start)?,
-                before: None,
                 last: Step { approach: start, ..Step::default() },
                 dissipated: 0.0,
                 level: 0,
@@ -123,7 +123,7 @@ impl<'a> Walk<'a> {
             },
         };
         at.labels = label(problem, &at.state);
-        Ok(Self { problem, settings, equilibrium: Equilibrium::new(problem, Patches::new(problem)?)?, at })
+        Ok(Self { problem, settings, equilibrium: Equilibrium::new(problem, Patches::new(problem)?)?, at, rate: None })
     }
 
     /// Regions of contact of the last state.
@@ -132,16 +132,18 @@ impl<'a> Walk<'a> {
     }
 
     /// Equilibrium at an approach, from the last state extrapolated, with all contacts that form there.
-    pub(super) fn attempt(&mut self, approach: f64, accuracy: Accuracy) -> Result<(State, Step), PhysicsError> {
+    pub(super) fn attempt(&mut self, approach: f64, accuracy: Accuracy) -> Result<Attempt, PhysicsError> {
+        let rate = match self.rate.take() {
+            Some(rate) => rate,
+            None => self.equilibrium.rate(self.problem, &self.at.state)?,
+        };
+        let before = self.equilibrium.transformed();
         let mut state = self.at.state.clone();
-        if let Some(before) = &self.at.before {
-            let ratio = (approach - state.approach) / (state.approach - before.approach);
-            for (to, from) in state.displacement.iter_mut().zip(&before.displacement) {
-                *to += ratio * (*to - from);
-            }
+        let length = approach - state.approach;
+        for (to, rate) in state.displacement.iter_mut().zip(&rate.displacement) {
+            *to += length * f64::from(*rate);
         }
         state.approach = approach;
-        let before = self.equilibrium.transformed();
         let mut iterations = 0;
         let outcome = loop {
             let outcome = self.equilibrium.find(self.problem, &mut state, accuracy)?;
@@ -152,28 +154,30 @@ impl<'a> Walk<'a> {
         };
         let totals = self.problem.totals(&state);
         self.problem.settle_bonds(&mut state);
+        let next = self.equilibrium.rate(self.problem, &state)?;
         let from = &self.at.last;
-        let (start, end) = ((from.approach, from.totals.load), (approach, totals.load));
+        let on = |step: &Step, rate: &Rate| OnLoop { approach: step.approach, load: step.totals.load, stiffness: rate.stiffness };
+        let end = OnLoop { approach, load: totals.load, stiffness: next.stiffness };
+        let (straight, bend) = work_between(on(from, &rate), end);
+        let work = straight + bend;
         let change = totals.energy - from.totals.energy;
-        let quiet = self.at.before.as_ref().map(|before| work_after((before.approach, before.load), start, end));
-        // After a jump of the load the points before are no basis for the parabola.
-        let uncertainty = quiet.map_or(0.0, |quiet| (quiet - work_between(start, end)).abs() / 3.0);
-        let work = quiet.filter(|work| (work - change).abs() <= self.resolution(uncertainty)).unwrap_or_else(|| work_between(start, end));
+        self.rate = Some(rate);
         let step = Step {
             reversal: from.reversal,
             approach,
             totals,
+            stiffness: next.stiffness,
             regions: 0,
             dissipated: 0.0,
             imbalance: work - change,
-            uncertainty,
+            uncertainty: BEND * bend.abs(),
             work: from.work + work,
             iterations,
             transforms: self.equilibrium.transforms(before),
             residual: outcome.residual,
             converged: outcome.converged,
         };
-        Ok((state, step))
+        Ok(Attempt { state, step, rate: next })
     }
 
     /// Imbalance up to which a step has no event, with the uncertainty of its integral \[E* dx³\].
@@ -181,7 +185,7 @@ impl<'a> Walk<'a> {
         uncertainty.max(EVENT * self.at.dissipated)
     }
 
-    pub(super) fn accept(&mut self, state: State, mut step: Step) {
+    pub(super) fn accept(&mut self, Attempt { state, mut step, rate }: Attempt) {
         let event = step.imbalance > self.resolution(step.uncertainty);
         let labels = label(self.problem, &state);
         step.regions = labels.count;
@@ -200,10 +204,8 @@ impl<'a> Walk<'a> {
             });
         }
         self.at.labels = labels;
-        let old = std::mem::replace(&mut self.at.state, state);
-        let load = self.at.last.totals.load;
-        let follows = !event && old.approach != self.at.state.approach;
-        self.at.before = follows.then_some(Before { approach: old.approach, load, displacement: old.displacement });
+        self.at.state = state;
+        self.rate = Some(rate);
         self.at.last = step;
         if self.settings.all_regions {
             let (step, found) = (self.at.cycle.steps.len(), self.regions());
@@ -218,11 +220,14 @@ impl<'a> Walk<'a> {
         let mut coarser = f64::INFINITY;
         loop {
             let length = sense * self.settings.step / f64::from(1_u32 << self.at.level);
-            let (mut state, mut step) = self.attempt(self.at.state.approach + length, self.settings.accuracy)?;
+            let mut attempt = self.attempt(self.at.state.approach + length, self.settings.accuracy)?;
+            let step = attempt.step;
             let large = step.imbalance.abs() > LARGE * self.at.dissipated;
-            // The error of the integral falls by halving the step, an event does not.
+            // The error of the integral falls by halving the step, an event does not. An apparent gain of energy is such an error: the load jumps in the
+            // step, and less is dissipated than the trapezoid rule across the jump is off.
+            let gains = step.imbalance < -GAIN * self.at.dissipated && self.at.level < DEEPEST;
             let falls = step.imbalance.abs() < 0.25 * coarser && self.at.level < DEEPEST;
-            if large && (self.at.level < self.settings.halvings || falls) {
+            if gains || large && (self.at.level < self.settings.halvings || falls) {
                 coarser = step.imbalance.abs();
                 (iterations, transforms) = (iterations + step.iterations, transforms + step.transforms);
                 self.at.level += 1;
@@ -231,7 +236,7 @@ impl<'a> Walk<'a> {
             let across = max_load.filter(|most| step.totals.load > *most);
             if let Some(max_load) = across {
                 (iterations, transforms) = (iterations + step.iterations, transforms + step.transforms);
-                (state, step) = self.reach(max_load, step)?;
+                attempt = self.reach(max_load, step)?;
             } else {
                 let small = step.imbalance.abs() < LARGE / 8.0 * self.at.dissipated;
                 self.at.level = match (large, small) {
@@ -240,15 +245,15 @@ impl<'a> Walk<'a> {
                     (false, false) => self.at.level,
                 };
             }
-            step.iterations += iterations;
-            step.transforms += transforms;
-            self.accept(state, step);
+            attempt.step.iterations += iterations;
+            attempt.step.transforms += transforms;
+            self.accept(attempt);
             return Ok(across.is_some());
         }
     }
 
     /// The equilibrium at `max_load` between the last state and a step beyond it, to the accuracy of the load or of the search.
-    fn reach(&mut self, max_load: f64, beyond: Step) -> Result<(State, Step), PhysicsError> {
+    fn reach(&mut self, max_load: f64, beyond: Step) -> Result<Attempt, PhysicsError> {
         let (mut low, mut high) = ((self.at.last.approach, self.at.last.totals.load), (beyond.approach, beyond.totals.load));
         let (mut iterations, mut transforms) = (0, 0);
         let Accuracy { rms, largest, iterations: most } = self.settings.accuracy;
@@ -260,7 +265,8 @@ impl<'a> Walk<'a> {
             let secant = ((max_load - low.1) / (high.1 - low.1)).clamp(0.02, 0.98);
             let part = if searched.is_multiple_of(3) { 0.5 } else { secant };
             let approach = low.0 + part * (high.0 - low.0);
-            let (state, mut step) = self.attempt(approach, accuracy)?;
+            let mut attempt = self.attempt(approach, accuracy)?;
+            let step = &mut attempt.step;
             (iterations, transforms) = (iterations + step.iterations, transforms + step.transforms);
             let load = step.totals.load;
             if load > max_load {
@@ -274,7 +280,7 @@ impl<'a> Walk<'a> {
             if reached || searched == SEARCHED {
                 step.converged &= reached;
                 (step.iterations, step.transforms) = (iterations, transforms);
-                return Ok((state, step));
+                return Ok(attempt);
             }
         }
     }

@@ -63,25 +63,13 @@ pub(super) fn panel_sums<const M: usize, const N: usize>(fields: [&[f32]; M], of
 /// Largest magnitude on one panel.
 #[inline(always)]
 pub(super) fn panel_largest(field: &[f32]) -> f64 {
+    let (parts, rest) = field.as_chunks::<LANES>();
     let mut most = [0.0_f32; LANES];
-    for part in field.chunks(LANES) {
-        for (most, value) in most.iter_mut().zip(part) {
-            *most = if value.abs() > *most { value.abs() } else { *most };
-        }
+    for part in parts {
+        most = std::array::from_fn(|k| if part[k].abs() > most[k] { part[k].abs() } else { most[k] });
     }
-    f64::from(most.into_iter().fold(0.0, f32::max))
-}
-
-/// Scalar product with a field in double precision on one panel.
-#[inline(always)]
-pub(super) fn panel_work(field: &[f32], other: &[f64]) -> f64 {
-    let mut lanes = [0.0; LANES];
-    for (a, b) in field.chunks(LANES).zip(other.chunks(LANES)) {
-        for ((sum, a), b) in lanes.iter_mut().zip(a).zip(b) {
-            *sum += f64::from(*a) * b;
-        }
-    }
-    lanes.iter().sum()
+    let rest = rest.iter().fold(0.0, |most: f32, value| most.max(value.abs()));
+    f64::from(most.into_iter().fold(rest, f32::max))
 }
 
 /// Scalar product.

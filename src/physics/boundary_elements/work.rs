@@ -1,16 +1,26 @@
 //! Work of the load between equilibria.
 
-/// `∫F dΔ` between two points `(Δ, F)` by the trapezoid rule.
-#[must_use]
-pub fn work_between(start: (f64, f64), end: (f64, f64)) -> f64 {
-    0.5 * (start.1 + end.1) * (end.0 - start.0)
+/// Jump of the load in a step, relative to its curvature over the step, from which on slopes are no basis for an integral.
+const JUMP: f64 = 0.5;
+
+/// A point of a loop: approach `Δ`, load `F` and stiffness `dF/dΔ`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OnLoop {
+    /// Approach Δ.
+    pub approach: f64,
+    /// Load.
+    pub load: f64,
+    /// Slope of the load.
+    pub stiffness: f64,
 }
 
-/// `∫F dΔ` from `start` to `end` of the parabola through these two points `(Δ, F)` and the one before them; the trapezoid where two of them coincide.
+/// `∫F dΔ` between two points by the trapezoid rule, and by how much that of the cubic through loads and slopes at both ends exceeds it (Hermite). The
+/// second is 0 where the load jumps in between, as in an event or at a limit point.
 #[must_use]
-pub fn work_after(before: (f64, f64), start: (f64, f64), end: (f64, f64)) -> f64 {
-    let slope = |a: (f64, f64), b: (f64, f64)| (b.1 - a.1) / (b.0 - a.0);
-    let bend = (slope(start, end) - slope(before, start)) / (end.0 - before.0);
-    let correction = bend * (end.0 - start.0).powi(3) / 6.0;
-    work_between(start, end) - if correction.is_finite() { correction } else { 0.0 }
+pub fn work_between(start: OnLoop, end: OnLoop) -> (f64, f64) {
+    let length = end.approach - start.approach;
+    let bend = start.stiffness - end.stiffness;
+    let jump = end.load - start.load - 0.5 * (start.stiffness + end.stiffness) * length;
+    let smooth = jump.abs() <= JUMP * (bend * length).abs();
+    (0.5 * (start.load + end.load) * length, if smooth { length * length * bend / 12.0 } else { 0.0 })
 }

@@ -114,6 +114,8 @@ pub(super) fn steps(of: Identity<'_>, cycle: &Cycle, problem: &Problem) -> Resul
         .f64("penetration", steps.iter().map(|s| s.approach_m / problem.rms_height_m))
         .text("method", repeat_n(METHOD, steps.len()))
         .f64("residual", repeat_n(None::<f64>, steps.len()))
+        .f64("stiffness_n_m", repeat_n(None::<f64>, steps.len()))
+        .f64("stiffness", repeat_n(None::<f64>, steps.len()))
         .f64("reversal_load", repeat_n(None::<f64>, steps.len()))
         .build()?)
 }

@@ -77,6 +77,8 @@ pub(super) fn steps(of: Identity<'_>, cycle: &Cycle, loads: &[f64], units: &Unit
         .f64("penetration", steps.iter().map(|s| s.approach * spacing / units.rms_height_m))
         .text("method", repeat_n(METHOD, steps.len()))
         .f64("residual", each(|s| s.residual, 1.0))
+        .f64("stiffness_n_m", each(|s| s.stiffness, load / spacing))
+        .f64("stiffness", each(|s| s.stiffness, units.rms_height_m / (all * spacing)))
         .f64("reversal_load", (0..steps.len()).map(reversal_load))
         .build()?)
 }

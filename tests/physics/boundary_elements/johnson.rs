@@ -43,7 +43,7 @@ fn computed(alpha: f64, n: usize, attraction: Attraction, range: Option<f64>) ->
     let problem = problem(1, n, |_, k| h * (TAU * k as f64 / n as f64).cos(), law, attraction);
     let unit = PI * h;
     let (loss, least, gap) = reference(alpha);
-    let cycle = cycle(&problem, 0.05 * unit, 0.05 * (gap - 1.0) * h, 4);
+    let cycle = cycle(&problem, 0.05 * unit, 0.0125 * (gap - 1.0) * h, 4);
     assert!(cycle.steps.iter().all(|s| s.converged));
     let (loop_area, events, tension) = sums(&cycle);
     let off = 1.0 - cycle.steps.last().unwrap().approach / h;
@@ -60,24 +60,25 @@ fn val_reference_of_johnson() {
     );
 }
 
-/// At 128 points the loop of five adhesion numbers has the exact dissipated energy to 3 %, force and gap at jump-off to 1.5 %, and events that
-/// add up to its area to 1 %, the error of the quadrature where the load falls with an infinite slope.
+/// At 128 points the loop of five adhesion numbers has the exact dissipated energy to 3 %, force and gap at jump-off to 1.5 %, and events that add up to
+/// its area to 1e-3.
 #[test]
 fn val_loops_of_johnson() {
     for alpha in [0.1, 0.2, 0.3, 0.4, 0.5] {
         let [loss, least, gap, balance] = computed(alpha, 128, BONDED, None);
         assert!((loss - 1.0).abs() < 0.03, "dissipated energy over its exact value {loss} at α = {alpha}");
         assert!((least - 1.0).abs() < 0.015 && (gap - 1.0).abs() < 0.015, "force {least}, gap {gap} at α = {alpha}");
-        assert!(balance < 1e-2, "events differ from the loop by {balance}");
+        assert!(balance < 1e-3, "events differ from the loop by {balance}");
     }
 }
 
-/// The error falls with the grid for the law of the crack; with a plain range of attraction the jump into contact comes early, and most of the energy is missing.
+/// The error of the law of the crack falls from 4 % at 32 points to below 1 % from 64 points on, where lattice trapping and the step are left; with a plain
+/// range of attraction the jump into contact comes early, and most of the energy is missing.
 #[test]
 fn lim_johnson_on_finer_grids() {
     let error = |n| (computed(0.3, n, BONDED, None)[0] - 1.0).abs();
     let errors = [error(32), error(64), error(256)];
-    assert!(errors[0] > errors[1] && errors[1] > errors[2], "errors at 32, 64, 256 points {errors:?}");
+    assert!(errors[0] > 4.0 * errors[1] && errors[1] < 0.01 && errors[2] < 0.01, "errors at 32, 64, 256 points {errors:?}");
     let plain = computed(0.3, 256, Attraction::Range, Some(0.8))[0];
     assert!(plain < 0.7, "dissipated energy with a range over that of JKR {plain}");
 }

@@ -4,7 +4,7 @@ use super::{BONDED, problem};
 use hysteron::physics::boundary_elements::contact::Bonding;
 use hysteron::physics::boundary_elements::grid::{HalfSpace, Operator};
 use hysteron::physics::boundary_elements::law::Law;
-use hysteron::physics::boundary_elements::work::{work_after, work_between};
+use hysteron::physics::boundary_elements::work::{OnLoop, work_between};
 use std::f64::consts::{PI, TAU};
 
 /// A plane wave `u = cos q·x` needs the pressure `|q|/2 u`, in both directions and obliquely, on square and oblong grids. Rounding only.
@@ -113,14 +113,17 @@ fn law_load_and_residual_are_derivatives_of_the_energy() {
     assert!((slope / load - 1.0).abs() < 1e-6, "load {load}, slope of the energy {slope}");
 }
 
-/// The work of a load that is a parabola of the approach is exact on uneven steps; where two points coincide it is the trapezoid.
+/// The work of a load that is a cubic of the approach is exact, with the slopes at both ends, on a step in either direction. Where the load jumps it is the
+/// trapezoid.
 #[test]
-fn law_work_of_a_parabola_is_exact() {
-    let point = |x: f64| (x, 1.0 - 2.0 * x + 3.0 * x * x);
-    let integral = |x: f64| x - x * x + x * x * x;
-    for (a, b, c) in [(0.0, 0.3, 0.4), (1.0, 0.8, 0.1), (-0.2, 0.5, 0.9)] {
-        let work = work_after(point(a), point(b), point(c));
-        assert!((work - (integral(c) - integral(b))).abs() < 1e-14, "{work}");
+fn law_work_of_a_cubic_is_exact() {
+    let load = |x: f64| 1.0 + x * (0.3 + x * (-2.0 + 0.1 * x));
+    let at = |x: f64| OnLoop { approach: x, load: load(x), stiffness: 0.3 + x * (-4.0 + 0.3 * x) };
+    let integral = |x: f64| x * (1.0 + x * (0.15 + x * (-2.0 / 3.0 + 0.025 * x)));
+    for (a, b) in [(0.2, 1.1), (1.3, -0.4)] {
+        let (straight, bend) = work_between(at(a), at(b));
+        assert!((straight + bend - (integral(b) - integral(a))).abs() < 1e-14, "{straight} {bend}");
+        let jumped = OnLoop { load: load(b) + 10.0, ..at(b) };
+        assert_eq!(work_between(at(a), jumped).1, 0.0);
     }
-    assert_eq!(work_after(point(0.3), point(0.3), point(0.4)), work_between(point(0.3), point(0.4)));
 }

@@ -1,0 +1,281 @@
+//! Passes over one row of the fields of an iteration, compiled for the vectors of the processor. Sums are formed in blocks of one length, so that their
+//! digits are the same on every processor.
+
+use super::law::{Bond, Bonding, Law, Pieces};
+use super::sums::{panel_largest, panel_sums};
+use multiversion::multiversion;
+use rayon::prelude::*;
+
+/// Points that are evaluated together.
+const BLOCK: usize = 64;
+
+/// `field − mean − Σ weights_i changes_i`: the direction of L-BFGS before the preconditioner.
+pub(super) struct Right<'a> {
+    pub(super) field: &'a [f32],
+    pub(super) mean: f32,
+    pub(super) changes: [&'a [f32]; 3],
+    pub(super) weights: [f32; 3],
+}
+
+impl Right<'_> {
+    #[inline(always)]
+    fn at(&self, k: usize) -> f32 {
+        let ([a, b, c], [wa, wb, wc]) = (self.changes, self.weights);
+        self.field[k] - self.mean - wa * a[k] - wb * b[k] - wc * c[k]
+    }
+
+    /// Its rows.
+    pub(super) fn rows(&self, columns: usize) -> impl IndexedParallelIterator<Item = Right<'_>> {
+        let [a, b, c] = self.changes.map(|change| change.par_chunks(columns));
+        let rows = self.field.par_chunks(columns).zip(a.zip(b).zip(c));
+        rows.map(|(field, ((a, b), c))| Right { field, mean: self.mean, changes: [a, b, c], weights: self.weights })
+    }
+
+    #[inline(always)]
+    fn first(&self, n: usize) -> Self {
+        Self { field: &self.field[..n], mean: self.mean, changes: self.changes.map(|change| &change[..n]), weights: self.weights }
+    }
+}
+
+/// Division of the points by the slope of the law, for the preconditioner.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Split {
+    /// Slope above which a point is in contact \[E*/dx\].
+    pub(super) stiff: f32,
+    /// Addition to the slope of points in contact \[E*/dx\].
+    pub(super) added: f32,
+    /// Additional compliance of a softening point, per negative slope \[dx/E*\].
+    pub(super) softening: f32,
+}
+
+impl Split {
+    #[inline(always)]
+    fn scale(&self, slope: f32) -> f32 {
+        1.0 - self.softening * slope.min(0.0)
+    }
+}
+
+/// Open points of the right side, with 0 at those in contact.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
+pub(super) fn open_part(to: &mut [f32], right: &Right<'_>, slopes: &[f32], split: Split) {
+    let n = to.len();
+    let (right, slopes) = (right.first(n), &slopes[..n]);
+    for k in 0..n {
+        to[k] = if slopes[k] > split.stiff { 0.0 } else { right.at(k) * split.scale(slopes[k]) };
+    }
+}
+
+/// The direction after the preconditioner, of which `open` is the part at open points: its products with the changes.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
+pub(super) fn divided(to: &mut [f32], open: &[f32], right: &Right<'_>, slopes: &[f32], split: Split) -> [f64; 3] {
+    let n = to.len();
+    let (right, slopes, open) = (right.first(n), &slopes[..n], &open[..n]);
+    for k in 0..n {
+        let slope = slopes[k];
+        to[k] = if slope > split.stiff { right.at(k) / (slope + split.added) } else { open[k] * split.scale(slope) };
+    }
+    let [a, b, c] = right.changes;
+    panel_sums([&*to, a, b, c], |[d, a, b, c]| [d * a, d * b, d * c])
+}
+
+/// `direction ← −(direction + Σ weights_i steps_i)`, written to `to` as well: its sum, its product with the gradient and its largest magnitude.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
+pub(super) fn descending(direction: &mut [f32], to: &mut [f32], steps: [&[f32]; 3], weights: [f32; 3], gradient: &[f32]) -> [f64; 3] {
+    let n = to.len();
+    let ([a, b, c], [wa, wb, wc]) = (steps.map(|step| &step[..n]), weights);
+    let direction = &mut direction[..n];
+    for k in 0..n {
+        direction[k] = -(direction[k] + wa * a[k] + wb * b[k] + wc * c[k]);
+    }
+    to.copy_from_slice(direction);
+    let [sum, product] = panel_sums([&*to, &gradient[..n]], |[d, g]| [d, d * g]);
+    [sum, product, panel_largest(to)]
+}
+
+/// Products of a field with three others.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
+pub(super) fn products(field: &[f32], others: [&[f32]; 3]) -> [f64; 3] {
+    let [a, b, c] = others;
+    panel_sums([field, a, b, c], |[g, a, b, c]| [g * a, g * b, g * c])
+}
+
+/// The change `y ← (g − old − shift) × unit` of the gradient along a step `s`, and its products with those of the other pairs `a` and `b`: of
+/// `[g, old, s, s_a, y_a, s_b, y_b]`, `[s·y, s·s, s·y_a, s·y_b, y·s_a, y·s_b, g·s, g·s_a, g·s_b]`.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
+pub(super) fn new_pair(y: &mut [f32], fields: [&[f32]; 7], shift: f32, unit: f32) -> [f64; 9] {
+    let [g, old, s, sa, ya, sb, yb] = fields;
+    y.iter_mut().zip(g.iter().zip(old)).for_each(|(y, (g, old))| *y = (g - old - shift) * unit);
+    panel_sums([&*y, g, s, sa, ya, sb, yb], |[y, g, s, sa, ya, sb, yb]| {
+        [s * y, s * s, s * ya, s * yb, y * sa, y * sb, g * s, g * sa, g * sb]
+    })
+}
+
+/// One row of a state on its way, and of the fields that change with it.
+pub(super) struct Points<'a> {
+    /// Gap, and sum of pressure and tension, at the beginning.
+    pub(super) gap: &'a [f32],
+    pub(super) residual: &'a [f32],
+    /// Displacement and pressure since then.
+    pub(super) moved: &'a mut [f32],
+    pub(super) pressed: &'a mut [f32],
+    pub(super) bonds: &'a [Bonding],
+    pub(super) direction: &'a [f32],
+    pub(super) gradient: &'a mut [f32],
+    pub(super) slopes: &'a mut [f32],
+    /// 1 at points in contact.
+    pub(super) touching: &'a mut [u8],
+}
+
+/// A step along the direction less its `mean`; `centre` is subtracted from the gradient.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Stride {
+    pub(super) length: f32,
+    pub(super) mean: f32,
+    pub(super) centre: f32,
+}
+
+/// Sums over a row after a step.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Found {
+    /// Sums of the gradient and of its square.
+    pub(super) gradient: [f64; 2],
+    pub(super) largest: f64,
+    /// Products of the direction with the gradient and with the elastic response.
+    pub(super) slope: f64,
+    pub(super) curvature: f64,
+    /// Change of the energy of the law beyond that of first order in the step.
+    pub(super) beyond: f64,
+    /// True if a point has come into contact or left it.
+    pub(super) changed: bool,
+}
+
+impl Found {
+    /// Adds another part of the points.
+    pub(super) fn add(&mut self, other: &Self) {
+        for (sum, part) in self.gradient.iter_mut().zip(other.gradient) {
+            *sum += part;
+        }
+        self.largest = self.largest.max(other.largest);
+        self.slope += other.slope;
+        self.curvature += other.curvature;
+        self.beyond += other.beyond;
+        self.changed |= other.changed;
+    }
+}
+
+/// Values of a block of points after a step, with the gaps at the beginning, before and after it.
+struct Block {
+    gap: [[f32; BLOCK]; 3],
+    gradient: [f32; BLOCK],
+    /// Change of the tension since the beginning.
+    pulled: [f32; BLOCK],
+    slopes: [f32; BLOCK],
+    beyond: [f32; BLOCK],
+    /// 1 where the law itself has to be evaluated.
+    curved: [u8; BLOCK],
+}
+
+/// Moves the points of a row along the direction, to which `response` is the elastic response, and evaluates the law at them.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
+pub(super) fn advance(points: &mut Points<'_>, response: &[f32], stride: Stride, law: &Law, pieces: &Pieces) -> Found {
+    let mut found = Found::default();
+    let mut beyond = vec![0.0; points.gap.len()];
+    for (start, beyond) in (0..).step_by(BLOCK).zip(beyond.chunks_mut(BLOCK)) {
+        let end = start + beyond.len();
+        let mut block = move_block(points, response, start..end, stride, pieces, &mut found);
+        for k in 0..beyond.len() {
+            if block.curved[k] != 0 {
+                curve(&mut block, k, points.bonds[start + k], law);
+            }
+        }
+        points.gradient[start..end].copy_from_slice(&block.gradient[..beyond.len()]);
+        points.slopes[start..end].copy_from_slice(&block.slopes[..beyond.len()]);
+        beyond.copy_from_slice(&block.beyond[..beyond.len()]);
+    }
+    let fields = [&*points.gradient, &beyond, response, points.direction];
+    [found.gradient[0], found.gradient[1], found.beyond, found.slope, found.curvature] =
+        panel_sums(fields, |[g, beyond, k, d]| [g, g * g, beyond, g * d, k * d]);
+    found.largest = panel_largest(points.gradient);
+    found
+}
+
+/// Moves the points of a block, with the law as a spring or nothing. Only changes since the beginning are computed in single precision.
+#[inline(always)]
+fn move_block(
+    points: &mut Points<'_>,
+    response: &[f32],
+    range: std::ops::Range<usize>,
+    stride: Stride,
+    pieces: &Pieces,
+    found: &mut Found,
+) -> Block {
+    let count = range.len();
+    let load = |field: &[f32]| block_of(&field[range.clone()]);
+    let (gap, residual, d, k) = (load(points.gap), load(points.residual), load(points.direction), load(response));
+    let (mut moved, mut pressed) = (load(points.moved), load(points.pressed));
+    let mut bonds = [0_u8; BLOCK];
+    bonds.iter_mut().zip(&points.bonds[range.clone()]).for_each(|(to, bonding)| *to = *bonding as u8);
+    let mut touching = [0_u8; BLOCK];
+    let mut block = Block {
+        gap: [gap, [0.0; BLOCK], [0.0; BLOCK]],
+        gradient: [0.0; BLOCK],
+        pulled: [0.0; BLOCK],
+        slopes: [0.0; BLOCK],
+        beyond: [0.0; BLOCK],
+        curved: [0; BLOCK],
+    };
+    let of = |values: [f32; 3], bonding: u8| {
+        if bonding == 0 {
+            values[0]
+        } else if bonding == 1 {
+            values[1]
+        } else {
+            values[2]
+        }
+    };
+    let (first, last) = (pieces.curved.map(|range| range[0]), pieces.curved.map(|range| range[1]));
+    for i in 0..BLOCK {
+        let before = gap[i] + moved[i];
+        moved[i] += stride.length * (d[i] - stride.mean);
+        pressed[i] += stride.length * k[i];
+        let after = gap[i] + moved[i];
+        let spring = of(pieces.spring, bonds[i]);
+        let stretched = |gap: f32| if gap < spring { gap } else { 0.0 };
+        let (m0, m1) = (stretched(before), stretched(after));
+        let along = gap[i] < spring && after < spring;
+        let pulled = if along { moved[i] } else { m1 - stretched(gap[i]) };
+        block.slopes[i] = if after < spring { pieces.stiffness } else { 0.0 };
+        block.gradient[i] = residual[i] + pressed[i] - stride.centre + pieces.stiffness * pulled;
+        let jump = m1 - m0;
+        block.beyond[i] = 0.5 * pieces.stiffness * (jump * jump + 2.0 * m0 * (jump - (after - before)));
+        touching[i] = u8::from(after < of(pieces.contact, bonds[i]));
+        let (first, last) = (of(first, bonds[i]), of(last, bonds[i]));
+        let curved = |gap: f32| u8::from(gap >= first && gap <= last);
+        block.curved[i] = curved(gap[i]) | curved(before) | curved(after);
+        (block.gap[1][i], block.gap[2][i]) = (before, after);
+        block.pulled[i] = pieces.stiffness * pulled;
+    }
+    points.moved[range.clone()].copy_from_slice(&moved[..count]);
+    points.pressed[range.clone()].copy_from_slice(&pressed[..count]);
+    found.changed |= points.touching[range.clone()] != touching[..count];
+    points.touching[range].copy_from_slice(&touching[..count]);
+    block
+}
+
+/// Replaces the spring by the law at a point.
+fn curve(block: &mut Block, k: usize, bonding: Bonding, law: &Law) {
+    let gaps = [0, 1, 2].map(|at: usize| f64::from(block.gap[at][k]));
+    let [begin, before, after]: [Bond; 3] = gaps.map(|gap| law.bond(bonding, gap));
+    block.gradient[k] += (after.tension - begin.tension) as f32 - block.pulled[k];
+    block.slopes[k] = after.slope as f32;
+    block.beyond[k] = (after.energy - before.energy - before.tension * (gaps[2] - gaps[1])) as f32;
+}
+
+#[inline(always)]
+fn block_of(field: &[f32]) -> [f32; BLOCK] {
+    <[f32; BLOCK]>::try_from(field).unwrap_or_else(|_| {
+        let mut block = [0.0; BLOCK];
+        block[..field.len()].copy_from_slice(field);
+        block
+    })
+}
