@@ -13,10 +13,20 @@ use hysteron::spec::{SCHEMA_FILE, json_schema};
 /// The unit that a column's name promises: suffixes from the longest, as the contract has them.
 fn promised(name: &str) -> &'static str {
     let stem = ["_mean", "_sd", "_ci95_low", "_ci95_high"].iter().find_map(|end| name.strip_suffix(end)).unwrap_or(name);
-    [("_j_m2", "J/m^2"), ("_1_m2", "1/m^2"), ("_1_m", "1/m"), ("_m2", "m^2"), ("_pa", "Pa"), ("_m", "m"), ("_n", "N"), ("_j", "J")]
-        .iter()
-        .find(|(end, _)| stem.ends_with(end))
-        .map_or("1", |(_, unit)| unit)
+    [
+        ("_j_m2", "J/m^2"),
+        ("_n_m", "N/m"),
+        ("_1_m2", "1/m^2"),
+        ("_1_m", "1/m"),
+        ("_m2", "m^2"),
+        ("_pa", "Pa"),
+        ("_m", "m"),
+        ("_n", "N"),
+        ("_j", "J"),
+    ]
+    .iter()
+    .find(|(end, _)| stem.ends_with(end))
+    .map_or("1", |(_, unit)| unit)
 }
 
 #[test]

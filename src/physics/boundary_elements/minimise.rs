@@ -12,11 +12,13 @@
 
 use super::contact::{Problem, State};
 use super::grid::{Operator, Waves};
-use super::law::{Bonding, Pieces};
+use super::law::Bonding;
 use super::pairs::{Gradient, Pairs};
 use super::passes::{Found, Points, Right, Stride, advance, descending};
 use super::preconditioner::Preconditioner;
-use super::sums::{PANEL, grain};
+use super::sums::grain;
+use super::trial::{Descent, Residual, Taken, There, Trial};
+use super::way::Way;
 use crate::physics::PhysicsError;
 use crate::physics::memory::filled;
 use rayon::prelude::*;
@@ -44,6 +46,13 @@ pub struct Accuracy {
     pub iterations: usize,
 }
 
+impl Accuracy {
+    /// True if a residual is within it.
+    pub(super) fn includes(&self, residual: Residual, stress: f64) -> bool {
+        residual.rms <= self.rms * stress && residual.largest <= self.largest * stress
+    }
+}
+
 /// Result of a minimisation.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Outcome {
@@ -53,28 +62,6 @@ pub struct Outcome {
     pub residual: f64,
     /// True if the accuracy was reached.
     pub converged: bool,
-}
-
-/// Residual at a state.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Here {
-    /// Root mean square of the residual and a bound of its largest magnitude.
-    pub(super) rms: f64,
-    pub(super) largest: f64,
-}
-
-impl Here {
-    pub(super) fn within(&self, accuracy: Accuracy, stress: f64) -> bool {
-        self.rms <= accuracy.rms * stress && self.largest <= accuracy.largest * stress
-    }
-}
-
-/// A direction of descent: its mean, which is no part of it, the slope of the energy along it, and its largest magnitude.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Descent {
-    pub(super) mean: f64,
-    pub(super) slope: f64,
-    pub(super) largest: f64,
 }
 
 /// Work space.
@@ -92,49 +79,6 @@ pub struct Minimiser {
     pub(super) pairs: Pairs,
     /// Preconditioner.
     pub preconditioner: Preconditioner,
-}
-
-/// The way from a state in double precision: gap and residual there, displacement and pressure since, in single precision.
-struct Way {
-    gap: Vec<f32>,
-    residual: Vec<f32>,
-    moved: Vec<f32>,
-    pressed: Vec<f32>,
-    /// 1 at points in contact.
-    touching: Vec<u8>,
-    /// Rows with points that have come into contact or left it since bonds were updated.
-    stale: Vec<bool>,
-    /// Mean that is subtracted from the residual.
-    centre: f64,
-    pieces: Pieces,
-}
-
-impl Way {
-    /// From here on.
-    fn depart(&mut self, problem: &Problem, state: &State, centre: f64) {
-        self.centre = centre;
-        self.stale.fill(true);
-        let approach = state.approach;
-        let fields = (
-            self.gap.par_chunks_mut(PANEL),
-            self.residual.par_chunks_mut(PANEL),
-            self.moved.par_chunks_mut(PANEL),
-            self.pressed.par_chunks_mut(PANEL),
-            state.displacement.par_chunks(PANEL),
-            state.pressure.par_chunks(PANEL),
-            problem.heights.par_chunks(PANEL),
-            state.bonds.par_chunks(PANEL),
-        );
-        fields.into_par_iter().with_min_len(grain(PANEL)).for_each(|(gap, residual, moved, pressed, u, p, z, bonds)| {
-            for (k, (gap, residual)) in gap.iter_mut().zip(residual).enumerate() {
-                let exact = u[k] - approach - z[k];
-                *gap = exact as f32;
-                *residual = (p[k] + problem.bond(bonds[k], exact).tension - centre) as f32;
-            }
-            moved.fill(0.0);
-            pressed.fill(0.0);
-        });
-    }
 }
 
 /// Local relaxation after events.
@@ -162,16 +106,7 @@ impl Minimiser {
             slopes: field()?,
             direction: field()?,
             response: field()?,
-            way: Way {
-                gap: field()?,
-                residual: field()?,
-                moved: field()?,
-                pressed: field()?,
-                touching: filled(points, 0)?,
-                stale: filled(problem.half_space.rows(), true)?,
-                centre: 0.0,
-                pieces: problem.law.pieces(),
-            },
+            way: Way::new(problem)?,
             pairs: Pairs::new(points)?,
             preconditioner: Preconditioner { split: true },
         })
@@ -202,7 +137,7 @@ impl Minimiser {
         let mut here = self.begin(problem, state);
         let (mut moved, mut exact, mut first) = (0.0, true, here.rms);
         loop {
-            (outcome.residual, outcome.converged) = (here.rms / stress, here.within(accuracy, stress));
+            (outcome.residual, outcome.converged) = (here.rms / stress, accuracy.includes(here, stress));
             if !exact && (outcome.converged || here.rms < RENEWED * first) {
                 // Checked once more with the pressure without rounding and with bonds renewed, or continued from there.
                 self.arrive(state);
@@ -259,7 +194,7 @@ impl Minimiser {
     }
 
     /// Pressure without the rounding of its increments, and gradient of a state. A patch keeps the pressure and the mean of the whole grid.
-    pub(super) fn begin(&mut self, problem: &Problem, state: &mut State) -> Here {
+    pub(super) fn begin(&mut self, problem: &Problem, state: &mut State) -> Residual {
         if !problem.half_space.is_patch() {
             problem.refresh(state, &mut self.double);
             self.centre = -problem.totals(state).load / self.slopes.len() as f64;
@@ -276,13 +211,8 @@ impl Minimiser {
     }
 
     /// Adds the way to the state.
-    pub(super) fn arrive(&mut self, state: &mut State) {
-        let Way { moved, pressed, .. } = &self.way;
-        let fields = (&mut state.displacement, &mut state.pressure, moved, pressed).into_par_iter().with_min_len(grain(1));
-        fields.for_each(|(u, p, moved, pressed)| {
-            *u += f64::from(*moved);
-            *p += f64::from(*pressed);
-        });
+    pub(super) fn arrive(&self, state: &mut State) {
+        self.way.arrive(state);
     }
 
     /// Adds the pressure of a displacement that the state has moved by.
@@ -343,7 +273,7 @@ impl Minimiser {
         self.centre += lowered;
         let rms = (square / points - lowered * lowered).max(0.0).sqrt();
         There {
-            residual: Here { rms, largest: all.largest + lowered.abs() },
+            residual: Residual { rms, largest: all.largest + lowered.abs() },
             slope: all.slope - points * mean * lowered,
             curvature: all.curvature,
             beyond: all.beyond,
@@ -351,7 +281,7 @@ impl Minimiser {
     }
 
     /// Residual of the state.
-    fn here(&mut self, problem: &Problem, state: &State) -> Here {
+    fn here(&mut self, problem: &Problem, state: &State) -> Residual {
         self.evaluate(problem, state, (0.0, 0.0), false).residual
     }
 
@@ -393,7 +323,7 @@ impl Minimiser {
 
     /// Moves the state along the direction, whose wave is known, by at most the reach of the law and so far that the energy falls: the step and the
     /// residual after it. Without such a step the state stays.
-    fn descend(&mut self, problem: &Problem, state: &State, descent: Descent) -> Option<(Taken, Here)> {
+    fn descend(&mut self, problem: &Problem, state: &State, descent: Descent) -> Option<(Taken, Residual)> {
         let mut trial = Trial::new(descent);
         let length = (problem.reach() / descent.largest).min(1.0);
         std::mem::swap(&mut self.gradient, &mut self.previous);
@@ -405,7 +335,7 @@ impl Minimiser {
     }
 
     /// As [`Self::descend`], with a known response and after a first trial.
-    fn shorten(&mut self, problem: &Problem, state: &State, mut trial: Trial) -> Option<(Taken, Here)> {
+    fn shorten(&mut self, problem: &Problem, state: &State, mut trial: Trial) -> Option<(Taken, Residual)> {
         let Descent { mean, largest, .. } = trial.descent;
         for _ in 0..SHORTENINGS {
             let shorter = trial.shorter();
@@ -425,49 +355,4 @@ impl Minimiser {
         let there = self.evaluate(problem, state, (length, descent.mean), false);
         trial.suffices(length, &there) || self.shorten(problem, state, trial).is_some()
     }
-}
-
-/// A state after a step: its residual, slope and elastic curvature of the energy along the direction, and the change of the energy of the law in the step
-/// beyond first order.
-struct There {
-    residual: Here,
-    slope: f64,
-    curvature: f64,
-    beyond: f64,
-}
-
-/// The last trial of a step: its length, and energy and slope there.
-struct Trial {
-    descent: Descent,
-    length: f64,
-    energy: f64,
-    slope: f64,
-}
-
-impl Trial {
-    fn new(descent: Descent) -> Self {
-        Self { descent, length: 0.0, energy: 0.0, slope: descent.slope }
-    }
-
-    /// Goes on to a trial of another length: true if the energy falls enough (Armijo). Its change is of first order, elastic, and that of the law beyond
-    /// first order, from one trial to the next.
-    fn suffices(&mut self, length: f64, there: &There) -> bool {
-        let by = length - self.length;
-        self.energy += by * (self.slope + 0.5 * by * there.curvature) + there.beyond;
-        (self.length, self.slope) = (length, there.slope);
-        self.energy <= 1e-4 * length * self.descent.slope
-    }
-
-    /// The minimum of the parabola through the energies, in bounds.
-    fn shorter(&self) -> f64 {
-        let first = self.descent.slope * self.length;
-        self.length * (-0.5 * first / (self.energy - first)).clamp(0.15, 0.6)
-    }
-}
-
-/// A step that was taken: its length along the direction and the largest change of the displacement.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Taken {
-    pub(super) length: f64,
-    largest: f64,
 }

@@ -19,4 +19,6 @@ pub mod regions;
 pub mod resample;
 mod step;
 mod sums;
+mod trial;
+mod way;
 pub mod work;

@@ -7,9 +7,10 @@
 use super::contact::{Problem, State};
 use super::grid::Operator;
 use super::grid::remove_mean;
-use super::minimise::{Accuracy, Descent, Minimiser, Outcome};
+use super::minimise::{Accuracy, Minimiser, Outcome};
 use super::passes::Right;
-use super::sums::{add, dot, grain, largest};
+use super::sums::{PANEL, add, dot, grain, largest, panel_sums, total};
+use super::trial::Descent;
 use crate::physics::PhysicsError;
 use crate::physics::memory::filled;
 use rayon::prelude::*;
@@ -29,13 +30,12 @@ struct Inner {
     residual: Vec<f32>,
     search: Vec<f32>,
     stiff: Vec<f32>,
-    curved: Vec<f32>,
 }
 
 impl Inner {
     fn new(problem: &Problem) -> Result<Self, PhysicsError> {
         let field = || filled(problem.half_space.points(), 0.0_f32);
-        Ok(Self { step: field()?, response: field()?, residual: field()?, search: field()?, stiff: field()?, curved: field()? })
+        Ok(Self { step: field()?, response: field()?, residual: field()?, search: field()?, stiff: field()? })
     }
 }
 
@@ -60,7 +60,7 @@ impl Minimiser {
         loop {
             problem.update_bonds(state, false);
             let here = self.begin(problem, state);
-            (outcome.residual, outcome.converged) = (here.rms / stress, here.within(accuracy, stress));
+            (outcome.residual, outcome.converged) = (here.rms / stress, accuracy.includes(here, stress));
             if outcome.converged || outcome.iterations >= accuracy.iterations {
                 return Ok(outcome);
             }
@@ -85,12 +85,15 @@ impl Minimiser {
         let mut inner = Inner::new(problem)?;
         self.look(problem, state);
         inner.residual.copy_from_slice(&self.slopes);
-        let total = dot(&self.slopes, &vec![1.0; self.slopes.len()]);
         remove_mean(&mut inner.residual);
-        let right = inner.residual.clone();
-        let goal = RATE * dot(&right, &right).sqrt();
+        let goal = RATE * dot(&inner.residual, &inner.residual).sqrt();
         self.solve(problem, &mut inner, (f64::INFINITY, goal));
-        Ok(Rate { stiffness: total - dot(&right, &inner.step), displacement: inner.step })
+        let [stiffness] = total(
+            (self.slopes.par_chunks(PANEL), inner.step.par_chunks(PANEL))
+                .into_par_iter()
+                .map(|(slopes, rate)| panel_sums([slopes, rate], |[slope, rate]| [slope * (1.0 - rate)])),
+        );
+        Ok(Rate { stiffness, displacement: inner.step })
     }
 
     /// Computes the step within the reach of the law and its response, in `inner`, and returns the iterations of conjugate gradients.
@@ -114,8 +117,11 @@ impl Minimiser {
         let mut product = dot(&inner.residual, &self.direction);
         for iteration in 1..=INNER {
             problem.half_space.apply(Operator::Stiffness, &inner.search, &mut inner.stiff, &mut self.single);
-            self.curve(inner);
-            let curvature = dot(&inner.search, &inner.curved);
+            let [curvature] = total(
+                (inner.stiff.par_chunks(PANEL), self.slopes.par_chunks(PANEL), inner.search.par_chunks(PANEL))
+                    .into_par_iter()
+                    .map(|(stiff, slopes, search)| panel_sums([stiff, slopes, search], |[k, slope, p]| [p * (k + slope * p)])),
+            );
             let room = (reach - largest(&inner.step)).max(0.0) / largest(&inner.search).max(f64::MIN_POSITIVE);
             let length = product / curvature;
             if curvature <= 0.0 && reach.is_infinite() {
@@ -129,7 +135,7 @@ impl Minimiser {
             }
             add(&mut inner.step, length, &inner.search);
             add(&mut inner.response, length, &inner.stiff);
-            add(&mut inner.residual, -length, &inner.curved);
+            self.lower(inner, length as f32);
             if dot(&inner.residual, &inner.residual).sqrt() <= goal {
                 return iteration;
             }
@@ -143,11 +149,11 @@ impl Minimiser {
         INNER
     }
 
-    /// `curved ← (K + V'') search`, without its mean.
-    fn curve(&self, inner: &mut Inner) {
-        let fields = (&mut inner.curved, &inner.stiff, &self.slopes, &inner.search).into_par_iter().with_min_len(grain(1));
-        fields.for_each(|(to, stiff, slope, search)| *to = stiff + slope * search);
-        remove_mean(&mut inner.curved);
+    /// `residual ← residual − length (K + V'') search`, without its mean.
+    fn lower(&self, inner: &mut Inner, length: f32) {
+        let fields = (&mut inner.residual, &inner.stiff, &self.slopes, &inner.search).into_par_iter().with_min_len(grain(1));
+        fields.for_each(|(to, stiff, slope, search)| *to -= length * (stiff + slope * search));
+        remove_mean(&mut inner.residual);
     }
 
     /// `direction ← M⁻¹ field`, without its mean.

@@ -66,6 +66,15 @@ fn lim_sphere_approaches_jkr() {
     );
 }
 
+/// Extrapolated in the reciprocal of the radius of contact from 12 and 24 points, the pull-off force is that of JKR to 1 % and the dissipated energy to 3 %.
+#[test]
+fn lim_sphere_extrapolates_to_jkr() {
+    let [(coarse_force, coarse_loss), (force, loss)] = [sphere(120, 12.0), sphere(240, 24.0)];
+    let [force, loss] = [2.0 * force - coarse_force, 2.0 * loss - coarse_loss];
+    assert!((force - 1.0).abs() < 0.01, "force over JKR {force}");
+    assert!((loss - 1.0).abs() < 0.03, "dissipated energy over JKR {loss}");
+}
+
 /// Without adhesion the force of a sphere at a given approach is that of Hertz, with the displacement by its images, and a penetration that is less by
 /// `1/(2πa)` of itself: the wall of stiffness 4 E*/dx gives way by p dx/(4E*). With it the force agrees to 0.2 % at a radius of 20 points.
 #[test]

@@ -1,0 +1,75 @@
+//! The way of a minimisation from one state in double precision to the next.
+
+use super::contact::{Problem, State};
+use super::law::Pieces;
+use super::sums::{PANEL, grain};
+use crate::physics::PhysicsError;
+use crate::physics::memory::filled;
+use rayon::prelude::*;
+
+/// The way from a state in double precision: gap and residual there, displacement and pressure since, in single precision.
+pub(super) struct Way {
+    pub(super) gap: Vec<f32>,
+    pub(super) residual: Vec<f32>,
+    pub(super) moved: Vec<f32>,
+    pub(super) pressed: Vec<f32>,
+    /// 1 at points in contact.
+    pub(super) touching: Vec<u8>,
+    /// Rows with points that have come into contact or left it since bonds were updated.
+    pub(super) stale: Vec<bool>,
+    /// Mean that is subtracted from the residual.
+    pub(super) centre: f64,
+    pub(super) pieces: Pieces,
+}
+
+impl Way {
+    pub(super) fn new(problem: &Problem) -> Result<Self, PhysicsError> {
+        let points = problem.half_space.points();
+        let field = || filled(points, 0.0_f32);
+        Ok(Self {
+            gap: field()?,
+            residual: field()?,
+            moved: field()?,
+            pressed: field()?,
+            touching: filled(points, 0)?,
+            stale: filled(problem.half_space.rows(), true)?,
+            centre: 0.0,
+            pieces: problem.law.pieces(),
+        })
+    }
+
+    /// From here on.
+    pub(super) fn depart(&mut self, problem: &Problem, state: &State, centre: f64) {
+        self.centre = centre;
+        self.stale.fill(true);
+        let approach = state.approach;
+        let fields = (
+            self.gap.par_chunks_mut(PANEL),
+            self.residual.par_chunks_mut(PANEL),
+            self.moved.par_chunks_mut(PANEL),
+            self.pressed.par_chunks_mut(PANEL),
+            state.displacement.par_chunks(PANEL),
+            state.pressure.par_chunks(PANEL),
+            problem.heights.par_chunks(PANEL),
+            state.bonds.par_chunks(PANEL),
+        );
+        fields.into_par_iter().with_min_len(grain(PANEL)).for_each(|(gap, residual, moved, pressed, u, p, z, bonds)| {
+            for (k, (gap, residual)) in gap.iter_mut().zip(residual).enumerate() {
+                let exact = u[k] - approach - z[k];
+                *gap = exact as f32;
+                *residual = (p[k] + problem.bond(bonds[k], exact).tension - centre) as f32;
+            }
+            moved.fill(0.0);
+            pressed.fill(0.0);
+        });
+    }
+
+    /// Adds the way to the state.
+    pub(super) fn arrive(&self, state: &mut State) {
+        let fields = (&mut state.displacement, &mut state.pressure, &self.moved, &self.pressed).into_par_iter().with_min_len(grain(1));
+        fields.for_each(|(u, p, moved, pressed)| {
+            *u += f64::from(*moved);
+            *p += f64::from(*pressed);
+        });
+    }
+}
