@@ -168,7 +168,8 @@ impl Problem {
             let tears = |k: &usize| state.bonds[*k] == Bonding::Sealed && self.law.sealed(self.gap(state, *k)).tension > strength;
             torn.par_extend((0..touching.len()).into_par_iter().with_min_len(grain(1)).filter(tears));
         }
-        let mut changed = self.spread_bonds(&mut state.bonds, &touching, &mut vec![true; self.half_space.rows()]);
+        let spread = self.spread_bonds(&mut state.bonds, &touching, &mut vec![true; self.half_space.rows()]);
+        let mut changed: Vec<usize> = spread.into_iter().map(|(point, _)| point).collect();
         for k in torn {
             if state.bonds[k] == Bonding::Sealed {
                 state.bonds[k] = Bonding::Bonded;
@@ -179,8 +180,8 @@ impl Problem {
     }
 
     /// Bonds the free points within the margin of touching points and opens the sealed ones within the margin of an open point, in the rows around those
-    /// that are `stale`, which they are not afterwards. The points whose bond has changed.
-    pub(super) fn spread_bonds(&self, bonds: &mut [Bonding], touching: &[u8], stale: &mut [bool]) -> Vec<usize> {
+    /// that are `stale`, which they are not afterwards. The points whose bond has changed, with the bond before.
+    pub(super) fn spread_bonds(&self, bonds: &mut [Bonding], touching: &[u8], stale: &mut [bool]) -> Vec<(usize, Bonding)> {
         let Attraction::Bonded { margin, .. } = self.attraction else { return Vec::new() };
         if !stale.contains(&true) {
             return Vec::new();
@@ -188,7 +189,7 @@ impl Problem {
         let columns = self.half_space.columns();
         let near_stale = |row: usize| self.rows_around(row, margin).any(|row| stale[row]);
         let rows = bonds.par_chunks_mut(columns).enumerate().with_min_len(grain(columns)).filter(|(row, _)| near_stale(*row));
-        let changed: Vec<Vec<usize>> = rows
+        let changed: Vec<Vec<(usize, Bonding)>> = rows
             .map(|(row, bonds)| {
                 let (near, edge) = self.surroundings_in(row, touching, margin);
                 let mut changed = Vec::new();
@@ -199,8 +200,7 @@ impl Problem {
                         as_it_is => as_it_is,
                     };
                     if next != *bonding {
-                        *bonding = next;
-                        changed.push(row * columns + k);
+                        changed.push((row * columns + k, std::mem::replace(bonding, next)));
                     }
                 }
                 changed

@@ -168,17 +168,18 @@ impl Minimiser {
             moved += step.largest;
             if moved > LOOK * problem.reach() && here.largest <= NEAR * stress {
                 moved = 0.0;
-                let mut changed = problem.spread_bonds(&mut state.bonds, &self.way.touching, &mut self.way.stale);
+                let changed = problem.spread_bonds(&mut state.bonds, &self.way.touching, &mut self.way.stale);
                 if !changed.is_empty() {
                     if outcome.iterations >= EVERYWHERE
                         && let Some(events) = events.as_mut()
                     {
                         self.arrive(state);
-                        events.follow((problem, state), self.sorted(&mut changed), self.centre, accuracy);
+                        events.follow((problem, state), &self.sorted(&changed), self.centre, accuracy);
                         here = self.begin(problem, state);
                         self.pairs.clear();
                         continue;
                     }
+                    self.way.rebond(problem, &state.bonds, &changed);
                     here = self.here(problem, state);
                 }
             }
@@ -186,8 +187,9 @@ impl Minimiser {
         }
     }
 
-    /// Points from the largest residual to the smallest.
-    fn sorted<'p>(&self, points: &'p mut [usize]) -> &'p [usize] {
+    /// Points whose bond has changed, from the largest residual to the smallest.
+    fn sorted(&self, changed: &[(usize, Bonding)]) -> Vec<usize> {
+        let mut points: Vec<usize> = changed.iter().map(|(point, _)| *point).collect();
         let residual = |point: &usize| (self.gradient.values[*point] - self.gradient.mean as f32).abs();
         points.sort_by(|a, b| residual(b).total_cmp(&residual(a)));
         points

@@ -1,7 +1,7 @@
 //! The way of a minimisation from one state in double precision to the next.
 
 use super::contact::{Problem, State};
-use super::law::Pieces;
+use super::law::{Bonding, Pieces};
 use super::sums::{PANEL, grain};
 use crate::physics::PhysicsError;
 use crate::physics::memory::filled;
@@ -62,6 +62,14 @@ impl Way {
             moved.fill(0.0);
             pressed.fill(0.0);
         });
+    }
+
+    /// Enters the tension that the points with another bond would have had at the beginning.
+    pub(super) fn rebond(&mut self, problem: &Problem, bonds: &[Bonding], changed: &[(usize, Bonding)]) {
+        for (point, before) in changed {
+            let tension = |bonding| problem.bond(bonding, f64::from(self.gap[*point])).tension;
+            self.residual[*point] += (tension(bonds[*point]) - tension(*before)) as f32;
+        }
     }
 
     /// Adds the way to the state.
