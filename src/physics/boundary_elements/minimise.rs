@@ -1,14 +1,14 @@
 //! Equilibrium at a fixed approach: a local minimum of the energy, reached without passing over a barrier.
 //!
-//! L-BFGS with three pairs and a *split* preconditioner, `M⁻¹ = P_O K⁻¹ P_O + P_C (V'' + 0.7)⁻¹ P_C` with `M` in E*/dx. Points in contact `C`, of
+//! L-BFGS with three pairs and a *split* preconditioner, `M⁻¹ = P_O S K⁻¹ S P_O + P_C (V'' + 0.7)⁻¹ P_C` with `M` in E*/dx. Points in contact `C`, of
 //! `V'' > 0.3 E*/dx`, are nearly fixed by the wall. On the open points `O` the inverse of the elastic operator is the opposite-order (Calderón)
-//! preconditioner of the hypersingular operator. The condition number grows only as log² of the number of points along a side. An iteration is two
-//! operator applications, four transforms.
+//! preconditioner of the hypersingular operator, with the factor `S = 1 − min(V'', 0)` where the law softens. The condition number grows only as log² of
+//! the number of points along a side. An iteration is two operator applications, four transforms.
 //!
 //! Where bonds change in a few places, as in most events, these are brought to equilibrium first, on [patches](super::patch) of the grid.
 //!
-//! The state, its energy and its residual are in double precision; directions and what they are made of in single precision. The pressure that the
-//! increments have added up to is replaced by that of the displacement before a state counts as an equilibrium.
+//! The state, its energy and its residual are in double precision at the beginning and at the end. Directions, and displacement and pressure since the
+//! beginning, are in single precision. The pressure is replaced by that of the displacement before a state counts as an equilibrium.
 
 use super::contact::{Problem, State};
 use super::grid::{Operator, Waves};
@@ -30,7 +30,7 @@ const LOOK: f64 = 0.02;
 const NEAR: f64 = 0.4;
 /// Iterations on the whole grid before an event counts as one: the first follow the approach everywhere.
 const EVERYWHERE: usize = 8;
-/// Residual, relative to that at the beginning of the way, at which the pressure is computed anew: single precision has seven digits.
+/// Residual, relative to that at the beginning of the way, at which the pressure is computed from the displacement: single precision has seven digits.
 const RENEWED: f64 = 1e-3;
 /// Shortenings of a step that would raise the energy.
 const SHORTENINGS: u32 = 30;
@@ -153,7 +153,7 @@ impl Minimiser {
             }
             outcome.iterations += 1;
             let descent = self.search(problem);
-            let Some((step, there)) = self.descend(problem, state, descent) else {
+            let Some((step, there)) = self.descend(problem, state, descent, true) else {
                 self.arrive(state);
                 if exact {
                     return outcome;
@@ -229,7 +229,7 @@ impl Minimiser {
         if problem.half_space.is_patch() { 0.0 } else { sum / self.slopes.len() as f64 }
     }
 
-    /// The rows of the state on its way.
+    /// Rows of the fields of a step.
     fn rows<'a>(
         (way, direction): (&'a mut Way, &'a [f32]),
         (gradient, slopes): (&'a mut [f32], &'a mut [f32]),
@@ -323,13 +323,13 @@ impl Minimiser {
         Descent { mean, slope: product - self.slopes.len() as f64 * mean * self.gradient.mean, largest: largest + mean.abs() }
     }
 
-    /// Moves the state along the direction, whose wave is known, by at most the reach of the law and so far that the energy falls: the step and the
-    /// residual after it. Without such a step the state stays.
-    fn descend(&mut self, problem: &Problem, state: &State, descent: Descent) -> Option<(Taken, Residual)> {
+    /// Moves the state along the direction by at most the reach of the law and so far that the energy falls: the step and the residual after it. Without
+    /// such a step the state stays. The elastic response is known, or with `transform` the wave of the direction.
+    pub(super) fn descend(&mut self, problem: &Problem, state: &State, descent: Descent, transform: bool) -> Option<(Taken, Residual)> {
         let mut trial = Trial::new(descent);
         let length = (problem.reach() / descent.largest).min(1.0);
         std::mem::swap(&mut self.gradient, &mut self.previous);
-        let there = self.evaluate(problem, state, (length, descent.mean), true);
+        let there = self.evaluate(problem, state, (length, descent.mean), transform);
         if trial.suffices(length, &there) {
             return Some((Taken { length, largest: length * descent.largest }, there.residual));
         }
@@ -348,13 +348,5 @@ impl Minimiser {
         }
         self.evaluate(problem, state, (-trial.length, mean), false);
         None
-    }
-
-    /// Moves the state along the direction, whose response is known. False if the energy does not fall.
-    pub(super) fn move_along(&mut self, problem: &Problem, state: &State, descent: Descent) -> bool {
-        let mut trial = Trial::new(descent);
-        let length = (problem.reach() / descent.largest).min(1.0);
-        let there = self.evaluate(problem, state, (length, descent.mean), false);
-        trial.suffices(length, &there) || self.shorten(problem, state, trial).is_some()
     }
 }

@@ -68,9 +68,9 @@ impl Minimiser {
             std::mem::swap(&mut self.direction, &mut inner.step);
             std::mem::swap(&mut self.response, &mut inner.response);
             let descent = Descent { mean: 0.0, slope: dot(&self.direction, &self.gradient.values), largest: largest(&self.direction) };
-            let falls = self.move_along(problem, state, descent);
+            let taken = self.descend(problem, state, descent, false);
             self.arrive(state);
-            if !falls {
+            if taken.is_none() {
                 return Ok(outcome);
             }
         }

@@ -110,7 +110,7 @@ pub(super) fn new_pair(y: &mut [f32], fields: [&[f32]; 7], shift: f32, unit: f32
     })
 }
 
-/// One row of a state on its way, and of the fields that change with it.
+/// One row of the fields of a step.
 pub(super) struct Points<'a> {
     /// Gap, and sum of pressure and tension, at the beginning.
     pub(super) gap: &'a [f32],
@@ -150,7 +150,7 @@ pub(super) struct Found {
 }
 
 impl Found {
-    /// Adds another part of the points.
+    /// Adds the sums of another row.
     pub(super) fn add(&mut self, other: &Self) {
         for (sum, part) in self.gradient.iter_mut().zip(other.gradient) {
             *sum += part;
@@ -159,7 +159,6 @@ impl Found {
         self.slope += other.slope;
         self.curvature += other.curvature;
         self.beyond += other.beyond;
-        self.changed |= other.changed;
     }
 }
 
