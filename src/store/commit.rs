@@ -6,6 +6,7 @@
 
 use std::ffi::OsStr;
 use std::fs::{self, File, Permissions};
+use std::io::{self, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::{PoisonError, RwLock, RwLockWriteGuard};
 
@@ -16,6 +17,9 @@ use crate::text::shown;
 pub const TEMPORARY_PREFIX: &str = ".hysteron-";
 /// Suffix of the name of a file that is being written.
 pub const TEMPORARY_SUFFIX: &str = ".tmp";
+
+/// Bytes that are compared at once.
+const COMPARED: usize = 1 << 16;
 
 /// Held by all that write, and by one that lets nobody begin.
 static WRITING: RwLock<()> = RwLock::new(());
@@ -80,14 +84,40 @@ pub fn commit(
 /// # Errors
 /// As [`commit`].
 pub fn commit_bytes(action: &str, path: &Path, bytes: &[u8]) -> Result<Written, StoreError> {
+    commit_parts(action, path, &[bytes])
+}
+
+/// As [`commit_bytes`], for bytes in several parts.
+pub(super) fn commit_parts(action: &str, path: &Path, parts: &[&[u8]]) -> Result<Written, StoreError> {
     commit(
         action,
         path,
-        |temporary| Ok(fs::write(temporary, bytes)?),
         |temporary| {
-            if fs::read(temporary)? == bytes { Ok(()) } else { Err("the content read back differs from the content written".into()) }
+            let mut file = File::create(temporary)?;
+            parts.iter().try_for_each(|part| file.write_all(part))?;
+            Ok(())
+        },
+        |temporary| {
+            if consists_of(temporary, parts)? { Ok(()) } else { Err("the content read back differs from the content written".into()) }
         },
     )
+}
+
+/// True if a file consists of the parts.
+fn consists_of(path: &Path, parts: &[&[u8]]) -> io::Result<bool> {
+    let mut file = File::open(path)?;
+    if file.metadata()?.len() != parts.iter().map(|part| part.len() as u64).sum::<u64>() {
+        return Ok(false);
+    }
+    let mut read = vec![0; COMPARED];
+    for expected in parts.iter().flat_map(|part| part.chunks(COMPARED)) {
+        let read = &mut read[..expected.len()];
+        file.read_exact(read)?;
+        if read != expected {
+            return Ok(false);
+        }
+    }
+    Ok(true)
 }
 
 fn commit_inner(

@@ -1,7 +1,7 @@
 //! A unit on its way, as bytes that only the program reads: with the key of the unit and a hash, so that neither another unit's nor torn ones are taken
 //! for it.
 
-use super::commit::{Written, commit_bytes};
+use super::commit::{Written, commit_parts};
 use super::error::StoreError;
 use std::io::Read as _;
 use std::path::Path;
@@ -11,7 +11,7 @@ const DIGITS: usize = 64;
 
 /// Version of the layout of the bytes. A checkpoint of another version does not match its hash, and the unit starts again. Raise it with every change of a type
 /// that a checkpoint holds.
-pub const CHECKPOINT_VERSION: u8 = 3;
+pub const CHECKPOINT_VERSION: u8 = 4;
 
 /// Hash of a checkpoint and its version, as hexadecimal digits.
 fn seal(bytes: &[u8]) -> blake3::Hash {
@@ -21,7 +21,7 @@ fn seal(bytes: &[u8]) -> blake3::Hash {
 /// Puts the bytes of the unit `key` in place of `path`.
 ///
 /// # Errors
-/// As [`commit_bytes`].
+/// As [`commit_bytes`](super::commit::commit_bytes).
 pub fn write_halfway(path: &Path, key: &str, bytes: &[u8]) -> Result<(), StoreError> {
     write_state(path, key, bytes).map(drop)
 }
@@ -29,10 +29,9 @@ pub fn write_halfway(path: &Path, key: &str, bytes: &[u8]) -> Result<(), StoreEr
 /// Writes the state that a finished task keeps; [`read_halfway`] reads it.
 ///
 /// # Errors
-/// As [`commit_bytes`].
+/// As [`commit_bytes`](super::commit::commit_bytes).
 pub fn write_state(path: &Path, key: &str, bytes: &[u8]) -> Result<Written, StoreError> {
-    let whole = [key.as_bytes(), seal(bytes).to_hex().as_bytes(), bytes].concat();
-    commit_bytes("keep what is needed to go on in", path, &whole)
+    commit_parts("keep what is needed to go on in", path, &[key.as_bytes(), seal(bytes).to_hex().as_bytes(), bytes])
 }
 
 /// True if `path` begins as one of the unit `key` does. Whether it is whole is seen when it is read.
@@ -46,8 +45,11 @@ pub fn is_halfway(path: &Path, key: &str) -> bool {
 #[must_use]
 pub fn read_halfway(path: &Path, key: &str) -> Option<Vec<u8>> {
     // A pipe in its place would be waited for.
-    let whole = path.is_file().then(|| std::fs::read(path).ok())??;
+    let mut whole = path.is_file().then(|| std::fs::read(path).ok())??;
     let (head, bytes) = whole.split_at_checked(2 * DIGITS)?;
     let is_its = head[..DIGITS] == *key.as_bytes() && head[DIGITS..] == *seal(bytes).to_hex().as_bytes();
-    is_its.then(|| bytes.to_vec())
+    is_its.then(|| {
+        whole.drain(..2 * DIGITS);
+        whole
+    })
 }

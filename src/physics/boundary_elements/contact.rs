@@ -52,7 +52,8 @@ pub struct State {
     pub approach: f64,
     /// Displacement u, with zero mean \[dx\].
     pub displacement: Vec<f64>,
-    /// Elastic pressure `K u`, with zero mean \[E*\].
+    /// Elastic pressure `K u`, with zero mean \[E*\]; empty in a state that is kept, since it follows from the displacement.
+    #[serde(skip)]
     pub pressure: Vec<f64>,
     /// Bond of each point.
     pub bonds: Vec<Bonding>,

@@ -144,7 +144,7 @@ impl HalfSpace {
     /// # Errors
     /// Not enough memory.
     pub fn patch(&self, side: usize, kernel: &[f64]) -> Result<Self, PhysicsError> {
-        let size = 2 * side;
+        let size = 3 * side / 2;
         let mut waves = filled(size * size, Complex::zero())?;
         for (k, wave) in waves.iter_mut().enumerate() {
             let [row, column] = [k / size, k % size].map(|offset| offset.min(size - offset));

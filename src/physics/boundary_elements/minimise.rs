@@ -1,6 +1,6 @@
 //! Equilibrium at a fixed approach: a local minimum of the energy, reached without passing over a barrier.
 //!
-//! L-BFGS with three pairs and a *split* preconditioner, `M⁻¹ = P_O S K⁻¹ S P_O + P_C (V'' + 0.7)⁻¹ P_C` with `M` in E*/dx. Points in contact `C`, of
+//! L-BFGS with two pairs and a *split* preconditioner, `M⁻¹ = P_O S K⁻¹ S P_O + P_C (V'' + 0.7)⁻¹ P_C` with `M` in E*/dx. Points in contact `C`, of
 //! `V'' > 0.3 E*/dx`, are nearly fixed by the wall. On the open points `O` the inverse of the elastic operator is the opposite-order (Calderón)
 //! preconditioner of the hypersingular operator, with the factor `S = 1 − min(V'', 0)` where the law softens. The condition number grows only as log² of
 //! the number of points along a side. An iteration is two operator applications, four transforms.
@@ -14,11 +14,11 @@ use super::contact::{Problem, State};
 use super::grid::{Operator, Waves};
 use super::law::Bonding;
 use super::pairs::{Gradient, Pairs};
-use super::passes::{Found, Points, Right, Stride, advance, descending};
+use super::passes::{Found, PAIRS, Points, Right, Stride, advance, descending};
 use super::preconditioner::Preconditioner;
 use super::sums::grain;
 use super::trial::{Descent, Residual, Taken, There, Trial};
-use super::way::Way;
+use super::way::{Way, level};
 use crate::physics::PhysicsError;
 use crate::physics::memory::filled;
 use rayon::prelude::*;
@@ -69,8 +69,8 @@ pub struct Minimiser {
     double: Waves<f64>,
     pub(super) single: Waves<f32>,
     pub(super) gradient: Gradient,
-    previous: Gradient,
-    /// Mean of pressure and tension of the whole grid, which is subtracted before the gradient is rounded.
+    pub(super) previous: Gradient,
+    /// About the mean of pressure and tension of the whole grid, which is subtracted before the gradient is rounded.
     pub(super) centre: f64,
     pub(super) slopes: Vec<f32>,
     pub(super) direction: Vec<f32>,
@@ -81,11 +81,30 @@ pub struct Minimiser {
     pub preconditioner: Preconditioner,
 }
 
+/// A state on the way of a minimisation.
+pub(super) struct Underway<'a> {
+    pub(super) problem: &'a Problem,
+    /// Bonds of the state, and approach, displacement and pressure at the beginning of the way.
+    pub(super) state: &'a mut State,
+    /// Displacement and pressure since then.
+    pub(super) moved: &'a [f32],
+    pub(super) pressed: &'a [f32],
+    /// Displacement by local relaxation, the response to which is not yet known.
+    pub(super) change: &'a mut [f32],
+}
+
+impl Underway<'_> {
+    /// Displacement of a point.
+    pub(super) fn displacement(&self, point: usize) -> f64 {
+        self.state.displacement[point] + f64::from(self.moved[point]) + f64::from(self.change[point])
+    }
+}
+
 /// Local relaxation after events.
 pub(super) trait Follow {
     /// Brings the places around the points whose bonds have changed to equilibrium, given from the largest residual to the smallest. `centre` is the mean
-    /// of pressure and tension of the grid.
-    fn follow(&mut self, on: (&Problem, &mut State), changed: &[usize], centre: f64, accuracy: Accuracy);
+    /// of pressure and tension of the grid. The points whose bond has changed since, with the bond before.
+    fn follow(&mut self, on: Underway<'_>, changed: &[usize], centre: f64, accuracy: Accuracy) -> Vec<(usize, Bonding)>;
 }
 
 impl Minimiser {
@@ -170,21 +189,42 @@ impl Minimiser {
                 moved = 0.0;
                 let changed = problem.spread_bonds(&mut state.bonds, &self.way.touching, &mut self.way.stale);
                 if !changed.is_empty() {
+                    self.way.rebond(problem, &state.bonds, &changed);
                     if outcome.iterations >= EVERYWHERE
                         && let Some(events) = events.as_mut()
                     {
-                        self.arrive(state);
-                        events.follow((problem, state), &self.sorted(&changed), self.centre, accuracy);
-                        here = self.begin(problem, state);
+                        here = self.follow(problem, state, (&changed, accuracy), *events);
                         self.pairs.clear();
                         continue;
                     }
-                    self.way.rebond(problem, &state.bonds, &changed);
                     here = self.here(problem, state);
                 }
             }
             self.pairs.remember(&mut self.direction, descent.mean, step.length, &self.gradient, &self.previous);
         }
+    }
+
+    /// Follows events locally, and moves the state as they do.
+    fn follow(
+        &mut self,
+        problem: &Problem,
+        state: &mut State,
+        (changed, accuracy): (&[(usize, Bonding)], Accuracy),
+        events: &mut dyn Follow,
+    ) -> Residual {
+        let changed = self.sorted(changed);
+        let Self { way, direction, single, .. } = self;
+        direction.fill(0.0);
+        let on = Underway { problem, state, moved: &way.moved, pressed: &way.pressed, change: direction };
+        let changed = events.follow(on, &changed, self.centre, accuracy);
+        way.rebond(problem, &state.bonds, &changed);
+        let columns = problem.half_space.columns();
+        let sums = problem.half_space.forward(single, direction.par_chunks(columns), |from, row| {
+            row.copy_from_slice(from);
+            from.iter().map(|moved| f64::from(*moved)).sum::<f64>()
+        });
+        let mean = self.mean(problem, sums.iter().sum());
+        self.evaluate(problem, state, (1.0, mean), true).residual
     }
 
     /// Points whose bond has changed, from the largest residual to the smallest.
@@ -199,7 +239,7 @@ impl Minimiser {
     pub(super) fn begin(&mut self, problem: &Problem, state: &mut State) -> Residual {
         if !problem.half_space.is_patch() {
             problem.refresh(state, &mut self.double);
-            self.centre = -problem.totals(state).load / self.slopes.len() as f64;
+            self.centre = level(problem, state);
         }
         self.way.depart(problem, state, self.centre);
         self.here(problem, state)
@@ -296,12 +336,12 @@ impl Minimiser {
             return descent;
         }
         self.pairs.clear();
-        self.precondition(problem, [0.0; 3]);
-        self.descent(problem, [0.0; 3])
+        self.precondition(problem, [0.0; PAIRS]);
+        self.descent(problem, [0.0; PAIRS])
     }
 
     /// `direction ← M⁻¹ (gradient − Σ weights_i y_i)`: its products with the changes `y`.
-    fn precondition(&mut self, problem: &Problem, weights: [f64; 3]) -> [f64; 3] {
+    fn precondition(&mut self, problem: &Problem, weights: [f64; PAIRS]) -> [f64; PAIRS] {
         let Self { preconditioner, single, direction, gradient, pairs, slopes, .. } = self;
         let weights = weights.map(|weight| weight as f32);
         let right = Right { field: &gradient.values, mean: gradient.mean as f32, changes: pairs.changes(), weights };
@@ -309,14 +349,14 @@ impl Minimiser {
     }
 
     /// Adds the weighted steps of the pairs to the direction and transforms its rows.
-    fn descent(&mut self, problem: &Problem, weights: [f64; 3]) -> Descent {
+    fn descent(&mut self, problem: &Problem, weights: [f64; PAIRS]) -> Descent {
         let columns = problem.half_space.columns();
         let weights = weights.map(|weight| weight as f32);
-        let [a, b, c] = self.pairs.steps().map(|step| step.par_chunks(columns));
-        let rows = self.direction.par_chunks_mut(columns).zip(a.zip(b).zip(c)).zip(self.gradient.values.par_chunks(columns));
-        let parts = problem.half_space.forward(&mut self.single, rows, |((direction, ((a, b), c)), gradient), to| {
-            descending(direction, to, [a, b, c], weights, gradient)
-        });
+        let [a, b] = self.pairs.steps().map(|step| step.par_chunks(columns));
+        let rows = self.direction.par_chunks_mut(columns).zip(a.zip(b)).zip(self.gradient.values.par_chunks(columns));
+        let parts = problem
+            .half_space
+            .forward(&mut self.single, rows, |((direction, (a, b)), gradient), to| descending(direction, to, [a, b], weights, gradient));
         let [sum, product, largest] =
             parts.iter().fold([0.0; 3], |all: [f64; 3], part| [all[0] + part[0], all[1] + part[1], all[2].max(part[2])]);
         let mean = self.mean(problem, sum);

@@ -8,12 +8,13 @@ use super::contact::{Problem, State};
 use super::grid::Operator;
 use super::grid::remove_mean;
 use super::minimise::{Accuracy, Minimiser, Outcome};
-use super::passes::Right;
+use super::passes::{PAIRS, Right};
 use super::sums::{PANEL, add, dot, grain, largest, panel_sums, total};
 use super::trial::Descent;
 use crate::physics::PhysicsError;
 use crate::physics::memory::filled;
 use rayon::prelude::*;
+use std::mem::take;
 
 /// Most iterations of conjugate gradients in a step of Newton's method.
 const INNER: usize = 80;
@@ -23,20 +24,17 @@ const FORCING: f64 = 0.05;
 /// Relative residual of the rate of an equilibrium.
 const RATE: f64 = 0.01;
 
-/// Fields of the inner iteration.
+/// Fields of the inner iteration, lent by the minimiser, which does not need them meanwhile.
 struct Inner {
-    step: Vec<f32>,
-    response: Vec<f32>,
     residual: Vec<f32>,
     search: Vec<f32>,
     stiff: Vec<f32>,
 }
 
-impl Inner {
-    fn new(problem: &Problem) -> Result<Self, PhysicsError> {
-        let field = || filled(problem.half_space.points(), 0.0_f32);
-        Ok(Self { step: field()?, response: field()?, residual: field()?, search: field()?, stiff: field()? })
-    }
+/// A solution of conjugate gradients and the elastic response to it, or nothing where that is not needed.
+struct Solution {
+    step: Vec<f32>,
+    response: Vec<f32>,
 }
 
 /// Change of an equilibrium with the approach.
@@ -54,7 +52,8 @@ impl Minimiser {
     /// # Errors
     /// Not enough memory.
     pub fn newton(&mut self, problem: &Problem, state: &mut State, accuracy: Accuracy) -> Result<Outcome, PhysicsError> {
-        let mut inner = Inner::new(problem)?;
+        let points = problem.half_space.points();
+        let mut found = Solution { step: filled(points, 0.0)?, response: filled(points, 0.0)? };
         let stress = problem.stress();
         let mut outcome = Outcome::default();
         loop {
@@ -64,9 +63,9 @@ impl Minimiser {
             if outcome.converged || outcome.iterations >= accuracy.iterations {
                 return Ok(outcome);
             }
-            outcome.iterations += self.conjugate_gradients(problem, &mut inner);
-            std::mem::swap(&mut self.direction, &mut inner.step);
-            std::mem::swap(&mut self.response, &mut inner.response);
+            outcome.iterations += self.conjugate_gradients(problem, &mut found);
+            std::mem::swap(&mut self.direction, &mut found.step);
+            std::mem::swap(&mut self.response, &mut found.response);
             let descent = Descent { mean: 0.0, slope: dot(&self.direction, &self.gradient.values), largest: largest(&self.direction) };
             let taken = self.descend(problem, state, descent, false);
             self.arrive(state);
@@ -82,33 +81,49 @@ impl Minimiser {
     /// # Errors
     /// Not enough memory.
     pub(super) fn rate(&mut self, problem: &Problem, state: &State) -> Result<Rate, PhysicsError> {
-        let mut inner = Inner::new(problem)?;
+        let mut found = Solution { step: filled(problem.half_space.points(), 0.0)?, response: Vec::new() };
         self.look(problem, state);
+        let mut inner = self.lend();
         inner.residual.copy_from_slice(&self.slopes);
         remove_mean(&mut inner.residual);
         let goal = RATE * dot(&inner.residual, &inner.residual).sqrt();
-        self.solve(problem, &mut inner, (f64::INFINITY, goal));
+        self.solve(problem, (&mut inner, &mut found), (f64::INFINITY, goal));
+        self.take_back(inner);
         let [stiffness] = total(
-            (self.slopes.par_chunks(PANEL), inner.step.par_chunks(PANEL))
+            (self.slopes.par_chunks(PANEL), found.step.par_chunks(PANEL))
                 .into_par_iter()
                 .map(|(slopes, rate)| panel_sums([slopes, rate], |[slope, rate]| [slope * (1.0 - rate)])),
         );
-        Ok(Rate { stiffness, displacement: inner.step })
+        Ok(Rate { stiffness, displacement: found.step })
     }
 
-    /// Computes the step within the reach of the law and its response, in `inner`, and returns the iterations of conjugate gradients.
-    fn conjugate_gradients(&mut self, problem: &Problem, inner: &mut Inner) -> usize {
-        inner.step.fill(0.0);
-        inner.response.fill(0.0);
+    /// Fields for conjugate gradients; the pairs are lost.
+    fn lend(&mut self) -> Inner {
+        let search = self.pairs.lend();
+        Inner { residual: take(&mut self.previous.values), search, stiff: take(&mut self.response) }
+    }
+
+    fn take_back(&mut self, Inner { residual, search, stiff }: Inner) {
+        self.pairs.take_back(search);
+        (self.previous.values, self.response) = (residual, stiff);
+    }
+
+    /// Computes the step within the reach of the law and its response, and returns the iterations of conjugate gradients.
+    fn conjugate_gradients(&mut self, problem: &Problem, found: &mut Solution) -> usize {
+        found.step.fill(0.0);
+        found.response.fill(0.0);
+        let mut inner = self.lend();
         let mean = self.gradient.mean as f32;
         let fields = (&mut inner.residual, &self.gradient.values).into_par_iter().with_min_len(grain(1));
         fields.for_each(|(to, from)| *to = mean - from);
         let goal = FORCING * dot(&inner.residual, &inner.residual).sqrt();
-        self.solve(problem, inner, (problem.reach(), goal))
+        let iterations = self.solve(problem, (&mut inner, found), (problem.reach(), goal));
+        self.take_back(inner);
+        iterations
     }
 
     /// Solves `(K + V'') step = residual` from a step of 0, up to a length of the step and a norm of the residual: the iterations.
-    fn solve(&mut self, problem: &Problem, inner: &mut Inner, (reach, goal): (f64, f64)) -> usize {
+    fn solve(&mut self, problem: &Problem, (inner, found): (&mut Inner, &mut Solution), (reach, goal): (f64, f64)) -> usize {
         if dot(&inner.residual, &inner.residual).sqrt() <= goal {
             return 0;
         }
@@ -122,19 +137,19 @@ impl Minimiser {
                     .into_par_iter()
                     .map(|(stiff, slopes, search)| panel_sums([stiff, slopes, search], |[k, slope, p]| [p * (k + slope * p)])),
             );
-            let room = (reach - largest(&inner.step)).max(0.0) / largest(&inner.search).max(f64::MIN_POSITIVE);
+            let room = (reach - largest(&found.step)).max(0.0) / largest(&inner.search).max(f64::MIN_POSITIVE);
             let length = product / curvature;
             if curvature <= 0.0 && reach.is_infinite() {
                 return iteration;
             }
             if curvature <= 0.0 || length > room {
                 // Along a direction of descent as far as the law reaches.
-                add(&mut inner.step, room, &inner.search);
-                add(&mut inner.response, room, &inner.stiff);
+                add(&mut found.step, room, &inner.search);
+                add(&mut found.response, room, &inner.stiff);
                 return iteration;
             }
-            add(&mut inner.step, length, &inner.search);
-            add(&mut inner.response, length, &inner.stiff);
+            add(&mut found.step, length, &inner.search);
+            add(&mut found.response, length, &inner.stiff);
             self.lower(inner, length as f32);
             if dot(&inner.residual, &inner.residual).sqrt() <= goal {
                 return iteration;
@@ -158,7 +173,7 @@ impl Minimiser {
 
     /// `direction ← M⁻¹ field`, without its mean.
     fn precondition_from(&mut self, problem: &Problem, field: &[f32]) {
-        let right = Right { field, mean: 0.0, changes: self.pairs.changes(), weights: [0.0; 3] };
+        let right = Right { field, mean: 0.0, changes: self.pairs.changes(), weights: [0.0; PAIRS] };
         self.preconditioner.divide(problem, &mut self.single, &mut self.direction, &right, &self.slopes);
         remove_mean(&mut self.direction);
     }

@@ -1,14 +1,11 @@
 //! Pairs of steps and gradient changes of L-BFGS. Their products are kept, so that a direction takes one pass over the fields for a new pair and one for
 //! each of the two loops.
 
-use super::passes::{new_pair, products};
+use super::passes::{PAIRS, new_pair, products};
 use super::sums::{PANEL, total};
 use crate::physics::PhysicsError;
 use crate::physics::memory::filled;
 use rayon::prelude::*;
-
-/// Pairs that are kept.
-const PAIRS: usize = 3;
 
 /// A step `s`, per its length, and the change of the gradient `y` that it brought, per the same length.
 struct Pair {
@@ -38,16 +35,21 @@ pub(super) struct Pairs {
 impl Pairs {
     pub(super) fn new(points: usize) -> Result<Self, PhysicsError> {
         let pair = || Ok(Pair { step: filled(points, 0.0)?, change: filled(points, 0.0)?, mean: 0.0 });
-        Ok(Self {
-            pairs: [pair()?, pair()?, pair()?],
-            products: [[0.0; PAIRS]; PAIRS],
-            onto: [0.0; PAIRS],
-            order: Vec::with_capacity(PAIRS),
-        })
+        Ok(Self { pairs: [pair()?, pair()?], products: [[0.0; PAIRS]; PAIRS], onto: [0.0; PAIRS], order: Vec::with_capacity(PAIRS) })
     }
 
     pub(super) fn clear(&mut self) {
         self.order.clear();
+    }
+
+    /// A field for other use until it is taken back; the pairs are lost.
+    pub(super) fn lend(&mut self) -> Vec<f32> {
+        self.clear();
+        std::mem::take(&mut self.pairs[0].step)
+    }
+
+    pub(super) fn take_back(&mut self, field: Vec<f32>) {
+        self.pairs[0].step = field;
     }
 
     /// Keeps `direction`, a step of length `length` along which the gradient changed from `before`, in place of the oldest pair, unless the curvature
@@ -57,28 +59,24 @@ impl Pairs {
             if self.order.len() < PAIRS { (0..PAIRS).find(|place| !self.order.contains(place)).unwrap_or(0) } else { self.order.remove(0) };
         std::mem::swap(&mut self.pairs[place].step, direction);
         self.pairs[place].mean = mean;
-        let (a, b) = ((place + 1) % PAIRS, (place + 2) % PAIRS);
+        let other = 1 - place;
         let mut change = std::mem::take(&mut self.pairs[place].change);
         let (shift, unit) = ((gradient.mean - before.mean) as f32, (1.0 / length) as f32);
-        let [new, one, two] = [place, a, b].map(|k| &self.pairs[k]);
+        let [new, old] = [place, other].map(|k| &self.pairs[k]);
         let fields = (
             change.par_chunks_mut(PANEL),
             gradient.values.par_chunks(PANEL),
             before.values.par_chunks(PANEL),
             new.step.par_chunks(PANEL),
-            one.step.par_chunks(PANEL),
-            one.change.par_chunks(PANEL),
-            two.step.par_chunks(PANEL),
-            two.change.par_chunks(PANEL),
+            old.step.par_chunks(PANEL),
+            old.change.par_chunks(PANEL),
         );
-        let sums: [f64; 9] =
-            total(fields.into_par_iter().map(|(y, g, old, s, sa, ya, sb, yb)| new_pair(y, [g, old, s, sa, ya, sb, yb], shift, unit)));
+        let sums: [f64; 6] = total(fields.into_par_iter().map(|(y, g, old, s, sa, ya)| new_pair(y, [g, old, s, sa, ya], shift, unit)));
         self.pairs[place].change = change;
-        let [own, square, with_a, with_b, of_a, of_b, onto, onto_a, onto_b] = sums;
+        let [own, square, with_other, of_other, onto, onto_other] = sums;
         self.products[place][place] = own;
-        (self.products[place][a], self.products[place][b]) = (with_a, with_b);
-        (self.products[a][place], self.products[b][place]) = (of_a, of_b);
-        (self.onto[place], self.onto[a], self.onto[b]) = (onto, onto_a, onto_b);
+        (self.products[place][other], self.products[other][place]) = (with_other, of_other);
+        (self.onto[place], self.onto[other]) = (onto, onto_other);
         self.centre(gradient);
         if own > 1e-12 * square {
             self.order.push(place);
@@ -87,8 +85,8 @@ impl Pairs {
 
     /// Products of the steps with a gradient that no step has led to.
     pub(super) fn face(&mut self, gradient: &Gradient) {
-        let [a, b, c] = self.steps().map(|step| step.par_chunks(PANEL));
-        self.onto = total((gradient.values.par_chunks(PANEL), a, b, c).into_par_iter().map(|(g, a, b, c)| products(g, [a, b, c])));
+        let [a, b] = self.steps().map(|step| step.par_chunks(PANEL));
+        self.onto = total((gradient.values.par_chunks(PANEL), a, b).into_par_iter().map(|(g, a, b)| products(g, [a, b])));
         self.centre(gradient);
     }
 
@@ -122,11 +120,11 @@ impl Pairs {
 
     /// The changes, in the order of the weights.
     pub(super) fn changes(&self) -> [&[f32]; PAIRS] {
-        [0, 1, 2].map(|k| self.pairs[k].change.as_slice())
+        [0, 1].map(|k| self.pairs[k].change.as_slice())
     }
 
     /// The steps, in the order of the weights.
     pub(super) fn steps(&self) -> [&[f32]; PAIRS] {
-        [0, 1, 2].map(|k| self.pairs[k].step.as_slice())
+        [0, 1].map(|k| self.pairs[k].step.as_slice())
     }
 }

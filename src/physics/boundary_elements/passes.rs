@@ -6,6 +6,8 @@ use super::sums::{panel_largest, panel_sums};
 use multiversion::multiversion;
 use rayon::prelude::*;
 
+/// Pairs of L-BFGS.
+pub(super) const PAIRS: usize = 2;
 /// Points that are evaluated together.
 const BLOCK: usize = 64;
 
@@ -13,22 +15,22 @@ const BLOCK: usize = 64;
 pub(super) struct Right<'a> {
     pub(super) field: &'a [f32],
     pub(super) mean: f32,
-    pub(super) changes: [&'a [f32]; 3],
-    pub(super) weights: [f32; 3],
+    pub(super) changes: [&'a [f32]; PAIRS],
+    pub(super) weights: [f32; PAIRS],
 }
 
 impl Right<'_> {
     #[inline(always)]
     fn at(&self, k: usize) -> f32 {
-        let ([a, b, c], [wa, wb, wc]) = (self.changes, self.weights);
-        self.field[k] - self.mean - wa * a[k] - wb * b[k] - wc * c[k]
+        let ([a, b], [wa, wb]) = (self.changes, self.weights);
+        self.field[k] - self.mean - wa * a[k] - wb * b[k]
     }
 
     /// Its rows.
     pub(super) fn rows(&self, columns: usize) -> impl IndexedParallelIterator<Item = Right<'_>> {
-        let [a, b, c] = self.changes.map(|change| change.par_chunks(columns));
-        let rows = self.field.par_chunks(columns).zip(a.zip(b).zip(c));
-        rows.map(|(field, ((a, b), c))| Right { field, mean: self.mean, changes: [a, b, c], weights: self.weights })
+        let [a, b] = self.changes.map(|change| change.par_chunks(columns));
+        let rows = self.field.par_chunks(columns).zip(a.zip(b));
+        rows.map(|(field, (a, b))| Right { field, mean: self.mean, changes: [a, b], weights: self.weights })
     }
 
     #[inline(always)]
@@ -67,47 +69,51 @@ pub(super) fn open_part(to: &mut [f32], right: &Right<'_>, slopes: &[f32], split
 
 /// The direction after the preconditioner, of which `open` is the part at open points: its products with the changes.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
-pub(super) fn divided(to: &mut [f32], open: &[f32], right: &Right<'_>, slopes: &[f32], split: Split) -> [f64; 3] {
+pub(super) fn divided(to: &mut [f32], open: &[f32], right: &Right<'_>, slopes: &[f32], split: Split) -> [f64; PAIRS] {
     let n = to.len();
     let (right, slopes, open) = (right.first(n), &slopes[..n], &open[..n]);
     for k in 0..n {
         let slope = slopes[k];
         to[k] = if slope > split.stiff { right.at(k) / (slope + split.added) } else { open[k] * split.scale(slope) };
     }
-    let [a, b, c] = right.changes;
-    panel_sums([&*to, a, b, c], |[d, a, b, c]| [d * a, d * b, d * c])
+    let [a, b] = right.changes;
+    panel_sums([&*to, a, b], |[d, a, b]| [d * a, d * b])
 }
 
 /// `direction ← −(direction + Σ weights_i steps_i)`, written to `to` as well: its sum, its product with the gradient and its largest magnitude.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
-pub(super) fn descending(direction: &mut [f32], to: &mut [f32], steps: [&[f32]; 3], weights: [f32; 3], gradient: &[f32]) -> [f64; 3] {
+pub(super) fn descending(
+    direction: &mut [f32],
+    to: &mut [f32],
+    steps: [&[f32]; PAIRS],
+    weights: [f32; PAIRS],
+    gradient: &[f32],
+) -> [f64; 3] {
     let n = to.len();
-    let ([a, b, c], [wa, wb, wc]) = (steps.map(|step| &step[..n]), weights);
+    let ([a, b], [wa, wb]) = (steps.map(|step| &step[..n]), weights);
     let direction = &mut direction[..n];
     for k in 0..n {
-        direction[k] = -(direction[k] + wa * a[k] + wb * b[k] + wc * c[k]);
+        direction[k] = -(direction[k] + wa * a[k] + wb * b[k]);
     }
     to.copy_from_slice(direction);
     let [sum, product] = panel_sums([&*to, &gradient[..n]], |[d, g]| [d, d * g]);
     [sum, product, panel_largest(to)]
 }
 
-/// Products of a field with three others.
+/// Products of a field with others.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
-pub(super) fn products(field: &[f32], others: [&[f32]; 3]) -> [f64; 3] {
-    let [a, b, c] = others;
-    panel_sums([field, a, b, c], |[g, a, b, c]| [g * a, g * b, g * c])
+pub(super) fn products(field: &[f32], others: [&[f32]; PAIRS]) -> [f64; PAIRS] {
+    let [a, b] = others;
+    panel_sums([field, a, b], |[g, a, b]| [g * a, g * b])
 }
 
-/// The change `y ← (g − old − shift) × unit` of the gradient along a step `s`, and its products with those of the other pairs `a` and `b`: of
-/// `[g, old, s, s_a, y_a, s_b, y_b]`, `[s·y, s·s, s·y_a, s·y_b, y·s_a, y·s_b, g·s, g·s_a, g·s_b]`.
+/// The change `y ← (g − old − shift) × unit` of the gradient along a step `s`, and its products with those of the other pair `a`: of
+/// `[g, old, s, s_a, y_a]`, `[s·y, s·s, s·y_a, y·s_a, g·s, g·s_a]`.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
-pub(super) fn new_pair(y: &mut [f32], fields: [&[f32]; 7], shift: f32, unit: f32) -> [f64; 9] {
-    let [g, old, s, sa, ya, sb, yb] = fields;
+pub(super) fn new_pair(y: &mut [f32], fields: [&[f32]; 5], shift: f32, unit: f32) -> [f64; 6] {
+    let [g, old, s, sa, ya] = fields;
     y.iter_mut().zip(g.iter().zip(old)).for_each(|(y, (g, old))| *y = (g - old - shift) * unit);
-    panel_sums([&*y, g, s, sa, ya, sb, yb], |[y, g, s, sa, ya, sb, yb]| {
-        [s * y, s * s, s * ya, s * yb, y * sa, y * sb, g * s, g * sa, g * sb]
-    })
+    panel_sums([&*y, g, s, sa, ya], |[y, g, s, sa, ya]| [s * y, s * s, s * ya, y * sa, g * s, g * sa])
 }
 
 /// One row of the fields of a step.

@@ -11,7 +11,7 @@
 
 use super::contact::{Attraction, Bonding, Problem, State};
 use super::grid::HalfSpace;
-use super::minimise::{Accuracy, Follow, Minimiser};
+use super::minimise::{Accuracy, Follow, Minimiser, Underway};
 use crate::physics::PhysicsError;
 use crate::physics::memory::filled;
 
@@ -78,18 +78,18 @@ impl Patches {
         self.0.iter().map(|patch| patch.minimiser.transforms() * patch.problem.half_space.transformed()).sum()
     }
 
-    /// Relaxes around a place on patches of increasing side, from the `smallest` on, as long as the next `is_open`. The side of the last; `None` if nothing
-    /// moved.
+    /// Relaxes around a place on patches of increasing side, from the `smallest` on, as long as the next `is_open`. The side of the last,
+    /// and the points whose bond has changed, with the bond before; `None` if nothing moved.
     fn relax(
         &mut self,
-        (whole, state): (&Problem, &mut State),
+        on: &mut Underway<'_>,
         place: Place,
         smallest: usize,
         is_open: impl Fn(usize) -> bool,
         (centre, accuracy): (f64, Accuracy),
-    ) -> Option<usize> {
+    ) -> Option<(usize, Vec<(usize, Bonding)>)> {
         let mut k = smallest;
-        self.0[k].cut(whole, state, place);
+        self.0[k].cut(on, place);
         loop {
             let (smaller, larger) = self.0.split_at_mut(k + 1);
             let patch = &mut smaller[k];
@@ -99,14 +99,14 @@ impl Patches {
                 return None;
             }
             match larger.first_mut() {
-                Some(larger) if is_open(larger.side()) && patch.has_changed_at_border(whole, state, place) => {
-                    larger.cut(whole, state, place);
+                Some(larger) if is_open(larger.side()) && patch.has_changed_at_border(on, place) => {
+                    larger.cut(on, place);
                     larger.take_over(patch);
                     k += 1;
                 }
                 _ => {
-                    patch.paste(whole, state, place);
-                    return Some(patch.side());
+                    let changed = patch.paste(on, place);
+                    return Some((patch.side(), changed));
                 }
             }
         }
@@ -115,11 +115,12 @@ impl Patches {
 
 impl Follow for Patches {
     /// Places follow one another in the order of their largest residuals; one that would overlap an earlier one is left to the whole grid.
-    fn follow(&mut self, (whole, state): (&Problem, &mut State), changed: &[usize], centre: f64, accuracy: Accuracy) {
-        let grid = &whole.half_space;
+    fn follow(&mut self, mut on: Underway<'_>, changed: &[usize], centre: f64, accuracy: Accuracy) -> Vec<(usize, Bonding)> {
+        let grid = &on.problem.half_space;
         let accuracy = Accuracy { rms: f64::INFINITY, largest: FINISH * accuracy.largest, iterations: ITERATIONS };
         let mut rest = changed.to_vec();
         let mut done: Vec<(Place, usize)> = Vec::new();
+        let mut rebonded = Vec::new();
         while let Some(first) = rest.first().copied().filter(|_| done.len() < PLACES) {
             let (near, others) = rest.into_iter().partition(|point| distance(grid, place(grid, *point), place(grid, first)) <= NEAR);
             rest = others;
@@ -128,11 +129,13 @@ impl Follow for Patches {
             let enough = ROOM.0 * extent + ROOM.1;
             let smallest = self.0.iter().position(|patch| patch.side() >= enough).unwrap_or(self.0.len() - 1);
             if is_open(self.0[smallest].side())
-                && let Some(side) = self.relax((whole, state), place, smallest, is_open, (centre, accuracy))
+                && let Some((side, changed)) = self.relax(&mut on, place, smallest, is_open, (centre, accuracy))
             {
                 done.push((place, side));
+                rebonded.extend(changed);
             }
         }
+        rebonded
     }
 }
 
@@ -161,15 +164,15 @@ impl Patch {
     }
 
     /// Takes heights and state from the whole grid.
-    fn cut(&mut self, whole: &Problem, state: &State, place: Place) {
-        for (k, from) in self.points(&whole.half_space, place).enumerate() {
-            self.problem.heights[k] = whole.heights[from];
-            self.start[k] = state.displacement[from];
-            self.state.displacement[k] = state.displacement[from];
-            self.state.pressure[k] = state.pressure[from];
-            self.state.bonds[k] = state.bonds[from];
+    fn cut(&mut self, on: &Underway<'_>, place: Place) {
+        for (k, from) in self.points(&on.problem.half_space, place).enumerate() {
+            self.problem.heights[k] = on.problem.heights[from];
+            self.start[k] = on.displacement(from);
+            self.state.displacement[k] = self.start[k];
+            self.state.pressure[k] = on.state.pressure[from] + f64::from(on.pressed[from]);
+            self.state.bonds[k] = on.state.bonds[from];
         }
-        self.state.approach = state.approach;
+        self.state.approach = on.state.approach;
     }
 
     /// Takes over what has happened on a smaller patch with the same middle.
@@ -186,21 +189,26 @@ impl Patch {
         self.minimiser.press(&self.problem, &mut self.state, &moved);
     }
 
-    fn has_changed_at_border(&self, whole: &Problem, state: &State, place: Place) -> bool {
+    fn has_changed_at_border(&self, on: &Underway<'_>, place: Place) -> bool {
         let side = self.side();
         let inside = side / BORDER..side - side / BORDER;
-        self.points(&whole.half_space, place).enumerate().any(|(k, at)| {
+        self.points(&on.problem.half_space, place).enumerate().any(|(k, at)| {
             let at_border = !inside.contains(&(k / side)) || !inside.contains(&(k % side));
-            at_border && self.state.bonds[k] != state.bonds[at]
+            at_border && self.state.bonds[k] != on.state.bonds[at]
         })
     }
 
-    /// Gives displacement and bonds to the whole grid.
-    fn paste(&self, whole: &Problem, state: &mut State, place: Place) {
-        for (k, to) in self.points(&whole.half_space, place).enumerate() {
-            state.displacement[to] = self.state.displacement[k];
-            state.bonds[to] = self.state.bonds[k];
+    /// Gives displacement and bonds to the whole grid. The points whose bond has changed, with the bond before.
+    fn paste(&self, on: &mut Underway<'_>, place: Place) -> Vec<(usize, Bonding)> {
+        let mut changed = Vec::new();
+        for (k, to) in self.points(&on.problem.half_space, place).enumerate() {
+            on.change[to] += (self.state.displacement[k] - self.start[k]) as f32;
+            let before = std::mem::replace(&mut on.state.bonds[to], self.state.bonds[k]);
+            if before != self.state.bonds[k] {
+                changed.push((to, before));
+            }
         }
+        changed
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::contact::Problem;
 use super::grid::{Operator, Waves};
-use super::passes::{Right, Split, divided, open_part};
+use super::passes::{PAIRS, Right, Split, divided, open_part};
 use rayon::prelude::*;
 
 /// Points in contact, of a slope of the law above `stiff`, are nearly fixed by the wall; at open points the law softens near a front of contact.
@@ -25,7 +25,7 @@ impl Preconditioner {
         direction: &mut [f32],
         right: &Right<'_>,
         slopes: &[f32],
-    ) -> [f64; 3] {
+    ) -> [f64; PAIRS] {
         let (split, operator) = if self.split { (SPLIT, Operator::Compliance) } else { (WHOLE, Operator::Shifted) };
         let half_space = &problem.half_space;
         let columns = half_space.columns();
@@ -34,6 +34,6 @@ impl Preconditioner {
         let parts = half_space.backward(operator, waves, direction.par_chunks_mut(columns).zip(rows()), |(to, (right, slopes)), open| {
             divided(to, open, &right, slopes, split)
         });
-        parts.iter().fold([0.0; 3], |all, part| [all[0] + part[0], all[1] + part[1], all[2] + part[2]])
+        parts.iter().fold([0.0; PAIRS], |all, part| [all[0] + part[0], all[1] + part[1]])
     }
 }

@@ -13,6 +13,7 @@ use super::records::{Cycle, Event, Map, Step};
 use super::regions::{Labels, Region, change, label, regions};
 use super::work::{OnLoop, work_between};
 use crate::physics::PhysicsError;
+use crate::physics::memory::filled;
 use serde::{Deserialize, Serialize};
 
 /// Least imbalance of an event, relative to the energy dissipated so far.
@@ -114,7 +115,7 @@ impl<'a> Walk<'a> {
             None => Halfway {
                 cycle: Cycle::default(),
                 branches: 0,
-                state: problem.apart(start)?,
+                state: State { pressure: Vec::new(), ..problem.apart(start)? },
                 last: Step { approach: start, ..Step::default() },
                 dissipated: 0.0,
                 level: 0,
@@ -133,12 +134,12 @@ impl<'a> Walk<'a> {
 
     /// Equilibrium at an approach, from the last state extrapolated, with all contacts that form there.
     pub(super) fn attempt(&mut self, approach: f64, accuracy: Accuracy) -> Result<Attempt, PhysicsError> {
+        let mut state = State { pressure: filled(self.problem.half_space.points(), 0.0)?, ..self.at.state.clone() };
         let rate = match self.rate.take() {
             Some(rate) => rate,
-            None => self.equilibrium.rate(self.problem, &self.at.state)?,
+            None => self.equilibrium.rate(self.problem, &state)?,
         };
         let before = self.equilibrium.transformed();
-        let mut state = self.at.state.clone();
         let length = approach - state.approach;
         for (to, rate) in state.displacement.iter_mut().zip(&rate.displacement) {
             *to += length * f64::from(*rate);
@@ -204,7 +205,7 @@ impl<'a> Walk<'a> {
             });
         }
         self.at.labels = labels;
-        self.at.state = state;
+        self.at.state = State { pressure: Vec::new(), ..state };
         self.rate = Some(rate);
         self.at.last = step;
         if self.settings.all_regions {

@@ -5,7 +5,7 @@ use super::super::identity::Identity;
 use super::super::{StageError, Watch};
 use super::elements_setup::{Setup, Units, setup};
 use super::elements_tables::{Counts, adhesionless, branch, contacts, events, steps};
-use super::{Checkpoints, Progress, effort_of, write_tables};
+use super::{Checkpoints, Progress, effort_of, serialized, write_tables};
 use crate::campaign::{Campaign, CycleUnit};
 use crate::model::KeptContacts;
 use crate::physics::PhysicsError;
@@ -48,7 +48,8 @@ pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> R
     let mut files = write_tables(campaign, unit, &tables)?;
     let header = MapsHeader { key: &unit.key, cycle_id: &unit.id, length_m: units.length_m, points: units.points, contact_gap_m };
     files.push(write_maps(&dir.join("maps.h5"), &header, &maps(&cycle, loads, &units))?);
-    files.push(write_state(&turning_path(&dir), &unit.key, &turning_bytes(&cycle)?)?);
+    let turning = serialized(&cycle.turning).map_err(|error| StageError::State { what: error.to_string() })?;
+    files.push(write_state(&turning_path(&dir), &unit.key, &turning)?);
     Ok(Outcome { files, effort })
 }
 
@@ -127,13 +128,6 @@ fn turning_path(dir: &Path) -> PathBuf {
     dir.join("turning.bin")
 }
 
-/// States at the load reversals. The pressure follows from the displacement.
-fn turning_bytes(cycle: &Cycle) -> Result<Vec<u8>, StageError> {
-    let mut states = cycle.turning.clone();
-    states.iter_mut().for_each(|turning| turning.state.pressure = Vec::new());
-    postcard::to_stdvec(&states).map_err(|error| StageError::State { what: error.to_string() })
-}
-
 /// Unloads by boundary elements from a load reversal of a finished cycle: the cycle in the units of the solver, and these units.
 ///
 /// # Errors
@@ -147,11 +141,10 @@ pub fn unload_elements_again(campaign: &Campaign, unit: &CycleUnit, max_load: f6
     let kept = || format!("the loads {:?}", params.cycle.max_load);
     let lacking = || StageError::NoTurning { max_load, path: path.clone(), kept: kept() };
     let reversal = reversal.ok_or_else(lacking)?;
-    let mut turning = states.and_then(|mut all| (reversal < all.len()).then(|| all.swap_remove(reversal))).ok_or_else(lacking)?;
+    let turning = states.and_then(|mut all| (reversal < all.len()).then(|| all.swap_remove(reversal))).ok_or_else(lacking)?;
     if turning.state.displacement.len() != problem.half_space.points() {
         return Err(lacking());
     }
-    turning.state.pressure = vec![0.0; problem.half_space.points()];
     let cycle = cycle::unload_from(&problem, &settings, reversal, &turning).map_err(|error| in_si(error, &units))?;
     Ok((cycle, units))
 }

@@ -166,9 +166,15 @@ impl<'a> Checkpoints<'a> {
             return;
         }
         self.kept_at = Instant::now();
-        let kept = postcard::to_stdvec(state).map_err(|error| error.to_string());
+        let kept = serialized(state).map_err(|error| error.to_string());
         if let Err(why) = kept.and_then(|bytes| write_halfway(&self.path, self.key, &bytes).map_err(|error| error.to_string())) {
             self.watch.notice(&format!("{}: {why}; continuing without checkpoint, an interrupted cycle restarts", self.id));
         }
     }
+}
+
+/// Bytes of a value, in memory of exactly their number.
+fn serialized<T: Serialize>(value: &T) -> Result<Vec<u8>, postcard::Error> {
+    let bytes = Vec::with_capacity(postcard::experimental::serialized_size(value)?);
+    postcard::to_extend(value, bytes)
 }
