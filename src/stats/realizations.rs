@@ -104,8 +104,8 @@ fn by_elements(case: &CaseInput) -> bool {
     case.parameters.iter().any(|(name, value)| name == "method" && *value == Value::from("boundary_elements"))
 }
 
-/// Energy-balance error of boundary elements over |Θ|. Between events their work is the change of the energy, so that Θ is the sum of the events; the
-/// independent value is the integral of the load over the mean penetration. Null for Θ = 0.
+/// Energy-balance error of boundary elements over |Θ|: the integral of the load over the mean penetration, from the table, less the sum of the events.
+/// Null for Θ = 0.
 fn balance(loading: &Branch, turning: usize, unloading: &Branch, results: &Given, input: &CycleInput) -> Option<f64> {
     let number = |name: &str| results.iter().find(|(known, _)| known == name).and_then(|(_, value)| value.number());
     let (loss, dissipated) = (number("loss_j")?, number("dissipated_j")?);
@@ -118,8 +118,8 @@ fn balance(loading: &Branch, turning: usize, unloading: &Branch, results: &Given
     };
     let points: Vec<OnLoop> = points.zip(stiffness).map(on).collect();
     let part = |pair: &[OnLoop]| {
-        let (straight, bend) = work_between(pair[0], pair[1]);
-        straight + bend
+        let work = work_between(pair[0], pair[1]);
+        work.straight + work.bend
     };
     let integral = points.windows(2).map(part).sum::<f64>() * input.energy_scale_j;
     (loss != 0.0).then(|| ((integral - dissipated) / loss).abs())

@@ -17,13 +17,16 @@ pub struct Step {
     pub stiffness: f64,
     /// Connected regions of contact.
     pub regions: usize,
-    /// Energy dissipated in events since the step before \[E* dx³\]: `∫F dΔ − ΔΠ` if that exceeds the error of the integral.
+    /// Energy dissipated in events since the step before \[E* dx³\]: the sum of `∫F dΔ − ΔΠ` since the last event, if that exceeds its uncertainty.
     pub dissipated: f64,
     /// `∫F dΔ − ΔΠ` since the step before \[E* dx³\], its error included.
     pub imbalance: f64,
-    /// Estimated error of that integral \[E* dx³\]: a part of the difference between the cubic through loads and stiffnesses and the trapezoid.
+    /// Energy dissipated since the last event and not counted as one, or, if negative, gained by errors of the integral \[E* dx³\].
+    pub pending: f64,
+    /// Estimated error of that integral \[E* dx³\]: a part of the difference between the cubic through loads and stiffnesses and the trapezoid, or of the error
+    /// that a jump of the load may cause.
     pub uncertainty: f64,
-    /// Work since the branch began \[E* dx³\]: the change of the energy, and `∫F dΔ` over steps with an event.
+    /// Work `∫F dΔ` since the branch began \[E* dx³\].
     pub work: f64,
     /// Iterations on the whole grid, those of discarded longer steps included.
     pub iterations: u64,

@@ -1,8 +1,12 @@
 //! One step of a cycle: an equilibrium at an approach near the one before, and the energy dissipated in between.
 //!
 //! Between events the states are a continuous curve on which `F = dΠ/dΔ`, so that `∫F dΔ − ΔΠ` vanishes; in an event the energy falls at one approach, by
-//! the energy dissipated. A step that dissipates more than [`LARGE`] of the energy dissipated so far is halved: [`Settings::halvings`] times, and
-//! further while the error of the integral falls.
+//! the energy dissipated. The integral has errors of both signs. An event is therefore counted where the sum of `∫F dΔ − ΔΠ` since the last one exceeds its
+//! uncertainty, and an apparent gain is subtracted from the next event. Gains alone must not lead to shorter steps: repeating what comes out too small makes
+//! the sum too large.
+//!
+//! A step that dissipates more than [`LARGE`] of the energy dissipated so far is halved: [`Settings::halvings`] times, and further while the error of the
+//! integral falls. So is one in which a jump of the load makes the integral uncertain by more than [`LOCATED`].
 
 use super::contact::{Attraction, Problem, State};
 use super::equilibrium::Equilibrium;
@@ -11,7 +15,7 @@ use super::newton::Rate;
 use super::patch::Patches;
 use super::records::{Cycle, Event, Map, Step};
 use super::regions::{Labels, Region, change, label, regions};
-use super::work::{OnLoop, work_between};
+use super::work::{OnLoop, Work, work_between};
 use crate::physics::PhysicsError;
 use crate::physics::memory::filled;
 use serde::{Deserialize, Serialize};
@@ -22,8 +26,10 @@ const EVENT: f64 = 1e-5;
 const BEND: f64 = 0.05;
 /// Imbalance from which on a step is halved, relative to the same.
 const LARGE: f64 = 3e-3;
-/// Apparent gain of energy from which on a step is halved, relative to the same.
-const GAIN: f64 = 5e-5;
+/// Part of the error that a jump of the load may cause in its integral that counts as its uncertainty.
+const JUMP_PART: f64 = 0.3;
+/// Largest of these errors in a step that is not halved, relative to the energy dissipated so far.
+const LOCATED: f64 = 2e-2;
 /// Most halvings of a step, as long as each reduces the error of the integral of the load.
 const DEEPEST: u32 = 6;
 /// Relative accuracy of the load at a reversal.
@@ -89,6 +95,8 @@ impl Halfway {
 pub(super) struct Attempt {
     state: State,
     pub(super) step: Step,
+    /// Error of the integral of the load that a jump of it may cause.
+    across: f64,
     rate: Rate,
 }
 
@@ -159,7 +167,7 @@ impl<'a> Walk<'a> {
         let from = &self.at.last;
         let on = |step: &Step, rate: &Rate| OnLoop { approach: step.approach, load: step.totals.load, stiffness: rate.stiffness };
         let end = OnLoop { approach, load: totals.load, stiffness: next.stiffness };
-        let (straight, bend) = work_between(on(from, &rate), end);
+        let Work { straight, bend, across } = work_between(on(from, &rate), end);
         let work = straight + bend;
         let change = totals.energy - from.totals.energy;
         self.rate = Some(rate);
@@ -171,14 +179,15 @@ impl<'a> Walk<'a> {
             regions: 0,
             dissipated: 0.0,
             imbalance: work - change,
-            uncertainty: BEND * bend.abs(),
+            uncertainty: BEND * bend.abs() + JUMP_PART * across,
+            pending: from.pending + work - change,
             work: from.work + work,
             iterations,
             transforms: self.equilibrium.transforms(before),
             residual: outcome.residual,
             converged: outcome.converged,
         };
-        Ok(Attempt { state, step, rate: next })
+        Ok(Attempt { state, step, across, rate: next })
     }
 
     /// Imbalance up to which a step has no event, with the uncertainty of its integral \[E* dx³\].
@@ -186,22 +195,18 @@ impl<'a> Walk<'a> {
         uncertainty.max(EVENT * self.at.dissipated)
     }
 
-    pub(super) fn accept(&mut self, Attempt { state, mut step, rate }: Attempt) {
-        let event = step.imbalance > self.resolution(step.uncertainty);
+    pub(super) fn accept(&mut self, Attempt { state, mut step, rate, .. }: Attempt) {
         let labels = label(self.problem, &state);
         step.regions = labels.count;
-        // Without an event the work is the change of the energy, exactly; the load is integrated for comparison only.
-        if !event {
-            step.work = self.at.last.work + step.totals.energy - self.at.last.totals.energy;
-        } else {
-            step.dissipated = step.imbalance;
-            self.at.dissipated += step.imbalance;
+        if step.pending > self.resolution(step.uncertainty) {
+            step.dissipated = std::mem::take(&mut step.pending);
+            self.at.dissipated += step.dissipated;
             self.at.cycle.events.push(Event {
                 step: self.at.cycle.steps.len(),
                 kind: change(&self.at.labels, &labels),
                 before: self.at.last.totals,
                 after: step.totals,
-                dissipated: step.imbalance,
+                dissipated: step.dissipated,
             });
         }
         self.at.labels = labels;
@@ -224,11 +229,10 @@ impl<'a> Walk<'a> {
             let mut attempt = self.attempt(self.at.state.approach + length, self.settings.accuracy)?;
             let step = attempt.step;
             let large = step.imbalance.abs() > LARGE * self.at.dissipated;
-            // The error of the integral falls by halving the step, an event does not. An apparent gain of energy is such an error: the load jumps in the
-            // step, and less is dissipated than the trapezoid rule across the jump is off.
-            let gains = step.imbalance < -GAIN * self.at.dissipated && self.at.level < DEEPEST;
+            // The error of the integral falls by halving the step, an event does not.
             let falls = step.imbalance.abs() < 0.25 * coarser && self.at.level < DEEPEST;
-            if gains || large && (self.at.level < self.settings.halvings || falls) {
+            let unsure = attempt.across > LOCATED * self.at.dissipated && self.at.level < DEEPEST;
+            if unsure || large && (self.at.level < self.settings.halvings || falls) {
                 coarser = step.imbalance.abs();
                 (iterations, transforms) = (iterations + step.iterations, transforms + step.transforms);
                 self.at.level += 1;

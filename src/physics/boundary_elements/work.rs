@@ -14,13 +14,28 @@ pub struct OnLoop {
     pub stiffness: f64,
 }
 
-/// `∫F dΔ` between two points by the trapezoid rule, and by how much that of the cubic through loads and slopes at both ends exceeds it (Hermite). The
-/// second is 0 where the load jumps in between, as in an event or at a limit point.
+/// `∫F dΔ` between two points.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Work {
+    /// By the trapezoid rule.
+    pub straight: f64,
+    /// By how much that of the cubic through loads and slopes at both ends exceeds it (Hermite); 0 where the load jumps in between.
+    pub bend: f64,
+    /// Largest error of the trapezoid rule where the load jumps in between, which it may do anywhere; else 0.
+    pub across: f64,
+}
+
+/// The work between two points. The load jumps in between, in an event or at a limit point, where it differs from the cubic by more than that from a
+/// straight line.
 #[must_use]
-pub fn work_between(start: OnLoop, end: OnLoop) -> (f64, f64) {
+pub fn work_between(start: OnLoop, end: OnLoop) -> Work {
     let length = end.approach - start.approach;
     let bend = start.stiffness - end.stiffness;
     let jump = end.load - start.load - 0.5 * (start.stiffness + end.stiffness) * length;
-    let smooth = jump.abs() <= JUMP * (bend * length).abs();
-    (0.5 * (start.load + end.load) * length, if smooth { length * length * bend / 12.0 } else { 0.0 })
+    let jumps = jump.abs() > JUMP * (bend * length).abs();
+    Work {
+        straight: 0.5 * (start.load + end.load) * length,
+        bend: if jumps { 0.0 } else { length * length * bend / 12.0 },
+        across: if jumps { 0.5 * (jump * length).abs() } else { 0.0 },
+    }
 }

@@ -4,7 +4,7 @@ use super::{BONDED, problem};
 use hysteron::physics::boundary_elements::contact::Bonding;
 use hysteron::physics::boundary_elements::grid::{HalfSpace, Operator};
 use hysteron::physics::boundary_elements::law::Law;
-use hysteron::physics::boundary_elements::work::{OnLoop, work_between};
+use hysteron::physics::boundary_elements::work::{OnLoop, Work, work_between};
 use std::f64::consts::{PI, TAU};
 
 /// A plane wave `u = cos q·x` needs the pressure `|q|/2 u`, in both directions and obliquely, on square and oblong grids. Rounding only.
@@ -132,9 +132,9 @@ fn law_work_of_a_cubic_is_exact() {
     let at = |x: f64| OnLoop { approach: x, load: load(x), stiffness: 0.3 + x * (-4.0 + 0.3 * x) };
     let integral = |x: f64| x * (1.0 + x * (0.15 + x * (-2.0 / 3.0 + 0.025 * x)));
     for (a, b) in [(0.2, 1.1), (1.3, -0.4)] {
-        let (straight, bend) = work_between(at(a), at(b));
+        let Work { straight, bend, .. } = work_between(at(a), at(b));
         assert!((straight + bend - (integral(b) - integral(a))).abs() < 1e-14, "{straight} {bend}");
         let jumped = OnLoop { load: load(b) + 10.0, ..at(b) };
-        assert_eq!(work_between(at(a), jumped).1, 0.0);
+        assert_eq!(work_between(at(a), jumped).bend, 0.0);
     }
 }

@@ -25,9 +25,31 @@ fn law_events_add_up_to_the_loop() {
     let (area, events, tension) = sums(&cycle);
     assert!(tension > 0.0 && cycle.events.len() > 3);
     assert!((area - events).abs() < 1e-3 * area, "loop {area}, events {events}");
-    assert!(cycle.steps.iter().all(|s| s.imbalance > -3e-4 * area), "no step creates energy");
+    let gained: f64 = cycle.steps.iter().map(|s| s.imbalance.min(0.0)).sum();
+    assert!(gained > -0.01 * area, "no steps create energy, {gained} of {area}");
     let turn = cycle.turning[0].last.totals.load / (n * n) as f64;
     assert!((turn / 0.02 - 1.0).abs() < 1e-5, "the reversal is at the load asked for, {turn}");
+}
+
+/// Weak adhesion, of which the dissipated energy is 5e-5 of the work of loading: the loop has the area of one in small equal steps, to 8 % for the
+/// position of events in steps. When only steps that seemed to gain energy were halved, it was 20 % larger than that.
+#[test]
+fn law_weak_adhesion_has_the_area_of_equal_steps() {
+    let n = 64;
+    let problem = problem(n, n, |r, c| 4.0 * wavy(n, r, c), Law::crack(0.004), BONDED);
+    let cycle = cycle(&problem, 0.03 * (n * n) as f64, 0.08, 1);
+    let (area, events, _) = sums(&cycle);
+    assert!((events / area - 1.0).abs() < 0.06, "events {events}, loop {area}");
+    let (mut minimiser, mut state) = (Minimiser::new(&problem).unwrap(), problem.apart(0.0).unwrap());
+    let (most, steps) = (cycle.turning[0].last.approach, 600);
+    let mut path = Vec::new();
+    for k in (0..=steps).chain((-20..steps).rev()) {
+        state.approach = most * f64::from(k) / f64::from(steps);
+        let totals = settle(&problem, &mut state, |state| minimiser.minimise(&problem, state, super::accuracy(1e-5)));
+        path.push((state.approach, totals.load));
+    }
+    let equal: f64 = path.windows(2).map(|w| 0.5 * (w[0].1 + w[1].1) * (w[1].0 - w[0].0)).sum();
+    assert!((area / equal - 1.0).abs() < 0.08, "loop {area}, in equal steps {equal}");
 }
 
 /// The same bytes with 1 and 2 threads, after an interruption at any of three steps, and unloading from the stored reversal.
