@@ -5,7 +5,7 @@
 //! there before. What was written is known by its size and hash, for the receipt of its unit.
 
 use std::ffi::OsStr;
-use std::fs::{self, File, Permissions};
+use std::fs::{File, Permissions};
 use std::io::{self, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::{PoisonError, RwLock, RwLockWriteGuard};
@@ -44,7 +44,7 @@ pub struct Written {
 ///
 /// # Errors
 /// If it cannot be read.
-pub fn sum(path: &Path) -> std::io::Result<(u64, String)> {
+pub fn sum(path: &Path) -> io::Result<(u64, String)> {
     let mut hasher = blake3::Hasher::new();
     hasher.update_reader(File::open(path)?)?;
     Ok((hasher.count(), hasher.finalize().to_hex().to_string()))

@@ -29,8 +29,8 @@ const MOST_ITERATIONS: usize = 3000;
 /// Points around a contact that are bonded.
 const MARGIN: usize = 2;
 /// Fields of numbers that the solver needs, its patches included, and those of a load reversal with its maps and checkpoint.
-const FIELDS: usize = 28;
-const FIELDS_OF_REVERSAL: usize = 9;
+const FIELDS: usize = 21;
+const FIELDS_OF_REVERSAL: usize = 8;
 
 /// Units of the solver in SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
