@@ -199,7 +199,7 @@ pub(super) static KEYS: &[Key] = &[
     }),
     key!(boundary_elements.nucleation, "", "Gap at which a point comes into contact, with `attraction = \"bonded\"`."; word Nucleation),
     key!(boundary_elements.opening, "", "Where contact opens, with `attraction = \"bonded\"`."; word Opening),
-    key!(boundary_elements.approach_step, "", "Step of the mean penetration, as a fraction of h_rms. Steps with large events are halved once."; number Limits {
+    key!(boundary_elements.approach_step, "", "Step of the mean penetration, as a fraction of h_rms. Steps in which an event leaves its energy uncertain are halved."; number Limits {
         low: 1e-3, above: false, high: 1.0, unit: "", unit_name: "", slip: None,
         note: "step of Δ/h_rms of boundary elements; default 0.03",
     }),

@@ -4,7 +4,8 @@
 //! are in grid spacings and pressures in E*, so the operator is `K = |q|/2` and its elastic energy `½ u·K u` in `E* dx³`.
 //!
 //! On a *patch*, a square of the grid outside of which displacements vanish, the pressure is the same: a convolution with the pressure around one displaced
-//! point, by transforms of twice the side.
+//! point. Its transforms have one and a half times the side, so that it is exact up to offsets of half a side. Beyond, displacements near opposite borders
+//! act on one another as at the offset across the border, and these are small in a local relaxation.
 
 use super::sums::{PANEL, grain, sums};
 use crate::physics::PhysicsError;
@@ -27,7 +28,7 @@ const BLOCK: usize = 8;
 pub struct HalfSpace {
     rows: usize,
     columns: usize,
-    /// Rows and columns of the transforms: of a periodic grid its own, of a patch twice those.
+    /// Rows and columns of the transforms: of a periodic grid its own, of a patch one and a half times those.
     padded: (usize, usize),
     double: Plans<f64>,
     single: Plans<f32>,

@@ -1,10 +1,10 @@
 //! Events on a part of the grid.
 //!
 //! In most events bonds change in a few places, and the displacement changes little elsewhere. Each place is then relaxed alone: the energy of the whole
-//! grid is minimised over displacements that vanish outside a square, a *patch*, with the exact elastic operator. This is a descent within a
-//! subspace, by steps of the same limited length, so that it passes over no barrier that the whole grid would not pass over. The cost of an iteration is
-//! proportional to the area of the patch. If bonds change at the border of a patch, a patch of twice the side replaces it. Patches of several places do
-//! not overlap, and their interaction is neglected until the whole grid is relaxed, which follows.
+//! grid is minimised over displacements that vanish outside a square, a *patch*, with an elastic operator that is exact for offsets of up to half a
+//! side. This is a descent within a subspace, by steps of the same limited length, so that it passes over no barrier that the whole grid would not pass
+//! over. The cost of an iteration is proportional to the area of the patch. If bonds change at the border of a patch, a patch of twice the side replaces
+//! it. Patches of several places do not overlap, and their interaction is neglected until the whole grid is relaxed, which follows.
 //!
 //! The displacement of a patch may have a mean. A uniform shift of the whole grid removes it. The energy of the shift is included to first order: the
 //! shift times the mean of pressure and tension. The second order follows with the whole grid.
