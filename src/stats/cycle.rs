@@ -33,7 +33,6 @@ pub(super) struct Branch {
     pub(super) held_count: Vec<i64>,
     pub(super) converged: Vec<bool>,
     pub(super) reversal_load: Vec<Option<f64>>,
-    pub(super) stiffness: Vec<Option<f64>>,
 }
 
 /// A cycle: one loading branch, and an unloading branch from each turning point.
@@ -159,7 +158,6 @@ fn branch(frame: &Frame, rows: &[usize]) -> Result<Branch, FrameError> {
         touching_count: wholes("touching_count")?,
         held_count: wholes("held_count")?,
         reversal_load: picked(frame.f64_or_null("reversal_load")?, rows),
-        stiffness: picked(frame.f64_or_null("stiffness")?, rows),
         converged: picked(&frame.bool("converged")?, rows),
     })
 }
