@@ -17,7 +17,6 @@ pub mod preconditioner;
 pub mod records;
 pub mod regions;
 pub mod resample;
-mod reversal;
 mod step;
 mod sums;
 mod trial;
