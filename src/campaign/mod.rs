@@ -59,7 +59,7 @@ impl Stage {
     fn version(self) -> u32 {
         match self {
             Self::Generate | Self::Extract => 2,
-            Self::Cycle => 16,
+            Self::Cycle => 17,
             Self::Aggregate => 9,
             Self::Report => 14,
         }

@@ -126,7 +126,7 @@ pub static STEPS: Table = Table {
             .or_null(),
         real("stiffness_n_m", "N/m", "Stiffness dF/dΔ of the contact of boundary elements at constant bonds; null for asperities").or_null(),
         real("stiffness", "1", "Stiffness dF/dΔ of boundary elements over E* A0/h_rms; null for asperities").or_null(),
-        real("reversal_load", "1", "Load F_max/(E* A0) of the spec whose reversal is at this step of boundary elements; null elsewhere and for asperities")
+        real("reversal_load", "1", "Load F_max/(E* A0) of the spec whose reversal is at this step; null elsewhere")
             .or_null(),
     ],
 };

@@ -86,7 +86,7 @@ const RESULTS: &[Column] = &[
     real("loss_ratio_dk", "1", "Ratio Θ/Θ_DK, loss over loss_dk; null where either is null or loss_dk is 0").or_null(),
     real("dissipated", "1", "Dissipated energy over E* A0 h_rms, summed over the events of the loop"),
     real("dissipated_j", "J", "Dissipated energy, summed over the events of the loop"),
-    real("audit_gap", "1", "Energy-balance error |loss_j - dissipated_j| / |loss_j|; where loss_j is 0 (no adhesion), energy of the loading events over the work of loading; for boundary elements, trapezoidal integral of the load over the mean penetration in place of the first loss_j").or_null(),
+    real("audit_gap", "1", "Energy-balance error |loss_j - dissipated_j| / |loss_j|; where loss_j is 0 (no adhesion), energy of the loading events over the work of loading").or_null(),
     real("absorption_share", "1", "Coalescence energy over dissipated energy: |cover + uncover + merge + split|/|Θ| of the energies of events; null where Θ = 0").or_null(),
     real("loss_uncertainty", "1", "Numerical resolution of Θ over |Θ|; the resolution is 1e-7 of the maximum work along the loop; null where Θ = 0").or_null(),
     count("summit_count", "Number of asperities of the surface"),

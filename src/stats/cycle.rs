@@ -11,8 +11,6 @@ use crate::schema::STEPS;
 use crate::store::parquet::read_table;
 use crate::store::{Frame, FrameError};
 
-/// Relative tolerance of the load of a step at load reversal: steps between load reversals are never this close to one.
-const TURNING_TOLERANCE: f64 = 1e-6;
 
 /// The rows of one branch, in the order of the path.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -33,7 +31,6 @@ pub(super) struct Branch {
     pub(super) held_count: Vec<i64>,
     pub(super) converged: Vec<bool>,
     pub(super) reversal_load: Vec<Option<f64>>,
-    pub(super) stiffness: Vec<Option<f64>>,
 }
 
 /// A cycle: one loading branch, and an unloading branch from each turning point.
@@ -68,28 +65,10 @@ impl Cycle {
         Ok(Self { loading, unloading })
     }
 
-    /// The position in the loading branch of the step from which a branch unloads: where the load has jumped over what was wanted, it is no other.
-    fn where_unloading_began(&self, max_load: f64) -> Option<usize> {
-        let (_, branch) = self.unloading.iter().find(|(load, _)| *load == max_load)?;
-        let (load, penetration) = (branch.load.first()?, branch.penetration.first()?);
-        let same = |row: &usize| {
-            let (known, at) = (self.loading.load[*row], self.loading.penetration[*row]);
-            at == *penetration && (known - load).abs() <= TURNING_TOLERANCE * load.abs()
-        };
-        (0..self.loading.load.len()).rev().find(same)
-    }
-
     /// The position in the loading branch of the step at which it turned.
     pub(super) fn turning_row(&self, input: &CycleInput, max_load: f64) -> Result<usize, StatsError> {
-        if let Some(row) = self.loading.reversal_load.iter().position(|load| *load == Some(max_load)) {
-            return Ok(row);
-        }
-        let near = |load: f64| (load - max_load).abs() <= TURNING_TOLERANCE * max_load.abs();
-        let distance = |load: &f64| (load - max_load).abs();
-        let nearest = self.loading.load.iter().enumerate().min_by(|a, b| distance(a.1).total_cmp(&distance(b.1)));
-        let row = nearest.filter(|(_, load)| near(**load)).map(|(row, _)| row);
-        row.or_else(|| self.where_unloading_began(max_load))
-            .ok_or_else(|| fault(&input.steps, format!("have no loading step at the turning point {max_load}")))
+        let row = self.loading.reversal_load.iter().position(|load| *load == Some(max_load));
+        row.ok_or_else(|| fault(&input.steps, format!("have no loading step at the turning point {max_load}")))
     }
 }
 
@@ -159,7 +138,6 @@ fn branch(frame: &Frame, rows: &[usize]) -> Result<Branch, FrameError> {
         touching_count: wholes("touching_count")?,
         held_count: wholes("held_count")?,
         reversal_load: picked(frame.f64_or_null("reversal_load")?, rows),
-        stiffness: picked(frame.f64_or_null("stiffness")?, rows),
         converged: picked(&frame.bool("converged")?, rows),
     })
 }

@@ -3,9 +3,7 @@
 use super::cycle::{Branch, Cycle, fault};
 use super::events::{Events, Lost};
 use super::rows::{Rows, Value};
-use super::walk::Point;
 use super::{CaseInput, CycleInput, Given, StatsError};
-use crate::physics::boundary_elements::work::{OnLoop, work_between};
 use crate::physics::cycle::soundness::RESOLUTION;
 use crate::schema::{EVENT_KINDS, REALIZATIONS};
 use crate::store::Frame;
@@ -32,11 +30,7 @@ pub fn realizations(cases: &[CaseInput], cycles: &[CycleInput]) -> Result<Frame,
             let lost = events.lost(step, *max_load);
             results.push(("absorption_share".to_owned(), absorption_share(&lost, &results).into()));
             results.extend(parts(&lost, input));
-            if by_elements(case) {
-                let gap = balance(&cycle.loading, turning, unloading, &results, input);
-                results.retain(|(name, _)| name != "audit_gap");
-                results.push(("audit_gap".to_owned(), gap.into()));
-            } else {
+            if !by_elements(case) {
                 results.push(("loss_touched".to_owned(), touched(&events.touched(step, *max_load), input).into()));
             }
             let given = input.at_max_load.iter().find(|(load, _)| load == max_load);
@@ -102,27 +96,6 @@ fn absorption_share(lost: &Lost, results: &Given) -> Option<f64> {
 /// True if boundary elements compute the case.
 fn by_elements(case: &CaseInput) -> bool {
     case.parameters.iter().any(|(name, value)| name == "method" && *value == Value::from("boundary_elements"))
-}
-
-/// Energy-balance error of boundary elements over |Θ|: the integral of the load over the mean penetration, from the table, less the sum of the events.
-/// Null for Θ = 0.
-fn balance(loading: &Branch, turning: usize, unloading: &Branch, results: &Given, input: &CycleInput) -> Option<f64> {
-    let number = |name: &str| results.iter().find(|(known, _)| known == name).and_then(|(_, value)| value.number());
-    let (loss, dissipated) = (number("loss_j")?, number("dissipated_j")?);
-    let points = loading.points().take(turning + 1).chain(unloading.points());
-    let stiffness = loading.stiffness.iter().take(turning + 1).chain(&unloading.stiffness);
-    let on = |(point, stiffness): (Point, &Option<f64>)| OnLoop {
-        approach: point.penetration,
-        load: point.load,
-        stiffness: stiffness.unwrap_or_default(),
-    };
-    let points: Vec<OnLoop> = points.zip(stiffness).map(on).collect();
-    let part = |pair: &[OnLoop]| {
-        let work = work_between(pair[0], pair[1]);
-        work.straight + work.bend
-    };
-    let integral = points.windows(2).map(part).sum::<f64>() * input.energy_scale_j;
-    (loss != 0.0).then(|| ((integral - dissipated) / loss).abs())
 }
 
 /// Energy dissipated by the contacting asperities as isolated ones, over the scale of energies.

@@ -103,7 +103,7 @@ pub fn write_counts(path: &Path, steps: &[Step], [contacts, covered, touching]: 
         .f64("residual", vec![None; steps.len()])
         .f64("stiffness_n_m", vec![None; steps.len()])
         .f64("stiffness", vec![None; steps.len()])
-        .f64("reversal_load", vec![None; steps.len()])
+        .f64("reversal_load", steps.iter().map(|step| (step.0 == "loading" && turned.contains(&step.2)).then_some(step.2)))
         .build()
         .unwrap();
     write_table(path, &frame, &[]).unwrap();

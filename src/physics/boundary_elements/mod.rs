@@ -17,6 +17,7 @@ pub mod preconditioner;
 pub mod records;
 pub mod regions;
 pub mod resample;
+mod reversal;
 mod step;
 mod sums;
 mod trial;

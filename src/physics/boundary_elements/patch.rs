@@ -86,20 +86,21 @@ impl Patches {
         place: Place,
         smallest: usize,
         is_open: impl Fn(usize) -> bool,
-        (centre, accuracy): (f64, Accuracy),
+        accuracy: Accuracy,
     ) -> Option<(usize, Vec<(usize, Bonding)>)> {
         let mut k = smallest;
         self.0[k].cut(on, place);
         loop {
             let (smaller, larger) = self.0.split_at_mut(k + 1);
             let patch = &mut smaller[k];
-            patch.minimiser.centre = centre;
+            (patch.minimiser.centre, patch.minimiser.spare) = (on.centre, *on.spare);
             let outcome = patch.minimiser.minimise(&patch.problem, &mut patch.state, accuracy);
+            *on.spare = patch.minimiser.spare;
             if k == smallest && outcome.iterations == 0 {
                 return None;
             }
             match larger.first_mut() {
-                Some(larger) if is_open(larger.side()) && patch.has_changed_at_border(on, place) => {
+                Some(larger) if !outcome.abandoned && is_open(larger.side()) && patch.has_changed_at_border(on, place) => {
                     larger.cut(on, place);
                     larger.take_over(patch);
                     k += 1;
@@ -115,13 +116,13 @@ impl Patches {
 
 impl Follow for Patches {
     /// Places follow one another in the order of their largest residuals; one that would overlap an earlier one is left to the whole grid.
-    fn follow(&mut self, mut on: Underway<'_>, changed: &[usize], centre: f64, accuracy: Accuracy) -> Vec<(usize, Bonding)> {
+    fn follow(&mut self, mut on: Underway<'_>, changed: &[usize], accuracy: Accuracy) -> Vec<(usize, Bonding)> {
         let grid = &on.problem.half_space;
         let accuracy = Accuracy { rms: f64::INFINITY, largest: FINISH * accuracy.largest, iterations: ITERATIONS };
         let mut rest = changed.to_vec();
         let mut done: Vec<(Place, usize)> = Vec::new();
         let mut rebonded = Vec::new();
-        while let Some(first) = rest.first().copied().filter(|_| done.len() < PLACES) {
+        while let Some(first) = rest.first().copied().filter(|_| done.len() < PLACES && *on.spare >= 0.0) {
             let (near, others) = rest.into_iter().partition(|point| distance(grid, place(grid, *point), place(grid, first)) <= NEAR);
             rest = others;
             let (place, extent) = surroundings(grid, first, near);
@@ -129,7 +130,7 @@ impl Follow for Patches {
             let enough = ROOM.0 * extent + ROOM.1;
             let smallest = self.0.iter().position(|patch| patch.side() >= enough).unwrap_or(self.0.len() - 1);
             if is_open(self.0[smallest].side())
-                && let Some((side, changed)) = self.relax(&mut on, place, smallest, is_open, (centre, accuracy))
+                && let Some((side, changed)) = self.relax(&mut on, place, smallest, is_open, accuracy)
             {
                 done.push((place, side));
                 rebonded.extend(changed);

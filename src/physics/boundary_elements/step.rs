@@ -10,7 +10,7 @@
 
 use super::contact::{Attraction, Problem, State};
 use super::equilibrium::Equilibrium;
-use super::minimise::Accuracy;
+use super::minimise::{Accuracy, Outcome};
 use super::newton::Rate;
 use super::patch::Patches;
 use super::records::{Cycle, Event, Map, Step};
@@ -32,16 +32,6 @@ const JUMP_PART: f64 = 0.3;
 const LOCATED: f64 = 2e-2;
 /// Most halvings of a step, as long as each reduces the error of the integral of the load.
 const DEEPEST: u32 = 6;
-/// Relative accuracy of the load at a reversal.
-const LOAD_ACCURACY: f64 = 1e-5;
-/// Tolerance of the equilibria in the search for that load, relative to that elsewhere.
-const SHARPER: f64 = 0.02;
-/// Most equilibria of a search.
-const SEARCHED: u32 = 40;
-/// Where the load jumps across that of a reversal: the bracket of the approach, in steps, at which the search ends, and the relative jump that counts as
-/// reached.
-const CLOSED: f64 = 1e-6;
-const JUMP: f64 = 1e-3;
 
 /// Settings of a path.
 #[derive(Debug, Clone, PartialEq)]
@@ -108,6 +98,9 @@ pub(super) struct Walk<'a> {
     pub(super) at: Halfway,
     /// Rate of the state, once it has been needed.
     pub(super) rate: Option<Rate>,
+    /// Iterations since the last step, and points of transforms at its end.
+    iterations: u64,
+    counted: u64,
 }
 
 impl<'a> Walk<'a> {
@@ -132,7 +125,15 @@ impl<'a> Walk<'a> {
             },
         };
         at.labels = label(problem, &at.state);
-        Ok(Self { problem, settings, equilibrium: Equilibrium::new(problem, Patches::new(problem)?)?, at, rate: None })
+        Ok(Self {
+            problem,
+            settings,
+            equilibrium: Equilibrium::new(problem, Patches::new(problem)?)?,
+            at,
+            rate: None,
+            iterations: 0,
+            counted: 0,
+        })
     }
 
     /// Regions of contact of the last state.
@@ -142,52 +143,76 @@ impl<'a> Walk<'a> {
 
     /// Equilibrium at an approach, from the last state extrapolated, with all contacts that form there.
     pub(super) fn attempt(&mut self, approach: f64, accuracy: Accuracy) -> Result<Attempt, PhysicsError> {
+        let mut state = self.predict(approach)?;
+        let outcome = self.relax(&mut state, accuracy, f64::INFINITY)?;
+        self.conclude(state, outcome)
+    }
+
+    /// As [`Self::attempt`], or nothing where an event dissipates more than a step may: the step would be halved whatever its end.
+    fn attempt_small(&mut self, approach: f64) -> Result<Option<Attempt>, PhysicsError> {
+        let mut state = self.predict(approach)?;
+        let (from, length) = (&self.at.last, approach - self.at.last.approach);
+        let expected = from.totals.energy + length * (from.totals.load + 0.5 * length * from.stiffness);
+        let spare = (LARGE + LOCATED) * self.at.dissipated + self.equilibrium.energy(self.problem, &mut state) - expected;
+        let outcome = self.relax(&mut state, self.settings.accuracy, spare)?;
+        if outcome.abandoned { Ok(None) } else { self.conclude(state, outcome).map(Some) }
+    }
+
+    /// The last state extrapolated.
+    fn predict(&mut self, approach: f64) -> Result<State, PhysicsError> {
         let mut state = State { pressure: filled(self.problem.half_space.points(), 0.0)?, ..self.at.state.clone() };
         let rate = match self.rate.take() {
             Some(rate) => rate,
-            None => self.equilibrium.rate(self.problem, &state)?,
+            None => {
+                // Not counted: another process may have computed it.
+                let rate = self.equilibrium.rate(self.problem, &state)?;
+                self.counted = self.equilibrium.transformed();
+                rate
+            }
         };
-        let before = self.equilibrium.transformed();
         let length = approach - state.approach;
         for (to, rate) in state.displacement.iter_mut().zip(&rate.displacement) {
             *to += length * f64::from(*rate);
         }
+        self.rate = Some(rate);
         state.approach = approach;
-        let mut iterations = 0;
-        let outcome = loop {
-            let outcome = self.equilibrium.find(self.problem, &mut state, accuracy)?;
-            iterations += outcome.iterations as u64;
-            if self.problem.update_bonds(&mut state, true).is_empty() {
-                break outcome;
+        Ok(state)
+    }
+
+    /// Moves a state to the equilibrium at its approach, unless it would dissipate more than `spare`.
+    fn relax(&mut self, state: &mut State, accuracy: Accuracy, spare: f64) -> Result<Outcome, PhysicsError> {
+        self.equilibrium.allow(spare);
+        loop {
+            let outcome = self.equilibrium.find_within(self.problem, state, accuracy)?;
+            self.iterations += outcome.iterations as u64;
+            if outcome.abandoned || self.problem.update_bonds(state, true).is_empty() {
+                return Ok(outcome);
             }
-        };
+        }
+    }
+
+    /// The step from the last state to an equilibrium.
+    fn conclude(&mut self, mut state: State, outcome: Outcome) -> Result<Attempt, PhysicsError> {
         let totals = self.problem.totals(&state);
         self.problem.settle_bonds(&mut state);
-        let next = self.equilibrium.rate(self.problem, &state)?;
+        let rate = self.equilibrium.rate(self.problem, &state)?;
         let from = &self.at.last;
-        let on = |step: &Step, rate: &Rate| OnLoop { approach: step.approach, load: step.totals.load, stiffness: rate.stiffness };
-        let end = OnLoop { approach, load: totals.load, stiffness: next.stiffness };
-        let Work { straight, bend, across } = work_between(on(from, &rate), end);
+        let reached = Step { approach: state.approach, totals, stiffness: rate.stiffness, ..Step::default() };
+        let on_loop = |step: &Step| OnLoop { approach: step.approach, load: step.totals.load, stiffness: step.stiffness };
+        let Work { straight, bend, across } = work_between(on_loop(from), on_loop(&reached));
         let work = straight + bend;
-        let change = totals.energy - from.totals.energy;
-        self.rate = Some(rate);
+        let imbalance = work - (totals.energy - from.totals.energy);
         let step = Step {
             reversal: from.reversal,
-            approach,
-            totals,
-            stiffness: next.stiffness,
-            regions: 0,
-            dissipated: 0.0,
-            imbalance: work - change,
+            imbalance,
             uncertainty: BEND * bend.abs() + JUMP_PART * across,
-            pending: from.pending + work - change,
+            pending: from.pending + imbalance,
             work: from.work + work,
-            iterations,
-            transforms: self.equilibrium.transforms(before),
             residual: outcome.residual,
             converged: outcome.converged,
+            ..reached
         };
-        Ok(Attempt { state, step, across, rate: next })
+        Ok(Attempt { state, step, across, rate })
     }
 
     /// Imbalance up to which a step has no event, with the uncertainty of its integral \[E* dx³\].
@@ -197,7 +222,9 @@ impl<'a> Walk<'a> {
 
     pub(super) fn accept(&mut self, Attempt { state, mut step, rate, .. }: Attempt) {
         let labels = label(self.problem, &state);
-        step.regions = labels.count;
+        (step.regions, step.iterations) = (labels.count, std::mem::take(&mut self.iterations));
+        step.transforms = self.equilibrium.transforms(self.counted);
+        self.counted = self.equilibrium.transformed();
         if step.pending > self.resolution(step.uncertainty) {
             step.dissipated = std::mem::take(&mut step.pending);
             self.at.dissipated += step.dissipated;
@@ -222,25 +249,29 @@ impl<'a> Walk<'a> {
 
     /// Advances by one step, which is halved for a large event and ends at `max_load` if it would cross it. True if it ends there.
     pub(super) fn advance(&mut self, sense: f64, max_load: Option<f64>) -> Result<bool, PhysicsError> {
-        let (mut iterations, mut transforms) = (0, 0);
-        let mut coarser = f64::INFINITY;
+        // Imbalance of the attempt of twice the length.
+        let mut longer = 0.0;
         loop {
             let length = sense * self.settings.step / f64::from(1_u32 << self.at.level);
-            let mut attempt = self.attempt(self.at.state.approach + length, self.settings.accuracy)?;
+            let approach = self.at.state.approach + length;
+            let halves = self.at.level < self.settings.halvings;
+            let attempt = if halves { self.attempt_small(approach)? } else { Some(self.attempt(approach, self.settings.accuracy)?) };
+            let Some(mut attempt) = attempt else {
+                self.at.level += 1;
+                continue;
+            };
             let step = attempt.step;
             let large = step.imbalance.abs() > LARGE * self.at.dissipated;
             // The error of the integral falls by halving the step, an event does not.
-            let falls = step.imbalance.abs() < 0.25 * coarser && self.at.level < DEEPEST;
+            let falls = step.imbalance.abs() < 0.25 * longer && self.at.level < DEEPEST;
             let unsure = attempt.across > LOCATED * self.at.dissipated && self.at.level < DEEPEST;
-            if unsure || large && (self.at.level < self.settings.halvings || falls) {
-                coarser = step.imbalance.abs();
-                (iterations, transforms) = (iterations + step.iterations, transforms + step.transforms);
+            if unsure || large && (halves || falls) {
+                longer = step.imbalance.abs();
                 self.at.level += 1;
                 continue;
             }
             let across = max_load.filter(|most| step.totals.load > *most);
             if let Some(max_load) = across {
-                (iterations, transforms) = (iterations + step.iterations, transforms + step.transforms);
                 attempt = self.reach(max_load, step)?;
             } else {
                 let small = step.imbalance.abs() < LARGE / 8.0 * self.at.dissipated;
@@ -250,43 +281,8 @@ impl<'a> Walk<'a> {
                     (false, false) => self.at.level,
                 };
             }
-            attempt.step.iterations += iterations;
-            attempt.step.transforms += transforms;
             self.accept(attempt);
             return Ok(across.is_some());
-        }
-    }
-
-    /// The equilibrium at `max_load` between the last state and a step beyond it, to the accuracy of the load or of the search.
-    fn reach(&mut self, max_load: f64, beyond: Step) -> Result<Attempt, PhysicsError> {
-        let (mut low, mut high) = ((self.at.last.approach, self.at.last.totals.load), (beyond.approach, beyond.totals.load));
-        let (mut iterations, mut transforms) = (0, 0);
-        let Accuracy { rms, largest, iterations: most } = self.settings.accuracy;
-        let accuracy = Accuracy { rms: SHARPER * rms, largest: SHARPER * largest, iterations: most };
-        let mut searched = 0_u32;
-        loop {
-            searched += 1;
-            // The secant, and bisection where that does not help.
-            let secant = ((max_load - low.1) / (high.1 - low.1)).clamp(0.02, 0.98);
-            let part = if searched.is_multiple_of(3) { 0.5 } else { secant };
-            let approach = low.0 + part * (high.0 - low.0);
-            let mut attempt = self.attempt(approach, accuracy)?;
-            let step = &mut attempt.step;
-            (iterations, transforms) = (iterations + step.iterations, transforms + step.transforms);
-            let load = step.totals.load;
-            if load > max_load {
-                high = (approach, load);
-            } else {
-                low = (approach, load);
-            }
-            let error = (load / max_load - 1.0).abs();
-            let jumps = high.0 - low.0 < CLOSED * self.settings.step && error < JUMP;
-            let reached = error < LOAD_ACCURACY || jumps;
-            if reached || searched == SEARCHED {
-                step.converged &= reached;
-                (step.iterations, step.transforms) = (iterations, transforms);
-                return Ok(attempt);
-            }
         }
     }
 }

@@ -62,6 +62,9 @@ impl EquilibriumPath {
                 (false, true) => Since::Growth,
                 (false, false) => Since::Events,
             };
+            if rounds > 0 {
+                self.energy.charge_last_event();
+            }
             self.restart_predictors(&rates, since, &pending);
             let due = self.overdue();
             let Some(&(lateness, worst)) = due.first() else {

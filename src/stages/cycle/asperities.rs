@@ -56,7 +56,7 @@ pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> R
         turning(of, &cycle, &problem, &settings.max_loads)?,
         merged(of, &cycle)?,
         events(of, &cycle)?,
-        steps(of, &cycle, &problem)?,
+        steps(of, &cycle, &settings.max_loads, &problem)?,
     ];
     Ok(Outcome { files: write_tables(campaign, unit, &tables)?, effort: effort(&cycle, &problem) })
 }

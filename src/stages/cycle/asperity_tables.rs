@@ -72,12 +72,16 @@ pub(super) fn merged(of: Identity<'_>, cycle: &Cycle) -> Result<Frame, StageErro
         .build()?)
 }
 
-pub(super) fn steps(of: Identity<'_>, cycle: &Cycle, problem: &Problem) -> Result<Frame, StageError> {
+pub(super) fn steps(of: Identity<'_>, cycle: &Cycle, loads: &[f64], problem: &Problem) -> Result<Frame, StageError> {
     let steps = &cycle.steps;
     let each = |value: fn(&Step) -> f64| steps.iter().map(value);
     let count = |value: fn(&Step) -> usize| steps.iter().map(value);
     let area_unit = problem.length_m * problem.length_m;
     let tolerance = CONVERGED * problem.rms_height_m;
+    let mut reversals = vec![None; steps.len()];
+    for ((step, _), load) in cycle.turning.iter().zip(loads) {
+        reversals[*step] = Some(*load);
+    }
     Ok(of
         .begin(&schema::STEPS, steps.len())
         .i64("step", (0..steps.len()).map(|k| k as i64))
@@ -116,7 +120,7 @@ pub(super) fn steps(of: Identity<'_>, cycle: &Cycle, problem: &Problem) -> Resul
         .f64("residual", repeat_n(None::<f64>, steps.len()))
         .f64("stiffness_n_m", repeat_n(None::<f64>, steps.len()))
         .f64("stiffness", repeat_n(None::<f64>, steps.len()))
-        .f64("reversal_load", repeat_n(None::<f64>, steps.len()))
+        .f64("reversal_load", reversals)
         .build()?)
 }
 
