@@ -11,7 +11,6 @@ use crate::schema::STEPS;
 use crate::store::parquet::read_table;
 use crate::store::{Frame, FrameError};
 
-
 /// The rows of one branch, in the order of the path.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Branch {

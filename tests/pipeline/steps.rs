@@ -66,6 +66,7 @@ pub fn write(path: &Path, steps: &[Step]) {
 pub fn write_counts(path: &Path, steps: &[Step], [contacts, covered, touching]: [usize; 3]) {
     let reals = |value: fn(&Step) -> f64| steps.iter().map(value).collect::<Vec<f64>>();
     let zeros = || vec![0_usize; steps.len()];
+    let turned: Vec<f64> = steps.iter().filter_map(|step| step.1).collect();
     let frame = named(&STEPS, steps.len())
         .count("step", 0..steps.len())
         .text("branch", steps.iter().map(|step| step.0))

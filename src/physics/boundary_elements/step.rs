@@ -250,13 +250,14 @@ impl<'a> Walk<'a> {
     /// Advances by one step, which is halved for a large event and ends at `max_load` if it would cross it. True if it ends there.
     pub(super) fn advance(&mut self, sense: f64, max_load: Option<f64>) -> Result<bool, PhysicsError> {
         // Imbalance of the attempt of twice the length.
-        let mut longer = 0.0;
+        let mut longer = f64::INFINITY;
         loop {
             let length = sense * self.settings.step / f64::from(1_u32 << self.at.level);
             let approach = self.at.state.approach + length;
             let halves = self.at.level < self.settings.halvings;
             let attempt = if halves { self.attempt_small(approach)? } else { Some(self.attempt(approach, self.settings.accuracy)?) };
             let Some(mut attempt) = attempt else {
+                longer = (LARGE + LOCATED) * self.at.dissipated;
                 self.at.level += 1;
                 continue;
             };

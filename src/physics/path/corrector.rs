@@ -62,9 +62,6 @@ impl EquilibriumPath {
                 (false, true) => Since::Growth,
                 (false, false) => Since::Events,
             };
-            if rounds > 0 {
-                self.energy.charge_last_event();
-            }
             self.restart_predictors(&rates, since, &pending);
             let due = self.overdue();
             let Some(&(lateness, worst)) = due.first() else {
@@ -152,6 +149,10 @@ impl EquilibriumPath {
             Since::Jump(shifted) if !shifted.is_nan() => shifted - potential,
             _ => relaxed,
         });
+        if matches!(since, Since::Jump(_)) {
+            // At constant penetration no work is done: the jump dissipates the decrease of the potential.
+            self.energy.charge_last_event();
+        }
         self.energy.close(&mut self.log, target, potential);
         let load = self.predictor.totals(target).load_n;
         if jump {
