@@ -28,25 +28,9 @@ impl Equilibrium {
     /// # Errors
     /// Not enough memory.
     pub fn find(&mut self, problem: &Problem, state: &mut State, accuracy: Accuracy) -> Result<Outcome, PhysicsError> {
-        self.allow(f64::INFINITY);
-        self.find_within(problem, state, accuracy)
-    }
-
-    /// Energy of a state \[E* dx³\].
-    pub(super) fn energy(&mut self, problem: &Problem, state: &mut State) -> f64 {
-        self.minimiser.energy(problem, state)
-    }
-
-    /// Energy that the next minimisations may dissipate together \[E* dx³\].
-    pub(super) fn allow(&mut self, energy: f64) {
-        self.minimiser.spare = energy;
-    }
-
-    /// As [`Self::find`], given up where the energy falls by more than is [allowed](Self::allow).
-    pub(super) fn find_within(&mut self, problem: &Problem, state: &mut State, accuracy: Accuracy) -> Result<Outcome, PhysicsError> {
         let events: Option<&mut dyn Follow> = if self.patches.are_none() { None } else { Some(&mut self.patches) };
         let first = self.minimiser.minimise_with(problem, state, accuracy, events);
-        if first.converged || first.abandoned {
+        if first.converged {
             return Ok(first);
         }
         let second = self.minimiser.newton(problem, state, accuracy)?;

@@ -62,8 +62,6 @@ pub struct Outcome {
     pub residual: f64,
     /// True if the accuracy was reached.
     pub converged: bool,
-    /// True if the minimisation was given up, since the energy fell by more than was allowed.
-    pub abandoned: bool,
 }
 
 /// Work space.
@@ -74,8 +72,6 @@ pub struct Minimiser {
     pub(super) previous: Gradient,
     /// About the mean of pressure and tension of the whole grid, which is subtracted before the gradient is rounded.
     pub(super) centre: f64,
-    /// Energy that may still be dissipated before a minimisation is given up \[E* dx³\].
-    pub(super) spare: f64,
     pub(super) slopes: Vec<f32>,
     pub(super) direction: Vec<f32>,
     pub(super) response: Vec<f32>,
@@ -95,10 +91,6 @@ pub(super) struct Underway<'a> {
     pub(super) pressed: &'a [f32],
     /// Displacement by local relaxation, the response to which is not yet known.
     pub(super) change: &'a mut [f32],
-    /// About the mean of pressure and tension of the grid.
-    pub(super) centre: f64,
-    /// Energy that may still be dissipated.
-    pub(super) spare: &'a mut f64,
 }
 
 impl Underway<'_> {
@@ -110,9 +102,9 @@ impl Underway<'_> {
 
 /// Local relaxation after events.
 pub(super) trait Follow {
-    /// Brings the places around the points whose bonds have changed to equilibrium, given from the largest residual to the smallest. The points
-    /// whose bond has changed since, with the bond before.
-    fn follow(&mut self, on: Underway<'_>, changed: &[usize], accuracy: Accuracy) -> Vec<(usize, Bonding)>;
+    /// Brings the places around the points whose bonds have changed to equilibrium, given from the largest residual to the smallest. `centre` is the mean
+    /// of pressure and tension of the grid. The points whose bond has changed since, with the bond before.
+    fn follow(&mut self, on: Underway<'_>, changed: &[usize], centre: f64, accuracy: Accuracy) -> Vec<(usize, Bonding)>;
 }
 
 impl Minimiser {
@@ -130,7 +122,6 @@ impl Minimiser {
             gradient: gradient()?,
             previous: gradient()?,
             centre: 0.0,
-            spare: f64::INFINITY,
             slopes: field()?,
             direction: field()?,
             response: field()?,
@@ -175,8 +166,7 @@ impl Minimiser {
                 self.pairs.face(&self.gradient);
                 continue;
             }
-            outcome.abandoned = self.spare < 0.0;
-            if outcome.converged || outcome.abandoned || outcome.iterations >= accuracy.iterations {
+            if outcome.converged || outcome.iterations >= accuracy.iterations {
                 self.arrive(state);
                 return outcome;
             }
@@ -223,10 +213,10 @@ impl Minimiser {
         events: &mut dyn Follow,
     ) -> Residual {
         let changed = self.sorted(changed);
-        let Self { way, direction, single, spare, .. } = self;
+        let Self { way, direction, single, .. } = self;
         direction.fill(0.0);
-        let on = Underway { problem, state, moved: &way.moved, pressed: &way.pressed, change: direction, centre: self.centre, spare };
-        let changed = events.follow(on, &changed, accuracy);
+        let on = Underway { problem, state, moved: &way.moved, pressed: &way.pressed, change: direction };
+        let changed = events.follow(on, &changed, self.centre, accuracy);
         way.rebond(problem, &state.bonds, &changed);
         let columns = problem.half_space.columns();
         let sums = problem.half_space.forward(single, direction.par_chunks(columns), |from, row| {
@@ -253,12 +243,6 @@ impl Minimiser {
         }
         self.way.depart(problem, state, self.centre);
         self.here(problem, state)
-    }
-
-    /// Energy of a state, the pressure of which is computed \[E* dx³\].
-    pub(super) fn energy(&mut self, problem: &Problem, state: &mut State) -> f64 {
-        problem.refresh(state, &mut self.double);
-        problem.totals(state).energy
     }
 
     /// Evaluates the law at a state that stays.
@@ -387,7 +371,6 @@ impl Minimiser {
         std::mem::swap(&mut self.gradient, &mut self.previous);
         let there = self.evaluate(problem, state, (length, descent.mean), transform);
         if trial.suffices(length, &there) {
-            self.spare += trial.energy;
             return Some((Taken { length, largest: length * descent.largest }, there.residual));
         }
         self.shorten(problem, state, trial)
@@ -400,7 +383,6 @@ impl Minimiser {
             let shorter = trial.shorter();
             let there = self.evaluate(problem, state, (shorter - trial.length, mean), false);
             if trial.suffices(shorter, &there) {
-                self.spare += trial.energy;
                 return Some((Taken { length: shorter, largest: shorter * largest }, there.residual));
             }
         }

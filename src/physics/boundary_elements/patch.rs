@@ -86,21 +86,20 @@ impl Patches {
         place: Place,
         smallest: usize,
         is_open: impl Fn(usize) -> bool,
-        accuracy: Accuracy,
+        (centre, accuracy): (f64, Accuracy),
     ) -> Option<(usize, Vec<(usize, Bonding)>)> {
         let mut k = smallest;
         self.0[k].cut(on, place);
         loop {
             let (smaller, larger) = self.0.split_at_mut(k + 1);
             let patch = &mut smaller[k];
-            (patch.minimiser.centre, patch.minimiser.spare) = (on.centre, *on.spare);
+            patch.minimiser.centre = centre;
             let outcome = patch.minimiser.minimise(&patch.problem, &mut patch.state, accuracy);
-            *on.spare = patch.minimiser.spare;
             if k == smallest && outcome.iterations == 0 {
                 return None;
             }
             match larger.first_mut() {
-                Some(larger) if !outcome.abandoned && is_open(larger.side()) && patch.has_changed_at_border(on, place) => {
+                Some(larger) if is_open(larger.side()) && patch.has_changed_at_border(on, place) => {
                     larger.cut(on, place);
                     larger.take_over(patch);
                     k += 1;
@@ -116,13 +115,13 @@ impl Patches {
 
 impl Follow for Patches {
     /// Places follow one another in the order of their largest residuals; one that would overlap an earlier one is left to the whole grid.
-    fn follow(&mut self, mut on: Underway<'_>, changed: &[usize], accuracy: Accuracy) -> Vec<(usize, Bonding)> {
+    fn follow(&mut self, mut on: Underway<'_>, changed: &[usize], centre: f64, accuracy: Accuracy) -> Vec<(usize, Bonding)> {
         let grid = &on.problem.half_space;
         let accuracy = Accuracy { rms: f64::INFINITY, largest: FINISH * accuracy.largest, iterations: ITERATIONS };
         let mut rest = changed.to_vec();
         let mut done: Vec<(Place, usize)> = Vec::new();
         let mut rebonded = Vec::new();
-        while let Some(first) = rest.first().copied().filter(|_| done.len() < PLACES && *on.spare >= 0.0) {
+        while let Some(first) = rest.first().copied().filter(|_| done.len() < PLACES) {
             let (near, others) = rest.into_iter().partition(|point| distance(grid, place(grid, *point), place(grid, first)) <= NEAR);
             rest = others;
             let (place, extent) = surroundings(grid, first, near);
@@ -130,7 +129,7 @@ impl Follow for Patches {
             let enough = ROOM.0 * extent + ROOM.1;
             let smallest = self.0.iter().position(|patch| patch.side() >= enough).unwrap_or(self.0.len() - 1);
             if is_open(self.0[smallest].side())
-                && let Some((side, changed)) = self.relax(&mut on, place, smallest, is_open, accuracy)
+                && let Some((side, changed)) = self.relax(&mut on, place, smallest, is_open, (centre, accuracy))
             {
                 done.push((place, side));
                 rebonded.extend(changed);

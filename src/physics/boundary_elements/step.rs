@@ -144,18 +144,8 @@ impl<'a> Walk<'a> {
     /// Equilibrium at an approach, from the last state extrapolated, with all contacts that form there.
     pub(super) fn attempt(&mut self, approach: f64, accuracy: Accuracy) -> Result<Attempt, PhysicsError> {
         let mut state = self.predict(approach)?;
-        let outcome = self.relax(&mut state, accuracy, f64::INFINITY)?;
+        let outcome = self.relax(&mut state, accuracy)?;
         self.conclude(state, outcome)
-    }
-
-    /// As [`Self::attempt`], or nothing where an event dissipates more than a step may: the step would be halved whatever its end.
-    fn attempt_small(&mut self, approach: f64) -> Result<Option<Attempt>, PhysicsError> {
-        let mut state = self.predict(approach)?;
-        let (from, length) = (&self.at.last, approach - self.at.last.approach);
-        let expected = from.totals.energy + length * (from.totals.load + 0.5 * length * from.stiffness);
-        let spare = (LARGE + LOCATED) * self.at.dissipated + self.equilibrium.energy(self.problem, &mut state) - expected;
-        let outcome = self.relax(&mut state, self.settings.accuracy, spare)?;
-        if outcome.abandoned { Ok(None) } else { self.conclude(state, outcome).map(Some) }
     }
 
     /// The last state extrapolated.
@@ -179,13 +169,12 @@ impl<'a> Walk<'a> {
         Ok(state)
     }
 
-    /// Moves a state to the equilibrium at its approach, unless it would dissipate more than `spare`.
-    fn relax(&mut self, state: &mut State, accuracy: Accuracy, spare: f64) -> Result<Outcome, PhysicsError> {
-        self.equilibrium.allow(spare);
+    /// Moves a state to the equilibrium at its approach.
+    fn relax(&mut self, state: &mut State, accuracy: Accuracy) -> Result<Outcome, PhysicsError> {
         loop {
-            let outcome = self.equilibrium.find_within(self.problem, state, accuracy)?;
+            let outcome = self.equilibrium.find(self.problem, state, accuracy)?;
             self.iterations += outcome.iterations as u64;
-            if outcome.abandoned || self.problem.update_bonds(state, true).is_empty() {
+            if self.problem.update_bonds(state, true).is_empty() {
                 return Ok(outcome);
             }
         }
@@ -255,12 +244,7 @@ impl<'a> Walk<'a> {
             let length = sense * self.settings.step / f64::from(1_u32 << self.at.level);
             let approach = self.at.state.approach + length;
             let halves = self.at.level < self.settings.halvings;
-            let attempt = if halves { self.attempt_small(approach)? } else { Some(self.attempt(approach, self.settings.accuracy)?) };
-            let Some(mut attempt) = attempt else {
-                longer = (LARGE + LOCATED) * self.at.dissipated;
-                self.at.level += 1;
-                continue;
-            };
+            let mut attempt = self.attempt(approach, self.settings.accuracy)?;
             let step = attempt.step;
             let large = step.imbalance.abs() > LARGE * self.at.dissipated;
             // The error of the integral falls by halving the step, an event does not.

@@ -25,11 +25,11 @@ pub(super) struct There {
     pub(super) beyond: f64,
 }
 
-/// The last trial of a step: its length, and change of the energy and slope there.
+/// The last trial of a step: its length, and energy and slope there.
 pub(super) struct Trial {
     pub(super) descent: Descent,
     pub(super) length: f64,
-    pub(super) energy: f64,
+    energy: f64,
     slope: f64,
 }
 
