@@ -175,12 +175,12 @@ choice! {
     }
 }
 choice! {
-    /// Rule for a contact spot that grows over the centre of another asperity.
+    /// Rule for contact spots that grow together.
     Coalescence {
-        /// The asperity is absorbed by the larger contact spot and carries no load.
-        Cover = "cover",
         /// Equal-area merging (ICHA): touching contact spots become one spot of the same area.
         Merge = "merge",
+        /// An asperity whose centre a larger contact spot reaches is absorbed and carries no load.
+        Cover = "cover",
         /// No rule, as in the text of the paper.
         None = "none",
     }

@@ -88,7 +88,7 @@ pub struct ModelParams {
     pub interaction: Interaction,
     /// Boundary condition of the square.
     pub boundary: Boundary,
-    /// Coalescence rule: a contact grows over the centre of another asperity.
+    /// Coalescence rule: contacts grow together.
     pub coalescence: Coalescence,
     /// When a free asperity jumps into contact.
     pub jump_in: JumpIn,
@@ -172,7 +172,7 @@ impl Default for ModelParams {
             method: Method::Asperities,
             interaction: Interaction::Spots,
             boundary: Boundary::Periodic,
-            coalescence: Coalescence::Cover,
+            coalescence: Coalescence::Merge,
             jump_in: JumpIn::Wu,
             as_printed: Vec::new(),
             allow_low_tabor: false,

@@ -122,7 +122,7 @@ pub enum PhysicsError {
     /// A loop with negative dissipated energy.
     #[error(
         "negative dissipated energy of the loop to F/(E* A0) = {max_load}: Θ = {loss_j:e} J ({fraction:.1e} of the work of loading)\n\
-         help: reduce cycle.max_load; with model.coalescence = \"cover\", which does not conserve energy, try \"merge\" or \"none\""
+         help: reduce cycle.max_load, or set model.method = \"boundary_elements\", which has the energy of weak adhesion as well"
     )]
     NegativeDissipation {
         /// F/(E* A0) at the load reversal; not a number under displacement control.
@@ -135,7 +135,7 @@ pub enum PhysicsError {
     /// The sum of the event energies differs from the loop area.
     #[error(
         "energy-balance error above half of Θ in the loop to F/(E* A0) = {max_load}: Θ = {loss_j:e} J, sum over events {events_j:e} J\n\
-         help: reduce cycle.max_load; with model.coalescence = \"cover\", which does not conserve energy, try \"merge\" or \"none\""
+         help: reduce cycle.max_load, or set model.method = \"boundary_elements\", which has the energy of weak adhesion as well"
     )]
     EnergyImbalance {
         /// F/(E* A0) at the load reversal; not a number under displacement control.

@@ -184,7 +184,7 @@ pub(super) static KEYS: &[Key] = &[
     key!(model.method, "", "Method of the cycle. Boundary elements read none of the other keys of this table, and refuse `boundary = \"isolated\"` for periodic surfaces."; word Method),
     key!(model.interaction, "", "Elastic interaction between contact spots."; word Interaction),
     key!(model.boundary, "", "Surroundings of the nominal square."; word Boundary),
-    key!(model.coalescence, "", "Rule for a contact spot that grows over the centre of another asperity."; word Coalescence),
+    key!(model.coalescence, "", "Rule for contact spots that grow together."; word Coalescence),
     key!(model.jump_in, "", "Criterion for the jump of a free asperity into contact."; word JumpIn),
     key!(model.as_printed, "", "Errata of the paper that are restored: equations used as printed."; Kind::Words(Slip::MEANINGS),
         |slips: &Vec<Slip>| Value::Words(slips.iter().map(|slip| slip.word()).collect()),
