@@ -21,7 +21,6 @@ cycle = pq.read_table(run / "statistics/cycles.parquet").to_pylist()[0]
 folder = run / "cycles" / cycle["cycle_id"]
 steps = pq.read_table(folder / "steps.parquet").select(["step", "branch", "penetration", "load"]).to_pylist()
 contacts = pq.read_table(folder / "contacts.parquet").to_pylist()
-asperities = pq.read_table(run / "asperities" / f"{cycle['asperities_id']}.parquet").to_pydict()
 length = cycle["length_m"]
 
 penetration, load = (np.array([step[name] for step in steps]) for name in ("penetration", "load"))
@@ -48,7 +47,7 @@ def spots(k):
     circles = ""
     for spot in contacts:
         if spot["step"] == steps[k]["step"] and spot["state"] == "contact":
-            x, y = (asperities[name][spot["asperity_id"]] / length * SIDE for name in ("x_m", "y_m"))
+            x, y = (spot[name] / length * SIDE for name in ("centroid_x_m", "centroid_y_m"))
             colour = "#d55e00" if spot["load_n"] < 0 else "#0072b2"
             circles += f'<circle cx="{x:.1f}" cy="{SIDE - y:.1f}" r="{spot["contact_radius_m"] / length * SIDE:.1f}" fill="{colour}"/>'
     return circles

@@ -22,7 +22,6 @@ cases = pl.read_parquet(run / "statistics/realizations.parquet")
 case = cases.sort(["magnification", "realization", "max_load"], descending=[True, False, True]).row(0, named=True)
 steps = pl.read_parquet(run / "cycles" / case["cycle_id"] / "steps.parquet")
 contacts = pl.read_parquet(run / "cycles" / case["cycle_id"] / "contacts.parquet")
-asperities = pl.read_parquet(run / "asperities" / f"{case['asperities_id']}.parquet")
 
 unloading = steps.filter(max_load=case["max_load"])
 reversal = unloading["penetration"][0]
@@ -54,9 +53,9 @@ with h5py.File(run / "surfaces" / f"{case['surface_id']}.h5") as file:
 # The row is x.
 right.imshow(heights.T, origin="lower", extent=(0, 1e3 * length, 0, 1e3 * length), cmap="Greys_r")
 at_reversal = contacts.filter(step=loading["step"][-1]).filter(pl.col("state") == "contact")
-for spot in at_reversal.join(asperities, on="asperity_id").iter_rows(named=True):
+for spot in at_reversal.iter_rows(named=True):
     color = "#D55E00" if spot["load_n"] < 0 else "#0072B2"
-    right.add_patch(plt.Circle((1e3 * spot["x_m"], 1e3 * spot["y_m"]), 1e3 * spot["contact_radius_m"], color=color, alpha=0.75, lw=0))
+    right.add_patch(plt.Circle((1e3 * spot["centroid_x_m"], 1e3 * spot["centroid_y_m"]), 1e3 * spot["contact_radius_m"], color=color, alpha=0.75, lw=0))
 handles = [plt.Line2D([], [], marker="o", ls="", color=color) for color in ("#0072B2", "#D55E00")]
 right.legend(handles, ["compressive", "tensile"], loc="lower left", fontsize=7, framealpha=0.9)
 right.set(xlabel="x [mm]", ylabel="y [mm]", title="contacts at the maximum load")

@@ -159,8 +159,8 @@ pub static CONTACTS: Table = Table {
             .or_null()
             .from("Eqs 6-8"),
         METHOD,
-        real("centroid_x_m", "m", "Centroid x of a region on the periodic square; null for asperities").or_null(),
-        real("centroid_y_m", "m", "Centroid y of a region on the periodic square; null for asperities").or_null(),
+        real("centroid_x_m", "m", "Centre x of a contact spot, that of its asperity or merged contact; of boundary elements, centroid x of a region on the periodic square").or_null(),
+        real("centroid_y_m", "m", "Centre y of a contact spot, as above").or_null(),
         real("area_m2", "m^2", "Area of a region; null for asperities").or_null(),
         real("perimeter_m", "m", "Length of the edge of a region (Crofton's formula); null for asperities").or_null(),
         count("summit_count", "Asperities of the table asperities inside a region, those of mirror images included; null for asperities")

@@ -66,7 +66,13 @@ pub fn write(path: &Path, steps: &[Step]) {
 pub fn write_counts(path: &Path, steps: &[Step], [contacts, covered, touching]: [usize; 3]) {
     let reals = |value: fn(&Step) -> f64| steps.iter().map(value).collect::<Vec<f64>>();
     let zeros = || vec![0_usize; steps.len()];
-    let turned: Vec<f64> = steps.iter().filter_map(|step| step.1).collect();
+    // A load reverses at the first loading step that reaches it.
+    let mut reversals = vec![None; steps.len()];
+    for load in steps.iter().filter_map(|step| step.1) {
+        if let Some(at) = steps.iter().position(|step| step.1.is_none() && step.2 >= load * (1.0 - 1e-6)) {
+            reversals[at] = Some(load);
+        }
+    }
     let frame = named(&STEPS, steps.len())
         .count("step", 0..steps.len())
         .text("branch", steps.iter().map(|step| step.0))
@@ -104,7 +110,7 @@ pub fn write_counts(path: &Path, steps: &[Step], [contacts, covered, touching]: 
         .f64("residual", vec![None; steps.len()])
         .f64("stiffness_n_m", vec![None; steps.len()])
         .f64("stiffness", vec![None; steps.len()])
-        .f64("reversal_load", steps.iter().map(|step| (step.0 == "loading" && turned.contains(&step.2)).then_some(step.2)))
+        .f64("reversal_load", reversals)
         .build()
         .unwrap();
     write_table(path, &frame, &[]).unwrap();

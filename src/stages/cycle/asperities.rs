@@ -52,7 +52,7 @@ pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> R
     let cycle = outcome?;
     let of = Identity::of(campaign, unit);
     let tables = [
-        contacts(of, &cycle)?,
+        contacts(of, &cycle, &summits)?,
         turning(of, &cycle, &problem, &settings.max_loads)?,
         merged(of, &cycle)?,
         events(of, &cycle)?,

@@ -6,8 +6,10 @@ use crate::physics::contact::Merged;
 use crate::physics::contact::rows::Kept;
 use crate::physics::contact::{Problem, Status};
 use crate::physics::cycle::{Cycle, Step};
+use crate::physics::surface::summits::Summit;
 use crate::schema;
 use crate::store::Frame;
+use std::collections::HashMap;
 use std::iter::repeat_n;
 
 /// A state counts as converged below this residual, of the rms height.
@@ -124,8 +126,18 @@ pub(super) fn steps(of: Identity<'_>, cycle: &Cycle, loads: &[f64], problem: &Pr
         .build()?)
 }
 
-pub(super) fn contacts(of: Identity<'_>, cycle: &Cycle) -> Result<Frame, StageError> {
-    let spots = &cycle.contacts;
+/// Centre of each stored contact spot \[m\]. Numbers of merged spots go on during each unloading from that of its load reversal.
+fn centres(cycle: &Cycle, summits: &[Summit]) -> Vec<Option<[f64; 2]>> {
+    let branch = |step: usize| cycle.steps[step].max_load.map(f64::to_bits);
+    let merged: HashMap<_, _> = cycle.merged.iter().map(|m| ((branch(m.step), m.asperity), m.spot.place_m)).collect();
+    let of_asperity = |i: usize| summits.get(i).map(|summit| [summit.x_m, summit.y_m]);
+    let of_merged = |step: usize, i: usize| merged.get(&(branch(step), i)).or_else(|| merged.get(&(None, i))).copied();
+    cycle.contacts.iter().map(|spot| of_asperity(spot.asperity).or_else(|| of_merged(spot.step, spot.asperity))).collect()
+}
+
+pub(super) fn contacts(of: Identity<'_>, cycle: &Cycle, summits: &[Summit]) -> Result<Frame, StageError> {
+    let (spots, centres) = (&cycle.contacts, centres(cycle, summits));
+    let centre = |axis: usize| centres.iter().map(move |centre| centre.map(|centre| centre[axis]));
     let step = |k: usize| &cycle.steps[k];
     Ok(of
         .begin(&schema::CONTACTS, spots.len())
@@ -139,8 +151,8 @@ pub(super) fn contacts(of: Identity<'_>, cycle: &Cycle) -> Result<Frame, StageEr
         .f64("penetration_m", spots.iter().map(|s| s.penetration_m))
         .f64("interaction_m", spots.iter().map(|s| s.interaction_m))
         .text("method", repeat_n(METHOD, spots.len()))
-        .f64("centroid_x_m", repeat_n(None::<f64>, spots.len()))
-        .f64("centroid_y_m", repeat_n(None::<f64>, spots.len()))
+        .f64("centroid_x_m", centre(0))
+        .f64("centroid_y_m", centre(1))
         .f64("area_m2", repeat_n(None::<f64>, spots.len()))
         .f64("perimeter_m", repeat_n(None::<f64>, spots.len()))
         .i64("summit_count", repeat_n(None::<i64>, spots.len()))

@@ -135,7 +135,9 @@ def curves(run: Run, quantity: str = "area", ax: Axes | None = None) -> Axes:
 
 
 def contacts(run: Run, id: str | None = None, step: int | None = None, ax: Axes | None = None) -> Axes:
-    """Contact spots of one cycle of the asperity model at a stored step, blue if compressive and orange if tensile.
+    """Contact spots of one cycle at a stored step, blue if compressive and orange if tensile.
+
+    Regions of boundary elements are drawn as circles of the same area.
 
     Parameters
     ----------
@@ -157,7 +159,7 @@ def contacts(run: Run, id: str | None = None, step: int | None = None, ax: Axes 
 
     cycle = _cycle(run, id)
     table = run.contacts(cycle)
-    number, state, asperity, radius, load = _columns(table, "step", "state", "asperity_id", "contact_radius_m", "load_n")
+    number, state, radius, load = _columns(table, "step", "state", "contact_radius_m", "load_n")
     touching = state == "contact"
     if step is None:
         known, counts = np.unique(number[touching], return_counts=True)
@@ -165,7 +167,7 @@ def contacts(run: Run, id: str | None = None, step: int | None = None, ax: Axes 
             raise ValueError(f"the cycle {cycle} has no stored contacts\nhelp: set `cycle.contacts` to \"turning\" or \"all\" in the spec")
         step = int(known[np.argmax(counts)])
     rows = np.flatnonzero(touching & (number == step))
-    centres = _centres(run, cycle, asperity[rows])
+    centres = np.stack(_columns(table, "centroid_x_m", "centroid_y_m"), axis=1)[rows].astype(float)
     colours = np.where(load[rows].astype(float) < 0, PALETTE[1], PALETTE[0])
     diameter = 2e6 * radius[rows].astype(float)
     spots = EllipseCollection(diameter, diameter, np.zeros(rows.size), units="xy", offsets=1e6 * centres, facecolors=colours, alpha=0.85)
@@ -183,13 +185,6 @@ def _facts(run: Run, cycle: str, column: str) -> Any:
 
 def _side(run: Run, cycle: str) -> float:
     return float(_facts(run, cycle, "length_m"))
-
-
-def _centres(run: Run, cycle: str, ids: Any) -> Any:
-    """Centres of asperities and merged contacts [m]."""
-    x, y = _columns(run.asperities(_facts(run, cycle, "surface_id")), "x_m", "y_m")
-    merged = {row["asperity_id"]: (row["x_m"], row["y_m"]) for row in run.merged(cycle).to_pylist()}
-    return np.array([(x[int(of)], y[int(of)]) if int(of) < len(x) else merged[int(of)] for of in ids]).reshape(-1, 2)
 
 
 def spectrum(run: Run, id: str | None = None, ax: Axes | None = None) -> Axes:
