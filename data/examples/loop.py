@@ -6,6 +6,7 @@ RUN is the output folder of a finished run (default: data/runs/quickstart), FIGU
 Needs numpy, polars, h5py and matplotlib.
 """
 
+import itertools
 import pathlib
 import sys
 
@@ -50,12 +51,17 @@ left.legend(frameon=False, loc="upper left")
 
 with h5py.File(run / "surfaces" / f"{case['surface_id']}.h5") as file:
     heights, length = file["height_m"][:], file.attrs["length_m"]
+side = 1e3 * length
 # The row is x.
-right.imshow(heights.T, origin="lower", extent=(0, 1e3 * length, 0, 1e3 * length), cmap="Greys_r")
+right.imshow(heights.T, origin="lower", extent=(0, side, 0, side), cmap="Greys_r")
 at_reversal = contacts.filter(step=loading["step"][-1]).filter(pl.col("state") == "contact")
 for spot in at_reversal.iter_rows(named=True):
     color = "#D55E00" if spot["load_n"] < 0 else "#0072B2"
-    right.add_patch(plt.Circle((1e3 * spot["centroid_x_m"], 1e3 * spot["centroid_y_m"]), 1e3 * spot["contact_radius_m"], color=color, alpha=0.75, lw=0))
+    x, y, radius = (1e3 * spot[name] for name in ("centroid_x_m", "centroid_y_m", "contact_radius_m"))
+    # With the images across the edges of the periodic square.
+    for centre in itertools.product((x - side, x, x + side), (y - side, y, y + side)):
+        if all(-radius < c < side + radius for c in centre):
+            right.add_patch(plt.Circle(centre, radius, color=color, alpha=0.75, lw=0))
 handles = [plt.Line2D([], [], marker="o", ls="", color=color) for color in ("#0072B2", "#D55E00")]
 right.legend(handles, ["compressive", "tensile"], loc="lower left", fontsize=7, framealpha=0.9)
 right.set(xlabel="x [mm]", ylabel="y [mm]", title="contacts at the maximum load")
