@@ -87,14 +87,16 @@ pub enum PhysicsError {
     },
     /// Merged contacts fill the square.
     #[error(
-        "the merged contacts have the area {share:.3} A0 at the mean penetration {approach_m:e} m and leave no gap\n\
-         help: reduce cycle.max_load, or set model.coalescence = \"cover\""
+        "the merged contacts have the area {share:.3} A0 at the mean penetration {approach_m:e} m and leave no gap\nhelp: {}",
+        excess_help(*load_before_n)
     )]
     FullContact {
-        /// Approach δ \[m\].
+        /// Mean penetration Δ \[m\].
         approach_m: f64,
         /// Area over that of the square.
         share: f64,
+        /// Load at the increment before \[N\].
+        load_before_n: f64,
     },
     /// Full contact at a load reversal, with bonds that open at edges only.
     #[error(

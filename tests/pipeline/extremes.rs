@@ -83,6 +83,7 @@ fn e2e_without_adhesion_nothing_is_dissipated() {
 #[test]
 fn e2e_a_dissipated_energy_of_absorption_is_a_warning() {
     let text = spec("", "work_of_adhesion_j_m2 = 1e-3", "0.002").replace("magnification = 8", "magnification = 16");
+    let text = text.replace("[model]", "[model]\ncoalescence = \"cover\"");
     let bench = Bench::new(&text);
     let run = bench.verb("run", &[]);
     assert_eq!(code(&run), 0, "{}", stderr(&run));

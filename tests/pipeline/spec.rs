@@ -8,7 +8,7 @@ pub mod schema;
 
 use std::path::{Path, PathBuf};
 
-use hysteron::model::Normalization;
+use hysteron::model::{Coalescence, Normalization};
 use hysteron::spec::{CaseParams, MEASURED, Realizations, Spec};
 
 /// The files of a folder of the package, with their names and texts, sorted.
@@ -141,9 +141,10 @@ fn val_the_paper_is_eight_cases() {
         one("fig5", 128, 0.95),
     ];
     assert_eq!(told, wanted);
-    // What the paper does not vary is the default, but for the constant of the spectrum.
+    // What the paper does not vary is the default, but for the constant of the spectrum and the coalescence rule.
     let mut base = spec.base;
-    assert_eq!(base.surface.normalization, Normalization::Spectrum);
+    assert_eq!((base.surface.normalization, base.model.coalescence), (Normalization::Spectrum, Coalescence::Cover));
+    base.model.coalescence = CaseParams::default().model.coalescence;
     base.surface.normalization = Normalization::Sample;
     base.cycle.max_load = CaseParams::default().cycle.max_load;
     assert_eq!(base, CaseParams::default());

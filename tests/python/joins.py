@@ -83,10 +83,12 @@ def identities(folder):
             cycle = cycles[row["cycle_id"]]
             assert all(row[name] == cycle[name] for name in ["case_id", "realization", "surface_id", "asperities_id"])
             compared += 1
-    # From an event to its asperity.
+    # From an event to its asperity, or to its merged contact.
     found = duckdb.sql(f"""
         select count(*) from '{folder}/cycles/*/events.parquet' e join '{folder}/statistics/cycles.parquet' c using (cycle_id)
-        join '{folder}/asperities/*.parquet' a on a.surface_id = c.surface_id and a.asperity_id = e.asperity_id""").fetchall()
+        where exists (from '{folder}/asperities/*.parquet' a where a.surface_id = c.surface_id and a.asperity_id = e.asperity_id)
+        or exists (from '{folder}/cycles/*/merged.parquet' m where m.cycle_id = e.cycle_id and m.asperity_id = e.asperity_id
+            and (m.branch = 'loading' or m.max_load = e.max_load))""").fetchall()
     assert found[0][0] == sum(len(rows(path)) for path in folder.glob("cycles/*/events.parquet"))
     return compared
 

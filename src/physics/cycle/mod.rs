@@ -259,9 +259,10 @@ fn travel(
             Next::Rest => return Ok(Some(path.into_checkpoint())),
             Next::End => return Ok(None),
         }
+        let before = path.totals().load_n;
         path.step(bound)?;
         if problem.merges() {
-            problem.check_room(path.state(), path.totals().area_m2)?;
+            problem.check_room(path.state(), path.totals().area_m2, before)?;
         }
     }
 }

@@ -40,7 +40,7 @@ const OTHERS: [(&str, &str, usize); 30] = [
     ("model.method", "\"boundary_elements\"", 2),
     ("model.interaction", "\"point\"", 2),
     ("model.boundary", "\"isolated\"", 2),
-    ("model.coalescence", "\"merge\"", 2),
+    ("model.coalescence", "\"cover\"", 2),
     ("model.jump_in", "\"jkr\"", 2),
     ("model.as_printed", "[\"eq8\"]", 2),
     ("model.allow_low_tabor", "true", 2),
