@@ -95,9 +95,10 @@ impl Closer<'_> {
         };
         let (loading, unloading) = (on("loading", None), on("unloading", Some(self.max_load)));
         let nearest = |wanted: f64| loading.iter().min_by(|u, v| (load(u) - wanted).abs().total_cmp(&(load(v) - wanted).abs())).copied();
+        let reversal = self.steps.f64_or_null("reversal_load")?.iter().position(|load| *load == Some(self.max_load));
         let found = [
             (Landmark::Half, nearest(0.5 * self.max_load)),
-            (Landmark::Turning, nearest(self.max_load)),
+            (Landmark::Turning, loading.iter().find(|step| usize::try_from(**step).ok() == reversal).copied()),
             (Landmark::NoLoad, unloading.iter().find(|step| load(step) <= 0.0).copied()),
             (Landmark::PullOff, unloading.iter().min_by(|u, v| load(u).total_cmp(&load(v))).filter(|step| load(step) < 0.0).copied()),
         ];

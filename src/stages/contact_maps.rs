@@ -29,9 +29,7 @@ pub(super) fn contact_maps(campaign: &Campaign, standings: &[Standing], methods:
     let table = |table: &'static schema::Table| read_table(&campaign.cycle_dir(asperities).join(format!("{}.parquet", table.name)), table);
     let (steps, contacts, merged) = (table(&schema::STEPS)?, table(&schema::CONTACTS)?, table(&schema::MERGED)?);
     let summits = read_table(&campaign.asperities_path(surface), &schema::ASPERITIES)?;
-    let (branches, load) = (steps.text("branch")?, steps.f64("load")?);
-    let off = |step: &usize| (load[*step] - loads[row]).abs();
-    let reversal = (0..load.len()).filter(|step| branches[*step] == "loading").min_by(|a, b| off(a).total_cmp(&off(b)));
+    let reversal = steps.f64_or_null("reversal_load")?.iter().position(|load| *load == Some(loads[row]));
     let kept = contacts.i64("step")?;
     let Some(step) = reversal.map(|step| step as i64).filter(|step| kept.contains(step)) else { return Ok(None) };
     let params = &campaign.cases[asperities.case].case.params;

@@ -127,18 +127,22 @@ fn cycle(campaign: &Campaign, unit: &CycleUnit) -> Result<Value, StageError> {
     of["loops"] = loops(&tables, &spots, energy, header.length_m)?;
     of["ground"] = json!(ground(heights.view()));
     of["periodic"] = json!(params.model.boundary == Boundary::Periodic);
-    of["ids"] = json!(spots.ids.keys().collect::<Vec<_>>());
+    of["ids"] = json!(spots.ids.keys().map(|key| key.1).collect::<Vec<_>>());
     of["x"] = json!(spots.at.iter().map(|at| at.0).collect::<Vec<_>>());
     of["y"] = json!(spots.at.iter().map(|at| at.1).collect::<Vec<_>>());
     of["merged"] = Value::Object(spots.merged);
     Ok(of)
 }
 
+/// Number of an asperity or a merged contact. Those of merged contacts go on during each unloading from that of its load reversal, so that its load
+/// belongs to them (bits of F_max).
+type Key = (Option<u64>, i64);
+
 /// Contact spots of a cycle.
 #[derive(Default)]
 struct Spots {
-    /// Numbers of the asperities and merged contacts, and their places in the data.
-    ids: BTreeMap<i64, usize>,
+    /// Asperities and merged contacts, and their places in the data.
+    ids: BTreeMap<Key, usize>,
     /// Centres in 10⁻⁴ of the side of the square.
     at: Vec<(i64, i64)>,
     /// Places of the two parts of each merged contact.
@@ -148,32 +152,44 @@ struct Spots {
 impl Spots {
     /// The asperities and merged contacts that have an event or are stored in contact.
     fn find(&mut self, tables: &Tables, asperities: &Frame, length_m: f64) -> Result<(), FrameError> {
-        let mut used: BTreeSet<i64> = tables.events.i64_or_null("asperity_id")?.iter().flatten().copied().collect();
-        used.extend(tables.contacts.i64_or_null("asperity_id")?.iter().flatten());
-        let mut parts: BTreeMap<i64, ([i64; 2], (f64, f64))> = BTreeMap::new();
-        if let Some(merged) = &tables.merged {
-            let [ids, first, second] = [merged.i64("asperity_id")?, merged.i64("first_id")?, merged.i64("second_id")?];
-            let (x, y) = (merged.f64("x_m")?, merged.f64("y_m")?);
-            for row in 0..ids.len() {
-                parts.entry(ids[row]).or_insert(([first[row], second[row]], (x[row], y[row])));
-                used.extend([first[row], second[row]]);
-            }
+        let merged = tables.merged.as_ref().map(parts).transpose()?.unwrap_or_default();
+        let key = |branch: Option<u64>, id: i64| if merged.contains_key(&(branch, id)) { (branch, id) } else { (None, id) };
+        let mut used: BTreeSet<Key> = BTreeSet::new();
+        for table in [&tables.events, &tables.contacts] {
+            let rows = table.f64_or_null("max_load")?.iter().zip(table.i64_or_null("asperity_id")?);
+            used.extend(rows.filter_map(|(load, id)| id.map(|id| key(load.map(f64::to_bits), id))));
         }
+        used.extend(merged.iter().flat_map(|((branch, _), (of, _))| of.map(|part| key(*branch, part))));
         let (x, y) = (asperities.f64("x_m")?, asperities.f64("y_m")?);
-        for id in used {
-            let own = usize::try_from(id).ok().and_then(|id| x.get(id).copied().zip(y.get(id).copied()));
-            if let Some((x, y)) = own.or_else(|| parts.get(&id).map(|(_, at)| *at)) {
-                self.ids.insert(id, self.at.len());
+        for spot in used {
+            let own = || usize::try_from(spot.1).ok().and_then(|id| x.get(id).copied().zip(y.get(id).copied()));
+            if let Some((x, y)) = merged.get(&spot).map(|(_, at)| *at).or_else(own) {
+                self.ids.insert(spot, self.at.len());
                 self.at.push(((x / length_m * 1e4).round() as i64, (y / length_m * 1e4).round() as i64));
             }
         }
-        for (id, (of, _)) in &parts {
-            if let Some(place) = self.ids.get(id) {
-                self.merged.insert(place.to_string(), json!(of.iter().filter_map(|part| self.ids.get(part)).collect::<Vec<_>>()));
+        for (spot, (of, _)) in &merged {
+            if let Some(place) = self.ids.get(spot) {
+                let of: Vec<usize> = of.iter().filter_map(|part| self.ids.get(&key(spot.0, *part)).copied()).collect();
+                self.merged.insert(place.to_string(), json!(of));
             }
         }
         Ok(())
     }
+
+    /// Place of a spot in the data, on loading or on the unloading from a load.
+    fn place(&self, max_load: Option<f64>, id: Option<i64>) -> Option<usize> {
+        let found = |branch| self.ids.get(&(branch, id?)).copied();
+        found(max_load.map(f64::to_bits)).or_else(|| found(None))
+    }
+}
+
+/// Parts and centre \[m\] of each merged contact.
+fn parts(merged: &Frame) -> Result<BTreeMap<Key, ([i64; 2], (f64, f64))>, FrameError> {
+    let [ids, first, second] = [merged.i64("asperity_id")?, merged.i64("first_id")?, merged.i64("second_id")?];
+    let (x, y, of) = (merged.f64("x_m")?, merged.f64("y_m")?, merged.f64_or_null("max_load")?);
+    let key = |row: usize| (of[row].map(f64::to_bits), ids[row]);
+    Ok((0..ids.len()).map(|row| (key(row), ([first[row], second[row]], (x[row], y[row])))).collect())
 }
 
 /// The loops of all load reversals: loading up to the reversal, and unloading from it.
@@ -181,15 +197,14 @@ fn loops(tables: &Tables, spots: &Spots, energy_j: f64, length_m: f64) -> Result
     let steps = &tables.steps;
     let (numbers, branches, of) = (steps.i64("step")?, steps.text("branch")?, steps.f64_or_null("max_load")?);
     let (load, penetration, area, count) = (steps.f64("load")?, steps.f64("penetration")?, steps.f64("area")?, steps.i64("contact_count")?);
+    let reversed = steps.f64_or_null("reversal_load")?;
     let mut reversals: Vec<f64> = of.iter().flatten().copied().collect();
     reversals.sort_by(f64::total_cmp);
     reversals.dedup();
     let mut all = Vec::new();
     for max_load in reversals {
-        let off = |row: &usize| (load[*row] - max_load).abs();
-        let up = (0..numbers.len()).filter(|row| branches[*row] == "loading");
-        let Some(reversal) = up.clone().min_by(|a, b| off(a).total_cmp(&off(b))) else { continue };
-        let loading: Vec<usize> = up.take_while(|row| *row <= reversal).collect();
+        let Some(reversal) = reversed.iter().position(|load| *load == Some(max_load)) else { continue };
+        let loading: Vec<usize> = (0..=reversal).filter(|row| branches[*row] == "loading").collect();
         let down = (0..numbers.len()).filter(|row| branches[*row] == "unloading" && of[*row] == Some(max_load));
         let rows: Vec<usize> = loading.iter().copied().chain(down).collect();
         let places: BTreeMap<i64, usize> = rows.iter().enumerate().map(|(k, row)| (numbers[*row], k)).collect();
@@ -213,11 +228,11 @@ fn loops(tables: &Tables, spots: &Spots, energy_j: f64, length_m: f64) -> Result
 fn events(events: &Frame, spots: &Spots, places: &BTreeMap<i64, usize>, energy_j: f64) -> Result<Value, FrameError> {
     let numbered = kinds();
     let (steps, kinds, ids) = (events.i64("step")?, events.text("kind")?, events.i64_or_null("asperity_id")?);
-    let (avalanches, energies) = (events.i64("avalanche_id")?, events.f64_or_null("energy_lost_j")?);
+    let (avalanches, energies, of) = (events.i64("avalanche_id")?, events.f64_or_null("energy_lost_j")?, events.f64_or_null("max_load")?);
     let mut rows: Vec<(usize, Value)> = Vec::new();
     for row in 0..steps.len() {
         let (Some(k), Some(kind)) = (places.get(&steps[row]), numbered.iter().position(|kind| *kind == kinds[row])) else { continue };
-        let spot = ids[row].and_then(|id| spots.ids.get(&id)).map_or(-1, |spot| *spot as i64);
+        let spot = spots.place(of[row], ids[row]).map_or(-1, |spot| spot as i64);
         let energy = significant(energies[row].unwrap_or_default() / energy_j, 3).parse::<f64>().unwrap_or_default();
         rows.push((*k, json!([k, kind, spot, avalanches[row], energy])));
     }
@@ -228,12 +243,13 @@ fn events(events: &Frame, spots: &Spots, places: &BTreeMap<i64, usize>, energy_j
 /// Contact spots of the stored steps of a loop: spot, and radius in 10⁻⁵ of the side, negative for a tensile load.
 fn frames(contacts: &Frame, spots: &Spots, places: &BTreeMap<i64, usize>, length_m: f64) -> Result<Value, FrameError> {
     let (steps, states, ids) = (contacts.i64("step")?, contacts.text("state")?, contacts.i64_or_null("asperity_id")?);
-    let (radii, loads) = (contacts.f64_or_null("contact_radius_m")?, contacts.f64_or_null("load_n")?);
+    let (radii, loads, of) =
+        (contacts.f64_or_null("contact_radius_m")?, contacts.f64_or_null("load_n")?, contacts.f64_or_null("max_load")?);
     let mut frames: BTreeMap<usize, Vec<i64>> = BTreeMap::new();
     for row in (0..steps.len()).filter(|row| states[*row] == "contact") {
-        let (Some(k), Some(spot)) = (places.get(&steps[row]), ids[row].and_then(|id| spots.ids.get(&id))) else { continue };
+        let (Some(k), Some(spot)) = (places.get(&steps[row]), spots.place(of[row], ids[row])) else { continue };
         let radius = ((radii[row].unwrap_or_default() / length_m * 1e5).round() as i64).max(1);
-        frames.entry(*k).or_default().extend([*spot as i64, if loads[row].unwrap_or_default() < 0.0 { -radius } else { radius }]);
+        frames.entry(*k).or_default().extend([spot as i64, if loads[row].unwrap_or_default() < 0.0 { -radius } else { radius }]);
     }
     let every = (frames.values().map(Vec::len).sum::<usize>() / 2).div_ceil(MOST_SPOTS).max(1);
     let kept = frames.into_iter().enumerate().filter(|(place, _)| place % every == 0);

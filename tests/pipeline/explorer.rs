@@ -62,12 +62,10 @@ impl Loop {
 
     /// Rows of the table `steps` along the loop.
     fn rows(&self) -> Vec<usize> {
-        let (branches, of, load) =
-            (self.steps.text("branch").unwrap(), self.steps.f64_or_null("max_load").unwrap(), self.steps.f64("load").unwrap());
-        let up = || (0..load.len()).filter(|row| branches[*row] == "loading");
-        let off = |row: &usize| (load[*row] - self.load).abs();
-        let reversal = up().min_by(|a, b| off(a).total_cmp(&off(b))).unwrap();
-        let down = (0..load.len()).filter(|row| branches[*row] == "unloading" && of[*row] == Some(self.load));
+        let (branches, of) = (self.steps.text("branch").unwrap(), self.steps.f64_or_null("max_load").unwrap());
+        let up = || (0..branches.len()).filter(|row| branches[*row] == "loading");
+        let reversal = self.steps.f64_or_null("reversal_load").unwrap().iter().position(|load| *load == Some(self.load)).unwrap();
+        let down = (0..branches.len()).filter(|row| branches[*row] == "unloading" && of[*row] == Some(self.load));
         up().take_while(|row| *row <= reversal).chain(down).collect()
     }
 }
@@ -78,6 +76,42 @@ fn moved(place: usize) -> String {
         "const set = (id, value, name) => {{ const of = document.getElementById(id); of.value = value; of.dispatchEvent(new Event(name)); }};\
          set('explorer-cycle', 0, 'change'); set('explorer-load', 0, 'change'); set('explorer-step', {place}, 'input');"
     )
+}
+
+/// Merged contacts have numbers that repeat between branches.
+#[test]
+fn e2e_spots_of_the_explorer_are_where_the_contacts_are() {
+    let bench = Bench::new(&SPEC.replace("[cycle]", "[cycle]\ncontacts = \"all\"").replace("[6, 8]", "[16]"));
+    assert_eq!(code(&bench.verb("run", &[])), 0);
+    let page = fs::read_to_string(bench.out().join("report.html")).unwrap();
+    let data = page.split("id=\"explorer-data\"").nth(1).unwrap().split_once('>').unwrap().1.split("</script>").next().unwrap();
+    let data: serde_json::Value = serde_json::from_str(data).unwrap();
+    let cycle = &data["cycles"][0];
+    let path = bench.out().join("cycles").join(cycle["id"].as_str().unwrap()).join("contacts.parquet");
+    let contacts = read_table(&path, &schema::CONTACTS).unwrap();
+    let (steps, states, ids) = (contacts.i64("step").unwrap(), contacts.text("state").unwrap(), contacts.i64("asperity_id").unwrap());
+    let [x, y] = ["centroid_x_m", "centroid_y_m"].map(|name| contacts.f64(name).unwrap());
+    let length = cycle["length_m"].as_f64().unwrap();
+    let whole = |values: &serde_json::Value, at: usize| values[at].as_i64().unwrap();
+    let summits = cycle["ids"].as_array().unwrap().len() - cycle["merged"].as_object().unwrap().len();
+    let (mut compared, mut merged) = (0, 0);
+    for turn in cycle["loops"].as_array().unwrap() {
+        for (place, frame) in turn["frames"].as_object().unwrap() {
+            let step = whole(&turn["s"], place.parse().unwrap());
+            let rows: Vec<usize> = (0..steps.len()).filter(|row| steps[*row] == step && states[*row] == "contact").collect();
+            assert_eq!(frame.as_array().unwrap().len(), 2 * rows.len());
+            for (k, row) in rows.into_iter().enumerate() {
+                let spot = whole(frame, 2 * k) as usize;
+                assert_eq!(whole(&cycle["ids"], spot), ids[row], "step {step}");
+                for (shown, centre) in [(&cycle["x"], x[row]), (&cycle["y"], y[row])] {
+                    assert!((whole(shown, spot) as f64 - 1e4 * centre / length).abs() < 0.51, "step {step}, contact {}", ids[row]);
+                }
+                compared += 1;
+                merged += usize::from(cycle["merged"].get(spot.to_string()).is_some());
+            }
+        }
+    }
+    assert!(compared > 100 && merged > 20 && summits > 20, "{compared} contacts, {merged} merged, {summits} asperities");
 }
 
 #[test]
