@@ -137,6 +137,8 @@ fn cycle(campaign: &Campaign, unit: &CycleUnit) -> Result<Value, StageError> {
 /// Number of an asperity or a merged contact. Those of merged contacts go on during each unloading from that of its load reversal, so that its load
 /// belongs to them (bits of F_max).
 type Key = (Option<u64>, i64);
+/// Both parts and the centre \[m\] of each merged contact.
+type Parts = BTreeMap<Key, ([i64; 2], (f64, f64))>;
 
 /// Contact spots of a cycle.
 #[derive(Default)]
@@ -184,8 +186,7 @@ impl Spots {
     }
 }
 
-/// Parts and centre \[m\] of each merged contact.
-fn parts(merged: &Frame) -> Result<BTreeMap<Key, ([i64; 2], (f64, f64))>, FrameError> {
+fn parts(merged: &Frame) -> Result<Parts, FrameError> {
     let [ids, first, second] = [merged.i64("asperity_id")?, merged.i64("first_id")?, merged.i64("second_id")?];
     let (x, y, of) = (merged.f64("x_m")?, merged.f64("y_m")?, merged.f64_or_null("max_load")?);
     let key = |row: usize| (of[row].map(f64::to_bits), ids[row]);

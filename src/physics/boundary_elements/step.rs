@@ -242,15 +242,13 @@ impl<'a> Walk<'a> {
         let mut longer = f64::INFINITY;
         loop {
             let length = sense * self.settings.step / f64::from(1_u32 << self.at.level);
-            let approach = self.at.state.approach + length;
-            let halves = self.at.level < self.settings.halvings;
-            let mut attempt = self.attempt(approach, self.settings.accuracy)?;
+            let mut attempt = self.attempt(self.at.state.approach + length, self.settings.accuracy)?;
             let step = attempt.step;
             let large = step.imbalance.abs() > LARGE * self.at.dissipated;
             // The error of the integral falls by halving the step, an event does not.
             let falls = step.imbalance.abs() < 0.25 * longer && self.at.level < DEEPEST;
             let unsure = attempt.across > LOCATED * self.at.dissipated && self.at.level < DEEPEST;
-            if unsure || large && (halves || falls) {
+            if unsure || large && (self.at.level < self.settings.halvings || falls) {
                 longer = step.imbalance.abs();
                 self.at.level += 1;
                 continue;
