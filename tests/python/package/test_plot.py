@@ -24,7 +24,9 @@ def test_a_loop_is_drawn_in_three_lines(campaign):
     cycle = next(row["cycle_id"] for row in campaign["statistics/cycles"].to_pylist() if row["case_id"] == best)
     steps = campaign.steps(cycle)
     largest = max(load for load in steps["max_load"].to_pylist() if load is not None)
-    assert loading.get_ydata()[-1] == pytest.approx(largest, rel=1e-6)
+    # The load may jump over F_max.
+    reversal = steps["reversal_load"].to_pylist().index(largest)
+    assert loading.get_ydata()[-1] == steps["load"][reversal].as_py() >= largest * (1 - 1e-6)
     assert len(unloading.get_ydata()) == steps["max_load"].to_pylist().count(largest) and unloading.get_ydata().min() < 0
     with pytest.raises(ValueError, match="no unloading from"):
         hysteron.plot.loop(campaign, max_load=1.0)
