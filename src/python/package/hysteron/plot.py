@@ -59,14 +59,14 @@ def _columns(table: Any, *names: str) -> list[Any]:
 
 def _paths(table: Any, max_load: float | None) -> tuple[float, Any, Any]:
     """The load reversal, and the rows of loading up to it and of unloading."""
-    branch, of, load = _columns(table, "branch", "max_load", "load")
-    of = of.astype(float)
+    branch, of, reversal = _columns(table, "branch", "max_load", "reversal_load")
+    of, reversal = of.astype(float), reversal.astype(float)
     largest = np.nanmax(of) if max_load is None else max_load
     up = np.flatnonzero(branch == "loading")
     down = np.flatnonzero((branch == "unloading") & np.isclose(of, largest, rtol=1e-9, atol=0))
     if not down.size:
         raise ValueError(f"no unloading from F_max/(E* A0) = {largest}\nhelp: use one of {sorted(set(of[np.isfinite(of)]))}")
-    return float(largest), up[: np.argmin(np.abs(load[up] - largest)) + 1], down
+    return float(largest), up[: np.flatnonzero(np.isclose(reversal[up], largest, rtol=1e-9, atol=0))[0] + 1], down
 
 
 def loop(run: Run, id: str | None = None, max_load: float | None = None, ax: Axes | None = None) -> Axes:
