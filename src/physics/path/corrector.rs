@@ -19,9 +19,8 @@ enum Since {
     Growth,
     /// Growth, and events whose pending displacements are known.
     Events,
-    /// A jump of the contact at the present mean penetration; with the potential before it, less the work of the loads on the residuals
-    /// \[J\].
-    Jump(f64),
+    /// A jump of the contact at the present mean penetration.
+    Jump,
 }
 
 impl EquilibriumPath {
@@ -40,8 +39,6 @@ impl EquilibriumPath {
             if strict && rounds == 0 && (first.residual_m.is_nan() || self.is_astray(&pending)) {
                 return Err(first.into());
             }
-            // The present state is an equilibrium at mean penetrations that differ by the residuals.
-            let shifted = self.problem().totals(&self.predictor.state).1 + self.work_on_residuals();
             if !first.residual_m.is_nan() {
                 self.log.drift_m = self.log.drift_m.max(first.residual_m);
             }
@@ -58,7 +55,7 @@ impl EquilibriumPath {
                 }
             };
             let since = match (jump || rounds > 0, self.pending.is_smooth()) {
-                (true, _) => Since::Jump(shifted),
+                (true, _) => Since::Jump,
                 (false, true) => Since::Growth,
                 (false, false) => Since::Events,
             };
@@ -109,13 +106,6 @@ impl EquilibriumPath {
         if rates.iter().all(|rate| rate.is_finite()) { Ok(rates) } else { Err(first) }
     }
 
-    /// `Σ F r` over the residuals that were evaluated last \[J\].
-    fn work_on_residuals(&self) -> f64 {
-        let (problem, state) = (&*self.problem(), self.state());
-        let load = |i: usize| problem.asperities[i].load(state.radius[i]);
-        state.contacts.iter().zip(&self.solver.residual).map(|(&i, residual)| load(i) * residual).sum()
-    }
-
     /// True if the predictors are too far from the equilibrium, apart from pending displacements.
     fn is_astray(&self, pending: &[f64]) -> bool {
         let contacts = &self.state().contacts;
@@ -144,14 +134,12 @@ impl EquilibriumPath {
         self.predictor.recount(problem);
         let (totals, potential) = problem.totals(self.state());
         self.totals = totals;
-        // Events were charged with the potential of a contact whose other members keep their loads; these have responded now.
-        self.log.charge(match since {
-            Since::Jump(shifted) if !shifted.is_nan() => shifted - potential,
-            _ => relaxed,
-        });
-        if matches!(since, Since::Jump(_)) {
+        if since == Since::Jump {
             // At constant penetration no work is done: the jump dissipates the decrease of the potential.
             self.energy.charge_last_event();
+        } else {
+            // Events were charged with the potential of a contact whose other members keep their loads; these have responded now.
+            self.log.charge(relaxed);
         }
         self.energy.close(&mut self.log, target, potential);
         let load = self.predictor.totals(target).load_n;
