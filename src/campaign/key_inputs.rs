@@ -181,7 +181,7 @@ pub(super) fn read_by_cycle(params: &CaseParams) -> CaseParams {
 }
 
 /// Version of the cycles by boundary elements in their keys, beside that of the stage.
-const ELEMENTS_VERSION: u32 = 4;
+const ELEMENTS_VERSION: u32 = 5;
 
 /// Inputs of a cycle in its key, besides the asperities. Those of the asperity model are the same as before there was another method.
 fn of_case(params: &CaseParams) -> Vec<(&'static str, Value)> {

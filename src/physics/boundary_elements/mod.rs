@@ -13,6 +13,7 @@ mod newton;
 mod pairs;
 mod passes;
 pub mod patch;
+mod places;
 pub mod preconditioner;
 pub mod records;
 pub mod regions;

@@ -4,7 +4,8 @@
 //! grid is minimised over displacements that vanish outside a square, a *patch*, with an elastic operator that is exact for offsets of up to half a
 //! side. This is a descent within a subspace, by steps of the same limited length, so that it passes over no barrier that the whole grid would not pass
 //! over. The cost of an iteration is proportional to the area of the patch. If bonds change at the border of a patch, a patch of twice the side replaces
-//! it. Patches of several places do not overlap, and their interaction is neglected until the whole grid is relaxed, which follows.
+//! it. Patches of several places do not overlap and are relaxed on several threads; their interaction is neglected until the whole grid is relaxed, which
+//! follows.
 //!
 //! The displacement of a patch may have a mean. A uniform shift of the whole grid removes it. The energy of the shift is included to first order: the
 //! shift times the mean of pressure and tension. The second order follows with the whole grid.
@@ -12,28 +13,28 @@
 use super::contact::{Attraction, Bonding, Problem, State};
 use super::grid::HalfSpace;
 use super::minimise::{Accuracy, Follow, Minimiser, Underway};
+use super::places::{Place, Region, SMALLEST, places};
 use crate::physics::PhysicsError;
 use crate::physics::memory::filled;
+use rayon::prelude::*;
 
-/// Side of the smallest patch.
-const SMALLEST: usize = 32;
 /// Least side of the grid, in sides of a patch.
 const PARTS: usize = 4;
-/// Most places that are followed at once.
+/// Most places that are followed.
 const PLACES: usize = 8;
-/// Distance from its first point up to which points belong to a place.
-const NEAR: usize = 12;
 /// The border of a patch has the width of its side over this.
 const BORDER: usize = 8;
-/// Side of a patch at first: this many times the extent of the changed bonds, and points.
-const ROOM: (usize, usize) = (2, 8);
 /// Largest residual of a relaxed patch, relative to that of an equilibrium.
 const FINISH: f64 = 3.0;
 /// Most iterations on a patch.
 const ITERATIONS: usize = 600;
 
-/// Patches of growing size.
-pub struct Patches(Vec<Patch>);
+/// Points of the patches of one side at most, relative to those of the grid; a few small patches are always there.
+const SHARE: usize = 16;
+const ALWAYS: usize = 128;
+
+/// Patches that are not in use, by increasing side.
+pub struct Patches(Vec<Vec<Patch>>);
 
 struct Patch {
     problem: Problem,
@@ -43,8 +44,13 @@ struct Patch {
     minimiser: Minimiser,
 }
 
-/// A place of a patch on the grid: its middle, in rows and columns.
-type Place = [usize; 2];
+/// A place that is being relaxed on a patch.
+struct Job {
+    middle: Place,
+    patch: Patch,
+    /// True once something has moved.
+    moved: bool,
+}
 
 impl Patches {
     /// Patches for a grid; none for one that is small, is itself a patch, or has attraction everywhere.
@@ -59,7 +65,9 @@ impl Patches {
         }
         let kernel = grid.kernel()?;
         let sides = std::iter::successors(Some(SMALLEST), |side| Some(2 * side)).take_while(|side| *side <= largest);
-        sides.map(|side| Patch::new(problem, side, &kernel)).collect::<Result<_, _>>().map(Self)
+        let count = |side: usize| (grid.points().max(SHARE * PLACES * ALWAYS * ALWAYS) / (SHARE * side * side)).clamp(1, PLACES);
+        let of_side = |side: usize| (0..count(side)).map(|_| Patch::new(problem, side, &kernel)).collect::<Result<_, _>>();
+        sides.map(of_side).collect::<Result<_, _>>().map(Self)
     }
 
     /// No patches.
@@ -75,68 +83,105 @@ impl Patches {
 
     /// Points of the transforms so far.
     pub(super) fn transformed(&self) -> u64 {
-        self.0.iter().map(|patch| patch.minimiser.transforms() * patch.problem.half_space.transformed()).sum()
+        self.0.iter().flatten().map(|patch| patch.minimiser.transforms() * patch.problem.half_space.transformed()).sum()
     }
 
-    /// Relaxes around a place on patches of increasing side, from the `smallest` on, as long as the next `is_open`. The side of the last,
-    /// and the points whose bond has changed, with the bond before; `None` if nothing moved.
-    fn relax(
+    /// A job with the state of the grid in a region; `None` if all patches of this side are in use.
+    fn take(&mut self, on: &Underway<'_>, region: Region) -> Option<Job> {
+        let mut patch = self.0.get_mut(number(region.side))?.pop()?;
+        patch.cut(on, region.middle);
+        Some(Job { middle: region.middle, patch, moved: false })
+    }
+
+    /// Jobs at the next places that do not overlap, as far as there are patches; others are put off until these are done.
+    fn begin(
         &mut self,
-        on: &mut Underway<'_>,
-        place: Place,
-        smallest: usize,
-        is_open: impl Fn(usize) -> bool,
-        (centre, accuracy): (f64, Accuracy),
-    ) -> Option<(usize, Vec<(usize, Bonding)>)> {
-        let mut k = smallest;
-        self.0[k].cut(on, place);
-        loop {
-            let (smaller, larger) = self.0.split_at_mut(k + 1);
-            let patch = &mut smaller[k];
-            patch.minimiser.centre = centre;
-            let outcome = patch.minimiser.minimise(&patch.problem, &mut patch.state, accuracy);
-            if k == smallest && outcome.iterations == 0 {
-                return None;
+        on: &Underway<'_>,
+        places: &mut impl Iterator<Item = Region>,
+        put_off: &mut Vec<Region>,
+        done: &[Region],
+    ) -> Vec<Job> {
+        let mut jobs: Vec<Job> = Vec::new();
+        let mut earlier = std::mem::take(put_off).into_iter();
+        while jobs.len() + done.len() < PLACES
+            && let Some(next) = earlier.next().or_else(|| places.next())
+        {
+            let grid = &on.problem.half_space;
+            if done.iter().any(|other| next.overlaps(other, grid)) {
+                continue;
             }
-            match larger.first_mut() {
-                Some(larger) if is_open(larger.side()) && patch.has_changed_at_border(on, place) => {
-                    larger.cut(on, place);
-                    larger.take_over(patch);
-                    k += 1;
-                }
-                _ => {
-                    let changed = patch.paste(on, place);
-                    return Some((patch.side(), changed));
-                }
+            let is_open = !jobs.iter().any(|job| next.overlaps(&job.region(), grid));
+            match is_open.then(|| self.take(on, next)).flatten() {
+                Some(job) => jobs.push(job),
+                None => put_off.push(next),
+            }
+        }
+        put_off.extend(earlier);
+        jobs
+    }
+
+    /// After the jobs have been relaxed: the places that go on, on larger patches. The others are given to the grid, those that have moved are `done`.
+    fn settle(&mut self, on: &mut Underway<'_>, jobs: Vec<Job>, done: &mut Vec<Region>, rebonded: &mut Vec<(usize, Bonding)>) -> Vec<Job> {
+        let mut regions: Vec<Region> = jobs.iter().map(Job::region).collect();
+        let mut going = Vec::new();
+        for (k, job) in jobs.into_iter().enumerate() {
+            let larger = Region { side: 2 * regions[k].side, ..regions[k] };
+            let others = regions[..k].iter().chain(&regions[k + 1..]).chain(&*done);
+            let is_open = !others.into_iter().any(|other| larger.overlaps(other, &on.problem.half_space));
+            if job.moved
+                && is_open
+                && job.patch.has_changed_at_border(on, regions[k].middle)
+                && let Some(mut next) = self.take(on, larger)
+            {
+                next.patch.take_over(&job.patch);
+                next.moved = true;
+                regions[k] = larger;
+                going.push(next);
+            } else if job.moved {
+                rebonded.extend(job.patch.paste(on, job.middle));
+                done.push(job.region());
+            }
+            self.0[number(job.patch.side())].push(job.patch);
+        }
+        going
+    }
+}
+
+impl Job {
+    fn region(&self) -> Region {
+        Region { middle: self.middle, side: self.patch.side() }
+    }
+}
+
+impl Follow for Patches {
+    /// Places are taken in the order of their largest residuals, and relaxed side by side; one that overlaps an earlier one is left to the whole grid.
+    fn follow(&mut self, mut on: Underway<'_>, changed: &[usize], centre: f64, accuracy: Accuracy) -> Vec<(usize, Bonding)> {
+        let problem = on.problem;
+        let accuracy = Accuracy { rms: f64::INFINITY, largest: FINISH * accuracy.largest, iterations: ITERATIONS };
+        let largest = SMALLEST << (self.0.len() - 1);
+        let mut places = places(&problem.half_space, changed, largest);
+        let (mut put_off, mut done, mut rebonded) = (Vec::new(), Vec::new(), Vec::new());
+        loop {
+            let mut jobs = self.begin(&on, &mut places, &mut put_off, &done);
+            if jobs.is_empty() {
+                return rebonded;
+            }
+            while !jobs.is_empty() {
+                jobs.par_iter_mut().with_max_len(1).for_each(|job| {
+                    let Patch { problem, state, minimiser, .. } = &mut job.patch;
+                    minimiser.centre = centre;
+                    let outcome = minimiser.minimise(problem, state, accuracy);
+                    job.moved |= outcome.iterations > 0;
+                });
+                jobs = self.settle(&mut on, jobs, &mut done, &mut rebonded);
             }
         }
     }
 }
 
-impl Follow for Patches {
-    /// Places follow one another in the order of their largest residuals; one that would overlap an earlier one is left to the whole grid.
-    fn follow(&mut self, mut on: Underway<'_>, changed: &[usize], centre: f64, accuracy: Accuracy) -> Vec<(usize, Bonding)> {
-        let grid = &on.problem.half_space;
-        let accuracy = Accuracy { rms: f64::INFINITY, largest: FINISH * accuracy.largest, iterations: ITERATIONS };
-        let mut rest = changed.to_vec();
-        let mut done: Vec<(Place, usize)> = Vec::new();
-        let mut rebonded = Vec::new();
-        while let Some(first) = rest.first().copied().filter(|_| done.len() < PLACES) {
-            let (near, others) = rest.into_iter().partition(|point| distance(grid, place(grid, *point), place(grid, first)) <= NEAR);
-            rest = others;
-            let (place, extent) = surroundings(grid, first, near);
-            let is_open = |side: usize| done.iter().all(|(other, its)| distance(grid, place, *other) >= side.midpoint(*its));
-            let enough = ROOM.0 * extent + ROOM.1;
-            let smallest = self.0.iter().position(|patch| patch.side() >= enough).unwrap_or(self.0.len() - 1);
-            if is_open(self.0[smallest].side())
-                && let Some((side, changed)) = self.relax(&mut on, place, smallest, is_open, (centre, accuracy))
-            {
-                done.push((place, side));
-                rebonded.extend(changed);
-            }
-        }
-        rebonded
-    }
+/// Number of a side.
+fn number(side: usize) -> usize {
+    (side / SMALLEST).ilog2() as usize
 }
 
 impl Patch {
@@ -210,28 +255,4 @@ impl Patch {
         }
         changed
     }
-}
-
-/// Larger of the differences of two places along rows and columns of the periodic grid.
-fn distance(grid: &HalfSpace, a: Place, b: Place) -> usize {
-    let along = |a: usize, b: usize, size: usize| a.abs_diff(b).min(size - a.abs_diff(b));
-    along(a[0], b[0], grid.rows()).max(along(a[1], b[1], grid.columns()))
-}
-
-fn place(grid: &HalfSpace, point: usize) -> Place {
-    [point / grid.columns(), point % grid.columns()]
-}
-
-/// Middle and extent of points that are near the first.
-fn surroundings(grid: &HalfSpace, first: usize, near: Vec<usize>) -> (Place, usize) {
-    let (size, first) = ([grid.rows(), grid.columns()], place(grid, first));
-    let (mut low, mut high) = ([NEAR; 2], [NEAR; 2]);
-    for at in near.into_iter().map(|point| place(grid, point)) {
-        for k in 0..2 {
-            let offset = (at[k] + size[k] + NEAR - first[k]) % size[k];
-            (low[k], high[k]) = (low[k].min(offset), high[k].max(offset));
-        }
-    }
-    let middle = [0, 1].map(|k| (first[k] + (low[k] + high[k]) / 2 + size[k] - NEAR) % size[k]);
-    (middle, (0..2).map(|k| high[k] - low[k] + 1).max().unwrap_or(1))
 }
