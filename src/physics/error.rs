@@ -85,19 +85,6 @@ pub enum PhysicsError {
         /// The asperity that changed last.
         asperity: usize,
     },
-    /// Merged contacts fill the square.
-    #[error(
-        "the merged contacts have the area {share:.3} A0 at the mean penetration {approach_m:e} m and leave no gap\nhelp: {}",
-        excess_help(*load_before_n)
-    )]
-    FullContact {
-        /// Mean penetration Δ \[m\].
-        approach_m: f64,
-        /// Area over that of the square.
-        share: f64,
-        /// Load at the increment before \[N\].
-        load_before_n: f64,
-    },
     /// Full contact at a load reversal, with bonds that open at edges only.
     #[error(
         "full contact at the mean penetration {approach_m:e} m: there is no edge from which the surfaces can separate\n\
@@ -107,10 +94,10 @@ pub enum PhysicsError {
         /// Mean penetration Δ \[m\].
         approach_m: f64,
     },
-    /// The contacts have a larger area than the nominal one.
+    /// The contacts have a larger area than the nominal one, or one of them spans the square.
     #[error(
-        "the contact area {share:.3} A0 exceeds the nominal area at the mean penetration {approach_m:e} m: the contacts have grown together, and the \
-         asperity model is invalid\nhelp: {}",
+        "the contact area {share:.3} A0 leaves no gap at the mean penetration {approach_m:e} m: the contacts have grown together, and the asperity \
+         model is invalid\nhelp: {}",
         excess_help(*load_before_n)
     )]
     ExcessArea {
@@ -118,7 +105,7 @@ pub enum PhysicsError {
         approach_m: f64,
         /// Contact area Σπa² over A0.
         share: f64,
-        /// Load at the step before \[N\].
+        /// Load before it \[N\].
         load_before_n: f64,
     },
     /// A loop with negative dissipated energy.

@@ -208,8 +208,8 @@ fn reg_merged_spots_that_fill_the_square_are_refused_with_a_sentence() {
     let problem = Problem::new(&summits, LENGTH, RMS, PAPER, MERGE).unwrap();
     let settings = Settings { max_loads: vec![0.1], approach_step: 0.04, contacts: KeptContacts::None, rest_every: None };
     let error = cycle::run(&problem, &settings, &|_| {}).unwrap_err();
-    assert!(matches!(error, PhysicsError::FullContact { .. }), "{error}");
-    assert!(error.to_string().contains("the merged contacts have the area") && error.to_string().contains("\nhelp: "), "{error}");
+    assert!(matches!(error, PhysicsError::ExcessArea { .. }), "{error}");
+    assert!(error.to_string().contains("leaves no gap") && error.to_string().contains("\nhelp: "), "{error}");
 }
 
 #[test]

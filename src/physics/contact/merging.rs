@@ -127,15 +127,4 @@ impl Problem {
             approach_m,
         }
     }
-
-    /// Refuses a state whose area \[m²\] reaches the nominal area or whose largest contact spans the square; the load \[N\] is that of the
-    /// increment before.
-    pub(crate) fn check_room(&self, state: &State, area: f64, load_before_n: f64) -> Result<(), PhysicsError> {
-        let share = area / (self.length_m * self.length_m);
-        if share < 1.0 && state.largest_radius() < 0.5 * self.length_m {
-            return Ok(());
-        }
-        // Not −0.
-        Err(PhysicsError::FullContact { approach_m: state.approach_m + 0.0, share, load_before_n })
-    }
 }

@@ -15,7 +15,7 @@ use crate::physics::path::{EquilibriumPath, PathCheckpoint, is_multiple};
 use recorder::Recorder;
 use reversal::retrace;
 use serde::{Deserialize, Serialize};
-use soundness::check_energy;
+use soundness::{check_area, check_energy};
 use std::sync::Arc;
 pub use table::{Branch, Contact, Cycle, MergedAt, Settings, Step, StepCounts, StepNumerics};
 
@@ -218,7 +218,7 @@ fn unload(
         if path.state().contacts.is_empty() {
             if recorder.lacks_events(path) {
                 // The last spot has left contact between two grid points.
-                recorder.record(settings, path, None, cycle, false)?;
+                recorder.record(settings, path, None, cycle, false);
             }
             return Ok(Next::End);
         }
@@ -261,8 +261,6 @@ fn travel(
         }
         let before = path.totals().load_n;
         path.step(bound)?;
-        if problem.merges() {
-            problem.check_room(path.state(), path.totals().area_m2, before)?;
-        }
+        check_area(&path, before)?;
     }
 }

@@ -1,6 +1,5 @@
 //! Recording of a branch: steps at grid points and load reversals, and events.
 
-use super::soundness::check_area;
 use super::table::{Branch, Contact, Cycle, MergedAt, Settings, Step, StepCounts, StepNumerics, event_counts};
 use crate::model::KeptContacts;
 use crate::physics::PhysicsError;
@@ -67,7 +66,7 @@ impl Recorder {
         cycle: &mut Cycle,
     ) -> Result<(), PhysicsError> {
         if !std::mem::replace(&mut self.begun, true) {
-            self.record(settings, path, None, cycle, false)?;
+            self.record(settings, path, None, cycle, false);
         }
         let spacing = settings.grid(&path.problem());
         loop {
@@ -77,11 +76,11 @@ impl Recorder {
             }
             self.number += 1.0;
             if path.is_exact() && (next - path.state().approach_m).abs() <= 1e-9 * spacing {
-                self.record(settings, path, None, cycle, false)?;
+                self.record(settings, path, None, cycle, false);
             } else {
                 let excursion = path.excursion(next)?;
                 path.add_effort(excursion.effort());
-                self.record(settings, path, Some(&excursion), cycle, false)?;
+                self.record(settings, path, Some(&excursion), cycle, false);
             }
         }
     }
@@ -110,15 +109,12 @@ impl Recorder {
     ) -> Result<(), PhysicsError> {
         let state = excursion.map_or_else(|| path.state().clone(), |at| at.state().clone());
         self.grid_points_until(state.approach_m, settings, path, cycle)?;
-        self.record(settings, path, excursion, cycle, true)?;
+        self.record(settings, path, excursion, cycle, true);
         cycle.turning.push((cycle.steps.len() - 1, state));
         Ok(())
     }
 
     /// Records the state of the path, or that of an excursion from it.
-    ///
-    /// # Errors
-    /// A contact area above the nominal one.
     pub(crate) fn record(
         &mut self,
         settings: &Settings,
@@ -126,7 +122,7 @@ impl Recorder {
         excursion: Option<&EquilibriumPath>,
         cycle: &mut Cycle,
         turning: bool,
-    ) -> Result<(), PhysicsError> {
+    ) {
         let number = cycle.steps.len();
         let at = excursion.unwrap_or(path);
         let problem = &*at.problem();
@@ -168,7 +164,6 @@ impl Recorder {
             cycle.contacts.extend(spots_of(problem, state, number));
         }
         let load = at.totals().load_n;
-        let load_before = self.load_before.unwrap_or(0.0);
         let pulls = load < self.pulled.as_ref().map_or(0.0, |pulled| pulled.0);
         if settings.contacts == KeptContacts::Turning && self.branch == Branch::Unloading && pulls {
             // The spots of a kept step are stored already.
@@ -183,7 +178,6 @@ impl Recorder {
         }));
         self.merged_before = state.merged.len();
         path.begin_record();
-        check_area(problem, &cycle.steps[number], load_before)
     }
 }
 

@@ -6,7 +6,7 @@
 
 use super::table::{Branch, Cycle, Step};
 use crate::physics::PhysicsError;
-use crate::physics::contact::problem::Problem;
+use crate::physics::path::EquilibriumPath;
 
 /// Numerical resolution of the dissipated energy, relative to the largest work along the loop.
 ///
@@ -21,17 +21,22 @@ pub const EVENT_ACCURACY: f64 = 1e-5;
 /// Largest energy-balance error `|Θ − Σ events|` over Θ.
 pub const LARGEST_IMBALANCE: f64 = 0.5;
 
-/// Refuses a step whose contact area Σπa² \[m²\] exceeds the nominal area A0.
+/// Refuses a state whose contact area Σπa² exceeds the nominal area A0, or whose largest contact spans the square.
 ///
-/// The area of the union of the contacts is smaller than that sum.
-/// `load_before_n` is the load \[N\] at the step before, for the error: the load at the refused step is meaningless.
+/// The area of the union of the contacts is smaller than that sum. `load_before_n` is the load \[N\] of the increment before, for the error: that of the
+/// refused state is meaningless.
 ///
 /// # Errors
 /// [`PhysicsError::ExcessArea`].
-pub(crate) fn check_area(problem: &Problem, step: &Step, load_before_n: f64) -> Result<(), PhysicsError> {
-    let share = step.area_m2 / (problem.length_m * problem.length_m);
+pub(crate) fn check_area(path: &EquilibriumPath, load_before_n: f64) -> Result<(), PhysicsError> {
+    let side = path.problem().length_m;
+    let share = path.totals().area_m2 / (side * side);
     // NaN is refused as well.
-    if share <= 1.0 { Ok(()) } else { Err(PhysicsError::ExcessArea { approach_m: step.approach_m, share, load_before_n }) }
+    if share <= 1.0 && path.state().largest_radius() < 0.5 * side {
+        return Ok(());
+    }
+    // Not −0.
+    Err(PhysicsError::ExcessArea { approach_m: path.state().approach_m + 0.0, share, load_before_n })
 }
 
 /// Energies of one loop \[J\].
