@@ -3,7 +3,6 @@
 use super::axis::Axis;
 use super::closer::plot;
 use super::curve::{Stroke, XyPlot};
-use super::cycle_loop::SpotTables;
 use super::drawing::Drawing;
 use super::map::{ABOVE, GAP, LEGEND, PULLED, PUSHED, SIDE, circles, legend, scale_bar, sheet};
 use super::markup::described;
@@ -27,7 +26,7 @@ pub struct Both<'a> {
     /// True if the asperity model is periodic.
     pub periodic: bool,
     /// Contact spots of the asperity model.
-    pub spots: SpotTables<'a>,
+    pub contacts: &'a Frame,
     /// Step of the load reversal of the asperity model.
     pub step: i64,
     /// Contact area A/A0 of both.
@@ -42,7 +41,7 @@ pub struct Both<'a> {
 /// If a table lacks a column.
 pub fn both(of: &Both<'_>, caption: String) -> Result<Drawing, FigureError> {
     let (width, height) = (2.0 * SIDE + 3.0 * GAP, SIDE + ABOVE + GAP + LEGEND);
-    let (spots, _) = circles(&of.spots, of.length_m, of.periodic, of.step)?;
+    let (spots, _) = circles(of.contacts, of.length_m, of.periodic, of.step)?;
     let mut svg = sheet((width, height), "both", of.heights_m);
     let contact = cells(of.elements);
     let maps = [("Asperity model", &spots), ("Boundary elements", &contact)];

@@ -150,7 +150,7 @@ fn avalanches(of: &Closer<'_>, branches: &[OfBranch; 2]) -> Result<XyPlot, Figur
 
 /// The cumulative distribution of a value of each spot at the turning point and at the pull-off.
 fn distribution(of: &Closer<'_>, ends: &[End], label: &str, value: impl Fn(usize) -> Option<f64>) -> Result<XyPlot, FigureError> {
-    let (steps, states) = (of.spots.contacts.i64("step")?, of.spots.contacts.text("state")?);
+    let (steps, states) = (of.contacts.i64("step")?, of.contacts.text("state")?);
     let (mut curves, mut key) = (Vec::new(), Vec::new());
     for (landmark, step, hue, stroke) in ends.iter().copied() {
         let mut values: Vec<f64> = (0..steps.len()).filter(|k| steps[*k] == step && states[*k] == "contact").filter_map(&value).collect();
@@ -180,13 +180,12 @@ fn cumulative(ordered: &[f64]) -> Vec<(f64, f64)> {
 }
 
 fn radii(of: &Closer<'_>, ends: &[End]) -> Result<XyPlot, FigureError> {
-    let radii = of.spots.contacts.f64("contact_radius_m")?;
+    let radii = of.contacts.f64("contact_radius_m")?;
     distribution(of, ends, "contact radius/L", |k| Some(radii[k] / of.length_m))
 }
 
 fn loads(of: &Closer<'_>, ends: &[End]) -> Result<XyPlot, FigureError> {
-    let (loads, asperities, radii) =
-        (of.spots.contacts.f64("load_n")?, of.spots.contacts.i64("asperity_id")?, of.spots.asperities.f64("radius_m")?);
+    let (loads, asperities, radii) = (of.contacts.f64("load_n")?, of.contacts.i64("asperity_id")?, of.asperities.f64("radius_m")?);
     if of.pull_off_n_m == 0.0 {
         return distribution(of, ends, "normal load of a contact spot [N]", |k| Some(loads[k]));
     }
@@ -218,7 +217,7 @@ fn spectrum(of: &Closer<'_>) -> XyPlot {
 
 /// Curvatures of the summits over Nayak's density.
 fn summits(of: &Closer<'_>) -> Result<XyPlot, FigureError> {
-    let curvatures: Vec<f64> = of.spots.asperities.f64("curvature_1_m")?.iter().map(|k| k / of.curvature_1_m).collect();
+    let curvatures: Vec<f64> = of.asperities.f64("curvature_1_m")?.iter().map(|k| k / of.curvature_1_m).collect();
     let most = curvatures.iter().copied().fold(0.0, f64::max).max(1.0);
     let width = most / BARS as f64;
     let mut counts = [0usize; BARS];

@@ -3,17 +3,6 @@
 use super::FigureError;
 use crate::store::Frame;
 
-/// Tables of the contact spots of a cycle.
-#[derive(Debug, Clone, Copy)]
-pub struct SpotTables<'a> {
-    /// Table `contacts` of the cycle.
-    pub contacts: &'a Frame,
-    /// Table `asperities` of its surface.
-    pub asperities: &'a Frame,
-    /// Table `merged` of the cycle.
-    pub merged: &'a Frame,
-}
-
 /// One cycle with theories.
 #[derive(Debug, Clone, Copy)]
 pub struct Closer<'a> {
@@ -26,7 +15,9 @@ pub struct Closer<'a> {
     /// Events.
     pub events: &'a Frame,
     /// Contact spots at the steps that were kept.
-    pub spots: SpotTables<'a>,
+    pub contacts: &'a Frame,
+    /// Asperities of the surface.
+    pub asperities: &'a Frame,
     /// `E* A0 h_rms` \[J\].
     pub energy_j: f64,
     /// Rms height \[m\].
@@ -82,7 +73,7 @@ pub(super) type Kept = (Landmark, i64);
 impl Closer<'_> {
     /// The landmarks whose spots were kept.
     pub(super) fn landmarks(&self) -> Result<Vec<Kept>, FigureError> {
-        let mut kept = self.spots.contacts.i64("step")?;
+        let mut kept = self.contacts.i64("step")?;
         kept.dedup();
         let (branches, of, loads) = (self.steps.text("branch")?, self.steps.f64_or_null("max_load")?, self.steps.f64("load")?);
         let load = |step: &i64| usize::try_from(*step).ok().and_then(|k| loads.get(k).copied()).unwrap_or(f64::NAN);

@@ -1,13 +1,12 @@
 //! Maps of the contact spots on the surface, at four points of the loop.
 
-use super::cycle_loop::{Closer, Kept, SpotTables};
+use super::cycle_loop::{Closer, Kept};
 use super::drawing::Drawing;
 use super::{FigureError, markup};
 use crate::stats::{labels_with_unit, significant};
 use crate::store::Frame;
 use crate::text::counted;
 use ndarray::ArrayView2;
-use std::collections::HashMap;
 use std::fmt::Write as _;
 
 /// Side of one map, what is between two, and room above each for its words \[pixels\].
@@ -195,42 +194,24 @@ fn ground(heights: ArrayView2<'_, f64>) -> String {
 
 /// Contact spots at a step as circles, with the images across the edges of a periodic square, and their number.
 fn spots(of: &Closer<'_>, step: i64) -> Result<(String, usize), FigureError> {
-    circles(&of.spots, of.length_m, of.periodic, step)
-}
-
-/// Centres of the merged contacts of the loading branch and of the unloading from a load \[m\], by their numbers.
-fn merged_centres(merged: &Frame, max_load: Option<f64>) -> Result<HashMap<i64, (f64, f64)>, FigureError> {
-    let (ids, branches, loads) = (merged.i64("asperity_id")?, merged.text("branch")?, merged.f64_or_null("max_load")?);
-    let (x, y) = (merged.f64("x_m")?, merged.f64("y_m")?);
-    let of_path = |row: &usize| branches[*row] == "loading" || (max_load.is_some() && loads[*row] == max_load);
-    Ok((0..ids.len()).filter(of_path).map(|row| (ids[row], (x[row], y[row]))).collect())
+    circles(of.contacts, of.length_m, of.periodic, step)
 }
 
 /// The contact spots at a step as [`spots`] has them.
-pub(super) fn circles(tables: &SpotTables<'_>, length_m: f64, periodic: bool, step: i64) -> Result<(String, usize), FigureError> {
-    let SpotTables { contacts, asperities, merged } = *tables;
-    let (steps, states, ids) = (contacts.i64("step")?, contacts.text("state")?, contacts.i64("asperity_id")?);
+pub(super) fn circles(contacts: &Frame, length_m: f64, periodic: bool, step: i64) -> Result<(String, usize), FigureError> {
+    let (steps, states) = (contacts.i64("step")?, contacts.text("state")?);
     let (radii, loads) = (contacts.f64("contact_radius_m")?, contacts.f64("load_n")?);
-    let (x, y) = (asperities.f64("x_m")?, asperities.f64("y_m")?);
+    let (x, y) = (contacts.f64("centroid_x_m")?, contacts.f64("centroid_y_m")?);
     let unit = SIDE / length_m;
-    let first = steps.iter().position(|of| *of == step);
-    let merged = merged_centres(merged, first.map(|row| contacts.f64_or_null("max_load").map(|loads| loads[row])).transpose()?.flatten())?;
+    let place = |row: usize| (x[row] * unit, SIDE - y[row] * unit);
+    let of_state = |state: &str| (0..steps.len()).filter(|row| steps[*row] == step && states[*row] == state).collect::<Vec<_>>();
+    let absorbed: Vec<(f64, f64)> = of_state("covered").into_iter().map(place).collect();
     let mut spots: Vec<(f64, f64, f64, bool)> = Vec::new();
-    let mut count = 0;
-    let absorbed = |k: &usize| steps[*k] == step && states[*k] == "covered";
-    let absorbed: Vec<(f64, f64)> = (0..steps.len())
-        .filter(absorbed)
-        .filter_map(|k| {
-            let asperity = usize::try_from(ids[k]).ok().filter(|id| *id < x.len())?;
-            Some((x[asperity] * unit, SIDE - y[asperity] * unit))
-        })
-        .collect();
-    for k in (0..steps.len()).filter(|k| steps[*k] == step && states[*k] == "contact") {
-        count += 1;
-        let asperity = usize::try_from(ids[k]).ok().filter(|id| *id < x.len());
-        let Some((x, y)) = asperity.map(|id| (x[id], y[id])).or_else(|| merged.get(&ids[k]).copied()) else { continue };
-        spots.push((x * unit, SIDE - y * unit, radii[k] * unit, loads[k] < 0.0));
+    for row in of_state("contact") {
+        let (x, y) = place(row);
+        spots.push((x, y, radii[row] * unit, loads[row] < 0.0));
     }
+    let count = spots.len();
     spots.sort_by(|u, v| v.2.total_cmp(&u.2));
     spots.truncate(MOST_SPOTS);
     let mut svg = String::new();

@@ -28,7 +28,7 @@ pub use axis::Axis;
 pub use both::{Both, both, method_ratios};
 pub use closer::closer;
 pub use curve::{Curve, KeyEntry, Note, Stroke, XyPlot};
-pub use cycle_loop::{Closer, SpotTables};
+pub use cycle_loop::Closer;
 pub use drawing::Drawing;
 pub use formats::{pdf, png, with_font};
 pub use markup::described;

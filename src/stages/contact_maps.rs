@@ -2,7 +2,7 @@
 
 use super::StageError;
 use crate::campaign::{Campaign, CycleUnit, Standing};
-use crate::figures::{Both, Drawing, SpotTables, both};
+use crate::figures::{Both, Drawing, both};
 use crate::model::Boundary;
 use crate::schema;
 use crate::stats::significant;
@@ -27,8 +27,7 @@ pub(super) fn contact_maps(campaign: &Campaign, standings: &[Standing], methods:
     let map = read_reversal_map(&campaign.cycle_dir(elements).join("maps.h5"), loads[row])?;
     let Some(map) = map.filter(|_| header.periodic) else { return Ok(None) };
     let table = |table: &'static schema::Table| read_table(&campaign.cycle_dir(asperities).join(format!("{}.parquet", table.name)), table);
-    let (steps, contacts, merged) = (table(&schema::STEPS)?, table(&schema::CONTACTS)?, table(&schema::MERGED)?);
-    let summits = read_table(&campaign.asperities_path(surface), &schema::ASPERITIES)?;
+    let (steps, contacts) = (table(&schema::STEPS)?, table(&schema::CONTACTS)?);
     let reversal = steps.f64_or_null("reversal_load")?.iter().position(|load| *load == Some(loads[row]));
     let kept = contacts.i64("step")?;
     let Some(step) = reversal.map(|step| step as i64).filter(|step| kept.contains(step)) else { return Ok(None) };
@@ -43,7 +42,7 @@ pub(super) fn contact_maps(campaign: &Campaign, standings: &[Standing], methods:
         heights_m: heights.view(),
         length_m: header.length_m,
         periodic: params.model.boundary == Boundary::Periodic,
-        spots: SpotTables { contacts: &contacts, asperities: &summits, merged: &merged },
+        contacts: &contacts,
         step,
         areas: areas.map(|areas| areas[row]),
         elements: &map,

@@ -3,7 +3,7 @@
 use super::StageError;
 use super::surface::{scale, spectrum};
 use crate::campaign::{Campaign, CycleUnit, Standing};
-use crate::figures::{Closer, SpotTables, closer};
+use crate::figures::{Closer, closer};
 use crate::model::{Boundary, Choice, Method, Normalization};
 use crate::physics::surface::periodogram::{periodogram, windowed_periodogram};
 use crate::physics::surface::spectrum::Spectrum;
@@ -59,7 +59,8 @@ pub(super) fn look(campaign: &Campaign, standings: &[Standing], cases: &Frame) -
         parameters: &parameters,
         steps: &steps,
         events: &events,
-        spots: SpotTables { contacts: &contacts, asperities: &asperities, merged: &table(&schema::MERGED)? },
+        contacts: &contacts,
+        asperities: &asperities,
         energy_j: case.material.contact_modulus_pa * area * scale.rms_height_m,
         rms_height_m: scale.rms_height_m,
         length_m: header.length_m,
