@@ -67,11 +67,12 @@ fn surroundings(grid: &HalfSpace, first: usize, near: Vec<usize>) -> (Place, usi
 #[cfg(test)]
 mod tests {
     use super::{Region, SMALLEST, places};
+    use crate::physics::PhysicsError;
     use crate::physics::boundary_elements::grid::HalfSpace;
 
     #[test]
-    fn law_points_across_the_edge_are_one_place() {
-        let grid = HalfSpace::new(128, 128).unwrap();
+    fn law_points_across_the_edge_are_one_place() -> Result<(), PhysicsError> {
+        let grid = HalfSpace::new(128, 128)?;
         let point = |row: usize, column: usize| row * 128 + column;
         // The first four points are within 12 of the first, across the corner of the periodic square. Their extent of 12 points, twice and 8, is 32.
         let changed = [point(0, 0), point(127, 2), point(3, 124), point(120, 127), point(64, 64)];
@@ -84,5 +85,6 @@ mod tests {
         // Squares of 32 and 96 points whose middles are 63 apart share points, those of 32 and 64 do not.
         assert!(found[1].overlaps(&Region { side: 96, ..found[0] }, &grid));
         assert!(!found[1].overlaps(&Region { side: 64, ..found[0] }, &grid));
+        Ok(())
     }
 }
