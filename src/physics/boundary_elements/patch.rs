@@ -29,8 +29,9 @@ const FINISH: f64 = 3.0;
 /// Most iterations on a patch.
 const ITERATIONS: usize = 600;
 
-/// Points of the patches of one side at most, relative to those of the grid; a few small patches are always there.
+/// The patches of one side have at most as many points as the grid over this.
 const SHARE: usize = 16;
+/// Side up to which there is a patch for each place on every grid.
 const ALWAYS: usize = 128;
 
 /// Patches that are not in use, by increasing side.
