@@ -44,7 +44,7 @@ pub(super) fn map(of: &Closer<'_>, landmarks: &[Kept], heights_m: ArrayView2<'_,
         let (left, top) = (GAP + (k % 2) as f64 * (SIDE + GAP), ABOVE + (k / 2) as f64 * (SIDE + ABOVE));
         let at = usize::try_from(*step).unwrap_or_default();
         let number = |values: &[f64]| values.get(at).copied().unwrap_or(f64::NAN);
-        let (spots, count) = spots(of, *step)?;
+        let (spots, count) = circles(of.contacts, of.length_m, of.periodic, *step)?;
         // Writing to a string cannot fail.
         let _ = write!(
             svg,
@@ -193,11 +193,6 @@ fn ground(heights: ArrayView2<'_, f64>) -> String {
 }
 
 /// Contact spots at a step as circles, with the images across the edges of a periodic square, and their number.
-fn spots(of: &Closer<'_>, step: i64) -> Result<(String, usize), FigureError> {
-    circles(of.contacts, of.length_m, of.periodic, step)
-}
-
-/// The contact spots at a step as [`spots`] has them.
 pub(super) fn circles(contacts: &Frame, length_m: f64, periodic: bool, step: i64) -> Result<(String, usize), FigureError> {
     let (steps, states) = (contacts.i64("step")?, contacts.text("state")?);
     let (radii, loads) = (contacts.f64("contact_radius_m")?, contacts.f64("load_n")?);
