@@ -88,7 +88,7 @@ const RESULTS: &[Column] = &[
     real("dissipated_j", "J", "Dissipated energy, summed over the events of the loop"),
     real("audit_gap", "1", "Energy-balance error |loss_j - dissipated_j| / |loss_j|; where loss_j is 0 (no adhesion), energy of the loading events over the work of loading").or_null(),
     real("absorption_share", "1", "Coalescence energy over dissipated energy: |cover + uncover + merge + split|/|Θ| of the energies of events; null where Θ = 0").or_null(),
-    real("loss_uncertainty", "1", "Numerical resolution of Θ over |Θ|; the resolution is 1e-7 of the maximum work along the loop; null where Θ = 0").or_null(),
+    real("loss_uncertainty", "1", "Resolution of Θ over |Θ|; the resolution is 1e-7 of the maximum work along the loop, and at least -Θ of a negative Θ and an energy-balance error above |Θ|/2; null where Θ = 0").or_null(),
     count("summit_count", "Number of asperities of the surface"),
     real("summit_density_1_m2", "1/m^2", "Number of asperities per nominal area"),
     real("nayak_density_1_m2", "1/m^2", "Summit density of a Gaussian surface with the spectral moments of the realized surface")
@@ -233,7 +233,7 @@ const VALIDITY: &[&[Column]] = &[
         ""
     ),
     mean_and_worst!("elements_per_wavelength", "min", "Minimum", "grid points of boundary elements per shortest wavelength", ""),
-    mean_and_worst!("loss_uncertainty", "max", "Maximum", "numerical resolution of Θ over |Θ|", ""),
+    mean_and_worst!("loss_uncertainty", "max", "Maximum", "resolution of Θ over |Θ|", ""),
     pooled!(
         "touching_share",
         "sum of touching_count_at_max_load over sum of contact_count_at_max_load",

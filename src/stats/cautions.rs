@@ -105,8 +105,8 @@ pub const CAUTIONS: [Caution; 17] = [
     warning(
         "unresolved",
         "energy not resolved",
-        "numerical resolution is {} of Θ",
-        "Θ is zero within the numerical resolution.",
+        "resolution of Θ is {} of its magnitude",
+        "Θ is zero within its resolution.",
         "Do not quote Θ and Θ/Θ_DK.",
     ),
     warning(

@@ -4,7 +4,7 @@ use super::listed::case_label;
 use super::rows::{Rows, Value};
 use super::student::Sample;
 use super::varying::varying;
-use super::{CaseInput, Given, StatsError, significant};
+use super::{CaseInput, Given, Limit, StatsError, significant};
 use crate::schema::METHODS;
 use crate::store::Frame;
 
@@ -63,13 +63,15 @@ fn same_surfaces(pair: &[String; 2], load: f64, realizations: &Frame) -> Result<
     Ok(first.into_iter().filter_map(partner).collect())
 }
 
-/// Values, ratios and their statistics of a column.
+/// Values, ratios and their statistics of a column. There is no ratio of a dissipated energy that is not resolved.
 fn compare(column: &str, pairs: &[Pair], realizations: &Frame, (shared, own): (&mut Given, &mut [Given])) -> Result<(), StatsError> {
     let values = realizations.f64(column)?;
+    let uncertainties = realizations.f64_or_null("loss_uncertainty")?;
+    let is_resolved = |row: usize| column != "loss" || !Limit::of("unresolved").is_some_and(|limit| limit.is_passed(uncertainties[row]));
     let mut ratios = Vec::new();
     for (row, [first, second]) in own.iter_mut().zip(pairs) {
         let (asperities, elements) = (values[*first], values[*second]);
-        let ratio = (elements != 0.0).then(|| asperities / elements);
+        let ratio = (elements != 0.0 && is_resolved(*first) && is_resolved(*second)).then(|| asperities / elements);
         row.push((format!("{column}_asperities"), asperities.into()));
         row.push((format!("{column}_elements"), elements.into()));
         row.push((format!("{column}_ratio"), ratio.into()));

@@ -4,7 +4,7 @@ use super::cycle::{Branch, Cycle, fault};
 use super::events::{Events, Lost};
 use super::rows::{Rows, Value};
 use super::{CaseInput, CycleInput, Given, StatsError};
-use crate::physics::cycle::soundness::RESOLUTION;
+use crate::physics::cycle::soundness::LoopEnergy;
 use crate::schema::{EVENT_KINDS, REALIZATIONS};
 use crate::store::Frame;
 
@@ -115,7 +115,7 @@ fn reduce(loading: &Branch, turning: usize, unloading: &Branch, max_load: f64, i
     let at_reversal = at(&loading.work_j)?;
     let loss_j = at_reversal + work_back;
     let works = loading.work_j.iter().take(turning + 1).copied().chain(unloading.work_j.iter().map(|work| at_reversal + work));
-    let resolution_j = RESOLUTION * works.map(f64::abs).fold(0.0, f64::max);
+    let work_j = works.map(f64::abs).fold(0.0, f64::max);
     let loss = loss_j / input.energy_scale_j;
     let area = at(&loading.area)?;
     let discs = at(&loading.area_m2)?;
@@ -125,8 +125,8 @@ fn reduce(loading: &Branch, turning: usize, unloading: &Branch, max_load: f64, i
     let on_loading: f64 = loading.dissipated_j.iter().take(turning + 1).sum();
     // Without adhesion the events of loading are undone on unloading, and nothing but rounding remains.
     let dissipated_j = if loss_j == 0.0 { 0.0 } else { on_loading + unloading.dissipated_j.iter().sum::<f64>() };
-    let imbalance_j = if loss_j == 0.0 { on_loading.abs() } else { (loss_j - dissipated_j).abs() };
-    let compared_j = if loss_j == 0.0 { resolution_j / RESOLUTION } else { loss_j.abs() };
+    let energy = LoopEnergy { loss_j, events_j: dissipated_j, work_j };
+    let (imbalance_j, compared_j) = if loss_j == 0.0 { (on_loading.abs(), work_j) } else { (energy.imbalance_j(), loss_j.abs()) };
     let converged = loading.converged.iter().take(turning + 1).chain(&unloading.converged);
     let (contacts, covered) = (count_at(&loading.contact_count), count_at(&loading.covered_count));
     let tension = |loads: &[f64]| -loads.iter().copied().fold(0.0, f64::min);
@@ -157,7 +157,7 @@ fn reduce(loading: &Branch, turning: usize, unloading: &Branch, max_load: f64, i
         ("dissipated", (dissipated_j / input.energy_scale_j).into()),
         ("dissipated_j", dissipated_j.into()),
         ("audit_gap", (compared_j > 0.0).then(|| imbalance_j / compared_j).into()),
-        ("loss_uncertainty", (loss_j != 0.0).then(|| resolution_j / loss_j.abs()).into()),
+        ("loss_uncertainty", (loss_j != 0.0).then(|| energy.resolution_j() / loss_j.abs()).into()),
         ("contact_count_at_max_load", contacts.into()),
         ("touching_count_at_max_load", touching.into()),
         ("covered_count_at_max_load", covered.into()),

@@ -3,7 +3,7 @@
 use crate::support::{DEFAULT, LENGTH, PAPER, RMS, asperity, close, loop_of, near, paper_spectrum, run, unloading};
 use hysteron::model::{Coalescence, Interaction, JumpIn, KeptContacts, Material};
 use hysteron::physics::contact::{Problem, Rules};
-use hysteron::physics::cycle::soundness::{check_energy, loop_energy};
+use hysteron::physics::cycle::soundness::{LoopEnergy, check_energy, loop_energy};
 use hysteron::physics::cycle::{self, Branch, Cycle, Settings};
 use hysteron::physics::surface::summits::{Summit, find_summits};
 use hysteron::physics::surface::synthesis::{realization_seed, synthesize};
@@ -112,7 +112,8 @@ fn law_no_result_that_is_none() {
                         assert!(cycle.steps.iter().all(|step| step.area_m2 <= LENGTH * LENGTH && step.area_union_m2 <= LENGTH * LENGTH));
                         assert!(energy.loss_j >= -energy.resolution_j(), "{modulus:e} {adhesion:e} {load}: {energy:?}");
                         let gap = (energy.loss_j - energy.events_j).abs();
-                        assert!(gap <= (0.5 * energy.loss_j).max(1e-5 * energy.work_j), "{modulus:e} {adhesion:e} {load}: {energy:?}");
+                        assert!(gap <= (0.5 * energy.loss_j).max(1e-3 * energy.work_j), "{modulus:e} {adhesion:e} {load}: {energy:?}");
+                        assert!(gap <= (0.5 * energy.loss_j).max(energy.resolution_j()), "{modulus:e} {adhesion:e} {load}: {energy:?}");
                     }
                     Err(error) => {
                         refused += 1;
@@ -144,6 +145,28 @@ fn reg_unsound_cycles_are_refused() {
         step.dissipated_j *= 1.6;
     }
     assert!(matches!(check_energy(&unbalanced, 0), Err(PhysicsError::EnergyImbalance { .. })));
+}
+
+/// A loop that violates sign or energy balance by a thousandth of its work is kept, and its Θ is not resolved.
+#[test]
+fn reg_small_violations_leave_the_energy_unresolved() {
+    let small = |loss: f64, events: f64| LoopEnergy { loss_j: loss, events_j: events, work_j: 1.0 };
+    close("balanced", small(1e-4, 0.9e-4).resolution_j(), 1e-7, 1e-12);
+    close("negative", small(-1e-4, -0.9e-4).resolution_j(), 1e-4, 1e-12);
+    close("unbalanced", small(1e-4, 3e-4).resolution_j(), 2e-4, 1e-12);
+    let problem = Problem::new(&summits(8, 3, 0), LENGTH, RMS, PAPER, DEFAULT).unwrap();
+    let whole = attempt(&problem, 0.002).unwrap();
+    let LoopEnergy { loss_j, work_j, .. } = loop_energy(&whole, 0);
+    for (violation, is_kept) in [(9e-4, true), (1.1e-3, false)] {
+        let mut gains = whole.clone();
+        gains.steps.last_mut().unwrap().work_j -= loss_j + violation * work_j;
+        // The events are those of a loop with that energy.
+        for step in &mut gains.steps {
+            step.dissipated_j = 0.0;
+        }
+        assert_eq!(check_energy(&gains, 0).is_ok(), is_kept, "{violation}");
+        assert!(loop_energy(&gains, 0).resolution_j() >= 0.9 * violation * work_j);
+    }
 }
 
 /// The energy of the loading events is part of the energy balance also where the unloading undoes them.
