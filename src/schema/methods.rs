@@ -11,7 +11,11 @@ macro_rules! compared {
             real(
                 concat!($name, "_ratio"),
                 "1",
-                concat!("Ratio of asperity model to boundary elements: ", $what, "; null where the latter is 0, and of a dissipated energy that is not resolved"),
+                concat!(
+                    "Ratio of asperity model to boundary elements: ",
+                    $what,
+                    "; null where the latter is 0, and of a dissipated energy that is not resolved"
+                ),
             )
             .or_null(),
             real(concat!($name, "_ratio_mean"), "1", concat!("Mean over the surfaces of the pair of cases: ratio of ", $what)).or_null(),

@@ -241,6 +241,7 @@ pub static MERGED: Table = Table {
         real("y_m", "m", "Centre y, the area-weighted mean of both contacts"),
         real("height_m", "m", "Peak height relative to the highest asperity").from("Eq 5"),
         real("radius_m", "m", "Radius of curvature of the equivalent sphere with the same contact radius and load").from("Eq 1"),
+        real("offset_j", "J", "Constant of its potential, with which merging neither creates nor dissipates energy"),
     ],
 };
 

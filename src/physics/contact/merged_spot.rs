@@ -14,8 +14,10 @@ pub struct Merged {
     pub place_m: [f64; 2],
     /// Radius of curvature R \[m\].
     pub radius_m: f64,
-    /// Height relative to the highest asperity \[m\].
+    /// Height relative to the highest asperity \[m\], without the difference fields of other merged contacts.
     pub height_m: f64,
+    /// Constant of its potential \[J\].
+    pub offset_j: f64,
     /// Contact radius at which the spot splits \[m\].
     pub release_m: f64,
     /// Mean penetration at merging \[m\].
@@ -27,6 +29,11 @@ impl Merged {
     #[must_use]
     pub fn contact_radius_m(&self) -> f64 {
         self.radii_m[0].hypot(self.radii_m[1])
+    }
+
+    /// The same at another size of both parts.
+    pub(crate) fn scaled(&self, share: f64) -> Self {
+        Self { radii_m: self.radii_m.map(|a| share * a), ..*self }
     }
 }
 

@@ -18,8 +18,8 @@
 
 use super::merged_spot::{Merged, TouchingPairs};
 use super::problem::Problem;
-use super::state::State;
-use crate::model::{Coalescence, Interaction};
+use super::state::{State, Status};
+use crate::model::Coalescence;
 use crate::physics::PhysicsError;
 use crate::physics::jkr::Asperity;
 
@@ -38,39 +38,78 @@ impl Problem {
     }
 
     /// The problem with the merged contacts of a state.
-    pub(crate) fn grown(&self, merged: &[Merged]) -> Result<Self, PhysicsError> {
+    pub(crate) fn grown(&self, state: &State) -> Result<Self, PhysicsError> {
         let mut grown = self.clone();
-        for spot in merged {
+        for spot in &state.merged {
             grown.add(spot)?;
         }
+        for number in self.summits()..grown.len() {
+            if state.status[number] != Status::Free {
+                let difference = grown.difference_field(number, &state.merged[number - self.summits()], &grown.live(state, number));
+                grown.lower(&difference, 1.0);
+            }
+        }
         Ok(grown)
+    }
+
+    /// Asperities, and merged contacts that exist, without one.
+    pub(crate) fn live(&self, state: &State, without: usize) -> Vec<usize> {
+        let lives = |i: &usize| *i != without && (*i < self.summits() || state.status[*i] != Status::Free);
+        (0..self.len().min(state.status.len())).filter(lives).collect()
+    }
+
+    /// Displacement \[m\] at each of `targets` by two contacts beyond that of the contact that they merge into, at the radii at merging.
+    pub(crate) fn difference_field(&self, number: usize, merged: &Merged, targets: &[usize]) -> Vec<(usize, f64)> {
+        let parts = [0, 1].map(|k| self.spot(merged.parts[k], merged.radii_m[k]));
+        let parts = self.field.at_many(&parts, targets);
+        let whole = self.field.at_many(&[self.spot(number, merged.contact_radius_m())], targets);
+        targets.iter().copied().zip(parts.iter().zip(&whole).map(|(parts, whole)| parts - whole)).collect()
+    }
+
+    /// Lowers heights by a difference field (1), or raises them again (−1).
+    pub(crate) fn lower(&mut self, field: &[(usize, f64)], sign: f64) {
+        for (i, displacement) in field {
+            self.heights[*i] -= sign * displacement;
+        }
+    }
+
+    /// Potential of two contacts beyond that of the contact in their place \[J\]: their own, of interaction with each other and with `others`, whose radii are \[m\].
+    ///
+    /// `displaced` are the displacements at the two contacts and at the one \[m\], by all others and by their images, those at the two by one another too.
+    pub(crate) fn exchange_j(
+        &self,
+        number: usize,
+        merged: &Merged,
+        share: f64,
+        others: &[(usize, f64)],
+        difference: &[(usize, f64)],
+        displaced: [f64; 3],
+    ) -> f64 {
+        let ([i, j], [a, b]) = (merged.parts, merged.radii_m.map(|a| share * a));
+        let radius = a.hypot(b);
+        let load = |i: usize, a: f64| self.asperities[i].load(a);
+        let own = |i: usize, a: f64, displacement: f64| self.self_potential(i, a) + 0.5 * load(i, a) * displacement;
+        let fields: f64 = others
+            .iter()
+            .map(|(k, a)| {
+                let at = difference.binary_search_by_key(k, |entry| entry.0);
+                at.map_or(0.0, |at| difference[at].1 * load(*k, *a))
+            })
+            .sum();
+        own(i, a, displaced[0]) + own(j, b, displaced[1]) - own(number, radius, displaced[2]) + self.potential_offset[number] + 0.5 * fields
     }
 
     /// Adds a merged contact; it gets the next number.
     pub(crate) fn add(&mut self, merged: &Merged) -> Result<(), PhysicsError> {
         let asperity = Asperity::as_printed(merged.radius_m, &self.material, self.rules.slips)?;
-        let number = self.len();
         self.asperities.push(asperity);
-        self.potential_offset.push(0.0);
-        let ([i, j], [a, b]) = (merged.parts, merged.radii_m);
-        let parts = self.self_potential(i, a) + self.self_potential(j, b) + self.interaction_energy([i, j], [a, b]);
-        self.potential_offset[number] = parts - self.self_potential(number, merged.contact_radius_m());
+        self.potential_offset.push(merged.offset_j);
         self.heights.push(merged.height_m);
         // After splitting, it cannot form a contact again.
         self.jump_in.push(f64::INFINITY);
         self.field.add(merged.place_m);
         self.neighbours.add(merged.place_m);
         Ok(())
-    }
-
-    /// `½(F_i ŵ_ij + F_j ŵ_ji)` of two contacts of these radii \[J\].
-    fn interaction_energy(&self, [i, j]: [usize; 2], [a, b]: [f64; 2]) -> f64 {
-        if self.rules.interaction == Interaction::None {
-            return 0.0;
-        }
-        let r = self.distance(i, j);
-        let (one, other) = (&self.asperities[i], &self.asperities[j]);
-        0.5 * (one.load(a) * self.spot_field(other, r, b).0 + other.load(b) * self.spot_field(one, r, a).0)
     }
 
     /// Load of the contact that two contacts would merge into, and its adhesive part `sqrt(8πE*Δγa³)` \[N\].
@@ -123,6 +162,7 @@ impl Problem {
             place_m: self.places.inward(self.places.outward(between)),
             radius_m: 4.0 / 3.0 * self.material.contact_modulus_pa * radius.powi(3) / (load + root),
             height_m: 0.0,
+            offset_j: 0.0,
             release_m: (1.0 - ROUNDING) * radius,
             approach_m,
         }

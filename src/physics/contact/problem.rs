@@ -39,8 +39,8 @@ pub struct Problem {
     pub(crate) asperities: Grown<Asperity>,
     /// Caller's numbers and positions.
     pub(crate) places: Arc<Places>,
-    /// Heights relative to the highest asperity \[m\]: zero or negative.
-    pub(crate) heights: Grown<f64>,
+    /// Heights relative to the highest asperity \[m\]: zero or negative; lowered by the difference fields of merged contacts.
+    pub(crate) heights: Vec<f64>,
     /// Jump-in penetrations \[m\]: zero or negative, never below the end of the branch.
     ///
     /// Without adhesion they are slightly positive.
@@ -213,11 +213,14 @@ impl Problem {
     pub(crate) fn columns(&self, of: impl Iterator<Item = (usize, f64)> + Clone, spots: &mut Spots) {
         spots.index.clear();
         spots.index.extend(of.clone().map(|(i, _)| i));
-        spots.columns.set(of.map(|(i, a)| {
-            let asperity = &self.asperities[i];
-            let [x, y] = *self.place(i);
-            Spot { x, y, a, radius: asperity.radius_m(), load: asperity.load(a), load_slope: asperity.load_slope(a) }
-        }));
+        spots.columns.set(of.map(|(i, a)| self.spot(i, a)));
+    }
+
+    /// A contact of radius `a` \[m\] as a source.
+    pub(crate) fn spot(&self, i: usize, a: f64) -> Spot {
+        let asperity = &self.asperities[i];
+        let [x, y] = *self.place(i);
+        Spot { x, y, a, radius: asperity.radius_m(), load: asperity.load(a), load_slope: asperity.load_slope(a) }
     }
 
     /// Potential of a contact of radius `a` \[m\] on its branch, without its interaction \[J\]: `U(δ(a), a) − Δγπa²`.

@@ -251,7 +251,7 @@ fn travel(
     bound: Option<f64>,
     visit: &mut dyn FnMut(&mut EquilibriumPath) -> Result<Next, PhysicsError>,
 ) -> Result<Option<PathCheckpoint>, PhysicsError> {
-    let grown = problem.grown(&carried.state.merged)?;
+    let grown = problem.grown(&carried.state)?;
     let mut path = EquilibriumPath::resume(Arc::new(grown), carried)?;
     loop {
         match visit(&mut path)? {

@@ -2,6 +2,7 @@
 //!
 //! Both give the same field, so the choice may change along a path.
 
+use super::spot_field::Spot;
 use super::{DirectSum, Effort, FastSum, Interaction, PairTable, Spots, Tangent};
 use crate::model::{Boundary, Interaction as Kind, Material, Slips};
 
@@ -82,6 +83,11 @@ impl Best {
         for fast in self.fast.iter_mut().flatten() {
             fast.add(place);
         }
+    }
+
+    /// Displacements by few spots at many targets, see [`DirectSum::at_many`].
+    pub(crate) fn at_many(&self, spots: &[Spot], targets: &[usize]) -> Vec<f64> {
+        self.direct.at_many(spots, targets)
     }
 
     /// Displacements and derivatives at targets by direct sums, see [`DirectSum::rows`].

@@ -1,5 +1,7 @@
 //! Direct sums over all pairs: exact, and the reference for the fast sum.
 
+mod at_many;
+
 use super::ewald::{IMAGES, ORDERS, RemainderSeries};
 use super::multipole::{Moments, product};
 use super::patch_pairs::{PairTable, Sources};

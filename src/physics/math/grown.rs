@@ -15,10 +15,6 @@ impl<T> Grown<T> {
         self.base.len() + self.more.len()
     }
 
-    pub(crate) fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
     pub(crate) fn push(&mut self, value: T) {
         self.more.push(value);
     }

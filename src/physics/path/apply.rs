@@ -4,6 +4,7 @@ use super::accuracy::EVENT_TOLERANCE;
 use super::avalanche::Avalanche;
 use super::equilibrium_path::EquilibriumPath;
 use super::events::Located;
+use super::propagation::Before;
 use super::rejection::Rejection;
 use crate::physics::PhysicsError;
 use crate::physics::contact::Status;
@@ -27,7 +28,7 @@ impl EquilibriumPath {
                 before.potential += self.step_over_fold(at);
                 self.relax_or_snap(leader)?
             }
-            _ => match self.change_status(transition)? {
+            _ => match self.change_status(transition, &mut before)? {
                 Some(applied) => applied,
                 None => return Ok(()),
             },
@@ -50,8 +51,8 @@ impl EquilibriumPath {
     }
 
     /// Inserts or removes an asperity and solves the local problem; all transitions on the way are returned, nothing if none is applied.
-    fn change_status(&mut self, transition: Transition) -> Result<Option<Vec<Transition>>, Rejection> {
-        let Some(entered) = self.insert_or_remove(transition)? else { return Ok(None) };
+    fn change_status(&mut self, transition: Transition, before: &mut Before) -> Result<Option<Vec<Transition>>, Rejection> {
+        let Some(entered) = self.insert_or_remove(transition, before)? else { return Ok(None) };
         let problem = &*self.problem();
         let uncovers = transition.kind == Kind::Uncover;
         let approach = self.neighbourhood.local.approach;
@@ -78,7 +79,7 @@ impl EquilibriumPath {
 
     /// Inserts an asperity into the local problem or removes it, without solving; the transition is returned as it is recorded, nothing if
     /// there is nothing to solve or record.
-    fn insert_or_remove(&mut self, transition: Transition) -> Result<Option<Transition>, PhysicsError> {
+    fn insert_or_remove(&mut self, transition: Transition, before: &mut Before) -> Result<Option<Transition>, PhysicsError> {
         let problem = &*self.problem();
         let i = transition.asperity;
         let asperity = &problem.asperities[i];
@@ -101,8 +102,8 @@ impl EquilibriumPath {
                 }
                 self.insert_uncovered(transition);
             }
-            Kind::Merge => return self.merge(transition).map(Some),
-            Kind::Split => self.split(i),
+            Kind::Merge => return self.merge(transition, before).map(Some),
+            Kind::Split => self.split(i, before),
             Kind::Snap => {}
         }
         Ok(Some(transition))

@@ -225,6 +225,9 @@ impl EquilibriumPath {
         for change in &changes {
             self.predictor.traces[change.asperity].value = f64::NAN;
             self.predictor.set(change.asperity, change.status(&self.problem()), 0.0);
+            if change.kind == Kind::JumpOff {
+                self.free_parts(change.asperity);
+            }
         }
         let (after, _) = self.problem().totals(self.state());
         self.record(&changes, target, before, after, 0.0);

@@ -1,15 +1,16 @@
 //! Merging and splitting in a local problem.
 
 use super::equilibrium_path::EquilibriumPath;
+use super::propagation::Before;
 use crate::physics::PhysicsError;
 use crate::physics::contact::Status;
-use crate::physics::contact::merged_spot::pair_of;
+use crate::physics::contact::merged_spot::{Merged, pair_of};
 use crate::physics::contact::transition::{Kind, Transition};
 use std::sync::Arc;
 
 impl EquilibriumPath {
     /// Replaces two contacts of the local problem by one of the same area and load, which is in equilibrium there; the transition names it.
-    pub(super) fn merge(&mut self, transition: Transition) -> Result<Transition, PhysicsError> {
+    pub(super) fn merge(&mut self, transition: Transition, before: &mut Before) -> Result<Transition, PhysicsError> {
         let problem = self.problem();
         let pair = [transition.by.unwrap_or(transition.asperity), transition.asperity];
         let approach = self.neighbourhood.local.approach;
@@ -28,9 +29,16 @@ impl EquilibriumPath {
         let by_others = self.solver.displacement(&contacts, number);
         // The images of the merged contact displace it as well.
         let displacement = by_others + self.solver.displacement(&[(number, merged.contact_radius_m())], number);
+        let problem = self.problem();
+        let difference = problem.difference_field(number, &merged, &problem.live(self.state(), number));
+        let height = problem.asperities[number].penetration(merged.contact_radius_m()) + displacement - approach;
+        merged.height_m = height + self.differences_at(number);
+        merged.offset_j = self.exchange_j(number, &merged, 1.0, &contacts, &difference, displacement);
+        drop(problem);
         let grown = Arc::make_mut(&mut self.solver.problem);
-        merged.height_m = grown.asperities[number].penetration(merged.contact_radius_m()) + displacement - approach;
-        grown.heights[number] = merged.height_m;
+        grown.heights[number] = height;
+        grown.potential_offset[number] = merged.offset_j;
+        grown.lower(&difference, 1.0);
         let problem = &*self.problem();
         let (local, effort) = (&mut self.neighbourhood.local, &mut self.solver.effort);
         for part in pair {
@@ -43,18 +51,30 @@ impl EquilibriumPath {
         self.pending.grow(problem.len());
         self.pending.set_applied(number);
         self.chatter.join(pair);
+        *before = self.exchanged(before, 0.0);
         Ok(Transition { kind: Kind::Merge, asperity: number, by: None })
     }
 
     /// Replaces a merged contact of the local problem by its parts, with its present area.
-    pub(super) fn split(&mut self, number: usize) {
-        let problem = &*self.problem();
+    pub(super) fn split(&mut self, number: usize, before: &mut Before) {
         let approach = self.neighbourhood.local.approach;
         let Some(at) = self.neighbourhood.local.find(number) else { return };
+        let contacts: Vec<(usize, f64)> = self.contacts_without(&[number], approach);
+        let problem = self.problem();
         let merged = self.predictor.state.merged[number - problem.summits()];
         let share = self.neighbourhood.local.radius[at] / merged.contact_radius_m();
         let drift = self.neighbourhood.local.members[at].drift;
-        let contacts: Vec<(usize, f64)> = self.contacts_without(&[number], approach);
+        let difference = problem.difference_field(number, &merged, &problem.live(self.state(), number));
+        let displaced =
+            self.solver.displacement(&contacts, number) + self.solver.displacement(&[(number, share * merged.contact_radius_m())], number);
+        // It may have shrunk beyond the radius at which it merged: then the field of its parts differs from the one that ends.
+        let present = problem.difference_field(number, &merged.scaled(share), &problem.live(self.state(), number));
+        let excess: Vec<_> = difference.iter().zip(&present).map(|((i, ends), (_, begins))| (*i, ends - begins)).collect();
+        let gained = self.exchange_j(number, &merged, share, &contacts, &present, displaced) - merged.offset_j;
+        drop(problem);
+        Arc::make_mut(&mut self.solver.problem).lower(&difference, -1.0);
+        let gained = gained + self.end_field(&excess, true);
+        let problem = &*self.problem();
         let displacements = merged.parts.map(|part| self.solver.displacement(&contacts, part));
         let (local, effort) = (&mut self.neighbourhood.local, &mut self.solver.effort);
         local.remove(number, false);
@@ -67,6 +87,39 @@ impl EquilibriumPath {
         parts.into_iter().for_each(|(part, a)| self.part_pairs(part, a, Some(number)));
         let [i, j] = merged.parts;
         self.predictor.parted.insert(pair_of(i, j));
+        *before = self.exchanged(before, gained);
+    }
+
+    /// Sum of the difference fields of merged contacts at the place of the last number \[m\].
+    fn differences_at(&self, number: usize) -> f64 {
+        let (problem, state) = (&*self.problem(), self.state());
+        let live = (problem.summits()..number).filter(|k| state.status[*k] != Status::Free);
+        live.map(|k| problem.difference_field(k, &state.merged[k - problem.summits()], &[number])[0].1).sum()
+    }
+
+    /// See [`Problem::exchange_j`](crate::physics::contact::Problem::exchange_j); `displaced` is the displacement at the merged contact \[m\].
+    fn exchange_j(
+        &mut self,
+        number: usize,
+        merged: &Merged,
+        share: f64,
+        others: &[(usize, f64)],
+        difference: &[(usize, f64)],
+        displaced: f64,
+    ) -> f64 {
+        let pair = [0, 1].map(|k| (merged.parts[k], share * merged.radii_m[k]));
+        let mut all: Vec<(usize, f64)> = others.iter().copied().chain(pair).collect();
+        all.sort_unstable_by_key(|contact| contact.0);
+        let [first, second] = merged.parts.map(|part| self.solver.displacement(&all, part));
+        self.problem().exchange_j(number, merged, share, others, difference, [first, second, displaced])
+    }
+
+    /// The local problem after an exchange of contacts that has gained energy \[J\], which changes nothing elsewhere.
+    fn exchanged(&mut self, before: &Before, gained_j: f64) -> Before {
+        let problem = &*self.problem();
+        self.neighbourhood.local.evaluate(problem, &mut self.solver.effort);
+        let now = self.begin();
+        Before { totals: before.totals, potential: now.potential - gained_j, ..now }
     }
 
     /// Contacts and their predicted radii at a mean penetration \[m\], without some.
@@ -75,12 +128,14 @@ impl EquilibriumPath {
         all.into_iter().filter(|(i, _)| !some.contains(i)).collect()
     }
 
-    /// Frees the parts of a merged contact that has left contact, and blocks them from re-entry; they are returned.
-    pub(super) fn free_parts(&mut self, number: usize) -> Vec<usize> {
+    /// Frees the parts of a merged contact that has left contact, and blocks them from re-entry; they are returned, with the energy that the loads of
+    /// the other contacts gain as its difference field ends \[J\].
+    pub(super) fn free_parts(&mut self, number: usize) -> (Vec<usize>, f64) {
         let summits = self.problem().summits();
-        let (mut freed, mut left) = (Vec::new(), vec![number]);
+        let (mut freed, mut gained_j, mut left) = (Vec::new(), 0.0, vec![number]);
         while let Some(into) = left.pop() {
             let Some(merged) = into.checked_sub(summits).map(|k| self.predictor.state.merged[k]) else { continue };
+            gained_j += self.end_difference(into, &merged);
             for part in merged.parts {
                 if self.predictor.state.status[part] == (Status::Merged { into }) {
                     self.predictor.set(part, Status::Free, 0.0);
@@ -90,7 +145,35 @@ impl EquilibriumPath {
                 }
             }
         }
-        freed
+        (freed, gained_j)
+    }
+
+    /// Ends the difference field of a merged contact that has left contact: all contacts have that as a pending displacement. The energy that their
+    /// loads gain is returned \[J\].
+    fn end_difference(&mut self, number: usize, merged: &Merged) -> f64 {
+        let problem = self.problem();
+        let difference = problem.difference_field(number, merged, &problem.live(self.state(), number));
+        drop(problem);
+        Arc::make_mut(&mut self.solver.problem).lower(&difference, -1.0);
+        self.end_field(&difference, false)
+    }
+
+    /// Ends a field at asperities: contacts, but for the members of the local problem if these have it, have that as a pending displacement. The energy
+    /// that their loads gain is returned \[J\].
+    fn end_field(&mut self, field: &[(usize, f64)], members_have_it: bool) -> f64 {
+        let (problem, limit) = (self.problem(), self.pending_limit());
+        let mut gained_j = 0.0;
+        for &(i, displacement) in field.iter().filter(|(_, displacement)| *displacement != 0.0) {
+            if self.predictor.state.status[i] == Status::Contact {
+                if !(members_have_it && self.neighbourhood.local.find(i).is_some()) {
+                    gained_j += displacement * problem.asperities[i].load(self.predictor.state.radius[i]);
+                    self.pending.add_near(i, -displacement, limit);
+                }
+            } else if !self.predictor.traces[i].value.is_nan() {
+                self.predictor.displace(&problem, i, -displacement);
+            }
+        }
+        gained_j
     }
 
     /// Pairs of a contact of radius `a` \[m\], which has just come into being, with those that it overlaps but for one that it replaces: they

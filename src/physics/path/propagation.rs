@@ -20,14 +20,14 @@ const NEGLIGIBLE: f64 = 0.1;
 
 /// A local problem before it changes.
 pub(super) struct Before {
-    totals: Totals,
+    pub(super) totals: Totals,
     /// Part of the potential that changes with the members \[J\].
     pub(super) potential: f64,
     /// Members.
-    members: Vec<ReferenceState>,
+    pub(super) members: Vec<ReferenceState>,
     /// Load of the members, and `Σ F_i ∂ŵ_i/∂Δ` by the outside \[N\].
-    load: f64,
-    reciprocal_load: f64,
+    pub(super) load: f64,
+    pub(super) reciprocal_load: f64,
 }
 
 /// A member before its pending displacement is applied.
@@ -134,9 +134,7 @@ impl EquilibriumPath {
         let load = near.local.totals(problem).0 - before.load;
         let response = before.reciprocal_load - near.local.reciprocal_load_rate(problem);
         self.propagate(&changes, load, response, avalanche);
-        for transition in &applied {
-            self.enter(transition, avalanche);
-        }
+        let gained_j: f64 = applied.iter().map(|transition| self.enter(transition, avalanche)).sum();
         let (rates, _) = self.neighbourhood.local.rates(problem);
         let local = &self.neighbourhood.local;
         let trace = |((member, a), rate): ((&OutsideField, &f64), &f64)| {
@@ -149,7 +147,7 @@ impl EquilibriumPath {
         self.finish_free(&rates, avalanche);
         let after = self.predictor.totals(approach);
         self.log.restart(approach, after.load_n);
-        self.record(&applied, approach, before.totals, after, energy);
+        self.record(&applied, approach, before.totals, after, energy - gained_j);
         avalanche.moved.extend(applied);
     }
 
@@ -165,8 +163,8 @@ impl EquilibriumPath {
         }
     }
 
-    /// Enters the status after a transition into the predictor.
-    fn enter(&mut self, transition: &Transition, avalanche: &mut Avalanche) {
+    /// Enters the status after a transition into the predictor; the energy that it gives to other contacts is returned \[J\].
+    fn enter(&mut self, transition: &Transition, avalanche: &mut Avalanche) -> f64 {
         let problem = &*self.problem();
         let i = transition.asperity;
         avalanche.open.push(i);
@@ -189,12 +187,15 @@ impl EquilibriumPath {
             (Kind::JumpIn | Kind::Uncover, _) if self.neighbourhood.local.find(i).is_some() => self.enter_status(i, Status::Contact),
             (Kind::JumpOff, Some(_)) => {
                 self.enter_status(i, Status::Free);
-                avalanche.open.extend(self.free_parts(i));
+                let (parts, gained_j) = self.free_parts(i);
+                avalanche.open.extend(parts);
+                return gained_j;
             }
             (Kind::JumpIn | Kind::JumpOff | Kind::Cover | Kind::Uncover | Kind::Merge | Kind::Split, _) => {
                 self.enter_status(i, transition.status(problem));
             }
         }
+        0.0
     }
 
     /// Enters a status into the predictor.

@@ -117,6 +117,7 @@ fn merged_rows(path: &Path, count: usize) -> Result<Vec<Merged>, StageError> {
     let [a, b] = [frame.f64("first_radius_m")?, frame.f64("second_radius_m")?];
     let [x, y] = [frame.f64("x_m")?, frame.f64("y_m")?];
     let [radius, height] = [frame.f64("radius_m")?, frame.f64("height_m")?];
+    let offset = frame.f64("offset_j")?;
     let [release, approach] = [frame.f64("release_m")?, frame.f64("approach_m")?];
     let row = |k: usize| Merged {
         parts: [first[k] as usize, second[k] as usize],
@@ -124,6 +125,7 @@ fn merged_rows(path: &Path, count: usize) -> Result<Vec<Merged>, StageError> {
         place_m: [x[k], y[k]],
         radius_m: radius[k],
         height_m: height[k],
+        offset_j: offset[k],
         release_m: release[k],
         approach_m: approach[k],
     };

@@ -71,6 +71,7 @@ pub(super) fn merged(of: Identity<'_>, cycle: &Cycle) -> Result<Frame, StageErro
         .f64("y_m", each(|s| s.place_m[1]))
         .f64("height_m", each(|s| s.height_m))
         .f64("radius_m", each(|s| s.radius_m))
+        .f64("offset_j", each(|s| s.offset_j))
         .build()?)
 }
 
