@@ -13,6 +13,7 @@ use hysteron::physics::surface::summits::Summit;
 
 const MERGE: Rules = Rules { coalescence: Coalescence::Merge, ..DEFAULT };
 const MERGE_ALONE: Rules = Rules { coalescence: Coalescence::Merge, ..ALONE };
+const MERGE_POINT: Rules = Rules { interaction: Interaction::Point, ..MERGE };
 
 /// Two spheres across the edge of the square, 20 μm apart.
 fn pair() -> [Summit; 2] {
@@ -84,7 +85,7 @@ fn law_merging_and_parting_of_a_pair_costs_nothing() {
 #[test]
 fn law_with_point_interaction_the_loop_loses_what_its_events_lose() {
     // Merged spots are other spheres at other heights, and yet the sum over merging and parting closes the account of the whole loop.
-    for (rules, most) in [(MERGE_ALONE, 1e-6), (Rules { interaction: Interaction::Point, ..MERGE }, 1e-6)] {
+    for (rules, most) in [(MERGE_ALONE, 1e-6), (MERGE_POINT, 1e-6)] {
         let summits = paper_summits(16, 1);
         let problem = Problem::new(&summits, LENGTH, RMS, PAPER, rules).unwrap().with_patches_of(usize::MAX);
         let cycle = run(&problem, &[0.0071], 0.04, KeptContacts::None);
@@ -98,40 +99,54 @@ fn law_with_point_interaction_the_loop_loses_what_its_events_lose() {
 }
 
 #[test]
-fn law_merging_and_splitting_exchange_energy_with_other_spots_alone() {
-    // Without interaction there is none but the rounding of the radius of release. With it the field of one spot replaces that of two, at others within a few radii.
-    // Over the dissipated energy, the magnitudes sum to 0.80 (spots) and 0.46 (point); without the constants of the merged spots to 4.8, 2.6 and 1.4 (none).
-    for (rules, most) in [(MERGE, 1.0), (Rules { interaction: Interaction::Point, ..MERGE }, 0.6), (MERGE_ALONE, 1e-6)] {
+fn law_merging_costs_nothing_and_splitting_little() {
+    // The field of two spots stays at all others when they merge. What a split costs comes from others that have changed since: over the dissipated
+    // energy the magnitudes sum to 0.023 (spots) and 0.0035 (point). Where the field of one spot replaced that of two, they were 0.80 and 0.46.
+    for (rules, merging, splitting) in [(MERGE, 0.01, 0.05), (MERGE_POINT, 1e-5, 0.01), (MERGE_ALONE, 1e-9, 1e-6)] {
         let problem = Problem::new(&paper_summits(16, 0), LENGTH, RMS, PAPER, rules).unwrap();
         let cycle = run(&problem, &[0.0071], 0.04, KeptContacts::None);
-        let coalescence = cycle.events.iter().filter(|(_, e)| matches!(e.kind, Kind::Merge | Kind::Split));
-        let exchanged: f64 = coalescence.map(|(_, e)| e.energy_lost_j.abs()).sum();
-        let share = exchanged / loop_of(&cycle, 0).loss;
-        println!("SHARE {:?}: {share:e}", rules.interaction);
-        assert!(share < most, "{:?}: {share:e}", rules.interaction);
+        for (kind, most) in [(Kind::Merge, merging), (Kind::Split, splitting)] {
+            let exchanged: f64 = cycle.events.iter().filter(|(_, e)| e.kind == kind).map(|(_, e)| e.energy_lost_j.abs()).sum();
+            let share = exchanged / loop_of(&cycle, 0).loss;
+            println!("SHARE {:?} {kind:?}: {share:e}", rules.interaction);
+            assert!(share < most, "{:?}, {kind:?}: {share:e}", rules.interaction);
+        }
     }
 }
 
 #[test]
 fn law_area_and_load_are_continuous_at_every_merger() {
-    let summits = paper_summits(16, 0);
-    let problem = Problem::new(&summits, LENGTH, RMS, PAPER, MERGE_ALONE).unwrap();
-    let cycle = run(&problem, &[0.0071], 0.04, KeptContacts::None);
-    let mut compared = 0;
-    for (_, event) in cycle.events.iter().filter(|(_, e)| e.kind == Kind::Merge) {
-        // Without interaction nothing else moves: the sum over fifty spots, each in equilibrium to 5e-16 m.
-        close("area", event.after.area_m2, event.before.area_m2, 1e-8);
-        near("load", event.after.load_n, event.before.load_n, 1e-12);
-        compared += 1;
+    // Every merging changes nothing, to the accuracy of equilibria and of image sums. With the field of whole spots some have no stable equilibrium after it, as
+    // merged contacts respond otherwise; these few snap, by less than a thousandth.
+    for (rules, most, snapping) in [(MERGE_ALONE, 1e-8, 0.0), (MERGE_POINT, 1e-6, 0.0), (MERGE, 1e-6, 0.15)] {
+        let problem = Problem::new(&paper_summits(16, 0), LENGTH, RMS, PAPER, rules).unwrap();
+        let cycle = run(&problem, &[0.0071], 0.04, KeptContacts::None);
+        let change = |[before, after, scale]: [f64; 3]| (after - before).abs() / scale;
+        let top = turning(&cycle, 0);
+        let mergers = cycle.events.iter().map(|(_, e)| e).filter(|e| e.kind == Kind::Merge);
+        let changes: Vec<f64> = mergers
+            .map(|e| {
+                let area = change([e.before.area_m2, e.after.area_m2, e.before.area_m2]);
+                area.max(change([e.before.load_n, e.after.load_n, top.load_n]))
+            })
+            .collect();
+        assert!(changes.len() > 20, "{}", changes.len());
+        let more: Vec<f64> = changes.iter().copied().filter(|change| *change > most).collect();
+        println!("CONT {:?} {} of {}: {more:?}", rules.interaction, more.len(), changes.len());
+        assert!(
+            more.len() as f64 <= snapping * changes.len() as f64 && more.iter().all(|change| *change < 1e-3),
+            "{:?}: {more:?}",
+            rules.interaction
+        );
     }
-    assert!(compared > 20, "{compared}");
 }
 
 #[test]
 fn law_a_reversal_before_any_jump_out_of_contact_retraces() {
-    // Above the second jump into contact the states of loading and unloading are the same, merged and split.
-    for rules in [MERGE_ALONE, MERGE, Rules { interaction: Interaction::Point, ..MERGE }] {
-        let problem = Problem::new(&pair(), LENGTH, RMS, PAPER, rules).unwrap();
+    // Above the last jump into contact the states of loading and unloading are the same, merged and split, also at a third contact nearby.
+    let trio = [pair().to_vec(), vec![asperity(4e-5, 0.5 * LENGTH, 0.0, 2e-5)]].concat();
+    for (summits, rules) in [(pair().to_vec(), MERGE_ALONE), (trio.clone(), MERGE), (trio, MERGE_POINT)] {
+        let problem = Problem::new(&summits, LENGTH, RMS, PAPER, rules).unwrap();
         let cycle = run(&problem, &[1.2e-4], 0.002, KeptContacts::None);
         let last_in = cycle.events.iter().rfind(|(_, e)| e.kind == Kind::JumpIn).unwrap().1.approach_m;
         let merging = cycle.events.iter().find(|(_, e)| e.kind == Kind::Merge).unwrap().1.approach_m;
@@ -159,25 +174,34 @@ fn lim_the_dissipated_energy_has_no_floor_at_weak_adhesion() {
     };
     // Without interaction it is a sum of JKR loops, each in proportion to Δγ^(5/3); the area, and so the number of contacts, hardly changes.
     close("none", loss(MERGE_ALONE, 1e-5) / loss(MERGE_ALONE, 1e-4), 10f64.powf(-5.0 / 3.0), 0.01);
-    // Merging changes the field at other contacts. What remains of that was 2.4e-8 and 3.1e-7; with `cover` it is 3e-6 to 1e-5.
-    for (rules, most) in [(Rules { interaction: Interaction::Point, ..MERGE }, 1e-7), (MERGE, 1e-6)] {
-        let floor = loss(rules, 1e-5);
-        println!("FLOOR {:?}: {floor:e}", rules.interaction);
-        assert!((0.0..most).contains(&floor), "{:?}: {floor:e}", rules.interaction);
+    // With it, Θ is less than without at 1e-5 J/m², and falls at least as fast. Where merging changed the field at others, 2.4e-8 and 3.1e-7 remained.
+    let alone = loss(MERGE_ALONE, 1e-5);
+    for rules in [MERGE_POINT, MERGE] {
+        let (weak, weaker) = (loss(rules, 1e-4), loss(rules, 1e-5));
+        println!("FLOOR {:?}: {weak:e} {weaker:e} {alone:e}", rules.interaction);
+        assert!(
+            0.0 < weaker && weaker < alone && weaker < 1.2 * 10f64.powf(-5.0 / 3.0) * weak,
+            "{:?}: {weak:e}, {weaker:e}",
+            rules.interaction
+        );
     }
 }
 
 #[test]
 fn law_a_released_asperity_does_not_merge_with_the_contacts_around_it() {
     // They overlap where it is released, as at a split. Merging there would be undone within nanometres.
-    let cycle = paper_cycle(&paper_summits(16, 0), MERGE, &[0.0071], 0.01);
-    let released: Vec<(usize, f64)> =
-        cycle.events.iter().filter(|(_, e)| e.kind == Kind::Uncover).map(|(_, e)| (e.asperity, e.approach_m)).collect();
-    assert!(released.len() >= 5, "{}", released.len());
-    for (asperity, approach) in released {
-        let merges = cycle.merged.iter().any(|spot| spot.spot.parts.contains(&asperity) && spot.spot.approach_m == approach);
-        assert!(!merges, "{asperity} at {approach:e} m");
+    let mut count = 0;
+    for realization in 0..6 {
+        let cycle = paper_cycle(&paper_summits(16, realization), MERGE, &[0.0071], 0.01);
+        let released = cycle.events.iter().filter(|(_, e)| e.kind == Kind::Uncover).map(|(_, e)| (e.asperity, e.approach_m));
+        for (asperity, approach) in released {
+            let merges = cycle.merged.iter().any(|spot| spot.spot.parts.contains(&asperity) && spot.spot.approach_m == approach);
+            assert!(!merges, "{asperity} at {approach:e} m");
+            count += 1;
+        }
     }
+    println!("RELEASED {count}");
+    assert!(count >= 4, "{count}");
 }
 
 #[test]

@@ -2,8 +2,8 @@
 
 use super::DirectSum;
 use crate::model::Interaction as Kind;
-use crate::physics::half_space::multipole::Moments;
-use crate::physics::half_space::rough_images::{CENTRE, Centre};
+use crate::physics::half_space::ewald::{IMAGES, ORDERS, RemainderSeries};
+use crate::physics::half_space::multipole::{Moments, product};
 use crate::physics::half_space::spot_field::{LANES, Place, Spot, SpotColumns, field};
 use multiversion::multiversion;
 
@@ -15,7 +15,7 @@ struct Targets {
 }
 
 impl DirectSum {
-    /// Displacement \[m\] by spots at each of `targets`, without that of a spot at its own centre. The image sums have six digits.
+    /// Displacement \[m\] by spots at each of `targets`, without that of a spot at its own centre.
     pub(crate) fn at_many(&self, spots: &[Spot], targets: &[usize]) -> Vec<f64> {
         let mut columns = Targets::default();
         for chunk in targets.chunks(LANES) {
@@ -39,7 +39,7 @@ impl DirectSum {
                 Kind::Spots => add_spot(place, spot, &columns, &mut sums),
             }
             if self.periodic && self.kind != Kind::None {
-                add_images(place, [moments.value[0][0], moments.value[0][1]], &columns, &mut sums);
+                add_images(place, &moments.value[0], &columns, &mut sums);
             }
         }
         sums.into_iter().flatten().take(targets.len()).collect()
@@ -85,8 +85,8 @@ fn add_point(place: Place, strength: f64, targets: &Targets, sums: &mut [[f64; L
 
 /// Adds the field of all images but the nearest.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-fn add_images(place: Place, moments: [f64; 2], targets: &Targets, sums: &mut [[f64; LANES]]) {
-    let centre: &Centre = &CENTRE;
+fn add_images(place: Place, moments: &[f64; ORDERS], targets: &Targets, sums: &mut [[f64; LANES]]) {
+    let images: &RemainderSeries = &IMAGES;
     for ((x, y), sum) in targets.x.iter().zip(&targets.y).zip(sums) {
         let (mut dx, mut dy) = ([0.0; LANES], [0.0; LANES]);
         for k in 0..LANES {
@@ -95,9 +95,42 @@ fn add_images(place: Place, moments: [f64; 2], targets: &Targets, sums: &mut [[f
             dx[k] -= dx[k].round_ties_even();
             dy[k] -= dy[k].round_ties_even();
         }
-        let [first, second] = centre.sums(&dx, &dy);
-        for k in 0..LANES {
-            sum[k] += first[k].mul_add(moments[0], second[k] * moments[1]);
+        for (sum, sums) in sum.iter_mut().zip(images.local(&dx, &dy)) {
+            *sum += product(&sums, moments);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::DirectSum;
+    use super::{Kind, Spot};
+    use crate::model::{Boundary, Material, Slips};
+    use crate::physics::half_space::{Effort, Interaction as _, Spots};
+
+    #[test]
+    fn law_lanes_over_targets_give_the_sums_over_sources() {
+        let material = Material { contact_modulus_pa: 1e6, work_of_adhesion_j_m2: 0.07, interaction_range_m: 1e-9 };
+        let positions: Vec<[f64; 2]> = (0..29).map(|k| [f64::from(k * 7 % 29) * 3e-5, f64::from(k * 11 % 29) * 3.4e-5]).collect();
+        let spots = [(3, 2e-5), (17, 9e-6)].map(|(i, a): (usize, f64)| {
+            let [x, y] = positions[i];
+            (i, Spot { x, y, a, radius: 3e-5, load: -4e-6 * a / 2e-5, load_slope: 0.1 })
+        });
+        let targets: Vec<usize> = (0..29).collect();
+        for kind in [Kind::Spots, Kind::Point, Kind::None] {
+            for boundary in [Boundary::Periodic, Boundary::Isolated] {
+                let sum = DirectSum::new(positions.clone(), 1e-3, &material, kind, boundary, Slips::NONE);
+                let mut sources = Spots { index: spots.map(|(i, _)| i).to_vec(), ..Spots::default() };
+                sources.columns.set(spots.iter().map(|(_, spot)| *spot));
+                let mut wanted = Vec::new();
+                sum.displacements(&sources, &targets, &mut wanted, &mut Effort::default());
+                let found = sum.at_many(&spots.map(|(_, spot)| spot), &targets);
+                let largest = wanted.iter().fold(0.0f64, |most, w| most.max(w.abs()));
+                for (found, wanted) in found.iter().zip(&wanted) {
+                    // The order of summation differs.
+                    assert!((found - wanted).abs() <= 1e-14 * largest, "{kind:?} {boundary:?}: {found:e} {wanted:e}");
+                }
+            }
         }
     }
 }
