@@ -183,7 +183,10 @@ pub(super) fn read_by_cycle(params: &CaseParams) -> CaseParams {
 /// Version of the cycles by boundary elements in their keys, beside that of the stage.
 const ELEMENTS_VERSION: u32 = 5;
 
-/// Inputs of a cycle in its key, besides the asperities. Those of the asperity model are the same as before there was another method.
+/// The same of cycles of the asperity model.
+const ASPERITIES_VERSION: u32 = 2;
+
+/// Inputs of a cycle in its key, besides the asperities.
 fn of_case(params: &CaseParams) -> Vec<(&'static str, Value)> {
     let params = read_by_cycle(params);
     let [material, mut model, mut cycle] = [plain(&params.material), plain(&params.model), plain(&params.cycle)];
@@ -192,7 +195,7 @@ fn of_case(params: &CaseParams) -> Vec<(&'static str, Value)> {
         remove(&mut cycle, "approach_step");
         return vec![("material", material), ("model", model), ("boundary_elements", plain(&params.boundary_elements)), ("cycle", cycle)];
     }
-    remove(&mut model, "method");
+    model["method"] = json!(ASPERITIES_VERSION);
     vec![("material", material), ("model", model), ("cycle", cycle)]
 }
 

@@ -60,8 +60,8 @@ impl Stage {
         match self {
             Self::Generate | Self::Extract => 2,
             Self::Cycle => 17,
-            Self::Aggregate => 9,
-            Self::Report => 14,
+            Self::Aggregate => 10,
+            Self::Report => 15,
         }
     }
 }

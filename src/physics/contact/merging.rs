@@ -9,12 +9,14 @@
 //! An asperity is absorbed as with `cover` if a larger contact reaches its centre before they have merged.
 //! This happens if the asperity is free, or during the solution for an equilibrium.
 //! A pair whose tensile load would put the merged contact beyond the end of its branch merges only when this is no longer so.
-//! A pair that has split must have been apart before it merges again.
+//! A pair that has split must have been apart before it merges again. In other surroundings the parts are no longer in equilibrium when it splits; they relax,
+//! and the energy of that is dissipated.
 //!
-//! A merged contact is a different sphere from its two parts, and its potential on its branch is another one. The difference at merging is a
-//! constant of the merged contact and part of its potential: the potentials of the parts and their interaction are functions of their radii
-//! alone, which are the same again when it splits. So merging and splitting alone dissipate nothing; what they change is the interaction
-//! with other contacts, which respond to it.
+//! A merged contact is a different sphere from its two parts, with another field and another potential. Both differences at merging are constants of the
+//! merged contact:
+//! - The difference of the fields stays at all other asperities, as a change of their heights, until it splits. Then nothing moves when contacts merge, and
+//!   nothing when they split in the same surroundings.
+//! - The difference of the potentials is part of its potential. So merging dissipates nothing, nor does splitting in the same surroundings.
 
 use super::merged_spot::{Merged, TouchingPairs};
 use super::problem::Problem;
@@ -73,20 +75,19 @@ impl Problem {
         }
     }
 
-    /// Potential of two contacts beyond that of the contact in their place \[J\]: their own, of interaction with each other and with `others`, whose radii are \[m\].
+    /// Potential of two contacts beyond that of the contact in their place \[J\], of which the constant does not count.
     ///
-    /// `displaced` are the displacements at the two contacts and at the one \[m\], by all others and by their images, those at the two by one another too.
+    /// It consists of their own potentials and those of interaction, with each other and with `others`, whose radii are \[m\]. `difference` is the
+    /// difference of their fields at the others. `displaced` are the displacements at the two contacts and at the one \[m\].
     pub(crate) fn exchange_j(
         &self,
         number: usize,
         merged: &Merged,
-        share: f64,
         others: &[(usize, f64)],
         difference: &[(usize, f64)],
         displaced: [f64; 3],
     ) -> f64 {
-        let ([i, j], [a, b]) = (merged.parts, merged.radii_m.map(|a| share * a));
-        let radius = a.hypot(b);
+        let ([i, j], [a, b], radius) = (merged.parts, merged.radii_m, merged.contact_radius_m());
         let load = |i: usize, a: f64| self.asperities[i].load(a);
         let own = |i: usize, a: f64, displacement: f64| self.self_potential(i, a) + 0.5 * load(i, a) * displacement;
         let fields: f64 = others

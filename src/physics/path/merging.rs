@@ -9,7 +9,8 @@ use crate::physics::contact::transition::{Kind, Transition};
 use std::sync::Arc;
 
 impl EquilibriumPath {
-    /// Replaces two contacts of the local problem by one of the same area and load, which is in equilibrium there; the transition names it.
+    /// Replaces two contacts of the local problem by one of the same area and load, which is in equilibrium there; the transition names it. Nothing else
+    /// changes: the local problem is the one `before` any response.
     pub(super) fn merge(&mut self, transition: Transition, before: &mut Before) -> Result<Transition, PhysicsError> {
         let problem = self.problem();
         let pair = [transition.by.unwrap_or(transition.asperity), transition.asperity];
@@ -22,18 +23,17 @@ impl EquilibriumPath {
         let drift = share[0] * local.members[first].drift + share[1] * local.members[second].drift;
         let contacts: Vec<(usize, f64)> = self.contacts_without(&pair, approach);
         let mut merged = problem.merged(pair, radii, approach);
-        let number = problem.len();
+        let (number, radius) = (problem.len(), merged.contact_radius_m());
         drop(problem);
-        let grown = Arc::make_mut(&mut self.solver.problem);
-        grown.add(&merged)?;
+        Arc::make_mut(&mut self.solver.problem).add(&merged)?;
         let by_others = self.solver.displacement(&contacts, number);
         // The images of the merged contact displace it as well.
-        let displacement = by_others + self.solver.displacement(&[(number, merged.contact_radius_m())], number);
+        let displacement = by_others + self.solver.displacement(&[(number, radius)], number);
         let problem = self.problem();
         let difference = problem.difference_field(number, &merged, &problem.live(self.state(), number));
-        let height = problem.asperities[number].penetration(merged.contact_radius_m()) + displacement - approach;
+        let height = problem.asperities[number].penetration(radius) + displacement - approach;
         merged.height_m = height + self.differences_at(number);
-        merged.offset_j = self.exchange_j(number, &merged, 1.0, &contacts, &difference, displacement);
+        merged.offset_j = self.exchange_j(number, &merged, &contacts, &difference, displacement);
         drop(problem);
         let grown = Arc::make_mut(&mut self.solver.problem);
         grown.heights[number] = height;
@@ -41,12 +41,10 @@ impl EquilibriumPath {
         grown.lower(&difference, 1.0);
         let problem = &*self.problem();
         let (local, effort) = (&mut self.neighbourhood.local, &mut self.solver.effort);
-        for part in pair {
-            local.remove(part, false);
-        }
+        pair.into_iter().for_each(|part| local.remove(part, false));
         local.evaluate(problem, effort);
         let place = local.place(problem, number, (by_others, drift), effort);
-        local.insert(place, merged.contact_radius_m());
+        local.insert(place, radius);
         self.predictor.extend(merged);
         self.pending.grow(problem.len());
         self.pending.set_applied(number);
@@ -55,42 +53,43 @@ impl EquilibriumPath {
         Ok(Transition { kind: Kind::Merge, asperity: number, by: None })
     }
 
-    /// Replaces a merged contact of the local problem by its parts, with its present area.
+    /// Replaces a merged contact of the local problem by its parts, with its present area; the local problem is the one `before` any response.
     pub(super) fn split(&mut self, number: usize, before: &mut Before) {
         let approach = self.neighbourhood.local.approach;
         let Some(at) = self.neighbourhood.local.find(number) else { return };
         let contacts: Vec<(usize, f64)> = self.contacts_without(&[number], approach);
         let problem = self.problem();
         let merged = self.predictor.state.merged[number - problem.summits()];
-        let share = self.neighbourhood.local.radius[at] / merged.contact_radius_m();
-        let drift = self.neighbourhood.local.members[at].drift;
-        let difference = problem.difference_field(number, &merged, &problem.live(self.state(), number));
-        let displaced =
-            self.solver.displacement(&contacts, number) + self.solver.displacement(&[(number, share * merged.contact_radius_m())], number);
-        // It may have shrunk beyond the radius at which it merged: then the field of its parts differs from the one that ends.
-        let present = problem.difference_field(number, &merged.scaled(share), &problem.live(self.state(), number));
-        let excess: Vec<_> = difference.iter().zip(&present).map(|((i, ends), (_, begins))| (*i, ends - begins)).collect();
-        let gained = self.exchange_j(number, &merged, share, &contacts, &present, displaced) - merged.offset_j;
+        let (radius, drift) = (self.neighbourhood.local.radius[at], self.neighbourhood.local.members[at].drift);
+        let present = merged.scaled(radius / merged.contact_radius_m());
+        let live = problem.live(self.state(), number);
+        let difference = problem.difference_field(number, &merged, &live);
+        // It may have shrunk beyond the radius at which it merged: the fields of its parts then differ by something else from its own.
+        let now = problem.difference_field(number, &present, &live);
         drop(problem);
+        let displaced = self.solver.displacement(&contacts, number) + self.solver.displacement(&[(number, radius)], number);
+        let exchanged = self.exchange_j(number, &present, &contacts, &now, displaced) - merged.offset_j;
         Arc::make_mut(&mut self.solver.problem).lower(&difference, -1.0);
-        let gained = gained + self.end_field(&excess, true);
+        let excess: Vec<(usize, f64)> = difference.iter().zip(&now).map(|((i, ends), (_, begins))| (*i, ends - begins)).collect();
+        let gained = exchanged + self.end_field(&excess, true);
         let problem = &*self.problem();
         let displacements = merged.parts.map(|part| self.solver.displacement(&contacts, part));
         let (local, effort) = (&mut self.neighbourhood.local, &mut self.solver.effort);
         local.remove(number, false);
         local.evaluate(problem, effort);
-        let [first, second] = [0, 1].map(|k| local.place(problem, merged.parts[k], (displacements[k], drift), effort));
-        local.insert(first, share * merged.radii_m[0]);
-        local.insert(second, share * merged.radii_m[1]);
-        merged.parts.iter().for_each(|part| self.pending.set_applied(*part));
-        let parts = [0, 1].map(|k| (merged.parts[k], share * merged.radii_m[k]));
-        parts.into_iter().for_each(|(part, a)| self.part_pairs(part, a, Some(number)));
-        let [i, j] = merged.parts;
-        self.predictor.parted.insert(pair_of(i, j));
+        for (part, (displacement, radius)) in merged.parts.into_iter().zip(displacements.into_iter().zip(present.radii_m)) {
+            let place = local.place(problem, part, (displacement, drift), effort);
+            local.insert(place, radius);
+            self.pending.set_applied(part);
+        }
+        for (part, radius) in merged.parts.into_iter().zip(present.radii_m) {
+            self.part_pairs(part, radius, Some(number));
+        }
+        self.predictor.parted.insert(pair_of(merged.parts[0], merged.parts[1]));
         *before = self.exchanged(before, gained);
     }
 
-    /// Sum of the difference fields of merged contacts at the place of the last number \[m\].
+    /// Sum of the difference fields of merged contacts at the place of a new one \[m\].
     fn differences_at(&self, number: usize) -> f64 {
         let (problem, state) = (&*self.problem(), self.state());
         let live = (problem.summits()..number).filter(|k| state.status[*k] != Status::Free);
@@ -98,23 +97,15 @@ impl EquilibriumPath {
     }
 
     /// See [`Problem::exchange_j`](crate::physics::contact::Problem::exchange_j); `displaced` is the displacement at the merged contact \[m\].
-    fn exchange_j(
-        &mut self,
-        number: usize,
-        merged: &Merged,
-        share: f64,
-        others: &[(usize, f64)],
-        difference: &[(usize, f64)],
-        displaced: f64,
-    ) -> f64 {
-        let pair = [0, 1].map(|k| (merged.parts[k], share * merged.radii_m[k]));
+    fn exchange_j(&mut self, number: usize, merged: &Merged, others: &[(usize, f64)], difference: &[(usize, f64)], displaced: f64) -> f64 {
+        let pair = [0, 1].map(|k| (merged.parts[k], merged.radii_m[k]));
         let mut all: Vec<(usize, f64)> = others.iter().copied().chain(pair).collect();
         all.sort_unstable_by_key(|contact| contact.0);
         let [first, second] = merged.parts.map(|part| self.solver.displacement(&all, part));
-        self.problem().exchange_j(number, merged, share, others, difference, [first, second, displaced])
+        self.problem().exchange_j(number, merged, others, difference, [first, second, displaced])
     }
 
-    /// The local problem after an exchange of contacts that has gained energy \[J\], which changes nothing elsewhere.
+    /// The local problem after an exchange of contacts that has gained energy \[J\] and changed nothing elsewhere.
     fn exchanged(&mut self, before: &Before, gained_j: f64) -> Before {
         let problem = &*self.problem();
         self.neighbourhood.local.evaluate(problem, &mut self.solver.effort);

@@ -286,6 +286,10 @@ impl Relaxing for Whole<'_> {
         (self.solver.count(step), true)
     }
 
+    fn tolerance_m(&self) -> f64 {
+        self.solver.problem.tolerance_m()
+    }
+
     fn advance(&mut self, step: &[f64], share: f64) {
         for (&i, s) in self.state.contacts.iter().zip(step) {
             self.state.radius[i] += share * s;

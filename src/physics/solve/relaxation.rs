@@ -36,6 +36,8 @@ pub(crate) trait Relaxing {
     fn finish(&mut self) -> bool;
     /// Implicit step over a pseudo-time, and whether the flow is stable over it as far as is known.
     fn step(&mut self, time: f64) -> (Vec<f64>, bool);
+    /// Residual below which it is in equilibrium \[m\].
+    fn tolerance_m(&self) -> f64;
     /// Moves the radii by a share of a step.
     fn advance(&mut self, step: &[f64], share: f64);
 }
@@ -55,7 +57,7 @@ pub(crate) fn relax(
     while round < STEPS {
         round += 1;
         last = contact.evaluate();
-        if last.residual_m <= problem.tolerance_m() {
+        if last.residual_m <= contact.tolerance_m() {
             return Ok(changes);
         }
         if last.residual_m.is_nan() {

@@ -15,6 +15,9 @@ use crate::physics::contact::problem::Problem;
 use crate::physics::half_space::{Effort, PairTable, Spots};
 use crate::physics::math::dense::Lu;
 
+/// Residual of a local problem with contacts outside, in rms heights.
+const LOCAL_TOLERANCE: f64 = 1e-7;
+
 /// Bounded rate of the displacement by the outside: next to a global fold the estimate diverges.
 fn bounded(drift: f64) -> f64 {
     drift.clamp(-2.0, 3.0)
@@ -127,6 +130,11 @@ impl LocalProblem {
             let drift = bounded(1.0 - trace.rate - by_members);
             self.watched.push(OutsideField { asperity: i, outside: displaced - field, drift });
         });
+    }
+
+    /// Residual below which it is in equilibrium \[m\]. With contacts outside, whose response is known to first order, the tolerance is larger.
+    pub(crate) fn tolerance_m(&self, problem: &Problem) -> f64 {
+        if self.local { LOCAL_TOLERANCE * problem.rms_height_m } else { problem.tolerance_m() }
     }
 
     /// Position of a member.
@@ -276,7 +284,8 @@ impl LocalProblem {
     pub(crate) fn solve_with(&mut self, problem: &Problem, hold: Hold, damping: Damping, effort: &mut Effort) -> Result<(), NotConverged> {
         let mut descent = Descent { local: self, problem, hold, effort, step: (Vec::new(), 0.0), start: (Vec::new(), 0.0) };
         let first = descent.evaluate();
-        damped_newton(&mut descent, first, damping, problem.tolerance_m())
+        let tolerance_m = descent.local.tolerance_m(problem);
+        damped_newton(&mut descent, first, damping, tolerance_m)
     }
 
     /// `da_i/dΔ` of the members at the equilibrium that was evaluated last, and whether it is stable: the sign of the determinant of the

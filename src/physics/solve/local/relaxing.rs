@@ -61,6 +61,10 @@ impl Relaxing for Part<'_> {
         (step, patch.work.lu.sign() > 0.0)
     }
 
+    fn tolerance_m(&self) -> f64 {
+        self.patch.tolerance_m(self.problem)
+    }
+
     fn advance(&mut self, step: &[f64], share: f64) {
         for (radius, s) in self.patch.radius.iter_mut().zip(step) {
             *radius += share * s;
