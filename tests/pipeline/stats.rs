@@ -176,7 +176,8 @@ fn val_case_means_by_hand() {
     close(row(&frame, "area_at_max_load_ci95_high", 1).unwrap(), 0.18 + half, 1e-9);
     assert_eq!(frame.i64("done_count").unwrap(), [3, 3, 0]);
     assert_eq!(frame.i64("planned_count").unwrap(), [6, 6, 6]);
-    assert_eq!(frame.text("caution").unwrap(), ["incomplete+unconverged+audit", "incomplete+unconverged+audit", "incomplete"]);
+    // At the larger load events and loop differ by more than half of Θ, which is then not resolved.
+    assert_eq!(frame.text("caution").unwrap(), ["incomplete+unconverged+audit", "incomplete+unconverged+unresolved+audit", "incomplete"]);
 }
 
 #[test]

@@ -20,7 +20,6 @@ elements = cases.filter(
 ).select(pl.col("case_id").alias("elements_case_id"))
 table = pairs.join(asperities, on="asperities_case_id").join(elements, on="elements_case_id")
 ratios = [f"{name}_ratio" for name in ("area_at_max_load", "pull_off_load", "loss")]
-table = table.drop_nulls(ratios)
 print("# Asperity model over boundary elements: area, pull-off force and dissipated energy, means over surfaces; their standard deviations and number.")
 print(f"# hysteron run pipelines/validity.toml; magnifications {sorted(table['magnification'].unique().to_list())}; program {cases['program'][0] if 'program' in cases.columns else '0.1.0'}")
 print("coalescence,persson_tosatti,area,pull_off,loss,area_sd,pull_off_sd,loss_sd,count")

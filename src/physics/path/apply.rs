@@ -165,6 +165,8 @@ impl EquilibriumPath {
                 self.predictor.traces[i].value = f64::NAN;
                 let totals = self.predictor.totals(approach);
                 self.log.note(Transition { kind: Kind::Uncover, asperity: i, by: Some(by) }, approach, totals);
+                let gained_j = self.free_parts(i).1;
+                self.log.charge(-gained_j);
             }
         }
     }

@@ -185,7 +185,8 @@ impl EquilibriumPath {
                 avalanche.open.extend(parts);
             }
             (Kind::JumpIn | Kind::Uncover, _) if self.neighbourhood.local.find(i).is_some() => self.enter_status(i, Status::Contact),
-            (Kind::JumpOff, Some(_)) => {
+            // A merged contact that leaves, or is free when it is released.
+            (Kind::JumpOff | Kind::Uncover, Some(_)) => {
                 self.enter_status(i, Status::Free);
                 let (parts, gained_j) = self.free_parts(i);
                 avalanche.open.extend(parts);
