@@ -5,6 +5,7 @@ use super::propagation::Before;
 use crate::physics::PhysicsError;
 use crate::physics::contact::Status;
 use crate::physics::contact::merged_spot::{Merged, pair_of};
+use crate::physics::contact::merging::ROUNDING;
 use crate::physics::contact::transition::{Kind, Transition};
 use std::sync::Arc;
 
@@ -64,8 +65,9 @@ impl EquilibriumPath {
         let present = merged.scaled(radius / merged.contact_radius_m());
         let live = problem.live(self.state(), number);
         let difference = problem.difference_field(number, &merged, &live);
-        // It may have shrunk beyond the radius at which it merged: the fields of its parts then differ by something else from its own.
-        let now = problem.difference_field(number, &present, &live);
+        // Beyond the radius at which it merged the fields of its parts differ by something else from its own.
+        let has_shrunk = radius < (1.0 - 10.0 * ROUNDING) * merged.contact_radius_m();
+        let now = if has_shrunk { problem.difference_field(number, &present, &live) } else { difference.clone() };
         drop(problem);
         let displaced = self.solver.displacement(&contacts, number) + self.solver.displacement(&[(number, radius)], number);
         let exchanged = self.exchange_j(number, &present, &contacts, &now, displaced) - merged.offset_j;
