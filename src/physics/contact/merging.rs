@@ -39,11 +39,14 @@ impl Problem {
         self.rules.coalescence == Coalescence::Merge
     }
 
-    /// The problem with the merged contacts of a state.
-    pub(crate) fn grown(&self, state: &State) -> Result<Self, PhysicsError> {
+    /// The problem with the merged contacts of a state, and with heights that are known \[m\].
+    pub(crate) fn grown(&self, state: &State, heights: Option<Vec<f64>>) -> Result<Self, PhysicsError> {
         let mut grown = self.clone();
         for spot in &state.merged {
             grown.add(spot)?;
+        }
+        if let Some(heights) = heights {
+            return Ok(Self { heights, ..grown });
         }
         for number in self.summits()..grown.len() {
             if state.status[number] != Status::Free {

@@ -247,11 +247,11 @@ enum Next {
 /// It returns the next action. The checkpoint is returned if the action is [`Next::Rest`].
 fn travel(
     problem: &Problem,
-    carried: PathCheckpoint,
+    mut carried: PathCheckpoint,
     bound: Option<f64>,
     visit: &mut dyn FnMut(&mut EquilibriumPath) -> Result<Next, PhysicsError>,
 ) -> Result<Option<PathCheckpoint>, PhysicsError> {
-    let grown = problem.grown(&carried.state)?;
+    let grown = problem.grown(&carried.state, carried.heights.take())?;
     let mut path = EquilibriumPath::resume(Arc::new(grown), carried)?;
     loop {
         match visit(&mut path)? {

@@ -50,6 +50,8 @@ pub(crate) struct PathCheckpoint {
     pub(super) effort: Effort,
     /// Pairs that overlap and do not merge before they have been apart; at the beginning of a path, those that overlap there.
     pub(super) parted: Option<TouchingPairs>,
+    /// Heights with the difference fields of merged contacts \[m\]; at the beginning of a path, nothing: they follow from the state.
+    pub(crate) heights: Option<Vec<f64>>,
 }
 
 impl PathCheckpoint {
@@ -75,6 +77,7 @@ impl PathCheckpoint {
             chatter: ChatterGuard::default(),
             effort: Effort::default(),
             parted: None,
+            heights: None,
         }
     }
 }

@@ -50,6 +50,7 @@ impl EquilibriumPath {
             chatter: self.chatter,
             effort: self.solver.effort,
             parted: Some(self.predictor.parted),
+            heights: self.solver.problem.merges().then(|| self.solver.problem.heights.clone()),
         }
     }
 
