@@ -48,19 +48,21 @@ impl Problem {
         if let Some(heights) = heights {
             return Ok(Self { heights, ..grown });
         }
-        for number in self.summits()..grown.len() {
-            if state.status[number] != Status::Free {
-                let difference = grown.difference_field(number, &state.merged[number - self.summits()], &grown.live(state, number));
-                grown.lower(&difference, 1.0);
-            }
+        for number in self.live_merged(state) {
+            let difference = grown.difference_field(number, &state.merged[number - self.summits()], &grown.live(state, number));
+            grown.lower(&difference, 1.0);
         }
         Ok(grown)
     }
 
     /// Asperities, and merged contacts that exist, without one.
     pub(crate) fn live(&self, state: &State, without: usize) -> Vec<usize> {
-        let lives = |i: &usize| *i != without && (*i < self.summits() || state.status[*i] != Status::Free);
-        (0..self.len().min(state.status.len())).filter(lives).collect()
+        (0..self.summits()).chain(self.live_merged(state)).filter(|i| *i != without).collect()
+    }
+
+    /// Merged contacts that exist, ascending.
+    pub(crate) fn live_merged(&self, state: &State) -> impl Iterator<Item = usize> {
+        (self.summits()..state.status.len()).filter(|i| state.status[*i] != Status::Free)
     }
 
     /// Displacement \[m\] at each of `targets` by two contacts beyond that of the contact that they merge into, at the radii at merging.

@@ -327,6 +327,20 @@ pub(crate) struct Place {
     pub(crate) sag: f64,
 }
 
+/// Squared distances \[m²\] of a place to the nearest images of several points.
+#[inline(always)]
+pub(crate) fn squared_distances(place: Place, x: &[f64; LANES], y: &[f64; LANES]) -> [f64; LANES] {
+    let mut r2 = [0.0; LANES];
+    for k in 0..LANES {
+        let dx = place.x - x[k];
+        let dy = place.y - y[k];
+        let dx = dx - place.length * (dx * place.inverse_length).round_ties_even();
+        let dy = dy - place.length * (dy * place.inverse_length).round_ties_even();
+        r2[k] = dx.mul_add(dx, dy * dy);
+    }
+    r2
+}
+
 /// Sum of the fields of all sources at one point, without that of a source at the point itself.
 ///
 /// With `SLOPES`, the derivative of each field to its spot's radius is written to `slopes`, which has the padded length.
@@ -336,14 +350,7 @@ pub(crate) fn spot_fields<const SLOPES: bool>(place: Place, spots: &SpotColumns,
     let [x, y, a, root_a, inverse_root_a, inverse_radius] = columns.map(|column| column.as_chunks::<LANES>().0);
     let mut strands = [0.0; LANES];
     for pass in 0..x.len() {
-        let mut r2 = [0.0; LANES];
-        for k in 0..LANES {
-            let dx = place.x - x[pass][k];
-            let dy = place.y - y[pass][k];
-            let dx = dx - place.length * (dx * place.inverse_length).round_ties_even();
-            let dy = dy - place.length * (dy * place.inverse_length).round_ties_even();
-            r2[k] = dx.mul_add(dx, dy * dy);
-        }
+        let r2 = squared_distances(place, &x[pass], &y[pass]);
         let (value, slope) = field(&r2, &a[pass], &root_a[pass], &inverse_root_a[pass], &inverse_radius[pass], place.pull, place.sag);
         for k in 0..LANES {
             strands[k] += either(r2[k] == 0.0, 0.0, value[k]);

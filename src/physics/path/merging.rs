@@ -94,8 +94,7 @@ impl EquilibriumPath {
     /// Sum of the difference fields of merged contacts at the place of a new one \[m\].
     fn differences_at(&self, number: usize) -> f64 {
         let (problem, state) = (&*self.problem(), self.state());
-        let live = (problem.summits()..number).filter(|k| state.status[*k] != Status::Free);
-        live.map(|k| problem.difference_field(k, &state.merged[k - problem.summits()], &[number])[0].1).sum()
+        problem.live_merged(state).map(|k| problem.difference_field(k, &state.merged[k - problem.summits()], &[number])[0].1).sum()
     }
 
     /// See [`Problem::exchange_j`](crate::physics::contact::Problem::exchange_j); `displaced` is the displacement at the merged contact \[m\].

@@ -1,10 +1,10 @@
 //! Displacement by few spots at many targets: lanes run over the targets.
 
-use super::DirectSum;
+use super::{DirectSum, in_sides};
 use crate::model::Interaction as Kind;
 use crate::physics::half_space::ewald::{IMAGES, ORDERS, RemainderSeries};
 use crate::physics::half_space::multipole::{Moments, product};
-use crate::physics::half_space::spot_field::{LANES, Place, Spot, SpotColumns, field};
+use crate::physics::half_space::spot_field::{LANES, Place, Spot, SpotColumns, field, squared_distances};
 use multiversion::multiversion;
 
 /// Targets as columns, padded to whole passes.
@@ -46,26 +46,13 @@ impl DirectSum {
     }
 }
 
-/// Squared distances of a pass of targets to the nearest image of a spot.
-#[inline(always)]
-fn squares(place: Place, x: &[f64; LANES], y: &[f64; LANES]) -> [f64; LANES] {
-    let mut r2 = [0.0; LANES];
-    for k in 0..LANES {
-        let (dx, dy) = (x[k] - place.x, y[k] - place.y);
-        let dx = dx - place.length * (dx * place.inverse_length).round_ties_even();
-        let dy = dy - place.length * (dy * place.inverse_length).round_ties_even();
-        r2[k] = dx.mul_add(dx, dy * dy);
-    }
-    r2
-}
-
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
 fn add_spot(place: Place, spot: &Spot, targets: &Targets, sums: &mut [[f64; LANES]]) {
     let root = spot.a.sqrt();
     let (a, root_a, inverse_root_a) = ([spot.a; LANES], [root; LANES], [1.0 / root; LANES]);
     let curvature = [1.0 / spot.radius; LANES];
     for ((x, y), sum) in targets.x.iter().zip(&targets.y).zip(sums) {
-        let r2 = squares(place, x, y);
+        let r2 = squared_distances(place, x, y);
         let (value, _) = field(&r2, &a, &root_a, &inverse_root_a, &curvature, place.pull, place.sag);
         for k in 0..LANES {
             sum[k] += if r2[k] == 0.0 { 0.0 } else { value[k] };
@@ -76,7 +63,7 @@ fn add_spot(place: Place, spot: &Spot, targets: &Targets, sums: &mut [[f64; LANE
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
 fn add_point(place: Place, strength: f64, targets: &Targets, sums: &mut [[f64; LANES]]) {
     for ((x, y), sum) in targets.x.iter().zip(&targets.y).zip(sums) {
-        let r2 = squares(place, x, y);
+        let r2 = squared_distances(place, x, y);
         for k in 0..LANES {
             sum[k] += if r2[k] == 0.0 { 0.0 } else { strength / r2[k].sqrt() };
         }
@@ -88,13 +75,7 @@ fn add_point(place: Place, strength: f64, targets: &Targets, sums: &mut [[f64; L
 fn add_images(place: Place, moments: &[f64; ORDERS], targets: &Targets, sums: &mut [[f64; LANES]]) {
     let images: &RemainderSeries = &IMAGES;
     for ((x, y), sum) in targets.x.iter().zip(&targets.y).zip(sums) {
-        let (mut dx, mut dy) = ([0.0; LANES], [0.0; LANES]);
-        for k in 0..LANES {
-            dx[k] = (x[k] - place.x) * place.inverse_length;
-            dy[k] = (y[k] - place.y) * place.inverse_length;
-            dx[k] -= dx[k].round_ties_even();
-            dy[k] -= dy[k].round_ties_even();
-        }
+        let (dx, dy) = in_sides(place, x, y);
         for (sum, sums) in sum.iter_mut().zip(images.local(&dx, &dy)) {
             *sum += product(&sums, moments);
         }
