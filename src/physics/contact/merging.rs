@@ -23,6 +23,7 @@ use super::problem::Problem;
 use super::state::{State, Status};
 use crate::model::Coalescence;
 use crate::physics::PhysicsError;
+use crate::physics::half_space::spot_field::Spot;
 use crate::physics::jkr::Asperity;
 
 /// Relative change of a contact radius below the accuracy of an equilibrium.
@@ -67,10 +68,21 @@ impl Problem {
 
     /// Displacement \[m\] at each of `targets` by two contacts beyond that of the contact that they merge into, at the radii at merging.
     pub(crate) fn difference_field(&self, number: usize, merged: &Merged, targets: &[usize]) -> Vec<(usize, f64)> {
-        let parts = [0, 1].map(|k| self.spot(merged.parts[k], merged.radii_m[k]));
-        let parts = self.field.at_many(&parts, targets);
-        let whole = self.field.at_many(&[self.spot(number, merged.contact_radius_m())], targets);
-        targets.iter().copied().zip(parts.iter().zip(&whole).map(|(parts, whole)| parts - whole)).collect()
+        let found = self.field.at_many(&self.difference(number, merged), targets);
+        targets.iter().copied().zip(found).collect()
+    }
+
+    /// Sum of the difference fields of merged contacts at the place of another \[m\].
+    pub(crate) fn differences_at(&self, state: &State, number: usize) -> f64 {
+        let sources = self.live_merged(state).filter(|k| *k != number);
+        let sources: Vec<_> = sources.flat_map(|k| self.difference(k, &state.merged[k - self.summits()])).collect();
+        self.field.at_one(&sources, number)
+    }
+
+    /// Contacts whose fields sum to the difference of those of two contacts and of the one that they merge into, each with its sign.
+    fn difference(&self, number: usize, merged: &Merged) -> [(f64, Spot); 3] {
+        let part = |k: usize| (1.0, self.spot(merged.parts[k], merged.radii_m[k]));
+        [part(0), part(1), (-1.0, self.spot(number, merged.contact_radius_m()))]
     }
 
     /// Lowers heights by a difference field (1), or raises them again (−1).

@@ -86,8 +86,13 @@ impl Best {
     }
 
     /// Displacements by few spots at many targets, see [`DirectSum::at_many`].
-    pub(crate) fn at_many(&self, spots: &[Spot], targets: &[usize]) -> Vec<f64> {
+    pub(crate) fn at_many(&self, spots: &[(f64, Spot)], targets: &[usize]) -> Vec<f64> {
         self.direct.at_many(spots, targets)
+    }
+
+    /// Displacement at a target by spots that are added or subtracted, see [`DirectSum::at_one`].
+    pub(crate) fn at_one(&self, spots: &[(f64, Spot)], target: usize) -> f64 {
+        self.direct.at_one(spots, target)
     }
 
     /// Displacements and derivatives at targets by direct sums, see [`DirectSum::rows`].

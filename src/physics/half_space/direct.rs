@@ -6,7 +6,7 @@ use super::ewald::{IMAGES, ORDERS, RemainderSeries};
 use super::multipole::{Moments, product};
 use super::patch_pairs::{PairTable, Sources};
 use super::rough_images::{CENTRE, Centre};
-use super::spot_field::{LANES, Place, SpotColumns, sag, spot_fields};
+use super::spot_field::{LANES, Place, Spot, SpotColumns, sag, spot_fields};
 use super::{Effort, Interaction, Spots, Tangent};
 use crate::model::{Boundary, Interaction as Kind, Material, Slips};
 use crate::physics::math::grown::Grown;
@@ -103,6 +103,19 @@ impl DirectSum {
             visit(k, sum, &slopes[..n]);
         }
         effort.pairs += (n * targets.len()) as u64;
+    }
+
+    /// Displacement \[m\] at a target by spots whose fields are added (1) or subtracted (−1).
+    ///
+    /// There must be no table of image sums: adding an asperity has discarded it.
+    pub(crate) fn at_one(&self, spots: &[(f64, Spot)], target: usize) -> f64 {
+        debug_assert!(self.table.is_empty());
+        let by = |sign: f64| {
+            let mut chosen = Spots::default();
+            chosen.columns.set(spots.iter().filter(|(times, _)| *times == sign).map(|(_, spot)| *spot));
+            sign * self.row::<false>(&chosen, &self.moments(&chosen), target, false, &mut [])
+        };
+        by(1.0) + by(-1.0)
     }
 
     /// Displacements at the spots themselves, with derivatives to all radii row by row.

@@ -192,7 +192,7 @@ impl EquilibriumPath {
             let margin = 3.0 * (target - trace.at).abs() + scale;
             all || trace.value.is_nan() || trace.value > problem.jump_in[*i] - margin
         };
-        let wanted: Vec<usize> = (0..problem.len()).filter(|i| self.state().status[*i] == Status::Free).filter(near).collect();
+        let wanted: Vec<usize> = (0..problem.summits()).filter(|i| self.state().status[*i] == Status::Free).filter(near).collect();
         let found = self.solver.penetrations(&self.predictor.state, rates, &wanted);
         let span = 3.0 * self.steps.longest() + scale;
         self.predictor.candidates.clear();

@@ -33,7 +33,7 @@ impl EquilibriumPath {
         let problem = self.problem();
         let difference = problem.difference_field(number, &merged, &problem.live(self.state(), number));
         let height = problem.asperities[number].penetration(radius) + displacement - approach;
-        merged.height_m = height + self.differences_at(number);
+        merged.height_m = height + problem.differences_at(self.state(), number);
         merged.offset_j = self.exchange_j(number, &merged, &contacts, &difference, displacement);
         drop(problem);
         let grown = Arc::make_mut(&mut self.solver.problem);
@@ -89,12 +89,6 @@ impl EquilibriumPath {
         }
         self.predictor.parted.insert(pair_of(merged.parts[0], merged.parts[1]));
         *before = self.exchanged(before, gained);
-    }
-
-    /// Sum of the difference fields of merged contacts at the place of a new one \[m\].
-    fn differences_at(&self, number: usize) -> f64 {
-        let (problem, state) = (&*self.problem(), self.state());
-        problem.live_merged(state).map(|k| problem.difference_field(k, &state.merged[k - problem.summits()], &[number])[0].1).sum()
     }
 
     /// See [`Problem::exchange_j`](crate::physics::contact::Problem::exchange_j); `displaced` is the displacement at the merged contact \[m\].

@@ -7,6 +7,9 @@ use crate::physics::half_space::multipole::{Moments, product};
 use crate::physics::half_space::spot_field::{LANES, Place, Spot, SpotColumns, field, squared_distances};
 use multiversion::multiversion;
 
+/// Distance over radius from which a spot acts by its moments: their relative error is 6e-10 there, and falls with the eighth power of the distance.
+const FAR: f64 = 8.0;
+
 /// Targets as columns, padded to whole passes.
 #[derive(Debug, Default)]
 struct Targets {
@@ -16,7 +19,9 @@ struct Targets {
 
 impl DirectSum {
     /// Displacement \[m\] by spots at each of `targets`, without that of a spot at its own centre.
-    pub(crate) fn at_many(&self, spots: &[Spot], targets: &[usize]) -> Vec<f64> {
+    ///
+    /// The displacement by each spot is multiplied by the number beside it.
+    pub(crate) fn at_many(&self, spots: &[(f64, Spot)], targets: &[usize]) -> Vec<f64> {
         let mut columns = Targets::default();
         for chunk in targets.chunks(LANES) {
             let (mut x, mut y) = ([0.0; LANES], [0.0; LANES]);
@@ -27,45 +32,49 @@ impl DirectSum {
             columns.y.push(y);
         }
         let mut sums = vec![[0.0; LANES]; columns.x.len()];
-        for spot in spots {
-            let mut column = SpotColumns::default();
-            column.set(std::iter::once(*spot));
-            let moments = Moments::of(self.kind, &column, self.pull, self.compliance, self.length);
-            let inverse_length = if self.periodic { 1.0 / self.length } else { 0.0 };
+        let mut sources = SpotColumns::default();
+        sources.set(spots.iter().map(|(_, spot)| *spot));
+        let moments = Moments::of(self.kind, &sources, self.pull, self.compliance, self.length);
+        let inverse_length = if self.periodic { 1.0 / self.length } else { 0.0 };
+        for ((times, spot), moments) in spots.iter().zip(&moments.value) {
             let place = Place { x: spot.x, y: spot.y, length: self.length, inverse_length, pull: self.pull, sag: self.sag };
+            let moments = moments.map(|moment| times * moment);
             match self.kind {
                 Kind::None => {}
-                Kind::Point => add_point(place, self.compliance * spot.load, &columns, &mut sums),
-                Kind::Spots => add_spot(place, spot, &columns, &mut sums),
+                Kind::Point => add_spot(place, None, &moments, &columns, &mut sums),
+                Kind::Spots => add_spot(place, Some((*times, spot)), &moments, &columns, &mut sums),
             }
             if self.periodic && self.kind != Kind::None {
-                add_images(place, &moments.value[0], &columns, &mut sums);
+                add_images(place, &moments, &columns, &mut sums);
             }
         }
         sums.into_iter().flatten().take(targets.len()).collect()
     }
 }
 
+/// Adds the field of a spot: far from it, and without a `spot` everywhere, that of its moments.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-fn add_spot(place: Place, spot: &Spot, targets: &Targets, sums: &mut [[f64; LANES]]) {
-    let root = spot.a.sqrt();
-    let (a, root_a, inverse_root_a) = ([spot.a; LANES], [root; LANES], [1.0 / root; LANES]);
-    let curvature = [1.0 / spot.radius; LANES];
+fn add_spot(place: Place, spot: Option<(f64, &Spot)>, moments: &[f64; ORDERS], targets: &Targets, sums: &mut [[f64; LANES]]) {
+    let near = spot.map_or(0.0, |(_, spot)| (FAR * spot.a).powi(2));
     for ((x, y), sum) in targets.x.iter().zip(&targets.y).zip(sums) {
         let r2 = squared_distances(place, x, y);
-        let (value, _) = field(&r2, &a, &root_a, &inverse_root_a, &curvature, place.pull, place.sag);
-        for k in 0..LANES {
-            sum[k] += if r2[k] == 0.0 { 0.0 } else { value[k] };
-        }
-    }
-}
-
-#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-fn add_point(place: Place, strength: f64, targets: &Targets, sums: &mut [[f64; LANES]]) {
-    for ((x, y), sum) in targets.x.iter().zip(&targets.y).zip(sums) {
-        let r2 = squared_distances(place, x, y);
-        for k in 0..LANES {
-            sum[k] += if r2[k] == 0.0 { 0.0 } else { strength / r2[k].sqrt() };
+        match spot {
+            Some((times, spot)) if r2.iter().any(|r2| *r2 < near) => {
+                let root = spot.a.sqrt();
+                let curvature = [1.0 / spot.radius; LANES];
+                let (value, _) = field(&r2, &[spot.a; LANES], &[root; LANES], &[1.0 / root; LANES], &curvature, place.pull, place.sag);
+                for k in 0..LANES {
+                    sum[k] += if r2[k] == 0.0 { 0.0 } else { times * value[k] };
+                }
+            }
+            _ => {
+                for k in 0..LANES {
+                    let inverse = if r2[k] == 0.0 { 0.0 } else { place.length / r2[k].sqrt() };
+                    let square = inverse * inverse;
+                    let more = square.mul_add(square.mul_add(moments[3], moments[2]), moments[1]);
+                    sum[k] += inverse * square.mul_add(more, moments[0]);
+                }
+            }
         }
     }
 }
@@ -105,11 +114,11 @@ mod tests {
                 sources.columns.set(spots.iter().map(|(_, spot)| *spot));
                 let mut wanted = Vec::new();
                 sum.displacements(&sources, &targets, &mut wanted, &mut Effort::default());
-                let found = sum.at_many(&spots.map(|(_, spot)| spot), &targets);
+                let found = sum.at_many(&spots.map(|(_, spot)| (1.0, spot)), &targets);
                 let largest = wanted.iter().fold(0.0f64, |most, w| most.max(w.abs()));
                 for (found, wanted) in found.iter().zip(&wanted) {
-                    // The order of summation differs.
-                    assert!((found - wanted).abs() <= 1e-14 * largest, "{kind:?} {boundary:?}: {found:e} {wanted:e}");
+                    // The order of summation differs, and far from a spot its moments are used.
+                    assert!((found - wanted).abs() <= 1e-9 * largest, "{kind:?} {boundary:?}: {found:e} {wanted:e}");
                 }
             }
         }
