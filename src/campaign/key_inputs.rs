@@ -184,7 +184,7 @@ pub(super) fn read_by_cycle(params: &CaseParams) -> CaseParams {
 const ELEMENTS_VERSION: u32 = 5;
 
 /// The same of cycles of the asperity model.
-const ASPERITIES_VERSION: u32 = 2;
+const ASPERITIES_VERSION: u32 = 3;
 
 /// Inputs of a cycle in its key, besides the asperities.
 fn of_case(params: &CaseParams) -> Vec<(&'static str, Value)> {
@@ -195,7 +195,7 @@ fn of_case(params: &CaseParams) -> Vec<(&'static str, Value)> {
         remove(&mut cycle, "approach_step");
         return vec![("material", material), ("model", model), ("boundary_elements", plain(&params.boundary_elements)), ("cycle", cycle)];
     }
-    model["method"] = json!(ASPERITIES_VERSION);
+    model["method_version"] = json!(ASPERITIES_VERSION);
     vec![("material", material), ("model", model), ("cycle", cycle)]
 }
 

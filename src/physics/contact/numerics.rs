@@ -51,7 +51,7 @@ impl Accuracy {
 
     /// Maximum pending displacement of a contact.
     pub(crate) fn pending(self) -> f64 {
-        0.5 * self.0
+        self.0
     }
 
     /// Residual of a global solve whose state is not written down.

@@ -6,11 +6,12 @@ use super::spot_field::Spot;
 use super::{DirectSum, Effort, FastSum, Interaction, PairTable, Spots, Tangent};
 use crate::model::{Boundary, Interaction as Kind, Material, Slips};
 
-/// Numbers of contact spots above which the fast sum is faster, with and without periodic images.
+/// Numbers of contact spots above which the fast sum is faster: with periodic images, with a table of their sums, and without images.
 ///
 /// Measured for the linearisations of one solution and the products that follow them.
 /// Without images a pair costs less and the mesh more.
-const FAST_FROM_PERIODIC: usize = 150;
+const FAST_FROM_PERIODIC: usize = 100;
+const FAST_FROM_TABLE: usize = 150;
 const FAST_FROM_ISOLATED: usize = 400;
 
 /// Number of asperities from which the fast sum is set up.
@@ -69,7 +70,9 @@ impl Best {
     /// Adding an asperity discards the table.
     #[must_use]
     pub fn with_table(self) -> Self {
-        Self { direct: self.direct.with_table(), ..self }
+        let direct = self.direct.with_table();
+        let many = if direct.has_table() { FAST_FROM_TABLE } else { self.many };
+        Self { direct, many, ..self }
     }
 
     /// Sets the number of spots from which the fast sum is used.

@@ -73,6 +73,11 @@ impl DirectSum {
         Self { table: Arc::new(table), ..self }
     }
 
+    /// True if the image sums of every pair are tabulated.
+    pub(super) fn has_table(&self) -> bool {
+        !self.table.is_empty()
+    }
+
     /// Adds an asperity at `place` \[m\] with the next number, and discards the table.
     pub(crate) fn add(&mut self, place: [f64; 2]) {
         self.table = Arc::default();
@@ -109,7 +114,7 @@ impl DirectSum {
     ///
     /// There must be no table of image sums: adding an asperity has discarded it.
     pub(crate) fn at_one(&self, spots: &[(f64, Spot)], target: usize) -> f64 {
-        debug_assert!(self.table.is_empty());
+        debug_assert!(!self.has_table());
         let by = |sign: f64| {
             let mut chosen = Spots::default();
             chosen.columns.set(spots.iter().filter(|(times, _)| *times == sign).map(|(_, spot)| *spot));
