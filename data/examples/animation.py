@@ -53,20 +53,22 @@ def spots(k):
     return circles
 
 
+# Shown where nothing is animated: the step with the largest load.
+still = max(kept, key=lambda k: load[k])
 zero = np.interp(0, [load.min(), load.max()], [20 + SIDE, 20])
 svg = f"""<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 620 320" width="620" height="320" font-family="sans-serif" font-size="14" role="img"
 aria-label="Load against mean penetration of one cycle, and its contact spots, step by step">
 <rect width="620" height="320" fill="white"/><path d="M50 {zero:.1f}H300" stroke="#999"/><rect x="40" y="10" width="270" height="{SIDE + 20}" fill="none" stroke="black"/>
 <text x="175" y="310" text-anchor="middle">mean penetration Δ</text><text transform="translate(26 150) rotate(-90)" text-anchor="middle">load F</text>
 {path("loading", "7 4")}{path("unloading", "none")}
-<circle r="6" fill="black">{animated("cx", [f"{at_x[k]:.1f}" for k in kept])}{animated("cy", [f"{at_y[k]:.1f}" for k in kept])}</circle>
+<circle r="6" cx="{at_x[still]:.1f}" cy="{at_y[still]:.1f}" fill="black">{animated("cx", [f"{at_x[k]:.1f}" for k in kept])}{animated("cy", [f"{at_y[k]:.1f}" for k in kept])}</circle>
 <svg x="340" y="20" width="{SIDE}" height="{SIDE}"><rect width="{SIDE}" height="{SIDE}" fill="#eee"/>
 """
 for frame, k in enumerate(kept):
     visible = ["visible" if frame == other else "hidden" for other in range(len(kept))]
-    svg += f'<g fill-opacity="0.85" visibility="hidden">{spots(k)}{animated("visibility", visible)}</g>\n'
+    svg += f'<g fill-opacity="0.85" visibility="{"visible" if k == still else "hidden"}">{spots(k)}{animated("visibility", visible)}</g>\n'
 svg += f"""</svg><rect x="340" y="20" width="{SIDE}" height="{SIDE}" fill="none" stroke="black"/>
-<circle cx="350" cy="304" r="6" fill="#0072b2"/><text x="362" y="309">compressive</text><circle cx="470" cy="304" r="6" fill="#d55e00"/><text x="482" y="309">tensile</text>
-<text x="600" y="309" text-anchor="end">side {1e3 * length:.3g} mm</text></svg>
+<g font-size="12"><circle cx="350" cy="304" r="6" fill="#0072b2"/><text x="361" y="308">compressive</text>
+<circle cx="454" cy="304" r="6" fill="#d55e00"/><text x="465" y="308">tensile</text><text x="600" y="308" text-anchor="end">side {1e3 * length:.3g} mm</text></g></svg>
 """
 figure.write_text(svg, encoding="utf-8")
