@@ -120,6 +120,11 @@ mod tests {
                     // The order of summation differs, and far from a spot its moments are used.
                     assert!((found - wanted).abs() <= 1e-9 * largest, "{kind:?} {boundary:?}: {found:e} {wanted:e}");
                 }
+                let signed = [(1.0, spots[0].1), (-1.0, spots[1].1)];
+                for (target, wanted) in sum.at_many(&signed, &targets).into_iter().enumerate() {
+                    let found = sum.at_one(&signed, target);
+                    assert!((found - wanted).abs() <= 1e-9 * largest, "{kind:?} {boundary:?}: {found:e} {wanted:e}");
+                }
             }
         }
     }
