@@ -22,6 +22,12 @@ use ndarray::Array2;
 
 /// Halvings of a step with a large event.
 const HALVINGS: u32 = 1;
+/// Elastic energy of flattening the roughness over the work of adhesion from which on adhesion is weak, and the number of steps in one of
+/// `boundary_elements.approach_step` there, each as many times more precise.
+///
+/// With weak adhesion the dissipated energy is a small part of the work of the load, and the sum of the events is as inexact as its integral.
+const WEAK: f64 = 30.0;
+const STEPS_IF_WEAK: f64 = 4.0;
 /// Largest residual over the rms residual of an equilibrium.
 const PEAK: f64 = 100.0;
 /// Maximum number of iterations of one minimisation.
@@ -151,7 +157,7 @@ pub(super) fn setup(campaign: &Campaign, unit: &CycleUnit) -> Result<Setup, Stag
     let whole = if header.periodic { heights } else { mirrored(heights.view())? };
     let problem = problem(params, (&units, lattice.range_m), resample(whole.view(), points)?, &list)?;
     let summits = summit_points(&list, (header.length_m, side), !header.periodic, &units);
-    Ok(Setup { settings: settings(params, &units), problem, units, summits })
+    Ok(Setup { settings: settings(params, &units, &problem)?, problem, units, summits })
 }
 
 /// The contact problem of heights \[m\] on the grid, with the range of the Morse law \[m\] if there is one.
@@ -193,15 +199,18 @@ fn wu_gap(material: &Material, list: &[Summit]) -> Result<f64, PhysicsError> {
     Ok((-Asperity::new(*median, material)?.wu_jump_in_penetration(material.interaction_range_m)).max(0.0))
 }
 
-fn settings(params: &CaseParams, units: &Units) -> Settings {
+fn settings(params: &CaseParams, units: &Units, problem: &Problem) -> Result<Settings, PhysicsError> {
     let elements = &params.boundary_elements;
-    Settings {
+    let weak = problem.flattening_energy()? > WEAK * problem.law.work();
+    let refined = if weak { STEPS_IF_WEAK } else { 1.0 };
+    let residual = elements.precision / refined;
+    Ok(Settings {
         max_loads: params.cycle.max_load.iter().map(|load| load * units.all()).collect(),
-        step: elements.approach_step * units.rms_height_m / units.spacing_m(),
+        step: elements.approach_step * units.rms_height_m / units.spacing_m() / refined,
         halvings: HALVINGS,
-        accuracy: Accuracy { rms: elements.precision, largest: PEAK * elements.precision, iterations: MOST_ITERATIONS },
+        accuracy: Accuracy { rms: residual, largest: PEAK * residual, iterations: MOST_ITERATIONS },
         all_regions: params.cycle.contacts == KeptContacts::All,
-    }
+    })
 }
 
 /// Refuses a grid for which there is not enough memory.
