@@ -144,17 +144,6 @@ impl Problem {
         Totals { load, energy: 0.5 * elastic + adhesive, contact: contact as usize }
     }
 
-    /// Elastic energy of full contact, `½ z·K z` per point \[E* dx\]: over the work of adhesion it is Persson and Tosatti's ratio `U_el/Δγ`.
-    ///
-    /// # Errors
-    /// Not enough memory.
-    pub fn flattening_energy(&self) -> Result<f64, PhysicsError> {
-        let mut pressure = filled(self.heights.len(), 0.0)?;
-        self.half_space.apply(Operator::Stiffness, &self.heights, &mut pressure, &mut self.half_space.waves()?);
-        let [product] = sums(pressure.len(), |range, sum| sum[0] += range.map(|k| self.heights[k] * pressure[k]).sum::<f64>());
-        Ok(0.5 * product / pressure.len() as f64)
-    }
-
     /// Pressure of the displacement, without the rounding of the increments.
     pub(super) fn refresh(&self, state: &mut State, waves: &mut Waves<f64>) {
         remove_mean(&mut state.displacement);

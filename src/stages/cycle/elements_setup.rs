@@ -16,13 +16,14 @@ use crate::physics::jkr::Asperity;
 use crate::physics::memory;
 use crate::physics::surface::modes::mirrored;
 use crate::physics::surface::summits::Summit;
+use crate::physics::theory::flattening::measured_flattening;
 use crate::spec::CaseParams;
 use crate::store::hdf5::{SurfaceHeader, read_header, read_surface};
 use ndarray::Array2;
 
 /// Halvings of a step with a large event.
 const HALVINGS: u32 = 1;
-/// Elastic energy of flattening the roughness over the work of adhesion from which on adhesion is weak, and the number of steps in one of
+/// Ratio `U_el/Δγ` of Persson and Tosatti from which on adhesion is weak, and the number of steps in one of
 /// `boundary_elements.approach_step` there, each as many times more precise.
 ///
 /// With weak adhesion the dissipated energy is a small part of the work of the load, and the sum of the events is as inexact as its integral.
@@ -154,10 +155,13 @@ pub(super) fn setup(campaign: &Campaign, unit: &CycleUnit) -> Result<Setup, Stag
     let rms_height_m = scale(campaign, surface)?.rms_height_m;
     let units = Units { length_m, points, modulus_pa: material.contact_modulus_pa, rms_height_m };
     let side = heights.nrows();
+    let flattening =
+        measured_flattening(heights.view(), (header.length_m, header.periodic), length_m / wavelengths, material.contact_modulus_pa)?;
+    let weak = flattening.persson_tosatti(material.work_of_adhesion_j_m2) > WEAK;
     let whole = if header.periodic { heights } else { mirrored(heights.view())? };
     let problem = problem(params, (&units, lattice.range_m), resample(whole.view(), points)?, &list)?;
     let summits = summit_points(&list, (header.length_m, side), !header.periodic, &units);
-    Ok(Setup { settings: settings(params, &units, &problem)?, problem, units, summits })
+    Ok(Setup { settings: settings(params, &units, weak), problem, units, summits })
 }
 
 /// The contact problem of heights \[m\] on the grid, with the range of the Morse law \[m\] if there is one.
@@ -199,18 +203,17 @@ fn wu_gap(material: &Material, list: &[Summit]) -> Result<f64, PhysicsError> {
     Ok((-Asperity::new(*median, material)?.wu_jump_in_penetration(material.interaction_range_m)).max(0.0))
 }
 
-fn settings(params: &CaseParams, units: &Units, problem: &Problem) -> Result<Settings, PhysicsError> {
+fn settings(params: &CaseParams, units: &Units, weak: bool) -> Settings {
     let elements = &params.boundary_elements;
-    let weak = problem.flattening_energy()? > WEAK * problem.law.work();
     let refined = if weak { STEPS_IF_WEAK } else { 1.0 };
     let residual = elements.precision / refined;
-    Ok(Settings {
+    Settings {
         max_loads: params.cycle.max_load.iter().map(|load| load * units.all()).collect(),
         step: elements.approach_step * units.rms_height_m / units.spacing_m() / refined,
         halvings: HALVINGS,
         accuracy: Accuracy { rms: residual, largest: PEAK * residual, iterations: MOST_ITERATIONS },
         all_regions: params.cycle.contacts == KeptContacts::All,
-    })
+    }
 }
 
 /// Refuses a grid for which there is not enough memory.
