@@ -47,7 +47,7 @@ fn one(zeta: u32, n: usize) {
     let settings = Settings {
         max_loads: vec![LOAD * points],
         step: 0.03 * rms,
-        halvings: 1,
+        located: 0.03,
         accuracy: Accuracy { rms: 1e-4, largest: 1e-2, iterations: 3000 },
         all_regions: false,
     };

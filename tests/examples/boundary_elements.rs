@@ -40,7 +40,7 @@ pub fn run() -> Result<Cycle, PhysicsError> {
     let settings = Settings {
         max_loads: vec![MAX_LOAD * (POINTS * POINTS) as f64],
         step: 0.1 * spectrum.rms_height_m / spacing,
-        halvings: 1,
+        located: 0.03,
         accuracy: Accuracy { rms: 1e-4, largest: 1e-2, iterations: 3000 },
         all_regions: false,
     };

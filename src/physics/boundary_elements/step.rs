@@ -2,11 +2,11 @@
 //!
 //! Between events the states are a continuous curve on which `F = dΠ/dΔ`, so that `∫F dΔ − ΔΠ` vanishes; in an event the energy falls at one approach, by
 //! the energy dissipated. The integral has errors of both signs. An event is therefore counted where the sum of `∫F dΔ − ΔΠ` since the last one exceeds its
-//! uncertainty, and an apparent gain is subtracted from the next event. Gains alone must not lead to shorter steps: repeating what comes out too small makes
-//! the sum too large.
+//! uncertainty, and an apparent gain is subtracted from the next event. Steps must not be repeated for what comes out of them: repeating what comes out too
+//! small makes the sum too large.
 //!
-//! A step that dissipates more than [`LARGE`] of the energy dissipated so far is halved: [`Settings::halvings`] times, and further while the error of the
-//! integral falls. So is one in which a jump of the load makes the integral uncertain by more than [`LOCATED`].
+//! A step is halved where a jump of the load makes its integral uncertain by more than [`Settings::located`], or where the load may have passed through the
+//! maximum tension before it jumped. The next steps are as short, until the uncertainty is well below the limit.
 
 use super::contact::{Attraction, Problem, State};
 use super::equilibrium::Equilibrium;
@@ -24,14 +24,16 @@ use serde::{Deserialize, Serialize};
 const EVENT: f64 = 1e-5;
 /// Error of the integral of the load, relative to the part of it that comes from the slopes of the load.
 const BEND: f64 = 0.05;
-/// Imbalance from which on a step is halved, relative to the same.
-const LARGE: f64 = 3e-3;
 /// Part of the error that a jump of the load may cause in its integral that counts as its uncertainty.
 const JUMP_PART: f64 = 0.3;
-/// Largest of these errors in a step that is not halved, relative to the energy dissipated so far.
-const LOCATED: f64 = 2e-2;
-/// Most halvings of a step, as long as each reduces the error of the integral of the load.
+/// Error, relative to the limit, below which the next step may be twice as long.
+const WELL_BELOW: f64 = 1.0 / 6.0;
+/// Relative increase of the maximum tension that a jump of the load may hide.
+const HIDDEN: f64 = 0.02;
+/// Most halvings of a step.
 const DEEPEST: u32 = 6;
+/// Largest `|du/dΔ|` by which displacements are extrapolated. Near a limit point, where it diverges, the extrapolated state would be far from equilibrium.
+const STEEPEST: f64 = 10.0;
 
 /// Settings of a path.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,8 +42,8 @@ pub struct Settings {
     pub max_loads: Vec<f64>,
     /// Step of the approach \[dx\].
     pub step: f64,
-    /// Maximum number of halvings of a step with a large event.
-    pub halvings: u32,
+    /// Largest error that a jump of the load may cause in the integral over a step, relative to the energy dissipated so far: longer steps are halved.
+    pub located: f64,
     /// Accuracy of an equilibrium.
     pub accuracy: Accuracy,
     /// True if the regions of every step are kept; else those of the maps.
@@ -160,7 +162,8 @@ impl<'a> Walk<'a> {
                 rate
             }
         };
-        let length = approach - state.approach;
+        let steepest = rate.displacement.iter().fold(0.0_f32, |most, rate| most.max(rate.abs()));
+        let length = (approach - state.approach) * (STEEPEST / f64::from(steepest)).min(1.0);
         for (to, rate) in state.displacement.iter_mut().zip(&rate.displacement) {
             *to += length * f64::from(*rate);
         }
@@ -236,36 +239,32 @@ impl<'a> Walk<'a> {
         self.at.cycle.steps.push(step);
     }
 
-    /// Advances by one step, which is halved for a large event and ends at `max_load` if it would cross it. True if it ends there.
+    /// Advances by one step, which is halved where a jump of the load is not located, and ends at `max_load` if it would cross it. True if it ends there.
     pub(super) fn advance(&mut self, sense: f64, max_load: Option<f64>) -> Result<bool, PhysicsError> {
-        // Imbalance of the attempt of twice the length.
-        let mut longer = f64::INFINITY;
         loop {
             let length = sense * self.settings.step / f64::from(1_u32 << self.at.level);
             let mut attempt = self.attempt(self.at.state.approach + length, self.settings.accuracy)?;
-            let step = attempt.step;
-            let large = step.imbalance.abs() > LARGE * self.at.dissipated;
-            // The error of the integral falls by halving the step, an event does not.
-            let falls = step.imbalance.abs() < 0.25 * longer && self.at.level < DEEPEST;
-            let unsure = attempt.across > LOCATED * self.at.dissipated && self.at.level < DEEPEST;
-            if unsure || large && (self.at.level < self.settings.halvings || falls) {
-                longer = step.imbalance.abs();
+            let limit = self.settings.located * self.at.dissipated;
+            if (attempt.across > limit || self.hides_tension(&attempt)) && self.at.level < DEEPEST {
                 self.at.level += 1;
                 continue;
             }
-            let across = max_load.filter(|most| step.totals.load > *most);
+            let across = max_load.filter(|most| attempt.step.totals.load > *most);
             if let Some(max_load) = across {
-                attempt = self.reach(max_load, step)?;
-            } else {
-                let small = step.imbalance.abs() < LARGE / 8.0 * self.at.dissipated;
-                self.at.level = match (large, small) {
-                    (true, _) => self.settings.halvings.min(1),
-                    (false, true) => self.at.level.saturating_sub(1),
-                    (false, false) => self.at.level,
-                };
+                attempt = self.reach(max_load, attempt.step)?;
+            } else if attempt.across <= WELL_BELOW * limit {
+                self.at.level = self.at.level.saturating_sub(1);
             }
             self.accept(attempt);
             return Ok(across.is_some());
         }
+    }
+
+    /// True if the load of an unloading step has jumped up after it may have passed a tension larger than that of all steps so far.
+    fn hides_tension(&self, attempt: &Attempt) -> bool {
+        let (from, to) = (&self.at.last, &attempt.step);
+        let Some((known, ..)) = self.at.tensest.as_ref().filter(|(load, ..)| *load < 0.0) else { return false };
+        let before_jump = from.totals.load + from.stiffness * (to.approach - from.approach);
+        attempt.across > 0.0 && to.totals.load > from.totals.load && before_jump < (1.0 + HIDDEN) * known
     }
 }

@@ -21,14 +21,14 @@ use crate::spec::CaseParams;
 use crate::store::hdf5::{SurfaceHeader, read_header, read_surface};
 use ndarray::Array2;
 
-/// Halvings of a step with a large event.
-const HALVINGS: u32 = 1;
+/// Largest error that a jump of the load may cause in the integral over a step, relative to the energy dissipated so far.
+const LOCATED: f64 = 0.03;
 /// Ratio `U_el/Δγ` of Persson and Tosatti from which on adhesion is weak, and the number of steps in one of
 /// `boundary_elements.approach_step` there, each as many times more precise.
 ///
 /// With weak adhesion the dissipated energy is a small part of the work of the load, and the sum of the events is as inexact as its integral.
 const WEAK: f64 = 30.0;
-const STEPS_IF_WEAK: f64 = 4.0;
+const STEPS_IF_WEAK: f64 = 6.0;
 /// Largest residual over the rms residual of an equilibrium.
 const PEAK: f64 = 100.0;
 /// Maximum number of iterations of one minimisation.
@@ -210,7 +210,7 @@ fn settings(params: &CaseParams, units: &Units, weak: bool) -> Settings {
     Settings {
         max_loads: params.cycle.max_load.iter().map(|load| load * units.all()).collect(),
         step: elements.approach_step * units.rms_height_m / units.spacing_m() / refined,
-        halvings: HALVINGS,
+        located: LOCATED,
         accuracy: Accuracy { rms: residual, largest: PEAK * residual, iterations: MOST_ITERATIONS },
         all_regions: params.cycle.contacts == KeptContacts::All,
     }

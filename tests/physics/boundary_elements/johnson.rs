@@ -43,7 +43,7 @@ fn computed(alpha: f64, n: usize, attraction: Attraction, range: Option<f64>) ->
     let problem = problem(1, n, |_, k| h * (TAU * k as f64 / n as f64).cos(), law, attraction);
     let unit = PI * h;
     let (loss, least, gap) = reference(alpha);
-    let cycle = cycle(&problem, 0.05 * unit, 0.0125 * (gap - 1.0) * h, 4);
+    let cycle = cycle(&problem, 0.05 * unit, 0.0125 * (gap - 1.0) * h, 1e-3);
     assert!(cycle.steps.iter().all(|s| s.converged));
     let (loop_area, events, tension) = sums(&cycle);
     let off = 1.0 - cycle.steps.last().unwrap().approach / h;
@@ -80,7 +80,7 @@ fn val_energy_release_rate_along_a_loop() {
     let h = SLOPE * n as f64;
     let work = (alpha * PI / 2.0_f64.sqrt() * SLOPE).powi(2) * n as f64;
     let problem = problem(1, n, |_, k| h * (TAU * k as f64 / n as f64).cos(), Law::crack(work), BONDED);
-    let cycle = cycle(&problem, 0.05 * PI * h, 0.005 * h, 4);
+    let cycle = cycle(&problem, 0.05 * PI * h, 0.005 * h, 1e-3);
     let mut rates = Vec::new();
     for step in cycle.steps.iter().filter(|step| step.totals.contact > 32) {
         let (load, gap) = (step.totals.load / (PI * h), 1.0 - step.approach / h);

@@ -21,7 +21,7 @@ fn wavy(n: usize, row: usize, column: usize) -> f64 {
 fn law_events_add_up_to_the_loop() {
     let n = 48;
     let problem = problem(n, n, |r, c| wavy(n, r, c), Law::crack(0.02), BONDED);
-    let cycle = cycle(&problem, 0.02 * (n * n) as f64, 0.01, 3);
+    let cycle = cycle(&problem, 0.02 * (n * n) as f64, 0.01, 5e-3);
     let (area, events, tension) = sums(&cycle);
     assert!(tension > 0.0 && cycle.events.len() > 3);
     assert!((area - events).abs() < 1e-3 * area, "loop {area}, events {events}");
@@ -37,7 +37,7 @@ fn law_events_add_up_to_the_loop() {
 fn law_weak_adhesion_has_the_area_of_equal_steps() {
     let n = 64;
     let problem = problem(n, n, |r, c| 4.0 * wavy(n, r, c), Law::crack(0.004), BONDED);
-    let cycle = cycle(&problem, 0.03 * (n * n) as f64, 0.08, 1);
+    let cycle = cycle(&problem, 0.03 * (n * n) as f64, 0.04, 0.03);
     let (area, events, _) = sums(&cycle);
     assert!((events / area - 1.0).abs() < 0.06, "events {events}, loop {area}");
     let (mut minimiser, mut state) = (Minimiser::new(&problem).unwrap(), problem.apart(0.0).unwrap());
@@ -63,7 +63,7 @@ fn law_same_bytes_with_threads_and_after_interruptions() {
 fn same_bytes(n: usize, height: f64) {
     let problem = problem(n, n, |r, c| height * wavy(n, r, c), Law::crack(0.02 * height), BONDED);
     let loads = vec![0.008 * (n * n) as f64, 0.016 * (n * n) as f64];
-    let settings = Settings { max_loads: loads, step: 0.06 * height, halvings: 2, accuracy: super::accuracy(1e-4), all_regions: true };
+    let settings = Settings { max_loads: loads, step: 0.06 * height, located: 0.02, accuracy: super::accuracy(1e-4), all_regions: true };
     let mut kept = Vec::new();
     let whole = run(&problem, &settings, None, &mut |halfway| kept.push(halfway.clone()), &|_| {}).unwrap();
     let pool = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -88,7 +88,7 @@ fn same_bytes(n: usize, height: f64) {
 fn law_stiffness_is_the_slope_of_the_load() {
     let n = 40;
     let problem = problem(n, n, |r, c| wavy(n, r, c), Law::crack(0.02), BONDED);
-    let steps = cycle(&problem, 0.012 * (n * n) as f64, 0.01, 1).steps;
+    let steps = cycle(&problem, 0.012 * (n * n) as f64, 0.01, 0.03).steps;
     let quiet = steps.windows(2).filter(|pair| pair[1].dissipated == 0.0 && pair[1].totals.contact == pair[0].totals.contact);
     let changes = quiet.map(|pair| {
         let length = pair[1].approach - pair[0].approach;
@@ -107,7 +107,7 @@ fn law_shift_and_transposition_change_nothing() {
     let n = 40;
     let loop_of = |height: &dyn Fn(usize, usize) -> f64| {
         let problem = problem(n, n, height, Law::crack(0.02), BONDED);
-        let cycle = cycle(&problem, 0.012 * (n * n) as f64, 0.06, 1);
+        let cycle = cycle(&problem, 0.012 * (n * n) as f64, 0.06, 0.03);
         (sums(&cycle).0, cycle.events.len())
     };
     let (area, count) = loop_of(&|r, c| wavy(n, r, c));

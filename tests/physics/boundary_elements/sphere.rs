@@ -49,7 +49,7 @@ fn sphere(n: usize, a0: f64) -> (f64, f64) {
     let height = |row: usize, column: usize| -0.5 * ((row as f64 - middle).powi(2) + (column as f64 - middle).powi(2)) / radius;
     let problem = problem(n, n, height, Law::crack(work), BONDED);
     let unit = (PI * PI * work * work * radius).cbrt();
-    let cycle = cycle(&problem, 0.2 * 1.5 * PI * work * radius, 0.02 * unit, 4);
+    let cycle = cycle(&problem, 0.2 * 1.5 * PI * work * radius, 0.02 * unit, 1e-3);
     let (loss, _, tension) = sums(&cycle);
     let (force, exact) = jkr(radius, work, n as f64);
     (tension / force, loss / exact)
@@ -85,7 +85,7 @@ fn val_hertz() {
     let problem = problem(n, n, height, Law::crack(0.0), Attraction::None);
     // Force at a² = Rδ, a = 20.
     let force = 4.0 / 3.0 * 20.0_f64.powi(3) / radius;
-    let cycle = cycle(&problem, force, 0.1, 0);
+    let cycle = cycle(&problem, force, 0.1, f64::INFINITY);
     let last = cycle.turning[0].last;
     let own = (last.approach + IMAGES * force / (PI * n as f64)) * (1.0 - 1.0 / (2.0 * PI * 20.0));
     let hertz = 4.0 / 3.0 * radius.sqrt() * own.powf(1.5);
