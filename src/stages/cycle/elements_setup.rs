@@ -27,7 +27,7 @@ const LOCATED: f64 = 0.03;
 /// `boundary_elements.approach_step` there, each as many times more precise.
 ///
 /// With weak adhesion the dissipated energy is a small part of the work of the load, and the sum of the events is as inexact as its integral.
-const WEAK: f64 = 30.0;
+const WEAK: f64 = 15.0;
 const STEPS_IF_WEAK: f64 = 6.0;
 /// Largest residual over the rms residual of an equilibrium.
 const PEAK: f64 = 100.0;
