@@ -2,8 +2,8 @@
 //!
 //! Between events the states are a continuous curve on which `F = dΠ/dΔ`, so that `∫F dΔ − ΔΠ` vanishes; in an event the energy falls at one approach, by
 //! the energy dissipated. The integral has errors of both signs. An event is therefore counted where the sum of `∫F dΔ − ΔΠ` since the last one exceeds its
-//! uncertainty, and an apparent gain is subtracted from the next event. Steps must not be repeated for what comes out of them: repeating what comes out too
-//! small makes the sum too large.
+//! uncertainty, and an apparent gain is subtracted from the next event. A gain must not shorten the step: repeating what comes out too small makes the sum too
+//! large.
 //!
 //! A step is halved where a jump of the load makes its integral uncertain by more than [`Settings::located`], or where the load may have passed through the
 //! maximum tension before it jumped. The next steps are as short, until the uncertainty is well below the limit.
@@ -15,6 +15,7 @@ use super::newton::Rate;
 use super::patch::Patches;
 use super::records::{Cycle, Event, Map, Step};
 use super::regions::{Labels, Region, change, label, regions};
+use super::sums::largest;
 use super::work::{OnLoop, Work, work_between};
 use crate::physics::PhysicsError;
 use crate::physics::memory::filled;
@@ -162,8 +163,7 @@ impl<'a> Walk<'a> {
                 rate
             }
         };
-        let steepest = rate.displacement.iter().fold(0.0_f32, |most, rate| most.max(rate.abs()));
-        let length = (approach - state.approach) * (STEEPEST / f64::from(steepest)).min(1.0);
+        let length = (approach - state.approach) * (STEEPEST / largest(&rate.displacement)).min(1.0);
         for (to, rate) in state.displacement.iter_mut().zip(&rate.displacement) {
             *to += length * f64::from(*rate);
         }
