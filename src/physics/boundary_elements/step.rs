@@ -249,14 +249,14 @@ impl<'a> Walk<'a> {
                 self.at.level += 1;
                 continue;
             }
-            let across = max_load.filter(|most| attempt.step.totals.load > *most);
-            if let Some(max_load) = across {
+            let crossed = max_load.filter(|most| attempt.step.totals.load > *most);
+            if let Some(max_load) = crossed {
                 attempt = self.reach(max_load, attempt.step)?;
             } else if attempt.across <= WELL_BELOW * limit {
                 self.at.level = self.at.level.saturating_sub(1);
             }
             self.accept(attempt);
-            return Ok(across.is_some());
+            return Ok(crossed.is_some());
         }
     }
 
