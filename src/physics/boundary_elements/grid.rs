@@ -20,7 +20,7 @@ use std::sync::Arc;
 
 /// Stiffness that the spectral preconditioner adds, in E*/dx.
 const SHIFT: f64 = 0.15;
-/// Columns of wavevectors that are transformed together.
+/// Columns of wavevectors in a block, and rows in a group.
 const BLOCK: usize = 8;
 
 /// A grid of `rows × columns` points with one spacing, periodic or a patch of a periodic one, and the elastic operator on it, in double and in single
@@ -75,7 +75,9 @@ pub struct Plans<T> {
 
 /// Work space of one operator application.
 pub struct Waves<T> {
-    by_row: Vec<Complex<T>>,
+    /// Transformed rows: tiles of a group of rows one after another.
+    by_group: Vec<Complex<T>>,
+    /// Transformed columns: tiles of a block of columns one after another.
     by_block: Vec<Complex<T>>,
     /// Real transforms so far; an application is two.
     pub transforms: u64,
@@ -203,12 +205,8 @@ impl HalfSpace {
     /// # Errors
     /// Not enough memory.
     pub fn waves<T: Real>(&self) -> Result<Waves<T>, PhysicsError> {
-        let half = self.padded.1 / 2 + 1;
-        Ok(Waves {
-            by_row: filled(self.rows * half, Complex::zero())?,
-            by_block: filled(half.div_ceil(BLOCK) * self.rows * BLOCK, Complex::zero())?,
-            transforms: 0,
-        })
+        let values = self.blocks() * self.height() * BLOCK;
+        Ok(Waves { by_group: filled(values, Complex::zero())?, by_block: filled(values, Complex::zero())?, transforms: 0 })
     }
 
     /// Applies an operator to `field` and writes the result to `result`, both of `rows × columns` values, row by row.
@@ -227,21 +225,30 @@ impl HalfSpace {
         rows: impl IndexedParallelIterator<Item = Row>,
         fill: impl Fn(Row, &mut [T]) -> Part + Sync,
     ) -> Vec<Part> {
-        let half = self.padded.1 / 2 + 1;
+        let (half, width) = (self.padded.1 / 2 + 1, self.blocks() * BLOCK);
         let plans = T::plans(self);
         waves.transforms += 1;
-        let rows = waves.by_row.par_chunks_mut(half).zip(rows).with_min_len(grain(self.columns));
-        let parts = rows.map_init(
-            || (plans.forward_row.make_input_vec(), plans.forward_row.make_scratch_vec()),
-            |(input, scratch), (wave, row)| {
-                let part = fill(row, &mut input[..self.columns]);
-                input[self.columns..].fill(T::zero());
-                let done = plans.forward_row.process_with_scratch(input, wave, scratch);
-                debug_assert!(done.is_ok(), "lengths of the plan");
-                part
+        let groups = waves.by_group.par_chunks_mut(width * BLOCK).zip(rows.chunks(BLOCK)).with_min_len(grain(self.columns * BLOCK));
+        let parts = groups.map_init(
+            || (plans.forward_row.make_input_vec(), vec![Complex::zero(); width * BLOCK], plans.forward_row.make_scratch_vec()),
+            |(input, lines, scratch), (group, rows)| {
+                let transform = |(line, row): (&mut [Complex<T>], Row)| {
+                    let part = fill(row, &mut input[..self.columns]);
+                    input[self.columns..].fill(T::zero());
+                    let done = plans.forward_row.process_with_scratch(input, &mut line[..half], scratch);
+                    debug_assert!(done.is_ok(), "lengths of the plan");
+                    part
+                };
+                let parts: Vec<Part> = lines.chunks_mut(width).zip(rows).map(transform).collect();
+                for (block, tile) in tiles_mut(group).iter_mut().enumerate() {
+                    for (row, line) in tile.iter_mut().zip(lines.chunks(width)) {
+                        row.copy_from_slice(&line[block * BLOCK..][..BLOCK]);
+                    }
+                }
+                parts
             },
         );
-        parts.collect()
+        parts.collect::<Vec<_>>().into_iter().flatten().collect()
     }
 
     /// Second half: the operator, and the transform back, of which `take` is given each row with the item of `rows` for it. What `take` returns, in the
@@ -253,77 +260,112 @@ impl HalfSpace {
         rows: impl IndexedParallelIterator<Item = Row>,
         take: impl Fn(Row, &[T]) -> Part + Sync,
     ) -> Vec<Part> {
-        let half = self.padded.1 / 2 + 1;
+        let (half, width) = (self.padded.1 / 2 + 1, self.blocks() * BLOCK);
         let plans = T::plans(self);
-        let Waves { by_row, by_block, transforms } = waves;
+        let Waves { by_group, by_block, transforms } = waves;
         *transforms += 1;
-        let by_row: &[Complex<T>] = by_row;
-        let chunks = by_block.par_chunks_mut(self.rows * BLOCK).zip(plans.stiffness.par_chunks(self.padded.0 * BLOCK)).enumerate();
+        let by_group = tiles(by_group);
+        let chunks = by_block.par_chunks_mut(self.height() * BLOCK).zip(plans.stiffness.par_chunks(self.padded.0 * BLOCK)).enumerate();
         chunks.with_min_len(grain(self.rows * BLOCK)).for_each_init(
             || self.column_space::<T>(),
-            |space, (block, (waves, stiffness))| self.block(operator, by_row, block, waves, stiffness, space),
+            |space, (block, (waves, stiffness))| self.block(operator, by_group, block, (tiles_mut(waves), stiffness), space),
         );
-        let by_block: &[Complex<T>] = by_block;
-        let parts = rows.enumerate().with_min_len(grain(self.columns)).map_init(
-            || (plans.inverse_row.make_input_vec(), plans.inverse_row.make_scratch_vec(), plans.inverse_row.make_output_vec()),
-            |(input, scratch, output), (row, item)| {
-                for (block, part) in input.chunks_mut(BLOCK).enumerate() {
-                    let from = (block * self.rows + row) * BLOCK;
-                    part.copy_from_slice(&by_block[from..from + part.len()]);
+        let by_block = tiles(by_block);
+        let parts = rows.chunks(BLOCK).enumerate().with_min_len(grain(self.columns * BLOCK)).map_init(
+            || (vec![Complex::zero(); width * BLOCK], plans.inverse_row.make_scratch_vec(), plans.inverse_row.make_output_vec()),
+            |(lines, scratch, output), (group, items)| {
+                for block in 0..self.blocks() {
+                    let tile = &by_block[block * self.height() / BLOCK + group];
+                    for (row, line) in tile.iter().zip(lines.chunks_mut(width)) {
+                        line[block * BLOCK..][..BLOCK].copy_from_slice(row);
+                    }
                 }
-                input[0].im = T::zero();
-                if self.padded.1.is_multiple_of(2) {
-                    input[half - 1].im = T::zero();
-                }
-                let done = plans.inverse_row.process_with_scratch(input, output, scratch);
-                debug_assert!(done.is_ok(), "lengths of the plan");
-                take(item, &output[..self.columns])
+                let transform = |(line, item): (&mut [Complex<T>], Row)| {
+                    let line = &mut line[..half];
+                    line[0].im = T::zero();
+                    if self.padded.1.is_multiple_of(2) {
+                        line[half - 1].im = T::zero();
+                    }
+                    let done = plans.inverse_row.process_with_scratch(line, output, scratch);
+                    debug_assert!(done.is_ok(), "lengths of the plan");
+                    take(item, &output[..self.columns])
+                };
+                lines.chunks_mut(width).zip(items).map(transform).collect::<Vec<_>>()
             },
         );
-        parts.collect()
+        parts.collect::<Vec<_>>().into_iter().flatten().collect()
+    }
+
+    /// Blocks of wavevectors of a row.
+    fn blocks(&self) -> usize {
+        (self.padded.1 / 2 + 1).div_ceil(BLOCK)
+    }
+
+    /// Rows, filled up to whole groups.
+    fn height(&self) -> usize {
+        self.rows.next_multiple_of(BLOCK)
     }
 
     fn column_space<T: Real>(&self) -> ColumnSpace<T> {
         let plans = T::plans(self);
         let scratch = plans.forward_column.get_inplace_scratch_len().max(plans.inverse_column.get_inplace_scratch_len());
-        (vec![Complex::zero(); self.padded.0 * BLOCK], vec![Complex::zero(); scratch])
+        (vec![Complex::zero(); self.stride() * BLOCK], vec![Complex::zero(); scratch])
+    }
+
+    /// From one column of a block to the next. With a power of two, all columns would have the same places in the cache.
+    fn stride(&self) -> usize {
+        self.padded.0.next_multiple_of(BLOCK) + BLOCK
     }
 
     /// Transforms the columns of one block, multiplies by the operator and transforms back.
     fn block<T: Real>(
         &self,
         operator: Operator,
-        by_row: &[Complex<T>],
+        by_group: &[Tile<T>],
         block: usize,
-        waves: &mut [Complex<T>],
-        stiffness: &[T],
+        (waves, stiffness): (&mut [Tile<T>], &[T]),
         (columns, scratch): &mut ColumnSpace<T>,
     ) {
-        let (half, rows, plans) = (self.padded.1 / 2 + 1, self.padded.0, T::plans(self));
-        let (first, count) = (block * BLOCK, BLOCK.min(half - block * BLOCK));
-        let columns = &mut columns[..count * rows];
-        columns.chunks_mut(rows).for_each(|column| column[self.rows..].fill(Complex::zero()));
-        for (row, values) in by_row.chunks(half).enumerate() {
-            for (k, value) in values[first..first + count].iter().enumerate() {
-                columns[k * rows + row] = *value;
+        let (rows, stride, plans) = (self.padded.0, self.stride(), T::plans(self));
+        for (group, tile) in by_group.iter().skip(block).step_by(self.blocks()).enumerate() {
+            for (column, values) in columns.chunks_mut(stride).zip(transposed(tile)) {
+                column[group * BLOCK..][..BLOCK].copy_from_slice(&values);
             }
         }
-        plans.forward_column.process_with_scratch(columns, scratch);
         let points = self.transformed() as f64;
         let (unit, shift) = (T::nearest(points.powi(-2)), T::nearest(SHIFT / points));
         let inverse = |stiff: T| if stiff > T::zero() { unit / stiff } else { T::zero() };
-        match operator {
-            Operator::Stiffness => multiply(columns, stiffness, |stiff| stiff),
-            Operator::Compliance => multiply(columns, stiffness, inverse),
-            Operator::Shifted => multiply(columns, stiffness, |stiff| unit / (stiff + shift)),
-        }
-        plans.inverse_column.process_with_scratch(columns, scratch);
-        for (row, values) in waves.chunks_mut(BLOCK).enumerate() {
-            for (k, value) in values[..count].iter_mut().enumerate() {
-                *value = columns[k * rows + row];
+        for (column, stiffness) in columns.chunks_mut(stride).zip(stiffness.chunks(rows)) {
+            let column = &mut column[..rows];
+            column[self.rows..].fill(Complex::zero());
+            plans.forward_column.process_with_scratch(column, scratch);
+            match operator {
+                Operator::Stiffness => multiply(column, stiffness, |stiff| stiff),
+                Operator::Compliance => multiply(column, stiffness, inverse),
+                Operator::Shifted => multiply(column, stiffness, |stiff| unit / (stiff + shift)),
             }
+            plans.inverse_column.process_with_scratch(column, scratch);
+        }
+        for (group, tile) in waves.iter_mut().enumerate() {
+            let part: [&[Complex<T>]; BLOCK] = std::array::from_fn(|k| &columns[k * stride + group * BLOCK..][..BLOCK]);
+            *tile = std::array::from_fn(|row| std::array::from_fn(|k| part[k][row]));
         }
     }
+}
+
+/// Rows and columns of wavevectors that are moved between the order by rows and the order by columns at once.
+type Tile<T> = [[Complex<T>; BLOCK]; BLOCK];
+
+fn tiles<T>(waves: &[Complex<T>]) -> &[Tile<T>] {
+    waves.as_chunks().0.as_chunks().0
+}
+
+fn tiles_mut<T>(waves: &mut [Complex<T>]) -> &mut [Tile<T>] {
+    waves.as_chunks_mut().0.as_chunks_mut().0
+}
+
+fn transposed<T: Real>(tile: &Tile<T>) -> Tile<T> {
+    std::array::from_fn(|k| std::array::from_fn(|row| tile[row][k]))
 }
 
 fn multiply<T: Real>(waves: &mut [Complex<T>], stiffness: &[T], factor: impl Fn(T) -> T) {

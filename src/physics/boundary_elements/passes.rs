@@ -9,7 +9,7 @@ use rayon::prelude::*;
 /// Pairs of L-BFGS.
 pub(super) const PAIRS: usize = 2;
 /// Points that are evaluated together.
-const BLOCK: usize = 64;
+const BLOCK: usize = 256;
 
 /// `field − mean − Σ weights_i changes_i`: the direction of L-BFGS before the preconditioner.
 pub(super) struct Right<'a> {
@@ -132,6 +132,24 @@ pub(super) struct Points<'a> {
     pub(super) touching: &'a mut [u8],
 }
 
+impl Points<'_> {
+    /// A part of the row.
+    #[inline(always)]
+    fn part(&mut self, range: std::ops::Range<usize>) -> Points<'_> {
+        Points {
+            gap: &self.gap[range.clone()],
+            residual: &self.residual[range.clone()],
+            moved: &mut self.moved[range.clone()],
+            pressed: &mut self.pressed[range.clone()],
+            bonds: &self.bonds[range.clone()],
+            direction: &self.direction[range.clone()],
+            gradient: &mut self.gradient[range.clone()],
+            slopes: &mut self.slopes[range.clone()],
+            touching: &mut self.touching[range],
+        }
+    }
+}
+
 /// A step along the direction less its `mean`; `centre` is subtracted from the gradient.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Stride {
@@ -168,14 +186,10 @@ impl Found {
     }
 }
 
-/// Values of a block of points after a step, with the gaps at the beginning, before and after it.
+/// Values of a block of points that are needed to replace the spring by the law.
 struct Block {
-    gap: [[f32; BLOCK]; 3],
-    gradient: [f32; BLOCK],
-    /// Change of the tension since the beginning.
-    pulled: [f32; BLOCK],
-    slopes: [f32; BLOCK],
-    beyond: [f32; BLOCK],
+    /// Gap before the step.
+    before: [f32; BLOCK],
     /// 1 where the law itself has to be evaluated.
     curved: [u8; BLOCK],
 }
@@ -185,17 +199,18 @@ struct Block {
 pub(super) fn advance(points: &mut Points<'_>, response: &[f32], stride: Stride, law: &Law, pieces: &Pieces) -> Found {
     let mut found = Found::default();
     let mut beyond = vec![0.0; points.gap.len()];
-    for (start, beyond) in (0..).step_by(BLOCK).zip(beyond.chunks_mut(BLOCK)) {
-        let end = start + beyond.len();
-        let mut block = move_block(points, response, start..end, stride, pieces, &mut found);
-        for k in 0..beyond.len() {
-            if block.curved[k] != 0 {
-                curve(&mut block, k, points.bonds[start + k], law);
+    let mut block = Block { before: [0.0; BLOCK], curved: [0; BLOCK] };
+    for (part, beyond) in beyond.chunks_mut(BLOCK).enumerate() {
+        let range = part * BLOCK..part * BLOCK + beyond.len();
+        let mut points = points.part(range.clone());
+        found.changed |= glide(&mut points, &response[range], stride, pieces, beyond, &mut block);
+        for (group, curved) in block.curved[..beyond.len()].chunks(8).enumerate() {
+            if curved.iter().any(|curved| *curved != 0) {
+                for k in (8 * group..).take(curved.len()).filter(|k| block.curved[*k] != 0) {
+                    beyond[k] = curve(&mut points, k, block.before[k], stride.centre, law);
+                }
             }
         }
-        points.gradient[start..end].copy_from_slice(&block.gradient[..beyond.len()]);
-        points.slopes[start..end].copy_from_slice(&block.slopes[..beyond.len()]);
-        beyond.copy_from_slice(&block.beyond[..beyond.len()]);
     }
     let fields = [&*points.gradient, &beyond, response, points.direction];
     [found.gradient[0], found.gradient[1], found.beyond, found.slope, found.curvature] =
@@ -204,83 +219,57 @@ pub(super) fn advance(points: &mut Points<'_>, response: &[f32], stride: Stride,
     found
 }
 
-/// Moves the points of a block, with the law as a spring or nothing. Only changes since the beginning are computed in single precision.
+/// Moves points, with the law as a spring or nothing: true if one has come into contact or left it. Only changes since the beginning are computed in
+/// single precision.
 #[inline(always)]
-fn move_block(
-    points: &mut Points<'_>,
-    response: &[f32],
-    range: std::ops::Range<usize>,
-    stride: Stride,
-    pieces: &Pieces,
-    found: &mut Found,
-) -> Block {
-    let count = range.len();
-    let load = |field: &[f32]| block_of(&field[range.clone()]);
-    let (gap, residual, d, k) = (load(points.gap), load(points.residual), load(points.direction), load(response));
-    let (mut moved, mut pressed) = (load(points.moved), load(points.pressed));
-    let mut bonds = [0_u8; BLOCK];
-    bonds.iter_mut().zip(&points.bonds[range.clone()]).for_each(|(to, bonding)| *to = *bonding as u8);
-    let mut touching = [0_u8; BLOCK];
-    let mut block = Block {
-        gap: [gap, [0.0; BLOCK], [0.0; BLOCK]],
-        gradient: [0.0; BLOCK],
-        pulled: [0.0; BLOCK],
-        slopes: [0.0; BLOCK],
-        beyond: [0.0; BLOCK],
-        curved: [0; BLOCK],
-    };
-    let of = |values: [f32; 3], bonding: u8| {
-        if bonding == 0 {
-            values[0]
-        } else if bonding == 1 {
-            values[1]
-        } else {
-            values[2]
-        }
-    };
-    let (first, last) = (pieces.curved.map(|range| range[0]), pieces.curved.map(|range| range[1]));
-    for i in 0..BLOCK {
-        let before = gap[i] + moved[i];
-        moved[i] += stride.length * (d[i] - stride.mean);
-        pressed[i] += stride.length * k[i];
-        let after = gap[i] + moved[i];
-        let spring = of(pieces.spring, bonds[i]);
+fn glide(points: &mut Points<'_>, response: &[f32], stride: Stride, pieces: &Pieces, beyond: &mut [f32], block: &mut Block) -> bool {
+    let n = beyond.len();
+    let (gap, residual, bonds) = (&points.gap[..n], &points.residual[..n], &points.bonds[..n]);
+    let (direction, response) = (&points.direction[..n], &response[..n]);
+    let (moved, pressed, touching) = (&mut points.moved[..n], &mut points.pressed[..n], &mut points.touching[..n]);
+    let (gradient, slopes) = (&mut points.gradient[..n], &mut points.slopes[..n]);
+    let (was, curved) = (&mut block.before[..n], &mut block.curved[..n]);
+    let Pieces { stiffness, spring, contact, curved: [[f0, l0], [f1, l1], [f2, l2]] } = *pieces;
+    let mut changed = 0;
+    for k in 0..n {
+        let bonding = bonds[k] as u8;
+        let of = |[free, bonded, sealed]: [f32; 3]| {
+            if bonding == 0 {
+                free
+            } else if bonding == 1 {
+                bonded
+            } else {
+                sealed
+            }
+        };
+        let before = gap[k] + moved[k];
+        moved[k] += stride.length * (direction[k] - stride.mean);
+        pressed[k] += stride.length * response[k];
+        let after = gap[k] + moved[k];
+        let spring = of(spring);
         let stretched = |gap: f32| if gap < spring { gap } else { 0.0 };
         let (m0, m1) = (stretched(before), stretched(after));
-        let along = gap[i] < spring && after < spring;
-        let pulled = if along { moved[i] } else { m1 - stretched(gap[i]) };
-        block.slopes[i] = if after < spring { pieces.stiffness } else { 0.0 };
-        block.gradient[i] = residual[i] + pressed[i] - stride.centre + pieces.stiffness * pulled;
+        let pulled = if gap[k] < spring && after < spring { moved[k] } else { m1 - stretched(gap[k]) };
+        slopes[k] = if after < spring { stiffness } else { 0.0 };
+        gradient[k] = residual[k] + pressed[k] - stride.centre + stiffness * pulled;
         let jump = m1 - m0;
-        block.beyond[i] = 0.5 * pieces.stiffness * (jump * jump + 2.0 * m0 * (jump - (after - before)));
-        touching[i] = u8::from(after < of(pieces.contact, bonds[i]));
-        let (first, last) = (of(first, bonds[i]), of(last, bonds[i]));
-        let curved = |gap: f32| u8::from(gap >= first && gap <= last);
-        block.curved[i] = curved(gap[i]) | curved(before) | curved(after);
-        (block.gap[1][i], block.gap[2][i]) = (before, after);
-        block.pulled[i] = pieces.stiffness * pulled;
+        beyond[k] = 0.5 * stiffness * (jump * jump + 2.0 * m0 * (jump - (after - before)));
+        let touches = u8::from(after < of(contact));
+        changed |= touching[k] ^ touches;
+        touching[k] = touches;
+        let (first, last) = (of([f0, f1, f2]), of([l0, l1, l2]));
+        let on_curve = |gap: f32| u8::from(gap >= first && gap <= last);
+        curved[k] = on_curve(gap[k]) | on_curve(before) | on_curve(after);
+        was[k] = before;
     }
-    points.moved[range.clone()].copy_from_slice(&moved[..count]);
-    points.pressed[range.clone()].copy_from_slice(&pressed[..count]);
-    found.changed |= points.touching[range.clone()] != touching[..count];
-    points.touching[range].copy_from_slice(&touching[..count]);
-    block
+    changed != 0
 }
 
-/// Replaces the spring by the law at a point.
-fn curve(block: &mut Block, k: usize, bonding: Bonding, law: &Law) {
-    let gaps = [0, 1, 2].map(|at: usize| f64::from(block.gap[at][k]));
-    let [begin, before, after]: [Bond; 3] = gaps.map(|gap| law.bond(bonding, gap));
-    block.gradient[k] += (after.tension - begin.tension) as f32 - block.pulled[k];
-    block.slopes[k] = after.slope as f32;
-    block.beyond[k] = (after.energy - before.energy - before.tension * (gaps[2] - gaps[1])) as f32;
-}
-
-#[inline(always)]
-fn block_of(field: &[f32]) -> [f32; BLOCK] {
-    <[f32; BLOCK]>::try_from(field).unwrap_or_else(|_| {
-        let mut block = [0.0; BLOCK];
-        block[..field.len()].copy_from_slice(field);
-        block
-    })
+/// Replaces the spring by the law at a point: the change of its energy beyond first order.
+fn curve(points: &mut Points<'_>, k: usize, before: f32, centre: f32, law: &Law) -> f32 {
+    let gaps = [points.gap[k], before, points.gap[k] + points.moved[k]].map(f64::from);
+    let [begin, before, after]: [Bond; 3] = gaps.map(|gap| law.bond(points.bonds[k], gap));
+    points.gradient[k] = points.residual[k] + points.pressed[k] - centre + (after.tension - begin.tension) as f32;
+    points.slopes[k] = after.slope as f32;
+    (after.energy - before.energy - before.tension * (gaps[2] - gaps[1])) as f32
 }

@@ -5,8 +5,8 @@ use rayon::prelude::*;
 /// Points whose partial sum is formed by one thread.
 pub(super) const PANEL: usize = 4096;
 /// Points whose partial sum is in single precision, and those of them that are added side by side.
-const RUN: usize = 512;
-const LANES: usize = 8;
+const RUN: usize = 4096;
+const LANES: usize = 64;
 
 /// Parts of `size` points that one thread takes at least, so that small grids are not divided.
 pub(super) fn grain(size: usize) -> usize {
@@ -31,17 +31,22 @@ pub(super) fn sums<const N: usize>(points: usize, add: impl Fn(std::ops::Range<u
     }))
 }
 
-/// Sums over one panel of `N` functions of the values of `M` fields at each point: runs in single precision, their sums in double.
+/// Sums over one panel of `N` functions of the values of `M` fields at each point, which vanish where all fields do: runs in single precision, their
+/// sums in double.
 #[inline(always)]
 pub(super) fn panel_sums<const M: usize, const N: usize>(fields: [&[f32]; M], of: impl Fn([f32; M]) -> [f32; N]) -> [f64; N] {
     let mut sum = [0.0; N];
     let points = fields[0].len();
-    for start in (0..points).step_by(RUN) {
-        let run = fields.map(|field| &field[start..points.min(start + RUN)]);
-        let whole = run[0].len() / LANES * LANES;
+    let mut last = [[0.0; LANES]; M];
+    for run in (0..points).step_by(RUN) {
+        let end = points.min(run + RUN);
         let mut lanes = [[0.0_f32; LANES]; N];
-        for k in (0..whole).step_by(LANES) {
-            let at = run.map(|field| &field[k..k + LANES]);
+        for start in (run..end).step_by(LANES) {
+            let count = LANES.min(end - start);
+            if count < LANES {
+                last.iter_mut().zip(fields).for_each(|(last, field)| last[..count].copy_from_slice(&field[start..end]));
+            }
+            let at: [&[f32; LANES]; M] = std::array::from_fn(|k| fields[k][start..start + count].try_into().unwrap_or(&last[k]));
             for lane in 0..LANES {
                 let values = of(at.map(|field| field[lane]));
                 for (to, value) in lanes.iter_mut().zip(values) {
@@ -49,13 +54,7 @@ pub(super) fn panel_sums<const M: usize, const N: usize>(fields: [&[f32]; M], of
                 }
             }
         }
-        for k in whole..run[0].len() {
-            let values = of(run.map(|field| field[k]));
-            for (to, value) in lanes.iter_mut().zip(values) {
-                to[0] += value;
-            }
-        }
-        sum.iter_mut().zip(lanes).for_each(|(to, lanes)| *to += f64::from(lanes.iter().sum::<f32>()));
+        sum.iter_mut().zip(lanes).for_each(|(to, lanes)| *to += lanes.into_iter().map(f64::from).sum::<f64>());
     }
     sum
 }
@@ -63,13 +62,13 @@ pub(super) fn panel_sums<const M: usize, const N: usize>(fields: [&[f32]; M], of
 /// Largest magnitude on one panel.
 #[inline(always)]
 pub(super) fn panel_largest(field: &[f32]) -> f64 {
-    let (parts, rest) = field.as_chunks::<LANES>();
     let mut most = [0.0_f32; LANES];
-    for part in parts {
-        most = std::array::from_fn(|k| if part[k].abs() > most[k] { part[k].abs() } else { most[k] });
+    for part in field.chunks(LANES) {
+        for (most, value) in most.iter_mut().zip(part) {
+            *most = if value.abs() > *most { value.abs() } else { *most };
+        }
     }
-    let rest = rest.iter().fold(0.0, |most: f32, value| most.max(value.abs()));
-    f64::from(most.into_iter().fold(rest, f32::max))
+    f64::from(most.into_iter().fold(0.0, f32::max))
 }
 
 /// Scalar product.
