@@ -7,43 +7,49 @@ use crate::physics::PhysicsError;
 
 /// Relative accuracy of the load at a reversal.
 const LOAD_ACCURACY: f64 = 1e-5;
-/// Tolerance of the equilibria in the search for that load, relative to that elsewhere.
+/// Relative accuracy of a jump of the load across that of a reversal.
+const JUMP_ACCURACY: f64 = 1e-3;
+/// Tolerance of the equilibria near that load, relative to that elsewhere, and the relative distance at which it begins.
 const SHARPER: f64 = 0.02;
+const NEAR: f64 = 0.02;
+/// Bracket of the approach at which the load jumps, in steps.
+const CLOSED: f64 = 1e-5;
 /// Most equilibria of a search.
 const SEARCHED: u32 = 40;
-/// Where the load jumps across that of a reversal: the bracket of the approach, in steps, at which the search ends, and the relative jump that counts as
-/// reached.
-const CLOSED: f64 = 1e-6;
-const JUMP: f64 = 1e-3;
 
 impl Walk<'_> {
-    /// The equilibrium at `max_load` between the last state and a step beyond it, to the accuracy of the load or of the search.
-    pub(super) fn reach(&mut self, max_load: f64, beyond: Step) -> Result<Attempt, PhysicsError> {
-        let (mut low, mut high) = ((self.at.last.approach, self.at.last.totals.load), (beyond.approach, beyond.totals.load));
-        let Accuracy { rms, largest, iterations: most } = self.settings.accuracy;
-        let accuracy = Accuracy { rms: SHARPER * rms, largest: SHARPER * largest, iterations: most };
-        let mut searched = 0_u32;
-        loop {
-            searched += 1;
+    /// The equilibrium at `max_load` between the last state and a step `beyond` it, or after a jump of the load across it. States of a smaller load on the
+    /// way are steps of the path, so that each equilibrium is near the last one. None if the load falls on this way and does not reach `max_load`.
+    pub(super) fn reach(&mut self, max_load: f64, beyond: Step) -> Result<Option<Attempt>, PhysicsError> {
+        let Accuracy { rms, largest, iterations } = self.settings.accuracy;
+        let sharper = Accuracy { rms: SHARPER * rms, largest: SHARPER * largest, iterations };
+        let off = |load: f64| (load / max_load - 1.0).abs();
+        let mut high = (beyond.approach, beyond.totals.load);
+        for searched in 1_u32.. {
+            let low = (self.at.last.approach, self.at.last.totals.load);
+            let closed = high.0 - low.0 < CLOSED * self.settings.step;
             // The secant, and bisection where that does not help.
             let secant = ((max_load - low.1) / (high.1 - low.1)).clamp(0.02, 0.98);
             let part = if searched.is_multiple_of(3) { 0.5 } else { secant };
-            let approach = low.0 + part * (high.0 - low.0);
-            let mut attempt = self.attempt(approach, accuracy)?;
-            let step = &mut attempt.step;
-            let load = step.totals.load;
+            let approach = if closed { high.0 } else { low.0 + part * (high.0 - low.0) };
+            let near = closed || off(low.1).min(off(high.1)) < NEAR;
+            let mut attempt = self.attempt(approach, if near { sharper } else { self.settings.accuracy })?;
+            let load = attempt.step.totals.load;
+            let reached = off(load) < LOAD_ACCURACY;
+            let jumps = closed && load > max_load;
+            if reached || jumps || searched == SEARCHED {
+                attempt.step.converged &= reached || jumps && off(load) < JUMP_ACCURACY;
+                return Ok(Some(attempt));
+            }
             if load > max_load {
                 high = (approach, load);
-            } else {
-                low = (approach, load);
+                continue;
             }
-            let error = (load / max_load - 1.0).abs();
-            let jumps = high.0 - low.0 < CLOSED * self.settings.step && error < JUMP;
-            let reached = error < LOAD_ACCURACY || jumps;
-            if reached || searched == SEARCHED {
-                step.converged &= reached;
-                return Ok(attempt);
+            self.accept(attempt);
+            if closed {
+                break;
             }
         }
+        Ok(None)
     }
 }

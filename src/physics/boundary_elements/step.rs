@@ -243,20 +243,23 @@ impl<'a> Walk<'a> {
     pub(super) fn advance(&mut self, sense: f64, max_load: Option<f64>) -> Result<bool, PhysicsError> {
         loop {
             let length = sense * self.settings.step / f64::from(1_u32 << self.at.level);
-            let mut attempt = self.attempt(self.at.state.approach + length, self.settings.accuracy)?;
+            let attempt = self.attempt(self.at.state.approach + length, self.settings.accuracy)?;
             let limit = self.settings.located * self.at.dissipated;
             if (attempt.across > limit || self.hides_tension(&attempt)) && self.at.level < DEEPEST {
                 self.at.level += 1;
                 continue;
             }
-            let crossed = max_load.filter(|most| attempt.step.totals.load > *most);
-            if let Some(max_load) = crossed {
-                attempt = self.reach(max_load, attempt.step)?;
-            } else if attempt.across <= WELL_BELOW * limit {
+            if let Some(max_load) = max_load.filter(|most| attempt.step.totals.load > *most) {
+                let reached = self.reach(max_load, attempt.step)?;
+                let ends = reached.is_some();
+                reached.into_iter().for_each(|attempt| self.accept(attempt));
+                return Ok(ends);
+            }
+            if attempt.across <= WELL_BELOW * limit {
                 self.at.level = self.at.level.saturating_sub(1);
             }
             self.accept(attempt);
-            return Ok(crossed.is_some());
+            return Ok(false);
         }
     }
 

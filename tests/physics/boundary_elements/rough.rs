@@ -47,6 +47,30 @@ fn law_long_steps_locate_jumps() {
     assert!(3 * cost < most, "transforms {cost}, in short steps {most}");
 }
 
+/// Reversals in steps of 0.16 spacings are points of the loading path in steps of 0.01: each has its load to 1e-5, the approach to 1e-3 spacings and the
+/// area to 1e-3 (measured: 3e-5 spacings, the same points). At most five steps lead from the step before to a reversal (measured: 2 to 3).
+#[test]
+fn law_reversals_lie_on_the_loading_path() {
+    let n = 64;
+    let problem = problem(n, n, |r, c| 3.0 * wavy(n, r, c), Law::crack(0.05), BONDED);
+    let loads = [0.004, 0.011, 0.02].map(|load| load * (n * n) as f64);
+    let [long, short] = [0.16, 0.01].map(|step| {
+        let settings = Settings { max_loads: loads.to_vec(), step, located: 0.03, accuracy: super::accuracy(1e-4), all_regions: false };
+        run(&problem, &settings, None, &mut |_| {}, &|_| {}).unwrap()
+    });
+    let loading: Vec<_> = long.steps.iter().filter(|step| step.reversal.is_none()).collect();
+    assert!(loading.is_sorted_by(|a, b| a.approach < b.approach));
+    for ((load, here), there) in loads.iter().zip(&long.turning).zip(&short.turning) {
+        let (here, there) = (here.last, there.last);
+        assert!(here.converged && (here.totals.load / load - 1.0).abs() < 1e-5, "{} for {load}", here.totals.load);
+        assert!((here.approach - there.approach).abs() < 1e-3, "approach {}, in short steps {}", here.approach, there.approach);
+        let area = here.totals.contact as f64 / there.totals.contact as f64;
+        assert!((area - 1.0).abs() < 1e-3, "area {area} of that in short steps");
+        let near = loading.iter().filter(|step| (step.approach - here.approach).abs() < 0.16 && step.approach < here.approach).count();
+        assert!(near <= 5, "{near} steps to the reversal");
+    }
+}
+
 /// Weak adhesion, of which the dissipated energy is 5e-5 of the work of loading: the loop has the area of one in small equal steps, to 8 % for the
 /// position of events in steps. When only steps that seemed to gain energy were halved, it was 20 % larger than that.
 #[test]
