@@ -1,7 +1,7 @@
 //! Equilibrium on a grid: L-BFGS with events followed on patches, and Newton's method where that does not end.
 
 use super::contact::{Problem, State};
-use super::minimise::{Accuracy, Follow, Minimiser, Outcome};
+use super::minimise::{ANY, Accuracy, Follow, Loads, Minimiser, Outcome};
 use super::newton::Rate;
 use super::patch::Patches;
 use crate::physics::PhysicsError;
@@ -28,9 +28,20 @@ impl Equilibrium {
     /// # Errors
     /// Not enough memory.
     pub fn find(&mut self, problem: &Problem, state: &mut State, accuracy: Accuracy) -> Result<Outcome, PhysicsError> {
+        self.find_within(problem, state, accuracy, &ANY)
+    }
+
+    /// As [`Self::find`], unless an event takes the load out of `loads`.
+    pub(super) fn find_within(
+        &mut self,
+        problem: &Problem,
+        state: &mut State,
+        accuracy: Accuracy,
+        loads: &Loads,
+    ) -> Result<Outcome, PhysicsError> {
         let events: Option<&mut dyn Follow> = if self.patches.are_none() { None } else { Some(&mut self.patches) };
-        let first = self.minimiser.minimise_with(problem, state, accuracy, events);
-        if first.converged {
+        let first = self.minimiser.minimise_with(problem, state, accuracy, loads, events);
+        if first.converged || first.left {
             return Ok(first);
         }
         let second = self.minimiser.newton(problem, state, accuracy)?;

@@ -35,6 +35,11 @@ const RENEWED: f64 = 1e-3;
 /// Shortenings of a step that would raise the energy.
 const SHORTENINGS: u32 = 30;
 
+/// Loads of the states that are looked for \[E* dx²\].
+pub(super) type Loads = std::ops::Range<f64>;
+/// All loads.
+pub(super) const ANY: Loads = f64::NEG_INFINITY..f64::INFINITY;
+
 /// Criteria of convergence.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Accuracy {
@@ -62,6 +67,8 @@ pub struct Outcome {
     pub residual: f64,
     /// True if the accuracy was reached.
     pub converged: bool,
+    /// True if an event took the load out of the loads that were asked for; the state is of no use then.
+    pub(super) left: bool,
 }
 
 /// Work space.
@@ -139,15 +146,16 @@ impl Minimiser {
 
     /// Moves `state` to the local minimum of the energy at its approach; bonds around contacts grow on the way.
     pub fn minimise(&mut self, problem: &Problem, state: &mut State, accuracy: Accuracy) -> Outcome {
-        self.minimise_with(problem, state, accuracy, None)
+        self.minimise_with(problem, state, accuracy, &ANY, None)
     }
 
-    /// As [`Self::minimise`], with events followed by `events` first.
+    /// As [`Self::minimise`], with events followed by `events` first. Ends where an event takes the load out of `loads`.
     pub(super) fn minimise_with(
         &mut self,
         problem: &Problem,
         state: &mut State,
         accuracy: Accuracy,
+        loads: &Loads,
         mut events: Option<&mut dyn Follow>,
     ) -> Outcome {
         let stress = problem.stress();
@@ -187,12 +195,15 @@ impl Minimiser {
             moved += step.largest;
             if moved > LOOK * problem.reach() && here.largest <= NEAR * stress {
                 moved = 0.0;
+                let late = outcome.iterations >= EVERYWHERE;
+                outcome.left = late && !loads.contains(&self.load());
+                if outcome.left {
+                    return outcome;
+                }
                 let changed = problem.spread_bonds(&mut state.bonds, &self.way.touching, &mut self.way.stale);
                 if !changed.is_empty() {
                     self.way.rebond(problem, &state.bonds, &changed);
-                    if outcome.iterations >= EVERYWHERE
-                        && let Some(events) = events.as_mut()
-                    {
+                    if late && let Some(events) = events.as_mut() {
                         here = self.follow(problem, state, (&changed, accuracy), *events);
                         self.pairs.clear();
                         continue;
@@ -202,6 +213,11 @@ impl Minimiser {
             }
             self.pairs.remember(&mut self.direction, descent.mean, step.length, &self.gradient, &self.previous);
         }
+    }
+
+    /// Load of the present state: minus the sum of pressure and tension, since the mean pressure is 0.
+    fn load(&self) -> f64 {
+        -self.centre * self.slopes.len() as f64
     }
 
     /// Follows events locally, and moves the state as they do.

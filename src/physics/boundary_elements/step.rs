@@ -10,7 +10,7 @@
 
 use super::contact::{Attraction, Problem, State};
 use super::equilibrium::Equilibrium;
-use super::minimise::{Accuracy, Outcome};
+use super::minimise::{ANY, Accuracy, Loads, Outcome};
 use super::newton::Rate;
 use super::patch::Patches;
 use super::records::{Cycle, Event, Map, Step};
@@ -31,6 +31,8 @@ const JUMP_PART: f64 = 0.3;
 const WELL_BELOW: f64 = 1.0 / 6.0;
 /// Relative increase of the maximum tension that a jump of the load may hide.
 const HIDDEN: f64 = 0.02;
+/// Error of a jump, relative to the limit, from which on a step is halved before it has reached equilibrium.
+const EXCESS: f64 = 2.0;
 /// Most halvings of a step.
 const DEEPEST: u32 = 6;
 /// Largest `|du/dΔ|` by which displacements are extrapolated. Near a limit point, where it diverges, the extrapolated state would be far from equilibrium.
@@ -147,7 +149,7 @@ impl<'a> Walk<'a> {
     /// Equilibrium at an approach, from the last state extrapolated, with all contacts that form there.
     pub(super) fn attempt(&mut self, approach: f64, accuracy: Accuracy) -> Result<Attempt, PhysicsError> {
         let mut state = self.predict(approach)?;
-        let outcome = self.relax(&mut state, accuracy)?;
+        let outcome = self.relax(&mut state, accuracy, &ANY)?;
         self.conclude(state, outcome)
     }
 
@@ -172,12 +174,12 @@ impl<'a> Walk<'a> {
         Ok(state)
     }
 
-    /// Moves a state to the equilibrium at its approach.
-    fn relax(&mut self, state: &mut State, accuracy: Accuracy) -> Result<Outcome, PhysicsError> {
+    /// Moves a state to the equilibrium at its approach, unless an event takes the load out of `loads`.
+    fn relax(&mut self, state: &mut State, accuracy: Accuracy, loads: &Loads) -> Result<Outcome, PhysicsError> {
         loop {
-            let outcome = self.equilibrium.find(self.problem, state, accuracy)?;
+            let outcome = self.equilibrium.find_within(self.problem, state, accuracy, loads)?;
             self.iterations += outcome.iterations as u64;
-            if self.problem.update_bonds(state, true).is_empty() {
+            if outcome.left || self.problem.update_bonds(state, true).is_empty() {
                 return Ok(outcome);
             }
         }
@@ -243,8 +245,14 @@ impl<'a> Walk<'a> {
     pub(super) fn advance(&mut self, sense: f64, max_load: Option<f64>) -> Result<bool, PhysicsError> {
         loop {
             let length = sense * self.settings.step / f64::from(1_u32 << self.at.level);
-            let attempt = self.attempt(self.at.state.approach + length, self.settings.accuracy)?;
             let limit = self.settings.located * self.at.dissipated;
+            let mut state = self.predict(self.at.state.approach + length)?;
+            let outcome = self.relax(&mut state, self.settings.accuracy, &self.located_loads(length, limit))?;
+            if outcome.left {
+                self.at.level += 1;
+                continue;
+            }
+            let attempt = self.conclude(state, outcome)?;
             if (attempt.across > limit || self.hides_tension(&attempt)) && self.at.level < DEEPEST {
                 self.at.level += 1;
                 continue;
@@ -261,6 +269,17 @@ impl<'a> Walk<'a> {
             self.accept(attempt);
             return Ok(false);
         }
+    }
+
+    /// Loads after a step of a length that need not be halved: beyond them, the error of a jump exceeds the limit so far that the rest of the event does not
+    /// matter.
+    fn located_loads(&self, length: f64, limit: f64) -> Loads {
+        if self.at.level == DEEPEST {
+            return ANY;
+        }
+        let last = &self.at.last;
+        let (expected, room) = (last.totals.load + last.stiffness * length, 2.0 * EXCESS * limit / length.abs());
+        expected - room..expected + room
     }
 
     /// True if the load of an unloading step has jumped up after it may have passed a tension larger than that of all steps so far.
