@@ -204,6 +204,7 @@ pub(super) fn advance(points: &mut Points<'_>, response: &[f32], stride: Stride,
         let range = part * BLOCK..part * BLOCK + beyond.len();
         let mut points = points.part(range.clone());
         found.changed |= glide(&mut points, &response[range], stride, pieces, beyond, &mut block);
+        // Few points are on the curve.
         for (group, curved) in block.curved[..beyond.len()].chunks(8).enumerate() {
             if curved.iter().any(|curved| *curved != 0) {
                 for k in (8 * group..).take(curved.len()).filter(|k| block.curved[*k] != 0) {

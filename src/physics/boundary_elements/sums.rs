@@ -44,6 +44,7 @@ pub(super) fn panel_sums<const M: usize, const N: usize>(fields: [&[f32]; M], of
         for start in (run..end).step_by(LANES) {
             let count = LANES.min(end - start);
             if count < LANES {
+                // The end of the panel, filled up with 0.
                 last.iter_mut().zip(fields).for_each(|(last, field)| last[..count].copy_from_slice(&field[start..end]));
             }
             let at: [&[f32; LANES]; M] = std::array::from_fn(|k| fields[k][start..start + count].try_into().unwrap_or(&last[k]));

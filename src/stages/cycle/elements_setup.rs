@@ -23,12 +23,11 @@ use ndarray::Array2;
 
 /// Largest error that a jump of the load may cause in the integral over a step, relative to the energy dissipated so far.
 const LOCATED: f64 = 0.03;
-/// Ratio `U_el/Δγ` of Persson and Tosatti from which on adhesion is weak, and the number of steps in one of
-/// `boundary_elements.approach_step` there, each as many times more precise.
+/// Ratios `U_el/Δγ` of Persson and Tosatti from which on adhesion is weak, with the number of steps in one of `boundary_elements.approach_step` there, and
+/// the factor by which `boundary_elements.precision` is smaller.
 ///
 /// With weak adhesion the dissipated energy is a small part of the work of the load, and the sum of the events is as inexact as its integral.
-const WEAK: f64 = 15.0;
-const STEPS_IF_WEAK: f64 = 6.0;
+const WEAK: [(f64, f64, f64); 2] = [(150.0, 30.0, 10.0), (15.0, 6.0, 6.0)];
 /// Largest residual over the rms residual of an equilibrium.
 const PEAK: f64 = 100.0;
 /// Maximum number of iterations of one minimisation.
@@ -157,11 +156,11 @@ pub(super) fn setup(campaign: &Campaign, unit: &CycleUnit) -> Result<Setup, Stag
     let side = heights.nrows();
     let flattening =
         measured_flattening(heights.view(), (header.length_m, header.periodic), length_m / wavelengths, material.contact_modulus_pa)?;
-    let weak = flattening.persson_tosatti(material.work_of_adhesion_j_m2) > WEAK;
+    let ratio = flattening.persson_tosatti(material.work_of_adhesion_j_m2);
     let whole = if header.periodic { heights } else { mirrored(heights.view())? };
     let problem = problem(params, (&units, lattice.range_m), resample(whole.view(), points)?, &list)?;
     let summits = summit_points(&list, (header.length_m, side), !header.periodic, &units);
-    Ok(Setup { settings: settings(params, &units, weak), problem, units, summits })
+    Ok(Setup { settings: settings(params, &units, ratio), problem, units, summits })
 }
 
 /// The contact problem of heights \[m\] on the grid, with the range of the Morse law \[m\] if there is one.
@@ -203,13 +202,14 @@ fn wu_gap(material: &Material, list: &[Summit]) -> Result<f64, PhysicsError> {
     Ok((-Asperity::new(*median, material)?.wu_jump_in_penetration(material.interaction_range_m)).max(0.0))
 }
 
-fn settings(params: &CaseParams, units: &Units, weak: bool) -> Settings {
+/// Settings at a ratio `U_el/Δγ`.
+fn settings(params: &CaseParams, units: &Units, ratio: f64) -> Settings {
     let elements = &params.boundary_elements;
-    let refined = if weak { STEPS_IF_WEAK } else { 1.0 };
-    let residual = elements.precision / refined;
+    let (_, steps, precision) = WEAK.into_iter().find(|(from, ..)| ratio > *from).unwrap_or((0.0, 1.0, 1.0));
+    let residual = elements.precision / precision;
     Settings {
         max_loads: params.cycle.max_load.iter().map(|load| load * units.all()).collect(),
-        step: elements.approach_step * units.rms_height_m / units.spacing_m() / refined,
+        step: elements.approach_step * units.rms_height_m / units.spacing_m() / steps,
         located: LOCATED,
         accuracy: Accuracy { rms: residual, largest: PEAK * residual, iterations: MOST_ITERATIONS },
         all_regions: params.cycle.contacts == KeptContacts::All,
