@@ -271,14 +271,15 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Loads after a step of a length that need not be halved: beyond them, the error of a jump exceeds the limit so far that the rest of the event does not
-    /// matter.
+    /// Loads after a step of a length that need not be halved. Beyond them, the error of a jump exceeds the limit so far that the rest of the event does not
+    /// matter, and the load has changed by more than its slope can do in this step. All loads as long as nothing has been dissipated.
     fn located_loads(&self, length: f64, limit: f64) -> Loads {
-        if self.at.level == DEEPEST {
+        if self.at.level == DEEPEST || limit == 0.0 {
             return ANY;
         }
         let last = &self.at.last;
-        let (expected, room) = (last.totals.load + last.stiffness * length, 2.0 * EXCESS * limit / length.abs());
+        let smooth = last.stiffness * length;
+        let (expected, room) = (last.totals.load + smooth, (2.0 * EXCESS * limit / length.abs()).max(smooth.abs()));
         expected - room..expected + room
     }
 
