@@ -242,13 +242,13 @@ impl HalfSpace {
                 let parts: Vec<Part> = lines.chunks_mut(width).zip(rows).map(transform).collect();
                 for (block, tile) in tiles_mut(group).iter_mut().enumerate() {
                     for (row, line) in tile.iter_mut().zip(lines.chunks(width)) {
-                        row.copy_from_slice(&line[block * BLOCK..][..BLOCK]);
+                        *row = line.as_chunks().0[block];
                     }
                 }
                 parts
             },
         );
-        parts.collect::<Vec<_>>().into_iter().flatten().collect()
+        parts.flatten_iter().collect()
     }
 
     /// Second half: the operator, and the transform back, of which `take` is given each row with the item of `rows` for it. What `take` returns, in the
@@ -277,7 +277,7 @@ impl HalfSpace {
                 for block in 0..self.blocks() {
                     let tile = &by_block[block * self.height() / BLOCK + group];
                     for (row, line) in tile.iter().zip(lines.chunks_mut(width)) {
-                        line[block * BLOCK..][..BLOCK].copy_from_slice(row);
+                        line.as_chunks_mut().0[block] = *row;
                     }
                 }
                 let transform = |(line, item): (&mut [Complex<T>], Row)| {
@@ -293,7 +293,7 @@ impl HalfSpace {
                 lines.chunks_mut(width).zip(items).map(transform).collect::<Vec<_>>()
             },
         );
-        parts.collect::<Vec<_>>().into_iter().flatten().collect()
+        parts.flatten_iter().collect()
     }
 
     /// Blocks of wavevectors of a row.
@@ -329,7 +329,7 @@ impl HalfSpace {
         let (rows, stride, plans) = (self.padded.0, self.stride(), T::plans(self));
         for (group, tile) in by_group.iter().skip(block).step_by(self.blocks()).enumerate() {
             for (column, values) in columns.chunks_mut(stride).zip(transposed(tile)) {
-                column[group * BLOCK..][..BLOCK].copy_from_slice(&values);
+                column.as_chunks_mut().0[group] = values;
             }
         }
         let points = self.transformed() as f64;
@@ -347,8 +347,7 @@ impl HalfSpace {
             plans.inverse_column.process_with_scratch(column, scratch);
         }
         for (group, tile) in waves.iter_mut().enumerate() {
-            let part: [&[Complex<T>]; BLOCK] = std::array::from_fn(|k| &columns[k * stride + group * BLOCK..][..BLOCK]);
-            *tile = std::array::from_fn(|row| std::array::from_fn(|k| part[k][row]));
+            *tile = transposed(&std::array::from_fn(|k| columns[k * stride..].as_chunks().0[group]));
         }
     }
 }

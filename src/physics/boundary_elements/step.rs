@@ -258,10 +258,9 @@ impl<'a> Walk<'a> {
                 continue;
             }
             if let Some(max_load) = max_load.filter(|most| attempt.step.totals.load > *most) {
-                let reached = self.reach(max_load, attempt.step)?;
-                let ends = reached.is_some();
-                reached.into_iter().for_each(|attempt| self.accept(attempt));
-                return Ok(ends);
+                let Some(attempt) = self.reach(max_load, attempt.step)? else { return Ok(false) };
+                self.accept(attempt);
+                return Ok(true);
             }
             if attempt.across <= WELL_BELOW * limit {
                 self.at.level = self.at.level.saturating_sub(1);

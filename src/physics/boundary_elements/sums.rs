@@ -2,10 +2,9 @@
 
 use rayon::prelude::*;
 
-/// Points whose partial sum is formed by one thread.
+/// Points whose partial sum is formed by one thread, in single precision where the field is.
 pub(super) const PANEL: usize = 4096;
-/// Points whose partial sum is in single precision, and those of them that are added side by side.
-const RUN: usize = 4096;
+/// Points of a panel that are added side by side.
 const LANES: usize = 64;
 
 /// Parts of `size` points that one thread takes at least, so that small grids are not divided.
@@ -38,8 +37,8 @@ pub(super) fn panel_sums<const M: usize, const N: usize>(fields: [&[f32]; M], of
     let mut sum = [0.0; N];
     let points = fields[0].len();
     let mut last = [[0.0; LANES]; M];
-    for run in (0..points).step_by(RUN) {
-        let end = points.min(run + RUN);
+    for run in (0..points).step_by(PANEL) {
+        let end = points.min(run + PANEL);
         let mut lanes = [[0.0_f32; LANES]; N];
         for start in (run..end).step_by(LANES) {
             let count = LANES.min(end - start);
