@@ -1,7 +1,7 @@
 //! Transitions of asperities: their kinds, the resulting status, and those that are met during a relaxation.
 //!
 //! An asperity jumps into contact when its penetration reaches its jump-in penetration, and out of contact at the end of its branch.
-//! It is absorbed when a larger spot reaches its centre, and released when that spot has withdrawn from it.
+//! It is absorbed when a larger spot reaches its centre, to [`EDGE`], and released when that spot has withdrawn from it.
 //!
 //! Absorption removes a load and so moves the absorbing spot. If the load was tensile, the spot shrinks and would release
 //! the asperity at once, which would enlarge the spot again, in an endless cycle.
@@ -13,6 +13,21 @@ use super::problem::Problem;
 use super::state::{State, Status};
 use crate::model::Coalescence;
 use serde::{Deserialize, Serialize};
+
+/// Distance from the edge of a contact, over its radius, at which it absorbs an asperity.
+///
+/// The slope of its field is infinite at its edge. Nearer to it, equilibria of the whole contact are not found.
+const EDGE: f64 = 1e-3;
+
+/// Radius \[m\] at which a contact absorbs an asperity at a distance \[m\].
+pub(crate) fn absorbing_radius(distance: f64) -> f64 {
+    distance / (1.0 + EDGE)
+}
+
+/// Distance \[m\] up to which a contact of a radius \[m\] absorbs asperities.
+pub(crate) fn absorbed_within(radius: f64) -> f64 {
+    radius * (1.0 + EDGE)
+}
 
 /// Kind of event.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -122,13 +137,13 @@ impl Problem {
         }
     }
 
-    /// Largest spot over the centre of asperity `i`, other than `but`, with its distance.
+    /// Largest spot over the centre of asperity `i`, other than `but`, with the radius at which it absorbs it.
     pub(crate) fn covering(&self, state: &State, i: usize, but: Option<usize>) -> Option<(usize, f64)> {
         state
             .contacts
             .iter()
             .filter(|j| **j != i && Some(**j) != but)
-            .map(|&j| (j, self.distance(i, j)))
+            .map(|&j| (j, absorbing_radius(self.distance(i, j))))
             .filter(|(j, r)| state.radius[*j] >= *r)
             .max_by(|(j, _), (k, _)| state.radius[*j].total_cmp(&state.radius[*k]).then(k.cmp(j)))
     }
@@ -146,7 +161,7 @@ impl Problem {
         }
         if found.is_none() && self.covers() {
             for &(j, a, _) in spots {
-                self.neighbours.within(j, a, |r, i| {
+                self.neighbours.within(j, absorbed_within(a), |r, i| {
                     let smaller = spots.binary_search_by_key(&i, |spot| spot.0).is_ok_and(|k| spots[k].1 < a);
                     if smaller && found.is_none_or(|(most, _)| a / r > most) {
                         found = Some((a / r, Transition { kind: Kind::Cover, asperity: i, by: Some(j) }));

@@ -4,7 +4,7 @@ use super::conditions::Condition;
 use super::predictor::Predictor;
 use crate::physics::contact::problem::Problem;
 use crate::physics::contact::state::Status;
-use crate::physics::contact::transition::{Kind, Transition};
+use crate::physics::contact::transition::{Kind, Transition, absorbing_radius};
 
 /// Distance to the end of a branch, over the way that is left, within which it is looked for: near a fold the penetration varies as a
 /// square root, so linear extrapolation overestimates the distance by about two.
@@ -98,6 +98,7 @@ impl Predictor {
             let most = trace.value + 1.1 * speed * left;
             let Some(reach) = asperity.radius_at_penetration(most) else { return };
             problem.neighbours.within(j, reach / TWINS, |r, i| {
+                let r = absorbing_radius(r);
                 let open = problem.can_be_covered(&self.state, i) && self.state.radius[i] < r;
                 // Two contacts that grow towards one another's centres have a fold before they reach them.
                 if open && r >= a && (reach >= r || self.state.radius[i] > TWINS * r) {

@@ -4,7 +4,7 @@ use super::conditions::Condition;
 use super::predictor::Predictor;
 use crate::physics::contact::problem::Problem;
 use crate::physics::contact::state::Status;
-use crate::physics::contact::transition::{Kind, Transition};
+use crate::physics::contact::transition::{Kind, Transition, absorbed_within};
 
 /// Transition that is due, with its overshoot: dimensionless, 0 at the event and positive beyond.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,7 +30,7 @@ impl Problem {
             }
             add(Transition { kind: Kind::JumpOff, asperity: j, by: None });
             if self.covers() {
-                self.neighbours.within(j, state.radius[j], |_, i| {
+                self.neighbours.within(j, absorbed_within(state.radius[j]), |_, i| {
                     if self.can_be_covered(state, i) && state.radius[i] < state.radius[j] {
                         inside.push(i);
                         add(Transition { kind: Kind::Cover, asperity: i, by: Some(j) });
