@@ -22,13 +22,13 @@ fn setups() -> Vec<(&'static str, Setup, Pinned)> {
     let isolated = Rules { boundary: Boundary::Isolated, ..DEFAULT };
     let jkr = Rules { jump_in: JumpIn::Jkr, ..DEFAULT };
     vec![
-        ("cover, zeta 16", (16, 0, DEFAULT, 0.07, 24), (94, 3.677862353902e-1, 1.183319520590e-3, 1.570935080871e-3)),
-        ("cover, zeta 32", (32, 1, DEFAULT, 0.07, 24), (332, 3.684944499905e-1, 7.631878444002e-4, 1.966930503267e-3)),
-        ("cover, local problems of 3", (16, 1, DEFAULT, 0.07, 3), (96, 4.059902235198e-1, 8.521168851346e-4, 1.709615752802e-3)),
+        ("cover, zeta 16", (16, 0, DEFAULT, 0.07, 24), (94, 3.677862353902e-1, 1.183319520590e-3, 1.568550563391e-3)),
+        ("cover, zeta 32", (32, 1, DEFAULT, 0.07, 24), (331, 3.684944499056e-1, 7.631842798975e-4, 1.965983460039e-3)),
+        ("cover, local problems of 3", (16, 1, DEFAULT, 0.07, 3), (96, 4.059902235198e-1, 8.520991768283e-4, 1.708809504692e-3)),
         (
             "cover, all contacts in one problem",
             (16, 1, DEFAULT, 0.07, usize::MAX),
-            (96, 4.059902235198e-1, 8.499241918691e-4, 1.710097406259e-3),
+            (96, 4.059902235198e-1, 8.499241918691e-4, 1.709325131062e-3),
         ),
         ("cover, weak adhesion", (16, 0, DEFAULT, 1e-3, 24), (82, 1.557304951904e-1, 1.271672677095e-6, 1.085022591539e-6)),
         ("merge", (16, 0, merge, 0.07, 24), (190, 5.358706137238e-1, 1.206946843554e-3, 1.701111030864e-3)),
@@ -37,10 +37,10 @@ fn setups() -> Vec<(&'static str, Setup, Pinned)> {
             (16, 0, merge, 0.07, usize::MAX),
             (190, 5.363802181489e-1, 1.206946799433e-3, 1.693247760427e-3),
         ),
-        ("no interaction", (16, 0, alone, 0.07, 24), (96, 3.485415168642e-1, 1.209450779577e-3, 1.539783217835e-3)),
-        ("point loads", (16, 0, point, 0.07, 24), (94, 3.677670707883e-1, 1.198677882806e-3, 1.547584777128e-3)),
-        ("isolated", (16, 0, isolated, 0.07, 24), (90, 3.855806283037e-1, 1.031359464757e-3, 1.682535247485e-3)),
-        ("jump-in of JKR", (16, 0, jkr, 0.07, 24), (94, 3.677862353902e-1, 1.183319520590e-3, 1.612603351028e-3)),
+        ("no interaction", (16, 0, alone, 0.07, 24), (96, 3.485415168642e-1, 1.209450779577e-3, 1.539783230413e-3)),
+        ("point loads", (16, 0, point, 0.07, 24), (94, 3.677670707883e-1, 1.198677882806e-3, 1.547529735986e-3)),
+        ("isolated", (16, 0, isolated, 0.07, 24), (90, 3.855806283037e-1, 1.031359464757e-3, 1.680509255857e-3)),
+        ("jump-in of JKR", (16, 0, jkr, 0.07, 24), (94, 3.677862353902e-1, 1.183319520590e-3, 1.609925208113e-3)),
     ]
 }
 
@@ -78,7 +78,7 @@ fn reg_whole_cycles() {
 /// Effort of three cycles: iterations, and products of the tangent with a vector.
 #[test]
 fn reg_effort_of_whole_cycles() {
-    for (at, iterations, products) in [(0, 2588, 7984), (1, 9365, 13899), (5, 2932, 6333)] {
+    for (at, iterations, products) in [(0, 2569, 7993), (1, 9209, 13633), (5, 2932, 6333)] {
         let (what, (zeta, realization, rules, adhesion, patch), _) = setups().swap_remove(at);
         let material = Material { work_of_adhesion_j_m2: adhesion, ..PAPER };
         let problem = Problem::new(&paper_summits(zeta, realization), LENGTH, RMS, material, rules).unwrap().with_patches_of(patch);

@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 /// Distance from the edge of a contact, over its radius, at which it absorbs an asperity.
 ///
 /// The slope of its field is infinite at its edge. Nearer to it, equilibria of the whole contact are not found.
-const EDGE: f64 = 1e-3;
+const EDGE: f64 = 1e-4;
 
 /// Radius \[m\] at which a contact absorbs an asperity at a distance \[m\].
 pub(crate) fn absorbing_radius(distance: f64) -> f64 {
@@ -109,7 +109,7 @@ impl Transition {
     pub(crate) fn status(&self, problem: &Problem) -> Status {
         match (self.kind, self.by) {
             (Kind::Cover, Some(by)) => {
-                let release_m = problem.distance(self.asperity, by);
+                let release_m = absorbing_radius(problem.distance(self.asperity, by));
                 Status::Covered { by, release_m }
             }
             (Kind::JumpIn | Kind::JumpOff | Kind::Cover | Kind::Uncover | Kind::Snap | Kind::Merge | Kind::Split, _) => Status::Free,

@@ -110,12 +110,15 @@ impl DirectSum {
         effort.pairs += (n * targets.len()) as u64;
     }
 
-    /// Displacement \[m\] at a target by spots whose fields are added (1) or subtracted (−1), as [`Self::at_many`] has it.
+    /// Displacement \[m\] at a target by spots whose fields are added (1) or subtracted (−1).
+    ///
+    /// There must be no table of image sums: adding an asperity has discarded it.
     pub(crate) fn at_one(&self, spots: &[(f64, Spot)], target: usize) -> f64 {
+        debug_assert!(!self.has_table());
         let by = |sign: f64| {
             let mut chosen = Spots::default();
             chosen.columns.set(spots.iter().filter(|(times, _)| *times == sign).map(|(_, spot)| *spot));
-            sign * self.row::<false>(&chosen, &self.moments(&chosen), target, true, &mut [])
+            sign * self.row::<false>(&chosen, &self.moments(&chosen), target, false, &mut [])
         };
         by(1.0) + by(-1.0)
     }
