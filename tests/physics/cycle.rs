@@ -403,3 +403,23 @@ fn law_nobody_is_covered_where_nobody_touches() {
         assert_eq!(of(Kind::Cover), of(Kind::Uncover), "realization {realization}");
     }
 }
+
+#[test]
+fn law_an_asperity_is_absorbed_before_the_edge_of_a_larger_contact_reaches_its_centre() {
+    // By 1e-4 of the radius: the field of a contact has an infinite slope at its edge. To the accuracy of a radius at an event.
+    let summits = paper_summits(32, 0);
+    let problem = Problem::new(&summits, LENGTH, RMS, PAPER, DEFAULT).unwrap();
+    let cycle = run(&problem, &[0.004], 0.04, KeptContacts::All);
+    let mut nearest = f64::INFINITY;
+    for step in 0..cycle.steps.len() {
+        let contacts: Vec<_> = cycle.contacts.iter().filter(|contact| contact.step == step && !contact.covered).collect();
+        for larger in &contacts {
+            for smaller in contacts.iter().filter(|contact| contact.contact_radius_m < larger.contact_radius_m) {
+                let (p, q) = (&summits[smaller.asperity], &summits[larger.asperity]);
+                let [dx, dy] = [p.x_m - q.x_m, p.y_m - q.y_m].map(|way| way - LENGTH * (way / LENGTH).round());
+                nearest = nearest.min(dx.hypot(dy) / larger.contact_radius_m - 1.0);
+            }
+        }
+    }
+    assert!(nearest > 0.999e-4 && nearest < 0.1, "{nearest:e}");
+}

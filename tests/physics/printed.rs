@@ -165,8 +165,8 @@ fn e2e_a_cycle_with_a_slip_of_the_contact() {
         let cycle = paper_cycle(&summits, Rules { slips, ..DEFAULT }, &[0.0071], 0.04);
         assert!(cycle.steps.iter().all(|step| step.numerics.residual_m <= 1e-8 * RMS));
         let (p, q) = (loop_of(&right, 0), loop_of(&cycle, 0));
-        // It is another loop, and a near one: no summit is nearer to the edge of a spot than 1e-4 without being absorbed (Eq 8: 1e-8 of the loss), and a branch loses its
-        // last corner, and some spots leave in another order (Eq 9: 6 %). The area at the turning point knows no end of a branch.
+        // It is another loop, and a near one: asperities within a contact are absorbed, those at its edge as well (Eq 8: 1e-8 of the loss), and a
+        // branch loses its last corner, and some spots leave in another order (Eq 9: 6 %). The area at the turning point knows no end of a branch.
         assert!((p.loss / q.loss - 1.0).abs() > if slips.eq8 { 1e-9 } else { 1e-3 }, "{slips:?}");
         close("loss", q.loss, p.loss, 0.1);
         // As printed Eq 8 makes the field jump at the edge of a spot: an asperity there may be covered or not, and so may those next to it (8 %).
