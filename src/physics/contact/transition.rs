@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 
 /// Distance from the edge of a contact, over its radius, at which it absorbs an asperity.
 ///
-/// The slope of its field is infinite at its edge. Nearer to it, equilibria of the whole contact are not found.
+/// The slope of its field is infinite at its edge. Nearer to it, Newton's method mostly does not find the equilibrium of all contacts.
 const BEFORE_CENTRE: f64 = 1e-4;
 
 /// Radius \[m\] at which a contact absorbs an asperity at a distance \[m\].
@@ -109,7 +109,7 @@ impl Transition {
     pub(crate) fn status(&self, problem: &Problem) -> Status {
         match (self.kind, self.by) {
             (Kind::Cover, Some(by)) => {
-                let release_m = absorbing_radius(problem.distance(self.asperity, by));
+                let release_m = problem.absorbing_radius(self.asperity, by);
                 Status::Covered { by, release_m }
             }
             (Kind::JumpIn | Kind::JumpOff | Kind::Cover | Kind::Uncover | Kind::Snap | Kind::Merge | Kind::Split, _) => Status::Free,
@@ -124,6 +124,11 @@ impl Problem {
     /// True if the model includes absorption.
     pub(crate) fn covers(&self) -> bool {
         self.rules.coalescence != Coalescence::None
+    }
+
+    /// Radius \[m\] at which contact `by` absorbs asperity `i`.
+    pub(crate) fn absorbing_radius(&self, i: usize, by: usize) -> f64 {
+        absorbing_radius(self.distance(i, by))
     }
 
     /// True if an asperity can be absorbed.
@@ -143,7 +148,7 @@ impl Problem {
             .contacts
             .iter()
             .filter(|j| **j != i && Some(**j) != but)
-            .map(|&j| (j, absorbing_radius(self.distance(i, j))))
+            .map(|&j| (j, self.absorbing_radius(i, j)))
             .filter(|(j, r)| state.radius[*j] >= *r)
             .max_by(|(j, _), (k, _)| state.radius[*j].total_cmp(&state.radius[*k]).then(k.cmp(j)))
     }

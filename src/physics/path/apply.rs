@@ -8,7 +8,7 @@ use super::propagation::Before;
 use super::rejection::Rejection;
 use crate::physics::PhysicsError;
 use crate::physics::contact::Status;
-use crate::physics::contact::transition::{Kind, Transition, absorbing_radius};
+use crate::physics::contact::transition::{Kind, Transition};
 use crate::physics::solve::local::Hold;
 
 /// Share of its radius by which a contact is moved over a fold.
@@ -140,7 +140,7 @@ impl EquilibriumPath {
         let Some(by) = uncovering.by else { return false };
         let i = uncovering.asperity;
         let radius = |j: usize| local.find(j).map_or(0.0, |k| local.radius[k]);
-        let absorbing = absorbing_radius(problem.distance(i, by));
+        let absorbing = problem.absorbing_radius(i, by);
         let (mine, its) = (radius(i), radius(by));
         let covered_again = (its >= absorbing && mine < its) || (mine >= absorbing && its < mine);
         covered_again || applied.iter().any(|transition| transition.undoes(uncovering))

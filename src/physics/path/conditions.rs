@@ -2,7 +2,7 @@
 
 use crate::physics::contact::problem::Problem;
 use crate::physics::contact::state::{State, Status};
-use crate::physics::contact::transition::{Kind, Transition, absorbing_radius};
+use crate::physics::contact::transition::{Kind, Transition};
 
 /// Quantity that reaches a value at an event.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,7 +25,7 @@ impl Problem {
             (Kind::JumpIn, Status::Free, _) => Some(Condition::Penetration { asperity: i, value_m: self.jump_in[i] }),
             (Kind::JumpOff, Status::Contact, _) => Some(Condition::Shrinking { contact: i, value_m: self.asperities[i].jump_off_radius() }),
             (Kind::Cover, Status::Free | Status::Contact, Some(by)) => {
-                Some(Condition::Growing { contact: by, value_m: absorbing_radius(self.distance(i, by)) })
+                Some(Condition::Growing { contact: by, value_m: self.absorbing_radius(i, by) })
             }
             // The footprint of a part of a merged contact stays covered until it splits.
             (Kind::Uncover, Status::Covered { by, .. }, _) if matches!(state.status[by], Status::Merged { .. }) => None,
