@@ -159,15 +159,15 @@ fn law_the_sum_over_spots_has_the_printed_field() {
 
 #[test]
 fn e2e_a_cycle_with_a_slip_of_the_contact() {
-    let summits = paper_summits(16, 0);
+    let summits = paper_summits(32, 2);
     let right = paper_cycle(&summits, DEFAULT, &[0.0071], 0.04);
     for slips in [EQ8, EQ9] {
         let cycle = paper_cycle(&summits, Rules { slips, ..DEFAULT }, &[0.0071], 0.04);
         assert!(cycle.steps.iter().all(|step| step.numerics.residual_m <= 1e-8 * RMS));
         let (p, q) = (loop_of(&right, 0), loop_of(&cycle, 0));
-        // It is another loop, and a near one: asperities within a contact are absorbed, those at its edge as well (Eq 8: 1e-8 of the loss), and a
-        // branch loses its last corner, and some spots leave in another order (Eq 9: 6 %). The area at the turning point knows no end of a branch.
-        assert!((p.loss / q.loss - 1.0).abs() > if slips.eq8 { 1e-9 } else { 1e-3 }, "{slips:?}");
+        // It is another loop, and a near one: few asperities lie within a contact and are not absorbed (Eq 8: 9e-4 of the loss), and a branch loses
+        // its last corner, and some spots leave in another order (Eq 9). The area at the turning point knows no end of a branch.
+        assert!((p.loss / q.loss - 1.0).abs() > if slips.eq8 { 1e-5 } else { 1e-3 }, "{slips:?}");
         close("loss", q.loss, p.loss, 0.1);
         // As printed Eq 8 makes the field jump at the edge of a spot: an asperity there may be covered or not, and so may those next to it (8 %).
         close("area", turning(&cycle, 0).area_m2, turning(&right, 0).area_m2, if slips.eq8 { 0.15 } else { 0.01 });
