@@ -203,13 +203,11 @@ pub(super) fn advance(points: &mut Points<'_>, response: &[f32], stride: Stride,
     for (part, beyond) in beyond.chunks_mut(BLOCK).enumerate() {
         let range = part * BLOCK..part * BLOCK + beyond.len();
         let mut points = points.part(range.clone());
-        found.changed |= glide(&mut points, &response[range], stride, pieces, beyond, &mut block);
-        // Few points are on the curve.
-        for (group, curved) in block.curved[..beyond.len()].chunks(8).enumerate() {
-            if curved.iter().any(|curved| *curved != 0) {
-                for k in (8 * group..).take(curved.len()).filter(|k| block.curved[*k] != 0) {
-                    beyond[k] = curve(&mut points, k, block.before[k], stride.centre, law);
-                }
+        let [changed, curved] = glide(&mut points, &response[range], stride, pieces, beyond, &mut block);
+        found.changed |= changed;
+        if curved {
+            for k in (0..beyond.len()).filter(|k| block.curved[*k] != 0) {
+                beyond[k] = curve(&mut points, k, block.before[k], stride.centre, law);
             }
         }
     }
@@ -220,10 +218,10 @@ pub(super) fn advance(points: &mut Points<'_>, response: &[f32], stride: Stride,
     found
 }
 
-/// Moves points, with the law as a spring or nothing: true if one has come into contact or left it. Only changes since the beginning are computed in
-/// single precision.
+/// Moves points, with the law as a spring or nothing: true if one has come into contact or left it, and if one is on the curve of the law. Only changes
+/// since the beginning are computed in single precision.
 #[inline(always)]
-fn glide(points: &mut Points<'_>, response: &[f32], stride: Stride, pieces: &Pieces, beyond: &mut [f32], block: &mut Block) -> bool {
+fn glide(points: &mut Points<'_>, response: &[f32], stride: Stride, pieces: &Pieces, beyond: &mut [f32], block: &mut Block) -> [bool; 2] {
     let n = beyond.len();
     let (gap, residual, bonds) = (&points.gap[..n], &points.residual[..n], &points.bonds[..n]);
     let (direction, response) = (&points.direction[..n], &response[..n]);
@@ -231,7 +229,7 @@ fn glide(points: &mut Points<'_>, response: &[f32], stride: Stride, pieces: &Pie
     let (gradient, slopes) = (&mut points.gradient[..n], &mut points.slopes[..n]);
     let (was, curved) = (&mut block.before[..n], &mut block.curved[..n]);
     let Pieces { stiffness, spring, contact, curved: [[f0, l0], [f1, l1], [f2, l2]] } = *pieces;
-    let mut changed = 0;
+    let (mut changed, mut any_curved) = (0, 0);
     for k in 0..n {
         let bonding = bonds[k] as u8;
         let of = |[free, bonded, sealed]: [f32; 3]| {
@@ -261,9 +259,10 @@ fn glide(points: &mut Points<'_>, response: &[f32], stride: Stride, pieces: &Pie
         let (first, last) = (of([f0, f1, f2]), of([l0, l1, l2]));
         let on_curve = |gap: f32| u8::from(gap >= first && gap <= last);
         curved[k] = on_curve(gap[k]) | on_curve(before) | on_curve(after);
+        any_curved |= curved[k];
         was[k] = before;
     }
-    changed != 0
+    [changed != 0, any_curved != 0]
 }
 
 /// Replaces the spring by the law at a point: the change of its energy beyond first order.

@@ -271,7 +271,8 @@ impl<'a> Walk<'a> {
     }
 
     /// Loads after a step of a length that need not be halved. Beyond them, the error of a jump exceeds the limit so far that the rest of the event does not
-    /// matter, and the load has changed by more than its slope can do in this step. All loads as long as nothing has been dissipated.
+    /// matter, and the load has changed by more than its slope can do in this step; or it has jumped up from a maximum tension. All loads as long as nothing
+    /// has been dissipated.
     fn located_loads(&self, length: f64, limit: f64) -> Loads {
         if self.at.level == DEEPEST || limit == 0.0 {
             return ANY;
@@ -279,14 +280,19 @@ impl<'a> Walk<'a> {
         let last = &self.at.last;
         let smooth = last.stiffness * length;
         let (expected, room) = (last.totals.load + smooth, (2.0 * EXCESS * limit / length.abs()).max(smooth.abs()));
-        expected - room..expected + room
+        let most = if self.is_tensest(expected) { last.totals.load } else { f64::INFINITY };
+        expected - room..(expected + room).min(most)
     }
 
     /// True if the load of an unloading step has jumped up after it may have passed a tension larger than that of all steps so far.
     fn hides_tension(&self, attempt: &Attempt) -> bool {
         let (from, to) = (&self.at.last, &attempt.step);
-        let Some((known, ..)) = self.at.tensest.as_ref().filter(|(load, ..)| *load < 0.0) else { return false };
         let before_jump = from.totals.load + from.stiffness * (to.approach - from.approach);
-        attempt.across > 0.0 && to.totals.load > from.totals.load && before_jump < (1.0 + HIDDEN) * known
+        attempt.across > 0.0 && to.totals.load > from.totals.load && self.is_tensest(before_jump)
+    }
+
+    /// True if a load is a tension that exceeds that of all steps so far by more than [`HIDDEN`].
+    fn is_tensest(&self, load: f64) -> bool {
+        self.at.tensest.as_ref().is_some_and(|(known, ..)| *known < 0.0 && load < (1.0 + HIDDEN) * known)
     }
 }

@@ -65,7 +65,7 @@ pub(super) fn panel_largest(field: &[f32]) -> f64 {
     let mut most = [0.0_f32; LANES];
     for part in field.chunks(LANES) {
         for (most, value) in most.iter_mut().zip(part) {
-            *most = if value.abs() > *most { value.abs() } else { *most };
+            *most = most.max(value.abs());
         }
     }
     f64::from(most.into_iter().fold(0.0, f32::max))
