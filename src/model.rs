@@ -146,7 +146,7 @@ choice! {
 choice! {
     /// Rule for the opening of contact of boundary elements.
     Opening {
-        /// From the edges of contacts, and inside where the tension exceeds `Δγ/ρ`, with the interaction range ρ.
+        /// From the edges of contacts, and inside where the tension exceeds `Δγ/ε`, with the interaction range ε.
         Strength = "strength",
         /// From the edges of contacts only.
         Edges = "edges",
