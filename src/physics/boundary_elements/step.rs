@@ -277,18 +277,23 @@ impl<'a> Walk<'a> {
         if self.at.level == DEEPEST || limit == 0.0 {
             return ANY;
         }
-        let last = &self.at.last;
-        let smooth = last.stiffness * length;
-        let (expected, room) = (last.totals.load + smooth, (2.0 * EXCESS * limit / length.abs()).max(smooth.abs()));
-        let most = if self.is_tensest(expected) { last.totals.load } else { f64::INFINITY };
+        let from = self.at.last.totals.load;
+        let expected = self.extrapolated_load(length);
+        let room = (2.0 * EXCESS * limit / length.abs()).max((expected - from).abs());
+        let most = if self.is_tensest(expected) { from } else { f64::INFINITY };
         expected - room..(expected + room).min(most)
     }
 
     /// True if the load of an unloading step has jumped up after it may have passed a tension larger than that of all steps so far.
     fn hides_tension(&self, attempt: &Attempt) -> bool {
         let (from, to) = (&self.at.last, &attempt.step);
-        let before_jump = from.totals.load + from.stiffness * (to.approach - from.approach);
+        let before_jump = self.extrapolated_load(to.approach - from.approach);
         attempt.across > 0.0 && to.totals.load > from.totals.load && self.is_tensest(before_jump)
+    }
+
+    /// Load after a step of a length without an event, by the stiffness at its beginning \[E* dx²\].
+    fn extrapolated_load(&self, length: f64) -> f64 {
+        self.at.last.totals.load + self.at.last.stiffness * length
     }
 
     /// True if a load is a tension that exceeds that of all steps so far by more than [`HIDDEN`].
