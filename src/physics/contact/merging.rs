@@ -50,15 +50,10 @@ impl Problem {
             return Ok(Self { heights, ..grown });
         }
         for number in self.live_merged(state) {
-            let difference = grown.difference_field(number, &state.merged[number - self.summits()], &grown.live(state, number));
+            let difference = grown.difference_field(number, &state.merged[number - self.summits()], state);
             grown.lower(&difference, 1.0);
         }
         Ok(grown)
-    }
-
-    /// Asperities, and merged contacts that exist, without one.
-    pub(crate) fn live(&self, state: &State, without: usize) -> Vec<usize> {
-        (0..self.summits()).chain(self.live_merged(state)).filter(|i| *i != without).collect()
     }
 
     /// Merged contacts that exist, ascending.
@@ -66,10 +61,12 @@ impl Problem {
         (self.summits()..state.status.len()).filter(|i| state.status[*i] != Status::Free)
     }
 
-    /// Displacement \[m\] at each of `targets` by two contacts beyond that of the contact that they merge into, at the radii at merging.
-    pub(crate) fn difference_field(&self, number: usize, merged: &Merged, targets: &[usize]) -> Vec<(usize, f64)> {
-        let found = self.field.at_many(&self.difference(number, merged), targets);
-        targets.iter().copied().zip(found).collect()
+    /// Displacement \[m\] by two contacts beyond that of the contact that they merge into, at the radii at merging.
+    ///
+    /// By number, at all asperities and merged contacts that exist; 0 at the contact itself.
+    pub(crate) fn difference_field(&self, number: usize, merged: &Merged, state: &State) -> Vec<f64> {
+        let targets = (0..self.summits()).chain(self.live_merged(state)).filter(|i| *i != number);
+        self.field.at_many(&self.difference(number, merged), targets)
     }
 
     /// Sum of the difference fields of merged contacts at the place of another \[m\].
@@ -86,34 +83,28 @@ impl Problem {
     }
 
     /// Lowers heights by a difference field (1), or raises them again (−1).
-    pub(crate) fn lower(&mut self, field: &[(usize, f64)], sign: f64) {
-        for (i, displacement) in field {
-            self.heights[*i] -= sign * displacement;
+    pub(crate) fn lower(&mut self, field: &[f64], sign: f64) {
+        for (height, displacement) in self.heights.iter_mut().zip(field) {
+            *height -= sign * displacement;
         }
     }
 
     /// Potential of two contacts beyond that of the contact in their place \[J\], of which the constant does not count.
     ///
     /// It consists of their own potentials and those of interaction, with each other and with `others`, whose radii are \[m\]. `difference` is the
-    /// difference of their fields at the others. `displaced` are the displacements at the two contacts and at the one \[m\].
+    /// difference of their fields by number. `displaced` are the displacements at the two contacts and at the one \[m\].
     pub(crate) fn exchange_j(
         &self,
         number: usize,
         merged: &Merged,
         others: &[(usize, f64)],
-        difference: &[(usize, f64)],
+        difference: &[f64],
         displaced: [f64; 3],
     ) -> f64 {
         let ([i, j], [a, b], radius) = (merged.parts, merged.radii_m, merged.contact_radius_m());
         let load = |i: usize, a: f64| self.asperities[i].load(a);
         let own = |i: usize, a: f64, displacement: f64| self.self_potential(i, a) + 0.5 * load(i, a) * displacement;
-        let fields: f64 = others
-            .iter()
-            .map(|(k, a)| {
-                let at = difference.binary_search_by_key(k, |entry| entry.0);
-                at.map_or(0.0, |at| difference[at].1 * load(*k, *a))
-            })
-            .sum();
+        let fields: f64 = others.iter().map(|(k, a)| difference[*k] * load(*k, *a)).sum();
         own(i, a, displaced[0]) + own(j, b, displaced[1]) - own(number, radius, displaced[2]) + self.potential_offset[number] + 0.5 * fields
     }
 

@@ -89,7 +89,7 @@ impl Best {
     }
 
     /// Displacements by few spots at many targets, see [`DirectSum::at_many`].
-    pub(crate) fn at_many(&self, spots: &[(f64, Spot)], targets: &[usize]) -> Vec<f64> {
+    pub(crate) fn at_many(&self, spots: &[(f64, Spot)], targets: impl Iterator<Item = usize>) -> Vec<f64> {
         self.direct.at_many(spots, targets)
     }
 

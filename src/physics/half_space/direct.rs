@@ -3,9 +3,9 @@
 mod at_many;
 
 use super::ewald::{IMAGES, ORDERS, RemainderSeries};
+use super::image_polynomials::{CENTRE, Centre};
 use super::multipole::{Moments, product};
 use super::patch_pairs::{PairTable, Sources};
-use super::rough_images::{CENTRE, Centre};
 use super::spot_field::{LANES, Place, Spot, SpotColumns, sag, spot_fields};
 use super::{Effort, Interaction, Spots, Tangent};
 use crate::model::{Boundary, Interaction as Kind, Material, Slips};

@@ -3,10 +3,10 @@
 mod choose;
 mod direct;
 pub mod ewald;
+mod image_polynomials;
 mod multipole;
 mod particle_mesh;
 mod patch_pairs;
-mod rough_images;
 pub mod spot_field;
 
 use crate::physics::math::vector::dot;

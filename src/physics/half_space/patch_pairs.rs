@@ -1,7 +1,7 @@
 //! Pair distances of a local problem: computed once, reused for all its evaluations.
 
+use super::image_polynomials::{CENTRE, Centre};
 use super::multipole::Moments;
-use super::rough_images::{CENTRE, Centre};
 use super::spot_field::{AWAY, LANES, SpotColumns, field_at};
 use crate::model::Interaction as Kind;
 use crate::physics::math::grown::Grown;

@@ -27,14 +27,13 @@ impl EquilibriumPath {
         let (number, radius) = (problem.len(), merged.contact_radius_m());
         drop(problem);
         Arc::make_mut(&mut self.solver.problem).add(&merged)?;
-        let by_others = self.solver.displacement(&contacts, number);
-        // The images of the merged contact displace it as well.
-        let displacement = by_others + self.solver.displacement(&[(number, radius)], number);
+        let outside = self.solver.displacements(&contacts, &[pair[0], pair[1], number]);
+        let displaced = self.displaced(number, &merged, outside);
         let problem = self.problem();
-        let difference = problem.difference_field(number, &merged, &problem.live(self.state(), number));
-        let height = problem.asperities[number].penetration(radius) + displacement - approach;
+        let difference = problem.difference_field(number, &merged, self.state());
+        let height = problem.asperities[number].penetration(radius) + displaced[2] - approach;
         merged.height_m = height + problem.differences_at(self.state(), number);
-        merged.offset_j = self.exchange_j(number, &merged, &contacts, &difference, displacement);
+        merged.offset_j = problem.exchange_j(number, &merged, &contacts, &difference, displaced);
         drop(problem);
         let grown = Arc::make_mut(&mut self.solver.problem);
         grown.heights[number] = height;
@@ -44,7 +43,7 @@ impl EquilibriumPath {
         let (local, effort) = (&mut self.neighbourhood.local, &mut self.solver.effort);
         pair.into_iter().for_each(|part| local.remove(part, false));
         local.evaluate(problem, effort);
-        let place = local.place(problem, number, (by_others, drift), effort);
+        let place = local.place(problem, number, (outside[2], drift), effort);
         local.insert(place, radius);
         self.predictor.extend(merged);
         self.pending.grow(problem.len());
@@ -63,23 +62,22 @@ impl EquilibriumPath {
         let merged = self.predictor.state.merged[number - problem.summits()];
         let (radius, drift) = (self.neighbourhood.local.radius[at], self.neighbourhood.local.members[at].drift);
         let present = merged.scaled(radius / merged.contact_radius_m());
-        let live = problem.live(self.state(), number);
-        let difference = problem.difference_field(number, &merged, &live);
+        let difference = problem.difference_field(number, &merged, self.state());
         // Beyond the radius at which it merged the fields of its parts differ by something else from its own.
         let has_shrunk = radius < (1.0 - 10.0 * ROUNDING) * merged.contact_radius_m();
-        let now = if has_shrunk { problem.difference_field(number, &present, &live) } else { difference.clone() };
+        let now = has_shrunk.then(|| problem.difference_field(number, &present, self.state()));
+        let [first, second, own] = self.solver.displacements(&contacts, &[merged.parts[0], merged.parts[1], number]);
+        let displaced = self.displaced(number, &present, [first, second, own]);
+        let exchanged = problem.exchange_j(number, &present, &contacts, now.as_ref().unwrap_or(&difference), displaced);
         drop(problem);
-        let displaced = self.solver.displacement(&contacts, number) + self.solver.displacement(&[(number, radius)], number);
-        let exchanged = self.exchange_j(number, &present, &contacts, &now, displaced) - merged.offset_j;
         Arc::make_mut(&mut self.solver.problem).lower(&difference, -1.0);
-        let excess: Vec<(usize, f64)> = difference.iter().zip(&now).map(|((i, ends), (_, begins))| (*i, ends - begins)).collect();
-        let gained = exchanged + self.end_field(&excess, true);
+        let excess: Vec<f64> = now.map_or_else(Vec::new, |now| difference.iter().zip(&now).map(|(ends, begins)| ends - begins).collect());
+        let gained = exchanged - merged.offset_j + self.end_field(&excess, true);
         let problem = &*self.problem();
-        let displacements = merged.parts.map(|part| self.solver.displacement(&contacts, part));
         let (local, effort) = (&mut self.neighbourhood.local, &mut self.solver.effort);
         local.remove(number, false);
         local.evaluate(problem, effort);
-        for (part, (displacement, radius)) in merged.parts.into_iter().zip(displacements.into_iter().zip(present.radii_m)) {
+        for (part, (displacement, radius)) in merged.parts.into_iter().zip([first, second].into_iter().zip(present.radii_m)) {
             let place = local.place(problem, part, (displacement, drift), effort);
             local.insert(place, radius);
             self.pending.set_applied(part);
@@ -91,13 +89,12 @@ impl EquilibriumPath {
         *before = self.exchanged(before, gained);
     }
 
-    /// See [`Problem::exchange_j`](crate::physics::contact::Problem::exchange_j); `displaced` is the displacement at the merged contact \[m\].
-    fn exchange_j(&mut self, number: usize, merged: &Merged, others: &[(usize, f64)], difference: &[(usize, f64)], displaced: f64) -> f64 {
+    /// Displacements \[m\] at two contacts, by one another and by all images, and at the one in their place, by its images, with those by the `outside`.
+    fn displaced(&mut self, number: usize, merged: &Merged, outside: [f64; 3]) -> [f64; 3] {
         let pair = [0, 1].map(|k| (merged.parts[k], merged.radii_m[k]));
-        let mut all: Vec<(usize, f64)> = others.iter().copied().chain(pair).collect();
-        all.sort_unstable_by_key(|contact| contact.0);
-        let [first, second] = merged.parts.map(|part| self.solver.displacement(&all, part));
-        self.problem().exchange_j(number, merged, others, difference, [first, second, displaced])
+        let [first, second] = self.solver.displacements(&pair, &merged.parts);
+        let own = self.solver.displacement(&[(number, merged.contact_radius_m())], number);
+        [outside[0] + first, outside[1] + second, outside[2] + own]
     }
 
     /// The local problem after an exchange of contacts that has gained energy \[J\] and changed nothing elsewhere.
@@ -138,18 +135,18 @@ impl EquilibriumPath {
     /// loads gain is returned \[J\].
     fn end_difference(&mut self, number: usize, merged: &Merged) -> f64 {
         let problem = self.problem();
-        let difference = problem.difference_field(number, merged, &problem.live(self.state(), number));
+        let difference = problem.difference_field(number, merged, self.state());
         drop(problem);
         Arc::make_mut(&mut self.solver.problem).lower(&difference, -1.0);
         self.end_field(&difference, false)
     }
 
-    /// Ends a field at asperities: contacts, but for the members of the local problem if these have it, have that as a pending displacement. The energy
+    /// Ends a field, by asperity: contacts, but for the members of the local problem if these have it, have that as a pending displacement. The energy
     /// that their loads gain is returned \[J\].
-    fn end_field(&mut self, field: &[(usize, f64)], members_have_it: bool) -> f64 {
+    fn end_field(&mut self, field: &[f64], members_have_it: bool) -> f64 {
         let (problem, limit) = (self.problem(), self.pending_limit());
         let mut gained_j = 0.0;
-        for &(i, displacement) in field.iter().filter(|(_, displacement)| *displacement != 0.0) {
+        for (i, displacement) in field.iter().copied().enumerate().filter(|(_, displacement)| *displacement != 0.0) {
             if self.predictor.state.status[i] == Status::Contact {
                 if !(members_have_it && self.neighbourhood.local.find(i).is_some()) {
                     gained_j += displacement * problem.asperities[i].load(self.predictor.state.radius[i]);

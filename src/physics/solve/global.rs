@@ -187,10 +187,16 @@ impl GlobalSolver {
 
     /// Displacement at one asperity by contacts of these radii \[m\].
     pub(crate) fn displacement(&mut self, spots: &[(usize, f64)], asperity: usize) -> f64 {
+        let [displacement] = self.displacements(spots, &[asperity]);
+        displacement
+    }
+
+    /// Displacements at asperities by contacts of these radii \[m\].
+    pub(crate) fn displacements<const N: usize>(&mut self, spots: &[(usize, f64)], asperities: &[usize; N]) -> [f64; N] {
         self.problem.columns(spots.iter().copied(), &mut self.spots);
-        let mut displacement = Vec::new();
-        self.problem.field.displacements(&self.spots, &[asperity], &mut displacement, &mut self.effort);
-        displacement.first().copied().unwrap_or(0.0)
+        let mut displacements = Vec::with_capacity(N);
+        self.problem.field.displacements(&self.spots, asperities, &mut displacements, &mut self.effort);
+        std::array::from_fn(|k| displacements[k])
     }
 }
 

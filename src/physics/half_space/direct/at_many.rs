@@ -2,13 +2,17 @@
 
 use super::{DirectSum, in_sides};
 use crate::model::Interaction as Kind;
-use crate::physics::half_space::ewald::{IMAGES, ORDERS, RemainderSeries};
-use crate::physics::half_space::multipole::{Moments, product};
+use crate::physics::half_space::ewald::ORDERS;
+use crate::physics::half_space::image_polynomials::ImageField;
+use crate::physics::half_space::multipole::Moments;
 use crate::physics::half_space::spot_field::{LANES, Place, Spot, SpotColumns, field, squared_distances};
 use multiversion::multiversion;
 
 /// Distance over radius from which a spot acts by its moments: their relative error is 6e-10 there, and falls with the eighth power of the distance.
 const FAR: f64 = 8.0;
+
+/// Targets of one block: their columns stay in the fastest cache for all spots.
+const BLOCK: usize = 64 * LANES;
 
 /// Targets as columns, padded to whole passes.
 #[derive(Debug, Default)]
@@ -17,38 +21,79 @@ struct Targets {
     y: Vec<[f64; LANES]>,
 }
 
+impl Targets {
+    /// Replaces the columns by these places.
+    fn set(&mut self, places: impl ExactSizeIterator<Item = [f64; 2]>) {
+        let passes = places.len().div_ceil(LANES);
+        for column in [&mut self.x, &mut self.y] {
+            column.clear();
+            column.resize(passes, [0.0; LANES]);
+        }
+        for (k, [x, y]) in places.enumerate() {
+            (self.x[k / LANES][k % LANES], self.y[k / LANES][k % LANES]) = (x, y);
+        }
+    }
+}
+
+/// A spot as a source: its field near and far from it, and that of its images.
+struct Source<'a> {
+    times: f64,
+    spot: &'a Spot,
+    moments: [f64; ORDERS],
+    images: Option<ImageField>,
+}
+
 impl DirectSum {
-    /// Displacement \[m\] by spots at each of `targets`, without that of a spot at its own centre.
+    /// Displacement \[m\] by spots at each of `targets`, without that of a spot at its own centre; by number, 0 elsewhere.
     ///
     /// The displacement by each spot is multiplied by the number beside it.
-    pub(crate) fn at_many(&self, spots: &[(f64, Spot)], targets: &[usize]) -> Vec<f64> {
-        let mut columns = Targets::default();
-        for chunk in targets.chunks(LANES) {
-            let (mut x, mut y) = ([0.0; LANES], [0.0; LANES]);
-            for (k, target) in chunk.iter().enumerate() {
-                [x[k], y[k]] = self.positions[*target];
-            }
-            columns.x.push(x);
-            columns.y.push(y);
+    pub(crate) fn at_many(&self, spots: &[(f64, Spot)], mut targets: impl Iterator<Item = usize>) -> Vec<f64> {
+        let mut found = vec![0.0; self.positions.len()];
+        if self.kind == Kind::None {
+            return found;
         }
-        let mut sums = vec![[0.0; LANES]; columns.x.len()];
-        let mut sources = SpotColumns::default();
-        sources.set(spots.iter().map(|(_, spot)| *spot));
-        let moments = Moments::of(self.kind, &sources, self.pull, self.compliance, self.length);
-        let inverse_length = if self.periodic { 1.0 / self.length } else { 0.0 };
-        for ((times, spot), moments) in spots.iter().zip(&moments.value) {
-            let place = Place { x: spot.x, y: spot.y, length: self.length, inverse_length, pull: self.pull, sag: self.sag };
+        let sources = self.sources(spots);
+        let (mut block, mut columns, mut sums) = (Vec::with_capacity(BLOCK), Targets::default(), Vec::new());
+        loop {
+            block.clear();
+            block.extend(targets.by_ref().take(BLOCK));
+            if block.is_empty() {
+                return found;
+            }
+            columns.set(block.iter().map(|target| self.positions[*target]));
+            sums.clear();
+            sums.resize(columns.x.len(), [0.0; LANES]);
+            for source in &sources {
+                self.add_field(source, &columns, &mut sums);
+            }
+            for (target, sum) in block.iter().zip(sums.as_flattened()) {
+                found[*target] = *sum;
+            }
+        }
+    }
+
+    /// The spots as sources.
+    fn sources<'a>(&self, spots: &'a [(f64, Spot)]) -> Vec<Source<'a>> {
+        let mut columns = SpotColumns::default();
+        columns.set(spots.iter().map(|(_, spot)| *spot));
+        let moments = Moments::of(self.kind, &columns, self.pull, self.compliance, self.length);
+        let source = |((times, spot), moments): (&'a (f64, Spot), &[f64; ORDERS])| {
             let moments = moments.map(|moment| times * moment);
-            match self.kind {
-                Kind::None => {}
-                Kind::Point => add_spot(place, None, &moments, &columns, &mut sums),
-                Kind::Spots => add_spot(place, Some((*times, spot)), &moments, &columns, &mut sums),
-            }
-            if self.periodic && self.kind != Kind::None {
-                add_images(place, &moments, &columns, &mut sums);
-            }
+            Source { times: *times, spot, moments, images: self.periodic.then(|| ImageField::of(&moments)) }
+        };
+        spots.iter().zip(&moments.value).map(source).collect()
+    }
+
+    /// Adds the field of a spot and its images at the targets.
+    fn add_field(&self, source: &Source<'_>, targets: &Targets, sums: &mut [[f64; LANES]]) {
+        let Spot { x, y, .. } = *source.spot;
+        let inverse_length = if self.periodic { 1.0 / self.length } else { 0.0 };
+        let place = Place { x, y, length: self.length, inverse_length, pull: self.pull, sag: self.sag };
+        let spot = (self.kind == Kind::Spots).then_some((source.times, source.spot));
+        add_spot(place, spot, &source.moments, targets, sums);
+        if let Some(images) = &source.images {
+            add_images(place, images, targets, sums);
         }
-        sums.into_iter().flatten().take(targets.len()).collect()
     }
 }
 
@@ -79,12 +124,12 @@ fn add_spot(place: Place, spot: Option<(f64, &Spot)>, moments: &[f64; ORDERS], t
 
 /// Adds the field of all images but the nearest.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-fn add_images(place: Place, moments: &[f64; ORDERS], targets: &Targets, sums: &mut [[f64; LANES]]) {
-    let images: &RemainderSeries = &IMAGES;
+fn add_images(place: Place, images: &ImageField, targets: &Targets, sums: &mut [[f64; LANES]]) {
     for ((x, y), sum) in targets.x.iter().zip(&targets.y).zip(sums) {
         let (dx, dy) = in_sides(place, x, y);
-        for (sum, sums) in sum.iter_mut().zip(images.local(&dx, &dy)) {
-            *sum += product(&sums, moments);
+        let found = images.at(&dx, &dy);
+        for k in 0..LANES {
+            sum[k] += found[k];
         }
     }
 }
@@ -112,15 +157,15 @@ mod tests {
                 sources.columns.set(spots.iter().map(|(_, spot)| *spot));
                 let mut wanted = Vec::new();
                 sum.displacements(&sources, &targets, &mut wanted, &mut Effort::default());
-                let found = sum.at_many(&spots.map(|(_, spot)| (1.0, spot)), &targets);
-                // The order of summation differs. Far from a spot its moments are used; a point load has no others.
-                let tolerance = if kind == Kind::Spots { 1e-9 } else { 1e-14 };
+                let found = sum.at_many(&spots.map(|(_, spot)| (1.0, spot)), 0..29);
+                // Far from a spot its moments are used, and of the fields of the images a polynomial; point loads have only one moment.
+                let tolerance = if kind == Kind::Spots || boundary == Boundary::Periodic { 1e-9 } else { 1e-14 };
                 let largest = wanted.iter().fold(0.0f64, |most, w| most.max(w.abs()));
                 for (found, wanted) in found.iter().zip(&wanted) {
                     assert!((found - wanted).abs() <= tolerance * largest, "{kind:?} {boundary:?}: {found:e} {wanted:e}");
                 }
                 let signed = [(1.0, spots[0].1), (-1.0, spots[1].1)];
-                for (target, wanted) in sum.at_many(&signed, &targets).into_iter().enumerate() {
+                for (target, wanted) in sum.at_many(&signed, 0..29).into_iter().enumerate() {
                     let found = sum.at_one(&signed, target);
                     assert!((found - wanted).abs() <= tolerance * largest, "{kind:?} {boundary:?}: {found:e} {wanted:e}");
                 }
