@@ -85,8 +85,14 @@ impl DirectSum {
     }
 
     /// Multipole moments of the spots, for the fields of their images.
-    fn moments(&self, spots: &Spots) -> Moments {
-        Moments::of(self.kind, &spots.columns, self.pull, self.compliance, self.length)
+    fn moments(&self, spots: &SpotColumns) -> Moments {
+        Moments::of(self.kind, spots, self.pull, self.compliance, self.length)
+    }
+
+    /// A target or source at a position \[m\].
+    fn place(&self, [x, y]: [f64; 2]) -> Place {
+        let inverse_length = if self.periodic { 1.0 / self.length } else { 0.0 };
+        Place { x, y, length: self.length, inverse_length, pull: self.pull, sag: self.sag }
     }
 
     /// Displacement \[m\] by all spots at each of `targets`, and its derivatives to the radii of all spots.
@@ -102,7 +108,7 @@ impl DirectSum {
     ) {
         let n = spots.index.len();
         let mut slopes = vec![0.0; spots.columns.padded()];
-        let moments = self.moments(spots);
+        let moments = self.moments(&spots.columns);
         for (k, target) in targets.iter().enumerate() {
             let sum = self.row::<true>(spots, &moments, *target, rough, &mut slopes);
             visit(k, sum, &slopes[..n]);
@@ -118,7 +124,7 @@ impl DirectSum {
         let by = |sign: f64| {
             let mut chosen = Spots::default();
             chosen.columns.set(spots.iter().filter(|(times, _)| *times == sign).map(|(_, spot)| *spot));
-            sign * self.row::<false>(&chosen, &self.moments(&chosen), target, false, &mut [])
+            sign * self.row::<false>(&chosen, &self.moments(&chosen.columns), target, false, &mut [])
         };
         by(1.0) + by(-1.0)
     }
@@ -128,7 +134,7 @@ impl DirectSum {
     /// The image sums have six digits.
     pub(crate) fn among(&self, spots: &Spots, table: &mut PairTable, fields: &mut Vec<f64>, slopes: &mut Vec<f64>, effort: &mut Effort) {
         table.find(&spots.index, &self.positions, self.length, self.periodic);
-        let moments = self.moments(spots);
+        let moments = self.moments(&spots.columns);
         let Self { kind, compliance, pull, sag, .. } = *self;
         table.fields(Sources { kind, columns: &spots.columns, moments: &moments, compliance, pull, sag }, fields, slopes);
         effort.pairs += (spots.index.len() * spots.index.len()) as u64;
@@ -140,8 +146,7 @@ impl DirectSum {
     fn row<const SLOPES: bool>(&self, spots: &Spots, moments: &Moments, target: usize, rough: bool, slopes: &mut [f64]) -> f64 {
         let columns = &spots.columns;
         let [x, y] = self.positions[target];
-        let inverse_length = if self.periodic { 1.0 / self.length } else { 0.0 };
-        let place = Place { x, y, length: self.length, inverse_length, pull: self.pull, sag: self.sag };
+        let place = self.place([x, y]);
         let mut sum = match self.kind {
             Kind::None => {
                 slopes.fill(0.0);
@@ -151,7 +156,8 @@ impl DirectSum {
             Kind::Point => {
                 let mut sum = 0.0;
                 for (j, load) in columns.load[..columns.len()].iter().enumerate() {
-                    let [dx, dy] = [x - columns.x[j], y - columns.y[j]].map(|d| d - self.length * (d * inverse_length).round_ties_even());
+                    let [dx, dy] =
+                        [x - columns.x[j], y - columns.y[j]].map(|d| d - self.length * (d * place.inverse_length).round_ties_even());
                     let r = dx.hypot(dy);
                     let unit = if r > 0.0 { self.compliance / r } else { 0.0 };
                     sum += load * unit;
@@ -254,7 +260,7 @@ impl Interaction for DirectSum {
     fn displacements(&self, spots: &Spots, targets: &[usize], displacements: &mut Vec<f64>, effort: &mut Effort) {
         displacements.clear();
         effort.pairs += (spots.index.len() * targets.len()) as u64;
-        let moments = self.moments(spots);
+        let moments = self.moments(&spots.columns);
         displacements.extend(targets.iter().map(|target| self.row::<false>(spots, &moments, *target, false, &mut [])));
     }
 

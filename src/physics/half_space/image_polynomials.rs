@@ -37,7 +37,7 @@ pub(super) static CENTRE: LazyLock<Centre> = LazyLock::new(Centre::new);
 
 impl Centre {
     fn new() -> Self {
-        Self { first: fit(0), second: fit(1) }
+        Self { first: fit()[0], second: fit()[1] }
     }
 
     /// `S_0` and `S_1` for pairs at these distances, in units of the side.
@@ -51,7 +51,7 @@ impl Centre {
 }
 
 /// Coefficients of the image sums of all orders, shared by the process.
-static ALL_ORDERS: LazyLock<[Coefficients<{ FIELD_DEGREE + 1 }>; ORDERS]> = LazyLock::new(|| std::array::from_fn(fit));
+static ALL_ORDERS: LazyLock<[Coefficients<{ FIELD_DEGREE + 1 }>; ORDERS]> = LazyLock::new(fit);
 
 /// Field of all images but the nearest of one spot.
 #[derive(Debug)]
@@ -78,19 +78,20 @@ impl ImageField {
     }
 }
 
-/// Chebyshev approximation of the image sums of an order.
-fn fit<const N: usize>(order: usize) -> Coefficients<N> {
+/// Chebyshev approximations of the image sums of all orders.
+fn fit<const N: usize>() -> [Coefficients<N>; ORDERS] {
     let (degree, nodes) = (N - 1, N + 3);
     let place = |k: usize| 0.5 * (0.5 + 0.5 * (PI * (k as f64 + 0.5) / nodes as f64).cos()).sqrt();
     let samples: Vec<Vec<_>> = (0..nodes).map(|i| (0..nodes).map(|j| global(&SERIES, place(i), place(j))).collect()).collect();
     let monomials = chebyshev_monomials(N);
-    let mut found = [[0.0; N]; N];
+    let mut found = [[[0.0; N]; N]; ORDERS];
     for m in 0..N {
         for n in 0..N - m {
-            let coefficient = chebyshev_coefficient(&samples, m, n)[order];
-            for (p, left) in monomials[m].iter().enumerate() {
-                for (q, right) in monomials[n].iter().enumerate() {
-                    found[degree - p][degree - q] += coefficient * left * right;
+            for (found, coefficient) in found.iter_mut().zip(chebyshev_coefficient(&samples, m, n)) {
+                for (p, left) in monomials[m].iter().enumerate() {
+                    for (q, right) in monomials[n].iter().enumerate() {
+                        found[degree - p][degree - q] += coefficient * left * right;
+                    }
                 }
             }
         }

@@ -66,18 +66,18 @@ impl EquilibriumPath {
         // Beyond the radius at which it merged the fields of its parts differ by something else from its own.
         let has_shrunk = radius < (1.0 - 10.0 * ROUNDING) * merged.contact_radius_m();
         let now = has_shrunk.then(|| problem.difference_field(number, &present, self.state()));
-        let [first, second, own] = self.solver.displacements(&contacts, &[merged.parts[0], merged.parts[1], number]);
-        let displaced = self.displaced(number, &present, [first, second, own]);
+        let outside = self.solver.displacements(&contacts, &[merged.parts[0], merged.parts[1], number]);
+        let displaced = self.displaced(number, &present, outside);
         let exchanged = problem.exchange_j(number, &present, &contacts, now.as_ref().unwrap_or(&difference), displaced);
         drop(problem);
         Arc::make_mut(&mut self.solver.problem).lower(&difference, -1.0);
-        let excess: Vec<f64> = now.map_or_else(Vec::new, |now| difference.iter().zip(&now).map(|(ends, begins)| ends - begins).collect());
+        let excess: Vec<f64> = now.iter().flatten().zip(&difference).map(|(begins, ends)| ends - begins).collect();
         let gained = exchanged - merged.offset_j + self.end_field(&excess, true);
         let problem = &*self.problem();
         let (local, effort) = (&mut self.neighbourhood.local, &mut self.solver.effort);
         local.remove(number, false);
         local.evaluate(problem, effort);
-        for (part, (displacement, radius)) in merged.parts.into_iter().zip([first, second].into_iter().zip(present.radii_m)) {
+        for (part, (displacement, radius)) in merged.parts.into_iter().zip(outside.into_iter().zip(present.radii_m)) {
             let place = local.place(problem, part, (displacement, drift), effort);
             local.insert(place, radius);
             self.pending.set_applied(part);

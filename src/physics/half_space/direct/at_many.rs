@@ -4,7 +4,6 @@ use super::{DirectSum, in_sides};
 use crate::model::Interaction as Kind;
 use crate::physics::half_space::ewald::ORDERS;
 use crate::physics::half_space::image_polynomials::ImageField;
-use crate::physics::half_space::multipole::Moments;
 use crate::physics::half_space::spot_field::{LANES, Place, Spot, SpotColumns, field, squared_distances};
 use multiversion::multiversion;
 
@@ -37,10 +36,21 @@ impl Targets {
 
 /// A spot as a source: its field near and far from it, and that of its images.
 struct Source<'a> {
-    times: f64,
-    spot: &'a Spot,
+    place: Place,
+    /// The spot and its factor; nothing for point loads, which have only moments.
+    near: Option<(f64, &'a Spot)>,
     moments: [f64; ORDERS],
     images: Option<ImageField>,
+}
+
+impl Source<'_> {
+    /// Adds its field at the targets.
+    fn add(&self, targets: &Targets, sums: &mut [[f64; LANES]]) {
+        add_spot(self.place, self.near, &self.moments, targets, sums);
+        if let Some(images) = &self.images {
+            add_images(self.place, images, targets, sums);
+        }
+    }
 }
 
 impl DirectSum {
@@ -64,7 +74,7 @@ impl DirectSum {
             sums.clear();
             sums.resize(columns.x.len(), [0.0; LANES]);
             for source in &sources {
-                self.add_field(source, &columns, &mut sums);
+                source.add(&columns, &mut sums);
             }
             for (target, sum) in block.iter().zip(sums.as_flattened()) {
                 found[*target] = *sum;
@@ -76,24 +86,13 @@ impl DirectSum {
     fn sources<'a>(&self, spots: &'a [(f64, Spot)]) -> Vec<Source<'a>> {
         let mut columns = SpotColumns::default();
         columns.set(spots.iter().map(|(_, spot)| *spot));
-        let moments = Moments::of(self.kind, &columns, self.pull, self.compliance, self.length);
+        let moments = self.moments(&columns);
         let source = |((times, spot), moments): (&'a (f64, Spot), &[f64; ORDERS])| {
             let moments = moments.map(|moment| times * moment);
-            Source { times: *times, spot, moments, images: self.periodic.then(|| ImageField::of(&moments)) }
+            let near = (self.kind == Kind::Spots).then_some((*times, spot));
+            Source { place: self.place([spot.x, spot.y]), near, moments, images: self.periodic.then(|| ImageField::of(&moments)) }
         };
         spots.iter().zip(&moments.value).map(source).collect()
-    }
-
-    /// Adds the field of a spot and its images at the targets.
-    fn add_field(&self, source: &Source<'_>, targets: &Targets, sums: &mut [[f64; LANES]]) {
-        let Spot { x, y, .. } = *source.spot;
-        let inverse_length = if self.periodic { 1.0 / self.length } else { 0.0 };
-        let place = Place { x, y, length: self.length, inverse_length, pull: self.pull, sag: self.sag };
-        let spot = (self.kind == Kind::Spots).then_some((source.times, source.spot));
-        add_spot(place, spot, &source.moments, targets, sums);
-        if let Some(images) = &source.images {
-            add_images(place, images, targets, sums);
-        }
     }
 }
 
