@@ -148,7 +148,7 @@ impl Watch for Teller {
                 let share = 100.0 * now.parts / (now.left.max(1) as f64 * PARTS);
                 let time = duration(self.elapsed());
                 now.line_at = Instant::now();
-                self.line(&format!("{}: {}/{}, {share:.0} % of the pending work after {time}", stage.word(), now.units, now.all));
+                self.line(&format!("{}: {}/{}, {share:.0} % of the pending tasks after {time}", stage.word(), now.units, now.all));
             }
         });
     }

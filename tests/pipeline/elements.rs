@@ -268,6 +268,31 @@ fn val_area_from_the_adhesionless_curve() {
     assert!(load.windows(2).chain(size.windows(2)).all(|pair| pair[0] <= pair[1]), "load and area grow without adhesion");
 }
 
+/// Each rule of attraction, nucleation and opening gives a whole loop. Contact without adhesion does not depend on them: the same digits.
+#[test]
+fn e2e_every_rule_of_boundary_elements_gives_a_loop() {
+    let rules =
+        ["nucleation = \"touch\"", "nucleation = \"wu\"", "opening = \"edges\"", "opening = \"anywhere\"", "attraction = \"range\""];
+    let curves = rules.map(|rule| {
+        let bench = Bench::new(&alone().replace("precision = 1e-6", rule));
+        let run = bench.verb("run", &[]);
+        assert_eq!(code(&run), 0, "{rule}: {}", stderr(&run));
+        let loss = statistics(&bench, &schema::REALIZATIONS).f64("loss").unwrap();
+        assert!(loss.len() == 2 && loss.iter().all(|loss| *loss > 0.0), "{rule}: {loss:?}");
+        let campaign = campaign(&bench);
+        let curve = table(&campaign, &elements(&campaign)[0], &schema::ADHESIONLESS);
+        ["approach_m", "load_n", "area_m2"].map(|name| curve.f64(name).unwrap())
+    });
+    // A loop that goes farther has a longer curve.
+    for (rule, curve) in rules.iter().zip(&curves) {
+        let common = curve[0].len().min(curves[0][0].len());
+        assert!(common > 20, "{rule}: {common} steps");
+        for (one, other) in curve.iter().zip(&curves[0]) {
+            assert_eq!(one[..common], other[..common], "{rule}");
+        }
+    }
+}
+
 /// A run that is killed at any of three times goes on to the same bytes, without repeating a finished task.
 #[test]
 fn e2e_killed_boundary_elements_go_on_to_the_same_bytes() {

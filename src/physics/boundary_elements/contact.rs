@@ -87,6 +87,13 @@ impl Problem {
         self.law.bond(bonding, gap)
     }
 
+    /// The same surface and half-space without attraction. The wall is the spring of the law of the band-limited crack, whatever the law was: the
+    /// exponential repulsion of Morse's law overflows in iterations without a limit of their length.
+    #[must_use]
+    pub fn without_adhesion(self) -> Self {
+        Self { attraction: Attraction::None, law: Law::crack(self.law.work()), ..self }
+    }
+
     /// Undeformed and out of contact at an approach.
     ///
     /// # Errors

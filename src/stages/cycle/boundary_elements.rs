@@ -10,7 +10,7 @@ use crate::campaign::{Campaign, CycleUnit};
 use crate::model::KeptContacts;
 use crate::physics::PhysicsError;
 use crate::physics::boundary_elements::adhesionless::{FreeStep, load_freely};
-use crate::physics::boundary_elements::contact::{Attraction, Problem};
+use crate::physics::boundary_elements::contact::Problem;
 use crate::physics::boundary_elements::cycle::{self, Cycle, Halfway, Settings, Turning};
 use crate::physics::boundary_elements::regions::Labels;
 use crate::physics::theory::approximate_jkr::{CurvePoint, adhesive_curve};
@@ -63,7 +63,7 @@ fn without_adhesion(problem: Problem, settings: &Settings, cycle: &Cycle) -> Res
     let wanted = settings.max_loads.iter().copied().fold(0.0, f64::max);
     let range = -problem.heights.iter().copied().fold(0.0, f64::min);
     let farthest = range + cycle.steps.iter().map(|step| step.approach).fold(0.0, f64::max);
-    let free = Problem { attraction: Attraction::None, ..problem };
+    let free = problem.without_adhesion();
     let mut enough = |steps: &[FreeStep]| {
         let reached = || adhesive_curve(&curve(steps), work_length).last().is_some_and(|point| point.load_m2 > wanted);
         steps.last().is_some_and(|step| step.approach > farthest) || reached()

@@ -53,7 +53,7 @@ fn e2e_progress_inside_a_cycle_without_a_terminal() {
         stderr(&run)
     };
     let inside =
-        |said: &str| said.lines().filter(|line| line.starts_with("cycle: ") && line.contains(" % of the pending work after ")).count();
+        |said: &str| said.lines().filter(|line| line.starts_with("cycle: ") && line.contains(" % of the pending tasks after ")).count();
     let said = lines("0");
     assert!(inside(&said) > 4, "{said}");
     // The share grows, to all of it.
