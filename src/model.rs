@@ -199,7 +199,7 @@ choice! {
     KeptContacts {
         /// Every step.
         All = "all",
-        /// The load reversals. While unloading, the first steps at half load and at zero load, and the step of maximum tensile load.
+        /// The load reversals and, while unloading, the step of maximum tensile load. With asperities also the first steps at half of each load while loading, and at zero load while unloading.
         Turning = "turning",
         /// No step.
         None = "none",

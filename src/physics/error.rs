@@ -134,6 +134,21 @@ pub enum PhysicsError {
         /// Energy dissipated in the events \[J\].
         events_j: f64,
     },
+    /// A loop by boundary elements whose steps do not resolve its dissipated energy.
+    #[error(
+        "the steps do not resolve the loop to F/(E* A0) = {max_load}: Θ = {loss_j:e} J, sum over events {events_j:e} J, work of loading {work_j:e} J\n\
+         help: reduce boundary_elements.approach_step, or boundary_elements.precision"
+    )]
+    UnresolvedLoop {
+        /// F/(E* A0) at the load reversal.
+        max_load: f64,
+        /// Dissipated energy Θ \[J\].
+        loss_j: f64,
+        /// Energy dissipated in the events \[J\].
+        events_j: f64,
+        /// Largest magnitude of `∫F dΔ` along the loop \[J\].
+        work_j: f64,
+    },
     /// The maximum load is not reached.
     #[error(
         "load F/(E* A0) = {wanted} not reached: it is {reached} at the mean penetration {approach_m:e} m\n\

@@ -147,7 +147,7 @@ pub static CONTACTS: Table = Table {
         ASPERITY_OR_REGION,
         text("state", "\"contact\" or \"covered\" (absorbed); free asperities have no row"),
         real("contact_radius_m", "m", "Contact radius a; 0 if absorbed; sqrt(area/π) of a region").from("Eq 2"),
-        real("load_n", "N", "Normal load of the contact spot; positive in compression, 0 if absorbed").from("Eq 1"),
+        real("load_n", "N", "Normal load of the contact spot or region; positive in compression, 0 if absorbed. By boundary elements without the tension of open points around a region, so the sum is not the load of the step").from("Eq 1"),
         real(
             "penetration_m",
             "m",

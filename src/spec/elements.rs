@@ -17,6 +17,8 @@ pub const FEWEST_PER_WAVELENGTH: f64 = 4.0;
 pub const PER_WAVELENGTH: f64 = 16.0;
 /// Maximum mesh number `½ sqrt(Δγ dx/E*)/ρ` of a law with a range ρ: above, the grid traps the contact edges.
 pub const MOST_MESH_NUMBER: f64 = 0.7;
+/// Least `Δγ/(E* dx)`: below it, the tension is lost in the rounding of the pressure.
+pub const LEAST_WORK: f64 = 1e-10;
 /// Automatic range over `sqrt(Δγ dx/E*)`.
 const RANGE: f64 = 0.8;
 
@@ -43,7 +45,7 @@ impl ElementParams {
         if self.range_m > 0.0 { self.range_m } else { RANGE * (work_length_m * spacing_m).sqrt() }
     }
 
-    /// Why a grid cannot be used, and what to do: too few points per shortest wavelength, or a range that traps contact edges on it.
+    /// Why a grid cannot be used, and what to do: too few points per shortest wavelength, negligible adhesion, or a range that traps contact edges on it.
     ///
     /// `length_m` is the side of the square, `wavelengths` its shortest wavelengths, and `work_length_m` is `Δγ/E*` \[m\].
     #[must_use]
@@ -60,6 +62,13 @@ impl ElementParams {
             ));
         }
         let spacing = length_m / f64::from(grid);
+        let weakness = work_length_m / spacing;
+        if weakness > 0.0 && weakness < LEAST_WORK {
+            return Some((
+                format!("Δγ/(E* dx) is {} on this grid, below {}: adhesion is negligible", short(weakness), short(LEAST_WORK)),
+                "increase material.work_of_adhesion_j_m2, or use 0 with model.method = \"asperities\"",
+            ));
+        }
         let mesh = mesh_number(work_length_m, spacing, self.range(work_length_m, spacing));
         if self.attraction == Attraction::Range && mesh > MOST_MESH_NUMBER {
             return Some((
@@ -130,6 +139,7 @@ pub(super) fn check_elements(case: &CaseParams, origins: &[Origin], faults: &mut
             "boundary_elements.points",
             "boundary_elements.range_m",
             "boundary_elements.attraction",
+            "material.work_of_adhesion_j_m2",
             "surface.magnification",
             "model.method",
         ];

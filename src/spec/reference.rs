@@ -36,7 +36,7 @@ const SWEEP: &str = "
 ## `[[sweep]]`
 
 A sweep has a `name` (as above, unique in the spec) and overrides keys of `[surface]`, `[material]`,
-`[model]` and `[cycle]`:
+`[model]`, `[boundary_elements]` and `[cycle]`:
 
 ```toml
 [[sweep]]

@@ -40,7 +40,7 @@ pub use planned::{Planned, planned};
 pub use realizations::{realizations, results};
 pub use rows::Value;
 pub use student::{FEW, Sample, t_quantile};
-pub use summary::{expected_ratios, summary};
+pub use summary::{expected_ratios, summary, warning_text};
 pub use varying::{Values, Varying, varying};
 pub use walk::{COMPRESSION_STATIONS, Point, STATIONS, TENSION_STATIONS, Walk};
 pub use warnings::{Warning, warnings, warnings_of};

@@ -167,6 +167,14 @@ fn model_lines(cases: &Frame) -> Result<Vec<String>, StatsError> {
     Ok(text.map_or_else(Vec::new, |text| std::iter::once(String::new()).chain(wrapped(&text)).collect()))
 }
 
+/// The warnings of cases as lines, empty without any: what a quiet run prints of its results.
+///
+/// # Errors
+/// A column is missing.
+pub fn warning_text(cases: &Frame) -> Result<String, StatsError> {
+    Ok(warning_lines(cases)?.join("\n").trim_start().to_owned())
+}
+
 /// One paragraph per warning, with its rows.
 fn warning_lines(cases: &Frame) -> Result<Vec<String>, StatsError> {
     let (all, loads) = (listing(cases)?.rows, labels(&cases.f64("max_load")?));

@@ -293,6 +293,29 @@ fn e2e_every_rule_of_boundary_elements_gives_a_loop() {
     }
 }
 
+/// With attraction of a range and strong adhesion the maximum tension is right after the load reversal, before a jump: whatever the step, it is found.
+#[test]
+fn val_a_tension_inside_the_first_step_is_found() {
+    let spec = r#"
+name = "po"
+realizations = 1
+surface.magnification = 4
+material.work_of_adhesion_j_m2 = 0.5
+model.method = "boundary_elements"
+boundary_elements.points = 64
+boundary_elements.attraction = "range"
+cycle.max_load = [0.002]
+[[sweep]]
+name = "step"
+boundary_elements.approach_step = [0.03, 0.2]
+"#;
+    let bench = Bench::new(spec);
+    assert_eq!(code(&bench.verb("run", &["--until", "aggregate"])), 0);
+    let pull_off = statistics(&bench, &schema::REALIZATIONS).f64("pull_off_load").unwrap();
+    // Steps are halved until a hidden tension is below 2 %; the shorter one has half of that.
+    close("F_po of long and short steps", pull_off[1], pull_off[0], 0.03);
+}
+
 /// A run that is killed at any of three times goes on to the same bytes, without repeating a finished task.
 #[test]
 fn e2e_killed_boundary_elements_go_on_to_the_same_bytes() {

@@ -5,8 +5,8 @@ use crate::campaign::{Campaign, Shard, Stage, Standing};
 use crate::cli::progress::duration;
 use crate::schema;
 use crate::stages::Tally;
-use crate::stats::{methods_summary, summary};
-use crate::store::{Check, parquet};
+use crate::stats::{methods_summary, summary, warning_text};
+use crate::store::{Check, Frame, parquet};
 use crate::text::{counted, shell_path, shown, visible, wrapped};
 use indicatif::HumanBytes;
 use serde_json::json;
@@ -39,7 +39,7 @@ impl<'a> Ended<'a> {
     pub(super) fn conclusion(&self, until: Stage) -> Result<String, Fault> {
         let mut text = String::new();
         if until >= Stage::Aggregate {
-            let cases = parquet::read_table(&self.campaign.statistics_path("cases"), &schema::CASES).map_err(failed)?;
+            let cases = self.cases()?;
             text += &summary(&cases).map_err(failed)?;
             let methods = parquet::read_table(&self.campaign.statistics_path("methods"), &schema::METHODS).map_err(failed)?;
             let compared = methods_summary(&cases, &methods).map_err(failed)?;
@@ -70,6 +70,15 @@ impl<'a> Ended<'a> {
             _ => format!("Output: {dir}\n"),
         };
         Ok(text)
+    }
+
+    /// Warnings of the cases, once they are known.
+    pub(super) fn warnings(&self, until: Stage) -> Result<String, Fault> {
+        if until < Stage::Aggregate { Ok(String::new()) } else { warning_text(&self.cases()?).map_err(failed) }
+    }
+
+    fn cases(&self) -> Result<Frame, Fault> {
+        parquet::read_table(&self.campaign.statistics_path("cases"), &schema::CASES).map_err(failed)
     }
 
     /// True if nothing was computed, and nothing failed.

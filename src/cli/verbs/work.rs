@@ -8,7 +8,7 @@ use crate::cli::arguments::TalkArguments;
 use crate::cli::progress::Teller;
 use crate::cli::{FolderArguments, HowArguments, interrupt};
 use crate::schema;
-use crate::stages::{self, Comparison, StageError, Task};
+use crate::stages::{self, Comparison, StageError, Task, Watch as _};
 use crate::stats::significant;
 use crate::store::{Check, FrameError};
 use crate::text::{shell_path, shown, visible, wrapped};
@@ -149,6 +149,11 @@ fn perform(campaign: Campaign, task: &Task, json: bool, talk: TalkArguments) -> 
         say(&tally_json(&ended))?;
     } else if !talk.quiet {
         say(&ended.conclusion(task.until)?)?;
+    } else {
+        let warnings = ended.warnings(task.until)?;
+        if !warnings.is_empty() {
+            teller.notice(&warnings);
+        }
     }
     Ok(if ended.failed_count > 0 { FAILED_CASES } else { 0 })
 }

@@ -75,9 +75,11 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// Magnitude of the approach beyond which the search for a load or for the last separation ends \[dx\].
+    /// Magnitude of the approach beyond which the search for a load or for the last separation ends \[dx\]: attraction of a range begins and ends at the
+    /// end of its law.
     fn farthest(&self) -> f64 {
-        FARTHEST * self.problem.range()
+        let acts = if self.problem.attraction == Attraction::Range { self.problem.law.end_gap() } else { 0.0 };
+        FARTHEST * self.problem.range() + 2.0 * acts
     }
 
     /// Keeps the state at a load reversal.

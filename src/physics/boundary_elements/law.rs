@@ -28,6 +28,8 @@ const SPRING: f64 = 4.0;
 /// Spacing of the table, in ℓ.
 const SPACING: f64 = 1.0 / PER_UNIT;
 const PER_UNIT: f64 = 100.0;
+/// Overlap in ranges beyond which the repulsion of Morse's law is linear.
+const DEEPEST: f64 = 6.0;
 /// Tension at which the table ends, in E*ℓ/dx.
 const END: f64 = 1e-7;
 
@@ -197,7 +199,7 @@ impl Crack {
         }
         let place = (g - self.onset) * PER_UNIT;
         let k = place as usize;
-        if k + 1 >= self.nodes.len() {
+        if k >= self.nodes.len() - 1 {
             return Bond::default();
         }
         let t = place - k as f64;
@@ -214,15 +216,17 @@ impl Crack {
 }
 
 impl Morse {
+    /// Below [`DEEPEST`] ranges of overlap the pressure continues along its tangent. No equilibrium is there, but an iteration may be, and the exponential
+    /// would overflow.
     #[inline(always)]
     fn at(&self, gap: f64) -> Bond {
-        let e = (-gap / self.range).exp();
+        let inside = gap.max(-DEEPEST * self.range);
+        let beyond = gap - inside;
+        let e = (-inside / self.range).exp();
         let unit = self.work / self.range;
-        Bond {
-            energy: self.work * e * (e - 2.0),
-            tension: 2.0 * unit * e * (1.0 - e),
-            slope: 2.0 * unit / self.range * e * (2.0 * e - 1.0),
-        }
+        let tension = 2.0 * unit * e * (1.0 - e);
+        let slope = 2.0 * unit / self.range * e * (2.0 * e - 1.0);
+        Bond { energy: self.work * e * (e - 2.0) + beyond * (tension + 0.5 * slope * beyond), tension: tension + slope * beyond, slope }
     }
 }
 

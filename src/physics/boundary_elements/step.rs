@@ -6,7 +6,7 @@
 //! large.
 //!
 //! A step is halved where a jump of the load makes its integral uncertain by more than [`Settings::located`], or where the load may have passed through the
-//! maximum tension before it jumped. The next steps are as short, until the uncertainty is well below the limit.
+//! maximum tension before it jumped or, with attraction of a range, smoothly. The next steps are as short, until the uncertainty is well below the limit.
 
 use super::contact::{Attraction, Problem, State};
 use super::equilibrium::Equilibrium;
@@ -16,7 +16,7 @@ use super::patch::Patches;
 use super::records::{Cycle, Event, Map, Step};
 use super::regions::{Labels, Region, change, label, regions};
 use super::sums::largest;
-use super::work::{OnLoop, Work, work_between};
+use super::work::{OnLoop, Work, least_between, work_between};
 use crate::physics::PhysicsError;
 use crate::physics::memory::filled;
 use serde::{Deserialize, Serialize};
@@ -93,6 +93,11 @@ pub(super) struct Attempt {
     /// Error of the integral of the load that a jump of it may cause.
     across: f64,
     rate: Rate,
+}
+
+/// A step as a point of the loop.
+fn on_loop(step: &Step) -> OnLoop {
+    OnLoop { approach: step.approach, load: step.totals.load, stiffness: step.stiffness }
 }
 
 /// An unfinished cycle with its problem and work space.
@@ -192,7 +197,6 @@ impl<'a> Walk<'a> {
         let rate = self.equilibrium.rate(self.problem, &state)?;
         let from = &self.at.last;
         let reached = Step { approach: state.approach, totals, stiffness: rate.stiffness, ..Step::default() };
-        let on_loop = |step: &Step| OnLoop { approach: step.approach, load: step.totals.load, stiffness: step.stiffness };
         let Work { straight, bend, across } = work_between(on_loop(from), on_loop(&reached));
         let work = straight + bend;
         let imbalance = work - (totals.energy - from.totals.energy);
@@ -253,7 +257,8 @@ impl<'a> Walk<'a> {
                 continue;
             }
             let attempt = self.conclude(state, outcome)?;
-            if (attempt.across > limit || self.hides_tension(&attempt)) && self.at.level < DEEPEST {
+            let hides = self.hides_tension(&attempt) || self.passes_tension(&attempt);
+            if (attempt.across > limit || hides) && self.at.level < DEEPEST {
                 self.at.level += 1;
                 continue;
             }
@@ -289,6 +294,22 @@ impl<'a> Walk<'a> {
         let (from, to) = (&self.at.last, &attempt.step);
         let before_jump = self.extrapolated_load(to.approach - from.approach);
         attempt.across > 0.0 && to.totals.load > from.totals.load && self.is_tensest(before_jump)
+    }
+
+    /// True if an unloading step may have passed a larger tension than that of all steps so far: by the cubic through loads and slopes at both ends
+    /// (Hermite), or before an event by the slope at its beginning.
+    ///
+    /// This is for attraction of a range, under which the load is smooth up to an event. With bonds the slope diverges at a limit point.
+    fn passes_tension(&self, attempt: &Attempt) -> bool {
+        let (from, to) = (&self.at.last, &attempt.step);
+        if self.problem.attraction != Attraction::Range || from.reversal.is_none() {
+            return false;
+        }
+        let known = self.at.tensest.as_ref().map_or(0.0, |(known, ..)| *known).min(from.totals.load).min(to.totals.load);
+        // An event after the maximum tension may look like a gain of energy, since the integral misses that.
+        let has_event = to.imbalance.abs() > self.resolution(to.uncertainty);
+        let least = if has_event { self.extrapolated_load(to.approach - from.approach) } else { least_between(on_loop(from), on_loop(to)) };
+        known < 0.0 && least < (1.0 + HIDDEN) * known
     }
 
     /// Load after a step of a length without an event, by the stiffness at its beginning \[E* dx²\].

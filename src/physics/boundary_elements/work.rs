@@ -27,6 +27,22 @@ pub struct Work {
     pub across: f64,
 }
 
+/// Number of parts of a step in which the minimum of the load is searched.
+const PARTS: usize = 32;
+
+/// Least load between two points, by the cubic through loads and slopes at both.
+#[must_use]
+pub fn least_between(start: OnLoop, end: OnLoop) -> f64 {
+    let length = end.approach - start.approach;
+    let (s0, s1) = (start.stiffness * length, end.stiffness * length);
+    let rise = end.load - start.load;
+    let load = |part: usize| {
+        let t = part as f64 / PARTS as f64;
+        start.load + t * (s0 + t * (3.0 * rise - 2.0 * s0 - s1 + t * (s0 + s1 - 2.0 * rise)))
+    };
+    (0..=PARTS).map(load).fold(f64::INFINITY, f64::min)
+}
+
 /// The work between two points. The load jumps in between, in events or at a limit point, where it differs from the cubic by more than that from a straight
 /// line.
 ///

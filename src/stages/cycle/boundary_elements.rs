@@ -13,6 +13,7 @@ use crate::physics::boundary_elements::adhesionless::{FreeStep, load_freely};
 use crate::physics::boundary_elements::contact::Problem;
 use crate::physics::boundary_elements::cycle::{self, Cycle, Halfway, Settings, Turning};
 use crate::physics::boundary_elements::regions::Labels;
+use crate::physics::cycle::soundness::{LARGEST_VIOLATION, LoopEnergy};
 use crate::physics::theory::approximate_jkr::{CurvePoint, adhesive_curve};
 use crate::store::{ContactMap, MapsHeader, read_halfway, write_maps, write_state};
 use serde_json::{Map, Value};
@@ -34,6 +35,9 @@ pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> R
     progress.end();
     let cycle = outcome.map_err(|error| in_si(error, &units))?;
     let loads = &params.cycle.max_load;
+    for (reversal, max_load) in loads.iter().enumerate() {
+        check_energy(&cycle, reversal, *max_load, &units)?;
+    }
     let of = Identity::of(campaign, unit);
     let kept = if params.cycle.contacts == KeptContacts::None { &[][..] } else { &cycle.regions[..] };
     let effort = effort(&cycle, &problem);
@@ -51,6 +55,26 @@ pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> R
     let turning = serialized(&cycle.turning).map_err(|error| StageError::State { what: error.to_string() })?;
     files.push(write_state(&turning_path(&dir), &unit.key, &turning)?);
     Ok(Outcome { files, effort })
+}
+
+/// Refuses a loop with negative dissipation or a large energy-balance error, by the limits of the asperity model: its steps are too long.
+fn check_energy(cycle: &Cycle, reversal: usize, max_load: f64, units: &Units) -> Result<(), PhysicsError> {
+    let Some(turning) = cycle.turning.get(reversal) else { return Ok(()) };
+    let loading = &cycle.steps[..=turning.step];
+    let unloading = || cycle.steps.iter().filter(|step| step.reversal == Some(reversal));
+    let at_reversal = turning.last.work;
+    let works = loading.iter().map(|step| step.work.abs()).chain(unloading().map(|step| (at_reversal + step.work).abs()));
+    let energy = LoopEnergy {
+        loss_j: units.energy_j() * (at_reversal + unloading().last().map_or(0.0, |step| step.work)),
+        events_j: units.energy_j() * loading.iter().chain(unloading()).map(|step| step.dissipated).sum::<f64>(),
+        work_j: units.energy_j() * works.fold(0.0, f64::max),
+    };
+    let LoopEnergy { loss_j, events_j, work_j } = energy;
+    // NaN is refused as well.
+    if energy.violation_j() <= LARGEST_VIOLATION * work_j {
+        return Ok(());
+    }
+    Err(PhysicsError::UnresolvedLoop { max_load, loss_j, events_j, work_j })
 }
 
 /// Step of loading without adhesion, in steps of the cycle.

@@ -4,7 +4,7 @@ use super::{BONDED, problem};
 use hysteron::physics::boundary_elements::contact::Bonding;
 use hysteron::physics::boundary_elements::grid::{HalfSpace, Operator};
 use hysteron::physics::boundary_elements::law::Law;
-use hysteron::physics::boundary_elements::work::{OnLoop, Work, work_between};
+use hysteron::physics::boundary_elements::work::{OnLoop, Work, least_between, work_between};
 use std::f64::consts::{PI, TAU};
 
 /// A plane wave `u = cos q·x` needs the pressure `|q|/2 u`, in both directions and obliquely, on square and oblong grids. Rounding only.
@@ -98,6 +98,34 @@ fn law_of_attraction_is_consistent() {
             assert!(law.wall(gap).energy >= here.energy - 1e-12, "bonding a free point does not raise the energy");
         }
     }
+}
+
+/// Six ranges deep the repulsion of Morse's law becomes linear, without a step in energy, tension or slope: no overlap overflows.
+#[test]
+fn lim_deep_overlap_of_morse() {
+    let (work, range) = (0.02, 0.11);
+    let law = Law::morse(work, range);
+    let (above, below) = (law.bonded(-6.0 * range + 1e-9), law.bonded(-6.0 * range - 1e-9));
+    for (one, other) in [(above.energy, below.energy), (above.tension, below.tension), (above.slope, below.slope)] {
+        // The slope changes by 2/range in relative terms over a distance.
+        assert!((one / other - 1.0).abs() < 1e-7, "{one} and {other}");
+    }
+    for gap in [-7.0 * range, -1e3, -1e12] {
+        let (here, deeper) = (law.bonded(gap), law.bonded(2.0 * gap));
+        assert!(here.energy.is_finite() && here.slope == below.slope);
+        let mean = 0.5 * (here.tension + deeper.tension);
+        assert!(((deeper.energy - here.energy) / (gap * mean) - 1.0).abs() < 1e-12, "energy at {gap} and twice as deep");
+    }
+}
+
+/// The least load of a step is between its ends where the load has a minimum there, to the square of a part of the step, and at an end otherwise.
+#[test]
+fn law_least_load_of_a_step() {
+    let at = |x: f64| OnLoop { approach: x, load: (x - 0.3) * (x - 0.3) - 0.2, stiffness: 2.0 * (x - 0.3) };
+    for (a, b) in [(0.0, 1.0), (1.2, -0.5)] {
+        assert!((0.0..1e-3).contains(&(least_between(at(a), at(b)) + 0.2)), "from {a} to {b}");
+    }
+    assert_eq!(least_between(at(0.4), at(0.9)), at(0.4).load);
 }
 
 /// The law is that of the exact crack low-passed: far from its edge the tension at a gap is `4Δγ/(πg)` times what is left of the cut. With the kernel's

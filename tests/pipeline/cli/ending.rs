@@ -85,6 +85,8 @@ fn e2e_quiet_and_verbose() {
     let failed = failing(1).verb("run", &["-q"]);
     assert_eq!((code(&failed), stdout(&failed).as_str()), (3, ""));
     assert!(stderr(&failed).contains(" failed: "), "{}", stderr(&failed));
+    // And warnings.
+    assert!(stderr(&failed).contains("warning[failed]: "), "{}", stderr(&failed));
 }
 
 #[test]
