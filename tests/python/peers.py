@@ -1,6 +1,8 @@
 """Loading by hysteron beside the programs Adhesion and tamaas, on one self-affine surface with attraction of one range; one thread each.
 
-    pip install Adhesion tamaas h5py numpy pyarrow && python tests/python/peers.py hysteron 512
+    pip install Adhesion tamaas h5py numpy pyarrow && python tests/python/peers.py hysteron 512 0.0005
+
+Arguments: the program, grid points along a side, and the load F_max/(E* A0) up to which it loads.
 
 hysteron loads by boundary elements with Morse's law at every point. Adhesion goes through the same approaches with the same law; the script ends with an
 error if loads or areas of more than a twentieth of the steps differ by more than 1 %. The law of tamaas is an exponential on a hard wall with the same
@@ -47,13 +49,14 @@ boundary_elements.points = %d
 boundary_elements.attraction = "range"
 boundary_elements.approach_step = 0.2
 boundary_elements.precision = {PRECISION}
+cycle.max_load = [%s]
 """
 
 
-def hysteron(program, points, folder):
+def hysteron(program, points, max_load, folder):
     """Heights below the highest point, and the steps of loading: approach, load, points in contact, seconds. Units are grid spacing and E*."""
     spec, spacing = folder / "peers.toml", LENGTH / points
-    spec.write_text(SPEC % (points // 16, points))
+    spec.write_text(SPEC % (points // 16, points, max_load))
     run = folder / "run"
     subprocess.run([program, "run", spec, "--out", run, "--jobs", "1", "-q"], check=True, stdout=sys.stderr)
     with h5py.File(next((run / "surfaces").glob("*.h5"))) as file:
@@ -111,11 +114,11 @@ def exponential(heights, states, work, reach):
 
 
 def main():
-    program, points = sys.argv[1], int(sys.argv[2])
+    program, points, max_load = sys.argv[1], int(sys.argv[2]), sys.argv[3]
     work = WORK / (MODULUS * LENGTH / points)
     reach = 0.8 * np.sqrt(work)
     with tempfile.TemporaryDirectory() as folder:
-        heights, states = hysteron(program, points, Path(folder))
+        heights, states = hysteron(program, points, max_load, Path(folder))
     found = adhesion(heights, states, work, reach)
     largest = [max(abs(state[k]) for state in states[:len(found)]) for k in (1, 2)]
     print(" approach         load  by Adhesion  points  by Adhesion  seconds  by Adhesion")
