@@ -54,7 +54,8 @@ fn first_number(text: &str) -> usize {
 fn val_adhesion_follows_the_same_loading() {
     let Some(folder) = environment("peers", &["Adhesion==0.93", "h5py==3.*", "numpy", "pyarrow"]) else { return };
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/python/peers.py");
-    let output = Command::new(folder.join("bin/python")).arg(script).args([env!("CARGO_BIN_EXE_hysteron"), "64", "0.0071"]).output().unwrap();
+    let output =
+        Command::new(folder.join("bin/python")).arg(script).args([env!("CARGO_BIN_EXE_hysteron"), "64", "0.0071"]).output().unwrap();
     let said = String::from_utf8_lossy(&output.stdout);
     assert!(output.status.success(), "{said}{}", stderr(&output));
     assert!(said.contains(" steps are equal within 1 %"), "{said}");
