@@ -65,7 +65,7 @@ fn check_energy(cycle: &Cycle, reversal: usize, max_load: f64, units: &Units) ->
     let at_reversal = turning.last.work;
     let works = loading.iter().map(|step| step.work.abs()).chain(unloading().map(|step| (at_reversal + step.work).abs()));
     let energy = LoopEnergy {
-        loss_j: units.energy_j() * (at_reversal + unloading().last().map_or(0.0, |step| step.work)),
+        loss_j: units.energy_j() * (at_reversal + unloading().next_back().map_or(0.0, |step| step.work)),
         events_j: units.energy_j() * loading.iter().chain(unloading()).map(|step| step.dissipated).sum::<f64>(),
         work_j: units.energy_j() * works.fold(0.0, f64::max),
     };
