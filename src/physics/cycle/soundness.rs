@@ -52,6 +52,25 @@ pub struct LoopEnergy {
 }
 
 impl LoopEnergy {
+    /// From the work so far on the branch and the dissipated energy of each step \[J\]: of the loading to the reversal, and of the unloading from its end.
+    #[must_use]
+    pub fn of(loading: impl IntoIterator<Item = (f64, f64)>, unloading_from_its_end: impl IntoIterator<Item = (f64, f64)>) -> Self {
+        let (mut at_reversal, mut events_j, mut largest) = (0.0, 0.0, 0.0_f64);
+        for (work_j, dissipated_j) in loading {
+            at_reversal = work_j;
+            events_j += dissipated_j;
+            largest = largest.max(work_j.abs());
+        }
+        let mut loss_j = None;
+        for (work_j, dissipated_j) in unloading_from_its_end {
+            let along = at_reversal + work_j;
+            loss_j.get_or_insert(along);
+            events_j += dissipated_j;
+            largest = largest.max(along.abs());
+        }
+        Self { loss_j: loss_j.unwrap_or(at_reversal), events_j, work_j: largest }
+    }
+
     /// Difference of loop area and event energies \[J\].
     #[must_use]
     pub fn imbalance_j(&self) -> f64 {
@@ -79,22 +98,11 @@ impl LoopEnergy {
 /// Its unloading must be the last branch of the cycle so far.
 #[must_use]
 pub fn loop_energy(cycle: &Cycle, k: usize) -> LoopEnergy {
-    let reversal = cycle.turning[k].0;
-    let loading = &cycle.steps[..=reversal];
     let last = cycle.steps.last();
-    let unloading = cycle
-        .steps
-        .iter()
-        .rev()
-        .take_while(|step| step.branch == Branch::Unloading && Some(step.max_load) == last.map(|last| last.max_load));
-    let back: Vec<&Step> = unloading.collect();
-    let at_reversal = cycle.steps[reversal].work_j;
-    let works = loading.iter().map(|step| step.work_j.abs()).chain(back.iter().map(|step| (at_reversal + step.work_j).abs()));
-    LoopEnergy {
-        loss_j: at_reversal + back.first().map_or(0.0, |step| step.work_j),
-        events_j: loading.iter().chain(back.iter().copied()).map(|step| step.dissipated_j).sum(),
-        work_j: works.fold(0.0, f64::max),
-    }
+    let is_on_branch = |step: &&Step| step.branch == Branch::Unloading && Some(step.max_load) == last.map(|last| last.max_load);
+    let back = cycle.steps.iter().rev().take_while(is_on_branch);
+    let energies = |step: &Step| (step.work_j, step.dissipated_j);
+    LoopEnergy::of(cycle.steps[..=cycle.turning[k].0].iter().map(energies), back.map(energies))
 }
 
 /// Dissipated energy of the events of the loading path to the `k`-th load reversal \[J\].

@@ -35,9 +35,7 @@ pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> R
     progress.end();
     let cycle = outcome.map_err(|error| in_si(error, &units))?;
     let loads = &params.cycle.max_load;
-    for (reversal, max_load) in loads.iter().enumerate() {
-        check_energy(&cycle, reversal, *max_load, &units)?;
-    }
+    check_energy(&cycle, loads, &units)?;
     let of = Identity::of(campaign, unit);
     let kept = if params.cycle.contacts == KeptContacts::None { &[][..] } else { &cycle.regions[..] };
     let effort = effort(&cycle, &problem);
@@ -57,24 +55,18 @@ pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> R
     Ok(Outcome { files, effort })
 }
 
-/// Refuses a loop with negative dissipation or a large energy-balance error, by the limits of the asperity model: its steps are too long.
-fn check_energy(cycle: &Cycle, reversal: usize, max_load: f64, units: &Units) -> Result<(), PhysicsError> {
-    let Some(turning) = cycle.turning.get(reversal) else { return Ok(()) };
-    let loading = &cycle.steps[..=turning.step];
-    let unloading = || cycle.steps.iter().filter(|step| step.reversal == Some(reversal));
-    let at_reversal = turning.last.work;
-    let works = loading.iter().map(|step| step.work.abs()).chain(unloading().map(|step| (at_reversal + step.work).abs()));
-    let energy = LoopEnergy {
-        loss_j: units.energy_j() * (at_reversal + unloading().next_back().map_or(0.0, |step| step.work)),
-        events_j: units.energy_j() * loading.iter().chain(unloading()).map(|step| step.dissipated).sum::<f64>(),
-        work_j: units.energy_j() * works.fold(0.0, f64::max),
-    };
-    let LoopEnergy { loss_j, events_j, work_j } = energy;
-    // NaN is refused as well.
-    if energy.violation_j() <= LARGEST_VIOLATION * work_j {
-        return Ok(());
+/// Refuses loops with negative dissipation or a large energy-balance error, by the limits of the asperity model: their steps are too long.
+fn check_energy(cycle: &Cycle, loads: &[f64], units: &Units) -> Result<(), PhysicsError> {
+    let energies = |step: &cycle::Step| (step.work * units.energy_j(), step.dissipated * units.energy_j());
+    for (reversal, (turning, max_load)) in cycle.turning.iter().zip(loads).enumerate() {
+        let back = cycle.steps.iter().rev().filter(|step| step.reversal == Some(reversal));
+        let energy = LoopEnergy::of(cycle.steps[..=turning.step].iter().map(energies), back.map(energies));
+        let LoopEnergy { loss_j, events_j, work_j } = energy;
+        if energy.violation_j() > LARGEST_VIOLATION * work_j {
+            return Err(PhysicsError::UnresolvedLoop { max_load: *max_load, loss_j, events_j, work_j });
+        }
     }
-    Err(PhysicsError::UnresolvedLoop { max_load, loss_j, events_j, work_j })
+    Ok(())
 }
 
 /// Step of loading without adhesion, in steps of the cycle.
