@@ -1,5 +1,5 @@
 //! A whole loop by boundary elements, in bare Fourier transforms of its grid. `cargo bench -- elements 512 1024` names the grids, `16:256` a magnification
-//! other than 8 too.
+//! other than 8 too; with `range`, attraction has a range, as in other programs.
 
 use crate::paper::{MATERIAL, spectrum};
 use crate::watch::{heading, line, once, plain};
@@ -22,21 +22,25 @@ pub fn run() {
     };
     let named: Vec<(u32, usize)> = std::env::args().filter_map(case).collect();
     heading("boundary elements: loop to 0.0071, 0.03 h_rms a step", "in bare transforms");
+    let range = std::env::args().any(|word| word == "range");
     for (zeta, n) in if named.is_empty() { vec![(8, 64), (8, 128), (8, 256)] } else { named } {
-        one(zeta, n);
+        one(zeta, n, range);
     }
 }
 
-fn one(zeta: u32, n: usize) {
+fn one(zeta: u32, n: usize, range: bool) {
     let spectrum = Spectrum { normalization: Normalization::Spectrum, ..spectrum(zeta) };
     let surface = synthesize(&spectrum, &realization_seed(2021, 3), n);
     let spacing = spectrum.length_m / n as f64;
     let top = surface.heights_m.iter().copied().fold(f64::MIN, f64::max);
+    let work = MATERIAL.work_of_adhesion_j_m2 / (MATERIAL.contact_modulus_pa * spacing);
+    let bonded = Attraction::Bonded { margin: 2, nucleation: 0.0, strength: f64::INFINITY };
+    let (law, attraction) = if range { (Law::morse(work, 0.8 * work.sqrt()), Attraction::Range) } else { (Law::crack(work), bonded) };
     let problem = Problem {
         half_space: HalfSpace::new(n, n).unwrap(),
-        law: Law::crack(MATERIAL.work_of_adhesion_j_m2 / (MATERIAL.contact_modulus_pa * spacing)),
+        law,
         heights: surface.heights_m.iter().map(|height| (height - top) / spacing).collect(),
-        attraction: Attraction::Bonded { margin: 2, nucleation: 0.0, strength: f64::INFINITY },
+        attraction,
     };
     let (points, rms) = ((n * n) as f64, spectrum.rms_height_m / spacing);
     let mut waves = problem.half_space.waves::<f64>().unwrap();

@@ -18,6 +18,7 @@
 //! # Morse
 //! `V(g) = Δγ (e^(−2g/ρ) − 2e^(−g/ρ))`: attraction of a range ρ, for finite Tabor parameters and comparison with other programs.
 
+use super::morse::Smooth;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
@@ -44,6 +45,8 @@ pub(super) struct Pieces {
     pub(super) curved: [[f32; 2]; 3],
     /// Gap below which a point is in contact.
     pub(super) contact: [f32; 3],
+    /// Morse's law, by which most bonded points are evaluated at once.
+    pub(super) smooth: Option<Smooth>,
 }
 
 /// Energy, tension and its slope at a gap: `V` in E* dx, `V' = σ` in E*, `V'' = dσ/dg` in E*/dx.
@@ -287,10 +290,15 @@ impl Law {
                 spring: [0.0, self.spring_gap() as f32, always],
                 curved: [[always, never], [self.spring_gap() as f32, self.end_gap() as f32], [always, never]],
                 contact,
+                smooth: None,
             },
-            Self::Morse(_) => {
-                Pieces { stiffness: 0.0, spring: [never; 3], curved: [[never, 0.0], [never, always], [never, always]], contact }
-            }
+            Self::Morse(law) => Pieces {
+                stiffness: 0.0,
+                spring: [never; 3],
+                curved: [[never, 0.0], [never, always], [never, always]],
+                contact,
+                smooth: Some(Smooth { work: law.work as f32, inverse_range: (1.0 / law.range) as f32 }),
+            },
         }
     }
 

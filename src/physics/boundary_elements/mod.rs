@@ -9,6 +9,7 @@ pub mod equilibrium;
 pub mod grid;
 pub mod law;
 pub mod minimise;
+mod morse;
 mod newton;
 mod pairs;
 mod passes;

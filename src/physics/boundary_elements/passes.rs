@@ -2,6 +2,7 @@
 //! digits are the same on every processor.
 
 use super::law::{Bond, Bonding, Law, Pieces};
+use super::morse::Smooth;
 use super::sums::{panel_largest, panel_sums};
 use multiversion::multiversion;
 use rayon::prelude::*;
@@ -203,8 +204,11 @@ pub(super) fn advance(points: &mut Points<'_>, response: &[f32], stride: Stride,
     for (part, beyond) in beyond.chunks_mut(BLOCK).enumerate() {
         let range = part * BLOCK..part * BLOCK + beyond.len();
         let mut points = points.part(range.clone());
-        let [changed, curved] = glide(&mut points, &response[range], stride, pieces, beyond, &mut block);
+        let [changed, mut curved] = glide(&mut points, &response[range], stride, pieces, beyond, &mut block);
         found.changed |= changed;
+        if let Some(smooth) = pieces.smooth {
+            curved = bend(&mut points, stride, smooth, beyond, &mut block);
+        }
         if curved {
             for k in (0..beyond.len()).filter(|k| block.curved[*k] != 0) {
                 beyond[k] = curve(&mut points, k, block.before[k], stride.centre, law);
@@ -228,7 +232,7 @@ fn glide(points: &mut Points<'_>, response: &[f32], stride: Stride, pieces: &Pie
     let (moved, pressed, touching) = (&mut points.moved[..n], &mut points.pressed[..n], &mut points.touching[..n]);
     let (gradient, slopes) = (&mut points.gradient[..n], &mut points.slopes[..n]);
     let (was, curved) = (&mut block.before[..n], &mut block.curved[..n]);
-    let Pieces { stiffness, spring, contact, curved: [[f0, l0], [f1, l1], [f2, l2]] } = *pieces;
+    let Pieces { stiffness, spring, contact, curved: [[f0, l0], [f1, l1], [f2, l2]], .. } = *pieces;
     let (mut changed, mut any_curved) = (0, 0);
     for k in 0..n {
         let bonding = bonds[k] as u8;
@@ -263,6 +267,30 @@ fn glide(points: &mut Points<'_>, response: &[f32], stride: Stride, pieces: &Pie
         was[k] = before;
     }
     [changed != 0, any_curved != 0]
+}
+
+/// Replaces nothing by Morse's law at the bonded points of a block: true if the law itself has to be evaluated at some point.
+#[inline(always)]
+fn bend(points: &mut Points<'_>, stride: Stride, law: Smooth, beyond: &mut [f32], block: &mut Block) -> bool {
+    let n = beyond.len();
+    let (gap, moved, bonds, direction) = (&points.gap[..n], &points.moved[..n], &points.bonds[..n], &points.direction[..n]);
+    let (gradient, slopes) = (&mut points.gradient[..n], &mut points.slopes[..n]);
+    let (before, curved) = (&block.before[..n], &mut block.curved[..n]);
+    let mut any_curved = 0;
+    for k in 0..n {
+        let change = law.change(gap[k], before[k], moved[k], stride.length * (direction[k] - stride.mean));
+        let bonded = bonds[k] as u8 == Bonding::Bonded as u8;
+        let holds = bonded & change.holds;
+        let (straight, slope, flat) = (gradient[k], slopes[k], beyond[k]);
+        let bent = straight + change.tension;
+        gradient[k] = if holds { bent } else { straight };
+        slopes[k] = if holds { change.slope } else { slope };
+        beyond[k] = if holds { change.beyond } else { flat };
+        let left = curved[k] & u8::from(!holds);
+        curved[k] = left;
+        any_curved |= left;
+    }
+    any_curved != 0
 }
 
 /// Replaces the spring by the law at a point: the change of its energy beyond first order.
