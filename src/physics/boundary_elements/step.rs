@@ -37,6 +37,9 @@ const EXCESS: f64 = 2.0;
 const DEEPEST: u32 = 6;
 /// Largest `|du/dΔ|` by which displacements are extrapolated. Near a limit point, where it diverges, the extrapolated state would be far from equilibrium.
 const STEEPEST: f64 = 10.0;
+/// Deepest extrapolated overlap beyond that of the last state with attraction of a range, in ranges: the repulsion rises exponentially, and iterations move by
+/// one range.
+const OVERLAP: f64 = 0.5;
 
 /// Settings of a path.
 #[derive(Debug, Clone, PartialEq)]
@@ -176,7 +179,19 @@ impl<'a> Walk<'a> {
         }
         self.rate = Some(rate);
         state.approach = approach;
+        if self.problem.attraction == Attraction::Range {
+            self.limit_overlap(&mut state);
+        }
         Ok(state)
+    }
+
+    /// Raises the points that extrapolation has moved deeply into the wall.
+    fn limit_overlap(&self, state: &mut State) {
+        let deepest = OVERLAP * self.problem.reach();
+        for k in 0..state.displacement.len() {
+            let least = self.problem.gap(&self.at.state, k).min(0.0) - deepest;
+            state.displacement[k] += (least - self.problem.gap(state, k)).max(0.0);
+        }
     }
 
     /// Moves a state to the equilibrium at its approach, unless an event takes the load out of `loads`.
