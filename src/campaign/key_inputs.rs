@@ -181,7 +181,7 @@ pub(super) fn read_by_cycle(params: &CaseParams) -> CaseParams {
 }
 
 /// Version of the cycles by boundary elements in their keys, beside that of the stage.
-const ELEMENTS_VERSION: u32 = 9;
+const ELEMENTS_VERSION: u32 = 10;
 
 /// The same of cycles of the asperity model.
 const ASPERITIES_VERSION: u32 = 5;

@@ -134,6 +134,8 @@ pub struct ElementParams {
     pub opening: Opening,
     /// Step of the approach, as a part of the rms height.
     pub approach_step: f64,
+    /// Most halvings of a step in which an event leaves its energy uncertain.
+    pub halvings: u32,
     /// Rms residual over the maximum tension.
     pub precision: f64,
 }
@@ -195,6 +197,7 @@ impl Default for ElementParams {
             nucleation: Nucleation::Touch,
             opening: Opening::Strength,
             approach_step: 0.03,
+            halvings: 6,
             precision: 1e-4,
         }
     }

@@ -6,7 +6,7 @@ use super::{Column, real, text};
 use crate::model::Choice;
 
 /// Number of parameters.
-const COUNT: usize = 26;
+const COUNT: usize = 27;
 
 /// Parameters that define a case, in the order of their columns.
 pub static PARAMETERS: [Parameter; COUNT] = LIST;
@@ -248,6 +248,13 @@ const LIST: [Parameter; COUNT] = [
         ["opening", "opening"],
         17,
         |case| case.bonded().map(|elements| word(elements.opening)),
+    )
+    .of_method(),
+    parameter(
+        real("halvings", "1", "Most halvings of a step of boundary elements that has an event; null for asperities").or_null(),
+        ["halvings", "halvings of a step"],
+        26,
+        |case| case.elements().map(|elements| Number(f64::from(elements.halvings))),
     )
     .of_method(),
     parameter(

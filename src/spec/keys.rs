@@ -199,10 +199,12 @@ pub(super) static KEYS: &[Key] = &[
     }),
     key!(boundary_elements.nucleation, "", "Gap at which a point comes into contact, with `attraction = \"bonded\"`."; word Nucleation),
     key!(boundary_elements.opening, "", "Where contact opens, with `attraction = \"bonded\"`."; word Opening),
-    key!(boundary_elements.approach_step, "", "Step of the mean penetration, as a fraction of h_rms. A sixth of it where adhesion is weak (U_el > 15 Δγ), a thirtieth at U_el > 150 Δγ. Steps in which an event leaves its energy uncertain are halved."; number Limits {
+    key!(boundary_elements.approach_step, "", "Step of the mean penetration, as a fraction of h_rms. A sixth of it where adhesion is weak (U_el > 15 Δγ), a thirtieth at U_el > 150 Δγ. Steps in which an event leaves its energy uncertain are halved, see `halvings`."; number Limits {
         low: 1e-3, above: false, high: 0.2, unit: "", unit_name: "", slip: None,
         note: "step of Δ/h_rms of boundary elements; default 0.03",
     }),
+    key!(boundary_elements.halvings, "", "Most halvings of a step in which an event leaves its energy uncertain. 0: steps of one length, except near F_max; events are not located within them."; count 0 to 10, &[],
+        "most halvings of a step; 0 for steps of one length; default 6"),
     key!(boundary_elements.precision, "", "Tolerance of an equilibrium: rms residual of the pressure over the maximum tension. A sixth of it where adhesion is weak (U_el > 15 Δγ), a tenth at U_el > 150 Δγ."; number Limits {
         low: 1e-10, above: false, high: 1e-2, unit: "", unit_name: "", slip: None,
         note: "rms residual over the maximum tension; default 1e-4",

@@ -42,6 +42,7 @@ pub fn run() -> Result<Cycle, PhysicsError> {
         step: 0.1 * spectrum.rms_height_m / spacing,
         located: 0.03,
         accuracy: Accuracy { rms: 1e-4, largest: 1e-2, iterations: 3000 },
+        halvings: 6,
         all_regions: false,
     };
     cycle(&problem, &settings, None, &mut |_| {}, &|_| {})

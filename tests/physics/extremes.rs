@@ -154,6 +154,11 @@ fn reg_small_violations_leave_the_energy_unresolved() {
     close("balanced", small(1e-4, 0.9e-4).resolution_j(), 1e-7, 1e-12);
     close("negative", small(-1e-4, -0.9e-4).resolution_j(), 1e-4, 1e-12);
     close("unbalanced", small(1e-4, 3e-4).resolution_j(), 2e-4, 1e-12);
+    for (loss, events, is_sound) in
+        [(0.3, 0.3, true), (f64::NAN, 0.3, false), (0.3, f64::NAN, false), (-0.3, f64::NAN, false), (0.3, 0.7, false)]
+    {
+        assert_eq!(small(loss, events).is_sound(), is_sound, "{loss}, {events}");
+    }
     let problem = Problem::new(&summits(8, 3, 0), LENGTH, RMS, PAPER, DEFAULT).unwrap();
     let whole = attempt(&problem, 0.002).unwrap();
     let LoopEnergy { loss_j, work_j, .. } = loop_energy(&whole, 0);

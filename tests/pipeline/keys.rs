@@ -105,6 +105,7 @@ fn law_a_cycle_reads_the_keys_of_its_method() {
         "nucleation = \"wu\"",
         "opening = \"anywhere\"",
         "approach_step = 0.05",
+        "halvings = 3",
         "precision = 1e-3",
     ];
     for line in read {

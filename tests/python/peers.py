@@ -4,7 +4,7 @@
 
 Arguments: the program, grid points along a side, and the load F_max/(E* A0) up to which it loads.
 
-hysteron loads by boundary elements with Morse's law at every point. Adhesion goes through the same approaches with the same law; the script ends with an
+hysteron loads by boundary elements with Morse's law at every point, in steps of one length. Adhesion goes through the same approaches with the same law; the script ends with an
 error if loads or areas of more than a tenth of the steps differ by more than 1 %. The law of tamaas is an exponential on a hard wall with the same
 range and work of adhesion, so only its time is printed. hysteron and Adhesion begin each step with their last state, and end it where the rms residual is
 about 1e-4 of the maximum tension (tamaas: 1e-6 in its own measure, or 1000 iterations). Times are seconds of wall clock.
@@ -47,7 +47,8 @@ surface.normalization = "spectrum"
 model.method = "boundary_elements"
 boundary_elements.points = %d
 boundary_elements.attraction = "range"
-boundary_elements.approach_step = 0.2
+boundary_elements.approach_step = 0.03
+boundary_elements.halvings = 0
 boundary_elements.precision = {PRECISION}
 cycle.max_load = [%s]
 """

@@ -31,6 +31,8 @@ const SPACING: f64 = 1.0 / PER_UNIT;
 const PER_UNIT: f64 = 100.0;
 /// Overlap in ranges beyond which the repulsion of Morse's law is linear.
 const DEEPEST: f64 = 6.0;
+/// Gap in ranges beyond which Morse's law is not evaluated: its tension is 1e-12 of the maximum.
+const NEGLIGIBLE: f64 = 30.0;
 /// Tension at which the table ends, in E*ℓ/dx.
 const END: f64 = 1e-7;
 
@@ -295,7 +297,7 @@ impl Law {
             Self::Morse(law) => Pieces {
                 stiffness: 0.0,
                 spring: [never; 3],
-                curved: [[never, 0.0], [never, always], [never, always]],
+                curved: [[never, 0.0], [never, (NEGLIGIBLE * law.range) as f32], [never, always]],
                 contact,
                 smooth: Some(Smooth { work: law.work as f32, inverse_range: (1.0 / law.range) as f32 }),
             },

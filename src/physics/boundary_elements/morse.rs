@@ -7,8 +7,18 @@ const LONGEST: f32 = 1.0;
 /// Gap in ranges from which on the exponential is constant, and negligible.
 const FARTHEST: f32 = 80.0;
 /// Coefficients `1/n!` of [`excess`], from the last to the first.
-const SERIES: [f32; 10] =
-    [1.0 / 39_916_800.0, 1.0 / 3_628_800.0, 1.0 / 362_880.0, 1.0 / 40_320.0, 1.0 / 5_040.0, 1.0 / 720.0, 1.0 / 120.0, 1.0 / 24.0, 1.0 / 6.0, 0.5];
+const SERIES: [f32; 10] = [
+    1.0 / 39_916_800.0,
+    1.0 / 3_628_800.0,
+    1.0 / 362_880.0,
+    1.0 / 40_320.0,
+    1.0 / 5_040.0,
+    1.0 / 720.0,
+    1.0 / 120.0,
+    1.0 / 24.0,
+    1.0 / 6.0,
+    0.5,
+];
 
 /// Morse's law.
 #[derive(Debug, Clone, Copy)]

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 /// Pairs of L-BFGS.
 pub(super) const PAIRS: usize = 2;
 /// Points that are evaluated together.
-const BLOCK: usize = 256;
+const BLOCK: usize = 64;
 
 /// `field − mean − Σ weights_i changes_i`: the direction of L-BFGS before the preconditioner.
 pub(super) struct Right<'a> {
@@ -206,7 +206,7 @@ pub(super) fn advance(points: &mut Points<'_>, response: &[f32], stride: Stride,
         let mut points = points.part(range.clone());
         let [changed, mut curved] = glide(&mut points, &response[range], stride, pieces, beyond, &mut block);
         found.changed |= changed;
-        if let Some(smooth) = pieces.smooth {
+        if curved && let Some(smooth) = pieces.smooth {
             curved = bend(&mut points, stride, smooth, beyond, &mut block);
         }
         if curved {

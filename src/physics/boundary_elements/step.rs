@@ -33,8 +33,6 @@ const WELL_BELOW: f64 = 1.0 / 6.0;
 const HIDDEN: f64 = 0.02;
 /// Error of a jump, relative to the limit, from which on a step is halved before it has reached equilibrium.
 const EXCESS: f64 = 2.0;
-/// Most halvings of a step.
-const DEEPEST: u32 = 6;
 /// Largest `|du/dΔ|` by which displacements are extrapolated. Near a limit point, where it diverges, the extrapolated state would be far from equilibrium.
 const STEEPEST: f64 = 10.0;
 /// Deepest extrapolated overlap beyond that of the last state with attraction of a range, in ranges: the repulsion rises exponentially, and iterations move by
@@ -50,6 +48,8 @@ pub struct Settings {
     pub step: f64,
     /// Largest error that a jump of the load may cause in the integral over a step, relative to the energy dissipated so far: longer steps are halved.
     pub located: f64,
+    /// Most halvings of such a step.
+    pub halvings: u32,
     /// Accuracy of an equilibrium.
     pub accuracy: Accuracy,
     /// True if the regions of every step are kept; else those of the maps.
@@ -273,7 +273,7 @@ impl<'a> Walk<'a> {
             }
             let attempt = self.conclude(state, outcome)?;
             let hides = self.hides_tension(&attempt) || self.passes_tension(&attempt);
-            if (attempt.across > limit || hides) && self.at.level < DEEPEST {
+            if (attempt.across > limit || hides) && self.at.level < self.settings.halvings {
                 self.at.level += 1;
                 continue;
             }
@@ -294,7 +294,7 @@ impl<'a> Walk<'a> {
     /// matter, and the load has changed by more than its slope can do in this step; or it has jumped up from a maximum tension. All loads as long as nothing
     /// has been dissipated.
     fn located_loads(&self, length: f64, limit: f64) -> Loads {
-        if self.at.level == DEEPEST || limit == 0.0 {
+        if self.at.level == self.settings.halvings || limit == 0.0 {
             return ANY;
         }
         let from = self.at.last.totals.load;

@@ -82,8 +82,16 @@ impl LoopEnergy {
     pub fn violation_j(&self) -> f64 {
         let numerical_j = RESOLUTION * self.work_j;
         let gain_j = if self.loss_j < -numerical_j { -self.loss_j } else { 0.0 };
-        let is_balanced = self.imbalance_j() <= (LARGEST_IMBALANCE * self.loss_j.abs()).max(numerical_j);
-        if is_balanced { gain_j } else { gain_j.max(self.imbalance_j()) }
+        let imbalance_j = self.imbalance_j();
+        let is_balanced = imbalance_j <= (LARGEST_IMBALANCE * self.loss_j.abs()).max(numerical_j);
+        // Not `max`, which drops NaN.
+        if is_balanced || gain_j > imbalance_j { gain_j } else { imbalance_j }
+    }
+
+    /// True if the violation is at most [`LARGEST_VIOLATION`] of the work; false for NaN.
+    #[must_use]
+    pub fn is_sound(&self) -> bool {
+        self.violation_j() <= LARGEST_VIOLATION * self.work_j
     }
 
     /// Dissipated energy below which Θ is not resolved \[J\]: that of the integration, or a violation.
@@ -119,8 +127,7 @@ pub fn check_energy(cycle: &Cycle, k: usize) -> Result<(), PhysicsError> {
     let LoopEnergy { loss_j, events_j, work_j } = energy;
     // Without adhesion events are reversed exactly; the events of the loading path are compared with the largest work.
     let is_reversed = loss_j != 0.0 || loading_events(cycle, k).abs() <= LARGEST_IMBALANCE * work_j;
-    // NaN is refused as well.
-    if is_reversed && energy.violation_j() <= LARGEST_VIOLATION * work_j {
+    if is_reversed && energy.is_sound() {
         return Ok(());
     }
     let max_load = cycle.steps.last().and_then(|step| step.max_load).unwrap_or(f64::NAN);

@@ -13,7 +13,7 @@ use crate::physics::boundary_elements::adhesionless::{FreeStep, load_freely};
 use crate::physics::boundary_elements::contact::Problem;
 use crate::physics::boundary_elements::cycle::{self, Cycle, Halfway, Settings, Turning};
 use crate::physics::boundary_elements::regions::Labels;
-use crate::physics::cycle::soundness::{LARGEST_VIOLATION, LoopEnergy};
+use crate::physics::cycle::soundness::LoopEnergy;
 use crate::physics::theory::approximate_jkr::{CurvePoint, adhesive_curve};
 use crate::store::{ContactMap, MapsHeader, read_halfway, write_maps, write_state};
 use serde_json::{Map, Value};
@@ -62,7 +62,7 @@ fn check_energy(cycle: &Cycle, loads: &[f64], units: &Units) -> Result<(), Physi
         let back = cycle.steps.iter().rev().filter(|step| step.reversal == Some(reversal));
         let energy = LoopEnergy::of(cycle.steps[..=turning.step].iter().map(energies), back.map(energies));
         let LoopEnergy { loss_j, events_j, work_j } = energy;
-        if energy.violation_j() > LARGEST_VIOLATION * work_j {
+        if !energy.is_sound() {
             return Err(PhysicsError::UnresolvedLoop { max_load: *max_load, loss_j, events_j, work_j });
         }
     }

@@ -211,6 +211,7 @@ fn settings(params: &CaseParams, units: &Units, ratio: f64) -> Settings {
         max_loads: params.cycle.max_load.iter().map(|load| load * units.all()).collect(),
         step: elements.approach_step * units.rms_height_m / units.spacing_m() / steps,
         located: LOCATED,
+        halvings: elements.halvings,
         accuracy: Accuracy { rms: residual, largest: PEAK * residual, iterations: MOST_ITERATIONS },
         all_regions: params.cycle.contacts == KeptContacts::All,
     }

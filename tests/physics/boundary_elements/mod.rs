@@ -42,7 +42,7 @@ fn settle(problem: &Problem, state: &mut State, mut find: impl FnMut(&mut State)
 }
 
 fn cycle(problem: &Problem, max_load: f64, step: f64, located: f64) -> Cycle {
-    let settings = Settings { max_loads: vec![max_load], step, located, accuracy: accuracy(1e-4), all_regions: false };
+    let settings = Settings { max_loads: vec![max_load], step, located, halvings: 6, accuracy: accuracy(1e-4), all_regions: false };
     run(problem, &settings, None, &mut |_| {}, &|_| {}).unwrap()
 }
 

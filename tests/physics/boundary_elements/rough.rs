@@ -47,6 +47,25 @@ fn law_long_steps_locate_jumps() {
     assert!(3 * cost < most, "transforms {cost}, in short steps {most}");
 }
 
+/// Without halvings all steps have one length, but for those that lead to the reversal; with them steps with jumps are shorter.
+#[test]
+fn law_steps_of_one_length_without_halvings() {
+    let (n, step) = (64, 0.16);
+    let problem = problem(n, n, |r, c| 3.0 * wavy(n, r, c), Law::crack(0.05), BONDED);
+    let [equal, halved] = [0, 6].map(|halvings| {
+        let max_loads = vec![0.02 * (n * n) as f64];
+        let settings = Settings { max_loads, step, located: 0.03, halvings, accuracy: super::accuracy(1e-4), all_regions: false };
+        let cycle = run(&problem, &settings, None, &mut |_| {}, &|_| {}).unwrap();
+        let top = cycle.turning[0].last.approach;
+        let elsewhere = cycle.steps.windows(2).filter(|pair| pair[1].reversal.is_some() || pair[1].approach < top - step);
+        let lengths: Vec<f64> = elsewhere.map(|pair| (pair[1].approach - pair[0].approach).abs()).collect();
+        assert!(lengths.len() > 20, "{} steps", lengths.len());
+        lengths.iter().filter(|length| (*length / step - 1.0).abs() > 1e-9).count()
+    });
+    assert_eq!(equal, 0);
+    assert!(halved > 5, "{halved} steps are shorter");
+}
+
 /// Reversals in steps of 0.16 spacings are points of the loading path in steps of 0.01: each has its load to 1e-5, the approach to 1e-3 spacings and the
 /// area to 1e-3 (measured: 3e-5 spacings, the same points). At most five steps lead from the step before to a reversal (measured: 2 to 3).
 #[test]
@@ -55,7 +74,8 @@ fn law_reversals_lie_on_the_loading_path() {
     let problem = problem(n, n, |r, c| 3.0 * wavy(n, r, c), Law::crack(0.05), BONDED);
     let loads = [0.004, 0.011, 0.02].map(|load| load * (n * n) as f64);
     let [long, short] = [0.16, 0.01].map(|step| {
-        let settings = Settings { max_loads: loads.to_vec(), step, located: 0.03, accuracy: super::accuracy(1e-4), all_regions: false };
+        let settings =
+            Settings { max_loads: loads.to_vec(), step, located: 0.03, halvings: 6, accuracy: super::accuracy(1e-4), all_regions: false };
         run(&problem, &settings, None, &mut |_| {}, &|_| {}).unwrap()
     });
     let loading: Vec<_> = long.steps.iter().filter(|step| step.reversal.is_none()).collect();
@@ -103,7 +123,8 @@ fn law_same_bytes_with_threads_and_after_interruptions() {
 fn same_bytes(n: usize, height: f64) {
     let problem = problem(n, n, |r, c| height * wavy(n, r, c), Law::crack(0.02 * height), BONDED);
     let loads = vec![0.008 * (n * n) as f64, 0.016 * (n * n) as f64];
-    let settings = Settings { max_loads: loads, step: 0.06 * height, located: 0.02, accuracy: super::accuracy(1e-4), all_regions: true };
+    let settings =
+        Settings { max_loads: loads, step: 0.06 * height, located: 0.02, halvings: 6, accuracy: super::accuracy(1e-4), all_regions: true };
     let mut kept = Vec::new();
     let whole = run(&problem, &settings, None, &mut |halfway| kept.push(halfway.clone()), &|_| {}).unwrap();
     let pool = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();

@@ -23,7 +23,7 @@ fn keys(campaign: &Campaign) -> [Vec<String>; 5] {
 }
 
 /// Another value for every key of a spec, and the first stage that reads it: 0 generate, 2 cycle, 3 aggregate, 4 report.
-const OTHERS: [(&str, &str, usize); 30] = [
+const OTHERS: [(&str, &str, usize); 31] = [
     ("name", "\"y\"", 3),
     ("figures", "{ format = [\"svg\"], width_mm = 88.0, font = \"DejaVu Sans\" }", 4),
     ("seed", "2022", 0),
@@ -51,6 +51,7 @@ const OTHERS: [(&str, &str, usize); 30] = [
     ("boundary_elements.nucleation", "\"wu\"", 4),
     ("boundary_elements.opening", "\"anywhere\"", 4),
     ("boundary_elements.approach_step", "0.02", 4),
+    ("boundary_elements.halvings", "3", 4),
     ("boundary_elements.precision", "1e-5", 4),
     ("cycle.max_load", "[0.003]", 2),
     ("cycle.approach_step", "0.02", 2),
