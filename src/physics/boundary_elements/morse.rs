@@ -92,28 +92,33 @@ fn excess(t: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::physics::boundary_elements::law::Law;
 
-    /// From one gap to another, everywhere: within 1e-6 of the values at the smaller gap, and there the rounding of the gap in ranges, 24 bits. The energy
-    /// beyond first order is compared with `½ t² Δγ e (1 + e)`, since its double-precision value is a difference only down to 1e-15.
+    /// Energy, tension and slope of Morse's law in double precision.
+    fn morse(work: f64, range: f64, gap: f64) -> [f64; 3] {
+        let e = (-gap / range).exp();
+        [work * e * (e - 2.0), 2.0 * work / range * e * (1.0 - e), 2.0 * work / (range * range) * e * (2.0 * e - 1.0)]
+    }
+
+    /// Changes of the gap everywhere: relative to the values at the smaller gap, 1e-6 and the rounding of the gap in ranges (24 bits). The energy beyond first
+    /// order is relative to `t² Δγ e (1 + e)`; its value in double precision is a difference, known to 1e-15.
     #[test]
     fn law_morse_in_single_precision() {
         let (work, range) = (0.02, 0.11);
-        let law = Law::morse(work, range);
         let smooth = Smooth { work: work as f32, inverse_range: 1.0 / range as f32 };
         let mut count = 0;
         for (i, j, earlier) in (0..400).flat_map(|i| (-20..=20).flat_map(move |j| [(i, j, 0.0), (i, j, 0.2), (i, j, 1.5)])) {
             let gaps = [earlier, f64::from(i) * 0.25 - 3.0, f64::from(j) / 20.0].map(|gap| f64::from((gap * range) as f32));
             let [earlier, before, step] = gaps;
             let first = before - earlier;
-            let [f, b, a] = [first, before, before + step].map(|gap| law.bonded(gap));
+            let [[_, tension_at_first, _], [energy, tension_before, _], after] =
+                [first, before, before + step].map(|gap| morse(work, range, gap));
             let found = smooth.change(first as f32, before as f32, (earlier + step) as f32, step as f32);
             let nearest = before.min(before + step) / range;
             let e = (-nearest).exp();
             let (scale, tolerance) = (work * e * (1.0 + e), 1e-6 + 1.2e-7 * nearest.abs());
-            let tension = f64::from(found.tension) - (a.tension - f.tension);
-            let slope = f64::from(found.slope) - a.slope;
-            let beyond = f64::from(found.beyond) - (a.energy - b.energy - b.tension * step);
+            let tension = f64::from(found.tension) - (after[1] - tension_at_first);
+            let slope = f64::from(found.slope) - after[2];
+            let beyond = f64::from(found.beyond) - (after[0] - energy - tension_before * step);
             assert!(found.holds);
             let path = ((earlier + step) / range).abs().min(1.0);
             let largest = scale.max(work * (-first / range).exp() * (1.0 + (-first / range).exp()));
