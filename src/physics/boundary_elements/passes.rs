@@ -269,7 +269,7 @@ fn glide(points: &mut Points<'_>, response: &[f32], stride: Stride, pieces: &Pie
     [changed != 0, any_curved != 0]
 }
 
-/// Replaces nothing by Morse's law at the bonded points of a block: true if the law itself has to be evaluated at some point.
+/// Adds Morse's law at the bonded points of a block, without branches: true if the law itself has to be evaluated at some point.
 #[inline(always)]
 fn bend(points: &mut Points<'_>, stride: Stride, law: Smooth, beyond: &mut [f32], block: &mut Block) -> bool {
     let n = beyond.len();
