@@ -48,7 +48,7 @@ fn first_number(text: &str) -> usize {
     text.split_whitespace().find_map(|word| word.parse().ok()).unwrap()
 }
 
-/// Adhesion, a program of others, on the same surface with the same law: loads and areas of nine of ten steps of a loading are equal to 1 %. The script
+/// Adhesion, a program of others, on the same surface with the same law: loads and areas of 19 of 20 steps of a loading are equal to 1 %. The script
 /// compares them; the other steps are at an instability, which two programs do not pass at the same approach.
 #[test]
 fn val_adhesion_follows_the_same_loading() {
