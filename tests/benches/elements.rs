@@ -3,7 +3,7 @@
 
 use crate::paper::{MATERIAL, spectrum};
 use crate::watch::{heading, line, once, plain};
-use hysteron::model::Normalization;
+use hysteron::model::{ElementParams, Normalization};
 use hysteron::physics::boundary_elements::contact::{Attraction, Problem};
 use hysteron::physics::boundary_elements::cycle::{Settings, run as cycle};
 use hysteron::physics::boundary_elements::grid::{HalfSpace, Operator};
@@ -33,9 +33,14 @@ fn one(zeta: u32, n: usize, range: bool) {
     let surface = synthesize(&spectrum, &realization_seed(2021, 3), n);
     let spacing = spectrum.length_m / n as f64;
     let top = surface.heights_m.iter().copied().fold(f64::MIN, f64::max);
-    let work = MATERIAL.work_of_adhesion_j_m2 / (MATERIAL.contact_modulus_pa * spacing);
+    let work_length = MATERIAL.adhesion_length_m();
+    let work = work_length / spacing;
     let bonded = Attraction::Bonded { margin: 2, nucleation: 0.0, strength: f64::INFINITY };
-    let (law, attraction) = if range { (Law::morse(work, 0.8 * work.sqrt()), Attraction::Range) } else { (Law::crack(work), bonded) };
+    let (law, attraction) = if range {
+        (Law::morse(work, ElementParams::default().range(work_length, spacing) / spacing), Attraction::Range)
+    } else {
+        (Law::crack(work), bonded)
+    };
     let problem = Problem {
         half_space: HalfSpace::new(n, n).unwrap(),
         law,

@@ -41,8 +41,13 @@ fn settle(problem: &Problem, state: &mut State, mut find: impl FnMut(&mut State)
     problem.totals(state)
 }
 
+/// Settings of a path with its steps halved as by default.
+fn settings(max_loads: Vec<f64>, step: f64) -> Settings {
+    Settings { max_loads, step, located: 0.03, halvings: 6, accuracy: accuracy(1e-4), all_regions: false }
+}
+
 fn cycle(problem: &Problem, max_load: f64, step: f64, located: f64) -> Cycle {
-    let settings = Settings { max_loads: vec![max_load], step, located, halvings: 6, accuracy: accuracy(1e-4), all_regions: false };
+    let settings = Settings { located, ..settings(vec![max_load], step) };
     run(problem, &settings, None, &mut |_| {}, &|_| {}).unwrap()
 }
 

@@ -1,6 +1,6 @@
 //! A rough surface: energy balance, threads, shifts.
 
-use super::{BONDED, cycle, problem, settle, sums};
+use super::{BONDED, cycle, problem, settings, settle, sums};
 use hysteron::physics::boundary_elements::contact::Totals;
 use hysteron::physics::boundary_elements::cycle::{Settings, run, unload_from};
 use hysteron::physics::boundary_elements::equilibrium::Equilibrium;
@@ -54,7 +54,7 @@ fn law_steps_of_one_length_without_halvings() {
     let problem = problem(n, n, |r, c| 3.0 * wavy(n, r, c), Law::crack(0.05), BONDED);
     let [equal, halved] = [0, 6].map(|halvings| {
         let max_loads = vec![0.02 * (n * n) as f64];
-        let settings = Settings { max_loads, step, located: 0.03, halvings, accuracy: super::accuracy(1e-4), all_regions: false };
+        let settings = Settings { halvings, ..settings(max_loads, step) };
         let cycle = run(&problem, &settings, None, &mut |_| {}, &|_| {}).unwrap();
         let top = cycle.turning[0].last.approach;
         let elsewhere = cycle.steps.windows(2).filter(|pair| pair[1].reversal.is_some() || pair[1].approach < top - step);
@@ -74,8 +74,7 @@ fn law_reversals_lie_on_the_loading_path() {
     let problem = problem(n, n, |r, c| 3.0 * wavy(n, r, c), Law::crack(0.05), BONDED);
     let loads = [0.004, 0.011, 0.02].map(|load| load * (n * n) as f64);
     let [long, short] = [0.16, 0.01].map(|step| {
-        let settings =
-            Settings { max_loads: loads.to_vec(), step, located: 0.03, halvings: 6, accuracy: super::accuracy(1e-4), all_regions: false };
+        let settings = settings(loads.to_vec(), step);
         run(&problem, &settings, None, &mut |_| {}, &|_| {}).unwrap()
     });
     let loading: Vec<_> = long.steps.iter().filter(|step| step.reversal.is_none()).collect();
@@ -123,8 +122,7 @@ fn law_same_bytes_with_threads_and_after_interruptions() {
 fn same_bytes(n: usize, height: f64) {
     let problem = problem(n, n, |r, c| height * wavy(n, r, c), Law::crack(0.02 * height), BONDED);
     let loads = vec![0.008 * (n * n) as f64, 0.016 * (n * n) as f64];
-    let settings =
-        Settings { max_loads: loads, step: 0.06 * height, located: 0.02, halvings: 6, accuracy: super::accuracy(1e-4), all_regions: true };
+    let settings = Settings { located: 0.02, all_regions: true, ..settings(loads, 0.06 * height) };
     let mut kept = Vec::new();
     let whole = run(&problem, &settings, None, &mut |halfway| kept.push(halfway.clone()), &|_| {}).unwrap();
     let pool = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
