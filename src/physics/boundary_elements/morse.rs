@@ -30,7 +30,7 @@ pub(super) struct Smooth {
 }
 
 /// Effect of a change of the gap.
-pub(super) struct Change {
+pub(super) struct Effect {
     /// Tension, less that at the first gap \[E*\].
     pub(super) tension: f32,
     /// Slope of the tension after it \[E*/dx\].
@@ -44,7 +44,7 @@ pub(super) struct Change {
 impl Smooth {
     /// Change of the gap by `step` from `before`, with the tension relative to that at `first`, from which the gap has changed by `moved` in all \[dx\].
     #[inline(always)]
-    pub(super) fn change(&self, first: f32, before: f32, moved: f32, step: f32) -> Change {
+    pub(super) fn change(&self, first: f32, before: f32, moved: f32, step: f32) -> Effect {
         let [first, before, moved, step] = [first, before, moved, step].map(|gap| gap * self.inverse_range);
         let (e0, e1) = (decay(first), decay(before));
         let curved = excess(step);
@@ -55,7 +55,7 @@ impl Smooth {
         let [near, far] = [since * (1.0 - 2.0 * e0 - since), e2 * (1.0 - e2) - e0 * (1.0 - e0)];
         let tension = if moved.abs() <= LONGEST { near } else { far };
         let stress = 2.0 * self.work * self.inverse_range;
-        Change {
+        Effect {
             tension: stress * tension,
             slope: stress * self.inverse_range * e2 * (2.0 * e2 - 1.0),
             beyond: self.work * e1 * (2.0 * (e1 - 1.0) * curved + e1 * shrinks * shrinks),

@@ -278,14 +278,14 @@ fn bend(points: &mut Points<'_>, stride: Stride, law: Smooth, beyond: &mut [f32]
     let (before, curved) = (&block.before[..n], &mut block.curved[..n]);
     let mut any_curved = 0;
     for k in 0..n {
-        let change = law.change(gap[k], before[k], moved[k], stride.length * (direction[k] - stride.mean));
+        let effect = law.change(gap[k], before[k], moved[k], stride.length * (direction[k] - stride.mean));
         let bonded = bonds[k] as u8 == Bonding::Bonded as u8;
-        let holds = bonded & change.holds;
+        let holds = bonded & effect.holds;
         let (straight, slope, flat) = (gradient[k], slopes[k], beyond[k]);
-        let bent = straight + change.tension;
+        let bent = straight + effect.tension;
         gradient[k] = if holds { bent } else { straight };
-        slopes[k] = if holds { change.slope } else { slope };
-        beyond[k] = if holds { change.beyond } else { flat };
+        slopes[k] = if holds { effect.slope } else { slope };
+        beyond[k] = if holds { effect.beyond } else { flat };
         let left = curved[k] & u8::from(!holds);
         curved[k] = left;
         any_curved |= left;
