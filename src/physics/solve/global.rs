@@ -8,7 +8,7 @@
 use super::newton::{Damping, NonlinearSystem, Worst, damped_newton};
 use super::relaxation::{Relaxing, relax};
 use super::residual::{NotConverged, STRIDE};
-use super::schwarz::CachedInverse;
+use super::schwarz::LocalInverse;
 use super::trace::PenetrationTrace;
 use crate::physics::contact::problem::Problem;
 use crate::physics::contact::state::State;
@@ -32,7 +32,7 @@ const RATES: f64 = 1e-6;
 const ROUGH_RATES: f64 = 3e-4;
 
 /// Way between two evaluations of all free asperities, in rms heights.
-const BLOCK: f64 = 0.05;
+const BLOCK: f64 = 0.2;
 
 /// Tangents of one precision.
 #[derive(Debug, Default)]
@@ -55,7 +55,7 @@ pub(crate) struct GlobalSolver {
     others: Tangents,
     /// Mean penetration at which all free asperities were evaluated last \[m\].
     swept_at: Option<f64>,
-    inverse: CachedInverse,
+    inverse: LocalInverse,
     /// Residuals of the contacts that were evaluated last \[m\].
     pub(crate) residual: Vec<f64>,
     diagonal: Vec<f64>,
@@ -71,7 +71,7 @@ impl GlobalSolver {
             tangents: Tangents::default(),
             others: Tangents::default(),
             swept_at: None,
-            inverse: CachedInverse::default(),
+            inverse: LocalInverse::default(),
             residual: Vec::new(),
             diagonal: Vec::new(),
         }
@@ -79,7 +79,8 @@ impl GlobalSolver {
 
     /// Goes on with another number of merged contacts.
     pub(crate) fn replace_problem(&mut self, problem: Arc<Problem>) {
-        *self = Self { effort: self.effort, swept_at: self.swept_at, roughly: self.roughly, ..Self::new(problem) };
+        let inverse = std::mem::take(&mut self.inverse);
+        *self = Self { effort: self.effort, swept_at: self.swept_at, roughly: self.roughly, inverse, ..Self::new(problem) };
     }
 
     /// Begins a solution.

@@ -6,171 +6,275 @@
 
 use crate::physics::contact::problem::Problem;
 use crate::physics::contact::state::{State, Status};
-use crate::physics::half_space::Tangent;
+use crate::physics::half_space::{Tangent, places_in};
 use crate::physics::math::dense::Lu;
 use crate::physics::math::gmres::Preconditioner;
+use crate::physics::math::vector::mixed_dot;
 
-/// Maximum number of contacts in a group, and number of contacts that are solved together for it.
+/// Number of contacts in a group when they are divided, and number of contacts that are solved together for it.
 const GROUP: usize = 24;
 const TOGETHER: usize = 44;
+
+/// Factor by which the number of contacts may change before they are divided again.
+const GROWTH: f64 = 1.3;
 
 /// Distance over radius beyond which a contact acts by its load alone.
 const ALOOF: f64 = 2.0;
 
-/// Solutions that one approximate inverse serves.
-const MOST_SOLUTIONS: usize = 4;
+/// Solutions that the rows of a group serve, if no contact next to it comes or goes.
+const MOST_SOLUTIONS: usize = 8;
 
 /// An approximate inverse that serves several solutions: it only makes them short.
 #[derive(Debug, Default)]
-pub(super) struct CachedInverse {
-    inverse: Option<LocalInverse>,
-    /// Solutions that have begun since it was computed.
+pub(super) struct LocalInverse {
+    /// Contacts that it is for.
+    index: Vec<usize>,
+    groups: Vec<Group>,
+    partition: Partition,
+    /// Number of contacts when they were divided.
+    divided: usize,
+    /// Solutions so far.
     solutions: usize,
+    lu: Lu,
 }
 
-impl CachedInverse {
+/// A group of contacts and its rows of the inverse.
+#[derive(Debug, Clone, Default)]
+struct Group {
+    /// Asperity numbers, ascending.
+    members: Vec<usize>,
+    /// Contacts that were solved together for it, ascending; its members are among them.
+    near: Vec<usize>,
+    /// Row of each member, over `near`.
+    values: Vec<f32>,
+    /// Centre of the members, and the largest distance of a contact in `near` \[m\].
+    centre: [f64; 2],
+    reach: f64,
+    /// Number of the solution for which it was computed; none if a contact next to it has come or gone since.
+    solution: Option<usize>,
+    /// Positions of `members` and `near` among the contacts.
+    rows: Vec<u32>,
+    columns: Vec<u32>,
+}
+
+impl LocalInverse {
     /// Begins a solution.
     pub(super) fn begin(&mut self) {
         self.solutions += 1;
     }
 
-    /// An approximate inverse of a tangent and a diagonal; none for a dense one, whose products cost little.
+    /// An approximate inverse of a tangent and a diagonal at the contacts of a state; none for a dense one, whose products cost little.
     pub(super) fn of(&mut self, problem: &Problem, state: &State, tangent: &Tangent, diagonal: &[f64]) -> Option<&dyn Preconditioner> {
         if tangent.is_exact() {
-            self.inverse = None;
+            self.groups.clear();
             return None;
         }
-        let serves = |known: &LocalInverse| self.solutions < MOST_SOLUTIONS && known.index == state.contacts;
-        let inverse = self.inverse.take().filter(serves).unwrap_or_else(|| {
-            self.solutions = 0;
-            LocalInverse::new(problem, state, tangent, diagonal)
-        });
-        Some(self.inverse.insert(inverse))
+        let same = !self.groups.is_empty() && self.index == state.contacts;
+        if !same {
+            self.follow(problem, state);
+        }
+        let jacobian = Jacobian { problem, state, tangent, diagonal };
+        for group in &mut self.groups {
+            if group.solution.is_none_or(|solution| self.solutions >= solution + MOST_SOLUTIONS) {
+                group.compute(&jacobian, &mut self.lu);
+                group.solution = Some(self.solutions);
+            } else if !same {
+                group.place(state);
+            }
+        }
+        Some(self)
     }
-}
 
-/// Rows of an approximate inverse.
-#[derive(Debug, Default)]
-pub(crate) struct LocalInverse {
-    /// Asperities in contact.
-    index: Vec<usize>,
-    starts: Vec<usize>,
-    spots: Vec<u32>,
-    values: Vec<f32>,
-}
-
-impl LocalInverse {
-    /// Approximate inverse of a tangent and a diagonal, at the contacts of a state.
-    pub(crate) fn new(problem: &Problem, state: &State, tangent: &Tangent, diagonal: &[f64]) -> Self {
-        let mut groups = Vec::new();
-        let mut all: Vec<usize> = (0..state.contacts.len()).collect();
-        part(&mut all, &|k, along| problem.place(state.contacts[k])[along], &mut groups);
-        let mut rows: Vec<(usize, Vec<f32>)> = Vec::with_capacity(all.len());
-        let mut members: Vec<Vec<u32>> = Vec::with_capacity(groups.len());
-        let (mut lu, mut unit) = (Lu::default(), Vec::new());
-        for group in &groups {
-            let near = around(problem, state, &all[group.clone()]);
-            let matrix = transposed(problem, state, &near, tangent, diagonal);
-            lu.factor(&matrix, near.len());
-            let columns = group.len();
-            unit.clear();
-            unit.resize(near.len() * columns, 0.0);
-            for (column, k) in all[group.clone()].iter().enumerate() {
-                if let Ok(at) = near.binary_search_by_key(k, |(j, _)| *j) {
-                    unit[at * columns + column] = 1.0;
+    /// Enters the contacts that have come and gone into the groups.
+    fn follow(&mut self, problem: &Problem, state: &State) {
+        let growth = state.contacts.len() as f64 / self.divided.max(1) as f64;
+        if self.groups.is_empty() || !(1.0 / GROWTH..GROWTH).contains(&growth) {
+            self.divide(problem, state);
+            return;
+        }
+        let before = std::mem::replace(&mut self.index, state.contacts.clone());
+        let only_in = |these: &[usize], others: &[usize]| -> Vec<usize> {
+            these.iter().zip(places_in(these, others)).filter(|(_, at)| at.is_none()).map(|(i, _)| *i).collect()
+        };
+        for i in only_in(&before, &state.contacts) {
+            for group in self.groups.iter_mut().filter(|group| group.near.binary_search(&i).is_ok()) {
+                group.members.retain(|member| *member != i);
+                group.solution = None;
+            }
+        }
+        for i in only_in(&state.contacts, &before) {
+            let place = problem.place(i);
+            let own = self.partition.group(place);
+            let members = &mut self.groups[own].members;
+            let at = members.partition_point(|member| *member < i);
+            members.insert(at, i);
+            for (k, group) in self.groups.iter_mut().enumerate() {
+                if k == own || problem.neighbours.distance(place, &group.centre) <= group.reach {
+                    group.solution = None;
                 }
             }
-            lu.solve_all(&mut unit, columns);
-            rows.extend((0..columns).map(|column| (members.len(), unit.iter().skip(column).step_by(columns).map(|v| *v as f32).collect())));
-            members.push(near.iter().map(|(j, _)| *j as u32).collect());
         }
-        let mut order: Vec<usize> = (0..all.len()).collect();
-        order.sort_unstable_by_key(|at| all[*at]);
-        let mut found = Self { index: state.contacts.clone(), starts: vec![0], ..Self::default() };
-        for at in order {
-            let (group, row) = &rows[at];
-            found.spots.extend_from_slice(&members[*group]);
-            found.values.extend_from_slice(row);
-            found.starts.push(found.spots.len());
+    }
+
+    /// Divides all contacts into groups.
+    fn divide(&mut self, problem: &Problem, state: &State) {
+        self.index.clone_from(&state.contacts);
+        self.divided = state.contacts.len();
+        let mut places: Vec<[f64; 2]> = state.contacts.iter().map(|i| *problem.place(*i)).collect();
+        self.partition = Partition::of(&mut places);
+        self.groups = vec![Group::default(); self.partition.groups];
+        for &i in &state.contacts {
+            self.groups[self.partition.group(problem.place(i))].members.push(i);
         }
-        found
     }
 }
 
 impl Preconditioner for LocalInverse {
     fn apply(&self, x: &[f64], y: &mut [f64]) {
-        for (ends, yi) in self.starts.windows(2).zip(y) {
-            let mut strands = [0.0; 4];
-            let ((spots, left), (values, over)) =
-                (self.spots[ends[0]..ends[1]].as_chunks::<4>(), self.values[ends[0]..ends[1]].as_chunks::<4>());
-            for (spot, value) in spots.iter().zip(values) {
-                for k in 0..4 {
-                    strands[k] += f64::from(value[k]) * x[spot[k] as usize];
-                }
+        let mut near = Vec::new();
+        for group in &self.groups {
+            near.clear();
+            near.extend(group.columns.iter().map(|k| x[*k as usize]));
+            for (k, values) in group.rows.iter().zip(group.values.chunks(near.len().max(1))) {
+                y[*k as usize] = mixed_dot(values, &near);
             }
-            for (spot, value) in left.iter().zip(over) {
-                strands[0] += f64::from(*value) * x[*spot as usize];
-            }
-            *yi = strands.iter().sum();
         }
     }
 }
 
-/// Divides contacts into groups by bisection across their longer side; groups are ranges of `all`, which is put in order.
-fn part(all: &mut [usize], place: &dyn Fn(usize, usize) -> f64, groups: &mut Vec<std::ops::Range<usize>>) {
-    fn halve(all: &mut [usize], from: usize, place: &dyn Fn(usize, usize) -> f64, groups: &mut Vec<std::ops::Range<usize>>) {
-        if all.len() <= GROUP {
-            groups.push(from..from + all.len());
-            return;
+/// Division of the square by bisection of the contacts across the longer side.
+#[derive(Debug, Default)]
+struct Partition {
+    nodes: Vec<Node>,
+    /// Number of groups.
+    groups: usize,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Node {
+    /// Places whose coordinate is below a value are in the first node, others in the second.
+    Halves {
+        along: usize,
+        value: f64,
+        nodes: [usize; 2],
+    },
+    Group(usize),
+}
+
+impl Partition {
+    fn of(places: &mut [[f64; 2]]) -> Self {
+        let mut found = Self::default();
+        found.add(places);
+        found
+    }
+
+    /// Adds the node of some places; its number is returned.
+    fn add(&mut self, places: &mut [[f64; 2]]) -> usize {
+        let number = self.nodes.len();
+        self.nodes.push(Node::Group(self.groups));
+        if places.len() <= GROUP {
+            self.groups += 1;
+            return number;
         }
         let span = |along: usize| {
-            let ends =
-                all.iter().map(|k| place(*k, along)).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (p.min(low), p.max(high)));
+            let ends = places.iter().map(|p| p[along]).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (p.min(low), p.max(high)));
             ends.1 - ends.0
         };
         let along = usize::from(span(1) > span(0));
-        let middle = all.len() / 2;
-        all.select_nth_unstable_by(middle, |u, v| place(*u, along).total_cmp(&place(*v, along)).then(u.cmp(v)));
-        let (low, high) = all.split_at_mut(middle);
-        halve(low, from, place, groups);
-        halve(high, from + middle, place, groups);
+        let middle = places.len() / 2;
+        let (low, at, high) = places.select_nth_unstable_by(middle, |u, v| u[along].total_cmp(&v[along]));
+        // The middle one belongs to the upper half, which its own node need not know.
+        let value = at[along];
+        let nodes = [self.add(low), self.add(high)];
+        self.nodes[number] = Node::Halves { along, value, nodes };
+        number
     }
-    halve(all, 0, place, groups);
-}
 
-/// A group of contacts and those around it, each with its position relative to the centre of the group \[m\].
-fn around(problem: &Problem, state: &State, group: &[usize]) -> Vec<(usize, [f64; 2])> {
-    let place = |k: usize| *problem.place(state.contacts[k]);
-    let count = group.len() as f64;
-    let centre = [0, 1].map(|along| group.iter().map(|k| place(*k)[along]).sum::<f64>() / count);
-    let near = problem.neighbours.nearest(&centre, TOGETHER, state.contacts.len(), |i| state.status[i] == Status::Contact);
-    let mut spots: Vec<usize> =
-        near.iter().filter_map(|(_, i)| state.contacts.binary_search(i).ok()).chain(group.iter().copied()).collect();
-    spots.sort_unstable();
-    spots.dedup();
-    spots.into_iter().map(|k| (k, problem.neighbours.apart(&place(k), &centre))).collect()
-}
-
-/// Jacobian among some contacts, column by column.
-fn transposed(problem: &Problem, state: &State, spots: &[(usize, [f64; 2])], tangent: &Tangent, diagonal: &[f64]) -> Vec<f64> {
-    let mut matrix = Vec::with_capacity(spots.len() * spots.len());
-    for (j, [x, y]) in spots {
-        let i = state.contacts[*j];
-        let a = state.radius[i];
-        let slope = problem.material.compliance() * problem.asperities[i].load_slope(a);
-        // Image fields are nearly the same for all of them.
-        let images = tangent.own(*j);
-        for (k, [u, v]) in spots {
-            let r = ((u - x) * (u - x) + (v - y) * (v - y)).sqrt();
-            let by = if k == j {
-                diagonal[*j]
-            } else if r > ALOOF * a {
-                slope / r
-            } else {
-                problem.spot_field(&problem.asperities[i], r, a).1
-            };
-            matrix.push(by + images);
+    /// Group of a place.
+    fn group(&self, place: &[f64; 2]) -> usize {
+        let mut node = 0;
+        loop {
+            match self.nodes[node] {
+                Node::Group(group) => return group,
+                Node::Halves { along, value, nodes } => node = nodes[usize::from(place[along] >= value)],
+            }
         }
     }
-    matrix
+}
+
+/// Jacobian at the contacts of a state.
+struct Jacobian<'a> {
+    problem: &'a Problem,
+    state: &'a State,
+    tangent: &'a Tangent,
+    diagonal: &'a [f64],
+}
+
+impl Group {
+    /// Computes the rows.
+    fn compute(&mut self, jacobian: &Jacobian<'_>, lu: &mut Lu) {
+        let Jacobian { problem, state, .. } = jacobian;
+        if self.members.is_empty() {
+            *self = Self::default();
+            return;
+        }
+        let count = self.members.len() as f64;
+        self.centre = [0, 1].map(|along| self.members.iter().map(|i| problem.place(*i)[along]).sum::<f64>() / count);
+        let near = problem.neighbours.nearest(&self.centre, TOGETHER, state.contacts.len(), |i| state.status[i] == Status::Contact);
+        self.near.clear();
+        self.near.extend(near.iter().map(|(_, i)| *i).chain(self.members.iter().copied()));
+        self.near.sort_unstable();
+        self.near.dedup();
+        self.place(state);
+        let apart: Vec<[f64; 2]> = self.near.iter().map(|i| problem.neighbours.apart(problem.place(*i), &self.centre)).collect();
+        self.reach = apart.iter().map(|[x, y]| x.hypot(*y)).fold(0.0, f64::max);
+        lu.factor(&jacobian.transposed(&self.near, &self.columns, &apart), self.near.len());
+        let columns = self.members.len();
+        let mut unit = vec![0.0; self.near.len() * columns];
+        for (column, at) in places_in(&self.members, &self.near).enumerate() {
+            if let Some(at) = at {
+                unit[at * columns + column] = 1.0;
+            }
+        }
+        lu.solve_all(&mut unit, columns);
+        self.values.clear();
+        for column in 0..columns {
+            self.values.extend(unit.iter().skip(column).step_by(columns).map(|v| *v as f32));
+        }
+    }
+
+    /// Finds the positions of the contacts.
+    fn place(&mut self, state: &State) {
+        let at = |i: &usize| state.contacts.binary_search(i).map_or(0, |at| at as u32);
+        self.rows.clear();
+        self.rows.extend(self.members.iter().map(at));
+        self.columns.clear();
+        self.columns.extend(self.near.iter().map(at));
+    }
+}
+
+impl Jacobian<'_> {
+    /// Its part for some contacts, column by column: their numbers, their positions among all, and their places relative to a centre \[m\].
+    fn transposed(&self, contacts: &[usize], at: &[u32], apart: &[[f64; 2]]) -> Vec<f64> {
+        let Self { problem, state, tangent, diagonal } = self;
+        let mut matrix = Vec::with_capacity(contacts.len() * contacts.len());
+        for ((i, at), [x, y]) in contacts.iter().zip(at).zip(apart) {
+            let a = state.radius[*i];
+            let slope = problem.material.compliance() * problem.asperities[*i].load_slope(a);
+            // Image fields are nearly the same for all of them.
+            let images = tangent.own(*at as usize);
+            for (j, [u, v]) in contacts.iter().zip(apart) {
+                let r = ((u - x) * (u - x) + (v - y) * (v - y)).sqrt();
+                let by = if i == j {
+                    diagonal[*at as usize]
+                } else if r > ALOOF * a {
+                    slope / r
+                } else {
+                    problem.spot_field(&problem.asperities[*i], r, a).1
+                };
+                matrix.push(by + images);
+            }
+        }
+        matrix
+    }
 }

@@ -91,12 +91,12 @@ impl LocalProblem {
         }
         let whole: f64 = sources.iter().map(|source| source.load).sum();
         let compliance = problem.material.compliance();
-        let of = |&i: &usize| {
+        let of = |(&i, images): (&usize, f64)| {
             let place = problem.place(i);
             let near: f64 = sources.iter().map(|source| source.field(problem, place, compliance)).sum();
-            near + compliance * whole * problem.neighbours.image_kernel(place, centre)
+            near + images
         };
-        asperities.iter().map(of).collect()
+        asperities.iter().zip(problem.field.images_of_load(whole, centre, asperities)).map(of).collect()
     }
 
     /// `Σ F_i ∂ŵ_i/∂Δ` of the members by the outside \[N\]: by reciprocity, the effect of these loads on the load of the outside.
