@@ -1,6 +1,5 @@
 //! Neighbour search by a grid of cells.
 
-use crate::physics::half_space::ewald::ROUGH_IMAGES;
 use crate::physics::math::grown::Grown;
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -111,22 +110,6 @@ impl Neighbours {
             let d = p[k] - q[k];
             if self.periodic { nearest_image(d, self.length) } else { d }
         })
-    }
-
-    /// Displacement kernel \[1/m\] at `p` of a load at `q` and all its images.
-    ///
-    /// It is `1/r` plus the approximate image sum.
-    pub(crate) fn kernel(&self, p: &[f64; 2], q: &[f64; 2]) -> f64 {
-        1.0 / self.distance(p, q) + self.image_kernel(p, q)
-    }
-
-    /// Approximate kernel of all images but the nearest \[1/m\].
-    pub(crate) fn image_kernel(&self, p: &[f64; 2], q: &[f64; 2]) -> f64 {
-        if !self.periodic {
-            return 0.0;
-        }
-        let [x, y] = [0, 1].map(|k| nearest_image((p[k] - q[k]) / self.length, 1.0));
-        ROUGH_IMAGES.at(x, y) / self.length
     }
 
     /// Rows or columns of cells that a circle may intersect.

@@ -32,13 +32,14 @@ pub fn best(positions: Vec<[f64; 2]>, length_m: f64, material: &Material, kind: 
     let to = |tolerance| FastSum::new(positions.clone(), length_m, material, kind, boundary, slips, tolerance);
     let fast = many.then(|| [to(TOLERANCE), to(ROUGH_TOLERANCE)]);
     let many = if boundary == Boundary::Periodic { FAST_FROM_PERIODIC } else { FAST_FROM_ISOLATED };
-    Best { direct: DirectSum::new(positions, length_m, material, kind, boundary, slips), fast, many }
+    let direct = DirectSum::new(positions, length_m, material, kind, boundary, slips);
+    Best { direct: [direct.clone(), direct.to_six_digits()], fast, many }
 }
 
-/// The direct sum, and the fast sum if there are enough asperities.
+/// The direct sum, and the fast sum if there are enough asperities; each exact and to six digits.
 #[derive(Debug, Clone)]
 pub struct Best {
-    direct: DirectSum,
+    direct: [DirectSum; 2],
     fast: Option<[FastSum; 2]>,
     /// Number of contact spots from which the fast sum is used.
     many: usize,
@@ -47,22 +48,22 @@ pub struct Best {
 impl Best {
     /// Sum for targets that are the spots themselves.
     ///
-    /// `roughly` allows an error of 1e-6 if the fast sum is used.
+    /// `roughly` allows an error of 1e-6 if the fast sum is used; the direct sum is exact.
     pub(crate) fn for_spots(&self, spots: &Spots, roughly: bool) -> &dyn Interaction {
         match &self.fast {
             Some(fast) if spots.columns.len() >= self.many => &fast[usize::from(roughly)],
-            _ => &self.direct,
+            _ => &self.direct[0],
         }
     }
 
     /// Sum for other targets; with few targets the direct sum is cheaper than a mesh.
     pub(crate) fn for_targets(&self, spots: &Spots, targets: &[usize], roughly: bool) -> &dyn Interaction {
-        if targets.len() < self.many / 2 { &self.direct } else { self.for_spots(spots, roughly) }
+        if targets.len() < self.many / 2 { &self.direct[usize::from(roughly)] } else { self.for_spots(spots, roughly) }
     }
 
     /// Displacements and derivatives among the spots by direct sums, see [`DirectSum::among`].
     pub(crate) fn among(&self, spots: &Spots, table: &mut PairTable, fields: &mut Vec<f64>, slopes: &mut Vec<f64>, effort: &mut Effort) {
-        self.direct.among(spots, table, fields, slopes, effort);
+        self.direct[0].among(spots, table, fields, slopes, effort);
     }
 
     /// Tabulates the image sums of all pairs if there are few enough asperities.
@@ -70,9 +71,10 @@ impl Best {
     /// Adding an asperity discards the table.
     #[must_use]
     pub fn with_table(self) -> Self {
-        let direct = self.direct.with_table();
-        let many = if direct.has_table() { FAST_FROM_TABLE } else { self.many };
-        Self { direct, many, ..self }
+        let [exact, rough] = self.direct;
+        let exact = exact.with_table();
+        let many = if exact.has_table() { FAST_FROM_TABLE } else { self.many };
+        Self { direct: [exact, rough], many, ..self }
     }
 
     /// Sets the number of spots from which the fast sum is used.
@@ -82,7 +84,7 @@ impl Best {
 
     /// Adds an asperity at `place` \[m\]; it gets the next number.
     pub(crate) fn add(&mut self, place: [f64; 2]) {
-        self.direct.add(place);
+        self.direct.iter_mut().for_each(|direct| direct.add(place));
         for fast in self.fast.iter_mut().flatten() {
             fast.add(place);
         }
@@ -90,17 +92,27 @@ impl Best {
 
     /// Displacements by few spots at many targets, see [`DirectSum::at_many`].
     pub(crate) fn at_many(&self, spots: &[(f64, Spot)], targets: impl Iterator<Item = usize>) -> Vec<f64> {
-        self.direct.at_many(spots, targets)
+        self.direct[0].at_many(spots, targets)
     }
 
     /// Displacement at a target by spots that are added or subtracted, see [`DirectSum::at_one`].
     pub(crate) fn at_one(&self, spots: &[(f64, Spot)], target: usize) -> f64 {
-        self.direct.at_one(spots, target)
+        self.direct[0].at_one(spots, target)
     }
 
-    /// Displacements and derivatives at targets by direct sums, see [`DirectSum::rows`].
-    pub(crate) fn rows(&self, spots: &Spots, targets: &[usize], rough: bool, effort: &mut Effort, visit: impl FnMut(usize, f64, &[f64])) {
-        self.direct.rows(spots, targets, rough, effort, visit);
+    /// Displacements and derivatives at targets by direct sums, see [`DirectSum::rows`]; `roughly`, to six digits of the image sums.
+    pub(crate) fn rows(&self, spots: &Spots, targets: &[usize], roughly: bool, effort: &mut Effort, visit: impl FnMut(usize, f64, &[f64])) {
+        self.direct[usize::from(roughly)].rows(spots, targets, effort, visit);
+    }
+
+    /// Displacements far from a load, see [`DirectSum::far_from_load`].
+    pub(crate) fn far_from_load(&self, load: f64, place: &[f64; 2], reach: f64, targets: &[usize]) -> Vec<f64> {
+        self.direct[1].far_from_load(load, place, reach, targets)
+    }
+
+    /// Displacements by the images of a load, see [`DirectSum::images_of_load`].
+    pub(crate) fn images_of_load(&self, load: f64, place: &[f64; 2], targets: &[usize]) -> Vec<f64> {
+        self.direct[1].images_of_load(load, place, targets)
     }
 }
 

@@ -1,6 +1,7 @@
 //! Direct sums over all pairs: exact, and the reference for the fast sum.
 
 mod at_many;
+mod point_load;
 
 use super::ewald::{IMAGES, ORDERS, RemainderSeries};
 use super::image_polynomials::{CENTRE, Centre};
@@ -30,6 +31,8 @@ pub struct DirectSum {
     compliance: f64,
     /// Image sums of every pair of asperities; empty if they are computed when needed.
     table: Arc<Vec<[f64; ORDERS]>>,
+    /// True if six digits of the image sums are enough.
+    rough: bool,
 }
 
 impl DirectSum {
@@ -48,7 +51,13 @@ impl DirectSum {
             sag: sag(slips),
             compliance: material.compliance(),
             table: Arc::default(),
+            rough: false,
         }
+    }
+
+    /// The same with six digits of the image sums, without a table.
+    pub(super) fn to_six_digits(&self) -> Self {
+        Self { table: Arc::default(), rough: true, ..self.clone() }
     }
 
     /// Tabulates the image sums of every pair if there are at most `TABLE_LIMIT` asperities.
@@ -97,20 +106,13 @@ impl DirectSum {
 
     /// Displacement \[m\] by all spots at each of `targets`, and its derivatives to the radii of all spots.
     ///
-    /// `visit` receives the index in `targets`, the displacement and the derivatives. If `rough`, the image sums have six digits.
-    pub(crate) fn rows(
-        &self,
-        spots: &Spots,
-        targets: &[usize],
-        rough: bool,
-        effort: &mut Effort,
-        mut visit: impl FnMut(usize, f64, &[f64]),
-    ) {
+    /// `visit` receives the index in `targets`, the displacement and the derivatives.
+    pub(crate) fn rows(&self, spots: &Spots, targets: &[usize], effort: &mut Effort, mut visit: impl FnMut(usize, f64, &[f64])) {
         let n = spots.index.len();
         let mut slopes = vec![0.0; spots.columns.padded()];
         let moments = self.moments(&spots.columns);
         for (k, target) in targets.iter().enumerate() {
-            let sum = self.row::<true>(spots, &moments, *target, rough, &mut slopes);
+            let sum = self.row::<true>(spots, &moments, *target, &mut slopes);
             visit(k, sum, &slopes[..n]);
         }
         effort.pairs += (n * targets.len()) as u64;
@@ -124,7 +126,7 @@ impl DirectSum {
         let by = |sign: f64| {
             let mut chosen = Spots::default();
             chosen.columns.set(spots.iter().filter(|(times, _)| *times == sign).map(|(_, spot)| *spot));
-            sign * self.row::<false>(&chosen, &self.moments(&chosen.columns), target, false, &mut [])
+            sign * self.row::<false>(&chosen, &self.moments(&chosen.columns), target, &mut [])
         };
         by(1.0) + by(-1.0)
     }
@@ -143,7 +145,7 @@ impl DirectSum {
     /// Displacement at asperity `target` by all spots.
     ///
     /// With `SLOPES`, also its derivatives to their radii.
-    fn row<const SLOPES: bool>(&self, spots: &Spots, moments: &Moments, target: usize, rough: bool, slopes: &mut [f64]) -> f64 {
+    fn row<const SLOPES: bool>(&self, spots: &Spots, moments: &Moments, target: usize, slopes: &mut [f64]) -> f64 {
         let columns = &spots.columns;
         let [x, y] = self.positions[target];
         let place = self.place([x, y]);
@@ -170,7 +172,7 @@ impl DirectSum {
         };
         if self.periodic {
             let n = self.positions.len();
-            sum += if rough {
+            sum += if self.rough {
                 rough_image_fields::<SLOPES>(place, columns, moments, slopes)
             } else {
                 match self.table.get(target * n..(target + 1) * n) {
@@ -261,14 +263,14 @@ impl Interaction for DirectSum {
         displacements.clear();
         effort.pairs += (spots.index.len() * targets.len()) as u64;
         let moments = self.moments(&spots.columns);
-        displacements.extend(targets.iter().map(|target| self.row::<false>(spots, &moments, *target, false, &mut [])));
+        displacements.extend(targets.iter().map(|target| self.row::<false>(spots, &moments, *target, &mut [])));
     }
 
     fn linearise(&self, spots: &Spots, displacements: &mut Vec<f64>, tangent: &mut Tangent, effort: &mut Effort) {
         let n = spots.index.len();
         let mut matrix = tangent.take_dense(n);
         displacements.clear();
-        self.rows(spots, &spots.index, false, effort, |k, sum, slopes| {
+        self.rows(spots, &spots.index, effort, |k, sum, slopes| {
             displacements.push(sum);
             matrix[k * n..(k + 1) * n].copy_from_slice(slopes);
         });
@@ -287,7 +289,7 @@ impl Interaction for DirectSum {
         let [displacements, slopes] = found;
         displacements.clear();
         slopes.clear();
-        self.rows(spots, targets, false, effort, |_, sum, row| {
+        self.rows(spots, targets, effort, |_, sum, row| {
             displacements.push(sum);
             slopes.push(dot(row, rates));
         });

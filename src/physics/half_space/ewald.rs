@@ -164,40 +164,6 @@ pub struct RemainderSeries {
 /// Chebyshev series on the whole square, from which all polynomials are derived.
 pub(super) static SERIES: LazyLock<Vec<Vec<[f64; ORDERS]>>> = LazyLock::new(global_series);
 
-/// Grid points of [`RoughRemainder`] along half a side.
-const POINTS: usize = 64;
-
-/// `G(x, y) − 1/r` by linear interpolation on a grid, for uses where three digits are enough.
-#[derive(Debug, Clone)]
-pub struct RoughRemainder(Vec<f64>);
-
-impl RoughRemainder {
-    /// Tabulates a quarter of the square; the rest follows by symmetry.
-    #[must_use]
-    pub fn new(of: &RemainderSeries) -> Self {
-        let at = |k: usize| 0.5 * k as f64 / POINTS as f64;
-        Self((0..=POINTS).flat_map(|i| (0..=POINTS).map(move |j| (i, j))).map(|(i, j)| of.at(at(i), at(j))).collect())
-    }
-
-    /// Value for `|x|, |y| ≤ ½`, with error 2e-4.
-    ///
-    /// Its magnitude is between 0.8 and 3.9 everywhere.
-    #[must_use]
-    pub fn at(&self, x: f64, y: f64) -> f64 {
-        let [(i, p), (j, q)] = [x, y].map(|along| {
-            let at = 2.0 * POINTS as f64 * along.abs();
-            let cell = (at as usize).min(POINTS - 1);
-            (cell, at - cell as f64)
-        });
-        let corner = |di: usize, dj: usize| self.0[(i + di) * (POINTS + 1) + j + dj];
-        let edge = |di: usize| corner(di, 0) + q * (corner(di, 1) - corner(di, 0));
-        edge(0) + p * (edge(1) - edge(0))
-    }
-}
-
-/// Table shared by the process; it has no parameters.
-pub(crate) static ROUGH_IMAGES: LazyLock<RoughRemainder> = LazyLock::new(|| RoughRemainder::new(&IMAGES));
-
 /// Table shared by the process; it has no parameters.
 pub(crate) static IMAGES: LazyLock<RemainderSeries> = LazyLock::new(RemainderSeries::new);
 

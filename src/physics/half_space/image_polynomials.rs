@@ -48,6 +48,12 @@ impl Centre {
         let (s, t) = (squares(x), squares(y));
         [polynomial(&self.first, &s, &t), polynomial(&self.second, &s, &t)]
     }
+
+    /// `S_0` alone.
+    #[inline(always)]
+    pub(super) fn first(&self, x: &[f64; LANES], y: &[f64; LANES]) -> [f64; LANES] {
+        polynomial(&self.first, &squares(x), &squares(y))
+    }
 }
 
 /// Coefficients of the image sums of all orders, shared by the process.

@@ -225,18 +225,15 @@ impl EquilibriumPath {
             }
         }
         if !near.shell.is_empty() {
-            let far = |i: usize| {
-                let place = problem.place(i);
-                let is_far = problem.neighbours.distance(place, &near.centre) > near.reach;
-                is_far.then(|| load * problem.material.compliance() * problem.neighbours.kernel(place, &near.centre))
-            };
-            for &i in &self.predictor.state.contacts {
-                far(i).into_iter().for_each(|change| self.pending.add_far(i, change));
+            let far = |targets: &[usize]| problem.field.far_from_load(load, &near.centre, near.reach, targets);
+            for (&i, change) in self.predictor.state.contacts.iter().zip(far(&self.predictor.state.contacts)) {
+                self.pending.add_far(i, change);
             }
-            for k in 0..self.predictor.candidates.len() {
-                let i = self.predictor.candidates[k];
-                far(i).into_iter().for_each(|change| self.predictor.displace(problem, i, change));
+            let candidates = std::mem::take(&mut self.predictor.candidates);
+            for (&i, change) in candidates.iter().zip(far(&candidates)) {
+                self.predictor.displace(problem, i, change);
             }
+            self.predictor.candidates = candidates;
         }
         self.expect_load(self.neighbourhood.local.approach, response);
     }

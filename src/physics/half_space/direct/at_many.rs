@@ -15,14 +15,14 @@ const BLOCK: usize = 64 * LANES;
 
 /// Targets as columns, padded to whole passes.
 #[derive(Debug, Default)]
-struct Targets {
-    x: Vec<[f64; LANES]>,
-    y: Vec<[f64; LANES]>,
+pub(super) struct Targets {
+    pub(super) x: Vec<[f64; LANES]>,
+    pub(super) y: Vec<[f64; LANES]>,
 }
 
 impl Targets {
     /// Replaces the columns by these places.
-    fn set(&mut self, places: impl ExactSizeIterator<Item = [f64; 2]>) {
+    pub(super) fn set(&mut self, places: impl ExactSizeIterator<Item = [f64; 2]>) {
         let passes = places.len().div_ceil(LANES);
         for column in [&mut self.x, &mut self.y] {
             column.clear();
