@@ -16,7 +16,7 @@ const SHELL: usize = 5;
 
 /// Free asperities next to an event are followed from so many length scales before their jump-in: an event moves them by some jump-off
 /// penetrations.
-const SPAN: f64 = 5.0;
+const SPAN: f64 = 3.0;
 
 /// Local problem of an event with its shell.
 #[derive(Debug, Default)]
