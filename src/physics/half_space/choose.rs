@@ -3,7 +3,7 @@
 //! Both give the same field, so the choice may change along a path.
 
 use super::spot_field::Spot;
-use super::{DirectSum, Effort, FastSum, Interaction, PairTable, Spots, Tangent};
+use super::{DirectSum, Effort, FastSum, Interaction, PairTable, PointLoad, Spots, Tangent};
 use crate::model::{Boundary, Interaction as Kind, Material, Slips};
 
 /// Numbers of contact spots above which the fast sum is faster: with periodic images, with a table of their sums, and without images.
@@ -110,9 +110,9 @@ impl Best {
         self.direct[1].far_from_load(load, place, reach, targets)
     }
 
-    /// Displacements by the images of a load, see [`DirectSum::images_of_load`].
-    pub(crate) fn images_of_load(&self, load: f64, place: &[f64; 2], targets: &[usize]) -> Vec<f64> {
-        self.direct[1].images_of_load(load, place, targets)
+    /// Displacements by loads next to one another, see [`DirectSum::of_loads`].
+    pub(crate) fn of_loads(&self, loads: &[PointLoad], centre: &[f64; 2], targets: &[usize]) -> Vec<f64> {
+        self.direct[1].of_loads(loads, centre, targets)
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod at_many;
 mod point_load;
+pub(crate) use point_load::PointLoad;
 
 use super::ewald::{IMAGES, ORDERS, RemainderSeries};
 use super::image_polynomials::{CENTRE, Centre};

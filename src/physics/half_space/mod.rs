@@ -12,6 +12,7 @@ pub mod spot_field;
 use crate::physics::math::vector::dot;
 pub use choose::{Best, best};
 pub use direct::DirectSum;
+pub(crate) use direct::PointLoad;
 pub use particle_mesh::FastSum;
 use particle_mesh::Sparse;
 pub(crate) use patch_pairs::PairTable;

@@ -95,7 +95,7 @@ impl Neighbourhood {
 }
 
 impl Surroundings<'_> {
-    /// Chooses members, free asperities and shell around a place \[m\]; all lists but the shell ascend.
+    /// Chooses members, free asperities and shell around a place \[m\]; all lists ascend.
     fn select(&self, transition: &Transition, place: &[f64; 2]) -> Selection {
         let problem = self.problem;
         let (state, traces) = (&self.predictor.state, &self.predictor.traces);
@@ -124,13 +124,14 @@ impl Surroundings<'_> {
             problem.neighbours.around(
                 place,
                 reach,
-                |i| near_jump_in(&i),
+                |i| state.status[i] == Status::Free && !traces[i].value.is_nan(),
                 |r, i| {
-                    if r <= inner { &mut watched } else { &mut shell }.push(i);
+                    if r <= inner && near_jump_in(&i) { &mut watched } else { &mut shell }.push(i);
                 },
             );
         }
         watched.sort_unstable();
+        shell.sort_unstable();
         Selection { members, watched, shell, reach }
     }
 }

@@ -213,7 +213,7 @@ impl EquilibriumPath {
     /// Changes the field around the local problem by `changes` at the shell \[m\], since its load has changed by `load`. The load of the
     /// contact will change by `response` \[N\] when the pending displacements are applied.
     fn propagate(&mut self, changes: &[f64], load: f64, response: f64, avalanche: &mut Avalanche) {
-        let limit = self.pending_limit();
+        let (limit, scale) = (self.pending_limit(), self.frame.scale);
         let problem = &*self.problem();
         let near = &self.neighbourhood;
         for (&j, &change) in near.shell.iter().zip(changes) {
@@ -221,7 +221,10 @@ impl EquilibriumPath {
                 self.pending.add_near(j, change, limit);
             } else {
                 self.predictor.displace(problem, j, change);
-                avalanche.open.push(j);
+                // Farther from its jump-in nothing is due, nor is it in this increment.
+                if self.predictor.traces[j].value > problem.jump_in[j] - scale {
+                    avalanche.open.push(j);
+                }
             }
         }
         if !near.shell.is_empty() {

@@ -1,4 +1,4 @@
-//! Displacement by one point load at many targets: the effect of an event far from it.
+//! Displacement by point loads at many targets: the effect of an event on the contacts around it.
 
 use super::at_many::Targets;
 use super::{DirectSum, in_sides};
@@ -11,49 +11,88 @@ impl DirectSum {
     ///
     /// The image sums have six digits.
     pub(crate) fn far_from_load(&self, load: f64, place: &[f64; 2], reach: f64, targets: &[usize]) -> Vec<f64> {
-        self.of_load(load, place, Part::Beyond(reach), targets)
+        let columns = self.columns(targets);
+        let (place, moment) = (self.place(*place), self.moment(load));
+        let mut sums = vec![[0.0; LANES]; columns.x.len()];
+        if self.periodic {
+            image_fields(place, moment, &columns, &mut sums);
+            leave_out(place, BEYOND.sqrt() * reach, &columns, &mut sums);
+        }
+        load_field(place, moment, BEYOND.sqrt() * reach, &columns, &mut sums);
+        sums.as_flattened()[..targets.len()].to_vec()
     }
 
-    /// Displacement \[m\] at each of `targets` by all images but the nearest of a load \[N\] at `place` \[m\], to six digits.
-    pub(crate) fn images_of_load(&self, load: f64, place: &[f64; 2], targets: &[usize]) -> Vec<f64> {
-        self.of_load(load, place, Part::Images, targets)
+    /// Displacement \[m\] at each of `targets` by loads next to one another, each where the target is farther than its reach, and by the images of their
+    /// sum at `centre` \[m\].
+    ///
+    /// The image sums have six digits.
+    pub(crate) fn of_loads(&self, loads: &[PointLoad], centre: &[f64; 2], targets: &[usize]) -> Vec<f64> {
+        let columns = self.columns(targets);
+        let mut sums = vec![[0.0; LANES]; columns.x.len()];
+        let whole: f64 = loads.iter().map(|load| load.load_n).sum();
+        if self.periodic {
+            image_fields(self.place(*centre), self.moment(whole), &columns, &mut sums);
+        }
+        for load in loads {
+            load_field(self.place(load.place), self.moment(load.load_n), load.reach_m, &columns, &mut sums);
+        }
+        sums.as_flattened()[..targets.len()].to_vec()
     }
 
-    fn of_load(&self, load: f64, place: &[f64; 2], part: Part, targets: &[usize]) -> Vec<f64> {
+    fn columns(&self, targets: &[usize]) -> Targets {
         let mut columns = Targets::default();
         columns.set(targets.iter().map(|target| self.positions[*target]));
-        let moment = load * self.compliance / self.length;
-        let mut sums = vec![[0.0; LANES]; columns.x.len()];
-        load_fields(self.place(*place), moment, (part, self.periodic), &columns, &mut sums);
-        sums.as_flattened()[..targets.len()].to_vec()
+        columns
+    }
+
+    /// Displacement by a load \[N\] at a distance of one side \[m\].
+    fn moment(&self, load: f64) -> f64 {
+        load * self.compliance / self.length
     }
 }
 
 /// Square of the distance over that of the reach from which a target is beyond it: rounding must not decide on one at the reach itself.
 const BEYOND: f64 = 1.0 + 1e-12;
 
-/// Part of the displacement that is wanted.
+/// A load, and the distance beyond which it acts.
 #[derive(Debug, Clone, Copy)]
-enum Part {
-    /// The load and its images, at targets farther than this \[m\].
-    Beyond(f64),
-    /// The images.
-    Images,
+pub(crate) struct PointLoad {
+    pub(crate) place: [f64; 2],
+    pub(crate) load_n: f64,
+    pub(crate) reach_m: f64,
 }
 
-/// Fields of a load of this moment \[m\] at targets, with images if `periodic`.
+/// Adds the field of a load of this moment \[m\] at targets farther than `reach` \[m\].
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-fn load_fields(place: Place, moment: f64, (part, periodic): (Part, bool), targets: &Targets, sums: &mut [[f64; LANES]]) {
+fn load_field(place: Place, moment: f64, reach: f64, targets: &Targets, sums: &mut [[f64; LANES]]) {
+    for ((x, y), sum) in targets.x.iter().zip(&targets.y).zip(sums) {
+        let r2 = squared_distances(place, x, y);
+        for k in 0..LANES {
+            sum[k] += if r2[k] > reach * reach { moment * place.length / r2[k].sqrt() } else { 0.0 };
+        }
+    }
+}
+
+/// Adds the field of the images of a load of this moment \[m\].
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
+fn image_fields(place: Place, moment: f64, targets: &Targets, sums: &mut [[f64; LANES]]) {
     let centre: &Centre = &CENTRE;
     for ((x, y), sum) in targets.x.iter().zip(&targets.y).zip(sums) {
-        if periodic {
-            let (dx, dy) = in_sides(place, x, y);
-            *sum = centre.first(&dx, &dy).map(|images| moment * images);
+        let (dx, dy) = in_sides(place, x, y);
+        let images = centre.first(&dx, &dy);
+        for k in 0..LANES {
+            sum[k] += moment * images[k];
         }
-        if let Part::Beyond(reach) = part {
-            let r2 = squared_distances(place, x, y);
-            for k in 0..LANES {
-                sum[k] = if r2[k] > BEYOND * reach * reach { sum[k] + moment * place.length / r2[k].sqrt() } else { 0.0 };
+    }
+}
+
+/// Sets the field to zero at targets that are not farther than `reach` \[m\].
+fn leave_out(place: Place, reach: f64, targets: &Targets, sums: &mut [[f64; LANES]]) {
+    for ((x, y), sum) in targets.x.iter().zip(&targets.y).zip(sums) {
+        let r2 = squared_distances(place, x, y);
+        for k in 0..LANES {
+            if r2[k] <= reach * reach {
+                sum[k] = 0.0;
             }
         }
     }
@@ -87,13 +126,18 @@ mod tests {
                 assert!((found - wanted).abs() <= 1e-5 * wanted.abs(), "{boundary:?}: {found:e} {wanted:e}");
             }
         }
-        // Where the nearest image is the load itself, the images are the difference of the two squares.
-        let images = sum(Boundary::Periodic).images_of_load(load, &at, &targets);
-        for ((found, place), whole) in images.iter().zip(&positions).zip(periodic.iter().zip(&free)) {
-            if (0..2).all(|k| (place[k] - at[k]).abs() < 5e-4) {
-                assert!((found - (whole.0 - whole.1)).abs() <= 1e-5 * found.abs(), "{found:e} {whole:?}");
+        // Of two loads at one place, only the one with a short reach acts within the long one, and both images do.
+        let share = |load_n: f64, reach_m: f64| PointLoad { place: at, load_n, reach_m };
+        let loads = [share(0.25 * load, 0.0), share(0.75 * load, reach)];
+        let found = sum(Boundary::Periodic).of_loads(&loads, &at, &targets);
+        let near = sum(Boundary::Periodic).far_from_load(load, &at, reach, &targets);
+        for (((found, place), whole), near) in found.iter().zip(&positions).zip(periodic.iter().zip(&free)).zip(&near) {
+            // Where the nearest image is the load itself, the images are the difference of the two squares.
+            if *place != at && (0..2).all(|k| (place[k] - at[k]).abs() < 5e-4) {
+                let acting = if *near == 0.0 { 0.25 } else { 1.0 };
+                let wanted = whole.0 - whole.1 + acting * whole.1;
+                assert!((found - wanted).abs() <= 1e-5 * wanted.abs(), "{found:e} {whole:?}");
             }
         }
-        assert!(sum(Boundary::Isolated).images_of_load(load, &at, &targets).iter().all(|found| *found == 0.0));
     }
 }

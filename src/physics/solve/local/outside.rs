@@ -2,6 +2,7 @@
 
 use super::{LocalProblem, OutsideField};
 use crate::physics::contact::problem::Problem;
+use crate::physics::half_space::PointLoad;
 
 /// Member before a change.
 #[derive(Debug, Clone, Copy)]
@@ -46,13 +47,13 @@ impl Source {
         self.load += problem.asperities[self.asperity].load(radius);
     }
 
-    /// Displacement at a place beyond the expected one \[m\], without images.
-    fn field(&self, problem: &Problem, place: &[f64; 2], compliance: f64) -> f64 {
-        let r = problem.neighbours.distance(place, problem.place(self.asperity));
-        let (radius, was) = (self.now.unwrap_or(0.0), self.before.map_or(0.0, |before| before.radius));
-        if r > ALOOF * radius.max(was) {
-            return compliance * self.load / r;
-        }
+    /// Distance beyond which it acts by its load alone \[m\].
+    fn reach(&self) -> f64 {
+        ALOOF * self.now.unwrap_or(0.0).max(self.before.map_or(0.0, |before| before.radius))
+    }
+
+    /// Displacement at a distance r beyond the expected one \[m\], without images.
+    fn field(&self, problem: &Problem, r: f64) -> f64 {
         let field = |a: f64| problem.spot_field(&problem.asperities[self.asperity], r, a);
         let (was, slope) = self.before.map_or((0.0, 0.0), |before| field(before.radius));
         let more = self.before.map_or(0.0, |before| before.more);
@@ -72,7 +73,7 @@ impl LocalProblem {
         self.members.iter().zip(&self.radius).map(state).collect()
     }
 
-    /// Changes of the displacements at asperities beyond the expected ones \[m\]: of the loads as points, and next to a contact of its
+    /// Changes of the displacements at asperities (ascending) beyond the expected ones \[m\]: of the loads as points, and next to a contact of its
     /// field.
     pub(crate) fn displacement_changes(
         &self,
@@ -89,14 +90,17 @@ impl LocalProblem {
             });
             sources[at].set_now(problem, a);
         }
-        let whole: f64 = sources.iter().map(|source| source.load).sum();
-        let compliance = problem.material.compliance();
-        let of = |(&i, images): (&usize, f64)| {
-            let place = problem.place(i);
-            let near: f64 = sources.iter().map(|source| source.field(problem, place, compliance)).sum();
-            near + images
-        };
-        asperities.iter().zip(problem.field.images_of_load(whole, centre, asperities)).map(of).collect()
+        let as_point = |source: &Source| PointLoad { place: *problem.place(source.asperity), load_n: source.load, reach_m: source.reach() };
+        let loads: Vec<PointLoad> = sources.iter().map(as_point).collect();
+        let mut changes = problem.field.of_loads(&loads, centre, asperities);
+        for source in &sources {
+            problem.neighbours.within(source.asperity, source.reach(), |r, i| {
+                if let Ok(at) = asperities.binary_search(&i) {
+                    changes[at] += source.field(problem, r);
+                }
+            });
+        }
+        changes
     }
 
     /// `Σ F_i ∂ŵ_i/∂Δ` of the members by the outside \[N\]: by reciprocity, the effect of these loads on the load of the outside.
