@@ -46,7 +46,7 @@ impl Accuracy {
 
     /// Maximum lateness of a transition that is found there.
     pub(crate) fn lateness(self) -> f64 {
-        0.5 * self.0
+        2.0 * self.0
     }
 
     /// Maximum pending displacement of a contact.

@@ -55,7 +55,11 @@ impl EquilibriumPath {
             let next = most_overdue(&due, &avalanche.moved, self.state())
                 .or_else(|| self.worst_pending().map(pending))
                 .or_else(|| most_overdue(&self.due_coalescence(&avalanche.open), &avalanche.moved, self.state()));
-            let Some(transition) = next else { break };
+            let Some(transition) = next else {
+                let coalescing = self.due_coalescence(&avalanche.open);
+                self.postponed.extend(due.iter().chain(&coalescing).map(|trigger| trigger.transition.asperity));
+                break;
+            };
             self.count_trial(approach, transition.asperity)?;
             self.gather(&transition, Some(approach));
             if transition.kind == Kind::Snap || self.has_pending() {
@@ -118,7 +122,7 @@ impl EquilibriumPath {
         let mut due = self.problem().triggers(&self.predictor, touched, free);
         let state = &self.predictor.state;
         let chatter = &mut self.chatter;
-        let mut carried: Vec<usize> = Vec::new();
+        let (mut carried, mut postponed) = (Vec::new(), Vec::new());
         due.retain(|trigger| {
             let i = trigger.transition.asperity;
             let mut allowed = chatter.allows(&trigger.transition);
@@ -134,9 +138,11 @@ impl EquilibriumPath {
             }
             if !allowed {
                 chatter.freeze(i);
+                postponed.push(i);
             }
             allowed
         });
+        self.postponed.extend(postponed);
         for i in carried {
             self.keep_covered(i, self.neighbourhood.local.approach);
         }

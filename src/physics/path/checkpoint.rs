@@ -16,6 +16,7 @@ pub(crate) struct Checkpoint {
     pub(super) problem: Arc<Problem>,
     pub(super) predictor: Predictor,
     pub(super) chatter: ChatterGuard,
+    pub(super) postponed: Vec<usize>,
     pub(super) totals: Totals,
     /// `Π − work` \[J\].
     pub(super) balance: f64,

@@ -3,6 +3,7 @@
 use super::accuracy::Precision;
 use super::equilibrium_path::EquilibriumPath;
 use super::rejection::Rejection;
+use super::triggers::Trigger;
 use super::work::work;
 use crate::physics::Reason;
 use crate::physics::contact::Status;
@@ -208,11 +209,16 @@ impl EquilibriumPath {
     /// Transitions that are due anywhere, the most overdue first, each with its lateness \[m\].
     fn overdue(&mut self) -> Vec<(f64, Transition)> {
         let problem = &*self.problem();
+        let postponed = std::mem::take(&mut self.postponed);
         let contacts = self.state().contacts.clone();
         let candidates = self.predictor.candidates.clone();
         let mut due = self.due_transitions(&contacts, &candidates);
         due.extend(self.due_coalescence(&contacts));
-        let mut late: Vec<(f64, Transition)> = due.iter().map(|t| (problem.lateness(t, &self.predictor), t.transition)).collect();
+        let lateness = |trigger: &Trigger| {
+            let waits = postponed.contains(&trigger.transition.asperity);
+            if waits { 0.0 } else { problem.lateness(trigger, &self.predictor) }
+        };
+        let mut late: Vec<(f64, Transition)> = due.iter().map(|trigger| (lateness(trigger), trigger.transition)).collect();
         late.sort_by(|u, v| v.0.total_cmp(&u.0).then(u.1.asperity.cmp(&v.1.asperity)));
         late
     }

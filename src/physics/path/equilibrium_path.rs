@@ -31,6 +31,8 @@ pub(crate) struct EquilibriumPath {
     pub(super) energy: EnergyLedger,
     pub(super) steps: StepControl,
     pub(super) chatter: ChatterGuard,
+    /// Asperities with a transition that is due and waits for the path to continue: found again, it is not late.
+    pub(super) postponed: Vec<usize>,
     pub(super) log: EventLog,
     /// Load and area at the last global solve.
     pub(super) totals: Totals,
@@ -65,6 +67,7 @@ impl EquilibriumPath {
             energy: EnergyLedger::new(approach, 0, 0.0),
             steps,
             chatter,
+            postponed: Vec::new(),
             log: EventLog::default(),
             totals: Totals::default(),
             precision: Precision::Exact,

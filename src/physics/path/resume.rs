@@ -60,6 +60,7 @@ impl EquilibriumPath {
             problem: self.problem(),
             predictor: self.predictor.clone(),
             chatter: self.chatter.clone(),
+            postponed: self.postponed.clone(),
             totals: self.totals,
             balance: self.energy.balance(),
             log: self.log.clone_without_events(),
@@ -77,6 +78,7 @@ impl EquilibriumPath {
         }
         self.predictor.clone_from(&checkpoint.predictor);
         self.chatter.clone_from(&checkpoint.chatter);
+        self.postponed.clone_from(&checkpoint.postponed);
         self.totals = checkpoint.totals;
         self.log.restore(&checkpoint.log, checkpoint.events, checkpoint.segments);
         self.energy = EnergyLedger::new(self.state().approach_m, self.log.events.len(), checkpoint.balance);
