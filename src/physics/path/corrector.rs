@@ -6,10 +6,10 @@ use super::rejection::Rejection;
 use super::triggers::Trigger;
 use super::work::work;
 use crate::physics::Reason;
-use crate::physics::contact::Status;
 use crate::physics::contact::transition::{Kind, Transition};
+use crate::physics::contact::{Status, Totals};
 use crate::physics::math::vector::dot;
-use crate::physics::solve::newton::Damping;
+use crate::physics::solve::descent::{Failing, Relaxed};
 use crate::physics::solve::residual::NotConverged;
 use crate::physics::solve::trace::PenetrationTrace;
 
@@ -43,18 +43,7 @@ impl EquilibriumPath {
             if !first.residual_m.is_nan() {
                 self.log.drift_m = self.log.drift_m.max(first.residual_m);
             }
-            let start = if strict { Vec::new() } else { self.state().radius.clone() };
-            let rates = match self.solve_globally(first, strict) {
-                Ok(rates) => rates,
-                Err(reason) => {
-                    if strict {
-                        return Err(reason.into());
-                    }
-                    self.predictor.state.radius = start;
-                    self.relax_contact(target)?;
-                    self.finite_rates(first)?
-                }
-            };
+            let rates = if strict { self.solve_globally(first, Failing::EndsAtOnce)?.0 } else { self.solve_or_relax(first, target)? };
             let since = match (jump || rounds > 0, self.pending.is_smooth()) {
                 (true, _) => Since::Jump,
                 (false, true) => Since::Growth,
@@ -75,17 +64,35 @@ impl EquilibriumPath {
         }
     }
 
-    /// Solves the global problem from the state that was evaluated last; its rates are returned if it is stable.
-    fn solve_globally(&mut self, first: NotConverged, strict: bool) -> Result<Vec<f64>, NotConverged> {
+    /// Solves the global problem from the state that was evaluated last. Where contacts have no equilibrium nearby they relax, at last all of them; what
+    /// leaves or is absorbed on the way belongs to the present avalanche. The rates are returned.
+    fn solve_or_relax(&mut self, first: NotConverged, target: f64) -> Result<Vec<f64>, Rejection> {
+        let (start, before) = (self.state().clone(), self.predictor.totals(target));
+        match self.solve_globally(first, Failing::Relaxes) {
+            Ok((rates, relaxed)) => {
+                if relaxed.groups > 0 {
+                    self.enter_relaxed(&relaxed.transitions, before, target);
+                }
+                Ok(rates)
+            }
+            Err(_) => {
+                self.predictor.state = start;
+                self.relax_contact(target)?;
+                Ok(self.finite_rates(first)?)
+            }
+        }
+    }
+
+    /// Solves the global problem from the state that was evaluated last; its rates are returned if it is stable, with the relaxations on the way.
+    fn solve_globally(&mut self, first: NotConverged, failing: Failing) -> Result<(Vec<f64>, Relaxed), NotConverged> {
         let tolerance = match self.precision {
             Precision::Exact => self.problem().tolerance_m(),
             Precision::Sufficient => self.accuracy().sufficient() * self.frame.scale,
         };
-        let damping = if strict { Damping::NORMAL } else { Damping::PATIENT };
-        self.solver.newton(&mut self.predictor.state, first, damping, tolerance)?;
+        let relaxed = self.solver.newton(&mut self.predictor.state, first, failing, tolerance)?;
         let rates = self.finite_rates(first)?;
         let stable = self.state().stability > 0.0;
-        if stable { Ok(rates) } else { Err(NotConverged::because(Reason::Unstable, first.asperity)) }
+        if stable { Ok((rates, relaxed)) } else { Err(NotConverged::because(Reason::Unstable, first.asperity)) }
     }
 
     /// Applies overdue transitions, each with its avalanche, if it is still due.
@@ -223,12 +230,17 @@ impl EquilibriumPath {
         late
     }
 
-    /// Relaxes the contact where Newton's method finds no equilibrium. Contacts that leave or are absorbed on the way belong to the present
-    /// avalanche; it is charged with the loss of the potential at the next global solve.
+    /// Relaxes all contacts where Newton's method finds no equilibrium.
     fn relax_contact(&mut self, target: f64) -> Result<(), Rejection> {
         let before = self.predictor.totals(target);
         let changes = self.solver.relax(&mut self.predictor.state)?;
-        for change in &changes {
+        self.enter_relaxed(&changes, before, target);
+        Ok(())
+    }
+
+    /// Enters the transitions of a relaxation; the last event is charged with the loss of the potential at the next global solve.
+    fn enter_relaxed(&mut self, changes: &[Transition], before: Totals, target: f64) {
+        for change in changes {
             self.predictor.traces[change.asperity].value = f64::NAN;
             self.predictor.set(change.asperity, change.status(&self.problem()), 0.0);
             if change.kind == Kind::JumpOff {
@@ -236,9 +248,8 @@ impl EquilibriumPath {
             }
         }
         let (after, _) = self.problem().totals(self.state());
-        self.record(&changes, target, before, after, 0.0);
+        self.record(changes, target, before, after, 0.0);
         self.energy.charge_last_event();
-        Ok(())
     }
 
     /// Relaxes the contact at `target` \[m\], as the last resort.

@@ -2,30 +2,20 @@
 //!
 //! Unknowns are the contact radii; the residual of each is `D_i − ŵ_i − δ_JKR(a_i)`, with `D_i = Δ + z_i`. The paper's Eq 9 is a diagonal
 //! Newton update of all contacts at once; it diverges. Here:
-//! - [`GlobalSolver::newton`]: Newton's method with GMRES;
-//! - [`GlobalSolver::relax`]: overdamped relaxation ([`super::relaxation`]), where Newton's method fails at a fold or after a jump.
+//! - [`GlobalSolver::newton`]: Newton's method with GMRES ([`super::descent`]);
+//! - [`GlobalSolver::relax`]: overdamped relaxation ([`super::overdamped`]), where Newton's method fails at a fold or after a jump.
 
-use super::newton::{Damping, NonlinearSystem, Worst, damped_newton};
-use super::relaxation::{Relaxing, relax};
-use super::residual::{NotConverged, STRIDE};
+use super::residual::NotConverged;
 use super::schwarz::LocalInverse;
 use super::trace::PenetrationTrace;
 use crate::physics::contact::problem::Problem;
 use crate::physics::contact::state::State;
-use crate::physics::contact::transition::{ContactView, Transition};
 use crate::physics::half_space::{Effort, Interaction as _, Spots, Tangent};
 use crate::physics::math::gmres::{Limits, LinearOperator, Solution, gmres, gmres_and_least};
 use std::sync::Arc;
 
 /// Maximum number of products in one linear solve.
 const PRODUCTS: usize = 120;
-
-/// Relative residuals of linear solves.
-const MOST: f64 = 3e-3;
-const LEAST: f64 = 1e-5;
-
-/// The largest of them where the precision is only sufficient.
-const ROUGH: f64 = 3e-2;
 
 /// Relative residual of the rates, at exact and at sufficient precision: predictions depend on them.
 const RATES: f64 = 1e-6;
@@ -121,13 +111,6 @@ impl GlobalSolver {
         worst
     }
 
-    /// Newton's method at the mean penetration of a state that was evaluated last.
-    pub(crate) fn newton(&mut self, state: &mut State, first: NotConverged, damping: Damping, tolerance: f64) -> Result<(), NotConverged> {
-        let exact = tolerance <= self.problem.tolerance_m();
-        let mut descent = Descent { solver: self, state, exact, tolerance, step: Vec::new(), start: Vec::new() };
-        damped_newton(&mut descent, first.into(), damping, tolerance)
-    }
-
     /// Counts the products of a solution.
     fn count(&mut self, found: Solution) -> Vec<f64> {
         self.effort.products += found.products;
@@ -136,7 +119,7 @@ impl GlobalSolver {
     }
 
     /// Newton step with a relative residual of the linear solve.
-    fn newton_step(&mut self, state: &State, wanted: f64) -> Vec<f64> {
+    pub(super) fn newton_step(&mut self, state: &State, wanted: f64) -> Vec<f64> {
         let Self { problem, tangents, inverse, diagonal, residual, .. } = self;
         let jacobian = Jacobian { tangent: &tangents.contacts, diagonal };
         let inverse = inverse.of(problem, state, &tangents.contacts, diagonal);
@@ -144,10 +127,13 @@ impl GlobalSolver {
         self.count(found)
     }
 
-    /// Relaxes from a state; the transitions on the way are returned.
-    pub(crate) fn relax(&mut self, state: &mut State) -> Result<Vec<Transition>, NotConverged> {
-        let problem = &*Arc::clone(&self.problem);
-        relax(&mut Whole { solver: self, state }, problem, None)
+    /// Step of an implicit relaxation over a pseudo-time.
+    pub(super) fn relaxation_step(&mut self, time: f64) -> Vec<f64> {
+        let Self { tangents, diagonal, residual, .. } = &*self;
+        let damped: Vec<f64> = diagonal.iter().map(|d| d + 1.0 / time).collect();
+        let limits = Limits { tolerance: 1e-3, products: PRODUCTS };
+        let step = gmres(&Jacobian { tangent: &tangents.contacts, diagonal: &damped }, None, residual, limits);
+        self.count(step)
     }
 
     /// `da_i/dΔ` at the equilibrium that was evaluated last; `exact`, or of sufficient precision. The stability is entered into the state: its sign is
@@ -217,97 +203,5 @@ impl LinearOperator for Jacobian<'_> {
 
     fn diagonal(&self, i: usize) -> f64 {
         self.diagonal[i] + self.tangent.own(i)
-    }
-}
-
-/// Newton's method on all contacts of a state.
-struct Descent<'a> {
-    solver: &'a mut GlobalSolver,
-    state: &'a mut State,
-    exact: bool,
-    tolerance: f64,
-    step: Vec<f64>,
-    start: Vec<f64>,
-}
-
-impl NonlinearSystem for Descent<'_> {
-    fn evaluate(&mut self) -> Worst {
-        self.solver.effort.iterations += 1;
-        self.solver.evaluate(self.state).into()
-    }
-
-    fn begin_step(&mut self, round: usize, worst: &Worst) {
-        // The first step reduces the residual to its square at best; the next ones are to be the last.
-        let wanted = match (self.exact, round) {
-            (true, 0) => MOST,
-            (true, _) => (0.1 * self.tolerance / worst.largest_m).clamp(LEAST, MOST),
-            (false, _) => (0.3 * self.tolerance / worst.largest_m).clamp(MOST, ROUGH),
-        };
-        self.step = self.solver.newton_step(self.state, wanted);
-        limit(&mut self.step, self.state, STRIDE);
-        self.start = self.state.contacts.iter().map(|&i| self.state.radius[i]).collect();
-    }
-
-    fn advance(&mut self, share: f64) {
-        for ((&i, s), from) in self.state.contacts.iter().zip(&self.step).zip(&self.start) {
-            self.state.radius[i] = from + share * s;
-        }
-    }
-}
-
-/// Global problem during a relaxation.
-struct Whole<'a> {
-    solver: &'a mut GlobalSolver,
-    state: &'a mut State,
-}
-
-impl Relaxing for Whole<'_> {
-    fn evaluate(&mut self) -> NotConverged {
-        self.solver.effort.iterations += 1;
-        self.solver.evaluate(self.state)
-    }
-
-    fn spots(&self) -> Vec<ContactView> {
-        self.state.contacts.iter().zip(&self.solver.residual).map(|(&i, r)| (i, self.state.radius[i], *r)).collect()
-    }
-
-    fn take_out(&mut self, change: &Transition) {
-        self.state.set(change.asperity, change.status(&self.solver.problem), 0.0);
-    }
-
-    fn finish(&mut self) -> bool {
-        let mut end = self.state.clone();
-        let first = self.solver.evaluate(&mut end);
-        let found = self.solver.newton(&mut end, first, Damping::PATIENT, self.solver.problem.tolerance_m()).is_ok();
-        if found {
-            *self.state = end;
-        }
-        found
-    }
-
-    fn step(&mut self, time: f64) -> (Vec<f64>, bool) {
-        let GlobalSolver { tangents, diagonal, residual, .. } = &*self.solver;
-        let damped: Vec<f64> = diagonal.iter().map(|d| d + 1.0 / time).collect();
-        let limits = Limits { tolerance: 1e-3, products: PRODUCTS };
-        let step = gmres(&Jacobian { tangent: &tangents.contacts, diagonal: &damped }, None, residual, limits);
-        (self.solver.count(step), true)
-    }
-
-    fn tolerance_m(&self) -> f64 {
-        self.solver.problem.tolerance_m()
-    }
-
-    fn advance(&mut self, step: &[f64], share: f64) {
-        for (&i, s) in self.state.contacts.iter().zip(step) {
-            self.state.radius[i] += share * s;
-        }
-    }
-}
-
-/// Shortens a step to a largest relative change of a radius.
-fn limit(step: &mut [f64], state: &State, most: f64) {
-    let stride = state.contacts.iter().zip(&*step).map(|(&i, s)| s.abs() / state.radius[i]).fold(0.0, f64::max);
-    if stride > most {
-        step.iter_mut().for_each(|s| *s *= most / stride);
     }
 }

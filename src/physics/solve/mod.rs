@@ -1,8 +1,10 @@
 //! Equilibria of a contact at one approach: global, local, and by relaxation.
 
+pub(crate) mod descent;
 pub(crate) mod global;
 pub(crate) mod local;
 pub(crate) mod newton;
+mod overdamped;
 pub(crate) mod relaxation;
 pub(crate) mod residual;
 mod schwarz;

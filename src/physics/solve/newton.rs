@@ -44,6 +44,11 @@ pub(crate) trait NonlinearSystem {
     /// Computes a step from the present unknowns.
     fn begin_step(&mut self, round: usize, worst: &Worst);
 
+    /// Reduces the largest residual by other means, after a full step that has not; nothing if there are none.
+    fn repair(&mut self, _worst: &Worst) -> Option<Result<Worst, NotConverged>> {
+        None
+    }
+
     /// Moves the unknowns by a share of the step from where it began.
     fn advance(&mut self, share: f64);
 }
@@ -64,6 +69,12 @@ pub(crate) fn damped_newton(
         if worst.largest_m < best {
             (best, share) = (worst.largest_m, 1.0);
             system.begin_step(round, &worst);
+        } else if share == 1.0
+            && worst.largest_m.is_finite()
+            && let Some(repaired) = system.repair(&worst)
+        {
+            (best, worst) = (f64::INFINITY, repaired?);
+            continue;
         } else {
             // No descent, or not a number.
             share *= 0.5;
