@@ -1,9 +1,8 @@
 //! Avalanches: all transitions at one mean penetration that follow from an event.
 //!
 //! One transition is applied at a time, the most overdue first, and the local problem relaxes before the next is chosen. Contacts merge and
-//! split only when nothing else is due. An asperity that
-//! has left contact does not return within the avalanche. Contacts with a large pending displacement are solved in local problems of their
-//! own, the largest first.
+//! split only when nothing else is due. An asperity that has left contact does not return within the avalanche. Contacts with a large pending
+//! displacement are solved in local problems of their own, the largest first. After a large avalanche the global problem is solved.
 
 use super::equilibrium_path::EquilibriumPath;
 use super::rejection::Rejection;
@@ -17,6 +16,9 @@ const EDGE: f64 = 1e-8;
 
 /// Maximum number of local solves that propagate an event: at least so many, or the number of contacts over this.
 const MOST_SOLVES: usize = 16;
+
+/// Number of transitions from which the global problem is solved after an avalanche: it moves contacts far away by more than its load as a point does.
+const LARGE: usize = 13;
 
 /// Transitions of an avalanche, and the asperities that it has touched.
 #[derive(Debug, Default)]
@@ -40,7 +42,7 @@ impl EquilibriumPath {
 
     /// Applies what is due among the open asperities until nothing is, and no pending displacement exceeds the limit; the touched
     /// asperities are returned. A transition that would undo an earlier one waits for the path to continue. Nothing is returned if the
-    /// propagation does not end: the global problem is to be solved.
+    /// propagation does not end or the avalanche is large: the global problem is to be solved.
     pub(super) fn run_avalanche(&mut self, mut avalanche: Avalanche) -> Result<Option<Vec<usize>>, Rejection> {
         let approach = self.neighbourhood.local.approach;
         let mut solves = 0;
@@ -75,6 +77,7 @@ impl EquilibriumPath {
             }
         }
         self.close_avalanche(&avalanche.moved);
+        propagated &= avalanche.moved.len() < LARGE;
         Ok(propagated.then_some(avalanche.open))
     }
 

@@ -70,8 +70,9 @@ impl EquilibriumPath {
         let (start, before) = (self.state().clone(), self.predictor.totals(target));
         match self.solve_globally(first, Failing::Relaxes) {
             Ok((rates, relaxed)) => {
-                if relaxed.groups > 0 {
+                if let Some(leader) = relaxed.leader {
                     self.enter_relaxed(&relaxed.transitions, before, target);
+                    self.snap_unless(!relaxed.transitions.is_empty(), leader, before, target);
                 }
                 Ok(rates)
             }
@@ -252,6 +253,14 @@ impl EquilibriumPath {
         self.energy.charge_last_event();
     }
 
+    /// A relaxation without transitions (`changed`) is a snap of a contact.
+    fn snap_unless(&mut self, changed: bool, asperity: usize, before: Totals, target: f64) {
+        if !changed {
+            let (after, _) = self.problem().totals(self.state());
+            self.record(&[Transition { kind: Kind::Snap, asperity, by: None }], target, before, after, 0.0);
+        }
+    }
+
     /// Relaxes the contact at `target` \[m\], as the last resort.
     pub(super) fn relax_globally(&mut self, target: f64) -> Result<(), Rejection> {
         self.log.begin_avalanche();
@@ -259,10 +268,7 @@ impl EquilibriumPath {
         let asperity = self.state().contacts.first().copied().unwrap_or(0);
         self.predictor.go_to(&self.problem(), target);
         self.relax_contact(target)?;
-        if self.log.events.len() == events {
-            let (before, (after, _)) = (self.totals, self.problem().totals(self.state()));
-            self.record(&[Transition { kind: Kind::Snap, asperity, by: None }], target, before, after, 0.0);
-        }
+        self.snap_unless(self.log.events.len() > events, asperity, self.totals, target);
         for i in self.state().contacts.clone() {
             self.predictor.traces[i].value = f64::NAN;
         }

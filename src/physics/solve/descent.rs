@@ -40,8 +40,8 @@ impl Failing {
 /// Relaxations of groups of contacts in a solution.
 #[derive(Debug, Default)]
 pub(crate) struct Relaxed {
-    /// Number of groups that have relaxed.
-    pub(crate) groups: usize,
+    /// Contact around which the first of them was, if there are any.
+    pub(crate) leader: Option<usize>,
     /// Transitions on the way.
     pub(crate) transitions: Vec<Transition>,
 }
@@ -116,7 +116,7 @@ impl NonlinearSystem for Descent<'_> {
             for change in &transitions {
                 self.state.set(change.asperity, change.status(problem), 0.0);
             }
-            self.relaxed.groups += 1;
+            self.relaxed.leader.get_or_insert(worst.contact.asperity);
             self.relaxed.transitions.extend(transitions);
         }
         for (member, a) in local.members.iter().zip(&local.radius) {
