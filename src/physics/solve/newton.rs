@@ -98,6 +98,8 @@ mod tests {
         x: f64,
         start: f64,
         step: f64,
+        /// Where a repair goes.
+        repaired: Option<f64>,
     }
 
     impl NonlinearSystem for Arc {
@@ -109,22 +111,38 @@ mod tests {
             (self.start, self.step) = (self.x, -self.x.atan() * (1.0 + self.x * self.x));
         }
 
+        fn repair(&mut self, worst: &Worst) -> Option<Result<Worst, NotConverged>> {
+            // A place that is not a number stands for no equilibrium nearby.
+            self.x = self.repaired?;
+            Some(if self.x.is_nan() { Err(worst.contact) } else { Ok(self.evaluate()) })
+        }
+
         fn advance(&mut self, share: f64) {
             self.x = self.start + share * self.step;
         }
     }
 
+    fn solve(damping: Damping, repaired: Option<f64>) -> Result<f64, NotConverged> {
+        let mut arc = Arc { x: 5.0, start: 0.0, step: 0.0, repaired };
+        let first = arc.evaluate();
+        damped_newton(&mut arc, first, damping, 1e-12).map(|()| arc.x)
+    }
+
     #[test]
     fn law_damping_makes_steps_descend() {
-        let solve = |damping| {
-            let mut arc = Arc { x: 5.0, start: 0.0, step: 0.0 };
-            let first = arc.evaluate();
-            damped_newton(&mut arc, first, damping, 1e-12).map(|()| arc.x)
-        };
-        assert!(solve(Damping::PATIENT).is_ok_and(|x| x.abs() < 1e-12));
+        assert!(solve(Damping::PATIENT, None).is_ok_and(|x| x.abs() < 1e-12));
         // Without halvings the first step overshoots to −31.
-        assert!(solve(Damping { least_share: 1.0, rounds: 60 }).is_err());
+        assert!(solve(Damping { least_share: 1.0, rounds: 60 }, None).is_err());
         // A limit of rounds is kept.
-        assert!(solve(Damping { least_share: 1e-4, rounds: 2 }).is_err());
+        assert!(solve(Damping { least_share: 1e-4, rounds: 2 }, None).is_err());
+    }
+
+    #[test]
+    fn law_a_step_that_does_not_descend_is_repaired() {
+        let few = Damping { least_share: 1.0, rounds: 8 };
+        assert!(solve(few, Some(0.5)).is_ok_and(|x| x.abs() < 1e-12));
+        // Without an equilibrium nearby the solution ends at once; repairs that do not help end with the rounds.
+        assert!(solve(Damping::PATIENT, Some(f64::NAN)).is_err());
+        assert!(solve(few, Some(5.0)).is_err());
     }
 }

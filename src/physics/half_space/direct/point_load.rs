@@ -101,6 +101,7 @@ fn leave_out(place: Place, reach: f64, targets: &Targets, sums: &mut [[f64; LANE
 #[cfg(test)]
 mod tests {
     use super::super::DirectSum;
+    use super::PointLoad;
     use crate::model::{Boundary, Interaction as Kind, Material, Slips};
     use crate::physics::half_space::spot_field::Spot;
 
