@@ -30,13 +30,13 @@
 //! 15          next: the most overdue transition that does not undo one of the avalanche,    most_overdue
 //! 16          or the contact with the largest pending displacement above the limit,         worst_pending
 //!            or else the most overdue merging or splitting
-//! 17          none: the avalanche ends; too many solves: global solve here, back to 6
+//! 17          none: the avalanche ends; a large one or too many solves: global solve here, back to 6
 //! 18          gather P there, apply, solve; energy dissipated += −change of the potential   finish
 //! 19        predict the touched asperities again
-//! 20      solve the global problem at Δ* (Newton, GMRES)                                    correct
+//! 20      solve the global problem at Δ* (Newton, GMRES, nonlinear elimination)             correct
 //! 21      reject if predictors were too far, an event is overdue, or no stable solution     is_astray, overdue
 //! 22        rejected: back to the checkpoint, k ← k + 1                                     StepControl::halve
-//! 23        from k = 6 the predictor residual is accepted; k = 14: relax all at Δ*          relax_globally
+//! 23        from k = 6 the residual is accepted, contacts relax; k = 14: relax all at Δ*     relax_globally
 //! 24      new predictors; close the energy balance with the potential                       restart_predictors
 //! 25      record grid points inside the increment on an excursion from the checkpoint       excursion
 //! 26      load reversals by bracketing on excursions                                        turning
