@@ -50,7 +50,7 @@ impl EquilibriumPath {
                 (false, false) => Since::Events,
             };
             self.restart_predictors(&rates, since, &pending);
-            let due = self.overdue();
+            let due = self.overdue(jump);
             let Some(&(lateness, worst)) = due.first() else {
                 self.predictor.forget_parted(&self.solver.problem);
                 return Ok(());
@@ -214,14 +214,19 @@ impl EquilibriumPath {
         }
     }
 
-    /// Transitions that are due anywhere, the most overdue first, each with its lateness \[m\].
-    fn overdue(&mut self) -> Vec<(f64, Transition)> {
+    /// Transitions that are due anywhere, the most overdue first, each with its lateness \[m\]. At the mean penetration of a jump those that wait for the
+    /// path to continue still do.
+    fn overdue(&mut self, jump: bool) -> Vec<(f64, Transition)> {
         let problem = &*self.problem();
         let postponed = std::mem::take(&mut self.postponed);
         let contacts = self.state().contacts.clone();
         let candidates = self.predictor.candidates.clone();
         let mut due = self.due_transitions(&contacts, &candidates);
         due.extend(self.due_coalescence(&contacts));
+        if jump {
+            due.retain(|trigger| !postponed.contains(&trigger.transition.asperity));
+            self.postponed.extend_from_slice(&postponed);
+        }
         let lateness = |trigger: &Trigger| {
             let waits = postponed.contains(&trigger.transition.asperity);
             if waits { 0.0 } else { problem.lateness(trigger, &self.predictor) }
