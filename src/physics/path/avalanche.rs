@@ -54,11 +54,12 @@ impl EquilibriumPath {
             let due = self.due_transitions(&avalanche.open, &avalanche.open);
             let pending = |asperity| Transition { kind: Kind::Snap, asperity, by: None };
             // Contacts merge and split in equilibrium: where others have yet to respond, they have grown too far.
-            let next = most_overdue(&due, &avalanche.moved, self.state())
-                .or_else(|| self.worst_pending().map(pending))
-                .or_else(|| most_overdue(&self.due_coalescence(&avalanche.open), &avalanche.moved, self.state()));
+            let mut coalescing = Vec::new();
+            let next = most_overdue(&due, &avalanche.moved, self.state()).or_else(|| self.worst_pending().map(pending)).or_else(|| {
+                coalescing = self.due_coalescence(&avalanche.open);
+                most_overdue(&coalescing, &avalanche.moved, self.state())
+            });
             let Some(transition) = next else {
-                let coalescing = self.due_coalescence(&avalanche.open);
                 self.postponed.extend(due.iter().chain(&coalescing).map(|trigger| trigger.transition.asperity));
                 break;
             };
