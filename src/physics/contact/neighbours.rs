@@ -1,6 +1,7 @@
 //! Neighbour search by a grid of cells.
 
 use crate::physics::math::grown::Grown;
+use std::cmp::Ordering;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -15,6 +16,11 @@ fn nearest_image(way: f64, side: f64) -> f64 {
     } else {
         way
     }
+}
+
+/// Order of distances with their asperities.
+fn nearer(u: &(f64, usize), v: &(f64, usize)) -> Ordering {
+    u.0.total_cmp(&v.0).then(u.1.cmp(&v.1))
 }
 
 /// Asperities on the square, sorted by cells of two mean spacings.
@@ -155,7 +161,7 @@ impl Neighbours {
     fn others(&self, j: usize, radius: f64) -> Vec<(f64, usize)> {
         let mut list = Vec::new();
         self.around(&self.positions[j], radius, |i| i != j, |r, i| list.push((r, i)));
-        list.sort_by(|u, v| u.0.total_cmp(&v.0).then(u.1.cmp(&v.1)));
+        list.sort_unstable_by(nearer);
         list
     }
 
@@ -198,8 +204,11 @@ impl Neighbours {
             let whole = radius >= self.length;
             self.around(place, if whole { f64::INFINITY } else { radius }, &wanted, |r, i| list.push((r, i)));
             if list.len() >= count || whole {
-                list.sort_by(|u, v| u.0.total_cmp(&v.0).then(u.1.cmp(&v.1)));
-                list.truncate(count);
+                if list.len() > count {
+                    list.select_nth_unstable_by(count, nearer);
+                    list.truncate(count);
+                }
+                list.sort_unstable_by(nearer);
                 return list;
             }
             radius *= 1.3;

@@ -87,6 +87,7 @@ fn image_fields(place: Place, moment: f64, targets: &Targets, sums: &mut [[f64; 
 }
 
 /// Sets the field to zero at targets that are not farther than `reach` \[m\].
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
 fn leave_out(place: Place, reach: f64, targets: &Targets, sums: &mut [[f64; LANES]]) {
     for ((x, y), sum) in targets.x.iter().zip(&targets.y).zip(sums) {
         let r2 = squared_distances(place, x, y);

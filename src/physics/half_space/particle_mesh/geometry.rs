@@ -104,18 +104,18 @@ impl FastSum {
         } else {
             geometry.pairs.par_iter_mut().enumerate().zip(targets.par_chunks(TOGETHER)).with_min_len(AT_LEAST).for_each(find);
         }
-        self.place_meshes(&levels, targets, geometry);
+        self.place_meshes(&levels, targets, kept.as_ref(), geometry);
     }
 
     /// Weights of spots and targets on the meshes.
-    fn place_meshes(&self, levels: &[(Arc<Plan>, Vec<usize>)], targets: &[usize], geometry: &mut Geometry) {
+    fn place_meshes(&self, levels: &[(Arc<Plan>, Vec<usize>)], targets: &[usize], kept: Option<&Kept>, geometry: &mut Geometry) {
         let length = self.measure.length;
         geometry.targets.clear();
         geometry.targets.extend_from_slice(targets);
         let targets: Vec<[f64; 2]> = targets.iter().map(|target| self.order.positions[*target].map(|p| p / length)).collect();
         let sources: Vec<[f64; 2]> = geometry.places.iter().map(|place| place.map(|p| p / length)).collect();
-        geometry.fine = Meshes::new(levels, |plan| &plan.fine, &sources, &targets);
-        geometry.rough = Meshes::new(levels, |plan| &plan.rough, &sources, &targets);
+        geometry.fine.renew(levels, |plan| &plan.fine, &sources, &targets, kept);
+        geometry.rough.renew(levels, |plan| &plan.rough, &sources, &targets, kept);
     }
 }
 
@@ -238,20 +238,42 @@ impl<T, const W: usize, const O: usize> Default for Meshes<T, W, O> {
 }
 
 impl<T: Real, const W: usize, const O: usize> Meshes<T, W, O> {
-    /// Weights of sources by their plans, the finest first, and of targets, in units of the side.
+    /// Weights of sources by their plans, the finest first, and of targets, in units of the side. Those of kept ones stay.
     ///
     /// `mesh` selects one of the meshes of a plan.
-    fn new(levels: &[(Arc<Plan>, Vec<usize>)], mesh: impl Fn(&Plan) -> &Arc<Mesh<T>>, sources: &[[f64; 2]], targets: &[[f64; 2]]) -> Self {
-        let of = |(plan, members): &(Arc<Plan>, Vec<usize>)| {
-            let mesh = mesh(plan).clone();
-            let places: Vec<[f64; 2]> = members.iter().map(|j| sources[*j]).collect();
-            let splines = splines(&places, mesh.size);
-            (mesh, (members.clone(), splines))
-        };
-        let levels: Vec<Level<T, W, O>> = levels.iter().map(of).collect();
-        let readers =
-            levels.first().map_or(Vec::new(), |(mesh, _)| splines::<T, W, O>(targets, mesh.size).iter().map(Reader::new).collect());
-        Self { levels, readers }
+    fn renew(
+        &mut self,
+        levels: &[(Arc<Plan>, Vec<usize>)],
+        mesh: impl Fn(&Plan) -> &Arc<Mesh<T>>,
+        sources: &[[f64; 2]],
+        targets: &[[f64; 2]],
+        kept: Option<&Kept>,
+    ) {
+        let old = std::mem::take(self);
+        for (plan, members) in levels {
+            let mesh = mesh(plan);
+            let mut known = vec![None; sources.len()];
+            if let (Some(kept), Some((_, (spots, splines)))) = (kept, old.levels.iter().find(|(old, _)| Arc::ptr_eq(old, mesh))) {
+                for (spot, spline) in spots.iter().zip(splines) {
+                    // The number of a source that is gone is beyond the end.
+                    if let Some(known) = known.get_mut(kept.numbers[*spot] as usize) {
+                        *known = Some(spline);
+                    }
+                }
+            }
+            let fresh: Vec<[f64; 2]> = members.iter().filter(|j| known[**j].is_none()).map(|j| sources[*j]).collect();
+            let mut fresh = splines(&fresh, mesh.size).into_iter();
+            let splines = members.iter().filter_map(|j| known[*j].copied().or_else(|| fresh.next())).collect();
+            self.levels.push((mesh.clone(), (members.clone(), splines)));
+        }
+        if let Some((mesh, _)) = self.levels.first() {
+            let same = old.levels.first().is_some_and(|(old, _)| Arc::ptr_eq(old, mesh));
+            let known = |k: usize| kept.filter(|_| same).and_then(|kept| kept.targets[k]).map(|before| &old.readers[before]);
+            let fresh: Vec<[f64; 2]> = targets.iter().enumerate().filter(|(k, _)| known(*k).is_none()).map(|(_, place)| *place).collect();
+            let fresh = splines(&fresh, mesh.size);
+            let mut fresh = fresh.iter().map(Reader::new);
+            self.readers = (0..targets.len()).filter_map(|k| known(k).copied().or_else(|| fresh.next())).collect();
+        }
     }
 
     /// Adds the fields at the targets to `values`.

@@ -78,7 +78,7 @@ fn shifted<const W: usize>(weights: &[f64; W], by: usize) -> [f64; W] {
 }
 
 /// Interpolation weights of a target on a mesh.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Reader<T, const W: usize> {
     base: [usize; 2],
     along_x: [T; W],
@@ -86,7 +86,7 @@ pub(super) struct Reader<T, const W: usize> {
 }
 
 impl<T: Real, const W: usize> Reader<T, W> {
-    pub(super) fn new<const O: usize>(Splines([x, y]): &Splines<T, W, O>) -> Self {
+    pub(super) fn new(Splines([x, y]): &Splines<T, W, 1>) -> Self {
         Self { base: [x.base, y.base], along_x: x.all[0], along_y: y.all[0] }
     }
 }

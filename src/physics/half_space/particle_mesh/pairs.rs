@@ -104,18 +104,23 @@ impl Pairs {
         let (from, to) = (old.starts[k], old.starts[k + 1]);
         let middle = from + exact.len();
         let far = from - exact.start..to - exact.end;
-        self.reserve(to - from);
-        for (spot, at) in old.spots[from..middle].iter().zip(exact) {
-            let spot = known.numbers[*spot as usize];
-            if spot != GONE {
-                self.push_exact(spot, (old.r[at], old.inverse_r[at]), old.rest[at]);
-            }
+        let number = |spot: &u32| known.numbers[*spot as usize];
+        if !old.spots[from..to].iter().any(|spot| number(spot) == GONE) {
+            self.spots.extend(old.spots[from..middle].iter().map(number));
+            self.r.extend_from_slice(&old.r[exact.clone()]);
+            self.inverse_r.extend_from_slice(&old.inverse_r[exact.clone()]);
+            self.rest.extend_from_slice(&old.rest[exact]);
+            self.waiting.extend(old.spots[middle..to].iter().map(number));
+            self.kernel.extend_from_slice(&old.kernel[far.clone()]);
+            self.low.extend_from_slice(&old.low[far]);
+            return;
         }
-        for (spot, at) in old.spots[middle..to].iter().zip(far) {
-            let spot = known.numbers[*spot as usize];
-            if spot != GONE {
-                self.push_far(spot, old.kernel[at], old.low[at]);
-            }
+        self.reserve(to - from);
+        for (spot, at) in old.spots[from..middle].iter().map(number).zip(exact).filter(|(spot, _)| *spot != GONE) {
+            self.push_exact(spot, (old.r[at], old.inverse_r[at]), old.rest[at]);
+        }
+        for (spot, at) in old.spots[middle..to].iter().map(number).zip(far).filter(|(spot, _)| *spot != GONE) {
+            self.push_far(spot, old.kernel[at], old.low[at]);
         }
     }
 
