@@ -122,6 +122,7 @@ pub fn spot_field(r: f64, a: f64, radius: f64, pull: f64) -> (f64, f64) {
 ///
 /// The derivative to the spot's radius is unchanged; it does not include the jump at the edge.
 #[must_use]
+#[multiversion(targets("x86_64+avx2+fma"))]
 pub fn spot_field_as_printed(r: f64, a: f64, radius: f64, pull: f64, slips: Slips) -> (f64, f64) {
     let ([value], [slope]) = field(&[r * r], &[a], &[a.sqrt()], &[1.0 / a.sqrt()], &[1.0 / radius], pull, sag(slips));
     (value, slope)
