@@ -88,20 +88,14 @@ fn evaluate(table: &PairTable, by: Sources<'_>, fields: &mut Vec<f64>, slopes: &
     let columns = [&by.columns.a, &by.columns.root_a, &by.columns.inverse_root_a, &by.columns.inverse_radius];
     let [a, root_a, inverse_root_a, inverse_radius] = columns.map(|column| column.as_chunks::<LANES>().0);
     let [load, load_slope] = [&by.columns.load, &by.columns.load_slope].map(|column| column.as_chunks::<LANES>().0);
-    let (mut values, mut rates) = ([[0.0; LANES]; 2], [[0.0; LANES]; 2]);
+    let moments: Vec<[[f64; LANES]; 4]> = (0..n.div_ceil(LANES)).map(|pass| first_moments(by.moments, pass * LANES, n)).collect();
     fields.clear();
+    // Whole passes are written, each over the padding of the one before.
     slopes.clear();
-    for row in table.passes.chunks(n.div_ceil(LANES).max(1)) {
+    slopes.resize(n * n + LANES, 0.0);
+    for (k, row) in table.passes.chunks(n.div_ceil(LANES).max(1)).enumerate() {
         let mut sums = [0.0; LANES];
-        for (pass, pairs) in row.iter().enumerate() {
-            let from = pass * LANES;
-            let count = (n - from).min(LANES);
-            for lane in 0..count {
-                for order in 0..2 {
-                    values[order][lane] = by.moments.value[from + lane][order];
-                    rates[order][lane] = by.moments.slope[from + lane][order];
-                }
-            }
+        for (pass, (pairs, [values, second_values, rates, second_rates])) in row.iter().zip(&moments).enumerate() {
             let (mut field, mut slope) = ([0.0; LANES], [0.0; LANES]);
             match by.kind {
                 Kind::None => {}
@@ -117,14 +111,26 @@ fn evaluate(table: &PairTable, by: Sources<'_>, fields: &mut Vec<f64>, slopes: &
                 }
             }
             for k in 0..LANES {
-                field[k] += pairs.images[0][k].mul_add(values[0][k], pairs.images[1][k] * values[1][k]);
-                slope[k] += pairs.images[0][k].mul_add(rates[0][k], pairs.images[1][k] * rates[1][k]);
+                field[k] += pairs.images[0][k].mul_add(values[k], pairs.images[1][k] * second_values[k]);
+                slope[k] += pairs.images[0][k].mul_add(rates[k], pairs.images[1][k] * second_rates[k]);
+                sums[k] += field[k];
             }
-            for (sum, field) in sums[..count].iter_mut().zip(field) {
-                *sum += field;
-            }
-            slopes.extend_from_slice(&slope[..count]);
+            slopes[k * n + pass * LANES..][..LANES].copy_from_slice(&slope);
         }
         fields.push(sums.iter().sum());
     }
+    slopes.truncate(n * n);
+}
+
+/// First two moments of the sources `from` to `n` in one pass, and their derivatives to the radii; 0 for the padding.
+#[inline(always)]
+fn first_moments(moments: &Moments, from: usize, n: usize) -> [[f64; LANES]; 4] {
+    let mut first = [[0.0; LANES]; 4];
+    for (lane, j) in (from..n.min(from + LANES)).enumerate() {
+        for order in 0..2 {
+            first[order][lane] = moments.value[j][order];
+            first[2 + order][lane] = moments.slope[j][order];
+        }
+    }
+    first
 }

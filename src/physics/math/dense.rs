@@ -2,10 +2,15 @@
 
 use multiversion::multiversion;
 
+/// Rows of the factors are padded to multiples of this.
+const LANES: usize = 8;
+
 /// `P·A = L·U` by Gaussian elimination with partial pivoting, rows of A one after another.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Lu {
     size: usize,
+    /// Length of a row of the factors.
+    stride: usize,
     factors: Vec<f64>,
     pivots: Vec<usize>,
     sign: f64,
@@ -15,9 +20,12 @@ impl Lu {
     /// Factors the square matrix `matrix`. A pivot that vanishes is replaced by rounding of the largest entry, so that a solve with a
     /// singular matrix gives its null vector, greatly enlarged.
     pub(crate) fn factor(&mut self, matrix: &[f64], size: usize) {
-        self.size = size;
+        (self.size, self.stride) = (size, size.next_multiple_of(LANES));
         self.factors.clear();
-        self.factors.extend_from_slice(matrix);
+        for row in matrix.chunks(size.max(1)) {
+            self.factors.extend_from_slice(row);
+            self.factors.resize(self.factors.len().next_multiple_of(LANES), 0.0);
+        }
         self.pivots.clear();
         self.sign = eliminate(&mut self.factors, &mut self.pivots, size);
     }
@@ -31,11 +39,11 @@ impl Lu {
         }
         for k in 0..n {
             let (done, rest) = b.split_at_mut(k);
-            rest[0] -= product(&self.factors[k * n..k * n + k], done);
+            rest[0] -= product(&self.row(k)[..k], done);
         }
         for k in (0..n).rev() {
             let (head, done) = b.split_at_mut(k + 1);
-            head[k] = (head[k] - product(&self.factors[k * n + k + 1..(k + 1) * n], done)) / self.factors[k * n + k];
+            head[k] = (head[k] - product(&self.row(k)[k + 1..], done)) / self.row(k)[k];
         }
     }
 
@@ -45,7 +53,12 @@ impl Lu {
             let (upper, lower) = b.split_at_mut(pivot * columns);
             upper[k * columns..(k + 1) * columns].swap_with_slice(&mut lower[..columns]);
         }
-        substitute(&self.factors, self.size, b, columns);
+        substitute(self, b, columns);
+    }
+
+    /// A row of the factors, without padding.
+    fn row(&self, k: usize) -> &[f64] {
+        &self.factors[k * self.stride..][..self.size]
     }
 
     /// The sign of the determinant.
@@ -54,36 +67,42 @@ impl Lu {
     }
 }
 
-/// The factors in place of the matrix; the sign of the determinant.
+/// The factors in place of the padded matrix; the sign of the determinant.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
 fn eliminate(matrix: &mut [f64], pivots: &mut Vec<usize>, n: usize) -> f64 {
     let mut sign = 1.0;
     let least = 1e-16 * matrix.iter().fold(0.0f64, |most, v| most.max(v.abs()));
+    let stride = n.next_multiple_of(LANES);
+    let mut right = vec![0.0; stride];
     for k in 0..n {
         let mut pivot = k;
         for i in k + 1..n {
-            if matrix[i * n + k].abs() > matrix[pivot * n + k].abs() {
+            if matrix[i * stride + k].abs() > matrix[pivot * stride + k].abs() {
                 pivot = i;
             }
         }
         pivots.push(pivot);
         if pivot != k {
-            let (upper, lower) = matrix.split_at_mut(pivot * n);
-            upper[k * n..(k + 1) * n].swap_with_slice(&mut lower[..n]);
+            let (upper, lower) = matrix.split_at_mut(pivot * stride);
+            upper[k * stride..(k + 1) * stride].swap_with_slice(&mut lower[..stride]);
             sign = -sign;
         }
-        let (upper, lower) = matrix.split_at_mut((k + 1) * n);
-        let top = &mut upper[k * n..];
+        let (upper, lower) = matrix.split_at_mut((k + 1) * stride);
+        let top = &mut upper[k * stride..];
         if top[k].abs() < least {
             top[k] = least.copysign(top[k]);
         }
         sign *= top[k].signum();
         let inverse = 1.0 / top[k];
-        for row in lower.chunks_mut(n) {
+        // Whole passes: what is left of the diagonal stays as it is.
+        right[..=k].fill(0.0);
+        right[k + 1..].copy_from_slice(&top[k + 1..]);
+        let from = (k + 1) / LANES * LANES;
+        for row in lower.chunks_mut(stride) {
             let factor = row[k] * inverse;
             row[k] = factor;
             if factor != 0.0 {
-                subtract(&mut row[k + 1..], factor, &top[k + 1..]);
+                subtract(&mut row[from..], factor, &right[from..]);
             }
         }
     }
@@ -91,27 +110,33 @@ fn eliminate(matrix: &mut [f64], pivots: &mut Vec<usize>, n: usize) -> f64 {
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-fn substitute(factors: &[f64], n: usize, b: &mut [f64], columns: usize) {
-    for k in 0..n {
+fn substitute(factors: &Lu, b: &mut [f64], columns: usize) {
+    for k in 0..factors.size {
         let (done, rest) = b.split_at_mut(k * columns);
-        for (factor, row) in factors[k * n..k * n + k].iter().zip(done.chunks(columns)) {
+        for (factor, row) in factors.row(k)[..k].iter().zip(done.chunks(columns)) {
             subtract(&mut rest[..columns], *factor, row);
         }
     }
-    for k in (0..n).rev() {
+    for k in (0..factors.size).rev() {
         let (head, done) = b.split_at_mut((k + 1) * columns);
         let row = &mut head[k * columns..];
-        for (factor, other) in factors[k * n + k + 1..(k + 1) * n].iter().zip(done.chunks(columns)) {
+        for (factor, other) in factors.row(k)[k + 1..].iter().zip(done.chunks(columns)) {
             subtract(row, *factor, other);
         }
-        let inverse = 1.0 / factors[k * n + k];
+        let inverse = 1.0 / factors.row(k)[k];
         row.iter_mut().for_each(|v| *v *= inverse);
     }
 }
 
 #[inline(always)]
 fn subtract(row: &mut [f64], factor: f64, top: &[f64]) {
+    let ((row, row_rest), (top, top_rest)) = (row.as_chunks_mut::<LANES>(), top.as_chunks::<LANES>());
     for (r, t) in row.iter_mut().zip(top) {
+        for k in 0..LANES {
+            r[k] -= factor * t[k];
+        }
+    }
+    for (r, t) in row_rest.iter_mut().zip(top_rest) {
         *r -= factor * t;
     }
 }

@@ -241,20 +241,27 @@ fn evaluate<const SLOPES: bool>(pairs: &Pairs, sources: &Sources, values: &mut [
             }
         }
         let far = from - pairs.exact[k]..to - pairs.exact[k + 1];
-        let (mut strands, mut low) = ([[0.0; ORDERS]; 2], 0.0);
-        let entries = pairs.spots[middle..to].iter().zip(&pairs.kernel[far.clone()]).zip(&pairs.low[far]);
-        for (count, ((spot, kernel), rest)) in entries.enumerate() {
-            let moments = &sources.moments.value[*spot as usize];
-            let strand = &mut strands[count % 2];
+        let (spots, kernel, low) = (&pairs.spots[middle..to], &pairs.kernel[far.clone()], &pairs.low[far]);
+        let (mut even, mut odd, mut rest) = ([0.0; ORDERS], [0.0; ORDERS], 0.0);
+        let mut add = |at: usize, strand: &mut [f64; ORDERS]| {
+            let (kernel, spot) = (kernel[at].map(f64::from), spots[at] as usize);
+            let moments = &sources.moments.value[spot];
             for m in 0..ORDERS {
-                strand[m] = f64::from(kernel[m]).mul_add(moments[m], strand[m]);
+                strand[m] = kernel[m].mul_add(moments[m], strand[m]);
             }
-            low += f64::from(*rest) * moments[0];
+            rest += f64::from(low[at]) * moments[0];
             if SLOPES {
-                slopes[middle + count] = product(&kernel.map(f64::from), &sources.moments.slope[*spot as usize]) as f32;
+                slopes[middle + at] = product(&kernel, &sources.moments.slope[spot]) as f32;
             }
+        };
+        for at in (1..spots.len()).step_by(2) {
+            add(at - 1, &mut even);
+            add(at, &mut odd);
         }
-        *value = all.iter().sum::<f64>() + strands.iter().flatten().sum::<f64>() + low;
+        if spots.len() % 2 == 1 {
+            add(spots.len() - 1, &mut even);
+        }
+        *value = all.iter().sum::<f64>() + even.iter().chain(&odd).sum::<f64>() + rest;
     }
 }
 
