@@ -131,10 +131,13 @@ fn substitute(factors: &Lu, b: &mut [f64], columns: usize) {
 #[inline(always)]
 fn subtract(row: &mut [f64], factor: f64, top: &[f64]) {
     let ((row, row_rest), (top, top_rest)) = (row.as_chunks_mut::<LANES>(), top.as_chunks::<LANES>());
-    for (r, t) in row.iter_mut().zip(top) {
+    for (row, top) in row.iter_mut().zip(top) {
+        // Copies: stores to the one do not alias loads of the other then, and the loop vectorises.
+        let (mut r, t) = (*row, *top);
         for k in 0..LANES {
             r[k] -= factor * t[k];
         }
+        *row = r;
     }
     for (r, t) in row_rest.iter_mut().zip(top_rest) {
         *r -= factor * t;
