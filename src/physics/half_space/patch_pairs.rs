@@ -93,7 +93,7 @@ fn evaluate(table: &PairTable, by: Sources<'_>, fields: &mut Vec<f64>, slopes: &
     // Whole passes are written, each over the padding of the one before.
     slopes.clear();
     slopes.resize(n * n + LANES, 0.0);
-    for (k, row) in table.passes.chunks(n.div_ceil(LANES).max(1)).enumerate() {
+    for (target, row) in table.passes.chunks(n.div_ceil(LANES).max(1)).enumerate() {
         let mut sums = [0.0; LANES];
         for (pass, (pairs, [values, second_values, rates, second_rates])) in row.iter().zip(&moments).enumerate() {
             let (mut field, mut slope) = ([0.0; LANES], [0.0; LANES]);
@@ -115,7 +115,7 @@ fn evaluate(table: &PairTable, by: Sources<'_>, fields: &mut Vec<f64>, slopes: &
                 slope[k] += pairs.images[0][k].mul_add(rates[k], pairs.images[1][k] * second_rates[k]);
                 sums[k] += field[k];
             }
-            slopes[k * n + pass * LANES..][..LANES].copy_from_slice(&slope);
+            slopes[target * n + pass * LANES..][..LANES].copy_from_slice(&slope);
         }
         fields.push(sums.iter().sum());
     }
