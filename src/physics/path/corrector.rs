@@ -72,7 +72,7 @@ impl EquilibriumPath {
             Ok((rates, relaxed)) => {
                 if let Some(leader) = relaxed.leader {
                     self.enter_relaxed(&relaxed.transitions, before, target);
-                    self.snap_unless(!relaxed.transitions.is_empty(), leader, before, target);
+                    self.snap_if(relaxed.transitions.is_empty(), leader, before, target);
                 }
                 Ok(rates)
             }
@@ -258,9 +258,9 @@ impl EquilibriumPath {
         self.energy.charge_last_event();
     }
 
-    /// A relaxation without transitions (`changed`) is a snap of a contact.
-    fn snap_unless(&mut self, changed: bool, asperity: usize, before: Totals, target: f64) {
-        if !changed {
+    /// A relaxation without transitions (`unchanged`) is a snap of a contact.
+    fn snap_if(&mut self, unchanged: bool, asperity: usize, before: Totals, target: f64) {
+        if unchanged {
             let (after, _) = self.problem().totals(self.state());
             self.record(&[Transition { kind: Kind::Snap, asperity, by: None }], target, before, after, 0.0);
         }
@@ -273,7 +273,7 @@ impl EquilibriumPath {
         let asperity = self.state().contacts.first().copied().unwrap_or(0);
         self.predictor.go_to(&self.problem(), target);
         self.relax_contact(target)?;
-        self.snap_unless(self.log.events.len() > events, asperity, self.totals, target);
+        self.snap_if(self.log.events.len() == events, asperity, self.totals, target);
         for i in self.state().contacts.clone() {
             self.predictor.traces[i].value = f64::NAN;
         }
