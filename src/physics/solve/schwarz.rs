@@ -10,7 +10,6 @@ use crate::physics::half_space::{Tangent, places_in};
 use crate::physics::math::dense::Lu;
 use crate::physics::math::gmres::Preconditioner;
 use crate::physics::math::vector::mixed_dot;
-use multiversion::multiversion;
 
 /// Number of contacts in a group when they are divided, and number of contacts that are solved together for it.
 const GROUP: usize = 24;
@@ -259,27 +258,23 @@ impl Jacobian<'_> {
     fn transposed(&self, contacts: &[usize], at: &[u32], apart: &[[f64; 2]]) -> Vec<f64> {
         let Self { problem, state, tangent, diagonal } = self;
         let mut matrix = Vec::with_capacity(contacts.len() * contacts.len());
-        let mut distances = vec![0.0; contacts.len()];
-        for (k, (i, at)) in contacts.iter().zip(at).enumerate() {
+        for ((i, at), [x, y]) in contacts.iter().zip(at).zip(apart) {
             let a = state.radius[*i];
             let slope = problem.material.compliance() * problem.asperities[*i].load_slope(a);
             // Image fields are nearly the same for all of them.
             let images = tangent.own(*at as usize);
-            distances_from(apart[k], apart, &mut distances);
-            let from = matrix.len();
-            matrix.extend(distances.iter().map(|r| slope / r + images));
-            for (j, r) in distances.iter().enumerate().filter(|(_, r)| **r <= ALOOF * a) {
-                matrix[from + j] =
-                    images + if j == k { diagonal[*at as usize] } else { problem.spot_field(&problem.asperities[*i], *r, a).1 };
+            for (j, [u, v]) in contacts.iter().zip(apart) {
+                let r = ((u - x) * (u - x) + (v - y) * (v - y)).sqrt();
+                let by = if i == j {
+                    diagonal[*at as usize]
+                } else if r > ALOOF * a {
+                    slope / r
+                } else {
+                    problem.spot_field(&problem.asperities[*i], r, a).1
+                };
+                matrix.push(by + images);
             }
         }
         matrix
-    }
-}
-
-#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-fn distances_from([x, y]: [f64; 2], places: &[[f64; 2]], distances: &mut [f64]) {
-    for (r, [u, v]) in distances.iter_mut().zip(places) {
-        *r = ((u - x) * (u - x) + (v - y) * (v - y)).sqrt();
     }
 }
