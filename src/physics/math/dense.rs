@@ -9,8 +9,6 @@ const LANES: usize = 8;
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Lu {
     size: usize,
-    /// Length of a row of the factors.
-    stride: usize,
     factors: Vec<f64>,
     pivots: Vec<usize>,
     sign: f64,
@@ -20,7 +18,7 @@ impl Lu {
     /// Factors the square matrix `matrix`. A pivot that vanishes is replaced by rounding of the largest entry, so that a solve with a
     /// singular matrix gives its null vector, greatly enlarged.
     pub(crate) fn factor(&mut self, matrix: &[f64], size: usize) {
-        (self.size, self.stride) = (size, size.next_multiple_of(LANES));
+        self.size = size;
         self.factors.clear();
         for row in matrix.chunks(size.max(1)) {
             self.factors.extend_from_slice(row);
@@ -58,7 +56,7 @@ impl Lu {
 
     /// A row of the factors, without padding.
     fn row(&self, k: usize) -> &[f64] {
-        &self.factors[k * self.stride..][..self.size]
+        &self.factors[k * stride(self.size)..][..self.size]
     }
 
     /// The sign of the determinant.
@@ -67,12 +65,17 @@ impl Lu {
     }
 }
 
+/// Length of a padded row.
+fn stride(size: usize) -> usize {
+    size.next_multiple_of(LANES)
+}
+
 /// The factors in place of the padded matrix; the sign of the determinant.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
 fn eliminate(matrix: &mut [f64], pivots: &mut Vec<usize>, n: usize) -> f64 {
     let mut sign = 1.0;
     let least = 1e-16 * matrix.iter().fold(0.0f64, |most, v| most.max(v.abs()));
-    let stride = n.next_multiple_of(LANES);
+    let stride = stride(n);
     let mut right = vec![0.0; stride];
     for k in 0..n {
         let mut pivot = k;

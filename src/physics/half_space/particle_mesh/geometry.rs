@@ -261,18 +261,14 @@ impl<T: Real, const W: usize, const O: usize> Meshes<T, W, O> {
                     }
                 }
             }
-            let fresh: Vec<[f64; 2]> = members.iter().filter(|j| known[**j].is_none()).map(|j| sources[*j]).collect();
-            let mut fresh = splines(&fresh, mesh.size).into_iter();
-            let splines = members.iter().filter_map(|j| known[*j].copied().or_else(|| fresh.next())).collect();
-            self.levels.push((mesh.clone(), (members.clone(), splines)));
+            let places = members.iter().map(|j| (known[*j], sources[*j]));
+            self.levels.push((mesh.clone(), (members.clone(), completed(places, |places| splines(places, mesh.size)))));
         }
         if let Some((mesh, _)) = self.levels.first() {
             let same = old.levels.first().is_some_and(|(old, _)| Arc::ptr_eq(old, mesh));
             let known = |k: usize| kept.filter(|_| same).and_then(|kept| kept.targets[k]).map(|before| &old.readers[before]);
-            let fresh: Vec<[f64; 2]> = targets.iter().enumerate().filter(|(k, _)| known(*k).is_none()).map(|(_, place)| *place).collect();
-            let fresh = splines(&fresh, mesh.size);
-            let mut fresh = fresh.iter().map(Reader::new);
-            self.readers = (0..targets.len()).filter_map(|k| known(k).copied().or_else(|| fresh.next())).collect();
+            let places = targets.iter().enumerate().map(|(k, place)| (known(k), *place));
+            self.readers = completed(places, |places| splines(places, mesh.size).iter().map(Reader::new).collect());
         }
     }
 
@@ -283,4 +279,14 @@ impl<T: Real, const W: usize, const O: usize> Meshes<T, W, O> {
             read(&self.readers, mesh.size, work, values);
         }
     }
+}
+
+/// Weights of places: those that are known, and those that `find` gives for the others.
+fn completed<'a, A: Copy + 'a>(
+    places: impl Iterator<Item = (Option<&'a A>, [f64; 2])> + Clone,
+    find: impl FnOnce(&[[f64; 2]]) -> Vec<A>,
+) -> Vec<A> {
+    let unknown: Vec<[f64; 2]> = places.clone().filter(|(known, _)| known.is_none()).map(|(_, place)| place).collect();
+    let mut found = find(&unknown).into_iter();
+    places.filter_map(|(known, _)| known.copied().or_else(|| found.next())).collect()
 }
