@@ -25,17 +25,22 @@ pub(crate) enum CurveEnd {
 }
 
 impl LocalProblem {
-    /// Continues along the curve until the radius of member `at` is `value` \[m\], from an equilibrium that was evaluated last.
-    pub(crate) fn continue_to_radius(&mut self, problem: &Problem, at: usize, value: f64, effort: &mut Effort) -> Result<(), NotConverged> {
-        let (direction, rate) = self.along(problem, at);
-        let span = value - self.radius[at];
-        for (radius, d) in self.radius.iter_mut().zip(&direction) {
+    /// Continues along the curve from one of its states until the radius of member `at` is `value` \[m\].
+    fn continue_to_radius(
+        &mut self,
+        problem: &Problem,
+        at: usize,
+        from: &CurveState,
+        value: f64,
+        effort: &mut Effort,
+    ) -> Result<(), NotConverged> {
+        let span = value - from.at;
+        for ((radius, was), d) in self.radius.iter_mut().zip(&from.radius).zip(&from.direction) {
             // A contact at the end of its branch has no tangent in the radius of another.
-            let change = (d * span).clamp(-0.3 * *radius, 0.3 * *radius);
-            *radius += change;
+            *radius = was + (d * span).clamp(-0.3 * was, 0.3 * was);
         }
         self.radius[at] = value;
-        self.approach += rate * span;
+        self.approach = from.approach + from.slope * span;
         self.solve(problem, Hold::Radius(at), effort)
     }
 
@@ -61,9 +66,9 @@ impl LocalProblem {
         let left = (target - self.approach).abs();
         let mut stride = (2.0 * left / before.slope.abs()).clamp(1e-4 * self.radius[at], 0.2 * self.radius[at]);
         let beyond = loop {
-            let left = (bound - self.radius[at]).abs();
-            let next = if left <= stride { bound } else { self.radius[at] + sense * stride };
-            match self.continue_to_radius(problem, at, next, effort) {
+            let left = (bound - before.at).abs();
+            let next = if left <= stride { bound } else { before.at + sense * stride };
+            match self.continue_to_radius(problem, at, &before, next, effort) {
                 Ok(()) => {
                     let point = self.point(problem, at);
                     if point.slope * ahead <= 0.0 {
@@ -80,9 +85,8 @@ impl LocalProblem {
                     stride = (2.0 * stride).min(0.2 * self.radius[at]);
                 }
                 Err(unsettled) => {
-                    self.restore(problem, &before, effort);
                     stride *= 0.25;
-                    if stride < 1e-6 * self.radius[at] || self.way.len() > STATIONS {
+                    if stride < 1e-6 * before.at || self.way.len() > STATIONS {
                         return Err(unsettled);
                     }
                 }
@@ -109,8 +113,7 @@ impl LocalProblem {
                 break;
             }
             let value = before.at + ends.share(0.02) * span;
-            self.restore(problem, &before, effort);
-            self.continue_to_radius(problem, at, value, effort)?;
+            self.continue_to_radius(problem, at, &before, value, effort)?;
             let point = self.point(problem, at);
             if point.slope * before.slope > 0.0 {
                 ends.narrow(End::Low, point.slope);

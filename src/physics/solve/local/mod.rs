@@ -82,6 +82,9 @@ struct Workspace {
     /// Members as sources, and their pairs.
     spots: Spots,
     pairs: PairTable,
+    /// Radii for which the fields were evaluated last \[m\], and the rates there if they are known.
+    evaluated: Vec<f64>,
+    rates: Option<(Vec<f64>, bool)>,
     /// Derivatives of the displacement at one asperity to the radii of the members.
     row: Vec<f64>,
     /// Jacobian and its factors.
@@ -112,7 +115,7 @@ impl LocalProblem {
             self.radius.push(a);
             speeds.push(trace.speed(asperity, a));
         }
-        self.evaluate(problem, effort);
+        self.evaluate_fields(problem, effort);
         let n = self.members.len();
         for (k, (i, trace, _)) in contacts.iter().enumerate() {
             let (asperity, a) = (&problem.asperities[*i], self.radius[k]);
@@ -191,23 +194,15 @@ impl LocalProblem {
         place.outside + place.drift * (self.approach - self.reference)
     }
 
-    /// Evaluates fields, slopes and residuals of the members; returns the largest residual with its asperity.
+    /// Evaluates fields, slopes and residuals of the members; returns the largest residual with its asperity. Fields of the same radii are kept.
     pub(crate) fn evaluate(&mut self, problem: &Problem, effort: &mut Effort) -> NotConverged {
-        let n = self.members.len();
-        problem.columns(self.members.iter().map(|m| m.asperity).zip(self.radius.iter().copied()), &mut self.work.spots);
-        self.field.clear();
-        self.slopes.clear();
+        let members = self.members.iter().map(|m| &m.asperity);
+        if self.work.evaluated != self.radius || !members.eq(&self.work.spots.index) {
+            self.evaluate_fields(problem, effort);
+        }
         self.residual.clear();
         let mut worst = NotConverged::residual(0.0, self.members.first().map_or(0, |m| m.asperity));
-        if self.local {
-            problem.field.among(&self.work.spots, &mut self.work.pairs, &mut self.field, &mut self.slopes, effort);
-        } else {
-            problem.field.rows(&self.work.spots, &self.work.spots.index, false, effort, |_, sum, slopes| {
-                self.field.push(sum);
-                self.slopes.extend_from_slice(slopes);
-            });
-        }
-        for k in 0..n {
+        for k in 0..self.members.len() {
             let member = self.members[k];
             let i = member.asperity;
             let residual = self.approach + problem.heights[i]
@@ -221,6 +216,23 @@ impl LocalProblem {
             }
         }
         worst
+    }
+
+    /// Evaluates the displacements at the members by one another, and their derivatives.
+    fn evaluate_fields(&mut self, problem: &Problem, effort: &mut Effort) {
+        problem.columns(self.members.iter().map(|m| m.asperity).zip(self.radius.iter().copied()), &mut self.work.spots);
+        self.work.evaluated.clone_from(&self.radius);
+        self.work.rates = None;
+        self.field.clear();
+        self.slopes.clear();
+        if self.local {
+            problem.field.among(&self.work.spots, &mut self.work.pairs, &mut self.field, &mut self.slopes, effort);
+        } else {
+            problem.field.rows(&self.work.spots, &self.work.spots.index, false, effort, |_, sum, slopes| {
+                self.field.push(sum);
+                self.slopes.extend_from_slice(slopes);
+            });
+        }
     }
 
     /// The Jacobian `∂(δ_JKR + ŵ)/∂a`, with `1/time` on its diagonal.
@@ -291,12 +303,15 @@ impl LocalProblem {
     /// `da_i/dΔ` of the members at the equilibrium that was evaluated last, and whether it is stable: the sign of the determinant of the
     /// Jacobian.
     pub(crate) fn rates(&mut self, problem: &Problem) -> (Vec<f64>, bool) {
+        if let Some(known) = &self.work.rates {
+            return known.clone();
+        }
         let mut rates: Vec<f64> = self.members.iter().map(|m| 1.0 - m.drift).collect();
         self.assemble(problem, 0.0);
         self.work.lu.factor(&self.work.matrix, self.members.len());
         self.work.lu.solve(&mut rates);
         let stable = self.work.lu.sign() > 0.0 && rates.iter().all(|rate| rate.is_finite());
-        (rates, stable)
+        self.work.rates.insert((rates, stable)).clone()
     }
 
     /// Tangent of the solution curve: derivatives of the other radii and of Δ to the radius of member `at`.
