@@ -25,9 +25,9 @@ pub fn area(problem: &Problem, state: &State) -> f64 {
         });
         list
     };
-    // The sum of the disc areas is an upper bound, also for a disc that overlaps its own periodic image.
+    // The sum of the disc areas is an upper bound, also for a disc that overlaps its own periodic image. Of tiny discs rounding may leave less than nothing.
     let sum: f64 = discs.iter().map(|disc| PI * disc.radius * disc.radius).sum();
-    union_area(&discs, problem.length_m, periodic, overlapping).min(sum)
+    union_area(&discs, problem.length_m, periodic, overlapping).min(sum).max(0.0)
 }
 
 /// A disc in the plane.

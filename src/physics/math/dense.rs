@@ -78,11 +78,10 @@ fn eliminate(matrix: &mut [f64], pivots: &mut Vec<usize>, n: usize) -> f64 {
     let stride = stride(n);
     let mut right = vec![0.0; stride];
     for k in 0..n {
-        let mut pivot = k;
-        for i in k + 1..n {
-            if matrix[i * stride + k].abs() > matrix[pivot * stride + k].abs() {
-                pivot = i;
-            }
+        let (mut pivot, mut largest) = (k, matrix[k * stride + k].abs());
+        for (i, row) in matrix.chunks(stride).enumerate().skip(k + 1) {
+            let value = row[k].abs();
+            (pivot, largest) = if value > largest { (i, value) } else { (pivot, largest) };
         }
         pivots.push(pivot);
         if pivot != k {
@@ -103,10 +102,11 @@ fn eliminate(matrix: &mut [f64], pivots: &mut Vec<usize>, n: usize) -> f64 {
         let from = (k + 1) / LANES * LANES;
         for row in lower.chunks_mut(stride) {
             let factor = row[k] * inverse;
-            row[k] = factor;
             if factor != 0.0 {
                 subtract(&mut row[from..], factor, &right[from..]);
             }
+            // Last: a pass that is loaded right after a store to one of its lanes waits for it.
+            row[k] = factor;
         }
     }
     sign
