@@ -223,14 +223,12 @@ fn evaluate<const SLOPES: bool>(pairs: &Pairs, sources: &Sources, values: &mut [
         for at in exact.step_by(LANES) {
             let count = (pairs.exact[k + 1] - at).min(LANES);
             let entry = from + at - pairs.exact[k];
-            let (mut r, mut inverse_r) = ([1.0; LANES], [1.0; LANES]);
-            r[..count].copy_from_slice(&pairs.r[at..at + count]);
-            inverse_r[..count].copy_from_slice(&pairs.inverse_r[at..at + count]);
-            let [mut a, mut root_a, mut inverse_root_a, mut curvature] = [[1.0; LANES]; 4];
             let spots = &pairs.spots[entry..entry + count];
-            for (lane, spot) in spots.iter().enumerate() {
-                [a[lane], root_a[lane], inverse_root_a[lane], curvature[lane]] = sources.shapes[*spot as usize];
-            }
+            // Lanes beyond the last entry repeat it.
+            let lanes: [usize; LANES] = std::array::from_fn(|lane| lane.min(count - 1));
+            let [r, inverse_r] = [&pairs.r, &pairs.inverse_r].map(|column| lanes.map(|lane| column[at + lane]));
+            let shapes = lanes.map(|lane| sources.shapes[spots[lane] as usize]);
+            let [a, root_a, inverse_root_a, curvature] = std::array::from_fn(|k| shapes.map(|shape| shape[k]));
             let (fields, rates) = field_at(&r, &inverse_r, &a, &root_a, &inverse_root_a, &curvature, pull, sag);
             for (lane, (spot, rest)) in spots.iter().zip(&pairs.rest[at..at + count]).enumerate() {
                 let spot = *spot as usize;
