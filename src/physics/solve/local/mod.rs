@@ -430,3 +430,59 @@ impl NonlinearSystem for Descent<'_> {
         self.local.approach = self.start.1 + share * self.step.1;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::LocalProblem;
+    use crate::model::{Boundary, Coalescence, Interaction, JumpIn, Material, Slips};
+    use crate::physics::contact::{Problem, Rules};
+    use crate::physics::half_space::Effort;
+    use crate::physics::solve::trace::PenetrationTrace;
+    use crate::physics::surface::summits::Summit;
+
+    #[test]
+    fn law_a_state_is_evaluated_once_and_another_one_anew() {
+        let summit = |x_m: f64| {
+            let curvature = 2e4;
+            let [curvature_1_m, curvature_min_1_m, curvature_max_1_m] = [curvature; 3];
+            Summit {
+                x_m,
+                y_m: 5e-4,
+                height_m: 1e-6,
+                curvature_1_m,
+                curvature_min_1_m,
+                curvature_max_1_m,
+                grid_row: 0,
+                grid_col: 0,
+                refined: true,
+            }
+        };
+        let material = Material { contact_modulus_pa: 1e6, work_of_adhesion_j_m2: 0.07, interaction_range_m: 1e-9 };
+        let rules = Rules {
+            interaction: Interaction::Spots,
+            boundary: Boundary::Periodic,
+            coalescence: Coalescence::Cover,
+            jump_in: JumpIn::Wu,
+            allow_low_tabor: false,
+            slips: Slips::default(),
+        };
+        let problem = Problem::new(&[1e-4, 2e-4, 4e-4].map(summit), 1e-3, 5e-6, material, rules).unwrap();
+        let radius = 2.0 * problem.asperities[0].jump_off_radius();
+        let contacts: Vec<_> = (0..3).map(|i| (i, PenetrationTrace::of(&problem.asperities[i], 0.0, radius, 0.1), radius)).collect();
+        let (mut local, mut effort) = (LocalProblem::default(), Effort::default());
+        local.gather(&problem, &contacts, &[], 0.0, false, &mut effort);
+        let once = effort.pairs;
+        // By definition of the displacement by the outside the residual is rounding.
+        assert!(once > 0 && local.evaluate(&problem, &mut effort).residual_m < 1e-20);
+        let rates = local.rates(&problem);
+        assert_eq!((effort.pairs, local.rates(&problem)), (once, rates.clone()));
+        local.radius[0] *= 1.01;
+        assert!(local.evaluate(&problem, &mut effort).residual_m > 1e-10);
+        assert_eq!(effort.pairs, 2 * once);
+        assert_ne!(local.rates(&problem), rates);
+        // Without one of the members.
+        local.remove(1, false);
+        local.evaluate(&problem, &mut effort);
+        assert!(effort.pairs > 2 * once && local.rates(&problem).0.len() == 2);
+    }
+}
