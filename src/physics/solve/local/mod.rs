@@ -435,13 +435,14 @@ impl NonlinearSystem for Descent<'_> {
 mod tests {
     use super::LocalProblem;
     use crate::model::{Boundary, Coalescence, Interaction, JumpIn, Material, Slips};
+    use crate::physics::PhysicsError;
     use crate::physics::contact::{Problem, Rules};
     use crate::physics::half_space::Effort;
     use crate::physics::solve::trace::PenetrationTrace;
     use crate::physics::surface::summits::Summit;
 
     #[test]
-    fn law_a_state_is_evaluated_once_and_another_one_anew() {
+    fn law_a_state_is_evaluated_once_and_another_one_again() -> Result<(), PhysicsError> {
         let summit = |x_m: f64| {
             let curvature = 2e4;
             let [curvature_1_m, curvature_min_1_m, curvature_max_1_m] = [curvature; 3];
@@ -466,7 +467,7 @@ mod tests {
             allow_low_tabor: false,
             slips: Slips::default(),
         };
-        let problem = Problem::new(&[1e-4, 2e-4, 4e-4].map(summit), 1e-3, 5e-6, material, rules).unwrap();
+        let problem = Problem::new(&[1e-4, 2e-4, 4e-4].map(summit), 1e-3, 5e-6, material, rules)?;
         let radius = 2.0 * problem.asperities[0].jump_off_radius();
         let contacts: Vec<_> = (0..3).map(|i| (i, PenetrationTrace::of(&problem.asperities[i], 0.0, radius, 0.1), radius)).collect();
         let (mut local, mut effort) = (LocalProblem::default(), Effort::default());
@@ -484,5 +485,6 @@ mod tests {
         local.remove(1, false);
         local.evaluate(&problem, &mut effort);
         assert!(effort.pairs > 2 * once && local.rates(&problem).0.len() == 2);
+        Ok(())
     }
 }
