@@ -123,7 +123,9 @@ impl LocalProblem {
                 beyond = point;
             }
         }
-        self.restore(problem, &before, effort);
+        self.radius.clone_from(&before.radius);
+        self.approach = before.approach;
+        self.evaluate(problem, effort);
         self.way.push(before);
         Ok(())
     }
@@ -131,11 +133,5 @@ impl LocalProblem {
     fn point(&mut self, problem: &Problem, at: usize) -> CurveState {
         let (direction, slope) = self.along(problem, at);
         CurveState { radius: self.radius.clone(), approach: self.approach, direction, slope, at: self.radius[at] }
-    }
-
-    fn restore(&mut self, problem: &Problem, point: &CurveState, effort: &mut Effort) {
-        self.radius.clone_from(&point.radius);
-        self.approach = point.approach;
-        self.evaluate(problem, effort);
     }
 }

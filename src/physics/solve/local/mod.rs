@@ -82,8 +82,7 @@ struct Workspace {
     /// Members as sources, and their pairs.
     spots: Spots,
     pairs: PairTable,
-    /// Radii for which the fields were evaluated last \[m\], and the rates there if they are known.
-    evaluated: Vec<f64>,
+    /// Rates for the radii of these sources, if they are known.
     rates: Option<(Vec<f64>, bool)>,
     /// Derivatives of the displacement at one asperity to the radii of the members.
     row: Vec<f64>,
@@ -196,8 +195,9 @@ impl LocalProblem {
 
     /// Evaluates fields, slopes and residuals of the members; returns the largest residual with its asperity. Fields of the same radii are kept.
     pub(crate) fn evaluate(&mut self, problem: &Problem, effort: &mut Effort) -> NotConverged {
-        let members = self.members.iter().map(|m| &m.asperity);
-        if self.work.evaluated != self.radius || !members.eq(&self.work.spots.index) {
+        let Spots { index, columns } = &self.work.spots;
+        let same = self.members.iter().map(|m| &m.asperity).eq(index) && columns.a[..columns.len()] == self.radius;
+        if !same {
             self.evaluate_fields(problem, effort);
         }
         self.residual.clear();
@@ -221,7 +221,6 @@ impl LocalProblem {
     /// Evaluates the displacements at the members by one another, and their derivatives.
     fn evaluate_fields(&mut self, problem: &Problem, effort: &mut Effort) {
         problem.columns(self.members.iter().map(|m| m.asperity).zip(self.radius.iter().copied()), &mut self.work.spots);
-        self.work.evaluated.clone_from(&self.radius);
         self.work.rates = None;
         self.field.clear();
         self.slopes.clear();
