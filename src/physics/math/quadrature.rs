@@ -14,9 +14,15 @@ pub(crate) fn hermite_slope(x: f64, f0: f64, f1: f64, t0: f64, t1: f64) -> f64 {
 
 /// `∫f dp` over `[0, 1]` by Gauss's rule of four points.
 pub(crate) fn gauss(f: impl Fn(f64) -> f64) -> f64 {
+    gauss_at_once(|points| points.map(&f))
+}
+
+/// [`gauss`] of a function of all four points at once.
+pub(crate) fn gauss_at_once(f: impl FnOnce([f64; 4]) -> [f64; 4]) -> f64 {
     let (inner, outer) = (0.339_981_043_584_856_3 / 2.0, 0.861_136_311_594_052_6 / 2.0);
     let (heavy, light) = (0.652_145_154_862_546_1 / 2.0, 0.347_854_845_137_453_9 / 2.0);
-    light * (f(0.5 - outer) + f(0.5 + outer)) + heavy * (f(0.5 - inner) + f(0.5 + inner))
+    let [first, second, third, fourth] = f([0.5 - outer, 0.5 - inner, 0.5 + inner, 0.5 + outer]);
+    light * (first + fourth) + heavy * (second + third)
 }
 
 #[cfg(test)]

@@ -15,7 +15,7 @@ pub(super) const LEAST_SCALE: f64 = 0.02;
 /// Precision of a global solve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Precision {
-    /// To 1e-10 of the rms height: the state may be written down.
+    /// To the tolerance of an equilibrium: the state may be written down.
     Exact,
     /// To that of the path: the difference is found by the next solve.
     Sufficient,

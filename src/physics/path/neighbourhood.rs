@@ -6,6 +6,7 @@
 use super::pending::PendingField;
 use super::predictor::Predictor;
 use crate::model::Interaction;
+use crate::physics::contact::neighbours::nearer;
 use crate::physics::contact::transition::{Kind, Transition};
 use crate::physics::contact::{Problem, Status};
 use crate::physics::half_space::Effort;
@@ -108,7 +109,9 @@ impl Surroundings<'_> {
             return Selection { members: state.contacts.clone(), watched, shell: Vec::new(), reach: 0.0 };
         }
         let count = most.saturating_mul(SHELL);
-        let near = problem.neighbours.nearest(place, count, state.contacts.len(), |i| state.status[i] == Status::Contact);
+        let mut near = problem.neighbours.nearest(place, count, state.contacts.len(), |i| state.status[i] == Status::Contact);
+        let reach = near.iter().fold(0.0f64, |reach, (r, _)| reach.max(*r));
+        let inner = near.select_nth_unstable_by(most - 1, nearer).1.0;
         let mut members: Vec<usize> = near[..most].iter().map(|(_, i)| *i).collect();
         for i in [Some(transition.asperity), transition.by].into_iter().flatten() {
             if state.status[i] == Status::Contact && !members.contains(&i) {
@@ -116,8 +119,6 @@ impl Surroundings<'_> {
             }
         }
         members.sort_unstable();
-        let inner = near[most - 1].0;
-        let reach = near.last().map_or(inner, |(r, _)| *r);
         let (mut watched, mut shell) = (Vec::new(), Vec::new());
         if !alone {
             shell.extend(near[most..].iter().map(|(_, i)| *i).filter(|i| members.binary_search(i).is_err()));

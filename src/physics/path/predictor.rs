@@ -9,10 +9,14 @@ use crate::physics::contact::merging::ROUNDING;
 use crate::physics::contact::problem::{Problem, Totals};
 use crate::physics::contact::state::{State, Status};
 use crate::physics::contact::transition::{Kind, Transition};
+use crate::physics::jkr::Asperity;
 use crate::physics::solve::trace::{PenetrationTrace, STEEPEST};
 
 /// Radius of a neighbour at the end of an increment, over its present one, up to which its merging is looked for.
 const GROWTH: f64 = 1.2;
+
+/// Number of contacts whose radii are computed at once.
+const TOGETHER: usize = 8;
 
 /// Contact as it is known between two global solves.
 #[derive(Debug, Clone)]
@@ -132,7 +136,15 @@ impl Predictor {
 
     /// Predicted contact radii at a mean penetration \[m\].
     pub(crate) fn radii(&self, problem: &Problem, approach: f64) -> Vec<(usize, f64)> {
-        self.state.contacts.iter().map(|&i| (i, self.radius(problem, i, approach))).collect()
+        let mut radii = Vec::with_capacity(self.state.contacts.len());
+        for contacts in self.state.contacts.chunks(TOGETHER) {
+            // Lanes beyond the last contact repeat it.
+            let lanes: [usize; TOGETHER] = std::array::from_fn(|lane| contacts[lane.min(contacts.len() - 1)]);
+            let ahead = Asperity::radii_ahead(lanes.map(|i| &problem.asperities[i]), lanes.map(|i| self.traces[i].ahead(approach)));
+            let known = |i: usize| (self.traces[i].at == approach).then_some(self.state.radius[i]);
+            radii.extend(contacts.iter().zip(ahead).map(|(&i, ahead)| (i, known(i).unwrap_or(ahead))));
+        }
+        radii
     }
 
     /// Moves all contacts to their predicted states at a mean penetration \[m\].

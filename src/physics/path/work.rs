@@ -1,7 +1,8 @@
 //! Work of the load of one contact along a path.
 
 use crate::physics::contact::Problem;
-use crate::physics::math::quadrature::{gauss, hermite, hermite_slope};
+use crate::physics::jkr::Asperity;
+use crate::physics::math::quadrature::{gauss, gauss_at_once, hermite, hermite_slope};
 use crate::physics::solve::local::CurveState;
 use crate::physics::solve::trace::PenetrationTrace;
 
@@ -12,9 +13,9 @@ pub(super) fn work(problem: &Problem, i: usize, from: PenetrationTrace, to: Pene
     if span == 0.0 {
         return 0.0;
     }
-    gauss(|p| {
-        let d = hermite(p, from.value, to.value, from.rate * span, to.rate * span);
-        asperity.load(asperity.radius_ahead(d)) * span
+    gauss_at_once(|points| {
+        let penetrations = points.map(|p| hermite(p, from.value, to.value, from.rate * span, to.rate * span));
+        Asperity::radii_ahead([asperity; 4], penetrations).map(|a| asperity.load(a) * span)
     })
 }
 

@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 /// Relative residuals of linear solves.
 const MOST: f64 = 3e-3;
-const LEAST: f64 = 1e-5;
+const LEAST: f64 = 1e-4;
 
 /// The largest of them where the precision is only sufficient.
 const ROUGH: f64 = 3e-2;

@@ -18,7 +18,7 @@ use std::sync::Arc;
 const PRODUCTS: usize = 120;
 
 /// Relative residual of the rates, at exact and at sufficient precision: predictions depend on them.
-const RATES: f64 = 1e-6;
+const RATES: f64 = 1e-4;
 const ROUGH_RATES: f64 = 3e-4;
 
 /// Way between two evaluations of all free asperities, in rms heights.

@@ -33,10 +33,37 @@ impl DirectSum {
         if self.periodic {
             image_fields(self.place(*centre), self.moment(whole), &columns, &mut sums);
         }
-        for load in loads {
-            load_field(self.place(load.place), self.moment(load.load_n), load.reach_m, &columns, &mut sums);
+        let mut near = vec![[0.0; SHORT_LANES]; targets.len().div_ceil(SHORT_LANES)];
+        load_fields(&self.short_loads(loads, centre), &self.short_columns(targets, centre), self.periodic, &mut near);
+        let near = near.as_flattened().iter().copied().map(f64::from);
+        sums.as_flattened()[..targets.len()].iter().zip(near).map(|(images, near)| images + near).collect()
+    }
+
+    /// Vector from a centre \[m\] to the nearest image of a place, in sides.
+    fn from_centre(&self, place: &[f64; 2], centre: &[f64; 2]) -> [f32; 2] {
+        [0, 1].map(|k| {
+            let share = (place[k] - centre[k]) / self.length;
+            (if self.periodic { share - share.round_ties_even() } else { share }) as f32
+        })
+    }
+
+    fn short_loads(&self, loads: &[PointLoad], centre: &[f64; 2]) -> Vec<ShortLoad> {
+        let short = |load: &PointLoad| ShortLoad {
+            place: self.from_centre(&load.place, centre),
+            moment: self.moment(load.load_n) as f32,
+            reach: (load.reach_m / self.length) as f32,
+        };
+        loads.iter().map(short).collect()
+    }
+
+    fn short_columns(&self, targets: &[usize], centre: &[f64; 2]) -> Vec<[[f32; SHORT_LANES]; 2]> {
+        let mut columns = vec![[[0.0; SHORT_LANES]; 2]; targets.len().div_ceil(SHORT_LANES)];
+        for (k, target) in targets.iter().enumerate() {
+            let [x, y] = self.from_centre(&self.positions[*target], centre);
+            let [xs, ys] = &mut columns[k / SHORT_LANES];
+            (xs[k % SHORT_LANES], ys[k % SHORT_LANES]) = (x, y);
         }
-        sums.as_flattened()[..targets.len()].to_vec()
+        columns
     }
 
     fn columns(&self, targets: &[usize]) -> Targets {
@@ -62,13 +89,43 @@ pub(crate) struct PointLoad {
     pub(crate) reach_m: f64,
 }
 
-/// Adds the field of a load of this moment \[m\] at targets farther than `reach` \[m\].
+/// Number of targets at once in single precision.
+const SHORT_LANES: usize = 16;
+
+/// [`PointLoad`] in single precision: place from the centre and reach in sides, and moment \[m\].
+struct ShortLoad {
+    place: [f32; 2],
+    moment: f32,
+    reach: f32,
+}
+
+/// Fields of loads at targets, each beyond the reach of the load. Places from a centre have seven digits, displacements five or more: next to a load, its
+/// field as a point has two.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
+fn load_fields(loads: &[ShortLoad], targets: &[[[f32; SHORT_LANES]; 2]], periodic: bool, sums: &mut [[f32; SHORT_LANES]]) {
+    let side = if periodic { 1.0 } else { 0.0 };
+    for ([x, y], sums) in targets.iter().zip(sums) {
+        let mut sum = [0.0; SHORT_LANES];
+        for load in loads {
+            for k in 0..SHORT_LANES {
+                let (dx, dy) = (x[k] - load.place[0], y[k] - load.place[1]);
+                let (dx, dy) = (dx - side * dx.round_ties_even(), dy - side * dy.round_ties_even());
+                let r2 = dx.mul_add(dx, dy * dy);
+                sum[k] += if r2 > load.reach * load.reach { load.moment / r2.sqrt() } else { 0.0 };
+            }
+        }
+        *sums = sum;
+    }
+}
+
+/// Adds the field of a load of this moment \[m\] at targets farther than `reach` \[m\], with seven digits.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
 fn load_field(place: Place, moment: f64, reach: f64, targets: &Targets, sums: &mut [[f64; LANES]]) {
     for ((x, y), sum) in targets.x.iter().zip(&targets.y).zip(sums) {
         let r2 = squared_distances(place, x, y);
         for k in 0..LANES {
-            sum[k] += if r2[k] > reach * reach { moment * place.length / r2[k].sqrt() } else { 0.0 };
+            let inverse_r = f64::from(1.0 / (r2[k] as f32).sqrt());
+            sum[k] += if r2[k] > reach * reach { moment * place.length * inverse_r } else { 0.0 };
         }
     }
 }

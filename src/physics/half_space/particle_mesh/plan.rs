@@ -42,14 +42,14 @@ impl Real for f32 {
 /// Order of the B-splines for displacements and for derivatives.
 ///
 /// It is the number of mesh points per direction over which a source is spread.
-pub(super) const WIDTH: usize = 16;
+pub(super) const WIDTH: usize = 12;
 pub(super) const ROUGH_WIDTH: usize = 8;
 
 /// Orders of the far field on the mesh of derivatives, and its error relative to the largest derivative.
 ///
 /// Linear systems are solved no more accurately than this.
 pub(super) const ROUGH_ORDERS: usize = 2;
-const ROUGH: f64 = 1e-5;
+const ROUGH: f64 = 1e-4;
 
 /// `[(2m − 1)!!]²`: `∇^2m (1/r)` is this factor times `1/r^(2m+1)` in the plane.
 pub(super) const LAPLACIANS: [f64; ORDERS] = [1.0, 1.0, 9.0, 225.0];
