@@ -175,12 +175,11 @@ impl Asperity {
     #[must_use]
     pub fn radius_at_penetration(&self, penetration: f64) -> Option<f64> {
         let [radius] = Self::radii_at_penetrations([self], [penetration]);
-        (penetration >= self.jump_off_penetration && radius.is_finite()).then_some(radius)
+        radius.is_finite().then_some(radius)
     }
 
-    /// Contact radii \[m\] of several asperities on the stable branch, each at a penetration \[m\]: one division after another would have to wait.
-    ///
-    /// Below the end of the branch they have no meaning.
+    /// [`Self::radius_at_penetration`] of several asperities at once, each at its penetration \[m\]; not finite below the end of the branch. Divisions of one
+    /// asperity wait for one another, those of several do not.
     #[inline(always)]
     fn radii_at_penetrations<const N: usize>(asperities: [&Self; N], penetrations: [f64; N]) -> [f64; N] {
         let excess: [f64; N] = std::array::from_fn(|k| {
@@ -204,23 +203,27 @@ impl Asperity {
             }
         }
         std::array::from_fn(|k| {
-            let (off, radius) = (asperities[k].fold_radius, asperities[k].radius);
-            if off == 0.0 { (radius * penetrations[k]).sqrt() } else { off * (1.0 + e[k]) * (1.0 + e[k]) }
+            let Self { fold_radius: off, radius, jump_off_penetration, .. } = *asperities[k];
+            if penetrations[k] < jump_off_penetration {
+                f64::NAN
+            } else if off == 0.0 {
+                (radius * penetrations[k]).sqrt()
+            } else {
+                off * (1.0 + e[k]) * (1.0 + e[k])
+            }
         })
     }
 
     /// [`Self::radius_ahead`] of several asperities at once.
     pub(crate) fn radii_ahead<const N: usize>(asperities: [&Self; N], penetrations: [f64; N]) -> [f64; N] {
         let radii = Self::radii_at_penetrations(asperities, penetrations);
-        std::array::from_fn(|k| {
-            let on_branch = penetrations[k] >= asperities[k].jump_off_penetration && radii[k].is_finite();
-            if on_branch { radii[k] } else { asperities[k].jump_off_radius }
-        })
+        std::array::from_fn(|k| if radii[k].is_finite() { radii[k] } else { asperities[k].jump_off_radius })
     }
 
     /// [`Self::radius_at_penetration`], or the jump-off radius below the end of the branch.
     pub(crate) fn radius_ahead(&self, penetration: f64) -> f64 {
-        self.radius_at_penetration(penetration).unwrap_or(self.jump_off_radius())
+        let [radius] = Self::radii_ahead([self], [penetration]);
+        radius
     }
 
     /// Stored elastic energy at fixed contact radius `U(δ, a) = E*(aδ² − 2a³δ/(3R) + a⁵/(5R²))` \[J\].
@@ -275,4 +278,27 @@ impl Asperity {
 #[must_use]
 pub fn loop_loss_constant() -> f64 {
     4f64.cbrt() * (0.3 + 0.2 / 256f64.cbrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Asperity;
+    use crate::model::Material;
+
+    #[test]
+    fn law_radii_of_several_asperities_are_those_of_each() {
+        let adhesive = Material { contact_modulus_pa: 1e6, work_of_adhesion_j_m2: 0.07, interaction_range_m: 1e-9 };
+        let elastic = Material { work_of_adhesion_j_m2: 0.0, ..adhesive };
+        let of = |(radius, material)| Asperity::new(radius, material).ok();
+        let all: Vec<Asperity> = [(2e-5, &adhesive), (3e-4, &adhesive), (1e-4, &elastic)].into_iter().filter_map(of).collect();
+        let asperities: [&Asperity; 6] = std::array::from_fn(|k| &all[k % 3]);
+        let off = all[0].jump_off_penetration();
+        // On the branch, at its end, below it, and no number.
+        let penetrations = [off, 2e-6, 1e-7, 1.01 * off, f64::NAN, -1e-9];
+        let together = Asperity::radii_ahead(asperities, penetrations);
+        for ((asperity, penetration), radius) in asperities.iter().zip(penetrations).zip(together) {
+            assert_eq!(radius, asperity.radius_at_penetration(penetration).unwrap_or(asperity.jump_off_radius()), "{penetration}");
+        }
+        assert_eq!(together[3..], [all[0].jump_off_radius(), all[1].jump_off_radius(), all[2].jump_off_radius()]);
+    }
 }

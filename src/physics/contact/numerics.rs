@@ -56,6 +56,6 @@ impl Accuracy {
 
     /// Residual of a global solve whose state is not written down.
     pub(crate) fn sufficient(self) -> f64 {
-        self.0 / 50.0
+        self.0 / 500.0
     }
 }

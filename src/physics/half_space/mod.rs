@@ -48,7 +48,7 @@ impl Default for Tangent {
 }
 
 impl Tangent {
-    /// `y = ∂ŵ/∂a · x`, in the sparse form to five digits.
+    /// `y = ∂ŵ/∂a · x`, in the sparse form to four digits.
     pub fn product(&self, x: &[f64], y: &mut [f64]) {
         match &self.0 {
             Form::Dense(size, matrix) => {
