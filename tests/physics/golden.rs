@@ -22,16 +22,16 @@ fn setups() -> Vec<(&'static str, Setup, Pinned)> {
     let isolated = Rules { boundary: Boundary::Isolated, ..DEFAULT };
     let jkr = Rules { jump_in: JumpIn::Jkr, ..DEFAULT };
     vec![
-        ("cover, zeta 16", (16, 0, DEFAULT, 0.07, 24), (94, 3.677862353902e-1, 1.183319520591e-3, 1.568554217517e-3)),
-        ("cover, zeta 32", (32, 1, DEFAULT, 0.07, 24), (331, 3.684944499056e-1, 7.631831802552e-4, 1.965997221306e-3)),
-        ("cover, local problems of 3", (16, 1, DEFAULT, 0.07, 3), (96, 4.059902235198e-1, 8.520992689760e-4, 1.708813973223e-3)),
+        ("cover, zeta 16", (16, 0, DEFAULT, 0.07, 24), (94, 3.677862353902e-1, 1.183319520591e-3, 1.568550451691e-3)),
+        ("cover, zeta 32", (32, 1, DEFAULT, 0.07, 24), (331, 3.684944499056e-1, 7.631831802552e-4, 1.965984358049e-3)),
+        ("cover, local problems of 3", (16, 1, DEFAULT, 0.07, 3), (96, 4.059902235198e-1, 8.520992689760e-4, 1.708811397486e-3)),
         (
             "cover, all contacts in one problem",
             (16, 1, DEFAULT, 0.07, usize::MAX),
             (96, 4.059902235198e-1, 8.499241918691e-4, 1.709325219638e-3),
         ),
-        ("cover, weak adhesion", (16, 0, DEFAULT, 1e-3, 24), (82, 1.557304951904e-1, 1.271674679086e-6, 1.085005784769e-6)),
-        ("merge", (16, 0, merge, 0.07, 24), (190, 5.358706353571e-1, 1.206946639277e-3, 1.701111065984e-3)),
+        ("cover, weak adhesion", (16, 0, DEFAULT, 1e-3, 24), (82, 1.557304951904e-1, 1.271672677095e-6, 1.085014019364e-6)),
+        ("merge", (16, 0, merge, 0.07, 24), (190, 5.358706353571e-1, 1.206946639277e-3, 1.701111080275e-3)),
         (
             "merge, all contacts in one problem",
             (16, 0, merge, 0.07, usize::MAX),
@@ -39,8 +39,8 @@ fn setups() -> Vec<(&'static str, Setup, Pinned)> {
         ),
         ("no interaction", (16, 0, alone, 0.07, 24), (96, 3.485415168642e-1, 1.209450779577e-3, 1.539783230413e-3)),
         ("point loads", (16, 0, point, 0.07, 24), (94, 3.677670707883e-1, 1.198677882806e-3, 1.547530271542e-3)),
-        ("isolated", (16, 0, isolated, 0.07, 24), (90, 3.855806283037e-1, 1.031359464757e-3, 1.680509407102e-3)),
-        ("jump-in of JKR", (16, 0, jkr, 0.07, 24), (94, 3.677862353902e-1, 1.183319520591e-3, 1.609928892968e-3)),
+        ("isolated", (16, 0, isolated, 0.07, 24), (90, 3.855806283037e-1, 1.031359464757e-3, 1.680509426219e-3)),
+        ("jump-in of JKR", (16, 0, jkr, 0.07, 24), (94, 3.677862353902e-1, 1.183319520591e-3, 1.609925127142e-3)),
     ]
 }
 
@@ -78,7 +78,7 @@ fn reg_whole_cycles() {
 /// Effort of three cycles: iterations, products of the tangent with a vector, and pair fields in 1000.
 #[test]
 fn reg_effort_of_whole_cycles() {
-    for (at, iterations, products, pairs) in [(0, 2594, 7004, 1675), (1, 9119, 11853, 11273), (5, 2949, 5583, 560)] {
+    for (at, iterations, products, pairs) in [(0, 2596, 7013, 1678), (1, 9110, 11883, 11297), (5, 2949, 5584, 560)] {
         let (what, (zeta, realization, rules, adhesion, patch), _) = setups().swap_remove(at);
         let material = Material { work_of_adhesion_j_m2: adhesion, ..PAPER };
         let problem = Problem::new(&paper_summits(zeta, realization), LENGTH, RMS, material, rules).unwrap().with_patches_of(patch);

@@ -40,7 +40,7 @@ impl DirectSum {
     }
 
     /// Vector from a centre \[m\] to the nearest image of a place, in sides.
-    fn from_centre(&self, place: &[f64; 2], centre: &[f64; 2]) -> [f32; 2] {
+    fn vector_from(&self, place: &[f64; 2], centre: &[f64; 2]) -> [f32; 2] {
         [0, 1].map(|k| {
             let share = (place[k] - centre[k]) / self.length;
             (if self.periodic { share - share.round_ties_even() } else { share }) as f32
@@ -49,7 +49,7 @@ impl DirectSum {
 
     fn short_loads(&self, loads: &[PointLoad], centre: &[f64; 2]) -> Vec<ShortLoad> {
         let short = |load: &PointLoad| ShortLoad {
-            place: self.from_centre(&load.place, centre),
+            place: self.vector_from(&load.place, centre),
             moment: self.moment(load.load_n) as f32,
             reach: (load.reach_m / self.length) as f32,
         };
@@ -59,7 +59,7 @@ impl DirectSum {
     fn short_columns(&self, targets: &[usize], centre: &[f64; 2]) -> Vec<[[f32; SHORT_LANES]; 2]> {
         let mut columns = vec![[[0.0; SHORT_LANES]; 2]; targets.len().div_ceil(SHORT_LANES)];
         for (k, target) in targets.iter().enumerate() {
-            let [x, y] = self.from_centre(&self.positions[*target], centre);
+            let [x, y] = self.vector_from(&self.positions[*target], centre);
             let [xs, ys] = &mut columns[k / SHORT_LANES];
             (xs[k % SHORT_LANES], ys[k % SHORT_LANES]) = (x, y);
         }

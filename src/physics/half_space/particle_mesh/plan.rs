@@ -80,7 +80,7 @@ impl Accuracy {
     /// A B-spline of order p aliases a mode at the fraction t of the mesh's highest wavenumber with the weight `(t/(2 − t))^p`.
     /// The mode itself has the amplitude `e^(−(q/2α)²)`. Beyond `r = r_c` the far field lacks `0.03 (a/r)⁸`.
     /// Each error is relative to a field at the cutoff, which is a small part of the largest displacement.
-    /// The measured total is below a fifth of the tolerance in every case, and a thirtieth in most.
+    /// The measured total is below the tolerance in every case (3e-9 at 1e-8).
     pub(super) fn of(tolerance: f64) -> Self {
         let tolerance = tolerance.clamp(1e-13, 1e-2);
         let mut edge = 1.0;
