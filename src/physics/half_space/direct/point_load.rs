@@ -27,16 +27,15 @@ impl DirectSum {
     ///
     /// The image sums have six digits.
     pub(crate) fn of_loads(&self, loads: &[PointLoad], centre: &[f64; 2], targets: &[usize]) -> Vec<f64> {
-        let columns = self.columns(targets);
-        let mut sums = vec![[0.0; LANES]; columns.x.len()];
-        let whole: f64 = loads.iter().map(|load| load.load_n).sum();
+        let mut images = vec![[0.0; LANES]; targets.len().div_ceil(LANES)];
         if self.periodic {
-            image_fields(self.place(*centre), self.moment(whole), &columns, &mut sums);
+            let whole: f64 = loads.iter().map(|load| load.load_n).sum();
+            image_fields(self.place(*centre), self.moment(whole), &self.columns(targets), &mut images);
         }
         let mut near = vec![[0.0; SHORT_LANES]; targets.len().div_ceil(SHORT_LANES)];
         load_fields(&self.short_loads(loads, centre), &self.short_columns(targets, centre), self.periodic, &mut near);
         let near = near.as_flattened().iter().copied().map(f64::from);
-        sums.as_flattened()[..targets.len()].iter().zip(near).map(|(images, near)| images + near).collect()
+        images.as_flattened()[..targets.len()].iter().zip(near).map(|(images, near)| images + near).collect()
     }
 
     /// Vector from a centre \[m\] to the nearest image of a place, in sides.
