@@ -12,6 +12,14 @@ pub(super) const EXACT_GRID: f64 = 0.01;
 /// Minimum scale of the path, in rms heights: below it adhesion does not set the scale.
 pub(super) const LEAST_SCALE: f64 = 0.02;
 
+/// Limit of the growth of the penetration of a free asperity by all reasons, over the way of the mean penetration.
+const STEEPEST_RISE: f64 = 3.0;
+
+/// Distance of a free asperity from its jump-in beyond which it stays farther than `scale` from it while the mean penetration changes by `way`; all \[m\].
+pub(super) fn out_of_reach(way: f64, scale: f64) -> f64 {
+    STEEPEST_RISE * way.abs() + scale
+}
+
 /// Precision of a global solve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Precision {

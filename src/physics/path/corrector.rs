@@ -1,6 +1,6 @@
 //! Global corrector: the contact solved at the end of an increment, and new predictors of everything.
 
-use super::accuracy::Precision;
+use super::accuracy::{Precision, out_of_reach};
 use super::equilibrium_path::EquilibriumPath;
 use super::rejection::Rejection;
 use super::triggers::Trigger;
@@ -191,19 +191,18 @@ impl EquilibriumPath {
     }
 
     /// Replaces the predictors of the free asperities that may jump into contact. All of them are evaluated on a grid of mean penetrations;
-    /// in between, only those that can have come near: no penetration grows by more than three times the way.
+    /// in between, only those that can have come near.
     fn predict_jump_ins(&mut self, rates: &[f64]) {
         let problem = &*self.problem();
         let (target, scale) = (self.state().approach_m, self.frame.scale);
         let all = self.solver.begins_block(target);
         let near = |i: &usize| {
             let trace = &self.predictor.traces[*i];
-            let margin = 3.0 * (target - trace.at).abs() + scale;
-            all || trace.value.is_nan() || trace.value > problem.jump_in[*i] - margin
+            all || trace.value.is_nan() || trace.value > problem.jump_in[*i] - out_of_reach(target - trace.at, scale)
         };
         let wanted: Vec<usize> = (0..problem.summits()).filter(|i| self.state().status[*i] == Status::Free).filter(near).collect();
         let found = self.solver.penetrations(&self.predictor.state, rates, &wanted);
-        let span = 3.0 * self.steps.longest() + scale;
+        let span = out_of_reach(self.steps.longest(), scale);
         self.predictor.candidates.clear();
         for (i, trace) in wanted.into_iter().zip(found) {
             self.predictor.traces[i] = trace;

@@ -1,6 +1,6 @@
 //! State of a path, and its increments.
 
-use super::accuracy::{EXACT_GRID, Precision};
+use super::accuracy::{EXACT_GRID, Precision, out_of_reach};
 use super::chatter::ChatterGuard;
 use super::checkpoint::Checkpoint;
 use super::energy::EnergyLedger;
@@ -14,7 +14,7 @@ use crate::physics::contact::numerics::Accuracy;
 use crate::physics::contact::transition::Transition;
 use crate::physics::contact::{Event, Problem, State, Totals};
 use crate::physics::half_space::Effort;
-use crate::physics::solve::global::GlobalSolver;
+use crate::physics::solve::global::{BLOCK, GlobalSolver};
 use crate::physics::solve::residual::NotConverged;
 use crate::physics::{PhysicsError, Reason};
 use std::sync::Arc;
@@ -142,6 +142,7 @@ impl EquilibriumPath {
             pending: &self.pending,
             sense: self.frame.sense,
             scale: self.frame.scale,
+            followed: out_of_reach(BLOCK * self.solver.problem.rms_height_m + self.steps.longest(), self.frame.scale),
         };
         self.neighbourhood.gather(&within, transition, approach, &mut self.solver.effort);
     }

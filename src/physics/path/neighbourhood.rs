@@ -47,6 +47,8 @@ pub(super) struct Surroundings<'a> {
     pub(super) sense: f64,
     /// Length scale \[m\].
     pub(super) scale: f64,
+    /// Distance from jump-in up to which free asperities are followed \[m\]: farther ones are evaluated again before they come near.
+    pub(super) followed: f64,
 }
 
 /// Members, free asperities among them, and the shell.
@@ -125,7 +127,7 @@ impl Surroundings<'_> {
             problem.neighbours.around(
                 place,
                 reach,
-                |i| state.status[i] == Status::Free && !traces[i].value.is_nan(),
+                |i| state.status[i] == Status::Free && traces[i].value > problem.jump_in[i] - self.followed,
                 |r, i| {
                     if r <= inner && near_jump_in(&i) { &mut watched } else { &mut shell }.push(i);
                 },

@@ -22,7 +22,7 @@ const RATES: f64 = 1e-4;
 const ROUGH_RATES: f64 = 3e-4;
 
 /// Way between two evaluations of all free asperities, in rms heights.
-const BLOCK: f64 = 0.2;
+pub(crate) const BLOCK: f64 = 0.2;
 
 /// Tangents of one precision.
 #[derive(Debug, Default)]
