@@ -1,22 +1,10 @@
 //! Neighbour search by a grid of cells.
 
 use crate::physics::math::grown::Grown;
+use crate::physics::math::vector::nearest_image;
 use std::cmp::Ordering;
 use std::f64::consts::PI;
 use std::sync::Arc;
-
-/// Shortest periodic equivalent of a component of the distance between two points on the square.
-///
-/// It avoids rounding, which would be a function call.
-fn nearest_image(way: f64, side: f64) -> f64 {
-    if way > 0.5 * side {
-        way - side
-    } else if way < -0.5 * side {
-        way + side
-    } else {
-        way
-    }
-}
 
 /// Order of distances with their asperities.
 pub(crate) fn nearer(u: &(f64, usize), v: &(f64, usize)) -> Ordering {

@@ -6,6 +6,7 @@
 use super::problem::Problem;
 use super::state::State;
 use crate::model::Boundary;
+use crate::physics::math::vector::nearest_image;
 use std::f64::consts::{PI, TAU};
 
 /// Area of the union of the discs of a state \[m²\].
@@ -17,8 +18,8 @@ pub fn area(problem: &Problem, state: &State) -> f64 {
     let overlapping = |k: usize| {
         let mut list = Vec::new();
         problem.neighbours.within(state.contacts[k], discs[k].radius + largest, |r, i| {
-            if let Ok(other) = state.contacts.binary_search(&i)
-                && r < discs[k].radius + discs[other].radius
+            if r < discs[k].radius + state.radius[i]
+                && let Ok(other) = state.contacts.binary_search(&i)
             {
                 list.push(other);
             }
@@ -85,7 +86,7 @@ enum Arc {
 fn hidden_arc(disc: &Disc, other: &Disc, length: f64, periodic: bool) -> Arc {
     let [dx, dy] = [0, 1].map(|k| {
         let d = other.centre[k] - disc.centre[k];
-        if periodic { d - length * (d / length).round_ties_even() } else { d }
+        if periodic { nearest_image(d, length) } else { d }
     });
     let distance = dx.hypot(dy);
     if distance + disc.radius <= other.radius {

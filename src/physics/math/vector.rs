@@ -6,15 +6,9 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     in_strands::<8, _>(a, b)
 }
 
-/// Scalar product of single-precision with double-precision components, in sixteen partial sums.
-#[multiversion::multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-pub(crate) fn mixed_dot(a: &[f32], b: &[f64]) -> f64 {
-    in_strands::<16, _>(a, b)
-}
-
 /// Scalar product in `N` partial sums, for inlining into a function compiled for the machine's vectors.
 #[inline(always)]
-fn in_strands<const N: usize, A: Copy + Into<f64>>(a: &[A], b: &[f64]) -> f64 {
+pub(crate) fn in_strands<const N: usize, A: Copy + Into<f64>>(a: &[A], b: &[f64]) -> f64 {
     let mut strands = [0.0; N];
     let (a_whole, a_rest) = a.as_chunks::<N>();
     let (b_whole, b_rest) = b.as_chunks::<N>();
@@ -27,4 +21,18 @@ fn in_strands<const N: usize, A: Copy + Into<f64>>(a: &[A], b: &[f64]) -> f64 {
         strands[k] += (*x).into() * y;
     }
     strands.iter().sum()
+}
+
+/// Shortest periodic equivalent of a component of the vector between two points on a square.
+///
+/// It avoids rounding, which would be a function call.
+#[inline]
+pub(crate) fn nearest_image(way: f64, side: f64) -> f64 {
+    if way > 0.5 * side {
+        way - side
+    } else if way < -0.5 * side {
+        way + side
+    } else {
+        way
+    }
 }

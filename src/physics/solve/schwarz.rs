@@ -9,7 +9,8 @@ use crate::physics::contact::state::{State, Status};
 use crate::physics::half_space::{Tangent, places_in};
 use crate::physics::math::dense::Lu;
 use crate::physics::math::gmres::Preconditioner;
-use crate::physics::math::vector::mixed_dot;
+use crate::physics::math::vector::in_strands;
+use multiversion::multiversion;
 
 /// Number of contacts in a group when they are divided, and number of contacts that are solved together for it.
 const GROUP: usize = 24;
@@ -38,6 +39,14 @@ pub(super) struct LocalInverse {
     lu: Lu,
 }
 
+/// Number of partial sums in the product of a row.
+const STRANDS: usize = 16;
+
+/// Length of a row that is filled up with zeros to whole passes.
+fn padded(length: usize) -> usize {
+    length.next_multiple_of(STRANDS)
+}
+
 /// A group of contacts and its rows of the inverse.
 #[derive(Debug, Clone, Default)]
 struct Group {
@@ -45,7 +54,7 @@ struct Group {
     members: Vec<usize>,
     /// Contacts that were solved together for it, ascending; its members are among them.
     near: Vec<usize>,
-    /// Row of each member, over `near`.
+    /// Row of each member, over `near`; with zeros to whole passes.
     values: Vec<f32>,
     /// Centre of the members, and the largest distance of a contact in `near` \[m\].
     centre: [f64; 2],
@@ -131,13 +140,19 @@ impl LocalInverse {
 
 impl Preconditioner for LocalInverse {
     fn apply(&self, x: &[f64], y: &mut [f64]) {
-        let mut near = Vec::new();
-        for group in &self.groups {
-            near.clear();
-            near.extend(group.columns.iter().map(|k| x[*k as usize]));
-            for (k, values) in group.rows.iter().zip(group.values.chunks(near.len().max(1))) {
-                y[*k as usize] = mixed_dot(values, &near);
-            }
+        apply(&self.groups, x, y);
+    }
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
+fn apply(groups: &[Group], x: &[f64], y: &mut [f64]) {
+    let mut near = Vec::new();
+    for group in groups {
+        near.clear();
+        near.extend(group.columns.iter().map(|k| x[*k as usize]));
+        near.resize(padded(near.len()), 0.0);
+        for (k, values) in group.rows.iter().zip(group.values.chunks(near.len().max(1))) {
+            y[*k as usize] = in_strands::<STRANDS, _>(values, &near);
         }
     }
 }
@@ -240,6 +255,7 @@ impl Group {
         self.values.clear();
         for column in 0..columns {
             self.values.extend(unit.iter().skip(column).step_by(columns).map(|v| *v as f32));
+            self.values.resize(padded(self.values.len()), 0.0);
         }
     }
 
@@ -257,24 +273,30 @@ impl Jacobian<'_> {
     /// Its part for some contacts, column by column: their numbers, their positions among all, and their places relative to a centre \[m\].
     fn transposed(&self, contacts: &[usize], at: &[u32], apart: &[[f64; 2]]) -> Vec<f64> {
         let Self { problem, state, tangent, diagonal } = self;
-        let mut matrix = Vec::with_capacity(contacts.len() * contacts.len());
-        for ((i, at), [x, y]) in contacts.iter().zip(at).zip(apart) {
-            let a = state.radius[*i];
-            let slope = problem.material.compliance() * problem.asperities[*i].load_slope(a);
+        let n = contacts.len();
+        let columns = [0, 1].map(|along| apart.iter().map(|place| place[along]).collect::<Vec<f64>>());
+        let (mut matrix, mut distances) = (vec![0.0; n * n], vec![0.0; n]);
+        for (k, ((i, at), line)) in contacts.iter().zip(at).zip(matrix.chunks_mut(n)).enumerate() {
+            let (asperity, a) = (&problem.asperities[*i], state.radius[*i]);
             // Image fields are nearly the same for all of them.
             let images = tangent.own(*at as usize);
-            for (j, [u, v]) in contacts.iter().zip(apart) {
-                let r = ((u - x) * (u - x) + (v - y) * (v - y)).sqrt();
-                let by = if i == j {
-                    diagonal[*at as usize]
-                } else if r > ALOOF * a {
-                    slope / r
-                } else {
-                    problem.spot_field(&problem.asperities[*i], r, a).1
-                };
-                matrix.push(by + images);
+            let slope = problem.material.compliance() * asperity.load_slope(a);
+            fields_of_load(&columns, k, [slope, images], &mut distances, line);
+            for (by, r) in line.iter_mut().zip(&distances).filter(|(_, r)| **r <= ALOOF * a) {
+                *by = problem.spot_field(asperity, *r, a).1 + images;
             }
+            line[k] = diagonal[*at as usize] + images;
         }
         matrix
+    }
+}
+
+/// `slope/r + images` at each place, and the distance r from the place of number `from`.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
+fn fields_of_load([x, y]: &[Vec<f64>; 2], from: usize, [slope, images]: [f64; 2], distances: &mut [f64], fields: &mut [f64]) {
+    for ((x_at, y_at), (r, field)) in x.iter().zip(y).zip(distances.iter_mut().zip(fields)) {
+        let (dx, dy) = (x_at - x[from], y_at - y[from]);
+        *r = (dx * dx + dy * dy).sqrt();
+        *field = slope / *r + images;
     }
 }

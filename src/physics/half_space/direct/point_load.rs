@@ -4,6 +4,7 @@ use super::at_many::Targets;
 use super::{DirectSum, in_sides};
 use crate::physics::half_space::image_polynomials::{CENTRE, Centre};
 use crate::physics::half_space::spot_field::{LANES, Place, squared_distances};
+use crate::physics::math::vector::nearest_image;
 use multiversion::multiversion;
 
 impl DirectSum {
@@ -42,7 +43,7 @@ impl DirectSum {
     fn vector_from(&self, place: &[f64; 2], centre: &[f64; 2]) -> [f32; 2] {
         [0, 1].map(|k| {
             let share = (place[k] - centre[k]) / self.length;
-            (if self.periodic { share - share.round_ties_even() } else { share }) as f32
+            (if self.periodic { nearest_image(share, 1.0) } else { share }) as f32
         })
     }
 
