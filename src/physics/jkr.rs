@@ -19,6 +19,7 @@
 
 use crate::model::{Material, Slips};
 use crate::physics::PhysicsError;
+use multiversion::multiversion;
 use std::f64::consts::PI;
 
 /// Contact radius over the radius of curvature at which a contact without adhesion begins and ends.
@@ -180,28 +181,12 @@ impl Asperity {
 
     /// [`Self::radius_at_penetration`] of several asperities at once, each at its penetration \[m\]; not finite below the end of the branch. Divisions of one
     /// asperity wait for one another, those of several do not.
-    #[inline(always)]
     fn radii_at_penetrations<const N: usize>(asperities: [&Self; N], penetrations: [f64; N]) -> [f64; N] {
         let excess: [f64; N] = std::array::from_fn(|k| {
             let (off, radius) = (asperities[k].fold_radius, asperities[k].radius);
             (penetrations[k] + 3.0 * off * off / radius) * radius / (off * off)
         });
-        let mut e = excess.map(|excess| (excess / 6.0).sqrt().min(excess.sqrt().sqrt() + 0.6));
-        let mut moving = [true; N];
-        for _ in 0..60 {
-            for k in 0..N {
-                let value = e[k] * e[k] * (6.0 + e[k] * (4.0 + e[k])) - excess[k];
-                let slope = e[k] * (12.0 + e[k] * (12.0 + 4.0 * e[k]));
-                let next = e[k] - value / slope;
-                moving[k] &= slope > 0.0;
-                let step = (next - e[k]).abs();
-                e[k] = if moving[k] { next } else { e[k] };
-                moving[k] &= step > 4e-16 * e[k];
-            }
-            if moving == [false; N] {
-                break;
-            }
-        }
+        let e = beyond_the_fold(&excess);
         std::array::from_fn(|k| {
             let Self { fold_radius: off, radius, jump_off_penetration, .. } = *asperities[k];
             if penetrations[k] < jump_off_penetration {
@@ -272,6 +257,28 @@ impl Asperity {
         let landed = self.radius_at_penetration(jump_in)?;
         Some(energy(self.jump_off_penetration(), self.jump_off_radius) - energy(jump_in, landed))
     }
+}
+
+/// The root `e ≥ 0` of `6e² + 4e³ + e⁴ = excess` for each excess.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
+fn beyond_the_fold<const N: usize>(excess: &[f64; N]) -> [f64; N] {
+    let mut e = excess.map(|excess| (excess / 6.0).sqrt().min(excess.sqrt().sqrt() + 0.6));
+    let mut moving = [true; N];
+    for _ in 0..60 {
+        for k in 0..N {
+            let value = e[k] * e[k] * (6.0 + e[k] * (4.0 + e[k])) - excess[k];
+            let slope = e[k] * (12.0 + e[k] * (12.0 + 4.0 * e[k]));
+            let next = e[k] - value / slope;
+            moving[k] &= slope > 0.0;
+            let step = (next - e[k]).abs();
+            e[k] = if moving[k] { next } else { e[k] };
+            moving[k] &= step > 4e-16 * e[k];
+        }
+        if moving == [false; N] {
+            break;
+        }
+    }
+    e
 }
 
 /// Exact constant of Deng and Kesari's loop loss, `2^⅔ (3/10 + (1/5)·16^(−⅔)) = 0.5262203…`.
