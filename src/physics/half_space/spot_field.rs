@@ -277,20 +277,22 @@ impl SpotColumns {
 
     /// The spots reordered: the new spot k is the old spot `from[k]`.
     pub(crate) fn in_order(&self, from: &[usize]) -> Self {
-        let mut found = Self::default();
-        for &k in from {
-            found.push([
-                self.x[k],
-                self.y[k],
-                self.a[k],
-                self.root_a[k],
-                self.inverse_root_a[k],
-                self.inverse_radius[k],
-                self.load[k],
-                self.load_slope[k],
-            ]);
-        }
-        found.count = from.len();
+        let column = |given: &[f64]| {
+            let mut ordered = Vec::with_capacity(from.len().next_multiple_of(LANES));
+            ordered.extend(from.iter().map(|k| given[*k]));
+            ordered
+        };
+        let mut found = Self {
+            count: from.len(),
+            x: column(&self.x),
+            y: column(&self.y),
+            a: column(&self.a),
+            root_a: column(&self.root_a),
+            inverse_root_a: column(&self.inverse_root_a),
+            inverse_radius: column(&self.inverse_radius),
+            load: column(&self.load),
+            load_slope: column(&self.load_slope),
+        };
         found.fill_up();
         found
     }

@@ -252,23 +252,26 @@ impl<T: Real, const W: usize, const O: usize> Meshes<T, W, O> {
         let old = std::mem::take(self);
         for (plan, members) in levels {
             let mesh = mesh(plan);
-            let mut known = vec![None; sources.len()];
-            if let (Some(kept), Some((_, (spots, splines)))) = (kept, old.levels.iter().find(|(old, _)| Arc::ptr_eq(old, mesh))) {
-                for (spot, spline) in spots.iter().zip(splines) {
+            let mut before = vec![None; sources.len()];
+            let mut weights = &[][..];
+            if let (Some(kept), Some((_, (spots, known)))) = (kept, old.levels.iter().find(|(old, _)| Arc::ptr_eq(old, mesh))) {
+                weights = known;
+                for (k, spot) in spots.iter().enumerate() {
                     // The number of a source that is gone is beyond the end.
-                    if let Some(known) = known.get_mut(kept.numbers[*spot] as usize) {
-                        *known = Some(spline);
+                    if let Some(before) = before.get_mut(kept.numbers[*spot] as usize) {
+                        *before = Some(k);
                     }
                 }
             }
-            let places = members.iter().map(|j| (known[*j], sources[*j]));
-            self.levels.push((mesh.clone(), (members.clone(), completed(places, |places| splines(places, mesh.size)))));
+            let places = members.iter().map(|j| (before[*j], sources[*j]));
+            let weights = completed(weights, places, |places| splines(places, mesh.size));
+            self.levels.push((mesh.clone(), (members.clone(), weights)));
         }
         if let Some((mesh, _)) = self.levels.first() {
             let same = old.levels.first().is_some_and(|(old, _)| Arc::ptr_eq(old, mesh));
-            let known = |k: usize| kept.filter(|_| same).and_then(|kept| kept.targets[k]).map(|before| &old.readers[before]);
-            let places = targets.iter().enumerate().map(|(k, place)| (known(k), *place));
-            self.readers = completed(places, |places| splines(places, mesh.size).iter().map(Reader::new).collect());
+            let kept = kept.filter(|_| same);
+            let places = targets.iter().enumerate().map(|(k, place)| (kept.and_then(|kept| kept.targets[k]), *place));
+            self.readers = completed(&old.readers, places, |places| splines(places, mesh.size).iter().map(Reader::new).collect());
         }
     }
 
@@ -281,12 +284,28 @@ impl<T: Real, const W: usize, const O: usize> Meshes<T, W, O> {
     }
 }
 
-/// Weights of places: those that are known, and those that `find` gives for the others.
-fn completed<'a, A: Copy + 'a>(
-    places: impl Iterator<Item = (Option<&'a A>, [f64; 2])> + Clone,
+/// Weights of places: of those with a position among `known` these, and of the others those that `find` gives.
+fn completed<A: Copy>(
+    known: &[A],
+    places: impl Iterator<Item = (Option<usize>, [f64; 2])> + Clone,
     find: impl FnOnce(&[[f64; 2]]) -> Vec<A>,
 ) -> Vec<A> {
-    let unknown: Vec<[f64; 2]> = places.clone().filter(|(known, _)| known.is_none()).map(|(_, place)| place).collect();
+    let unknown: Vec<[f64; 2]> = places.clone().filter(|(before, _)| before.is_none()).map(|(_, place)| place).collect();
     let mut found = find(&unknown).into_iter();
-    places.filter_map(|(known, _)| known.copied().or_else(|| found.next())).collect()
+    let mut all = Vec::with_capacity(places.clone().count());
+    // Known ones that follow one another are copied at once.
+    let mut run = 0..0;
+    for (before, _) in places {
+        if before == Some(run.end) {
+            run.end += 1;
+            continue;
+        }
+        all.extend_from_slice(&known[run]);
+        run = before.map_or(0..0, |before| before..before + 1);
+        if before.is_none() {
+            all.extend(found.next());
+        }
+    }
+    all.extend_from_slice(&known[run]);
+    all
 }

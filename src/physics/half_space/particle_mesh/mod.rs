@@ -302,7 +302,6 @@ impl Sparse {
     pub(super) fn product(&self, x: &[f64], y: &mut [f64]) {
         let rough = &mut *self.rough.borrow_mut();
         inward(&self.from, x, &mut rough.x);
-        rough.y.clear();
         rough.y.resize(x.len(), 0.0);
         self.geometry.product(Loads { moments: &self.slopes, factors: Some(&rough.x) }, &mut rough.work, &mut rough.y);
         outward(&self.from, &rough.y, y);

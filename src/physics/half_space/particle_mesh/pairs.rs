@@ -53,9 +53,8 @@ pub(super) struct Pairs {
     /// Source of each entry, and the last computed derivative to its radius.
     spots: Vec<u32>,
     slopes: Vec<f32>,
-    /// Exact entries: distance, its inverse, and factors of the moments that subtract the mesh field.
+    /// Exact entries: distance, and factors of the moments that subtract the mesh field.
     r: Vec<f64>,
-    inverse_r: Vec<f64>,
     rest: Vec<[f64; ORDERS]>,
     /// Moment entries: factors of the moments, and the rounding residual of the first one.
     /// The higher orders contribute a hundredth or less.
@@ -74,7 +73,6 @@ impl Pairs {
         self.exact.clear();
         self.spots.clear();
         self.r.clear();
-        self.inverse_r.clear();
         self.rest.clear();
         self.kernel.clear();
         self.low.clear();
@@ -108,7 +106,6 @@ impl Pairs {
         if !old.spots[from..to].iter().any(|spot| number(spot) == GONE) {
             self.spots.extend(old.spots[from..middle].iter().map(number));
             self.r.extend_from_slice(&old.r[exact.clone()]);
-            self.inverse_r.extend_from_slice(&old.inverse_r[exact.clone()]);
             self.rest.extend_from_slice(&old.rest[exact]);
             self.waiting.extend(old.spots[middle..to].iter().map(number));
             self.kernel.extend_from_slice(&old.kernel[far.clone()]);
@@ -117,7 +114,7 @@ impl Pairs {
         }
         self.reserve(to - from);
         for (spot, at) in old.spots[from..middle].iter().map(number).zip(exact).filter(|(spot, _)| *spot != GONE) {
-            self.push_exact(spot, (old.r[at], old.inverse_r[at]), old.rest[at]);
+            self.push_exact(spot, old.r[at], old.rest[at]);
         }
         for (spot, at) in old.spots[middle..to].iter().map(number).zip(far).filter(|(spot, _)| *spot != GONE) {
             self.push_far(spot, old.kernel[at], old.low[at]);
@@ -126,10 +123,9 @@ impl Pairs {
 
     /// Adds a source with its exact field.
     #[inline(always)]
-    fn push_exact(&mut self, spot: u32, (r, inverse_r): (f64, f64), rest: [f64; ORDERS]) {
+    fn push_exact(&mut self, spot: u32, r: f64, rest: [f64; ORDERS]) {
         self.spots.push(spot);
         self.r.push(r);
-        self.inverse_r.push(inverse_r);
         self.rest.push(rest);
     }
 
@@ -145,7 +141,6 @@ impl Pairs {
     fn reserve(&mut self, count: usize) {
         self.spots.reserve(count);
         self.r.reserve(count);
-        self.inverse_r.reserve(count);
         self.rest.reserve(count);
         self.kernel.reserve(count);
         self.low.reserve(count);
@@ -197,7 +192,7 @@ fn enter(
         // A spot does not act on its own centre: its distance is set to `AWAY`, and the mesh field is subtracted in full precision.
         let r = if square > 0.0 { square.sqrt() } else { AWAY };
         if r < aloof[spot] || square == 0.0 {
-            pairs.push_exact(spot as u32, (r, 1.0 / r), rest);
+            pairs.push_exact(spot as u32, r, rest);
         } else {
             let mut power = length / r;
             let unit2 = power * power;
@@ -226,7 +221,8 @@ fn evaluate<const SLOPES: bool>(pairs: &Pairs, sources: &Sources, values: &mut [
             let spots = &pairs.spots[entry..entry + count];
             // Lanes beyond the last entry repeat it.
             let lanes: [usize; LANES] = std::array::from_fn(|lane| lane.min(count - 1));
-            let [r, inverse_r] = [&pairs.r, &pairs.inverse_r].map(|column| lanes.map(|lane| column[at + lane]));
+            let r = lanes.map(|lane| pairs.r[at + lane]);
+            let inverse_r = r.map(|r| 1.0 / r);
             let shapes = lanes.map(|lane| sources.shapes[spots[lane] as usize]);
             let [a, root_a, inverse_root_a, curvature] = std::array::from_fn(|k| shapes.map(|shape| shape[k]));
             let (fields, rates) = field_at(&r, &inverse_r, &a, &root_a, &inverse_root_a, &curvature, pull, sag);
@@ -269,8 +265,10 @@ fn multiply(starts: &[usize], spots: &[u32], slopes: &[f32], x: &[f64], y: &mut 
         let mut strands = [0.0; 4];
         let ((spots, left), (slopes, over)) = (spots[ends[0]..ends[1]].as_chunks::<4>(), slopes[ends[0]..ends[1]].as_chunks::<4>());
         for (spot, slope) in spots.iter().zip(slopes) {
+            // All loads first, then one operation on all lanes.
+            let (slope, x) = (slope.map(f64::from), spot.map(|spot| x[spot as usize]));
             for k in 0..4 {
-                strands[k] = f64::from(slope[k]).mul_add(x[spot[k] as usize], strands[k]);
+                strands[k] = slope[k].mul_add(x[k], strands[k]);
             }
         }
         for (spot, slope) in left.iter().zip(over) {
