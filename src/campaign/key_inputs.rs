@@ -184,7 +184,7 @@ pub(super) fn read_by_cycle(params: &CaseParams) -> CaseParams {
 const ELEMENTS_VERSION: u32 = 10;
 
 /// The same of cycles of the asperity model.
-const ASPERITIES_VERSION: u32 = 8;
+const ASPERITIES_VERSION: u32 = 9;
 
 /// Inputs of a cycle in its key, besides the asperities.
 fn of_case(params: &CaseParams) -> Vec<(&'static str, Value)> {

@@ -142,7 +142,7 @@ impl EquilibriumPath {
             pending: &self.pending,
             sense: self.frame.sense,
             scale: self.frame.scale,
-            followed: out_of_reach(BLOCK * self.solver.problem.rms_height_m + self.steps.longest(), self.frame.scale),
+            displaced: out_of_reach(BLOCK * self.solver.problem.rms_height_m + self.steps.longest(), self.frame.scale),
         };
         self.neighbourhood.gather(&within, transition, approach, &mut self.solver.effort);
     }

@@ -1,7 +1,7 @@
 //! Local problem around an event, and the shell of asperities next to it.
 //!
 //! The contacts of the local problem are solved together, with the displacement by all others to first order in the mean penetration.
-//! Asperities of the shell receive the change of the field by the event: free ones at once, contacts as a pending displacement.
+//! Asperities of the shell receive the change of the field by the event: free ones that may come near jump-in at once, contacts as a pending displacement.
 
 use super::pending::PendingField;
 use super::predictor::Predictor;
@@ -47,8 +47,8 @@ pub(super) struct Surroundings<'a> {
     pub(super) sense: f64,
     /// Length scale \[m\].
     pub(super) scale: f64,
-    /// Distance from jump-in up to which free asperities are followed \[m\]: farther ones are evaluated again before they come near.
-    pub(super) followed: f64,
+    /// Distance from jump-in within which free asperities take the change of the field \[m\]: farther ones are evaluated before they come near.
+    pub(super) displaced: f64,
 }
 
 /// Members, free asperities among them, and the shell.
@@ -127,7 +127,7 @@ impl Surroundings<'_> {
             problem.neighbours.around(
                 place,
                 reach,
-                |i| state.status[i] == Status::Free && traces[i].value > problem.jump_in[i] - self.followed,
+                |i| state.status[i] == Status::Free && traces[i].value > problem.jump_in[i] - self.displaced,
                 |r, i| {
                     if r <= inner && near_jump_in(&i) { &mut watched } else { &mut shell }.push(i);
                 },
