@@ -117,6 +117,17 @@ choice! {
     }
 }
 choice! {
+    /// Cause of the end of a measured spectrum at short wavelengths.
+    SpectrumEnd {
+        /// The density falls below the self-affine spectrum.
+        Empty = "empty",
+        /// A Gaussian filter damps the spectrum; the end is where it transmits half of the amplitude.
+        GaussianFilter = "gaussian_filter",
+        /// White noise exceeds the self-affine spectrum.
+        WhiteNoise = "white_noise",
+    }
+}
+choice! {
     /// Method of a contact cycle.
     Method {
         /// Asperity model: interacting JKR asperities.

@@ -216,6 +216,9 @@ fn remove(value: &mut Value, name: &str) {
     }
 }
 
+/// Version of the header of a measured surface in its key: 2 with texture and the cut-offs of the fit.
+const MEASURED_HEADER_VERSION: u32 = 2;
+
 /// Seed in the key of a surface; a measured one has none.
 pub(super) fn seed_of(spec: &Spec, params: &SurfaceParams) -> u64 {
     if params.is_measured() { 0 } else { spec.seed }
@@ -227,7 +230,7 @@ pub(super) fn of_surface(spec: &Spec, params: &SurfaceParams) -> Value {
     if params.is_measured() {
         return json!({
             "blake3": spec.files.get(file), "dataset": dataset, "periodic": periodic, "pixel_m": pixel_m, "unit": unit, "missing": missing, "detrend": detrend,
-            "points_per_shortest_wavelength": points_per_shortest_wavelength,
+            "points_per_shortest_wavelength": points_per_shortest_wavelength, "header_version": MEASURED_HEADER_VERSION,
         });
     }
     let mut reads = plain(params);

@@ -8,13 +8,14 @@ use crate::stats::{LIMITS, Limit, Listed, StatsError, Warning, warnings};
 use maud::{Markup, html};
 
 /// The table of model validity: heading, the column that is compared with a limit, and the column shown in parentheses.
-const VALIDITY: [(&str, &str, Option<&str>, Shown); 9] = [
+const VALIDITY: [(&str, &str, Option<&str>, Shown); 10] = [
     ("Tabor parameter μ: minimum (mean)", "tabor_min_min", Some("tabor_mean_mean"), Shown::Plain),
     ("asperities with μ < 2", "low_tabor_share_mean", None, Shown::Percent),
     ("asperities per surface: mean (minimum)", "summit_count_mean", Some("summit_count_min"), Shown::Plain),
     ("contacts at F_{max}: mean (minimum)", "contact_count_at_max_load_mean", Some("contact_count_at_max_load_min"), Shown::Plain),
     ("overlapping contacts: pooled (maximum)", "touching_share_mean", Some("touching_share_max"), Shown::Percent),
     ("absorbed asperities: pooled (maximum)", "covered_share_mean", Some("covered_share_max"), Shown::Percent),
+    ("texture aspect ratio: maximum (mean)", "texture_aspect_max", Some("texture_aspect_mean"), Shown::Plain),
     ("A/A_{0}", "area_at_max_load_mean", None, Shown::Percent),
     ("U_{el}/Δγ of the shortest octave: realised (target)", "conformity_realised_mean", Some("conformity_mean"), Shown::Plain),
     ("U_{el}/Δγ: realised (target)", "persson_tosatti_realised_mean", Some("persson_tosatti_mean"), Shown::Plain),

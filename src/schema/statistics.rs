@@ -125,6 +125,9 @@ const RESULTS: &[Column] = &[
     real("sticky_line", "1", "Wang-Müser ratio U_el/(2 Δγ) for the realized spectrum of the surface; below 1 the pull-off force is high; null where U_el is unknown and without adhesion")
         .or_null()
         .from("Wang and Müser 2022"),
+    real("texture_aspect", "1", "Texture aspect ratio: the larger of texture_slope_ratio and 1/texture_str, the latter where the side is 20 decay lengths or more; null for a generated surface, which is isotropic").or_null(),
+    real("texture_slope_ratio", "1", "Ratio of the rms slopes along the principal axes of the slope tensor, the larger over the smaller; null for a generated surface").or_null(),
+    real("texture_str", "1", "Texture aspect ratio Str: shortest over longest distance at which the autocorrelation decays to 0.2; an upper limit where the longest exceeds half of the side; null for a generated surface").or_null().from("ISO 25178-2"),
     real("elements_per_wavelength", "1", "Grid points of boundary elements per shortest wavelength; null for asperities").or_null(),
 ];
 
@@ -233,6 +236,7 @@ const VALIDITY: &[&[Column]] = &[
         ""
     ),
     mean_and_worst!("elements_per_wavelength", "min", "Minimum", "grid points of boundary elements per shortest wavelength", ""),
+    mean_and_worst!("texture_aspect", "max", "Maximum", "texture aspect ratio of a measured surface", ""),
     mean_and_worst!("loss_uncertainty", "max", "Maximum", "resolution of Θ over |Θ|", ""),
     pooled!(
         "touching_share",
@@ -264,7 +268,7 @@ const COUNTS: &[Column] = &[
     count("planned_count", "Realizations requested by the spec"),
     count("done_count", "Realizations in the means"),
     count("failed_count", "Realizations that failed"),
-    real("area_model_ratio", "1", "Expected ratio of the asperity model to boundary elements at this U_el/Δγ: contact area at F_max; null for boundary elements, without interaction and outside the measured range").or_null().from("pipelines/validity.toml"),
+    real("area_model_ratio", "1", "Expected ratio of the asperity model to boundary elements at this U_el/Δγ: contact area at F_max; null for boundary elements, without interaction, for a texture aspect ratio above 2 and outside the measured range").or_null().from("pipelines/validity.toml"),
     real("pull_off_model_ratio", "1", "The same ratio of the pull-off force").or_null().from("pipelines/validity.toml"),
     real("loss_model_ratio", "1", "The same ratio of the dissipated energy").or_null().from("pipelines/validity.toml"),
     text("caution", "Codes of all warnings of the row by severity, joined by +; empty without warnings"),

@@ -11,6 +11,7 @@ use crate::physics::jkr::LEAST_TABOR;
 use crate::physics::surface::spectrum::Moments;
 use crate::physics::surface::summits::Summit;
 use crate::physics::surface::synthesis::realization_seed;
+use crate::physics::surface::texture::Texture;
 use crate::physics::theory::approximate_jkr::{CurvePoint, adhesive_curve, curve_loop};
 use crate::physics::theory::flattening::{Flattening, flattening, measured_flattening, realised_flattening};
 use crate::physics::theory::{
@@ -137,6 +138,7 @@ fn asperity_columns(summits: &[Summit], material: &Material) -> Result<Given, St
 
 /// Summit densities and moments of a surface.
 fn surface_columns(header: &SurfaceHeader, summit_count: usize) -> Given {
+    let texture = header.measured.as_ref().and_then(|of| of.texture.as_ref());
     named([
         ("summit_count", summit_count.into()),
         ("summit_density_1_m2", (summit_count as f64 / (header.length_m * header.length_m)).into()),
@@ -144,6 +146,9 @@ fn surface_columns(header: &SurfaceHeader, summit_count: usize) -> Given {
         ("rms_slope", header.rms_slope.into()),
         ("rms_curvature_1_m", header.rms_curvature_1_m.into()),
         ("nayak_parameter", header.nayak_parameter.into()),
+        ("texture_aspect", texture.map(Texture::aspect).into()),
+        ("texture_slope_ratio", texture.map(|of| of.slope_ratio).into()),
+        ("texture_str", texture.map(|of| of.aspect_ratio_str).into()),
     ])
 }
 

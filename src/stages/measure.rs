@@ -5,8 +5,9 @@ use crate::formats::recognize;
 use crate::lengths::{LENGTHS, metres};
 use crate::model::Detrend;
 use crate::physics::surface::measured::{Prepared, Treatment, prepare};
-use crate::physics::surface::periodogram::{Ring, periodogram, windowed_periodogram};
-use crate::physics::surface::self_affine::fit_self_affine;
+use crate::physics::surface::periodogram::{periodogram, windowed_periodogram};
+use crate::physics::surface::self_affine::{SelfAffine, fit_self_affine};
+use crate::physics::surface::texture::Texture;
 use crate::spec::SurfaceParams;
 use crate::store::hdf5::{Measured, SpectrumFit, SurfaceHeader, is_own_surface, read_heights, read_surface};
 use crate::store::scan::{Found, Scan, read};
@@ -69,7 +70,8 @@ pub fn measure(params: &SurfaceParams, digest: &str, key: &str) -> Result<Import
         trend_m: prepared.trend_m,
         shortest_wavelength_m: prepared.shortest_wavelength_m,
         noise_m: prepared.noise_m,
-        fit: fit(&prepared.rings, prepared.shortest_wavelength_m),
+        fit: prepared.fit.as_ref().map(stored),
+        texture: Texture::of(prepared.heights_m.view(), params.periodic)?,
     };
     let moments = &prepared.moments;
     let header = SurfaceHeader {
@@ -103,6 +105,9 @@ fn own(
     let shortest = header.generated.map_or(0.0, |of| of.points_per_shortest_wavelength * spacing);
     let of_rings = if header.periodic { periodogram } else { windowed_periodogram };
     let rings = of_rings(heights_m.view(), header.length_m)?;
+    // A surface of this program that is not periodic has been imported, and its header holds the fit.
+    let fit = if header.periodic { fit_self_affine(&rings, header.length_m, false) } else { None };
+    let texture = Texture::of(heights_m.view(), header.periodic)?;
     let measured = header.measured.clone().unwrap_or_else(|| Measured {
         source: path.file_name().map(|name| name.to_string_lossy().chars().take(60).collect()).unwrap_or_default(),
         source_blake3: digest.to_owned(),
@@ -113,13 +118,15 @@ fn own(
         trend_m: 0.0,
         shortest_wavelength_m: shortest,
         noise_m: 0.0,
-        fit: fit(&rings, shortest),
+        fit: fit.as_ref().map(stored),
+        texture,
     });
     let prepared = Prepared {
         heights_m,
         length_m: header.length_m,
         moments: header.moments(),
         rings,
+        fit,
         missing_count: measured.missing_count as usize,
         trend_m: measured.trend_m,
         noise_m: measured.noise_m,
@@ -159,14 +166,17 @@ fn refused(path: &Path, why: &str) -> StageError {
     StageError::Measured { path: path.to_owned(), why: why.to_owned() }
 }
 
-/// The self-affine spectrum that fits; where short waves go and noise begins, the fit ends.
-fn fit(rings: &[Ring], shortest_wavelength_m: f64) -> Option<SpectrumFit> {
-    fit_self_affine(rings, TAU / shortest_wavelength_m).map(|fit| SpectrumFit {
+/// The fit of a spectrum as a file holds it: cut-offs as wavelengths.
+fn stored(fit: &SelfAffine) -> SpectrumFit {
+    SpectrumFit {
         hurst: fit.hurst,
         plateau_m4: fit.plateau_m4,
         roll_off_1_m: fit.roll_off_1_m,
+        rolls_off: Some(fit.rolls_off),
         scatter: fit.scatter,
-    })
+        long_cut_m: fit.long_cut_1_m.map(|wavenumber| TAU / wavenumber),
+        short_cut: fit.short_cut.map(|cut| (TAU / cut.wavenumber_1_m, cut.cause)),
+    }
 }
 
 /// Distances between the points of a scan \[m\]: from below an atom to the largest `pixel_m` of a spec.

@@ -24,7 +24,7 @@ const fn warning(code: &'static str, label: &'static str, text: &'static str, co
 
 /// All warnings by severity, which is the order of their codes in the column `caution`: results outside the model, then results that depend on a rule of the model,
 /// then incomplete or inaccurate results, then small samples.
-pub const CAUTIONS: [Caution; 17] = [
+pub const CAUTIONS: [Caution; 18] = [
     warning(
         "sticky",
         "near full contact",
@@ -80,6 +80,13 @@ pub const CAUTIONS: [Caution; 17] = [
         "boundary elements have {} grid points per shortest wavelength",
         "Dissipated energy and pull-off force depend on the grid.",
         "Increase `boundary_elements.points`.",
+    ),
+    warning(
+        "texture",
+        "anisotropic texture",
+        "texture aspect ratio = {}",
+        "Asperities are not spheres, and expected ratios, Θ_DK and Nayak's density hold for isotropic surfaces only.",
+        "Use `method = \"boundary_elements\"`; quote the loop only.",
     ),
     warning(
         "failed",
@@ -155,7 +162,7 @@ pub struct Limit {
     pub column: &'static str,
     /// The limit; the limit itself is within the range.
     pub bound: f64,
-    /// True for a minimum, false for a maximum. Maxima are fractions, written in percent; minima are ratios or numbers.
+    /// True for a minimum, false for a maximum. Maxima below 1 are fractions, written in percent; other limits are ratios or numbers.
     pub at_least: bool,
 }
 
@@ -174,6 +181,12 @@ impl Limit {
         LIMITS.into_iter().find(|limit| limit.caution == code)
     }
 
+    /// True for a fraction, which is written in percent.
+    #[must_use]
+    pub fn is_fraction(&self) -> bool {
+        !self.at_least && self.bound < 1.0
+    }
+
     /// True if a number is beyond the limit. A missing number is not.
     #[must_use]
     pub fn is_passed(&self, number: Option<f64>) -> bool {
@@ -182,7 +195,7 @@ impl Limit {
 }
 
 /// All limits. The limit of the Tabor parameter applies to Wu's criterion only, and only with adhesion.
-pub const LIMITS: [Limit; 12] = [
+pub const LIMITS: [Limit; 13] = [
     Limit::at_least("sticky", "persson_tosatti_realised_mean", 2.0),
     Limit::at_most("area", "area_at_max_load_mean", 0.3),
     Limit::at_least("conformed", "conformity_realised_mean", 1.0),
@@ -191,6 +204,7 @@ pub const LIMITS: [Limit; 12] = [
     Limit::at_most("touching", "touching_share_mean", 0.1),
     Limit::at_least("tabor", "tabor_min_min", 2.0),
     Limit::at_least("coarse", "elements_per_wavelength_min", 16.0),
+    Limit::at_most("texture", "texture_aspect_max", 2.0),
     Limit::at_most("unresolved", "loss_uncertainty_max", 0.1),
     Limit::at_most("audit", "audit_gap_max", 0.01),
     Limit::at_least("few_contacts", "contact_count_at_max_load_mean", 10.0),
@@ -198,7 +212,7 @@ pub const LIMITS: [Limit; 12] = [
 ];
 
 /// Warnings of the range of the asperity model, which boundary elements do not have.
-const OF_ASPERITIES: [&str; 7] = ["sticky", "area", "conformed", "covered", "absorption", "touching", "few_contacts"];
+const OF_ASPERITIES: [&str; 8] = ["sticky", "area", "conformed", "covered", "absorption", "touching", "texture", "few_contacts"];
 
 /// Codes of the warnings of a row whose other columns are given, joined by `+`.
 pub(super) fn caution(row: &Given, case: &CaseInput, done_count: usize, unconverged: bool) -> String {

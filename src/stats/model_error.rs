@@ -3,7 +3,7 @@
 //! The table is the result of `pipelines/validity.toml`, reduced by `tests/reference/validity.py`.
 
 use super::rows::Value;
-use super::{CaseInput, Given};
+use super::{CaseInput, Given, Limit};
 use std::sync::LazyLock;
 
 const TABLE: &str = include_str!("model_error.csv");
@@ -36,10 +36,12 @@ pub(super) fn model_error(coalescence: &str, persson_tosatti: f64) -> Option<Rat
     Some([0, 1, 2].map(|k| pair[0].2[k].zip(pair[1].2[k]).map(|(low, high)| low + part * (high - low))))
 }
 
-/// The columns of a row of the table `cases`; missing without elastic interaction, for boundary elements and outside the table.
+/// The columns of a row of the table `cases`; missing without elastic interaction, for boundary elements, for an anisotropic texture and outside the table.
 pub(super) fn columns(row: &Given, case: &CaseInput) -> Given {
     let word = |column: &str| case.parameters.iter().find(|(name, _)| name == column).and_then(|(_, value)| value.text());
-    let ratio = row.iter().find(|(name, _)| name == "persson_tosatti_realised_mean").and_then(|(_, value)| value.number());
+    let number = |column: &str| row.iter().find(|(name, _)| name == column).and_then(|(_, value)| value.number());
+    let is_isotropic = !Limit::of("texture").is_some_and(|limit| limit.is_passed(number(limit.column)));
+    let ratio = number("persson_tosatti_realised_mean").filter(|_| is_isotropic);
     let interacting = word("interaction").filter(|interaction| *interaction != "none");
     let found = interacting.and(word("coalescence")).zip(ratio).and_then(|(coalescence, ratio)| model_error(coalescence, ratio));
     COLUMNS.iter().enumerate().map(|(k, name)| ((*name).to_owned(), Value::from(found.and_then(|ratios| ratios[k])))).collect()

@@ -69,13 +69,17 @@ fn measured(cases: &Frame, kind: &Caution, rows: &[usize]) -> Result<String, Sta
 
 /// The interval of measured values: `76 %`, `76 to 87 %`, `0.99 to 1.02`.
 fn range(limit: Limit, values: &[f64]) -> String {
-    let number = |value: f64| if limit.at_least { significant(value, 3) } else { significant(100.0 * value, 2) };
+    let number = |value: f64| if limit.is_fraction() { significant(100.0 * value, 2) } else { significant(value, 3) };
     let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(*value), high.max(*value)));
     let (low, high) = (number(low), number(high));
     let text = if low == high { low } else { format!("{low} to {high}") };
-    if limit.at_least { text } else { format!("{text}\u{a0}%") }
+    if limit.is_fraction() { format!("{text}\u{a0}%") } else { text }
 }
 
 fn bound(limit: Limit) -> String {
-    if limit.at_least { format!("≥ {}", limit.bound) } else { format!("{}\u{a0}%", significant(100.0 * limit.bound, 2)) }
+    match limit {
+        _ if limit.is_fraction() => format!("{}\u{a0}%", significant(100.0 * limit.bound, 2)),
+        _ if limit.at_least => format!("≥ {}", limit.bound),
+        _ => format!("≤ {}", limit.bound),
+    }
 }

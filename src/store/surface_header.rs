@@ -3,8 +3,9 @@
 use hdf5_metno::types::{FixedUnicode, TypeDescriptor, VarLenUnicode};
 use hdf5_metno::{File, Group, H5Type, Location};
 
-use crate::model::{Amplitudes, Choice, Detrend, Normalization};
+use crate::model::{Amplitudes, Choice, Detrend, Normalization, SpectrumEnd};
 use crate::physics::surface::spectrum::Moments;
+use crate::physics::surface::texture::Texture;
 
 use super::error::Cause;
 
@@ -71,6 +72,8 @@ pub struct Measured {
     pub noise_m: f64,
     /// The self-affine spectrum that fits its own; nothing where it has too few modes.
     pub fit: Option<SpectrumFit>,
+    /// Texture; nothing in a file of an earlier version.
+    pub texture: Option<Texture>,
 }
 
 impl Measured {
@@ -90,10 +93,16 @@ pub struct SpectrumFit {
     pub hurst: f64,
     /// C0 \[m⁴\].
     pub plateau_m4: f64,
-    /// Wavenumber of the roll-off \[1/m\]; that of the longest waves, if there is none.
+    /// Wavenumber of the roll-off \[1/m\]; that of the longest wavelength with data, if there is none.
     pub roll_off_1_m: f64,
+    /// True if there is a roll-off; nothing in a file of an earlier version.
+    pub rolls_off: Option<bool>,
     /// Rms deviation of log10 C.
     pub scatter: f64,
+    /// Wavelength above which the spectrum holds no data \[m\]; nothing if it holds data up to the longest.
+    pub long_cut_m: Option<f64>,
+    /// Wavelength below which it holds no data \[m\], and its cause; nothing if it holds data down to the points.
+    pub short_cut: Option<(f64, SpectrumEnd)>,
 }
 
 /// Parameters of a generated surface.
@@ -156,7 +165,23 @@ fn write_measured(file: &File, measured: &Measured) -> Result<(), Cause> {
     write_finite(file, "trend_m", measured.trend_m)?;
     write_finite(file, "shortest_wavelength_m", measured.shortest_wavelength_m)?;
     write_finite(file, "noise_m", measured.noise_m)?;
+    if let Some(texture) = &measured.texture {
+        write_finite(file, "texture_slope_ratio", texture.slope_ratio)?;
+        write_finite(file, "texture_direction_rad", texture.direction_rad)?;
+        write_finite(file, "texture_str", texture.aspect_ratio_str)?;
+        write_finite(file, "texture_decay_length", texture.decay_length)?;
+    }
     let Some(fit) = &measured.fit else { return Ok(()) };
+    if let Some(rolls_off) = fit.rolls_off {
+        write_number(file, "fit_rolls_off", rolls_off)?;
+    }
+    if let Some(long_cut_m) = fit.long_cut_m {
+        write_finite(file, "fit_long_cut_m", long_cut_m)?;
+    }
+    if let Some((short_cut_m, cause)) = fit.short_cut {
+        write_finite(file, "fit_short_cut_m", short_cut_m)?;
+        write_word(file, "fit_short_cut_cause", cause.word())?;
+    }
     write_finite(file, "fit_hurst", fit.hurst)?;
     write_finite(file, "fit_plateau_m4", fit.plateau_m4)?;
     write_finite(file, "fit_roll_off_1_m", fit.roll_off_1_m)?;
@@ -164,12 +189,26 @@ fn write_measured(file: &File, measured: &Measured) -> Result<(), Cause> {
 }
 
 fn read_measured(file: &File, words: &Group, names: &[String]) -> Result<Measured, Cause> {
+    let has = |wanted: &str| names.iter().any(|name| name == wanted);
+    let texture = || -> Result<Texture, Cause> {
+        Ok(Texture {
+            slope_ratio: finite(file, "texture_slope_ratio")?,
+            direction_rad: finite(file, "texture_direction_rad")?,
+            aspect_ratio_str: finite(file, "texture_str")?,
+            decay_length: finite(file, "texture_decay_length")?,
+        })
+    };
+    let short_cut =
+        || -> Result<(f64, SpectrumEnd), Cause> { Ok((finite(file, "fit_short_cut_m")?, choice(words, "fit_short_cut_cause")?)) };
     let fit = || -> Result<SpectrumFit, Cause> {
         Ok(SpectrumFit {
             hurst: finite(file, "fit_hurst")?,
             plateau_m4: finite(file, "fit_plateau_m4")?,
             roll_off_1_m: finite(file, "fit_roll_off_1_m")?,
             scatter: finite(file, "fit_scatter")?,
+            rolls_off: has("fit_rolls_off").then(|| truth(file, "fit_rolls_off")).transpose()?,
+            long_cut_m: has("fit_long_cut_m").then(|| finite(file, "fit_long_cut_m")).transpose()?,
+            short_cut: has("fit_short_cut_m").then(short_cut).transpose()?,
         })
     };
     Ok(Measured {
@@ -182,7 +221,8 @@ fn read_measured(file: &File, words: &Group, names: &[String]) -> Result<Measure
         trend_m: finite(file, "trend_m")?,
         shortest_wavelength_m: finite(file, "shortest_wavelength_m")?,
         noise_m: finite(file, "noise_m")?,
-        fit: if names.iter().any(|name| name == "fit_hurst") { Some(fit()?) } else { None },
+        fit: has("fit_hurst").then(fit).transpose()?,
+        texture: has("texture_str").then(texture).transpose()?,
     })
 }
 

@@ -64,12 +64,24 @@ fn val_each_limit_has_its_caution() {
     assert_eq!(set("conformity_realised", 0.99), "conformed");
     assert_eq!(set("persson_tosatti_realised", 1.99), "sticky");
     assert_eq!(set("tabor_min", 1.9), "tabor");
+    assert_eq!(set("texture_aspect", 2.01), "texture");
     let few: Value = 99_usize.into();
     assert_eq!(words(&table(&[&[("summit_count", few.clone())], &[("summit_count", few)]], 0.1, |_| {})), "few_asperities");
     assert_eq!(words(&counted(&[[9, 0, 0], [10, 0, 0]])), "few_contacts");
     assert_eq!(words(&counted(&[[1, 0, 0], [19, 0, 0]])), "", "the limit is within the range, and the mean counts");
     // The continuous spectrum is shown beside; what was computed is what is judged.
     assert_eq!(set("conformity", 0.1), "");
+}
+
+#[test]
+fn reg_an_anisotropic_surface_has_no_expected_ratio() {
+    let of = |aspect: f64| table(&[&[("persson_tosatti_realised", 10.0.into()), ("texture_aspect", aspect.into())]], 0.1, |_| {});
+    assert!(number(&of(1.99), "area_model_ratio").is_some());
+    let ridges = of(2.5);
+    assert_eq!((number(&ridges, "area_model_ratio"), number(&ridges, "texture_aspect_mean")), (None, Some(2.5)));
+    // A ratio of lengths is no fraction: its limit has no percent sign.
+    let found = warnings(&ridges).unwrap();
+    assert!(found.iter().any(|warning| warning.measured == "texture aspect ratio = 2.5 (limit ≤ 2)"), "{found:?}");
 }
 
 /// The table of one case with these numbers of contacts, of absorbed asperities and of overlapping contacts, one list per surface.

@@ -13,8 +13,9 @@ use crate::physics::PhysicsError;
 use super::levelling::{ROUNDING, check_size, level};
 use super::modes::Field;
 use super::modes::mirrored;
-use super::periodogram::windowed_periodogram;
+use super::periodogram::{continues, tapered_periodogram, windowed_periodogram};
 use super::psd_bin::Ring;
+use super::self_affine::{SelfAffine, fit_self_affine};
 use super::spectrum::Moments;
 use super::summits::{Summits, find_summits};
 use crate::model::{Detrend, Missing};
@@ -59,6 +60,8 @@ pub struct Prepared {
     pub moments: Moments,
     /// Power spectral density before the S-filter, in rings of wavevectors.
     pub rings: Vec<Ring>,
+    /// Self-affine spectrum that fits it; nothing where too few rings hold data.
+    pub fit: Option<SelfAffine>,
     /// Number of missing points in the square.
     pub missing_count: usize,
     /// Rms height of the form removed by levelling \[m\].
@@ -95,13 +98,21 @@ pub fn prepare(heights_m: Array2<f64>, spacing_m: [f64; 2], treatment: &Treatmen
         return Err(domain("the number of missing points", missing_count as f64, "up to half of all"));
     }
     fill(&mut heights, treatment.periodic);
-    let trend_m = level(&mut heights, treatment.detrend)?;
     let length_m = side as f64 * fine;
+    // Levelling breaks the continuation of a periodic field.
+    let continued = !treatment.periodic && continues(heights.view());
+    let untapered = if continued { Some(Field::of(heights.view(), length_m, true)?.rings()) } else { None };
+    let trend_m = level(&mut heights, treatment.detrend)?;
     let points = treatment.points_per_shortest_wavelength * coarsening;
     let rings = if treatment.periodic { None } else { Some(windowed_periodogram(heights.view(), length_m)?) };
+    let tapered = if treatment.periodic || continued { None } else { Some(tapered_periodogram(heights.view(), length_m)?) };
     let mut field = Field::of(heights.view(), length_m, treatment.periodic)?;
     drop(heights);
     let rings = rings.unwrap_or_else(|| field.rings());
+    let fit = match &tapered {
+        Some(tapered) => fit_self_affine(tapered, length_m, true),
+        None => fit_self_affine(untapered.as_ref().unwrap_or(&rings), length_m, false),
+    };
     let before = field.moments();
     field.cut(points);
     let moments = field.moments();
@@ -117,6 +128,7 @@ pub fn prepare(heights_m: Array2<f64>, spacing_m: [f64; 2], treatment: &Treatmen
         length_m,
         moments,
         rings,
+        fit,
         missing_count,
         trend_m,
         noise_m,

@@ -149,6 +149,14 @@ impl Field {
         });
     }
 
+    /// Mean product of the heights at all lags \[m²\].
+    pub(crate) fn autocorrelation(mut self) -> Result<Array2<f64>, PhysicsError> {
+        let n = self.n;
+        let unit = 1.0 / (n as f64 * n as f64);
+        self.columns.par_iter_mut().for_each(|value| *value = Complex64::new(unit * value.norm_sqr(), 0.0));
+        self.heights(n)
+    }
+
     /// Heights \[m\] of the first `side` points along each direction, without the mirror images.
     pub(crate) fn heights(mut self, side: usize) -> Result<Array2<f64>, PhysicsError> {
         let n = self.n;

@@ -1,6 +1,17 @@
-//! Fit of a self-affine spectrum with a roll-off to a measured one.
+//! Fit of a self-affine spectrum with a roll-off to the part of a measured spectrum that holds data.
+//!
+//! A measured spectrum holds more than the surface: rounding where a filter removed wavelengths, leakage of the window and of filters,
+//! and white noise. The fit therefore determines the band of rings together with the spectrum: it minimizes the sum of the squared
+//! residuals of the rings inside, over their variances, and of a constant cost for each ring outside.
+//! Shapes of the spectrum: a power law, with a sharp or a smooth roll-off, with or without damping by a Gaussian filter.
 
 use super::psd_bin::Ring;
+pub use super::spectral_band::ShortCut;
+use super::spectral_band::{Band, EMPTY, OUTSIDE, Point, Sampling, top_density, white_noise_beyond};
+use super::spectral_line::{Line, Shape};
+use std::cmp::Ordering;
+use std::f64::consts::{LN_2, LN_10};
+use std::ops::RangeInclusive;
 
 /// Self-affine spectrum with a roll-off: `C0` up to `q_r`, then `C0 (q/q_r)^(−2(H+1))` (Eq 10).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -11,83 +22,187 @@ pub struct SelfAffine {
     pub hurst: f64,
     /// Plateau C0 \[m⁴\].
     pub plateau_m4: f64,
-    /// Roll-off wavenumber q_r \[1/m\]; the lowest wavenumber if there is no roll-off.
+    /// Roll-off wavenumber q_r \[1/m\]; the lowest wavenumber of the band if there is no roll-off.
     pub roll_off_1_m: f64,
     /// True if there is a roll-off within the band.
     pub rolls_off: bool,
-    /// Weighted rms deviation of log10 C from the fit.
+    /// Rms deviation of log10 C from the fit, weighted by the inverse variance.
     pub scatter: f64,
+    /// Wavenumber below which the spectrum holds no data \[1/m\]; nothing if it holds data up to the longest wavelength.
+    pub long_cut_1_m: Option<f64>,
+    /// End of the spectrum at short wavelengths; nothing if it holds data up to the grid's limit.
+    pub short_cut: Option<ShortCut>,
 }
 
-/// Ratio of the sums of squares with and without a roll-off below which it is accepted.
-const ROLL_OFF_RATIO: f64 = 0.7;
-
-/// Variance of a ring's density, in terms of `MODE_VARIANCE`/m for m modes, plus the square of `MODEL_DEVIATION`.
+/// Decrease of the cost that a roll-off, and that damping, must yield; an L-filter, which resembles a roll-off, must yield more.
+const OF_SHAPE: f64 = 8.0;
+/// Fewest rings of a fit.
+const FEWEST: usize = 5;
+/// Fewest rings of the power law beyond a roll-off.
+const FEWEST_BEYOND: usize = 4;
+/// Least fraction of the mean square height of all rings that the band holds: leakage and rounding hold less.
+const SHARE: f64 = 0.1;
+/// Decrease of ln C by a filter that hardly changes the exponent.
+const SMALL_DAMPING: f64 = 0.35;
+/// Decrease of ln C at the last ring of a damped band: a Gaussian filter reaches `2 ln 2` at its cut-off.
 ///
-/// Half of the modes are conjugates of the others, and a window correlates neighbours: the standard deviation is about `sqrt(4/m)`.
-/// No spectrum is a power law of q to better than `MODEL_DEVIATION`.
-const MODE_VARIANCE: f64 = 4.0;
-const MODEL_DEVIATION: f64 = 0.1;
+/// Above it the density varies too much within a ring.
+const DAMPING: RangeInclusive<f64> = 2.0 * LN_2..=3.0;
+/// Ratio to a damped spectrum below which a ring is beyond a sharp end.
+const END: f64 = 0.1;
+/// Hurst exponents of a self-affine surface, with a margin for the error of the fit.
+const HURST: RangeInclusive<f64> = -0.05..=1.1;
+/// Largest rms deviation from a fit \[decades\].
+const MOST_SCATTER: f64 = 0.5;
+/// Exponents of a spectrum that is fitted at all, from a density that grows with q to that of a smooth form.
+const ANY: RangeInclusive<f64> = -1.5..=3.0;
+/// Cost beyond that of any power law at which a self-affine spectrum is given up: four rings that it leaves out.
+const MISFIT: f64 = 4.0 * OUTSIDE;
+/// White noise over the density at the shortest wavelengths.
+const NOISE: [f64; 6] = [0.0, 0.3, 0.55, 0.75, 0.9, 1.0];
+/// Corrections of the white noise for the spectrum that reaches into it, and of the rings for the width of the window.
+const PASSES: usize = 2;
 
-/// Least-squares fit of log C over log q to the rings with wavenumbers below `highest_1_m`.
+/// Fits a self-affine spectrum to the rings of a surface of side L \[m\].
 ///
-/// Above it, noise or the instrument dominates. Rings are weighted by the inverse of their variance.
-/// The roll-off is searched among the rings, with at least four beyond it. Fewer than five rings give `None`.
+/// `tapered` states that the rings are those of [`super::periodogram::tapered_periodogram`]. Fewer than five rings with data give `None`,
+/// and so does a spectrum of few waves, from which any power law deviates by more than half a decade.
 #[must_use]
-pub fn fit_self_affine(rings: &[Ring], highest_1_m: f64) -> Option<SelfAffine> {
-    let points: Vec<Point> = rings
-        .iter()
-        .filter(|ring| ring.wavenumber_1_m < highest_1_m && ring.density_m4 > 0.0)
-        .map(|ring| Point {
-            x: ring.wavenumber_1_m.log10(),
-            y: ring.density_m4.log10(),
-            weight: 1.0 / (MODE_VARIANCE / ring.mode_count as f64 + MODEL_DEVIATION * MODEL_DEVIATION),
-        })
-        .collect();
-    if points.len() < 5 {
+pub fn fit_self_affine(rings: &[Ring], length_m: f64, tapered: bool) -> Option<SelfAffine> {
+    let sampling = Sampling { length_m, tapered };
+    let found = NOISE.iter().filter_map(|part| Found::of(rings, &sampling, part * top_density(rings), None));
+    let mut found = found.min_by(Found::order)?;
+    for _ in 0..PASSES {
+        let noise_m4 = white_noise_beyond(rings, &found.line, found.noise_m4);
+        found = Found::of(rings, &sampling, noise_m4, Some(&found.line)).unwrap_or(found);
+    }
+    let Found { points, line, noise_m4, .. } = found;
+    if line.scatter > MOST_SCATTER * LN_10 {
         return None;
     }
-    let fits: Vec<Line> = (0..points.len() - 4).map(|k| Line::of(&points, points[k].x)).collect();
-    let straight = *fits.first()?;
-    let best = fits.into_iter().min_by(|a, b| a.squares.total_cmp(&b.squares))?;
-    let rolls_off = best.squares < ROLL_OFF_RATIO * straight.squares;
-    let chosen = if rolls_off { best } else { straight };
+    let band = Band { points: &points, line: &line, noise_m4, length_m };
     Some(SelfAffine {
-        hurst: -0.5 * chosen.slope - 1.0,
-        plateau_m4: 10f64.powf(chosen.plateau),
-        roll_off_1_m: 10f64.powf(chosen.from),
-        rolls_off,
-        scatter: chosen.squares.sqrt(),
+        hurst: line.hurst(),
+        plateau_m4: line.level.exp(),
+        roll_off_1_m: line.corner.exp(),
+        rolls_off: line.shape.rolls_off(),
+        scatter: line.scatter / LN_10,
+        long_cut_1_m: band.long_cut_1_m(),
+        short_cut: band.short_cut(),
     })
 }
 
-/// Wavenumber and density of a ring in logarithms, and its weight.
-struct Point {
-    x: f64,
-    y: f64,
-    weight: f64,
+/// Line, rings and white noise of a fit.
+struct Found {
+    points: Vec<Point>,
+    line: Line,
+    noise_m4: f64,
+    /// True if the Hurst exponent is that of a self-affine surface.
+    is_self_affine: bool,
+    cost: f64,
 }
 
-/// Plateau up to `from` and a line beyond, in logarithms.
-#[derive(Debug, Clone, Copy)]
-struct Line {
-    from: f64,
-    plateau: f64,
-    slope: f64,
-    /// Weighted mean of the squared deviations.
-    squares: f64,
-}
-
-impl Line {
-    /// Least-squares fit of `plateau + slope max(x − from, 0)`.
-    fn of(points: &[Point], from: f64) -> Self {
-        let whole: f64 = points.iter().map(|p| p.weight).sum();
-        let beyond = |p: &Point| (p.x - from).max(0.0);
-        let mean = |value: &dyn Fn(&Point) -> f64| points.iter().map(|p| p.weight * value(p)).sum::<f64>() / whole;
-        let (mean_x, mean_y) = (mean(&beyond), mean(&|p| p.y));
-        let slope = mean(&|p| (beyond(p) - mean_x) * (p.y - mean_y)) / mean(&|p| (beyond(p) - mean_x).powi(2));
-        let plateau = mean_y - slope * mean_x;
-        let squares = mean(&|p| (p.y - plateau - slope * beyond(p)).powi(2));
-        Self { from, plateau, slope, squares }
+impl Found {
+    /// The line of least cost with this white noise; `known` is the line of an earlier pass.
+    fn of(rings: &[Ring], sampling: &Sampling, noise_m4: f64, known: Option<&Line>) -> Option<Self> {
+        let points = sampling.points(rings, noise_m4, known);
+        let data: Vec<Point> = points.iter().filter(|point| point.is_data).copied().collect();
+        let search = Search { data: &data, power: data.iter().map(Point::power).sum() };
+        let any = search.least(&ANY)?;
+        let self_affine = search.least(&HURST).filter(|found| found.0 <= any.0 + MISFIT);
+        let is_self_affine = self_affine.is_some();
+        let (cost, band, line) = self_affine.unwrap_or(any);
+        let of_noise = if noise_m4 > 0.0 { OF_SHAPE + sampling.noise_squares(rings, noise_m4, &line) } else { 0.0 };
+        let line = search.without_partial_rings(band, line);
+        Some(Self { points, line, noise_m4, is_self_affine, cost: cost + of_noise })
     }
+
+    /// Self-affine spectra first, then the least cost.
+    fn order(&self, other: &Self) -> Ordering {
+        other.is_self_affine.cmp(&self.is_self_affine).then(self.cost.total_cmp(&other.cost))
+    }
+}
+
+/// Rings with data, and the sum of their mean square heights.
+struct Search<'a> {
+    data: &'a [Point],
+    power: f64,
+}
+
+impl Search<'_> {
+    fn least(&self, hurst: &RangeInclusive<f64>) -> Option<(f64, [usize; 2], Line)> {
+        let mut found: Option<(f64, [usize; 2], Line)> = None;
+        for first in 0..self.data.len() {
+            for end in first + FEWEST..=self.data.len() {
+                let band = [first, end];
+                if self.data[first..end].iter().map(Point::power).sum::<f64>() < SHARE * self.power {
+                    continue;
+                }
+                for (cost, line) in self.lines(band, hurst) {
+                    if found.as_ref().is_none_or(|(least, ..)| cost < *least) {
+                        found = Some((cost, band, line));
+                    }
+                }
+            }
+        }
+        found.map(|(cost, band, line)| (cost, band, self.between_rings(cost, band, line, hurst)))
+    }
+
+    /// Lines of all shapes through the rings of a band, with their costs. A roll-off is at a ring.
+    fn lines(&self, band: [usize; 2], hurst: &RangeInclusive<f64>) -> Vec<(f64, Line)> {
+        let inside = &self.data[band[0]..band[1]];
+        let corners = inside.iter().skip(1).take(inside.len().saturating_sub(FEWEST_BEYOND + 1)).map(|point| point.x);
+        let rolling = corners.flat_map(|corner| [Shape::Sharp, Shape::Smooth, Shape::Filtered].map(|shape| (shape, corner)));
+        let shapes = std::iter::once((Shape::Straight, inside[0].x)).chain(rolling);
+        shapes
+            .flat_map(|shape| [(shape, false), (shape, true)])
+            .filter_map(|(shape, damped)| self.line(band, shape, damped, hurst))
+            .collect()
+    }
+
+    fn line(&self, band: [usize; 2], (shape, corner): (Shape, f64), damped: bool, hurst: &RangeInclusive<f64>) -> Option<(f64, Line)> {
+        let inside = &self.data[band[0]..band[1]];
+        let line = Line::of(inside, shape, corner, damped).filter(|line| hurst.contains(&line.hurst()))?;
+        if damped && !is_damped(&line, inside, self.data.get(band[1])) {
+            return None;
+        }
+        let of_shape = match shape {
+            Shape::Straight => 0.0,
+            Shape::Sharp | Shape::Smooth => OF_SHAPE,
+            Shape::Filtered => 1.5 * OF_SHAPE,
+        };
+        let of_damping = if damped { OF_SHAPE } else { 0.0 };
+        Some((line.squares + OUTSIDE * (self.data.len() - inside.len()) as f64 + of_shape + of_damping, line))
+    }
+
+    /// The line without a first or last ring that the end of the spectrum divides: the next ring is empty.
+    fn without_partial_rings(&self, [first, end]: [usize; 2], line: Line) -> Line {
+        let is_empty = |at: Option<usize>| at.and_then(|at| self.data.get(at)).is_some_and(|point| point.y - line.at(point.x) < EMPTY.ln());
+        let from = first + usize::from(is_empty(first.checked_sub(1)));
+        let to = end - usize::from(line.damping == 0.0 && is_empty(Some(end)));
+        if to < from + FEWEST || line.shape.rolls_off() && self.data[from].x >= line.corner {
+            return line;
+        }
+        let corner = if line.shape == Shape::Straight { self.data[from].x } else { line.corner };
+        Line::of(&self.data[from..to], line.shape, corner, line.damping > 0.0).unwrap_or(line)
+    }
+
+    /// A line whose roll-off may be between two rings.
+    fn between_rings(&self, cost: f64, band: [usize; 2], line: Line, hurst: &RangeInclusive<f64>) -> Line {
+        if line.shape == Shape::Straight {
+            return line;
+        }
+        let width = self.data[band[0] + 1].x - self.data[band[0]].x;
+        let corners = (-8..=8).map(|k| line.corner + 0.125 * f64::from(k) * width);
+        let lines = corners.filter_map(|corner| self.line(band, (line.shape, corner), line.damping > 0.0, hurst));
+        lines.fold((cost, line), |least, other| if other.0 < least.0 { other } else { least }).1
+    }
+}
+
+/// True if damping reaches the cut-off of the filter in the band, is small over enough rings beyond the corner, and continues in the next ring.
+fn is_damped(line: &Line, inside: &[Point], next: Option<&Point>) -> bool {
+    let damping = |point: &Point| line.damping * (2.0 * point.x).exp();
+    let small = inside.iter().filter(|point| point.x >= line.corner && damping(point) < SMALL_DAMPING);
+    let continues = next.is_none_or(|point| point.y - line.at(point.x) > END.ln());
+    small.count() >= FEWEST_BEYOND && continues && inside.last().is_some_and(|point| DAMPING.contains(&damping(point)))
 }

@@ -16,6 +16,8 @@ mod periodic;
 mod points;
 #[cfg(feature = "stats")]
 mod python;
+#[cfg(feature = "stats")]
+mod spectrum;
 mod text;
 mod x3p;
 

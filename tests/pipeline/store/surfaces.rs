@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 
 use hdf5_metno::types::{FixedUnicode, VarLenArray, VarLenUnicode};
 use hdf5_metno::{File, ObjectReference, ObjectReference1, ReferencedObject};
+use hysteron::model::SpectrumEnd;
 use hysteron::model::{Amplitudes, Detrend, Normalization};
+use hysteron::physics::surface::texture::Texture;
 use hysteron::store::hdf5::{Generated, Measured, SpectrumFit, SurfaceHeader, read_header, read_heights, read_surface, write_surface};
 use ndarray::{Array2, s};
 use tempfile::{TempDir, tempdir};
@@ -73,7 +75,16 @@ fn e2e_a_measured_surface_lacks_what_nobody_knows() {
         trend_m: 1e-7,
         shortest_wavelength_m: 2e-6,
         noise_m: 3e-9,
-        fit: Some(SpectrumFit { hurst: 0.7, plateau_m4: 1e-30, roll_off_1_m: 1e5, scatter: 0.1 }),
+        fit: Some(SpectrumFit {
+            hurst: 0.7,
+            plateau_m4: 1e-30,
+            roll_off_1_m: 1e5,
+            rolls_off: Some(true),
+            scatter: 0.1,
+            long_cut_m: Some(2e-4),
+            short_cut: Some((1e-7, SpectrumEnd::GaussianFilter)),
+        }),
+        texture: Some(Texture { slope_ratio: 1.2, direction_rad: 0.3, aspect_ratio_str: 0.7, decay_length: 0.04 }),
     };
     for fit in [about.fit, None] {
         about.fit = fit;

@@ -1,10 +1,11 @@
 //! Statistics of an imported surface as text and as JSON.
 
 use super::range::Range;
-use crate::model::Detrend;
+use crate::model::{Choice, Detrend, SpectrumEnd};
+use crate::physics::surface::texture::Texture;
 use crate::spec::quoted;
-use crate::stats::significant;
-use crate::store::hdf5::{Measured, SurfaceHeader};
+use crate::stats::{Limit, significant};
+use crate::store::hdf5::{Measured, SpectrumFit, SurfaceHeader};
 use crate::text::{counted, wrapped};
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
@@ -29,9 +30,14 @@ pub(super) struct Statistics<'a> {
 pub(super) fn answer(of: &Statistics<'_>, rings: &[Value]) -> Value {
     let Statistics { header, height_factor_m, range, counts: [points, summits, edge], written, .. } = *of;
     let measured = header.measured.as_ref();
-    let fit = measured
-        .and_then(|of| of.fit)
-        .map(|fit| json!({ "hurst": fit.hurst, "plateau_m4": fit.plateau_m4, "roll_off_1_m": fit.roll_off_1_m, "scatter": fit.scatter }));
+    let texture = measured.and_then(|of| of.texture.as_ref());
+    let fit = measured.and_then(|of| of.fit).map(|fit| {
+        json!({
+            "hurst": fit.hurst, "plateau_m4": fit.plateau_m4, "roll_off_1_m": fit.roll_off_1_m, "scatter": fit.scatter,
+            "rolls_off": fit.rolls_off, "roll_off_m": roll_off_m(&fit, header.length_m), "long_cut_m": fit.long_cut_m,
+            "short_cut_m": fit.short_cut.map(|(wavelength, _)| wavelength), "short_cut_cause": fit.short_cut.map(|(_, cause)| cause.word()),
+        })
+    });
     json!({
         "file": written.map(|path| path.display().to_string()),
         "point_count": points,
@@ -54,6 +60,11 @@ pub(super) fn answer(of: &Statistics<'_>, rings: &[Value]) -> Value {
         "shortest_wavelength_m": measured.map(|of| of.shortest_wavelength_m),
         "source_blake3": measured.map(|of| of.source_blake3.as_str()),
         "self_affine": fit,
+        "density_convention": CONVENTION,
+        "texture_aspect": texture.map(Texture::aspect),
+        "texture_slope_ratio": texture.map(|of| of.slope_ratio),
+        "texture_str": texture.map(|of| of.aspect_ratio_str),
+        "texture_direction_rad": texture.map(|of| of.direction_rad),
         "flattening_m": range.whole_m,
         "flattening_octave_m": range.octave_m,
         "least_modulus_over_adhesion_1_m": range.least_1_m(),
@@ -67,7 +78,7 @@ type Line = (&'static str, String);
 /// The statistics of a surface as text of at most 80 columns.
 pub(super) fn text(of: &Statistics<'_>) -> String {
     let mut text = format!("{}\n", of.file.display());
-    for (label, value) in [source(of), preprocessing(of.header), roughness(of), self_affinity(of.header)].concat() {
+    for (label, value) in [source(of), preprocessing(of.header), roughness(of), texture(of.header), self_affinity(of.header)].concat() {
         text += &format!("  {label:<14}{value}\n");
     }
     text += &wrapped(&format!("  {:<14}{}", "model range", of.range.text()), "                ");
@@ -128,13 +139,59 @@ fn roughness(of: &Statistics<'_>) -> Vec<Line> {
     lines
 }
 
-/// Fit of a self-affine spectrum.
+/// Aspect ratio of the texture.
+fn texture(header: &SurfaceHeader) -> Vec<Line> {
+    let line = |of: &Texture| {
+        let (aspect, ratio) = (significant(of.aspect(), 3), significant(of.slope_ratio, 3));
+        let (str, direction) = (significant(of.aspect_ratio_str, 2), of.direction_rad.to_degrees());
+        let ridges = format!("rms slope smallest at {direction:.0}° from x to y");
+        vec![("texture", format!("aspect ratio {aspect}: rms slopes {ratio}, Str {str} (ISO 25178)")), ("", ridges)]
+    };
+    header.measured.as_ref().and_then(|of| of.texture.as_ref()).map(line).unwrap_or_default()
+}
+
+/// Warning of a texture beyond the limit.
+fn texture_caution(of: &Measured) -> Option<String> {
+    let (aspect, limit) = (of.texture.as_ref()?.aspect(), Limit::of("texture")?);
+    limit.is_passed(Some(aspect)).then(|| {
+        format!(
+            "texture: aspect ratio {} (limit {}); expected ratios to boundary elements and the statistics of Nayak and of Deng and Kesari \
+             hold for isotropic surfaces only; use method = \"boundary_elements\"",
+            significant(aspect, 3),
+            limit.bound
+        )
+    })
+}
+
+/// Normalization of the spectral density, with the factor to that of other programs.
+const CONVENTION: &str = "integral of C(q) over d2q = h_rms^2; SurfaceTopography and contact.engineering: 4 pi^2 = 39.48 times C";
+
+/// Fit of a self-affine spectrum, and the band of wavelengths that holds data.
 fn self_affinity(header: &SurfaceHeader) -> Vec<Line> {
     let Some(fit) = header.measured.as_ref().and_then(|of| of.fit) else { return vec![("self-affine", "no fit".to_owned())] };
-    let longest = TAU / fit.roll_off_1_m;
-    let rolls = if longest < 0.7 * header.length_m { format!("at {longest:.3e} m") } else { "none within the scan".to_owned() };
-    let fitted = format!("H = {:.3}, C0 = {:.3e} m⁴, scatter {:.2} decades", fit.hurst, fit.plateau_m4, fit.scatter);
-    vec![("self-affine", fitted), ("roll-off", rolls)]
+    let rolls = roll_off_m(&fit, header.length_m).map_or_else(|| "none within the scan".to_owned(), |at| format!("at {at:.3e} m"));
+    let long = fit.long_cut_m.map_or_else(|| "none within the scan".to_owned(), |at| format!("no data above {at:.3e} m"));
+    let short = fit.short_cut.map_or_else(
+        || "none".to_owned(),
+        |(at, cause)| match cause {
+            SpectrumEnd::Empty => format!("no data below {at:.3e} m"),
+            SpectrumEnd::GaussianFilter => format!("{at:.3e} m, half of the amplitude of a Gaussian filter"),
+            SpectrumEnd::WhiteNoise => format!("white noise below {at:.3e} m"),
+        },
+    );
+    vec![
+        ("self-affine", format!("H = {:.3}, C0 = {:.3e} m⁴, scatter {:.2} decades", fit.hurst, fit.plateau_m4, fit.scatter)),
+        ("", "∫C(q)d²q = h_rms²; SurfaceTopography: 4π² = 39.48 times C".to_owned()),
+        ("roll-off", rolls),
+        ("long cut", long),
+        ("short cut", short),
+    ]
+}
+
+/// Wavelength of the roll-off \[m\]. Of a file without a statement there is one well within the scan.
+fn roll_off_m(fit: &SpectrumFit, length_m: f64) -> Option<f64> {
+    let at = TAU / fit.roll_off_1_m;
+    fit.rolls_off.unwrap_or(at < 0.7 * length_m).then_some(at)
 }
 
 /// The written file and a spec for it.
@@ -150,6 +207,9 @@ fn spec(path: &Path, of: &Statistics<'_>) -> String {
         of.range.spec(of.header.periodic)
     )
 }
+
+/// Hurst exponents of self-affine surfaces, with the error of the fit.
+const SELF_AFFINE: std::ops::RangeInclusive<f64> = -0.05..=1.05;
 
 /// Fraction of a scan that the central crop may drop without a warning.
 const DROPPED: f64 = 0.1;
@@ -169,13 +229,14 @@ fn cautions(header: &SurfaceHeader) -> Vec<String> {
                 100.0 * DROPPED
             ));
         }
+        cautions.extend(texture_caution(of));
         match of.fit {
-            Some(fit) if !(0.0..=1.0).contains(&fit.hurst) => cautions.push(format!(
-                "fit: H = {:.2} is outside 0 to 1, so the spectrum is not self-affine between the longest wavelength and the cut-off; do not use H",
+            Some(fit) if !SELF_AFFINE.contains(&fit.hurst) => cautions.push(format!(
+                "fit: H = {:.2} is outside 0 to 1, so the spectrum is not self-affine in the band of wavelengths that holds data; do not use H",
                 fit.hurst
             )),
             Some(_) => {}
-            None => cautions.push("fit: too few wavelengths above the cut-off for a self-affine fit; use a larger scan, or a lower cut-off (--points)".to_owned()),
+            None => cautions.push("fit: too few wavelengths with data for a self-affine fit; use a larger scan".to_owned()),
         }
     }
     if header.rms_slope > 1.0 {

@@ -188,7 +188,9 @@ def _side(run: Run, cycle: str) -> float:
 
 
 def spectrum(run: Run, id: str | None = None, ax: Axes | None = None) -> Axes:
-    """Radially averaged power spectral density of the heights of a surface. Requires h5py.
+    """Radially averaged power spectral density of the heights of a surface, with ∫C d²q = h_rms². Requires h5py.
+
+    SurfaceTopography and contact.engineering use ∫C d²q/(4π²) = h_rms²: their C is 4π² = 39.48 times as large.
 
     Parameters
     ----------
@@ -221,5 +223,5 @@ def spectrum(run: Run, id: str | None = None, ax: Axes | None = None) -> Axes:
     wavenumber = 2 * np.pi / side * np.bincount(rings[inside], radius[inside]) / np.maximum(count, 1)
     shown = (count > 0) & (mean > 1e-14 * mean.max())
     ax.loglog(wavenumber[shown], mean[shown], "o-", color=PALETTE[0], ms=4)
-    ax.set(xlabel="q [1/m]", ylabel="C [m$^4$]", title=name)
+    ax.set(xlabel="q [1/m]", ylabel="C [m$^4$], ∫C d²q = $h_{rms}^2$", title=name)
     return ax

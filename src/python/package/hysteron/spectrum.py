@@ -64,6 +64,8 @@ def density(mode_squared: Reals, *, length_m: Reals, rms_height_m: Reals, hurst:
     """Power spectral density `C(q) = C0 (q/qL)^(-2(H+1))` for `qL <= q < ζ qL`, else 0 [m4]. Eq 10.
 
     `mode_squared` is the squared mode number `k² = (q/qL)²`, an integer for a periodic square. The band includes q = qL and excludes q = q1.
+
+    Normalization: `∫C d²q = h_rms²`. SurfaceTopography and contact.engineering use `∫C d²q/(4π²) = h_rms²`: their C is `4π² = 39.48` times as large.
     """
     return one(_hysteron.density, mode_squared, length_m, rms_height_m, hurst, magnification)
 

@@ -1,0 +1,130 @@
+//! Least-squares line through rings of a spectrum, in logarithms.
+
+use super::spectral_band::Point;
+use std::f64::consts::LN_2;
+
+/// Transition from the plateau to the power law.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Shape {
+    /// A power law without plateau.
+    Straight,
+    /// A plateau that ends at the corner.
+    Sharp,
+    /// `(1 + (q/q_r)²)^(−(H+1))`, whose asymptotes meet at the corner.
+    Smooth,
+    /// A power law after a Gaussian L-filter (ISO 16610-61), which transmits half of the amplitude at the corner.
+    Filtered,
+}
+
+impl Shape {
+    /// True for a plateau at long wavelengths.
+    pub(crate) fn rolls_off(self) -> bool {
+        matches!(self, Self::Sharp | Self::Smooth)
+    }
+}
+
+/// Self-affine spectrum `ln C = level − power b(ln q) − damping q² + ln T²(q)`, with the transfer T of an L-filter.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Line {
+    /// Transition to the power law.
+    pub(crate) shape: Shape,
+    /// `ln q` of the corner; of the first ring without a roll-off.
+    pub(crate) corner: f64,
+    /// `ln C` of the plateau; at the corner, without filters, of a power law.
+    pub(crate) level: f64,
+    /// Exponent `2(H+1)`.
+    power: f64,
+    /// Coefficient of Gaussian damping \[m²\]; 0 without.
+    pub(crate) damping: f64,
+    /// Sum of the squared deviations over their variances.
+    pub(crate) squares: f64,
+    /// Weighted rms deviation of ln C.
+    pub(crate) scatter: f64,
+    /// First and last `ln q` of the band.
+    pub(crate) band: [f64; 2],
+}
+
+impl Line {
+    /// Weighted least-squares fit; nothing if it is singular or if damping is not positive.
+    pub(crate) fn of(points: &[Point], shape: Shape, corner: f64, damped: bool) -> Option<Self> {
+        let (first, last) = (points.first()?, points.last()?);
+        // Squares of wavenumbers relative to the last keep the equations well scaled.
+        let unit = last.x;
+        let basis = |x: f64| [1.0, -decay(shape, x - corner), if damped { -(2.0 * (x - unit)).exp() } else { 0.0 }];
+        let count = if damped { 3 } else { 2 };
+        let mut matrix = [[0.0; 4]; 3];
+        for point in points {
+            let row = basis(point.x);
+            for a in 0..count {
+                for b in 0..count {
+                    matrix[a][b] += row[a] * row[b] / point.variance;
+                }
+                matrix[a][3] += row[a] * (point.y - transmitted(shape, point.x - corner)) / point.variance;
+            }
+        }
+        let [level, power, damping] = solved(matrix, count)?;
+        if damped && damping <= 0.0 {
+            return None;
+        }
+        let damping = damping * (-2.0 * unit).exp();
+        let mut line = Self { shape, corner, level, power, damping, squares: 0.0, scatter: 0.0, band: [first.x, last.x] };
+        let weight: f64 = points.iter().map(|point| 1.0 / point.variance).sum();
+        line.squares = points.iter().map(|point| (point.y - line.at(point.x)).powi(2) / point.variance).sum();
+        line.scatter = (line.squares / weight).sqrt();
+        Some(line)
+    }
+
+    /// Hurst exponent.
+    pub(crate) fn hurst(&self) -> f64 {
+        0.5 * self.power - 1.0
+    }
+
+    /// `ln C` at `ln q`.
+    pub(crate) fn at(&self, x: f64) -> f64 {
+        let beyond = x - self.corner;
+        self.level - self.power * decay(self.shape, beyond) - self.damping * (2.0 * x).exp() + transmitted(self.shape, beyond)
+    }
+
+    /// Local exponent `−d ln C/d ln q`, without an L-filter.
+    pub(crate) fn exponent(&self, x: f64) -> f64 {
+        let beyond = x - self.corner;
+        let of_shape = match self.shape {
+            Shape::Straight | Shape::Filtered => 1.0,
+            Shape::Sharp => f64::from(u8::from(beyond > 0.0)),
+            Shape::Smooth => 1.0 / (1.0 + (-2.0 * beyond).exp()),
+        };
+        self.power * of_shape + 2.0 * self.damping * (2.0 * x).exp()
+    }
+}
+
+/// Decrease of `ln C` per unit of the exponent at a distance in `ln q` from the corner.
+fn decay(shape: Shape, beyond: f64) -> f64 {
+    match shape {
+        Shape::Straight | Shape::Filtered => beyond,
+        Shape::Sharp => beyond.max(0.0),
+        Shape::Smooth => 0.5 * (2.0 * beyond).exp().ln_1p(),
+    }
+}
+
+/// `ln T²` of an L-filter with transfer `T = 1 − exp(−ln 2 (q/q_c)²)`, 0 without.
+fn transmitted(shape: Shape, beyond: f64) -> f64 {
+    if shape == Shape::Filtered { 2.0 * (-(-LN_2 * (2.0 * beyond).exp()).exp_m1()).ln() } else { 0.0 }
+}
+
+/// Solution of symmetric equations of `count` unknowns by elimination; the other unknowns are 0.
+fn solved(mut matrix: [[f64; 4]; 3], count: usize) -> Option<[f64; 3]> {
+    for pivot in 0..count {
+        let row = matrix[pivot];
+        // A pivot that cancels to rounding is no information.
+        if row[pivot].is_nan() || row[pivot] <= 1e-9 {
+            return None;
+        }
+        for other in (0..count).filter(|other| *other != pivot) {
+            let factor = matrix[other][pivot] / row[pivot];
+            matrix[other].iter_mut().zip(row).for_each(|(value, of)| *value -= factor * of);
+        }
+    }
+    let mut solution = [0.0; 3];
+    (0..count).for_each(|k| solution[k] = matrix[k][3] / matrix[k][k]);
+    Some(solution)
+}
