@@ -7,10 +7,12 @@ mod interrupt;
 mod limits;
 mod progress;
 mod reference;
+mod reference_limits;
 mod templates;
 mod verbs;
 
 pub use reference::{GUIDE, generated};
+pub use reference_limits::constants;
 
 use arguments::{
     CampaignArguments, CompareArguments, CsvArguments, ExportArguments, FindingsArguments, FolderArguments, HowArguments, ImportArguments,

@@ -24,6 +24,7 @@ pages!(
     reproduction,
     reference_spec,
     reference_cli,
+    reference_limits,
     tables,
     report,
     python,

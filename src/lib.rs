@@ -1,7 +1,7 @@
 //! hysteron: from a self-affine rough surface to the energy that its adhesive contact loses.
 //!
-//! Dependencies have one direction: `model` has none and `schema` reads only `model`; `physics` opens no file; `store` computes no result; `stages` alone
-//! joins them; `stats`, `figures` and `report` read only tables.
+//! Dependencies have one direction: `model` has none and `schema` reads only `model`; `physics` opens no file; `store` computes no result. `stages` alone
+//! joins them, and computes for `stats` the analytical estimates of each cycle from its surface. `figures` and `report` read only tables.
 //!
 //! The documentation for users is the [`guide`].
 
@@ -9,6 +9,7 @@
 pub mod campaign;
 #[cfg(feature = "stats")]
 pub mod cli;
+pub mod constants;
 #[cfg(feature = "stats")]
 pub mod engines;
 #[cfg(feature = "stats")]

@@ -36,7 +36,10 @@ pub(super) fn expect(teller: Arc<Teller>, dir: &Path) -> std::io::Result<()> {
     }
     signal_hook::flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false)))?;
     let mut signals = Signals::new(waited)?;
-    let notice = format!("interrupted: finished tasks are kept, running tasks restart\nhelp: {}", next_step(dir));
+    let notice = format!(
+        "interrupted: finished tasks are kept; running tasks continue from their last checkpoint, or restart\nhelp: {}",
+        next_step(dir)
+    );
     let wait = move || {
         if signals.forever().next().is_none() {
             return;

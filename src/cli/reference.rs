@@ -23,6 +23,7 @@ pub fn generated() -> Vec<(PathBuf, String)> {
     files.push((schemas.join(spec::SCHEMA_FILE), spec::json_schema()));
     files.push((Path::new(GUIDE).join("reference_spec.md"), spec::reference()));
     files.push((Path::new(GUIDE).join("reference_cli.md"), page()));
+    files.push((Path::new(GUIDE).join("reference_limits.md"), super::reference_limits::page()));
     files
 }
 

@@ -7,6 +7,24 @@ pub mod slurm;
 pub mod snakemake;
 
 use crate::campaign::{Campaign, Stage, Standing, Survey};
+use crate::constants::{Constant, Constants};
+
+/// Limits of parts of a run on a cluster.
+pub const CONSTANTS: Constants = Constants {
+    subject: "Clusters",
+    module: "engines",
+    rows: &[
+        Constant::new("parts of a run, default", &[MOST_SHARDS as f64], "", "Maximum. Otherwise one for each surface.", ""),
+        Constant::new(
+            "signal before a time limit",
+            &[slurm::LEAD_S as f64],
+            "s",
+            "A quarter of a shorter limit than four times this.",
+            "slurm",
+        ),
+        Constant::new("early signal", &[slurm::EARLY_S as f64], "s", "Slurm may signal earlier by this.", "slurm"),
+    ],
+};
 
 /// Shards at most, unless more are asked for: a scheduler takes about a second for each.
 const MOST_SHARDS: usize = 1000;

@@ -17,6 +17,7 @@
 //! With the printed equation ([`Asperity::as_printed`]) a spot's branch ends there and the spot leaves contact, at a
 //! penetration that is 3 % less deep than `δ_off`. The printed Eq 4 for `δ_off` is right, so the two do not agree.
 
+use crate::constants::Constant;
 use crate::model::{Material, Slips};
 use crate::physics::PhysicsError;
 use multiversion::multiversion;
@@ -27,6 +28,24 @@ pub const HERTZ_EDGE: f64 = 1e-5;
 
 /// Smallest Tabor parameter at which Wu's jump-in distance (Eq 3) holds.
 pub const LEAST_TABOR: f64 = 2.0;
+
+/// Constants of one asperity.
+pub(super) const CONSTANTS: &[Constant] = &[
+    Constant::new(
+        "Tabor parameter of Wu's criterion",
+        &[LEAST_TABOR],
+        "",
+        "With a smaller one a cycle fails, unless `model.allow_low_tabor = true`.",
+        "",
+    ),
+    Constant::new(
+        "contact radius without adhesion",
+        &[HERTZ_EDGE],
+        "of `R`",
+        "A contact without adhesion begins and ends at this radius.",
+        "",
+    ),
+];
 
 /// JKR asperity with its material.
 #[derive(Debug, Clone, Copy, PartialEq)]

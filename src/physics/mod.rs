@@ -15,4 +15,17 @@ mod solve;
 pub mod surface;
 pub mod theory;
 
+use crate::constants::Constants;
 pub use error::{PhysicsError, Reason};
+
+/// Tolerances and limits of the physics, by module.
+pub const CONSTANTS: [Constants; 8] = [
+    Constants { subject: "Valid cycles", module: "physics::cycle", rows: cycle::CONSTANTS },
+    Constants { subject: "Path of the asperity model", module: "physics::path", rows: path::CONSTANTS },
+    Constants { subject: "Global and local problems", module: "physics::solve", rows: solve::CONSTANTS },
+    Constants { subject: "Sums over contacts", module: "physics::half_space", rows: half_space::CONSTANTS },
+    Constants { subject: "Contacts", module: "physics::contact", rows: contact::CONSTANTS },
+    Constants { subject: "One asperity", module: "physics::jkr", rows: jkr::CONSTANTS },
+    Constants { subject: "Boundary elements", module: "physics::boundary_elements", rows: boundary_elements::CONSTANTS },
+    Constants { subject: "Measured surfaces", module: "physics::surface", rows: surface::CONSTANTS },
+];

@@ -20,7 +20,7 @@ pub const MOST_MESH_NUMBER: f64 = 0.7;
 /// Least `Δγ/(E* dx)`: below it, the tension is lost in the rounding of the pressure.
 pub const LEAST_WORK: f64 = 1e-10;
 /// Automatic range over `sqrt(Δγ dx/E*)`.
-const RANGE: f64 = 0.8;
+pub(super) const RANGE: f64 = 0.8;
 
 /// Mesh number `½ sqrt(a dx)/ρ` of a law with the range ρ, with `a = Δγ/E*` and the grid spacing dx \[m\].
 #[must_use]

@@ -29,6 +29,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
+use crate::constants::{Constant, Constants};
 pub use crate::model::{CaseParams, CycleParams, ElementParams, ModelParams, SurfaceParams};
 pub use crate::text::quoted;
 pub use elements::{FEWEST_PER_WAVELENGTH, MAX_ELEMENTS, MOST_MESH_NUMBER, PER_WAVELENGTH, mesh_number};
@@ -38,6 +39,42 @@ pub use json_schema::{SCHEMA_FILE, json_schema};
 pub use keys::{GENERATED, MEASURED};
 pub use realizations::{Realizations, Until};
 pub use reference::reference;
+
+/// Limits of specs.
+pub const CONSTANTS: Constants = Constants {
+    subject: "Specs",
+    module: "spec",
+    rows: &[
+        Constant::new("cases of a spec", &[MAX_CASES as f64], "", "Maximum, over all sweeps.", ""),
+        Constant::new("realizations of a case", &[MAX_REALIZATIONS as f64], "", "Maximum.", ""),
+        Constant::new("tasks of a run", &[MAX_TASKS as f64], "", "Maximum: two for each surface, one for each cycle.", ""),
+        Constant::new("grid points along a side", &[MAX_GRID as f64], "", "Maximum of a generated surface.", ""),
+        Constant::new("size of a spec", &[(MAX_BYTES >> 20) as f64], "MiB", "Maximum.", ""),
+        Constant::new("grid points of boundary elements", &[MAX_ELEMENTS as f64], "", "Maximum along a side.", "elements"),
+        Constant::new(
+            "grid points per shortest wavelength",
+            &[FEWEST_PER_WAVELENGTH, PER_WAVELENGTH],
+            "",
+            "Boundary elements: fewer than the first number are an error. `points = 0` gives at least the second.",
+            "elements",
+        ),
+        Constant::new(
+            "mesh number `sqrt(Δγ dx/E*)/(2ρ)`",
+            &[MOST_MESH_NUMBER],
+            "",
+            "Boundary elements with a range `ρ`: on a coarser grid contact edges are trapped, which is an error.",
+            "elements",
+        ),
+        Constant::new("automatic range `ρ`", &[elements::RANGE], "`sqrt(Δγ dx/E*)`", "Boundary elements with `range_m = 0`.", "elements"),
+        Constant::new(
+            "work of adhesion `Δγ/(E* dx)`",
+            &[elements::LEAST_WORK],
+            "",
+            "Boundary elements: a smaller one is an error.",
+            "elements",
+        ),
+    ],
+};
 
 /// Maximum number of cases that one spec may make.
 pub const MAX_CASES: u32 = 10_000;

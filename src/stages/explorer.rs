@@ -3,6 +3,7 @@
 use super::StageError;
 use super::explorer_maps::{LETTERS, ground, rounded, stored_maps};
 use crate::campaign::{Campaign, CycleUnit, Standing};
+use crate::constants::Constant;
 use crate::model::Boundary;
 use crate::physics::boundary_elements::regions::Change;
 use crate::physics::contact::Kind;
@@ -20,6 +21,20 @@ const MOST_CYCLES: usize = 12;
 const MOST_POINTS: u64 = 8192;
 /// Contact spots of all stored steps of a loop, at most: of more, evenly spaced steps are shown.
 const MOST_SPOTS: usize = 40_000;
+
+/// Limits of the loop explorer.
+pub(super) const CONSTANTS: &[Constant] = &[
+    Constant::new("cycles in the loop explorer", &[MOST_CYCLES as f64], "", "Maximum: one for each of the first cases.", ""),
+    Constant::new("grid points along a side", &[MOST_POINTS as f64], "", "Maximum of a surface in the loop explorer.", ""),
+    Constant::new(
+        "contact spots of a loop",
+        &[MOST_SPOTS as f64],
+        "",
+        "Maximum of all stored steps. With more, evenly spaced steps are shown.",
+        "",
+    ),
+];
+
 /// Kinds of events of both methods, by their numbers in the data.
 fn kinds() -> Vec<&'static str> {
     Kind::ALL.map(Kind::word).into_iter().chain(Change::ALL.map(Change::word)).collect()

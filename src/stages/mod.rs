@@ -28,6 +28,7 @@ mod step_count;
 mod surface;
 mod task;
 
+use crate::constants::Constants;
 pub use compare::{Comparison, compare};
 pub use cycle::{Units, unload_again, unload_elements_again};
 pub use error::StageError;
@@ -36,3 +37,9 @@ pub use measure::{Imported, measure};
 pub use pipeline::{prepare, run};
 pub use sampling::sampled;
 pub use task::{Tally, Task, Watch};
+
+/// Numerical choices and limits of cycles and of the report that are made here.
+pub const CONSTANTS: [Constants; 2] = [
+    Constants { subject: "Cycles", module: "stages::cycle", rows: cycle::CONSTANTS },
+    Constants { subject: "Loop explorer", module: "stages::explorer", rows: explorer::CONSTANTS },
+];

@@ -6,7 +6,7 @@ use crate::physics::surface::summits::Summit;
 use crate::spec::CaseParams;
 
 /// Steps of all branches of a cycle at most: they take about 2 GB of memory.
-const MOST: u64 = 2_000_000;
+pub(super) const MOST: u64 = 2_000_000;
 
 /// Penetration beyond which no load is looked for, in rms heights.
 const DEEPEST: f64 = 100.0;

@@ -211,6 +211,19 @@ pub const LIMITS: [Limit; 13] = [
     Limit::at_least("few_asperities", "summit_count_mean", 100.0),
 ];
 
+/// Condition of a warning that has no limit of a column.
+#[must_use]
+pub fn condition(code: &str) -> Option<&'static str> {
+    match code {
+        "failed" => Some("`failed_count` > 0"),
+        "incomplete" => Some("`done_count` < `planned_count`"),
+        "unconverged" => Some("`unconverged_count` of `realizations` > 0"),
+        "single" => Some("`done_count` = 1"),
+        "imprecise" => Some("half-width of the interval > `until_relative_ci`"),
+        _ => None,
+    }
+}
+
 /// Warnings of the range of the asperity model, which boundary elements do not have.
 const OF_ASPERITIES: [&str; 8] = ["sticky", "area", "conformed", "covered", "absorption", "touching", "texture", "few_contacts"];
 

@@ -1,7 +1,8 @@
 //! Statistics: means, standard deviations and mean curves from the steps of many cycles.
 //!
 //! Tables are read and checked by the store, and grouped by Polars. Every sum is taken here, in the order of the realizations, so that the tables
-//! have the same bytes with any number of threads. This module is independent of the physics.
+//! have the same bytes with any number of threads. This module solves no contact problem: the analytical estimates of each cycle are given to it. Of the
+//! physics it uses the energy balance of a loop, with its limits.
 
 mod avalanches;
 mod cases;
@@ -29,7 +30,7 @@ use std::path::PathBuf;
 
 pub use avalanches::avalanches;
 pub use cases::cases;
-pub use cautions::{CAUTIONS, Caution, LIMITS, Limit};
+pub use cautions::{CAUTIONS, Caution, LIMITS, Limit, condition};
 pub use compare::{Difference, Group, Matched, Side, comparison, difference_of, matched, singles, together};
 pub use curves::curves;
 pub use digits::{column_exponent, decimals, labels, labels_with_unit, significant};

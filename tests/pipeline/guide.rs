@@ -1,6 +1,7 @@
 //! README and guide: specs parse, commands exist, keys, columns and links are real, Python blocks run.
 
 mod blocks;
+mod limits;
 mod outputs;
 mod snippets;
 mod warnings;

@@ -109,7 +109,7 @@ fn e2e_the_worked_example_ends_at_a_figure() {
     assert_eq!(code(&bench.verb("run", &["--until", "aggregate"])), 0);
     let figure = bench.folder.path().join("hysteresis.png");
     if let Some(said) = script("data/examples/hysteresis.py", &bench, &[&figure]) {
-        assert!(said.contains("loss ") && said.trim_end().ends_with(" J"), "{said}");
+        assert!(said.contains("dissipated energy ") && said.trim_end().ends_with(" J"), "{said}");
         assert!(std::fs::read(figure).unwrap().starts_with(b"\x89PNG"));
     }
     let figure = bench.folder.path().join("loop.svg");

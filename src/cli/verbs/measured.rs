@@ -5,6 +5,7 @@ mod text;
 
 use super::{BAD_SPEC, Fault, failed, say};
 use crate::cli::{ExportArguments, ImportArguments};
+use crate::constants::{Constant, Constants};
 use crate::formats::recognize;
 use crate::keys::digest_of_file;
 use crate::model::{Choice, Detrend, Missing};
@@ -19,6 +20,17 @@ use range::Range;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use text::{Statistics, answer, text};
+
+/// Limits of the warnings of `import`.
+pub(in crate::cli) const LIMITS: Constants = Constants {
+    subject: "Warnings of `import`",
+    module: "cli",
+    rows: &[
+        Constant::new("part outside the central square", &[text::DROPPED], "of the scan", "With more, the warning `crop` is printed.", ""),
+        Constant::new("rms slope", &[text::FLAT, text::STEEP], "", "Outside this range the units are probably wrong.", ""),
+        Constant::new("rms height", &[text::LOW_M], "m", "Below it the units are probably wrong.", ""),
+    ],
+};
 
 pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
     let refused = |why: &dyn std::fmt::Display| failed(format!("cannot import {}: {why}", asked.file.display()));

@@ -15,6 +15,8 @@ mod survey;
 mod viewer;
 mod work;
 
+pub(super) use measured::LIMITS as IMPORT;
+
 use super::colour::painted;
 use super::limits;
 use super::reference::{BAD_SPEC, FAILED, FAILED_CASES};

@@ -8,7 +8,7 @@ pub use super::step::{Halfway, Settings};
 use crate::physics::PhysicsError;
 
 /// Magnitude of the approach, in ranges of the heights, beyond which a load counts as not reached and, at negative approach, the surfaces as inseparable.
-const FARTHEST: f64 = 20.0;
+pub(super) const FARTHEST: f64 = 20.0;
 
 /// Loads to the largest of the loads and unloads from each, from the beginning or from `halfway`. After each step `keep` is given what is needed to
 /// continue from there, and `progress` the completed fraction.

@@ -23,16 +23,16 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// Width of the Gaussian kernel, in grid spacings.
-const WIDTH: f64 = 0.6;
+pub(super) const WIDTH: f64 = 0.6;
 /// Stiffness of the spring at small and negative gaps, in E*/dx.
-const SPRING: f64 = 4.0;
+pub(super) const SPRING: f64 = 4.0;
 /// Spacing of the table, in ℓ.
 const SPACING: f64 = 1.0 / PER_UNIT;
 const PER_UNIT: f64 = 100.0;
 /// Overlap in ranges beyond which the repulsion of Morse's law is linear.
-const DEEPEST: f64 = 6.0;
+pub(super) const DEEPEST: f64 = 6.0;
 /// Gap in ranges beyond which Morse's law is not evaluated: its tension is 1e-12 of the maximum.
-const NEGLIGIBLE: f64 = 30.0;
+pub(super) const NEGLIGIBLE: f64 = 30.0;
 /// Tension at which the table ends, in E*ℓ/dx.
 const END: f64 = 1e-7;
 

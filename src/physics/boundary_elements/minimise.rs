@@ -27,9 +27,9 @@ use rayon::prelude::*;
 const LOOK: f64 = 0.02;
 /// Largest residual at which bonds are updated, relative to [`Problem::stress`]. Far from equilibrium, edges of contact lie where no equilibrium has
 /// them.
-const NEAR: f64 = 0.4;
+pub(super) const NEAR: f64 = 0.4;
 /// Iterations on the whole grid before an event counts as one: the first follow the approach everywhere.
-const EVERYWHERE: usize = 8;
+pub(super) const EVERYWHERE: usize = 8;
 /// Residual, relative to that at the beginning of the way, at which the pressure is computed from the displacement: single precision has seven digits.
 const RENEWED: f64 = 1e-3;
 /// Shortenings of a step that would raise the energy.

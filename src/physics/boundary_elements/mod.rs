@@ -3,6 +3,7 @@
 //! Imports nothing of the asperity model. Inside, lengths are in grid spacings `dx`, stresses in E*, energies in `E* dx³`.
 
 pub mod adhesionless;
+mod constants;
 pub mod contact;
 pub mod cycle;
 pub mod equilibrium;
@@ -25,3 +26,5 @@ mod sums;
 mod trial;
 mod way;
 pub mod work;
+
+pub(super) use constants::CONSTANTS;

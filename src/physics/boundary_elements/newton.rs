@@ -22,7 +22,7 @@ const INNER: usize = 80;
 const FORCING: f64 = 0.05;
 
 /// Relative residual of the rate of an equilibrium.
-const RATE: f64 = 0.01;
+pub(super) const RATE: f64 = 0.01;
 
 /// Fields of the inner iteration, lent by the minimiser, which does not need them meanwhile.
 struct Inner {

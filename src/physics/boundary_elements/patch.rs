@@ -19,9 +19,9 @@ use crate::physics::memory::filled;
 use rayon::prelude::*;
 
 /// Least side of the grid, in sides of a patch.
-const PARTS: usize = 4;
+pub(super) const PARTS: usize = 4;
 /// Most places that are followed.
-const PLACES: usize = 8;
+pub(super) const PLACES: usize = 8;
 /// The border of a patch has the width of its side over this.
 const BORDER: usize = 8;
 /// Largest residual of a relaxed patch, relative to that of an equilibrium.

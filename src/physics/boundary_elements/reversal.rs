@@ -6,16 +6,16 @@ use super::step::{Attempt, Walk};
 use crate::physics::PhysicsError;
 
 /// Relative accuracy of the load at a reversal.
-const LOAD_ACCURACY: f64 = 1e-5;
+pub(super) const LOAD_ACCURACY: f64 = 1e-5;
 /// Relative accuracy of a jump of the load across that of a reversal.
-const JUMP_ACCURACY: f64 = 1e-3;
+pub(super) const JUMP_ACCURACY: f64 = 1e-3;
 /// Tolerance of the equilibria near that load, relative to that elsewhere, and the relative distance at which it begins.
-const SHARPER: f64 = 0.02;
+pub(super) const SHARPER: f64 = 0.02;
 const NEAR: f64 = 0.02;
 /// Bracket of the approach at which the load jumps, in steps.
 const CLOSED: f64 = 1e-5;
 /// Most equilibria of a search.
-const SEARCHED: u32 = 40;
+pub(super) const SEARCHED: u32 = 40;
 
 impl Walk<'_> {
     /// The equilibrium at `max_load` between the last state and a step `beyond` it, or after a jump of the load across it. States of a smaller load on the

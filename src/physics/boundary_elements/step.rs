@@ -22,22 +22,22 @@ use crate::physics::memory::filled;
 use serde::{Deserialize, Serialize};
 
 /// Least imbalance of an event, relative to the energy dissipated so far.
-const EVENT: f64 = 1e-5;
+pub(super) const EVENT: f64 = 1e-5;
 /// Error of the integral of the load, relative to the part of it that comes from the slopes of the load.
-const BEND: f64 = 0.05;
+pub(super) const BEND: f64 = 0.05;
 /// Part of the error that a jump of the load may cause in its integral that counts as its uncertainty.
-const JUMP_PART: f64 = 0.3;
+pub(super) const JUMP_PART: f64 = 0.3;
 /// Error, relative to the limit, below which the next step may be twice as long.
-const WELL_BELOW: f64 = 1.0 / 6.0;
+pub(super) const WELL_BELOW: f64 = 1.0 / 6.0;
 /// Relative increase of the maximum tension that a jump of the load may hide.
-const HIDDEN: f64 = 0.02;
+pub(super) const HIDDEN: f64 = 0.02;
 /// Error of a jump, relative to the limit, from which on a step is halved before it has reached equilibrium.
-const EXCESS: f64 = 2.0;
+pub(super) const EXCESS: f64 = 2.0;
 /// Largest `|du/dΔ|` by which displacements are extrapolated. Near a limit point, where it diverges, the extrapolated state would be far from equilibrium.
-const STEEPEST: f64 = 10.0;
+pub(super) const STEEPEST: f64 = 10.0;
 /// Deepest extrapolated overlap beyond that of the last state with attraction of a range, in ranges: the repulsion rises exponentially, and iterations move by
 /// one range.
-const OVERLAP: f64 = 0.5;
+pub(super) const OVERLAP: f64 = 0.5;
 
 /// Settings of a path.
 #[derive(Debug, Clone, PartialEq)]

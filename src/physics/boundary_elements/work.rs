@@ -2,7 +2,7 @@
 
 /// Jump of the load in a step, relative to its curvature over the step, from which on the load counts as discontinuous. For a load with a limit point
 /// (`F² ∝ Δ`) the cubic is worse than the trapezoid from here on.
-const JUMP: f64 = 1.0 / 3.0;
+pub(super) const JUMP: f64 = 1.0 / 3.0;
 
 /// A point of a loop: approach `Δ`, load `F` and stiffness `dF/dΔ`.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -32,7 +32,7 @@ pub(crate) const ROUNDING: f64 = 1e-8;
 /// Maximum tensile load of a merged contact, relative to `sqrt(8πE*Δγa³)`.
 ///
 /// The branch ends at 5/6.
-const MAX_TENSILE_LOAD: f64 = 0.8;
+pub(super) const MAX_TENSILE_LOAD: f64 = 0.8;
 
 impl Problem {
     /// True if contacts merge.

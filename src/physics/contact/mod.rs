@@ -1,5 +1,6 @@
 //! Contact of asperities: the problem, its states and the transitions between them.
 
+mod constants;
 pub(crate) mod event;
 pub(crate) mod merged_spot;
 pub(crate) mod merging;
@@ -12,6 +13,7 @@ pub(crate) mod state;
 pub(crate) mod transition;
 pub mod union_area;
 
+pub(super) use constants::CONSTANTS;
 pub use event::Event;
 pub use merged_spot::Merged;
 pub use problem::{Problem, Rules, Totals};

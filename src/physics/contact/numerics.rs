@@ -3,10 +3,10 @@
 /// Number of contacts in the local problem of an event.
 ///
 /// They lie within about five screening lengths of it. All other contacts respond to first order.
-const SPOTS_IN_PATCH: usize = 24;
+pub(super) const SPOTS_IN_PATCH: usize = 24;
 
-/// Default of [`Accuracy`].
-const TOLERANCE: f64 = 1e-2;
+/// Accuracy of a path, unless it is set.
+pub(crate) const ACCURACY: Accuracy = Accuracy(1e-2);
 
 /// Numerical settings.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,7 +19,7 @@ pub(crate) struct Numerics {
 
 impl Default for Numerics {
     fn default() -> Self {
-        Self { spots_in_patch: SPOTS_IN_PATCH, accuracy: Accuracy(TOLERANCE) }
+        Self { spots_in_patch: SPOTS_IN_PATCH, accuracy: ACCURACY }
     }
 }
 
@@ -30,32 +30,32 @@ pub(crate) struct Accuracy(pub(crate) f64);
 
 impl Accuracy {
     /// Longest increment; an eighth of it where local problems hold all contacts: nothing is neglected then, and the work is to be as exact as the events.
-    pub(crate) fn longest_increment(self, whole: bool) -> f64 {
+    pub(crate) const fn longest_increment(self, whole: bool) -> f64 {
         if whole { 5.0 * self.0 / 8.0 } else { 5.0 * self.0 }
     }
 
     /// Maximum root-mean-square predictor residual at the end of an increment.
-    pub(crate) fn drift(self) -> f64 {
+    pub(crate) const fn drift(self) -> f64 {
         self.0
     }
 
     /// Maximum predictor residual of one contact there.
-    pub(crate) fn worst_residual(self) -> f64 {
+    pub(crate) const fn worst_residual(self) -> f64 {
         10.0 * self.0
     }
 
     /// Maximum lateness of a transition that is found there.
-    pub(crate) fn lateness(self) -> f64 {
+    pub(crate) const fn lateness(self) -> f64 {
         2.0 * self.0
     }
 
     /// Maximum pending displacement of a contact.
-    pub(crate) fn pending(self) -> f64 {
+    pub(crate) const fn pending(self) -> f64 {
         self.0
     }
 
     /// Residual of a global solve whose state is not written down.
-    pub(crate) fn sufficient(self) -> f64 {
+    pub(crate) const fn sufficient(self) -> f64 {
         self.0 / 500.0
     }
 }

@@ -62,7 +62,7 @@ pub struct Problem {
 ///
 /// Wu's criterion (Eq 3) is beyond the end of the JKR branch at Tabor parameters from 0.2 to 1.
 /// An asperity that formed a contact there would leave at once. At its lower bound, μ = 2, the criterion gives 0.79.
-const DEEPEST_JUMP_IN: f64 = 0.95;
+pub(super) const DEEPEST_JUMP_IN: f64 = 0.95;
 
 impl Problem {
     /// Sets the number of spots in local problems.

@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 /// Distance from the edge of a contact, over its radius, at which it absorbs an asperity.
 ///
 /// The slope of its field is infinite at its edge. Nearer to it, Newton's method mostly does not find the equilibrium of all contacts.
-const BEFORE_CENTRE: f64 = 1e-4;
+pub(super) const BEFORE_CENTRE: f64 = 1e-4;
 
 /// Radius \[m\] at which a contact absorbs an asperity at a distance \[m\].
 pub(crate) fn absorbing_radius(distance: f64) -> f64 {

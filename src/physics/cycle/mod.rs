@@ -3,6 +3,7 @@
 //! The loop begins before the first jump-in and ends with the last separation.
 //! Its area is therefore the total dissipated energy `Θ = ∮F dΔ`.
 
+mod constants;
 mod recorder;
 mod reversal;
 pub mod soundness;
@@ -12,6 +13,7 @@ use crate::physics::PhysicsError;
 use crate::physics::contact::problem::Problem;
 use crate::physics::contact::state::State;
 use crate::physics::path::{EquilibriumPath, PathCheckpoint, is_multiple};
+pub(super) use constants::CONSTANTS;
 use recorder::Recorder;
 use reversal::retrace;
 use serde::{Deserialize, Serialize};

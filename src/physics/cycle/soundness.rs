@@ -20,7 +20,7 @@ pub const LARGEST_IMBALANCE: f64 = 0.5;
 /// Largest energy, relative to the largest work along the loop, by which a loop may violate sign or energy balance. Its Θ is then not resolved.
 ///
 /// Violations at weak adhesion are 1e-5 to 1e-4, those of a contact near full contact 0.01 to 1.
-const LARGEST_VIOLATION: f64 = 1e-3;
+pub(super) const LARGEST_VIOLATION: f64 = 1e-3;
 
 /// Refuses a state whose contact area Σπa² exceeds the nominal area A0, or whose largest contact spans the square.
 ///

@@ -10,21 +10,21 @@ use crate::model::{Boundary, Interaction as Kind, Material, Slips};
 ///
 /// Measured for the linearisations of one solution and the products that follow them.
 /// Without images a pair costs less and the mesh more.
-const FAST_FROM_PERIODIC: usize = 70;
-const FAST_FROM_TABLE: usize = 100;
-const FAST_FROM_ISOLATED: usize = 400;
+pub(super) const FAST_FROM_PERIODIC: usize = 70;
+pub(super) const FAST_FROM_TABLE: usize = 100;
+pub(super) const FAST_FROM_ISOLATED: usize = 400;
 
 /// Number of asperities from which the fast sum is set up.
-const MIN_ASPERITIES: usize = 300;
+pub(super) const MIN_ASPERITIES: usize = 300;
 
 /// Errors of the fast sum relative to the largest displacement.
 ///
 /// `TOLERANCE` is for equilibria, `ROUGH_TOLERANCE` for intermediate solutions.
-const TOLERANCE: f64 = 1e-8;
-const ROUGH_TOLERANCE: f64 = 1e-6;
+pub(super) const TOLERANCE: f64 = 1e-8;
+pub(super) const ROUGH_TOLERANCE: f64 = 1e-6;
 
 /// Precision of equilibria where all sums are direct.
-const DIRECT_TOLERANCE: f64 = 1e-10;
+pub(super) const DIRECT_TOLERANCE: f64 = 1e-10;
 
 /// Displacement field of asperities at `positions` \[m\] on the square of side `length_m`.
 ///

@@ -17,7 +17,7 @@ use multiversion::multiversion;
 use std::sync::Arc;
 
 /// Maximum number of asperities for a table of image sums: 32 bytes per pair, 32 MB in all.
-const TABLE_LIMIT: usize = 1000;
+pub(super) const TABLE_LIMIT: usize = 1000;
 
 /// Sum over all pairs: exact field of the nearest image, multipole field of the other images.
 #[derive(Debug, Clone)]

@@ -1,6 +1,7 @@
 //! Displacement field of contact spots: direct and fast sums behind one trait.
 
 mod choose;
+mod constants;
 mod direct;
 pub mod ewald;
 mod image_polynomials;
@@ -11,6 +12,7 @@ pub mod spot_field;
 
 use crate::physics::math::vector::dot;
 pub use choose::{Best, best};
+pub(super) use constants::CONSTANTS;
 pub use direct::DirectSum;
 pub(crate) use direct::PointLoad;
 pub use particle_mesh::FastSum;

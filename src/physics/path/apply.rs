@@ -12,10 +12,10 @@ use crate::physics::contact::transition::{Kind, Transition};
 use crate::physics::solve::local::Hold;
 
 /// Share of its radius by which a contact is moved over a fold.
-const STEP_OVER_FOLD: f64 = 1e-3;
+pub(super) const STEP_OVER_FOLD: f64 = 1e-3;
 
 /// An asperity whose uncovering would be undone at once is tried again when the covering contact has shrunk to this share of its radius.
-const RETRY: f64 = 0.97;
+pub(super) const RETRY: f64 = 0.97;
 
 impl EquilibriumPath {
     /// Applies a transition in the local problem that is at it, relaxes the local problem, and records both; nothing if the transition would be undone

@@ -15,10 +15,10 @@ use std::sync::Arc;
 const EDGE: f64 = 1e-8;
 
 /// Maximum number of local solves that propagate an event: at least so many, or the number of contacts over this.
-const MOST_SOLVES: usize = 16;
+pub(super) const MOST_SOLVES: usize = 16;
 
 /// Number of transitions from which the global problem is solved after an avalanche: it moves contacts far away by more than its load as a point does.
-const LARGE: usize = 13;
+pub(super) const LARGE: usize = 13;
 
 /// Transitions of an avalanche, and the asperities that it has touched.
 #[derive(Debug, Default)]

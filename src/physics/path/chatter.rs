@@ -4,7 +4,7 @@ use crate::physics::contact::transition::{Kind, Transition};
 use serde::{Deserialize, Serialize};
 
 /// Changes other than jumps out of contact that an asperity may have within one longest increment.
-const MOST_CHANGES: u8 = 3;
+pub(super) const MOST_CHANGES: u8 = 3;
 
 /// Changes of each asperity within the present longest increment, and asperities that are frozen by it.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]

@@ -13,10 +13,10 @@ use crate::physics::solve::local::curve::CurveEnd;
 use crate::physics::solve::local::{Hold, LocalProblem};
 
 /// Overlap at merging, relative to the distance of the contacts: at most so much.
-const TOUCH: f64 = 1e-6;
+pub(super) const TOUCH: f64 = 1e-6;
 
 /// Maximum number of local solves that locate a merging.
-const MOST_TRIALS: usize = 40;
+pub(super) const MOST_TRIALS: usize = 40;
 
 /// Position of an event on the solution curve: the local problem is there.
 #[derive(Debug, Clone, Copy)]

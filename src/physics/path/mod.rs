@@ -70,6 +70,7 @@ mod avalanche;
 mod chatter;
 mod checkpoint;
 mod conditions;
+mod constants;
 mod corrector;
 mod energy;
 mod equilibrium_path;
@@ -90,5 +91,6 @@ mod work;
 
 pub use accuracy::EVENT_TOLERANCE;
 pub(crate) use checkpoint::PathCheckpoint;
+pub(super) use constants::CONSTANTS;
 pub(crate) use equilibrium_path::EquilibriumPath;
 pub(crate) use step_control::is_multiple;

@@ -13,11 +13,11 @@ use crate::physics::half_space::Effort;
 use crate::physics::solve::local::LocalProblem;
 
 /// Contacts of local problem and shell, over those of the local problem.
-const SHELL: usize = 5;
+pub(super) const SHELL: usize = 5;
 
 /// Free asperities next to an event are followed from so many length scales before their jump-in: an event moves them by some jump-off
 /// penetrations.
-const SPAN: f64 = 3.0;
+pub(super) const SPAN: f64 = 3.0;
 
 /// Local problem of an event with its shell.
 #[derive(Debug, Default)]

@@ -16,7 +16,7 @@ use crate::physics::solve::local::{CurveState, Hold, OutsideField};
 use crate::physics::solve::trace::PenetrationTrace;
 
 /// Pending displacement that a member may have when its local problem is solved, over the limit.
-const NEGLIGIBLE: f64 = 0.1;
+pub(super) const NEGLIGIBLE: f64 = 0.1;
 
 /// A local problem before it changes.
 pub(super) struct Before {

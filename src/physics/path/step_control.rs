@@ -6,13 +6,16 @@
 use crate::physics::PhysicsError;
 
 /// Maximum number of halvings before the global problem is relaxed instead.
-const MOST_HALVINGS: u32 = 14;
+pub(super) const MOST_HALVINGS: u32 = 14;
 
 /// Number of halvings from which on the predictor residual is accepted.
-const ACCEPTS_RESIDUAL: u32 = 6;
+pub(super) const ACCEPTS_RESIDUAL: u32 = 6;
 
 /// Maximum number of trials of transitions within one attempt, per asperity: [`super::chatter::ChatterGuard`] allows each asperity a few changes.
-const MOST_TRIALS: usize = 100;
+pub(super) const MOST_TRIALS: usize = 100;
+
+/// Number that is added to that of the asperities, for few of them.
+pub(super) const FEW: usize = 100;
 
 /// Lengths of the increments.
 #[derive(Debug, Clone)]
@@ -94,7 +97,7 @@ impl StepControl {
     /// Counts a trial on a path of `n` asperities; `asperity` is the caller's number of the one that is to change.
     pub(super) fn count_trial(&mut self, n: usize, approach_m: f64, asperity: usize) -> Result<(), PhysicsError> {
         self.trials += 1;
-        let most = MOST_TRIALS * (n + 100);
+        let most = MOST_TRIALS * (n + FEW);
         if self.trials <= most { Ok(()) } else { Err(PhysicsError::EndlessAvalanche { approach_m, events: most, asperity }) }
     }
 }

@@ -14,11 +14,11 @@ use crate::physics::contact::transition::Transition;
 use std::sync::Arc;
 
 /// Relative residuals of linear solves.
-const MOST: f64 = 3e-3;
-const LEAST: f64 = 1e-4;
+pub(super) const MOST: f64 = 3e-3;
+pub(super) const LEAST: f64 = 1e-4;
 
 /// The largest of them where the precision is only sufficient.
-const ROUGH: f64 = 3e-2;
+pub(super) const ROUGH: f64 = 3e-2;
 
 /// What follows where the contacts around one have no equilibrium nearby.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

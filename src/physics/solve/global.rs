@@ -15,11 +15,11 @@ use crate::physics::math::gmres::{Limits, LinearOperator, Solution, gmres, gmres
 use std::sync::Arc;
 
 /// Maximum number of products in one linear solve.
-const PRODUCTS: usize = 120;
+pub(super) const PRODUCTS: usize = 120;
 
 /// Relative residual of the rates, at exact and at sufficient precision: predictions depend on them.
-const RATES: f64 = 1e-4;
-const ROUGH_RATES: f64 = 3e-4;
+pub(super) const RATES: f64 = 1e-4;
+pub(super) const ROUGH_RATES: f64 = 3e-4;
 
 /// Way between two evaluations of all free asperities, in rms heights.
 pub(crate) const BLOCK: f64 = 0.2;

@@ -1,5 +1,6 @@
 //! Equilibria of a contact at one approach: global, local, and by relaxation.
 
+mod constants;
 pub(crate) mod descent;
 pub(crate) mod global;
 pub(crate) mod local;
@@ -9,3 +10,5 @@ pub(crate) mod relaxation;
 pub(crate) mod residual;
 mod schwarz;
 pub(crate) mod trace;
+
+pub(super) use constants::CONSTANTS;

@@ -11,7 +11,7 @@ use crate::physics::contact::transition::{ContactView, Transition};
 use crate::physics::math::vector::dot;
 
 /// Maximum number of steps since the last transition.
-const STEPS: usize = 1000;
+pub(super) const STEPS: usize = 1000;
 
 /// Pseudo-time after which Newton's method may finish, and the factor by which it is extended if that fails.
 const NEARLY: f64 = 100.0;

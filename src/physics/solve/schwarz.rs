@@ -13,8 +13,8 @@ use crate::physics::math::vector::in_strands;
 use multiversion::multiversion;
 
 /// Number of contacts in a group when they are divided, and number of contacts that are solved together for it.
-const GROUP: usize = 24;
-const TOGETHER: usize = 44;
+pub(super) const GROUP: usize = 24;
+pub(super) const TOGETHER: usize = 44;
 
 /// Factor by which the number of contacts may change before they are divided again.
 const GROWTH: f64 = 1.3;
@@ -23,7 +23,7 @@ const GROWTH: f64 = 1.3;
 const ALOOF: f64 = 2.0;
 
 /// Solutions that the rows of a group serve, if no contact next to it comes or goes.
-const MOST_SOLUTIONS: usize = 8;
+pub(super) const MOST_SOLUTIONS: usize = 8;
 
 /// An approximate inverse that serves several solutions: it only makes them short.
 #[derive(Debug, Default)]

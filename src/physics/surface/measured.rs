@@ -30,11 +30,11 @@ pub const FEWEST_POINTS: usize = 16;
 pub const MOST_POINTS: usize = 8192;
 
 /// Maximum fraction of missing points.
-const MAX_MISSING_FRACTION: f64 = 0.5;
+pub(super) const MAX_MISSING_FRACTION: f64 = 0.5;
 /// Relative difference of the point spacings below which they count as equal.
-const SPACING_TOLERANCE: f64 = 1e-3;
+pub(super) const SPACING_TOLERANCE: f64 = 1e-3;
 /// Maximum ratio of the two spacings that is resampled.
-const MAX_SPACING_RATIO: f64 = 16.0;
+pub(super) const MAX_SPACING_RATIO: f64 = 16.0;
 
 /// Preprocessing of a measured surface.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,6 +1,7 @@
 //! Rough surfaces: spectra, synthesis, measured surfaces, and their asperities.
 
 pub mod band_limited;
+mod constants;
 mod levelling;
 pub mod measured;
 pub(crate) mod modes;
@@ -13,3 +14,5 @@ pub mod spectrum;
 pub mod summits;
 pub mod synthesis;
 pub mod texture;
+
+pub(super) use constants::CONSTANTS;

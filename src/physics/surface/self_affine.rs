@@ -37,11 +37,11 @@ pub struct SelfAffine {
 /// Decrease of the cost that a roll-off, and that damping, must yield; an L-filter, which resembles a roll-off, must yield more.
 const OF_SHAPE: f64 = 8.0;
 /// Fewest rings of a fit.
-const FEWEST: usize = 5;
+pub(super) const FEWEST: usize = 5;
 /// Fewest rings of the power law beyond a roll-off.
-const FEWEST_BEYOND: usize = 4;
+pub(super) const FEWEST_BEYOND: usize = 4;
 /// Least fraction of the mean square height of all rings that the band holds: leakage and rounding hold less.
-const SHARE: f64 = 0.1;
+pub(super) const SHARE: f64 = 0.1;
 /// Decrease of ln C by a filter that hardly changes the exponent.
 const SMALL_DAMPING: f64 = 0.35;
 /// Decrease of ln C at the last ring of a damped band: a Gaussian filter reaches `2 ln 2` at its cut-off.
@@ -53,7 +53,7 @@ const END: f64 = 0.1;
 /// Hurst exponents of a self-affine surface, with a margin for the error of the fit.
 const HURST: RangeInclusive<f64> = -0.05..=1.1;
 /// Largest rms deviation from a fit \[decades\].
-const MOST_SCATTER: f64 = 0.5;
+pub(super) const MOST_SCATTER: f64 = 0.5;
 /// Exponents of a spectrum that is fitted at all, from a density that grows with q to that of a smooth form.
 const ANY: RangeInclusive<f64> = -1.5..=3.0;
 /// Cost beyond that of any power law at which a self-affine spectrum is given up: four rings that it leaves out.

@@ -34,8 +34,8 @@ pub(super) fn problem(params: &CaseParams, scale: Scale, summits: &[Summit]) -> 
 }
 
 /// Asperities from which on a cycle has checkpoints, and their interval of the mean penetration over the rms height.
-const MANY: usize = 20_000;
-const REST_EVERY: f64 = 0.1;
+pub(super) const MANY: usize = 20_000;
+pub(super) const REST_EVERY: f64 = 0.1;
 
 pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> Result<Outcome, StageError> {
     let params = &campaign.cases[unit.case].case.params;

@@ -13,7 +13,7 @@ use std::collections::HashMap;
 use std::iter::repeat_n;
 
 /// A state counts as converged below this residual, of the rms height.
-const CONVERGED: f64 = 1e-8;
+pub(super) const CONVERGED: f64 = 1e-8;
 /// Word of the method in the tables.
 const METHOD: &str = "asperities";
 

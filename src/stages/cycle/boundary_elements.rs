@@ -70,7 +70,7 @@ fn check_energy(cycle: &Cycle, loads: &[f64], units: &Units) -> Result<(), Physi
 }
 
 /// Step of loading without adhesion, in steps of the cycle.
-const FREE_STEP: f64 = 2.0;
+pub(super) const FREE_STEP: f64 = 2.0;
 
 /// Loading of the problem without adhesion, until the adhesive states that follow from it reach the largest load, at most by the range of the heights beyond
 /// the cycle.

@@ -22,18 +22,18 @@ use crate::store::hdf5::{SurfaceHeader, read_header, read_surface};
 use ndarray::Array2;
 
 /// Largest error that a jump of the load may cause in the integral over a step, relative to the energy dissipated so far.
-const LOCATED: f64 = 0.03;
+pub(super) const LOCATED: f64 = 0.03;
 /// Ratios `U_el/Δγ` of Persson and Tosatti from which on adhesion is weak, with the number of steps in one of `boundary_elements.approach_step` there, and
 /// the factor by which `boundary_elements.precision` is smaller.
 ///
 /// With weak adhesion the dissipated energy is a small part of the work of the load, and the sum of the events is as inexact as its integral.
-const WEAK: [(f64, f64, f64); 2] = [(150.0, 30.0, 10.0), (15.0, 6.0, 6.0)];
+pub(super) const WEAK: [(f64, f64, f64); 2] = [(150.0, 30.0, 10.0), (15.0, 6.0, 6.0)];
 /// Largest residual over the rms residual of an equilibrium.
-const PEAK: f64 = 100.0;
+pub(super) const PEAK: f64 = 100.0;
 /// Maximum number of iterations of one minimisation.
-const MOST_ITERATIONS: usize = 3000;
+pub(super) const MOST_ITERATIONS: usize = 3000;
 /// Points around a contact that are bonded.
-const MARGIN: usize = 2;
+pub(super) const MARGIN: usize = 2;
 /// Fields of numbers that the solver needs, its patches included, and those of a load reversal with its maps and checkpoint.
 const FIELDS: usize = 21;
 const FIELDS_OF_REVERSAL: usize = 8;

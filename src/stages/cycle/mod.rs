@@ -3,11 +3,13 @@
 mod asperities;
 mod asperity_tables;
 mod boundary_elements;
+mod constants;
 mod elements_setup;
 mod elements_tables;
 
 pub use asperities::unload_again;
 pub use boundary_elements::unload_elements_again;
+pub(super) use constants::CONSTANTS;
 pub use elements_setup::Units;
 pub(super) use elements_setup::lattice;
 
@@ -26,7 +28,7 @@ use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Minimum time between two checkpoints.
-const KEPT_FOR: Duration = Duration::from_secs(60);
+pub(super) const KEPT_FOR: Duration = Duration::from_secs(60);
 
 /// Tasks of the stage cycle: one for each different cycle.
 pub(super) struct Cycles<'a> {

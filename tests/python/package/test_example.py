@@ -39,6 +39,17 @@ def test_an_array_is_taken_as_its_file_is(program, tmp_path):
     assert hysteron.take(masked, **told, fill=True)["missing_count"] == 9
 
 
+def test_a_message_of_take_has_its_own_terms(program, tmp_path):
+    heights = np.cos(0.3 * np.arange(64))[:, None] * np.ones(64)
+    with pytest.raises(hysteron.Failed) as error:
+        hysteron.take(heights, unit="nm")
+    message = str(error.value)
+    assert "the array" in message and "pixel_m=" in message and "--" not in message and "array.npy" not in message
+    np.save(tmp_path / "scan.npy", heights)
+    with pytest.raises(hysteron.Failed, match=r"scan\.npy: .*\nhelp: give the unit \(unit=\)"):
+        hysteron.take(tmp_path / "scan.npy", pixel_m=1e-9)
+
+
 def test_a_surface_that_was_not_written_is_no_generated_one(program, tmp_path):
     with pytest.raises(ValueError, match="surface.file is None\nhelp: give a file, for example from `take` with `out`"):
         hysteron.run({"name": "x", "surface": {"file": None}}, out=tmp_path / "run")

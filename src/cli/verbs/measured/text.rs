@@ -212,7 +212,12 @@ fn spec(path: &Path, of: &Statistics<'_>) -> String {
 const SELF_AFFINE: std::ops::RangeInclusive<f64> = -0.05..=1.05;
 
 /// Fraction of a scan that the central crop may drop without a warning.
-const DROPPED: f64 = 0.1;
+pub(super) const DROPPED: f64 = 0.1;
+
+/// Rms slopes that are too steep and too flat to be likely, and an rms height that is too small \[m\].
+pub(super) const STEEP: f64 = 1.0;
+pub(super) const FLAT: f64 = 1e-5;
+pub(super) const LOW_M: f64 = 1e-10;
 
 /// Warnings: what the central square leaves out, units or values that are unlikely, and a spectrum that is not self-affine.
 fn cautions(header: &SurfaceHeader) -> Vec<String> {
@@ -239,16 +244,16 @@ fn cautions(header: &SurfaceHeader) -> Vec<String> {
             None => cautions.push("fit: too few wavelengths with data for a self-affine fit; use a larger scan".to_owned()),
         }
     }
-    if header.rms_slope > 1.0 {
+    if header.rms_slope > STEEP {
         cautions.push(format!(
             "an rms slope of {:.3} is steeper than 45 degrees; check the units, and values of missing points",
             header.rms_slope
         ));
     }
-    if header.rms_slope < 1e-5 {
+    if header.rms_slope < FLAT {
         cautions.push(format!("an rms slope of {:.1e} is flatter than any measured surface; check the units", header.rms_slope));
     }
-    if header.rms_height_m < 1e-10 {
+    if header.rms_height_m < LOW_M {
         cautions.push(format!("{:.1e} m rms is less than an atom; check the units", header.rms_height_m));
     }
     cautions

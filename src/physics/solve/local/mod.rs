@@ -16,7 +16,7 @@ use crate::physics::half_space::{Effort, PairTable, Spots};
 use crate::physics::math::dense::Lu;
 
 /// Residual of a local problem with contacts outside, in rms heights.
-const LOCAL_TOLERANCE: f64 = 1e-7;
+pub(super) const LOCAL_TOLERANCE: f64 = 1e-7;
 
 /// Bounded rate of the displacement by the outside: next to a global fold the estimate diverges.
 fn bounded(drift: f64) -> f64 {

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -140,8 +141,8 @@ def run(
     if code == _FAILED_CASES:
         # The cycles of a failed surface fail too.
         failed = max(stage["failed_count"] for stage in answer["stages"])
-        cases, them = ("1 case", "it") if failed == 1 else (f"{failed} cases", "them")
-        text = f"{cases} failed; reasons: {result.dir}/cycles/*/failed.json. Rerun {them} with `hysteron retry {result.dir}`."
+        cases = "1 case" if failed == 1 else f"{failed} cases"
+        text = f"{cases} failed; reasons: {result.dir}/cycles/*/failed.json. Change the spec: without a change, a cycle fails again."
         warnings.warn(text, FailedCases, stacklevel=2)
     return result
 
@@ -191,7 +192,10 @@ def take(
     command += [f"--{name}={value}" for name, value in (("dataset", dataset), ("pixel-m", pixel_m), ("unit", unit), ("detrend", detrend)) if value is not None]
     command += [f"--{name}" for name, asked in (("fill", fill), ("periodic", periodic)) if asked]
     with _scan(file) as path:
-        return _answered([*command, "--", path])
+        try:
+            return _answered([*command, "--", path])
+        except Failed as error:
+            raise Failed(_of_take(str(error), "" if isinstance(file, (str, os.PathLike)) else path), error.exit_code) from None
 
 
 def status(dir: Path) -> dict[str, Any]:
@@ -206,6 +210,12 @@ def _answered(command: list[str]) -> dict[str, Any]:
         raise Failed(_words(answer.stderr), answer.returncode)
     told: dict[str, Any] = json.loads(answer.stdout)
     return told
+
+
+def _of_take(message: str, written: str) -> str:
+    """A message of `import` in the terms of `take`: keywords for options, and the array for the file that it was `written` to."""
+    message = re.sub(r"--([a-z]+(?:-[a-z]+)*)(?: (?=\d)|=)?", lambda option: f"{option[1].replace('-', '_')}=", message)
+    return message.replace(written, "the array") if written else message
 
 
 @contextmanager

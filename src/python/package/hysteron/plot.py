@@ -77,7 +77,7 @@ def loop(run: Run, id: str | None = None, max_load: float | None = None, ax: Axe
     run : Run
         Output directory of a run.
     id : str, optional
-        Cycle. Default: the one of the report, of the case with the largest mean dissipated energy.
+        Cycle. Default: as in the report, the asperity model's case with the largest mean dissipated energy.
     max_load : float, optional
         Load reversal F_max/(E* A0). Default: the largest one.
     ax : matplotlib.axes.Axes, optional
@@ -144,7 +144,7 @@ def contacts(run: Run, id: str | None = None, step: int | None = None, ax: Axes 
     run : Run
         Output directory of a run.
     id : str, optional
-        Cycle. Default: the one of the report, of the case with the largest mean dissipated energy.
+        Cycle. Default: as in the report, the asperity model's case with the largest mean dissipated energy.
     step : int, optional
         Stored step, one of the column `step` of the table `contacts`. Default: the one with the most contact spots.
     ax : matplotlib.axes.Axes, optional

@@ -1,0 +1,28 @@
+//! Limits of measured surfaces.
+
+use super::measured::{FEWEST_POINTS, MAX_MISSING_FRACTION, MAX_SPACING_RATIO, MOST_POINTS, SPACING_TOLERANCE};
+use super::self_affine::{FEWEST, FEWEST_BEYOND, MOST_SCATTER, SHARE};
+use crate::constants::Constant;
+
+/// Limits of a measured surface.
+pub(in crate::physics) const CONSTANTS: &[Constant] = &[
+    Constant::new(
+        "points along a side",
+        &[FEWEST_POINTS as f64, MOST_POINTS as f64],
+        "",
+        "Minimum and maximum, after the crop.",
+        "measured",
+    ),
+    Constant::new("missing points", &[MAX_MISSING_FRACTION], "of all points", "Maximum that `--fill` interpolates.", "measured"),
+    Constant::new(
+        "difference of the pixel sizes",
+        &[SPACING_TOLERANCE],
+        "relative",
+        "Smaller ones along x and y count as equal.",
+        "measured",
+    ),
+    Constant::new("ratio of the pixel sizes", &[MAX_SPACING_RATIO], "", "A larger one is an error.", "measured"),
+    Constant::new("rings of a spectrum fit", &[FEWEST as f64, FEWEST_BEYOND as f64], "", "Minimum, and minimum beyond a roll-off.", "self_affine"),
+    Constant::new("deviation from a spectrum fit", &[MOST_SCATTER], "decades", "With a larger rms deviation there is no fit.", "self_affine"),
+    Constant::new("band of a spectrum fit", &[SHARE], "of `h_rms²`", "A band that holds less is leakage or rounding, and no data.", "self_affine"),
+];
