@@ -37,7 +37,7 @@ pub(super) fn ro_crate(asked: &FolderArguments, license: Option<&str>) -> Result
     let audit = campaign.audit(Check::Sizes);
     if let Some(fault) = audit.first_fault() {
         return Err(failed(format!(
-            "cannot describe {}: {fault}\nhelp: `hysteron verify` lists all faults, `hysteron run` repairs them",
+            "cannot describe {}: {fault}\nhelp: `hysteron verify` lists all faults; `hysteron run` repairs its tasks, `hysteron gc --delete` removes other files",
             shown(&dir)
         )));
     }
