@@ -22,7 +22,25 @@ pub(in crate::physics) const CONSTANTS: &[Constant] = &[
         "measured",
     ),
     Constant::new("ratio of the pixel sizes", &[MAX_SPACING_RATIO], "", "A larger one is an error.", "measured"),
-    Constant::new("rings of a spectrum fit", &[FEWEST as f64, FEWEST_BEYOND as f64], "", "Minimum, and minimum beyond a roll-off.", "self_affine"),
-    Constant::new("deviation from a spectrum fit", &[MOST_SCATTER], "decades", "With a larger rms deviation there is no fit.", "self_affine"),
-    Constant::new("band of a spectrum fit", &[SHARE], "of `h_rms²`", "A band that holds less is leakage or rounding, and no data.", "self_affine"),
+    Constant::new(
+        "rings of a spectrum fit",
+        &[FEWEST as f64, FEWEST_BEYOND as f64],
+        "",
+        "Minimum, and minimum beyond a roll-off.",
+        "self_affine",
+    ),
+    Constant::new(
+        "deviation from a spectrum fit",
+        &[MOST_SCATTER],
+        "decades",
+        "With a larger rms deviation there is no fit.",
+        "self_affine",
+    ),
+    Constant::new(
+        "band of a spectrum fit",
+        &[SHARE],
+        "of `h_rms²`",
+        "A band that holds less is leakage or rounding, and no data.",
+        "self_affine",
+    ),
 ];
