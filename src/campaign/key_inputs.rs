@@ -181,10 +181,10 @@ pub(super) fn read_by_cycle(params: &CaseParams) -> CaseParams {
 }
 
 /// Version of the cycles by boundary elements in their keys, beside that of the stage.
-const ELEMENTS_VERSION: u32 = 10;
+pub(crate) const ELEMENTS_VERSION: u32 = 10;
 
 /// The same of cycles of the asperity model.
-const ASPERITIES_VERSION: u32 = 9;
+pub(crate) const ASPERITIES_VERSION: u32 = 9;
 
 /// Inputs of a cycle in its key, besides the asperities.
 fn of_case(params: &CaseParams) -> Vec<(&'static str, Value)> {

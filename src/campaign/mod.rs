@@ -14,6 +14,7 @@ mod standing;
 
 pub use audit::Audit;
 pub use compare::{Difference, Explanation};
+pub(crate) use key_inputs::{ASPERITIES_VERSION, ELEMENTS_VERSION};
 pub use leftover::Leftover;
 pub use shard::Shard;
 pub use standing::{Standing, Survey};

@@ -1,9 +1,11 @@
 //! Expected error of the asperity model: its results over those of boundary elements, by the ratio `U_el/Δγ` of the surface.
 //!
-//! The table is the result of `pipelines/validity.toml`, reduced by `tests/reference/validity.py`.
+//! The table is the result of `pipelines/validity.toml`, reduced by `tests/reference/validity.py`. Its heading states the versions of both methods that
+//! made it (`# versions:`), and later versions with which it was compared or not (`# later:`).
 
 use super::rows::Value;
 use super::{CaseInput, Given, Limit};
+use crate::campaign::{ASPERITIES_VERSION, ELEMENTS_VERSION};
 use std::sync::LazyLock;
 
 const TABLE: &str = include_str!("model_error.csv");
@@ -18,6 +20,27 @@ type Ratios = [Option<f64>; 3];
 type Row = (&'static str, f64, Ratios);
 
 static ROWS: LazyLock<Vec<Row>> = LazyLock::new(|| TABLE.lines().filter_map(row).collect());
+
+/// Versions of the asperity model and of boundary elements in a line of the heading of the table.
+fn versions(of: &str) -> Option<[u32; 2]> {
+    let line = TABLE.lines().find_map(|line| line.strip_prefix(of))?;
+    let number = |name: &str| {
+        let (_, rest) = line.split_once(name)?;
+        rest.trim_start().split(|c: char| !c.is_ascii_digit()).next()?.parse().ok()
+    };
+    Some([number("asperities")?, number("boundary_elements")?])
+}
+
+/// Versions that made the table, as a sentence; nothing if they are those of the program.
+pub(super) fn outdated() -> Option<String> {
+    let present = [ASPERITIES_VERSION, ELEMENTS_VERSION];
+    let made = versions("# versions:");
+    let shown =
+        |[asperities, elements]: [u32; 2]| format!("version {asperities} of the asperity model and {elements} of boundary elements");
+    let text = made.map_or_else(|| "unknown versions".to_owned(), shown);
+    (made != Some(present))
+        .then(|| format!("The table of these ratios was made with {text}; this program has {} and {}.", present[0], present[1]))
+}
 
 fn row(line: &'static str) -> Option<Row> {
     let mut cells = line.split(',');
@@ -49,7 +72,21 @@ pub(super) fn columns(row: &Given, case: &CaseInput) -> Given {
 
 #[cfg(test)]
 mod tests {
-    use super::{ROWS, model_error};
+    use super::{ROWS, model_error, outdated, versions};
+    use crate::campaign::{ASPERITIES_VERSION, ELEMENTS_VERSION};
+
+    /// A version that moves requires the table: run `pipelines/validity.toml` and `tests/reference/validity.py`. If the ratios do not change, or if there is
+    /// no time, the line `# later:` of the heading has the present versions and the reason; a run then prints the versions that made the table.
+    #[test]
+    fn law_the_table_states_the_present_versions() {
+        let present = Some([ASPERITIES_VERSION, ELEMENTS_VERSION]);
+        let made = versions("# versions:");
+        assert!(
+            made == present || versions("# later:") == present,
+            "src/stats/model_error.csv was made with {made:?}, not with {present:?}"
+        );
+        assert_eq!(outdated().is_none(), made == present);
+    }
 
     /// Between two rows the ratios lie between theirs, at a row they are its own, and outside the table there are none.
     #[test]

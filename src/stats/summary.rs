@@ -3,7 +3,7 @@
 use super::StatsError;
 use super::digits::{column_exponent, decimals, labels, power_of_ten, significant};
 use super::listed::{Listed, listing, listing_of, sweeps};
-use super::model_error::COLUMNS;
+use super::model_error::{COLUMNS, outdated};
 use super::warnings::warnings;
 use crate::store::Frame;
 
@@ -157,7 +157,9 @@ pub fn expected_ratios(cases: &Frame) -> Result<Option<String>, StatsError> {
         parts.push(if low == high { format!("{name} {low}") } else { format!("{name} {low} to {high}") });
     }
     let parts = parts.join(", ");
-    let text = format!("Expected ratio of the asperity model to boundary elements: {parts} (U_el/Δγ of each case, guide: Validity).");
+    let outdated = outdated().map_or_else(String::new, |text| format!(" {text}"));
+    let text =
+        format!("Expected ratio of the asperity model to boundary elements: {parts} (U_el/Δγ of each case, guide: Validity).{outdated}");
     Ok((!parts.is_empty()).then_some(text))
 }
 

@@ -33,15 +33,15 @@ fn angle_between(a: f64, b: f64) -> f64 {
 #[test]
 fn val_both_ratios_are_those_of_a_stretched_surface() {
     for (aspect, direction) in [(1.0, 0.0), (2.0, 0.0), (3.0, FRAC_PI_2), (3.0, 0.6), (4.0, 2.3)] {
-        let heights = stretched(192, aspect, direction, 4.0);
+        let heights = stretched(256, aspect, direction, 4.0);
         for periodic in [true, false] {
             let found = Texture::of(heights.view(), periodic).unwrap().unwrap();
             // 400 waves: 7 % of a mean square, and of an isotropic field the larger over the smaller.
             assert!((found.slope_ratio / aspect).ln().abs() < 0.15, "{aspect} {direction}: {found:?}");
-            assert!((found.aspect_ratio_str * aspect).ln().abs() < 0.3, "{aspect} {direction}: {found:?}");
+            assert!((found.aspect_ratio_str * aspect).ln().abs() < 0.35, "{aspect} {direction}: {found:?}");
             assert!(aspect < 1.5 || angle_between(found.direction_rad, direction) < 0.1, "{direction}: {found:?}");
             // exp(−½ (u/l)²) = 0.2.
-            assert!((found.decay_length * 192.0 / (4.0 * (2.0 * 5_f64.ln()).sqrt())).ln().abs() < 0.2, "{found:?}");
+            assert!((found.decay_length * 256.0 / (4.0 * (2.0 * 5_f64.ln()).sqrt())).ln().abs() < 0.3, "{found:?}");
         }
     }
 }

@@ -7,8 +7,8 @@
 
 use super::psd_bin::Ring;
 pub use super::spectral_band::ShortCut;
-use super::spectral_band::{Band, EMPTY, OUTSIDE, Point, Sampling, top_density, white_noise_beyond};
-use super::spectral_line::{Line, Shape};
+use super::spectral_band::{Band, EMPTY, OUTSIDE, OVER_NOISE, Point, Sampling, top_density, white_noise_beyond};
+use super::spectral_line::{Line, Shape, Sums};
 use std::cmp::Ordering;
 use std::f64::consts::{LN_2, LN_10};
 use std::ops::RangeInclusive;
@@ -107,9 +107,13 @@ impl Found {
     fn of(rings: &[Ring], sampling: &Sampling, noise_m4: f64, known: Option<&Line>) -> Option<Self> {
         let points = sampling.points(rings, noise_m4, known);
         let data: Vec<Point> = points.iter().filter(|point| point.is_data).copied().collect();
-        let search = Search { data: &data, power: data.iter().map(Point::power).sum() };
-        let any = search.least(&ANY)?;
-        let self_affine = search.least(&HURST).filter(|found| found.0 <= any.0 + MISFIT);
+        // White noise counts: a band of a few rings that exceed it by chance is none.
+        let of_noise =
+            rings.iter().filter(|ring| ring.density_m4 <= OVER_NOISE * noise_m4).map(|ring| ring.mode_count as f64 * ring.density_m4);
+        let search = Search { data: &data, power: data.iter().map(Point::power).sum::<f64>() + of_noise.sum::<f64>() };
+        let [self_affine, any] = search.least([&HURST, &ANY]);
+        let any = any?;
+        let self_affine = self_affine.filter(|found| found.0 <= any.0 + MISFIT);
         let is_self_affine = self_affine.is_some();
         let (cost, band, line) = self_affine.unwrap_or(any);
         let of_noise = if noise_m4 > 0.0 { OF_SHAPE + sampling.noise_squares(rings, noise_m4, &line) } else { 0.0 };
@@ -123,56 +127,83 @@ impl Found {
     }
 }
 
-/// Rings with data, and the sum of their mean square heights.
+/// Rings with data, and the sum of the mean square heights of these and of white noise.
 struct Search<'a> {
     data: &'a [Point],
     power: f64,
 }
 
+/// A line with its cost and its band: first ring, and the ring after the last.
+type Candidate = (f64, [usize; 2], Line);
+
 impl Search<'_> {
-    fn least(&self, hurst: &RangeInclusive<f64>) -> Option<(f64, [usize; 2], Line)> {
-        let mut found: Option<(f64, [usize; 2], Line)> = None;
-        for first in 0..self.data.len() {
-            for end in first + FEWEST..=self.data.len() {
-                let band = [first, end];
-                if self.data[first..end].iter().map(Point::power).sum::<f64>() < SHARE * self.power {
-                    continue;
-                }
-                for (cost, line) in self.lines(band, hurst) {
-                    if found.as_ref().is_none_or(|(least, ..)| cost < *least) {
-                        found = Some((cost, band, line));
+    /// Lines of least cost with exponents in two ranges. A roll-off is at a ring, or between two.
+    fn least(&self, ranges: [&RangeInclusive<f64>; 2]) -> [Option<Candidate>; 2] {
+        let mut found = [None; 2];
+        self.straight(ranges, &mut found);
+        for (at, point) in self.data.iter().enumerate().skip(1) {
+            for shape in [Shape::Sharp, Shape::Smooth, Shape::Filtered] {
+                let sums = Sums::of(self.data, shape, point.x);
+                for first in 0..at {
+                    for end in (first + FEWEST).max(at + 1 + FEWEST_BEYOND)..=self.data.len() {
+                        self.compare(&sums, [first, end], ranges, &mut found);
                     }
                 }
             }
         }
-        found.map(|(cost, band, line)| (cost, band, self.between_rings(cost, band, line, hurst)))
+        let between = |(found, range): (Option<Candidate>, &RangeInclusive<f64>)| found.map(|found| self.between_rings(found, range));
+        let [one, other] = found;
+        [between((one, ranges[0])), between((other, ranges[1]))]
     }
 
-    /// Lines of all shapes through the rings of a band, with their costs. A roll-off is at a ring.
-    fn lines(&self, band: [usize; 2], hurst: &RangeInclusive<f64>) -> Vec<(f64, Line)> {
-        let inside = &self.data[band[0]..band[1]];
-        let corners = inside.iter().skip(1).take(inside.len().saturating_sub(FEWEST_BEYOND + 1)).map(|point| point.x);
-        let rolling = corners.flat_map(|corner| [Shape::Sharp, Shape::Smooth, Shape::Filtered].map(|shape| (shape, corner)));
-        let shapes = std::iter::once((Shape::Straight, inside[0].x)).chain(rolling);
-        shapes
-            .flat_map(|shape| [(shape, false), (shape, true)])
-            .filter_map(|(shape, damped)| self.line(band, shape, damped, hurst))
-            .collect()
+    /// Lines without a roll-off.
+    fn straight(&self, ranges: [&RangeInclusive<f64>; 2], found: &mut [Option<Candidate>; 2]) {
+        let Some(point) = self.data.first() else { return };
+        let sums = Sums::of(self.data, Shape::Straight, point.x);
+        for first in 0..self.data.len() {
+            for end in first + FEWEST..=self.data.len() {
+                self.compare(&sums, [first, end], ranges, found);
+            }
+        }
     }
 
+    /// Compares the lines of a shape through a band, with and without damping, with the best ones.
+    fn compare(&self, sums: &Sums, band: [usize; 2], ranges: [&RangeInclusive<f64>; 2], found: &mut [Option<Candidate>; 2]) {
+        if sums.power(band) < SHARE * self.power {
+            return;
+        }
+        for damped in [false, true] {
+            let Some((hurst, squares)) = sums.solved(band, damped) else { continue };
+            let cost = self.cost(squares, band, sums.shape, damped);
+            for (best, range) in found.iter_mut().zip(ranges) {
+                if range.contains(&hurst) && best.as_ref().is_none_or(|best| cost < best.0) {
+                    let corner = if sums.shape == Shape::Straight { self.data[band[0]].x } else { sums.corner };
+                    if let Some(line) = self.line(band, (sums.shape, corner), damped, range) {
+                        *best = Some((line.0, band, line.1));
+                    }
+                }
+            }
+        }
+    }
+
+    fn cost(&self, squares: f64, band: [usize; 2], shape: Shape, damped: bool) -> f64 {
+        let of_shape = match shape {
+            Shape::Straight => 0.0,
+            Shape::Sharp | Shape::Smooth => OF_SHAPE,
+            Shape::Filtered => 1.5 * OF_SHAPE,
+        };
+        let outside = self.data.len() - (band[1] - band[0]);
+        squares + OUTSIDE * outside as f64 + of_shape + if damped { OF_SHAPE } else { 0.0 }
+    }
+
+    /// A line through a band with its cost; nothing if its exponent or its damping is not admitted.
     fn line(&self, band: [usize; 2], (shape, corner): (Shape, f64), damped: bool, hurst: &RangeInclusive<f64>) -> Option<(f64, Line)> {
         let inside = &self.data[band[0]..band[1]];
         let line = Line::of(inside, shape, corner, damped).filter(|line| hurst.contains(&line.hurst()))?;
         if damped && !is_damped(&line, inside, self.data.get(band[1])) {
             return None;
         }
-        let of_shape = match shape {
-            Shape::Straight => 0.0,
-            Shape::Sharp | Shape::Smooth => OF_SHAPE,
-            Shape::Filtered => 1.5 * OF_SHAPE,
-        };
-        let of_damping = if damped { OF_SHAPE } else { 0.0 };
-        Some((line.squares + OUTSIDE * (self.data.len() - inside.len()) as f64 + of_shape + of_damping, line))
+        Some((self.cost(line.squares, band, shape, damped), line))
     }
 
     /// The line without a first or last ring that the end of the spectrum divides: the next ring is empty.
@@ -188,14 +219,15 @@ impl Search<'_> {
     }
 
     /// A line whose roll-off may be between two rings.
-    fn between_rings(&self, cost: f64, band: [usize; 2], line: Line, hurst: &RangeInclusive<f64>) -> Line {
+    fn between_rings(&self, (cost, band, line): Candidate, hurst: &RangeInclusive<f64>) -> Candidate {
         if line.shape == Shape::Straight {
-            return line;
+            return (cost, band, line);
         }
         let width = self.data[band[0] + 1].x - self.data[band[0]].x;
         let corners = (-8..=8).map(|k| line.corner + 0.125 * f64::from(k) * width);
         let lines = corners.filter_map(|corner| self.line(band, (line.shape, corner), line.damping > 0.0, hurst));
-        lines.fold((cost, line), |least, other| if other.0 < least.0 { other } else { least }).1
+        let (cost, line) = lines.fold((cost, line), |least, other| if other.0 < least.0 { other } else { least });
+        (cost, band, line)
     }
 }
 

@@ -37,15 +37,17 @@ const OF_MODEL: f64 = 0.1;
 /// Lowest mode number of a tapered ring that levelling and the main lobe of the tapers do not dominate.
 const LOWEST_TAPERED: f64 = 2.5;
 /// Least density over white noise of a ring with data.
-const OVER_NOISE: f64 = 2.0;
+pub(crate) const OVER_NOISE: f64 = 2.0;
 /// Rings at the shortest wavelengths that define the white noise.
 const TOP: usize = 3;
 /// Ratio of densities below which a ring is empty.
 pub(crate) const EMPTY: f64 = 0.5;
 /// Ratio of densities above which a ring is full.
 const FULL: f64 = 0.8;
-/// Rings next to the band that an end of the spectrum empties: it may divide the first.
-const NEXT: usize = 2;
+/// Rings next to the band of which an end of the spectrum empties one: the first may be full, and the second divided.
+const NEXT: usize = 3;
+/// Rings next to the band of which white noise dominates one.
+const NEXT_OF_NOISE: usize = 2;
 /// Lower edge of a ring over its mean wavenumber.
 const NEAR: f64 = 0.95;
 
@@ -187,7 +189,7 @@ impl Band<'_> {
         let last = self.line.band[1];
         let beyond = || self.points.iter().filter(|point| point.x > last);
         let is_noise = |point: &Point| self.noise_m4 > 0.0 && self.line.at(point.x).exp() < 2.0 * OVER_NOISE * self.noise_m4;
-        if beyond().take(NEXT).any(is_noise) {
+        if beyond().take(NEXT_OF_NOISE).any(is_noise) {
             let crossing = beyond().find(|point| self.line.at(point.x).exp() < self.noise_m4)?;
             return Some(ShortCut { wavenumber_1_m: crossing.x.exp(), cause: SpectrumEnd::WhiteNoise });
         }

@@ -97,6 +97,63 @@ impl Line {
     }
 }
 
+/// Sums over the first rings of a spectrum, for lines of one shape and corner through any band.
+pub(crate) struct Sums {
+    pub(crate) shape: Shape,
+    pub(crate) corner: f64,
+    /// For each number of rings: products of the basis, of it with ln C, the square of ln C, all over the variance, and the mean square height.
+    sums: Vec<[f64; 11]>,
+}
+
+/// Places of the products of two of the three basis functions in [`Sums`].
+const PRODUCTS: [[usize; 3]; 3] = [[0, 1, 2], [1, 3, 4], [2, 4, 5]];
+
+impl Sums {
+    pub(crate) fn of(points: &[Point], shape: Shape, corner: f64) -> Self {
+        let last = points.last().map_or(0.0, |point| point.x);
+        // Sums of squares of deviations from a common level lose fewer digits.
+        let level = points.iter().map(|point| point.y).sum::<f64>() / points.len() as f64;
+        let mut sum = [0.0; 11];
+        let mut sums = vec![sum];
+        for point in points {
+            let basis = [1.0, -decay(shape, point.x - corner), -(2.0 * (point.x - last)).exp()];
+            let y = point.y - level - transmitted(shape, point.x - corner);
+            for a in 0..3 {
+                for b in a..3 {
+                    sum[PRODUCTS[a][b]] += basis[a] * basis[b] / point.variance;
+                }
+                sum[6 + a] += basis[a] * y / point.variance;
+            }
+            sum[9] += y * y / point.variance;
+            sum[10] += point.power();
+            sums.push(sum);
+        }
+        Self { shape, corner, sums }
+    }
+
+    fn over(&self, [first, end]: [usize; 2]) -> [f64; 11] {
+        std::array::from_fn(|k| self.sums[end][k] - self.sums[first][k])
+    }
+
+    /// Mean square height of a band over the area of a mode \[m⁴\].
+    pub(crate) fn power(&self, [first, end]: [usize; 2]) -> f64 {
+        self.sums[end][10] - self.sums[first][10]
+    }
+
+    /// Hurst exponent and sum of the squared deviations of the line through a band; nothing if it is singular or if damping is not positive.
+    pub(crate) fn solved(&self, band: [usize; 2], damped: bool) -> Option<(f64, f64)> {
+        let sums = self.over(band);
+        let count = if damped { 3 } else { 2 };
+        let matrix = std::array::from_fn(|a| std::array::from_fn(|b| if b < 3 { sums[PRODUCTS[a][b]] } else { sums[6 + a] }));
+        let solution = solved(matrix, count)?;
+        if damped && solution[2] <= 0.0 {
+            return None;
+        }
+        let explained: f64 = (0..count).map(|k| solution[k] * sums[6 + k]).sum();
+        Some((0.5 * solution[1] - 1.0, (sums[9] - explained).max(0.0)))
+    }
+}
+
 /// Decrease of `ln C` per unit of the exponent at a distance in `ln q` from the corner.
 fn decay(shape: Shape, beyond: f64) -> f64 {
     match shape {
@@ -113,10 +170,11 @@ fn transmitted(shape: Shape, beyond: f64) -> f64 {
 
 /// Solution of symmetric equations of `count` unknowns by elimination; the other unknowns are 0.
 fn solved(mut matrix: [[f64; 4]; 3], count: usize) -> Option<[f64; 3]> {
+    let diagonal: [f64; 3] = std::array::from_fn(|k| matrix[k][k]);
     for pivot in 0..count {
         let row = matrix[pivot];
         // A pivot that cancels to rounding is no information.
-        if row[pivot].is_nan() || row[pivot] <= 1e-9 {
+        if row[pivot].is_nan() || row[pivot] <= 1e-9 * diagonal[pivot] {
             return None;
         }
         for other in (0..count).filter(|other| *other != pivot) {
