@@ -106,6 +106,15 @@ choice! {
     }
 }
 choice! {
+    /// Low-pass filter (S-filter) of a measured surface.
+    Filter {
+        /// Gaussian filter of ISO 16610-61: half of the amplitude of the cut-off wavelength remains.
+        Gaussian = "gaussian",
+        /// Sharp cut-off: wavelengths up to the cut-off are removed, all others remain unchanged. It rings at steps.
+        Sharp = "sharp",
+    }
+}
+choice! {
     /// Form that is subtracted from the heights of a measured surface, by least squares.
     Detrend {
         /// The mean height.

@@ -224,13 +224,17 @@ pub(super) fn seed_of(spec: &Spec, params: &SurfaceParams) -> u64 {
     if params.is_measured() { 0 } else { spec.seed }
 }
 
+/// Version of the import of measured surfaces and of their asperities in their keys, beside those of the stages.
+const MEASURED_VERSION: u32 = 2;
+
 /// Inputs of a surface in its key: parameters of a generated one, contents of the file and preprocessing of a measured one.
 pub(super) fn of_surface(spec: &Spec, params: &SurfaceParams) -> Value {
-    let SurfaceParams { file, dataset, periodic, pixel_m, unit, missing, detrend, points_per_shortest_wavelength, .. } = params;
+    let SurfaceParams { file, dataset, periodic, pixel_m, unit, missing, detrend, filter, points_per_shortest_wavelength, .. } = params;
     if params.is_measured() {
         return json!({
             "blake3": spec.files.get(file), "dataset": dataset, "periodic": periodic, "pixel_m": pixel_m, "unit": unit, "missing": missing, "detrend": detrend,
-            "points_per_shortest_wavelength": points_per_shortest_wavelength, "header_version": MEASURED_HEADER_VERSION,
+            "filter": filter, "points_per_shortest_wavelength": points_per_shortest_wavelength, "method_version": MEASURED_VERSION,
+            "header_version": MEASURED_HEADER_VERSION,
         });
     }
     let mut reads = plain(params);

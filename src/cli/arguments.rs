@@ -148,6 +148,9 @@ pub(super) struct ImportArguments {
     /// The surface is periodic
     #[arg(long)]
     pub(super) periodic: bool,
+    /// Low-pass filter (S-filter): gaussian (ISO 16610-61) or sharp
+    #[arg(long, value_name = "FILTER", default_value = "gaussian", value_parser = ["gaussian", "sharp"], hide_possible_values = true)]
+    pub(super) filter: String,
     /// Low-pass (S-filter) cut-off wavelength in pixels
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u8).range(4..=64))]
     pub(super) points: u8,

@@ -1,7 +1,7 @@
 //! Parameters of a case: surface, material, model, boundary elements and loading path.
 
 use super::{
-    Amplitudes, Attraction, Boundary, Coalescence, Detrend, Interaction, JumpIn, KeptContacts, Material, Method, Missing, Normalization,
+    Amplitudes, Attraction, Boundary, Coalescence, Detrend, Filter, Interaction, JumpIn, KeptContacts, Material, Method, Missing, Normalization,
     Nucleation, Opening, Slip, Slips,
 };
 use serde::{Deserialize, Serialize};
@@ -62,6 +62,8 @@ pub struct SurfaceParams {
     pub missing: Missing,
     /// Shape that is removed from its heights by least squares; the mean alone if it is periodic.
     pub detrend: Detrend,
+    /// Low-pass filter of a measured surface.
+    pub filter: Filter,
 }
 
 impl SurfaceParams {
@@ -158,6 +160,7 @@ impl Default for SurfaceParams {
             unit: String::new(),
             missing: Missing::Refuse,
             detrend: Detrend::Plane,
+            filter: Filter::Gaussian,
         }
     }
 }

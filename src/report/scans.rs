@@ -1,23 +1,27 @@
 //! Part of the report: measured surfaces.
 
 use super::layout::{heading, prose, wide};
+use crate::model::Choice;
 use crate::store::hdf5::{Measured, SurfaceHeader};
 use maud::{Markup, html};
 
 const NOTE: &str = "Each measured surface is one realization, without a standard deviation. Area kept: fraction of the scan in the \
-    central square of side L. h_{rms} and rms slope: after levelling and S-filter. Removed: rms heights below the S-filter cut-off and of \
-    the form subtracted by levelling. Filled: missing points interpolated (harmonic in-fill). H: Hurst exponent of the self-affine fit, with its \
+    central square of side L. h_{rms} and rms slope: after levelling and S-filter. S-filter: low-pass filter, Gaussian (ISO 16610-61) or \
+    sharp. Removed: rms heights of the short wavelengths and of the form subtracted by levelling. Overshoot: height of filtered maxima above the \
+    measured heights nearby, beyond the noise. Filled: missing points interpolated (harmonic in-fill). H: Hurst exponent of the self-affine fit, with its \
     standard deviation; outside 0 to 1 the spectrum is not self-affine.";
 
-const HEADS: [&str; 11] = [
+const HEADS: [&str; 13] = [
     "file",
     "points",
     "area kept",
     "L [m]",
     "h_{rms} [m]",
     "rms slope",
+    "S-filter",
     "cut-off [m]",
     "removed by S-filter [m]",
+    "overshoot [m]",
     "removed by levelling [m]",
     "filled",
     "H",
@@ -43,7 +47,8 @@ fn row(header: &SurfaceHeader, of: &Measured) -> Markup {
         td { (format!("{:.0} %", 100.0 * (1.0 - of.dropped(header.length_m)))) }
         (lengths(&[header.length_m, header.rms_height_m]))
         td { (format!("{:.3}", header.rms_slope)) }
-        (lengths(&[of.shortest_wavelength_m, of.noise_m, of.trend_m]))
+        td { (of.filter.word()) }
+        (lengths(&[of.shortest_wavelength_m, of.noise_m, of.overshoot_m, of.trend_m]))
         td { (of.missing_count) }
         td { (of.fit.map_or_else(|| "–".to_owned(), |fit| format!("{:.2} (±{:.2} decades)", fit.hurst, fit.scatter))) }
     }

@@ -6,7 +6,7 @@ use super::{Column, real, text};
 use crate::model::Choice;
 
 /// Number of parameters.
-const COUNT: usize = 27;
+const COUNT: usize = 28;
 
 /// Parameters that define a case, in the order of their columns.
 pub static PARAMETERS: [Parameter; COUNT] = LIST;
@@ -56,6 +56,12 @@ const LIST: [Parameter; COUNT] = [
         ["detrend", "levelling"],
         2,
         |case| case.measured().map(|surface| word(surface.detrend)),
+    ),
+    parameter(
+        text("filter", "Low-pass filter (S-filter) of a measured surface: \"gaussian\" or \"sharp\"; null for a generated surface").or_null(),
+        ["S-filter", "S-filter"],
+        2,
+        |case| case.measured().map(|surface| word(surface.filter)),
     ),
     parameter(
         real("hurst", "1", "Hurst exponent H; null for a measured surface").or_null().from("Eq 10"),

@@ -113,7 +113,7 @@ const RESULTS: &[Column] = &[
     real("conformity", "1", "Ratio U_el/Δγ of the shortest octave: elastic energy per area to flatten it over the work of adhesion, continuous spectrum; below 1 the half-space conforms to it; null for a measured surface and without adhesion")
         .or_null()
         .from("Persson and Tosatti 2001"),
-    real("conformity_realised", "1", "Ratio U_el/Δγ of the shortest octave for the realized spectrum of the surface; null where that is unknown and without adhesion")
+    real("conformity_realised", "1", "Ratio U_el/Δγ of the shortest octave for the realized spectrum of the surface; of a measured surface the shortest octave that, with all below, holds 10 % of the mean square Laplacian; null where that is unknown and without adhesion")
         .or_null()
         .from("Persson and Tosatti 2001"),
     real("persson_tosatti", "1", "Persson-Tosatti ratio U_el/Δγ: elastic energy per area to flatten all roughness over the work of adhesion, continuous spectrum; below 1 full contact is favoured; null for a measured surface and without adhesion")
@@ -128,7 +128,8 @@ const RESULTS: &[Column] = &[
     real("texture_aspect", "1", "Texture aspect ratio: the larger of texture_slope_ratio and 1/texture_str, the latter where the side is 20 decay lengths or more; null for a generated surface, which is isotropic").or_null(),
     real("texture_slope_ratio", "1", "Ratio of the rms slopes along the principal axes of the slope tensor, the larger over the smaller; null for a generated surface").or_null(),
     real("texture_str", "1", "Texture aspect ratio Str: shortest over longest distance at which the autocorrelation decays to 0.2; an upper limit where the longest exceeds half of the side; null for a generated surface").or_null().from("ISO 25178-2"),
-    real("elements_per_wavelength", "1", "Grid points of boundary elements per shortest wavelength; null for asperities").or_null(),
+    real("elements_per_wavelength", "1", "Grid points of boundary elements per shortest wavelength, of a measured surface that of its shortest octave with 10 % of the mean square Laplacian; null for asperities").or_null(),
+    real("filter_overshoot", "1", "Height of filtered maxima above the measured heights within one cut-off wavelength, beyond the noise, over h_rms; null for a generated surface").or_null(),
 ];
 
 /// Parts of `dissipated` by branch and by kind of event, over E* A0 h_rms and in joule. Each of the two groups sums to `dissipated`.
@@ -237,6 +238,13 @@ const VALIDITY: &[&[Column]] = &[
     ),
     mean_and_worst!("elements_per_wavelength", "min", "Minimum", "grid points of boundary elements per shortest wavelength", ""),
     mean_and_worst!("texture_aspect", "max", "Maximum", "texture aspect ratio of a measured surface", ""),
+    mean_and_worst!(
+        "filter_overshoot",
+        "max",
+        "Maximum",
+        "height of filtered maxima above the measured heights nearby, beyond the noise, over h_rms",
+        ""
+    ),
     mean_and_worst!("loss_uncertainty", "max", "Maximum", "resolution of Θ over |Θ|", ""),
     pooled!(
         "touching_share",

@@ -2,7 +2,7 @@
 
 use super::{CaseParams, Value};
 use crate::model::{
-    Amplitudes, Attraction, Boundary, Choice, Coalescence, Detrend, Interaction, JumpIn, KeptContacts, Method, Missing, Normalization,
+    Amplitudes, Attraction, Boundary, Choice, Coalescence, Detrend, Filter, Interaction, JumpIn, KeptContacts, Method, Missing, Normalization,
     Nucleation, Opening, Slip,
 };
 
@@ -170,6 +170,7 @@ pub(super) static KEYS: &[Key] = &[
     key!(surface.unit, "", "Unit of the measured heights. Empty: the file states it."; length "the unit of the heights, for example \"nm\""),
     key!(surface.missing, "", "Treatment of missing points of a measured surface."; word Missing),
     key!(surface.detrend, "", "Form removed from a measured surface (levelling, F-operator). The default of a periodic surface is `mean`."; word Detrend),
+    key!(surface.filter, "", "Low-pass filter (S-filter) of a measured surface. Its cut-off wavelength is `points_per_shortest_wavelength` pixels."; word Filter),
     key!(material.contact_modulus_pa, "E*", "Reduced modulus: `1/E* = (1 − ν1²)/E1 + (1 − ν2²)/E2`; `E/(1 − ν²)` against a rigid surface."; number Limits {
         low: 1.0, above: false, high: 1e13, unit: " Pa", unit_name: "pascals", slip: Some((1e6, "megapascals")), note: "",
     }),
@@ -224,7 +225,7 @@ pub(super) static KEYS: &[Key] = &[
 pub(super) const TABLES: [&str; 5] = ["surface", "material", "model", "boundary_elements", "cycle"];
 
 /// Keys of `[surface]` that describe a measured surface.
-pub const MEASURED: [&str; 7] = ["file", "dataset", "periodic", "pixel_m", "unit", "missing", "detrend"];
+pub const MEASURED: [&str; 8] = ["file", "dataset", "periodic", "pixel_m", "unit", "missing", "detrend", "filter"];
 /// Keys of `[surface]` that describe a generated one.
 pub const GENERATED: [&str; 6] = ["length_m", "rms_height_m", "hurst", "magnification", "normalization", "amplitudes"];
 

@@ -4,7 +4,7 @@ use super::StageError;
 use super::cycle::lattice;
 use super::extract::read_summits;
 use super::surface::{scale, target};
-use crate::campaign::{Campaign, CycleUnit};
+use crate::campaign::{Campaign, CycleUnit, SurfaceUnit};
 use crate::model::Material;
 use crate::physics::jkr::Asperity;
 use crate::physics::jkr::LEAST_TABOR;
@@ -13,7 +13,7 @@ use crate::physics::surface::summits::Summit;
 use crate::physics::surface::synthesis::realization_seed;
 use crate::physics::surface::texture::Texture;
 use crate::physics::theory::approximate_jkr::{CurvePoint, adhesive_curve, curve_loop};
-use crate::physics::theory::flattening::{Flattening, flattening, measured_flattening, realised_flattening};
+use crate::physics::theory::flattening::{Flattening, flattening, measured_flattening, realised_flattening, shortest_wavelength};
 use crate::physics::theory::{
     adhesionless_area, adhesionless_area_small, curvature_decay, dalvi_loss, deng_kesari_loss_as_printed, fuller_tabor, pinning_loss,
     sticky_line,
@@ -45,7 +45,9 @@ fn flattenings(campaign: &Campaign, unit: &CycleUnit, header: Option<&SurfaceHea
         Some(realised_flattening(&asked, &seed, modulus))
     } else if let Some((header, measured)) = measured {
         let (_, heights) = read_surface(&campaign.surface_path(surface))?;
-        Some(measured_flattening(heights.view(), (header.length_m, header.periodic), measured.shortest_wavelength_m, modulus)?)
+        let shape = (header.length_m, header.periodic);
+        let shortest_m = shortest_wavelength(heights.view(), shape, measured.shortest_wavelength_m)?;
+        Some(measured_flattening(heights.view(), shape, shortest_m, modulus)?)
     } else {
         None
     };
@@ -54,6 +56,7 @@ fn flattenings(campaign: &Campaign, unit: &CycleUnit, header: Option<&SurfaceHea
     let adhesion = params.material.work_of_adhesion_j_m2;
     let ratio = |of: Option<&Flattening>, ratio: fn(&Flattening, f64) -> f64| of.filter(|_| adhesion > 0.0).map(|of| ratio(of, adhesion));
     Ok(named([
+        ("filter_overshoot", measured.map(|(header, measured)| measured.overshoot_m / header.rms_height_m).into()),
         ("conformity", ratio(continuous.as_ref(), Flattening::conformity).into()),
         ("conformity_realised", ratio(of_modes.as_ref(), Flattening::conformity).into()),
         ("persson_tosatti", ratio(continuous.as_ref(), Flattening::persson_tosatti).into()),
@@ -81,7 +84,8 @@ pub(super) fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<Cycle
     let pinning = flattened.and_then(|ratio| pinning_loss(&params.material, ratio * params.material.work_of_adhesion_j_m2, nominal));
     of_surface.extend(asperity_columns(&summits, &params.material)?);
     of_surface.extend(surface_columns(&header, summits.len()));
-    of_surface.extend(named([("elements_per_wavelength", lattice.map(|lattice| lattice.per_wavelength).into())]));
+    let per_wavelength = lattice.map(|lattice| per_wavelength(campaign, surface, &header, lattice.per_wavelength)).transpose()?;
+    of_surface.extend(named([("elements_per_wavelength", per_wavelength.into())]));
     let continuous = target(params).map(|asked| deng_kesari(&asked.moments(), params, nominal)).transpose()?.flatten();
     Ok(CycleInput {
         case_id: case.id.clone(),
@@ -99,6 +103,15 @@ pub(super) fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<Cycle
         at_max_load: params.cycle.max_load.iter().map(at_max_load).collect(),
         surface: of_surface,
     })
+}
+
+/// Grid points per shortest wavelength that a surface has, from those per cut-off wavelength.
+fn per_wavelength(campaign: &Campaign, surface: &SurfaceUnit, header: &SurfaceHeader, per_cut_off: f64) -> Result<f64, StageError> {
+    let Some(measured) = &header.measured else { return Ok(per_cut_off) };
+    let (_, heights) = read_surface(&campaign.surface_path(surface))?;
+    let cut_off = measured.shortest_wavelength_m;
+    let shortest = shortest_wavelength(heights.view(), (header.length_m, header.periodic), cut_off)?;
+    Ok(if shortest > cut_off { per_cut_off * shortest / cut_off } else { per_cut_off })
 }
 
 /// Columns of analytical models at a load reversal; `free` is the adhesive curve from the adhesionless one.

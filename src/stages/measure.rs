@@ -3,7 +3,7 @@
 use super::StageError;
 use crate::formats::recognize;
 use crate::lengths::{LENGTHS, metres};
-use crate::model::Detrend;
+use crate::model::{Detrend, Filter};
 use crate::physics::surface::measured::{Prepared, Treatment, prepare};
 use crate::physics::surface::periodogram::{periodogram, windowed_periodogram};
 use crate::physics::surface::self_affine::{SelfAffine, fit_self_affine};
@@ -57,6 +57,7 @@ pub fn measure(params: &SurfaceParams, digest: &str, key: &str) -> Result<Import
         missing: params.missing,
         detrend: params.detrend,
         periodic: params.periodic,
+        filter: params.filter,
         points_per_shortest_wavelength: f64::from(params.points_per_shortest_wavelength),
     };
     let prepared = prepare(in_metres(path, scan.heights, unit)?, spacing, &treatment).map_err(|error| refused(path, &error.to_string()))?;
@@ -69,7 +70,9 @@ pub fn measure(params: &SurfaceParams, digest: &str, key: &str) -> Result<Import
         detrend: params.detrend,
         trend_m: prepared.trend_m,
         shortest_wavelength_m: prepared.shortest_wavelength_m,
+        filter: params.filter,
         noise_m: prepared.noise_m,
+        overshoot_m: prepared.overshoot_m,
         fit: prepared.fit.as_ref().map(stored),
         texture: Texture::of(prepared.heights_m.view(), params.periodic)?,
     };
@@ -116,8 +119,11 @@ fn own(
         missing_count: 0,
         detrend: Detrend::Mean,
         trend_m: 0.0,
+        // No filter: nothing is removed.
+        filter: Filter::Sharp,
         shortest_wavelength_m: shortest,
         noise_m: 0.0,
+        overshoot_m: 0.0,
         fit: fit.as_ref().map(stored),
         texture,
     });
@@ -130,6 +136,7 @@ fn own(
         missing_count: measured.missing_count as usize,
         trend_m: measured.trend_m,
         noise_m: measured.noise_m,
+        overshoot_m: measured.overshoot_m,
         shortest_wavelength_m: measured.shortest_wavelength_m,
     };
     Ok((prepared, SurfaceHeader { realization: 0, key: key.to_owned(), generated: None, measured: Some(measured), ..header }))

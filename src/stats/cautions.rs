@@ -24,7 +24,7 @@ const fn warning(code: &'static str, label: &'static str, text: &'static str, co
 
 /// All warnings by severity, which is the order of their codes in the column `caution`: results outside the model, then results that depend on a rule of the model,
 /// then incomplete or inaccurate results, then small samples.
-pub const CAUTIONS: [Caution; 18] = [
+pub const CAUTIONS: [Caution; 19] = [
     warning(
         "sticky",
         "near full contact",
@@ -73,6 +73,13 @@ pub const CAUTIONS: [Caution; 18] = [
         "minimum Tabor parameter μ = {}",
         "Wu's criterion for jump into contact is invalid.",
         "Use `jump_in = \"jkr\"`, or a smaller `interaction_range_m`.",
+    ),
+    warning(
+        "overshoot",
+        "filter overshoot",
+        "filtered heights exceed the measured heights nearby by {} of the rms height, beyond the noise",
+        "The sharp low-pass filter rings at steps, so the highest asperities do not exist on the measured surface.",
+        "Use `surface.filter = \"gaussian\"`, and `hysteron import --filter gaussian` for an imported file.",
     ),
     warning(
         "coarse",
@@ -195,7 +202,7 @@ impl Limit {
 }
 
 /// All limits. The limit of the Tabor parameter applies to Wu's criterion only, and only with adhesion.
-pub const LIMITS: [Limit; 13] = [
+pub const LIMITS: [Limit; 14] = [
     Limit::at_least("sticky", "persson_tosatti_realised_mean", 2.0),
     Limit::at_most("area", "area_at_max_load_mean", 0.3),
     Limit::at_least("conformed", "conformity_realised_mean", 1.0),
@@ -203,6 +210,7 @@ pub const LIMITS: [Limit; 13] = [
     Limit::at_most("absorption", "absorption_share_max", 0.1),
     Limit::at_most("touching", "touching_share_mean", 0.1),
     Limit::at_least("tabor", "tabor_min_min", 2.0),
+    Limit::at_most("overshoot", "filter_overshoot_max", 0.01),
     Limit::at_least("coarse", "elements_per_wavelength_min", 16.0),
     Limit::at_most("texture", "texture_aspect_max", 2.0),
     Limit::at_most("unresolved", "loss_uncertainty_max", 0.1),

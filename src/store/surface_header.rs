@@ -3,7 +3,7 @@
 use hdf5_metno::types::{FixedUnicode, TypeDescriptor, VarLenUnicode};
 use hdf5_metno::{File, Group, H5Type, Location};
 
-use crate::model::{Amplitudes, Choice, Detrend, Normalization, SpectrumEnd};
+use crate::model::{Amplitudes, Choice, Detrend, Filter, Normalization, SpectrumEnd};
 use crate::physics::surface::spectrum::Moments;
 use crate::physics::surface::texture::Texture;
 
@@ -66,10 +66,14 @@ pub struct Measured {
     pub detrend: Detrend,
     /// Rms height of that \[m\].
     pub trend_m: f64,
-    /// Shorter waves were taken off \[m\].
+    /// Low-pass filter (S-filter).
+    pub filter: Filter,
+    /// Cut-off wavelength of that \[m\].
     pub shortest_wavelength_m: f64,
-    /// Rms height of these \[m\].
+    /// Rms height of the removed short wavelengths \[m\].
     pub noise_m: f64,
+    /// Largest height of filtered maxima above the unfiltered heights nearby, beyond the noise \[m\].
+    pub overshoot_m: f64,
     /// The self-affine spectrum that fits its own; nothing where it has too few modes.
     pub fit: Option<SpectrumFit>,
     /// Texture; nothing in a file of an earlier version.
@@ -163,8 +167,10 @@ fn write_measured(file: &File, measured: &Measured) -> Result<(), Cause> {
     write_number(file, "missing_count", measured.missing_count)?;
     write_word(file, "detrend", measured.detrend.word())?;
     write_finite(file, "trend_m", measured.trend_m)?;
+    write_word(file, "filter", measured.filter.word())?;
     write_finite(file, "shortest_wavelength_m", measured.shortest_wavelength_m)?;
     write_finite(file, "noise_m", measured.noise_m)?;
+    write_finite(file, "overshoot_m", measured.overshoot_m)?;
     if let Some(texture) = &measured.texture {
         write_finite(file, "texture_slope_ratio", texture.slope_ratio)?;
         write_finite(file, "texture_direction_rad", texture.direction_rad)?;
@@ -219,8 +225,11 @@ fn read_measured(file: &File, words: &Group, names: &[String]) -> Result<Measure
         missing_count: number(file, "missing_count")?,
         detrend: choice(words, "detrend")?,
         trend_m: finite(file, "trend_m")?,
+        // A file without the attribute has the sharp cut-off, which was the only one.
+        filter: if has("filter") { choice(words, "filter")? } else { Filter::Sharp },
         shortest_wavelength_m: finite(file, "shortest_wavelength_m")?,
         noise_m: finite(file, "noise_m")?,
+        overshoot_m: if has("overshoot_m") { finite(file, "overshoot_m")? } else { 0.0 },
         fit: has("fit_hurst").then(fit).transpose()?,
         texture: has("texture_str").then(texture).transpose()?,
     })

@@ -28,6 +28,7 @@ mod periodogram;
 mod potential;
 mod printed;
 mod properties;
+mod scan_filter;
 mod self_affine;
 mod spectrum;
 mod summits;

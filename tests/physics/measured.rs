@@ -1,6 +1,6 @@
 //! Measured surfaces: what is done to them, and what is told of them.
 
-use hysteron::model::{Amplitudes, Detrend, Missing, Normalization};
+use hysteron::model::{Amplitudes, Detrend, Filter, Missing, Normalization};
 use hysteron::physics::PhysicsError;
 use hysteron::physics::surface::measured::{Prepared, Treatment, find_measured, prepare};
 use hysteron::physics::surface::periodogram::{periodogram, windowed_periodogram};
@@ -12,7 +12,7 @@ use ndarray::{Array2, s};
 use std::f64::consts::{PI, TAU};
 
 const PLAIN: Treatment =
-    Treatment { missing: Missing::Refuse, detrend: Detrend::Mean, periodic: false, points_per_shortest_wavelength: 8.0 };
+    Treatment { missing: Missing::Refuse, detrend: Detrend::Mean, periodic: false, filter: Filter::Sharp, points_per_shortest_wavelength: 8.0 };
 
 fn generated(magnification: u32, hurst: f64, realization: u64) -> Surface {
     let spectrum = Spectrum {

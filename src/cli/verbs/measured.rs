@@ -8,10 +8,10 @@ use crate::cli::{ExportArguments, ImportArguments};
 use crate::constants::{Constant, Constants};
 use crate::formats::recognize;
 use crate::keys::digest_of_file;
-use crate::model::{Choice, Detrend, Missing};
+use crate::model::{Choice, Detrend, Filter, Missing};
 use crate::physics::surface::measured::find_measured;
 use crate::physics::surface::summits::Summit;
-use crate::physics::theory::flattening::measured_flattening;
+use crate::physics::theory::flattening::{measured_flattening, shortest_wavelength};
 use crate::spec::SurfaceParams;
 use crate::stages::{Imported, measure};
 use crate::store::hdf5::{read_surface, write_surface, write_tamaas};
@@ -64,10 +64,11 @@ pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
         write_surface(&out, &header, prepared.heights_m.view()).map_err(failed)?;
     }
     let written = (!asked.dry_run).then_some(out.as_path());
-    let shortest_m = header.measured.as_ref().map_or(0.0, |of| of.shortest_wavelength_m);
     let shape = (header.length_m, header.periodic);
+    let cut_off_m = header.measured.as_ref().map_or(0.0, |of| of.shortest_wavelength_m);
+    let shortest_m = shortest_wavelength(prepared.heights_m.view(), shape, cut_off_m).map_err(failed)?;
     let unit = measured_flattening(prepared.heights_m.view(), shape, shortest_m, 1.0).map_err(failed)?;
-    let range = Range::of(&unit, summits.list.iter().map(Summit::radius_m));
+    let range = Range::of(&unit, shortest_m, summits.list.iter().map(Summit::radius_m));
     let counts = [prepared.heights_m.nrows(), summits.list.len(), edge];
     let statistics = Statistics { file: &asked.file, header: &header, height_factor_m, range: &range, counts, written };
     if asked.json {
@@ -93,6 +94,7 @@ fn params(asked: &ImportArguments) -> SurfaceParams {
         unit: asked.unit.clone().unwrap_or_default(),
         missing: if asked.fill { Missing::Fill } else { Missing::Refuse },
         detrend: asked.detrend.as_deref().and_then(Detrend::from_word).unwrap_or(default),
+        filter: Filter::from_word(&asked.filter).unwrap_or(Filter::Gaussian),
         points_per_shortest_wavelength: u32::from(asked.points),
         ..SurfaceParams::default()
     }

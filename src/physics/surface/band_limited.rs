@@ -74,11 +74,20 @@ impl<'a> BandLimited<'a> {
     /// Down to 2.5 points the error is below rounding. Closer to 2 it grows, since the sum has at most [`MAX_TAPS`] points.
     #[must_use]
     pub fn new(heights: ArrayView2<'a, f64>, length_m: f64, points_per_shortest_wavelength: f64) -> Self {
-        let headroom = PI * (1.0 - 2.0 / points_per_shortest_wavelength);
-        let half_width = (DECAY / headroom).ceil().min(0.5 * MAX_TAPS as f64);
-        let beta = half_width * headroom;
-        let window = Window { half_width, beta, norm: 1.0 / bessel_i(beta, 0) };
+        let window = Window::new(points_per_shortest_wavelength);
         Self { heights, spacing: length_m / heights.nrows() as f64, taps: Taps::new(&window) }
+    }
+
+    /// Number of points on each side of a point that its derivatives depend on.
+    pub(super) fn reach(points_per_shortest_wavelength: f64) -> usize {
+        Window::new(points_per_shortest_wavelength).half_width as usize
+    }
+
+    /// Weights of the points around a grid point in its first and second derivative along a line, for a spacing of 1.
+    pub(super) fn stencils(points_per_shortest_wavelength: f64) -> [Vec<f64>; 2] {
+        let window = Window::new(points_per_shortest_wavelength);
+        let reach = window.half_width as i32;
+        [1, 2].map(|derivative| (-reach..=reach).map(|k| window.kernel(f64::from(-k))[derivative]).collect())
     }
 
     /// Height and derivatives at (x, y) \[m\], anywhere in the periodic plane.
@@ -212,6 +221,13 @@ fn interpolate(f: impl Fn(f64) -> f64) -> [f64; TERMS] {
 }
 
 impl Window {
+    fn new(points_per_shortest_wavelength: f64) -> Self {
+        let headroom = PI * (1.0 - 2.0 / points_per_shortest_wavelength);
+        let half_width = (DECAY / headroom).ceil().min(0.5 * MAX_TAPS as f64);
+        let beta = half_width * headroom;
+        Self { half_width, beta, norm: 1.0 / bessel_i(beta, 0) }
+    }
+
     /// The windowed cardinal sine at `t` grid spacings, with its first and second derivative.
     fn kernel(&self, t: f64) -> [f64; 3] {
         let inside = 1.0 - (t / self.half_width).powi(2);

@@ -1,24 +1,26 @@
 //! Import of a measured surface: central crop, harmonic in-fill, levelling and S-filter.
 //!
-//! The model requires a band-limited field on a square grid, as a generated surface is. A scan has noise down to its points.
-//! Wavelengths shorter than `points_per_shortest_wavelength` points are removed, by a sharp cut-off on a disc of wavevectors.
+//! The model requires a smooth field on a square grid, as a generated surface is. A scan has noise down to its points.
+//! Wavelengths shorter than `points_per_shortest_wavelength` points are removed, by a Gaussian filter or by a sharp cut-off on a disc of wavevectors.
 //! The remaining field determines the summits as on a generated surface.
 //!
-//! A field that does not continue periodically is extended by its mirror images for this.
-//! Heights then stay continuous, whereas periodic images would jump.
-//! Summits closer to an edge than half a shortest wavelength are excluded, since the mirror symmetry creates ridges there.
+//! A field that does not continue periodically has derivatives of its own ([`super::continuation`]).
+//! For the sharp cut-off it is extended by its mirror images: heights then stay continuous, whereas periodic images would jump.
+//! Summits closer to an edge than half a shortest wavelength are excluded, since heights there depend on the rule for the edges.
 
+pub use super::measured_summits::find_measured;
 use crate::physics::PhysicsError;
 
+use super::continuation::{self, margin};
+use super::infill::fill;
 use super::levelling::{ROUNDING, check_size, level};
 use super::modes::Field;
-use super::modes::mirrored;
 use super::periodogram::{continues, tapered_periodogram, windowed_periodogram};
 use super::psd_bin::Ring;
+use super::s_filter::{gaussian, overshoot};
 use super::self_affine::{SelfAffine, fit_self_affine};
 use super::spectrum::Moments;
-use super::summits::{Summits, find_summits};
-use crate::model::{Detrend, Missing};
+use crate::model::{Detrend, Filter, Missing};
 use crate::physics::memory::zeros;
 use ndarray::{Array2, ArrayView2, s};
 
@@ -45,7 +47,9 @@ pub struct Treatment {
     pub detrend: Detrend,
     /// True if the field continues periodically.
     pub periodic: bool,
-    /// S-filter cut-off: number of points per shortest wavelength that is kept.
+    /// Low-pass filter.
+    pub filter: Filter,
+    /// S-filter cut-off wavelength in points.
     pub points_per_shortest_wavelength: f64,
 }
 
@@ -68,6 +72,8 @@ pub struct Prepared {
     pub trend_m: f64,
     /// Rms height of the short wavelengths removed by the S-filter \[m\].
     pub noise_m: f64,
+    /// Largest height of filtered maxima above the unfiltered heights nearby, beyond the noise \[m\].
+    pub overshoot_m: f64,
     /// S-filter cut-off, the shortest wavelength \[m\].
     pub shortest_wavelength_m: f64,
 }
@@ -104,36 +110,77 @@ pub fn prepare(heights_m: Array2<f64>, spacing_m: [f64; 2], treatment: &Treatmen
     let untapered = if continued { Some(Field::of(heights.view(), length_m, true)?.rings()) } else { None };
     let trend_m = level(&mut heights, treatment.detrend)?;
     let points = treatment.points_per_shortest_wavelength * coarsening;
-    let rings = if treatment.periodic { None } else { Some(windowed_periodogram(heights.view(), length_m)?) };
-    let tapered = if treatment.periodic || continued { None } else { Some(tapered_periodogram(heights.view(), length_m)?) };
-    let mut field = Field::of(heights.view(), length_m, treatment.periodic)?;
-    drop(heights);
-    let rings = rings.unwrap_or_else(|| field.rings());
-    let fit = match &tapered {
-        Some(tapered) => fit_self_affine(tapered, length_m, true),
-        None => fit_self_affine(untapered.as_ref().unwrap_or(&rings), length_m, false),
+    let Filtered { heights_m, moments, rings } = filtered(&heights, length_m, points, treatment)?;
+    let fit = if treatment.periodic || continued {
+        fit_self_affine(untapered.as_ref().unwrap_or(&rings), length_m, false)
+    } else {
+        fit_self_affine(&tapered_periodogram(heights.view(), length_m)?, length_m, true)
     };
-    let before = field.moments();
-    field.cut(points);
-    let moments = field.moments();
-    if moments.rms_height_m() <= ROUNDING * before.rms_height_m() {
-        return Err(PhysicsError::Surface {
-            problem: format!("no wavelengths above the S-filter cut-off, {:.3e} m", points * fine),
-            help: "reduce the cut-off (--points, points_per_shortest_wavelength)",
-        });
+    let rms_m = (heights.iter().map(|h| h * h).sum::<f64>() / heights.len() as f64).sqrt();
+    if moments.rms_height_m() <= ROUNDING * rms_m {
+        return Err(short(points * fine));
     }
-    let noise_m = (before.m0_m2 - moments.m0_m2).max(0.0).sqrt();
+    let removed = heights.iter().zip(&heights_m).map(|(before, after)| (before - after).powi(2)).sum::<f64>();
+    let edge = if treatment.periodic { 0 } else { margin(points) };
     Ok(Prepared {
-        heights_m: field.heights(side)?,
+        overshoot_m: overshoot(heights.view(), heights_m.view(), points, edge),
+        noise_m: (removed / heights.len() as f64).sqrt(),
+        heights_m,
         length_m,
         moments,
         rings,
         fit,
         missing_count,
         trend_m,
-        noise_m,
         shortest_wavelength_m: points * fine,
     })
+}
+
+/// Heights after the S-filter, their moments, and the spectrum before it.
+struct Filtered {
+    heights_m: Array2<f64>,
+    moments: Moments,
+    rings: Vec<Ring>,
+}
+
+/// Applies the S-filter with a cut-off of `points` points to levelled heights \[m\] on a square.
+fn filtered(heights: &Array2<f64>, length_m: f64, points: f64, treatment: &Treatment) -> Result<Filtered, PhysicsError> {
+    let side = heights.nrows();
+    if treatment.periodic {
+        let mut field = Field::of(heights.view(), length_m, true)?;
+        let rings = field.rings();
+        match treatment.filter {
+            Filter::Gaussian => field.smooth(points),
+            Filter::Sharp => field.cut(points),
+        }
+        let moments = field.moments();
+        return Ok(Filtered { heights_m: field.heights(side)?, moments, rings });
+    }
+    let spacing = length_m / side as f64;
+    if side <= 2 * margin(points) {
+        return Err(short(points * spacing));
+    }
+    let rings = windowed_periodogram(heights.view(), length_m)?;
+    let mut heights_m = match treatment.filter {
+        Filter::Gaussian => gaussian(heights.view(), points)?,
+        Filter::Sharp => {
+            let mut field = Field::of(heights.view(), length_m, false)?;
+            field.cut(points);
+            field.heights(side)?
+        }
+    };
+    let mean = heights_m.sum() / heights_m.len() as f64;
+    heights_m -= mean;
+    let moments = continuation::moments(heights_m.view(), spacing, points)?;
+    Ok(Filtered { heights_m, moments, rings })
+}
+
+/// Error if the S-filter leaves nothing.
+fn short(cut_off_m: f64) -> PhysicsError {
+    PhysicsError::Surface {
+        problem: format!("no wavelengths above the S-filter cut-off, {cut_off_m:.3e} m"),
+        help: "reduce the cut-off (--points, points_per_shortest_wavelength)",
+    }
 }
 
 fn domain(quantity: &'static str, value: f64, allowed: &'static str) -> PhysicsError {
@@ -238,84 +285,3 @@ fn resampled(heights: ArrayView2<'_, f64>, ratio: f64) -> Result<Array2<f64>, Ph
 const TAPS: usize = 6;
 /// Maximum number of points before the crop.
 const MAX_POINTS_BEFORE_CROP: f64 = (1u64 << 28) as f64;
-
-/// Fills missing points harmonically: the discrete Laplacian vanishes there.
-///
-/// At the edges of the field the slope vanishes, or the field is periodic.
-fn fill(heights: &mut Array2<f64>, periodic: bool) {
-    let (rows, columns) = heights.dim();
-    let holes: Vec<(usize, usize)> = heights.indexed_iter().filter(|(_, h)| !h.is_finite()).map(|(place, _)| place).collect();
-    if holes.is_empty() {
-        return;
-    }
-    let step = |at: usize, by: isize, n: usize| -> usize {
-        let to = at as isize + by;
-        if periodic { to.rem_euclid(n as isize) as usize } else { to.clamp(0, n as isize - 1) as usize }
-    };
-    let around =
-        |(i, j): (usize, usize)| [(step(i, -1, rows), j), (step(i, 1, rows), j), (i, step(j, -1, columns)), (i, step(j, 1, columns))];
-    // Initial values, from the edges of the holes inwards: the mean of the known neighbours.
-    let mut open = holes.clone();
-    while !open.is_empty() {
-        let found: Vec<((usize, usize), f64)> = open
-            .iter()
-            .filter_map(|place| {
-                let known: Vec<f64> = around(*place).into_iter().map(|at| heights[at]).filter(|h| h.is_finite()).collect();
-                (!known.is_empty()).then(|| (*place, known.iter().sum::<f64>() / known.len() as f64))
-            })
-            .collect();
-        if found.is_empty() {
-            return;
-        }
-        found.iter().for_each(|(place, h)| heights[*place] = *h);
-        open.retain(|place| !heights[*place].is_finite());
-    }
-    // Successive over-relaxation until the largest change is below 1e-6 of the range.
-    let (low, high) = heights.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), h| (low.min(*h), high.max(*h)));
-    let width = (holes.len() as f64).sqrt().min(rows as f64);
-    let over = 2.0 / (1.0 + (std::f64::consts::PI / (width + 1.0)).sin());
-    for _ in 0..MAX_SWEEPS {
-        let mut moved = 0.0_f64;
-        for place in &holes {
-            let mean = around(*place).into_iter().map(|at| heights[at]).sum::<f64>() / 4.0;
-            let by = over * (mean - heights[*place]);
-            heights[*place] += by;
-            moved = moved.max(by.abs());
-        }
-        if moved <= 1e-6 * (high - low) {
-            return;
-        }
-    }
-}
-
-/// Maximum number of sweeps over the missing points.
-const MAX_SWEEPS: usize = 3000;
-
-/// Summits of a prepared surface, and the number excluded at the edges of a non-periodic one.
-///
-/// The last argument is whether the surface is periodic, and the number of points per shortest wavelength.
-///
-/// # Errors
-/// As [`find_summits`].
-pub fn find_measured(
-    heights_m: ArrayView2<'_, f64>,
-    length_m: f64,
-    (periodic, points): (bool, f64),
-) -> Result<(Summits, usize), PhysicsError> {
-    if periodic {
-        return Ok((find_summits(heights_m, length_m, points)?, 0));
-    }
-    let n = heights_m.nrows();
-    let mut found = find_summits(mirrored(heights_m)?.view(), 2.0 * length_m, points)?;
-    let margin = (0.5 * points).ceil() as usize;
-    let inside = |k: usize| k < n;
-    found.list.retain(|summit| inside(summit.grid_row) && inside(summit.grid_col));
-    let all = found.list.len();
-    let clear = |k: usize| (margin..n - margin).contains(&k);
-    found.list.retain(|summit| clear(summit.grid_row) && clear(summit.grid_col));
-    let edge = all - found.list.len();
-    found.unrefined = found.list.iter().filter(|summit| !summit.refined).count();
-    // The mirror extension counts each four times.
-    found.rejected /= 4;
-    Ok((found, edge))
-}

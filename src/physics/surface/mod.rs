@@ -2,11 +2,15 @@
 
 pub mod band_limited;
 mod constants;
+pub(crate) mod continuation;
+mod infill;
 mod levelling;
 pub mod measured;
+mod measured_summits;
 pub(crate) mod modes;
 pub mod periodogram;
 pub(crate) mod psd_bin;
+mod s_filter;
 pub mod self_affine;
 mod spectral_band;
 mod spectral_line;

@@ -1,6 +1,7 @@
 //! Fourier modes of a height field, its moments and its power spectral density.
 
 use super::psd_bin::Ring;
+use super::s_filter::transmission;
 use super::spectrum::Moments;
 use crate::physics::PhysicsError;
 use crate::physics::memory::{filled, zeros};
@@ -155,6 +156,16 @@ impl Field {
         let unit = 1.0 / (n as f64 * n as f64);
         self.columns.par_iter_mut().for_each(|value| *value = Complex64::new(unit * value.norm_sqr(), 0.0));
         self.heights(n)
+    }
+
+    /// Removes the mean and applies the Gaussian filter with a cut-off wavelength of `points` points.
+    pub(crate) fn smooth(&mut self, points: f64) {
+        let n = self.n;
+        let of_mode: Vec<f64> = (0..n).map(|mode| transmission(points, mode.min(n - mode) as f64 / n as f64)).collect();
+        self.columns.par_chunks_mut(n).enumerate().for_each(|(ky, column)| {
+            column.iter_mut().zip(&of_mode).for_each(|(value, along_x)| *value *= along_x * of_mode[ky]);
+        });
+        self.columns[0] = Complex64::ZERO;
     }
 
     /// Heights \[m\] of the first `side` points along each direction, without the mirror images.

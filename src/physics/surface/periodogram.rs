@@ -4,7 +4,7 @@ use super::modes::Field;
 pub use super::psd_bin::Ring;
 use crate::physics::PhysicsError;
 use crate::physics::memory::zeros;
-use ndarray::{Array1, ArrayView2};
+use ndarray::{Array1, Array2, ArrayView2};
 use std::f64::consts::{PI, SQRT_2, TAU};
 
 /// Power spectral density `C(q) = |c_k|²/qL²` of a periodic surface, in rings of wavevectors.
@@ -33,6 +33,14 @@ pub fn periodogram(heights_m: ArrayView2<'_, f64>, length_m: f64) -> Result<Vec<
 /// # Errors
 /// Too little memory.
 pub fn windowed_periodogram(heights_m: ArrayView2<'_, f64>, length_m: f64) -> Result<Vec<Ring>, PhysicsError> {
+    periodogram(windowed(heights_m)?.view(), length_m)
+}
+
+/// Heights times the Hann window, scaled such that the mean square stays the same on average.
+///
+/// # Errors
+/// Too little memory.
+pub(crate) fn windowed(heights_m: ArrayView2<'_, f64>) -> Result<Array2<f64>, PhysicsError> {
     let n = heights_m.nrows();
     let window = Array1::from_shape_fn(n, |k| 1.0 - (TAU * (k as f64 + 0.5) / n as f64).cos());
     // The mean square of the window along one direction is 3/2.
@@ -40,7 +48,7 @@ pub fn windowed_periodogram(heights_m: ArrayView2<'_, f64>, length_m: f64) -> Re
     let mut under = zeros(heights_m.dim())?;
     under.assign(&heights_m);
     under.indexed_iter_mut().for_each(|((i, j), h)| *h *= window[i] * window[j] / of_mean);
-    periodogram(under.view(), length_m)
+    Ok(under)
 }
 
 /// Power spectral density of a non-periodic surface under two sine tapers along each direction, averaged over the four pairs.

@@ -12,6 +12,7 @@ use super::band_limited::{BandLimited, Jet};
 use crate::physics::PhysicsError;
 use ndarray::ArrayView2;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// A local maximum of the surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -60,6 +61,15 @@ pub struct Summits {
 /// # Errors
 /// More than two points per shortest wavelength are needed; with fewer the heights do not determine the surface.
 pub fn find_summits(heights_m: ArrayView2<'_, f64>, length_m: f64, points_per_shortest_wavelength: f64) -> Result<Summits, PhysicsError> {
+    check_points(points_per_shortest_wavelength)?;
+    let found = apexes(heights_m, length_m, points_per_shortest_wavelength, 0..heights_m.nrows());
+    let all = found.len();
+    let list: Vec<Summit> = found.into_iter().flatten().collect();
+    Ok(Summits { rejected: all - list.len(), unrefined: list.iter().filter(|summit| !summit.refined).count(), list })
+}
+
+/// Refuses a number of points per shortest wavelength that does not determine the surface.
+pub(super) fn check_points(points_per_shortest_wavelength: f64) -> Result<(), PhysicsError> {
     if !(points_per_shortest_wavelength > 2.0 && points_per_shortest_wavelength.is_finite()) {
         return Err(PhysicsError::Domain {
             action: "summits of a band-limited surface",
@@ -68,21 +78,24 @@ pub fn find_summits(heights_m: ArrayView2<'_, f64>, length_m: f64, points_per_sh
             allowed: "more than 2 (the Nyquist limit)",
         });
     }
-    let surface = BandLimited::new(heights_m, length_m, points_per_shortest_wavelength);
-    let n = heights_m.nrows();
-    let spacing = length_m / n as f64;
-    let found: Vec<Option<Summit>> = (0..n)
+    Ok(())
+}
+
+/// Apexes of the grid maxima whose row and column are in a range; nothing where the mean curvature is not positive.
+pub(super) fn apexes(heights: ArrayView2<'_, f64>, length: f64, points_per_shortest_wavelength: f64, within: Range<usize>) -> Vec<Option<Summit>> {
+    let surface = BandLimited::new(heights, length, points_per_shortest_wavelength);
+    let spacing = length / heights.nrows() as f64;
+    let columns = within.clone();
+    within
         .into_par_iter()
-        .flat_map_iter(|row| maxima_of_row(heights_m, row))
-        .map(|(row, column)| apex(&surface, row, column, spacing, length_m))
-        .collect();
-    let all = found.len();
-    let list: Vec<Summit> = found.into_iter().flatten().collect();
-    Ok(Summits { rejected: all - list.len(), unrefined: list.iter().filter(|summit| !summit.refined).count(), list })
+        .flat_map_iter(|row| maxima_of_row(heights, row))
+        .filter(|(_, column)| columns.contains(column))
+        .map(|(row, column)| apex(&surface, row, column, spacing, length))
+        .collect()
 }
 
 /// Grid maxima of one row over the eight periodic neighbours.
-fn maxima_of_row(heights: ArrayView2<'_, f64>, row: usize) -> Vec<(usize, usize)> {
+pub(super) fn maxima_of_row(heights: ArrayView2<'_, f64>, row: usize) -> Vec<(usize, usize)> {
     let (rows, columns) = heights.dim();
     let above = heights.row((row + rows - 1) % rows);
     let here = heights.row(row);

@@ -3,7 +3,9 @@
 //! If flattening costs less than adhesion gains, the half-space conforms to the roughness and contact spots are no longer separate.
 
 use crate::physics::PhysicsError;
+use crate::physics::surface::continuation::laplacian;
 use crate::physics::surface::modes::Field;
+use crate::physics::surface::periodogram::windowed;
 use crate::physics::surface::spectrum::Spectrum;
 use crate::physics::surface::synthesis::mode_sums;
 use ndarray::ArrayView2;
@@ -74,9 +76,55 @@ pub fn realised_flattening(spectrum: &Spectrum, seed: &[u8; 32], contact_modulus
     Flattening { whole_j_m2: unit * whole, octave_j_m2: unit * octave }
 }
 
+/// Share of the mean square Laplacian that an octave of wavelengths must hold to affect the asperities.
+///
+/// Without an octave that holds less, the rms curvature is lower by up to 5 %.
+pub const LEAST_CURVATURE_SHARE: f64 = 0.1;
+
+/// Shortest wavelength of heights \[m\] on a square of side L \[m\] after a low-pass filter with a cut-off \[m\].
+///
+/// It is the cut-off if the octave above it, with everything below, holds [`LEAST_CURVATURE_SHARE`] of the mean square Laplacian.
+/// A field without such short waves has one that is longer by a power of two.
+/// For a field that is not periodic the spectrum is that of the Laplacian under a Hann window.
+///
+/// # Errors
+/// Too little memory.
+pub fn shortest_wavelength(
+    heights_m: ArrayView2<'_, f64>,
+    (length_m, periodic): (f64, bool),
+    cut_off_m: f64,
+) -> Result<f64, PhysicsError> {
+    if !(cut_off_m > 0.0 && cut_off_m.is_finite()) {
+        return Ok(cut_off_m);
+    }
+    let n = heights_m.nrows() as f64;
+    // Under the window the leakage of long wavelengths is not multiplied by q⁴.
+    let points = (cut_off_m * n / length_m).max(FEWEST_POINTS);
+    let (field, exponent) = if periodic {
+        (Field::of(heights_m, length_m, true)?, 4)
+    } else {
+        (Field::of(windowed(laplacian(heights_m, points)?.view())?.view(), length_m, true)?, 0)
+    };
+    let mut shortest = cut_off_m;
+    while 2.0 * shortest < length_m {
+        let edge = TAU / shortest;
+        let [octave, whole] = field.weighted(|q| [if 2.0 * q >= edge { q.powi(exponent) } else { 0.0 }, q.powi(exponent)]);
+        if octave >= LEAST_CURVATURE_SHARE * whole {
+            break;
+        }
+        shortest *= 2.0;
+    }
+    Ok(shortest)
+}
+
+/// Points per cut-off wavelength for which derivatives are defined.
+const FEWEST_POINTS: f64 = 2.5;
+
 /// Flattening energies of heights \[m\] on a square of side L \[m\], with E* \[Pa\].
 ///
-/// A field that is not periodic is extended by its mirror images.
+/// The shortest octave has all wavelengths of less than two shortest ones.
+/// A field that is not periodic is extended by its mirror images for all of its roughness.
+/// The slopes of their kinks would add to the shortest octave, for which a Hann window is used.
 ///
 /// # Errors
 /// Too little memory.
@@ -87,6 +135,10 @@ pub fn measured_flattening(
     contact_modulus_pa: f64,
 ) -> Result<Flattening, PhysicsError> {
     let edge = TAU / shortest_wavelength_m;
-    let [whole, octave] = Field::of(heights_m, length_m, periodic)?.weighted(|q| [q, if 2.0 * q >= edge { q } else { 0.0 }]);
+    let sums = |field: &Field| field.weighted(|q| [q, if 2.0 * q >= edge { q } else { 0.0 }]);
+    let [whole, mut octave] = sums(&Field::of(heights_m, length_m, periodic)?);
+    if !periodic {
+        octave = whole.min(sums(&Field::of(windowed(heights_m)?.view(), length_m, true)?)[1]);
+    }
     Ok(Flattening { whole_j_m2: 0.25 * contact_modulus_pa * whole, octave_j_m2: 0.25 * contact_modulus_pa * octave })
 }

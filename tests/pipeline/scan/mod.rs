@@ -2,6 +2,8 @@
 
 mod damage;
 #[cfg(feature = "stats")]
+mod filter;
+#[cfg(feature = "stats")]
 mod formats;
 #[cfg(feature = "stats")]
 pub mod import;

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use hdf5_metno::types::{FixedUnicode, VarLenArray, VarLenUnicode};
 use hdf5_metno::{File, ObjectReference, ObjectReference1, ReferencedObject};
 use hysteron::model::SpectrumEnd;
-use hysteron::model::{Amplitudes, Detrend, Normalization};
+use hysteron::model::{Amplitudes, Detrend, Filter, Normalization};
 use hysteron::physics::surface::texture::Texture;
 use hysteron::store::hdf5::{Generated, Measured, SpectrumFit, SurfaceHeader, read_header, read_heights, read_surface, write_surface};
 use ndarray::{Array2, s};
@@ -73,8 +73,10 @@ fn e2e_a_measured_surface_lacks_what_nobody_knows() {
         missing_count: 3,
         detrend: Detrend::Quadratic,
         trend_m: 1e-7,
+        filter: Filter::Gaussian,
         shortest_wavelength_m: 2e-6,
         noise_m: 3e-9,
+        overshoot_m: 1e-10,
         fit: Some(SpectrumFit {
             hurst: 0.7,
             plateau_m4: 1e-30,

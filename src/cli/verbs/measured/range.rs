@@ -13,6 +13,8 @@ pub(super) struct Range {
     pub(super) whole_m: f64,
     /// `U_1/E*` \[m\], of the shortest octave; 0 where that is unknown.
     pub(super) octave_m: f64,
+    /// Shortest wavelength of this octave \[m\].
+    pub(super) shortest_m: f64,
     /// Smallest radius of an asperity \[m\]; nothing without asperities.
     radius_m: Option<f64>,
 }
@@ -30,8 +32,8 @@ fn limits() -> [f64; 2] {
 
 impl Range {
     /// Of the energies at a modulus of 1 Pa, and the radii of the asperities \[m\].
-    pub(super) fn of(unit: &Flattening, radii_m: impl Iterator<Item = f64>) -> Self {
-        Self { whole_m: unit.whole_j_m2, octave_m: unit.octave_j_m2, radius_m: radii_m.reduce(f64::min) }
+    pub(super) fn of(unit: &Flattening, shortest_m: f64, radii_m: impl Iterator<Item = f64>) -> Self {
+        Self { whole_m: unit.whole_j_m2, octave_m: unit.octave_j_m2, shortest_m, radius_m: radii_m.reduce(f64::min) }
     }
 
     /// The ratios `U_el/Δγ` and `U_1/Δγ` of a material.
@@ -59,11 +61,12 @@ impl Range {
         let [whole, octave] = limits();
         let octave = if self.octave_m > 0.0 { format!(" and U_1/Δγ ≥ {octave}") } else { String::new() };
         format!(
-            "U_el/Δγ ≥ {whole}{octave}, that is E*/Δγ ≥ {:.2e} 1/m. U_el = E* x {:.3e} m, elsewhere called e_el, flattens all roughness, U_1 = E* x {:.3e} m its shortest octave. \
-             A softer or more adhesive contact is outside the range of the asperity model.",
+            "U_el/Δγ ≥ {whole}{octave}, that is E*/Δγ ≥ {:.2e} 1/m. U_el = E* x {:.3e} m, elsewhere called e_el, flattens all roughness, U_1 = E* x {:.3e} m its shortest octave \
+             (wavelengths up to {:.3e} m). A softer or more adhesive contact is outside the range of the asperity model.",
             self.least_1_m(),
             self.whole_m,
-            self.octave_m
+            self.octave_m,
+            2.0 * self.shortest_m
         )
     }
 

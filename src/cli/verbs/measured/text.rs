@@ -1,7 +1,7 @@
 //! Statistics of an imported surface as text and as JSON.
 
 use super::range::Range;
-use crate::model::{Choice, Detrend, SpectrumEnd};
+use crate::model::{Choice, Detrend, Filter, SpectrumEnd};
 use crate::physics::surface::texture::Texture;
 use crate::spec::quoted;
 use crate::stats::{Limit, significant};
@@ -56,7 +56,9 @@ pub(super) fn answer(of: &Statistics<'_>, rings: &[Value]) -> Value {
         "cautions": cautions(header),
         "missing_count": measured.map(|of| of.missing_count),
         "trend_m": measured.map(|of| of.trend_m),
+        "filter": measured.map(|of| of.filter.word()),
         "noise_m": measured.map(|of| of.noise_m),
+        "overshoot_m": measured.map(|of| of.overshoot_m),
         "shortest_wavelength_m": measured.map(|of| of.shortest_wavelength_m),
         "source_blake3": measured.map(|of| of.source_blake3.as_str()),
         "self_affine": fit,
@@ -67,6 +69,7 @@ pub(super) fn answer(of: &Statistics<'_>, rings: &[Value]) -> Value {
         "texture_direction_rad": texture.map(|of| of.direction_rad),
         "flattening_m": range.whole_m,
         "flattening_octave_m": range.octave_m,
+        "flattening_octave_shortest_wavelength_m": range.shortest_m,
         "least_modulus_over_adhesion_1_m": range.least_1_m(),
         "spectrum": rings,
     })
@@ -117,7 +120,7 @@ fn preprocessing(header: &SurfaceHeader) -> Vec<Line> {
         vec![
             ("missing", format!("{missing}{filled}")),
             ("removed", form),
-            ("", format!("wavelengths below {:.3e} m: {:.3e} m rms", of.shortest_wavelength_m, of.noise_m)),
+            ("", format!("wavelengths below {:.3e} m ({}): {:.3e} m rms", of.shortest_wavelength_m, kind(of.filter), of.noise_m)),
         ]
     };
     header.measured.as_ref().map(lines).unwrap_or_default()
@@ -235,6 +238,7 @@ fn cautions(header: &SurfaceHeader) -> Vec<String> {
             ));
         }
         cautions.extend(texture_caution(of));
+        cautions.extend(overshoot(of, header.rms_height_m));
         match of.fit {
             Some(fit) if !SELF_AFFINE.contains(&fit.hurst) => cautions.push(format!(
                 "fit: H = {:.2} is outside 0 to 1, so the spectrum is not self-affine in the band of wavelengths that holds data; do not use H",
@@ -257,6 +261,25 @@ fn cautions(header: &SurfaceHeader) -> Vec<String> {
         cautions.push(format!("{:.1e} m rms is less than an atom; check the units", header.rms_height_m));
     }
     cautions
+}
+
+/// Warning of a filter that rings at steps.
+fn overshoot(of: &Measured, rms_height_m: f64) -> Option<String> {
+    let limit = Limit::of("overshoot").filter(|limit| limit.is_passed(Some(of.overshoot_m / rms_height_m)))?;
+    Some(format!(
+        "overshoot: filtered heights exceed the measured heights nearby by {:.2e} m beyond the noise (limit {:.0} % of h_rms, {:.2e} m); \
+         the sharp low-pass filter rings at steps, and its asperities there do not exist; use --filter gaussian",
+        of.overshoot_m,
+        100.0 * limit.bound,
+        limit.bound * rms_height_m
+    ))
+}
+
+fn kind(filter: Filter) -> &'static str {
+    match filter {
+        Filter::Gaussian => "Gaussian filter",
+        Filter::Sharp => "sharp cut-off",
+    }
 }
 
 fn shape(detrend: Detrend) -> &'static str {

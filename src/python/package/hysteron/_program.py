@@ -158,6 +158,7 @@ def take(
     detrend: str | None = None,
     periodic: bool = False,
     points: int = 8,
+    filter: str | None = None,
 ) -> dict[str, Any]:
     """Imports a measured surface, as `hysteron import`, and returns its moments, spectrum and self-affine fit.
 
@@ -181,6 +182,8 @@ def take(
         True for a periodic surface.
     points : int
         S-filter cut-off in pixels.
+    filter : str, optional
+        S-filter: gaussian (default, ISO 16610-61) or sharp.
 
     Returns
     -------
@@ -189,7 +192,7 @@ def take(
     """
     command = [str(find()), "import", "--json", f"--points={points}"]
     command += ["--dry-run"] if out is None else [f"--out={os.fspath(out)}", "--force"]
-    command += [f"--{name}={value}" for name, value in (("dataset", dataset), ("pixel-m", pixel_m), ("unit", unit), ("detrend", detrend)) if value is not None]
+    command += [f"--{name}={value}" for name, value in (("dataset", dataset), ("pixel-m", pixel_m), ("unit", unit), ("detrend", detrend), ("filter", filter)) if value is not None]
     command += [f"--{name}" for name, asked in (("fill", fill), ("periodic", periodic)) if asked]
     with _scan(file) as path:
         try:
