@@ -1,8 +1,8 @@
 //! Parameters of a case: surface, material, model, boundary elements and loading path.
 
 use super::{
-    Amplitudes, Attraction, Boundary, Coalescence, Detrend, Filter, Interaction, JumpIn, KeptContacts, Material, Method, Missing, Normalization,
-    Nucleation, Opening, Slip, Slips,
+    Amplitudes, Attraction, Boundary, Coalescence, Detrend, Filter, Interaction, JumpIn, KeptContacts, Material, Method, Missing,
+    Normalization, Nucleation, Opening, Slip, Slips,
 };
 use serde::{Deserialize, Serialize};
 

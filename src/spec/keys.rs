@@ -2,8 +2,8 @@
 
 use super::{CaseParams, Value};
 use crate::model::{
-    Amplitudes, Attraction, Boundary, Choice, Coalescence, Detrend, Filter, Interaction, JumpIn, KeptContacts, Method, Missing, Normalization,
-    Nucleation, Opening, Slip,
+    Amplitudes, Attraction, Boundary, Choice, Coalescence, Detrend, Filter, Interaction, JumpIn, KeptContacts, Method, Missing,
+    Normalization, Nucleation, Opening, Slip,
 };
 
 /// One key of a table.

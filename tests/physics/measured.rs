@@ -11,8 +11,13 @@ use hysteron::physics::surface::synthesis::{Surface, realization_seed, synthesiz
 use ndarray::{Array2, s};
 use std::f64::consts::{PI, TAU};
 
-const PLAIN: Treatment =
-    Treatment { missing: Missing::Refuse, detrend: Detrend::Mean, periodic: false, filter: Filter::Sharp, points_per_shortest_wavelength: 8.0 };
+const PLAIN: Treatment = Treatment {
+    missing: Missing::Refuse,
+    detrend: Detrend::Mean,
+    periodic: false,
+    filter: Filter::Sharp,
+    points_per_shortest_wavelength: 8.0,
+};
 
 fn generated(magnification: u32, hurst: f64, realization: u64) -> Surface {
     let spectrum = Spectrum {

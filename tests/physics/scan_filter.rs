@@ -180,7 +180,9 @@ fn law_steps_ridges_and_planes_that_meet_have_no_asperity() {
     let ridge = field(n, |x, _| -(x - 40.0).abs());
     let round_ridge = field(n, |x, _| -0.01 * (x - 40.0).powi(2));
     let slope = field(n, |x, y| (0.1 * x - 3.0).max(0.02 * y));
-    for (name, heights) in [("step", step), ("corner", corner), ("oblique", oblique), ("ridge", ridge), ("round", round_ridge), ("slope", slope)] {
+    for (name, heights) in
+        [("step", step), ("corner", corner), ("oblique", oblique), ("ridge", ridge), ("round", round_ridge), ("slope", slope)]
+    {
         for points in [4.0, 8.0, 16.0] {
             let (prepared, list) = taken(&heights, &treatment(Filter::Gaussian, points, false));
             // Levelling by a plane tilts plateaus: a corner of three of them may be a maximum.

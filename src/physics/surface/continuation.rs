@@ -53,7 +53,11 @@ fn source(mut k: i64, n: usize) -> [(usize, f64); 3] {
         }
         sign = -sign;
     }
-    if first == 0.0 { [(k as usize, sign), (last as usize, end), (0, first)] } else { [(k as usize, sign), (0, first), (last as usize, end)] }
+    if first == 0.0 {
+        [(k as usize, sign), (last as usize, end), (0, first)]
+    } else {
+        [(k as usize, sign), (0, first), (last as usize, end)]
+    }
 }
 
 /// Moments of a square field that is not periodic, with a spacing in \[m\] and a mean of 0.

@@ -82,7 +82,12 @@ pub(super) fn check_points(points_per_shortest_wavelength: f64) -> Result<(), Ph
 }
 
 /// Apexes of the grid maxima whose row and column are in a range; nothing where the mean curvature is not positive.
-pub(super) fn apexes(heights: ArrayView2<'_, f64>, length: f64, points_per_shortest_wavelength: f64, within: Range<usize>) -> Vec<Option<Summit>> {
+pub(super) fn apexes(
+    heights: ArrayView2<'_, f64>,
+    length: f64,
+    points_per_shortest_wavelength: f64,
+    within: Range<usize>,
+) -> Vec<Option<Summit>> {
     let surface = BandLimited::new(heights, length, points_per_shortest_wavelength);
     let spacing = length / heights.nrows() as f64;
     let columns = within.clone();

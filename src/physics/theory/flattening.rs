@@ -89,11 +89,7 @@ pub const LEAST_CURVATURE_SHARE: f64 = 0.1;
 ///
 /// # Errors
 /// Too little memory.
-pub fn shortest_wavelength(
-    heights_m: ArrayView2<'_, f64>,
-    (length_m, periodic): (f64, bool),
-    cut_off_m: f64,
-) -> Result<f64, PhysicsError> {
+pub fn shortest_wavelength(heights_m: ArrayView2<'_, f64>, (length_m, periodic): (f64, bool), cut_off_m: f64) -> Result<f64, PhysicsError> {
     if !(cut_off_m > 0.0 && cut_off_m.is_finite()) {
         return Ok(cut_off_m);
     }

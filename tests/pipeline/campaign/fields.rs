@@ -102,7 +102,15 @@ fn law_a_measured_surface_is_known_by_what_its_file_holds_and_what_is_done_to_it
     assert!(base.surfaces[0].id.starts_with("scan_r00-"), "{}", base.surfaces[0].id);
     let first = |campaign: &Campaign| keys(campaign)[0][0].clone();
     let mut seen = BTreeSet::from([first(&base)]);
-    let others = ["dataset = \"b\"", "periodic = true", "pixel_m = 1e-9", "unit = \"nm\"", "missing = \"fill\"", "detrend = \"mean\"", "filter = \"sharp\""];
+    let others = [
+        "dataset = \"b\"",
+        "periodic = true",
+        "pixel_m = 1e-9",
+        "unit = \"nm\"",
+        "missing = \"fill\"",
+        "detrend = \"mean\"",
+        "filter = \"sharp\"",
+    ];
     for line in others.into_iter().chain(["points_per_shortest_wavelength = 16"]) {
         let other = campaign(&text(line, '0'));
         assert!(seen.insert(first(&other)), "{line}: a surface of its own");

@@ -33,7 +33,8 @@ fn e2e_import_states_the_filter_and_what_it_raises() {
         assert_eq!(code(&output), 0, "{}", stderr(&output));
         serde_json::from_str(&stdout(&output)).unwrap()
     };
-    let warned = |answer: &Value| answer["cautions"].as_array().unwrap().iter().any(|text| text.as_str().unwrap().starts_with("overshoot: "));
+    let warned =
+        |answer: &Value| answer["cautions"].as_array().unwrap().iter().any(|text| text.as_str().unwrap().starts_with("overshoot: "));
     let sharp = answer(&["--filter", "sharp"]);
     assert_eq!(sharp["filter"], "sharp");
     assert!(warned(&sharp) && sharp["overshoot_m"].as_f64().unwrap() > 5e-8, "{sharp}");
@@ -117,6 +118,7 @@ fn e2e_a_sinusoid_has_no_warning_of_the_cut_off() {
     let cases = read_table(&bench.out().join("statistics/cases.parquet"), &schema::CASES).unwrap();
     let codes = cases.text("caution").unwrap()[0].clone();
     assert!(!codes.split('+').any(|code| ["conformed", "sticky", "coarse"].contains(&code)), "{codes}");
-    let [octave, whole] = ["conformity_realised_mean", "persson_tosatti_realised_mean"].map(|name| cases.f64_or_null(name).unwrap()[0].unwrap());
+    let [octave, whole] =
+        ["conformity_realised_mean", "persson_tosatti_realised_mean"].map(|name| cases.f64_or_null(name).unwrap()[0].unwrap());
     assert!((octave / whole - 1.0).abs() < 1e-12, "{octave} {whole}");
 }
