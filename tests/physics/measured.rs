@@ -82,8 +82,11 @@ fn law_mirror_images_continue_a_surface_without_a_jump() {
     assert!(most(&(&prepared.heights_m - &heights)) < 1e-12);
     let q2 = (a * a + b * b) * (PI / n as f64).powi(2);
     let moments = prepared.moments;
-    for (found, expected) in [(moments.m0_m2, 0.25), (moments.m2, 0.125 * q2), (moments.m4_1_m2, 0.375 * 0.25 * q2 * q2)] {
-        assert!((found / expected - 1.0).abs() < 1e-10, "{found} {expected}");
+    // Slopes and Laplacians are means over the points farther than 4 points from the edges: here that changes them by 1 % and 5 %.
+    for (found, expected, allowed) in
+        [(moments.m0_m2, 0.25, 1e-10), (moments.m2, 0.125 * q2, 0.02), (moments.m4_1_m2, 0.375 * 0.25 * q2 * q2, 0.1)]
+    {
+        assert!((found / expected - 1.0).abs() < allowed, "{found} {expected}");
     }
     // Summits where both cosines are 1 or both are −1; those on the edges are the mirror's.
     let (found, edge) = find_measured(prepared.heights_m.view(), prepared.length_m, (false, 8.0)).unwrap();

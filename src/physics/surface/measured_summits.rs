@@ -12,10 +12,13 @@ use std::f64::consts::TAU;
 /// It is below the resolution of single precision.
 const ROUNDING_OF_RIPPLES: f64 = 2e-8;
 
+/// Smaller over larger principal curvature below which a maximum is one of a ridge, due to rounding and to the rule for the edges.
+const RIDGE: f64 = 1e-3;
+
 /// Summits of a prepared surface, and the number excluded at the edges of a non-periodic one.
 ///
 /// The last argument is whether the surface is periodic, and the number of points per shortest wavelength.
-/// Maxima of a plateau or along a ridge that are due to rounding are rejected: one of their principal curvatures is zero to rounding.
+/// Maxima of a plateau or along a ridge that are due to rounding are rejected: one of their principal curvatures is zero or far below the other.
 ///
 /// # Errors
 /// As [`find_summits`].
@@ -30,7 +33,7 @@ pub fn find_measured(
     let wavenumber = TAU * heights_m.nrows() as f64 / (points * length_m);
     let flat = ROUNDING_OF_RIPPLES * (high - low) * wavenumber * wavenumber;
     let all = found.list.len();
-    found.list.retain(|summit| summit.curvature_min_1_m.abs() > flat);
+    found.list.retain(|summit| summit.curvature_min_1_m.abs() > flat.max(RIDGE * summit.curvature_max_1_m));
     found.rejected += all - found.list.len();
     found.unrefined = found.list.iter().filter(|summit| !summit.refined).count();
     Ok((found, edge))

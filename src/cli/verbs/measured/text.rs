@@ -268,7 +268,7 @@ fn overshoot(of: &Measured, rms_height_m: f64) -> Option<String> {
     let limit = Limit::of("overshoot").filter(|limit| limit.is_passed(Some(of.overshoot_m / rms_height_m)))?;
     Some(format!(
         "overshoot: filtered heights exceed the measured heights nearby by {:.2e} m beyond the noise (limit {:.0} % of h_rms, {:.2e} m); \
-         the sharp low-pass filter rings at steps, and its asperities there do not exist; use --filter gaussian",
+         the sharp low-pass filter rings at steps, and its asperities there do not exist. Apply --filter gaussian",
         of.overshoot_m,
         100.0 * limit.bound,
         limit.bound * rms_height_m
