@@ -1,6 +1,6 @@
 //! Fit of a self-affine spectrum: bands without data, roll-off, filters, noise, and both ways to continue a scan.
 
-use hysteron::model::{Detrend, Missing, SpectrumEnd};
+use hysteron::model::{Detrend, Filter, Missing, SpectrumEnd};
 use hysteron::physics::surface::measured::{Treatment, prepare};
 use hysteron::physics::surface::self_affine::SelfAffine;
 use ndarray::{Array2, s};
@@ -50,7 +50,8 @@ fn surface(n: usize, seed: u64, density: &dyn Fn(f64) -> f64) -> Array2<f64> {
 fn fit(heights: Array2<f64>, periodic: bool, points: f64) -> SelfAffine {
     let spacing = 1.0 / heights.nrows() as f64;
     let detrend = if periodic { Detrend::Mean } else { Detrend::Plane };
-    let treatment = Treatment { missing: Missing::Refuse, detrend, periodic, points_per_shortest_wavelength: points };
+    let treatment =
+        Treatment { missing: Missing::Refuse, detrend, periodic, filter: Filter::Gaussian, points_per_shortest_wavelength: points };
     prepare(heights, [spacing; 2], &treatment).unwrap().fit.unwrap()
 }
 

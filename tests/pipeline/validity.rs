@@ -65,6 +65,7 @@ fn val_each_limit_has_its_caution() {
     assert_eq!(set("persson_tosatti_realised", 1.99), "sticky");
     assert_eq!(set("tabor_min", 1.9), "tabor");
     assert_eq!(set("texture_aspect", 2.01), "texture");
+    assert_eq!(set("filter_overshoot", 0.011), "overshoot");
     let few: Value = 99_usize.into();
     assert_eq!(words(&table(&[&[("summit_count", few.clone())], &[("summit_count", few)]], 0.1, |_| {})), "few_asperities");
     assert_eq!(words(&counted(&[[9, 0, 0], [10, 0, 0]])), "few_contacts");

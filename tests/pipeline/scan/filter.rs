@@ -116,7 +116,7 @@ fn e2e_a_sinusoid_has_no_warning_of_the_cut_off() {
     let output = bench.verb("run", &[]);
     assert_eq!(code(&output), 0, "{}", stderr(&output));
     let cases = read_table(&bench.out().join("statistics/cases.parquet"), &schema::CASES).unwrap();
-    let codes = cases.text("caution").unwrap()[0].clone();
+    let codes = cases.text("caution").unwrap()[0];
     assert!(!codes.split('+').any(|code| ["conformed", "sticky", "coarse"].contains(&code)), "{codes}");
     let [octave, whole] =
         ["conformity_realised_mean", "persson_tosatti_realised_mean"].map(|name| cases.f64_or_null(name).unwrap()[0].unwrap());
