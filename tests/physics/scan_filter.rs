@@ -243,7 +243,7 @@ fn val_asperities_of_a_part_are_those_of_the_whole() {
     let known = find_summits(whole.view(), 256.0, 8.0).unwrap().list;
     let n = 128;
     let part = whole.slice(s![..n, ..n]).to_owned();
-    let (found, edge) = find_measured(part.view(), n as f64, (false, 8.0)).unwrap();
+    let (found, edge) = find_measured(part.view(), f64::from(n), (false, 8.0)).unwrap();
     assert!(edge > 0);
     let rms = (known.iter().map(|top| top.curvature_1_m.powi(2)).sum::<f64>() / known.len() as f64).sqrt();
     let mut matched = 0;
@@ -251,7 +251,7 @@ fn val_asperities_of_a_part_are_those_of_the_whole() {
         let near_by = |other: &&Summit| (other.x_m - top.x_m).hypot(other.y_m - top.y_m) < 0.5;
         let Some(other) = known.iter().find(near_by) else { continue };
         matched += 1;
-        let from_edge = [top.x_m, top.y_m].iter().map(|x| x.min(n as f64 - 1.0 - x)).fold(f64::MAX, f64::min);
+        let from_edge = [top.x_m, top.y_m].iter().map(|x| x.min(f64::from(n) - 1.0 - x)).fold(f64::MAX, f64::min);
         // The jump of the curvature at the edge decays with the distance from it.
         let allowed = if from_edge < 8.0 { 0.1 } else { 0.02 };
         near("curvature", top.curvature_1_m, other.curvature_1_m, allowed * rms);
