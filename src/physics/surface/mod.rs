@@ -4,6 +4,7 @@ pub mod band_limited;
 mod constants;
 pub(crate) mod continuation;
 mod infill;
+mod lattice;
 mod levelling;
 pub mod measured;
 mod measured_summits;

@@ -1,5 +1,6 @@
 //! Power spectral density of a self-affine surface (Eq 10) and its moments.
 
+use super::lattice;
 use crate::model::{Amplitudes, Normalization};
 use std::f64::consts::PI;
 
@@ -72,18 +73,10 @@ impl Spectrum {
     ///
     /// The amplitudes are fixed, with the chosen normalisation.
     ///
-    /// They are sums in place of the integrals of [`Self::moments`].
+    /// They are sums in place of the integrals of [`Self::moments`]. The time is proportional to ζ.
     #[must_use]
     pub fn lattice_moments(&self) -> Moments {
-        let zeta = i64::from(self.magnification);
-        let mut sums = MomentSums::default();
-        for kx in -(zeta - 1)..zeta {
-            for ky in -(zeta - 1)..zeta {
-                let mode_squared = (kx * kx + ky * ky).unsigned_abs();
-                sums.add(mode_squared, self.density(mode_squared));
-            }
-        }
-        sums.moments(self)
+        lattice::sums(self).moments(self)
     }
 }
 
@@ -98,6 +91,11 @@ impl MomentSums {
         self.0[0] += power;
         self.0[1] += power * k2;
         self.0[2] += power * k2 * k2;
+    }
+
+    /// Of the three sums.
+    pub(super) fn of(sums: [f64; 3]) -> Self {
+        Self(sums)
     }
 
     pub(crate) fn merge(self, other: Self) -> Self {

@@ -29,6 +29,24 @@ pub fn each_many<'py, const N: usize, const M: usize>(
     columns: [Column<'py>; N],
     evaluate: impl Fn([f64; N]) -> Result<[f64; M], PhysicsError> + Send + Sync,
 ) -> PyResult<[Values<'py>; M]> {
+    in_stretches(py, columns, STRETCH, evaluate)
+}
+
+/// As [`each_many`], for evaluations of milliseconds to seconds: Ctrl-C is looked for after each of them.
+pub fn each_slow<'py, const N: usize, const M: usize>(
+    py: Python<'py>,
+    columns: [Column<'py>; N],
+    evaluate: impl Fn([f64; N]) -> Result<[f64; M], PhysicsError> + Send + Sync,
+) -> PyResult<[Values<'py>; M]> {
+    in_stretches(py, columns, 1, evaluate)
+}
+
+fn in_stretches<'py, const N: usize, const M: usize>(
+    py: Python<'py>,
+    columns: [Column<'py>; N],
+    length: usize,
+    evaluate: impl Fn([f64; N]) -> Result<[f64; M], PhysicsError> + Send + Sync,
+) -> PyResult<[Values<'py>; M]> {
     let mut slices: [&[f64]; N] = [&[]; N];
     for (slice, column) in slices.iter_mut().zip(&columns) {
         *slice = column.as_slice()?;
@@ -57,8 +75,8 @@ pub fn each_many<'py, const N: usize, const M: usize>(
     };
     let mut from = 0;
     while from < count {
-        let to = count.min(from + STRETCH);
-        if count > STRETCH / 10 { py.detach(|| stretch(from..to)) } else { stretch(from..to) }.map_err(told)?;
+        let to = count.min(from + length);
+        if count > length / 10 { py.detach(|| stretch(from..to)) } else { stretch(from..to) }.map_err(told)?;
         py.check_signals()?;
         from = to;
     }

@@ -1,6 +1,6 @@
 //! Spectrum of a self-affine surface, its moments, and the energy that flattens it: `surface::spectrum` and `theory::flattening` by name.
 
-use crate::columns::{Column, Values, allowed, each, each_many, positive};
+use crate::columns::{Column, Values, allowed, each, each_many, each_slow, positive};
 use hysteron::model::{Amplitudes, Normalization};
 use hysteron::physics::PhysicsError;
 use hysteron::physics::surface::spectrum::{Moments, Spectrum};
@@ -9,6 +9,9 @@ use pyo3::prelude::*;
 
 const ACTION: &str = "the spectrum (Eq 10)";
 const FLATTENING: &str = "the energy of flattening";
+const LATTICE: &str = "the moments of discrete modes";
+/// Largest magnification whose modes are added: its time, which is proportional to it, is seconds.
+const MOST_ROWS: u32 = 1 << 24;
 /// Above it not every whole number is an `f64`.
 const WHOLE: f64 = 9_007_199_254_740_992.0;
 
@@ -77,7 +80,12 @@ fn lattice_moments<'py>(
     sample: bool,
 ) -> PyResult<[Values<'py>; 3]> {
     let normalization = if sample { Normalization::Sample } else { Normalization::Spectrum };
-    each_many(py, [length_m, rms_height_m, hurst, magnification], |of| Ok(parts(spectrum(of, normalization)?.lattice_moments())))
+    each_slow(py, [length_m, rms_height_m, hurst, magnification], |of| {
+        let of = spectrum(of, normalization)?;
+        let magnification = f64::from(of.magnification);
+        allowed(LATTICE, "the magnification", magnification, of.magnification <= MOST_ROWS, "at most 16777216")?;
+        Ok(parts(of.lattice_moments()))
+    })
 }
 
 /// Of moments: rms height, rms gradient, rms Laplacian, Nayak's parameter, density of summits.

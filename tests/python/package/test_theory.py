@@ -122,3 +122,12 @@ def test_errors():
         spectrum.lattice_moments(**SURFACE, normalization="rms")
     with pytest.raises(ValueError, match=r"the energy of flattening: the work of adhesion \[J/m2\] is 0"):
         theory.conformity(**SURFACE, contact_modulus_pa=E, work_of_adhesion_j_m2=0)
+
+
+def test_many_discrete_modes():
+    large = {**SURFACE, "magnification": 10**6}
+    lattice, integral = spectrum.lattice_moments(**large, normalization="spectrum"), spectrum.moments(**large)
+    # m4 is that of the shortest waves, where a sum over modes is an integral: the edge of the band adds at most 8 modes of 10^6.
+    assert lattice.m4_1_m2 == pytest.approx(integral.m4_1_m2, rel=1e-5)
+    with pytest.raises(ValueError, match="discrete modes: the magnification is 3.*\nhelp: expected at most 16777216"):
+        spectrum.lattice_moments(**{**SURFACE, "magnification": 2**25})
