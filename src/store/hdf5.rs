@@ -23,8 +23,11 @@ pub fn alone<T>(act: impl FnOnce() -> T) -> T {
 
 /// Name of the height field in a surface file.
 pub const HEIGHT: &str = "height_m";
-/// Rows and columns of a chunk.
-const CHUNK: usize = 256;
+/// Help for heights that are not those that were written.
+const DAMAGED: &str = "restore the file, or run `hysteron verify DIR --deep` and `hysteron run DIR` for the output folder it is in; \
+                       after a change on purpose, delete the attribute `height_blake3` of its group `header`";
+/// Rows that are written and compared at once.
+const BAND: usize = 256;
 /// A file cannot hold more than this many times its size: what deflate reaches on zeros. Own files are not packed.
 const MOST_PACKED: u64 = 1100;
 
@@ -51,7 +54,13 @@ pub fn read_surface(path: &Path) -> Result<(SurfaceHeader, Array2<f64>), StoreEr
         let file = open(path)?;
         let header = surface_header::read(&file)?;
         let data = heights_of(path, &file)?;
-        Ok((header, field(&data, HEIGHT)?))
+        let heights = field(&data, HEIGHT)?;
+        match surface_header::read_sum(&file)? {
+            Some(sum) if sum != sum_of(heights.view()) => {
+                Err(format!("its dataset {HEIGHT:?} differs from its checksum\nhelp: {DAMAGED}").into())
+            }
+            _ => Ok((header, heights)),
+        }
     })
     .map_err(|cause| StoreError::new("read the surface from", path, cause))
 }
@@ -129,6 +138,18 @@ fn only_field(file: &File) -> Result<String, Cause> {
     }
 }
 
+/// BLAKE3 of the heights as little-endian numbers, row after row.
+fn sum_of(heights: ArrayView2<'_, f64>) -> String {
+    let mut hasher = blake3::Hasher::new();
+    let mut bytes = Vec::new();
+    for row in heights.rows() {
+        bytes.clear();
+        bytes.extend(row.iter().flat_map(|height| height.to_le_bytes()));
+        hasher.update(&bytes);
+    }
+    hasher.finalize().to_hex().to_string()
+}
+
 /// True if a file is a surface of this program, by its attributes.
 #[must_use]
 pub fn is_own_surface(path: &Path) -> bool {
@@ -180,18 +201,25 @@ pub(super) fn library<T>(work: impl FnOnce() -> Result<T, Cause>) -> Result<T, C
     fenced(work).map_err(|cause| cause.to_string().into())
 }
 
+/// Options of a file in format 1.10: its metadata have checksums, so that damage is an error and not another surface.
 pub(super) fn options() -> FileBuilder {
+    options_of(LibraryVersion::V110)
+}
+
+/// Options of a file whose objects have the form of a version of the format, which readers without the HDF5 library may need.
+///
+/// The form of attributes is the usual one: these readers open no file with another limit between the two forms.
+pub(super) fn options_of(version: LibraryVersion) -> FileBuilder {
     let mut options = File::with_options();
-    // Format 1.10: its metadata have checksums, so that damage is an error and not another surface. It is also the
-    // upper bound, so that the file does not change with the library.
     options.with_fapl(|access| {
         access
-            .libver_bounds(LibraryVersion::V110, LibraryVersion::V110)
+            // The upper bound too, so that the file does not change with the library.
+            .libver_bounds(version, LibraryVersion::V110)
             // A file is never written under its own name, so there is nothing to lock; and some file systems cannot.
             .file_locking(false)
     });
-    // Neither times nor the second form that attributes take beyond eight, so that equal surfaces are equal bytes.
-    options.with_fcpl(|create| create.obj_track_times(false).attr_phase_change(64, 0));
+    // No times, so that equal surfaces are equal bytes.
+    options.with_fcpl(|create| create.obj_track_times(false));
     options
 }
 
@@ -218,13 +246,14 @@ fn write_all(path: &Path, header: &SurfaceHeader, heights: ArrayView2<'_, f64>) 
     }
     let (file, kind) = axes::start(path, &options())?;
     surface_header::write(&file, header)?;
-    let chunk = CHUNK.min(rows);
-    let data = file.new_dataset::<f64>().shape((rows, rows)).chunk((chunk, chunk)).create(HEIGHT)?;
+    surface_header::write_sum(&file, &sum_of(heights))?;
+    // Contiguous: some readers do not know the index of chunks of this format.
+    let data = file.new_dataset::<f64>().shape((rows, rows)).create(HEIGHT)?;
     surface_header::write_text(&data, "unit", "m")?;
     axes::write(&file, &kind, &data, header.length_m)?;
-    for first in (0..rows).step_by(chunk) {
-        let band = first..rows.min(first + chunk);
-        // HDF5 wants a contiguous band; where the field is not, this copy is the one extra chunk row.
+    for first in (0..rows).step_by(BAND) {
+        let band = first..rows.min(first + BAND);
+        // HDF5 wants a contiguous band; where the field is not, this copy is one extra band.
         let values = heights.slice(s![band.clone(), ..]);
         data.write_slice(values.as_standard_layout().view(), s![band, ..])?;
     }
@@ -240,8 +269,8 @@ fn check_all(path: &Path, header: &SurfaceHeader, heights: ArrayView2<'_, f64>) 
     let data = heights_of(path, &file)?;
     let mut same = surface_header::read(&file)? == *header && data.get_shape()? == heights.shape();
     same = same && axes::are_as_written(&file, heights.nrows(), header.length_m)?;
-    for first in (0..heights.nrows()).step_by(CHUNK) {
-        let band = first..heights.nrows().min(first + CHUNK);
+    for first in (0..heights.nrows()).step_by(BAND) {
+        let band = first..heights.nrows().min(first + BAND);
         same = same && data.read_slice_2d::<f64, _>(s![band.clone(), ..])? == heights.slice(s![band, ..]);
     }
     if same { Ok(()) } else { Err("the content read back differs from the content written".into()) }

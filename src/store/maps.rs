@@ -2,8 +2,9 @@
 
 use super::commit::{Written, commit};
 use super::error::{Cause, StoreError};
-use super::hdf5::{library, open, options};
+use super::hdf5::{library, open, options_of};
 use super::surface_header::{write_number, write_text};
+use hdf5_metno::file::LibraryVersion;
 use hdf5_metno::types::VarLenUnicode;
 use hdf5_metno::{File, Group};
 use ndarray::{Array2, ArrayView2};
@@ -138,7 +139,8 @@ fn fields(map: &ContactMap) -> [(&'static str, &'static str, &[f32]); 2] {
 }
 
 fn write_all(path: &Path, header: &MapsHeader<'_>, maps: &[ContactMap]) -> Result<(), Cause> {
-    let file = options().create(path)?;
+    // Chunks of format 1.8: some readers do not know the index of chunks of later formats.
+    let file = options_of(LibraryVersion::V18).create(path)?;
     write_number(&file, "schema_version", MAPS_VERSION)?;
     write_text(&file, "key", header.key)?;
     write_text(&file, "cycle_id", header.cycle_id)?;
@@ -163,7 +165,8 @@ fn write_all(path: &Path, header: &MapsHeader<'_>, maps: &[ContactMap]) -> Resul
 fn write_field(file: &File, group: &Group, points: usize, (name, unit, values): (&str, &str, &[f32])) -> Result<(), Cause> {
     let field = ArrayView2::from_shape((points, points), values)?;
     let chunk = CHUNK.min(points);
-    let data = group.new_dataset::<f32>().shape((points, points)).chunk((chunk, chunk)).shuffle().deflate(LEVEL).create(name)?;
+    let data =
+        group.new_dataset::<f32>().shape((points, points)).chunk((chunk, chunk)).shuffle().deflate(LEVEL).fletcher32().create(name)?;
     write_text(&data, "unit", unit)?;
     data.write(field)?;
     // While the dataset is open: closing it writes what is buffered, and reports no error.

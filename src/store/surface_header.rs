@@ -11,8 +11,10 @@ use super::error::Cause;
 
 /// Version of the layout of a surface file, raised whenever an attribute is renamed, removed, or changes its meaning.
 pub const SURFACE_VERSION: u32 = 1;
-/// Group with a copy of every text attribute of the root, as strings of fixed length. Files of earlier versions have these strings in the root.
+/// Group with a copy of every text attribute of the root, as strings of fixed length, and the checksum of the heights. Files of earlier versions have these strings in the root.
 const COPIES: &str = "header";
+/// Attribute of that group: BLAKE3 of the heights.
+const SUM: &str = "height_blake3";
 /// Bytes that a word may have: a key is the longest.
 const LONGEST_WORD: usize = 256;
 
@@ -135,7 +137,8 @@ pub(super) fn write(file: &File, header: &SurfaceHeader) -> Result<(), Cause> {
     write_word(file, "key", &header.key)?;
     write_finite(file, "length_m", header.length_m)?;
     write_number(file, "realization", header.realization)?;
-    write_number(file, "periodic", header.periodic)?;
+    // A number: NetCDF has no truth values, and its readers skip them.
+    write_number(file, "periodic", u8::from(header.periodic))?;
     write_finite(file, "rms_height_m", header.rms_height_m)?;
     write_finite(file, "rms_slope", header.rms_slope)?;
     write_finite(file, "rms_curvature_1_m", header.rms_curvature_1_m)?;
@@ -273,6 +276,20 @@ pub(super) fn read(file: &File) -> Result<SurfaceHeader, Cause> {
     })
 }
 
+/// Writes the checksum of the heights, which the format does not check.
+pub(super) fn write_sum(file: &File, sum: &str) -> Result<(), Cause> {
+    write_copy(file, SUM, sum)
+}
+
+/// The checksum of the heights; nothing in files of earlier versions.
+pub(super) fn read_sum(file: &File) -> Result<Option<String>, Cause> {
+    if !file.link_exists(COPIES) {
+        return Ok(None);
+    }
+    let words = file.group(COPIES)?;
+    if words.attr_names()?.iter().any(|name| name == SUM) { word(&words, SUM).map(Some) } else { Ok(None) }
+}
+
 pub(super) fn write_number<T: H5Type>(place: &Location, name: &str, value: T) -> Result<(), Cause> {
     Ok(place.new_attr::<T>().create(name)?.write_scalar(&value)?)
 }
@@ -295,11 +312,16 @@ fn write_word(file: &File, name: &str, value: &str) -> Result<(), Cause> {
     if value.len() > LONGEST_WORD || value.contains('\0') {
         return Err(format!("its {name} {value:?} cannot be stored: it may have {LONGEST_WORD} bytes, none of them 0").into());
     }
+    write_copy(file, name, value)?;
+    write_text(file, name, value)
+}
+
+/// Writes a word as a string of fixed length.
+fn write_copy(file: &File, name: &str, value: &str) -> Result<(), Cause> {
     let word: FixedUnicode<LONGEST_WORD> = value.parse()?;
     // HDF5 knows no string of length 0; an empty word is one zero byte.
     let stored = TypeDescriptor::FixedUnicode(value.len().max(1));
-    file.group(COPIES)?.new_attr_builder().empty_as(&stored).create(name)?.write_scalar(&word)?;
-    write_text(file, name, value)
+    Ok(file.group(COPIES)?.new_attr_builder().empty_as(&stored).create(name)?.write_scalar(&word)?)
 }
 
 fn number<T: H5Type>(place: &Location, name: &str) -> Result<T, Cause> {
@@ -316,7 +338,7 @@ fn finite(place: &Location, name: &str) -> Result<f64, Cause> {
     if value.is_finite() { Ok(value) } else { Err(bad_attribute(name, &format!("it is {value}"))) }
 }
 
-/// A truth value, read as a number first: any other byte than 0 and 1 would be no `bool` at all.
+/// A truth value, from a number or, in files of earlier versions, from a boolean of HDF5.
 fn truth(place: &Location, name: &str) -> Result<bool, Cause> {
     match number::<i8>(place, name)? {
         0 => Ok(false),

@@ -8,6 +8,7 @@ Says how many tables and values were compared; the first difference ends it.
 import json
 import math
 import sys
+import tempfile
 from pathlib import Path
 
 import duckdb
@@ -17,6 +18,7 @@ import pandas
 import polars
 import pyarrow
 import pyarrow.parquet
+import pyfive
 import xarray
 
 KINDS = {
@@ -78,7 +80,7 @@ def table(path):
     return arrow.num_rows * arrow.num_columns
 
 
-def surface(path):
+def surface(path, folder):
     """A surface by h5py and by xarray; the number of its heights."""
     with h5py.File(path) as file:
         heights = file["height_m"][:]
@@ -100,6 +102,14 @@ def surface(path):
             assert numpy.allclose(dataset["x_m"].values, points, rtol=1e-15, atol=0), (path, engine)
             assert dataset.attrs["rms_height_m"] == told["rms_height_m"], (path, engine)
             assert dataset.attrs["normalization"] == told["normalization"], (path, engine)
+            # A NetCDF file has every attribute: there are no booleans, which it could not hold.
+            copy = Path(folder) / f"{engine}.nc"
+            dataset.to_netcdf(copy)
+            with xarray.open_dataset(copy) as written:
+                assert written.attrs.keys() == told.keys() and written.attrs["periodic"] == 1, (path, engine)
+    # A reader without the HDF5 library.
+    with pyfive.File(path) as file:
+        assert file.attrs.keys() == told.keys() and numpy.array_equal(file["height_m"][:], heights), path
     return heights.size
 
 
@@ -109,7 +119,8 @@ def main():
     surfaces = sorted(folder.rglob("*.h5"))
     assert tables and surfaces, folder
     values = sum(table(path) for path in tables)
-    heights = sum(surface(path) for path in surfaces)
+    with tempfile.TemporaryDirectory() as copies:
+        heights = sum(surface(path, copies) for path in surfaces)
     print(f"{len(tables)} tables, {values} values; {len(surfaces)} surfaces, {heights} heights")
 
 

@@ -12,7 +12,6 @@ from h5py import h5a, h5f, h5g, h5p, h5s, h5t
 
 create = h5p.create(h5p.FILE_CREATE)
 create.set_obj_track_times(False)
-create.set_attr_phase_change(64, 0)
 access = h5p.create(h5p.FILE_ACCESS)
 access.set_libver_bounds(h5f.LIBVER_V110, h5f.LIBVER_V110)
 kind = h5t.C_S1.copy()
