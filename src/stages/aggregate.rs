@@ -54,8 +54,13 @@ fn write(campaign: &Campaign, standings: &[Standing], key: &str) -> Result<Vec<W
     let tables = [realizations, curves, avalanches, planned, methods, averaged];
     let mut files = tables.iter().map(write).collect::<Result<Vec<_>, StageError>>()?;
     let finished: Vec<bool> = standings.iter().map(|standing| *standing == Standing::Done).collect();
-    let described = datapackage::text(campaign, &finished);
-    files.push(commit::commit_bytes("describe the tables in", &campaign.dir.join("datapackage.json"), described.as_bytes())?);
+    for (place, text) in datapackage::files(campaign, &finished) {
+        let path = campaign.dir.join(place);
+        if let Some(folder) = path.parent() {
+            std::fs::create_dir_all(folder).map_err(|source| StageError::Folder { path: folder.to_owned(), source })?;
+        }
+        files.push(commit::commit_bytes("describe the tables in", &path, text.as_bytes())?);
+    }
     Ok(files)
 }
 

@@ -1,76 +1,122 @@
 //! `datapackage.json`: what tables a run has and what their columns mean, as the Data Package standard (version 2) has it.
+//!
+//! Each file is a resource of its own: readers of a resource of several Parquet files read the first one. Files of one kind share
+//! a schema in `schemas/`, which their resources name.
 
 use crate::campaign::{Campaign, CycleUnit};
 use crate::schema::{Column, Kind, TABLES, Table};
 use serde_json::{Value, json};
 
-/// The description of the tables of a campaign; of the cycles only of those that are done.
-pub(super) fn text(campaign: &Campaign, done: &[bool]) -> String {
-    let of_method = |by_elements: bool| {
-        let is = |unit: &CycleUnit| campaign.cases[unit.case].case.params.by_elements() == by_elements;
-        let finished = campaign.cycles.iter().zip(done).filter(|(unit, done)| **done && is(unit));
-        let mut ids: Vec<&str> = finished.map(|(unit, _)| unit.id.as_str()).collect();
-        ids.sort_unstable();
-        ids.dedup();
-        ids
-    };
-    let (asperities, elements) = (of_method(false), of_method(true));
-    let mut cycles = [asperities.as_slice(), elements.as_slice()].concat();
-    cycles.sort_unstable();
-    let surfaces: Vec<&str> = campaign.surfaces.iter().map(|unit| unit.id.as_str()).collect();
-    let mut resources: Vec<Value> = TABLES
-        .iter()
-        // What stands in no folder of a run is no part of one.
-        .filter(|table| table.file.contains('/'))
-        .filter_map(|table| {
-            let ids = match table.file.split('/').next() {
-                // Tables of one method only.
-                Some("cycles") if matches!(table.name, "turning" | "merged") => &asperities,
-                Some("cycles") if table.name == "adhesionless" => &elements,
-                Some("cycles") => &cycles,
-                Some("asperities") => &surfaces,
-                _ => return Some(resource(table, json!(table.file))),
-            };
-            let paths: Vec<String> = ids.iter().map(|id| table.file.replace("<id>", id)).collect();
-            (!paths.is_empty()).then(|| resource(table, json!(paths)))
-        })
-        .collect();
-    resources.push(json!({
-        "name": "surfaces",
-        "path": surfaces.iter().map(|id| format!("surfaces/{id}.h5")).collect::<Vec<_>>(),
-        "format": "hdf5",
-        "mediatype": "application/x-hdf5",
-        "description": "Height fields: the dataset /height_m (f64, N x N, rows along x) with its coordinates /x_m and /y_m; parameters of the surface as attributes.",
-    }));
-    if !elements.is_empty() {
-        resources.push(json!({
-            "name": "maps",
-            "path": elements.iter().map(|id| format!("cycles/{id}/maps.h5")).collect::<Vec<_>>(),
-            "format": "hdf5",
-            "mediatype": "application/x-hdf5",
-            "description": "Maps of boundary elements: a group for each load reversal and maximum tensile load, with the datasets gap_m and pressure_pa (f32, rows along x), and step, branch, max_load, approach_m and load_n as attributes; contact_gap_m of the file is the gap below which a bonded point is in contact.",
-        }));
+/// Files that describe the tables of a run: places below its folder, and contents.
+pub(super) type Described = Vec<(String, String)>;
+
+/// The schemas of the tables of which a run has several files, and `datapackage.json`, which describes the tables of all finished cycles.
+pub(super) fn files(campaign: &Campaign, done: &[bool]) -> Described {
+    let ids = Ids::of(campaign, done);
+    let mut files = Described::new();
+    let mut resources: Vec<Value> = Vec::new();
+    // A table that is in no folder of a run is no part of one.
+    for table in TABLES.iter().filter(|table| table.file.contains('/')) {
+        let Some(parts) = ids.of_table(table) else {
+            resources.push(resource(table, (table.name.to_owned(), table.file.to_owned()), schema(table)));
+            continue;
+        };
+        let place = format!("schemas/{}.json", table.name);
+        let part = |id: &&str| resource(table, (part_name(table.name, id), table.file.replace("<id>", id)), json!(place));
+        resources.extend(parts.iter().map(part));
+        if !parts.is_empty() {
+            files.push((place.clone(), format!("{:#}\n", schema(table))));
+        }
     }
+    resources.extend(ids.surfaces.iter().map(|id| hdf5("surfaces", id, format!("surfaces/{id}.h5"), SURFACE)));
+    resources.extend(ids.elements.iter().map(|id| hdf5("maps", id, format!("cycles/{id}/maps.h5"), MAPS)));
     let package = json!({
+        "generator": "hysteron",
         "$schema": "https://datapackage.org/profiles/2.0/datapackage.json",
         "name": campaign.spec.name.to_lowercase(),
         "description": "Adhesive hysteresis of rough surfaces: loading and unloading of self-affine surfaces with interacting JKR asperities. \
                         The spec is campaign.toml; what made each file is in receipts/.",
         "resources": resources,
     });
-    format!("{package:#}\n")
+    files.push(("datapackage.json".to_owned(), format!("{package:#}\n")));
+    files
 }
 
-fn resource(table: &Table, path: Value) -> Value {
-    let fields: Vec<Value> = table.columns.iter().map(field).collect();
+const SURFACE: &str = "Height field: the dataset /height_m (f64, N x N, rows along x) with its coordinates /x_m and /y_m; parameters of the \
+                       surface as attributes.";
+const MAPS: &str = "Maps of boundary elements: a group for each load reversal and maximum tensile load, with the datasets gap_m and pressure_pa \
+                    (f32, rows along x), and step, branch, max_load, approach_m and load_n as attributes; contact_gap_m of the file is the gap \
+                    below which a bonded point is in contact.";
+
+/// Ids of the surfaces and of the finished cycles.
+struct Ids<'a> {
+    surfaces: Vec<&'a str>,
+    /// Cycles of the asperity model.
+    asperities: Vec<&'a str>,
+    /// Cycles of boundary elements.
+    elements: Vec<&'a str>,
+    cycles: Vec<&'a str>,
+}
+
+impl<'a> Ids<'a> {
+    fn of(campaign: &'a Campaign, done: &[bool]) -> Self {
+        let of_method = |by_elements: bool| {
+            let is = |unit: &CycleUnit| campaign.cases[unit.case].case.params.by_elements() == by_elements;
+            let finished = campaign.cycles.iter().zip(done).filter(|(unit, done)| **done && is(unit));
+            let mut ids: Vec<&str> = finished.map(|(unit, _)| unit.id.as_str()).collect();
+            ids.sort_unstable();
+            ids.dedup();
+            ids
+        };
+        let (asperities, elements) = (of_method(false), of_method(true));
+        let mut cycles = [asperities.as_slice(), elements.as_slice()].concat();
+        cycles.sort_unstable();
+        let surfaces = campaign.surfaces.iter().map(|unit| unit.id.as_str()).collect();
+        Self { surfaces, asperities, elements, cycles }
+    }
+
+    /// Ids of the files of a table; nothing for a table of statistics, which is one file.
+    fn of_table(&self, table: &Table) -> Option<&[&'a str]> {
+        match table.file.split('/').next() {
+            // Tables of one method only.
+            Some("cycles") if matches!(table.name, "turning" | "merged") => Some(&self.asperities),
+            Some("cycles") if table.name == "adhesionless" => Some(&self.elements),
+            Some("cycles") => Some(&self.cycles),
+            Some("asperities") => Some(&self.surfaces),
+            _ => None,
+        }
+    }
+}
+
+/// Name of the resource of one file: lower case, as the standard recommends.
+fn part_name(kind: &str, id: &str) -> String {
+    format!("{kind}-{id}").to_lowercase()
+}
+
+fn hdf5(kind: &str, id: &str, path: String, description: &str) -> Value {
     json!({
-        "name": table.name,
+        "name": part_name(kind, id),
+        "path": path,
+        "format": "hdf5",
+        "mediatype": "application/x-hdf5",
+        "description": description,
+    })
+}
+
+fn resource(table: &Table, (name, path): (String, String), schema: Value) -> Value {
+    json!({
+        "name": name,
         "path": path,
         "format": "parquet",
         "mediatype": "application/vnd.apache.parquet",
         "description": table.doc,
-        "schema": { "fields": fields, "missingValues": [] },
+        "schema": schema,
     })
+}
+
+fn schema(table: &Table) -> Value {
+    let fields: Vec<Value> = table.columns.iter().map(field).collect();
+    json!({ "generator": "hysteron", "fields": fields, "missingValues": [] })
 }
 
 fn field(column: &Column) -> Value {

@@ -447,7 +447,7 @@ fn e2e_a_crate_describes_every_file() {
     assert_eq!(code(&bench.verb("run", &[])), 0);
     let own = files(&bench.out());
     let made = Command::new(env!("CARGO_BIN_EXE_hysteron"))
-        .args(["export", "ro-crate", "--license", "https://creativecommons.org/licenses/by/4.0/"])
+        .args(["export", "ro-crate", "--license", "https://creativecommons.org/licenses/by/4.0/", "--publisher", "A University"])
         .arg(bench.out())
         .output()
         .unwrap();
@@ -458,6 +458,18 @@ fn e2e_a_crate_describes_every_file() {
     let described: BTreeSet<PathBuf> =
         graph.iter().filter(|entity| entity["@type"] == "File").map(|entity| PathBuf::from(entity["@id"].as_str().unwrap())).collect();
     assert_eq!(described, own.into_keys().collect());
+    // The profile RO-Crate 1.2: what must be said of software, and should be of files, licence and publisher.
+    for entity in graph {
+        let has = |names: &[&str]| names.iter().all(|name| entity[*name].as_str().is_some_and(|text| !text.is_empty()));
+        match entity["@type"].as_str().unwrap() {
+            "SoftwareApplication" => assert!(has(&["name", "url", "version", "softwareVersion"]), "{entity:#}"),
+            "File" => assert!(has(&["name", "description"]) && entity["description"] != "File of the run", "{entity:#}"),
+            "CreateAction" => assert_ne!(entity["result"].as_array().map(Vec::len), Some(1), "{entity:#}"),
+            "Organization" => assert_eq!(entity["name"], "A University"),
+            "CreativeWork" => assert!(entity["@id"] == "ro-crate-metadata.json" || has(&["name", "description"]), "{entity:#}"),
+            _ => assert_eq!(entity["publisher"]["@id"], "#publisher"),
+        }
+    }
     // Whatever an entity refers to is in the graph, or an address.
     let known: BTreeSet<&str> = graph.iter().map(|entity| entity["@id"].as_str().unwrap()).collect();
     assert_eq!(known.len(), graph.len(), "each entity once");
