@@ -8,7 +8,7 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from hysteron import jkr, theory
+from hysteron import jkr, spectrum, theory
 
 GEL = {"contact_modulus_pa": 1e6, "work_of_adhesion_j_m2": 0.07}
 R = 2.5e-5
@@ -119,3 +119,16 @@ def test_ctrl_c_ends_a_long_array():
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, before)
+
+
+def test_masked_values_are_not_used():
+    values = np.ma.masked_array([1e-6, 2e-6, 3e-6], mask=[False, True, False])
+    np.testing.assert_array_equal(jkr.load(R, values, **GEL), jkr.load(R, [1e-6, np.nan, 3e-6], **GEL))
+    whole = np.ma.masked_array([1, 2, 3], mask=[0, 0, 1])
+    np.testing.assert_array_equal(np.isnan(jkr.load(1.0, whole, **GEL)), [False, False, True])
+    assert math.isnan(jkr.load(np.ma.masked, 1e-6, **GEL))
+    objects = np.ma.masked_array(np.array([1e-6, None], dtype=object), mask=[False, True])
+    np.testing.assert_array_equal(np.isnan(jkr.load(R, objects, **GEL)), [False, True])
+    lengths = np.ma.masked_array([1e-3, 1e-3], mask=[True, False])
+    np.testing.assert_array_equal(np.isnan(spectrum.lowest_wavenumber(length_m=lengths)), [True, False])
+    np.testing.assert_array_equal(np.isnan(theory.adhesionless_area(0.01, np.ma.masked_array([0.1, 0.1], mask=[True, False]))), [True, False])

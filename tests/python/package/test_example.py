@@ -65,3 +65,37 @@ def test_the_example_ends_at_a_figure(program, root, tmp_path):
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "own_scan.png").read_bytes().startswith(b"\x89PNG")
     assert "rms height" in done.stdout and "own_scan.png: " in done.stdout
+
+
+def test_an_existing_file_is_replaced_on_request_only(program, tmp_path):
+    heights = np.random.default_rng(1).normal(size=(64, 64)).cumsum(0).cumsum(1)
+    out = tmp_path / "mine.h5"
+    out.write_text("mine")
+    told = {"pixel_m": 1e-6, "unit": "nm"}
+    with pytest.raises(hysteron.Failed, match="the file exists\nhelp: use another out=, or force=True"):
+        hysteron.take(heights, out, **told)
+    assert out.read_text() == "mine"
+    hysteron.take(heights, out, **told, force=True)
+    assert out.stat().st_size > heights.nbytes
+
+
+def test_messages_name_arguments_and_no_temporary_file(program, tmp_path):
+    heights = np.random.default_rng(1).normal(size=(64, 64)).cumsum(0).cumsum(1)
+    for told, wanted in [
+        ({}, "unit="),
+        ({"unit": "nm"}, "pixel_m="),
+        ({"unit": "nm", "pixel_m": 1e-6, "dataset": "z"}, "dataset="),
+    ]:
+        with pytest.raises(hysteron.Failed, match="^error: ") as failed:
+            hysteron.take(heights, **told)
+        said = str(failed.value)
+        assert wanted in said and "--" not in said and "hysteron-" not in said and "array.npy" not in said, said
+    with pytest.raises(hysteron.Failed, match=r"^error: .*(\n.*)*spec\.toml:1:") as failed:
+        hysteron.run("name = 1\nseed = 'a'\n")
+    assert "hysteron-" not in str(failed.value)
+
+
+@pytest.mark.parametrize("strange", [np.ones((64, 64), bool), np.ones((64, 64), complex), np.full((64, 64), "1"), np.zeros((64, 64), "M8[s]")])
+def test_a_scan_has_real_numbers(program, strange):
+    with pytest.raises(TypeError, match="cannot compute with an array of type .*\nhelp: use real numbers"):
+        hysteron.take(strange, pixel_m=1e-6, unit="nm")

@@ -142,3 +142,20 @@ def test_numbers_of_a_run_agree_with_the_functions(campaign):
     area_m2 = cases["area_at_max_load_mean"].to_numpy() * column["length_m"] ** 2
     loss = theory.deng_kesari_loss(moments, area_m2, **gel) / unit_j
     np.testing.assert_allclose(cases["loss_dk_mean"].to_numpy(), loss, rtol=1e-12)
+
+
+def test_a_damaged_run_is_shown(campaign, tmp_path):
+    for name, content in [
+        ("statistics/cases.parquet", b"damaged"),
+        ("statistics/cases.parquet", b"PAR1" + 100 * b"x" + b"PAR1"),
+        ("campaign.toml", b"\xff\xfe"),
+    ]:
+        folder = tmp_path / f"{len(list(tmp_path.iterdir()))}"
+        shutil.copytree(campaign.dir, folder)
+        (folder / name).write_bytes(content)
+        shown = hysteron.load(folder)._repr_html_()
+        assert "cannot show the run" in shown and "hysteron verify" in shown
+    (folder / "statistics/cases.parquet").unlink()
+    (folder / "campaign.toml").write_text('name = "x"\n')
+    (folder / "datapackage.json").write_text("{")
+    assert "cannot show the run" in hysteron.load(folder)._repr_html_()

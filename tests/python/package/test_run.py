@@ -192,3 +192,21 @@ def test_a_text_with_an_equals_sign_may_be_a_path(said, tmp_path, monkeypatch):
         hysteron.run("name = 'x'")
     # The file is gone again.
     assert not os.path.exists(str(failed.value).removeprefix("error: "))
+
+
+@pytest.mark.parametrize("body", ["", "print(1)", "print('{}')", "print('hello')"])
+def test_another_program_is_named(said, body):
+    said(body)
+    for call in (lambda: hysteron.run("spec.toml"), lambda: hysteron.take("scan.npy") if body != "print('{}')" else hysteron.run("spec.toml")):
+        with pytest.raises(hysteron.Failed, match="hysteron-said is not the program hysteron: .*\nhelp: set HYSTERON"):
+            call()
+
+
+def test_a_file_that_is_no_program(tmp_path, monkeypatch):
+    path = tmp_path / "text"
+    path.write_bytes(b"\x00\x01no program")
+    path.chmod(0o755)
+    monkeypatch.setenv("HYSTERON", str(path))
+    for call in (hysteron.run, hysteron.take):
+        with pytest.raises(OSError, match="cannot start .*text: .*\nhelp: set HYSTERON"):
+            call("file")

@@ -26,17 +26,22 @@ def slips(as_printed: Collection[str]) -> frozenset[str]:
     return words
 
 
-def _real(value: Reals) -> NDArray[np.float64]:
-    array = np.asarray(value)
+def real(value: Any, kinds: str = "fiubO") -> NDArray[np.float64]:
+    """An array of real numbers, NaN where a masked array is masked; `kinds` are the accepted kinds of `numpy.dtype`."""
+    array = value if isinstance(value, np.ma.MaskedArray) else np.asarray(value)
     # Complex numbers, dates and text have no real value. Objects are converted: a missing value is NaN.
-    if array.dtype.kind not in "fiubO":
+    if array.dtype.kind not in kinds:
         raise TypeError(f"cannot compute with an array of type {array.dtype}\nhelp: use real numbers")
+    if isinstance(array, np.ma.MaskedArray):
+        # Objects below a mask may be no numbers.
+        plain = np.ma.filled(array, 0) if array.dtype.kind == "O" else array.data
+        return np.where(np.ma.getmaskarray(array), np.nan, np.asarray(plain, dtype=np.float64))
     return np.asarray(array, dtype=np.float64)
 
 
 def many(kernel: Callable[..., Collection[Column]], *values: Reals, **flags: bool) -> tuple[Result, ...]:
     """Calls a kernel with several result columns once for all elements."""
-    arrays = [_real(value) for value in values]
+    arrays = [real(value) for value in values]
     shape = np.broadcast_shapes(*(array.shape for array in arrays))
     size = int(np.prod(shape, dtype=np.int64))
     # Scalars remain scalars.

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _notebook, _toml
+from ._arrays import real
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -120,7 +121,7 @@ def run(
         If some cases failed.
     """
     program = find()
-    with _file(spec) as path:
+    with _file(spec) as (path, temporary):
         command = [str(program), "run", "--json"]
         if out is not None:
             command.append(f"--out={os.fspath(out)}")
@@ -129,12 +130,14 @@ def run(
         if until is not None:
             command.append(f"--until={until}")
         # "--": file names are not options.
-        code, said, told = _watched([*command, "--", str(path)])
+        code, said, told = _watched([*command, "--", path], {path: "spec.toml"} if temporary else {})
     if code == _INTERRUPTED:
         raise Interrupted(_words(told))
     if code not in (0, _FAILED_CASES):
-        raise Failed(_words(told) or f"{program} ended with exit code {code} without a message", code)
-    answer = json.loads(said)
+        raise Failed(_named(_words(told)) or f"{program} ended with exit code {code} without a message", code)
+    answer = _json(said, program, code)
+    if not {"dir", "stages"} <= answer.keys():
+        raise _another(program, code)
     from ._run import load
 
     result = load(answer["dir"])
@@ -159,6 +162,7 @@ def take(
     periodic: bool = False,
     points: int = 8,
     filter: str | None = None,
+    force: bool = False,
 ) -> dict[str, Any]:
     """Imports a measured surface, as `hysteron import`, and returns its moments, spectrum and self-affine fit.
 
@@ -167,7 +171,7 @@ def take(
     file : path or array
         Path of HDF5, NetCDF-3, X3P, .npy or text; or an array of heights, in which masked values and NaN are missing points.
     out : path, optional
-        The surface is written there, replacing an existing file, for use as `surface.file` in a spec. Default: no file is written.
+        The surface is written there, for use as `surface.file` in a spec. Default: no file is written.
     dataset : str, optional
         Field of an HDF5 file.
     pixel_m : float, optional
@@ -184,6 +188,8 @@ def take(
         S-filter cut-off in pixels.
     filter : str, optional
         S-filter: gaussian (default, ISO 16610-61) or sharp.
+    force : bool
+        Replaces an existing file `out`; without it that is an error.
 
     Returns
     -------
@@ -191,14 +197,11 @@ def take(
         Output of `hysteron import --json`.
     """
     command = [str(find()), "import", "--json", f"--points={points}"]
-    command += ["--dry-run"] if out is None else [f"--out={os.fspath(out)}", "--force"]
+    command += ["--dry-run"] if out is None else [f"--out={os.fspath(out)}"]
     command += [f"--{name}={value}" for name, value in (("dataset", dataset), ("pixel-m", pixel_m), ("unit", unit), ("detrend", detrend), ("filter", filter)) if value is not None]
-    command += [f"--{name}" for name, asked in (("fill", fill), ("periodic", periodic)) if asked]
-    with _scan(file) as path:
-        try:
-            return _answered([*command, "--", path])
-        except Failed as error:
-            raise Failed(_of_take(str(error), "" if isinstance(file, (str, os.PathLike)) else path), error.exit_code) from None
+    command += [f"--{name}" for name, asked in (("fill", fill), ("periodic", periodic), ("force", force)) if asked]
+    with _scan(file) as (path, temporary):
+        return _answered([*command, "--", path], {path: "the array"} if temporary else {})
 
 
 def status(dir: Path) -> dict[str, Any]:
@@ -206,37 +209,86 @@ def status(dir: Path) -> dict[str, Any]:
     return _answered([str(find()), "status", "--json", "--", str(dir)])
 
 
-def _answered(command: list[str]) -> dict[str, Any]:
-    """JSON output of a command."""
-    answer = subprocess.run(command, check=False, capture_output=True, encoding="utf-8", errors="replace")
+def _answered(command: list[str], names: Mapping[str, str] | None = None) -> dict[str, Any]:
+    """JSON output of a command; `names` are words for paths in its messages."""
+    try:
+        answer = subprocess.run(command, check=False, capture_output=True, encoding="utf-8", errors="replace")
+    except OSError as error:
+        raise _unstartable(command[0], error) from None
     if answer.returncode not in (0, _FAILED_CASES):
-        raise Failed(_words(answer.stderr), answer.returncode)
-    told: dict[str, Any] = json.loads(answer.stdout)
+        words = _worded(_words(answer.stderr), names or {})
+        raise Failed(_named(words, everywhere=True) or f"{command[0]} ended with exit code {answer.returncode} without a message", answer.returncode)
+    return _json(answer.stdout, command[0], answer.returncode)
+
+
+def _json(said: str, program: str | Path, code: int) -> dict[str, Any]:
+    """JSON output of the program."""
+    try:
+        told = json.loads(said)
+    except ValueError:
+        told = None
+    if not isinstance(told, dict):
+        raise _another(program, code)
     return told
 
 
-def _of_take(message: str, written: str) -> str:
-    """A message of `import` in the terms of `take`: keywords for options, and the array for the file that it was `written` to."""
-    message = re.sub(r"--([a-z]+(?:-[a-z]+)*)(?: (?=\d)|=)?", lambda option: f"{option[1].replace('-', '_')}=", message)
-    return message.replace(written, "the array") if written else message
+def _another(program: str | Path, code: int) -> Failed:
+    """The error of a program that does not answer as hysteron does."""
+    return Failed(f"error: {program} is not the program hysteron: its output is not the expected JSON\nhelp: set HYSTERON to the path of hysteron", code)
+
+
+def _unstartable(program: str, error: OSError) -> OSError:
+    """The error of a file that is no program."""
+    return OSError(error.errno, f"cannot start {program}: {error.strerror}\nhelp: set HYSTERON to the path of the program hysteron")
+
+
+#: Options of the command line with the same name in Python, and those of them without a value.
+_OPTIONS = ("dataset", "pixel-m", "unit", "fill", "detrend", "periodic", "points", "filter", "out", "force", "jobs", "until")
+_FLAGS = ("fill", "periodic", "force")
+_OPTION = re.compile(rf"--({'|'.join(_OPTIONS)})\b(?: (\d\S*)(?=\)))?")
+_OTHER = re.compile(r"--([a-z]+(?:-[a-z]+)*)(?: (?=\d)|=)?")
+
+
+def _named(words: str, everywhere: bool = False) -> str:
+    """A message with the arguments of Python in place of the options, in parentheses or everywhere."""
+
+    def keyword(found: re.Match[str]) -> str:
+        return f"{found[1].replace('-', '_')}="
+
+    def argument(found: re.Match[str]) -> str:
+        return f"{found[1].replace('-', '_')}={'True' if found[1] in _FLAGS else found[2] or ''}"
+
+    if everywhere:
+        words = words.replace("(--fill; fill=True in Python)", "(fill=True)").replace("on the command line", "in Python")
+        # Commands stay as they are.
+        parts = re.split(r"(`hysteron [^`]*`)", words)
+        return "".join(part if part.startswith("`hysteron ") else _OTHER.sub(keyword, _OPTION.sub(argument, part)) for part in parts)
+    return re.sub(r"\(--[^()]*\)", lambda found: _OPTION.sub(argument, found[0]), words)
+
+
+def _worded(text: str, names: Mapping[str, str]) -> str:
+    """A text with words in place of paths of temporary files."""
+    for path, word in names.items():
+        text = text.replace(path, word)
+    return text
 
 
 @contextmanager
-def _scan(file: str | os.PathLike[str] | npt.NDArray[Any]) -> Iterator[str]:
-    """A scan as a file."""
+def _scan(file: str | os.PathLike[str] | npt.NDArray[Any]) -> Iterator[tuple[str, bool]]:
+    """A scan as a file, and whether the file is temporary."""
     if isinstance(file, (str, os.PathLike)):
-        yield os.fspath(file)
+        yield os.fspath(file), False
         return
-    heights = np.ma.filled(np.ma.asarray(file, dtype=np.float64), np.nan)
+    heights = real(file, "fiuO")
     with tempfile.TemporaryDirectory(prefix="hysteron-") as folder:
         path = Path(folder) / "array.npy"
         np.save(path, heights)
-        yield str(path)
+        yield str(path), True
 
 
 @contextmanager
-def _file(spec: str | os.PathLike[str] | Mapping[str, Any]) -> Iterator[str]:
-    """The spec as a file."""
+def _file(spec: str | os.PathLike[str] | Mapping[str, Any]) -> Iterator[tuple[str, bool]]:
+    """The spec as a file, and whether the file is temporary."""
     if isinstance(spec, Mapping):
         surface = spec.get("surface")
         if isinstance(surface, Mapping) and surface.get("file", "") is None:
@@ -245,25 +297,30 @@ def _file(spec: str | os.PathLike[str] | Mapping[str, Any]) -> Iterator[str]:
     elif isinstance(spec, str) and ("\n" in spec or ("=" in spec and not os.path.isfile(spec))):
         text = spec
     else:
-        yield os.fspath(spec)
+        yield os.fspath(spec), False
         return
     with tempfile.TemporaryDirectory(prefix="hysteron-") as folder:
         path = Path(folder) / "spec.toml"
         path.write_text(text, encoding="utf-8")
-        yield str(path)
+        yield str(path), True
 
 
-def _watched(command: list[str]) -> tuple[int, str, str]:
-    """Runs a command and forwards its standard error line by line; returns exit code, output and standard error."""
+def _watched(command: list[str], names: Mapping[str, str]) -> tuple[int, str, str]:
+    """Runs a command and forwards its standard error line by line, with words for paths; returns exit code, output and standard error."""
     told: list[str] = []
     bar = _notebook.bar()
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding="utf-8", errors="replace") as process:
+    try:
+        started = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding="utf-8", errors="replace")
+    except OSError as error:
+        raise _unstartable(command[0], error) from None
+    with started as process:
         assert process.stdout is not None and process.stderr is not None
         interrupted = False
         while True:
             try:
                 # The answer is a few hundred bytes at the end: it waits in its pipe.
-                for line in process.stderr:
+                for raw in process.stderr:
+                    line = _worded(raw, names)
                     told.append(line)
                     if bar is None or not bar.line(line):
                         sys.stderr.write(line)

@@ -117,6 +117,15 @@ class Run(Mapping[str, pa.Table]):
 
     def _repr_html_(self) -> str:
         """The run in a notebook: state, link to the report, and the main columns of the table of means."""
+        try:
+            return self._html()
+        except (pa.ArrowException, OSError, LookupError, TypeError, ValueError) as error:
+            # A damaged file is an error of its access, not of the display of the run.
+            why = f"{type(error).__name__}: {error}"
+            path = html.escape(str(self.dir))
+            return f"<p>{path}: cannot show the run ({html.escape(why)}). <code>hysteron verify {path} --deep</code> lists damaged files.</p>"
+
+    def _html(self) -> str:
         title = f"<b>{html.escape(self.name)}</b> ({html.escape(str(self.dir))})"
         if self.report.is_file():
             title += f' <a href="{html.escape(self.report.as_uri())}">report.html</a>'
@@ -183,8 +192,10 @@ class Run(Mapping[str, pa.Table]):
             described = json.loads((self.dir / "datapackage.json").read_text(encoding="utf-8"))
         except FileNotFoundError:
             return sorted(there)
-        paths: list[str] = next((resource["path"] for resource in described["resources"] if resource["name"] == "steps"), [])
-        return sorted(there.intersection(path.split("/")[1] for path in paths))
+        # One path per resource; in directories of earlier versions a list of them.
+        listed = (resource["path"] for resource in described["resources"])
+        paths = [path for entry in listed for path in ([entry] if isinstance(entry, str) else entry)]
+        return sorted(there.intersection(path.split("/")[1] for path in paths if path.endswith("/steps.parquet")))
 
     @property
     def surface_ids(self) -> list[str]:
