@@ -191,6 +191,9 @@ enum Verb {
         /// Write schemas/, and in a clone the generated pages of src/guide
         #[arg(long)]
         write: bool,
+        /// Replace other files of these names outside a clone
+        #[arg(long, requires = "write")]
+        force: bool,
     },
     /// Print the completion script of a shell
     Completions {
@@ -205,6 +208,9 @@ enum Verb {
         /// Write all pages into this folder instead
         #[arg(long, value_name = "DIR", conflicts_with = "verb")]
         dir: Option<PathBuf>,
+        /// Replace other files of these names
+        #[arg(long, requires = "dir")]
+        force: bool,
     },
 }
 
@@ -224,6 +230,9 @@ enum ExportVerb {
         output: OutputArguments,
         #[command(flatten)]
         shards: ShardsArguments,
+        /// Replace a Snakefile that was not exported
+        #[arg(long)]
+        force: bool,
     },
     /// Metadata of a finished run for a data repository (RO-Crate 1.2)
     RoCrate {
@@ -232,6 +241,12 @@ enum ExportVerb {
         /// Licence of the data: SPDX identifier (CC-BY-4.0) or http(s) address
         #[arg(long, value_name = "LICENCE")]
         license: Option<String>,
+        /// Publishing organization: name, or address such as a ROR identifier
+        #[arg(long, value_name = "NAME")]
+        publisher: Option<String>,
+        /// Replace existing metadata
+        #[arg(long)]
+        force: bool,
     },
 }
 

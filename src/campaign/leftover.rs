@@ -1,6 +1,8 @@
 //! Unreferenced files: no spec names them.
 
+use super::owned::is_marked;
 use super::{Campaign, REPORT_PAGE, Stage, Standing};
+use crate::schema::TABLES;
 use crate::store::commit::is_abandoned;
 use crate::store::{Check, Found, read_receipt};
 use std::collections::HashSet;
@@ -25,7 +27,7 @@ const PAST: &str = "its cycle is done";
 
 impl Campaign {
     /// Files that neither this campaign nor `others` in the same folder name: receipts first, so that removal in this order leaves no receipt
-    /// without its files. Files that this program does not write are not looked at.
+    /// without its files. Only files that the program wrote are listed, by a receipt or by their marks.
     #[must_use]
     pub fn leftovers(&self, others: &[Self]) -> Vec<Leftover> {
         let all = || std::iter::once(self).chain(others);
@@ -35,13 +37,22 @@ impl Campaign {
         for (stage, known) in [(Stage::Cycle, &cycles), (Stage::Extract, &surfaces), (Stage::Generate, &surfaces)] {
             unnamed(&self.receipts_dir(stage), Some("json"), known, &mut found);
         }
-        unnamed(&self.dir.join("cycles"), None, &cycles, &mut found);
-        unnamed(&self.dir.join("asperities"), Some("parquet"), &surfaces, &mut found);
-        unnamed(&self.dir.join("surfaces"), Some("h5"), &surfaces, &mut found);
+        for (folder, ending, stage, known) in [
+            ("cycles", None, Stage::Cycle, &cycles),
+            ("asperities", Some("parquet"), Stage::Extract, &surfaces),
+            ("surfaces", Some("h5"), Stage::Generate, &surfaces),
+        ] {
+            let mut files = Vec::new();
+            unnamed(&self.dir.join(folder), ending, known, &mut files);
+            files.retain(|left| self.is_written(stage, &left.path));
+            found.extend(files);
+        }
         if let Found::Whole(receipt) = read_receipt(&self.receipts_dir(Stage::Report).join(format!("{REPORT_PAGE}.json"))) {
+            let drawn = self.drawn();
             let kept: HashSet<PathBuf> = receipt.files.iter().map(|file| self.dir.join(&file.path)).collect();
             let pictures = entries(&self.dir.join("figures")).into_iter().filter(|path| is_picture(path));
-            found.extend(pictures.filter(|path| !kept.contains(path)).map(|path| Leftover { size_bytes: size(&path), path, why: UNSHOWN }));
+            let unshown = pictures.filter(|path| !kept.contains(path) && self.is_drawn(&drawn, path));
+            found.extend(unshown.map(|path| Leftover { size_bytes: size(&path), path, why: UNSHOWN }));
         }
         for campaign in all() {
             for unit in campaign.distinct_cycles() {
@@ -52,7 +63,7 @@ impl Campaign {
                 }
             }
         }
-        let folders = ["", "surfaces", "asperities", "statistics", "figures", "receipts"].map(|name| self.dir.join(name));
+        let folders = ["", "surfaces", "asperities", "statistics", "schemas", "figures", "receipts"].map(|name| self.dir.join(name));
         let receipts = Stage::ALL.map(|stage| self.receipts_dir(stage));
         let cycles = entries(&self.dir.join("cycles")).into_iter().filter(|path| path.is_dir());
         for folder in folders.into_iter().chain(receipts).chain(cycles) {
@@ -65,15 +76,47 @@ impl Campaign {
     }
 }
 
+impl Campaign {
+    /// True if a file of a task, or the folder of a cycle, is of the program: a receipt names it, or it has the marks of one.
+    fn is_written(&self, stage: Stage, path: &Path) -> bool {
+        if path.is_dir() {
+            return !cycle_files(path).is_empty() || entries(path).is_empty();
+        }
+        let receipt = path.file_stem().map(|id| self.receipts_dir(stage).join(format!("{}.json", id.to_string_lossy())));
+        receipt.is_some_and(|path| matches!(read_receipt(&path), Found::Whole(_))) || is_marked(path)
+    }
+}
+
 impl Leftover {
-    /// Takes it away.
+    /// Takes it away; of a folder only the files of a cycle, and the folder if nothing else is in it.
     ///
     /// # Errors
     /// If it is there and cannot be taken away.
     pub fn remove(&self) -> std::io::Result<()> {
-        let removed = if self.path.is_dir() { std::fs::remove_dir_all(&self.path) } else { std::fs::remove_file(&self.path) };
-        removed.or_else(|error| if error.kind() == ErrorKind::NotFound { Ok(()) } else { Err(error) })
+        if self.path.is_dir() {
+            for file in cycle_files(&self.path) {
+                removed(std::fs::remove_file(file))?;
+            }
+            return if entries(&self.path).is_empty() { removed(std::fs::remove_dir(&self.path)) } else { Ok(()) };
+        }
+        removed(std::fs::remove_file(&self.path))
     }
+}
+
+/// Success also where there was nothing to remove.
+fn removed(result: std::io::Result<()>) -> std::io::Result<()> {
+    result.or_else(|error| if error.kind() == ErrorKind::NotFound { Ok(()) } else { Err(error) })
+}
+
+/// Files in the folder of a cycle that the program writes.
+fn cycle_files(folder: &Path) -> Vec<PathBuf> {
+    const OTHERS: [&str; 4] = ["maps.h5", "turning.bin", "failed.json", "halfway.bin"];
+    let is_own = |path: &PathBuf| {
+        let is_table = |name: &str| TABLES.iter().any(|table| table.file.strip_prefix("cycles/<id>/") == Some(name));
+        let name = path.file_name().and_then(|name| name.to_str());
+        is_abandoned(path) || name.is_some_and(|name| OTHERS.contains(&name) || is_table(name))
+    };
+    entries(folder).into_iter().filter(|path| !path.is_dir() && is_own(path)).collect()
 }
 
 /// Entries of a folder that have the name of a task, but of none that is known; folders if there is no extension.
@@ -119,7 +162,11 @@ pub(super) fn entries(folder: &Path) -> Vec<PathBuf> {
     paths
 }
 
-/// The bytes of a file, or of all files below a folder.
+/// The bytes of a file, or of the files of a cycle in its folder.
 fn size(path: &Path) -> u64 {
-    if path.is_dir() { entries(path).iter().map(|inner| size(inner)).sum() } else { std::fs::metadata(path).map_or(0, |found| found.len()) }
+    if path.is_dir() {
+        cycle_files(path).iter().map(|inner| size(inner)).sum()
+    } else {
+        std::fs::metadata(path).map_or(0, |found| found.len())
+    }
 }

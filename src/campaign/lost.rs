@@ -95,13 +95,13 @@ impl Campaign {
 }
 
 /// The task that writes a file of this place.
-fn owner(file: &str) -> Option<Owner<'_>> {
+pub(super) fn owner(file: &str) -> Option<Owner<'_>> {
     match file.split_once('/') {
         Some(("surfaces", name)) => Some((Stage::Generate, name.strip_suffix(".h5")?)),
         Some(("asperities", name)) => Some((Stage::Extract, name.strip_suffix(".parquet")?)),
         Some(("cycles", rest)) => Some((Stage::Cycle, rest.split_once('/')?.0)),
         Some(("statistics", "panels.parquet")) | Some(("figures", _)) => Some((Stage::Report, REPORT_PAGE)),
-        Some(("statistics", _)) => Some((Stage::Aggregate, STATISTICS)),
+        Some(("statistics" | "schemas", _)) => Some((Stage::Aggregate, STATISTICS)),
         Some(_) => None,
         None if file == "report.html" => Some((Stage::Report, REPORT_PAGE)),
         None => (file == "datapackage.json").then_some((Stage::Aggregate, STATISTICS)),

@@ -9,6 +9,7 @@ mod key_inputs;
 mod layout;
 mod leftover;
 mod lost;
+pub mod owned;
 mod shard;
 mod standing;
 

@@ -82,7 +82,7 @@ pub(super) struct CompareArguments {
     /// Print JSON
     #[arg(long)]
     pub(super) json: bool,
-    /// Replace a comparison of other runs
+    /// Replace a comparison of other runs, and other files of these names
     #[arg(long)]
     pub(super) force: bool,
     /// Open comparison.html when it is written
@@ -110,6 +110,9 @@ pub(super) struct CsvArguments {
     /// Folder of the CSV files [default: csv/ in the output folder]
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
+    /// Replace existing files with another content
+    #[arg(long)]
+    pub(super) force: bool,
     /// Print JSON
     #[arg(long)]
     pub(super) json: bool,
@@ -122,6 +125,9 @@ pub(super) struct ExportArguments {
     /// File to write
     #[arg(long, value_name = "FILE")]
     pub(super) out: PathBuf,
+    /// Overwrite an existing file
+    #[arg(long)]
+    pub(super) force: bool,
 }
 
 #[derive(Debug, Args)]

@@ -12,7 +12,7 @@ const KEY: &str = "hysteron-key";
 
 /// A page with the style of the report alone; where `reload` is set, it is loaded again after so many seconds.
 pub(super) fn styled((title, reload): (&str, Option<u32>), body: &Markup) -> String {
-    let meta = html! { @if let Some(seconds) = reload { meta http-equiv="refresh" content=(seconds); } };
+    let meta = html! { meta name="hysteron-page" content="progress"; @if let Some(seconds) = reload { meta http-equiv="refresh" content=(seconds); } };
     page(title, &meta, &html! { main { (body) } })
 }
 

@@ -1,13 +1,15 @@
 //! Comparison of finished runs, from their tables over realizations.
 
 use super::StageError;
-use super::report::write_picture;
+use super::done::Clock;
+use super::report::pictures;
+use crate::campaign::owned::{comparison_receipt, damage, run_around};
 use crate::figures::{Panel, Tables, compared};
 use crate::report::{Compared, comparison_page};
 use crate::schema::{self, COMPARISON};
 use crate::spec::Figures;
 use crate::stats::{self, Group, Matched, Side, varying};
-use crate::store::{Frame, commit, parquet};
+use crate::store::{Check, Found, Frame, commit, parquet, read_receipt};
 use std::path::{Path, PathBuf};
 
 /// Groups of cases up to which a comparison has its figures as PNG and PDF too.
@@ -25,15 +27,19 @@ pub struct Comparison {
 }
 
 /// Compares the campaigns in `folders` with the first one, and writes `comparison.parquet`, `comparison.html` and `figures/` into `out`. A comparison of
-/// other campaigns in `out` is replaced only if `force` is true.
+/// other campaigns in `out`, and files that no comparison wrote, are replaced only if `force` is true.
 ///
 /// # Errors
-/// If a folder is given twice or lacks its tables over realizations; if cases cannot be told apart; if no case is in all campaigns; if `out` holds another
-/// comparison; a file that cannot be written.
+/// If a folder is given twice, lacks its tables over realizations or has damaged ones; if cases cannot be told apart; if no case is in all campaigns; if
+/// `out` is a run, or holds another comparison; a file that cannot be written.
 pub fn compare(folders: &[PathBuf], out: &Path, force: bool) -> Result<Comparison, StageError> {
+    let clock = Clock::start();
     let same = |a: &PathBuf, b: &PathBuf| a == b || a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b));
     if let Some((_, twice)) = folders.iter().enumerate().find(|(place, folder)| folders[..*place].iter().any(|other| same(other, folder))) {
         return Err(StageError::ComparedTwice { path: twice.clone() });
+    }
+    if let Some(run) = run_around(out) {
+        return Err(StageError::IntoRun { path: out.to_owned(), run });
     }
     let sides: Vec<Side> = labels(folders).into_iter().zip(folders).map(|(label, folder)| side(label, folder)).collect::<Result<_, _>>()?;
     let file = out.join(COMPARISON.file);
@@ -46,28 +52,57 @@ pub fn compare(folders: &[PathBuf], out: &Path, force: bool) -> Result<Compariso
         return Err(StageError::NothingInCommon { folders });
     }
     let table = stats::comparison(&sides, &matched)?;
-    for path in [out.to_owned(), out.join("figures")] {
-        std::fs::create_dir_all(&path).map_err(|source| StageError::Folder { path, source })?;
-    }
-    remove_figures(&out.join("figures"));
     let names = names(&sides, &matched)?;
     let mut drawings: Vec<(String, Vec<Panel>)> = Vec::new();
     for (number, (group, name)) in matched.groups.iter().zip(&names).enumerate() {
         drawings.push((name.clone(), panels(&sides, group, &format!("compare{number}"))?));
     }
-    for panel in drawings.iter().flat_map(|(_, panels)| panels) {
-        if matched.groups.len() > MOST_IN_ALL_FORMATS {
-            let path = out.join("figures").join(format!("{}.svg", panel.stem));
-            commit::commit_bytes("write a figure", &path, panel.svg.as_bytes())?;
-        } else {
-            write_picture(out, &panel.stem, &panel.svg, &Figures::default())?;
-        }
-    }
-    parquet::write_table(&file, &table, &[])?;
-    let path = out.join("comparison.html");
+    let mut files = figures(&drawings, matched.groups.len())?;
     let page = comparison_page(&Compared { sides: &sides, matched: &matched, names: &names, drawings: &drawings, table: &table })?;
-    commit::commit_bytes("write the comparison", &path, page.as_bytes())?;
-    Ok(Comparison { page: path, table, names })
+    files.push((PAGE.to_owned(), page.into_bytes()));
+    write((out, force), &files, &table, &clock)?;
+    Ok(Comparison { page: out.join(PAGE), table, names })
+}
+
+/// Name of the page.
+const PAGE: &str = "comparison.html";
+
+/// The figures: places and contents.
+fn figures(drawings: &[(String, Vec<Panel>)], groups: usize) -> Result<Vec<(String, Vec<u8>)>, StageError> {
+    let formats = if groups > MOST_IN_ALL_FORMATS { vec!["svg"] } else { Figures::default().format };
+    let wanted = Figures { format: formats, ..Figures::default() };
+    let mut files = Vec::new();
+    for panel in drawings.iter().flat_map(|(_, panels)| panels) {
+        files.extend(pictures(&panel.stem, &panel.svg, &wanted)?);
+    }
+    Ok(files)
+}
+
+/// Writes the files of a comparison, its table and its receipt, and removes files of the comparison that was there.
+fn write((out, force): (&Path, bool), files: &[(String, Vec<u8>)], table: &Frame, clock: &Clock) -> Result<(), StageError> {
+    let earlier = match read_receipt(&comparison_receipt(out)) {
+        Found::Whole(receipt) => receipt.files,
+        _ => Vec::new(),
+    };
+    let is_own = |place: &str| earlier.iter().any(|file| file.path == place && file.fault(out, Check::Contents).is_none());
+    // Comparisons of earlier versions have no receipt, but their table.
+    let is_known = earlier.is_empty() && out.join(COMPARISON.file).is_file();
+    let is_foreign = |place: &&str| !is_known && !is_own(place) && out.join(place).symlink_metadata().is_ok();
+    let places = || files.iter().map(|(place, _)| place.as_str()).chain([COMPARISON.file]);
+    if let Some(place) = places().find(is_foreign).filter(|_| !force) {
+        return Err(StageError::ForeignComparison { path: out.join(place) });
+    }
+    for path in [out.to_owned(), out.join("figures")] {
+        std::fs::create_dir_all(&path).map_err(|source| StageError::Folder { path, source })?;
+    }
+    for file in earlier.iter().filter(|file| is_own(&file.path) && !places().any(|place| place == file.path)) {
+        let _ = std::fs::remove_file(out.join(&file.path));
+    }
+    let mut written = vec![parquet::write_table(&out.join(COMPARISON.file), table, &[])?];
+    for (place, bytes) in files {
+        written.push(commit::commit_bytes("write the comparison", &out.join(place), bytes)?);
+    }
+    clock.comparison_receipt(out, written)
 }
 
 /// True if a table compares other campaigns than these, or cannot be read.
@@ -80,19 +115,6 @@ fn of_others(file: &Path, sides: &[Side]) -> bool {
         || others.iter().any(|side| campaigns.iter().all(|label| *label != side.label))
 }
 
-/// Removes the figures of an earlier comparison, of which there may have been more.
-fn remove_figures(folder: &Path) {
-    let is_figure = |name: &str| {
-        name.strip_prefix("compare").is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit()))
-            && [".svg", ".png", ".pdf"].iter().any(|ending| name.ends_with(ending))
-    };
-    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
-        if is_figure(&entry.file_name().to_string_lossy()) {
-            let _ = std::fs::remove_file(entry.path());
-        }
-    }
-}
-
 /// Labels of campaigns: the names of their folders, or their whole paths where two have one name.
 fn labels(folders: &[PathBuf]) -> Vec<String> {
     let name =
@@ -103,7 +125,12 @@ fn labels(folders: &[PathBuf]) -> Vec<String> {
 }
 
 fn side(label: String, folder: &Path) -> Result<Side, StageError> {
-    let read = |table: &'static schema::Table| parquet::read_table(&folder.join(table.file), table);
+    let read = |table: &'static schema::Table| -> Result<Frame, StageError> {
+        match damage(folder, table.file).filter(|_| folder.join(table.file).is_file()) {
+            Some(why) => Err(StageError::Damaged { dir: folder.to_owned(), why }),
+            None => Ok(parquet::read_table(&folder.join(table.file), table)?),
+        }
+    };
     Ok(Side { label, cases: read(&schema::CASES)?, realizations: read(&schema::REALIZATIONS)?, curves: read(&schema::CURVES)? })
 }
 

@@ -1,10 +1,12 @@
 //! A unit that has been computed, and the receipt that says so.
 
 use super::StageError;
+use crate::campaign::owned::{COMPARE, COMPARISON, comparison_receipt};
 use crate::campaign::{Campaign, Unit};
 use crate::store::commit::Written;
 use crate::store::{Kept, Made, RECEIPT_VERSION, Receipt, write_receipt};
 use serde_json::{Map, Value};
+use std::path::Path;
 use std::time::{Instant, SystemTime};
 
 /// Written files and counted effort of a task.
@@ -41,17 +43,27 @@ impl Clock {
         outcome: &Outcome,
     ) -> Result<(), StageError> {
         let words = [unit.stage.word(), unit.id, unit.key].map(str::to_owned);
-        Ok(write_receipt(&campaign.receipt_path(unit), &self.filled(campaign, words, preimages, outcome))?)
+        Ok(write_receipt(&campaign.receipt_path(unit), &self.filled(&campaign.dir, words, preimages, outcome))?)
     }
 
     /// Writes the receipt of the resolved spec, which belongs to no stage.
     pub(super) fn spec_receipt(&self, campaign: &Campaign, outcome: &Outcome) -> Result<(), StageError> {
         let words = ["spec", "campaign", ""].map(str::to_owned);
-        Ok(write_receipt(&campaign.spec_receipt_path(), &self.filled(campaign, words, Map::new(), outcome))?)
+        Ok(write_receipt(&campaign.spec_receipt_path(), &self.filled(&campaign.dir, words, Map::new(), outcome))?)
     }
 
-    fn filled(&self, campaign: &Campaign, [stage, id, key]: [String; 3], preimages: Map<String, Value>, outcome: &Outcome) -> Receipt {
-        let files = outcome.files.iter().map(|written| Kept::of(written, &campaign.dir)).collect();
+    /// Writes the receipt of a comparison into its folder.
+    pub(super) fn comparison_receipt(&self, dir: &Path, files: Vec<Written>) -> Result<(), StageError> {
+        let words = [COMPARE, COMPARISON, ""].map(str::to_owned);
+        let path = comparison_receipt(dir);
+        if let Some(folder) = path.parent() {
+            std::fs::create_dir_all(folder).map_err(|source| StageError::Folder { path: folder.to_owned(), source })?;
+        }
+        Ok(write_receipt(&path, &self.filled(dir, words, Map::new(), &Outcome::of(files)))?)
+    }
+
+    fn filled(&self, dir: &Path, [stage, id, key]: [String; 3], preimages: Map<String, Value>, outcome: &Outcome) -> Receipt {
+        let files = outcome.files.iter().map(|written| Kept::of(written, dir)).collect();
         Receipt { receipt: RECEIPT_VERSION, stage, id, key, preimages, files, made: self.made(outcome) }
     }
 

@@ -4,7 +4,7 @@ use crate::campaign::{Campaign, Stage, Standing};
 use crate::physics::PhysicsError;
 use crate::stats::StatsError;
 use crate::store::{FrameError, StoreError};
-use crate::text::{counted, shown};
+use crate::text::{counted, shell_path, shown};
 use std::path::PathBuf;
 use thiserror::Error;
 
@@ -102,6 +102,49 @@ pub enum StageError {
     OtherComparison {
         /// Its folder.
         path: PathBuf,
+    },
+    /// A comparison that would be mixed with a run.
+    #[error(
+        "cannot write the comparison to {}: it belongs to the run {}\nhelp: write to another folder with --out DIR",
+        shown(path),
+        shown(run)
+    )]
+    IntoRun {
+        /// Folder of the comparison.
+        path: PathBuf,
+        /// Output folder of the run.
+        run: PathBuf,
+    },
+    /// A file that no comparison wrote, in the place of one of a comparison.
+    #[error(
+        "cannot write the comparison: {} exists and is not as `hysteron compare` wrote it\nhelp: write to another folder with --out DIR, or replace it with --force",
+        shown(path)
+    )]
+    ForeignComparison {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A file that no run wrote, in the place of one of a run.
+    #[error(
+        "cannot run in this folder: {} was not written by a run\nhelp: choose another folder with --out DIR, or move the file",
+        shown(path)
+    )]
+    Foreign {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A file that is not as it was written.
+    #[error(
+        "cannot use the results in {}: {why}\nhelp: `hysteron verify {} --deep` lists all faults, `hysteron run {}` repairs them",
+        shown(dir),
+        shell_path(dir),
+        shell_path(dir)
+    )]
+    Damaged {
+        /// Folder of the results.
+        dir: PathBuf,
+        /// The file and its fault.
+        why: String,
     },
     /// Campaigns without a case in common.
     #[error(

@@ -1,11 +1,13 @@
 //! Page of a run in progress: `progress.html`, rewritten as tasks begin and end, and removed at the end of the run.
 
 use super::{StageError, Watch};
+use crate::campaign::owned::is_marked;
 use crate::campaign::{Campaign, Stage};
 use crate::report::{LiveLoop, LiveRun, LiveStage, live_page};
 use crate::schema;
 use crate::store::commit;
 use crate::store::parquet::read_table;
+use crate::text::shown;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant, SystemTime};
@@ -27,6 +29,8 @@ pub(super) struct Live<'a> {
 struct State {
     run: LiveRun,
     written: Option<Instant>,
+    /// True if a page that no run wrote is in the place of this one, which is then left alone.
+    is_foreign: bool,
     /// True after the path of the page was reported.
     is_named: bool,
 }
@@ -34,7 +38,12 @@ struct State {
 impl<'a> Live<'a> {
     pub(super) fn of(campaign: &Campaign, inner: &'a dyn Watch) -> Self {
         let run = LiveRun { name: campaign.spec.name.clone(), ..LiveRun::default() };
-        Self { inner, dir: campaign.dir.clone(), state: Mutex::new(State { run, written: None, is_named: false }) }
+        let page = campaign.dir.join(PAGE);
+        let is_foreign = page.symlink_metadata().is_ok() && !is_marked(&page);
+        if is_foreign {
+            inner.notice(&format!("{} was not written by a run and is kept; this run has no page of progress", shown(&page)));
+        }
+        Self { inner, dir: campaign.dir.clone(), state: Mutex::new(State { run, written: None, is_foreign, is_named: false }) }
     }
 
     fn state(&self) -> MutexGuard<'_, State> {
@@ -45,6 +54,9 @@ impl<'a> Live<'a> {
     fn change(&self, now: bool, change: impl FnOnce(&mut LiveRun)) {
         let mut state = self.state();
         change(&mut state.run);
+        if state.is_foreign {
+            return;
+        }
         if now || state.written.is_none_or(|at| at.elapsed() >= PERIOD) {
             state.written = Some(Instant::now());
             state.run.updated = now_text();
@@ -56,7 +68,9 @@ impl<'a> Live<'a> {
 
 impl Drop for Live<'_> {
     fn drop(&mut self) {
-        let _ = std::fs::remove_file(self.dir.join(PAGE));
+        if !self.state().is_foreign {
+            let _ = std::fs::remove_file(self.dir.join(PAGE));
+        }
     }
 }
 
@@ -71,7 +85,10 @@ fn stage_of(run: &mut LiveRun, stage: Stage) -> Option<&mut LiveStage> {
 impl Watch for Live<'_> {
     fn begin(&self, stage: Stage, done: usize, all: usize) {
         // A run with nothing to do has no page to look at.
-        if done < all && !std::mem::replace(&mut self.state().is_named, true) {
+        let mut state = self.state();
+        let is_shown = !state.is_foreign && done < all && !std::mem::replace(&mut state.is_named, true);
+        drop(state);
+        if is_shown {
             self.inner.page(&self.dir.join(PAGE));
         }
         self.inner.begin(stage, done, all);

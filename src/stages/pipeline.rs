@@ -80,8 +80,11 @@ fn evaluate(context: Context<'_>, tallies: &mut Tallies) -> Result<(), StageErro
 /// Makes the folders and writes the resolved spec.
 ///
 /// # Errors
-/// A folder or file that cannot be written.
+/// A folder or file that cannot be written; a file of somebody else in the place of one of the run.
 pub fn prepare(campaign: &Campaign) -> Result<(), StageError> {
+    if let Some(path) = campaign.foreign_file() {
+        return Err(StageError::Foreign { path });
+    }
     let folders = ["", "surfaces", "asperities", "cycles", "statistics", "figures"].map(|name| campaign.dir.join(name));
     for path in folders.into_iter().chain(Stage::ALL.map(|stage| campaign.receipts_dir(stage))) {
         std::fs::create_dir_all(&path).map_err(|source| StageError::Folder { path, source })?;

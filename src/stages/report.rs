@@ -15,7 +15,6 @@ use crate::spec::Figures;
 use crate::store::commit::Written;
 use crate::store::hdf5::{SurfaceHeader, read_header};
 use crate::store::{Check, Frame, commit, parquet};
-use std::path::Path;
 
 /// Tables that the report reads.
 struct Statistics {
@@ -103,9 +102,17 @@ fn drawing(panel: &Panel) -> (&str, &str) {
 fn write(campaign: &Campaign, standings: &[Standing], key: &str) -> Result<Vec<Written>, StageError> {
     let statistics = Statistics::read(campaign)?;
     let drawings = Drawings::of(campaign, standings, &statistics)?;
-    let mut files = Vec::new();
+    let mut figures = Vec::new();
     for (stem, svg) in drawings.figures() {
-        files.extend(write_picture(&campaign.dir, stem, svg, &campaign.spec.figures)?);
+        figures.extend(pictures(stem, svg, &campaign.spec.figures)?);
+    }
+    if let Some(path) = campaign.foreign_figure(&figures) {
+        return Err(StageError::Foreign { path });
+    }
+    campaign.note_figures(&figures)?;
+    let mut files = Vec::new();
+    for (place, bytes) in &figures {
+        files.push(commit::commit_bytes("write a figure", &campaign.dir.join(place), bytes)?);
     }
     let page = page((campaign, standings), key, &statistics, &drawings)?;
     let panels = table(&drawings.all_panels())?;
@@ -149,19 +156,18 @@ fn scans(campaign: &Campaign) -> Result<Vec<SurfaceHeader>, StageError> {
     Ok(paths.map(|path| read_header(&path)).collect::<Result<_, _>>()?)
 }
 
-/// A figure in `figures/` of a folder.
-pub(super) fn write_picture(dir: &Path, stem: &str, svg: &str, files: &Figures) -> Result<Vec<Written>, StageError> {
-    let mut written = Vec::new();
+/// A figure in its formats: places below the folder of the report, and contents.
+pub(super) fn pictures(stem: &str, svg: &str, files: &Figures) -> Result<Vec<(String, Vec<u8>)>, StageError> {
+    let mut pictures = Vec::new();
     for format in &files.format {
         let bytes = match *format {
             "png" => png(svg, files.width_mm)?,
             "pdf" => pdf(svg, files.width_mm)?,
             _ => with_font(svg, &files.font).into_bytes(),
         };
-        let path = dir.join("figures").join(format!("{stem}.{format}"));
-        written.push(commit::commit_bytes("write a figure", &path, &bytes)?);
+        pictures.push((format!("figures/{stem}.{format}"), bytes));
     }
-    Ok(written)
+    Ok(pictures)
 }
 
 fn sweeps(campaign: &Campaign) -> Vec<String> {

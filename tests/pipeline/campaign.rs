@@ -9,6 +9,8 @@ mod fuzz;
 mod kills;
 mod limits;
 mod lost;
+mod outputs;
+mod published;
 mod sampling;
 mod signals;
 mod tasks;

@@ -1,13 +1,13 @@
 //! Schemas, templates of specs, manual pages and completion scripts.
 
+use super::outputs::{may_replace, written};
 use super::{Fault, failed, make_folder, say};
 use crate::cli::templates::Template;
 use crate::cli::{Arguments, GUIDE, generated};
-use crate::store::commit;
 use crate::text::shown;
 use clap::CommandFactory;
 use clap_complete::Shell;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Prints a template, or the list of them.
 pub(super) fn init(template: Template, list: bool) -> Result<u8, Fault> {
@@ -25,15 +25,16 @@ pub(super) fn completions(shell: Shell) -> Result<u8, Fault> {
 }
 
 /// Prints the schemas or one generated file, or writes all of them.
-pub(super) fn schemas(file: Option<&str>, write: bool) -> Result<u8, Fault> {
+pub(super) fn schemas(file: Option<&str>, write: bool, force: bool) -> Result<u8, Fault> {
     let files = generated();
     if write {
         // Only a clone has pages to renew.
-        let is_kept = |path: &Path| !path.starts_with(GUIDE) || Path::new(GUIDE).is_dir();
-        for (path, content) in files.iter().filter(|(path, _)| is_kept(path)) {
-            make_folder(path.parent().unwrap_or(path))?;
-            commit::commit_bytes("write a schema", path, content.as_bytes()).map_err(failed)?;
-        }
+        let is_clone = Path::new(GUIDE).is_dir();
+        let wanted = files.into_iter().filter(|(path, _)| !path.starts_with(GUIDE) || is_clone);
+        let files: Vec<(PathBuf, Vec<u8>)> = wanted.map(|(path, content)| (path, content.into_bytes())).collect();
+        may_replace("a schema", &files, force || is_clone)?;
+        files.iter().try_for_each(|(path, _)| make_folder(path.parent().unwrap_or(path)))?;
+        written("write a schema", &files)?;
         return Ok(0);
     }
     let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -48,12 +49,38 @@ pub(super) fn schemas(file: Option<&str>, write: bool) -> Result<u8, Fault> {
     Ok(0)
 }
 
+/// Beginning of a manual page of the program.
+const PAGE_MARK: &str = "\n.TH hysteron";
+
+/// The manual pages of the program and of all commands, in a folder.
+fn pages(folder: &Path) -> std::io::Result<Vec<(PathBuf, Vec<u8>)>> {
+    fn enter(command: &clap::Command, folder: &Path, pages: &mut Vec<(PathBuf, Vec<u8>)>) -> std::io::Result<()> {
+        for inner in command.get_subcommands().filter(|inner| !inner.is_hide_set()) {
+            enter(inner, folder, pages)?;
+        }
+        let page = clap_mangen::Man::new(command.clone());
+        let mut text = Vec::new();
+        page.render(&mut text)?;
+        pages.push((folder.join(page.get_filename()), text));
+        Ok(())
+    }
+    let mut all = Arguments::command().disable_help_subcommand(true);
+    all.build();
+    let mut pages = Vec::new();
+    enter(&all, folder, &mut pages)?;
+    Ok(pages)
+}
+
 /// The page of the program or of a command, or all of them in a folder.
-pub(super) fn man(verb: Option<&str>, folder: Option<&Path>) -> Result<u8, Fault> {
+pub(super) fn man(verb: Option<&str>, folder: Option<&Path>, force: bool) -> Result<u8, Fault> {
     let refused = |error: std::io::Error| failed(format!("cannot write the manual: {error}"));
     if let Some(folder) = folder {
+        let pages = pages(folder).map_err(refused)?;
+        let is_own = |path: &Path| std::fs::read_to_string(path).is_ok_and(|text| text.contains(PAGE_MARK));
+        let others: Vec<_> = pages.iter().filter(|(path, _)| !is_own(path)).cloned().collect();
+        may_replace("a page", &others, force)?;
         make_folder(folder)?;
-        clap_mangen::generate_to(Arguments::command(), folder).map_err(refused)?;
+        written("write a page", &pages)?;
         say(&format!("Written: {}\n", shown(folder)))?;
         return Ok(0);
     }

@@ -1,10 +1,12 @@
 //! `export csv`: the tables of statistics, and on request of cycles, as comma-separated values (RFC 4180).
 
+use super::outputs::{may_replace, undamaged, written};
 use super::place::folder_of;
 use super::{Fault, failed, make_folder, say};
+use crate::campaign::owned::run_around;
 use crate::cli::CsvArguments;
 use crate::schema::{COMPARISON, TABLES, Table};
-use crate::store::{ColumnData, Frame, commit, parquet};
+use crate::store::{ColumnData, Frame, parquet};
 use crate::text::{counted, shown};
 use serde_json::json;
 use std::borrow::Cow;
@@ -27,16 +29,25 @@ pub(super) fn export(asked: &CsvArguments) -> Result<u8, Fault> {
     if asked.cycles {
         wanted.extend(of_cycles(&dir)?);
     }
-    make_folder(&out)?;
-    let mut files = Vec::new();
+    if let Some(run) = run_around(&out.join("cases.csv")) {
+        let (out, run) = (shown(&out), shown(&run));
+        return Err(failed(format!(
+            "cannot write the tables to {out}: only `hysteron run` writes there, in {run}\nhelp: use another --out"
+        )));
+    }
+    let (mut files, mut contents) = (Vec::new(), Vec::new());
     for (file, table) in wanted {
+        undamaged("export the tables of", &dir, &file.to_string_lossy().replace('\\', "/"))?;
         let frame = parquet::read_table(&dir.join(&file), table).map_err(failed)?;
-        let name = file.strip_prefix("statistics").unwrap_or(&file).with_extension("csv");
-        let path = out.join(name);
-        path.parent().map_or(Ok(()), make_folder)?;
-        commit::commit_bytes("write the table", &path, text(&frame).as_bytes()).map_err(failed)?;
+        let path = out.join(file.strip_prefix("statistics").unwrap_or(&file).with_extension("csv"));
+        contents.push((path.clone(), text(&frame).into_bytes()));
         files.push((path, frame.row_count()));
     }
+    may_replace("the table", &contents, asked.force)?;
+    for (path, _) in &contents {
+        path.parent().map_or(Ok(()), make_folder)?;
+    }
+    written("write the table", &contents)?;
     if asked.json {
         let files: Vec<_> = files.iter().map(|(path, rows)| json!({ "file": path.display().to_string(), "row_count": rows })).collect();
         say(&format!("{:#}\n", json!({ "files": files })))?;

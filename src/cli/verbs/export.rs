@@ -1,18 +1,22 @@
 //! `export`: files that other programs run or publish a campaign with.
 
+use super::outputs::{may_replace, written};
 use super::place::{folder, open, open_dir, told};
 use super::{BAD_SPEC, Fault, failed, make_folder, own_file, say};
 use crate::campaign::Standing;
 use crate::cli::{FolderArguments, OutputArguments};
-use crate::engines::{ro_crate as description, snakemake as rules, usual_shards};
+use crate::engines::{ro_crate as description, ro_crate::Publication, snakemake as rules, usual_shards};
 use crate::stages;
-use crate::store::{Check, commit};
+use crate::store::Check;
 use crate::text::{counted, shell_path, shown};
 use serde_json::json;
 use std::path::Path;
 use std::time::SystemTime;
 
-pub(super) fn snakemake(spec: &Path, output: &OutputArguments, shards: Option<u32>) -> Result<u8, Fault> {
+/// Mark of an exported Snakefile.
+const SNAKEFILE_MARK: &str = "`hysteron export snakemake` wrote this file.";
+
+pub(super) fn snakemake(spec: &Path, output: &OutputArguments, (shards, force): (Option<u32>, bool)) -> Result<u8, Fault> {
     let mut campaign = open(spec, output)?;
     campaign.dir = told(&campaign.dir)?;
     stages::prepare(&campaign).map_err(failed)?;
@@ -21,7 +25,10 @@ pub(super) fn snakemake(spec: &Path, output: &OutputArguments, shards: Option<u3
     let program = own_file()?;
     let shards = shards.map_or_else(|| usual_shards(&campaign), |count| count as usize);
     let path = folder.join("Snakefile");
-    commit::commit_bytes("write the Snakefile", &path, rules::snakefile(&campaign, &program, shards).as_bytes()).map_err(failed)?;
+    let files = [(path.clone(), rules::snakefile(&campaign, &program, shards).into_bytes())];
+    let is_own = std::fs::read_to_string(&path).is_ok_and(|text| text.contains(SNAKEFILE_MARK));
+    may_replace("the Snakefile", &files, force || is_own)?;
+    written("write the Snakefile", &files)?;
     if output.json {
         say(&format!("{:#}\n", json!({ "file": path.display().to_string(), "shard_count": shards })))?;
     } else {
@@ -30,21 +37,27 @@ pub(super) fn snakemake(spec: &Path, output: &OutputArguments, shards: Option<u3
     Ok(0)
 }
 
-pub(super) fn ro_crate(asked: &FolderArguments, license: Option<&str>) -> Result<u8, Fault> {
+pub(super) fn ro_crate(asked: &FolderArguments, (license, publisher): (Option<&str>, Option<&str>), force: bool) -> Result<u8, Fault> {
     let license = license.map(description::licence).transpose().map_err(|text| Fault { code: BAD_SPEC, text: format!("error: {text}") })?;
     let dir = folder(asked)?;
     let campaign = open_dir("describe", &dir)?;
-    let audit = campaign.audit(Check::Sizes);
+    let audit = campaign.audit(Check::Contents);
     if let Some(fault) = audit.first_fault() {
         return Err(failed(format!(
-            "cannot describe {}: {fault}\nhelp: `hysteron verify` lists all faults; `hysteron run` repairs its tasks, `hysteron gc --delete` removes other files",
-            shown(&dir)
+            "cannot describe {}: {fault}
+help: `hysteron verify {} --deep` lists all faults; `hysteron run {}` repairs its tasks, `hysteron gc --delete` removes other files",
+            shown(&dir),
+            shell_path(&dir),
+            shell_path(&dir)
         )));
     }
     let day: String = humantime::format_rfc3339_seconds(SystemTime::now()).to_string().chars().take(10).collect();
-    let text = description::metadata(&campaign, &campaign.all_receipts(), &day, license.as_deref());
+    let publication = Publication { day: &day, licence: license.as_deref(), publisher };
+    let text = description::metadata(&campaign, &campaign.all_receipts(), &publication);
     let path = dir.join("ro-crate-metadata.json");
-    commit::commit_bytes("write the description", &path, text.as_bytes()).map_err(failed)?;
+    let files = [(path.clone(), text.into_bytes())];
+    may_replace("the metadata", &files, force)?;
+    written("write the metadata", &files)?;
     if asked.json {
         say(&format!("{:#}\n", json!({ "file": path.display().to_string(), "file_count": audit.file_count })))?;
         return Ok(0);

@@ -1,5 +1,6 @@
 //! `findings`: which findings of the paper each reading of its text yields.
 
+use super::outputs::undamaged;
 use super::place::folder_of;
 use super::{Fault, failed, say};
 use crate::schema::{CASES, REALIZATIONS, Table};
@@ -24,7 +25,13 @@ pub(super) fn findings(runs: &[PathBuf], as_json: bool) -> Result<u8, Fault> {
     let mut readings = Vec::new();
     for run in runs {
         let dir = folder_of(run)?;
-        let read = |table: &'static Table| read_table(&dir.join(table.file), table).map_err(failed);
+        let read = |table: &'static Table| {
+            let path = dir.join(table.file);
+            if path.is_file() {
+                undamaged("judge the findings of", &dir, table.file)?;
+            }
+            read_table(&path, table).map_err(failed)
+        };
         let found = stats::findings(&read(&CASES)?, &read(&REALIZATIONS)?).map_err(failed)?;
         let label = if runs.len() > 1 { shown(&dir) } else { String::new() };
         readings.extend(found.into_iter().map(|reading| (label.clone(), reading)));

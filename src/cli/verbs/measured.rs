@@ -3,6 +3,7 @@
 mod range;
 mod text;
 
+use super::outputs::{may_be_written, undamaged_surface};
 use super::{BAD_SPEC, Fault, failed, say};
 use crate::cli::{ExportArguments, ImportArguments};
 use crate::constants::{Constant, Constants};
@@ -53,10 +54,7 @@ pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
     let Imported { prepared, header, height_factor_m } = measure(&params, &digest, "").map_err(failed)?;
     let out = asked.out.clone().unwrap_or_else(|| named_after(&asked.file));
     if !asked.dry_run {
-        may_be_written(&asked.file, &out)?;
-    }
-    if !asked.dry_run && out.exists() && !asked.force {
-        return Err(failed(format!("cannot write the surface to {}: the file exists\nhelp: use another --out, or --force", out.display())));
+        may_be_written(("the surface", &out), &asked.file, asked.force)?;
     }
     let points = header.measured.as_ref().map_or(0.0, |of| of.shortest_wavelength_m) * prepared.heights_m.nrows() as f64 / header.length_m;
     let (summits, edge) = find_measured(prepared.heights_m.view(), header.length_m, (header.periodic, points)).map_err(failed)?;
@@ -108,17 +106,6 @@ fn named_after(file: &Path) -> PathBuf {
     PathBuf::from(name)
 }
 
-/// Refuses to overwrite the scan itself, and anything that is not a file.
-fn may_be_written(scan: &Path, out: &Path) -> Result<(), Fault> {
-    let refused = |why: &str| failed(format!("cannot write the surface to {}: {why}\nhelp: use another --out", out.display()));
-    let Ok(there) = std::fs::metadata(out) else { return Ok(()) };
-    if !there.is_file() {
-        return Err(refused("it is not a regular file"));
-    }
-    let same = |a: &Path, b: &Path| matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b);
-    if same(scan, out) { Err(refused("it is the measured surface itself")) } else { Ok(()) }
-}
-
 /// File format of an exported surface.
 pub(super) enum Layout {
     /// NetCDF-3 as SurfaceTopography reads it.
@@ -128,6 +115,8 @@ pub(super) enum Layout {
 }
 
 pub(super) fn export(asked: &ExportArguments, layout: &Layout) -> Result<u8, Fault> {
+    may_be_written(("the surface", &asked.out), &asked.surface, asked.force)?;
+    undamaged_surface(&asked.surface)?;
     let (header, heights) = read_surface(&asked.surface).map_err(failed)?;
     let size = [header.length_m; 2];
     let note = match layout {

@@ -8,6 +8,7 @@ mod ending;
 mod export;
 mod findings;
 mod measured;
+mod outputs;
 mod place;
 mod show;
 mod submit;
@@ -104,14 +105,18 @@ fn performed(verb: &Verb) -> Result<u8, Fault> {
             submit::slurm(spec, output, shards.shards, (*cpus, option), *dry_run)
         }
         Verb::Export { what: ExportVerb::Csv(asked) } => csv::export(asked),
-        Verb::Export { what: ExportVerb::Snakemake { spec, output, shards } } => export::snakemake(spec, output, shards.shards),
-        Verb::Export { what: ExportVerb::RoCrate { folder, license } } => export::ro_crate(folder, license.as_deref()),
+        Verb::Export { what: ExportVerb::Snakemake { spec, output, shards, force } } => {
+            export::snakemake(spec, output, (shards.shards, *force))
+        }
+        Verb::Export { what: ExportVerb::RoCrate { folder, license, publisher, force } } => {
+            export::ro_crate(folder, (license.as_deref(), publisher.as_deref()), *force)
+        }
         Verb::Export { what: ExportVerb::Netcdf(asked) } => measured::export(asked, &measured::Layout::NetCdf),
         Verb::Export { what: ExportVerb::Tamaas(asked) } => measured::export(asked, &measured::Layout::Tamaas),
         Verb::Import(asked) => measured::import(asked),
-        Verb::Schema { file, write } => about::schemas(file.as_deref(), *write),
+        Verb::Schema { file, write, force } => about::schemas(file.as_deref(), *write, *force),
         Verb::Completions { shell } => about::completions(*shell),
-        Verb::Man { verb, dir } => about::man(verb.as_deref(), dir.as_deref()),
+        Verb::Man { verb, dir, force } => about::man(verb.as_deref(), dir.as_deref(), *force),
     }
 }
 

@@ -1,5 +1,6 @@
 //! `show`: one case or task with its parameters, results, warnings and files.
 
+use super::outputs::undamaged;
 use super::place::{folder, open_dir};
 use super::{Fault, failed, say};
 use crate::campaign::{Campaign, CaseUnit, CycleUnit, REPORT_PAGE, STATISTICS, Stage, Standing, SurfaceUnit, Unit};
@@ -170,8 +171,11 @@ fn flatten(table: &str, values: &Value, all: &mut Map<String, Value>) {
 /// A table of statistics, if it is written yet.
 fn table(campaign: &Campaign, table: &'static Table) -> Result<Option<Frame>, Fault> {
     let path = campaign.dir.join(table.file);
-    let is_there = path.is_file();
-    is_there.then(|| parquet::read_table(&path, table).map_err(failed)).transpose()
+    if !path.is_file() {
+        return Ok(None);
+    }
+    undamaged("show results of", &campaign.dir, table.file)?;
+    parquet::read_table(&path, table).map(Some).map_err(failed)
 }
 
 /// The rows with an id.

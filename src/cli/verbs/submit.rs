@@ -27,10 +27,23 @@ fn option_fault(option: &str) -> Option<String> {
             "error: --option {option:?} has a control character\nhelp: give one option of sbatch for each --option, on one line"
         ));
     }
+    if let Some((own, instead)) = reserved(option) {
+        return Some(format!("error: --option={own} would replace what `hysteron submit` sends\nhelp: {instead}"));
+    }
     (!option.starts_with('-')).then(|| {
         let option = shell_quote(&format!("--option=--{option}"));
         format!("error: an option of sbatch begins with a hyphen\nhelp: write {option}")
     })
+}
+
+/// The option of sbatch that an option means, if `submit` sets it, and what to do. sbatch takes the beginning of a long name for the name.
+fn reserved(option: &str) -> Option<(&'static str, &'static str)> {
+    let name = option.split(['=', ' ']).next().unwrap_or_default();
+    if "--wrap".starts_with(name) && name.starts_with("--wr") {
+        return Some(("--wrap", "leave it out; use `sbatch` itself for other commands"));
+    }
+    let is_array = ("--array".starts_with(name) && name.starts_with("--ar")) || (name.starts_with("-a") && !name.starts_with("--"));
+    is_array.then_some(("--array", "use --shards N for the number of parts"))
 }
 
 pub(super) fn slurm(spec: &Path, output: &OutputArguments, shards: Option<u32>, task: (u16, &[String]), dry: bool) -> Result<u8, Fault> {
@@ -132,6 +145,9 @@ fn show(campaign: &Campaign, order: &Order, json: bool) -> Result<u8, Fault> {
     Ok(0)
 }
 
+/// Mark of a script that `submit` wrote.
+const SCRIPT_MARK: &str = "`hysteron submit` wrote this file";
+
 /// Writes the scripts and submits the jobs.
 fn send(campaign: &Campaign, order: &Order, mut sent: Vec<Sent>, json: bool) -> Result<u8, Fault> {
     let (folder, jobs) = (folder(campaign), jobs(order));
@@ -139,6 +155,12 @@ fn send(campaign: &Campaign, order: &Order, mut sent: Vec<Sent>, json: bool) -> 
     let log = folder.join("log");
     make_folder(&log)?;
     for (path, text) in scripts(campaign, order, &jobs) {
+        if path.is_file() && !std::fs::read_to_string(&path).is_ok_and(|present| present.contains(SCRIPT_MARK)) {
+            let path = path_shown(&path);
+            return Err(failed(format!(
+                "cannot write the script {path}: `hysteron submit` did not write the file that exists\nhelp: move it"
+            )));
+        }
         commit::commit_bytes("write the script", &path, text.as_bytes()).map_err(failed)?;
     }
     let mut numbers: Vec<String> = Vec::new();
