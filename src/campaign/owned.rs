@@ -3,9 +3,10 @@
 use super::lost::owner;
 use super::{Campaign, REPORT_PAGE, Stage};
 use crate::schema::TABLES;
-use crate::store::commit::{Written, commit_bytes, sum};
+use crate::store::commit::sum;
 use crate::store::hdf5::is_own_surface;
-use crate::store::{Check, Found, Receipt, StoreError, parquet, read_receipt};
+use crate::store::{Check, Found, parquet, read_receipt};
+use serde_json::{Map, Value, json};
 use std::collections::BTreeSet;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
@@ -16,6 +17,8 @@ pub const COMPARISON: &str = "comparison";
 pub const COMPARE: &str = "compare";
 /// Folders to which only a run writes.
 const OWN_FOLDERS: [&str; 9] = ["surfaces", "asperities", "cycles", "statistics", "schemas", "figures", "receipts", "snakemake", "slurm"];
+/// Entry in the receipt of a report: figures of earlier reports.
+const EARLIER: &str = "earlier_figures";
 /// Bytes of a text file that are searched for a mark.
 const SEARCHED: u64 = 1 << 16;
 /// Mark of the program's pages.
@@ -135,29 +138,25 @@ impl Campaign {
     /// Figures that reports of this folder wrote: place and BLAKE3.
     #[must_use]
     pub fn drawn(&self) -> BTreeSet<(String, String)> {
-        let text = std::fs::read_to_string(self.drawn_path()).unwrap_or_default();
-        let entry = |line: &str| line.split_once(' ').map(|(hash, place)| (place.to_owned(), hash.to_owned()));
-        let mut drawn: BTreeSet<(String, String)> = text.lines().filter_map(entry).collect();
-        let receipts: Vec<Receipt> = self.receipts(Stage::Report).into_iter().filter(|receipt| receipt.id == REPORT_PAGE).collect();
-        drawn.extend(receipts.into_iter().flat_map(|receipt| receipt.files).map(|file| (file.path, file.blake3)));
+        let receipts = self.receipts(Stage::Report).into_iter().filter(|receipt| receipt.id == REPORT_PAGE);
+        let mut drawn = BTreeSet::new();
+        for receipt in receipts {
+            let earlier = receipt.made.effort.get(EARLIER).and_then(Value::as_array).cloned().unwrap_or_default();
+            let entry = |line: &Value| line.as_str()?.split_once(' ').map(|(hash, place)| (place.to_owned(), hash.to_owned()));
+            drawn.extend(earlier.iter().filter_map(entry));
+            drawn.extend(receipt.files.into_iter().map(|file| (file.path, file.blake3)));
+        }
         drawn
     }
 
-    /// The list of figures that were written or are about to be written.
-    fn drawn_path(&self) -> PathBuf {
-        self.receipts_dir(Stage::Report).join("figures.txt")
-    }
-
-    /// Notes figures before they are written, so that they are known as the program's also after a killed run.
-    ///
-    /// # Errors
-    /// If the list cannot be written.
-    pub fn note_figures(&self, figures: &[(String, Vec<u8>)]) -> Result<Written, StoreError> {
-        let mut drawn = self.drawn();
-        drawn.retain(|(place, _)| place.starts_with("figures/") && self.dir.join(place).is_file());
-        drawn.extend(figures.iter().map(|(place, bytes)| (place.clone(), blake3::hash(bytes).to_hex().to_string())));
-        let text: String = drawn.iter().map(|(place, hash)| format!("{hash} {place}\n")).collect();
-        commit_bytes("write the list of figures", &self.drawn_path(), text.as_bytes())
+    /// Figures of earlier reports that are there and that a report with these figures does not write, for its receipt.
+    #[must_use]
+    pub fn earlier_figures(&self, figures: &[(String, Vec<u8>)]) -> Map<String, Value> {
+        let is_earlier = |(place, _): &&(String, String)| {
+            place.starts_with("figures/") && self.dir.join(place).is_file() && figures.iter().all(|(new, _)| new != place)
+        };
+        let earlier: Vec<Value> = self.drawn().iter().filter(is_earlier).map(|(place, hash)| json!(format!("{hash} {place}"))).collect();
+        if earlier.is_empty() { Map::new() } else { Map::from_iter([(EARLIER.to_owned(), Value::Array(earlier))]) }
     }
 
     /// The first figure in the place of one of these that no report wrote, and that differs from it.

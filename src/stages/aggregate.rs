@@ -2,7 +2,7 @@
 
 use super::cycle::lattice;
 use super::cycle_input::{cycle_input, of_failed};
-use super::done::Clock;
+use super::done::{Clock, Outcome};
 use super::error::incomplete;
 use super::runner::{Context, Single, run_single};
 use super::surface::scale;
@@ -29,7 +29,7 @@ pub(super) fn run(context: Context<'_>, cycles_check: Check) -> Result<Tally, St
     }
     let key = campaign.statistics_key(&standings);
     let single = Single { unit: Unit { stage: Stage::Aggregate, id: STATISTICS, key: &key }, name: "statistics", clock };
-    let compute = || Ok((write(campaign, &standings, &key)?, campaign.statistics_preimages(&standings)));
+    let compute = || Ok((Outcome::of(write(campaign, &standings, &key)?), campaign.statistics_preimages(&standings)));
     run_single(single, (context, task.check), || None, compute)
 }
 

@@ -1,7 +1,7 @@
 //! Stage report: the figures of all sweeps and the HTML report.
 
 use super::contact_maps::contact_maps;
-use super::done::Clock;
+use super::done::{Clock, Outcome};
 use super::error::incomplete;
 use super::explorer::explorer;
 use super::runner::{Context, Single, run_single};
@@ -12,7 +12,6 @@ use crate::figures::{Drawing, Panel, Tables, method_ratios, panels, pdf, png, se
 use crate::report::{self, MethodFigures, Report, SingleCycle};
 use crate::schema;
 use crate::spec::Figures;
-use crate::store::commit::Written;
 use crate::store::hdf5::{SurfaceHeader, read_header};
 use crate::store::{Check, Frame, commit, parquet};
 
@@ -99,7 +98,7 @@ fn drawing(panel: &Panel) -> (&str, &str) {
 }
 
 /// Writes the figures, their table and the page.
-fn write(campaign: &Campaign, standings: &[Standing], key: &str) -> Result<Vec<Written>, StageError> {
+fn write(campaign: &Campaign, standings: &[Standing], key: &str) -> Result<Outcome, StageError> {
     let statistics = Statistics::read(campaign)?;
     let drawings = Drawings::of(campaign, standings, &statistics)?;
     let mut figures = Vec::new();
@@ -109,7 +108,7 @@ fn write(campaign: &Campaign, standings: &[Standing], key: &str) -> Result<Vec<W
     if let Some(path) = campaign.foreign_figure(&figures) {
         return Err(StageError::Foreign { path });
     }
-    campaign.note_figures(&figures)?;
+    let earlier = campaign.earlier_figures(&figures);
     let mut files = Vec::new();
     for (place, bytes) in &figures {
         files.push(commit::commit_bytes("write a figure", &campaign.dir.join(place), bytes)?);
@@ -118,7 +117,7 @@ fn write(campaign: &Campaign, standings: &[Standing], key: &str) -> Result<Vec<W
     let panels = table(&drawings.all_panels())?;
     files.push(parquet::write_table(&campaign.statistics_path("panels"), &panels, &[("key", key.to_owned())])?);
     files.push(commit::commit_bytes("write the report", &campaign.dir.join("report.html"), page.as_bytes())?);
-    Ok(files)
+    Ok(Outcome { files, effort: earlier })
 }
 
 fn page(

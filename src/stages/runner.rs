@@ -5,7 +5,6 @@ use super::error::incomplete;
 use super::{StageError, Tally, Task, Watch, failure};
 use crate::campaign::{Campaign, CycleUnit, Stage, Standing, Unit};
 use crate::store::Check;
-use crate::store::commit::Written;
 use rayon::prelude::*;
 use serde_json::{Map, Value};
 use std::cmp::Reverse;
@@ -142,7 +141,7 @@ pub(super) fn run_single(
     single: Single<'_>,
     (context, check): (Context<'_>, Check),
     ready: impl FnOnce() -> Option<StageError>,
-    compute: impl FnOnce() -> Result<(Vec<Written>, Map<String, Value>), StageError>,
+    compute: impl FnOnce() -> Result<(Outcome, Map<String, Value>), StageError>,
 ) -> Result<Tally, StageError> {
     let (Context { campaign, watch, .. }, stage) = (context, single.unit.stage);
     let mut tally = Tally { planned: 1, ..Tally::default() };
@@ -156,8 +155,8 @@ pub(super) fn run_single(
         return Err(error);
     }
     watch.begin(stage, 0, 1);
-    let (files, key_inputs) = compute()?;
-    single.clock.receipt(campaign, &single.unit, key_inputs, &Outcome::of(files))?;
+    let (outcome, key_inputs) = compute()?;
+    single.clock.receipt(campaign, &single.unit, key_inputs, &outcome)?;
     watch.progress(stage, 1.0);
     watch.finished(stage, single.name);
     watch.end(stage);

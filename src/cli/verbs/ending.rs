@@ -1,5 +1,6 @@
 //! The end of a run: results, failures with their reasons, elapsed time and size.
 
+use super::outputs::undamaged;
 use super::{Fault, failed};
 use crate::campaign::{Campaign, Shard, Stage, Standing};
 use crate::cli::progress::duration;
@@ -41,7 +42,7 @@ impl<'a> Ended<'a> {
         if until >= Stage::Aggregate {
             let cases = self.cases()?;
             text += &summary(&cases).map_err(failed)?;
-            let methods = parquet::read_table(&self.campaign.statistics_path("methods"), &schema::METHODS).map_err(failed)?;
+            let methods = self.table(&schema::METHODS)?;
             let compared = methods_summary(&cases, &methods).map_err(failed)?;
             if !compared.is_empty() {
                 text += &format!("\n{compared}");
@@ -78,7 +79,13 @@ impl<'a> Ended<'a> {
     }
 
     fn cases(&self) -> Result<Frame, Fault> {
-        parquet::read_table(&self.campaign.statistics_path("cases"), &schema::CASES).map_err(failed)
+        self.table(&schema::CASES)
+    }
+
+    /// A table of statistics, if it is as it was written.
+    fn table(&self, table: &'static schema::Table) -> Result<Frame, Fault> {
+        undamaged("print the results of", &self.campaign.dir, table.file)?;
+        parquet::read_table(&self.campaign.dir.join(table.file), table).map_err(failed)
     }
 
     /// True if nothing was computed, and nothing failed.
