@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use hdf5_metno::types::{FixedUnicode, VarLenArray, VarLenUnicode};
+use hdf5_metno::types::{FixedUnicode, IntSize, TypeDescriptor, VarLenArray, VarLenUnicode};
 use hdf5_metno::{File, ObjectReference, ObjectReference1, ReferencedObject};
 use hysteron::model::SpectrumEnd;
 use hysteron::model::{Amplitudes, Detrend, Filter, Normalization};
@@ -138,7 +138,7 @@ fn val_the_file_is_as_the_contract_says() {
     let file = File::open(&path).unwrap();
     let data = file.dataset("height_m").unwrap();
     assert_eq!(data.shape(), [600, 600]);
-    assert_eq!(data.chunk(), Some(vec![256, 256]));
+    assert_eq!(data.chunk(), None);
     assert!(data.filters().is_empty());
     assert_eq!(data.attr("unit").unwrap().read_scalar::<VarLenUnicode>().unwrap().as_str(), "m");
     assert_eq!(file.attr("normalization").unwrap().read_scalar::<VarLenUnicode>().unwrap().as_str(), "spectrum");
@@ -180,7 +180,9 @@ fn val_the_file_is_as_the_contract_says() {
         ]
     );
     assert_eq!(file.attr("rms_height_m").unwrap().read_scalar::<f64>().unwrap(), 5e-6);
-    assert!(file.attr("periodic").unwrap().read_scalar::<bool>().unwrap());
+    // A number, which NetCDF keeps.
+    assert_eq!(file.attr("periodic").unwrap().dtype().unwrap().to_descriptor().unwrap(), TypeDescriptor::Unsigned(IntSize::U1));
+    assert_eq!(file.attr("periodic").unwrap().read_scalar::<u8>().unwrap(), 1);
 }
 
 #[test]
@@ -253,6 +255,28 @@ fn law_the_heap_of_texts_is_not_read() {
         fs::write(&other, &bytes).unwrap();
         assert_eq!(read_surface(&other).unwrap(), (header(), heights(4)), "byte {at}");
     }
+}
+
+/// Heights other than those that were written are an error, and a boolean of HDF5 is read as the number is.
+#[test]
+fn e2e_heights_are_compared_with_their_checksum() {
+    let (_directory, path) = written(5);
+    let change = |act: &dyn Fn(&File)| {
+        act(&File::open_rw(&path).unwrap());
+        read_surface(&path).map_err(|error| error.to_string())
+    };
+    let as_before = change(&|file| {
+        file.delete_attr("periodic").unwrap();
+        file.new_attr::<bool>().create("periodic").unwrap().write_scalar(&true).unwrap();
+    });
+    assert_eq!(as_before.unwrap(), (header(), heights(5)));
+    let other = heights(5)[(1, 2)] + 1e-9;
+    let refused =
+        change(&|file| file.dataset("height_m").unwrap().write_slice(Array2::from_elem((1, 1), other).view(), s![1..2, 2..3]).unwrap());
+    let refused = refused.unwrap_err();
+    assert!(refused.contains("its dataset \"height_m\" differs from its checksum\nhelp: restore the file"), "{refused}");
+    let (_, changed) = change(&|file| file.group("header").unwrap().delete_attr("height_blake3").unwrap()).unwrap();
+    assert_eq!(changed[(1, 2)], other);
 }
 
 /// Files of earlier versions: texts of fixed length in the root, no coordinates.
