@@ -183,6 +183,9 @@ pub(super) fn read_by_cycle(params: &CaseParams) -> CaseParams {
 /// Version of the cycles by boundary elements in their keys, beside that of the stage.
 pub(crate) const ELEMENTS_VERSION: u32 = 10;
 
+/// The same where results differ from those of [`ELEMENTS_VERSION`]: on scans that are continued by mirror images, and with several loads.
+const LATER_ELEMENTS_VERSION: u32 = 11;
+
 /// The same of cycles of the asperity model.
 pub(crate) const ASPERITIES_VERSION: u32 = 9;
 
@@ -191,7 +194,9 @@ fn of_case(params: &CaseParams) -> Vec<(&'static str, Value)> {
     let params = read_by_cycle(params);
     let [material, mut model, mut cycle] = [plain(&params.material), plain(&params.model), plain(&params.cycle)];
     if params.by_elements() {
-        model = json!({ "method": model["method"], "method_version": ELEMENTS_VERSION });
+        let is_mirrored = params.surface.is_measured() && !params.surface.periodic;
+        let version = if is_mirrored || params.cycle.max_load.len() > 1 { LATER_ELEMENTS_VERSION } else { ELEMENTS_VERSION };
+        model = json!({ "method": model["method"], "method_version": version });
         remove(&mut cycle, "approach_step");
         return vec![("material", material), ("model", model), ("boundary_elements", plain(&params.boundary_elements)), ("cycle", cycle)];
     }

@@ -28,6 +28,12 @@ impl Campaign {
         self.cycle_dir(unit).join("failed.json")
     }
 
+    /// Path of the record of loads that a finished cycle has not reached.
+    #[must_use]
+    pub fn not_reached_path(&self, unit: &CycleUnit) -> PathBuf {
+        self.cycle_dir(unit).join("not_reached.json")
+    }
+
     /// Path of the checkpoint of a cycle.
     #[must_use]
     pub fn halfway_path(&self, unit: &CycleUnit) -> PathBuf {

@@ -62,7 +62,7 @@ impl Stage {
         match self {
             Self::Generate | Self::Extract => 2,
             Self::Cycle => 17,
-            Self::Aggregate => 10,
+            Self::Aggregate => 11,
             Self::Report => 15,
         }
     }

@@ -130,6 +130,31 @@ impl Campaign {
         Some(self.spec.files.keys().fold(inside, |text, file| text.replace(file.as_str(), &self.file_label(file))))
     }
 
+    /// Loads `F_max/(E* A0)` of a finished cycle that have no result, with their errors.
+    #[must_use]
+    pub fn not_reached(&self, unit: &CycleUnit) -> Vec<(f64, String)> {
+        let path = self.not_reached_path(unit);
+        let Some(text) = path.is_file().then(|| std::fs::read_to_string(path).ok()).flatten() else { return Vec::new() };
+        let record: Value = serde_json::from_str(&text).unwrap_or_default();
+        if record["key"] != unit.key.as_str() {
+            return Vec::new();
+        }
+        let load = |of: &Value| Some((of["max_load"].as_f64()?, of["error"].as_str()?.to_owned()));
+        record["loads"].as_array().into_iter().flatten().filter_map(load).collect()
+    }
+
+    /// Loads of a finished cycle that have no result in one sentence, as tables hold it: without the help of the errors.
+    #[must_use]
+    pub fn not_reached_in_tables(&self, unit: &CycleUnit) -> Option<String> {
+        let unreached = self.not_reached(unit);
+        let (_, error) = unreached.first()?;
+        let same: Vec<String> = unreached.iter().filter(|(_, other)| other == error).map(|(load, _)| load.to_string()).collect();
+        let others = unreached.len() - same.len();
+        let more = if others > 0 { format!("; {others} more in not_reached.json") } else { String::new() };
+        let problem = error.split_once("\nhelp:").map_or(error.as_str(), |(problem, _)| problem);
+        Some(format!("F_max/(E* A0) = {} not reached: {problem}{more}", same.join(", ")))
+    }
+
     /// The stage at which a cycle failed, or what it is made of.
     #[must_use]
     pub fn failed_at(&self, unit: &CycleUnit) -> Option<Stage> {

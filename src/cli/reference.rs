@@ -47,7 +47,7 @@ prints the same text. `DIR` is the output directory of a run.
 | 0 | finished |
 | {FAILED} | failed |
 | {BAD_SPEC} | invalid spec or command line |
-| {FAILED_CASES} | finished, but cycles have failed |
+| {FAILED_CASES} | finished, but cycles have failed or loads are not reached |
 | {INTERRUPTED} | interrupted; the same command resumes |
 "
     );

@@ -88,9 +88,18 @@ pub enum PhysicsError {
     /// Full contact at a load reversal, with bonds that open at edges only.
     #[error(
         "full contact at the mean penetration {approach_m:e} m: there is no edge from which the surfaces can separate\n\
-         help: reduce cycle.max_load or the work of adhesion, increase the reduced modulus, or set boundary_elements.attraction = \"range\""
+         help: set boundary_elements.opening = \"strength\", or reduce cycle.max_load"
     )]
     Closed {
+        /// Mean penetration Δ \[m\].
+        approach_m: f64,
+    },
+    /// Surfaces that stay in contact on unloading.
+    #[error(
+        "the surfaces have not separated at the mean penetration {approach_m:e} m, 20 ranges of the heights away\n\
+         help: set boundary_elements.opening = \"anywhere\", or reduce the work of adhesion"
+    )]
+    Inseparable {
         /// Mean penetration Δ \[m\].
         approach_m: f64,
     },
@@ -149,10 +158,16 @@ pub enum PhysicsError {
         /// Largest magnitude of `∫F dΔ` along the loop \[J\].
         work_j: f64,
     },
+    /// No load reversal of a cycle has a result, by the reason of the first one before the cycle was continued from a checkpoint.
+    #[error("{reason}")]
+    NoReversal {
+        /// Error of the first load reversal.
+        reason: String,
+    },
     /// The maximum load is not reached.
     #[error(
         "load F/(E* A0) = {wanted} not reached: it is {reached} at the mean penetration {approach_m:e} m\n\
-         help: reduce cycle.max_load; if the load is tensile, the surface is near full contact, so increase the modulus or the roughness"
+         help: reduce cycle.max_load; near full contact the load stays tensile: set model.method = \"boundary_elements\""
     )]
     LoadNotReached {
         /// The requested load.
@@ -164,12 +179,31 @@ pub enum PhysicsError {
     },
 }
 
+impl PhysicsError {
+    /// True if a path has ended before a load, and what was passed before remains valid.
+    #[must_use]
+    pub fn ends_a_branch(&self) -> bool {
+        matches!(
+            self,
+            Self::NoEquilibrium { .. }
+                | Self::EndlessAvalanche { .. }
+                | Self::Closed { .. }
+                | Self::Inseparable { .. }
+                | Self::ExcessArea { .. }
+                | Self::NegativeDissipation { .. }
+                | Self::EnergyImbalance { .. }
+                | Self::UnresolvedLoop { .. }
+                | Self::LoadNotReached { .. }
+        )
+    }
+}
+
 /// Recommended action where the contact area exceeds the nominal one after a step at a load \[N\].
 fn excess_help(load_before_n: f64) -> &'static str {
     if load_before_n > 0.0 {
-        "reduce cycle.max_load, increase the reduced modulus or reduce the work of adhesion"
+        "reduce cycle.max_load, or set model.method = \"boundary_elements\", which reaches full contact"
     } else {
-        "adhesion alone closes the contact, so a smaller cycle.max_load has no effect: increase the reduced modulus or reduce the work of adhesion"
+        "adhesion alone closes the contact, so a smaller cycle.max_load has no effect: set model.method = \"boundary_elements\", which reaches full contact"
     }
 }
 

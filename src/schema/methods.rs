@@ -6,8 +6,8 @@ use super::{Column, REALIZATION, SURFACE_ID, Table, count, join, real, text};
 macro_rules! compared {
     ($name:literal, $what:literal) => {
         &[
-            real(concat!($name, "_asperities"), "1", concat!($what, ", asperity model")),
-            real(concat!($name, "_elements"), "1", concat!($what, ", boundary elements")),
+            real(concat!($name, "_asperities"), "1", concat!($what, ", asperity model; null where it is not resolved")).or_null(),
+            real(concat!($name, "_elements"), "1", concat!($what, ", boundary elements; null where it is not resolved")).or_null(),
             real(
                 concat!($name, "_ratio"),
                 "1",

@@ -19,6 +19,12 @@ pub const PER_WAVELENGTH: f64 = 16.0;
 pub const MOST_MESH_NUMBER: f64 = 0.7;
 /// Least `Δγ/(E* dx)`: below it, the tension is lost in the rounding of the pressure.
 pub const LEAST_WORK: f64 = 1e-10;
+/// Steps of a cycle over the gaps at which a law with a range acts: above, a case is refused.
+pub const MOST_RANGE_STEPS: f64 = 20_000.0;
+/// Steps above which `plan` announces their number.
+pub const MANY_RANGE_STEPS: f64 = 2_000.0;
+/// Gap at which Morse's law ends, in ranges.
+const END: f64 = 15.0;
 /// Automatic range over `sqrt(Δγ dx/E*)`.
 pub(super) const RANGE: f64 = 0.8;
 
@@ -43,6 +49,32 @@ impl ElementParams {
     #[must_use]
     pub fn range(&self, work_length_m: f64, spacing_m: f64) -> f64 {
         if self.range_m > 0.0 { self.range_m } else { RANGE * (work_length_m * spacing_m).sqrt() }
+    }
+
+    /// Steps of a cycle with so many loads over the gaps at which a law of the range ρ \[m\] acts, without halvings; 0 without a range.
+    #[must_use]
+    pub fn range_steps(&self, range_m: f64, rms_height_m: f64, loads: usize) -> f64 {
+        match self.attraction {
+            Attraction::Bonded => 0.0,
+            Attraction::Range => (loads + 1) as f64 * 2.0 * END * range_m / (self.approach_step * rms_height_m),
+        }
+    }
+
+    /// Why a range cannot be used on a surface, and what to do: it acts over many times the rms height, which the steps are a part of.
+    #[must_use]
+    pub fn refusal_of_range(&self, range_m: f64, rms_height_m: f64, loads: usize) -> Option<(String, String)> {
+        let steps = self.range_steps(range_m, rms_height_m, loads);
+        if steps <= MOST_RANGE_STEPS {
+            return None;
+        }
+        // Rounded to two digits, it is below the limit.
+        let shorter = 0.95 * range_m * MOST_RANGE_STEPS / steps;
+        let problem = format!(
+            "the attraction acts over 15 ρ = {:.2e} m, {:.0} times h_rms: about {steps:.0} steps, more than {MOST_RANGE_STEPS}",
+            END * range_m,
+            END * range_m / rms_height_m
+        );
+        Some((problem, format!("set boundary_elements.range_m to {shorter:.1e} or less, or increase boundary_elements.approach_step")))
     }
 
     /// Why a grid cannot be used, and what to do: too few points per shortest wavelength, negligible adhesion, or a range that traps contact edges on it.
@@ -133,6 +165,7 @@ pub(super) fn check_elements(case: &CaseParams, origins: &[Origin], faults: &mut
     if surface.is_measured() {
         return;
     }
+    check_range(case, origins, faults);
     let work_length = material.adhesion_length_m();
     if let Some((message, help)) = elements.refusal(surface.length_m, f64::from(surface.magnification), work_length) {
         let keys = [
@@ -146,6 +179,19 @@ pub(super) fn check_elements(case: &CaseParams, origins: &[Origin], faults: &mut
         if let Some(span) = latest(&keys, origins) {
             faults.add(&span, message, help.to_owned());
         }
+    }
+}
+
+/// Refuses a range that takes too many steps on a generated surface.
+fn check_range(case: &CaseParams, origins: &[Origin], faults: &mut Faults<'_>) {
+    let (surface, elements) = (&case.surface, &case.boundary_elements);
+    let spacing = surface.length_m / f64::from(elements.grid(f64::from(surface.magnification)));
+    let range = elements.range(case.material.adhesion_length_m(), spacing);
+    let keys = ["boundary_elements.range_m", "boundary_elements.attraction", "boundary_elements.approach_step", "surface.rms_height_m"];
+    if let Some((message, help)) = elements.refusal_of_range(range, surface.rms_height_m, case.cycle.max_load.len())
+        && let Some(span) = latest(&keys, origins)
+    {
+        faults.add(&span, message, help);
     }
 }
 

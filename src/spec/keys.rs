@@ -207,8 +207,8 @@ pub(super) static KEYS: &[Key] = &[
     key!(boundary_elements.halvings, "", "Most halvings of a step in which an event leaves its energy uncertain. 0: steps of one length, except near F_max; events are not located within them."; count 0 to 10, &[],
         "most halvings of a step; 0 for steps of one length; default 6"),
     key!(boundary_elements.precision, "", "Tolerance of an equilibrium: rms residual of the pressure over the maximum tension. A sixth of it where adhesion is weak (U_el > 15 Δγ), a tenth at U_el > 150 Δγ."; number Limits {
-        low: 1e-10, above: false, high: 1e-2, unit: "", unit_name: "", slip: None,
-        note: "rms residual over the maximum tension; default 1e-4",
+        low: 1e-10, above: false, high: 1e-3, unit: "", unit_name: "", slip: None,
+        note: "rms residual over the maximum tension; default 1e-4. Above 1e-3 steps end before their events: Θ is up to 50 % too large",
     }),
     key!(cycle.max_load, "F_max/(E* A0)", "Load reversals. One loading path passes all of them, and one unloading path starts at each."; Kind::Numbers(Limits {
         low: 0.0, above: true, high: 0.2, unit: "", unit_name: "", slip: None,

@@ -32,7 +32,7 @@ use serde::{Deserialize, Serialize};
 use crate::constants::{Constant, Constants};
 pub use crate::model::{CaseParams, CycleParams, ElementParams, ModelParams, SurfaceParams};
 pub use crate::text::quoted;
-pub use elements::{FEWEST_PER_WAVELENGTH, MAX_ELEMENTS, MOST_MESH_NUMBER, PER_WAVELENGTH, mesh_number};
+pub use elements::{FEWEST_PER_WAVELENGTH, MANY_RANGE_STEPS, MAX_ELEMENTS, MOST_MESH_NUMBER, PER_WAVELENGTH, mesh_number};
 pub use fault::{Fault, Place, SpecErrors};
 pub use figures::{FORMATS, Figures};
 pub use json_schema::{SCHEMA_FILE, json_schema};

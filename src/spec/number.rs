@@ -46,6 +46,9 @@ fn allowed(limits: &Limits) -> String {
     }
 }
 
+/// Least relative difference of two loads: boundary elements reach each to 1e-5.
+const APART: f64 = 1e-4;
+
 /// The array of numbers of a key: ascending, each once.
 pub(super) fn numbers(key: &Key, limits: &Limits, most: usize, value: &Written<'_>, faults: &mut Faults<'_>) -> Option<Vec<f64>> {
     let path = key.path;
@@ -62,6 +65,16 @@ pub(super) fn numbers(key: &Key, limits: &Limits, most: usize, value: &Written<'
             if seen.contains(&found) {
                 let message = format!("`{path}` has the value {} twice", short(found));
                 faults.add(&element.span(), message, "list each load reversal once".to_owned());
+            }
+            let other = seen.iter().find(|other| found != **other && (found - **other).abs() < APART * found.max(**other));
+            if let Some(other) = other {
+                let message =
+                    format!("`{path}` has the values {} and {}, which differ by less than 1e-4 of them", short(found), short(*other));
+                faults.add(&element.span(), message, "a load reversal is reached to 1e-5: list one of them".to_owned());
+            }
+            if found < f64::MIN_POSITIVE {
+                let message = format!("`{path}` cannot be {}: it is below the smallest normal number", short(found));
+                faults.add(&element.span(), message, limits.note.to_owned());
             }
             seen.push(found);
         }

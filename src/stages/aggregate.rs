@@ -119,7 +119,10 @@ fn planned_cycles(campaign: &Campaign, standings: &[Standing]) -> Vec<Planned> {
             Standing::Failed(_) => "failed",
             _ => "planned",
         },
-        failure: campaign.failure_in_tables(standing),
+        failure: match standing {
+            Standing::Done => campaign.not_reached_in_tables(unit),
+            _ => campaign.failure_in_tables(standing),
+        },
     };
     campaign.cycles.iter().zip(standings).map(row).collect()
 }

@@ -14,9 +14,12 @@ use crate::store::{Frame, read_reversal_map};
 /// or maps are not kept.
 pub(super) fn contact_maps(campaign: &Campaign, standings: &[Standing], methods: &Frame) -> Result<Option<Drawing>, StageError> {
     let (first, second, surfaces) = (methods.text("asperities_case_id")?, methods.text("elements_case_id")?, methods.text("surface_id")?);
-    let (loads, losses) = (methods.f64("max_load")?, methods.f64("loss_elements")?);
+    let (loads, losses) = (methods.f64("max_load")?, methods.f64_or_null("loss_elements")?);
     let areas = [methods.f64("area_at_max_load_asperities")?, methods.f64("area_at_max_load_elements")?];
-    let Some(row) = (0..methods.row_count()).rev().max_by(|a, b| losses[*a].total_cmp(&losses[*b])) else { return Ok(None) };
+    let Some(row) = (0..methods.row_count()).rev().max_by(|a, b| losses[*a].unwrap_or(f64::MIN).total_cmp(&losses[*b].unwrap_or(f64::MIN)))
+    else {
+        return Ok(None);
+    };
     let done = |case: &str| {
         let is = |unit: &CycleUnit| campaign.cases[unit.case].id == case && campaign.surfaces[unit.surface].id == surfaces[row];
         campaign.cycles.iter().zip(standings).find(|(unit, standing)| **standing == Standing::Done && is(unit)).map(|(unit, _)| unit)

@@ -72,10 +72,8 @@ pub(super) fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<Cycle
     let surface = &campaign.surfaces[unit.surface];
     let header = read_header(&campaign.surface_path(surface))?;
     let summits = read_summits(&campaign.asperities_path(surface))?;
-    let area = header.length_m * header.length_m;
+    let nominal = header.length_m * header.length_m;
     let lattice = lattice(campaign, unit)?;
-    // A square that is continued by mirror images is four times as large.
-    let nominal = lattice.map_or(area, |lattice| lattice.length_m * lattice.length_m);
     let scale = scale(campaign, surface)?;
     let free = jkr_curve(campaign, unit)?;
     let at_max_load = |load: &f64| (*load, load_columns(&free, &header, *load, [nominal, scale.rms_height_m]));
@@ -84,6 +82,7 @@ pub(super) fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<Cycle
     let pinning = flattened.and_then(|ratio| pinning_loss(&params.material, ratio * params.material.work_of_adhesion_j_m2, nominal));
     of_surface.extend(asperity_columns(&summits, &params.material)?);
     of_surface.extend(surface_columns(&header, summits.len()));
+    of_surface.extend(named([("nominal_area_m2", nominal.into())]));
     let per_wavelength = lattice.map(|lattice| per_wavelength(campaign, surface, &header, lattice.per_wavelength)).transpose()?;
     of_surface.extend(named([("elements_per_wavelength", per_wavelength.into())]));
     let continuous = target(params).map(|asked| deng_kesari(&asked.moments(), params, nominal)).transpose()?.flatten();

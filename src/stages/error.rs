@@ -75,6 +75,14 @@ pub enum StageError {
         /// Limit.
         limit: u64,
     },
+    /// A range of attraction that takes too many steps on a surface.
+    #[error("{problem}\nhelp: {help}")]
+    Range {
+        /// Range, rms height and number of steps.
+        problem: String,
+        /// Recommended action.
+        help: String,
+    },
     /// A turning point that was not kept.
     #[error("no load reversal at F/(E* A0) = {max_load} in {}\nhelp: use one of {kept}", shown(path))]
     NoTurning {

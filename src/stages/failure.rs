@@ -18,6 +18,7 @@ pub(super) fn is_of_a_case(error: &StageError) -> bool {
             | StageError::Frame(_)
             | StageError::InTheWay { .. }
             | StageError::TooManySteps { .. }
+            | StageError::Range { .. }
     )
 }
 

@@ -3,7 +3,8 @@
 use super::surface::target;
 use crate::campaign::{Campaign, CaseUnit};
 use crate::physics::theory::flattening::{Flattening, flattening};
-use crate::stats::{CAUTIONS, Caution, Limit};
+use crate::spec::MANY_RANGE_STEPS;
+use crate::stats::{CAUTIONS, Caution, Limit, MANY_STEPS};
 
 /// Elastic energy over a work of adhesion \[J/m²\].
 type Ratio = fn(&Flattening, f64) -> f64;
@@ -42,7 +43,25 @@ pub fn foreseen(campaign: &Campaign) -> Vec<Outside> {
         let range = [values.iter().copied().reduce(f64::min)?, values.iter().copied().reduce(f64::max)?];
         Some(Outside { kind, limit: limit.bound, range, cases })
     };
-    ratios.into_iter().filter_map(of).chain(coarse(campaign)).collect()
+    ratios.into_iter().filter_map(of).chain(coarse(campaign)).chain(many_steps(campaign)).collect()
+}
+
+/// Cases of boundary elements whose attraction acts over many steps.
+fn many_steps(campaign: &Campaign) -> Option<Outside> {
+    let (mut cases, mut values) = (Vec::new(), Vec::new());
+    for unit in campaign.cases.iter().filter(|unit| unit.case.params.by_elements() && !unit.case.params.surface.is_measured()) {
+        let params = &unit.case.params;
+        let (surface, elements) = (&params.surface, &params.boundary_elements);
+        let spacing = surface.length_m / f64::from(elements.grid(f64::from(surface.magnification)));
+        let range = elements.range(params.material.adhesion_length_m(), spacing);
+        let steps = elements.range_steps(range, surface.rms_height_m, params.cycle.max_load.len());
+        if steps > MANY_RANGE_STEPS {
+            cases.push(unit.id.clone());
+            values.push(steps.round());
+        }
+    }
+    let range = [values.iter().copied().reduce(f64::min)?, values.iter().copied().reduce(f64::max)?];
+    Some(Outside { kind: MANY_STEPS, limit: MANY_RANGE_STEPS, range, cases })
 }
 
 /// Cases of boundary elements with fewer grid points per shortest wavelength than recommended.

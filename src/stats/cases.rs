@@ -1,6 +1,7 @@
 //! Means and spreads over the realizations of each case and turning point.
 
 use polars::prelude::{IntoColumn, NamedFrom, Series};
+use std::collections::BTreeSet;
 
 use super::cautions::caution;
 use super::grouped::grouped;
@@ -31,7 +32,9 @@ pub fn cases(realizations: &Frame, inputs: &[CaseInput]) -> Result<Frame, StatsE
             let same = |group: &&Group| group.case_id == case.case_id && (group.max_load - max_load).abs() <= 1e-9 * max_load.abs();
             let none = Group::default();
             let group = groups.iter().find(same).unwrap_or(&none);
-            rows.push(&[&identity(case), &averages(group, case, max_load), &case.parameters]);
+            let finished = groups.iter().filter(|group| group.case_id == case.case_id).flat_map(|group| &group.realizations);
+            let finished = finished.collect::<BTreeSet<_>>().len();
+            rows.push(&[&identity(case), &averages(group, case, max_load, finished), &case.parameters]);
         }
     }
     rows.build()
@@ -93,6 +96,7 @@ fn averaged() -> Vec<&'static str> {
 struct Group {
     case_id: String,
     max_load: f64,
+    realizations: Vec<i64>,
     unconverged: Vec<f64>,
     /// The values that are not null, by column.
     values: Vec<(&'static str, Vec<f64>)>,
@@ -118,7 +122,7 @@ impl Group {
     }
 }
 
-fn averages(group: &Group, case: &CaseInput, max_load: f64) -> Given {
+fn averages(group: &Group, case: &CaseInput, max_load: f64, finished: usize) -> Given {
     let mut row: Given = vec![("max_load".to_owned(), max_load.into())];
     for column in CASES.columns {
         let Some((base, what)) = Statistic::of(column.name) else { continue };
@@ -136,7 +140,9 @@ fn averages(group: &Group, case: &CaseInput, max_load: f64) -> Given {
     row.push(("planned_count".to_owned(), case.planned_count.into()));
     row.push(("done_count".to_owned(), done.into()));
     row.push(("failed_count".to_owned(), case.failed_count.into()));
-    let words = caution(&row, case, done, group.unconverged.iter().any(|count| *count > 0.0));
+    row.push(("unresolved_count".to_owned(), (done - group.values("loss").len().min(done)).into()));
+    row.push(("not_reached_count".to_owned(), (finished - done).into()));
+    let words = caution(&row, case, [done, finished], group.unconverged.iter().any(|count| *count > 0.0));
     row.extend(model_error::columns(&row, case));
     row.push(("caution".to_owned(), words.as_str().into()));
     row
@@ -144,10 +150,11 @@ fn averages(group: &Group, case: &CaseInput, max_load: f64) -> Given {
 
 fn groups(realizations: &Frame) -> Result<Vec<Group>, StatsError> {
     let (ids, loads) = (realizations.text("case_id")?, realizations.f64("max_load")?);
+    let realization = realizations.i64("realization")?;
     let columns = vec![
         Series::new("case_id".into(), &ids).into_column(),
         Series::new("max_load".into(), &loads).into_column(),
-        Series::new("realization".into(), realizations.i64("realization")?).into_column(),
+        Series::new("realization".into(), &realization).into_column(),
     ];
     let rows = grouped(columns, &["case_id", "max_load"], &["case_id", "max_load", "realization"]);
     let rows = rows.map_err(|source| StatsError::Group { table: realizations.table().name, source })?;
@@ -160,6 +167,7 @@ fn groups(realizations: &Frame) -> Result<Vec<Group>, StatsError> {
         Some(Group {
             case_id: ids[first].to_owned(),
             max_load: loads[first],
+            realizations: rows.iter().map(|row| realization[*row]).collect(),
             unconverged: picked(&unconverged, &rows),
             values: columns.iter().map(|(name, values)| (*name, picked(values, &rows))).collect(),
         })

@@ -24,7 +24,7 @@ const fn warning(code: &'static str, label: &'static str, text: &'static str, co
 
 /// All warnings by severity, which is the order of their codes in the column `caution`: results outside the model, then results that depend on a rule of the model,
 /// then incomplete or inaccurate results, then small samples.
-pub const CAUTIONS: [Caution; 19] = [
+pub const CAUTIONS: [Caution; 22] = [
     warning(
         "sticky",
         "near full contact",
@@ -89,6 +89,20 @@ pub const CAUTIONS: [Caution; 19] = [
         "Increase `boundary_elements.points`.",
     ),
     warning(
+        "full_contact",
+        "full contact",
+        "A/A₀ = {} at F_max",
+        "F_po follows from the strength Δγ/ε, the range ε of `interaction_range_m`, and not from the roughness.",
+        "Reduce `max_load` below full contact, or quote F_po with ε.",
+    ),
+    warning(
+        "coarse_steps",
+        "long steps",
+        "shortest step of boundary elements Δ/h_rms = {} (limit 0.05)",
+        "Events are not located: Θ and F_po may be wrong by 4 to 25 %.",
+        "Reduce `boundary_elements.approach_step`, or increase `boundary_elements.halvings`.",
+    ),
+    warning(
         "texture",
         "anisotropic texture",
         "texture aspect ratio = {}",
@@ -101,6 +115,13 @@ pub const CAUTIONS: [Caution; 19] = [
         "{} failed",
         "Failures depend on the surface, so the means may be biased.",
         "Read the reasons with `hysteron status`.",
+    ),
+    warning(
+        "not_reached",
+        "load not reached",
+        "{} have no result at a load reversal",
+        "The means are of the realizations that reached it.",
+        "Read the reasons in the column `failure` of the table `cycles`, and reduce `max_load` or follow their help.",
     ),
     warning(
         "incomplete",
@@ -120,8 +141,8 @@ pub const CAUTIONS: [Caution; 19] = [
         "unresolved",
         "energy not resolved",
         "resolution of Θ is {} of its magnitude",
-        "Θ is zero within its resolution.",
-        "Do not quote Θ and Θ/Θ_DK.",
+        "Θ and Θ/Θ_DK are null for these loops, and the means are of the others.",
+        "Do not quote Θ; boundary elements: reduce `boundary_elements.approach_step`.",
     ),
     warning(
         "audit",
@@ -159,6 +180,15 @@ pub const CAUTIONS: [Caution; 19] = [
         "Increase `max` of `realizations`, or accept the wider interval.",
     ),
 ];
+
+/// Warning of a plan, and of no finished case.
+pub const MANY_STEPS: Caution = warning(
+    "many_steps",
+    "many steps",
+    "attraction of a range acts over {} steps",
+    "A cycle takes many times as long as with a range below h_rms.",
+    "Reduce `boundary_elements.range_m`, or increase `boundary_elements.approach_step`.",
+);
 
 /// A column of the table `cases` with the limit beyond which the row has a warning.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -224,7 +254,10 @@ pub const LIMITS: [Limit; 14] = [
 pub fn condition(code: &str) -> Option<&'static str> {
     match code {
         "failed" => Some("`failed_count` > 0"),
-        "incomplete" => Some("`done_count` < `planned_count`"),
+        "not_reached" => Some("`not_reached_count` > 0"),
+        "full_contact" => Some("`area_at_max_load_mean` = 1, boundary elements"),
+        "coarse_steps" => Some("`approach_step`/2^`halvings` > 0.05, boundary elements"),
+        "incomplete" => Some("finished realizations < `planned_count`"),
         "unconverged" => Some("`unconverged_count` of `realizations` > 0"),
         "single" => Some("`done_count` = 1"),
         "imprecise" => Some("half-width of the interval > `until_relative_ci`"),
@@ -235,8 +268,18 @@ pub fn condition(code: &str) -> Option<&'static str> {
 /// Warnings of the range of the asperity model, which boundary elements do not have.
 const OF_ASPERITIES: [&str; 8] = ["sticky", "area", "conformed", "covered", "absorption", "touching", "texture", "few_contacts"];
 
-/// Codes of the warnings of a row whose other columns are given, joined by `+`.
-pub(super) fn caution(row: &Given, case: &CaseInput, done_count: usize, unconverged: bool) -> String {
+/// Shortest step of boundary elements, of the rms height, above which events are not located.
+const LONGEST_STEP: f64 = 0.05;
+
+/// Step of the case after all its halvings, of the rms height.
+fn shortest_step(case: &CaseInput) -> f64 {
+    let number = |column: &str| case.parameters.iter().find(|(name, _)| name == column).and_then(|(_, value)| value.number());
+    number("approach_step").unwrap_or_default() / number("halvings").unwrap_or_default().exp2()
+}
+
+/// Codes of the warnings of a row whose other columns are given, joined by `+`. The counts are those of the realizations with a result in the row and at any load of
+/// its case.
+pub(super) fn caution(row: &Given, case: &CaseInput, [done_count, finished_count]: [usize; 2], unconverged: bool) -> String {
     let is = |column: &str, value: Value| case.parameters.iter().any(|(name, known)| name == column && *known == value);
     let by_elements = is("method", Value::from("boundary_elements"));
     let wu = (is("jump_in", Value::from("wu")) || is("nucleation", Value::from("wu"))) && !is("work_of_adhesion_j_m2", Value::from(0.0));
@@ -247,7 +290,10 @@ pub(super) fn caution(row: &Given, case: &CaseInput, done_count: usize, unconver
     let passed = |word: &str| LIMITS.iter().any(|limit| limit.caution == word && limit.is_passed(number(limit.column)));
     let holds = |word: &str| match word {
         _ if by_elements && OF_ASPERITIES.contains(&word) => false,
-        "incomplete" => done_count < case.planned_count,
+        "full_contact" => by_elements && number("area_at_max_load_mean").is_some_and(|area| area >= 1.0),
+        "coarse_steps" => by_elements && shortest_step(case) > LONGEST_STEP,
+        "incomplete" => finished_count < case.planned_count,
+        "not_reached" => done_count < finished_count,
         "failed" => case.failed_count > 0,
         "imprecise" => case.precision.as_ref().is_some_and(|(name, share)| {
             let [mean, high] = ["mean", "ci95_high"].map(|end| number(&format!("{name}_{end}")));

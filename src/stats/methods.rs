@@ -4,7 +4,7 @@ use super::listed::case_label;
 use super::rows::{Rows, Value};
 use super::student::Sample;
 use super::varying::varying;
-use super::{CaseInput, Given, Limit, StatsError, significant};
+use super::{CaseInput, Given, StatsError, significant};
 use crate::schema::METHODS;
 use crate::store::Frame;
 
@@ -65,13 +65,11 @@ fn same_surfaces(pair: &[String; 2], load: f64, realizations: &Frame) -> Result<
 
 /// Values, ratios and their statistics of a column. There is no ratio of a dissipated energy that is not resolved.
 fn compare(column: &str, pairs: &[Pair], realizations: &Frame, (shared, own): (&mut Given, &mut [Given])) -> Result<(), StatsError> {
-    let values = realizations.f64(column)?;
-    let uncertainties = realizations.f64_or_null("loss_uncertainty")?;
-    let is_resolved = |row: usize| column != "loss" || !Limit::of("unresolved").is_some_and(|limit| limit.is_passed(uncertainties[row]));
+    let values = realizations.f64_or_null(column)?;
     let mut ratios = Vec::new();
     for (row, [first, second]) in own.iter_mut().zip(pairs) {
         let (asperities, elements) = (values[*first], values[*second]);
-        let ratio = (elements != 0.0 && is_resolved(*first) && is_resolved(*second)).then(|| asperities / elements);
+        let ratio = asperities.zip(elements.filter(|elements| *elements != 0.0)).map(|(asperities, elements)| asperities / elements);
         row.push((format!("{column}_asperities"), asperities.into()));
         row.push((format!("{column}_elements"), elements.into()));
         row.push((format!("{column}_ratio"), ratio.into()));
@@ -113,8 +111,8 @@ pub fn method_pairs(methods: &Frame) -> Result<Vec<MethodPair>, StatsError> {
         let mut quantities = [[None; 4]; 3];
         for (quantity, column) in quantities.iter_mut().zip(COMPARED) {
             let mean = |end: &str| -> Result<Option<f64>, StatsError> {
-                let values = methods.f64(&format!("{column}_{end}"))?;
-                Ok(Sample::of(&group.iter().map(|row| values[*row]).collect::<Vec<f64>>()).mean)
+                let values = methods.f64_or_null(&format!("{column}_{end}"))?;
+                Ok(Sample::of(&group.iter().filter_map(|row| values[*row]).collect::<Vec<f64>>()).mean)
             };
             let one = |end: &str| -> Result<Option<f64>, StatsError> { Ok(methods.f64_or_null(&format!("{column}_ratio_{end}"))?[row]) };
             *quantity = [mean("asperities")?, mean("elements")?, one("mean")?, one("sd")?];

@@ -3,7 +3,7 @@
 use super::cycle::{Branch, Cycle, fault};
 use super::events::{Events, Lost};
 use super::rows::{Rows, Value};
-use super::{CaseInput, CycleInput, Given, StatsError};
+use super::{CaseInput, CycleInput, Given, Limit, StatsError};
 use crate::physics::cycle::soundness::LoopEnergy;
 use crate::schema::{EVENT_KINDS, REALIZATIONS};
 use crate::store::Frame;
@@ -105,6 +105,28 @@ fn touched(asperities: &[i64], input: &CycleInput) -> f64 {
     each.sum::<f64>() / input.energy_scale_j
 }
 
+/// Resolution of Θ over |Θ|; nothing for Θ = 0. The energy balance of boundary elements is exact, so that its error is one of Θ.
+fn uncertainty(energy: LoopEnergy, input: &CycleInput) -> Option<f64> {
+    let by_elements = input.surface.iter().any(|(name, value)| name == "elements_per_wavelength" && value.number().is_some());
+    let error_j = if by_elements { energy.imbalance_j() } else { 0.0 };
+    (energy.loss_j != 0.0).then(|| energy.resolution_j().max(error_j) / energy.loss_j.abs())
+}
+
+/// Pull-off force \[N\]. With adhesion one of 0 is lost in the load.
+fn pull_off_n(unloading: &Branch, input: &CycleInput) -> Option<f64> {
+    // `0 − 0` keeps a minus sign that no reader of the table wants.
+    let tension = -unloading.least_load_n.iter().copied().fold(0.0, f64::min) + 0.0;
+    let is_adhesive = input.loss_dalvi_per_area_j > 0.0;
+    (tension > 0.0 || !is_adhesive).then_some(tension)
+}
+
+/// Energy-balance error over |Θ|; without adhesion, energy of the events of loading over the work.
+fn audit_gap(energy: LoopEnergy, on_loading_j: f64) -> Option<f64> {
+    let LoopEnergy { loss_j, work_j, .. } = energy;
+    let (imbalance_j, compared_j) = if loss_j == 0.0 { (on_loading_j.abs(), work_j) } else { (energy.imbalance_j(), loss_j.abs()) };
+    (compared_j > 0.0).then(|| imbalance_j / compared_j)
+}
+
 fn reduce(loading: &Branch, turning: usize, unloading: &Branch, max_load: f64, input: &CycleInput) -> Result<Given, StatsError> {
     let lacking = |what: &str| fault(&input.steps, format!("lack {what} at the turning point {max_load}"));
     let at = |values: &[f64]| values.get(turning).copied().ok_or_else(|| lacking("a number"));
@@ -126,14 +148,14 @@ fn reduce(loading: &Branch, turning: usize, unloading: &Branch, max_load: f64, i
     // Without adhesion the events of loading are undone on unloading, and nothing but rounding remains.
     let dissipated_j = if loss_j == 0.0 { 0.0 } else { on_loading + unloading.dissipated_j.iter().sum::<f64>() };
     let energy = LoopEnergy { loss_j, events_j: dissipated_j, work_j };
-    let (imbalance_j, compared_j) = if loss_j == 0.0 { (on_loading.abs(), work_j) } else { (energy.imbalance_j(), loss_j.abs()) };
+    let uncertainty = uncertainty(energy, input);
+    let is_resolved = !Limit::of("unresolved").is_some_and(|limit| limit.is_passed(uncertainty));
     let converged = loading.converged.iter().take(turning + 1).chain(&unloading.converged);
     let (contacts, covered) = (count_at(&loading.contact_count), count_at(&loading.covered_count));
-    let tension = |loads: &[f64]| -loads.iter().copied().fold(0.0, f64::min);
-    // `0 − 0` keeps a minus sign that no reader of the table wants.
-    let pull_off = |loads: &[f64]| tension(loads) + 0.0;
+    let pull_off = pull_off_n(unloading, input);
     let touching = count_at(&loading.touching_count);
     let held: i64 = loading.held_count.iter().take(turning + 1).chain(&unloading.held_count).sum();
+    let load_unit = at(&loading.load)? / at(&loading.load_n)?;
     let columns: [(&str, Value); 29] = [
         ("realization", input.realization.into()),
         ("cycle_id", input.cycle_id.as_str().into()),
@@ -141,23 +163,23 @@ fn reduce(loading: &Branch, turning: usize, unloading: &Branch, max_load: f64, i
         ("asperities_id", input.surface_id.as_str().into()),
         ("max_load", max_load.into()),
         // The turning step has the unit of load, as the quotient of its two columns.
-        ("pull_off_load", (pull_off(&unloading.least_load_n) * at(&loading.load)? / at(&loading.load_n)?).into()),
-        ("pull_off_load_n", pull_off(&unloading.least_load_n).into()),
+        ("pull_off_load", pull_off.map(|pull_off| pull_off * load_unit).into()),
+        ("pull_off_load_n", pull_off.into()),
         ("area_at_max_load", area.into()),
         // The sum and the union of the discs are both in m²; A0 need not be known to scale the one like the other.
         ("area_union_at_max_load", union.map(|union| if discs > 0.0 { union * area / discs } else { 0.0 }).into()),
         ("penetration_at_max_load", at(&loading.penetration)?.into()),
-        ("loss", loss.into()),
-        ("loss_j", loss_j.into()),
+        ("loss", is_resolved.then_some(loss).into()),
+        ("loss_j", is_resolved.then_some(loss_j).into()),
         ("loss_dk", loss_dk.into()),
         ("loss_dk_realised", dk(input.loss_dk_realised_per_area_j).into()),
         ("loss_pinning", input.loss_pinning_per_area_j.map(|slope| slope * area / input.energy_scale_j).into()),
         ("loss_dalvi", (input.loss_dalvi_per_area_j * area / input.energy_scale_j).into()),
-        ("loss_ratio_dk", loss_dk.filter(|dk| *dk != 0.0).map(|dk| loss / dk).into()),
+        ("loss_ratio_dk", loss_dk.filter(|dk| *dk != 0.0 && is_resolved).map(|dk| loss / dk).into()),
         ("dissipated", (dissipated_j / input.energy_scale_j).into()),
         ("dissipated_j", dissipated_j.into()),
-        ("audit_gap", (compared_j > 0.0).then(|| imbalance_j / compared_j).into()),
-        ("loss_uncertainty", (loss_j != 0.0).then(|| energy.resolution_j() / loss_j.abs()).into()),
+        ("audit_gap", audit_gap(energy, on_loading).into()),
+        ("loss_uncertainty", uncertainty.into()),
         ("contact_count_at_max_load", contacts.into()),
         ("touching_count_at_max_load", touching.into()),
         ("covered_count_at_max_load", covered.into()),

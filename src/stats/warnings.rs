@@ -49,10 +49,24 @@ fn measured(cases: &Frame, kind: &Caution, rows: &[usize]) -> Result<String, Sta
         return Ok(format!("{} (limit {})", kind.text.replace("{}", &range(*limit, &values)), bound(*limit)));
     }
     let (done, planned, failed) = (cases.i64("done_count")?, cases.i64("planned_count")?, cases.i64("failed_count")?);
+    let not_reached = cases.i64_or_null("not_reached_count")?;
     // A case has a row for each load reversal, and its cycles count once.
     let ids = cases.text("case_id")?;
     let firsts: Vec<usize> = rows.iter().copied().filter(|row| rows.iter().find(|other| ids[**other] == ids[*row]) == Some(row)).collect();
     let total = |counts: &[i64]| firsts.iter().map(|row| counts[*row]).sum::<i64>();
+    if kind.code == "full_contact" {
+        return Ok(kind.text.replace("{}", "1"));
+    }
+    if kind.code == "coarse_steps" {
+        let (steps, halvings) = (cases.f64_or_null("approach_step")?, cases.f64_or_null("halvings")?);
+        let shortest = rows.iter().filter_map(|row| Some(steps[*row]? / halvings[*row]?.exp2()));
+        return Ok(kind.text.replace("{}", &significant(shortest.fold(0.0, f64::max), 3)));
+    }
+    if kind.code == "not_reached" {
+        let unreached: i64 = rows.iter().map(|row| not_reached[*row].unwrap_or_default()).sum();
+        let all: i64 = rows.iter().map(|row| done[*row] + not_reached[*row].unwrap_or_default()).sum();
+        return Ok(kind.text.replace("{}", &format!("{unreached} of {}", counted(usize::try_from(all).unwrap_or_default(), "loop"))));
+    }
     if kind.code != "incomplete" {
         let all = counted(usize::try_from(total(&planned)).unwrap_or_default(), "realization");
         return Ok(kind.text.replace("{}", &format!("{} of {all}", total(&failed))));

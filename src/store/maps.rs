@@ -49,6 +49,8 @@ pub struct MapsHeader<'a> {
     pub length_m: f64,
     /// Grid points along a side.
     pub points: usize,
+    /// Place of the first grid point along x and y, from the first point of the surface \[m\].
+    pub first_m: f64,
     /// Gap below which a bonded point is in contact \[m\].
     pub contact_gap_m: f64,
 }
@@ -147,6 +149,9 @@ fn write_all(path: &Path, header: &MapsHeader<'_>, maps: &[ContactMap]) -> Resul
     write_number(&file, "length_m", header.length_m)?;
     write_number(&file, "points", header.points as u64)?;
     write_number(&file, "contact_gap_m", header.contact_gap_m)?;
+    if header.first_m != 0.0 {
+        write_number(&file, "first_m", header.first_m)?;
+    }
     for map in maps {
         let group = file.create_group_builder().obj_track_times(false).create(group_name(map).as_str())?;
         write_number(&group, "step", map.step)?;

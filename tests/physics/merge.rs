@@ -227,6 +227,23 @@ fn reg_merged_spots_that_fill_the_square_are_refused_with_a_sentence() {
 }
 
 #[test]
+fn reg_a_load_beyond_full_contact_leaves_the_loads_before_it() {
+    let summits = paper_summits(16, 0);
+    let problem = Problem::new(&summits, LENGTH, RMS, PAPER, MERGE).unwrap();
+    let to = |max_loads: &[f64]| {
+        let settings = Settings { max_loads: max_loads.to_vec(), approach_step: 0.04, contacts: KeptContacts::None, rest_every: None };
+        cycle::run(&problem, &settings, &|_| {}).unwrap()
+    };
+    let (both, alone) = (to(&[0.002, 0.1]), to(&[0.002]));
+    assert_eq!(both.unreached.len(), 1);
+    assert!(both.unreached[0].0 == 1 && both.unreached[0].1.contains("leaves no gap"), "{:?}", both.unreached);
+    assert!(alone.unreached.is_empty() && both.turning.len() == 1);
+    let of = |cycle: &Cycle| cycle.steps.iter().filter(|step| step.max_load == Some(0.002)).cloned().collect::<Vec<_>>();
+    assert!(!of(&alone).is_empty());
+    assert_eq!(of(&both), of(&alone), "the same unloading");
+}
+
+#[test]
 fn law_spots_that_never_touch_do_not_know_of_it() {
     // Few and far between: `merge` and `cover` are the same, event by event.
     let mut dice = Dice(7);

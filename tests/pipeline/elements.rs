@@ -35,24 +35,24 @@ fn alone() -> String {
     SPEC.replace("realizations = 2", "realizations = 1").replace("[\"asperities\", \"boundary_elements\"]", "\"boundary_elements\"")
 }
 
-fn campaign(bench: &Bench) -> Campaign {
+pub fn campaign(bench: &Bench) -> Campaign {
     Campaign::new(Spec::read(bench.spec()).unwrap(), bench.out())
 }
 
 /// The cycles of boundary elements.
-fn elements(campaign: &Campaign) -> Vec<CycleUnit> {
+pub fn elements(campaign: &Campaign) -> Vec<CycleUnit> {
     campaign.distinct_cycles().into_iter().filter(|unit| campaign.cases[unit.case].case.params.by_elements()).collect()
 }
 
-fn table(campaign: &Campaign, unit: &CycleUnit, table: &'static Table) -> Frame {
+pub fn table(campaign: &Campaign, unit: &CycleUnit, table: &'static Table) -> Frame {
     read_table(&campaign.cycle_dir(unit).join(format!("{}.parquet", table.name)), table).unwrap()
 }
 
-fn statistics(bench: &Bench, table: &'static Table) -> Frame {
+pub fn statistics(bench: &Bench, table: &'static Table) -> Frame {
     read_table(&bench.out().join(table.file), table).unwrap()
 }
 
-fn close(what: &str, got: f64, want: f64, tolerance: f64) {
+pub fn close(what: &str, got: f64, want: f64, tolerance: f64) {
     assert!((got - want).abs() <= tolerance * want.abs(), "{what}: {got} is not {want}");
 }
 
@@ -410,37 +410,4 @@ fn val_grids_and_warnings_of_boundary_elements() {
     let cases = statistics(&bench, &schema::CASES);
     assert!(cases.text("caution").unwrap()[0].split('+').any(|code| code == "coarse"));
     assert_eq!(cases.f64("elements_per_wavelength_min").unwrap(), [8.0]);
-}
-
-#[test]
-fn law_loads_of_a_scan_that_is_not_periodic_refer_to_its_mirror_images() {
-    let made = Bench::new(&alone());
-    assert_eq!(code(&made.verb("run", &["--until", "generate"])), 0);
-    let surface = files(&made.out()).into_keys().find(|path| path.extension().is_some_and(|end| end == "h5")).unwrap();
-    let scan = made.out().join(surface);
-    let spec = |lines: &str| {
-        format!(
-            "name = \"scan\"\n[surface]\nfile = \"{}\"\ndataset = \"height_m\"\nunit = \"m\"\npixel_m = 3.125e-5\n[model]\nmethod = \"boundary_elements\"\n\
-             [material]\nwork_of_adhesion_j_m2 = 0.01\n[cycle]\nmax_load = [0.004]\n[boundary_elements]\nprecision = 1e-4\n{lines}\n",
-            scan.display()
-        )
-    };
-    let bench = Bench::new(&spec(""));
-    let run = bench.verb("run", &["--until", "aggregate"]);
-    assert_eq!(code(&run), 0, "{}", stderr(&run));
-    let campaign = campaign(&bench);
-    let steps = table(&campaign, &elements(&campaign)[0], &schema::STEPS);
-    let (load, load_n) = (steps.f64("load").unwrap(), steps.f64("load_n").unwrap());
-    let at = (0..load.len()).find(|k| load[*k] > 1e-3).unwrap();
-    // E* times the area of a square of twice the side.
-    close("E* A0", load_n[at] / load[at], 1e6 * (2.0_f64 * 1e-3).powi(2), 1e-9);
-    let frame = statistics(&bench, &schema::REALIZATIONS);
-    let loss = frame.f64("loss_j").unwrap()[0] / frame.f64("loss").unwrap()[0];
-    close("E* A0 h_rms", loss, 1e6 * 4e-6 * frame.f64("rms_height_m").unwrap()[0], 1e-9);
-    close("A0", frame.f64("loss_dalvi").unwrap()[0] * loss / frame.f64("area_at_max_load").unwrap()[0], 0.01 * 4e-6, 1e-9);
-    // Too coarse a grid is known when the file has been read.
-    let coarse = Bench::new(&spec("points = 16"));
-    let refused = coarse.verb("run", &["--until", "cycle"]);
-    assert_eq!(code(&refused), 3, "{}", stderr(&refused));
-    assert!(stderr(&refused).contains("per shortest wavelength: at least 4 are needed"), "{}", stderr(&refused));
 }

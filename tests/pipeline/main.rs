@@ -34,6 +34,7 @@ mod python;
 mod report;
 #[cfg(feature = "store")]
 mod scan;
+mod reversals;
 mod schema;
 #[cfg(feature = "stats")]
 mod snapshots;

@@ -2,7 +2,7 @@
 
 use super::outputs::undamaged;
 use super::{Fault, failed};
-use crate::campaign::{Campaign, Shard, Stage, Standing};
+use crate::campaign::{Campaign, CycleUnit, Shard, Stage, Standing};
 use crate::cli::progress::duration;
 use crate::schema;
 use crate::stages::Tally;
@@ -27,13 +27,20 @@ pub(super) struct Ended<'a> {
     pub(super) failed_count: usize,
     /// Failed tasks with their reasons.
     failures: Vec<(String, String)>,
+    /// Finished cycles with loads that have no result, with the load and the error.
+    unreached: Vec<(String, f64, String)>,
 }
 
 impl<'a> Ended<'a> {
     pub(super) fn of(campaign: &'a Campaign, shard: Shard, tallies: &'a [(Stage, Tally)], time: Duration) -> Self {
         let failed_count = tallies.iter().map(|(_, tally)| tally.failed).max().unwrap_or(0);
         let failures = if failed_count > 0 { failures(campaign, shard) } else { Vec::new() };
-        Self { campaign, tallies, time, size_bytes: size(&campaign.dir), failed_count, failures }
+        Self { campaign, tallies, time, size_bytes: size(&campaign.dir), failed_count, failures, unreached: unreached(campaign, shard) }
+    }
+
+    /// True if results that the spec asks for have failed or are not reached.
+    pub(super) fn lacks_results(&self) -> bool {
+        self.failed_count > 0 || !self.unreached.is_empty()
     }
 
     /// The table of results, failures, counts and places.
@@ -57,6 +64,7 @@ impl<'a> Ended<'a> {
             text += &failed_cycles(self.failed_count, &self.campaign.dir);
             text += &self.reasons();
         }
+        text += &self.unreached_loads();
         let size = HumanBytes(self.size_bytes);
         let computed: usize = self.tallies.iter().map(|(_, tally)| tally.computed).sum();
         let planned: usize = self.tallies.iter().map(|(_, tally)| tally.planned).sum();
@@ -93,6 +101,23 @@ impl<'a> Ended<'a> {
         self.failed_count == 0 && self.tallies.iter().all(|(_, tally)| tally.computed == 0)
     }
 
+    /// The first loads of finished cycles without a result, each with the first line of its reason.
+    fn unreached_loads(&self) -> String {
+        if self.unreached.is_empty() {
+            return String::new();
+        }
+        let mut text =
+            format!("{} of finished cycles not reached; their other loads have results.\n", counted(self.unreached.len(), "load"));
+        for (id, max_load, why) in self.unreached.iter().take(LISTED) {
+            let why = visible(why.lines().next().unwrap_or_default());
+            text += &wrapped(&format!("  {id}, F_max/(E* A0) = {max_load}: {why}"), "    ");
+        }
+        if self.unreached.len() > LISTED {
+            text += &format!("  … and {} more\n", self.unreached.len() - LISTED);
+        }
+        text + &format!("Reasons with help: {}/cycles/*/not_reached.json\n", shown(&self.campaign.dir))
+    }
+
     /// The first failures, each with the first line of its reason; the others are in files.
     fn reasons(&self) -> String {
         let mut text = String::new();
@@ -116,11 +141,14 @@ pub(super) fn tally_json(ended: &Ended<'_>) -> String {
         })
         .collect();
     let failures: Vec<_> = ended.failures.iter().map(|(id, why)| json!({ "id": id, "why": why })).collect();
+    let unreached: Vec<_> =
+        ended.unreached.iter().map(|(id, max_load, why)| json!({ "id": id, "max_load": max_load, "why": why })).collect();
     let answer = json!({
         "name": ended.campaign.spec.name,
         "dir": ended.campaign.dir.display().to_string(),
         "stages": stages,
         "failures": failures,
+        "not_reached": unreached,
         "elapsed_s": ended.time.as_secs_f64(),
         "size_bytes": ended.size_bytes,
     });
@@ -146,6 +174,16 @@ fn failures(campaign: &Campaign, shard: Shard) -> Vec<(String, String)> {
         _ => None,
     });
     failed.collect()
+}
+
+/// Loads without a result of the finished cycles of a shard.
+fn unreached(campaign: &Campaign, shard: Shard) -> Vec<(String, f64, String)> {
+    let cycles = campaign.distinct_cycles().into_iter().filter(|unit| shard.holds(unit.surface));
+    let of = |unit: CycleUnit| {
+        let loads = campaign.not_reached(&unit);
+        loads.into_iter().map(move |(load, why)| (unit.id.clone(), load, why))
+    };
+    cycles.flat_map(of).collect()
 }
 
 /// Bytes of all files below a folder; links are not followed.

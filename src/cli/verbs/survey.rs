@@ -4,7 +4,7 @@ use super::causes::causes;
 use super::ending::failed_cycles;
 use super::place::{folder, open, open_dir, resuming};
 use super::{Fault, failed, say, submit};
-use crate::campaign::{Campaign, REPORT_PAGE, STATISTICS, Stage, Standing, Survey};
+use crate::campaign::{Campaign, CycleUnit, REPORT_PAGE, STATISTICS, Stage, Standing, Survey};
 use crate::cli::{FolderArguments, OutputArguments};
 use crate::engines::slurm::{Queue, Sent};
 use crate::stages::{Outside, foreseen};
@@ -60,8 +60,9 @@ fn outside_text(of: &Outside, all: usize) -> String {
     let Caution { code, label, consequence, action, .. } = of.kind;
     let cases = format!("{} of {}", of.cases.len(), counted(all, "case"));
     let text = format!(
-        "warning[{code}]: {label}: {measured} ({}limit ≥ {}) for {cases}. {consequence} {action}",
-        if code == "coarse" { "" } else { "target spectrum; " },
+        "warning[{code}]: {label}: {measured} ({}limit {} {}) for {cases}. {consequence} {action}",
+        if ["coarse", "many_steps"].contains(&code) { "" } else { "target spectrum; " },
+        if code == "many_steps" { "≤" } else { "≥" },
         of.limit
     );
     wrapped(&text, "  ")
@@ -259,7 +260,16 @@ fn describe(campaign: &Campaign, units: &Units, further: impl Fn(Stage, &[(Strin
             let verb = if matches!(standing, Standing::Failed(_)) { "failed" } else { &format!("is {}", standing.word()) };
             text += &format!("  {id} {verb}{why}\n");
         }
+        if *stage == Stage::Cycle {
+            text += &not_reached(campaign);
+        }
         text += &further(*stage, units);
     }
     text
+}
+
+/// Loads of finished cycles that have no result, one line for each cycle.
+fn not_reached(campaign: &Campaign) -> String {
+    let of = |unit: &CycleUnit| campaign.not_reached_in_tables(unit).map(|why| format!("  {}: {}\n", unit.id, visible(&why)));
+    campaign.distinct_cycles().iter().filter_map(of).collect()
 }

@@ -155,5 +155,5 @@ fn perform(campaign: Campaign, task: &Task, json: bool, talk: TalkArguments) -> 
             teller.notice(&warnings);
         }
     }
-    Ok(if ended.failed_count > 0 { FAILED_CASES } else { 0 })
+    Ok(if ended.lacks_results() { FAILED_CASES } else { 0 })
 }

@@ -219,11 +219,13 @@ impl Problem {
     }
 
     /// Ends the bonds of points that have separated, beyond the end of the law and of the margin, and seals those inside contacts at which the law is
-    /// its spring. Neither changes the energy; with Morse's law, by less than 1e-6 Δγ per point.
+    /// its spring. Neither changes the energy; with Morse's law, by less than 1e-6 Δγ per point. Full contact opens at its point of the largest tension, which
+    /// is not sealed if the strength is finite.
     pub fn settle_bonds(&self, state: &mut State) {
         let Attraction::Bonded { margin, strength, .. } = self.attraction else { return };
         let touching = self.map(state, |bonding, gap| u8::from(self.touches(bonding, gap)));
         let (end, spring) = (self.law.end_gap(), self.law.spring_gap());
+        let nucleus = if strength.is_finite() && !touching.contains(&0) { self.widest_gap(state) } else { None };
         let columns = self.half_space.columns();
         let approach = state.approach;
         let rows = (state.bonds.par_chunks_mut(columns), state.displacement.par_chunks(columns), self.heights.par_chunks(columns));
@@ -238,6 +240,14 @@ impl Problem {
                 }
             }
         });
+        if let Some(point) = nucleus {
+            state.bonds[point] = Bonding::Bonded;
+        }
+    }
+
+    /// The point with the widest gap, the first of equal ones: in full contact that of the largest tension.
+    fn widest_gap(&self, state: &State) -> Option<usize> {
+        (0..self.half_space.points()).rev().max_by(|a, b| self.gap(state, *a).total_cmp(&self.gap(state, *b)))
     }
 
     fn map(&self, state: &State, value: impl Fn(Bonding, f64) -> u8 + Sync) -> Vec<u8> {

@@ -1,7 +1,7 @@
 //! Loading and unloading under displacement control, by [steps](super::step) from first contact to the last separation.
 
 use super::contact::{Attraction, Problem};
-pub use super::records::{Cycle, Event, Map, Step, Turning};
+pub use super::records::{Cycle, Event, Map, Step, Turning, Unreached};
 use super::regions::{Region, label};
 use super::step::Walk;
 pub use super::step::{Halfway, Settings};
@@ -11,10 +11,10 @@ use crate::physics::PhysicsError;
 pub(super) const FARTHEST: f64 = 20.0;
 
 /// Loads to the largest of the loads and unloads from each, from the beginning or from `halfway`. After each step `keep` is given what is needed to
-/// continue from there, and `progress` the completed fraction.
+/// continue from there, and `progress` the completed fraction. Load reversals that are not reached or do not separate are listed in the cycle.
 ///
 /// # Errors
-/// Not enough memory; a load that is not reached; full contact at a reversal; surfaces that do not separate.
+/// Not enough memory; and if no load reversal has a result: a load that is not reached, full contact that does not open, surfaces that do not separate.
 pub fn run(
     problem: &Problem,
     settings: &Settings,
@@ -28,15 +28,25 @@ pub fn run(
         let branches = settings.max_loads.len() + 1;
         while walk.at.branches < branches {
             let done = walk.at.branches;
-            if done == 0 {
-                walk.load(keep, progress)?;
-            } else {
-                walk.unload(done - 1, keep, progress)?;
-            }
+            let ended = if done == 0 { walk.load(keep, progress)? } else { walk.unload(done - 1, keep, progress)? };
+            walk.end_branch(done, ended);
             walk.at.branches += 1;
         }
-        Ok(walk.at.cycle)
+        walk.at.finish(&settings.max_loads)
     })
+}
+
+/// A branch that has come to its end, or the reason why not.
+pub(super) type Ended = Option<Unreached>;
+
+impl Halfway {
+    /// The cycle, if any of its load reversals has a result.
+    fn finish(self, max_loads: &[f64]) -> Result<Cycle, PhysicsError> {
+        match self.unreached.first() {
+            Some((reversal, reason)) if self.unreached.len() == max_loads.len() => Err(reason.error(max_loads[*reversal])),
+            _ => Ok(Cycle { unreached: self.unreached, least_loads: self.least_loads, ..self.cycle }),
+        }
+    }
 }
 
 /// Unloads from a state at a load reversal: the steps, events, regions and maps that [`run`] has from there, numbered from 0.
@@ -47,14 +57,32 @@ pub fn unload_from(problem: &Problem, settings: &Settings, reversal: usize, turn
     rayon::scope(|_| {
         let mut walk = Walk::begin(problem, settings, None)?;
         walk.at.cycle = Cycle { turning: vec![turning.clone(); reversal + 1], ..Cycle::default() };
-        walk.unload(reversal, &mut |_| {}, &|_| {})?;
-        Ok(Cycle { turning: Vec::new(), ..walk.at.cycle })
+        match walk.unload(reversal, &mut |_| {}, &|_| {})? {
+            Some(reason) => Err(reason.error(settings.max_loads.get(reversal).copied().unwrap_or_default())),
+            None => Ok(Cycle { turning: Vec::new(), least_loads: walk.at.least_loads, ..walk.at.cycle }),
+        }
     })
 }
 
 impl Walk<'_> {
+    /// Notes the load reversals of a branch that has not come to its end: all further ones of the loading.
+    fn end_branch(&mut self, done: usize, ended: Ended) {
+        let Some(reason) = ended else { return };
+        let Some(reversal) = done.checked_sub(1) else {
+            let further = self.at.cycle.turning.len()..self.settings.max_loads.len();
+            self.at.unreached.extend(further.map(|reversal| (reversal, reason)));
+            return;
+        };
+        let Halfway { cycle, unreached, least_loads, .. } = &mut self.at;
+        std::mem::swap(&mut cycle.least_loads, least_loads);
+        cycle.remove_unloading(reversal, reason);
+        std::mem::swap(&mut cycle.least_loads, least_loads);
+        unreached.append(&mut cycle.unreached);
+        self.at.tensest = None;
+    }
+
     /// Loads to the largest of the loads.
-    fn load(&mut self, keep: &mut dyn FnMut(&Halfway), progress: &dyn Fn(f64)) -> Result<(), PhysicsError> {
+    fn load(&mut self, keep: &mut dyn FnMut(&Halfway), progress: &dyn Fn(f64)) -> Result<Ended, PhysicsError> {
         if self.at.cycle.steps.is_empty() {
             let first = self.attempt(self.at.state.approach, self.settings.accuracy)?;
             self.accept(first);
@@ -62,17 +90,21 @@ impl Walk<'_> {
         let farthest = self.farthest();
         let last = self.settings.max_loads.last().copied().unwrap_or(0.0);
         while let Some(max_load) = self.settings.max_loads.get(self.at.cycle.turning.len()).copied() {
+            self.return_to_path();
             let reached = self.advance(1.0, Some(max_load))?;
             let (load, approach) = (self.at.last.totals.load, self.at.last.approach);
             if reached {
-                self.turn()?;
+                if self.is_closed() {
+                    return Ok(Some(Unreached::Closed { approach }));
+                }
+                self.turn();
             } else if approach > farthest {
-                return Err(PhysicsError::LoadNotReached { wanted: max_load, reached: load, approach_m: approach });
+                return Ok(Some(Unreached::Load { reached: load, approach }));
             }
             progress((0.5 * load / last).clamp(0.0, 0.5));
             keep(&self.at);
         }
-        Ok(())
+        Ok(None)
     }
 
     /// Magnitude of the approach beyond which the search for a load or for the last separation ends \[dx\]: attraction of a range begins and ends at the
@@ -82,36 +114,58 @@ impl Walk<'_> {
         FARTHEST * self.problem.range() + 2.0 * acts
     }
 
-    /// Keeps the state at a load reversal.
-    fn turn(&mut self) -> Result<(), PhysicsError> {
-        let (points, contact) = (self.problem.half_space.points(), self.at.last.totals.contact);
-        if contact == points && matches!(self.problem.attraction, Attraction::Bonded { .. }) {
-            return Err(PhysicsError::Closed { approach_m: self.at.last.approach });
+    /// True in full contact.
+    fn is_full(&self) -> bool {
+        self.at.last.totals.contact == self.problem.half_space.points()
+    }
+
+    /// True in full contact that does not open, since contact opens at edges only.
+    fn is_closed(&self) -> bool {
+        self.is_full() && matches!(self.problem.attraction, Attraction::Bonded { strength: f64::INFINITY, .. })
+    }
+
+    /// Load of full contact at which the largest tension is the strength \[E* dx²\]; none elsewhere, and where the law alone decides.
+    ///
+    /// In full contact the mean gap is constant and tension is added uniformly, until a nucleus opens at the place of the largest tension. The grid resolves a
+    /// nucleus from its own strength on only, so that the load before is computed here and is no equilibrium on it.
+    fn opening_load(&self) -> Option<f64> {
+        let Attraction::Bonded { strength, .. } = self.problem.attraction else { return None };
+        if !self.is_full() || strength <= 0.0 || strength.is_infinite() {
+            return None;
         }
+        let points = self.problem.half_space.points();
+        let tension = |k: usize| self.problem.bond(self.at.state.bonds[k], self.problem.gap(&self.at.state, k)).tension;
+        let largest = (0..points).map(tension).fold(f64::NEG_INFINITY, f64::max);
+        Some(self.at.last.totals.load - points as f64 * (strength - largest).max(0.0))
+    }
+
+    /// Keeps the state at a load reversal.
+    fn turn(&mut self) {
         let step = self.at.cycle.steps.len() - 1;
         let (map, found) = self.landmark(step);
         self.at.cycle.keep(map, found);
         let (state, last, dissipated) = (self.at.state.clone(), self.at.last, self.at.dissipated);
         self.at.cycle.turning.push(Turning { step, state, last, dissipated });
-        Ok(())
     }
 
     /// Unloads from a reversal to the last separation.
-    fn unload(&mut self, reversal: usize, keep: &mut dyn FnMut(&Halfway), progress: &dyn Fn(f64)) -> Result<(), PhysicsError> {
+    fn unload(&mut self, reversal: usize, keep: &mut dyn FnMut(&Halfway), progress: &dyn Fn(f64)) -> Result<Ended, PhysicsError> {
+        let Some(turning) = self.at.cycle.turning.get(reversal) else { return Ok(None) };
         let begins = self.at.cycle.steps.last().is_none_or(|step| step.reversal != Some(reversal));
-        let turning = &self.at.cycle.turning[reversal];
         let full = turning.last.totals.contact.max(1) as f64;
         if begins {
             self.at.state = turning.state.clone();
             self.at.last = Step { reversal: Some(reversal), work: 0.0, ..turning.last };
             self.at.dissipated = turning.dissipated;
-            (self.rate, self.at.level, self.at.tensest) = (None, 0, None);
+            (self.rate, self.at.level, self.at.tensest, self.at.trunk) = (None, 0, None, None);
             self.at.labels = label(self.problem, &self.at.state);
+            let next = self.at.cycle.steps.len();
+            self.at.least_loads.extend(self.opening_load().map(|load| (next, load)));
         }
         let branches = self.settings.max_loads.len() as f64;
         while !self.is_apart() {
             if self.at.state.approach < -self.farthest() {
-                return Err(PhysicsError::Closed { approach_m: self.at.state.approach });
+                return Ok(Some(Unreached::Inseparable { approach: self.at.state.approach }));
             }
             self.advance(-1.0, None)?;
             self.keep_tensest();
@@ -121,7 +175,7 @@ impl Walk<'_> {
         if let Some((_, map, found)) = self.at.tensest.take() {
             self.at.cycle.keep(map, found);
         }
-        Ok(())
+        Ok(None)
     }
 
     /// Keeps the map at the maximum tensile load so far.

@@ -30,6 +30,8 @@ pub struct HalfSpace {
     columns: usize,
     /// Rows and columns of the transforms: of a periodic grid its own, of a patch one and a half times those.
     padded: (usize, usize),
+    /// True if the grid holds a surface and its mirror images.
+    is_mirrored: bool,
     double: Plans<f64>,
     single: Plans<f32>,
 }
@@ -128,7 +130,40 @@ impl HalfSpace {
             let qy = TAU * column as f64 / columns as f64;
             0.5 * qx.hypot(qy)
         };
-        Ok(Self { rows, columns, padded: (rows, columns), double: Plans::new(rows, columns, of)?, single: Plans::new(rows, columns, of)? })
+        Ok(Self {
+            rows,
+            columns,
+            padded: (rows, columns),
+            is_mirrored: false,
+            double: Plans::new(rows, columns, of)?,
+            single: Plans::new(rows, columns, of)?,
+        })
+    }
+
+    /// The grid of a surface and its three mirror images: the surface is the first half of the rows and columns, which are even.
+    #[must_use]
+    pub fn with_images(self) -> Self {
+        Self { is_mirrored: true, ..self }
+    }
+
+    /// True if the grid holds a surface and its mirror images.
+    #[must_use]
+    pub fn is_mirrored(&self) -> bool {
+        self.is_mirrored
+    }
+
+    /// Rows and columns of the surface itself.
+    #[must_use]
+    pub fn own(&self) -> [usize; 2] {
+        let parts = if self.is_mirrored { 2 } else { 1 };
+        [self.rows / parts, self.columns / parts]
+    }
+
+    /// True if a point is one of the surface itself and not of a mirror image.
+    #[must_use]
+    pub fn is_own(&self, point: usize) -> bool {
+        let [rows, columns] = self.own();
+        point / self.columns < rows && point % self.columns < columns
     }
 
     /// Pressure around a unit displacement of one point of a periodic grid, at each offset \[E*/dx\]: `rows × columns` values, row by row.
@@ -166,6 +201,7 @@ impl HalfSpace {
             rows: side,
             columns: side,
             padded: (size, size),
+            is_mirrored: false,
             double: Plans::new(size, size, of)?,
             single: Plans::new(size, size, of)?,
         })

@@ -2,7 +2,9 @@
 
 use super::contact::{State, Totals};
 use super::regions::{Change, Region};
+use crate::physics::PhysicsError;
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 /// An equilibrium on the path and the energy dissipated since the one before.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -77,6 +79,52 @@ pub struct Turning {
     pub dissipated: f64,
 }
 
+/// Why a load reversal of a cycle has no result.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub enum Unreached {
+    /// The load is not reached.
+    Load {
+        /// Load at the end of the search \[E* dx²\].
+        reached: f64,
+        /// Approach at the end of the search \[dx\].
+        approach: f64,
+    },
+    /// Full contact, which does not open.
+    Closed {
+        /// Approach \[dx\].
+        approach: f64,
+    },
+    /// The surfaces do not separate.
+    Inseparable {
+        /// Approach at the end of the search \[dx\].
+        approach: f64,
+    },
+    /// Steps that do not resolve the dissipated energy.
+    Unresolved {
+        /// Dissipated energy `∮F dΔ` \[E* dx³\].
+        loss: f64,
+        /// Energy dissipated in the events \[E* dx³\].
+        events: f64,
+        /// Largest magnitude of `∫F dΔ` along the loop \[E* dx³\].
+        work: f64,
+    },
+}
+
+impl Unreached {
+    /// The error of a cycle without any result, in the units of the solver.
+    #[must_use]
+    pub fn error(self, max_load: f64) -> PhysicsError {
+        match self {
+            Self::Load { reached, approach } => PhysicsError::LoadNotReached { wanted: max_load, reached, approach_m: approach },
+            Self::Closed { approach } => PhysicsError::Closed { approach_m: approach },
+            Self::Inseparable { approach } => PhysicsError::Inseparable { approach_m: approach },
+            Self::Unresolved { loss, events, work } => {
+                PhysicsError::UnresolvedLoop { max_load, loss_j: loss, events_j: events, work_j: work }
+            }
+        }
+    }
+}
+
 /// A cycle: every step, the events, regions and maps.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Cycle {
@@ -90,6 +138,12 @@ pub struct Cycle {
     pub maps: Vec<Map>,
     /// States at the load reversals.
     pub turning: Vec<Turning>,
+    /// Load reversals without a result, by their place in the settings.
+    #[serde(skip)]
+    pub unreached: Vec<(usize, Unreached)>,
+    /// Steps between which and the one before the load was smaller than at both, with that load \[E* dx²\]: full contact before it opens.
+    #[serde(skip)]
+    pub least_loads: Vec<(usize, f64)>,
 }
 
 impl Cycle {
@@ -97,6 +151,34 @@ impl Cycle {
     #[must_use]
     pub fn reversal_at(&self, step: usize) -> Option<usize> {
         self.turning.iter().position(|turning| turning.step == step)
+    }
+
+    /// Smallest load between a step and the one before it, the step included \[E* dx²\].
+    #[must_use]
+    pub fn least_load(&self, step: usize) -> f64 {
+        let before = self.least_loads.iter().filter(|(at, _)| *at == step).map(|(_, load)| *load);
+        before.fold(self.steps[step].totals.load, f64::min)
+    }
+
+    /// Removes the unloading from a load reversal, which then has no result for a reason. The numbers that its steps had.
+    pub fn remove_unloading(&mut self, reversal: usize, reason: Unreached) -> Range<usize> {
+        self.unreached.push((reversal, reason));
+        let of = |step: &Step| step.reversal == Some(reversal);
+        let Some(first) = self.steps.iter().position(of) else { return 0..0 };
+        let removed = first..first + self.steps[first..].iter().take_while(|step| of(step)).count();
+        self.steps.drain(removed.clone());
+        let renumber = |step: &mut usize| {
+            let is_kept = !removed.contains(step);
+            if *step >= removed.end {
+                *step -= removed.len();
+            }
+            is_kept
+        };
+        self.events.retain_mut(|event| renumber(&mut event.step));
+        self.regions.retain_mut(|(step, _)| renumber(step));
+        self.maps.retain_mut(|map| renumber(&mut map.step));
+        self.least_loads.retain_mut(|(step, _)| renumber(step));
+        removed
     }
 
     pub(super) fn keep(&mut self, map: Map, found: Vec<Region>) {

@@ -1,6 +1,7 @@
 //! Connected regions of contact on the periodic grid, and how they change in an event.
 
 use super::contact::{Problem, State};
+use super::grid::HalfSpace;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 
@@ -14,8 +15,8 @@ pub struct Region {
     /// Length of the edge \[dx\], by Crofton's formula along the rows, the columns and the diagonals (Ohser & Mücklich,
     /// *Statistical Analysis of Microstructures in Materials Science*, Wiley 2000).
     pub perimeter: f64,
-    /// Centroid, row and column \[dx\]: the mean direction on a circle of the length of the square. It has no meaning along a direction in which the
-    /// region closes on itself across the edges.
+    /// Centroid, row and column \[dx\]: the mean direction on a circle of the length of the square, and the mean place on a surface with mirror images. It
+    /// has no meaning along a direction in which the region closes on itself across the edges.
     pub centroid: [f64; 2],
 }
 
@@ -63,12 +64,32 @@ impl Change {
     }
 }
 
-/// Labels the contact of a state.
+/// Labels the contact of a state. Of a surface with mirror images, the points of the surface itself alone.
 #[must_use]
 pub fn label(problem: &Problem, state: &State) -> Labels {
     let columns = problem.half_space.columns();
     let contact: Vec<bool> = (0..problem.half_space.points()).map(|k| problem.touches(state.bonds[k], problem.gap(state, k))).collect();
-    label_points(&contact, columns)
+    let all = label_points(&contact, columns);
+    if problem.half_space.is_mirrored() { of_the_surface(all, &problem.half_space) } else { all }
+}
+
+/// Labels without those of mirror images, numbered again by their first point.
+fn of_the_surface(Labels { mut of, count }: Labels, grid: &HalfSpace) -> Labels {
+    let mut numbers = vec![0; count];
+    let mut own = 0;
+    for (k, label) in of.iter_mut().enumerate().filter(|(_, label)| **label > 0) {
+        if !grid.is_own(k) {
+            *label = 0;
+            continue;
+        }
+        let number = &mut numbers[*label as usize - 1];
+        if *number == 0 {
+            own += 1;
+            *number = own;
+        }
+        *label = *number;
+    }
+    Labels { of, count: own as usize }
 }
 
 /// Labels marked points of a periodic grid, regions numbered by their first point.
@@ -127,6 +148,8 @@ fn join(parent: &mut [u32], a: u32, b: u32) {
 pub fn regions(problem: &Problem, state: &State, labels: &Labels) -> Vec<Region> {
     let columns = problem.half_space.columns();
     let rows = problem.half_space.rows();
+    let is_mirrored = problem.half_space.is_mirrored();
+    let beside = neighbours(&problem.half_space);
     let mut all = vec![Region { points: 0, load: 0.0, perimeter: 0.0, centroid: [0.0; 2] }; labels.count];
     // Sums of exp(i 2π x/n) along each direction: the centroid on a circle.
     let mut circles = vec![[0.0_f64; 4]; labels.count];
@@ -135,25 +158,41 @@ pub fn regions(problem: &Problem, state: &State, labels: &Labels) -> Vec<Region>
         let (row, column) = (k / columns, k % columns);
         region.points += 1;
         region.load -= problem.bond(state.bonds[k], problem.gap(state, k)).tension;
-        let outside = |down: usize, right: usize| labels.of[(row + down) % rows * columns + (column + right) % columns] != *label;
-        let (up, left) = (rows - 1, columns - 1);
-        let count = |places: [(usize, usize); 4]| places.into_iter().filter(|(down, right)| outside(*down, *right)).count() as f64;
-        let straight = count([(0, 1), (0, left), (1, 0), (up, 0)]);
-        let oblique = count([(1, 1), (1, left), (up, 1), (up, left)]);
+        let outside = |down: i64, right: i64| labels.of[beside(k, down, right)] != *label;
+        let count = |places: [(i64, i64); 4]| places.into_iter().filter(|(down, right)| outside(*down, *right)).count() as f64;
+        let straight = count([(0, 1), (0, -1), (1, 0), (-1, 0)]);
+        let oblique = count([(1, 1), (1, -1), (-1, 1), (-1, -1)]);
         region.perimeter += PI / 8.0 * (straight + oblique / 2.0_f64.sqrt());
         let circle = &mut circles[*label as usize - 1];
         for (place, size, at) in [(row, rows, 0), (column, columns, 2)] {
             let (sine, cosine) = (TAU * place as f64 / size as f64).sin_cos();
             circle[at] += cosine;
             circle[at + 1] += sine;
+            // A part of a surface with mirror images does not close on itself.
+            region.centroid[at / 2] += if is_mirrored { place as f64 } else { 0.0 };
         }
     }
     for (region, circle) in all.iter_mut().zip(circles) {
         for (at, size) in [(0, rows), (1, columns)] {
+            if is_mirrored {
+                region.centroid[at] /= region.points.max(1) as f64;
+                continue;
+            }
             region.centroid[at] = (circle[2 * at + 1].atan2(circle[2 * at]) / TAU).rem_euclid(1.0) * size as f64;
         }
     }
     all
+}
+
+/// Point beside a point, so many rows and columns on: across the edges of a periodic grid, and the mirror image of itself beyond the edges of a surface
+/// with mirror images.
+fn neighbours(grid: &HalfSpace) -> impl Fn(usize, i64, i64) -> usize + use<> {
+    let (size, [own_rows, own_columns], is_mirrored) = ([grid.rows(), grid.columns()], grid.own(), grid.is_mirrored());
+    let on = move |at: usize, by: i64, size: usize, own: usize| {
+        let next = at as i64 + by;
+        if is_mirrored { next.clamp(0, own as i64 - 1) as usize } else { next.rem_euclid(size as i64) as usize }
+    };
+    move |point, down, right| on(point / size[1], down, size[0], own_rows) * size[1] + on(point % size[1], right, size[1], own_columns)
 }
 
 /// Kind of the change from one labelling to the next: that of the region whose area changed most.

@@ -5,23 +5,32 @@ use crate::physics::memory::filled;
 use ndarray::{Array2, ArrayView2};
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex64;
+use std::f64::consts::TAU;
 
 /// Heights of a periodic square field on `n × n` points of the same square, in the same unit: Fourier interpolation with the wavevectors below both
-/// Nyquist wavenumbers.
+/// Nyquist wavenumbers. The first point is the first one of the field.
 ///
 /// # Errors
 /// Not enough memory.
 pub fn resample(heights: ArrayView2<'_, f64>, n: usize) -> Result<Array2<f64>, PhysicsError> {
+    resample_from(heights, n, 0.0)
+}
+
+/// As [`resample`], with the first point at the place `first` along rows and columns, in spacings of the field.
+///
+/// # Errors
+/// Not enough memory.
+pub fn resample_from(heights: ArrayView2<'_, f64>, n: usize, first: f64) -> Result<Array2<f64>, PhysicsError> {
     let from = heights.nrows();
-    if from == n {
+    if from == n && first == 0.0 {
         return Ok(heights.to_owned());
     }
     // Rows are resampled, then columns: the transform of a square field is separable.
-    let half = resample_rows(heights, n)?;
-    Ok(resample_rows(half.t(), n)?.reversed_axes().as_standard_layout().to_owned())
+    let half = resample_rows(heights, n, first)?;
+    Ok(resample_rows(half.t(), n, first)?.reversed_axes().as_standard_layout().to_owned())
 }
 
-fn resample_rows(heights: ArrayView2<'_, f64>, n: usize) -> Result<Array2<f64>, PhysicsError> {
+fn resample_rows(heights: ArrayView2<'_, f64>, n: usize, first: f64) -> Result<Array2<f64>, PhysicsError> {
     let (rows, from) = heights.dim();
     let mut planner = FftPlanner::<f64>::new();
     let (forward, inverse) = (planner.plan_fft_forward(from), planner.plan_fft_inverse(n));
@@ -37,6 +46,13 @@ fn resample_rows(heights: ArrayView2<'_, f64>, n: usize) -> Result<Array2<f64>, 
         new[..kept].copy_from_slice(&old[..kept]);
         for k in 1..kept {
             new[n - k] = old[from - k];
+        }
+        if first != 0.0 {
+            for k in 1..kept {
+                let shift = Complex64::cis(TAU * k as f64 * first / from as f64);
+                new[k] *= shift;
+                new[n - k] *= shift.conj();
+            }
         }
         inverse.process(&mut new);
         values.iter_mut().zip(&new).for_each(|(to, value)| *to = value.re / from as f64);

@@ -18,6 +18,11 @@ const CLOSED: f64 = 1e-5;
 pub(super) const SEARCHED: u32 = 40;
 
 impl Walk<'_> {
+    /// True if the load at a reversal after a jump is near that of the spec.
+    pub(super) fn exceeds_by_a_jump(load: f64, max_load: f64) -> bool {
+        (load / max_load - 1.0).abs() < JUMP_ACCURACY
+    }
+
     /// The equilibrium at `max_load` between the last state and a step `beyond` it, or after a jump of the load across it. States of a smaller load on the
     /// way are steps of the path, so that each equilibrium is near the last one. None if the load falls on this way and does not reach `max_load`.
     pub(super) fn reach(&mut self, max_load: f64, beyond: Step) -> Result<Option<Attempt>, PhysicsError> {
@@ -38,7 +43,7 @@ impl Walk<'_> {
             let reached = off(load) < LOAD_ACCURACY;
             let jumps = closed && load > max_load;
             if reached || jumps || searched == SEARCHED {
-                attempt.step.converged &= reached || jumps && off(load) < JUMP_ACCURACY;
+                attempt.step.converged &= reached || jumps && Self::exceeds_by_a_jump(load, max_load);
                 return Ok(Some(attempt));
             }
             if load > max_load {

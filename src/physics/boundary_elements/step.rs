@@ -13,7 +13,7 @@ use super::equilibrium::Equilibrium;
 use super::minimise::{ANY, Accuracy, Loads, Outcome};
 use super::newton::Rate;
 use super::patch::Patches;
-use super::records::{Cycle, Event, Map, Step};
+use super::records::{Cycle, Event, Map, Step, Unreached};
 use super::regions::{Labels, Region, change, label, regions};
 use super::sums::largest;
 use super::work::{OnLoop, Work, least_between, work_between};
@@ -38,6 +38,10 @@ pub(super) const STEEPEST: f64 = 10.0;
 /// Deepest extrapolated overlap beyond that of the last state with attraction of a range, in ranges: the repulsion rises exponentially, and iterations move by
 /// one range.
 pub(super) const OVERLAP: f64 = 0.5;
+
+/// Steps of a cycle after which none is halved with attraction of a range. With very weak adhesion no event gives a measure of what a jump of the load may
+/// cost, and every step would be halved as often as allowed.
+const HALVED: usize = 20_000;
 
 /// Settings of a path.
 #[derive(Debug, Clone, PartialEq)]
@@ -73,6 +77,27 @@ pub struct Halfway {
     /// Regions of contact of the state; computed again on resuming.
     #[serde(skip)]
     pub(super) labels: Labels,
+    /// The loading path where a search for a load reversal has left it.
+    pub(super) trunk: Option<Box<Trunk>>,
+    /// Energy of events of such searches that the path has not dissipated yet \[E* dx³\].
+    pub(super) owed: f64,
+    /// As in the [cycle](Cycle::unreached).
+    pub(super) unreached: Vec<(usize, Unreached)>,
+    /// As in the [cycle](Cycle::least_loads).
+    pub(super) least_loads: Vec<(usize, f64)>,
+}
+
+/// A state of the loading path, to which it returns from a load reversal. Smaller loads of a spec do not change the path to the larger ones.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct Trunk {
+    state: State,
+    last: Step,
+    dissipated: f64,
+    level: u32,
+    /// Steps and events before the search.
+    steps: usize,
+    events: usize,
+    owed: f64,
 }
 
 impl Halfway {
@@ -135,6 +160,10 @@ impl<'a> Walk<'a> {
                 level: 0,
                 tensest: None,
                 labels: Labels::default(),
+                trunk: None,
+                owed: 0.0,
+                unreached: Vec::new(),
+                least_loads: Vec::new(),
             },
         };
         at.labels = label(problem, &at.state);
@@ -239,8 +268,11 @@ impl<'a> Walk<'a> {
         step.transforms = self.equilibrium.transforms(self.counted);
         self.counted = self.equilibrium.transformed();
         if step.pending > self.resolution(step.uncertainty) {
-            step.dissipated = std::mem::take(&mut step.pending);
-            self.at.dissipated += step.dissipated;
+            let found = std::mem::take(&mut step.pending);
+            self.at.dissipated += found;
+            step.dissipated = self.not_yet_counted(found);
+        }
+        if step.dissipated > 0.0 {
             self.at.cycle.events.push(Event {
                 step: self.at.cycle.steps.len(),
                 kind: change(&self.at.labels, &labels),
@@ -260,9 +292,56 @@ impl<'a> Walk<'a> {
         self.at.cycle.steps.push(step);
     }
 
+    /// Part of a dissipated energy that no step of the table has. A search for a load reversal is in the table between two steps of the path, and what it has
+    /// dissipated is a part of what the path dissipates there.
+    fn not_yet_counted(&mut self, found: f64) -> f64 {
+        if self.at.trunk.is_some() {
+            self.at.owed += found;
+            return found;
+        }
+        let owed = self.at.owed;
+        self.at.owed = (owed - found).max(0.0);
+        (found - owed).max(0.0)
+    }
+
+    /// Notes the state of the loading path before the search for the reversal at a load, unless the path ends there.
+    fn leave_path(&mut self, max_load: f64) {
+        if self.settings.max_loads.last().is_none_or(|last| *last <= max_load) {
+            return;
+        }
+        let Halfway { cycle, state, last, dissipated, level, owed, .. } = &self.at;
+        let (steps, events) = (cycle.steps.len(), cycle.events.len());
+        let trunk = Trunk { state: state.clone(), last: *last, dissipated: *dissipated, level: *level, steps, events, owed: *owed };
+        self.at.trunk = Some(Box::new(trunk));
+    }
+
+    /// Returns to the loading path after the search for a load reversal.
+    pub(super) fn return_to_path(&mut self) {
+        let Some(trunk) = self.at.trunk.take() else { return };
+        (self.at.state, self.at.last, self.at.dissipated, self.at.level) = (trunk.state, trunk.last, trunk.dissipated, trunk.level);
+        self.at.labels = label(self.problem, &self.at.state);
+        self.rate = None;
+    }
+
+    /// Forgets the steps of a search that has not found the load: the reversal is then the `beyond` the jump of the load.
+    fn reverse_beyond(&mut self, mut beyond: Attempt, max_load: f64) {
+        let Some(trunk) = self.at.trunk.clone() else { return };
+        let (steps, events, owed) = (trunk.steps, trunk.events, trunk.owed);
+        self.return_to_path();
+        self.at.trunk = Some(trunk);
+        self.at.cycle.steps.truncate(steps);
+        self.at.cycle.events.truncate(events);
+        self.at.cycle.regions.retain(|(step, _)| *step < steps);
+        self.at.owed = owed;
+        beyond.step.converged &= Self::exceeds_by_a_jump(beyond.step.totals.load, max_load);
+        self.accept(beyond);
+    }
+
     /// Advances by one step, which is halved where a jump of the load is not located, and ends at `max_load` if it would cross it. True if it ends there.
     pub(super) fn advance(&mut self, sense: f64, max_load: Option<f64>) -> Result<bool, PhysicsError> {
         loop {
+            let halvings = self.halvings();
+            self.at.level = self.at.level.min(halvings);
             let length = sense * self.settings.step / f64::from(1_u32 << self.at.level);
             let limit = self.settings.located * self.at.dissipated;
             let mut state = self.predict(self.at.state.approach + length)?;
@@ -273,13 +352,17 @@ impl<'a> Walk<'a> {
             }
             let attempt = self.conclude(state, outcome)?;
             let hides = self.hides_tension(&attempt) || self.passes_tension(&attempt);
-            if (attempt.across > limit || hides) && self.at.level < self.settings.halvings {
+            if (attempt.across > limit || hides) && self.at.level < halvings {
                 self.at.level += 1;
                 continue;
             }
             if let Some(max_load) = max_load.filter(|most| attempt.step.totals.load > *most) {
-                let Some(attempt) = self.reach(max_load, attempt.step)? else { return Ok(false) };
-                self.accept(attempt);
+                self.leave_path(max_load);
+                match self.reach(max_load, attempt.step)? {
+                    Some(found) => self.accept(found),
+                    None if self.at.trunk.is_some() => self.reverse_beyond(attempt, max_load),
+                    None => return Ok(false),
+                }
                 return Ok(true);
             }
             if attempt.across <= WELL_BELOW * limit {
@@ -290,11 +373,17 @@ impl<'a> Walk<'a> {
         }
     }
 
+    /// Most halvings of the next step.
+    fn halvings(&self) -> u32 {
+        let is_spent = self.problem.attraction == Attraction::Range && self.at.cycle.steps.len() > HALVED;
+        if is_spent { 0 } else { self.settings.halvings }
+    }
+
     /// Loads after a step of a length that need not be halved. Beyond them, the error of a jump exceeds the limit so far that the rest of the event does not
     /// matter, and the load has changed by more than its slope can do in this step; or it has jumped up from a maximum tension. All loads as long as nothing
     /// has been dissipated.
     fn located_loads(&self, length: f64, limit: f64) -> Loads {
-        if self.at.level == self.settings.halvings || limit == 0.0 {
+        if self.at.level == self.halvings() || limit == 0.0 {
             return ANY;
         }
         let from = self.at.last.totals.load;

@@ -35,14 +35,16 @@ pub struct Halfway {
     /// Number of finished branches, and the branch in progress.
     branches: usize,
     leg: Option<Leg>,
+    /// As in the [cycle](Cycle::unreached).
+    unreached: Vec<(usize, String)>,
 }
 
 /// Loads to the largest of the loads, and unloads from each.
 ///
-/// `progress` receives the finished fraction, 0 to 1.
+/// `progress` receives the finished fraction, 0 to 1. Loads that are not reached, and those whose unloading fails, are listed in the cycle.
 ///
 /// # Errors
-/// A load that is not reached within 100 rms heights, or a mean penetration without an equilibrium.
+/// If no load has a result: a load that is not reached within 100 rms heights, or a mean penetration without an equilibrium.
 pub fn run(problem: &Problem, settings: &Settings, progress: &dyn Fn(f64)) -> Result<Cycle, PhysicsError> {
     run_from(problem, settings, None, &mut |_| {}, progress)
 }
@@ -52,7 +54,7 @@ pub fn run(problem: &Problem, settings: &Settings, progress: &dyn Fn(f64)) -> Re
 /// `keep` receives every new checkpoint.
 ///
 /// # Errors
-/// A load that is not reached within 100 rms heights, or a mean penetration without an equilibrium.
+/// If no load has a result: a load that is not reached within 100 rms heights, or a mean penetration without an equilibrium.
 pub fn run_from(
     problem: &Problem,
     settings: &Settings,
@@ -61,35 +63,67 @@ pub fn run_from(
     progress: &dyn Fn(f64),
 ) -> Result<Cycle, PhysicsError> {
     let all = settings.max_loads.len();
-    let mut halfway = halfway.unwrap_or_else(|| Halfway { cycle: Cycle::default(), branches: 0, leg: None });
+    let begin = || Halfway { cycle: Cycle::default(), branches: 0, leg: None, unreached: Vec::new() };
+    let mut halfway = halfway.unwrap_or_else(begin);
+    let mut first_error = None;
     while halfway.branches <= all {
-        let Halfway { cycle, branches, leg } = &mut halfway;
-        let rests = match branches.checked_sub(1) {
-            None => {
-                let leg = leg.take().unwrap_or_else(|| Leg::loading(problem, settings));
-                load(problem, settings, leg, cycle, &|done| progress(0.5 * done))?
+        match go_on(problem, settings, &mut halfway, progress) {
+            Ok(rests) => halfway.leg = rests,
+            // What was passed before remains valid.
+            Err(error) if error.ends_a_branch() => {
+                halfway.end_branch(settings, &error);
+                first_error.get_or_insert(error);
             }
-            Some(k) if problem.is_adhesionless() => {
-                retrace(cycle, k, Some(settings.max_loads[k]), settings.contacts);
-                None
-            }
-            Some(k) => {
-                let max_load = settings.max_loads[k];
-                let leg = leg.take().unwrap_or_else(|| Leg::unloading(problem, settings, Some(max_load), cycle.turning[k].1.clone()));
-                unload(problem, settings, leg, cycle, &|done| progress(0.5 + 0.5 * (k as f64 + done) / all as f64))?
-            }
-        };
-        *leg = rests;
-        if leg.is_some() {
+            Err(error) => return Err(error),
+        }
+        if halfway.leg.is_some() {
             keep(&halfway);
         } else {
-            if let Some(k) = branches.checked_sub(1) {
-                check_energy(cycle, k)?;
-            }
-            *branches += 1;
+            halfway.branches += 1;
         }
     }
-    Ok(halfway.cycle)
+    let Halfway { cycle, unreached, .. } = halfway;
+    match (first_error, unreached.first()) {
+        (Some(error), _) if unreached.len() == all => Err(error),
+        (None, Some((_, reason))) if unreached.len() == all => Err(PhysicsError::NoReversal { reason: reason.clone() }),
+        _ => Ok(Cycle { unreached, ..cycle }),
+    }
+}
+
+/// Continues the branch in progress to its next checkpoint, or to its end and returns `None`.
+fn go_on(problem: &Problem, settings: &Settings, halfway: &mut Halfway, progress: &dyn Fn(f64)) -> Result<Option<Leg>, PhysicsError> {
+    let all = settings.max_loads.len();
+    let Halfway { cycle, branches, leg, .. } = halfway;
+    let Some(k) = branches.checked_sub(1) else {
+        let leg = leg.take().unwrap_or_else(|| Leg::loading(problem, settings));
+        return load(problem, settings, leg, cycle, &|done| progress(0.5 * done));
+    };
+    let (max_load, Some((_, state))) = (settings.max_loads[k], cycle.turning.get(k)) else { return Ok(None) };
+    let rests = if problem.is_adhesionless() {
+        retrace(cycle, k, Some(max_load), settings.contacts);
+        None
+    } else {
+        let leg = leg.take().unwrap_or_else(|| Leg::unloading(problem, settings, Some(max_load), state.clone()));
+        unload(problem, settings, leg, cycle, &|done| progress(0.5 + 0.5 * (k as f64 + done) / all as f64))?
+    };
+    if rests.is_none() {
+        check_energy(cycle, k)?;
+    }
+    Ok(rests)
+}
+
+impl Halfway {
+    /// Notes the loads of a branch that an error has ended, and removes an unfinished unloading.
+    fn end_branch(&mut self, settings: &Settings, error: &PhysicsError) {
+        self.leg = None;
+        let Some(k) = self.branches.checked_sub(1) else {
+            let further = self.cycle.turning.len()..settings.max_loads.len();
+            self.unreached.extend(further.map(|load| (load, error.to_string())));
+            return;
+        };
+        self.cycle.remove_unloading(settings.max_loads[k]);
+        self.unreached.push((k, error.to_string()));
+    }
 }
 
 /// Unloads from a stored state at a load reversal, where `max_load` is its `F/(E* A0)`.

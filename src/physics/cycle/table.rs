@@ -151,6 +151,9 @@ pub struct Cycle {
     pub merged: Vec<MergedAt>,
     /// Step and state of each load reversal.
     pub turning: Vec<(usize, State)>,
+    /// Load reversals without a result, by their place in the settings, with the error.
+    #[serde(skip)]
+    pub unreached: Vec<(usize, String)>,
 }
 
 impl Cycle {
@@ -164,6 +167,17 @@ impl Cycle {
             events: self.events.into_iter().filter_map(|(step, event)| Some((rest(step)?, event))).collect(),
             merged: self.merged.into_iter().filter_map(|m| Some(MergedAt { step: rest(m.step)?, ..m })).collect(),
             turning: Vec::new(),
+            unreached: Vec::new(),
         }
+    }
+
+    /// Removes the steps from the first one of the unloading from a load on, which is the last branch.
+    pub(super) fn remove_unloading(&mut self, max_load: f64) {
+        let of = |step: &Step| step.max_load == Some(max_load);
+        let Some(first) = self.steps.iter().position(of) else { return };
+        self.steps.truncate(first);
+        self.contacts.retain(|contact| contact.step < first);
+        self.events.retain(|(step, _)| *step < first);
+        self.merged.retain(|merged| merged.step < first);
     }
 }

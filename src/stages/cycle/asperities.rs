@@ -6,7 +6,7 @@ use super::super::identity::Identity;
 use super::super::surface::{Scale, scale};
 use super::super::{StageError, Watch, step_count};
 use super::asperity_tables::{contacts, events, merged, steps, turning, word};
-use super::{Checkpoints, Progress, effort_of, write_tables};
+use super::{Checkpoints, Progress, effort_of, not_reached, write_tables};
 use crate::campaign::{Campaign, CycleUnit};
 use crate::physics::contact::Merged;
 use crate::physics::contact::rows::Kept;
@@ -58,7 +58,10 @@ pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> R
         events(of, &cycle)?,
         steps(of, &cycle, &settings.max_loads, &problem)?,
     ];
-    Ok(Outcome { files: write_tables(campaign, unit, &tables)?, effort: effort(&cycle, &problem) })
+    let mut files = write_tables(campaign, unit, &tables)?;
+    let unreached: Vec<(f64, String)> = cycle.unreached.iter().map(|(load, error)| (settings.max_loads[*load], error.clone())).collect();
+    files.extend(not_reached::record(campaign, unit, &unreached, watch)?);
+    Ok(Outcome { files, effort: effort(&cycle, &problem) })
 }
 
 /// Effort of a cycle, for its receipt.

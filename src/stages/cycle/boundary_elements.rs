@@ -5,13 +5,13 @@ use super::super::identity::Identity;
 use super::super::{StageError, Watch};
 use super::elements_setup::{Setup, Units, setup};
 use super::elements_tables::{Counts, adhesionless, branch, contacts, events, steps};
-use super::{Checkpoints, Progress, effort_of, serialized, write_tables};
+use super::{Checkpoints, Progress, effort_of, not_reached, serialized, write_tables};
 use crate::campaign::{Campaign, CycleUnit};
 use crate::model::KeptContacts;
 use crate::physics::PhysicsError;
 use crate::physics::boundary_elements::adhesionless::{FreeStep, load_freely};
 use crate::physics::boundary_elements::contact::Problem;
-use crate::physics::boundary_elements::cycle::{self, Cycle, Halfway, Settings, Turning};
+use crate::physics::boundary_elements::cycle::{self, Cycle, Halfway, Settings, Turning, Unreached};
 use crate::physics::boundary_elements::regions::Labels;
 use crate::physics::cycle::soundness::LoopEnergy;
 use crate::physics::theory::approximate_jkr::{CurvePoint, adhesive_curve};
@@ -33,9 +33,14 @@ pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> R
     };
     let outcome = cycle::run(&problem, &settings, halfway, &mut keep, &|done| progress.reached(done));
     progress.end();
-    let cycle = outcome.map_err(|error| in_si(error, &units))?;
+    let mut cycle = outcome.map_err(|error| in_si(error, &units))?;
     let loads = &params.cycle.max_load;
-    check_energy(&cycle, loads, &units)?;
+    check_energy(&mut cycle, &mut counts);
+    let unreached: Vec<(f64, PhysicsError)> =
+        cycle.unreached.iter().map(|(load, reason)| (loads[*load], in_si(reason.error(settings.max_loads[*load]), &units))).collect();
+    if let Some((_, error)) = unreached.first().filter(|_| unreached.len() == loads.len()) {
+        return Err(error.clone().into());
+    }
     let of = Identity::of(campaign, unit);
     let kept = if params.cycle.contacts == KeptContacts::None { &[][..] } else { &cycle.regions[..] };
     let effort = effort(&cycle, &problem);
@@ -48,25 +53,34 @@ pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> R
         steps(of, &cycle, loads, &units)?,
     ];
     let mut files = write_tables(campaign, unit, &tables)?;
-    let header = MapsHeader { key: &unit.key, cycle_id: &unit.id, length_m: units.length_m, points: units.points, contact_gap_m };
+    let points = units.own_points();
+    let length_m = points as f64 * units.spacing_m();
+    let header = MapsHeader { key: &unit.key, cycle_id: &unit.id, length_m, points, first_m: units.first_m, contact_gap_m };
     files.push(write_maps(&dir.join("maps.h5"), &header, &maps(&cycle, loads, &units))?);
     let turning = serialized(&cycle.turning).map_err(|error| StageError::State { what: error.to_string() })?;
     files.push(write_state(&turning_path(&dir), &unit.key, &turning)?);
+    let unreached: Vec<(f64, String)> = unreached.into_iter().map(|(max_load, error)| (max_load, error.to_string())).collect();
+    files.extend(not_reached::record(campaign, unit, &unreached, watch)?);
     Ok(Outcome { files, effort })
 }
 
-/// Refuses loops with negative dissipation or a large energy-balance error, by the limits of the asperity model: their steps are too long.
-fn check_energy(cycle: &Cycle, loads: &[f64], units: &Units) -> Result<(), PhysicsError> {
-    let energies = |step: &cycle::Step| (step.work * units.energy_j(), step.dissipated * units.energy_j());
-    for (reversal, (turning, max_load)) in cycle.turning.iter().zip(loads).enumerate() {
+/// Removes loops with negative dissipation or a large energy-balance error, by the limits of the asperity model: their steps are too long.
+fn check_energy(cycle: &mut Cycle, counts: &mut Counts) {
+    let energies = |step: &cycle::Step| (step.work, step.dissipated);
+    for reversal in 0..cycle.turning.len() {
+        if cycle.unreached.iter().any(|(other, _)| *other == reversal) {
+            continue;
+        }
         let back = cycle.steps.iter().rev().filter(|step| step.reversal == Some(reversal));
-        let energy = LoopEnergy::of(cycle.steps[..=turning.step].iter().map(energies), back.map(energies));
-        let LoopEnergy { loss_j, events_j, work_j } = energy;
+        let energy = LoopEnergy::of(cycle.steps[..=cycle.turning[reversal].step].iter().map(energies), back.map(energies));
+        let LoopEnergy { loss_j: loss, events_j: events, work_j: work } = energy;
         if !energy.is_sound() {
-            return Err(PhysicsError::UnresolvedLoop { max_load: *max_load, loss_j, events_j, work_j });
+            let removed = cycle.remove_unloading(reversal, Unreached::Unresolved { loss, events, work });
+            counts.retain(|(step, _)| !removed.contains(step));
+            counts.iter_mut().filter(|(step, _)| *step >= removed.end).for_each(|(step, _)| *step -= removed.len());
         }
     }
-    Ok(())
+    cycle.unreached.sort_by_key(|(reversal, _)| *reversal);
 }
 
 /// Step of loading without adhesion, in steps of the cycle.
@@ -111,13 +125,22 @@ fn in_si(error: PhysicsError, units: &Units) -> PhysicsError {
             PhysicsError::LoadNotReached { wanted: wanted / units.all(), reached: reached / units.all(), approach_m: approach_m * spacing }
         }
         PhysicsError::Closed { approach_m } => PhysicsError::Closed { approach_m: approach_m * spacing },
+        PhysicsError::Inseparable { approach_m } => PhysicsError::Inseparable { approach_m: approach_m * spacing },
+        PhysicsError::UnresolvedLoop { max_load, loss_j, events_j, work_j } => {
+            let [loss_j, events_j, work_j] = [loss_j, events_j, work_j].map(|energy| energy * units.energy_j());
+            PhysicsError::UnresolvedLoop { max_load: max_load / units.all(), loss_j, events_j, work_j }
+        }
         other => other,
     }
 }
 
-/// Maps in SI units, in the order of the steps.
+/// Maps of the surface in SI units, without its mirror images, in the order of the steps.
 fn maps(cycle: &Cycle, loads: &[f64], units: &Units) -> Vec<ContactMap> {
     let (length, stress) = (units.spacing_m(), units.modulus_pa);
+    let own = units.own_points();
+    let of_the_surface = |field: &[f32], unit: f64| -> Vec<f32> {
+        field.chunks(units.points).take(own).flat_map(|row| &row[..own]).map(|value| (f64::from(*value) * unit) as f32).collect()
+    };
     let mut maps: Vec<ContactMap> = cycle
         .maps
         .iter()
@@ -130,8 +153,8 @@ fn maps(cycle: &Cycle, loads: &[f64], units: &Units) -> Vec<ContactMap> {
                 max_load: reversal.and_then(|at| loads.get(at)).copied().unwrap_or_default(),
                 approach_m: step.approach * length,
                 load_n: step.totals.load * units.load_n(),
-                gap_m: map.gap.iter().map(|gap| (f64::from(*gap) * length) as f32).collect(),
-                pressure_pa: map.pressure.iter().map(|pressure| (f64::from(*pressure) * stress) as f32).collect(),
+                gap_m: of_the_surface(&map.gap, length),
+                pressure_pa: of_the_surface(&map.pressure, stress),
             }
         })
         .collect();

@@ -11,7 +11,7 @@ use crate::physics::boundary_elements::cycle::Settings;
 use crate::physics::boundary_elements::grid::HalfSpace;
 use crate::physics::boundary_elements::law::Law;
 use crate::physics::boundary_elements::minimise::Accuracy;
-use crate::physics::boundary_elements::resample::resample;
+use crate::physics::boundary_elements::resample::resample_from;
 use crate::physics::jkr::Asperity;
 use crate::physics::memory;
 use crate::physics::surface::modes::mirrored;
@@ -49,6 +49,10 @@ pub struct Units {
     pub modulus_pa: f64,
     /// Rms height \[m\].
     pub rms_height_m: f64,
+    /// True if the square is a surface with its three mirror images. Loads, areas and energies are then those of the surface: a quarter.
+    pub is_mirrored: bool,
+    /// Place of the first grid point along x and y, from the first point of the surface \[m\].
+    pub first_m: f64,
 }
 
 impl Units {
@@ -58,16 +62,45 @@ impl Units {
         self.length_m / self.points as f64
     }
 
-    /// Unit of load \[N\].
+    /// Unit of the load of the square, as that of the surface \[N\].
     #[must_use]
     pub fn load_n(&self) -> f64 {
+        self.point_load_n() * self.share()
+    }
+
+    /// Unit of the energy of the square, as that of the surface \[J\].
+    #[must_use]
+    pub fn energy_j(&self) -> f64 {
+        self.point_load_n() * self.spacing_m() * self.share()
+    }
+
+    /// Area of a point of the square, as that of the surface \[m²\].
+    #[must_use]
+    pub fn area_m2(&self) -> f64 {
+        self.spacing_m().powi(2) * self.share()
+    }
+
+    /// Unit of the load of a point \[N\].
+    #[must_use]
+    pub fn point_load_n(&self) -> f64 {
         self.modulus_pa * self.spacing_m().powi(2)
     }
 
-    /// Unit of energy \[J\].
+    /// Share of the surface in the square.
+    fn share(&self) -> f64 {
+        if self.is_mirrored { 0.25 } else { 1.0 }
+    }
+
+    /// Grid points along a side of the surface.
     #[must_use]
-    pub fn energy_j(&self) -> f64 {
-        self.modulus_pa * self.spacing_m().powi(3)
+    pub fn own_points(&self) -> usize {
+        if self.is_mirrored { self.points / 2 } else { self.points }
+    }
+
+    /// Place of a grid point along x or y, from the first point of the surface \[m\].
+    #[must_use]
+    pub fn place_m(&self, point: f64) -> f64 {
+        self.first_m + point * self.spacing_m()
     }
 
     /// Number of grid points: A0, and `E* A0` in the units of the solver.
@@ -88,8 +121,6 @@ pub(super) struct Setup {
 /// Grid of a case on one surface.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::stages) struct Lattice {
-    /// Side of the periodic square \[m\].
-    pub(in crate::stages) length_m: f64,
     /// Grid points along a side.
     pub(in crate::stages) points: usize,
     /// Grid points per shortest wavelength.
@@ -119,7 +150,6 @@ impl Lattice {
         let points = elements.grid(wavelengths);
         let range = || elements.range(params.material.adhesion_length_m(), length_m / f64::from(points));
         Self {
-            length_m,
             points: points as usize,
             per_wavelength: f64::from(points) / wavelengths,
             range_m: (elements.attraction == Attraction::Range).then(range),
@@ -152,14 +182,26 @@ pub(super) fn setup(campaign: &Campaign, unit: &CycleUnit) -> Result<Setup, Stag
     let points = lattice.points;
     enough_memory(points, params.cycle.max_load.len())?;
     let rms_height_m = scale(campaign, surface)?.rms_height_m;
-    let units = Units { length_m, points, modulus_pa: material.contact_modulus_pa, rms_height_m };
-    let side = heights.nrows();
+    if let Some((problem, help)) =
+        lattice.range_m.and_then(|range_m| elements.refusal_of_range(range_m, rms_height_m, params.cycle.max_load.len()))
+    {
+        return Err(StageError::Range { problem, help });
+    }
+    let is_mirrored = !header.periodic;
+    if is_mirrored && points % 2 == 1 {
+        let problem = format!("a scan that is not periodic is continued by mirror images: {points} grid points are an odd number");
+        return Err(PhysicsError::Surface { problem, help: "use an even number of boundary_elements.points" }.into());
+    }
+    // With mirror images the grid is symmetric about the edges of the surface, half a pixel outside its first and last points.
+    let (spacing, pixel) = (length_m / points as f64, header.length_m / heights.nrows() as f64);
+    let first_m = if is_mirrored { 0.5 * (spacing - pixel) } else { 0.0 };
+    let units = Units { length_m, points, modulus_pa: material.contact_modulus_pa, rms_height_m, is_mirrored, first_m };
     let flattening =
         measured_flattening(heights.view(), (header.length_m, header.periodic), length_m / wavelengths, material.contact_modulus_pa)?;
     let ratio = flattening.persson_tosatti(material.work_of_adhesion_j_m2);
     let whole = if header.periodic { heights } else { mirrored(heights.view())? };
-    let problem = problem(params, (&units, lattice.range_m), resample(whole.view(), points)?, &list)?;
-    let summits = summit_points(&list, (header.length_m, side), !header.periodic, &units);
+    let problem = problem(params, (&units, lattice.range_m), resample_from(whole.view(), points, first_m / pixel)?, &list)?;
+    let summits = summit_points(&list, &units);
     Ok(Setup { settings: settings(params, &units, ratio), problem, units, summits })
 }
 
@@ -191,7 +233,9 @@ fn problem(
             (Law::crack(work), Rule::Bonded { margin: MARGIN, nucleation, strength })
         }
     };
-    Ok(Problem { half_space: HalfSpace::new(units.points, units.points)?, law, heights, attraction })
+    let half_space = HalfSpace::new(units.points, units.points)?;
+    let half_space = if units.is_mirrored { half_space.with_images() } else { half_space };
+    Ok(Problem { half_space, law, heights, attraction })
 }
 
 /// Wu's jump-in gap at the median radius of the asperities \[m\].
@@ -226,16 +270,12 @@ fn enough_memory(points: usize, loads: usize) -> Result<(), PhysicsError> {
     })
 }
 
-/// Grid points nearest to the asperities and, on a surface that is continued by mirror images, to their images.
-fn summit_points(list: &[Summit], (length_m, side): (f64, usize), is_mirrored: bool, units: &Units) -> Vec<usize> {
-    let n = units.points;
-    let at = |place: f64| (place / units.spacing_m()).round() as usize % n;
-    // Row k of the surface has its image in row 2 N - 1 - k.
-    let image = |place: f64| 2.0 * length_m - length_m / side as f64 - place;
-    let places = |place: f64| if is_mirrored { vec![at(place), at(image(place))] } else { vec![at(place)] };
-    let all = |summit: &Summit| {
-        let columns = places(summit.y_m);
-        places(summit.x_m).into_iter().flat_map(move |row| columns.clone().into_iter().map(move |column| row * n + column))
+/// Grid points nearest to the asperities.
+fn summit_points(list: &[Summit], units: &Units) -> Vec<usize> {
+    let (n, own) = (units.points, units.own_points());
+    let at = |place: f64| {
+        let nearest = ((place - units.first_m) / units.spacing_m()).round() as usize;
+        if units.is_mirrored { nearest.min(own - 1) } else { nearest % n }
     };
-    list.iter().flat_map(all).collect()
+    list.iter().map(|summit| at(summit.x_m) * n + at(summit.y_m)).collect()
 }

@@ -40,15 +40,16 @@ pub(super) fn steps(of: Identity<'_>, cycle: &Cycle, loads: &[f64], units: &Unit
         kinds.iter().map(|counts| kinds_of.iter().map(|kind| counts[*kind as usize]).sum::<usize>()).collect::<Vec<_>>()
     };
     let reversal_load = |step: usize| cycle.reversal_at(step).and_then(|at| loads.get(at)).copied();
-    let area_m2: Vec<f64> = steps.iter().map(|step| step.totals.contact as f64 * spacing * spacing).collect();
+    let area_m2: Vec<f64> = steps.iter().map(|step| step.totals.contact as f64 * units.area_m2()).collect();
     Ok(of
         .begin(&schema::STEPS, steps.len())
         .i64("step", (0..steps.len()).map(|k| k as i64))
         .text("branch", steps.iter().map(branch))
         .f64("max_load", steps.iter().map(|step| max_load(step, loads)))
-        .f64("approach_m", each(|s| s.approach, spacing))
+        // Not −0.
+        .f64("approach_m", each(|s| s.approach + 0.0, spacing))
         .f64("load_n", each(|s| s.totals.load, load))
-        .f64("least_load_n", each(|s| s.totals.load, load))
+        .f64("least_load_n", (0..steps.len()).map(|step| cycle.least_load(step) * load))
         .f64("area_m2", area_m2.iter().copied())
         .f64("area_union_m2", area_m2.iter().copied())
         .count("contact_count", steps.iter().map(|s| s.regions))
@@ -74,7 +75,7 @@ pub(super) fn steps(of: Identity<'_>, cycle: &Cycle, loads: &[f64], units: &Unit
         .count("transform_count", steps.iter().map(|s| s.transforms as usize))
         .f64("load", steps.iter().map(|s| s.totals.load / all))
         .f64("area", steps.iter().map(|s| s.totals.contact as f64 / all))
-        .f64("penetration", steps.iter().map(|s| s.approach * spacing / units.rms_height_m))
+        .f64("penetration", steps.iter().map(|s| (s.approach + 0.0) * spacing / units.rms_height_m))
         .text("method", repeat_n(METHOD, steps.len()))
         .f64("residual", each(|s| s.residual, 1.0))
         .f64("stiffness_n_m", each(|s| s.stiffness, load / spacing))
@@ -110,12 +111,12 @@ pub(super) fn contacts(
         .i64("asperity_id", repeat_n(None::<i64>, rows.len()))
         .text("state", repeat_n("contact", rows.len()))
         .f64("contact_radius_m", rows.iter().map(|row| (area(&row.1) / PI).sqrt()))
-        .f64("load_n", rows.iter().map(|row| row.1.load * units.load_n()))
+        .f64("load_n", rows.iter().map(|row| row.1.load * units.point_load_n()))
         .f64("penetration_m", nothing())
         .f64("interaction_m", nothing())
         .text("method", repeat_n(METHOD, rows.len()))
-        .f64("centroid_x_m", rows.iter().map(|row| row.1.centroid[0] * spacing))
-        .f64("centroid_y_m", rows.iter().map(|row| row.1.centroid[1] * spacing))
+        .f64("centroid_x_m", rows.iter().map(|row| units.place_m(row.1.centroid[0])))
+        .f64("centroid_y_m", rows.iter().map(|row| units.place_m(row.1.centroid[1])))
         .f64("area_m2", rows.iter().map(|row| area(&row.1)))
         .f64("perimeter_m", rows.iter().map(|row| row.1.perimeter * spacing))
         .i64("summit_count", rows.iter().map(|row| row.2.map(i64::from)))
@@ -129,7 +130,7 @@ pub(super) fn adhesionless(of: Identity<'_>, steps: &[FreeStep], units: &Units) 
         .i64("step", (0..steps.len()).map(|k| k as i64))
         .f64("approach_m", each(|step| step.approach, units.spacing_m()))
         .f64("load_n", each(|step| step.totals.load, units.load_n()))
-        .f64("area_m2", each(|step| step.totals.contact as f64, units.spacing_m().powi(2)))
+        .f64("area_m2", each(|step| step.totals.contact as f64, units.area_m2()))
         .bool("converged", steps.iter().map(|step| step.converged))
         .count("transform_count", steps.iter().map(|step| step.transforms as usize))
         .build()?)
@@ -139,7 +140,7 @@ pub(super) fn events(of: Identity<'_>, cycle: &Cycle, loads: &[f64], units: &Uni
     let events = &cycle.events;
     let (spacing, load) = (units.spacing_m(), units.load_n());
     let step = |at: usize| &cycle.steps[at];
-    let area = spacing * spacing;
+    let area = units.area_m2();
     Ok(of
         .begin(&schema::EVENTS, events.len())
         .i64("step", events.iter().map(|event| event.step as i64))

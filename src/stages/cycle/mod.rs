@@ -6,6 +6,7 @@ mod boundary_elements;
 mod constants;
 mod elements_setup;
 mod elements_tables;
+mod not_reached;
 
 pub use asperities::unload_again;
 pub use boundary_elements::unload_elements_again;

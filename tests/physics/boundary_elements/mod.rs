@@ -4,6 +4,7 @@ mod front;
 mod johnson;
 mod operator;
 mod peer;
+mod reversals;
 mod rough;
 mod sphere;
 mod trapping;

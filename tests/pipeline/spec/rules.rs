@@ -26,7 +26,7 @@ fn val_bounds_are_where_the_message_says() {
         ("boundary_elements", "range_m", "-1e-300", "0", "1e-3", "1.001e-3", ""),
         ("boundary_elements", "approach_step", "9.99e-4", "1e-3", "0.2", "0.2000001", ""),
         ("boundary_elements", "halvings", "-1", "0", "10", "11", ""),
-        ("boundary_elements", "precision", "9.99e-11", "1e-10", "1e-2", "1.001e-2", ""),
+        ("boundary_elements", "precision", "9.99e-11", "1e-10", "1e-3", "1.001e-3", ""),
         ("cycle", "max_load", "[0.0]", "[1e-300]", "[0.2]", "[0.2000001]", ""),
         ("cycle", "approach_step", "9.99e-6", "1e-5", "1", "1.0000001", ""),
     ];
