@@ -10,7 +10,11 @@ const CYCLE: &[Column] = &[
     SURFACE_ID,
     ASPERITIES_ID,
     text("status", "\"done\", \"failed\", or \"planned\" if not yet computed when this table was written"),
-    text("failure", "Error message of a failed cycle; of a finished one the load reversals without a result and the error of the first; null otherwise").or_null(),
+    text(
+        "failure",
+        "Error message of a failed cycle; of a finished one the load reversals without a result and the error of the first; null otherwise",
+    )
+    .or_null(),
 ];
 
 const COLUMNS: [Column; CASE.len() + CYCLE.len() + PARAMETER_COLUMNS.len()] = join(&[CASE, CYCLE, &PARAMETER_COLUMNS]);

@@ -32,9 +32,10 @@ mod profiles;
 mod python;
 #[cfg(feature = "stats")]
 mod report;
+#[cfg(feature = "stats")]
+mod reversals;
 #[cfg(feature = "store")]
 mod scan;
-mod reversals;
 mod schema;
 #[cfg(feature = "stats")]
 mod snapshots;
