@@ -64,7 +64,7 @@ fn row(caution: &Caution) -> String {
             let sign = if limit.at_least { '<' } else { '>' };
             format!("| `{}` | `{}` | {sign} {} |\n", caution.code, limit.column, number(limit.bound))
         }
-        None => format!("| `{}` | | {} |\n", caution.code, condition(caution.code).unwrap_or(caution.text)),
+        None => format!("| `{}` | | {} |\n", caution.code, condition(caution.code).unwrap_or(caution.label)),
     }
 }
 
