@@ -19,7 +19,7 @@ use crate::constants::Constants;
 pub use error::{PhysicsError, Reason};
 
 /// Tolerances and limits of the physics, by module.
-pub const CONSTANTS: [Constants; 8] = [
+pub const CONSTANTS: [Constants; 9] = [
     Constants { subject: "Valid cycles", module: "physics::cycle", rows: cycle::CONSTANTS },
     Constants { subject: "Path of the asperity model", module: "physics::path", rows: path::CONSTANTS },
     Constants { subject: "Global and local problems", module: "physics::solve", rows: solve::CONSTANTS },
@@ -28,4 +28,5 @@ pub const CONSTANTS: [Constants; 8] = [
     Constants { subject: "One asperity", module: "physics::jkr", rows: jkr::CONSTANTS },
     Constants { subject: "Boundary elements", module: "physics::boundary_elements", rows: boundary_elements::CONSTANTS },
     Constants { subject: "Measured surfaces", module: "physics::surface", rows: surface::CONSTANTS },
+    Constants { subject: "Analytical models", module: "physics::theory", rows: theory::CONSTANTS },
 ];
