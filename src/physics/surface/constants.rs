@@ -1,8 +1,6 @@
 //! Limits of measured surfaces.
 
-use super::continuation::LEAST_MARGIN;
 use super::measured::{FEWEST_POINTS, MAX_MISSING_FRACTION, MAX_SPACING_RATIO, MOST_POINTS, SPACING_TOLERANCE};
-use super::measured_summits::{RIDGE, ROUNDING_OF_RIPPLES};
 use super::self_affine::{FEWEST, FEWEST_BEYOND, MOST_SCATTER, SHARE};
 use crate::constants::Constant;
 
@@ -44,26 +42,5 @@ pub(in crate::physics) const CONSTANTS: &[Constant] = &[
         "of `h_rms²`",
         "A band that holds less is leakage or rounding, and no data.",
         "self_affine",
-    ),
-    Constant::new(
-        "margin without asperities",
-        &[LEAST_MARGIN as f64],
-        "pixels",
-        "Minimum at the edges of a non-periodic scan; else half a cut-off.",
-        "continuation",
-    ),
-    Constant::new(
-        "curvature of a plateau",
-        &[ROUNDING_OF_RIPPLES],
-        "`(h_max − h_min) (2π/λ_c)²`",
-        "A maximum whose smaller principal curvature is below it is due to rounding.",
-        "measured_summits",
-    ),
-    Constant::new(
-        "curvature along a ridge",
-        &[RIDGE],
-        "of that across",
-        "A maximum with a smaller one is no asperity.",
-        "measured_summits",
     ),
 ];

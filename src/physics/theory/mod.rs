@@ -17,16 +17,8 @@ use crate::physics::surface::spectrum::Moments;
 use std::f64::consts::PI;
 
 /// Constants of the analytical models.
-pub(super) const CONSTANTS: &[Constant] = &[
-    Constant::new(
-        "shortest octave that matters",
-        &[flattening::LEAST_CURVATURE_SHARE],
-        "of `h''_rms²`",
-        "The shortest octave of a measured surface holds at least this, with all shorter wavelengths.",
-        "flattening",
-    ),
-    Constant::new("pinning of a contact edge, `k`", &[PINNING], "", "Prefactor of `loss_pinning`.", ""),
-];
+pub(super) const CONSTANTS: &[Constant] =
+    &[Constant::new("pinning of a contact edge, `k`", &[PINNING], "", "Prefactor of `loss_pinning`.", "")];
 
 /// Nayak's density of the reduced summit curvature in the limit used by Deng and Kesari. Eq A2.
 ///

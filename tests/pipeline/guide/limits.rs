@@ -43,7 +43,6 @@ fn sentences() -> Vec<(&'static str, &'static str, Vec<f64>)> {
         ("glossary.md", "`U_el < {} Δγ` (warning `sticky`) or `A/A0 > {}`", vec![bound("sticky"), bound("area")]),
         ("howto_scan.md", "| texture aspect ratio | below {}? |", vec![bound("texture")]),
         ("validity.md", "| texture aspect ratio above {} |", vec![bound("texture")]),
-        ("validity.md", "holds at least {} % of the mean square Laplacian", vec![percent(values("shortest octave that matters")[0])]),
         ("howto_scan.md", "A ratio above {} is an error", values("ratio of the pixel sizes").to_vec()),
         ("howto_scan.md", "if more than {} % of the scan is dropped", vec![percent(values("part outside the central square")[0])]),
         ("howto_scan.md", "must have {} to {} points along a side", values("points along a side").to_vec()),
