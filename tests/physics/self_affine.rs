@@ -139,7 +139,9 @@ fn val_a_roll_off_is_found() {
             assert!(fits.iter().all(|fit| fit.rolls_off && near(fit.roll_off_1_m / TAU, mode, 0.25)), "{fits:?}");
         }
         let smooth: Vec<SelfAffine> = SEEDS.map(|seed| fit(quarter(&surface(512, seed, &smooth)), false, 8.0)).collect();
-        holds(hurst, &smooth);
+        let mean = smooth.iter().map(|fit| fit.hurst).sum::<f64>() / smooth.len() as f64;
+        // Near the corner a sharp roll-off fits too, with a smaller exponent.
+        assert!((mean - hurst).abs() < 0.08, "{hurst}: {smooth:?}");
         // A Gaussian L-filter has a similar spectrum.
         let found = smooth.iter().filter(|fit| fit.rolls_off && near(fit.roll_off_1_m / TAU, 8.0, 0.3)).count();
         assert!(found >= 3, "{smooth:?}");

@@ -40,8 +40,8 @@ fn val_both_ratios_are_those_of_a_stretched_surface() {
             assert!((found.slope_ratio / aspect).ln().abs() < 0.15, "{aspect} {direction}: {found:?}");
             assert!((found.aspect_ratio_str * aspect).ln().abs() < 0.35, "{aspect} {direction}: {found:?}");
             assert!(aspect < 1.5 || angle_between(found.direction_rad, direction) < 0.1, "{direction}: {found:?}");
-            // exp(−½ (u/l)²) = 0.2.
-            assert!((found.decay_length * 256.0 / (4.0 * (2.0 * 5_f64.ln()).sqrt())).ln().abs() < 0.3, "{found:?}");
+            // exp(−½ (u/l)²) = 0.2. The correlation of 400 waves has an error of 0.05, a fifth of the decay length.
+            assert!((found.decay_length * 256.0 / (4.0 * (2.0 * 5_f64.ln()).sqrt())).ln().abs() < 0.35, "{found:?}");
         }
     }
 }

@@ -7,7 +7,7 @@
 
 use super::psd_bin::Ring;
 pub use super::spectral_band::ShortCut;
-use super::spectral_band::{Band, EMPTY, OUTSIDE, OVER_NOISE, Point, Sampling, top_density, white_noise_beyond};
+use super::spectral_band::{Band, OUTSIDE, OVER_NOISE, Point, Sampling, top_density, white_noise_beyond};
 use super::spectral_line::{Line, Shape, Sums};
 use std::cmp::Ordering;
 use std::f64::consts::{LN_2, LN_10};
@@ -190,7 +190,7 @@ impl Search<'_> {
         let of_shape = match shape {
             Shape::Straight => 0.0,
             Shape::Sharp | Shape::Smooth => OF_SHAPE,
-            Shape::Filtered => 1.5 * OF_SHAPE,
+            Shape::Filtered => 2.0 * OF_SHAPE,
         };
         let outside = self.data.len() - (band[1] - band[0]);
         squares + OUTSIDE * outside as f64 + of_shape + if damped { OF_SHAPE } else { 0.0 }
@@ -208,7 +208,7 @@ impl Search<'_> {
 
     /// The line without a first or last ring that the end of the spectrum divides: the next ring is empty.
     fn without_partial_rings(&self, [first, end]: [usize; 2], line: Line) -> Line {
-        let is_empty = |at: Option<usize>| at.and_then(|at| self.data.get(at)).is_some_and(|point| point.y - line.at(point.x) < EMPTY.ln());
+        let is_empty = |at: Option<usize>| at.and_then(|at| self.data.get(at)).is_some_and(|point| point.is_empty(&line));
         let from = first + usize::from(is_empty(first.checked_sub(1)));
         let to = end - usize::from(line.damping == 0.0 && is_empty(Some(end)));
         if to < from + FEWEST || line.shape.rolls_off() && self.data[from].x >= line.corner {

@@ -41,7 +41,7 @@ pub(crate) const OVER_NOISE: f64 = 2.0;
 /// Rings at the shortest wavelengths that define the white noise.
 const TOP: usize = 3;
 /// Ratio of densities below which a ring is empty.
-pub(crate) const EMPTY: f64 = 0.5;
+const EMPTY: f64 = 0.5;
 /// Ratio of densities above which a ring is full.
 const FULL: f64 = 0.8;
 /// Rings next to the band of which an end of the spectrum empties one: the first may be full, and the second divided.
@@ -62,6 +62,11 @@ fn widened(exponent: f64, mode: f64) -> f64 {
 }
 
 impl Point {
+    /// True if a line predicts more than the ring holds, beyond three standard deviations: rings of few modes are low by chance.
+    pub(crate) fn is_empty(&self, line: &Line) -> bool {
+        self.y - line.at(self.x) < EMPTY.ln() - 3.0 * self.variance.sqrt()
+    }
+
     /// Mean square height over the area of a mode \[m⁴\].
     pub(crate) fn power(&self) -> f64 {
         self.modes * self.y.exp()
@@ -160,7 +165,7 @@ impl Band<'_> {
         let full = rings().filter(|point| point.x <= self.line.band[0]).take_while(|point| self.filled(point) > FULL).last();
         let first = full.map_or(self.line.band[0], |point| point.x);
         let below = || rings().filter(|point| point.x < first);
-        if !below().take(NEXT).any(|point| self.filled(point) < EMPTY) {
+        if !below().take(NEXT).any(|point| point.is_empty(self.line)) {
             return None;
         }
         let filled: f64 = below().map(|point| point.modes * self.filled(point)).sum();
@@ -195,7 +200,7 @@ impl Band<'_> {
         }
         let filled: f64 = beyond().map(|point| point.modes * self.filled(point)).sum();
         let wavenumber_1_m = ((self.modes_below(last) + self.modes_at(last) + filled) * self.cell()).sqrt();
-        beyond().take(NEXT).any(|point| self.filled(point) < EMPTY).then_some(ShortCut { wavenumber_1_m, cause: SpectrumEnd::Empty })
+        beyond().take(NEXT).any(|point| point.is_empty(self.line)).then_some(ShortCut { wavenumber_1_m, cause: SpectrumEnd::Empty })
     }
 
     fn modes_at(&self, x: f64) -> f64 {
