@@ -137,6 +137,17 @@ choice! {
     }
 }
 choice! {
+    /// Direction of the scan lines of a measured surface.
+    FastAxis {
+        /// The direction with the larger offsets between lines, else rows.
+        Auto = "auto",
+        /// Each row of the file is a scan line.
+        Rows = "rows",
+        /// Each column of the file is a scan line.
+        Columns = "columns",
+    }
+}
+choice! {
     /// Method of a contact cycle.
     Method {
         /// Asperity model: interacting JKR asperities.

@@ -236,17 +236,30 @@ const MEASURED_VERSION: u32 = 2;
 pub(super) fn of_surface(spec: &Spec, params: &SurfaceParams) -> Value {
     let SurfaceParams { file, dataset, periodic, pixel_m, unit, missing, detrend, filter, points_per_shortest_wavelength, .. } = params;
     if params.is_measured() {
-        return json!({
+        let mut reads = json!({
             "blake3": spec.files.get(file), "dataset": dataset, "periodic": periodic, "pixel_m": pixel_m, "unit": unit, "missing": missing, "detrend": detrend,
             "filter": filter, "points_per_shortest_wavelength": points_per_shortest_wavelength, "method_version": MEASURED_VERSION,
             "header_version": MEASURED_HEADER_VERSION,
         });
+        corrections(params).into_iter().for_each(|(name, value)| reads[name] = value);
+        return reads;
     }
     let mut reads = plain(params);
     if let Some(members) = reads.as_object_mut() {
         members.retain(|name, _| !MEASURED.contains(&name.as_str()));
     }
     reads
+}
+
+/// Corrections of a measured surface in its key, of those that are made.
+fn corrections(params: &SurfaceParams) -> Vec<(&'static str, Value)> {
+    let SurfaceParams { outliers, align_rows, fast_axis, tip_radius_m, .. } = params;
+    let made = [
+        (*outliers, "outliers", json!(outliers)),
+        (*align_rows, "align_rows", json!(fast_axis)),
+        (*tip_radius_m > 0.0, "tip_radius_m", json!(tip_radius_m)),
+    ];
+    made.into_iter().filter_map(|(is_made, name, value)| is_made.then_some((name, value))).collect()
 }
 
 /// A parameter set as JSON; a number that JSON cannot hold is refused by the spec long before.

@@ -151,6 +151,17 @@ pub(super) struct ImportArguments {
     pub(super) fill: bool,
     #[arg(long, value_name = "FORM", value_parser = ["mean", "plane", "quadratic"], hide_possible_values = true, help = help::DETREND)]
     pub(super) detrend: Option<String>,
+    /// Replace outliers: spikes beyond 6 robust standard deviations
+    #[arg(long)]
+    pub(super) outliers: bool,
+    /// Remove the offsets of scan lines (median of differences)
+    #[arg(long)]
+    pub(super) align_rows: bool,
+    #[arg(long, value_name = "AXIS", requires = "align_rows", value_parser = ["auto", "rows", "columns"], hide_possible_values = true, help = help::FAST_AXIS)]
+    pub(super) fast_axis: Option<String>,
+    /// Tip radius in metres; removes wavelengths that it cannot trace
+    #[arg(long, value_name = "METRES")]
+    pub(super) tip_radius: Option<f64>,
     /// The surface is periodic
     #[arg(long)]
     pub(super) periodic: bool,

@@ -39,6 +39,11 @@ pub(super) const DETREND: &str = "\
 Form removed by a fit: mean, plane or quadratic
 [default: plane, or mean with --periodic]";
 
+/// `--fast-axis` of `import`.
+pub(super) const FAST_AXIS: &str = "\
+Direction of the scan lines: rows or columns of the file
+[default: auto, the one with the larger offsets]";
+
 /// The description of `import`.
 pub(super) const IMPORT: &str = "\
 Preprocess a measured surface and report its statistics

@@ -1,7 +1,7 @@
 //! Parameters of a case: surface, material, model, boundary elements and loading path.
 
 use super::{
-    Amplitudes, Attraction, Boundary, Coalescence, Detrend, Filter, Interaction, JumpIn, KeptContacts, Material, Method, Missing,
+    Amplitudes, Attraction, Boundary, Coalescence, Detrend, FastAxis, Filter, Interaction, JumpIn, KeptContacts, Material, Method, Missing,
     Normalization, Nucleation, Opening, Slip, Slips,
 };
 use serde::{Deserialize, Serialize};
@@ -64,6 +64,14 @@ pub struct SurfaceParams {
     pub detrend: Detrend,
     /// Low-pass filter of a measured surface.
     pub filter: Filter,
+    /// True if outliers are replaced.
+    pub outliers: bool,
+    /// True if the offsets of scan lines are removed.
+    pub align_rows: bool,
+    /// Direction of the scan lines.
+    pub fast_axis: FastAxis,
+    /// Radius of the tip that measured it \[m\]; 0 if it is unknown or sharp.
+    pub tip_radius_m: f64,
 }
 
 impl SurfaceParams {
@@ -161,6 +169,10 @@ impl Default for SurfaceParams {
             missing: Missing::Refuse,
             detrend: Detrend::Plane,
             filter: Filter::Gaussian,
+            outliers: false,
+            align_rows: false,
+            fast_axis: FastAxis::Auto,
+            tip_radius_m: 0.0,
         }
     }
 }

@@ -8,10 +8,12 @@ use maud::{Markup, html};
 const NOTE: &str = "Each measured surface is one realization, without a standard deviation. Area kept: fraction of the scan in the \
     central square of side L. h_{rms} and rms slope: after levelling and S-filter. S-filter: low-pass filter, Gaussian (ISO 16610-61) or \
     sharp. Removed: rms heights of the short wavelengths and of the form subtracted by levelling. Overshoot: height of filtered maxima above the \
-    measured heights nearby, beyond the noise. Filled: missing points interpolated (harmonic in-fill). H: Hurst exponent of the self-affine fit, with its \
+    measured heights nearby, beyond the noise. Filled: missing points interpolated (harmonic in-fill). Outliers: isolated points beyond 6 robust \
+    standard deviations of their neighbours, replaced and left. Line offsets: rms offset between scan lines, removed and left. Tip cut-off: \
+    shortest wavelength that a tip of the stated radius traces reliably. H: Hurst exponent of the self-affine fit, with its \
     standard deviation; outside 0 to 1 the spectrum is not self-affine.";
 
-const HEADS: [&str; 13] = [
+const HEADS: [&str; 16] = [
     "file",
     "points",
     "area kept",
@@ -24,6 +26,9 @@ const HEADS: [&str; 13] = [
     "overshoot [m]",
     "removed by levelling [m]",
     "filled",
+    "outliers replaced / left",
+    "line offsets removed / left [m]",
+    "tip cut-off [m]",
     "H",
 ];
 
@@ -38,6 +43,17 @@ pub(super) fn scans(surfaces: &[SurfaceHeader]) -> Markup {
     html! { (heading("Measured surfaces")) p { (prose(NOTE)) } "\n" (wide("surfaces", &head, &rows)) }
 }
 
+/// Outliers, offsets of scan lines and the cut-off of the tip.
+fn artefacts(of: &Measured) -> Markup {
+    let Some(quality) = of.quality else { return html! { td { "–" } td { "–" } td { "–" } } };
+    let length = |length: Option<f64>| length.map_or_else(|| "–".to_owned(), |length| format!("{length:.3e}"));
+    html! {
+        td { (quality.outlier_count) " / " (quality.outlier_left_count) }
+        td { (length(quality.line_offset_m)) " / " (length(Some(quality.line_jump_m).filter(|jump| *jump > 0.0))) }
+        td { (length(quality.tip_cutoff_m)) }
+    }
+}
+
 fn row(header: &SurfaceHeader, of: &Measured) -> Markup {
     let [a, b] = of.source_point_counts;
     let lengths = |values: &[f64]| html! { @for value in values { td { (format!("{value:.3e}")) } } };
@@ -50,6 +66,7 @@ fn row(header: &SurfaceHeader, of: &Measured) -> Markup {
         td { (of.filter.word()) }
         (lengths(&[of.shortest_wavelength_m, of.noise_m, of.overshoot_m, of.trend_m]))
         td { (of.missing_count) }
+        (artefacts(of))
         td { (of.fit.map_or_else(|| "–".to_owned(), |fit| format!("{:.2} (±{:.2} decades)", fit.hurst, fit.scatter))) }
     }
 }

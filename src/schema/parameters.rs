@@ -6,7 +6,7 @@ use super::{Column, real, text};
 use crate::model::Choice;
 
 /// Number of parameters.
-const COUNT: usize = 28;
+const COUNT: usize = 31;
 
 /// Parameters that define a case, in the order of their columns.
 pub static PARAMETERS: [Parameter; COUNT] = LIST;
@@ -62,6 +62,28 @@ const LIST: [Parameter; COUNT] = [
         ["S-filter", "S-filter"],
         2,
         |case| case.measured().map(|surface| word(surface.filter)),
+    ),
+    parameter(
+        text("outliers", "Outliers of a measured surface: \"replaced\" or \"kept\"; null for a generated surface").or_null(),
+        ["outliers", "outliers"],
+        27,
+        |case| case.measured().map(|surface| Word(if surface.outliers { "replaced" } else { "kept" }.to_owned())),
+    ),
+    parameter(
+        text(
+            "align_rows",
+            "Scan lines of a measured surface whose offsets were removed: \"rows\", \"columns\" or \"auto\"; \"none\" without alignment; null for a generated surface",
+        )
+        .or_null(),
+        ["align_rows", "alignment of scan lines"],
+        28,
+        |case| case.measured().map(|surface| if surface.align_rows { word(surface.fast_axis) } else { Word("none".to_owned()) }),
+    ),
+    parameter(
+        real("tip_radius_m", "m", "Radius R_tip of the tip that measured the surface; null for a generated surface and without one").or_null(),
+        ["R_tip", "R_{tip} [m]"],
+        29,
+        |case| case.measured().map(|surface| surface.tip_radius_m).filter(|radius| *radius > 0.0).map(Number),
     ),
     parameter(
         real("hurst", "1", "Hurst exponent H; null for a measured surface").or_null().from("Eq 10"),

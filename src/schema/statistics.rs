@@ -131,6 +131,10 @@ const RESULTS: &[Column] = &[
     real("texture_str", "1", "Texture aspect ratio Str: shortest over longest distance at which the autocorrelation decays to 0.2; an upper limit where the longest exceeds half of the side; null for a generated surface").or_null().from("ISO 25178-2"),
     real("elements_per_wavelength", "1", "Grid points of boundary elements per shortest wavelength, of a measured surface that of its shortest octave with 10 % of the mean square Laplacian; null for asperities").or_null(),
     real("filter_overshoot", "1", "Height of filtered maxima above the measured heights within one cut-off wavelength, beyond the noise, over h_rms; null for a generated surface").or_null(),
+    real("outlier_share", "1", "Fraction of the points of a measured surface that are isolated beyond 6 robust standard deviations of their neighbours and were not replaced; 0 if none of them matters on the filtered surface; null for a generated surface, and where it was not computed").or_null(),
+    real("line_jump_share", "1", "Rms offset between scan lines of a measured surface that was not removed, over h_rms; 0 without significant offsets; null likewise").or_null(),
+    real("noise_share", "1", "Rms height that the S-filter removed over h_rms, where its spectral density falls less than q^(-1), as that of noise; 0 elsewhere; null likewise").or_null(),
+    real("curvature_ratio", "1", "Curvature of the sharpest summits over that of the sharpest valleys of a measured surface (1 % quantiles of the Laplacian) that is rounded nearly everywhere; null elsewhere, with a stated tip radius, and likewise").or_null(),
 ];
 
 /// Parts of `dissipated` by branch and by kind of event, over E* A0 h_rms and in joule. Each of the two groups sums to `dissipated`.
@@ -247,6 +251,16 @@ const VALIDITY: &[&[Column]] = &[
         ""
     ),
     mean_and_worst!("loss_uncertainty", "max", "Maximum", "resolution of Θ over |Θ|", ""),
+    mean_and_worst!("outlier_share", "max", "Maximum", "fraction of outliers among the points of a measured surface", ""),
+    mean_and_worst!("line_jump_share", "max", "Maximum", "rms offset between the scan lines of a measured surface, over h_rms", ""),
+    mean_and_worst!("noise_share", "max", "Maximum", "rms height of the noise that the S-filter removed, over h_rms", ""),
+    mean_and_worst!(
+        "curvature_ratio",
+        "min",
+        "Minimum",
+        "curvature of the sharpest summits over that of the sharpest valleys, of a rounded measured surface",
+        ""
+    ),
     pooled!(
         "touching_share",
         "sum of touching_count_at_max_load over sum of contact_count_at_max_load",
@@ -290,7 +304,7 @@ const SPREAD_COLUMNS: [Column; 4 * SPREADS.len()] = join(SPREADS);
 const PART_SPREAD_COLUMNS: [Column; 4 * PART_SPREADS.len()] = join(PART_SPREADS);
 const VALIDITY_COLUMNS: [Column; 2 * VALIDITY.len()] = join(VALIDITY);
 
-const CASE_COLUMNS: [Column;
+static CASE_COLUMNS: [Column;
     CASE.len()
         + PARAMETER_COLUMNS.len()
         + MAX_LOAD.len()

@@ -2,7 +2,7 @@
 
 use super::{CaseParams, Value};
 use crate::model::{
-    Amplitudes, Attraction, Boundary, Choice, Coalescence, Detrend, Filter, Interaction, JumpIn, KeptContacts, Method, Missing,
+    Amplitudes, Attraction, Boundary, Choice, Coalescence, Detrend, FastAxis, Filter, Interaction, JumpIn, KeptContacts, Method, Missing,
     Normalization, Nucleation, Opening, Slip,
 };
 
@@ -171,6 +171,13 @@ pub(super) static KEYS: &[Key] = &[
     key!(surface.missing, "", "Treatment of missing points of a measured surface."; word Missing),
     key!(surface.detrend, "", "Form removed from a measured surface (levelling, F-operator). The default of a periodic surface is `mean`."; word Detrend),
     key!(surface.filter, "", "Low-pass filter (S-filter) of a measured surface. Its cut-off wavelength is `points_per_shortest_wavelength` pixels."; word Filter),
+    key!(surface.outliers, "", "If true, isolated outliers of a measured surface are replaced by their surroundings: points and groups of up to four points beyond 6 robust standard deviations of their neighbours. If false, they cause a warning."; flag),
+    key!(surface.align_rows, "", "If true, the offsets of scan lines of a measured surface are removed (median of differences). If false, offsets cause a warning."; flag),
+    key!(surface.fast_axis, "", "Direction of the scan lines, with `align_rows = true`."; word FastAxis),
+    key!(surface.tip_radius_m, "R_tip", "Radius of the tip that measured the surface. Wavelengths below its reliability cut-off are removed. 0: no tip, or unknown."; number Limits {
+        low: 0.0, above: false, high: 1e-2, unit: " m", unit_name: "metres", slip: Some((1e-9, "nanometres")),
+        note: "R_tip, tip radius; 0 if there is no tip, or its radius is unknown",
+    }),
     key!(material.contact_modulus_pa, "E*", "Reduced modulus: `1/E* = (1 − ν1²)/E1 + (1 − ν2²)/E2`; `E/(1 − ν²)` against a rigid surface."; number Limits {
         low: 1.0, above: false, high: 1e13, unit: " Pa", unit_name: "pascals", slip: Some((1e6, "megapascals")), note: "",
     }),
@@ -225,7 +232,20 @@ pub(super) static KEYS: &[Key] = &[
 pub(super) const TABLES: [&str; 5] = ["surface", "material", "model", "boundary_elements", "cycle"];
 
 /// Keys of `[surface]` that describe a measured surface.
-pub const MEASURED: [&str; 8] = ["file", "dataset", "periodic", "pixel_m", "unit", "missing", "detrend", "filter"];
+pub const MEASURED: [&str; 12] = [
+    "file",
+    "dataset",
+    "periodic",
+    "pixel_m",
+    "unit",
+    "missing",
+    "detrend",
+    "filter",
+    "outliers",
+    "align_rows",
+    "fast_axis",
+    "tip_radius_m",
+];
 /// Keys of `[surface]` that describe a generated one.
 pub const GENERATED: [&str; 6] = ["length_m", "rms_height_m", "hurst", "magnification", "normalization", "amplitudes"];
 

@@ -28,7 +28,9 @@ use crate::store::parquet;
 /// are missing.
 pub(super) fn of_failed(campaign: &Campaign, unit: &CycleUnit) -> Given {
     let surface = &campaign.surfaces[unit.surface];
-    let mut columns = flattenings(campaign, unit, read_header(&campaign.surface_path(surface)).ok().as_ref()).unwrap_or_default();
+    let header = read_header(&campaign.surface_path(surface)).ok();
+    let mut columns = flattenings(campaign, unit, header.as_ref()).unwrap_or_default();
+    columns.extend(header.as_ref().map(artefacts).unwrap_or_default());
     let summits = read_summits(&campaign.asperities_path(surface)).ok();
     columns.extend(named([("summit_count", summits.map(|summits| summits.len()).into())]));
     columns
@@ -83,6 +85,7 @@ pub(super) fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<Cycle
     of_surface.extend(asperity_columns(&summits, &params.material)?);
     of_surface.extend(surface_columns(&header, summits.len()));
     of_surface.extend(named([("nominal_area_m2", nominal.into())]));
+    of_surface.extend(artefacts(&header));
     let per_wavelength = lattice.map(|lattice| per_wavelength(campaign, surface, &header, lattice.per_wavelength)).transpose()?;
     of_surface.extend(named([("elements_per_wavelength", per_wavelength.into())]));
     let continuous = target(params).map(|asked| deng_kesari(&asked.moments(), params, nominal)).transpose()?.flatten();
@@ -162,6 +165,11 @@ fn surface_columns(header: &SurfaceHeader, summit_count: usize) -> Given {
         ("texture_slope_ratio", texture.map(|of| of.slope_ratio).into()),
         ("texture_str", texture.map(|of| of.aspect_ratio_str).into()),
     ])
+}
+
+/// Remaining artefacts of a measured surface.
+fn artefacts(header: &SurfaceHeader) -> Given {
+    header.artefact_columns().into_iter().map(|(name, value)| (name.to_owned(), value.into())).collect()
 }
 
 /// Adhesive states that follow from the adhesionless curve of a cycle; none for asperities.

@@ -1,15 +1,26 @@
-//! Warnings that follow from a spec alone.
+//! Warnings that follow from a spec and its measured surfaces, before anything is computed.
 
+use super::grid_size::slow_grids;
+use super::measure::measure;
 use super::surface::target;
-use crate::campaign::{Campaign, CaseUnit};
+use crate::campaign::{Campaign, CaseUnit, SurfaceUnit};
+use crate::formats::recognize;
 use crate::physics::theory::flattening::{Flattening, flattening};
 use crate::spec::MANY_RANGE_STEPS;
-use crate::stats::{CAUTIONS, Caution, Limit, MANY_STEPS};
+use crate::stats::{CAUTIONS, Caution, Limit, MANY_STEPS, measured_text, significant};
+use crate::store::hdf5::{SurfaceHeader, read_header};
+use std::path::Path;
 
 /// Elastic energy over a work of adhesion \[J/m²\].
 type Ratio = fn(&Flattening, f64) -> f64;
 
-/// Cases whose target spectrum is outside the range of the asperity model.
+/// Warnings of the artefacts of measured surfaces.
+pub const ARTEFACTS: [&str; 4] = ["outliers", "lines", "noise", "tip"];
+
+/// Largest file of a measured surface that is read before a run \[bytes\].
+const LARGEST_FILE: u64 = 1 << 28;
+
+/// Cases with a warning.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outside {
     /// The warning.
@@ -18,12 +29,36 @@ pub struct Outside {
     pub limit: f64,
     /// Smallest and largest value over these cases.
     pub range: [f64; 2],
+    /// Measured values and limit as text.
+    pub measured: String,
     /// Ids of the cases.
     pub cases: Vec<String>,
 }
 
-/// Warnings that follow from the spec alone, before any surface is made: `U_el/Δγ` and `U_1/Δγ` of the target spectra. Measured surfaces and cases
-/// without adhesion have none.
+impl Outside {
+    /// Cases whose values are beyond the limit of a warning; nothing without any.
+    fn of(code: &str, values: impl Iterator<Item = (String, f64)>) -> Option<Self> {
+        let (limit, kind) = (Limit::of(code)?, CAUTIONS.into_iter().find(|kind| kind.code == code)?);
+        let (cases, values): (Vec<String>, Vec<f64>) = values.filter(|(_, value)| limit.is_passed(Some(*value))).unzip();
+        let range = [values.iter().copied().reduce(f64::min)?, values.iter().copied().reduce(f64::max)?];
+        let of_target = ["sticky", "conformed"].contains(&code);
+        let measured = if of_target {
+            format!("{} (target spectrum; limit ≥ {})", kind.text.replace("{}", &interval(range)), limit.bound)
+        } else {
+            measured_text(&kind, limit, &values)
+        };
+        Some(Self { kind, limit: limit.bound, range, measured, cases })
+    }
+}
+
+/// The interval of values as text.
+fn interval(range: [f64; 2]) -> String {
+    let [low, high] = range.map(|value| significant(value, 3));
+    if low == high { low } else { format!("{low} to {high}") }
+}
+
+/// Warnings before any surface is made: `U_el/Δγ` and `U_1/Δγ` of the target spectra, grids of boundary elements, and the artefacts of measured surfaces.
+/// Cases without adhesion have no `U_el/Δγ`.
 #[must_use]
 pub fn foreseen(campaign: &Campaign) -> Vec<Outside> {
     let ratios: [(&str, Ratio); 2] = [("sticky", Flattening::persson_tosatti), ("conformed", Flattening::conformity)];
@@ -37,13 +72,16 @@ pub fn foreseen(campaign: &Campaign) -> Vec<Outside> {
         Some(ratio(&flattening(&asked, material.contact_modulus_pa), material.work_of_adhesion_j_m2))
     };
     let of = |(code, ratio): (&str, Ratio)| {
-        let (limit, kind) = (Limit::of(code)?, CAUTIONS.into_iter().find(|kind| kind.code == code)?);
-        let known = campaign.cases.iter().filter_map(|unit| Some((unit.id.clone(), value(unit, ratio)?)));
-        let (cases, values): (Vec<String>, Vec<f64>) = known.filter(|(_, value)| limit.is_passed(Some(*value))).unzip();
-        let range = [values.iter().copied().reduce(f64::min)?, values.iter().copied().reduce(f64::max)?];
-        Some(Outside { kind, limit: limit.bound, range, cases })
+        Outside::of(code, campaign.cases.iter().filter_map(|unit| Some((unit.id.clone(), value(unit, ratio)?))))
     };
-    ratios.into_iter().filter_map(of).chain(coarse(campaign)).chain(many_steps(campaign)).collect()
+    ratios
+        .into_iter()
+        .filter_map(of)
+        .chain(coarse(campaign))
+        .chain(many_steps(campaign))
+        .chain(slow_grids(campaign))
+        .chain(artefacts(campaign))
+        .collect()
 }
 
 /// Cases of boundary elements whose attraction acts over many steps.
@@ -61,21 +99,45 @@ fn many_steps(campaign: &Campaign) -> Option<Outside> {
         }
     }
     let range = [values.iter().copied().reduce(f64::min)?, values.iter().copied().reduce(f64::max)?];
-    Some(Outside { kind: MANY_STEPS, limit: MANY_RANGE_STEPS, range, cases })
+    let measured = format!("{} (limit ≤ {MANY_RANGE_STEPS})", MANY_STEPS.text.replace("{}", &interval(range)));
+    Some(Outside { kind: MANY_STEPS, limit: MANY_RANGE_STEPS, range, measured, cases })
 }
 
 /// Cases of boundary elements with fewer grid points per shortest wavelength than recommended.
 fn coarse(campaign: &Campaign) -> Option<Outside> {
-    let (limit, kind) = (Limit::of("coarse")?, CAUTIONS.into_iter().find(|kind| kind.code == "coarse")?);
-    let (mut cases, mut values) = (Vec::new(), Vec::new());
-    for unit in campaign.cases.iter().filter(|unit| unit.case.params.by_elements() && !unit.case.params.surface.is_measured()) {
+    let value = |unit: &CaseUnit| {
         let wavelengths = f64::from(unit.case.params.surface.magnification);
-        let value = f64::from(unit.case.params.boundary_elements.grid(wavelengths)) / wavelengths;
-        if limit.is_passed(Some(value)) {
-            cases.push(unit.id.clone());
-            values.push(value);
-        }
-    }
-    let range = [values.iter().copied().reduce(f64::min)?, values.iter().copied().reduce(f64::max)?];
-    Some(Outside { kind, limit: limit.bound, range, cases })
+        (unit.id.clone(), f64::from(unit.case.params.boundary_elements.grid(wavelengths)) / wavelengths)
+    };
+    let generated = campaign.cases.iter().filter(|unit| unit.case.params.by_elements() && !unit.case.params.surface.is_measured());
+    Outside::of("coarse", generated.map(value))
+}
+
+/// Cases with artefacts of their measured surfaces.
+fn artefacts(campaign: &Campaign) -> Vec<Outside> {
+    let measured = campaign.surfaces.iter().enumerate().filter(|(_, surface)| surface.params.is_measured());
+    let known: Vec<(usize, SurfaceHeader)> = measured.filter_map(|(k, surface)| Some((k, header(campaign, surface)?))).collect();
+    let of = |code: &str| {
+        let column = Limit::of(code)?.of_one();
+        let number =
+            |header: &SurfaceHeader| header.artefact_columns().into_iter().find(|(name, _)| *name == column).and_then(|(_, value)| value);
+        let cases_of = |surface: usize| {
+            let cycles = campaign.cycles.iter().filter(move |cycle| cycle.surface == surface);
+            cycles.map(|cycle| campaign.cases[cycle.case].id.clone())
+        };
+        let values = known.iter().filter_map(|(surface, header)| Some((*surface, number(header)?)));
+        Outside::of(code, values.flat_map(|(surface, value)| cases_of(surface).map(move |case| (case, value))))
+    };
+    ARTEFACTS.into_iter().filter_map(of).collect()
+}
+
+/// Header of a measured surface: of its file in the run, or of the scan itself. Large scans, and those that cannot be imported, have none.
+fn header(campaign: &Campaign, surface: &SurfaceUnit) -> Option<SurfaceHeader> {
+    let in_run = read_header(&campaign.surface_path(surface)).ok().filter(|header| header.key == surface.key);
+    in_run.or_else(|| {
+        let path = Path::new(&surface.params.file);
+        let is_small = std::fs::metadata(path).is_ok_and(|about| about.is_file() && about.len() <= LARGEST_FILE);
+        let is_known = is_small && matches!(recognize(path), Ok(Ok(_)));
+        is_known.then(|| measure(&surface.params, "", "").ok()).flatten().map(|found| found.header)
+    })
 }

@@ -1,10 +1,11 @@
 //! A measured surface: read, made fit for the model, and put into words.
 
 use super::StageError;
+use super::correction::corrected;
 use crate::formats::recognize;
 use crate::lengths::{LENGTHS, metres};
 use crate::model::{Detrend, Filter};
-use crate::physics::surface::measured::{Prepared, Treatment, prepare};
+use crate::physics::surface::measured::{Prepared, Treatment};
 use crate::physics::surface::periodogram::{periodogram, windowed_periodogram};
 use crate::physics::surface::self_affine::{SelfAffine, fit_self_affine};
 use crate::physics::surface::texture::Texture;
@@ -38,6 +39,7 @@ pub fn measure(params: &SurfaceParams, digest: &str, key: &str) -> Result<Import
     let path = Path::new(&params.file);
     let scan = match source(path, &params.dataset)? {
         Source::Own(header, heights) => {
+            uncorrected(params)?;
             let (prepared, header) = own(params, *header, heights, digest, key)?;
             return Ok(Imported { prepared, header, height_factor_m: None });
         }
@@ -60,7 +62,7 @@ pub fn measure(params: &SurfaceParams, digest: &str, key: &str) -> Result<Import
         filter: params.filter,
         points_per_shortest_wavelength: f64::from(params.points_per_shortest_wavelength),
     };
-    let prepared = prepare(in_metres(path, scan.heights, unit)?, spacing, &treatment).map_err(|error| refused(path, &error.to_string()))?;
+    let (prepared, quality) = corrected(params, in_metres(path, scan.heights, unit)?, spacing, &treatment)?;
     let measured = Measured {
         source: path.file_name().map(|name| name.to_string_lossy().chars().take(60).collect()).unwrap_or_default(),
         source_blake3: digest.to_owned(),
@@ -75,6 +77,7 @@ pub fn measure(params: &SurfaceParams, digest: &str, key: &str) -> Result<Import
         overshoot_m: prepared.overshoot_m,
         fit: prepared.fit.as_ref().map(stored),
         texture: Texture::of(prepared.heights_m.view(), params.periodic)?,
+        quality: Some(quality),
     };
     let moments = &prepared.moments;
     let header = SurfaceHeader {
@@ -126,6 +129,7 @@ fn own(
         overshoot_m: 0.0,
         fit: fit.as_ref().map(stored),
         texture,
+        quality: None,
     });
     let prepared = Prepared {
         heights_m,
@@ -140,6 +144,17 @@ fn own(
         shortest_wavelength_m: measured.shortest_wavelength_m,
     };
     Ok((prepared, SurfaceHeader { realization: 0, key: key.to_owned(), generated: None, measured: Some(measured), ..header }))
+}
+
+/// Refuses corrections of a surface of this program, which is used as it is.
+fn uncorrected(params: &SurfaceParams) -> Result<(), StageError> {
+    let asked = [(params.outliers, "outliers"), (params.align_rows, "align_rows"), (params.tip_radius_m > 0.0, "tip_radius_m")];
+    let Some((_, name)) = asked.into_iter().find(|(is_set, _)| *is_set) else { return Ok(()) };
+    let why = format!(
+        "surface.{name} corrects a scan, and this is a surface that hysteron wrote, which is used as it is\n\
+         help: import the scan itself again with this option, or name it as surface.file"
+    );
+    Err(refused(Path::new(&params.file), &why))
 }
 
 /// Heights times their unit, in the same memory; infinite ones are missing, as NaN is.
@@ -169,7 +184,7 @@ fn agree(path: &Path, own: Option<bool>, given: bool) -> Result<(), StageError> 
     }
 }
 
-fn refused(path: &Path, why: &str) -> StageError {
+pub(super) fn refused(path: &Path, why: &str) -> StageError {
     StageError::Measured { path: path.to_owned(), why: why.to_owned() }
 }
 

@@ -24,7 +24,7 @@ const fn warning(code: &'static str, label: &'static str, text: &'static str, co
 
 /// All warnings by severity, which is the order of their codes in the column `caution`: results outside the model, then results that depend on a rule of the model,
 /// then incomplete or inaccurate results, then small samples.
-pub const CAUTIONS: [Caution; 22] = [
+pub const CAUTIONS: [Caution; 26] = [
     warning(
         "sticky",
         "near full contact",
@@ -108,6 +108,34 @@ pub const CAUTIONS: [Caution; 22] = [
         "texture aspect ratio = {}",
         "Asperities are not spheres, and expected ratios, Θ_DK and Nayak's density hold for isotropic surfaces only.",
         "Use `method = \"boundary_elements\"`; quote the loop only.",
+    ),
+    warning(
+        "outliers",
+        "outliers of the scan",
+        "{} of the points of the scan are isolated spikes or dips beyond 6 robust standard deviations of their neighbours",
+        "Each one makes an asperity or a pit, raises h_rms and lowers the contact area.",
+        "Replace them with `surface.outliers = true` (`--outliers`), or check that they are real.",
+    ),
+    warning(
+        "lines",
+        "offsets of scan lines",
+        "rms offset between scan lines, over h_rms = {}",
+        "The offsets add ridges along the lines and raise the rms slope and the pull-off force.",
+        "Remove them with `surface.align_rows = true` (`--align-rows`).",
+    ),
+    warning(
+        "noise",
+        "noise of the scan",
+        "rms height removed by the S-filter, with the spectrum of noise, over h_rms = {}",
+        "Noise above the S-filter cut-off remains in the surface and sharpens its asperities.",
+        "Use a larger cut-off (`points_per_shortest_wavelength`, `--points`), or a scan with less noise.",
+    ),
+    warning(
+        "tip",
+        "rounded by a tip",
+        "curvature of the sharpest summits over that of the sharpest valleys = {}",
+        "The scan looks as if a blunt tip had traced it: asperities are too round, and the pull-off force is too large.",
+        "State the tip radius with `surface.tip_radius_m` (`--tip-radius`), which removes unreliable wavelengths; use a sharper tip.",
     ),
     warning(
         "failed",
@@ -224,6 +252,12 @@ impl Limit {
         !self.at_least && self.bound < 1.0
     }
 
+    /// Column of a surface or cycle, of which the column of the limit is a statistic.
+    #[must_use]
+    pub fn of_one(&self) -> &'static str {
+        ["_mean", "_min", "_max"].into_iter().find_map(|end| self.column.strip_suffix(end)).unwrap_or(self.column)
+    }
+
     /// True if a number is beyond the limit. A missing number is not.
     #[must_use]
     pub fn is_passed(&self, number: Option<f64>) -> bool {
@@ -232,7 +266,7 @@ impl Limit {
 }
 
 /// All limits. The limit of the Tabor parameter applies to Wu's criterion only, and only with adhesion.
-pub const LIMITS: [Limit; 14] = [
+pub const LIMITS: [Limit; 18] = [
     Limit::at_least("sticky", "persson_tosatti_realised_mean", 2.0),
     Limit::at_most("area", "area_at_max_load_mean", 0.3),
     Limit::at_least("conformed", "conformity_realised_mean", 1.0),
@@ -243,6 +277,10 @@ pub const LIMITS: [Limit; 14] = [
     Limit::at_most("overshoot", "filter_overshoot_max", 0.01),
     Limit::at_least("coarse", "elements_per_wavelength_min", 16.0),
     Limit::at_most("texture", "texture_aspect_max", 2.0),
+    Limit::at_most("outliers", "outlier_share_max", 0.0),
+    Limit::at_most("lines", "line_jump_share_max", 0.01),
+    Limit::at_most("noise", "noise_share_max", 0.1),
+    Limit::at_least("tip", "curvature_ratio_min", 0.33),
     Limit::at_most("unresolved", "loss_uncertainty_max", 0.1),
     Limit::at_most("audit", "audit_gap_max", 0.01),
     Limit::at_least("few_contacts", "contact_count_at_max_load_mean", 10.0),

@@ -44,7 +44,7 @@ pub use student::{FEW, Sample, t_quantile};
 pub use summary::{expected_ratios, summary, warning_text};
 pub use varying::{Values, Varying, varying};
 pub use walk::{COMPRESSION_STATIONS, Point, STATIONS, TENSION_STATIONS, Walk};
-pub use warnings::{Warning, warnings, warnings_of};
+pub use warnings::{Warning, measured_text, warnings, warnings_of};
 
 use crate::store::{FrameError, StoreError};
 

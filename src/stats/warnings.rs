@@ -46,7 +46,7 @@ fn measured(cases: &Frame, kind: &Caution, rows: &[usize]) -> Result<String, Sta
     if let Some(limit) = LIMITS.iter().find(|limit| limit.caution == kind.code) {
         let numbers = cases.f64_or_null(limit.column)?;
         let values: Vec<f64> = rows.iter().filter_map(|row| numbers[*row]).collect();
-        return Ok(format!("{} (limit {})", kind.text.replace("{}", &range(*limit, &values)), bound(*limit)));
+        return Ok(measured_text(kind, *limit, &values));
     }
     let (done, planned, failed) = (cases.i64("done_count")?, cases.i64("planned_count")?, cases.i64("failed_count")?);
     let not_reached = cases.i64_or_null("not_reached_count")?;
@@ -79,6 +79,12 @@ fn measured(cases: &Frame, kind: &Caution, rows: &[usize]) -> Result<String, Sta
         (_, false) => format!(" ({low} to {high} per case)"),
     };
     Ok(kind.text.replace("{}", &format!("{} of {}", total(&done), total(&planned))) + &each)
+}
+
+/// Measured values of a warning with their limit: `A/A₀ = 31 to 35 % (limit 30 %)`.
+#[must_use]
+pub fn measured_text(kind: &Caution, limit: Limit, values: &[f64]) -> String {
+    format!("{} (limit {})", kind.text.replace("{}", &range(limit, values)), bound(limit))
 }
 
 /// The interval of measured values: `76 %`, `76 to 87 %`, `0.99 to 1.02`.

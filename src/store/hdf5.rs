@@ -15,6 +15,7 @@ use super::error::{Cause, StoreError, fenced};
 use super::scan::{MOST_POINTS, room};
 use super::surface_header;
 pub use super::surface_header::{Generated, Measured, SURFACE_VERSION, SpectrumFit, SurfaceHeader};
+pub use super::surface_quality::Quality;
 
 /// Does something while no other thread is in the HDF5 library, which ends with the program and must not be in use then.
 pub fn alone<T>(act: impl FnOnce() -> T) -> T {

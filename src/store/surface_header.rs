@@ -8,6 +8,7 @@ use crate::physics::surface::spectrum::Moments;
 use crate::physics::surface::texture::Texture;
 
 use super::error::Cause;
+use super::surface_quality::{Quality, read_quality, write_quality};
 
 /// Version of the layout of a surface file, raised whenever an attribute is renamed, removed, or changes its meaning.
 pub const SURFACE_VERSION: u32 = 1;
@@ -80,6 +81,8 @@ pub struct Measured {
     pub fit: Option<SpectrumFit>,
     /// Texture; nothing in a file of an earlier version.
     pub texture: Option<Texture>,
+    /// Artefacts that were corrected, and those that remain; nothing in files of versions that did not look for any.
+    pub quality: Option<Quality>,
 }
 
 impl Measured {
@@ -180,6 +183,9 @@ fn write_measured(file: &File, measured: &Measured) -> Result<(), Cause> {
         write_finite(file, "texture_str", texture.aspect_ratio_str)?;
         write_finite(file, "texture_decay_length", texture.decay_length)?;
     }
+    if let Some(quality) = &measured.quality {
+        write_quality(file, quality)?;
+    }
     let Some(fit) = &measured.fit else { return Ok(()) };
     if let Some(rolls_off) = fit.rolls_off {
         write_number(file, "fit_rolls_off", rolls_off)?;
@@ -235,6 +241,7 @@ fn read_measured(file: &File, words: &Group, names: &[String]) -> Result<Measure
         overshoot_m: if has("overshoot_m") { finite(file, "overshoot_m")? } else { 0.0 },
         fit: has("fit_hurst").then(fit).transpose()?,
         texture: has("texture_str").then(texture).transpose()?,
+        quality: read_quality(file, words, names)?,
     })
 }
 
@@ -294,7 +301,7 @@ pub(super) fn write_number<T: H5Type>(place: &Location, name: &str, value: T) ->
     Ok(place.new_attr::<T>().create(name)?.write_scalar(&value)?)
 }
 
-fn write_finite(place: &Location, name: &str, value: f64) -> Result<(), Cause> {
+pub(super) fn write_finite(place: &Location, name: &str, value: f64) -> Result<(), Cause> {
     if value.is_finite() { write_number(place, name, value) } else { Err(format!("{name} is {value}, must be finite").into()) }
 }
 
@@ -308,7 +315,7 @@ pub(super) fn write_text(place: &Location, name: &str, value: &str) -> Result<()
 ///
 /// HDF5 keeps strings of variable length in a heap without a checksum, and a single changed byte in the heap can make the library
 /// loop for ever. This program therefore reads only the copies.
-fn write_word(file: &File, name: &str, value: &str) -> Result<(), Cause> {
+pub(super) fn write_word(file: &File, name: &str, value: &str) -> Result<(), Cause> {
     if value.len() > LONGEST_WORD || value.contains('\0') {
         return Err(format!("its {name} {value:?} cannot be stored: it may have {LONGEST_WORD} bytes, none of them 0").into());
     }
@@ -324,7 +331,7 @@ fn write_copy(file: &File, name: &str, value: &str) -> Result<(), Cause> {
     Ok(file.group(COPIES)?.new_attr_builder().empty_as(&stored).create(name)?.write_scalar(&word)?)
 }
 
-fn number<T: H5Type>(place: &Location, name: &str) -> Result<T, Cause> {
+pub(super) fn number<T: H5Type>(place: &Location, name: &str) -> Result<T, Cause> {
     let read = || place.attr(name)?.read_scalar::<T>();
     read().map_err(|error| bad_attribute(name, &error))
 }
@@ -333,7 +340,7 @@ fn bad_attribute(name: &str, why: &dyn std::fmt::Display) -> Cause {
     format!("its attribute {name:?} cannot be read: {why}").into()
 }
 
-fn finite(place: &Location, name: &str) -> Result<f64, Cause> {
+pub(super) fn finite(place: &Location, name: &str) -> Result<f64, Cause> {
     let value: f64 = number(place, name)?;
     if value.is_finite() { Ok(value) } else { Err(bad_attribute(name, &format!("it is {value}"))) }
 }
@@ -353,7 +360,7 @@ fn word(place: &Location, name: &str) -> Result<String, Cause> {
     String::from_utf8(value.as_bytes().to_vec()).map_err(|error| bad_attribute(name, &error))
 }
 
-fn choice<T: Choice>(place: &Location, name: &str) -> Result<T, Cause> {
+pub(super) fn choice<T: Choice>(place: &Location, name: &str) -> Result<T, Cause> {
     let value = word(place, name)?;
     T::from_word(&value).ok_or_else(|| {
         let allowed: Vec<_> = T::WORDS.iter().map(|(word, _)| *word).collect();

@@ -6,6 +6,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 mod approximate_jkr;
+mod artefacts;
 mod boundary_elements;
 mod coupled;
 mod cycle;

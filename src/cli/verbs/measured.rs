@@ -1,5 +1,6 @@
 //! `import`: a measured surface as the model takes it, and what its spectrum says; and `export` of surfaces to other programs.
 
+mod quality;
 mod range;
 mod text;
 
@@ -9,7 +10,7 @@ use crate::cli::{ExportArguments, ImportArguments};
 use crate::constants::{Constant, Constants};
 use crate::formats::recognize;
 use crate::keys::digest_of_file;
-use crate::model::{Choice, Detrend, Filter, Missing};
+use crate::model::{Choice, Detrend, FastAxis, Filter, Missing};
 use crate::physics::surface::measured::find_measured;
 use crate::physics::surface::summits::Summit;
 use crate::physics::theory::flattening::{measured_flattening, shortest_wavelength};
@@ -45,11 +46,10 @@ pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
         );
         return Err(Fault { code: BAD_SPEC, text });
     }
-    if let Some(pixel_m) = asked.pixel_m.filter(|pixel| !(*pixel > 0.0 && pixel.is_finite())) {
-        return Err(failed(format!(
-            "cannot import {}: --pixel-m is {pixel_m}\nhelp: give a positive number of metres",
-            asked.file.display()
-        )));
+    for (name, length) in [("pixel-m", asked.pixel_m), ("tip-radius", asked.tip_radius)] {
+        if let Some(length) = length.filter(|length| !(*length > 0.0 && length.is_finite())) {
+            return Err(refused(&format!("--{name} is {length}\nhelp: give a positive number of metres")));
+        }
     }
     let Imported { prepared, header, height_factor_m } = measure(&params, &digest, "").map_err(failed)?;
     let out = asked.out.clone().unwrap_or_else(|| named_after(&asked.file));
@@ -93,6 +93,10 @@ fn params(asked: &ImportArguments) -> SurfaceParams {
         missing: if asked.fill { Missing::Fill } else { Missing::Refuse },
         detrend: asked.detrend.as_deref().and_then(Detrend::from_word).unwrap_or(default),
         filter: Filter::from_word(&asked.filter).unwrap_or(Filter::Gaussian),
+        outliers: asked.outliers,
+        align_rows: asked.align_rows,
+        fast_axis: asked.fast_axis.as_deref().and_then(FastAxis::from_word).unwrap_or(FastAxis::Auto),
+        tip_radius_m: asked.tip_radius.unwrap_or_default(),
         points_per_shortest_wavelength: u32::from(asked.points),
         ..SurfaceParams::default()
     }

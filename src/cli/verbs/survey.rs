@@ -8,7 +8,7 @@ use crate::campaign::{Campaign, CycleUnit, REPORT_PAGE, STATISTICS, Stage, Stand
 use crate::cli::{FolderArguments, OutputArguments};
 use crate::engines::slurm::{Queue, Sent};
 use crate::stages::{Outside, foreseen};
-use crate::stats::{Caution, significant};
+use crate::stats::Caution;
 use crate::store::Check;
 use crate::text::{counted, shown, visible, wrapped};
 use serde_json::{Value, json};
@@ -38,7 +38,7 @@ pub(super) fn plan(spec: &Path, output: &OutputArguments) -> Result<u8, Fault> {
         format!("{answer:#}\n")
     } else {
         let reasons = |stage: Stage, units: &[(String, Standing)]| causes(&campaign, stage, units);
-        let warnings: String = outside.iter().map(|of| outside_text(of, campaign.cases.len())).collect();
+        let warnings: String = outside.iter().map(|of| foreseen_text(of, campaign.cases.len())).collect();
         describe(&campaign, &units, reasons)
             + &warnings
             + &remaining(&units, &campaign, |open| format!("`run` would compute {}.\n", counted(open, "task")))
@@ -47,24 +47,16 @@ pub(super) fn plan(spec: &Path, output: &OutputArguments) -> Result<u8, Fault> {
     Ok(0)
 }
 
-/// Cases outside the range of the asperity model, by the target spectrum of the spec.
+/// Cases with a warning.
 fn outside_json(of: &Outside) -> Value {
     json!({ "code": of.kind.code, "min": of.range[0], "max": of.range[1], "limit": of.limit, "cases": of.cases })
 }
 
-/// Status as text of at most 80 columns.
-fn outside_text(of: &Outside, all: usize) -> String {
-    let [low, high] = of.range.map(|value| significant(value, 3));
-    let range = if low == high { low } else { format!("{low} to {high}") };
-    let measured = of.kind.text.replace("{}", &range);
+/// Warning as text of at most 80 columns.
+pub(super) fn foreseen_text(of: &Outside, all: usize) -> String {
     let Caution { code, label, consequence, action, .. } = of.kind;
     let cases = format!("{} of {}", of.cases.len(), counted(all, "case"));
-    let text = format!(
-        "warning[{code}]: {label}: {measured} ({}limit {} {}) for {cases}. {consequence} {action}",
-        if ["coarse", "many_steps"].contains(&code) { "" } else { "target spectrum; " },
-        if code == "many_steps" { "≤" } else { "≥" },
-        of.limit
-    );
+    let text = format!("warning[{code}]: {label}: {} for {cases}. {consequence} {action}", of.measured);
     wrapped(&text, "  ")
 }
 

@@ -1,6 +1,8 @@
 //! Limits of measured surfaces.
 
 use super::measured::{FEWEST_POINTS, MAX_MISSING_FRACTION, MAX_SPACING_RATIO, MOST_POINTS, SPACING_TOLERANCE};
+use super::outliers::{CONTRAST, LARGEST_GROUP, OUTLIER_LIMIT};
+use super::rows::{COMMON, PERIODIC};
 use super::self_affine::{FEWEST, FEWEST_BEYOND, MOST_SCATTER, SHARE};
 use crate::constants::Constant;
 
@@ -22,6 +24,29 @@ pub(in crate::physics) const CONSTANTS: &[Constant] = &[
         "measured",
     ),
     Constant::new("ratio of the pixel sizes", &[MAX_SPACING_RATIO], "", "A larger one is an error.", "measured"),
+    Constant::new(
+        "outlier",
+        &[OUTLIER_LIMIT],
+        "robust standard deviations",
+        "Deviation from the median of the neighbours beyond which a point may be an outlier.",
+        "outliers",
+    ),
+    Constant::new("points of an outlier", &[LARGEST_GROUP as f64], "", "Maximum that are connected at half of its height.", "outliers"),
+    Constant::new(
+        "contrast of an outlier",
+        &[CONTRAST],
+        "",
+        "Minimum, over the difference of the two rings of points around it.",
+        "outliers",
+    ),
+    Constant::new(
+        "common part of line offsets",
+        &[COMMON],
+        "of the variance",
+        "Minimum that all parts of a scan line have in common.",
+        "rows",
+    ),
+    Constant::new("correlation of line offsets", &[PERIODIC], "", "A larger one is that of a periodic surface.", "rows"),
     Constant::new(
         "rings of a spectrum fit",
         &[FEWEST as f64, FEWEST_BEYOND as f64],

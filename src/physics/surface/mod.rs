@@ -1,5 +1,6 @@
 //! Rough surfaces: spectra, synthesis, measured surfaces, and their asperities.
 
+pub mod artefacts;
 pub mod band_limited;
 mod constants;
 pub(crate) mod continuation;
@@ -9,8 +10,10 @@ mod levelling;
 pub mod measured;
 mod measured_summits;
 pub(crate) mod modes;
+pub mod outliers;
 pub mod periodogram;
 pub(crate) mod psd_bin;
+pub mod rows;
 mod s_filter;
 pub mod self_affine;
 mod spectral_band;
@@ -19,5 +22,6 @@ pub mod spectrum;
 pub mod summits;
 pub mod synthesis;
 pub mod texture;
+pub mod tip;
 
 pub(super) use constants::CONSTANTS;

@@ -1,5 +1,7 @@
 //! Scans: what other programs write is read to the bit, and whatever else a file holds, the answer is a sentence.
 
+#[cfg(feature = "stats")]
+mod artefacts;
 mod damage;
 #[cfg(feature = "stats")]
 mod filter;

@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 
 use hdf5_metno::types::{FixedUnicode, IntSize, TypeDescriptor, VarLenArray, VarLenUnicode};
 use hdf5_metno::{File, ObjectReference, ObjectReference1, ReferencedObject};
-use hysteron::model::SpectrumEnd;
-use hysteron::model::{Amplitudes, Detrend, Filter, Normalization};
+use hysteron::model::{Amplitudes, Detrend, FastAxis, Filter, Normalization, SpectrumEnd};
 use hysteron::physics::surface::texture::Texture;
-use hysteron::store::hdf5::{Generated, Measured, SpectrumFit, SurfaceHeader, read_header, read_heights, read_surface, write_surface};
+use hysteron::store::hdf5::{
+    Generated, Measured, Quality, SpectrumFit, SurfaceHeader, read_header, read_heights, read_surface, write_surface,
+};
 use ndarray::{Array2, s};
 use tempfile::{TempDir, tempdir};
 
@@ -87,9 +88,22 @@ fn e2e_a_measured_surface_lacks_what_nobody_knows() {
             short_cut: Some((1e-7, SpectrumEnd::GaussianFilter)),
         }),
         texture: Some(Texture { slope_ratio: 1.2, direction_rad: 0.3, aspect_ratio_str: 0.7, decay_length: 0.04 }),
+        quality: Some(Quality {
+            outlier_count: 3,
+            outlier_left_count: 1,
+            outlier_effect: 0.5,
+            line_axis: FastAxis::Columns,
+            line_offset_m: Some(1e-8),
+            line_jump_m: 0.0,
+            tip_radius_m: None,
+            tip_cutoff_m: None,
+            noise_exponent: Some(-2.5),
+            curvature_ratio: None,
+        }),
     };
     for fit in [about.fit, None] {
         about.fit = fit;
+        about.quality = about.quality.filter(|_| fit.is_some());
         let measured = Some(about.clone());
         let measured = SurfaceHeader { generated: None, measured, periodic: false, realization: 0, key: String::new(), ..header() };
         write_surface(&path, &measured, heights(8).view()).unwrap();

@@ -1,5 +1,6 @@
 //! Statistics of an imported surface as text and as JSON.
 
+use super::quality;
 use super::range::Range;
 use crate::model::{Choice, Detrend, Filter, SpectrumEnd};
 use crate::physics::surface::texture::Texture;
@@ -38,7 +39,7 @@ pub(super) fn answer(of: &Statistics<'_>, rings: &[Value]) -> Value {
             "short_cut_m": fit.short_cut.map(|(wavelength, _)| wavelength), "short_cut_cause": fit.short_cut.map(|(_, cause)| cause.word()),
         })
     });
-    json!({
+    let mut answer = json!({
         "file": written.map(|path| path.display().to_string()),
         "point_count": points,
         "length_m": header.length_m,
@@ -72,16 +73,20 @@ pub(super) fn answer(of: &Statistics<'_>, rings: &[Value]) -> Value {
         "flattening_octave_shortest_wavelength_m": range.shortest_m,
         "least_modulus_over_adhesion_1_m": range.least_1_m(),
         "spectrum": rings,
-    })
+    });
+    quality::numbers(header).into_iter().for_each(|(name, value)| answer[name] = value);
+    answer
 }
 
 /// A line of the text: label and value.
-type Line = (&'static str, String);
+pub(super) type Line = (&'static str, String);
 
 /// The statistics of a surface as text of at most 80 columns.
 pub(super) fn text(of: &Statistics<'_>) -> String {
     let mut text = format!("{}\n", of.file.display());
-    for (label, value) in [source(of), preprocessing(of.header), roughness(of), texture(of.header), self_affinity(of.header)].concat() {
+    let lines =
+        [source(of), quality::lines(of.header), preprocessing(of.header), roughness(of), texture(of.header), self_affinity(of.header)];
+    for (label, value) in lines.concat() {
         text += &format!("  {label:<14}{value}\n");
     }
     text += &wrapped(&format!("  {:<14}{}", "model range", of.range.text()), "                ");
@@ -248,6 +253,7 @@ fn cautions(header: &SurfaceHeader) -> Vec<String> {
             None => cautions.push("fit: too few wavelengths with data for a self-affine fit; use a larger scan".to_owned()),
         }
     }
+    cautions.extend(quality::warnings(header));
     if header.rms_slope > STEEP {
         cautions.push(format!(
             "an rms slope of {:.3} is steeper than 45 degrees; check the units, and values of missing points",

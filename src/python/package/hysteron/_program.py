@@ -162,6 +162,10 @@ def take(
     periodic: bool = False,
     points: int = 8,
     filter: str | None = None,
+    outliers: bool = False,
+    align_rows: bool = False,
+    fast_axis: str | None = None,
+    tip_radius_m: float | None = None,
     force: bool = False,
 ) -> dict[str, Any]:
     """Imports a measured surface, as `hysteron import`, and returns its moments, spectrum and self-affine fit.
@@ -188,6 +192,14 @@ def take(
         S-filter cut-off in pixels.
     filter : str, optional
         S-filter: gaussian (default, ISO 16610-61) or sharp.
+    outliers : bool
+        Replaces isolated outliers by their surroundings.
+    align_rows : bool
+        Removes the offsets of scan lines.
+    fast_axis : str, optional
+        Direction of the scan lines: rows, columns or auto (default).
+    tip_radius_m : float, optional
+        Tip radius [m]; removes wavelengths that such a tip cannot trace.
     force : bool
         Replaces an existing file `out`; without it that is an error.
 
@@ -198,8 +210,10 @@ def take(
     """
     command = [str(find()), "import", "--json", f"--points={points}"]
     command += ["--dry-run"] if out is None else [f"--out={os.fspath(out)}"]
-    command += [f"--{name}={value}" for name, value in (("dataset", dataset), ("pixel-m", pixel_m), ("unit", unit), ("detrend", detrend), ("filter", filter)) if value is not None]
-    command += [f"--{name}" for name, asked in (("fill", fill), ("periodic", periodic), ("force", force)) if asked]
+    values = (("dataset", dataset), ("pixel-m", pixel_m), ("unit", unit), ("detrend", detrend), ("filter", filter), ("fast-axis", fast_axis), ("tip-radius", tip_radius_m))
+    command += [f"--{name}={value}" for name, value in values if value is not None]
+    flags = (("fill", fill), ("periodic", periodic), ("force", force), ("outliers", outliers), ("align-rows", align_rows))
+    command += [f"--{name}" for name, asked in flags if asked]
     with _scan(file) as (path, temporary):
         return _answered([*command, "--", path], {path: "the array"} if temporary else {})
 
