@@ -24,7 +24,7 @@ pub const MOST_RANGE_STEPS: f64 = 20_000.0;
 /// Steps above which `plan` announces their number.
 pub const MANY_RANGE_STEPS: f64 = 2_000.0;
 /// Gap at which Morse's law ends, in ranges.
-const END: f64 = 15.0;
+pub(super) const END: f64 = 15.0;
 /// Automatic range over `sqrt(Δγ dx/E*)`.
 pub(super) const RANGE: f64 = 0.8;
 

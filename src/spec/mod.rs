@@ -73,6 +73,14 @@ pub const CONSTANTS: Constants = Constants {
             "Boundary elements: a smaller one is an error.",
             "elements",
         ),
+        Constant::new("gap at which the attraction ends", &[elements::END], "`ρ`", "Boundary elements with a range `ρ`.", "elements"),
+        Constant::new(
+            "steps over that gap",
+            &[MANY_RANGE_STEPS, elements::MOST_RANGE_STEPS],
+            "",
+            "Boundary elements with a range: `plan` announces more than the first number (`many_steps`), more than the second are an error.",
+            "elements",
+        ),
     ],
 };
 

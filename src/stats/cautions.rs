@@ -307,7 +307,7 @@ pub fn condition(code: &str) -> Option<&'static str> {
 const OF_ASPERITIES: [&str; 8] = ["sticky", "area", "conformed", "covered", "absorption", "touching", "texture", "few_contacts"];
 
 /// Shortest step of boundary elements, of the rms height, above which events are not located.
-const LONGEST_STEP: f64 = 0.05;
+pub const LONGEST_STEP: f64 = 0.05;
 
 /// Step of the case after all its halvings, of the rms height.
 fn shortest_step(case: &CaseInput) -> f64 {

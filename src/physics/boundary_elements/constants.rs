@@ -7,7 +7,7 @@ use super::newton::RATE;
 use super::patch::{PARTS, PLACES};
 use super::places::SMALLEST;
 use super::reversal::{JUMP_ACCURACY, LOAD_ACCURACY, SEARCHED, SHARPER};
-use super::step::{BEND, EVENT, EXCESS, HIDDEN, JUMP_PART, OVERLAP, STEEPEST, WELL_BELOW};
+use super::step::{BEND, EVENT, EXCESS, HALVED, HIDDEN, JUMP_PART, OVERLAP, STEEPEST, WELL_BELOW};
 use super::work::JUMP;
 use crate::constants::Constant;
 
@@ -86,5 +86,12 @@ pub(in crate::physics) const CONSTANTS: &[Constant] = &[
         "range of the heights",
         "Beyond it a load is not reached, or the surfaces do not separate.",
         "cycle",
+    ),
+    Constant::new(
+        "steps that may be halved",
+        &[HALVED as f64],
+        "",
+        "With a range of attraction: after this number of steps of a cycle none is halved.",
+        "step",
     ),
 ];

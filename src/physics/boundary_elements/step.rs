@@ -41,7 +41,7 @@ pub(super) const OVERLAP: f64 = 0.5;
 
 /// Steps of a cycle after which none is halved with attraction of a range. With very weak adhesion no event gives a measure of what a jump of the load may
 /// cost, and every step would be halved as often as allowed.
-const HALVED: usize = 20_000;
+pub(super) const HALVED: usize = 20_000;
 
 /// Settings of a path.
 #[derive(Debug, Clone, PartialEq)]

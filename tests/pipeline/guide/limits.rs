@@ -3,7 +3,7 @@
 use super::blocks::pages;
 use hysteron::cli::constants;
 use hysteron::constants::number;
-use hysteron::stats::{CAUTIONS, LIMITS, Limit};
+use hysteron::stats::{CAUTIONS, LIMITS, LONGEST_STEP, Limit};
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -43,6 +43,12 @@ fn sentences() -> Vec<(&'static str, &'static str, Vec<f64>)> {
         ("glossary.md", "`U_el < {} Δγ` (warning `sticky`) or `A/A0 > {}`", vec![bound("sticky"), bound("area")]),
         ("howto_scan.md", "| texture aspect ratio | below {}? |", vec![bound("texture")]),
         ("validity.md", "| texture aspect ratio above {} |", vec![bound("texture")]),
+        ("boundary_elements.md", "Attraction of a range acts over {} ρ", values("gap at which the attraction ends").to_vec()),
+        ("boundary_elements.md", "announces more than {} steps, and more than {} are refused", values("steps over that gap").to_vec()),
+        ("boundary_elements.md", "After {} steps of a cycle none is halved", values("steps that may be halved").to_vec()),
+        ("boundary_elements.md", "`approach_step/2^halvings` above {}", vec![LONGEST_STEP]),
+        ("boundary_elements.md", "where `loss_uncertainty` exceeds {}", vec![bound("unresolved")]),
+        ("reference_limits.md", "`approach_step`/2^`halvings` > {}", vec![LONGEST_STEP]),
         ("howto_scan.md", "A ratio above {} is an error", values("ratio of the pixel sizes").to_vec()),
         ("howto_scan.md", "if more than {} % of the scan is dropped", vec![percent(values("part outside the central square")[0])]),
         ("howto_scan.md", "must have {} to {} points along a side", values("points along a side").to_vec()),
