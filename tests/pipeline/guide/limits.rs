@@ -49,6 +49,7 @@ fn sentences() -> Vec<(&'static str, &'static str, Vec<f64>)> {
         ("boundary_elements.md", "`approach_step/2^halvings` above {}", vec![LONGEST_STEP]),
         ("boundary_elements.md", "where `loss_uncertainty` exceeds {}", vec![bound("unresolved")]),
         ("reference_limits.md", "`approach_step`/2^`halvings` > {}", vec![LONGEST_STEP]),
+        ("validity.md", "points beyond {} robust standard deviations", values("outlier").to_vec()),
         ("howto_scan.md", "A ratio above {} is an error", values("ratio of the pixel sizes").to_vec()),
         ("howto_scan.md", "if more than {} % of the scan is dropped", vec![percent(values("part outside the central square")[0])]),
         ("howto_scan.md", "must have {} to {} points along a side", values("points along a side").to_vec()),
