@@ -19,6 +19,7 @@ pub mod guide;
 pub mod keys;
 pub mod lengths;
 pub mod model;
+pub mod paths;
 pub mod physics;
 #[cfg(feature = "stats")]
 pub mod report;

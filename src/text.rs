@@ -9,6 +9,18 @@ pub fn counted(count: usize, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }
 
+/// A duration as a person writes it: "5.1 s", "2m 30s", "3h 5m".
+#[must_use]
+pub fn in_words(seconds: f64) -> String {
+    if seconds.is_nan() || seconds < 59.95 {
+        return format!("{:.1} s", seconds.max(0.0));
+    }
+    // Beyond an hour, seconds are no information.
+    let unit = if seconds < 3600.0 { 1.0 } else { 60.0 };
+    let rounded = std::time::Duration::try_from_secs_f64((seconds / unit).round() * unit).unwrap_or(std::time::Duration::MAX);
+    humantime::format_duration(rounded).to_string()
+}
+
 /// Lines of at most so many columns: the first begins with `first`, later ones with `indent`.
 fn filled<'a>(first: &str, indent: &str, words: impl Iterator<Item = &'a str>, columns: usize) -> String {
     let mut lines: Vec<String> = Vec::new();

@@ -129,7 +129,7 @@ fn nearest(here: &Fields, others: impl Iterator<Item = (String, Fields)>) -> (Op
     }
 }
 
-fn differences(here: &Fields, there: &Fields) -> Vec<Difference> {
+pub(super) fn differences(here: &Fields, there: &Fields) -> Vec<Difference> {
     let names: BTreeSet<&(usize, String)> = here.keys().chain(there.keys()).collect();
     let differs = |name: &&&(usize, String)| here.get(**name).map(canonical) != there.get(**name).map(canonical);
     names
@@ -156,7 +156,7 @@ fn apart(here: Option<&Value>, there: Option<&Value>) -> (Option<Value>, Option<
 }
 
 /// The fields of the preimages of a unit, by the stage that reads them first. Keys of other units stand for what those are made of.
-fn fields(preimages: &Map<String, Value>) -> Fields {
+pub(super) fn fields(preimages: &Map<String, Value>) -> Fields {
     let mut all = Fields::new();
     for (place, stage) in Stage::ALL.into_iter().enumerate() {
         let Some(preimage) = preimages.get(stage.word()) else { continue };

@@ -100,7 +100,7 @@ impl Campaign {
             None => F::of(&json!([unit.id, unit.case.sweeps])),
         });
         let cycle = |(unit, standing): (&CycleUnit, &Standing)| {
-            let failure = self.failure_in_tables(standing);
+            let failure = self.failure_in_tables(unit, standing);
             let words = [unit.key.as_str(), state(standing)].into_iter().chain(failure.as_deref());
             F::list(words.map(F::word).collect())
         };
@@ -108,9 +108,9 @@ impl Campaign {
         F::object(vec![("name", F::word(&self.spec.name)), ("cases", F::list(cases.collect())), ("cycles", F::list(cycles.collect()))])
     }
 
-    /// Inputs of the report: the tables, and the spec with all defaults, which it shows.
+    /// Inputs of the report: the tables, and the spec with all defaults as it shows it.
     fn report_inputs<F: Form>(&self, statistics_key: &str) -> F {
-        let spec = blake3::hash(self.spec.to_toml().as_bytes()).to_hex().to_string();
+        let spec = blake3::hash(self.labelled_toml().as_bytes()).to_hex().to_string();
         F::object(vec![("name", F::word(&self.spec.name)), ("spec", F::word(&spec)), ("statistics", F::word(statistics_key))])
     }
 

@@ -1,7 +1,7 @@
-//! Paths of the files of a run, and labels of the files of measured surfaces.
+//! Paths of the files of a run.
 
 use super::{Campaign, CycleUnit, Stage, SurfaceUnit, Unit};
-use std::path::{Component, Path, PathBuf};
+use std::path::PathBuf;
 
 impl Campaign {
     /// `surfaces/<id>.h5`.
@@ -62,18 +62,5 @@ impl Campaign {
     #[must_use]
     pub fn receipts_dir(&self, stage: Stage) -> PathBuf {
         self.dir.join("receipts").join(stage.word())
-    }
-
-    /// Label of the file of a measured surface in tables: its name, with as many of its folders as distinguish it from the other files.
-    #[must_use]
-    pub fn file_label(&self, file: &str) -> String {
-        let last = |of: &str, count: usize| -> PathBuf {
-            let parts: Vec<Component<'_>> = Path::new(of).components().collect();
-            parts[parts.len().saturating_sub(count)..].iter().collect()
-        };
-        let others = || self.spec.files.keys().filter(|other| *other != file);
-        let most = Path::new(file).components().count().max(1);
-        let count = (1..most).find(|count| others().all(|other| last(other, *count) != last(file, *count))).unwrap_or(most);
-        last(file, count).to_string_lossy().into_owned()
     }
 }

@@ -3,6 +3,7 @@
 //! The status of tasks is derived from receipts and files and never stored: see [`Standing`].
 
 mod audit;
+mod changes;
 mod compare;
 mod hashed;
 mod key_inputs;
@@ -11,19 +12,22 @@ mod leftover;
 mod lost;
 pub mod owned;
 mod shard;
+mod sources;
 mod standing;
 
 pub use audit::Audit;
+pub use changes::Reasons;
 pub use compare::{Difference, Explanation};
 pub(crate) use key_inputs::{ASPERITIES_VERSION, ELEMENTS_VERSION};
 pub use leftover::Leftover;
 pub use shard::Shard;
+pub use sources::with_recorded_files;
 pub use standing::{Standing, Survey};
 
 use crate::keys::short;
 use crate::spec::{Case, Spec, SurfaceParams};
 use hashed::Hashed;
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::PathBuf;
 
 /// The stages, in their order.
@@ -122,6 +126,8 @@ pub struct Campaign {
     pub surfaces: Vec<SurfaceUnit>,
     /// Cycles, by case and realisation. Cases that differ only in what stands beside a cycle share it: their units have one key and one id.
     pub cycles: Vec<CycleUnit>,
+    /// Labels of the files of measured surfaces, by their names in the spec.
+    labels: BTreeMap<String, String>,
 }
 
 /// Identity of a task.
@@ -175,7 +181,8 @@ impl Campaign {
     /// The units of a spec with so many realizations of each case.
     #[must_use]
     pub fn with_counts(spec: Spec, dir: PathBuf, counts: Vec<u32>) -> Self {
-        let mut campaign = Self { dir, cases: Vec::new(), surfaces: Vec::new(), cycles: Vec::new(), counts, spec };
+        let labels = sources::labels(&spec);
+        let mut campaign = Self { dir, cases: Vec::new(), surfaces: Vec::new(), cycles: Vec::new(), labels, counts, spec };
         let hashed = Hashed::all(&campaign.spec, &campaign.counts);
         // Of each kind of surface, the places of its realizations.
         let mut places: Vec<Vec<usize>> = vec![Vec::new(); hashed.surfaces.len()];

@@ -26,6 +26,18 @@ impl Shard {
         surface % self.count == self.index
     }
 
+    /// The part `index` of `count`; nothing if there is no such part.
+    #[must_use]
+    pub fn of([index, count]: [usize; 2]) -> Option<Self> {
+        (index < count && count <= MOST).then_some(Self { index, count })
+    }
+
+    /// Number of the part, and number of parts.
+    #[must_use]
+    pub fn parts(self) -> [usize; 2] {
+        [self.index, self.count]
+    }
+
     /// True if it is all of a campaign.
     #[must_use]
     pub fn is_whole(self) -> bool {
@@ -38,9 +50,9 @@ impl FromStr for Shard {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let parts = text.split_once('/').and_then(|(index, count)| Some((index.parse().ok()?, count.parse().ok()?)));
-        match parts {
-            Some((index, count)) if index < count && count <= MOST => Ok(Self { index, count }),
-            _ => Err(format!("expected K/N, two integers with 0 <= K < N <= {MOST}, for example 0/4")),
+        match parts.and_then(|(index, count)| Self::of([index, count])) {
+            Some(shard) => Ok(shard),
+            None => Err(format!("expected K/N, two integers with 0 <= K < N <= {MOST}, for example 0/4")),
         }
     }
 }

@@ -10,6 +10,10 @@ use serde_json::Value;
 pub enum Standing {
     /// Done, with the present key: its receipt is there, and every file that it names.
     Done,
+    /// A living process computes it.
+    Running,
+    /// A living process will compute it.
+    Waiting,
     /// Not done yet.
     Planned,
     /// It has begun, and can go on from where it was kept last.
@@ -26,13 +30,15 @@ pub enum Standing {
 
 impl Standing {
     /// Every word of [`Self::word`], in the order in which they are counted.
-    pub const WORDS: [&'static str; 7] = ["done", "planned", "interrupted", "failed", "stale", "missing", "corrupt"];
+    pub const WORDS: [&'static str; 9] = ["done", "running", "waiting", "planned", "interrupted", "failed", "stale", "missing", "corrupt"];
 
     /// The word in the answers of the program.
     #[must_use]
     pub fn word(&self) -> &'static str {
         match self {
             Self::Done => "done",
+            Self::Running => "running",
+            Self::Waiting => "waiting",
             Self::Planned => "planned",
             Self::Interrupted => "interrupted",
             Self::Failed(_) => "failed",
@@ -123,11 +129,17 @@ impl Campaign {
 
     /// Error message of a failed cycle as tables hold it: the problem without the help, and without paths of the machine.
     #[must_use]
-    pub fn failure_in_tables(&self, standing: &Standing) -> Option<String> {
+    pub fn failure_in_tables(&self, unit: &CycleUnit, standing: &Standing) -> Option<String> {
+        self.failure_texts(unit, standing).map(|[problem, _]| problem)
+    }
+
+    /// Problem and help of a failed cycle without paths of the machine.
+    #[must_use]
+    pub fn failure_texts(&self, unit: &CycleUnit, standing: &Standing) -> Option<[String; 2]> {
         let Standing::Failed(why) = standing else { return None };
-        let problem = why.split_once("\nhelp:").map_or(why.as_str(), |(problem, _)| problem);
-        let inside = problem.replace(&format!("{}{}", self.dir.display(), std::path::MAIN_SEPARATOR), "");
-        Some(self.spec.files.keys().fold(inside, |text, file| text.replace(file.as_str(), &self.file_label(file))))
+        let (problem, help) = why.split_once("\nhelp: ").unwrap_or((why, ""));
+        let inside = |text: &str| text.replace(&format!("{}{}", self.dir.display(), std::path::MAIN_SEPARATOR), "");
+        Some([problem, help].map(|text| self.with_label(&inside(text), &self.surfaces[unit.surface].params.file)))
     }
 
     /// Loads `F_max/(E* A0)` of a finished cycle that have no result, with their errors.

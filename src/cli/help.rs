@@ -22,7 +22,7 @@ Exit codes: 0 done, 1 failed, 2 invalid spec or arguments,
 --set takes TOML values; quotes around a word may be omitted. Values that a
 [[sweep]] of the spec sets override those of --set. A relative path in
 surface.file is looked for in the working directory, then in the folder of the
-spec.
+spec; in campaign.toml of a run it starts at the folder of campaign.toml.
 
 Environment:
   NO_COLOR                    if set, output is not coloured

@@ -3,7 +3,7 @@
 use super::progress::Teller;
 use crate::stages::Watch as _;
 use crate::store::{commit, hdf5};
-use crate::text::shell_path;
+use crate::text::{counted, shell_path};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
 use signal_hook::iterator::Signals;
 use signal_hook::low_level;
@@ -36,15 +36,12 @@ pub(super) fn expect(teller: Arc<Teller>, dir: &Path) -> std::io::Result<()> {
     }
     signal_hook::flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false)))?;
     let mut signals = Signals::new(waited)?;
-    let notice = format!(
-        "interrupted: finished tasks are kept; running tasks continue from their last checkpoint, or restart\nhelp: {}",
-        next_step(dir)
-    );
+    let dir = dir.to_owned();
     let wait = move || {
         if signals.forever().next().is_none() {
             return;
         }
-        let ending = std::thread::Builder::new().name("ending".to_owned()).spawn(move || end(&teller, &notice));
+        let ending = std::thread::Builder::new().name("ending".to_owned()).spawn(move || end(&teller, &dir));
         let since = Instant::now();
         while ending.is_ok() && since.elapsed() < PATIENCE && signals.pending().next().is_none() {
             std::thread::sleep(EVERY);
@@ -53,6 +50,19 @@ pub(super) fn expect(teller: Arc<Teller>, dir: &Path) -> std::io::Result<()> {
         low_level::exit(INTERRUPTED);
     };
     std::thread::Builder::new().name("signals".to_owned()).spawn(wait).map(drop)
+}
+
+/// What becomes of running cycles with and without a checkpoint.
+fn running([with, without]: [usize; 2]) -> String {
+    let tasks =
+        |count: usize, [one, many]: [&str; 2]| format!("{} {}", counted(count, "running task"), if count == 1 { one } else { many });
+    let going_on = ["continues from its last checkpoint", "continue from their last checkpoints"];
+    match (with, without) {
+        (0, 0) => String::new(),
+        (0, without) => format!(", {} without a checkpoint", tasks(without, ["restarts", "restart"])),
+        (with, 0) => format!(", {}", tasks(with, going_on)),
+        (with, without) => format!(", {}, {} without a checkpoint", tasks(with, going_on), tasks(without, ["restarts", "restart"])),
+    }
 }
 
 /// Recommended action after an interrupt.
@@ -65,11 +75,11 @@ fn next_step(dir: &Path) -> String {
 }
 
 /// Ends the program as soon as no file is being read or written.
-fn end(teller: &Teller, notice: &str) {
+fn end(teller: &Teller, dir: &Path) {
     teller.clear();
-    teller.notice(notice);
+    teller.notice(&format!("interrupted: finished tasks are kept{}\nhelp: {}", running(teller.checkpointed(dir)), next_step(dir)));
     let _still = commit::quiet();
-    teller.remove_page();
+    teller.remove_temporary();
     hdf5::alone(|| std::process::exit(INTERRUPTED));
 }
 

@@ -4,11 +4,12 @@ use super::arguments::TalkArguments;
 use super::colour::painted;
 use crate::campaign::Stage;
 use crate::stages::Watch;
-use crate::text::{counted, printable, shown};
+use crate::store::heartbeat;
+use crate::text::{counted, in_words, printable, shown};
 use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Parts of a task that a bar shows.
@@ -38,8 +39,10 @@ pub(super) struct Teller {
     every: Duration,
     began: Instant,
     now: Mutex<Option<Now>>,
-    /// Page of progress of this run.
-    page: Mutex<Option<PathBuf>>,
+    /// Files that are removed at the end.
+    temporary: Mutex<Vec<PathBuf>>,
+    /// Cycles that are running.
+    running: Mutex<Vec<String>>,
 }
 
 impl Teller {
@@ -52,7 +55,8 @@ impl Teller {
             every,
             began: Instant::now(),
             now: Mutex::new(None),
-            page: Mutex::new(None),
+            temporary: Mutex::new(Vec::new()),
+            running: Mutex::new(Vec::new()),
         }
     }
 
@@ -62,8 +66,7 @@ impl Teller {
     }
 
     fn with(&self, act: impl FnOnce(&mut Now)) {
-        // A thread that panicked while holding the lock left nothing half done that matters here.
-        let mut now = self.now.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let mut now = locked(&self.now);
         if let Some(now) = now.as_mut() {
             act(now);
         }
@@ -74,12 +77,16 @@ impl Teller {
         self.with(|now| now.bar.finish_and_clear());
     }
 
-    /// Removes the page of progress, where the run ends without its destructors.
-    pub(super) fn remove_page(&self) {
-        let page = self.page.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        if let Some(path) = page.as_deref() {
-            let _ = std::fs::remove_file(path);
-        }
+    /// Removes the page of progress and the heartbeat, where the run ends without its destructors.
+    pub(super) fn remove_temporary(&self) {
+        locked(&self.temporary).iter().for_each(|path| heartbeat::remove(path));
+    }
+
+    /// Numbers of running cycles with and without a checkpoint in an output folder.
+    pub(super) fn checkpointed(&self, dir: &Path) -> [usize; 2] {
+        let running = locked(&self.running);
+        let with = running.iter().filter(|id| dir.join("cycles").join(id).join("halfway.bin").is_file()).count();
+        [with, running.len() - with]
     }
 
     /// True if there are lines for tasks and progress: always with --verbose; otherwise where there is no bar, unless --quiet.
@@ -100,12 +107,14 @@ impl Teller {
     }
 }
 
-/// A duration as a person writes it: "5.1 s", "2m 30s".
+/// A lock; a thread that panicked while holding it left nothing half done that matters here.
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A duration as a person writes it.
 pub(super) fn duration(time: Duration) -> String {
-    if time < Duration::from_secs(60) {
-        return format!("{:.1} s", time.as_secs_f64());
-    }
-    humantime::format_duration(Duration::from_secs(time.as_secs())).to_string()
+    in_words(time.as_secs_f64())
 }
 
 /// The time left, which is unknown before the first progress.
@@ -137,7 +146,7 @@ impl Watch for Teller {
         if self.has_lines() {
             self.above(&mut now, &format!("{}: {}, {done} done before", stage.word(), counted(all, "task")));
         }
-        *self.now.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(now);
+        *locked(&self.now) = Some(now);
     }
 
     fn progress(&self, stage: Stage, part: f64) {
@@ -154,6 +163,7 @@ impl Watch for Teller {
     }
 
     fn finished(&self, stage: Stage, id: &str) {
+        locked(&self.running).retain(|running| running != id);
         self.with(|now| {
             now.units += 1;
             let rate = (now.units as f64) / now.bar.elapsed().as_secs_f64().max(1e-3);
@@ -166,7 +176,7 @@ impl Watch for Teller {
     }
 
     fn notice(&self, text: &str) {
-        let held = self.now.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let held = locked(&self.now);
         match held.as_ref() {
             Some(now) if self.terminal && !now.bar.is_finished() => now.bar.suspend(|| self.line(text)),
             _ => self.line(text),
@@ -174,10 +184,24 @@ impl Watch for Teller {
     }
 
     fn page(&self, path: &Path) {
-        *self.page.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(path.to_path_buf());
+        self.temporary(path);
         if !self.talk.quiet {
             self.notice(&format!("progress page: {}", shown(path)));
         }
+    }
+
+    fn temporary(&self, path: &Path) {
+        locked(&self.temporary).push(path.to_owned());
+    }
+
+    fn started(&self, stage: Stage, id: &str) {
+        if stage == Stage::Cycle {
+            locked(&self.running).push(id.to_owned());
+        }
+    }
+
+    fn failed(&self, _stage: Stage, id: &str) {
+        locked(&self.running).retain(|running| running != id);
     }
 
     fn end(&self, _stage: Stage) {

@@ -1,35 +1,37 @@
 //! Snakemake: a Snakefile with one rule for each stage, whose jobs are shards. Its executors reach the schedulers that this program does not.
 
 use crate::campaign::Campaign;
+use serde_json::json;
 use std::path::Path;
 
-/// The Snakefile. What is done is told by empty files below `snakemake/`, and by the program itself, which skips what is done whatever Snakemake thinks.
+/// The rules. Their outputs are empty files; the spec and the lists of pending tasks are their inputs.
+const RULES: &str = include_str!("snakefile.smk");
+
+/// Origin of a campaign, from which every job reads its spec.
+#[derive(Debug, Clone, Copy)]
+pub struct Origin<'a> {
+    /// The spec.
+    pub spec: &'a Path,
+    /// Settings (`--set`) that replace values of the spec.
+    pub settings: &'a [String],
+    /// Working directory in which the spec was read: relative names in it may start there.
+    pub folder: &'a Path,
+}
+
+/// The Snakefile.
 #[must_use]
-pub fn snakefile(campaign: &Campaign, program: &Path, shards: usize) -> String {
-    let python = |path: &Path| serde_json::Value::from(path.display().to_string()).to_string();
-    let (name, dir, program) = (&campaign.spec.name, python(&campaign.dir), python(program));
-    let mut text = format!(
-        "# The campaign {name} in {shards} shards. `hysteron export snakemake` wrote this file.\n\
-         HYSTERON = {program}\nDIR = {dir}\nSHARDS = {shards}\n\n\
-         rule all:\n    input: f\"{{DIR}}/snakemake/report.done\"\n"
-    );
-    let mut before = "f\"{DIR}/campaign.toml\"".to_owned();
-    for stage in ["generate", "extract", "cycle"] {
-        text.push_str(&format!(
-            "\nrule {stage}:\n    input: {before}\n    output: touch(f\"{{DIR}}/snakemake/{stage}-{{{{shard}}}}.done\")\n    \
-             params: program=HYSTERON, dir=DIR, shards=SHARDS\n    \
-             shell: \"{{params.program:q}} {stage} {{params.dir:q}}/campaign.toml --out {{params.dir:q}} --jobs {{threads}} \"\n           \
-             \"--shard {{wildcards.shard}}/{{params.shards}}{}\"\n",
-            // A failed case is recorded and counted; the others go on.
-            if stage == "cycle" { " || [ $? -eq 3 ]" } else { "" }
-        ));
-        before = format!("f\"{{DIR}}/snakemake/{stage}-{{{{shard}}}}.done\"");
-    }
-    text.push_str(
-        "\nrule report:\n    input: expand(f\"{DIR}/snakemake/cycle-{{shard}}.done\", shard=range(SHARDS))\n    \
-         output: touch(f\"{DIR}/snakemake/report.done\")\n    params: program=HYSTERON, dir=DIR\n    \
-         shell: \"{params.program:q} aggregate {params.dir:q}/campaign.toml --out {params.dir:q} && \"\n           \
-         \"{params.program:q} report {params.dir:q}/campaign.toml --out {params.dir:q}\"\n",
-    );
-    text
+pub fn snakefile(campaign: &Campaign, origin: &Origin<'_>, program: &Path, shards: usize) -> String {
+    // A JSON string is one of Python too.
+    let python = |path: &Path| json!(path.display().to_string()).to_string();
+    let settings: Vec<String> = origin.settings.iter().map(|setting| format!("--set={setting}")).collect();
+    format!(
+        "# The campaign {} in {shards} shards. `hysteron export snakemake` wrote this file, for Snakemake 8 and later.\n\
+         HYSTERON = {}\nSPEC = {}\nSETTINGS = {}\nFOLDER = {}\nDIR = {}\nSHARDS = {shards}\n{RULES}",
+        campaign.spec.name,
+        python(program),
+        python(origin.spec),
+        json!(settings),
+        python(origin.folder),
+        python(&campaign.dir),
+    )
 }

@@ -37,10 +37,16 @@ pub struct Panel {
 /// finished realizations has no curve and no point. Error bars and bands are one standard deviation; those of quantities that cannot be negative end at 0. Results of
 /// fewer than five surfaces have crosses at the single surfaces instead of bars.
 ///
+/// A sweep without a finished realization has no panels.
+///
 /// # Errors
 /// If no case belongs to the sweep, or a table lacks a column.
 pub fn panels(tables: &Tables<'_>, sweep: &str) -> Result<Vec<Panel>, FigureError> {
     let found = Sweep::find(tables.cases, sweep)?;
+    let done = tables.cases.i64("done_count")?;
+    if found.members.iter().all(|member| done.get(member.row).is_none_or(|count| *count == 0)) {
+        return Ok(Vec::new());
+    }
     let stem: String = if sweep.is_empty() { "run" } else { sweep }
         .chars()
         .map(|letter| if letter.is_ascii_alphanumeric() || letter == '-' { letter } else { '_' })

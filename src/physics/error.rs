@@ -105,7 +105,7 @@ pub enum PhysicsError {
     },
     /// The contacts have a larger area than the nominal one, or one of them spans the square.
     #[error(
-        "the contact area {share:.3} A0 leaves no gap at the mean penetration {approach_m:e} m: the contacts have grown together, and the asperity \
+        "the contact area {share:.3} A0 leaves no gap at the mean penetration {approach_m:.3e} m: the contacts have grown together, and the asperity \
          model is invalid\nhelp: {}",
         excess_help(*load_before_n)
     )]

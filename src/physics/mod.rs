@@ -8,6 +8,7 @@ pub mod cycle;
 mod error;
 pub mod half_space;
 pub mod jkr;
+mod loop_position;
 mod math;
 pub mod memory;
 pub mod path;
@@ -17,6 +18,7 @@ pub mod theory;
 
 use crate::constants::Constants;
 pub use error::{PhysicsError, Reason};
+pub use loop_position::LoopPosition;
 
 /// Tolerances and limits of the physics, by module.
 pub const CONSTANTS: [Constants; 9] = [

@@ -12,7 +12,7 @@ const PYTHON: &str = r#"import polars as pl          # or pandas: pd.read_parque
 cases = pl.read_parquet("statistics/cases.parquet")
 print(cases.select("case_id", "max_load", "loss_mean", "loss_ci95_low", "loss_ci95_high"))
 # All events with the parameters of their cycle. Cases that share a cycle have one row each in the table cycles: keep one of them.
-cycles = pl.scan_parquet("statistics/cycles.parquet").drop("case_id", "realization").unique("cycle_id")
+cycles = pl.scan_parquet("statistics/cycles.parquet").drop("case_id", "realization", "method").unique("cycle_id")
 events = pl.scan_parquet("cycles/*/events.parquet").join(cycles, on="cycle_id").collect()"#;
 
 const R: &str = r#"cases <- read.csv("csv/cases.csv")
@@ -64,7 +64,7 @@ pub(super) fn methods(cases: &Frame, study: &Study<'_>) -> Result<Markup, StatsE
             if low == high { texts[..1].concat() } else { texts.join(" to ") }
         }))
     };
-    let mut text = String::new();
+    let mut text = unfinished(cases)?;
     if let (Some(zeta), Some(hurst)) = (range("magnification")?, range("hurst")?) {
         text += &format!(
             "Self-affine rough surfaces with Hurst exponent H = {hurst} and magnification ζ = {zeta} were generated from their power spectrum \
@@ -94,11 +94,26 @@ pub(super) fn methods(cases: &Frame, study: &Study<'_>) -> Result<Markup, StatsE
         text += &range(column)?.map_or_else(String::new, |range| format!("{words}{range}, "));
     }
     text += &format!("the maximum load F_max/(E*A₀) = {}. ", range("max_load")?.unwrap_or_default());
-    text += "The dissipated energy Θ is the area of the force–penetration loop. Values are means over surfaces with 95 % confidence intervals (Student).";
+    text += "The dissipated energy Θ is the area of the force–penetration loop. ";
+    // Of one surface there is neither a mean nor an interval.
+    text += if cases.i64("done_count")?.iter().any(|count| *count > 1) {
+        "Values are means over surfaces with 95 % confidence intervals (Student)."
+    } else {
+        "Values are those of one surface."
+    };
     Ok(html! { (heading("Methods paragraph")) pre.text.copy { (text) } "\n" })
 }
 
-/// Data access and citation.
+/// A sentence on planned cycles without a result; empty if all have one.
+fn unfinished(cases: &Frame) -> Result<String, StatsError> {
+    let (ids, done, planned) = (cases.text("case_id")?, cases.i64("done_count")?, cases.i64("planned_count")?);
+    let firsts: Vec<usize> = (0..ids.len()).filter(|row| ids.iter().position(|id| id == &ids[*row]) == Some(*row)).collect();
+    let sum = |counts: &[i64]| firsts.iter().map(|row| counts[*row]).sum::<i64>();
+    let (done, planned) = (sum(&done), sum(&planned));
+    Ok(if done < planned { format!("Results exist for {done} of {planned} planned cycles. ") } else { String::new() })
+}
+
+/// Data access.
 pub(super) fn usage() -> Markup {
     html! {
         (heading("Data"))
@@ -106,6 +121,12 @@ pub(super) fn usage() -> Markup {
         (line(&html! { pre.copy { (PYTHON) } }))
         (line(&html! { p { (prose("In R, after `hysteron export csv .`:")) } }))
         (line(&html! { pre { (R) } }))
+    }
+}
+
+/// Citation and files.
+pub(super) fn citation() -> Markup {
+    html! {
         (heading("Citation"))
         (line(&html! { p { "Computed with hysteron " (env!("CARGO_PKG_VERSION")) " (MIT OR Apache-2.0). " (prose(CITATION)) } }))
         (line(&html! { pre.copy { (BIBTEX.replace("VERSION", env!("CARGO_PKG_VERSION"))) } }))

@@ -1,6 +1,7 @@
 //! Head of the report: parameters, model validity and contents.
 
 use super::layout::{plain, prose};
+use crate::model::{Choice as _, Method};
 use crate::schema::{Parameter, parameters_by_rank};
 use crate::stats::{LIMITS, StatsError, Values, Varying, expected_ratios, significant, warnings};
 use crate::store::{ColumnData, Frame};
@@ -66,11 +67,17 @@ fn listed(texts: Vec<String>) -> String {
 /// Verdict on model validity with the two deciding numbers.
 pub(super) fn banner(cases: &Frame) -> Result<Markup, StatsError> {
     let found = warnings(cases)?;
-    let all = cases.row_count();
+    let (methods, done) = (cases.text("method")?, cases.i64("done_count")?);
+    // Rows without a result are neither inside nor outside, and the range is that of the asperity model.
+    let judged: Vec<usize> = (0..cases.row_count()).filter(|row| done[*row] > 0 && methods[*row] == Method::Asperities.word()).collect();
+    let all = judged.len();
     let mut outside: Vec<usize> = found.iter().filter(|of| OF_RANGE.contains(&of.kind.code)).flat_map(|of| of.rows.clone()).collect();
+    outside.retain(|row| judged.contains(row));
     outside.sort_unstable();
     outside.dedup();
     let (colour, verdict) = match (outside.len(), found.is_empty()) {
+        (0, true) if all == 0 => ("green", "No warnings.".to_owned()),
+        (0, false) if all == 0 => ("amber", "With warnings.".to_owned()),
         (0, true) => ("green", "No warnings: all rows are inside the validated range.".to_owned()),
         (0, false) => ("amber", "Inside the validated range, with warnings.".to_owned()),
         (count, _) if count == all => ("red", "All rows are outside the validated range of the asperity model.".to_owned()),
@@ -78,12 +85,12 @@ pub(super) fn banner(cases: &Frame) -> Result<Markup, StatsError> {
     };
     let mut numbers = Vec::new();
     for code in DECIDING {
-        numbers.extend(deciding(cases, code)?);
+        numbers.extend(deciding(cases, &judged, code)?);
     }
     let labels: Vec<&str> = found.iter().map(|of| of.kind.label).collect();
     Ok(html! {
         div class={ "banner " (colour) } role="note" {
-            p { b { (verdict) } " " (plain(&numbers.join("; "))) @if !numbers.is_empty() { "." } }
+            p { b { @if done.contains(&0) { "Finished rows: " } (verdict) } " " (plain(&numbers.join("; "))) @if !numbers.is_empty() { "." } }
             @if !labels.is_empty() { p { "Warnings: " (labels.join(", ")) ". " a href="#model-validity" { "Model validity" } } }
             @if let Some(ratios) = expected_ratios(cases)? { p { (plain(&ratios)) } }
         }
@@ -91,10 +98,11 @@ pub(super) fn banner(cases: &Frame) -> Result<Markup, StatsError> {
     })
 }
 
-/// The range of the number that a warning compares with its limit, over all rows.
-fn deciding(cases: &Frame, code: &str) -> Result<Option<String>, StatsError> {
+/// The range of the number that a warning compares with its limit, over these rows.
+fn deciding(cases: &Frame, rows: &[usize], code: &str) -> Result<Option<String>, StatsError> {
     let Some(limit) = LIMITS.iter().find(|limit| limit.caution == code) else { return Ok(None) };
-    let values: Vec<f64> = cases.f64_or_null(limit.column)?.iter().flatten().copied().collect();
+    let column = cases.f64_or_null(limit.column)?;
+    let values: Vec<f64> = rows.iter().filter_map(|row| column[*row]).collect();
     let [low, high] = [f64::min, f64::max].map(|pick: fn(f64, f64) -> f64| values.iter().copied().reduce(pick));
     let Some((low, high)) = low.zip(high) else { return Ok(None) };
     let number = |value: f64| if limit.at_least { significant(value, 3) } else { significant(100.0 * value, 2) };

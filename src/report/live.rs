@@ -2,8 +2,9 @@
 
 use super::layout::{plain, styled};
 use crate::stats::significant;
-use crate::text::counted;
-use maud::{Markup, html};
+use crate::store::heartbeat::RunningTask;
+use crate::text::{counted, in_words};
+use maud::{Markup, PreEscaped, html};
 
 /// Seconds between two loads of the page.
 const RELOAD_SECONDS: u32 = 5;
@@ -11,6 +12,9 @@ const RELOAD_SECONDS: u32 = 5;
 const MOST_LOOPS: usize = 24;
 /// Width and height of a loop \[pixels\].
 const SIZE: (f64, f64) = (180.0, 130.0);
+
+/// Time without an update after which the process has ended \[s\].
+const SILENT_SECONDS: u32 = 30;
 
 /// A stage of a run in progress.
 #[derive(Debug, Clone, Default)]
@@ -23,8 +27,14 @@ pub struct LiveStage {
     pub all: usize,
     /// Work that is done, in tasks; parts of running tasks count.
     pub work: f64,
-    /// Tasks that are running.
-    pub running: Vec<String>,
+}
+
+impl LiveStage {
+    /// Finished fraction of the work.
+    #[must_use]
+    pub fn fraction(&self) -> f64 {
+        if self.all == 0 { 1.0 } else { (self.work / self.all as f64).clamp(0.0, 1.0) }
+    }
 }
 
 /// The loop of a finished cycle.
@@ -41,29 +51,51 @@ pub struct LiveLoop {
 pub struct LiveRun {
     /// Name of the run.
     pub name: String,
-    /// Time of this version of the page.
+    /// Output folder as a word of a shell.
+    pub dir: String,
+    /// Time of this version of the page, as in `2026-01-31T12:00:00Z`.
     pub updated: String,
+    /// Time since the start \[s\].
+    pub elapsed_s: f64,
+    /// Estimated time to the end of the stage \[s\].
+    pub left_s: Option<f64>,
     /// Stages that have begun.
     pub stages: Vec<LiveStage>,
+    /// Running tasks, each with its parameters.
+    pub running: Vec<(RunningTask, String)>,
     /// Warnings and failures.
     pub notices: Vec<String>,
     /// Loops of the finished cycles, in the order in which they ended.
     pub loops: Vec<LiveLoop>,
 }
 
-/// The page as HTML.
+/// The page as HTML. Its script compares the time of the last update with the clock, and the text without the script states the same rule.
 #[must_use]
 pub fn live_page(run: &LiveRun) -> String {
+    let shown = run.updated.replace('T', " ").replace('Z', " UTC");
     let body = html! {
-        h1 { (run.name) ": in progress" } "\n"
-        p { "This page reloads itself every " (RELOAD_SECONDS) " s. At the end of the run, " a href="report.html" { "report.html" } " has the results. Last update: " (run.updated) "." } "\n"
+        h1 { (run.name) ": " span #state { "state at " (shown) } } "\n"
+        div #ended .banner.red hidden role="alert" {
+            p { b { "Interrupted." } " The process that computed this run has ended without finishing; the state below is its last one. Resume with " code { "hysteron run " (run.dir) } "." }
+        }
+        "\n"
+        p {
+            "A running process rewrites this page every 2 s, and the page reloads itself every " (RELOAD_SECONDS) " s. "
+            "Without an update for " (SILENT_SECONDS) " s, the process has ended: " code { "hysteron status " (run.dir) } " shows the state. "
+            "At the end of the run, " a href="report.html" { "report.html" } " has the results. Last update: "
+            time #updated datetime=(run.updated) { (shown) } ", " (in_words(run.elapsed_s)) " after the start"
+            @if let Some(left) = run.left_s { ", about " (in_words(left)) " before the end of the stage" }
+            "."
+        }
+        "\n"
         div.scroll role="region" aria-label="Table of stages" tabindex="0" { table {
-            tr { th { "stage" } th { "finished" } th { "work" } th { "running" } }
+            tr { th { "stage" } th { "finished" } th { "work" } }
             @for stage in &run.stages {
-                tr { td { (stage.name) } td { (stage.done) " of " (counted(stage.all, "task")) } td { (percent(stage)) } td { (stage.running.join(", ")) } }
+                tr { td { (stage.name) } td { (stage.done) " of " (counted(stage.all, "task")) } td { (percent(stage.fraction())) } }
             }
         } }
         "\n"
+        @if !run.running.is_empty() { (tasks(&run.running)) }
         @if !run.notices.is_empty() {
             h2 { "Failures and notices" } "\n"
             ul { @for notice in &run.notices { li { pre.text { (notice) } } } } "\n"
@@ -73,14 +105,37 @@ pub fn live_page(run: &LiveRun) -> String {
             p { (plain("Normal force F/(E*A₀) against mean penetration Δ/h_rms; loading dashed, unloading solid.")) } "\n"
             ul.loops { @for of in run.loops.iter().rev().take(MOST_LOOPS) { li { (drawn(of)) } } } "\n"
         }
+        script { (PreEscaped(format!("const SILENT_MS = {SILENT_SECONDS}e3;\n{}", include_str!("live.js")))) } "\n"
     };
-    styled((&format!("{}: in progress", run.name), Some(RELOAD_SECONDS)), &body)
+    styled((&format!("{}: state of the run", run.name), Some(RELOAD_SECONDS)), &body)
 }
 
-/// Part of the work of a stage that is done.
-fn percent(stage: &LiveStage) -> String {
-    let part = if stage.all == 0 { 1.0 } else { stage.work / stage.all as f64 };
-    format!("{:.0}\u{a0}%", 100.0 * part.clamp(0.0, 1.0))
+/// A table of the running tasks.
+fn tasks(running: &[(RunningTask, String)]) -> Markup {
+    let number = |value: f64| significant(value, 3).replace('-', "−");
+    html! {
+        h2 { "Running tasks" } "\n"
+        div.scroll role="region" aria-label="Table of running tasks" tabindex="0" { table {
+            tr { th { "task" } th { "branch" } th { "steps" } th { (plain("F/(E*A₀) (maximum)")) } th { "work" } th { "time" } th { "time left" } }
+            @for (task, parameters) in running {
+                tr {
+                    td { (task.id) @if !parameters.is_empty() { small { (plain(parameters)) } } }
+                    td { (task.branch.as_deref().unwrap_or("–")) }
+                    td { @if let Some(steps) = task.step_count { (steps) } @else { "–" } }
+                    td { @if let Some(load) = task.load { (number(load)) } @else { "–" } @if let Some(most) = task.max_load { " (" (number(most)) ")" } }
+                    td { (percent(task.fraction)) }
+                    td { (in_words(task.elapsed_s)) }
+                    td { @if let Some(left) = task.left_s { (in_words(left)) } @else { "–" } }
+                }
+            }
+        } }
+        "\n"
+    }
+}
+
+/// A fraction as a percentage.
+fn percent(fraction: f64) -> String {
+    format!("{:.0}\u{a0}%", 100.0 * fraction.clamp(0.0, 1.0))
 }
 
 /// A loop as a small drawing, with a line at zero load.

@@ -5,6 +5,7 @@
 mod cases;
 mod comparison;
 mod data;
+mod failures;
 mod header;
 mod layout;
 mod live;
@@ -17,6 +18,7 @@ mod theories;
 mod validity;
 
 pub use comparison::{Compared, comparison_page};
+pub use failures::Failure;
 pub use live::{LiveLoop, LiveRun, LiveStage, live_page};
 pub use methods::MethodFigures;
 pub use single_cycle::SingleCycle;
@@ -44,6 +46,10 @@ pub struct Report<'a> {
     pub seed: u64,
     /// Number of realizations in words.
     pub realizations_text: &'a str,
+    /// Failed cycles by reason.
+    pub failures: &'a [Failure],
+    /// Number of planned cycles.
+    pub cycle_count: usize,
     /// Table `cases`.
     pub cases: &'a Frame,
     /// Table `realizations`.
@@ -83,20 +89,25 @@ pub fn page(report: &Report<'_>) -> Result<String, StatsError> {
         seed: report.seed,
         is_measured: !report.scans.is_empty(),
     };
+    // Without a finished cycle there is nothing to show but the plan.
+    let has_results = report.cases.i64("done_count")?.iter().any(|count| *count > 0);
     let body = html! {
         (results::results(&cases)?)
         (results::changes(&cases)?)
         @if let Some(chart) = report.sensitivity { (heading("Sensitivity")) (layout::figure(&numbers, chart)) }
         (methods::side_by_side(&cases, report.methods, report.method_figures, &numbers)?)
         (scans::scans(report.scans))
-        @for sweep in report.sweeps { (figures(report, sweep, &numbers)) }
-        @if let Some(cycle) = report.cycle { (single_cycle::section(&numbers, cycle)) }
-        @if let Some(data) = report.explorer { (explorer(data)) }
-        (theories::theories(&cases)?)
-        (validity::budget(&cases)?)
-        (validity::validity(&cases)?)
-        (data::methods(report.cases, &study)?)
-        (data::usage())
+        @if has_results {
+            @for sweep in report.sweeps { (figures(report, sweep, &numbers)) }
+            @if let Some(cycle) = report.cycle { (single_cycle::section(&numbers, cycle)) }
+            @if let Some(data) = report.explorer { (explorer(data)) }
+            (theories::theories(&cases)?)
+            (validity::budget(&cases)?)
+            (validity::validity(&cases)?)
+            (data::methods(report.cases, &study)?)
+            (data::usage())
+        }
+        (data::citation())
         (heading("Spec with all defaults"))
         details { summary { "TOML" } pre { (report.spec) } } "\n"
     };
@@ -105,7 +116,12 @@ pub fn page(report: &Report<'_>) -> Result<String, StatsError> {
         header {
             h1 { (report.name) } "\n"
             p { (introduction(report)) } "\n"
-            (header::banner(report.cases)?)
+            (failures::failures(report.failures, report.cycle_count))
+            @if has_results {
+                (header::banner(report.cases)?)
+            } @else if report.failures.is_empty() {
+                div.banner.amber role="note" { p { b { "No results: no surface finished." } " `hysteron run` computes the pending cycles." } } "\n"
+            }
             (header::facts(report.cases, report.seed, report.realizations_text)?)
             (header::contents(&body))
         }
@@ -138,7 +154,11 @@ fn figures(report: &Report<'_>, sweep: &str, numbers: &Numbers<'_>) -> Markup {
     html! {
         // A run without sweeps has the cases of its base.
         (heading(&if matches!(sweep, "" | "base") { "Figures".to_owned() } else { format!("Sweep {sweep}") }))
-        section { (legend(panels.first().map_or(&[], |panel| &panel.cases))) (grid(numbers, panels)) } "\n"
+        @if panels.is_empty() {
+            p { "No cycle of this sweep has finished." } "\n"
+        } @else {
+            section { (legend(panels.first().map_or(&[], |panel| &panel.cases))) (grid(numbers, panels)) } "\n"
+        }
     }
 }
 

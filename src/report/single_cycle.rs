@@ -11,6 +11,8 @@ pub struct SingleCycle {
     pub id: String,
     /// Number of its surface.
     pub realization: u32,
+    /// The case among others, as in "The case with the largest mean".
+    pub choice: String,
     /// Parameters of the case, with the load reversal.
     pub parameters: String,
     /// Panels.
@@ -24,7 +26,7 @@ pub(super) fn section(numbers: &Numbers<'_>, cycle: &SingleCycle) -> Markup {
     html! {
         (heading("Single cycle"))
         p {
-            (prose("The case with the largest mean Θ/(E*A_{0}h_{rms}): ")) (plain(&cycle.parameters)) ". Cycle " (cycle.id) ", realization " (cycle.realization)
+            (prose(&cycle.choice)) ": " (plain(&cycle.parameters)) ". Cycle " (cycle.id) ", realization " (cycle.realization)
             (prose(". The table `events` of the cycle holds all events, the table `contacts` the contact spots."))
         }
         "\n"

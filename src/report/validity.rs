@@ -3,6 +3,7 @@
 use super::cases::{Cases, LOAD, name_heads};
 use super::layout::{heading, plain, prose, wide};
 use super::numbers::{Shown, scaled, shown, with_aside};
+use crate::model::{Choice as _, Method};
 use crate::schema::EVENT_KINDS;
 use crate::stats::{LIMITS, Limit, Listed, StatsError, Warning, warnings};
 use maud::{Markup, html};
@@ -82,8 +83,13 @@ fn kind_name(kind: &str) -> &str {
     }
 }
 
-const VALIDITY_NOTE: &str = "An asperity model is outside its range where contacts coalesce: it then underestimates the contact area \
-    of a boundary-element solution by a third, even without adhesion. Numbers beyond their limit are bold. U_{el} is the elastic energy per area \
+/// Columns of the asperity model.
+const OF_SPOTS: [&str; 4] = ["tabor_min_min", "low_tabor_share_mean", "touching_share_mean", "covered_share_mean"];
+
+const RANGE_NOTE: &str = "An asperity model is outside its range where contacts coalesce: it then underestimates the contact area \
+    of a boundary-element solution by a third, even without adhesion.";
+
+const VALIDITY_NOTE: &str = "Numbers beyond their limit are bold. U_{el} is the elastic energy per area \
     that flattens the roughness, Δγ the work of adhesion: for the realised spectrum of the surfaces, and in brackets for the target spectrum.";
 
 /// The indicators of model validity with their limits, and the warnings.
@@ -92,18 +98,25 @@ pub(super) fn validity(cases: &Cases<'_>) -> Result<Markup, StatsError> {
         (name_heads())
         @for (heading, column, _, format) in VALIDITY { th { (prose(heading)) (bound(column, format)) } }
     };
+    let methods = cases.frame.text("method")?;
+    let is_of_spots = |row: usize| methods[row] == Method::Asperities.word();
     let row = |listed: &Listed| -> Result<Markup, StatsError> {
         let mut cells = Vec::new();
         for (_, column, aside, format) in VALIDITY {
+            if OF_SPOTS.contains(&column) && !is_of_spots(listed.row) {
+                cells.push(html! { td { "–" } });
+                continue;
+            }
             let aside = aside.map(|column| cases.number(column, listed.row)).transpose()?.flatten();
             cells.push(cell(cases, listed.row, column, &with_aside(cases.number(column, listed.row)?, aside, format)));
         }
         Ok(html! { (cases.name(listed)) @for cell in cells { (cell) } })
     };
     let rows = cases.rows().iter().map(row).collect::<Result<Vec<_>, _>>()?;
+    let has_spots = (0..methods.len()).any(is_of_spots);
     Ok(html! {
         (heading("Model validity"))
-        p { (prose(VALIDITY_NOTE)) } "\n"
+        p { @if has_spots { (prose(RANGE_NOTE)) " " } (prose(VALIDITY_NOTE)) } "\n"
         (wide("validity", &head, &rows))
         (warning_table(cases)?)
     })

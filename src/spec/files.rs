@@ -1,11 +1,11 @@
 //! The files of measured surfaces: what a spec knows of their contents.
 //!
-//! Units are keyed by what a file holds and not by its name. A spec that was resolved has the hashes in its table `[files]`, so that a finished run tells how it stands
-//! without the files; where they are not written, the files are read.
+//! Tasks are keyed by the content of a file, not by its name. A resolved spec (`campaign.toml`) has the checksums in its table `[files]`, so that the status of a finished
+//! run is known without the files. Its relative names start at its own folder; those of other specs start at the working directory or at the folder of the spec.
 
 use std::collections::{BTreeMap, HashSet};
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use toml::de::DeValue;
 
@@ -15,6 +15,7 @@ use super::written::{Written, wrong_type};
 use super::{Case, Spec, SpecErrors, Value};
 use crate::formats::{Found, Refusal, recognize};
 use crate::keys::digest_of_file;
+use crate::paths::whole;
 
 /// Reads the table `[files]`.
 pub(super) fn files(written: &Written<'_>, span: &Range<usize>, faults: &mut Faults<'_>) -> BTreeMap<String, (String, Range<usize>)> {
@@ -59,15 +60,18 @@ pub(super) fn digested(mut spec: Spec, (text, file): (&str, &str), folder: &Path
         if name.is_empty() || !seen.insert((name, &surface.dataset)) {
             continue;
         }
-        let checked = located(name, folder, known.contains_key(name)).and_then(|found| {
-            let digest = match known.get(name) {
-                Some(digest) => digest.clone(),
-                None => look(&found, folder, &surface.dataset, spec.files.get(&found))?,
-            };
-            Ok((found, digest))
-        });
+        let checked = match known.get(name) {
+            Some(digest) => Ok((of_resolved(name, folder, digest), digest.clone())),
+            None => located(name, folder).and_then(|found| {
+                let digest = look(&found, folder, &surface.dataset, spec.files.get(&found))?;
+                Ok((found, digest))
+            }),
+        };
         match checked {
             Ok((found, digest)) => {
+                if Path::new(name).is_absolute() {
+                    spec.absolute_files.insert(found.clone());
+                }
                 if found != *name {
                     moved.insert(name.clone(), found.clone());
                 }
@@ -84,8 +88,8 @@ pub(super) fn digested(mut spec: Spec, (text, file): (&str, &str), folder: &Path
     faults.finish(Some(spec))
 }
 
-/// Gives files the names by which they were found.
-fn rename(spec: &mut Spec, moved: &BTreeMap<String, String>) {
+/// Gives files other names in all places of a spec.
+pub(super) fn rename(spec: &mut Spec, moved: &BTreeMap<String, String>) {
     let own = spec.cases.iter_mut().map(|case| &mut case.params.surface.file).chain([&mut spec.base.surface.file]);
     let axes = spec.sweeps.iter_mut().flat_map(|sweep| &mut sweep.axes).filter(|axis| axis.key == "surface.file");
     let swept = axes.flat_map(|axis| &mut axis.values).filter_map(|value| if let Value::Text(name) = value { Some(name) } else { None });
@@ -96,9 +100,8 @@ fn rename(spec: &mut Spec, moved: &BTreeMap<String, String>) {
     }
 }
 
-/// The name by which a file is found: its own from the working directory, or with the spec's folder before it if it is only there. The hash of a file that is
-/// `known` tells which of two is meant.
-fn located(name: &str, folder: &Path, known: bool) -> Result<String, Refusal> {
+/// The name by which a file is found: its own from the working directory, or with the spec's folder before it if it is only there.
+fn located(name: &str, folder: &Path) -> Result<String, Refusal> {
     let (here, beside) = (Path::new(name), folder.join(name));
     if here.is_absolute() || folder.as_os_str().is_empty() || !beside.exists() {
         return Ok(name.to_owned());
@@ -107,15 +110,37 @@ fn located(name: &str, folder: &Path, known: bool) -> Result<String, Refusal> {
         // A folder whose name is not Unicode cannot be written into a spec.
         return Ok(beside.to_str().map_or_else(|| name.to_owned(), str::to_owned));
     }
-    let same = |a: &Path, b: &Path| match (a.canonicalize(), b.canonicalize()) {
-        (Ok(a), Ok(b)) if a == b => true,
-        _ => matches!((digest_of_file(a), digest_of_file(b)), (Ok(a), Ok(b)) if a == b),
-    };
-    if known || same(here, &beside) {
+    if same(here, &beside) {
         return Ok(name.to_owned());
     }
     let problem = "two different files have this name, in the working directory and in the folder of the spec".to_owned();
     Err(Refusal { problem, help: format!("write {}, or the absolute path of the other one", beside.display()) })
+}
+
+/// True if two paths lead to one file, or to files of one content.
+fn same(a: &Path, b: &Path) -> bool {
+    match (a.canonicalize(), b.canonicalize()) {
+        (Ok(a), Ok(b)) if a == b => true,
+        _ => matches!((digest_of_file(a), digest_of_file(b)), (Ok(a), Ok(b)) if a == b),
+    }
+}
+
+/// The name by which a file of a resolved spec is found: from the folder of the spec, or else from the working directory. Of two different files, the one with the
+/// checksum `digest` is meant. A file that is in neither place has the name that it would have in the first.
+fn of_resolved(name: &str, folder: &Path, digest: &str) -> String {
+    let (here, beside) = (Path::new(name), folder.join(name));
+    let from_here = here.exists() && (!beside.exists() || !same(here, &beside) && digest_of_file(here).is_ok_and(|found| found == digest));
+    if here.is_absolute() || from_here {
+        return name.to_owned();
+    }
+    tidy(&beside).to_str().map_or_else(|| name.to_owned(), str::to_owned)
+}
+
+/// A path without detours, from the working directory if it leads into it.
+fn tidy(path: &Path) -> PathBuf {
+    let whole = whole(path);
+    let here = std::env::current_dir().and_then(|here| here.canonicalize());
+    here.ok().and_then(|here| whole.strip_prefix(here).ok().map(Path::to_owned)).unwrap_or(whole)
 }
 
 /// The hash of a file in a format that is read, `hashed` if it is known. The format comes first: a file in another one is not read to its end.

@@ -1,6 +1,6 @@
 //! From a draft to the cases: sweeps multiplied out, equal cases joined, and what no single value shows checked.
 
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::ops::Range;
 
 use toml::Spanned;
@@ -53,7 +53,7 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
     let first = read.first().map(|sweep| &sweep.span);
     bound_tasks(&cases.list, realizations, realizations_at.as_ref().or(first), faults);
     let sweeps = read.into_iter().map(sweep).collect();
-    Some(Spec { name: name?, seed, realizations, figures, cases: cases.list, base, sweeps, files })
+    Some(Spec { name: name?, seed, realizations, figures, cases: cases.list, base, sweeps, files, absolute_files: BTreeSet::new() })
 }
 
 /// True if the sweeps make more cases than allowed, found without making them.

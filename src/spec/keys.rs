@@ -160,7 +160,7 @@ pub(super) static KEYS: &[Key] = &[
     ], "default 8"),
     key!(surface.normalization, "", "Definition of the rms height."; word Normalization),
     key!(surface.amplitudes, "", "Amplitudes of the Fourier components."; word Amplitudes),
-    key!(surface.file, "", "File of a measured surface. With this key, the surface is imported and not generated."; text 4096, "the file of a measured surface, from the folder where the command is run"),
+    key!(surface.file, "", "File of a measured surface. With this key, the surface is imported and not generated."; text 4096, "the file of a measured surface, from the working directory or the folder of the spec"),
     key!(surface.dataset, "", "Field of the file, if it has several: a dataset of HDF5, a variable of NetCDF."; text 256, "a dataset of the file"),
     key!(surface.periodic, "", "True if the measured surface is periodic."; flag),
     key!(surface.pixel_m, "", "Pixel size of the measured surface. 0: the file states it."; number Limits {

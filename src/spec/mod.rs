@@ -23,7 +23,7 @@ mod walk;
 mod write;
 mod written;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::Read as _;
 use std::path::Path;
 
@@ -116,8 +116,11 @@ pub struct Spec {
     pub base: CaseParams,
     /// The sweeps as written, each value checked.
     pub sweeps: Vec<Sweep>,
-    /// BLAKE3 of the files of measured surfaces, by their names as written.
+    /// BLAKE3 of the files of measured surfaces, by the names by which they were found.
     pub files: BTreeMap<String, String>,
+    /// Files that the spec names by absolute paths.
+    #[serde(skip)]
+    pub absolute_files: BTreeSet<String>,
 }
 
 /// One point of the campaign.
@@ -191,7 +194,7 @@ impl Spec {
     }
 
     /// Reads a spec from a file, and looks at the files of measured surfaces that it names. A relative name is looked for in the working directory, then in the
-    /// folder of the spec; the spec that is returned has the name by which the file was found.
+    /// folder of the spec; a name of which the spec has the checksum, the other way round. The returned spec has the name by which the file was found.
     ///
     /// # Errors
     /// Why the file cannot be read, or every fault of its text, or which of the files that it names cannot be read.
@@ -231,6 +234,17 @@ impl Spec {
             }
             Err(error) => Err(SpecErrors::not_utf8(&bytes, error.valid_up_to(), &file)),
         }
+    }
+
+    /// The spec with other names of the files of measured surfaces; those that `names` lacks keep theirs.
+    #[must_use]
+    pub fn with_file_names(&self, names: &BTreeMap<String, String>) -> Self {
+        let mut spec = self.clone();
+        files::rename(&mut spec, names);
+        let renamed = |name: &String| names.get(name).unwrap_or(name).clone();
+        spec.files = self.files.iter().map(|(name, digest)| (renamed(name), digest.clone())).collect();
+        spec.absolute_files = self.absolute_files.iter().map(renamed).collect();
+        spec
     }
 
     /// The spec with every default written out: reading it again gives an equal spec.

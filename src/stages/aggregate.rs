@@ -121,7 +121,7 @@ fn planned_cycles(campaign: &Campaign, standings: &[Standing]) -> Vec<Planned> {
         },
         failure: match standing {
             Standing::Done => campaign.not_reached_in_tables(unit),
-            _ => campaign.failure_in_tables(standing),
+            _ => campaign.failure_in_tables(unit, standing),
         },
     };
     campaign.cycles.iter().zip(standings).map(row).collect()

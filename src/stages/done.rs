@@ -49,7 +49,7 @@ impl Clock {
     /// Writes the receipt of the resolved spec, which belongs to no stage.
     pub(super) fn spec_receipt(&self, campaign: &Campaign, outcome: &Outcome) -> Result<(), StageError> {
         let words = ["spec", "campaign", ""].map(str::to_owned);
-        Ok(write_receipt(&campaign.spec_receipt_path(), &self.filled(&campaign.dir, words, Map::new(), outcome))?)
+        Ok(write_receipt(&campaign.spec_receipt_path(), &self.filled(&campaign.dir, words, campaign.resolved_record(), outcome))?)
     }
 
     /// Writes the receipt of a comparison into its folder.

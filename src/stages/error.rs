@@ -54,6 +54,18 @@ pub enum StageError {
         /// Why, and what is allowed.
         why: String,
     },
+    /// The file of a measured surface is in none of the places to which its name in the spec leads.
+    #[error(
+        "cannot import the surface {}: no such file\nhelp: it was looked for at {}; put it there, or run the spec with its new place (--out DIR)",
+        shown(path),
+        listed(places)
+    )]
+    Lost {
+        /// File.
+        path: PathBuf,
+        /// Absolute paths.
+        places: Vec<PathBuf>,
+    },
     /// A folder in the place of a file that a task writes, or a file in the place of its folder.
     #[error("cannot write {}: {what} of this name exists\nhelp: remove or rename it; the next run computes the task", shown(path))]
     InTheWay {
@@ -192,6 +204,11 @@ pub enum StageError {
         /// The folder.
         path: PathBuf,
     },
+}
+
+/// Paths in a sentence.
+fn listed(paths: &[PathBuf]) -> String {
+    paths.iter().map(|path| shown(path)).collect::<Vec<_>>().join(" and ")
 }
 
 /// Numbers of tasks that a stage lacks.

@@ -7,9 +7,11 @@ use super::surface::{SurfaceStage, spectrum};
 use crate::campaign::{Campaign, Stage, SurfaceUnit, Unit};
 use crate::formats::recognize;
 use crate::keys::digest_of_file;
+use crate::paths::whole;
 use crate::physics::PhysicsError;
 use crate::physics::memory;
 use crate::physics::surface::synthesis::{realization_seed, synthesis_bytes, synthesize};
+use crate::spec::SurfaceParams;
 use crate::store::hdf5::{Generated, SurfaceHeader, write_surface};
 use std::path::Path;
 
@@ -34,12 +36,15 @@ impl SurfaceStage for Generate {
 
 /// Imports a measured surface.
 fn import(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Outcome, StageError> {
-    let path = Path::new(&unit.params.file);
-    let refuse = |why: String| StageError::Changed { path: path.to_owned(), why };
+    // Messages name the file by a path that holds in any folder.
+    let path = &whole(Path::new(&unit.params.file));
+    let refuse = |why: String| StageError::Changed { path: path.clone(), why };
+    let lost = |error: std::io::Error| match error.kind() {
+        std::io::ErrorKind::NotFound => StageError::Lost { path: path.clone(), places: campaign.places_of(&unit.params.file) },
+        _ => refuse(error.to_string()),
+    };
     // A file in an unknown format may be too large to be hashed for nothing.
-    recognize(path)
-        .map_err(|error| refuse(error.to_string()))?
-        .map_err(|refusal| StageError::Measured { path: path.to_owned(), why: refusal.to_string() })?;
+    recognize(path).map_err(lost)?.map_err(|refusal| StageError::Measured { path: path.clone(), why: refusal.to_string() })?;
     let digest = digest_of_file(path).map_err(|error| refuse(error.to_string()))?;
     if campaign.spec.files.get(&unit.params.file) != Some(&digest) {
         return Err(refuse(
@@ -47,7 +52,8 @@ fn import(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Outcome, StageError
                 .to_owned(),
         ));
     }
-    let Imported { prepared, header, .. } = measure(&unit.params, &digest, &unit.key)?;
+    let params = SurfaceParams { file: path.to_str().unwrap_or(&unit.params.file).to_owned(), ..unit.params.clone() };
+    let Imported { prepared, header, .. } = measure(&params, &digest, &unit.key)?;
     Ok(Outcome::of(vec![write_surface(&campaign.surface_path(unit), &header, prepared.heights_m.view())?]))
 }
 

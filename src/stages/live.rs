@@ -1,156 +1,174 @@
-//! Page of a run in progress: `progress.html`, rewritten as tasks begin and end, and removed at the end of the run.
+//! State of a run in progress: a heartbeat for other processes, and the page `progress.html`, both rewritten again and again and removed at the end.
 
-use super::{StageError, Watch};
+use super::live_state::State;
+use super::{StageError, Task, Watch};
 use crate::campaign::owned::is_marked;
 use crate::campaign::{Campaign, Stage};
-use crate::report::{LiveLoop, LiveRun, LiveStage, live_page};
+use crate::physics::LoopPosition;
+use crate::report::{LiveLoop, live_page};
 use crate::schema;
 use crate::store::commit;
+use crate::store::heartbeat::Pulse;
 use crate::store::parquet::read_table;
 use crate::text::shown;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, MutexGuard, PoisonError};
-use std::time::{Duration, Instant, SystemTime};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread::JoinHandle;
+use std::time::Duration;
 
 /// Name of the page.
 const PAGE: &str = "progress.html";
-/// Minimum time between two versions of the page.
-const PERIOD: Duration = Duration::from_secs(2);
+/// Time between two heartbeats, and number of heartbeats between two versions of the page.
+const PERIOD: Duration = Duration::from_millis(500);
+const BEATS_OF_PAGE: u32 = 4;
 /// Points of a branch, at most.
 const MOST_POINTS: usize = 200;
 
-/// Passes progress on and writes the page.
+/// Passes progress on and writes the state.
 pub(super) struct Live<'a> {
     inner: &'a dyn Watch,
-    dir: PathBuf,
-    state: Mutex<State>,
+    shared: Arc<Shared>,
+    /// Thread that writes the state also while nothing is reported.
+    writer: Option<JoinHandle<()>>,
 }
 
-struct State {
-    run: LiveRun,
-    written: Option<Instant>,
-    /// True if a page that no run wrote is in the place of this one, which is then left alone.
-    is_foreign: bool,
-    /// True after the path of the page was reported.
-    is_named: bool,
+/// What the threads share.
+struct Shared {
+    dir: PathBuf,
+    state: Mutex<State>,
+    pulse: Mutex<Option<Pulse>>,
+    /// True when the run has ended.
+    over: Mutex<bool>,
+    ended: Condvar,
 }
 
 impl<'a> Live<'a> {
-    pub(super) fn of(campaign: &Campaign, inner: &'a dyn Watch) -> Self {
-        let run = LiveRun { name: campaign.spec.name.clone(), ..LiveRun::default() };
+    pub(super) fn of(campaign: &Campaign, task: &Task, inner: &'a dyn Watch) -> Self {
+        let pulse = Pulse::begin(&campaign.dir);
+        if let Some(pulse) = &pulse {
+            inner.temporary(pulse.path());
+        }
         let page = campaign.dir.join(PAGE);
-        let is_foreign = page.symlink_metadata().is_ok() && !is_marked(&page);
-        if is_foreign {
+        let mut state = State::of(campaign, task);
+        if state.has_page && page.symlink_metadata().is_ok() && !is_marked(&page) {
+            state.has_page = false;
             inner.notice(&format!("{} was not written by a run and is kept; this run has no page of progress", shown(&page)));
         }
-        Self { inner, dir: campaign.dir.clone(), state: Mutex::new(State { run, written: None, is_foreign, is_named: false }) }
+        let shared = Arc::new(Shared {
+            dir: campaign.dir.clone(),
+            state: Mutex::new(state),
+            pulse: Mutex::new(pulse),
+            over: Mutex::new(false),
+            ended: Condvar::new(),
+        });
+        shared.write(true);
+        let of_thread = Arc::clone(&shared);
+        // Without the thread, states are written when progress is reported.
+        let writer = std::thread::Builder::new().name("heartbeat".to_owned()).spawn(move || of_thread.write_until_the_end()).ok();
+        Self { inner, shared, writer }
     }
 
-    fn state(&self) -> MutexGuard<'_, State> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// Changes the state, and writes the page if the last version is old enough or `now` is set.
-    fn change(&self, now: bool, change: impl FnOnce(&mut LiveRun)) {
-        let mut state = self.state();
-        change(&mut state.run);
-        if state.is_foreign {
-            return;
+    /// Changes the state, and writes it with `now`.
+    fn change(&self, now: bool, change: impl FnOnce(&mut State)) {
+        change(&mut locked(&self.shared.state));
+        if now || self.writer.is_none() {
+            self.shared.write(true);
         }
-        if now || state.written.is_none_or(|at| at.elapsed() >= PERIOD) {
-            state.written = Some(Instant::now());
-            state.run.updated = now_text();
-            // The run does not depend on this page: a disk that is full ends it elsewhere.
-            let _ = commit::commit_bytes("write the page of progress", &self.dir.join(PAGE), live_page(&state.run).as_bytes());
+    }
+}
+
+/// A lock; a thread that panicked while holding it left nothing half done.
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Shared {
+    /// Writes the heartbeat, and the page if it is due. The run does not depend on them: a disk that is full ends it elsewhere.
+    fn write(&self, page_is_due: bool) {
+        let (beat, page) = {
+            let mut state = locked(&self.state);
+            (state.beat(), (state.has_page && page_is_due).then(|| live_page(state.run())))
+        };
+        if let Some(pulse) = locked(&self.pulse).as_mut() {
+            pulse.beat(&beat);
+        }
+        if let Some(page) = page {
+            let _ = commit::commit_bytes("write the page of progress", &self.dir.join(PAGE), page.as_bytes());
+        }
+    }
+
+    fn write_until_the_end(&self) {
+        let (mut over, mut beats) = (locked(&self.over), 0_u32);
+        while !*over {
+            let (next, waited) = self.ended.wait_timeout(over, PERIOD).unwrap_or_else(PoisonError::into_inner);
+            over = next;
+            if waited.timed_out() && !*over {
+                beats = beats.wrapping_add(1);
+                self.write(beats.is_multiple_of(BEATS_OF_PAGE));
+            }
         }
     }
 }
 
 impl Drop for Live<'_> {
     fn drop(&mut self) {
-        if !self.state().is_foreign {
-            let _ = std::fs::remove_file(self.dir.join(PAGE));
+        *locked(&self.shared.over) = true;
+        self.shared.ended.notify_all();
+        if let Some(writer) = self.writer.take() {
+            let _ = writer.join();
+        }
+        *locked(&self.shared.pulse) = None;
+        if locked(&self.shared.state).has_page {
+            let _ = std::fs::remove_file(self.shared.dir.join(PAGE));
         }
     }
-}
-
-/// The stage of a run, added if it has not begun.
-fn stage_of(run: &mut LiveRun, stage: Stage) -> Option<&mut LiveStage> {
-    if run.stages.iter().all(|of| of.name != stage.word()) {
-        run.stages.push(LiveStage { name: stage.word(), ..LiveStage::default() });
-    }
-    run.stages.iter_mut().find(|of| of.name == stage.word())
 }
 
 impl Watch for Live<'_> {
     fn begin(&self, stage: Stage, done: usize, all: usize) {
         // A run with nothing to do has no page to look at.
-        let mut state = self.state();
-        let is_shown = !state.is_foreign && done < all && !std::mem::replace(&mut state.is_named, true);
-        drop(state);
-        if is_shown {
-            self.inner.page(&self.dir.join(PAGE));
+        let is_named = done < all && locked(&self.shared.state).names_page();
+        if is_named {
+            self.inner.page(&self.shared.dir.join(PAGE));
         }
         self.inner.begin(stage, done, all);
-        self.change(true, |run| {
-            if let Some(of) = stage_of(run, stage) {
-                (of.done, of.all, of.work) = (done, all, done as f64);
-            }
-        });
+        self.change(true, |state| state.begin(stage, done, all));
     }
 
     fn started(&self, stage: Stage, id: &str) {
         self.inner.started(stage, id);
-        self.change(false, |run| {
-            if let Some(of) = stage_of(run, stage) {
-                of.running.push(id.to_owned());
-            }
-        });
+        self.change(false, |state| state.started(stage, id));
     }
 
     fn progress(&self, stage: Stage, part: f64) {
         self.inner.progress(stage, part);
-        self.change(false, |run| {
-            if let Some(of) = stage_of(run, stage) {
-                of.work += part;
-            }
-        });
+        self.change(false, |state| state.progress(stage, part));
+    }
+
+    fn position(&self, id: &str, at: &LoopPosition) {
+        self.inner.position(id, at);
+        self.change(false, |state| state.position(id, at));
     }
 
     fn finished(&self, stage: Stage, id: &str) {
         self.inner.finished(stage, id);
-        let drawn = if stage == Stage::Cycle { loop_of(&self.dir, id).ok() } else { None };
-        self.change(false, |run| {
-            run.loops.extend(drawn);
-            if let Some(of) = stage_of(run, stage) {
-                of.done += 1;
-                of.running.retain(|running| running != id);
-            }
-        });
+        let drawn = if stage == Stage::Cycle { loop_of(&self.shared.dir, id).ok() } else { None };
+        self.change(false, |state| state.finished(stage, id, drawn));
     }
 
     fn failed(&self, stage: Stage, id: &str) {
         self.inner.failed(stage, id);
-        self.change(true, |run| {
-            if let Some(of) = stage_of(run, stage) {
-                of.running.retain(|running| running != id);
-            }
-        });
+        self.change(true, |state| state.ended(stage, id));
     }
 
     fn notice(&self, text: &str) {
         self.inner.notice(text);
-        self.change(true, |run| run.notices.push(text.to_owned()));
+        self.change(true, |state| state.notice(text));
     }
 
     fn end(&self, stage: Stage) {
         self.inner.end(stage);
     }
-}
-
-/// The present time: "2026-01-31 12:00:00 UTC".
-fn now_text() -> String {
-    humantime::format_rfc3339_seconds(SystemTime::now()).to_string().replace('T', " ").replace('Z', " UTC")
 }
 
 /// The loop of a finished cycle up to its largest load.

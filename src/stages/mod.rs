@@ -20,6 +20,7 @@ mod generate;
 mod grid_size;
 mod identity;
 mod live;
+mod live_state;
 mod measure;
 mod pipeline;
 mod report;

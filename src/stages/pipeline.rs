@@ -23,9 +23,7 @@ pub fn run(campaign: Campaign, task: &Task, watch: &dyn Watch) -> Result<(Campai
         return Err(StageError::NoRun { stage: task.from.word(), path: campaign.dir });
     }
     prepare(&campaign)?;
-    // Jobs that share a folder would write one page.
-    let live = (task.shard.is_whole() && task.from < task.until).then(|| Live::of(&campaign, watch));
-    let watch: &dyn Watch = live.as_ref().map_or(watch, |live| live);
+    let watch: &dyn Watch = &Live::of(&campaign, task, watch);
     let mut campaign = campaign;
     let mut tallies = Tallies::new();
     loop {
@@ -90,9 +88,10 @@ pub fn prepare(campaign: &Campaign) -> Result<(), StageError> {
         std::fs::create_dir_all(&path).map_err(|source| StageError::Folder { path, source })?;
     }
     let path = campaign.dir.join("campaign.toml");
-    let text = campaign.spec.to_toml();
+    let text = campaign.resolved_toml();
     // A pipe in its place would be waited for.
-    if path.is_file() && std::fs::read_to_string(&path).is_ok_and(|present| present == text) && campaign.spec_fault().is_none() {
+    let is_current = path.is_file() && std::fs::read_to_string(&path).is_ok_and(|present| present == text);
+    if is_current && campaign.spec_fault().is_none() && campaign.has_recorded_files() {
         return Ok(());
     }
     let clock = Clock::start();

@@ -9,11 +9,13 @@ use super::single_cycle::look;
 use super::{StageError, Tally};
 use crate::campaign::{Campaign, REPORT_PAGE, STATISTICS, Stage, Standing, Unit};
 use crate::figures::{Drawing, Panel, Tables, method_ratios, panels, pdf, png, sensitivity, table, with_font};
-use crate::report::{self, MethodFigures, Report, SingleCycle};
+use crate::report::{self, Failure, MethodFigures, Report, SingleCycle};
 use crate::schema;
 use crate::spec::Figures;
 use crate::store::hdf5::{SurfaceHeader, read_header};
 use crate::store::{Check, Frame, commit, parquet};
+use std::cmp::Reverse;
+use std::collections::HashSet;
 
 /// Tables that the report reads.
 struct Statistics {
@@ -133,6 +135,8 @@ fn page(
         case_counts: [campaign.cases.len() - elements, elements],
         seed: campaign.spec.seed,
         realizations_text: &campaign.realizations_in_words(),
+        failures: &failures(campaign, standings),
+        cycle_count: campaign.distinct_cycles().len(),
         cases: &statistics.cases,
         realizations: &statistics.realizations,
         methods: &statistics.methods,
@@ -144,8 +148,29 @@ fn page(
         drawings: &drawings.panels,
         cycle: drawings.cycle.as_ref(),
         explorer: explorer(campaign, standings, &statistics.cases, &statistics.methods)?.as_deref(),
-        spec: &campaign.spec.to_toml(),
+        spec: &campaign.labelled_toml(),
     })?)
+}
+
+/// The words of a text without its numbers.
+fn words(text: &str) -> Vec<&str> {
+    text.split_whitespace().filter(|word| !word.bytes().any(|byte| byte.is_ascii_digit())).collect()
+}
+
+/// Failed cycles by reason, the most frequent reason first.
+fn failures(campaign: &Campaign, standings: &[Standing]) -> Vec<Failure> {
+    let mut found: Vec<Failure> = Vec::new();
+    let mut seen = HashSet::new();
+    for (unit, standing) in campaign.cycles.iter().zip(standings) {
+        let Some([problem, help]) = campaign.failure_texts(unit, standing).filter(|_| seen.insert(&unit.key)) else { continue };
+        // Reasons that differ in their numbers alone are one.
+        match found.iter_mut().find(|of| of.help == help && words(&of.problem) == words(&problem)) {
+            Some(of) => of.count += 1,
+            None => found.push(Failure { example: unit.id.clone(), count: 1, problem, help }),
+        }
+    }
+    found.sort_by_key(|of| Reverse(of.count));
+    found
 }
 
 /// Files of the measured surfaces. A failed import is reported elsewhere.

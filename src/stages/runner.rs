@@ -84,7 +84,8 @@ fn due<'a, T: Tasks>(tasks: &T, selected: Vec<&'a T::Of>, watch: &dyn Watch) -> 
     open.inspect(|(of, standing)| match standing {
         Standing::Missing(why) | Standing::Corrupt(why) => watch.notice(&format!("{}: {why}; recomputing", tasks.unit(of).id)),
         Standing::Stale => watch.notice(&format!("{} has other parameters; recomputing", tasks.unit(of).id)),
-        Standing::Done | Standing::Planned | Standing::Interrupted | Standing::Failed(_) => {}
+        // The status of tasks in other processes is that of their files.
+        Standing::Done | Standing::Running | Standing::Waiting | Standing::Planned | Standing::Interrupted | Standing::Failed(_) => {}
     })
     .collect()
 }

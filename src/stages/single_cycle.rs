@@ -23,7 +23,7 @@ const GREATEST: u64 = 8192;
 /// Points of a curve of a theory.
 const POINTS: usize = 120;
 
-/// The first finished cycle of the case with the largest mean Θ, at that load reversal; `None` without a finished cycle, or if all surfaces are too large.
+/// The first finished cycle of the asperity-model case with the largest mean Θ, at that load reversal; `None` without a finished cycle, or if all surfaces are too large.
 pub(super) fn look(campaign: &Campaign, standings: &[Standing], cases: &Frame) -> Result<Option<SingleCycle>, StageError> {
     let params = |unit: &CycleUnit| &campaign.surfaces[unit.surface].params;
     let done = || campaign.cycles.iter().zip(standings).filter(|(_, standing)| **standing == Standing::Done).map(|(unit, _)| unit);
@@ -35,9 +35,13 @@ pub(super) fn look(campaign: &Campaign, standings: &[Standing], cases: &Frame) -
     // Of equal means, the first row.
     rows.sort_by(|u, v| v.1.total_cmp(&u.1));
     let first = |row: usize| done().find(|unit| campaign.cases[unit.case].id == ids[row] && params(unit).grid() <= GREATEST);
-    let Some((unit, max_load)) = rows.into_iter().find_map(|(row, _)| first(row).map(|unit| (unit, loads[row]))) else { return Ok(None) };
+    let Some((place, unit)) = rows.iter().enumerate().find_map(|(place, (row, _))| first(*row).map(|unit| (place, unit))) else {
+        return Ok(None);
+    };
+    let max_load = loads[rows[place].0];
+    let choice = choice(methods.iter().any(|method| *method != Method::Asperities.word()), place > 0);
     let case = &campaign.cases[unit.case].case.params;
-    let parameters = parameters(case, max_load);
+    let parameters = parameters(case, &campaign.file_label(&case.surface.file), max_load);
     let surface = &campaign.surfaces[unit.surface];
     let (header, heights) = read_surface(&campaign.surface_path(surface))?;
     let asperities = read_table(&campaign.asperities_path(surface), &schema::ASPERITIES)?;
@@ -75,17 +79,24 @@ pub(super) fn look(campaign: &Campaign, standings: &[Standing], cases: &Frame) -
     };
     let (panels, map) = closer(&of, heights.view())?;
     let realization = surface.realization;
-    Ok(Some(SingleCycle { id: unit.id.clone(), realization, parameters, panels, map }))
+    Ok(Some(SingleCycle { id: unit.id.clone(), realization, choice, parameters, panels, map }))
+}
+
+/// The chosen case in words. Its figures are those of contact spots; boundary elements have maps and the explorer.
+fn choice(has_elements: bool, has_larger: bool) -> String {
+    let method = if has_elements { " by the asperity model" } else { "" };
+    let size = if has_larger { format!(" on surfaces of at most {GREATEST} × {GREATEST} points") } else { String::new() };
+    format!("The case{method} with the largest mean Θ/(E*A_{{0}}h_{{rms}}){size}")
 }
 
 /// The parameters of a case as text: `ζ = 64, H = 0.8, …`.
-fn parameters(case: &CaseParams, max_load: f64) -> String {
+pub(super) fn parameters(case: &CaseParams, file: &str, max_load: f64) -> String {
     let (surface, material, model) = (&case.surface, &case.material, &case.model);
     let with_unit = |symbol: &str, column: &str, value: f64| {
         labels_with_unit(column, &[value]).into_iter().map(|text| format!("{symbol} = {text}")).collect::<String>()
     };
     let mut parts = if surface.is_measured() {
-        vec![surface.file.clone()]
+        vec![file.to_owned()]
     } else {
         vec![
             format!("ζ = {}", surface.magnification),
@@ -98,7 +109,9 @@ fn parameters(case: &CaseParams, max_load: f64) -> String {
     parts.push(with_unit("Δγ", "work_of_adhesion_j_m2", material.work_of_adhesion_j_m2));
     let choices =
         [("interaction", model.interaction.word()), ("boundary", model.boundary.word()), ("coalescence", model.coalescence.word())];
-    parts.extend(choices.map(|(key, word)| format!("{key} = \"{word}\"")));
+    let method = [("method", model.method.word())];
+    let choices = if case.by_elements() { &method[..] } else { &choices[..] };
+    parts.extend(choices.iter().map(|(key, word)| format!("{key} = \"{word}\"")));
     parts.push(format!("F_max/(E*A₀) = {}", significant(max_load, 4)));
     parts.join(", ")
 }

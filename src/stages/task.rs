@@ -1,6 +1,7 @@
 //! Selection of tasks, their progress and their outcome.
 
 use crate::campaign::{Shard, Stage};
+use crate::physics::LoopPosition;
 use crate::store::Check;
 use std::collections::HashSet;
 use std::path::Path;
@@ -15,12 +16,16 @@ pub trait Watch: Sync {
     fn failed(&self, _stage: Stage, _id: &str) {}
     /// A part of a unit is done: the parts of a unit add up to 1.
     fn progress(&self, stage: Stage, part: f64);
+    /// A running cycle has reached a position on its loop.
+    fn position(&self, _id: &str, _at: &LoopPosition) {}
     /// A unit is done.
     fn finished(&self, stage: Stage, id: &str);
     /// Something to be seen: a damaged file, a failed case.
     fn notice(&self, text: &str);
     /// The page of progress is written at this path from now on.
     fn page(&self, _path: &Path) {}
+    /// A file at this path is removed at the end of the run, also where the run ends without its destructors.
+    fn temporary(&self, _path: &Path) {}
     /// A stage ends.
     fn end(&self, stage: Stage);
 }

@@ -12,6 +12,7 @@ mod error;
 mod frame;
 mod halfway;
 pub mod hdf5;
+pub mod heartbeat;
 mod maps;
 pub mod parquet;
 mod receipt;

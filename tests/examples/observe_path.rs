@@ -5,13 +5,13 @@
 #![allow(clippy::print_stdout)]
 
 use hysteron::model::{Amplitudes, Boundary, Coalescence, Interaction, JumpIn, KeptContacts, Material, Normalization, Slips};
-use hysteron::physics::PhysicsError;
 use hysteron::physics::contact::{Problem, Rules};
 use hysteron::physics::cycle::{Cycle, Halfway, Settings, run_from};
 use hysteron::physics::half_space::Effort;
 use hysteron::physics::surface::spectrum::Spectrum;
 use hysteron::physics::surface::summits::find_summits;
 use hysteron::physics::surface::synthesis::{realization_seed, synthesize};
+use hysteron::physics::{LoopPosition, PhysicsError};
 use std::cell::RefCell;
 
 /// Grid points per shortest wavelength.
@@ -45,7 +45,7 @@ pub fn run() -> Result<Observed, PhysicsError> {
     let settings = Settings { max_loads: vec![0.004], approach_step: 0.04, contacts: KeptContacts::None, rest_every: Some(0.2) };
 
     let (progress, mut kept) = (RefCell::new(Vec::new()), Vec::new());
-    let report = |fraction: f64| progress.borrow_mut().push(fraction);
+    let report = |at: LoopPosition| progress.borrow_mut().push(at.done);
     let first = run_from(&problem, &settings, None, &mut |halfway: &Halfway| kept.push(halfway.clone()), &report)?;
     let middle = kept.get(kept.len() / 2).cloned();
     let mut later = 0;

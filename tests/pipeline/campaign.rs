@@ -8,11 +8,14 @@ mod fields;
 mod fuzz;
 mod kills;
 mod limits;
+mod living;
 mod lost;
 mod outputs;
 mod published;
+mod relocation;
 mod sampling;
 mod signals;
+mod snakemake;
 mod tasks;
 
 /// Two surfaces and two cycles, of which one load each: half a second of work.

@@ -127,10 +127,10 @@ fn e2e_a_plan_has_the_reasons_of_pending_tasks() {
     let finished = stdout(&bench.verb("plan", &[]));
     assert!(!finished.contains('→'), "{finished}");
     let plan = stdout(&bench.verb("plan", &["--set", "cycle.approach_step=0.1"]));
-    assert!(plan.contains("cycle     2 planned\n  2 pending tasks: cycle.approach_step 0.05 → 0.1\n"), "{plan}");
+    assert!(plan.contains("cycle     2 planned\n  2 to run: approach_step 0.05 → 0.1\n"), "{plan}");
     assert!(plan.contains("generate  2 done\n") && plan.contains("`run` would compute 4 tasks."), "{plan}");
     let plan = stdout(&bench.verb("plan", &["--set", "realizations=3"]));
-    assert!(plan.contains("  1 pending task: not computed yet\n") && !plan.contains('→'), "nothing was changed but added: {plan}");
+    assert!(plan.contains("  1 to run: new value realization = 2\n") && !plan.contains('→'), "nothing was changed but added: {plan}");
     let answer: serde_json::Value = serde_json::from_slice(&bench.verb("plan", &["--set", "realizations=3", "--json"]).stdout).unwrap();
     let pending: Vec<&serde_json::Value> =
         answer["stages"][2]["units"].as_array().unwrap().iter().filter(|unit| unit["state"] == "planned").collect();
@@ -139,4 +139,23 @@ fn e2e_a_plan_has_the_reasons_of_pending_tasks() {
     std::fs::write(&more, SMALL.replace("realizations = 2", "realizations = 3")).unwrap();
     let explained = stdout(&bench.look("explain", &[pending[0]["id"].as_str().unwrap(), "--spec", more.to_str().unwrap()]));
     assert!(explained.contains(" is planned\n  not computed yet; ") && !explained.contains("requested"), "{explained}");
+    // A finished run with two more cases of one new value, and one case less.
+    assert_eq!(code(&bench.verb("run", &[])), 0);
+    let sweep = SMALL.to_owned() + "[[sweep]]\nname = \"g\"\nmaterial.work_of_adhesion_j_m2 = [0.07, 0.03, 0.05]\n";
+    std::fs::write(bench.spec(), &sweep).unwrap();
+    let plan = stdout(&bench.verb("plan", &[]));
+    assert!(plan.contains("cycle     2 done, 4 planned\n  4 to run: new values work_of_adhesion_j_m2 = 0.03, 0.05\n"), "{plan}");
+    assert!(plan.contains("  statistics is stale: 2 cases were added, 1 case was relabelled\n"), "{plan}");
+    assert!(plan.contains("  report is stale: the tables over realizations are stale, the spec was edited\n"), "{plan}");
+    assert_eq!(code(&bench.verb("run", &[])), 0);
+    // One new value in two sweeps.
+    let wider = sweep
+        + "[[sweep]]\nname = \"m\"\nsurface.magnification = [6, 8]\n[[sweep]]\nname = \"both\"\nsurface.magnification = 8\n\
+                         material.work_of_adhesion_j_m2 = 0.03\n";
+    std::fs::write(bench.spec(), wider).unwrap();
+    let plan = stdout(&bench.verb("plan", &[]));
+    assert!(plan.contains("  4 to run: new value magnification = 8\n"), "{plan}");
+    std::fs::write(bench.spec(), SMALL).unwrap();
+    let plan = stdout(&bench.verb("plan", &[]));
+    assert!(plan.contains("  statistics is stale: 2 cases were removed, 1 case was relabelled\n"), "{plan}");
 }

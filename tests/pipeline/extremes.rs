@@ -34,8 +34,20 @@ fn e2e_a_contact_beyond_full_contact_fails_in_a_sentence() {
         let bench = Bench::new(&spec(surface, material, load));
         let run = bench.verb("run", &[]);
         assert_eq!(code(&run), 3, "{surface} {material} {load}: {}", stderr(&run));
-        let help = if load == "0.2" { "help: reduce cycle.max_load" } else { "help: adhesion alone closes the contact" };
-        assert!(stderr(&run).contains(help), "{}", stderr(&run));
+        let help = if load == "0.2" { "help: set model.method = \"boundary_elements\"" } else { "help: adhesion alone closes the contact" };
+        assert!(stderr(&run).contains(help) && stderr(&run).contains("boundary_elements"), "{}", stderr(&run));
+        // The report begins with the reason and the next step, and claims no results.
+        let page = std::fs::read_to_string(bench.out().join("report.html")).unwrap();
+        let banner = page.split("class=\"banner red\" role=\"alert\">").nth(1).and_then(|rest| rest.split("</div>").next()).unwrap();
+        for words in
+            ["No results: all 2 cycles failed.", " leaves no gap ", "Next step: ", "boundary_elements", "2 cycles, for example H0.80_z8_r0"]
+        {
+            assert!(banner.contains(words), "{words}: {banner}");
+        }
+        for words in ["validated range", "Methods paragraph", "<svg", "confidence intervals of", "Single cycle", "Model validity</h2>"] {
+            assert!(!page.contains(words), "{words}: {page}");
+        }
+        assert!(std::fs::read_dir(bench.out().join("figures")).unwrap().next().is_none(), "a figure of nothing");
         let frame = cases(&bench.out());
         assert_eq!((frame.i64("done_count").unwrap()[0], frame.i64("failed_count").unwrap()[0]), (0, 2));
         for column in ["loss_mean", "pull_off_load_mean", "area_at_max_load_mean", "audit_gap_max"] {

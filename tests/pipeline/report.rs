@@ -135,7 +135,23 @@ fn e2e_a_page_without_spots_or_results_is_still_a_page() {
     assert_eq!(code(&report), 0, "{}", stderr(&report));
     let page = fs::read_to_string(nothing.out().join("report.html")).unwrap();
     assert!(page.contains("0 of 2") && !page.contains(">Single cycle</h2>"));
-    assert!(page.contains("no surface finished"));
+    assert!(page.contains("No results: no surface finished.") && !page.contains("validated range") && !page.contains("<svg"));
+}
+
+/// The snippet of the page: both tables have the same columns only where they are joined.
+#[test]
+fn law_the_snippet_of_the_page_drops_every_other_shared_column() {
+    let bench = Bench::new(SPEC);
+    assert_eq!(code(&bench.verb("run", &[])), 0);
+    let page = fs::read_to_string(bench.out().join("report.html")).unwrap();
+    let dropped = page.split("cycles.parquet&quot;).drop(").nth(1).and_then(|rest| rest.split(')').next()).unwrap().replace("&quot;", "");
+    let mut dropped: Vec<&str> = dropped.split(", ").collect();
+    let names = |table: &schema::Table| table.columns.iter().map(|column| column.name).collect::<Vec<_>>();
+    let events = names(&schema::EVENTS);
+    let mut shared: Vec<&str> = names(&schema::CYCLES).into_iter().filter(|name| events.contains(name) && *name != "cycle_id").collect();
+    shared.sort_unstable();
+    dropped.sort_unstable();
+    assert_eq!(dropped, shared);
 }
 
 /// The cells of the table after a heading, row by row, without tags.

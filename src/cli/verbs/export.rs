@@ -1,10 +1,11 @@
 //! `export`: files that other programs run or publish a campaign with.
 
 use super::outputs::{may_replace, written};
-use super::place::{folder, open, open_dir, told};
+use super::place::{folder, open, open_dir, spec_file, told};
 use super::{BAD_SPEC, Fault, failed, make_folder, own_file, say};
 use crate::campaign::Standing;
 use crate::cli::{FolderArguments, OutputArguments};
+use crate::engines::snakemake::Origin;
 use crate::engines::{ro_crate as description, ro_crate::Publication, snakemake as rules, usual_shards};
 use crate::stages;
 use crate::store::Check;
@@ -23,9 +24,10 @@ pub(super) fn snakemake(spec: &Path, output: &OutputArguments, (shards, force): 
     let folder = campaign.dir.join("snakemake");
     make_folder(&folder)?;
     let program = own_file()?;
+    let origin = Origin { spec: &told(&spec_file(spec))?, settings: &output.set, folder: &told(Path::new("."))? };
     let shards = shards.map_or_else(|| usual_shards(&campaign), |count| count as usize);
     let path = folder.join("Snakefile");
-    let files = [(path.clone(), rules::snakefile(&campaign, &program, shards).into_bytes())];
+    let files = [(path.clone(), rules::snakefile(&campaign, &origin, &program, shards).into_bytes())];
     let is_own = std::fs::read_to_string(&path).is_ok_and(|text| text.contains(SNAKEFILE_MARK));
     may_replace("the Snakefile", &files, force || is_own)?;
     written("write the Snakefile", &files)?;

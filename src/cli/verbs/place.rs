@@ -1,7 +1,7 @@
 //! Specs and output folders: either may be given where the other is expected.
 
 use super::{BAD_SPEC, Fault, failed};
-use crate::campaign::Campaign;
+use crate::campaign::{Campaign, with_recorded_files};
 use crate::cli::{FolderArguments, OutputArguments};
 use crate::spec::Spec;
 use crate::stages;
@@ -11,9 +11,14 @@ use std::path::{Path, PathBuf};
 /// The resolved spec in an output folder.
 const RESOLVED: &str = "campaign.toml";
 
+/// The spec that a path names: itself, or the resolved spec of an output folder.
+pub(super) fn spec_file(spec: &Path) -> PathBuf {
+    if spec.is_dir() { spec.join(RESOLVED) } else { spec.to_owned() }
+}
+
 /// The campaign of a spec in its output folder. An output folder stands for its resolved spec.
 pub(super) fn open(spec: &Path, output: &OutputArguments) -> Result<Campaign, Fault> {
-    let resolved = spec.join(RESOLVED);
+    let resolved = spec_file(spec);
     if !spec.is_dir() {
         return read(spec, output.out.as_deref(), &output.set);
     }
@@ -28,7 +33,13 @@ pub(super) fn open(spec: &Path, output: &OutputArguments) -> Result<Campaign, Fa
 }
 
 fn read(spec: &Path, out: Option<&Path>, settings: &[String]) -> Result<Campaign, Fault> {
+    let is_resolved = spec.file_name().is_some_and(|name| name == RESOLVED);
+    let folder = spec.parent().map(Path::to_owned).filter(|_| is_resolved);
     let spec = parsed(spec, settings)?;
+    let spec = match folder {
+        Some(folder) => with_recorded_files(spec, &folder),
+        None => spec,
+    };
     let dir = out.map_or_else(|| usual(&spec), Path::to_owned);
     not_the_root(&dir)?;
     stages::sampled(Campaign::new(spec, dir)).map_err(failed)
@@ -83,17 +94,15 @@ pub(super) fn not_the_root(dir: &Path) -> Result<(), Fault> {
     }
 }
 
-/// The absolute path of a folder for scripts of other programs, which read it as text.
+/// The absolute path of a file or folder for scripts of other programs, which read it as text.
 pub(super) fn told(dir: &Path) -> Result<PathBuf, Fault> {
     let refused = |why: String| failed(format!("cannot write the path {} into scripts: {why}", shown(dir)));
     let dir = std::path::absolute(dir).map_err(|error| refused(error.to_string()))?;
     let strange = |c: char| c.is_control() || matches!(c, '{' | '}' | '%' | '"' | '\\');
     match dir.to_str().map(|name| name.chars().find(|c| strange(*c))) {
         Some(None) => Ok(dir),
-        Some(Some(c)) => {
-            Err(refused(format!("its name has {c:?}\nhelp: use a folder without control characters and without {{ }} % \" \\")))
-        }
-        None => Err(refused("its name is not Unicode\nhelp: use a folder with a Unicode name".to_owned())),
+        Some(Some(c)) => Err(refused(format!("its name has {c:?}\nhelp: use a path without control characters and without {{ }} % \" \\"))),
+        None => Err(refused("its name is not Unicode\nhelp: use a path with a Unicode name".to_owned())),
     }
 }
 

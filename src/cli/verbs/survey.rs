@@ -2,6 +2,7 @@
 
 use super::causes::causes;
 use super::ending::failed_cycles;
+use super::living::Living;
 use super::place::{folder, open, open_dir, resuming};
 use super::{Fault, failed, say, submit};
 use crate::campaign::{Campaign, CycleUnit, REPORT_PAGE, STATISTICS, Stage, Standing, Survey};
@@ -12,6 +13,7 @@ use crate::stats::Caution;
 use crate::store::Check;
 use crate::text::{counted, shown, visible, wrapped};
 use serde_json::{Value, json};
+use std::collections::HashMap;
 use std::io::{IsTerminal, Write as _};
 use std::path::Path;
 use std::time::Duration;
@@ -26,7 +28,7 @@ const MOST_IDLE: usize = 2;
 const LISTED: usize = 10;
 
 /// The state of every task of a campaign, by stage.
-type Units = Vec<(Stage, Vec<(String, Standing)>)>;
+pub(super) type Units = Vec<(Stage, Vec<(String, Standing)>)>;
 
 pub(super) fn plan(spec: &Path, output: &OutputArguments) -> Result<u8, Fault> {
     let campaign = open(spec, output)?;
@@ -62,27 +64,33 @@ pub(super) fn foreseen_text(of: &Outside, all: usize) -> String {
 
 pub(super) fn status(asked: &FolderArguments, watch: bool) -> Result<u8, Fault> {
     let dir = folder(asked)?;
-    let mut idle = 0;
+    let (mut idle, mut was_living) = (0, false);
     loop {
         let campaign = open_dir("show the state of", &dir)?;
+        // Before the files: what ends in between is done.
+        let living = Living::of(&campaign);
         let survey = campaign.survey(Check::Sizes);
         let slurm = Slurm::of(&campaign, &survey);
-        let units = units(&campaign, survey);
+        let mut units = units(&campaign, survey);
+        living.mark(&campaign, &mut units);
         let mut text = if asked.json {
             let mut answer = answer(&campaign, &units);
+            answer["processes"] = json!(living.alive);
             if let Some(of_slurm) = slurm.answer() {
                 answer["slurm"] = of_slurm;
             }
             format!("{answer:#}\n")
         } else {
-            describe(&campaign, &units, |_, _| String::new())
+            describe(&campaign, &units, |stage, _| living.tasks(stage))
         };
         if !asked.json {
             if let Some(why) = campaign.spec_fault() {
                 text += &format!("warning: {why}: the spec of this folder may differ from the one that was run\n");
             }
             text += &slurm.lines();
-            text += &remaining(&units, &campaign, |open| slurm.pending(open, &campaign));
+            text += &living.lines();
+            let pending = |open| living.pending(&units, &resuming(&campaign.dir)).unwrap_or_else(|| slurm.pending(open, &campaign));
+            text += &remaining(&units, &campaign, pending);
         }
         if watch && !asked.json && std::io::stdout().is_terminal() {
             clear_screen();
@@ -92,9 +100,13 @@ pub(super) fn status(asked: &FolderArguments, watch: bool) -> Result<u8, Fault> 
             return Ok(0);
         }
         // A file system of a network may show the last files late.
-        idle = if slurm.is_idle() { idle + 1 } else { 0 };
+        was_living |= !living.alive.is_empty();
+        let ended = was_living && matches!(slurm, Slurm::None);
+        idle = if living.alive.is_empty() && (ended || slurm.is_idle()) { idle + 1 } else { 0 };
         if idle > MOST_IDLE {
-            return Err(failed("tasks are pending, but no job of the run is in the Slurm queue\nhelp: submit them with the command above"));
+            let what = if ended { "process computes them" } else { "job of the run is in the Slurm queue" };
+            let action = if ended { "resume the run" } else { "submit them" };
+            return Err(failed(format!("tasks are pending, but no {what}\nhelp: {action} with the command above")));
         }
         std::thread::sleep(EVERY);
     }
@@ -210,27 +222,41 @@ fn units(campaign: &Campaign, survey: Survey) -> Units {
 }
 
 /// The number of pending tasks.
-fn left(units: &Units) -> usize {
+pub(super) fn left(units: &Units) -> usize {
     units.iter().flat_map(|(_, units)| units).filter(|(_, standing)| !matches!(standing, Standing::Done | Standing::Failed(_))).count()
+}
+
+/// What makes the tables or the report stale.
+fn stale(campaign: &Campaign, stage: Stage) -> Option<String> {
+    (stage > Stage::Cycle).then(|| campaign.staleness(stage, &campaign.cycle_standings(Check::Sizes)))?
 }
 
 /// Reason of a state, empty for a finished task.
 fn reason(standing: &Standing) -> &str {
     standing.why().unwrap_or(match standing {
+        Standing::Running => "a process computes it",
+        Standing::Waiting => "a process will compute it",
         Standing::Planned => "not computed yet",
-        Standing::Interrupted => "continues from a checkpoint",
+        Standing::Interrupted => "continues from its last checkpoint, or starts again",
         Standing::Stale => "computed from other parameters or by another stage version",
         Standing::Done | Standing::Failed(_) | Standing::Missing(_) | Standing::Corrupt(_) => "",
     })
 }
 
 fn answer(campaign: &Campaign, units: &Units) -> Value {
+    let surfaces: HashMap<&str, &str> =
+        campaign.cycles.iter().map(|cycle| (cycle.id.as_str(), campaign.surfaces[cycle.surface].id.as_str())).collect();
+    let unit = |stage: Stage, (id, standing): &(String, Standing)| {
+        let stale = if *standing == Standing::Stale { stale(campaign, stage) } else { None };
+        let mut unit = json!({ "id": id, "state": standing.word(), "why": stale.as_deref().unwrap_or_else(|| reason(standing)) });
+        if let Some(surface) = surfaces.get(id.as_str()).filter(|_| stage == Stage::Cycle) {
+            unit["surface"] = (*surface).into();
+        }
+        unit
+    };
     let stages: Vec<_> = units
         .iter()
-        .map(|(stage, units)| {
-            let units: Vec<_> = units.iter().map(|(id, s)| json!({ "id": id, "state": s.word(), "why": reason(s) })).collect();
-            json!({ "stage": stage.word(), "units": units })
-        })
+        .map(|(stage, units)| json!({ "stage": stage.word(), "units": units.iter().map(|of| unit(*stage, of)).collect::<Vec<_>>() }))
         .collect();
     json!({ "name": campaign.spec.name, "dir": campaign.dir.display().to_string(), "stages": stages })
 }
@@ -248,7 +274,8 @@ fn describe(campaign: &Campaign, units: &Units, further: impl Fn(Stage, &[(Strin
             .collect();
         text += &format!("{:9} {}\n", stage.word(), counted.join(", "));
         for (id, standing) in units.iter().filter(|(_, s)| s.why().is_some() || *s == Standing::Stale) {
-            let why = standing.why().map_or_else(String::new, |why| format!(": {}", visible(&why.replace('\n', "; "))));
+            let why = standing.why().map(str::to_owned).or_else(|| stale(campaign, *stage));
+            let why = why.map_or_else(String::new, |why| format!(": {}", visible(&why.replace('\n', "; "))));
             let verb = if matches!(standing, Standing::Failed(_)) { "failed" } else { &format!("is {}", standing.word()) };
             text += &format!("  {id} {verb}{why}\n");
         }

@@ -5,13 +5,13 @@ pub use super::records::{Cycle, Event, Map, Step, Turning, Unreached};
 use super::regions::{Region, label};
 use super::step::Walk;
 pub use super::step::{Halfway, Settings};
-use crate::physics::PhysicsError;
+use crate::physics::{LoopPosition, PhysicsError};
 
 /// Magnitude of the approach, in ranges of the heights, beyond which a load counts as not reached and, at negative approach, the surfaces as inseparable.
 pub(super) const FARTHEST: f64 = 20.0;
 
 /// Loads to the largest of the loads and unloads from each, from the beginning or from `halfway`. After each step `keep` is given what is needed to
-/// continue from there, and `progress` the completed fraction. Load reversals that are not reached or do not separate are listed in the cycle.
+/// continue from there, and `progress` the position. Load reversals that are not reached or do not separate are listed in the cycle.
 ///
 /// # Errors
 /// Not enough memory; and if no load reversal has a result: a load that is not reached, full contact that does not open, surfaces that do not separate.
@@ -20,7 +20,7 @@ pub fn run(
     settings: &Settings,
     halfway: Option<Halfway>,
     keep: &mut (dyn FnMut(&Halfway) + Send),
-    progress: &(dyn Fn(f64) + Sync),
+    progress: &(dyn Fn(LoopPosition) + Sync),
 ) -> Result<Cycle, PhysicsError> {
     // On a thread of the pool, so that the short parallel loops are not waited for from outside.
     rayon::scope(|_| {
@@ -82,10 +82,12 @@ impl Walk<'_> {
     }
 
     /// Loads to the largest of the loads.
-    fn load(&mut self, keep: &mut dyn FnMut(&Halfway), progress: &dyn Fn(f64)) -> Result<Ended, PhysicsError> {
+    fn load(&mut self, keep: &mut dyn FnMut(&Halfway), progress: &dyn Fn(LoopPosition)) -> Result<Ended, PhysicsError> {
         if self.at.cycle.steps.is_empty() {
             let first = self.attempt(self.at.state.approach, self.settings.accuracy)?;
             self.accept(first);
+            progress(self.position(0.0, false));
+            keep(&self.at);
         }
         let farthest = self.farthest();
         let last = self.settings.max_loads.last().copied().unwrap_or(0.0);
@@ -101,10 +103,18 @@ impl Walk<'_> {
             } else if approach > farthest {
                 return Ok(Some(Unreached::Load { reached: load, approach }));
             }
-            progress((0.5 * load / last).clamp(0.0, 0.5));
+            // Adhesion pulls first: the load falls before it rises.
+            let lowest = self.at.cycle.steps.iter().map(|step| step.totals.load).fold(0.0, f64::min);
+            progress(self.position((0.5 * (load - lowest) / (last - lowest)).clamp(0.0, 0.5), false));
             keep(&self.at);
         }
         Ok(None)
+    }
+
+    /// Position on the loop, of which a fraction is done.
+    fn position(&self, done: f64, unloading: bool) -> LoopPosition {
+        let load = self.at.last.totals.load / self.problem.half_space.points() as f64;
+        LoopPosition { done, steps: self.at.cycle.steps.len(), unloading, load }
     }
 
     /// Magnitude of the approach beyond which the search for a load or for the last separation ends \[dx\]: attraction of a range begins and ends at the
@@ -149,7 +159,7 @@ impl Walk<'_> {
     }
 
     /// Unloads from a reversal to the last separation.
-    fn unload(&mut self, reversal: usize, keep: &mut dyn FnMut(&Halfway), progress: &dyn Fn(f64)) -> Result<Ended, PhysicsError> {
+    fn unload(&mut self, reversal: usize, keep: &mut dyn FnMut(&Halfway), progress: &dyn Fn(LoopPosition)) -> Result<Ended, PhysicsError> {
         let Some(turning) = self.at.cycle.turning.get(reversal) else { return Ok(None) };
         let begins = self.at.cycle.steps.last().is_none_or(|step| step.reversal != Some(reversal));
         let full = turning.last.totals.contact.max(1) as f64;
@@ -169,7 +179,8 @@ impl Walk<'_> {
             }
             self.advance(-1.0, None)?;
             self.keep_tensest();
-            progress(0.5 + 0.5 * (reversal as f64 + 1.0 - (self.at.last.totals.contact as f64 / full).min(1.0)) / branches);
+            let done = 0.5 + 0.5 * (reversal as f64 + 1.0 - (self.at.last.totals.contact as f64 / full).min(1.0)) / branches;
+            progress(self.position(done, true));
             keep(&self.at);
         }
         if let Some((_, map, found)) = self.at.tensest.take() {

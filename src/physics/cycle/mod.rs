@@ -9,10 +9,10 @@ mod reversal;
 pub mod soundness;
 mod table;
 
-use crate::physics::PhysicsError;
 use crate::physics::contact::problem::Problem;
 use crate::physics::contact::state::State;
 use crate::physics::path::{EquilibriumPath, PathCheckpoint, is_multiple};
+use crate::physics::{LoopPosition, PhysicsError};
 pub(super) use constants::CONSTANTS;
 use recorder::Recorder;
 use reversal::retrace;
@@ -41,11 +41,11 @@ pub struct Halfway {
 
 /// Loads to the largest of the loads, and unloads from each.
 ///
-/// `progress` receives the finished fraction, 0 to 1. Loads that are not reached, and those whose unloading fails, are listed in the cycle.
+/// `progress` receives the position that is reached. Loads that are not reached, and those whose unloading fails, are listed in the cycle.
 ///
 /// # Errors
 /// If no load has a result: a load that is not reached within 100 rms heights, or a mean penetration without an equilibrium.
-pub fn run(problem: &Problem, settings: &Settings, progress: &dyn Fn(f64)) -> Result<Cycle, PhysicsError> {
+pub fn run(problem: &Problem, settings: &Settings, progress: &dyn Fn(LoopPosition)) -> Result<Cycle, PhysicsError> {
     run_from(problem, settings, None, &mut |_| {}, progress)
 }
 
@@ -60,7 +60,7 @@ pub fn run_from(
     settings: &Settings,
     halfway: Option<Halfway>,
     keep: &mut dyn FnMut(&Halfway),
-    progress: &dyn Fn(f64),
+    progress: &dyn Fn(LoopPosition),
 ) -> Result<Cycle, PhysicsError> {
     let all = settings.max_loads.len();
     let begin = || Halfway { cycle: Cycle::default(), branches: 0, leg: None, unreached: Vec::new() };
@@ -91,12 +91,17 @@ pub fn run_from(
 }
 
 /// Continues the branch in progress to its next checkpoint, or to its end and returns `None`.
-fn go_on(problem: &Problem, settings: &Settings, halfway: &mut Halfway, progress: &dyn Fn(f64)) -> Result<Option<Leg>, PhysicsError> {
+fn go_on(
+    problem: &Problem,
+    settings: &Settings,
+    halfway: &mut Halfway,
+    progress: &dyn Fn(LoopPosition),
+) -> Result<Option<Leg>, PhysicsError> {
     let all = settings.max_loads.len();
     let Halfway { cycle, branches, leg, .. } = halfway;
     let Some(k) = branches.checked_sub(1) else {
         let leg = leg.take().unwrap_or_else(|| Leg::loading(problem, settings));
-        return load(problem, settings, leg, cycle, &|done| progress(0.5 * done));
+        return load(problem, settings, leg, cycle, &|at| progress(LoopPosition { done: 0.5 * at.done, ..at }));
     };
     let (max_load, Some((_, state))) = (settings.max_loads[k], cycle.turning.get(k)) else { return Ok(None) };
     let rests = if problem.is_adhesionless() {
@@ -104,7 +109,9 @@ fn go_on(problem: &Problem, settings: &Settings, halfway: &mut Halfway, progress
         None
     } else {
         let leg = leg.take().unwrap_or_else(|| Leg::unloading(problem, settings, Some(max_load), state.clone()));
-        unload(problem, settings, leg, cycle, &|done| progress(0.5 + 0.5 * (k as f64 + done) / all as f64))?
+        unload(problem, settings, leg, cycle, &|at| {
+            progress(LoopPosition { done: 0.5 + 0.5 * (k as f64 + at.done) / all as f64, ..at });
+        })?
     };
     if rests.is_none() {
         check_energy(cycle, k)?;
@@ -215,7 +222,13 @@ impl Leg {
 }
 
 /// Loads to the next checkpoint, or to the largest load and returns `None`.
-fn load(problem: &Problem, settings: &Settings, leg: Leg, cycle: &mut Cycle, progress: &dyn Fn(f64)) -> Result<Option<Leg>, PhysicsError> {
+fn load(
+    problem: &Problem,
+    settings: &Settings,
+    leg: Leg,
+    cycle: &mut Cycle,
+    progress: &dyn Fn(LoopPosition),
+) -> Result<Option<Leg>, PhysicsError> {
     let Leg { mut recorder, carried } = leg;
     let from = carried.state.approach_m;
     let last = settings.max_loads.last().copied().unwrap_or(0.0);
@@ -230,7 +243,7 @@ fn load(problem: &Problem, settings: &Settings, leg: Leg, cycle: &mut Cycle, pro
         if approach_m > 100.0 * problem.rms_height_m {
             return Err(PhysicsError::LoadNotReached { wanted: *max_load, reached, approach_m });
         }
-        progress((reached / last).clamp(0.0, 1.0));
+        progress(LoopPosition { done: (reached / last).clamp(0.0, 1.0), steps: cycle.steps.len(), unloading: false, load: reached });
         Ok(if settings.rests(path, from) { Next::Rest } else { Next::On })
     })?;
     Ok(left.map(|carried| Leg { recorder, carried }))
@@ -242,7 +255,7 @@ fn unload(
     settings: &Settings,
     leg: Leg,
     cycle: &mut Cycle,
-    progress: &dyn Fn(f64),
+    progress: &dyn Fn(LoopPosition),
 ) -> Result<Option<Leg>, PhysicsError> {
     let Leg { mut recorder, carried } = leg;
     let from = carried.state.approach_m;
@@ -250,7 +263,8 @@ fn unload(
     let left = travel(problem, carried, None, &mut |path| {
         let full = *full.get_or_insert(path.totals().area_m2);
         recorder.grid_points(settings, path, cycle)?;
-        progress(1.0 - path.totals().area_m2 / full);
+        let load = path.totals().load_n / problem.load_unit_n();
+        progress(LoopPosition { done: 1.0 - path.totals().area_m2 / full, steps: cycle.steps.len(), unloading: true, load });
         if path.state().contacts.is_empty() {
             if recorder.lacks_events(path) {
                 // The last spot has left contact between two grid points.

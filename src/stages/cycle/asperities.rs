@@ -43,11 +43,11 @@ pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> R
     let problem = problem(params, scale(campaign, &campaign.surfaces[unit.surface])?, &summits)?;
     step_count::bound(&problem, &summits, params)?;
     let settings = settings(params, summits.len());
-    let progress = Progress::of(watch);
+    let progress = Progress::of(watch, &unit.id);
     let mut checkpoints = Checkpoints::of(campaign, unit, watch);
     let halfway: Option<Halfway> = checkpoints.read();
     let mut keep = |halfway: &Halfway| checkpoints.keep(halfway);
-    let outcome = cycle::run_from(&problem, &settings, halfway, &mut keep, &|done| progress.reached(done));
+    let outcome = cycle::run_from(&problem, &settings, halfway, &mut keep, &|at| progress.reached(at));
     progress.end();
     let cycle = outcome?;
     let of = Identity::of(campaign, unit);

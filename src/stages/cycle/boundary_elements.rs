@@ -23,7 +23,7 @@ pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> R
     let params = &campaign.cases[unit.case].case.params;
     let Setup { problem, settings, units, summits } = setup(campaign, unit)?;
     let dir = campaign.cycle_dir(unit);
-    let progress = Progress::of(watch);
+    let progress = Progress::of(watch, &unit.id);
     let mut checkpoints = Checkpoints::of(campaign, unit, watch);
     let kept: Option<(Halfway, Counts)> = checkpoints.read();
     let (halfway, mut counts) = kept.map_or((None, Counts::new()), |(halfway, counts)| (Some(halfway), counts));
@@ -31,7 +31,7 @@ pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> R
         counts.push((halfway.steps().len() - 1, summit_counts(halfway.labels(), &summits)));
         checkpoints.keep(&(halfway, &counts));
     };
-    let outcome = cycle::run(&problem, &settings, halfway, &mut keep, &|done| progress.reached(done));
+    let outcome = cycle::run(&problem, &settings, halfway, &mut keep, &|at| progress.reached(at));
     progress.end();
     let mut cycle = outcome.map_err(|error| in_si(error, &units))?;
     let loads = &params.cycle.max_load;

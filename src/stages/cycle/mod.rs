@@ -19,6 +19,7 @@ use super::failure::in_the_way;
 use super::runner::{Context, Tasks};
 use super::{StageError, Watch};
 use crate::campaign::{Campaign, CycleUnit, Stage, Standing, SurfaceUnit, Unit};
+use crate::physics::LoopPosition;
 use crate::store::commit::Written;
 use crate::store::{Frame, parquet, read_halfway, write_halfway};
 use serde::Serialize;
@@ -122,16 +123,23 @@ fn effort_of(counts: &[(&str, u64)]) -> Map<String, Value> {
 /// Progress of a cycle, of which the watch is given the increments.
 struct Progress<'a> {
     watch: &'a dyn Watch,
+    id: &'a str,
     reached: Mutex<f64>,
 }
 
 impl<'a> Progress<'a> {
-    fn of(watch: &'a dyn Watch) -> Self {
-        Self { watch, reached: Mutex::new(0.0) }
+    fn of(watch: &'a dyn Watch, id: &'a str) -> Self {
+        Self { watch, id, reached: Mutex::new(0.0) }
+    }
+
+    /// Reports the position on the loop.
+    fn reached(&self, at: LoopPosition) {
+        self.watch.position(self.id, &at);
+        self.done(at.done);
     }
 
     /// Reports the finished part of the cycle, from 0 to 1.
-    fn reached(&self, done: f64) {
+    fn done(&self, done: f64) {
         let mut reached = self.reached.lock().unwrap_or_else(PoisonError::into_inner);
         let done = done.max(*reached);
         self.watch.progress(Stage::Cycle, done - *reached);
@@ -140,7 +148,7 @@ impl<'a> Progress<'a> {
 
     /// Reports the rest: a failed case leaves the bar as a finished one does.
     fn end(&self) {
-        self.reached(1.0);
+        self.done(1.0);
     }
 }
 

@@ -2,7 +2,6 @@
 
 use super::SMALL;
 use crate::bench::{Bench, SPEC, code, files, skip, stderr, stdout};
-use crate::python;
 use hysteron::campaign::{Campaign, Stage};
 use hysteron::engines::ro_crate::licence;
 use hysteron::engines::slurm::{LEAD_S, Order, Queue, Sent, jobs, lead_s, script, time_limit_s};
@@ -412,33 +411,6 @@ fn e2e_slurm_does_what_run_does() {
     assert!(results(&bench) == results(&alone), "other bytes than of a run");
     let nothing = slurm.run(bench.command("submit").args(["--engine", "slurm"]));
     assert!(stdout(&nothing).contains("everything is done"), "{}", stdout(&nothing));
-}
-
-#[test]
-fn e2e_snakemake_does_what_run_does() {
-    let Some(program) = python::environment("snakemake", &["snakemake==9.*"]).map(|folder| folder.join("bin/snakemake")) else { return };
-    let alone = Bench::new(SPEC);
-    assert_eq!(code(&alone.verb("run", &[])), 0);
-    let bench = Bench::new(SPEC);
-    let written = Command::new(env!("CARGO_BIN_EXE_hysteron"))
-        .args(["export", "snakemake", "--shards", "3", "--out"])
-        .arg(bench.out())
-        .arg(bench.spec())
-        .output()
-        .unwrap();
-    assert_eq!(code(&written), 0, "{}", stderr(&written));
-    let run = || {
-        let mut command = Command::new(&program);
-        command.arg("--snakefile").arg(bench.out().join("snakemake/Snakefile")).args(["--cores", "2"]).current_dir(bench.folder.path());
-        let path = format!("{}:{}", program.parent().unwrap().display(), std::env::var("PATH").unwrap_or_default());
-        command.env("PATH", path).output().unwrap()
-    };
-    let first = run();
-    assert!(first.status.success(), "{}", stderr(&first));
-    let results = |bench: &Bench| files(&bench.out()).into_iter().filter(|(path, _)| !path.starts_with("snakemake")).collect::<Vec<_>>();
-    assert!(results(&bench) == results(&alone), "other bytes than of a run");
-    let again = run();
-    assert!(again.status.success() && (stderr(&again) + &stdout(&again)).contains("Nothing to be done"), "{}", stderr(&again));
 }
 
 #[test]

@@ -193,9 +193,9 @@ fn law_what_failed_is_another_table_than_what_was_not_tried() {
         })
         .into();
     assert_eq!(keys.len(), 4, "the table cycles holds the error message");
-    assert_eq!(one.failure_in_tables(&why).as_deref(), Some("a \"quoted\" reason"));
+    assert_eq!(one.failure_in_tables(&one.cycles[0], &why).as_deref(), Some("a \"quoted\" reason"));
     // A table holds no path of the machine.
-    one.spec.files.insert("/data/here/a scan.npy".to_owned(), "0".repeat(64));
+    one.surfaces[0].params.file = "/data/here/a scan.npy".to_owned();
     let unread = Standing::Failed("cannot import the surface /data/here/a scan.npy: it is empty".to_owned());
-    assert_eq!(one.failure_in_tables(&unread).as_deref(), Some("cannot import the surface a scan.npy: it is empty"));
+    assert_eq!(one.failure_in_tables(&one.cycles[0], &unread).as_deref(), Some("cannot import the surface a scan.npy: it is empty"));
 }

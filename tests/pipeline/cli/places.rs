@@ -66,7 +66,7 @@ fn e2e_a_path_in_a_spec_is_found_from_its_folder() {
     let run = hysteron(&bench, &["run", "specs/x.toml", "--until", "generate", "--out", "out"]);
     assert_eq!(code(&run), 0, "{}", stderr(&run));
     let beside = fs::read_to_string(bench.out().join("campaign.toml")).unwrap();
-    assert!(beside.contains("file = \"specs/scan.txt\"\n") && beside.contains("\n[files]\n\"specs/scan.txt\" = \""), "{beside}");
+    assert!(beside.contains("file = \"../specs/scan.txt\"\n") && beside.contains("\n[files]\n\"../specs/scan.txt\" = \""), "{beside}");
     // The run goes on from its own spec, and from the folder of the spec.
     let state = |place: &Path, arguments: &[&str]| {
         let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_hysteron"));
@@ -104,10 +104,11 @@ fn e2e_a_sweep_over_files_is_found_too() {
     let run = hysteron(&bench, &["run", "specs/x.toml", "--until", "generate", "--out", "out"]);
     assert_eq!(code(&run), 0, "{}", stderr(&run));
     let resolved = fs::read_to_string(bench.out().join("campaign.toml")).unwrap();
-    assert!(resolved.contains("surface.file = [\"specs/a.txt\", \"b.txt\"]"), "{resolved}");
+    assert!(resolved.contains("surface.file = [\"../specs/a.txt\", \"../b.txt\"]"), "{resolved}");
     assert_eq!(files(&bench.out().join("surfaces")).len(), 2);
     // The resolved spec has the hashes: it is read without looking at the files.
     fs::remove_file(at("specs/a.txt")).unwrap();
     let spec = Spec::read(bench.out().join("campaign.toml")).unwrap();
-    assert_eq!(spec.cases.iter().map(|case| case.params.surface.file.as_str()).collect::<Vec<_>>(), ["specs/a.txt", "b.txt"]);
+    let names = ["specs/a.txt", "b.txt"].map(|name| bench.folder.path().canonicalize().unwrap().join(name).display().to_string());
+    assert_eq!(spec.cases.iter().map(|case| case.params.surface.file.clone()).collect::<Vec<_>>(), names);
 }
