@@ -125,7 +125,7 @@ impl Campaign {
     fn foreign_spec(&self) -> Option<PathBuf> {
         let path = self.dir.join("campaign.toml");
         let is_named = !matches!(read_receipt(&self.spec_receipt_path()), Found::Nothing);
-        let is_this = || std::fs::read_to_string(&path).is_ok_and(|text| text == self.spec.to_toml());
+        let is_this = || std::fs::read_to_string(&path).is_ok_and(|text| text == self.resolved_toml());
         (path.is_file() && !is_named && !is_this()).then_some(path)
     }
 
