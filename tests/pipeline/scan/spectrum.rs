@@ -46,7 +46,7 @@ fn e2e_a_scan_without_long_waves_has_its_hurst_exponent_and_both_cuts() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("scan.npy"), bytes(&field(64, [2.0, 16.0], 1.0))).unwrap();
     // Periodic and not, and with cut-offs within and beyond the band.
-    for more in [&["--periodic"][..], &[], &["--periodic", "--points", "3"], &["--points", "12"]] {
+    for more in [&["--periodic"][..], &[], &["--periodic", "--points", "4"], &["--points", "12"]] {
         let answer = json(folder.path(), more);
         let fit = &answer["self_affine"];
         let number = |name: &str| fit[name].as_f64().unwrap_or(f64::NAN);
@@ -74,11 +74,11 @@ fn e2e_ridges_have_a_warning_and_no_expected_ratios() {
     let folder = tempfile::tempdir().unwrap();
     let ridges = field(96, [2.0, 12.0], 4.0);
     fs::write(folder.path().join("scan.npy"), bytes(&ridges)).unwrap();
-    fs::write(folder.path().join("turned.npy"), bytes(&ridges.t().as_standard_layout().to_owned())).unwrap();
     let output = import(folder.path(), &[&["scan.npy", "--periodic"], &TOLD[..]].concat());
     let words = stdout(&output);
     assert!(words.contains("\nwarning: texture: aspect ratio ") && words.contains("(limit 2)"), "{words}");
-    assert!(words.contains("smallest at 90° from x to y"), "{words}");
+    // Along y, within a degree.
+    assert!([89, 90, 91].iter().any(|degrees| words.contains(&format!("smallest at {degrees}° from x to y"))), "{words}");
     assert!(words.lines().all(|line| line.chars().count() <= 80), "{words}");
     let stored = read_header(&folder.path().join("scan.h5")).unwrap().measured.unwrap().texture.unwrap();
     assert!(stored.slope_ratio > 3.0 && stored.aspect_ratio_str < 0.5, "{stored:?}");
@@ -89,7 +89,7 @@ fn e2e_ridges_have_a_warning_and_no_expected_ratios() {
     assert!(isotropic["texture_aspect"].as_f64().unwrap() < 1.3, "{isotropic}");
     // In a run: columns, a warning, and no expected ratio.
     let spec = format!(
-        "name = \"ridges\"\n[surface]\nfile = {:?}\nperiodic = true\n[material]\ncontact_modulus_pa = 1e9\nwork_of_adhesion_j_m2 = 0.05\n\
+        "name = \"ridges\"\n[surface]\nfile = {:?}\nperiodic = true\n[material]\ncontact_modulus_pa = 5e9\nwork_of_adhesion_j_m2 = 0.05\n\
          [model]\njump_in = \"jkr\"\n[cycle]\nmax_load = [0.002]\napproach_step = 0.1\n",
         folder.path().join("scan.h5").display().to_string()
     );
