@@ -256,7 +256,8 @@ fn corrections(params: &SurfaceParams) -> Vec<(&'static str, Value)> {
     let SurfaceParams { outliers, align_rows, fast_axis, tip_radius_m, .. } = params;
     let made = [
         (*outliers, "outliers", json!(outliers)),
-        (*align_rows, "align_rows", json!(fast_axis)),
+        (*align_rows, "align_rows", json!(align_rows)),
+        (*align_rows, "fast_axis", json!(fast_axis)),
         (*tip_radius_m > 0.0, "tip_radius_m", json!(tip_radius_m)),
     ];
     made.into_iter().filter_map(|(is_made, name, value)| is_made.then_some((name, value))).collect()

@@ -172,7 +172,9 @@ fn e2e_columns_of_the_guide_exist() {
 fn law_the_stage_of_a_key_reads_it() {
     let spec = |text: &str| Spec::parse(text, "x.toml").unwrap_or_else(|errors| panic!("{errors}"));
     let digest = "0".repeat(64);
-    let measured = format!("name = \"x\"\nsurface.file = \"a.h5\"\nmodel.boundary = \"isolated\"\nfiles = {{ \"a.h5\" = \"{digest}\" }}");
+    let corrected = "surface.outliers = true\nsurface.align_rows = true\nsurface.tip_radius_m = 1e-8";
+    let measured =
+        format!("name = \"x\"\nsurface.file = \"a.h5\"\n{corrected}\nmodel.boundary = \"isolated\"\nfiles = {{ \"a.h5\" = \"{digest}\" }}");
     let elements = "name = \"x\"\nsurface.magnification = 8\nmodel.method = \"boundary_elements\"";
     let campaigns = ["name = \"x\"", &measured, elements].map(|text| Campaign::new(spec(text), PathBuf::from("x")));
     let preimages = campaigns.map(|campaign| campaign.cycle_preimages(&campaign.cycles[0]));
