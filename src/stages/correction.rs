@@ -11,7 +11,7 @@ use ndarray::{Array2, ArrayView2};
 use std::path::Path;
 
 /// Largest reliability cut-off of a tip, as a fraction of the side of the square.
-const LARGEST_CUTOFF: f64 = 0.25;
+const LARGEST_CUTOFF: f64 = 0.5;
 
 /// The surface after corrections and preprocessing of heights \[m\], and its artefacts.
 pub(super) fn corrected(
