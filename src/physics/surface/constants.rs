@@ -1,6 +1,8 @@
 //! Limits of measured surfaces.
 
-use super::measured::{FEWEST_POINTS, MAX_MISSING_FRACTION, MAX_SPACING_RATIO, MOST_POINTS, SPACING_TOLERANCE};
+use super::continuation::LEAST_MARGIN;
+use super::measured::{FEWEST_POINTS, LEAST_CURVATURE_SHARE, MAX_MISSING_FRACTION, MAX_SPACING_RATIO, MOST_POINTS, SPACING_TOLERANCE};
+use super::measured_summits::{RIDGE, ROUNDING_OF_RIPPLES};
 use super::outliers::{CONTRAST, LARGEST_GROUP, OUTLIER_LIMIT};
 use super::rows::{COMMON, PERIODIC};
 use super::self_affine::{FEWEST, FEWEST_BEYOND, MOST_SCATTER, SHARE};
@@ -67,5 +69,33 @@ pub(in crate::physics) const CONSTANTS: &[Constant] = &[
         "of `h_rms²`",
         "A band that holds less is leakage or rounding, and no data.",
         "self_affine",
+    ),
+    Constant::new(
+        "margin of a non-periodic scan",
+        &[LEAST_MARGIN as f64],
+        "points",
+        "Minimum, else half a cut-off wavelength; asperities closer to an edge are left out.",
+        "continuation",
+    ),
+    Constant::new(
+        "curvature of rounding",
+        &[ROUNDING_OF_RIPPLES],
+        "of the height range times `(2π/λc)²`",
+        "A maximum whose smaller principal curvature is below is rejected.",
+        "measured_summits",
+    ),
+    Constant::new(
+        "curvature of a ridge",
+        &[RIDGE],
+        "of the larger principal curvature",
+        "A maximum whose smaller principal curvature is below is rejected.",
+        "measured_summits",
+    ),
+    Constant::new(
+        "share of the shortest octave",
+        &[LEAST_CURVATURE_SHARE],
+        "of the mean square Laplacian",
+        "Wavelengths that hold less do not count as shortest wavelengths.",
+        "measured",
     ),
 ];

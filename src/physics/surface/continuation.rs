@@ -11,7 +11,7 @@ use ndarray::{Array2, ArrayView2};
 use rayon::prelude::*;
 
 /// Minimum distance from the edges, in points, where derivatives and asperities are taken.
-const LEAST_MARGIN: usize = 4;
+pub(super) const LEAST_MARGIN: usize = 4;
 
 /// Points along each edge whose derivatives and asperities are excluded: half a cut-off wavelength, at least four points.
 ///

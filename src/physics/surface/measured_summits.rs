@@ -10,10 +10,10 @@ use std::f64::consts::TAU;
 /// Curvature attributed to rounding: that of ripples with the cut-off wavelength and this amplitude, relative to the range of heights.
 ///
 /// It is below the resolution of single precision.
-const ROUNDING_OF_RIPPLES: f64 = 2e-8;
+pub(super) const ROUNDING_OF_RIPPLES: f64 = 2e-8;
 
 /// Smaller over larger principal curvature below which a maximum is one of a ridge, due to rounding and to the rule for the edges.
-const RIDGE: f64 = 1e-3;
+pub(super) const RIDGE: f64 = 1e-3;
 
 /// Summits of a prepared surface, and the number excluded at the edges of a non-periodic one.
 ///

@@ -4,6 +4,7 @@
 
 use crate::physics::PhysicsError;
 use crate::physics::surface::continuation::laplacian;
+use crate::physics::surface::measured::LEAST_CURVATURE_SHARE;
 use crate::physics::surface::modes::Field;
 use crate::physics::surface::periodogram::windowed;
 use crate::physics::surface::spectrum::Spectrum;
@@ -75,11 +76,6 @@ pub fn realised_flattening(spectrum: &Spectrum, seed: &[u8; 32], contact_modulus
     });
     Flattening { whole_j_m2: unit * whole, octave_j_m2: unit * octave }
 }
-
-/// Share of the mean square Laplacian that an octave of wavelengths must hold to affect the asperities.
-///
-/// Without an octave that holds less, the rms curvature is lower by up to 5 %.
-pub const LEAST_CURVATURE_SHARE: f64 = 0.1;
 
 /// Shortest wavelength of heights \[m\] on a square of side L \[m\] after a low-pass filter with a cut-off \[m\].
 ///
