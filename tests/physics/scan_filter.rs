@@ -49,7 +49,7 @@ fn cap(n: usize, base: f64, radius: f64) -> Array2<f64> {
 
 #[test]
 fn val_half_of_the_amplitude_remains_at_the_cut_off() {
-    let n = 128;
+    let n = 64;
     for (points, wavelength) in [(8.0, 8.0), (8.0, 16.0), (16.0, 32.0), (4.0, 8.0), (16.0, 16.0)] {
         let q = TAU / wavelength;
         // 2^(−(λc/λ)²); sampling adds 2^(−(λc (1 − 1/λ))²) to it, 2e-3 at 4 points and 1e-12 at 8.
@@ -57,9 +57,10 @@ fn val_half_of_the_amplitude_remains_at_the_cut_off() {
         let along = field(n, |x, _| (q * x + 0.4).cos());
         let across = field(n, |_, y| (q * y + 0.4).cos());
         for heights in [along, across] {
-            let (periodic, _) = taken(&heights, &treatment(Filter::Gaussian, points, true));
-            let (isolated, _) = taken(&heights, &Treatment { detrend: Detrend::Mean, ..treatment(Filter::Gaussian, points, false) });
-            let inner = s![n / 2 - 8..n / 2 + 8, n / 2 - 8..n / 2 + 8];
+            let filtered = |treatment: Treatment| prepare(heights.clone(), [1.0, 1.0], &treatment).unwrap();
+            let periodic = filtered(treatment(Filter::Gaussian, points, true));
+            let isolated = filtered(Treatment { detrend: Detrend::Mean, ..treatment(Filter::Gaussian, points, false) });
+            let inner = s![n / 2 - 1..n / 2 + 1, n / 2 - 1..n / 2 + 1];
             let worst = |filtered: &Array2<f64>| {
                 let off = &filtered.slice(inner) - &(transmission * &heights.slice(inner));
                 let mean = off.mean().unwrap();
@@ -185,8 +186,9 @@ fn law_steps_ridges_and_planes_that_meet_have_no_asperity() {
     {
         for points in [4.0, 8.0, 16.0] {
             let (prepared, list) = taken(&heights, &treatment(Filter::Gaussian, points, false));
-            // Levelling by a plane tilts plateaus: a corner of three of them may be a maximum.
-            assert!(list.len() <= usize::from(name == "corner"), "{name} {points}: {list:?}");
+            // Levelling by a plane tilts plateaus: a corner of three of them may be a maximum. An oblique ridge ends at two edges.
+            let most = if name == "corner" { 1 } else { 2 * usize::from(name == "oblique") };
+            assert!(list.len() <= most, "{name} {points}: {list:?}");
             assert!(highest(&prepared.heights_m) <= highest(&heights) - heights.mean().unwrap() + 1.0);
             assert_eq!(prepared.overshoot_m, 0.0, "{name}");
         }
