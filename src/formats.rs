@@ -58,8 +58,12 @@ pub struct Foreign {
 enum Way {
     /// The Python package SurfaceTopography reads it.
     Python,
+    /// The same, with a unit that it may not write as NetCDF.
+    PythonText,
     /// Gwyddion reads it.
     Gwyddion,
+    /// A video of JPK, frames of which the Python package AFMReader reads.
+    JpkVideo,
     /// An archive of NumPy arrays.
     Npz,
     /// A compressed file: the command that decompresses it.
@@ -95,7 +99,7 @@ const fn said(name: &'static str, help: &'static str) -> Foreign {
     Foreign { name, way: Way::Said(help) }
 }
 
-const SUR: Foreign = python("SUR (Digital Surf)");
+const SUR: Foreign = Foreign { name: "SUR (Digital Surf)", way: Way::PythonText };
 const NANOSCOPE: Foreign = python("Nanoscope (Bruker, Digital Instruments)");
 const NID: Foreign = python("NID (Nanosurf)");
 const SDF: Foreign = python("SDF (ISO 25178-71)");
@@ -170,6 +174,14 @@ const MAGIC: [(&[u8], Foreign); 48] = [
     ),
 ];
 
+/// HDF5 in the layout of JPK: datasets with a column for each frame.
+const JPK_VIDEO: Foreign = Foreign { name: "h5-jpk (Bruker JPK video)", way: Way::JpkVideo };
+/// Surfaces of contact.engineering or of SurfaceTopography in a zip archive.
+const CONTAINER: Foreign = said(
+    "a container of contact.engineering (zip archive with several measurements)",
+    "unpack it (unzip FILE) and import one of the NetCDF files (*.nc) or data files in it",
+);
+
 /// Extensions of formats that are not read and have no first bytes of their own, or share them with others.
 const EXTENSIONS: [(&str, Foreign); 22] = [
     ("ibw", python("IBW (Igor, Asylum Research)")),
@@ -226,8 +238,24 @@ fn archive(first_bytes: &[u8]) -> Found {
         Found::Foreign(Foreign { name: "npz (NumPy archive)", way: Way::Npz })
     } else if name.starts_with(b"[Content_Types].xml") || name.starts_with(b"xl/") {
         Found::Foreign(EXCEL)
+    } else if is_of_container(name) {
+        Found::Foreign(CONTAINER)
     } else {
         Found::Scan(Format::X3p)
+    }
+}
+
+/// True for a part of a container of contact.engineering: its metadata, or a measurement as NetCDF.
+pub(crate) fn is_of_container(name: &[u8]) -> bool {
+    [&b"meta.yml"[..], b"index.json", b"meta.json", b"metadata.json"].contains(&name) || name.ends_with(b".nc")
+}
+
+/// Refusal of a container of contact.engineering, whose parts may come in any order.
+#[must_use]
+pub(crate) fn container() -> String {
+    match CONTAINER.way {
+        Way::Said(help) => format!("{}\nhelp: {help}", CONTAINER.name),
+        _ => CONTAINER.name.to_owned(),
     }
 }
 
@@ -245,6 +273,10 @@ pub fn recognize(path: &Path) -> io::Result<Result<Found, Refusal>> {
     let found = detect(&first);
     let shared = found.is_none() || [TIFF, OLE].into_iter().any(|of| found == Some(Found::Foreign(of)));
     let extension = path.extension().filter(|_| shared && !first.is_empty());
+    let is_video = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("h5-jpk"));
+    if found == Some(Found::Hdf5) && is_video {
+        return Ok(Err(JPK_VIDEO.refusal(path)));
+    }
     let named = extension.and_then(|ending| EXTENSIONS.iter().find(|(known, _)| ending.eq_ignore_ascii_case(known)));
     Ok(match named.map(|(_, foreign)| Found::Foreign(*foreign)).or(found) {
         Some(Found::Foreign(foreign)) => Err(foreign.refusal(path)),
@@ -260,7 +292,7 @@ fn unknown(first_bytes: &[u8]) -> Refusal {
         bytes if bytes.iter().all(|byte| *byte == 0) => "unknown file format: the file begins with zeros",
         _ => "unknown file format",
     };
-    let help = "formats that are read: HDF5, NetCDF-3, X3P, npy, text; SurfaceTopography (Python) and Gwyddion convert others";
+    let help = "formats that are read: HDF5, NetCDF, X3P, npy, text; SurfaceTopography (Python) and Gwyddion convert others";
     Refusal { problem: what.to_owned(), help: help.to_owned() }
 }
 
@@ -272,6 +304,20 @@ impl Foreign {
                 "convert it in Python (pip install SurfaceTopography) and import the result:\n    \
                  from SurfaceTopography.IO import open_topography\n    \
                  open_topography({file}).topography().to_netcdf({nc})"
+            ),
+            // NetCDF-3 holds ASCII alone, and a unit in UTF-8, which SUR has no place for, is none; a text holds it.
+            Way::PythonText => format!(
+                "convert it in Python (pip install SurfaceTopography) and import the result:\n    \
+                 from SurfaceTopography.IO import open_topography\n    \
+                 open_topography({file}).topography().to_matrix({})",
+                quoted(&path.with_extension("txt"))
+            ),
+            Way::JpkVideo => format!(
+                "save a frame in Python (pip install AFMReader) and import the result with --unit nm:\n    \
+                 import numpy\n    from AFMReader.h5_jpk import load_h5jpk\n    \
+                 frames, pixel_nm, _ = load_h5jpk({file}, channel=\"height_trace\", flip_image=False)\n    \
+                 numpy.save({}, frames[0]); print(\"--pixel-m\", 1e-9 * pixel_nm)",
+                quoted(&path.with_extension("npy"))
             ),
             Way::Gwyddion => "open it in Gwyddion and save it as text (ASCII data matrix, with the heading)".to_owned(),
             Way::Npz => format!(

@@ -27,6 +27,47 @@ pub fn metres(unit: &str) -> Option<f64> {
     })
 }
 
+/// A number and the unit behind it, as in "10 µm"; nothing if the text does not begin with a number.
+///
+/// A comma is a decimal comma, except before exactly three digits, where it may separate thousands.
+#[must_use]
+pub fn quantity(text: &str) -> Option<(f64, Option<&str>)> {
+    let text = text.trim();
+    let digits = |sign: char| sign.is_ascii_digit() || "+-.,".contains(sign);
+    let mut end = text.find(|sign: char| !digits(sign)).unwrap_or(text.len());
+    // An exponent: e, a sign or none, and digits; the E of a unit is none.
+    if let Some(exponent) = text.get(end..).and_then(|rest| rest.strip_prefix(['e', 'E'])) {
+        let signs = exponent.len() - exponent.trim_start_matches(['+', '-']).len();
+        let count = exponent.bytes().skip(signs).take_while(u8::is_ascii_digit).count();
+        if signs <= 1 && count > 0 {
+            end += 1 + signs + count;
+        }
+    }
+    let (number, unit) = text.split_at_checked(end)?;
+    let number = match number.split_once(',') {
+        Some((_, rest)) if rest.len() == 3 && rest.bytes().all(|byte| byte.is_ascii_digit()) => return None,
+        Some(_) if number.contains('.') => return None,
+        _ => number.replace(',', "."),
+    };
+    let unit = unit.trim_matches(['[', ']', '(', ')', ' ', '\t']);
+    let value: f64 = number.parse().ok()?;
+    value.is_finite().then_some((value, Some(unit).filter(|unit| !unit.is_empty())))
+}
+
+/// The sizes of a scan \[m\] along x and y: "5um", "5e-6" (metres) or "5um x 3um"; one number holds for x alone.
+#[must_use]
+pub fn sizes(text: &str) -> Option<Vec<f64>> {
+    let parts: Vec<&str> = text.split(['x', 'X', '\u{d7}', '*']).collect();
+    if parts.len() > 2 {
+        return None;
+    }
+    let read: Vec<_> = parts.iter().map(|part| quantity(part)).collect::<Option<_>>()?;
+    // "5 x 3 um": the unit behind the last number holds for both.
+    let last = read.last().and_then(|(_, unit)| *unit);
+    let in_metres = |(value, unit): (f64, Option<&str>)| unit.or(last).map_or(Some(value), |unit| Some(value * metres(unit)?));
+    read.into_iter().map(in_metres).collect()
+}
+
 /// Units whose names are written out, which some instruments do.
 fn spelt_out(unit: &str) -> Option<f64> {
     let one = unit.strip_suffix('s').unwrap_or(unit);

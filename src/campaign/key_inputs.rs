@@ -180,6 +180,9 @@ pub(super) fn read_by_cycle(params: &CaseParams) -> CaseParams {
     params
 }
 
+/// Version of the reading of measured surfaces in their keys: order of the points, attributes. Generated surfaces have none.
+const READING_VERSION: u32 = 2;
+
 /// Version of the cycles by boundary elements in their keys, beside that of the stage.
 pub(crate) const ELEMENTS_VERSION: u32 = 10;
 
@@ -234,11 +237,14 @@ const MEASURED_VERSION: u32 = 2;
 
 /// Inputs of a surface in its key: parameters of a generated one, contents of the file and preprocessing of a measured one.
 pub(super) fn of_surface(spec: &Spec, params: &SurfaceParams) -> Value {
-    let SurfaceParams { file, dataset, periodic, pixel_m, unit, missing, detrend, filter, points_per_shortest_wavelength, .. } = params;
+    let SurfaceParams { file, dataset, periodic, pixel_m, size_m, size_y_m, unit, .. } = params;
+    let SurfaceParams { skip_lines, width, transpose, missing, detrend, filter, points_per_shortest_wavelength, .. } = params;
     if params.is_measured() {
         let mut reads = json!({
-            "blake3": spec.files.get(file), "dataset": dataset, "periodic": periodic, "pixel_m": pixel_m, "unit": unit, "missing": missing, "detrend": detrend,
-            "filter": filter, "points_per_shortest_wavelength": points_per_shortest_wavelength, "method_version": MEASURED_VERSION,
+            "reading_version": READING_VERSION, "blake3": spec.files.get(file), "dataset": dataset, "periodic": periodic,
+            "pixel_m": pixel_m, "size_m": size_m, "size_y_m": size_y_m, "unit": unit, "skip_lines": skip_lines, "width": width,
+            "transpose": transpose, "missing": missing, "detrend": detrend, "filter": filter,
+            "points_per_shortest_wavelength": points_per_shortest_wavelength, "method_version": MEASURED_VERSION,
             "header_version": MEASURED_HEADER_VERSION,
         });
         corrections(params).into_iter().for_each(|(name, value)| reads[name] = value);

@@ -141,11 +141,23 @@ pub(super) struct ImportArguments {
     #[arg(long, value_name = "NAME")]
     pub(super) dataset: Option<String>,
     /// Pixel size in metres, if it is not stored in the file
-    #[arg(long, value_name = "METRES")]
+    #[arg(long, value_name = "METRES", conflicts_with = "size")]
     pub(super) pixel_m: Option<f64>,
+    /// Size of the scan along x, or x by y: 5um, 5e-6, "5um x 3um"
+    #[arg(long, value_name = "SIZE")]
+    pub(super) size: Option<String>,
     /// Unit of the heights (e.g. nm), if it is not stored in the file
     #[arg(long)]
     pub(super) unit: Option<String>,
+    /// Skip the first N lines of a text
+    #[arg(long, value_name = "N")]
+    pub(super) skip_lines: Option<u32>,
+    /// Points per scan line of a text with one column
+    #[arg(long, value_name = "N", visible_alias = "columns", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(super) width: Option<u32>,
+    /// Exchange x and y, for files with the other order of indices
+    #[arg(long)]
+    pub(super) transpose: bool,
     /// Interpolate missing points (harmonic in-fill) instead of failing
     #[arg(long)]
     pub(super) fill: bool,

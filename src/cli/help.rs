@@ -48,10 +48,10 @@ Direction of the scan lines: rows or columns of the file
 pub(super) const IMPORT: &str = "\
 Preprocess a measured surface and report its statistics
 
-Formats: HDF5, NetCDF-3 as written by SurfaceTopography, X3P (ISO 25178-72),
-NumPy .npy, and text with one line for each row. A scan that is not square is
-cropped to its central square. Name the output as surface.file in a spec. A
-spec may also name the original file, with the same options as keys.";
+Formats: HDF5, NetCDF, X3P (ISO 25178-72), NumPy .npy, and text: a matrix with
+one line for each scan line, columns x, y, z, or one column. A scan that is not
+square is cropped to its central square. Name the output as surface.file in a
+spec. A spec may also name the original file, with the same options as keys.";
 
 /// The description of `findings`.
 pub(super) const FINDINGS: &str = "\

@@ -56,8 +56,18 @@ pub struct SurfaceParams {
     pub periodic: bool,
     /// Distance of its points \[m\], where the file does not tell it; else 0.
     pub pixel_m: f64,
+    /// Size of the scan along x \[m\], where the file does not state it; else 0.
+    pub size_m: f64,
+    /// Size of the scan along y \[m\]; 0 for square pixels.
+    pub size_y_m: f64,
     /// Unit of its heights, where the file does not tell it.
     pub unit: String,
+    /// Lines of a text that are not read.
+    pub skip_lines: u32,
+    /// Points of a scan line of a text whose lines are none; else 0.
+    pub width: u32,
+    /// True to exchange x and y.
+    pub transpose: bool,
     /// Treatment of missing points.
     pub missing: Missing,
     /// Shape that is removed from its heights by least squares; the mean alone if it is periodic.
@@ -165,7 +175,12 @@ impl Default for SurfaceParams {
             dataset: String::new(),
             periodic: false,
             pixel_m: 0.0,
+            size_m: 0.0,
+            size_y_m: 0.0,
             unit: String::new(),
+            skip_lines: 0,
+            width: 0,
+            transpose: false,
             missing: Missing::Refuse,
             detrend: Detrend::Plane,
             filter: Filter::Gaussian,

@@ -167,7 +167,19 @@ pub(super) static KEYS: &[Key] = &[
         low: 0.0, above: false, high: 0.1, unit: " m", unit_name: "metres", slip: Some((1e-6, "micrometres")),
         note: "pixel size; 0 if the file contains it",
     }),
+    key!(surface.size_m, "", "Size of the measured scan along x, instead of `pixel_m`. 0: the file states it."; number Limits {
+        low: 0.0, above: false, high: 100.0, unit: " m", unit_name: "metres", slip: Some((1e-6, "micrometres")),
+        note: "size of the scan along x; 0 if the file contains it",
+    }),
+    key!(surface.size_y_m, "", "Size of the measured scan along y, with `size_m`. 0: square pixels."; number Limits {
+        low: 0.0, above: false, high: 100.0, unit: " m", unit_name: "metres", slip: Some((1e-6, "micrometres")),
+        note: "size of the scan along y; 0 for square pixels",
+    }),
     key!(surface.unit, "", "Unit of the measured heights. Empty: the file states it."; length "the unit of the heights, for example \"nm\""),
+    key!(surface.skip_lines, "", "Lines at the beginning of a text that are skipped."; count 0 to 1000000, &[], "lines to skip; default 0"),
+    key!(surface.width, "", "Points per scan line of a text with one column. 0: the lines of the text are scan lines."; count 0 to 1000000, &[],
+        "points per scan line; 0 if the lines of the text are scan lines"),
+    key!(surface.transpose, "", "If true, x and y of the measured surface are exchanged."; flag),
     key!(surface.missing, "", "Treatment of missing points of a measured surface."; word Missing),
     key!(surface.detrend, "", "Form removed from a measured surface (levelling, F-operator). The default of a periodic surface is `mean`."; word Detrend),
     key!(surface.filter, "", "Low-pass filter (S-filter) of a measured surface. Its cut-off wavelength is `points_per_shortest_wavelength` pixels."; word Filter),
@@ -232,12 +244,17 @@ pub(super) static KEYS: &[Key] = &[
 pub(super) const TABLES: [&str; 5] = ["surface", "material", "model", "boundary_elements", "cycle"];
 
 /// Keys of `[surface]` that describe a measured surface.
-pub const MEASURED: [&str; 12] = [
+pub const MEASURED: [&str; 17] = [
     "file",
     "dataset",
     "periodic",
     "pixel_m",
+    "size_m",
+    "size_y_m",
     "unit",
+    "skip_lines",
+    "width",
+    "transpose",
     "missing",
     "detrend",
     "filter",

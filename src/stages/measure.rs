@@ -10,8 +10,8 @@ use crate::physics::surface::periodogram::{periodogram, windowed_periodogram};
 use crate::physics::surface::self_affine::{SelfAffine, fit_self_affine};
 use crate::physics::surface::texture::Texture;
 use crate::spec::SurfaceParams;
-use crate::store::hdf5::{Measured, SpectrumFit, SurfaceHeader, is_own_surface, read_heights, read_surface};
-use crate::store::scan::{Found, Scan, read};
+use crate::store::hdf5::{Measured, SpectrumFit, SurfaceHeader, is_own_surface, read_scan, read_surface};
+use crate::store::scan::{Asked, FirstIndex, Found, Scan, read};
 use ndarray::Array2;
 use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
@@ -28,6 +28,8 @@ pub struct Imported {
     pub header: SurfaceHeader,
     /// Factor from the numbers of the file to heights \[m\]; nothing for a surface of this program, which is in metres.
     pub height_factor_m: Option<f64>,
+    /// Sentences on how the file was read.
+    pub notes: Vec<String>,
 }
 
 /// A measured surface as the spec's parameters ask for it, with what its file in a run says of it. `digest` is the BLAKE3 of its file. A surface of this program, which
@@ -37,18 +39,20 @@ pub struct Imported {
 /// A file that cannot be read or does not say what is needed; what [`prepare`] refuses.
 pub fn measure(params: &SurfaceParams, digest: &str, key: &str) -> Result<Imported, StageError> {
     let path = Path::new(&params.file);
-    let scan = match source(path, &params.dataset)? {
+    let scan = match source(path, params)? {
         Source::Own(header, heights) => {
             uncorrected(params)?;
             let (prepared, header) = own(params, *header, heights, digest, key)?;
-            return Ok(Imported { prepared, header, height_factor_m: None });
+            return Ok(Imported { prepared, header, height_factor_m: None, notes: Vec::new() });
         }
         Source::Scan(scan) => scan,
     };
     let (rows, columns) = scan.heights.dim();
+    complete(params, &scan)?;
     let unit = unit(params, &scan)?;
     let height_factor_m = Some(unit * scan.factor);
     let spacing = spacing(params, &scan)?;
+    let notes = notes(params, &scan);
     if let Some(apart) = spacing.iter().find(|apart| !PIXEL_SIZES.contains(apart)) {
         let why =
             format!("its points are {apart:e} m apart\nhelp: check the unit and the pixel size; a scan has points 1e-12 m to 0.1 m apart");
@@ -92,7 +96,7 @@ pub fn measure(params: &SurfaceParams, digest: &str, key: &str) -> Result<Import
         generated: None,
         measured: Some(measured),
     };
-    Ok(Imported { prepared, header, height_factor_m })
+    Ok(Imported { prepared, header, height_factor_m, notes })
 }
 
 /// A surface of this program, which has been treated already.
@@ -204,36 +208,82 @@ fn stored(fit: &SelfAffine) -> SpectrumFit {
 /// Distances between the points of a scan \[m\]: from below an atom to the largest `pixel_m` of a spec.
 const PIXEL_SIZES: RangeInclusive<f64> = 1e-12..=0.1;
 
-/// Spacings of the points of a scan along rows and along columns \[m\].
+/// Pixel size along x and y that the user states, if any: `pixel_m`, or `size_m` over the numbers of points.
+fn stated(params: &SurfaceParams, scan: &Scan) -> Option<[f64; 2]> {
+    let (x, y) = scan.heights.dim();
+    let along_x = params.size_m / x as f64;
+    match (params.size_m > 0.0, params.size_y_m > 0.0) {
+        (true, true) => Some([along_x, params.size_y_m / y as f64]),
+        // Square pixels, unless the file has positions.
+        (true, false) => Some([along_x, along_x * scan.spacing.map_or(1.0, |[a, b]| b / a)]),
+        _ => (params.pixel_m > 0.0).then_some([params.pixel_m; 2]),
+    }
+}
+
+/// Checks that unit and pixel size are known, and names everything that is missing at once.
+fn complete(params: &SurfaceParams, scan: &Scan) -> Result<(), StageError> {
+    let no_unit = scan.unit.is_none() && params.unit.is_empty();
+    let no_size = scan.size_m.is_none() && scan.spacing.is_none() && stated(params, scan).is_none();
+    let (x, y) = scan.heights.dim();
+    let twice = match (params.size_m > 0.0, params.pixel_m > 0.0) {
+        (true, true) => Some(("size_m and pixel_m both state the pixel size", "remove one of them")),
+        (false, _) if params.size_y_m > 0.0 => Some(("size_y_m without size_m", "state size_m, the size along x")),
+        _ => None,
+    };
+    if let Some((problem, help)) = twice {
+        return Err(refused(Path::new(&params.file), &format!("{problem}\nhelp: {help}")));
+    }
+    let size = format!("--size (along x, for example 5um) or --pixel-m; {x} x {y} points");
+    let (problem, help) = match (no_unit, no_size) {
+        (false, false) => return Ok(()),
+        (true, false) => ("no unit of the heights in the file", "give the unit (--unit), for example \"nm\"".to_owned()),
+        (false, true) => ("no pixel size in the file", format!("give {size}")),
+        (true, true) => {
+            ("no unit of the heights in the file, and no pixel size", format!("give --unit (of the heights, for example nm), and {size}"))
+        }
+    };
+    let notes: String = scan.notes.iter().filter(|note| note.starts_with("sizes: ")).map(|note| format!(" ({note})")).collect();
+    Err(refused(Path::new(&params.file), &format!("{problem}{notes}\nhelp: {help}")))
+}
+
+/// Sentences on how a file was read: which index is x, and notes of the reader.
+fn notes(params: &SurfaceParams, scan: &Scan) -> Vec<String> {
+    let order = match (scan.first, params.transpose) {
+        (FirstIndex::X, false) => "the first index of the file runs along x, the second along y",
+        (FirstIndex::Y, false) => "a line of the file runs along x; its first index is y",
+        (FirstIndex::X, true) => "x and y exchanged: the first index of the file runs along x",
+        (FirstIndex::Y, true) => "x and y exchanged: a line of the file runs along y",
+    };
+    std::iter::once(order.to_owned()).chain(scan.notes.iter().cloned()).collect()
+}
+
+/// Spacings of the points of a scan along x and y \[m\].
 fn spacing(params: &SurfaceParams, scan: &Scan) -> Result<[f64; 2], StageError> {
     let path = Path::new(&params.file);
-    let (rows, columns) = scan.heights.dim();
-    let given = params.pixel_m;
-    match scan.size_m {
-        None if given > 0.0 && scan.spacing.is_none_or(|[a, b]| (a / b - 1.0).abs() <= SAME) => Ok([given; 2]),
-        None => match scan.spacing {
-            Some(_) if given > 0.0 => {
-                Err(refused(path, "the pixel sizes along x and y differ, and pixel_m was given\nhelp: remove pixel_m (--pixel-m)"))
-            }
-            // Without a unit of its own the file has one for all columns.
-            Some(own) => metres(&params.unit).map(|unit| own.map(|spacing| unit * spacing)).ok_or_else(|| unitless(path)),
-            None => {
-                let why = "no pixel size in the file\nhelp: give pixel_m (--pixel-m), the side of the scan over its number of points";
-                Err(refused(path, why))
-            }
-        },
-        Some(size) => {
-            let [a, b] = [size[0] / rows as f64, size[1] / columns as f64];
-            if given > 0.0 && [a, b].iter().any(|own| (given / own - 1.0).abs() > SAME) {
-                return Err(refused(
-                    path,
-                    &format!(
-                        "the pixel size is {a:.4e} m x {b:.4e} m in the file, but pixel_m is {given:e} m\nhelp: remove pixel_m (--pixel-m)"
-                    ),
-                ));
-            }
-            Ok([a, b])
+    let (x, y) = scan.heights.dim();
+    let (key, option) = if params.size_m > 0.0 { ("size_m", "--size") } else { ("pixel_m", "--pixel-m") };
+    let differs = |own: [f64; 2], given: [f64; 2]| own.iter().zip(given).any(|(own, given)| (own / given - 1.0).abs() > SAME);
+    match (scan.size_m.map(|size| [size[0] / x as f64, size[1] / y as f64]), scan.spacing, stated(params, scan)) {
+        (Some([a, b]), _, Some(given)) if differs([a, b], given) => {
+            let [c, d] = given;
+            let why = format!(
+                "the pixel size is {a:.4e} m x {b:.4e} m in the file, but {c:.4e} m x {d:.4e} m by {key}\nhelp: remove {key} ({option})"
+            );
+            Err(refused(path, &why))
         }
+        (Some(own), ..) => Ok(own),
+        // Positions whose unit is unknown: the statement gives their scale.
+        (None, Some([a, b]), Some([c, d])) if ((a / b) / (c / d) - 1.0).abs() > SAME => {
+            let why = format!(
+                "the pixel sizes along x and y are {a} and {b} in the file, but {c:.4e} m and {d:.4e} m by {key}\nhelp: remove {key} ({option}), \
+                 or give both sizes (--size, for example \"5um x 3um\")"
+            );
+            Err(refused(path, &why))
+        }
+        (None, _, Some(given)) => Ok(given),
+        // Without a unit of its own the file has one for all columns.
+        (None, Some(own), None) => metres(&params.unit).map(|unit| own.map(|spacing| unit * spacing)).ok_or_else(|| unitless(path)),
+        (None, None, None) => Err(unitless(path)),
     }
 }
 
@@ -265,23 +315,19 @@ enum Source {
 }
 
 /// The height field of a file, in whatever format it is.
-fn source(path: &Path, dataset: &str) -> Result<Source, StageError> {
-    let dataset = (!dataset.is_empty()).then_some(dataset);
+fn source(path: &Path, params: &SurfaceParams) -> Result<Source, StageError> {
+    let field = (!params.dataset.is_empty()).then_some(params.dataset.as_str());
+    let asked = Asked { field, skip_lines: u64::from(params.skip_lines), width: (params.width > 0).then_some(u64::from(params.width)) };
     let found = recognize(path).map_err(|error| refused(path, &error.to_string()))?;
-    match found.map_err(|refusal| refused(path, &refusal.to_string()))? {
-        Found::Hdf5 if dataset.is_none() && is_own_surface(path) => {
+    let scan = match found.map_err(|refusal| refused(path, &refusal.to_string()))? {
+        Found::Hdf5 if field.is_none() && is_own_surface(path) => {
             let (header, heights) = read_surface(path).map_err(StageError::Scan)?;
-            Ok(Source::Own(Box::new(header), heights))
+            return Ok(Source::Own(Box::new(header), heights));
         }
-        Found::Hdf5 => Ok(Source::Scan(Scan {
-            heights: read_heights(path, dataset).map_err(StageError::Scan)?,
-            size_m: None,
-            unit: None,
-            factor: 1.0,
-            periodic: None,
-            spacing: None,
-        })),
-        Found::Scan(format) => Ok(Source::Scan(read(path, format, dataset).map_err(StageError::Scan)?)),
-        Found::Foreign(foreign) => Err(refused(path, foreign.name)),
-    }
+        Found::Hdf5 => read_scan(path, &asked),
+        Found::Scan(format) => read(path, format, &asked),
+        Found::Foreign(foreign) => return Err(refused(path, foreign.name)),
+    };
+    let scan = scan.map_err(StageError::Scan)?;
+    Ok(Source::Scan(if params.transpose { scan.transposed(path).map_err(StageError::Scan)? } else { scan }))
 }

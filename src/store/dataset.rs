@@ -5,12 +5,15 @@
 //! without a trace; and another file can be a pipe that never ends, or a virtual dataset that contains itself.
 
 use hdf5_metno::plist::dataset_create::Layout;
-use hdf5_metno::{Dataset, File, Group, IndexType, IterationOrder, LinkType};
+use hdf5_metno::{Dataset, File, Group, IndexType, IterationOrder, LinkType, LocationType};
 
 use super::error::Cause;
 
 /// Groups at most that are searched for links to other files; a file with more has its soft links refused.
 const MOST_GROUPS: usize = 4096;
+/// Refusals of links.
+const EXTERNAL: &str = "is reached through a link to another file";
+const SOFT: &str = "is reached through a soft link, in a file with links to other files";
 /// Help for heights in another file.
 const HELP: &str = "copy the heights into one file, as an ordinary dataset (h5repack, or h5py: f[\"heights\"] = g[\"heights\"][...])";
 
@@ -32,12 +35,8 @@ pub(super) fn dataset(file: &File, path: &str) -> Result<Option<Dataset>, Cause>
     for (at, part) in parts.iter().enumerate() {
         match link(&group, part)? {
             None => return Ok(None),
-            Some(LinkType::External) => return Err(outside(path, "is reached through a link to another file")),
-            // The library follows a soft link wherever it leads. It stays inside if the file has no link that leaves it.
-            Some(LinkType::Soft) if links_outside(file)? => {
-                return Err(outside(path, "is reached through a soft link, in a file with links to other files"));
-            }
-            Some(LinkType::Soft) => return own(&group, &parts[at..].join("/"), path),
+            Some(LinkType::External) => return Err(outside(path, EXTERNAL)),
+            Some(LinkType::Soft) => return soft(&group, &parts[at..].join("/"), path, links_outside(file)?),
             Some(LinkType::Hard) if at + 1 == parts.len() => return own(&group, part, path),
             Some(LinkType::Hard) => match group.group(part) {
                 Ok(next) => group = next,
@@ -46,6 +45,55 @@ pub(super) fn dataset(file: &File, path: &str) -> Result<Option<Dataset>, Cause>
         }
     }
     Ok(None)
+}
+
+/// Fields in the root of a file.
+pub(super) struct Fields {
+    /// Names of the datasets with two dimensions, besides those with a single point.
+    pub(super) names: Vec<String>,
+    /// Refusal of a dataset that is not in the file alone.
+    pub(super) outside: Option<Cause>,
+    /// Links that were visited.
+    pub(super) visits: u64,
+}
+
+/// Searches the root of a file for fields. Every link is visited once, however many there are.
+pub(super) fn fields(file: &File) -> Result<Fields, Cause> {
+    let mut found = Fields { names: Vec::new(), outside: None, visits: 0 };
+    let mut leaves = None;
+    for (name, info) in file.links(IndexType::Name, IterationOrder::Native)? {
+        found.visits += 1;
+        let opened = match info.link_type {
+            LinkType::Hard if file.loc_type_by_name(&name).is_ok_and(|kind| kind != LocationType::Dataset) => continue,
+            LinkType::Hard => own(file, &name, &name),
+            LinkType::External => Err(outside(&name, EXTERNAL)),
+            LinkType::Soft => match leaves {
+                Some(leaves) => soft(file, &name, &name, leaves),
+                None => soft(file, &name, &name, *leaves.insert(links_outside(file)?)),
+            },
+        };
+        match opened {
+            Ok(Some(data)) if points(&data.get_shape()?).is_some() => found.names.push(name),
+            Ok(_) => {}
+            Err(cause) => found.outside = Some(cause),
+        }
+    }
+    Ok(found)
+}
+
+/// Places of the two dimensions of a field; nothing without two. Dimensions of a single point, such as a time, do not count beyond two.
+pub(super) fn points(shape: &[usize]) -> Option<[usize; 2]> {
+    let mut places: Vec<usize> = (0..shape.len()).collect();
+    while let Some(single) = places.iter().position(|place| shape.get(*place) == Some(&1)).filter(|_| places.len() > 2) {
+        places.remove(single);
+    }
+    places.try_into().ok()
+}
+
+/// Opens what a soft link leads to, if no link of the file leaves it.
+fn soft(group: &Group, name: &str, path: &str, leaves: bool) -> Result<Option<Dataset>, Cause> {
+    // The library follows a soft link wherever it leads. It stays inside if the file has no link that leaves it.
+    if leaves { Err(outside(path, SOFT)) } else { own(group, name, path) }
 }
 
 /// The kind of a link in a group, without following it.
@@ -57,6 +105,12 @@ fn link(group: &Group, name: &str) -> Result<Option<LinkType>, Cause> {
 /// Opens a dataset, which reads none of its values, and checks where these are stored.
 fn own(group: &Group, name: &str, path: &str) -> Result<Option<Dataset>, Cause> {
     let Ok(data) = group.dataset(name) else { return Ok(None) };
+    check_storage(&data, path)?;
+    Ok(Some(data))
+}
+
+/// Checks that the values of a dataset are in the file.
+pub(super) fn check_storage(data: &Dataset, path: &str) -> Result<(), Cause> {
     let created = data.create_plist()?;
     if created.get_layout()? == Layout::Virtual {
         return Err(outside(path, "is a virtual dataset, whose values are in other datasets"));
@@ -64,7 +118,7 @@ fn own(group: &Group, name: &str, path: &str) -> Result<Option<Dataset>, Cause> 
     if !created.get_external()?.is_empty() {
         return Err(outside(path, "has its values in external storage, which is another file"));
     }
-    Ok(Some(data))
+    Ok(())
 }
 
 /// True if any link of the file leads to another file, or there are too many groups to tell.
@@ -83,11 +137,11 @@ fn links_outside(file: &File) -> Result<bool, Cause> {
                         known.push(token);
                         open.push(inner);
                     }
+                    if known.len() > MOST_GROUPS {
+                        return Ok(true);
+                    }
                 }
             }
-        }
-        if known.len() > MOST_GROUPS {
-            return Ok(true);
         }
     }
     Ok(false)

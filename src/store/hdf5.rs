@@ -12,7 +12,9 @@ use super::axes;
 use super::commit::{Written, commit};
 use super::dataset::{Outside, dataset};
 use super::error::{Cause, StoreError, fenced};
-use super::scan::{MOST_POINTS, room};
+use super::hdf5_scan::only_field;
+pub use super::hdf5_scan::{read_scan, search};
+use super::scan::room;
 use super::surface_header;
 pub use super::surface_header::{Generated, Measured, SURFACE_VERSION, SpectrumFit, SurfaceHeader};
 pub use super::surface_quality::Quality;
@@ -29,8 +31,6 @@ const DAMAGED: &str = "restore the file, or run `hysteron verify DIR --deep` and
                        after a change on purpose, delete the attribute `height_blake3` of its group `header`";
 /// Rows that are written and compared at once.
 const BAND: usize = 256;
-/// A file cannot hold more than this many times its size: what deflate reaches on zeros. Own files are not packed.
-const MOST_PACKED: u64 = 1100;
 
 /// Writes a surface in place of `path`: heights from the mean plane \[m\], rows along x.
 ///
@@ -79,30 +79,7 @@ pub fn read_header(path: &Path) -> Result<SurfaceHeader, StoreError> {
     .map_err(|cause| StoreError::new("read the header of the surface", path, cause))
 }
 
-/// Reads a height field from any HDF5 file, a measured one for instance, where missing points may be no numbers. Without a name it is the only field in the root.
-///
-/// # Errors
-/// If the file cannot be read, or has no two-dimensional dataset of numbers by that name.
-pub fn read_heights(path: &Path, name: Option<&str>) -> Result<Array2<f64>, StoreError> {
-    library(|| {
-        let file = open(path)?;
-        let name = match name {
-            Some(name) => name.to_owned(),
-            None => only_field(&file)?,
-        };
-        let Some(data) = dataset(&file, &name)? else {
-            return Err(format!("no dataset {name:?}\nhelp: the root contains {}", file.member_names()?.join(", ")).into());
-        };
-        let (rows, columns) = check_extent(path, &data, &name, MOST_PACKED)?;
-        if (rows as u64).saturating_mul(columns as u64) > MOST_POINTS {
-            return Err(format!("dataset {name:?} has {rows} by {columns} values, more than the limit of 2^28").into());
-        }
-        values(&data, [rows, columns])
-    })
-    .map_err(|cause| StoreError::new("read the surface from", path, cause))
-}
-
-/// Checks that the heights [`read_heights`] or [`read_surface`] would read lie in the file itself.
+/// Checks that the heights [`read_scan`] or [`read_surface`] would read lie in the file itself.
 ///
 /// # Errors
 /// The other file, and what to do. A file that cannot be opened, or has no such dataset, is no error here.
@@ -117,26 +94,6 @@ pub fn check_inside(path: &Path, name: Option<&str>) -> Result<(), String> {
         Ok(read.err().filter(|cause| cause.is::<Outside>()).map(|cause| cause.to_string()))
     });
     refusal.ok().flatten().map_or(Ok(()), Err)
-}
-
-/// The name of the one two-dimensional dataset in the root. What leaves the file does not count, unless there is nothing else.
-fn only_field(file: &File) -> Result<String, Cause> {
-    let (mut names, mut outside) = (Vec::new(), None);
-    for name in file.member_names()? {
-        match dataset(file, &name) {
-            Ok(Some(data)) if data.ndim() == 2 => names.push(name),
-            Ok(_) => {}
-            Err(cause) => outside = Some(cause),
-        }
-    }
-    match (&names[..], outside) {
-        ([name], _) => Ok(name.clone()),
-        ([], Some(cause)) => Err(cause),
-        ([], None) => Err("no two-dimensional dataset in the root\nhelp: select one of another group as \"group/dataset\"".into()),
-        (many, _) => {
-            Err(format!("several two-dimensional datasets: {}\nhelp: select one with surface.dataset (--dataset)", many.join(", ")).into())
-        }
-    }
 }
 
 /// BLAKE3 of the heights as little-endian numbers, row after row.
@@ -289,12 +246,18 @@ fn check_extent(path: &Path, data: &Dataset, name: &str, packed: u64) -> Result<
     let [rows, columns] = data.get_shape()?[..] else {
         return Err(format!("its dataset {name:?} is not two-dimensional").into());
     };
+    check_bytes(path, data, [rows, columns], packed).map_err(|cause| format!("its dataset {name:?} {cause}"))?;
+    Ok((rows, columns))
+}
+
+/// Checks that a file of this size can hold so many rows and columns of a dataset, packed by at most this factor.
+pub(super) fn check_bytes(path: &Path, data: &Dataset, [rows, columns]: [usize; 2], packed: u64) -> Result<(), Cause> {
     let most = fs::metadata(path)?.len().saturating_mul(packed);
     let width = data.dtype()?.size() as u64;
     let bytes = (rows as u64).checked_mul(columns as u64).and_then(|count| count.checked_mul(width));
     match bytes {
-        Some(bytes) if bytes > 0 && bytes <= most => Ok((rows, columns)),
-        _ => Err(format!("its dataset {name:?} claims {rows} by {columns} values, which a file of its size cannot hold").into()),
+        Some(bytes) if bytes > 0 && bytes <= most => Ok(()),
+        _ => Err(format!("claims {rows} by {columns} values, which a file of its size cannot hold").into()),
     }
 }
 
@@ -308,8 +271,8 @@ fn field(data: &Dataset, name: &str) -> Result<Array2<f64>, Cause> {
     }
 }
 
-/// The values of a two-dimensional dataset of this extent.
-fn values(data: &Dataset, [rows, columns]: [usize; 2]) -> Result<Array2<f64>, Cause> {
+/// The values of a dataset of this extent, besides dimensions of a single point.
+pub(super) fn values(data: &Dataset, [rows, columns]: [usize; 2]) -> Result<Array2<f64>, Cause> {
     let count = rows.checked_mul(columns).ok_or("its extent is too large")?;
     let mut values = room(count as u64)?;
     values.resize(count, 0.0);

@@ -13,6 +13,7 @@ mod frame;
 mod halfway;
 pub mod hdf5;
 pub mod heartbeat;
+mod hdf5_scan;
 mod maps;
 pub mod parquet;
 mod receipt;

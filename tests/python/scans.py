@@ -51,13 +51,13 @@ def arrays(folder, random):
                 name = f"{kind}{'be' if sign == '>' else 'le'}{order}.npy"
                 array = (random.normal(size=(5, 7)) * 60).astype(sign + kind, order=order)
                 numpy.save(folder / name, array)
-                folder.says(name, "npy", array)
+                folder.says(name, "npy", array.T)
     array = random.normal(size=(3, 4))
     for version in [(1, 0), (2, 0), (3, 0)]:
         name = f"version{version[0]}.npy"
         with open(folder / name, "wb") as file:
             numpy.lib.format.write_array(file, array, version=version)
-        folder.says(name, "npy", array)
+        folder.says(name, "npy", array.T)
 
 
 def surfaces(folder, random):
@@ -75,8 +75,7 @@ def surfaces(folder, random):
                 folder.says(name, "nc", heights * metres, size, ascii_unit, label == "whole")
             name = f"{label}-{unit}.txt"
             surface.to_matrix(folder / name)
-            turned = None if size is None else size[::-1]
-            folder.says(name, "txt", (numpy.ma.filled(heights, numpy.nan) * metres).T, turned, unit)
+            folder.says(name, "txt", numpy.ma.filled(heights, numpy.nan) * metres, size, unit)
             if unit is None:
                 continue
             for kind in "DFLI":
@@ -108,7 +107,7 @@ def texts(folder, random):
     heights[2, 1] = numpy.nan
     for label, sign in [("space", " "), ("tab", "\t"), ("comma", ","), ("semicolon", ";")]:
         numpy.savetxt(folder / f"{label}.txt", heights, delimiter=sign, header="a remark")
-        folder.says(f"{label}.txt", "txt", heights)
+        folder.says(f"{label}.txt", "txt", heights.T)
 
 
 def check(path):

@@ -10,6 +10,7 @@ use crate::cli::{ExportArguments, ImportArguments};
 use crate::constants::{Constant, Constants};
 use crate::formats::recognize;
 use crate::keys::digest_of_file;
+use crate::lengths::sizes;
 use crate::model::{Choice, Detrend, FastAxis, Filter, Missing};
 use crate::physics::surface::measured::find_measured;
 use crate::physics::surface::summits::Summit;
@@ -38,7 +39,7 @@ pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
     let refused = |why: &dyn std::fmt::Display| failed(format!("cannot import {}: {why}", asked.file.display()));
     recognize(&asked.file).map_err(|error| refused(&error))?.map_err(|refusal| refused(&refusal))?;
     let digest = digest_of_file(&asked.file).map_err(|error| refused(&error))?;
-    let params = params(asked);
+    let params = params(asked)?;
     if params.periodic && params.detrend != Detrend::Mean {
         let shape = params.detrend.word();
         let text = format!(
@@ -51,7 +52,7 @@ pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
             return Err(refused(&format!("--{name} is {length}\nhelp: give a positive number of metres")));
         }
     }
-    let Imported { prepared, header, height_factor_m } = measure(&params, &digest, "").map_err(failed)?;
+    let Imported { prepared, header, height_factor_m, notes } = measure(&params, &digest, "").map_err(failed)?;
     let out = asked.out.clone().unwrap_or_else(|| named_after(&asked.file));
     if !asked.dry_run {
         may_be_written(("the surface", &out), &asked.file, asked.force)?;
@@ -68,7 +69,7 @@ pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
     let unit = measured_flattening(prepared.heights_m.view(), shape, shortest_m, 1.0).map_err(failed)?;
     let range = Range::of(&unit, shortest_m, summits.list.iter().map(Summit::radius_m));
     let counts = [prepared.heights_m.nrows(), summits.list.len(), edge];
-    let statistics = Statistics { file: &asked.file, header: &header, height_factor_m, range: &range, counts, written };
+    let statistics = Statistics { file: &asked.file, header: &header, height_factor_m, notes: &notes, range: &range, counts, written };
     if asked.json {
         let rings: Vec<Value> = prepared
             .rings
@@ -82,13 +83,19 @@ pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
     Ok(0)
 }
 
-fn params(asked: &ImportArguments) -> SurfaceParams {
+fn params(asked: &ImportArguments) -> Result<SurfaceParams, Fault> {
     let default = if asked.periodic { Detrend::Mean } else { Detrend::Plane };
-    SurfaceParams {
+    let [size_m, size_y_m] = size_m(asked)?;
+    Ok(SurfaceParams {
         file: asked.file.to_string_lossy().into_owned(),
         dataset: asked.dataset.clone().unwrap_or_default(),
         periodic: asked.periodic,
         pixel_m: asked.pixel_m.unwrap_or_default(),
+        size_m,
+        size_y_m,
+        skip_lines: asked.skip_lines.unwrap_or_default(),
+        width: asked.width.unwrap_or_default(),
+        transpose: asked.transpose,
         unit: asked.unit.clone().unwrap_or_default(),
         missing: if asked.fill { Missing::Fill } else { Missing::Refuse },
         detrend: asked.detrend.as_deref().and_then(Detrend::from_word).unwrap_or(default),
@@ -99,6 +106,20 @@ fn params(asked: &ImportArguments) -> SurfaceParams {
         tip_radius_m: asked.tip_radius.unwrap_or_default(),
         points_per_shortest_wavelength: u32::from(asked.points),
         ..SurfaceParams::default()
+    })
+}
+
+/// Sizes along x and y \[m\] by `--size`; 0 where they are not stated.
+fn size_m(asked: &ImportArguments) -> Result<[f64; 2], Fault> {
+    let Some(text) = &asked.size else { return Ok([0.0; 2]) };
+    let read = sizes(text).filter(|sizes| sizes.iter().all(|size| (1e-9..=100.0).contains(size)));
+    match read.as_deref() {
+        Some([x]) => Ok([*x, 0.0]),
+        Some([x, y]) => Ok([*x, *y]),
+        _ => {
+            let help = "give the size along x, or along x and y, with a unit of length (5um, \"5um x 3um\") or in metres (5e-6)";
+            Err(failed(format!("cannot import {}: --size is {text:?}\nhelp: {help}", asked.file.display())))
+        }
     }
 }
 

@@ -1,108 +1,47 @@
 //! Classic NetCDF, in the layout of the Python package SurfaceTopography.
 //!
-//! Heights stand in a variable `heights` over the dimensions x and y. The size, whether the surface is periodic, and
-//! the unit of it all are attributes `length`, `periodic` and `unit` of the variables x and y. Missing points have a
-//! byte other than 0 in a variable `mask`, or the value that the attributes of the heights give for them.
+//! Heights stand in a variable `heights` over the dimensions x and y, or in the only two-dimensional variable. Points are missing
+//! where a variable `mask` is not 0. The meaning of all attributes is that of [`Field`].
 
 use std::io::{Seek, SeekFrom};
 
 use ndarray::Array2;
 
+use super::field::{Axis, Field};
 use super::netcdf_header::{Header, Variable, padding};
-use super::numbers::{Number, Order, points, room, shaped, stream};
-use super::{Cause, Scan, Source, units};
+use super::numbers::{Order, points, room, shaped, stream};
+use super::{Cause, FirstIndex, Scan, Source};
 
 /// The variable with the heights, unless another one is asked for.
 const HEIGHTS: &str = "heights";
 /// The variable that says which points are missing.
 const MASK: &str = "mask";
-/// Fill values of NetCDF.
-const NEVER_WRITTEN: f64 = f64::from_bits(0x479e_0000_0000_0000);
+/// Points of an axis whose coordinates are read.
+const MOST_COORDINATES: u64 = 1 << 20;
 
 /// Reads a variable as heights.
 pub(super) fn read(mut source: Source, variable: Option<&str>) -> Result<Scan, Cause> {
     let header = Header::read(&mut source)?;
-    let name = variable.unwrap_or(HEIGHTS);
+    let name = variable.map_or_else(|| header.heights(), Ok)?;
     let variable = header.variable(name)?;
+    let kind = variable.kind.ok_or_else(|| format!("variable {name:?} is text"))?;
     let axes = header.axes(variable)?;
-    // Each dimension is described by the variable of its name.
-    let [along_x, along_y] = axes.map(|axis| header.variables.iter().find(|other| other.name == axis && other.dimensions.len() == 1));
-
-    let mut heights = header.field(&mut source, variable)?;
+    let values = header.field(&mut source, variable)?;
     header.check_whole(source.length)?;
-    let missing = Missing::of(variable);
-    let scale = variable.number("scale_factor").unwrap_or(1.0);
-    let offset = variable.number("add_offset").unwrap_or(0.0);
-    // The package has one unit for sizes and heights. Each one's own comes first, for files in which they differ.
-    let lateral = [along_x, along_y].into_iter().flatten().find_map(unit_of);
-    let unit = unit_of(variable).or(lateral).map(ToOwned::to_owned);
-    let metres = unit.as_deref().map_or(Ok(1.0), |unit| units::length("the heights are", unit))?;
-    for height in &mut heights {
-        *height = if missing.is(*height) {
-            f64::NAN
-        } else if variable.number("add_offset").is_some() {
-            (*height * scale + offset) * metres
-        } else {
-            *height * scale * metres
-        };
-    }
-    if let Some(mask) = header.variables.iter().find(|other| name == HEIGHTS && other.name == MASK) {
-        if mask.dimensions != variable.dimensions {
+    let mask = match header.variables.iter().find(|other| name == HEIGHTS && other.name == MASK) {
+        Some(mask) if mask.dimensions != variable.dimensions => {
             return Err(format!("variable {MASK:?} has other dimensions than variable {name:?}").into());
         }
-        heights.zip_mut_with(&header.field(&mut source, mask)?, |height, missing| {
-            if missing.abs() > 0.0 {
-                *height = f64::NAN;
-            }
-        });
-    }
-
-    let size = [along_x, along_y].map(|axis| size(axis?, unit.as_deref()));
-    let size_m = match size {
-        [Some(x), Some(y)] => Some([x?, y?]),
-        _ => None,
+        Some(mask) => Some(header.field(&mut source, mask)?),
+        None => None,
     };
-    let said: Vec<_> = [along_x, along_y].into_iter().flatten().filter_map(|axis| axis.number("periodic")).collect();
-    let periodic = (!said.is_empty()).then(|| said.iter().all(|periodic| periodic.abs() > 0.0));
-    Ok(Scan { heights, size_m, unit, factor: scale * metres, periodic, spacing: None })
-}
-
-fn unit_of(variable: &Variable) -> Option<&str> {
-    variable.text("unit").or_else(|| variable.text("units"))
-}
-
-/// Size along an axis \[m\].
-fn size(axis: &Variable, otherwise: Option<&str>) -> Option<Result<f64, Cause>> {
-    let length = axis.number("length")?;
-    let unit = unit_of(axis).or(otherwise)?;
-    let what = format!("the size along {:?} is", axis.name);
-    Some(units::length(&what, unit).and_then(|metres| {
-        let size = length * metres;
-        if size.is_finite() && size > 0.0 { Ok(size) } else { Err(format!("{what} {length} {unit}, and must be positive").into()) }
-    }))
-}
-
-/// Which values stand for missing points.
-struct Missing {
-    value: Option<f64>,
-}
-
-impl Missing {
-    fn of(variable: &Variable) -> Self {
-        let said = variable.number("_FillValue").or_else(|| variable.number("missing_value"));
-        Self {
-            value: match variable.kind {
-                // The attribute can be wider than the numbers that are compared with it.
-                Some(Number::F32) => Some(said.map_or(NEVER_WRITTEN, |value| f64::from(value as f32))),
-                Some(Number::F64) => Some(said.unwrap_or(NEVER_WRITTEN)),
-                _ => said,
-            },
-        }
+    let mut along = Vec::new();
+    for axis in axes {
+        along.push(header.axis(&mut source, axis)?);
     }
-
-    fn is(&self, value: f64) -> bool {
-        value.is_nan() || self.value == Some(value)
-    }
+    let [first, second] = along.try_into().map_err(|_| "not two axes")?;
+    let levels = vec![variable.attributes.clone(), header.attributes];
+    Field { values, kind, levels, axes: [first, second], mask, first: FirstIndex::X, netcdf: true, unit: None }.scan()
 }
 
 impl Header {
@@ -115,10 +54,42 @@ impl Header {
         })
     }
 
-    /// Names of the two dimensions of a field.
-    fn axes(&self, variable: &Variable) -> Result<[&str; 2], Cause> {
-        let names: Vec<_> = variable.dimensions.iter().filter_map(|place| Some(self.dimensions.get(*place)?.name.as_str())).collect();
-        names.try_into().map_err(|names: Vec<_>| format!("variable {:?} has {} dimensions instead of 2", variable.name, names.len()).into())
+    /// Name of the height field: `heights`, or the only field of numbers.
+    fn heights(&self) -> Result<&str, Cause> {
+        let fields: Vec<_> = self.variables.iter().filter(|other| other.kind.is_some() && self.axes(other).is_ok()).collect();
+        match fields[..] {
+            [only] => Ok(&only.name),
+            _ => Ok(HEIGHTS),
+        }
+    }
+
+    /// Points along a dimension.
+    fn points(&self, place: usize) -> u64 {
+        self.dimensions.get(place).map_or(0, |dimension| if dimension.length == 0 { self.records } else { dimension.length })
+    }
+
+    /// Places of the two dimensions of a field; those with a single point, such as a time, do not count beyond two.
+    fn axes(&self, variable: &Variable) -> Result<[usize; 2], Cause> {
+        let count = variable.dimensions.len();
+        let mut places = variable.dimensions.clone();
+        while let Some(single) = places.iter().position(|place| self.points(*place) == 1).filter(|_| places.len() > 2) {
+            places.remove(single);
+        }
+        places.try_into().map_err(|_| format!("variable {:?} has {count} dimensions instead of 2", variable.name).into())
+    }
+
+    /// The axis of a dimension, which the variable of its name describes.
+    fn axis(&self, source: &mut Source, place: usize) -> Result<Axis, Cause> {
+        let Some(dimension) = self.dimensions.get(place) else { return Ok(Axis::default()) };
+        let of = self.variables.iter().find(|other| other.name == dimension.name && other.dimensions == [place]);
+        let coordinates = match of {
+            Some(of) if of.kind.is_some() && self.points(place) <= MOST_COORDINATES => {
+                Some(self.numbers(source, of, [self.points(place), 1])?)
+            }
+            _ => None,
+        };
+        let attributes = of.map(|of| of.attributes.clone()).unwrap_or_default();
+        Ok(Axis { name: dimension.name.clone(), attributes, coordinates })
     }
 
     /// True if a variable has a part of itself in every record.
@@ -159,33 +130,40 @@ impl Header {
         }
     }
 
-    /// The numbers of a two-dimensional variable.
+    /// The numbers of a field.
     fn field(&self, source: &mut Source, variable: &Variable) -> Result<Array2<f64>, Cause> {
+        let [rows, columns] = self.axes(variable)?.map(|place| self.points(place));
+        points(rows, columns)?;
+        let values = self.numbers(source, variable, [rows, columns])?;
+        shaped([rows, columns], values)
+    }
+
+    /// The numbers of a variable of this extent.
+    fn numbers(&self, source: &mut Source, variable: &Variable, [rows, columns]: [u64; 2]) -> Result<Vec<f64>, Cause> {
         let name = &variable.name;
         let kind = variable.kind.ok_or_else(|| format!("variable {name:?} is text"))?;
-        let lengths: Vec<_> = variable.dimensions.iter().filter_map(|place| Some(self.dimensions.get(*place)?.length)).collect();
-        let [first, columns] = lengths[..] else {
-            return Err(format!("variable {name:?} is not two-dimensional").into());
-        };
-        let grows = self.grows(variable);
-        let rows = if grows { self.records } else { first };
-        let count = points(rows, columns)?;
-        let row = columns * kind.width() as u64;
-        let step = if grows { self.record() } else { Some(row) };
-        let end = step.and_then(|step| step.checked_mul(rows - 1)?.checked_add(row)?.checked_add(variable.begin));
-        let (Some(step), Some(_)) = (step, end.filter(|end| *end <= source.length)) else {
+        let count = rows.checked_mul(columns).ok_or("its extent is too large")?;
+        // A variable that grows has a part of itself in every record.
+        let parts = if self.grows(variable) { self.records } else { 1 };
+        let each = count.checked_div(parts).unwrap_or(0);
+        let part = each.checked_mul(kind.width() as u64);
+        let step = if parts > 1 { self.record() } else { part };
+        let end = step
+            .zip(part)
+            .and_then(|(step, part)| step.checked_mul(parts.saturating_sub(1))?.checked_add(part)?.checked_add(variable.begin));
+        let (Some(step), Some(part), Some(_)) = (step, part, end.filter(|end| *end <= source.length)) else {
             return Err(format!("variable {name:?} claims {rows} by {columns} values, more than {} bytes can hold", source.length).into());
         };
         let mut values = room(count)?;
         source.file.seek(SeekFrom::Start(variable.begin))?;
-        if step == row {
+        if step == part {
             stream(&mut source.file, kind, Order::Big, count, |value| values.push(value))?;
         } else {
-            for _ in 0..rows {
-                stream(&mut source.file, kind, Order::Big, columns, |value| values.push(value))?;
-                source.file.seek_relative(i64::try_from(step)? - i64::try_from(row)?)?;
+            for _ in 0..parts {
+                stream(&mut source.file, kind, Order::Big, each, |value| values.push(value))?;
+                source.file.seek_relative(i64::try_from(step)? - i64::try_from(part)?)?;
             }
         }
-        shaped([rows, columns], values)
+        Ok(values)
     }
 }

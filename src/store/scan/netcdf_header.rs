@@ -2,6 +2,7 @@
 
 use std::io::Read;
 
+use super::attributes::{Attributes, Value, decoded};
 use super::numbers::{Number, Order};
 use super::{Cause, Source};
 
@@ -25,6 +26,8 @@ pub(super) struct Header {
     pub(super) dimensions: Vec<Dimension>,
     /// Variables, in any order.
     pub(super) variables: Vec<Variable>,
+    /// Attributes of the file.
+    pub(super) attributes: Attributes,
 }
 
 /// A dimension.
@@ -39,35 +42,11 @@ pub(super) struct Variable {
     pub(super) name: String,
     /// Places of its dimensions, every one of which exists.
     pub(super) dimensions: Vec<usize>,
-    attributes: Vec<(String, Value)>,
+    pub(super) attributes: Attributes,
     /// Kind of its numbers; none for text.
     pub(super) kind: Option<Number>,
     /// Offset of its first number.
     pub(super) begin: u64,
-}
-
-/// Value of an attribute.
-enum Value {
-    Text(String),
-    Number(f64),
-}
-
-impl Variable {
-    /// Text of an attribute, if it is there and not empty.
-    pub(super) fn text(&self, name: &str) -> Option<&str> {
-        self.attributes.iter().find_map(|(other, value)| match value {
-            Value::Text(text) if other == name && !text.is_empty() => Some(text.as_str()),
-            _ => None,
-        })
-    }
-
-    /// Number of an attribute, the first one if it has more.
-    pub(super) fn number(&self, name: &str) -> Option<f64> {
-        self.attributes.iter().find_map(|(other, value)| match value {
-            Value::Number(number) if other == name => Some(*number),
-            _ => None,
-        })
-    }
 }
 
 impl Header {
@@ -88,7 +67,7 @@ impl Header {
         for _ in 0..bytes.list(10, "dimensions")? {
             header.dimensions.push(Dimension { name: bytes.name()?, length: bytes.count()? });
         }
-        bytes.attributes()?;
+        header.attributes = bytes.attributes()?;
         for _ in 0..bytes.list(11, "variables")? {
             let variable = bytes.variable(header.dimensions.len())?;
             header.variables.push(variable);
@@ -168,8 +147,8 @@ impl Bytes<'_> {
         Ok(String::from_utf8(name).map_err(|_| "a name in the header is not UTF-8 text")?)
     }
 
-    fn attributes(&mut self) -> Result<Vec<(String, Value)>, Cause> {
-        let mut kept = Vec::new();
+    fn attributes(&mut self) -> Result<Attributes, Cause> {
+        let mut kept = Attributes::default();
         for _ in 0..self.list(12, "attributes")? {
             let name = self.name()?;
             let (kind, count) = (self.kind()?, self.count()?);
@@ -181,10 +160,10 @@ impl Bytes<'_> {
             let bytes = self.take(length)?;
             self.skip(padding(length))?;
             let value = match kind {
-                None => Some(Value::Text(String::from_utf8_lossy(&bytes).trim_matches(['\0', ' ']).to_owned())),
-                Some(kind) => bytes.get(..kind.width()).map(|first| Value::Number(kind.value(first, Order::Big))),
+                None => Value::Text(decoded(&bytes).trim_matches(['\0', ' ']).to_owned()),
+                Some(kind) => Value::Numbers(bytes.chunks_exact(kind.width()).map(|one| kind.value(one, Order::Big)).collect(), kind),
             };
-            kept.extend(value.map(|value| (name, value)));
+            kept.push(name, value);
         }
         Ok(kept)
     }

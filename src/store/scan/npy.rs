@@ -3,7 +3,7 @@
 use std::io::Read;
 
 use super::numbers::{Layout, Number, Order, field, points};
-use super::{Cause, Scan, Source};
+use super::{Cause, FirstIndex, Scan, Source};
 
 /// Bytes that the line may have; NumPy itself reads 10 000.
 const LONGEST_LINE: u64 = 1 << 16;
@@ -25,8 +25,10 @@ pub(super) fn read(mut source: Source) -> Result<Scan, Cause> {
         let length = source.length;
         return Err(format!("the file has {length} bytes, but {rows} by {columns} numbers of type {:?} need {says}", about.descr).into());
     }
-    let heights = field(&mut source.file, (kind, order), [rows, columns], about.layout, |value| value)?;
-    Ok(Scan { heights, size_m: None, unit: None, factor: 1.0, periodic: None, spacing: None })
+    // A row is a scan line along x, as in images: C order of rows and columns is Fortran order of x and y.
+    let layout = if about.layout == Layout::Rows { Layout::Columns } else { Layout::Rows };
+    let heights = field(&mut source.file, (kind, order), [columns, rows], layout, |value| value)?;
+    Ok(Scan::bare(heights, FirstIndex::Y))
 }
 
 /// The line, and where the numbers begin.

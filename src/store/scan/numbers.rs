@@ -11,7 +11,7 @@ const AT_ONCE: usize = 1 << 16;
 
 /// A kind of number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Number {
+pub(crate) enum Number {
     I8,
     I16,
     I32,
@@ -26,13 +26,33 @@ pub(super) enum Number {
 
 impl Number {
     /// Bytes that one takes.
-    pub(super) const fn width(self) -> usize {
+    pub(crate) const fn width(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
             Self::I16 | Self::U16 => 2,
             Self::I32 | Self::U32 | Self::F32 => 4,
             Self::I64 | Self::U64 | Self::F64 => 8,
         }
+    }
+
+    /// True for floating-point numbers.
+    pub(crate) const fn is_float(self) -> bool {
+        matches!(self, Self::F32 | Self::F64)
+    }
+
+    /// Default fill value of NetCDF (`NC_FILL_*` of netcdf.h), which marks numbers that were never written; bytes have none.
+    pub(super) const fn never_written(self) -> Option<f64> {
+        Some(match self {
+            Self::I8 | Self::U8 => return None,
+            Self::I16 => -32_767.0,
+            Self::U16 => 65_535.0,
+            Self::I32 => -2_147_483_647.0,
+            Self::U32 => 4_294_967_295.0,
+            Self::I64 => -9_223_372_036_854_775_806.0,
+            Self::U64 => 18_446_744_073_709_551_614.0,
+            // 15 * 2^119, in single and in double precision.
+            Self::F32 | Self::F64 => f64::from_bits(0x479e_0000_0000_0000),
+        })
     }
 
     /// The value of one whose bytes are these.
@@ -133,6 +153,14 @@ pub(super) fn field(
         }
     }
     shaped([rows, columns], values)
+}
+
+/// A field with its rows and columns exchanged.
+pub(super) fn turned(field: Array2<f64>) -> Result<Array2<f64>, Cause> {
+    let [rows, columns] = [field.ncols(), field.nrows()];
+    let mut values = room(field.len() as u64)?;
+    values.extend(field.t().iter().copied());
+    shaped([rows as u64, columns as u64], values)
 }
 
 /// Heights as a field.

@@ -1,39 +1,30 @@
-//! A matrix of numbers as text: every line a row.
+//! Numbers as text: a matrix, points x, y, z on a grid, or one column of a stated width.
 //!
-//! The first line of numbers determines the separator of the file. Lines that begin with a
-//! comment sign may say sizes and units; so may lines before the first numbers that say something of the form
-//! "width = 10 µm", as some instruments write it without a sign.
+//! The first line of numbers determines the separator of the file; quotation marks around cells do not count. Lines before it are the
+//! heading, with or without a comment sign: sizes and units in the words of several programs, and names of columns.
 //!
-//! Three columns of many lines are points x, y, z on a grid, and not a matrix.
+//! A line of a matrix is a scan line along x, as in the exports of Gwyddion and in SurfaceTopography: the place in the line is x, the
+//! line is y.
 
 use std::io::{BufRead, Read};
 
-use super::numbers::{points, shaped};
-use super::text_heading::Heading;
+use super::attributes::decoded;
+use super::numbers::{points, shaped, turned};
+use super::text_cells::{Decimals, Separator, is_value};
+use super::text_columns::{Column, Role, are_units, columns};
+use super::text_heading::{Heading, Meaning};
 use super::text_points::grid;
-use super::{Cause, MOST_POINTS, Scan, Source};
+use super::{Asked, Cause, FirstIndex, MOST_POINTS, Scan, Source};
+use crate::text::counted;
 
 /// Starts of a comment.
 const COMMENTS: [&str; 3] = ["#", "%", "//"];
-/// Words for a missing point, in upper or lower case.
-const MISSING: [&str; 9] = ["nan", "+nan", "-nan", "bad", "--", "---", "inf", "-inf", "infinite"];
 /// Lines from which on few columns are coordinates: a matrix needs as many columns as that to be of use.
 const MANY: u64 = 16;
-/// Bytes of a cell that an error shows.
-const SHOWN: usize = 24;
 
-/// Separator of numbers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Separator {
-    /// As many spaces and tabs as you like.
-    Blank,
-    /// This sign, once: nothing between two of them is a missing point.
-    Sign(char),
-}
-
-/// Reads the matrix.
-pub(super) fn read(source: Source) -> Result<Scan, Cause> {
-    let mut matrix = Matrix::default();
+/// Reads the numbers.
+pub(super) fn read(source: Source, asked: &Asked<'_>) -> Result<Scan, Cause> {
+    let mut matrix = Matrix { width: asked.width, ..Matrix::default() };
     let (mut file, mut line, mut number) = (source.file, Vec::new(), 0_u64);
     // No line is longer than the file was when it was opened, even if it grows.
     let mut left = source.length;
@@ -45,6 +36,9 @@ pub(super) fn read(source: Source) -> Result<Scan, Cause> {
         }
         left = left.saturating_sub(read as u64);
         number += 1;
+        if number <= asked.skip_lines {
+            continue;
+        }
         let text = decoded(&line);
         let text = if number == 1 { text.strip_prefix('\u{feff}').unwrap_or(&text) } else { &text };
         let text = text.strip_suffix('\n').unwrap_or(text);
@@ -53,31 +47,23 @@ pub(super) fn read(source: Source) -> Result<Scan, Cause> {
     matrix.finish()
 }
 
-/// Bytes as text: UTF-8, or else Latin-1, in which instruments write their µ.
-fn decoded(bytes: &[u8]) -> String {
-    match std::str::from_utf8(bytes) {
-        Ok(text) => text.to_owned(),
-        Err(_) => bytes.iter().copied().map(char::from).collect(),
-    }
-}
-
-/// Rows of a matrix that have been read.
+/// Rows of numbers that have been read.
+#[derive(Default)]
 struct Matrix {
     heading: Heading,
+    /// Columns that the heading names.
+    named: Vec<Column>,
+    /// Points of a scan line, where lines of the file are not scan lines.
+    width: Option<u64>,
     separator: Option<Separator>,
+    decimals: Decimals,
     values: Vec<f64>,
     rows: u64,
     columns: u64,
-    /// True if all rows so far end with a separator.
-    open: bool,
-    /// True if a line of words says that the columns are x, y and z.
-    points: bool,
-}
-
-impl Default for Matrix {
-    fn default() -> Self {
-        Self { heading: Heading::default(), separator: None, values: Vec::new(), rows: 0, columns: 0, open: true, points: false }
-    }
+    /// Rows that do not end with a separator.
+    closed: u64,
+    /// Lines of the heading without a comment sign.
+    unsigned: u64,
 }
 
 impl Matrix {
@@ -87,19 +73,36 @@ impl Matrix {
             return Ok(());
         }
         if let Some(comment) = COMMENTS.iter().find_map(|sign| text.strip_prefix(sign)) {
-            return self.heading.line(comment);
-        }
-        if self.rows == 0 && text.starts_with(char::is_alphabetic) && text.contains(['=', ':']) {
-            return self.heading.line(text);
+            self.heading.line(comment)?;
+            if self.rows == 0 && !comment.contains(['=', ':']) {
+                self.name(comment);
+            }
+            return Ok(());
         }
         if text.contains('\r') {
             return Err("unsupported line endings (CR only)\nhelp: convert the file to LF or CR LF".into());
         }
-        if self.rows == 0 && names_points(text) {
-            self.points = true;
-            return Ok(());
+        if self.rows == 0 && is_heading(text) {
+            self.unsigned += 1;
+            if text.starts_with(char::is_alphabetic) && text.contains(['=', ':']) {
+                return self.heading.line(text);
+            }
+            self.name(text);
+            return self.heading.words(text);
         }
         self.row(line)
+    }
+
+    /// Takes in a line as the names of columns, or as the units of those named before.
+    fn name(&mut self, line: &str) {
+        let Some(found) = columns(line) else { return };
+        if are_units(&found) && found.len() == self.named.len() {
+            for (column, units) in self.named.iter_mut().zip(found) {
+                column.unit = units.unit;
+            }
+        } else if !found.is_empty() {
+            self.named = found;
+        }
     }
 
     /// True if a line of nothing but blanks is a row of which every point is missing.
@@ -108,44 +111,47 @@ impl Matrix {
     }
 
     fn row(&mut self, line: &str) -> Result<(), Cause> {
-        let separator = *self.separator.get_or_insert_with(|| separator(line));
+        let separator = *self.separator.get_or_insert_with(|| match Separator::of(line) {
+            // One number with a decimal comma, and not two.
+            Separator::Sign(',') if self.width.is_some() && line.matches(',').count() == 1 => Separator::Blank,
+            separator => separator,
+        });
         let before = self.values.len();
-        match separator {
-            Separator::Blank => self.cells(line.split_whitespace())?,
-            Separator::Sign(sign) => self.cells(line.split(sign).map(str::trim))?,
+        for (at, cell) in separator.cells(line).into_iter().enumerate() {
+            let value = self.decimals.number(cell).map_err(|cause| format!("column {}: {cause}", at + 1))?;
+            self.push(value)?;
         }
         let count = (self.values.len() - before) as u64;
         if self.rows == 0 {
             self.columns = count;
-        } else if count != self.columns {
-            return Err(format!("{count} numbers, but the previous lines have {}", self.columns).into());
+        } else if count != self.columns && self.width.is_none() {
+            let help = "each line must have the same count; skip lines of a heading with surface.skip_lines (--skip-lines)";
+            return Err(format!("{count} numbers, but the previous lines have {}\nhelp: {help}", self.columns).into());
         }
         self.rows += 1;
-        self.open &= matches!(separator, Separator::Sign(sign) if line.trim_matches(' ').ends_with(sign));
+        let open = matches!(separator, Separator::Sign(sign) if line.trim_matches(' ').ends_with(sign));
+        self.closed += u64::from(!open);
         Ok(())
     }
 
-    fn cells<'a>(&mut self, cells: impl Iterator<Item = &'a str>) -> Result<(), Cause> {
-        for (at, cell) in cells.enumerate() {
-            let value = number(cell).map_err(|cause| format!("column {}: {cause}", at + 1))?;
-            if self.values.len() as u64 >= MOST_POINTS {
-                return Err(format!("more than {MOST_POINTS} points, the limit of a surface").into());
-            }
-            if self.values.len() == self.values.capacity() {
-                let more = self.values.len().max(1 << 12);
-                self.values.try_reserve(more).map_err(|_| "its heights do not fit into the memory of this machine")?;
-            }
-            self.values.push(value);
+    fn push(&mut self, value: f64) -> Result<(), Cause> {
+        if self.values.len() as u64 >= MOST_POINTS {
+            return Err(format!("more than {MOST_POINTS} points, the limit of a surface").into());
         }
+        if self.values.len() == self.values.capacity() {
+            let more = self.values.len().max(1 << 12);
+            self.values.try_reserve(more).map_err(|_| "its heights do not fit into the memory of this machine")?;
+        }
+        self.values.push(value);
         Ok(())
     }
 
     fn finish(mut self) -> Result<Scan, Cause> {
         if self.rows == 0 {
-            return Err("no line of numbers".into());
+            return Err("no line of numbers\nhelp: give a matrix of heights, or three columns x, y and z".into());
         }
         // A separator behind the last number of every line is not one more column.
-        if self.open && self.columns > 1 {
+        if self.closed == 0 && self.columns > 1 {
             let (columns, mut at) = (self.columns, 0);
             self.values.retain(|_| {
                 at += 1;
@@ -153,81 +159,141 @@ impl Matrix {
             });
             self.columns -= 1;
         }
-        if self.columns == 3 && (self.points || self.rows >= MANY) {
-            return self.positions();
+        if let Some(width) = self.width {
+            return self.lines_of(width);
         }
-        if self.columns < 3 && self.rows >= MANY {
-            let what = if self.columns == 2 { "two columns are a line scan (x and height)" } else { "one column is a line of heights" };
-            return Err(format!("{what}\nhelp: give a matrix of heights, or three columns x, y and z").into());
+        let roles: Vec<_> = self.named.iter().map(Column::role).collect();
+        let place = |role| roles.iter().position(|other| *other == Some(role));
+        let fits = roles.len() as u64 == self.columns;
+        if fits && place(Role::Spectrum).is_some() && self.columns <= 4 {
+            return Err(self.spectrum());
         }
-        let extent = [self.rows, self.columns];
-        points(self.rows, self.columns)?;
+        match (place(Role::X), place(Role::Y), place(Role::Height)) {
+            (Some(x), Some(y), Some(z)) if fits => return self.positions([x, y, z]),
+            _ if self.columns == 3 && self.rows >= MANY => return self.positions([0, 1, 2]),
+            _ => {}
+        }
+        match self.columns {
+            1 if self.heading.width().is_some() => {
+                self.heading.width().map_or_else(|| Err("no width".into()), |width| self.lines_of(width))
+            }
+            1 if self.rows >= MANY => Err(self.column()),
+            2 if self.rows >= MANY && self.decays() => Err(self.spectrum()),
+            2 if self.rows >= MANY => Err(line_scan()),
+            columns => self.lines_of(columns),
+        }
+    }
+
+    /// Heights in lines of so many points, whatever the lines of the file.
+    fn lines_of(mut self, width: u64) -> Result<Scan, Cause> {
+        let count = self.values.len() as u64;
+        if width == 0 || !count.is_multiple_of(width) {
+            return Err(format!(
+                "its {count} numbers are no whole number of lines of {width} points\nhelp: correct surface.width (--width); {}",
+                widths(count)
+            )
+            .into());
+        }
+        let extent = [count / width, width];
+        points(extent[0], extent[1])?;
+        if self.named.len() as u64 == self.columns || self.columns == 1 {
+            self.heading.unit_of_heights(&self.named);
+        }
         let meaning = self.heading.meaning(extent)?;
-        let mut heights = shaped(extent, self.values)?;
+        let notes = self.notes();
+        let mut heights = turned(shaped(extent, self.values)?)?;
         heights *= meaning.factor;
-        Ok(Scan { heights, size_m: meaning.size_m, unit: meaning.unit, factor: meaning.factor, periodic: None, spacing: None })
+        Ok(scan(meaning, notes, Scan::bare(heights, FirstIndex::Y)))
     }
 
     /// The heights of points. Where the file says a unit of the heights, it holds for x and y, unless these have their own.
-    fn positions(self) -> Result<Scan, Cause> {
-        let found = grid(&self.values)?;
-        drop(self.values);
+    fn positions(mut self, places: [usize; 3]) -> Result<Scan, Cause> {
+        if let [Some(x), Some(y), Some(z)] = places.map(|place| self.named.get(place).filter(|_| self.named.len() as u64 == self.columns)) {
+            self.heading.units_of_points(x, y, z);
+        }
+        let mut notes = self.notes();
+        let values = std::mem::take(&mut self.values);
+        let columns = self.columns as usize;
+        let found = if places == [0, 1, 2] && columns == 3 {
+            grid(&values)?
+        } else {
+            let chosen: Vec<f64> =
+                values.chunks_exact(columns).flat_map(|row| places.map(|place| row.get(place).copied().unwrap_or(f64::NAN))).collect();
+            grid(&chosen)?
+        };
+        drop(values);
+        if found.absent > 0 {
+            notes.push(format!("{} of the grid without a line, taken as missing", counted(found.absent, "point")));
+        }
         let extent = [found.heights.nrows() as u64, found.heights.ncols() as u64];
         let meaning = self.heading.of_points(found.spacing, extent)?;
         let mut heights = found.heights;
         heights *= meaning.factor;
-        Ok(Scan {
-            heights,
-            size_m: meaning.size_m,
-            unit: meaning.unit,
-            factor: meaning.factor,
-            periodic: None,
-            spacing: Some(found.spacing),
-        })
+        Ok(Scan { spacing: Some(found.spacing), ..scan(meaning, notes, Scan::bare(heights, FirstIndex::X)) })
     }
-}
 
-/// True if a line is the words x, y and z, as a heading of columns.
-fn names_points(line: &str) -> bool {
-    let words = line.split(|sign: char| sign.is_whitespace() || matches!(sign, ',' | ';')).filter(|word| !word.is_empty());
-    words.map(|word| word.trim_matches('"').to_ascii_lowercase()).eq(["x", "y", "z"])
-}
-
-/// Separator of the numbers of this line.
-fn separator(line: &str) -> Separator {
-    let one_each = |sign: char| line.split(sign).all(|cell| !cell.trim().contains(char::is_whitespace));
-    if line.contains(';') {
-        Separator::Sign(';')
-    } else if line.contains('\t') && one_each('\t') {
-        Separator::Sign('\t')
-    } else if line.contains(',') && !has_decimal_commas(line) {
-        Separator::Sign(',')
-    } else {
-        Separator::Blank
+    /// Sentences on how the text was read.
+    fn notes(&self) -> Vec<String> {
+        let heading =
+            (self.unsigned > 0).then(|| format!("{} before the numbers, read as a heading", counted(self.unsigned as usize, "line")));
+        let comma = self.decimals.comma.then(|| "decimal commas".to_owned());
+        [heading, comma].into_iter().flatten().collect()
     }
-}
 
-/// True if a line is several numbers between blanks, each with a comma inside.
-fn has_decimal_commas(line: &str) -> bool {
-    let mut cells = line.split_whitespace().map(|cell| cell.trim_matches(',').contains(',') && !cell.ends_with(','));
-    line.split_whitespace().nth(1).is_some() && cells.all(|inside| inside)
-}
-
-/// A height; NaN where a point is missing.
-fn number(cell: &str) -> Result<f64, Cause> {
-    if cell.is_empty() || MISSING.iter().any(|word| cell.eq_ignore_ascii_case(word)) {
-        return Ok(f64::NAN);
-    }
-    let shown: String = cell.chars().take(SHOWN).collect();
-    match cell.parse::<f64>() {
-        Ok(value) if value.is_finite() => Ok(value),
-        Ok(_) => Err(format!("{shown:?} is not a finite number").into()),
-        Err(_) if cell.matches(',').count() == 1 && cell.replace(',', ".").parse::<f64>().is_ok() => {
-            Err(format!("{shown:?} has a decimal comma\nhelp: write a decimal point").into())
-        }
-        Err(_) => Err(format!(
-            "{shown:?} is not a number\nhelp: write numbers, and nan, bad, -- or nothing for missing points; headings start with #"
+    /// The refusal of a spectrum.
+    fn spectrum(&self) -> Cause {
+        format!(
+            "this looks like a power spectral density, not a height map: {} with a wavevector\n\
+             help: give the heights that the spectrum was computed from, or generate surfaces of such a spectrum from a spec",
+            counted(self.columns as usize, "column")
         )
-        .into()),
+        .into()
     }
+
+    /// True if the first of two columns increases from above 0 and the second, above 0, decreases by more than a decade, as a spectrum does.
+    fn decays(&self) -> bool {
+        let pairs = || self.values.chunks_exact(2);
+        let positive = pairs().all(|pair| pair.iter().all(|value| *value > 0.0));
+        let rises = pairs().zip(pairs().skip(1)).all(|(one, next)| one[0] < next[0]);
+        let ends = [pairs().next(), pairs().last()].map(|pair| pair.map_or(f64::NAN, |pair| pair[1]));
+        positive && rises && ends[0] > 10.0 * ends[1]
+    }
+
+    /// The refusal of one column without a width.
+    fn column(&self) -> Cause {
+        format!(
+            "one column of {} numbers: a line scan, or a map whose points per line are not stated\n\
+             help: give the points per scan line as surface.width (--width); {}",
+            self.rows,
+            widths(self.rows)
+        )
+        .into()
+    }
+}
+
+/// The refusal of two columns.
+fn line_scan() -> Cause {
+    "two columns are a line scan (x and height), or one column with decimal commas\n\
+     help: give a matrix of heights, or three columns x, y and z; for one column with decimal commas give its points per line (--width)"
+        .into()
+}
+
+/// Possible numbers of points per line.
+fn widths(count: u64) -> String {
+    let root = count.isqrt();
+    if root * root == count { format!("{count} = {root} x {root}") } else { format!("{count} is no square number") }
+}
+
+/// A scan with the unit and size of a heading.
+fn scan(meaning: Meaning, notes: Vec<String>, bare: Scan) -> Scan {
+    Scan { size_m: meaning.size_m, unit: meaning.unit, factor: meaning.factor, notes, ..bare }
+}
+
+/// True if a line before the numbers is no row: its first cell is neither a number nor a missing point.
+fn is_heading(text: &str) -> bool {
+    if text.starts_with(char::is_alphabetic) && text.contains(['=', ':']) {
+        return true;
+    }
+    let cells = Separator::of(text).cells(text);
+    cells.iter().find(|cell| !cell.is_empty()).is_some_and(|cell| !is_value(cell))
 }

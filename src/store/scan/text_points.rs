@@ -1,14 +1,18 @@
-//! Lines of x, y and z, in any order, as a matrix of heights on a regular grid.
+//! Lines of x, y and z, in any order, as a matrix of heights on a regular grid. A place of the grid without a line is a missing point.
 
 use ndarray::Array2;
 
-use super::Cause;
 use super::numbers::{points, room, shaped};
+use super::{Cause, MOST_POINTS};
 
 /// Coordinates that differ by less than this fraction of their range, over the root of the number of points, are the same.
 const SAME: f64 = 1e-6;
 /// Fraction of a grid spacing by which a coordinate may be off, as rounding in a file makes it.
 const OFF: f64 = 0.1;
+/// Gaps of an axis up to this multiple of the median gap are one spacing, and wider ones are several.
+const ONE_GAP: f64 = 1.5;
+/// Places of a grid per line at most: with fewer lines, the points are scattered. In-fill takes as many missing points.
+const MOST_PLACES: u64 = 2;
 /// Help for points that are not on a regular grid.
 const HELP: &str = "interpolate the points to a regular grid first (scipy.interpolate.griddata in Python, or Gwyddion), and write nan where heights are missing";
 
@@ -17,6 +21,8 @@ const HELP: &str = "interpolate the points to a regular grid first (scipy.interp
 pub(super) struct Grid {
     pub(super) heights: Array2<f64>,
     pub(super) spacing: [f64; 2],
+    /// Places without a line.
+    pub(super) absent: usize,
 }
 
 /// Sorts values x, y, z, x, y, z … into a grid, every place of which has one height; NaN is a height that is missing.
@@ -25,15 +31,16 @@ pub(super) fn grid(values: &[f64]) -> Result<Grid, Cause> {
     let x = Axis::of("x", values.iter().step_by(3), count)?;
     let y = Axis::of("y", values.iter().skip(1).step_by(3), count)?;
     let extent = [x.count as u64, y.count as u64];
-    let places = points(extent[0], extent[1])?;
-    if places > count as u64 {
+    let places = extent[0].saturating_mul(extent[1]);
+    if places > MOST_PLACES.saturating_mul(count as u64) {
         return Err(refused(format!(
             "three columns are read as x, y and z: {} by {} places of a grid need {places} lines, and it has {count}",
             extent[0], extent[1]
         )));
     }
+    points(extent[0], extent[1])?;
     let mut heights = room(places)?;
-    heights.resize(places as usize, 0.0);
+    heights.resize(places as usize, f64::NAN);
     let mut taken = Vec::new();
     taken.try_reserve_exact(heights.len()).map_err(|_| "its heights do not fit into the memory of this machine")?;
     taken.resize(heights.len(), false);
@@ -47,11 +54,8 @@ pub(super) fn grid(values: &[f64]) -> Result<Grid, Cause> {
         }
         heights[place] = point[2];
     }
-    if let Some(place) = taken.iter().position(|taken| !taken) {
-        let (at_x, at_y) = (x.first + x.spacing * (place / y.count) as f64, y.first + y.spacing * (place % y.count) as f64);
-        return Err(refused(format!("three columns are read as x, y and z: there is no point at x = {at_x}, y = {at_y}")));
-    }
-    Ok(Grid { heights: shaped(extent, heights)?, spacing: [x.spacing, y.spacing] })
+    let absent = taken.iter().filter(|taken| !**taken).count();
+    Ok(Grid { heights: shaped(extent, heights)?, spacing: [x.spacing, y.spacing], absent })
 }
 
 fn refused(problem: String) -> Cause {
@@ -77,19 +81,39 @@ impl Axis {
         let (Some(first), Some(last)) = (sorted.first().copied(), sorted.last().copied()) else { return Err("it has no points".into()) };
         let same = SAME * (last - first) / (count as f64).sqrt();
         sorted.dedup_by(|next, kept| *next - *kept <= same);
-        let count = sorted.len();
-        let spacing = (last - first) / (count.max(2) - 1) as f64;
-        if count < 2 || !spacing.is_finite() {
+        if sorted.len() < 2 || !(last - first).is_finite() {
             return Err(refused(format!("three columns are read as x, y and z: all values of {name} are {first}")));
         }
-        let axis = Self { name, first, spacing, count };
-        for (at, value) in sorted.iter().enumerate() {
-            let due = first + spacing * at as f64;
-            if (value - due).abs() > OFF * spacing {
-                return Err(axis.uneven(&sorted));
-            }
+        let of = |count: usize| Self { name, first, spacing: (last - first) / (count - 1) as f64, count };
+        let [full, gapped] = [of(sorted.len()), of(Self::with_gaps(&sorted, last - first))];
+        if full.holds(&sorted) {
+            Ok(full)
+        } else if gapped.holds(&sorted) && gapped.count as u64 <= MOST_PLACES * sorted.len() as u64 {
+            Ok(gapped)
+        } else {
+            Err(full.uneven(&sorted))
         }
-        Ok(axis)
+    }
+
+    /// Number of places of an axis where some coordinates have no line, from the mean of the gaps that are one spacing.
+    fn with_gaps(sorted: &[f64], range: f64) -> usize {
+        let mut gaps: Vec<f64> = sorted.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        gaps.sort_unstable_by(f64::total_cmp);
+        let median = gaps.get(gaps.len() / 2).copied().unwrap_or(range);
+        // More than half of the gaps may be wide, where the points are few.
+        let one = if gaps.first().is_some_and(|least| *least < 0.75 * median) { gaps.first().copied().unwrap_or(median) } else { median };
+        let single: Vec<f64> = gaps.into_iter().filter(|gap| *gap < ONE_GAP * one).collect();
+        let spacing = single.iter().sum::<f64>() / single.len().max(1) as f64;
+        let places = (range / spacing).round();
+        if places < MOST_POINTS as f64 { (places as usize + 1).max(2) } else { sorted.len() }
+    }
+
+    /// True if every coordinate is at a place of the axis.
+    fn holds(&self, sorted: &[f64]) -> bool {
+        sorted.iter().all(|value| {
+            let place = (value - self.first) / self.spacing;
+            (place - place.round()).abs() <= OFF
+        }) && self.count >= sorted.len()
     }
 
     /// The refusal of coordinates that are not evenly spaced, with the widest gap.
@@ -100,7 +124,7 @@ impl Axis {
         let (from, to) = widest.map_or((f64::NAN, f64::NAN), |pair| (pair[0], pair[1]));
         refused(format!(
             "three columns are read as x, y and z: the {} values of {} are not evenly spaced, {narrowest:.3e} to {:.3e} apart (from {from} to {to})",
-            self.count,
+            sorted.len(),
             self.name,
             to - from
         ))

@@ -13,8 +13,10 @@ use zip::ZipArchive;
 use zip::read::ZipFile;
 use zip::result::ZipError;
 
+use crate::formats::{container, is_of_container};
+
 use super::numbers::{Layout, Number, Order, field, points};
-use super::{Cause, Scan, Source};
+use super::{Cause, FirstIndex, Scan, Source};
 
 /// The description.
 const MAIN: &str = "main.xml";
@@ -59,12 +61,10 @@ pub(super) fn read(source: Source) -> Result<Scan, Cause> {
         ends(bits, name)?;
     }
     Ok(Scan {
-        heights,
         size_m: about.size_m,
         unit: Some("m".to_owned()),
         factor: about.increment.unwrap_or(1.0),
-        periodic: None,
-        spacing: None,
+        ..Scan::bare(heights, FirstIndex::Y)
     })
 }
 
@@ -113,6 +113,7 @@ impl Names {
         let found: Vec<String> = parts.keys().filter(|name| in_folder(name)).cloned().collect();
         match &found[..] {
             [one] => Ok(Self { folder: one.trim_end_matches(MAIN).to_owned(), parts }),
+            [] if parts.keys().any(|name| is_of_container(name.as_bytes())) => Err(container().into()),
             [] => Err(format!("zip archive without {MAIN}: not an X3P file").into()),
             many => {
                 Err(format!("zip archive with {} X3P folders instead of one\nhelp: unpack it, and zip one of the folders", many.len())

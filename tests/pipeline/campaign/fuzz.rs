@@ -2,6 +2,7 @@
 
 use super::SMALL;
 use crate::bench::{Bench, code, paths};
+use crate::scan::read_heights;
 use hysteron::schema;
 use hysteron::spec::Spec;
 use hysteron::store::{Found, hdf5, parquet, read_receipt};
@@ -135,7 +136,7 @@ fn law_no_bytes_end_a_reader() {
         let (path, table) = &tables[number % tables.len()];
         attempt(path, &mut random, &|path| parquet::read_table(path, table).map(drop).map_err(|error| error.to_string()));
         attempt(&surfaces[0], &mut random, &|path| hdf5::read_surface(path).map(drop).map_err(|error| error.to_string()));
-        attempt(&surfaces[0], &mut random, &|path| hdf5::read_heights(path, Some("height_m")).map(drop).map_err(|error| error.to_string()));
+        attempt(&surfaces[0], &mut random, &|path| read_heights(path, Some("height_m")).map(drop).map_err(|error| error.to_string()));
         let receipt = &receipts[number % receipts.len()];
         attempt(receipt, &mut random, &|path| match read_receipt(path) {
             Found::Whole(_) => panic!("a receipt was changed, and read as one"),

@@ -3,7 +3,7 @@
 use std::fs::{self, File};
 use std::io::{Seek, SeekFrom, Write};
 
-use hysteron::store::scan::{Format, read};
+use hysteron::store::scan::{Asked, Format, read};
 use ndarray::Array2;
 use zip::CompressionMethod::{Deflated, Stored};
 
@@ -74,7 +74,7 @@ fn law_no_byte_ends_the_program() {
                 _ => random(256) as u8,
             };
             put(place, byte);
-            let result = read(&path, format, None);
+            let result = read(&path, format, &Asked::default());
             if let Err(error) = &result {
                 let message = error.to_string();
                 assert!(!message.contains("does not foresee"), "{name}: {message}");

@@ -44,14 +44,14 @@ fn e2e_a_crop_and_a_bad_fit_are_cautions() {
     assert!(found.is_empty() && (0.0..=1.0).contains(&fit["hurst"].as_f64().unwrap()), "{found:?} {fit}");
     let (found, _) = cautions(&whole.slice(s![..270, ..]).to_owned());
     assert!(
-        found.iter().any(|text| text.starts_with("crop: 12 % of the scan (270 x 308 points, 3.375e-6 m x 3.850e-6 m)")
+        found.iter().any(|text| text.starts_with("crop: 12 % of the scan (308 x 270 points, 3.850e-6 m x 3.375e-6 m)")
             && text.contains("270 x 270 points remain")),
         "{found:?}"
     );
     // In words too, in eighty columns.
     let output = imported(folder.path(), &whole.slice(s![..100, ..]).to_owned(), &TOLD);
     let words = stdout(&output);
-    assert!(words.contains("warning: crop: 68 % of the scan") && words.contains("rows x columns; the row index runs along x"), "{words}");
+    assert!(words.contains("warning: crop: 68 % of the scan") && words.contains("points along x and y"), "{words}");
     assert!(words.lines().all(|line| line.chars().count() <= 80), "{words}");
     // White noise has C(q) constant: H = -1.
     let mut state = 1_u64;

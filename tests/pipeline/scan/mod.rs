@@ -2,6 +2,7 @@
 
 #[cfg(feature = "stats")]
 mod artefacts;
+mod attributes;
 mod damage;
 #[cfg(feature = "stats")]
 mod filter;
@@ -9,11 +10,14 @@ mod filter;
 mod formats;
 #[cfg(feature = "stats")]
 pub mod import;
+mod instruments;
 #[cfg(feature = "stats")]
 mod limits;
 mod make;
 mod netcdf;
 mod npy;
+#[cfg(feature = "stats")]
+mod orders;
 mod outside;
 #[cfg(feature = "stats")]
 mod periodic;
@@ -29,7 +33,9 @@ use std::fs;
 use std::path::Path;
 
 use hysteron::lengths::{LENGTHS, metres};
-use hysteron::store::scan::{Format, Found, Scan, detect, read};
+use hysteron::store::StoreError;
+use hysteron::store::hdf5::read_scan;
+use hysteron::store::scan::{Asked, Format, Found, Scan, detect, read};
 use ndarray::Array2;
 
 /// Reads bytes as a file of this format; a failure as its sentence.
@@ -41,11 +47,21 @@ fn scan_of(bytes: &[u8], format: Format, variable: Option<&str>) -> Result<Scan,
 /// As [`scan_of`], with a path at which they are to stand.
 fn scan_at(path: &Path, bytes: &[u8], format: Format, variable: Option<&str>) -> Result<Scan, String> {
     fs::write(path, bytes).unwrap();
-    read(path, format, variable).map_err(|error| {
+    read(path, format, &Asked { field: variable, ..Asked::default() }).map_err(|error| {
         let message = error.to_string();
         let begin = format!("cannot read the surface from {}: ", path.display());
         message.strip_prefix(&begin).unwrap_or_else(|| panic!("{message}")).to_owned()
     })
+}
+
+/// Heights in the order of a text or an array, whose lines run along x.
+fn lines(scan: &Scan) -> Array2<f64> {
+    scan.heights.t().as_standard_layout().into_owned()
+}
+
+/// Heights of a dataset of an HDF5 file.
+pub fn read_heights(path: &Path, field: Option<&str>) -> Result<Array2<f64>, StoreError> {
+    read_scan(path, &Asked { field, ..Asked::default() }).map(|scan| scan.heights)
 }
 
 /// Asserts that this is refused with a sentence that has these parts.
@@ -142,10 +158,10 @@ fn law_only_netcdf_has_names() {
 fn law_what_is_no_file_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     for format in [Format::Npy, Format::NetCdf3, Format::X3p, Format::Text] {
-        assert!(read(folder.path(), format, None).unwrap_err().to_string().contains("it is a directory"));
-        assert!(read(&folder.path().join("none"), format, None).unwrap_err().to_string().contains("No such file"));
+        assert!(read(folder.path(), format, &Asked::default()).unwrap_err().to_string().contains("it is a directory"));
+        assert!(read(&folder.path().join("none"), format, &Asked::default()).unwrap_err().to_string().contains("No such file"));
         #[cfg(unix)]
-        assert!(read("/dev/zero".as_ref(), format, None).unwrap_err().to_string().contains("not a regular file"));
+        assert!(read("/dev/zero".as_ref(), format, &Asked::default()).unwrap_err().to_string().contains("not a regular file"));
         assert!(scan_of(b"", format, None).is_err());
     }
 }

@@ -6,7 +6,7 @@ use hysteron::store::scan::{Format, MOST_POINTS};
 use ndarray::{Array2, ShapeBuilder, array};
 
 use super::make::{little, npy, npy_line};
-use super::{awkward, refused, same, scan_of};
+use super::{awkward, lines, refused, same, scan_of};
 
 #[test]
 fn law_every_version_and_order_is_read_to_the_bit() {
@@ -14,12 +14,12 @@ fn law_every_version_and_order_is_read_to_the_bit() {
     for version in [1, 2, 3] {
         let bytes = npy(version, &npy_line("<f8", "False", "(3, 5)"), &little(&heights));
         let scan = scan_of(&bytes, Format::Npy, None).unwrap();
-        same(&scan.heights, &heights);
+        same(&lines(&scan), &heights);
         assert_eq!((scan.size_m, scan.unit, scan.periodic), (None, None, None));
         assert!(scan.heights.is_standard_layout());
         let bytes = npy(version, &npy_line("<f8", "True", "(3, 5)"), &little(heights.t()));
         let scan = scan_of(&bytes, Format::Npy, None).unwrap();
-        same(&scan.heights, &heights);
+        same(&lines(&scan), &heights);
         assert!(scan.heights.is_standard_layout());
     }
 }
@@ -29,7 +29,7 @@ fn law_fields_larger_than_a_part_are_whole() {
     let heights = Array2::from_shape_fn((191, 203), |(row, column)| (row * 1000 + column) as f64);
     for (fortran, data) in [("False", little(&heights)), ("True", little(heights.t()))] {
         let scan = scan_of(&npy(1, &npy_line("<f8", fortran, "(191, 203)"), &data), Format::Npy, None).unwrap();
-        same(&scan.heights, &heights);
+        same(&lines(&scan), &heights);
     }
 }
 
@@ -43,7 +43,7 @@ fn val_every_kind_of_number() {
             for sign in if $word.ends_with('1') { vec!["|", "<", ">"] } else { vec!["<", ">"] } {
                 let bytes: Vec<u8> = values.iter().flat_map(|value| if sign == ">" { value.to_be_bytes() } else { value.to_le_bytes() }).collect();
                 let file = npy(1, &npy_line(&format!("{sign}{}", $word), "False", &shape), &bytes);
-                same(&scan_of(&file, Format::Npy, None).unwrap().heights, &expected);
+                same(&lines(&scan_of(&file, Format::Npy, None).unwrap()), &expected);
             }
         )+};
     }
@@ -69,7 +69,7 @@ fn law_lines_are_read_however_python_writes_them() {
         "{\"shape\": (2,2,), \"fortran_order\":False,\"descr\":\"<f8\"}\n",
         "  { 'shape' : ( 2L , 2L ) , 'descr' : '<f8' , 'fortran_order' : False , }  \n",
     ] {
-        same(&scan_of(&npy(1, line, &little(&heights)), Format::Npy, None).unwrap().heights, &heights);
+        same(&lines(&scan_of(&npy(1, line, &little(&heights)), Format::Npy, None).unwrap()), &heights);
     }
 }
 
@@ -125,5 +125,5 @@ fn law_columns_of_fortran_are_the_same_as_of_ndarray() {
     let values: Vec<f64> = (0..12).map(f64::from).collect();
     let expected = Array2::from_shape_vec((3, 4).f(), values.clone()).unwrap();
     let scan = scan_of(&npy(1, &npy_line("<f8", "True", "(3, 4)"), &little(&values)), Format::Npy, None).unwrap();
-    same(&scan.heights, &expected.as_standard_layout().into_owned());
+    same(&lines(&scan), &expected.as_standard_layout().into_owned());
 }

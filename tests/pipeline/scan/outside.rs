@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
+use crate::scan::read_heights;
 use hdf5_metno::File;
 use hdf5_metno::plist::dataset_create::Layout;
-use hysteron::store::hdf5::{SurfaceHeader, check_inside, read_header, read_heights, read_surface, write_surface};
+use hysteron::store::hdf5::{SurfaceHeader, check_inside, read_header, read_surface, write_surface};
 use ndarray::{Array2, s};
 
 /// Points along a side.

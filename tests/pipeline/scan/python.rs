@@ -6,7 +6,7 @@ use std::process::Command;
 
 use hysteron::store::hdf5::write_tamaas;
 use hysteron::store::scan::export::write_netcdf3;
-use hysteron::store::scan::{Format, Found, detect, read};
+use hysteron::store::scan::{Asked, Format, Found, detect, read};
 use ndarray::Array2;
 
 use super::same;
@@ -42,7 +42,7 @@ fn e2e_files_of_python_are_read() {
             _ => Format::Text,
         };
         assert_eq!(format, expected, "{name}");
-        let scan = read(&path, format, None).unwrap();
+        let scan = read(&path, format, &Asked::default()).unwrap();
         let shape = (rows.parse().unwrap(), columns.parse().unwrap());
         let heights = Array2::from_shape_vec(shape, doubles(&folder.path().join(format!("{name}.f64")))).unwrap();
         eprintln!("{line}");

@@ -3,12 +3,13 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::scan::read_heights;
 use hdf5_metno::types::{FixedUnicode, IntSize, TypeDescriptor, VarLenArray, VarLenUnicode};
 use hdf5_metno::{File, ObjectReference, ObjectReference1, ReferencedObject};
 use hysteron::model::{Amplitudes, Detrend, FastAxis, Filter, Normalization, SpectrumEnd};
 use hysteron::physics::surface::texture::Texture;
 use hysteron::store::hdf5::{
-    Generated, Measured, Quality, SpectrumFit, SurfaceHeader, read_header, read_heights, read_surface, write_surface,
+    Generated, Measured, Quality, SpectrumFit, SurfaceHeader, read_header, read_surface, write_surface,
 };
 use ndarray::{Array2, s};
 use tempfile::{TempDir, tempdir};

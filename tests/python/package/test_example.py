@@ -50,6 +50,19 @@ def test_a_message_of_take_has_its_own_terms(program, tmp_path):
         hysteron.take(tmp_path / "scan.npy", pixel_m=1e-9)
 
 
+def test_a_line_of_an_array_runs_along_x(program, tmp_path):
+    h5py = pytest.importorskip("h5py")
+    y, x = np.mgrid[:32, :48]
+    image = np.exp(-(((x - 12) / 4) ** 2) - ((y - 20) / 4) ** 2) + 0.01 * np.sin(0.9 * x + 0.7 * y)
+    for scan, more in ((image, {}), (image.T.copy(), {"transpose": True})):
+        about = hysteron.take(scan, tmp_path / "scan.h5", size="480 nm x 320 nm", unit="nm", points=4, **more)
+        assert about["source_point_counts"] == [48, 32]
+        with h5py.File(tmp_path / "scan.h5") as file:
+            top = np.unravel_index(np.argmax(file["height_m"]), (32, 32))
+        # The central square begins at the eighth of 48 columns.
+        assert top == (12 - 8, 20)
+
+
 def test_a_surface_that_was_not_written_is_no_generated_one(program, tmp_path):
     with pytest.raises(ValueError, match="surface.file is None\nhelp: give a file, for example from `take` with `out`"):
         hysteron.run({"name": "x", "surface": {"file": None}}, out=tmp_path / "run")

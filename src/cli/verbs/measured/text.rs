@@ -20,6 +20,8 @@ pub(super) struct Statistics<'a> {
     pub(super) header: &'a SurfaceHeader,
     /// Metres per number of the file; nothing for a surface of this program.
     pub(super) height_factor_m: Option<f64>,
+    /// Sentences on how the file was read.
+    pub(super) notes: &'a [String],
     pub(super) range: &'a Range,
     /// Points along a side, asperities, and further ones near the edge.
     pub(super) counts: [usize; 3],
@@ -44,6 +46,7 @@ pub(super) fn answer(of: &Statistics<'_>, rings: &[Value]) -> Value {
         "point_count": points,
         "length_m": header.length_m,
         "height_factor_m": height_factor_m,
+        "notes": of.notes,
         "periodic": header.periodic,
         "rms_height_m": header.rms_height_m,
         "rms_slope": header.rms_slope,
@@ -87,7 +90,7 @@ pub(super) fn text(of: &Statistics<'_>) -> String {
     let lines =
         [source(of), quality::lines(of.header), preprocessing(of.header), roughness(of), texture(of.header), self_affinity(of.header)];
     for (label, value) in lines.concat() {
-        text += &format!("  {label:<14}{value}\n");
+        text += &wrapped(&format!("  {label:<14}{value}"), "                ");
     }
     text += &wrapped(&format!("  {:<14}{}", "model range", of.range.text()), "                ");
     for caution in cautions(of.header) {
@@ -101,8 +104,8 @@ fn source(of: &Statistics<'_>) -> Vec<Line> {
     let mut lines = Vec::new();
     if let Some(measured) = &of.header.measured {
         let ([rows, columns], [a, b]) = (measured.source_point_counts, measured.source_spacings_m);
-        lines.push(("file", format!("{rows} x {columns} points, {a:.4e} m by {b:.4e} m apart")));
-        lines.push(("", "rows x columns; the row index runs along x".to_owned()));
+        lines.push(("file", format!("{rows} x {columns} points along x and y, {a:.4e} m by {b:.4e} m apart")));
+        lines.extend(of.notes.iter().map(|note| ("", note.clone())));
         if (a / b - 1.0).abs() > 1e-3 {
             lines.push(("", format!("interpolated to points {:.4e} m apart both ways", a.min(b))));
         }

@@ -156,7 +156,11 @@ def take(
     *,
     dataset: str | None = None,
     pixel_m: float | None = None,
+    size: float | str | None = None,
     unit: str | None = None,
+    skip_lines: int | None = None,
+    width: int | None = None,
+    transpose: bool = False,
     fill: bool = False,
     detrend: str | None = None,
     periodic: bool = False,
@@ -173,15 +177,24 @@ def take(
     Parameters
     ----------
     file : path or array
-        Path of HDF5, NetCDF-3, X3P, .npy or text; or an array of heights, in which masked values and NaN are missing points.
+        Path of HDF5, NetCDF, X3P, .npy or text; or an array of real heights, in which masked values and NaN are missing points.
+        As in .npy, a line array[i] is a scan line along x, and i is the index along y.
     out : path, optional
         The surface is written there, for use as `surface.file` in a spec. Default: no file is written.
     dataset : str, optional
         Field of an HDF5 file.
     pixel_m : float, optional
         Pixel size [m], for files without it.
+    size : float or str, optional
+        Size of the scan along x [m], or with units as "5um" or "5um x 3um" (x by y); instead of `pixel_m`.
     unit : str, optional
         Unit of the heights, for files without it.
+    skip_lines : int, optional
+        Lines at the beginning of a text that are skipped.
+    width : int, optional
+        Points per scan line of a text with one column.
+    transpose : bool
+        Exchanges x and y: for arrays with x as the first index.
     fill : bool
         Interpolates missing points (harmonic in-fill).
     detrend : str, optional
@@ -208,12 +221,14 @@ def take(
     dict
         Output of `hysteron import --json`.
     """
+    told = {"dataset": dataset, "pixel-m": pixel_m, "size": size, "unit": unit, "skip-lines": skip_lines, "width": width}
+    told |= {"detrend": detrend, "filter": filter}
     command = [str(find()), "import", "--json", f"--points={points}"]
     command += ["--dry-run"] if out is None else [f"--out={os.fspath(out)}"]
-    values = (("dataset", dataset), ("pixel-m", pixel_m), ("unit", unit), ("detrend", detrend), ("filter", filter), ("fast-axis", fast_axis), ("tip-radius", tip_radius_m))
-    command += [f"--{name}={value}" for name, value in values if value is not None]
-    flags = (("fill", fill), ("periodic", periodic), ("force", force), ("outliers", outliers), ("align-rows", align_rows))
-    command += [f"--{name}" for name, asked in flags if asked]
+    told |= {"fast-axis": fast_axis, "tip-radius": tip_radius_m}
+    command += [f"--{name}={value}" for name, value in told.items() if value is not None]
+    flags = {"transpose": transpose, "fill": fill, "periodic": periodic, "force": force, "outliers": outliers, "align-rows": align_rows}
+    command += [f"--{name}" for name, asked in flags.items() if asked]
     with _scan(file) as (path, temporary):
         return _answered([*command, "--", path], {path: "the array"} if temporary else {})
 
