@@ -8,9 +8,7 @@ use hdf5_metno::types::{FixedUnicode, IntSize, TypeDescriptor, VarLenArray, VarL
 use hdf5_metno::{File, ObjectReference, ObjectReference1, ReferencedObject};
 use hysteron::model::{Amplitudes, Detrend, FastAxis, Filter, Normalization, SpectrumEnd};
 use hysteron::physics::surface::texture::Texture;
-use hysteron::store::hdf5::{
-    Generated, Measured, Quality, SpectrumFit, SurfaceHeader, read_header, read_surface, write_surface,
-};
+use hysteron::store::hdf5::{Generated, Measured, Quality, SpectrumFit, SurfaceHeader, read_header, read_surface, write_surface};
 use ndarray::{Array2, s};
 use tempfile::{TempDir, tempdir};
 
