@@ -7,6 +7,7 @@ use crate::physics::surface::measured::{Prepared, Treatment, prepare};
 use crate::physics::surface::tip::{curvature_ratio, reliability_cutoff};
 use crate::spec::SurfaceParams;
 use crate::store::hdf5::Quality;
+use crate::store::scan::FirstIndex;
 use ndarray::{Array2, ArrayView2};
 use std::path::Path;
 
@@ -16,11 +17,15 @@ const LARGEST_CUTOFF: f64 = 0.5;
 /// The surface after corrections and preprocessing of heights \[m\], and its artefacts.
 pub(super) fn corrected(
     params: &SurfaceParams,
-    mut heights_m: Array2<f64>,
-    spacing_m: [f64; 2],
+    heights_m: Array2<f64>,
+    (spacing_m, first): ([f64; 2], FirstIndex),
     treatment: &Treatment,
 ) -> Result<(Prepared, Quality), StageError> {
-    let artefacts = correct(&mut heights_m, &corrections(params));
+    // Rows and columns are those of the file.
+    let in_order = |heights: Array2<f64>| if first == FirstIndex::Y { heights.reversed_axes() } else { heights };
+    let mut of_file = in_order(heights_m);
+    let artefacts = correct(&mut of_file, &corrections(params));
+    let heights_m = in_order(of_file);
     let curvature_ratio = rounded(params, heights_m.view(), spacing_m);
     let (prepared, tip_cutoff_m) = with_tip(params, heights_m, spacing_m, treatment)?;
     let shortest_m = prepared.shortest_wavelength_m;

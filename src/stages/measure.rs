@@ -66,7 +66,7 @@ pub fn measure(params: &SurfaceParams, digest: &str, key: &str) -> Result<Import
         filter: params.filter,
         points_per_shortest_wavelength: f64::from(params.points_per_shortest_wavelength),
     };
-    let (prepared, quality) = corrected(params, in_metres(path, scan.heights, unit)?, spacing, &treatment)?;
+    let (prepared, quality) = corrected(params, in_metres(path, scan.heights, unit)?, (spacing, scan.first), &treatment)?;
     let measured = Measured {
         source: path.file_name().map(|name| name.to_string_lossy().chars().take(60).collect()).unwrap_or_default(),
         source_blake3: digest.to_owned(),
