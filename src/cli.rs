@@ -2,6 +2,7 @@
 
 mod arguments;
 mod colour;
+mod exit;
 mod help;
 mod interrupt;
 mod limits;

@@ -251,6 +251,7 @@ pub(crate) fn is_of_container(name: &[u8]) -> bool {
 }
 
 /// Refusal of a container of contact.engineering, whose parts may come in any order.
+#[cfg(feature = "store")]
 #[must_use]
 pub(crate) fn container() -> String {
     match CONTAINER.way {

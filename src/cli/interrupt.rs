@@ -13,7 +13,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 /// Exit code of the contract.
-const INTERRUPTED: i32 = super::reference::INTERRUPTED as i32;
+const INTERRUPTED: i32 = super::exit::INTERRUPTED as i32;
 
 /// Time that an interrupt waits for files that are being written; a stuck read or write (a dead network disk) never ends.
 const PATIENCE: Duration = Duration::from_secs(5);

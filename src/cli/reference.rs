@@ -1,6 +1,7 @@
 //! The reference page of the command line, and every generated file of the repository.
 
 use super::Arguments;
+use super::exit::{BAD_SPEC, FAILED, FAILED_CASES, INTERRUPTED};
 use crate::text::{markdown, paragraph};
 use crate::{schema, spec};
 use clap::{Arg, Command, CommandFactory};
@@ -8,12 +9,6 @@ use std::path::{Path, PathBuf};
 
 /// The folder of the guide, from the root of the repository.
 pub const GUIDE: &str = "src/guide";
-
-/// Exit codes of the contract.
-pub(super) const FAILED: u8 = 1;
-pub(super) const BAD_SPEC: u8 = 2;
-pub(super) const FAILED_CASES: u8 = 3;
-pub(super) const INTERRUPTED: u8 = 130;
 
 /// Every generated file: its path from the root of the repository, and its content.
 #[must_use]

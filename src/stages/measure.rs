@@ -36,7 +36,7 @@ pub struct Imported {
 /// `import` may have written, is taken as it is.
 ///
 /// # Errors
-/// A file that cannot be read or does not say what is needed; what [`prepare`] refuses.
+/// A file that cannot be read or does not say what is needed; what [`crate::physics::surface::measured::prepare`] refuses.
 pub fn measure(params: &SurfaceParams, digest: &str, key: &str) -> Result<Imported, StageError> {
     let path = Path::new(&params.file);
     let scan = match source(path, params)? {

@@ -135,7 +135,7 @@ pub const CAUTIONS: [Caution; 26] = [
         "rounded by a tip",
         "curvature of the sharpest summits over that of the sharpest valleys = {}",
         "The scan looks as if a blunt tip had traced it: asperities are too round, and the pull-off force is too large.",
-        "State the tip radius with `surface.tip_radius_m` (`--tip-radius`), which removes unreliable wavelengths; use a sharper tip.",
+        "State the tip radius with `surface.tip_radius_m` (`--tip-radius`), which removes unreliable wavelengths, or use a sharper tip.",
     ),
     warning(
         "failed",

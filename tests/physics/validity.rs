@@ -5,8 +5,9 @@ use crate::support::{LENGTH, PAPER, RMS, close, near, paper_spectrum, surface};
 use hysteron::model::{Amplitudes, Normalization};
 use hysteron::physics::surface::spectrum::Spectrum;
 use hysteron::physics::surface::synthesis::{mode_sums, realization_seed, synthesize};
-use hysteron::physics::theory::flattening::{Flattening, flattening, measured_flattening, realised_flattening};
-use std::f64::consts::PI;
+use hysteron::physics::theory::flattening::{Flattening, flattening, measured_flattening, realised_flattening, shortest_wavelength};
+use ndarray::Array2;
+use std::f64::consts::{PI, TAU};
 
 const MODULUS: f64 = PAPER.contact_modulus_pa;
 const ADHESION: f64 = PAPER.work_of_adhesion_j_m2;
@@ -148,4 +149,20 @@ fn law_energies_of_flattening_scale() {
     let plain = Flattening { whole_j_m2: 6.0, octave_j_m2: 0.5 };
     near("whole", plain.persson_tosatti(2.0), 3.0, 0.0);
     near("octave", plain.conformity(2.0), 0.25, 0.0);
+}
+
+#[test]
+fn val_the_shortest_wavelength_is_that_of_the_octave_with_curvature() {
+    // Waves with 5 and 15 periods on a side of 1 m, and a cut-off of 1/16 m.
+    let waves = |of_15: f64| {
+        Array2::from_shape_fn((64, 64), |(i, _)| {
+            let x = TAU * i as f64 / 64.0;
+            (5.0 * x).cos() + of_15 * (15.0 * x).cos()
+        })
+    };
+    let shortest = |of_15: f64| shortest_wavelength(waves(of_15).view(), (1.0, true), 1.0 / 16.0).unwrap();
+    // Shares of the wave with 15 periods in the mean square Laplacian: 0, 81 a²/(1 + 81 a²) = 0.99 and 0.05; the limit is 0.1.
+    assert_eq!(shortest(0.0), 1.0 / 8.0);
+    assert_eq!(shortest(1.0), 1.0 / 16.0);
+    assert_eq!(shortest(0.025), 1.0 / 8.0);
 }

@@ -20,8 +20,8 @@ mod work;
 pub(super) use measured::LIMITS as IMPORT;
 
 use super::colour::painted;
+use super::exit::{BAD_SPEC, FAILED, FAILED_CASES};
 use super::limits;
-use super::reference::{BAD_SPEC, FAILED, FAILED_CASES};
 use super::{CampaignArguments, EngineArgument, ExportVerb, JobsArguments, StageArgument, Verb};
 use crate::campaign::Stage;
 use crate::text::{printable, shown};

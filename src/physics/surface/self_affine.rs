@@ -7,8 +7,8 @@
 
 use super::psd_bin::Ring;
 pub use super::spectral_band::ShortCut;
-use super::spectral_band::{Band, OUTSIDE, OVER_NOISE, Point, Sampling, top_density, white_noise_beyond};
-use super::spectral_line::{Line, Shape, Sums};
+use super::spectral_band::{Band, OUTSIDE, OVER_NOISE, Sampling, top_density, white_noise_beyond};
+use super::spectral_line::{Line, Point, Shape, Sums};
 use std::cmp::Ordering;
 use std::f64::consts::{LN_2, LN_10};
 use std::ops::RangeInclusive;

@@ -1,24 +1,9 @@
 //! Rings of a measured spectrum: variances, white noise, and the band that holds data.
 
 use super::psd_bin::Ring;
-use super::spectral_line::{Line, Shape};
+use super::spectral_line::{Line, Point, Shape};
 use crate::model::SpectrumEnd;
 use std::f64::consts::{LN_2, PI, TAU};
-
-/// A ring in logarithms.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Point {
-    /// ln q.
-    pub(crate) x: f64,
-    /// ln C without white noise.
-    pub(crate) y: f64,
-    /// Variance of y.
-    pub(crate) variance: f64,
-    /// Number of modes.
-    modes: f64,
-    /// True if the ring may hold data: white noise and window leakage do not dominate it.
-    pub(crate) is_data: bool,
-}
 
 /// Relative variance of a ring's density times its number of modes; half of the modes are conjugates of the others.
 const OF_MODES: f64 = 2.0;

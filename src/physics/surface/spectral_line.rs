@@ -1,7 +1,21 @@
 //! Least-squares line through rings of a spectrum, in logarithms.
 
-use super::spectral_band::Point;
 use std::f64::consts::LN_2;
+
+/// A ring in logarithms.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Point {
+    /// ln q.
+    pub(crate) x: f64,
+    /// ln C without white noise.
+    pub(crate) y: f64,
+    /// Variance of y.
+    pub(crate) variance: f64,
+    /// Number of modes.
+    pub(crate) modes: f64,
+    /// True if the ring may hold data: white noise and window leakage do not dominate it.
+    pub(crate) is_data: bool,
+}
 
 /// Transition from the plateau to the power law.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
