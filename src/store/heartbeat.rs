@@ -146,21 +146,28 @@ pub fn processes(dir: &Path) -> [Vec<Heartbeat>; 2] {
     [of(true), of(false)]
 }
 
-/// Removes the heartbeats of processes that have ended without removing them.
+/// Removes the heartbeats of processes that have ended without removing them, and those that a power cut left without content.
 fn remove_ended(folder: &Path) {
-    for (path, _, _) in all(folder).into_iter().filter(|(_, _, lives)| !lives) {
-        let _ = std::fs::remove_file(path);
+    for path in own(folder) {
+        let ended = read(&path).map_or_else(|| lives(&path, None) == Some(false), |(_, lives)| !lives);
+        if ended {
+            let _ = std::fs::remove_file(path);
+        }
     }
 }
 
-/// The heartbeats of a folder, each with its path and whether its process lives. Other files are not looked at.
-fn all(folder: &Path) -> Vec<(PathBuf, Heartbeat, bool)> {
+/// The files of a folder that have the name of a heartbeat.
+fn own(folder: &Path) -> Vec<PathBuf> {
     let is_own = |path: &PathBuf| {
         let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
         name.starts_with("hysteron-") && name.ends_with(".json") && path.metadata().is_ok_and(|of| of.is_file() && of.len() <= MOST_BYTES)
     };
-    let paths = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()).filter(is_own);
-    paths.filter_map(|path| read(&path).map(|(beat, lives)| (path, beat, lives))).collect()
+    std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()).filter(is_own).collect()
+}
+
+/// The heartbeats of a folder, each with its path and whether its process lives. Other files are not looked at.
+fn all(folder: &Path) -> Vec<(PathBuf, Heartbeat, bool)> {
+    own(folder).into_iter().filter_map(|path| read(&path).map(|(beat, lives)| (path, beat, lives))).collect()
 }
 
 /// A heartbeat, and whether its process lives; nothing for a file that is none.
@@ -171,13 +178,18 @@ fn read(path: &Path) -> Option<(Heartbeat, bool)> {
         parsed()
     };
     let beat: Heartbeat = parsed().or_else(|| (1..ATTEMPTS).find_map(|_| again()))?;
+    let lives = lives(path, Some(&beat.host))?;
+    Some((beat, lives))
+}
+
+/// Whether the process of a heartbeat lives, by the lock on its file, or by the file's age; nothing for a file that cannot be opened.
+fn lives(path: &Path, host: Option<&str>) -> Option<bool> {
     let file = File::open(path).ok()?;
     let age = file.metadata().and_then(|of| of.modified()).ok().and_then(|at| at.elapsed().ok()).unwrap_or_default();
-    let lives = match file.try_lock_shared() {
+    Some(match file.try_lock_shared() {
         Err(TryLockError::WouldBlock) => true,
         Err(TryLockError::Error(_)) => age < FRESH,
         // On this machine, the process has ended. The locks of another one may not be seen here.
-        Ok(()) => age < FRESH && beat.host != gethostname::gethostname().to_string_lossy(),
-    };
-    Some((beat, lives))
+        Ok(()) => age < FRESH && host.is_some_and(|host| *host != *gethostname::gethostname().to_string_lossy()),
+    })
 }

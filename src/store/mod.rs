@@ -13,6 +13,7 @@ mod frame;
 mod halfway;
 pub mod hdf5;
 mod hdf5_scan;
+mod heaps;
 pub mod heartbeat;
 mod maps;
 pub mod parquet;

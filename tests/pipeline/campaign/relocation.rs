@@ -11,7 +11,8 @@ fn scan(seed: u32) -> String {
     (0..48).map(|row| (0..48).map(|column| height(row, column).to_string()).collect::<Vec<_>>().join(" ") + "\n").collect()
 }
 
-const SCAN: &str = "name = \"scan\"\n[surface]\nfile = \"scans/a.txt\"\npixel_m = 1e-6\nunit = \"nm\"\n[material]\ncontact_modulus_pa = 1e9\n\
+const SCAN: &str = "name = \"scan\"\n[surface]\nfile = \"scans/a.txt\"\npixel_m = 1e-6\nunit = \"nm\"\n[material]\n\
+                    contact_modulus_pa = 1e9\nwork_of_adhesion_j_m2 = 1e-3\n\
                     [model]\nboundary = \"isolated\"\nallow_low_tabor = true\n[cycle]\nmax_load = [0.0005]\napproach_step = 0.05\n";
 
 /// A project: `project/spec.toml` and `project/scans/a.txt`.

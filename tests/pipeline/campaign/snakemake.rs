@@ -109,7 +109,7 @@ fn e2e_snakemake_finds_relative_scans_and_goes_on_after_failures() {
     let rows: Vec<String> = (0..48).map(|i| (0..48).map(|j| height(48 * i + j).to_string()).collect::<Vec<_>>().join(" ")).collect();
     fs::write(here.join("scans/a.txt"), rows.join("\n")).unwrap();
     fs::write(here.join("scans/bad.txt"), "1 2 x\n3 4 5\n").unwrap();
-    let spec = "name = \"scans\"\n[surface]\npixel_m = 1e-6\nunit = \"nm\"\n[material]\ncontact_modulus_pa = 1e9\n[model]\n\
+    let spec = "name = \"scans\"\n[surface]\npixel_m = 1e-6\nunit = \"nm\"\n[material]\ncontact_modulus_pa = 1e9\nwork_of_adhesion_j_m2 = 1e-3\n[model]\n\
                 boundary = \"isolated\"\nallow_low_tabor = true\n[cycle]\nmax_load = [0.0005]\napproach_step = 0.05\n[[sweep]]\nname = \"all\"\n\
                 surface.file = [\"scans/a.txt\", \"scans/bad.txt\"]\n";
     fs::write(bench.spec(), spec).unwrap();

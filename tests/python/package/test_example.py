@@ -15,8 +15,10 @@ def test_a_scan_is_taken(program, tmp_path):
     np.save(tmp_path / "scan.npy", np.cos(0.3 * i) * np.sin(0.25 * j) + 0.01 * i)
     about = hysteron.take(tmp_path / "scan.npy", tmp_path / "scan.h5", pixel_m=1e-8, unit="nm")
     assert about["point_count"] == 64 and about["length_m"] == pytest.approx(64e-8, rel=1e-12)
-    # Two cosines have a quarter of the mean square each; their waves do not end at the edges of the scan.
-    assert about["rms_height_m"] == pytest.approx(0.5e-9, rel=0.1)
+    # Mean square 1/4 of a product of two waves, times the transmission of the Gaussian filter with a cut-off of 8 points.
+    # The waves do not end at the edges of the scan.
+    transmission = 2.0 ** -((8 * 0.3 / (2 * np.pi)) ** 2 + (8 * 0.25 / (2 * np.pi)) ** 2)
+    assert about["rms_height_m"] == pytest.approx(0.5e-9 * transmission, rel=0.1)
     assert (tmp_path / "scan.h5").exists() and about["file"] == str(tmp_path / "scan.h5")
     alone = hysteron.take(tmp_path / "scan.npy", pixel_m=1e-8, unit="nm")
     assert alone["file"] is None and alone["rms_slope"] == about["rms_slope"]

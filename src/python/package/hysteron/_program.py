@@ -146,6 +146,8 @@ def run(
         failed = max(stage["failed_count"] for stage in answer["stages"])
         cases = "1 case" if failed == 1 else f"{failed} cases"
         text = f"{cases} failed; reasons: {result.dir}/cycles/*/failed.json. Change the spec: without a change, a cycle fails again."
+        if failed == 0:
+            text = f"Some loads were not reached; reasons: {result.dir}/cycles/*/not_reached.json. Change the spec or omit these loads."
         warnings.warn(text, FailedCases, stacklevel=2)
     return result
 
