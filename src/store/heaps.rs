@@ -78,22 +78,23 @@ mod tests {
     use super::*;
 
     /// A collection of 64 bytes with an object of 5 bytes and free space, whose sizes are those given. It is not an HDF5 file.
-    fn answer(object: u64, free: u64) -> bool {
+    fn is_sound(object: u64, free: u64) -> Result<bool, Cause> {
         let mut bytes = vec![7; 3];
         bytes.extend(BEGIN);
         for number in [64, 1, object, 0, 0, free, 0, 0] {
             bytes.extend(u64::to_le_bytes(number));
         }
-        let file = tempfile::NamedTempFile::new().unwrap();
-        std::fs::write(file.path(), bytes).unwrap();
-        check(file.path()).is_ok()
+        let file = tempfile::NamedTempFile::new()?;
+        std::fs::write(file.path(), bytes)?;
+        Ok(check(file.path()).is_ok())
     }
 
     #[test]
-    fn law_objects_of_a_heap_have_a_size_within_it() {
-        assert!(answer(5, 24) && answer(8, 24));
+    fn law_objects_of_a_heap_have_a_size_within_it() -> Result<(), Cause> {
+        assert!(is_sound(5, 24)? && is_sound(8, 24)?);
         for (object, free) in [(5, 0), (5, 25), (5, u64::MAX), (u64::MAX, 24), (100, 24)] {
-            assert!(!answer(object, free), "{object} {free}");
+            assert!(!is_sound(object, free)?, "{object} {free}");
         }
+        Ok(())
     }
 }
