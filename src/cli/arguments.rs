@@ -177,7 +177,7 @@ pub(super) struct ImportArguments {
     /// The surface is periodic
     #[arg(long)]
     pub(super) periodic: bool,
-    /// Low-pass filter (S-filter): gaussian (ISO 16610-61) or sharp
+    /// S-filter: gaussian (ISO 16610-61) or sharp
     #[arg(long, value_name = "FILTER", default_value = "gaussian", value_parser = ["gaussian", "sharp"], hide_possible_values = true)]
     pub(super) filter: String,
     /// Low-pass (S-filter) cut-off wavelength in pixels

@@ -10,6 +10,7 @@ use hdf5_metno::{
 use super::dataset::{check_storage, dataset, fields, points};
 use super::error::{Cause, StoreError};
 use super::hdf5::{check_bytes, library, open, values};
+use super::heaps;
 use super::scan::attributes::{Attributes, Value, decoded};
 use super::scan::field::{Axis, Field};
 use super::scan::numbers::Number;
@@ -40,6 +41,7 @@ const NO_COORDINATES: &str = "This is a netCDF dimension but not a netCDF variab
 pub fn read_scan(path: &Path, asked: &Asked<'_>) -> Result<Scan, StoreError> {
     library(|| {
         asked.of_text("HDF5")?;
+        heaps::check(path)?;
         let file = open(path)?;
         let name = asked.field.map_or_else(|| only_field(&file), |name| Ok(name.to_owned()))?;
         let Some(data) = dataset(&file, &name)? else {
@@ -55,8 +57,11 @@ pub fn read_scan(path: &Path, asked: &Asked<'_>) -> Result<Scan, StoreError> {
 /// # Errors
 /// If the file cannot be read.
 pub fn search(path: &Path) -> Result<(Vec<String>, u64), StoreError> {
-    library(|| fields(&open(path)?).map(|found| (found.names, found.visits)))
-        .map_err(|cause| StoreError::new("read the surface from", path, cause))
+    library(|| {
+        heaps::check(path)?;
+        fields(&open(path)?).map(|found| (found.names, found.visits))
+    })
+    .map_err(|cause| StoreError::new("read the surface from", path, cause))
 }
 
 /// The name of the one two-dimensional dataset in the root. What leaves the file does not count, unless there is nothing else.

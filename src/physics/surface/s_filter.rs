@@ -40,7 +40,10 @@ pub(super) fn transmission(points: f64, cycles_per_point: f64) -> f64 {
 pub(super) fn gaussian(heights: ArrayView2<'_, f64>, points: f64) -> Result<Array2<f64>, PhysicsError> {
     let kernel = Kernel::new(heights.nrows(), points);
     let once = kernel.filtered_rows(heights)?;
-    Ok(kernel.filtered_rows(once.t())?.reversed_axes().as_standard_layout().into_owned())
+    let twice = kernel.filtered_rows(once.t())?;
+    let mut filtered = zeros(heights.dim())?;
+    filtered.assign(&twice.t());
+    Ok(filtered)
 }
 
 /// Weights along a line of points.

@@ -57,7 +57,7 @@ fn sentences() -> Vec<(&'static str, &'static str, Vec<f64>)> {
         ("howto_cluster.md", "The signal comes {} s before the limit", clusters[..1].to_vec()),
         ("howto_cluster.md", "Slurm may send it up to {} s earlier", clusters[1..].to_vec()),
         ("howto_cluster.md", "one for each surface, at most {}", values("parts of a run, default").to_vec()),
-        ("howto_recover.md", "Cycles with {} asperities or more", checkpoints),
+        ("howto_recover.md", "cycles with {} asperities or more", checkpoints),
         ("howto_recover.md", "`Tabor parameter below {}`", values("Tabor parameter of Wu's criterion").to_vec()),
         ("howto_sweep.md", "A spec has at most {} cases", values("cases of a spec").to_vec()),
         ("model.md", "reaches its centre to {} of its radius", values("distance of absorption").to_vec()),

@@ -101,7 +101,8 @@ fn e2e_a_tip_radius_raises_the_cutoff() {
     // What remains has the curvature of the tip, up to the width of the rings and the window of the spectrum.
     let left = 0.5 * blunt["rms_laplacian_1_m"].as_f64().unwrap() * 3.0 / curvature;
     assert!((0.7..1.2).contains(&left), "{left}");
-    assert_eq!(quality(folder).tip_cutoff_m, Some(cutoff));
+    // The decimal numbers of the JSON text and of the file may differ in the last digit.
+    assert!((quality(folder).tip_cutoff_m.unwrap() / cutoff - 1.0).abs() < 1e-14);
     let refused = import(folder, &[&["scan.npy", "--force", "--tip-radius", "1"], &TOLD[..]].concat());
     assert_eq!(code(&refused), 1);
     assert!(

@@ -126,7 +126,7 @@ fn e2e_an_import_overwrites_nothing() {
     fs::copy(folder.path().join("scan.h5"), folder.path().join("raw.h5")).unwrap();
     for arguments in [["raw.h5", "--out", "raw.h5", "--force"], ["raw.h5", "--out", "./raw.h5", "--force"]] {
         let output = import(folder.path(), &arguments);
-        assert!(code(&output) == 1 && stderr(&output).contains("it is the measured surface itself"), "{}", stderr(&output));
+        assert!(code(&output) == 1 && stderr(&output).contains("it is the source itself"), "{}", stderr(&output));
     }
     assert_eq!(fs::read(folder.path().join("raw.h5")).unwrap(), before);
     assert_eq!(code(&import(folder.path(), &["raw.h5"])), 0);
