@@ -57,7 +57,7 @@ def test_a_line_of_an_array_runs_along_x(program, tmp_path):
     y, x = np.mgrid[:32, :48]
     image = np.exp(-(((x - 12) / 4) ** 2) - ((y - 20) / 4) ** 2) + 0.01 * np.sin(0.9 * x + 0.7 * y)
     for scan, more in ((image, {}), (image.T.copy(), {"transpose": True})):
-        about = hysteron.take(scan, tmp_path / "scan.h5", size="480 nm x 320 nm", unit="nm", points=4, **more)
+        about = hysteron.take(scan, tmp_path / "scan.h5", size="480 nm x 320 nm", unit="nm", points=4, force=True, **more)
         assert about["source_point_counts"] == [48, 32]
         with h5py.File(tmp_path / "scan.h5") as file:
             top = np.unravel_index(np.argmax(file["height_m"]), (32, 32))
