@@ -1,5 +1,6 @@
 //! Unreferenced files: no spec names them.
 
+use super::lost::entries;
 use super::owned::is_marked;
 use super::{Campaign, REPORT_PAGE, Stage, Standing};
 use crate::schema::TABLES;
@@ -152,14 +153,6 @@ pub(super) fn is_id(name: &str) -> bool {
         Some(plain(kind) && digits(realization) && key(end))
     };
     parts().unwrap_or(false)
-}
-
-/// Entries of a folder, by name; nothing if it cannot be read.
-pub(super) fn entries(folder: &Path) -> Vec<PathBuf> {
-    let mut paths: Vec<PathBuf> =
-        std::fs::read_dir(folder).map(|all| all.flatten().map(|entry| entry.path()).collect()).unwrap_or_default();
-    paths.sort();
-    paths
 }
 
 /// The bytes of a file, or of the files of a cycle in its folder.

@@ -1,11 +1,10 @@
 //! Files that no receipt names, and tasks whose receipt is lost.
 
-use super::leftover::entries;
 use super::{Campaign, REPORT_PAGE, STATISTICS, Stage, Standing};
 use crate::store::commit::is_temporary;
 use crate::store::{Check, Receipt};
 use std::collections::{HashMap, HashSet};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// The receipts of a folder, as an audit has found them.
 #[derive(Default)]
@@ -106,4 +105,12 @@ pub(super) fn owner(file: &str) -> Option<Owner<'_>> {
         None if file == "report.html" => Some((Stage::Report, REPORT_PAGE)),
         None => (file == "datapackage.json").then_some((Stage::Aggregate, STATISTICS)),
     }
+}
+
+/// Entries of a folder, by name; nothing if it cannot be read.
+pub(super) fn entries(folder: &Path) -> Vec<PathBuf> {
+    let mut paths: Vec<PathBuf> =
+        std::fs::read_dir(folder).map(|all| all.flatten().map(|entry| entry.path()).collect()).unwrap_or_default();
+    paths.sort();
+    paths
 }

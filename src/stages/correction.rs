@@ -1,7 +1,6 @@
 //! Artefacts of a measured surface: their correction, the tip that measured it, and what its file says of them.
 
 use super::StageError;
-use super::measure::refused;
 use crate::physics::surface::artefacts::{Artefacts, Corrections, correct, noise_exponent, outlier_effect};
 use crate::physics::surface::measured::{Prepared, Treatment, prepare};
 use crate::physics::surface::tip::{curvature_ratio, reliability_cutoff};
@@ -98,4 +97,8 @@ fn quality(params: &SurfaceParams, artefacts: &Artefacts) -> Quality {
         noise_exponent: None,
         curvature_ratio: None,
     }
+}
+
+pub(super) fn refused(path: &Path, why: &str) -> StageError {
+    StageError::Measured { path: path.to_owned(), why: why.to_owned() }
 }

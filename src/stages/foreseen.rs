@@ -2,12 +2,14 @@
 
 use super::grid_size::slow_grids;
 use super::measure::measure;
+pub use super::outside::Outside;
+use super::outside::interval;
 use super::surface::target;
 use crate::campaign::{Campaign, CaseUnit, SurfaceUnit};
 use crate::formats::recognize;
 use crate::physics::theory::flattening::{Flattening, flattening};
 use crate::spec::MANY_RANGE_STEPS;
-use crate::stats::{CAUTIONS, Caution, Limit, MANY_STEPS, measured_text, significant};
+use crate::stats::{Limit, MANY_STEPS};
 use crate::store::hdf5::{SurfaceHeader, read_header};
 use std::path::Path;
 
@@ -19,43 +21,6 @@ pub const ARTEFACTS: [&str; 4] = ["outliers", "lines", "noise", "tip"];
 
 /// Largest file of a measured surface that is read before a run \[bytes\].
 const LARGEST_FILE: u64 = 1 << 28;
-
-/// Cases with a warning.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Outside {
-    /// The warning.
-    pub kind: Caution,
-    /// Its limit.
-    pub limit: f64,
-    /// Smallest and largest value over these cases.
-    pub range: [f64; 2],
-    /// Measured values and limit as text.
-    pub measured: String,
-    /// Ids of the cases.
-    pub cases: Vec<String>,
-}
-
-impl Outside {
-    /// Cases whose values are beyond the limit of a warning; nothing without any.
-    fn of(code: &str, values: impl Iterator<Item = (String, f64)>) -> Option<Self> {
-        let (limit, kind) = (Limit::of(code)?, CAUTIONS.into_iter().find(|kind| kind.code == code)?);
-        let (cases, values): (Vec<String>, Vec<f64>) = values.filter(|(_, value)| limit.is_passed(Some(*value))).unzip();
-        let range = [values.iter().copied().reduce(f64::min)?, values.iter().copied().reduce(f64::max)?];
-        let of_target = ["sticky", "conformed"].contains(&code);
-        let measured = if of_target {
-            format!("{} (target spectrum; limit ≥ {})", kind.text.replace("{}", &interval(range)), limit.bound)
-        } else {
-            measured_text(&kind, limit, &values)
-        };
-        Some(Self { kind, limit: limit.bound, range, measured, cases })
-    }
-}
-
-/// The interval of values as text.
-fn interval(range: [f64; 2]) -> String {
-    let [low, high] = range.map(|value| significant(value, 3));
-    if low == high { low } else { format!("{low} to {high}") }
-}
 
 /// Warnings before any surface is made: `U_el/Δγ` and `U_1/Δγ` of the target spectra, grids of boundary elements, and the artefacts of measured surfaces.
 /// Cases without adhesion have no `U_el/Δγ`.

@@ -1,6 +1,6 @@
 //! Grids of boundary elements whose Fourier transforms are slow.
 
-use super::foreseen::Outside;
+use super::outside::Outside;
 use crate::campaign::{Campaign, CaseUnit};
 use crate::stats::Caution;
 

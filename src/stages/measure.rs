@@ -1,7 +1,7 @@
 //! A measured surface: read, made fit for the model, and put into words.
 
 use super::StageError;
-use super::correction::corrected;
+use super::correction::{corrected, refused};
 use crate::formats::recognize;
 use crate::lengths::{LENGTHS, metres};
 use crate::model::{Detrend, Filter};
@@ -186,10 +186,6 @@ fn agree(path: &Path, own: Option<bool>, given: bool) -> Result<(), StageError> 
         )),
         _ => Ok(()),
     }
-}
-
-pub(super) fn refused(path: &Path, why: &str) -> StageError {
-    StageError::Measured { path: path.to_owned(), why: why.to_owned() }
 }
 
 /// The fit of a spectrum as a file holds it: cut-offs as wavelengths.

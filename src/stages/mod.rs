@@ -22,6 +22,7 @@ mod identity;
 mod live;
 mod live_state;
 mod measure;
+mod outside;
 mod pipeline;
 mod report;
 mod runner;

@@ -150,3 +150,29 @@ fn links_outside(file: &File) -> Result<bool, Cause> {
 fn outside(path: &str, why: &'static str) -> Cause {
     Outside { path: path.to_owned(), why }.into()
 }
+
+/// The height field of SurfaceTopography, and the mask beside it.
+pub(super) const HEIGHTS: [&str; 2] = ["heights", "mask"];
+
+/// Members or attributes of the root by which TopoStats marks its files, whose `image` has lines along x and heights in nanometres.
+const TOPOSTATS: [&str; 2] = ["topostats_file_version", "topostats_version"];
+
+/// The name of the one two-dimensional dataset in the root. What leaves the file does not count, unless there is nothing else.
+pub(super) fn only_field(file: &File) -> Result<String, Cause> {
+    let found = fields(file)?;
+    let has = |name: &str| found.names.iter().any(|other| other == name);
+    match (&found.names[..], found.outside) {
+        ([name], _) => Ok(name.clone()),
+        ([], Some(cause)) => Err(cause),
+        ([], None) => Err("no two-dimensional dataset in the root\nhelp: select one of another group as \"group/dataset\"".into()),
+        (_, _) if has("image") && is_topostats(file) => Ok("image".to_owned()),
+        (many, _) if many.iter().all(|name| HEIGHTS.contains(&name.as_str())) => Ok(HEIGHTS[0].to_owned()),
+        (many, _) => {
+            Err(format!("several two-dimensional datasets: {}\nhelp: select one with surface.dataset (--dataset)", many.join(", ")).into())
+        }
+    }
+}
+
+pub(super) fn is_topostats(file: &File) -> bool {
+    TOPOSTATS.iter().any(|name| file.link_exists(name) || file.attr(name).is_ok())
+}

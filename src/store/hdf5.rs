@@ -10,14 +10,13 @@ use ndarray::{Array2, ArrayView2, s};
 
 use super::axes;
 use super::commit::{Written, commit};
-use super::dataset::{Outside, dataset};
+use super::dataset::{Outside, dataset, only_field};
 use super::error::{Cause, StoreError, fenced};
-use super::hdf5_scan::only_field;
 pub use super::hdf5_scan::{read_scan, search};
 use super::scan::room;
 use super::surface_header;
+pub use super::surface_header::Quality;
 pub use super::surface_header::{Generated, Measured, SURFACE_VERSION, SpectrumFit, SurfaceHeader};
-pub use super::surface_quality::Quality;
 
 /// Does something while no other thread is in the HDF5 library, which ends with the program and must not be in use then.
 pub fn alone<T>(act: impl FnOnce() -> T) -> T {

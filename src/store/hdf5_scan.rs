@@ -7,7 +7,7 @@ use hdf5_metno::{
     Container, Dataset, File, Group, IndexType, IterationOrder, LinkType, Location, LocationType, ObjectReference1, ReferencedObject,
 };
 
-use super::dataset::{check_storage, dataset, fields, points};
+use super::dataset::{HEIGHTS, check_storage, dataset, fields, is_topostats, only_field, points};
 use super::error::{Cause, StoreError};
 use super::hdf5::{check_bytes, library, open, values};
 use super::heaps;
@@ -26,10 +26,6 @@ const MOST_NUMBERS: usize = 16;
 const LONGEST_TEXT: usize = 1024;
 /// Points of an axis whose coordinates are read.
 const MOST_COORDINATES: usize = 1 << 20;
-/// The height field of SurfaceTopography, and the mask beside it.
-const HEIGHTS: [&str; 2] = ["heights", "mask"];
-/// Members or attributes of the root by which TopoStats marks its files, whose `image` has lines along x and heights in nanometres.
-const TOPOSTATS: [&str; 2] = ["topostats_file_version", "topostats_version"];
 /// Beginning of the attribute `NAME` of a NetCDF dimension without coordinates.
 const NO_COORDINATES: &str = "This is a netCDF dimension but not a netCDF variable";
 
@@ -62,26 +58,6 @@ pub fn search(path: &Path) -> Result<(Vec<String>, u64), StoreError> {
         fields(&open(path)?).map(|found| (found.names, found.visits))
     })
     .map_err(|cause| StoreError::new("read the surface from", path, cause))
-}
-
-/// The name of the one two-dimensional dataset in the root. What leaves the file does not count, unless there is nothing else.
-pub(super) fn only_field(file: &File) -> Result<String, Cause> {
-    let found = fields(file)?;
-    let has = |name: &str| found.names.iter().any(|other| other == name);
-    match (&found.names[..], found.outside) {
-        ([name], _) => Ok(name.clone()),
-        ([], Some(cause)) => Err(cause),
-        ([], None) => Err("no two-dimensional dataset in the root\nhelp: select one of another group as \"group/dataset\"".into()),
-        (_, _) if has("image") && is_topostats(file) => Ok("image".to_owned()),
-        (many, _) if many.iter().all(|name| HEIGHTS.contains(&name.as_str())) => Ok(HEIGHTS[0].to_owned()),
-        (many, _) => {
-            Err(format!("several two-dimensional datasets: {}\nhelp: select one with surface.dataset (--dataset)", many.join(", ")).into())
-        }
-    }
-}
-
-fn is_topostats(file: &File) -> bool {
-    TOPOSTATS.iter().any(|name| file.link_exists(name) || file.attr(name).is_ok())
 }
 
 /// A dataset with everything that the file states of it.

@@ -20,7 +20,6 @@ pub mod parquet;
 mod receipt;
 pub mod scan;
 mod surface_header;
-mod surface_quality;
 
 pub use builder::FrameBuilder;
 pub use error::{FrameError, StoreError};

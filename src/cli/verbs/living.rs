@@ -1,6 +1,5 @@
 //! `status` of processes that compute in an output folder, from their heartbeats.
 
-use super::survey::{Units, left};
 use crate::campaign::{Campaign, Shard, Stage, Standing};
 use crate::stats::significant;
 use crate::store::heartbeat::{Heartbeat, RunningTask, processes};
@@ -131,4 +130,12 @@ fn process_text(beat: &Heartbeat) -> String {
 
 fn percent(fraction: f64) -> String {
     format!("{:.0} %", 100.0 * fraction)
+}
+
+/// The state of every task of a campaign, by stage.
+pub(super) type Units = Vec<(Stage, Vec<(String, Standing)>)>;
+
+/// The number of pending tasks.
+pub(super) fn left(units: &Units) -> usize {
+    units.iter().flat_map(|(_, units)| units).filter(|(_, standing)| !matches!(standing, Standing::Done | Standing::Failed(_))).count()
 }

@@ -2,7 +2,7 @@
 
 use super::causes::causes;
 use super::ending::failed_cycles;
-use super::living::Living;
+use super::living::{Living, Units, left};
 use super::place::{folder, open, open_dir, resuming};
 use super::{Fault, failed, say, submit};
 use crate::campaign::{Campaign, CycleUnit, REPORT_PAGE, STATISTICS, Stage, Standing, Survey};
@@ -26,9 +26,6 @@ const MOST_IDLE: usize = 2;
 
 /// Tasks of Slurm that are listed.
 const LISTED: usize = 10;
-
-/// The state of every task of a campaign, by stage.
-pub(super) type Units = Vec<(Stage, Vec<(String, Standing)>)>;
 
 pub(super) fn plan(spec: &Path, output: &OutputArguments) -> Result<u8, Fault> {
     let campaign = open(spec, output)?;
@@ -219,11 +216,6 @@ fn units(campaign: &Campaign, survey: Survey) -> Units {
         (Stage::Aggregate, vec![(STATISTICS.to_owned(), survey.statistics)]),
         (Stage::Report, vec![(REPORT_PAGE.to_owned(), survey.report)]),
     ]
-}
-
-/// The number of pending tasks.
-pub(super) fn left(units: &Units) -> usize {
-    units.iter().flat_map(|(_, units)| units).filter(|(_, standing)| !matches!(standing, Standing::Done | Standing::Failed(_))).count()
 }
 
 /// What makes the tables or the report stale.

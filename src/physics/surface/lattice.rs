@@ -8,7 +8,7 @@
 //! of the formula below `e^(−2πa)`, relative to the row: 2e-13 and 0 at a = 128. The edge of the band is exact: the
 //! last mode of each row follows from integers.
 
-use super::spectrum::{MomentSums, Spectrum};
+use super::spectrum::{MomentSums, Moments, Spectrum};
 
 /// Rows from which on the Euler–Maclaurin formula replaces the sum.
 const DIRECT: u32 = 128;
@@ -99,6 +99,18 @@ impl Row {
         // A corner (±a, ±a) is the end of two rows.
         let corners = if ends_at_corner { 4.0 * shape.value } else { 0.0 };
         a.powf(-2.0 * s) * (4.0 * (2.0 * a * shape.integral + end) - corners)
+    }
+}
+
+impl Spectrum {
+    /// Moments of the discrete modes of a periodic square.
+    ///
+    /// The amplitudes are fixed, with the chosen normalisation.
+    ///
+    /// They are sums in place of the integrals of [`Self::moments`]. The time is proportional to ζ.
+    #[must_use]
+    pub fn lattice_moments(&self) -> Moments {
+        sums(self).moments(self)
     }
 }
 

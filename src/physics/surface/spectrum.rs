@@ -1,6 +1,5 @@
 //! Power spectral density of a self-affine surface (Eq 10) and its moments.
 
-use super::lattice;
 use crate::model::{Amplitudes, Normalization};
 use std::f64::consts::PI;
 
@@ -67,16 +66,6 @@ impl Spectrum {
             m2: PI * c0 * ql.powi(4) * band(3.0),
             m4_1_m2: 0.75 * PI * c0 * ql.powi(6) * band(5.0),
         }
-    }
-
-    /// Moments of the discrete modes of a periodic square.
-    ///
-    /// The amplitudes are fixed, with the chosen normalisation.
-    ///
-    /// They are sums in place of the integrals of [`Self::moments`]. The time is proportional to ζ.
-    #[must_use]
-    pub fn lattice_moments(&self) -> Moments {
-        lattice::sums(self).moments(self)
     }
 }
 

@@ -1,12 +1,14 @@
 //! Artefacts of an imported scan: numbers, lines of the text, and warnings.
 
-use super::text::Line;
 use crate::model::{Choice, FastAxis};
 use crate::stages::ARTEFACTS;
 use crate::stats::{CAUTIONS, Limit, measured_text};
 use crate::store::hdf5::{Quality, SurfaceHeader};
 use crate::text::counted;
 use serde_json::{Value, json};
+
+/// A line of the text: label and value.
+pub(super) type Line = (&'static str, String);
 
 fn of(header: &SurfaceHeader) -> Option<&Quality> {
     header.measured.as_ref().and_then(|of| of.quality.as_ref())

@@ -1,6 +1,6 @@
 //! Statistics of an imported surface as text and as JSON.
 
-use super::quality;
+use super::quality::{self, Line};
 use super::range::Range;
 use crate::model::{Choice, Detrend, Filter, SpectrumEnd};
 use crate::physics::surface::texture::Texture;
@@ -80,9 +80,6 @@ pub(super) fn answer(of: &Statistics<'_>, rings: &[Value]) -> Value {
     quality::numbers(header).into_iter().for_each(|(name, value)| answer[name] = value);
     answer
 }
-
-/// A line of the text: label and value.
-pub(super) type Line = (&'static str, String);
 
 /// The statistics of a surface as text of at most 80 columns.
 pub(super) fn text(of: &Statistics<'_>) -> String {
