@@ -18,7 +18,7 @@ fn scan(bench: &Bench, lines: &str) -> String {
     let file = bench.spec().with_file_name("scan.txt");
     fs::write(&file, (0..n).map(row).collect::<Vec<_>>().join("\n")).unwrap();
     format!(
-        "name = \"scan\"\n[surface]\nfile = \"{}\"\nunit = \"m\"\npixel_m = 2e-6\n[material]\nwork_of_adhesion_j_m2 = 0.01\n[cycle]\n\
+        "name = \"scan\"\n[surface]\nfile = \"{}\"\nunit = \"m\"\npixel_m = 2e-6\n[material]\nwork_of_adhesion_j_m2 = 0.01\n[model]\nboundary = \"isolated\"\n[cycle]\n\
          max_load = [0.002, 0.004]\n[boundary_elements]\npoints = 64\n{lines}\n[[sweep]]\nname = \"method\"\n\
          model.method = [\"asperities\", \"boundary_elements\"]\n",
         file.display()
