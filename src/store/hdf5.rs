@@ -12,11 +12,9 @@ use super::axes;
 use super::commit::{Written, commit};
 use super::dataset::{Outside, dataset, only_field};
 use super::error::{Cause, StoreError, fenced};
-pub use super::hdf5_scan::{read_scan, search};
 use super::scan::room;
 use super::surface_header;
-pub use super::surface_header::Quality;
-pub use super::surface_header::{Generated, Measured, SURFACE_VERSION, SpectrumFit, SurfaceHeader};
+pub use super::surface_header::{Generated, Measured, Quality, SURFACE_VERSION, SpectrumFit, SurfaceHeader};
 
 /// Does something while no other thread is in the HDF5 library, which ends with the program and must not be in use then.
 pub fn alone<T>(act: impl FnOnce() -> T) -> T {
@@ -78,7 +76,7 @@ pub fn read_header(path: &Path) -> Result<SurfaceHeader, StoreError> {
     .map_err(|cause| StoreError::new("read the header of the surface", path, cause))
 }
 
-/// Checks that the heights [`read_scan`] or [`read_surface`] would read lie in the file itself.
+/// Checks that the heights [`read_scan`](super::hdf5_scan::read_scan) or [`read_surface`] would read lie in the file itself.
 ///
 /// # Errors
 /// The other file, and what to do. A file that cannot be opened, or has no such dataset, is no error here.

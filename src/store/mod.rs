@@ -12,7 +12,7 @@ mod error;
 mod frame;
 mod halfway;
 pub mod hdf5;
-mod hdf5_scan;
+pub mod hdf5_scan;
 mod heaps;
 pub mod heartbeat;
 mod maps;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use hdf5_metno::types::{FixedAscii, VarLenArray, VarLenUnicode};
 use hdf5_metno::{File, H5Type, Location, ObjectReference as _, ObjectReference1};
-use hysteron::store::hdf5::{read_scan, search};
+use hysteron::store::hdf5_scan::{read_scan, search};
 use hysteron::store::scan::{Asked, FirstIndex, Format, Scan};
 use ndarray::{Array2, array};
 

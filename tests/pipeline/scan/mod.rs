@@ -34,7 +34,7 @@ use std::path::Path;
 
 use hysteron::lengths::{LENGTHS, metres};
 use hysteron::store::StoreError;
-use hysteron::store::hdf5::read_scan;
+use hysteron::store::hdf5_scan::read_scan;
 use hysteron::store::scan::{Asked, Format, Found, Scan, detect, read};
 use ndarray::Array2;
 

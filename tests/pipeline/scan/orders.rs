@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 use hdf5_metno::File;
 use hysteron::formats::recognize;
-use hysteron::store::hdf5::{read_scan, read_surface};
+use hysteron::store::hdf5::read_surface;
+use hysteron::store::hdf5_scan::read_scan;
 use hysteron::store::scan::{Asked, Found, Scan, read};
 use ndarray::Array2;
 use zip::CompressionMethod::Deflated;

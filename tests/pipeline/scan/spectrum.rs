@@ -62,7 +62,7 @@ fn e2e_a_scan_without_long_waves_has_its_hurst_exponent_and_both_cuts() {
     }
     let words = stdout(&import(folder.path(), &[&["scan.npy", "--dry-run"], &TOLD[..]].concat()));
     for line in
-        ["  long cut      no data above 3", "  short cut     no data below ", "  roll-off      none within the scan", "39.48 times C"]
+        ["  long cut      no data above 3", "  short cut     no data below 3", "  roll-off      none within the scan", "39.48 times C"]
     {
         assert!(words.contains(line), "{line}: {words}");
     }
