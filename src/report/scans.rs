@@ -2,8 +2,9 @@
 
 use super::layout::{heading, prose, wide};
 use crate::model::Choice;
-use crate::store::hdf5::{Measured, SurfaceHeader};
+use crate::store::hdf5::{Measured, SpectrumFit, SurfaceHeader};
 use maud::{Markup, html};
+use std::f64::consts::TAU;
 
 const NOTE: &str = "Each measured surface is one realization, without a standard deviation. Area kept: fraction of the scan in the \
     central square of side L. h_{rms} and rms slope: after levelling and S-filter. S-filter: low-pass filter, Gaussian (ISO 16610-61) or \
@@ -11,9 +12,10 @@ const NOTE: &str = "Each measured surface is one realization, without a standard
     measured heights nearby, beyond the noise. Filled: missing points interpolated (harmonic in-fill). Outliers: isolated points beyond 6 robust \
     standard deviations of their neighbours, replaced and left. Line offsets: rms offset between scan lines, removed and left. Tip cut-off: \
     shortest wavelength that a tip of the stated radius traces reliably. H: Hurst exponent of the self-affine fit, with its \
-    standard deviation; outside 0 to 1 the spectrum is not self-affine.";
+    rms deviation in decades; outside 0 to 1 the spectrum is not self-affine. \
+    Texture aspect: larger of the ratio of the principal rms slopes and 1/Str (ISO 25178). Cuts: wavelengths between which the spectrum holds data.";
 
-const HEADS: [&str; 16] = [
+const HEADS: [&str; 18] = [
     "file",
     "points",
     "area kept",
@@ -29,7 +31,9 @@ const HEADS: [&str; 16] = [
     "outliers replaced / left",
     "line offsets removed / left [m]",
     "tip cut-off [m]",
+    "texture aspect",
     "H",
+    "long cut / roll-off / short cut [m]",
 ];
 
 /// A table of the measured surfaces of a campaign, if it has any.
@@ -67,6 +71,15 @@ fn row(header: &SurfaceHeader, of: &Measured) -> Markup {
         (lengths(&[of.shortest_wavelength_m, of.noise_m, of.overshoot_m, of.trend_m]))
         td { (of.missing_count) }
         (artefacts(of))
+        td { (of.texture.map_or_else(|| "–".to_owned(), |texture| format!("{:.2}", texture.aspect()))) }
         td { (of.fit.map_or_else(|| "–".to_owned(), |fit| format!("{:.2} (±{:.2} decades)", fit.hurst, fit.scatter))) }
+        td { (of.fit.map_or_else(|| "–".to_owned(), |fit| ends(&fit))) }
     }
+}
+
+/// Long cut-off, roll-off and short cut-off of a spectrum \[m\].
+fn ends(fit: &SpectrumFit) -> String {
+    let roll_off = (fit.rolls_off == Some(true)).then(|| TAU / fit.roll_off_1_m);
+    let lengths = [fit.long_cut_m, roll_off, fit.short_cut.map(|(length, _)| length)];
+    lengths.map(|length| length.map_or_else(|| "–".to_owned(), |length| format!("{length:.3e}"))).join(" / ")
 }

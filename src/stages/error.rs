@@ -111,6 +111,12 @@ pub enum StageError {
         /// Why.
         what: String,
     },
+    /// A defect of the program, by which one task ended.
+    #[error("internal error: {what}\nhelp: report this with the spec; the other tasks go on")]
+    Defect {
+        /// The message of the panic.
+        what: String,
+    },
     /// A campaign that is to be compared with itself.
     #[error("cannot compare {} with itself\nhelp: name each run once", shown(path))]
     ComparedTwice {

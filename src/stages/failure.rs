@@ -2,10 +2,11 @@
 
 use super::{StageError, Watch};
 use crate::campaign::{Campaign, CycleUnit, Stage, Unit};
-use crate::store::commit;
+use crate::store::{commit, panic_text};
 use crate::text::shell_path;
 use serde_json::json;
 use std::collections::{HashMap, HashSet};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 
 /// True if an error is one case's own: the others go on. What the system says of a file (a full disk) is not.
@@ -19,7 +20,13 @@ pub(super) fn is_of_a_case(error: &StageError) -> bool {
             | StageError::InTheWay { .. }
             | StageError::TooManySteps { .. }
             | StageError::Range { .. }
+            | StageError::Defect { .. }
     )
+}
+
+/// Runs a task and gives a panic as its error: a defect ends one task, not the run.
+pub(super) fn fenced<T>(task: impl FnOnce() -> Result<T, StageError>) -> Result<T, StageError> {
+    catch_unwind(AssertUnwindSafe(task)).unwrap_or_else(|panic| Err(StageError::Defect { what: panic_text(panic.as_ref()).to_owned() }))
 }
 
 /// Refuses a task whose files cannot be put in place, before it is computed: a folder has the name of one, or a file that of their folder.
@@ -116,5 +123,19 @@ pub(super) fn given_up(campaign: &Campaign, cycles: &[&CycleUnit], stage: Stage,
 pub(super) fn forget(campaign: &Campaign, cycles: &[&CycleUnit], stage: Stage) {
     for cycle in cycles.iter().filter(|cycle| campaign.failed_at(cycle) == Some(stage)) {
         let _ = std::fs::remove_file(campaign.failure_path(cycle));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{StageError, fenced, is_of_a_case};
+
+    #[test]
+    fn val_a_panic_is_the_error_of_its_task() {
+        let outcome = fenced(|| -> Result<(), StageError> { panic!("no such column {}", 3) });
+        assert!(outcome.as_ref().is_err_and(is_of_a_case));
+        let text = outcome.map_err(|error| error.to_string());
+        assert_eq!(text, Err("internal error: no such column 3\nhelp: report this with the spec; the other tasks go on".to_owned()));
+        assert!(fenced(|| Ok(2)).is_ok_and(|value| value == 2));
     }
 }

@@ -104,7 +104,7 @@ fn compute<T: Tasks>(tasks: &T, open: &[&T::Of], (context, planned): (Context<'_
     let one = |of: &T::Of| -> Result<(), StageError> {
         let (clock, unit) = (Clock::start(), tasks.unit(of));
         watch.started(T::STAGE, unit.id);
-        let outcome = tasks.compute(of);
+        let outcome = failure::fenced(|| tasks.compute(of));
         if let Err(error) = &outcome {
             watch.failed(T::STAGE, unit.id);
             failure::report(campaign, (unit.id, &tasks.cycles(of)), T::STAGE, error, watch)?;

@@ -51,6 +51,7 @@ pub(super) fn fenced<T>(work: impl FnOnce() -> Result<T, Cause>) -> Result<T, Ca
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| Err(format!("the file is damaged ({})", panic_text(panic.as_ref())).into()))
 }
 
-fn panic_text(panic: &(dyn Any + Send)) -> &str {
+/// Message of a panic.
+pub(crate) fn panic_text(panic: &(dyn Any + Send)) -> &str {
     panic.downcast_ref::<&str>().copied().or_else(|| panic.downcast_ref::<String>().map(String::as_str)).unwrap_or("no reason given")
 }

@@ -29,7 +29,8 @@ fn scan(bench: &Bench, lines: &str) -> String {
 #[test]
 fn law_all_tables_refer_to_the_area_of_the_scan() {
     let bench = Bench::new("");
-    fs::write(bench.spec(), scan(&bench, "")).unwrap();
+    // Twice as fine as the scan with its mirror images.
+    fs::write(bench.spec(), scan(&bench, "").replace("points = 64", "points = 128")).unwrap();
     let run = bench.verb("run", &["--until", "aggregate"]);
     assert_eq!(code(&run), 0, "{}", stderr(&run));
     let campaign = campaign(&bench);
@@ -199,7 +200,8 @@ fn law_numeric_options_at_their_bounds() {
     let weak = row(1e-8, 1e-4);
     let is_null = mean("loss_mean", weak).is_none();
     assert_eq!(cases.i64("unresolved_count").unwrap()[weak], i64::from(is_null));
-    assert_eq!(cases.text("caution").unwrap()[weak].contains("unresolved"), is_null);
+    // A value that is kept may have the warning too, for its uncertainty.
+    assert!(!is_null || cases.text("caution").unwrap()[weak].contains("unresolved"));
     assert!(is_null || mean("loss_mean", weak).unwrap() > 0.0);
     assert!(mean("pull_off_load_mean", weak).is_none_or(|pull_off| pull_off > 0.0));
 }

@@ -105,8 +105,8 @@ fn e2e_snakemake_finds_relative_scans_and_goes_on_after_failures() {
     let bench = Bench::new("");
     let (here, elsewhere) = (bench.folder.path(), tempfile::tempdir().unwrap());
     fs::create_dir(here.join("scans")).unwrap();
-    let height = |k: u32| (k * 7919 + k / 48 * 104_729) % 97;
-    let rows: Vec<String> = (0..48).map(|i| (0..48).map(|j| height(48 * i + j).to_string()).collect::<Vec<_>>().join(" ")).collect();
+    let height = |i: u32, j: u32| 1000.0 * (0.5 * f64::from(i)).sin() * (0.4 * f64::from(j)).cos();
+    let rows: Vec<String> = (0..48).map(|i| (0..48).map(|j| format!("{:.3}", height(i, j))).collect::<Vec<_>>().join(" ")).collect();
     fs::write(here.join("scans/a.txt"), rows.join("\n")).unwrap();
     fs::write(here.join("scans/bad.txt"), "1 2 x\n3 4 5\n").unwrap();
     let spec = "name = \"scans\"\n[surface]\npixel_m = 1e-6\nunit = \"nm\"\n[material]\ncontact_modulus_pa = 1e9\nwork_of_adhesion_j_m2 = 1e-3\n[model]\n\

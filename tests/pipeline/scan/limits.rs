@@ -63,7 +63,7 @@ fn e2e_a_crop_and_a_bad_fit_are_cautions() {
     assert!(fit["hurst"].as_f64().unwrap() < 0.0, "{fit}");
     assert!(found.iter().any(|text| text.starts_with("fit: H = -") && text.contains("not self-affine")), "{found:?}");
     // Too few wavelengths for a fit.
-    let (found, fit) = cautions(&cut(8, 16).slice(s![.., ..16]).to_owned());
+    let (found, fit) = cautions(&cut(8, 12).slice(s![.., ..12]).to_owned());
     assert!(fit.is_null() && found.iter().any(|text| text.starts_with("fit: too few wavelengths")), "{found:?} {fit}");
 }
 

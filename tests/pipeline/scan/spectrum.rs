@@ -77,11 +77,13 @@ fn e2e_ridges_have_a_warning_and_no_expected_ratios() {
     let output = import(folder.path(), &[&["scan.npy", "--periodic"], &TOLD[..]].concat());
     let words = stdout(&output);
     assert!(words.contains("\nwarning: texture: aspect ratio ") && words.contains("(limit 2)"), "{words}");
-    // The first index of the file is y, so the ridges are along x, within three degrees: 24 waves across them scatter that much.
-    assert!([0, 1, 2, 3, 177, 178, 179].iter().any(|degrees| words.contains(&format!("smallest at {degrees}° from x to y"))), "{words}");
+    // The first index of the file is y, so the ridges are along x. These waves behind the Gaussian filter have the principal axes 3.0006 and
+    // 178.36°: from their modes, by an independent program. Differences of the fourth order are low by 0.1 % at eight points per wave.
+    assert!(words.contains("smallest at 178° from x to y"), "{words}");
     assert!(words.lines().all(|line| line.chars().count() <= 80), "{words}");
     let stored = read_header(&folder.path().join("scan.h5")).unwrap().measured.unwrap().texture.unwrap();
-    assert!(stored.slope_ratio > 3.0 && stored.aspect_ratio_str < 0.5, "{stored:?}");
+    assert!((stored.slope_ratio - 3.0006).abs() < 0.005 && stored.aspect_ratio_str < 0.5, "{stored:?}");
+    assert!((stored.direction_rad.to_degrees() - 178.358).abs() < 0.02, "{stored:?}");
     let isotropic = {
         fs::write(folder.path().join("scan.npy"), bytes(&field(96, [2.0, 12.0], 1.0))).unwrap();
         json(folder.path(), &["--periodic"])
@@ -98,7 +100,7 @@ fn e2e_ridges_have_a_warning_and_no_expected_ratios() {
     assert!(run.status.success(), "{}", stderr(&run));
     let cases = read_table(&bench.out().join("statistics/cases.parquet"), &schema::CASES).unwrap();
     assert!(cases.text("caution").unwrap()[0].contains("texture"), "{}", stdout(&run));
-    assert!(cases.f64_or_null("texture_aspect_max").unwrap()[0].is_some_and(|aspect| aspect > 3.0));
+    assert!(cases.f64_or_null("texture_aspect_max").unwrap()[0].is_some_and(|aspect| aspect > 2.5));
     assert!(cases.f64_or_null("persson_tosatti_realised_mean").unwrap()[0].is_some_and(|ratio| (1.0..600.0).contains(&ratio)));
     assert_eq!(cases.f64_or_null("area_model_ratio").unwrap()[0], None);
     assert!(!stdout(&run).contains("Expected ratio"), "{}", stdout(&run));
