@@ -5,7 +5,7 @@ mod write;
 
 use std::path::Path;
 
-use arrow::datatypes::DataType;
+use arrow_schema::DataType;
 
 use crate::schema::{Kind, Table};
 

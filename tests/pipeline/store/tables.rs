@@ -4,7 +4,7 @@ use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use arrow::array::{ArrayRef, BooleanArray, Float64Array, Int64Array, RecordBatch, StringArray};
+use arrow_array::{ArrayRef, BooleanArray, Float64Array, Int64Array, RecordBatch, StringArray};
 use hysteron::schema::{ASPERITIES, CONTACTS, CURVES, Kind, STEPS, TABLES, Table};
 use hysteron::store::Frame;
 use hysteron::store::parquet::{METADATA_KEY, read_key, read_metadata, read_table, write_table};
