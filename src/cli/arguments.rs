@@ -41,7 +41,7 @@ pub(super) struct TalkArguments {
     /// Print warnings and errors only
     #[arg(long, short = 'q', conflicts_with = "verbose")]
     pub(super) quiet: bool,
-    /// Print a line with the elapsed time for each finished task
+    /// Print each finished task with its time, and all warnings at the end
     #[arg(long, short = 'v')]
     pub(super) verbose: bool,
 }

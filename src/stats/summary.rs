@@ -4,8 +4,10 @@ use super::StatsError;
 use super::digits::{column_exponent, decimals, labels, power_of_ten, significant};
 use super::listed::{Listed, listing, listing_of, sweeps};
 use super::model_error::{COLUMNS, outdated};
-use super::warnings::warnings;
+use super::verdict::{IN_A_VERDICT, verdict};
+use super::warnings::{Warning, warnings};
 use crate::store::Frame;
+use crate::text::counted;
 
 /// Widths of the columns: case, maximum load, realizations, and four results; 80 columns together.
 const WIDTHS: [usize; 7] = [14, 8, 6, 12, 14, 14, 12];
@@ -67,11 +69,21 @@ impl Notation {
     }
 }
 
-/// The results of every case as lines of at most 80 columns. Each sweep lists all of its cases: the reference case first, the others in the order of the spec.
+/// Warnings that a summary has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shown {
+    /// At most three lines: what the verdicts do not say, the most severe first; the report has the others.
+    Few,
+    /// All, with measured values, limits and rows.
+    All,
+}
+
+/// The results of every case as lines of at most 80 columns. Each sweep lists all of its cases, the reference case first, the others in the order of the spec, and
+/// its verdict. `methods` is the table of both methods on the same surfaces.
 ///
 /// # Errors
-/// If the table lacks one of its columns.
-pub fn summary(cases: &Frame) -> Result<String, StatsError> {
+/// If a table lacks one of its columns.
+pub fn summary(cases: &Frame, methods: Option<&Frame>, shown: Shown) -> Result<String, StatsError> {
     let mut lines = Vec::new();
     let mut compared = false;
     for name in sweeps(cases)? {
@@ -85,15 +97,19 @@ pub fn summary(cases: &Frame) -> Result<String, StatsError> {
         }
         let headings = columns.iter().map(|(heading, notation)| notation.heading(heading)).collect();
         lines.extend(labelled(&title, ["F_max".to_owned(), "n".to_owned()], four(headings)));
-        for listed in rows {
+        for listed in &rows {
             compared |= listed.is_reference;
-            lines.extend(case_lines(cases, &listed, &columns)?);
+            lines.extend(case_lines(cases, listed, &columns)?);
         }
+        let rows: Vec<usize> = rows.iter().map(|listed| listed.row).collect();
+        lines.extend(verdict(cases, methods, &rows)?.iter().flat_map(|text| wrapped(text)));
     }
     let mut head = vec![HEADER];
     head.extend(compared.then_some(REFERENCE));
-    lines.extend(model_lines(cases)?);
-    lines.extend(warning_lines(cases)?);
+    lines.extend(match shown {
+        Shown::Few => few_warnings(cases)?,
+        Shown::All => warning_lines(cases)?,
+    });
     lines.push(String::new());
     Ok(format!("{}\n{}", head.join("\n"), lines.join("\n")))
 }
@@ -163,10 +179,32 @@ pub fn expected_ratios(cases: &Frame) -> Result<Option<String>, StatsError> {
     Ok((!parts.is_empty()).then_some(text))
 }
 
-/// The sentence of [`expected_ratios`] as lines.
-fn model_lines(cases: &Frame) -> Result<Vec<String>, StatsError> {
-    let text = expected_ratios(cases)?;
-    Ok(text.map_or_else(Vec::new, |text| std::iter::once(String::new()).chain(wrapped(&text)).collect()))
+/// Lines of [`Shown::Few`].
+const FEW: usize = 3;
+
+/// Warnings in one line each: those that no verdict stands for, then the others; the last line counts what is left to the report.
+fn few_warnings(cases: &Frame) -> Result<Vec<String>, StatsError> {
+    let all = warnings(cases)?;
+    if all.is_empty() {
+        return Ok(Vec::new());
+    }
+    let (covered, other): (Vec<&Warning>, Vec<&Warning>) = all.iter().partition(|warning| IN_A_VERDICT.contains(&warning.kind.code));
+    let row_count = cases.row_count();
+    let line = |warning: &&Warning| {
+        let head = format!("warning[{}]: {}", warning.kind.code, warning.kind.label);
+        let head = if warning.rows.len() == row_count { head } else { format!("{head} ({} of {row_count} rows)", warning.rows.len()) };
+        let whole = format!("{head}: {}", warning.measured);
+        if whole.chars().count() <= LINE { whole.replace('\u{a0}', " ") } else { head }
+    };
+    let mut lines: Vec<String> = std::iter::once(String::new()).chain(other.iter().take(FEW - 1).map(line)).collect();
+    let left = covered.len() + other.len().saturating_sub(FEW - 1);
+    let them = if left == 0 {
+        "Consequences and actions".to_owned()
+    } else {
+        format!("{}, consequences and actions", counted(left, "more warning"))
+    };
+    lines.push(format!("{them}: report.html, \"Model validity\", or --verbose"));
+    Ok(lines)
 }
 
 /// The warnings of cases as lines, empty without any: what a quiet run prints of its results.

@@ -62,7 +62,9 @@ fn e2e_both_methods_side_by_side() {
     let run = bench.verb("run", &[]);
     assert_eq!(code(&run), 0, "{}", stderr(&run));
     let said = stdout(&run);
-    assert!(said.contains("Asperity model over boundary elements on the same surfaces"), "{said}");
+    assert!(said.contains("\nVerdict: ") && said.contains("Open the report: "), "{said}");
+    let whole = stdout(&bench.verb("run", &["--verbose"]));
+    assert!(whole.contains("Asperity model over boundary elements on the same surfaces"), "{whole}");
     assert!(said.contains("boundary_elements"), "{said}");
     assert!(said.lines().all(|line| line.chars().count() <= 80 || line.contains('/')), "{said}");
     // One row for each surface and load; ratios and their mean.

@@ -1,7 +1,7 @@
 //! How far to trust a row: the numbers, their limits, and the cautions.
 
 use hysteron::schema::CASES;
-use hysteron::stats::{CAUTIONS, CaseInput, LIMITS, Value, cases, realizations, summary, warnings};
+use hysteron::stats::{CAUTIONS, CaseInput, LIMITS, Shown, Value, cases, realizations, summary, warnings};
 use hysteron::store::{ColumnData, Frame};
 
 use crate::panels::replaced;
@@ -216,7 +216,7 @@ fn law_no_caution_is_lost_at_the_edge_of_a_terminal() {
     });
     let carried = words(&frame);
     assert!(carried.split('+').count() >= 7, "{carried}");
-    let text = summary(&frame).unwrap();
+    let text = summary(&frame, None, Shown::All).unwrap();
     assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
     for word in carried.split('+') {
         assert_eq!(text.matches(&format!("warning[{word}]: ")).count(), 1, "{word} in {text}");
@@ -280,8 +280,8 @@ fn law_the_values_of_several_rows_are_an_interval_and_few_rows_are_named() {
     let found = warnings(&frame).unwrap();
     assert_eq!((found.len(), found[0].rows.as_slice()), (1, &[0, 1][..]));
     assert_eq!(found[0].measured, "76 to 87\u{a0}% of contact spots overlap a neighbour (limit 10\u{a0}%)");
-    let text = summary(&frame).unwrap();
+    let text = summary(&frame, None, Shown::All).unwrap();
     assert!(text.contains("F_max = 0.004") && text.contains("F_max = 0.005") && !text.contains("F_max = 0.006"), "{text}");
-    let all = summary(&with_codes(&frame, &["touching"; 3])).unwrap();
+    let all = summary(&with_codes(&frame, &["touching"; 3]), None, Shown::All).unwrap();
     assert!(all.contains("warning[touching]: overlap: 5 to 87 % of contact spots overlap") && !all.contains("F_max = 0.004"), "{all}");
 }

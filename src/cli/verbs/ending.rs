@@ -6,7 +6,7 @@ use crate::campaign::{Campaign, CycleUnit, Shard, Stage, Standing};
 use crate::cli::progress::duration;
 use crate::schema;
 use crate::stages::Tally;
-use crate::stats::{methods_summary, summary, warning_text};
+use crate::stats::{Shown, methods_summary, summary, warning_text};
 use crate::store::{Check, Frame, parquet};
 use crate::text::{counted, shell_path, shown, visible, wrapped};
 use indicatif::HumanBytes;
@@ -43,19 +43,20 @@ impl<'a> Ended<'a> {
         self.failed_count > 0 || !self.unreached.is_empty()
     }
 
-    /// The table of results, failures, counts and places.
-    pub(super) fn conclusion(&self, until: Stage) -> Result<String, Fault> {
-        let mut text = String::new();
-        if until >= Stage::Aggregate {
-            let cases = self.cases()?;
-            text += &summary(&cases).map_err(failed)?;
-            let methods = self.table(&schema::METHODS)?;
-            let compared = methods_summary(&cases, &methods).map_err(failed)?;
-            if !compared.is_empty() {
-                text += &format!("\n{compared}");
-            }
-            text += "\n";
+    /// The table of results with verdicts and warnings; with all of them, also the ratios of both methods.
+    fn results(&self, shown: Shown) -> Result<String, Fault> {
+        let (cases, methods) = (self.cases()?, self.table(&schema::METHODS)?);
+        let mut text = summary(&cases, Some(&methods), shown).map_err(failed)?;
+        let compared = methods_summary(&cases, &methods).map_err(failed)?;
+        if shown == Shown::All && !compared.is_empty() {
+            text += &format!("\n{compared}");
         }
+        Ok(text + "\n")
+    }
+
+    /// The results, failures, counts and places.
+    pub(super) fn conclusion(&self, until: Stage, shown: Shown) -> Result<String, Fault> {
+        let mut text = if until >= Stage::Aggregate { self.results(shown)? } else { String::new() };
         for (stage, t) in self.tallies.iter().filter(|_| !self.is_idle()) {
             let lost = if t.failed > 0 { format!(", {} failed", t.failed) } else { String::new() };
             text += &format!("{:9} {} of {} computed, {} done before{lost}\n", stage.word(), t.computed, t.planned, t.before);
@@ -75,7 +76,11 @@ impl<'a> Ended<'a> {
         };
         let dir = shown(&self.campaign.dir);
         text += &match until {
-            Stage::Report => format!("Report: {dir}/report.html\nTables: {dir}/statistics/*.parquet\n"),
+            Stage::Report => format!(
+                "Report: {dir}/report.html\nTables: {dir}/statistics/*.parquet\nOpen the report: {} report {} --open\n",
+                program(),
+                shell_path(&self.campaign.dir)
+            ),
             _ => format!("Output: {dir}\n"),
         };
         Ok(text)
@@ -129,6 +134,11 @@ impl<'a> Ended<'a> {
         }
         text + &format!("Reasons with help: {}/cycles/*/failed.json\n", shown(&self.campaign.dir))
     }
+}
+
+/// The program as it was called, for a command that can be repeated: `hysteron`, or its path.
+fn program() -> String {
+    std::env::args_os().next().map_or_else(|| "hysteron".to_owned(), |path| shell_path(Path::new(&path)))
 }
 
 /// The answer of a run in JSON.

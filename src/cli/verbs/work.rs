@@ -10,7 +10,7 @@ use crate::cli::progress::Teller;
 use crate::cli::{FolderArguments, HowArguments, interrupt};
 use crate::schema;
 use crate::stages::{self, Comparison, StageError, Task, Watch as _, slow_grids};
-use crate::stats::significant;
+use crate::stats::{Shown, significant};
 use crate::store::{Check, FrameError};
 use crate::text::{shell_path, shown, visible, wrapped};
 use serde_json::json;
@@ -155,7 +155,7 @@ fn perform(campaign: Campaign, task: &Task, json: bool, talk: TalkArguments) -> 
     if json {
         say(&tally_json(&ended))?;
     } else if !talk.quiet {
-        say(&ended.conclusion(task.until)?)?;
+        say(&ended.conclusion(task.until, if talk.verbose { Shown::All } else { Shown::Few })?)?;
     } else {
         let warnings = ended.warnings(task.until)?;
         if !warnings.is_empty() {
