@@ -9,7 +9,6 @@
 pub mod campaign;
 #[cfg(feature = "stats")]
 pub mod cli;
-pub mod constants;
 #[cfg(feature = "stats")]
 pub mod engines;
 #[cfg(feature = "stats")]
@@ -20,7 +19,6 @@ pub mod keys;
 pub mod lengths;
 pub mod model;
 pub mod paths;
-pub mod physics;
 #[cfg(feature = "stats")]
 pub mod report;
 pub mod schema;
@@ -32,3 +30,6 @@ pub mod stats;
 #[cfg(feature = "store")]
 pub mod store;
 pub mod text;
+
+pub use hysteron_physics as physics;
+pub use hysteron_physics::constants;

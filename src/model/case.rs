@@ -192,12 +192,6 @@ impl Default for SurfaceParams {
     }
 }
 
-impl Default for Material {
-    fn default() -> Self {
-        Self { contact_modulus_pa: 1e6, work_of_adhesion_j_m2: 0.07, interaction_range_m: 1e-9 }
-    }
-}
-
 impl Default for ModelParams {
     fn default() -> Self {
         Self {

@@ -19,7 +19,7 @@
 
 use crate::constants::Constant;
 use crate::model::{Material, Slips};
-use crate::physics::PhysicsError;
+use crate::PhysicsError;
 use multiversion::multiversion;
 use std::f64::consts::PI;
 

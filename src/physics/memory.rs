@@ -1,6 +1,6 @@
 //! Memory allocation that returns an error instead of aborting the program.
 
-use crate::physics::PhysicsError;
+use crate::PhysicsError;
 use ndarray::Array2;
 
 /// Vector of `count` copies of a value.

@@ -3,6 +3,7 @@
 //! This module opens no files and is independent of the stages. All quantities are in SI units; compression and penetration are positive.
 
 pub mod boundary_elements;
+pub mod constants;
 pub mod contact;
 pub mod cycle;
 mod error;
@@ -11,6 +12,7 @@ pub mod jkr;
 mod loop_position;
 mod math;
 pub mod memory;
+pub mod model;
 pub mod path;
 mod solve;
 pub mod surface;

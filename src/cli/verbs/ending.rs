@@ -44,19 +44,19 @@ impl<'a> Ended<'a> {
     }
 
     /// The table of results with verdicts and warnings; with all of them, also the ratios of both methods.
-    fn results(&self, shown: Shown) -> Result<String, Fault> {
+    fn results(&self, warnings: Shown) -> Result<String, Fault> {
         let (cases, methods) = (self.cases()?, self.table(&schema::METHODS)?);
-        let mut text = summary(&cases, Some(&methods), shown).map_err(failed)?;
+        let mut text = summary(&cases, Some(&methods), warnings).map_err(failed)?;
         let compared = methods_summary(&cases, &methods).map_err(failed)?;
-        if shown == Shown::All && !compared.is_empty() {
+        if warnings == Shown::All && !compared.is_empty() {
             text += &format!("\n{compared}");
         }
         Ok(text + "\n")
     }
 
     /// The results, failures, counts and places.
-    pub(super) fn conclusion(&self, until: Stage, shown: Shown) -> Result<String, Fault> {
-        let mut text = if until >= Stage::Aggregate { self.results(shown)? } else { String::new() };
+    pub(super) fn conclusion(&self, until: Stage, warnings: Shown) -> Result<String, Fault> {
+        let mut text = if until >= Stage::Aggregate { self.results(warnings)? } else { String::new() };
         for (stage, t) in self.tallies.iter().filter(|_| !self.is_idle()) {
             let lost = if t.failed > 0 { format!(", {} failed", t.failed) } else { String::new() };
             text += &format!("{:9} {} of {} computed, {} done before{lost}\n", stage.word(), t.computed, t.planned, t.before);

@@ -4,7 +4,7 @@ use super::contact::{Problem, Totals};
 use super::equilibrium::Equilibrium;
 use super::minimise::Accuracy;
 use super::patch::Patches;
-use crate::physics::PhysicsError;
+use crate::PhysicsError;
 
 /// An equilibrium without adhesion, of [`Attraction::None`](super::contact::Attraction::None).
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -12,7 +12,7 @@ use super::work::JUMP;
 use crate::constants::Constant;
 
 /// Constants of the solver on a grid.
-pub(in crate::physics) const CONSTANTS: &[Constant] = &[
+pub(crate) const CONSTANTS: &[Constant] = &[
     Constant::new("width of the kernel of the law", &[WIDTH], "`dx`", "Gaussian `W` of the bonded attraction.", "law"),
     Constant::new("stiffness of the wall", &[SPRING], "`E*/dx`", "Spring at small gaps and in compression, bonded attraction.", "law"),
     Constant::new("overlap with linear repulsion", &[DEEPEST], "`ρ`", "Beyond it Morse's law goes on linearly.", "law"),

@@ -8,8 +8,8 @@ use super::grid::{HalfSpace, Operator, Waves};
 pub use super::law::Bonding;
 use super::law::{Bond, Law};
 use super::sums::{grain, sums};
-use crate::physics::PhysicsError;
-use crate::physics::memory::filled;
+use crate::PhysicsError;
+use crate::memory::filled;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 

@@ -5,7 +5,7 @@ pub use super::records::{Cycle, Event, Map, Step, Turning, Unreached};
 use super::regions::{Region, label};
 use super::step::Walk;
 pub use super::step::{Halfway, Settings};
-use crate::physics::{LoopPosition, PhysicsError};
+use crate::{LoopPosition, PhysicsError};
 
 /// Magnitude of the approach, in ranges of the heights, beyond which a load counts as not reached and, at negative approach, the surfaces as inseparable.
 pub(super) const FARTHEST: f64 = 20.0;

@@ -4,7 +4,7 @@ use super::contact::{Problem, State};
 use super::minimise::{ANY, Accuracy, Follow, Loads, Minimiser, Outcome};
 use super::newton::Rate;
 use super::patch::Patches;
-use crate::physics::PhysicsError;
+use crate::PhysicsError;
 
 /// Work space for the equilibria of one problem.
 pub struct Equilibrium {

@@ -8,8 +8,8 @@
 //! act on one another as at the offset across the border, and these are small in a local relaxation.
 
 use super::sums::{PANEL, grain, sums};
-use crate::physics::PhysicsError;
-use crate::physics::memory::filled;
+use crate::PhysicsError;
+use crate::memory::filled;
 use rayon::prelude::*;
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use rustfft::num_complex::Complex;

@@ -19,8 +19,8 @@ use super::preconditioner::Preconditioner;
 use super::sums::grain;
 use super::trial::{Descent, Residual, Taken, There, Trial};
 use super::way::{Way, level};
-use crate::physics::PhysicsError;
-use crate::physics::memory::filled;
+use crate::PhysicsError;
+use crate::memory::filled;
 use rayon::prelude::*;
 
 /// Change of the displacement between two updates of the bonds, relative to the reach of the law.

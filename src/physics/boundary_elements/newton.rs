@@ -11,8 +11,8 @@ use super::minimise::{Accuracy, Minimiser, Outcome};
 use super::passes::{PAIRS, Right};
 use super::sums::{PANEL, add, dot, grain, largest, panel_sums, total};
 use super::trial::Descent;
-use crate::physics::PhysicsError;
-use crate::physics::memory::filled;
+use crate::PhysicsError;
+use crate::memory::filled;
 use rayon::prelude::*;
 use std::mem::take;
 

@@ -3,8 +3,8 @@
 
 use super::passes::{PAIRS, new_pair, products};
 use super::sums::{PANEL, total};
-use crate::physics::PhysicsError;
-use crate::physics::memory::filled;
+use crate::PhysicsError;
+use crate::memory::filled;
 use rayon::prelude::*;
 
 /// A step `s`, per its length, and the change of the gradient `y` that it brought, per the same length.

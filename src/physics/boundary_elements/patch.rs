@@ -14,8 +14,8 @@ use super::contact::{Attraction, Bonding, Problem, State};
 use super::grid::HalfSpace;
 use super::minimise::{Accuracy, Follow, Minimiser, Underway};
 use super::places::{Place, Region, SMALLEST, places};
-use crate::physics::PhysicsError;
-use crate::physics::memory::filled;
+use crate::PhysicsError;
+use crate::memory::filled;
 use rayon::prelude::*;
 
 /// Least side of the grid, in sides of a patch.

@@ -67,8 +67,8 @@ fn surroundings(grid: &HalfSpace, first: usize, near: Vec<usize>) -> (Place, usi
 #[cfg(test)]
 mod tests {
     use super::{Region, SMALLEST, places};
-    use crate::physics::PhysicsError;
-    use crate::physics::boundary_elements::grid::HalfSpace;
+    use crate::PhysicsError;
+    use crate::boundary_elements::grid::HalfSpace;
 
     #[test]
     fn law_points_across_the_edge_are_one_place() -> Result<(), PhysicsError> {

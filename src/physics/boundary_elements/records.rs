@@ -2,7 +2,7 @@
 
 use super::contact::{State, Totals};
 use super::regions::{Change, Region};
-use crate::physics::PhysicsError;
+use crate::PhysicsError;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 

@@ -1,7 +1,7 @@
 //! Band-limited heights on the grid of the elements.
 
-use crate::physics::PhysicsError;
-use crate::physics::memory::filled;
+use crate::PhysicsError;
+use crate::memory::filled;
 use ndarray::{Array2, ArrayView2};
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex64;

@@ -3,7 +3,7 @@
 use super::minimise::Accuracy;
 use super::records::Step;
 use super::step::{Attempt, Walk};
-use crate::physics::PhysicsError;
+use crate::PhysicsError;
 
 /// Relative accuracy of the load at a reversal.
 pub(super) const LOAD_ACCURACY: f64 = 1e-5;

@@ -17,8 +17,8 @@ use super::records::{Cycle, Event, Map, Step, Unreached};
 use super::regions::{Labels, Region, change, label, regions};
 use super::sums::largest;
 use super::work::{OnLoop, Work, least_between, work_between};
-use crate::physics::PhysicsError;
-use crate::physics::memory::filled;
+use crate::PhysicsError;
+use crate::memory::filled;
 use serde::{Deserialize, Serialize};
 
 /// Least imbalance of an event, relative to the energy dissipated so far.

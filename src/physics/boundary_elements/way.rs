@@ -3,8 +3,8 @@
 use super::contact::{Problem, State};
 use super::law::{Bonding, Pieces};
 use super::sums::{PANEL, grain};
-use crate::physics::PhysicsError;
-use crate::physics::memory::filled;
+use crate::PhysicsError;
+use crate::memory::filled;
 use rayon::prelude::*;
 
 /// The way from a state in double precision: gap and residual there, displacement and pressure since, in single precision.

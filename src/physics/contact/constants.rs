@@ -7,7 +7,7 @@ use super::transition::BEFORE_CENTRE;
 use crate::constants::Constant;
 
 /// Constants of contacts.
-pub(in crate::physics) const CONSTANTS: &[Constant] = &[
+pub(crate) const CONSTANTS: &[Constant] = &[
     Constant::new(
         "contacts in a local problem",
         &[SPOTS_IN_PATCH as f64],

@@ -22,9 +22,9 @@ use super::merged_spot::{Merged, TouchingPairs};
 use super::problem::Problem;
 use super::state::{State, Status};
 use crate::model::Coalescence;
-use crate::physics::PhysicsError;
-use crate::physics::half_space::spot_field::Spot;
-use crate::physics::jkr::Asperity;
+use crate::PhysicsError;
+use crate::half_space::spot_field::Spot;
+use crate::jkr::Asperity;
 
 /// Relative change of a contact radius below the accuracy of an equilibrium.
 pub(crate) const ROUNDING: f64 = 1e-8;

@@ -1,7 +1,7 @@
 //! Neighbour search by a grid of cells.
 
-use crate::physics::math::grown::Grown;
-use crate::physics::math::vector::nearest_image;
+use crate::math::grown::Grown;
+use crate::math::vector::nearest_image;
 use std::cmp::Ordering;
 use std::f64::consts::PI;
 use std::sync::Arc;

@@ -1,7 +1,7 @@
 //! Internal numbering and positions, which make results independent of the caller's order and origin.
 
-use crate::physics::PhysicsError;
-use crate::physics::surface::summits::Summit;
+use crate::PhysicsError;
+use crate::surface::summits::Summit;
 
 /// Position quantum relative to the side.
 ///

@@ -5,7 +5,7 @@
 use super::merged_spot::Merged;
 use super::problem::Problem;
 use super::state::{State, Status};
-use crate::physics::PhysicsError;
+use crate::PhysicsError;
 
 /// Row of an asperity that is not simply free.
 #[derive(Debug, Clone, Copy, PartialEq)]

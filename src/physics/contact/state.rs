@@ -2,7 +2,7 @@
 
 use super::merged_spot::Merged;
 use super::problem::{Problem, Totals};
-use crate::physics::half_space::Spots;
+use crate::half_space::Spots;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 

@@ -6,7 +6,7 @@
 use super::problem::Problem;
 use super::state::State;
 use crate::model::Boundary;
-use crate::physics::math::vector::nearest_image;
+use crate::math::vector::nearest_image;
 use std::f64::consts::{PI, TAU};
 
 /// Area of the union of the discs of a state \[m²\].

@@ -4,7 +4,7 @@ use super::soundness::{LARGEST_IMBALANCE, LARGEST_VIOLATION, RESOLUTION};
 use crate::constants::Constant;
 
 /// Limits of both methods.
-pub(in crate::physics) const CONSTANTS: &[Constant] = &[
+pub(crate) const CONSTANTS: &[Constant] = &[
     Constant::new(
         "numerical resolution of `Θ`",
         &[RESOLUTION],

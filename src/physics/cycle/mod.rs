@@ -9,10 +9,10 @@ mod reversal;
 pub mod soundness;
 mod table;
 
-use crate::physics::contact::problem::Problem;
-use crate::physics::contact::state::State;
-use crate::physics::path::{EquilibriumPath, PathCheckpoint, is_multiple};
-use crate::physics::{LoopPosition, PhysicsError};
+use crate::contact::problem::Problem;
+use crate::contact::state::State;
+use crate::path::{EquilibriumPath, PathCheckpoint, is_multiple};
+use crate::{LoopPosition, PhysicsError};
 pub(super) use constants::CONSTANTS;
 use recorder::Recorder;
 use reversal::retrace;

@@ -2,12 +2,12 @@
 
 use super::table::{Branch, Contact, Cycle, MergedAt, Settings, Step, StepCounts, StepNumerics, event_counts};
 use crate::model::KeptContacts;
-use crate::physics::PhysicsError;
-use crate::physics::contact::event::Event;
-use crate::physics::contact::problem::Problem;
-use crate::physics::contact::state::{State, Status};
-use crate::physics::half_space::Effort;
-use crate::physics::path::EquilibriumPath;
+use crate::PhysicsError;
+use crate::contact::event::Event;
+use crate::contact::problem::Problem;
+use crate::contact::state::{State, Status};
+use crate::half_space::Effort;
+use crate::path::EquilibriumPath;
 use serde::{Deserialize, Serialize};
 
 /// Records the steps of one branch.
@@ -140,7 +140,7 @@ impl Recorder {
             load_n: at.totals().load_n,
             least_load_n: ways.iter().copied().fold(at.totals().load_n, f64::min),
             area_m2: at.totals().area_m2,
-            area_union_m2: crate::physics::contact::union_area::area(problem, state),
+            area_union_m2: crate::contact::union_area::area(problem, state),
             counts: counts(at, &recent),
             dissipated_j: recent.iter().map(|event| event.energy_lost_j).sum(),
             work_j: at.log().work_j,

@@ -6,9 +6,9 @@
 
 use super::table::{Branch, Contact, Cycle, Step, StepCounts, StepNumerics, event_counts};
 use crate::model::KeptContacts;
-use crate::physics::contact::event::Event;
-use crate::physics::contact::transition::Kind;
-use crate::physics::half_space::Effort;
+use crate::contact::event::Event;
+use crate::contact::transition::Kind;
+use crate::half_space::Effort;
 
 /// Appends the unloading from the `k`-th load reversal of a loading path without adhesion.
 ///

@@ -6,8 +6,8 @@
 //! compared with the work of loading leaves the curve of the loop as it is: then Θ alone is not resolved.
 
 use super::table::{Branch, Cycle, Step};
-use crate::physics::PhysicsError;
-use crate::physics::path::EquilibriumPath;
+use crate::PhysicsError;
+use crate::path::EquilibriumPath;
 
 /// Numerical resolution of the dissipated energy, relative to the largest work along the loop.
 ///

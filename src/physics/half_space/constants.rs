@@ -7,7 +7,7 @@ use super::direct::TABLE_LIMIT;
 use crate::constants::Constant;
 
 /// Constants of the sums over contacts.
-pub(in crate::physics) const CONSTANTS: &[Constant] = &[
+pub(crate) const CONSTANTS: &[Constant] = &[
     Constant::new(
         "residual of an equilibrium at output steps",
         &[TOLERANCE, DIRECT_TOLERANCE],

@@ -11,8 +11,8 @@ use super::patch_pairs::{PairTable, Sources};
 use super::spot_field::{LANES, Place, Spot, SpotColumns, sag, spot_fields};
 use super::{Effort, Interaction, Spots, Tangent};
 use crate::model::{Boundary, Interaction as Kind, Material, Slips};
-use crate::physics::math::grown::Grown;
-use crate::physics::math::vector::dot;
+use crate::math::grown::Grown;
+use crate::math::vector::dot;
 use multiversion::multiversion;
 use std::sync::Arc;
 

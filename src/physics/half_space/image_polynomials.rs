@@ -132,7 +132,7 @@ fn polynomial<const N: usize>(rows: &Coefficients<N>, s: &[f64; LANES], t: &[f64
 #[cfg(test)]
 mod tests {
     use super::{CENTRE, ImageField, LANES};
-    use crate::physics::half_space::ewald::{IMAGES, image_sums};
+    use crate::half_space::ewald::{IMAGES, image_sums};
 
     #[test]
     fn val_the_sums_have_the_digits_that_they_are_said_to_have() {

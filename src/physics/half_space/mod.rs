@@ -10,7 +10,7 @@ mod particle_mesh;
 mod patch_pairs;
 pub mod spot_field;
 
-use crate::physics::math::vector::dot;
+use crate::math::vector::dot;
 pub use choose::{Best, best};
 pub(super) use constants::CONSTANTS;
 pub use direct::DirectSum;

@@ -1,4 +1,4 @@
-//! Accuracy of events, reversals and global solves. That of the path in between is [`crate::physics::contact::numerics::Accuracy`].
+//! Accuracy of events, reversals and global solves. That of the path in between is [`crate::contact::numerics::Accuracy`].
 
 /// Tolerance of the mean penetration of an event, in rms heights: the order of two events, and the step over a fold.
 pub const EVENT_TOLERANCE: f64 = 1e-6;

@@ -6,10 +6,10 @@ use super::equilibrium_path::EquilibriumPath;
 use super::events::Located;
 use super::propagation::Before;
 use super::rejection::Rejection;
-use crate::physics::PhysicsError;
-use crate::physics::contact::Status;
-use crate::physics::contact::transition::{Kind, Transition};
-use crate::physics::solve::local::Hold;
+use crate::PhysicsError;
+use crate::contact::Status;
+use crate::contact::transition::{Kind, Transition};
+use crate::solve::local::Hold;
 
 /// Share of its radius by which a contact is moved over a fold.
 pub(super) const STEP_OVER_FOLD: f64 = 1e-3;

@@ -7,8 +7,8 @@
 use super::equilibrium_path::EquilibriumPath;
 use super::rejection::Rejection;
 use super::triggers::Trigger;
-use crate::physics::contact::transition::{Kind, Transition};
-use crate::physics::contact::{State, Status};
+use crate::contact::transition::{Kind, Transition};
+use crate::contact::{State, Status};
 use std::sync::Arc;
 
 /// Relative change of a radius that an equilibrium does not resolve.

@@ -1,6 +1,6 @@
 //! Guard against asperities that change their status to and fro, and contacts that merge and split to and fro.
 
-use crate::physics::contact::transition::{Kind, Transition};
+use crate::contact::transition::{Kind, Transition};
 use serde::{Deserialize, Serialize};
 
 /// Changes other than jumps out of contact that an asperity may have within one longest increment.

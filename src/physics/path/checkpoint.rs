@@ -4,9 +4,9 @@ use super::accuracy::{EXACT_GRID, LEAST_SCALE};
 use super::chatter::ChatterGuard;
 use super::event_log::EventLog;
 use super::predictor::Predictor;
-use crate::physics::contact::merged_spot::TouchingPairs;
-use crate::physics::contact::{Problem, State, Totals};
-use crate::physics::half_space::Effort;
+use crate::contact::merged_spot::TouchingPairs;
+use crate::contact::{Problem, State, Totals};
+use crate::half_space::Effort;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 

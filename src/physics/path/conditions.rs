@@ -1,8 +1,8 @@
 //! Condition of each kind of event: what reaches which value. Whether it is due, how late it is and where it is located follow from it.
 
-use crate::physics::contact::problem::Problem;
-use crate::physics::contact::state::{State, Status};
-use crate::physics::contact::transition::{Kind, Transition};
+use crate::contact::problem::Problem;
+use crate::contact::state::{State, Status};
+use crate::contact::transition::{Kind, Transition};
 
 /// Quantity that reaches a value at an event.
 #[derive(Debug, Clone, Copy, PartialEq)]

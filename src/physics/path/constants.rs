@@ -9,10 +9,10 @@ use super::neighbourhood::{SHELL, SPAN};
 use super::propagation::NEGLIGIBLE;
 use super::step_control::{ACCEPTS_RESIDUAL, FEW, MOST_HALVINGS, MOST_TRIALS};
 use crate::constants::Constant;
-use crate::physics::contact::numerics::ACCURACY;
+use crate::contact::numerics::ACCURACY;
 
 /// Constants of the path between its events.
-pub(in crate::physics) const CONSTANTS: &[Constant] = &[
+pub(crate) const CONSTANTS: &[Constant] = &[
     Constant::new(
         "smallest path scale `d`",
         &[LEAST_SCALE],

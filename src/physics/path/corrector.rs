@@ -5,13 +5,13 @@ use super::equilibrium_path::EquilibriumPath;
 use super::rejection::Rejection;
 use super::triggers::Trigger;
 use super::work::work;
-use crate::physics::Reason;
-use crate::physics::contact::transition::{Kind, Transition};
-use crate::physics::contact::{Status, Totals};
-use crate::physics::math::vector::dot;
-use crate::physics::solve::descent::{Failing, Relaxed};
-use crate::physics::solve::residual::NotConverged;
-use crate::physics::solve::trace::PenetrationTrace;
+use crate::Reason;
+use crate::contact::transition::{Kind, Transition};
+use crate::contact::{Status, Totals};
+use crate::math::vector::dot;
+use crate::solve::descent::{Failing, Relaxed};
+use crate::solve::residual::NotConverged;
+use crate::solve::trace::PenetrationTrace;
 
 /// Reason for the difference between the predictors and the solution.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -82,9 +82,9 @@ impl EnergyLedger {
 #[cfg(test)]
 mod tests {
     use super::EnergyLedger;
-    use crate::physics::contact::Totals;
-    use crate::physics::contact::transition::{Kind, Transition};
-    use crate::physics::path::event_log::EventLog;
+    use crate::contact::Totals;
+    use crate::contact::transition::{Kind, Transition};
+    use crate::path::event_log::EventLog;
 
     #[test]
     fn law_the_work_of_an_expected_load_is_counted_from_where_it_is_expected() {

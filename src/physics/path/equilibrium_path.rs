@@ -10,13 +10,13 @@ use super::pending::PendingField;
 use super::predictor::Predictor;
 use super::rejection::Rejection;
 use super::step_control::{StepControl, is_multiple};
-use crate::physics::contact::numerics::Accuracy;
-use crate::physics::contact::transition::Transition;
-use crate::physics::contact::{Event, Problem, State, Totals};
-use crate::physics::half_space::Effort;
-use crate::physics::solve::global::{BLOCK, GlobalSolver};
-use crate::physics::solve::residual::NotConverged;
-use crate::physics::{PhysicsError, Reason};
+use crate::contact::numerics::Accuracy;
+use crate::contact::transition::Transition;
+use crate::contact::{Event, Problem, State, Totals};
+use crate::half_space::Effort;
+use crate::solve::global::{BLOCK, GlobalSolver};
+use crate::solve::residual::NotConverged;
+use crate::{PhysicsError, Reason};
 use std::sync::Arc;
 
 /// A contact along one branch; see [`super`].

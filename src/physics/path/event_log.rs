@@ -1,8 +1,8 @@
 //! Record of a path: events, work, and segments of the load.
 
-use crate::physics::contact::event::Event;
-use crate::physics::contact::problem::Totals;
-use crate::physics::contact::transition::Transition;
+use crate::contact::event::Event;
+use crate::contact::problem::Totals;
+use crate::contact::transition::Transition;
 use serde::{Deserialize, Serialize};
 
 /// Events, work and load along a branch.

@@ -7,10 +7,10 @@ use super::conditions::Condition;
 use super::equilibrium_path::EquilibriumPath;
 use super::expectation::PredictedEvent;
 use super::rejection::Rejection;
-use crate::physics::contact::transition::Kind;
-use crate::physics::math::bracket::{End, Illinois};
-use crate::physics::solve::local::curve::CurveEnd;
-use crate::physics::solve::local::{Hold, LocalProblem};
+use crate::contact::transition::Kind;
+use crate::math::bracket::{End, Illinois};
+use crate::solve::local::curve::CurveEnd;
+use crate::solve::local::{Hold, LocalProblem};
 
 /// Overlap at merging, relative to the distance of the contacts: at most so much.
 pub(super) const TOUCH: f64 = 1e-6;

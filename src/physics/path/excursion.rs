@@ -3,8 +3,8 @@
 use super::accuracy::LOAD_TOLERANCE;
 use super::equilibrium_path::EquilibriumPath;
 use super::step_control::StepControl;
-use crate::physics::PhysicsError;
-use crate::physics::math::bracket::{End, Illinois};
+use crate::PhysicsError;
+use crate::math::bracket::{End, Illinois};
 
 /// Part of the last increment in which the load passes a value.
 struct Crossing {

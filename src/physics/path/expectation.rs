@@ -2,9 +2,9 @@
 
 use super::conditions::Condition;
 use super::predictor::Predictor;
-use crate::physics::contact::problem::Problem;
-use crate::physics::contact::state::Status;
-use crate::physics::contact::transition::{Kind, Transition, absorbing_radius};
+use crate::contact::problem::Problem;
+use crate::contact::state::Status;
+use crate::contact::transition::{Kind, Transition, absorbing_radius};
 
 /// Distance to the end of a branch, over the way that is left, within which it is looked for: near a fold the penetration varies as a
 /// square root, so linear extrapolation overestimates the distance by about two.

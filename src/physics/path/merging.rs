@@ -2,11 +2,11 @@
 
 use super::equilibrium_path::EquilibriumPath;
 use super::propagation::Before;
-use crate::physics::PhysicsError;
-use crate::physics::contact::Status;
-use crate::physics::contact::merged_spot::{Merged, pair_of};
-use crate::physics::contact::merging::ROUNDING;
-use crate::physics::contact::transition::{Kind, Transition};
+use crate::PhysicsError;
+use crate::contact::Status;
+use crate::contact::merged_spot::{Merged, pair_of};
+use crate::contact::merging::ROUNDING;
+use crate::contact::transition::{Kind, Transition};
 use std::sync::Arc;
 
 impl EquilibriumPath {

@@ -55,7 +55,7 @@
 //! | [`event_log::EventLog`] | events, work, and segments of the load |
 //! | [`checkpoint::Checkpoint`] | a path at a global solve, to go back to |
 //!
-//! An event kind is added as a line of [`crate::physics::contact::transition`] (name, status after it, what it undoes) and one of `conditions`: what reaches
+//! An event kind is added as a line of [`crate::contact::transition`] (name, status after it, what it undoes) and one of `conditions`: what reaches
 //! which value. How late it is, whether it is due and where it lies on the solution curve follow from the condition. The compiler then asks for what it
 //! changes in the local problem (`apply`), the status after it (`propagation`) and its inverse (`cycle::reversal`). It does not ask for:
 //!

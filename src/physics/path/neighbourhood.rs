@@ -6,11 +6,11 @@
 use super::pending::PendingField;
 use super::predictor::Predictor;
 use crate::model::Interaction;
-use crate::physics::contact::neighbours::nearer;
-use crate::physics::contact::transition::{Kind, Transition};
-use crate::physics::contact::{Problem, Status};
-use crate::physics::half_space::Effort;
-use crate::physics::solve::local::LocalProblem;
+use crate::contact::neighbours::nearer;
+use crate::contact::transition::{Kind, Transition};
+use crate::contact::{Problem, Status};
+use crate::half_space::Effort;
+use crate::solve::local::LocalProblem;
 
 /// Contacts of local problem and shell, over those of the local problem.
 pub(super) const SHELL: usize = 5;

@@ -4,7 +4,7 @@
 //! response, so the change is entered into their predictors. Contacts have it as a pending displacement: a local solve applies what its members have
 //! pending, and a global solve accounts for all of it.
 
-use crate::physics::contact::Status;
+use crate::contact::Status;
 
 /// Displacements that are pending since the last global solve.
 #[derive(Debug, Clone)]

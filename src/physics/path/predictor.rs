@@ -4,13 +4,13 @@
 //! a [`PenetrationTrace`] from the last global solve, or from the last event next to it. Its state at a later mean penetration follows from
 //! there.
 
-use crate::physics::contact::merged_spot::{Merged, TouchingPairs, pair_of};
-use crate::physics::contact::merging::ROUNDING;
-use crate::physics::contact::problem::{Problem, Totals};
-use crate::physics::contact::state::{State, Status};
-use crate::physics::contact::transition::{Kind, Transition};
-use crate::physics::jkr::Asperity;
-use crate::physics::solve::trace::{PenetrationTrace, STEEPEST};
+use crate::contact::merged_spot::{Merged, TouchingPairs, pair_of};
+use crate::contact::merging::ROUNDING;
+use crate::contact::problem::{Problem, Totals};
+use crate::contact::state::{State, Status};
+use crate::contact::transition::{Kind, Transition};
+use crate::jkr::Asperity;
+use crate::solve::trace::{PenetrationTrace, STEEPEST};
 
 /// Radius of a neighbour at the end of an increment, over its present one, up to which its merging is looked for.
 const GROWTH: f64 = 1.2;

@@ -9,11 +9,11 @@ use super::avalanche::Avalanche;
 use super::equilibrium_path::EquilibriumPath;
 use super::rejection::Rejection;
 use super::work::{mean_square, work, work_along};
-use crate::physics::contact::transition::{Kind, Transition};
-use crate::physics::contact::{Status, Totals};
-use crate::physics::solve::local::outside::ReferenceState;
-use crate::physics::solve::local::{CurveState, Hold, OutsideField};
-use crate::physics::solve::trace::PenetrationTrace;
+use crate::contact::transition::{Kind, Transition};
+use crate::contact::{Status, Totals};
+use crate::solve::local::outside::ReferenceState;
+use crate::solve::local::{CurveState, Hold, OutsideField};
+use crate::solve::trace::PenetrationTrace;
 
 /// Pending displacement that a member may have when its local problem is solved, over the limit.
 pub(super) const NEGLIGIBLE: f64 = 0.1;

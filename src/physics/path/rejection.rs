@@ -1,7 +1,7 @@
 //! Reasons to reject an attempt of a path increment.
 
-use crate::physics::PhysicsError;
-use crate::physics::solve::residual::NotConverged;
+use crate::PhysicsError;
+use crate::solve::residual::NotConverged;
 
 /// Why an increment was rejected.
 #[derive(Debug)]

@@ -7,8 +7,8 @@ use super::equilibrium_path::{EquilibriumPath, Frame};
 use super::neighbourhood::Neighbourhood;
 use super::predictor::Predictor;
 use super::step_control::StepControl;
-use crate::physics::PhysicsError;
-use crate::physics::contact::Problem;
+use crate::PhysicsError;
+use crate::contact::Problem;
 use std::sync::Arc;
 
 impl EquilibriumPath {

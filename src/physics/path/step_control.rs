@@ -3,7 +3,7 @@
 //! An increment ends on a multiple of `h = h_0/2^k`. A rejected one is halved; an accepted one may be followed by one of twice the length
 //! where that ends on a multiple of itself. So the increments do not depend on where a path began.
 
-use crate::physics::PhysicsError;
+use crate::PhysicsError;
 
 /// Maximum number of halvings before the global problem is relaxed instead.
 pub(super) const MOST_HALVINGS: u32 = 14;

@@ -2,9 +2,9 @@
 
 use super::conditions::Condition;
 use super::predictor::Predictor;
-use crate::physics::contact::problem::Problem;
-use crate::physics::contact::state::Status;
-use crate::physics::contact::transition::{Kind, Transition, absorbed_within};
+use crate::contact::problem::Problem;
+use crate::contact::state::Status;
+use crate::contact::transition::{Kind, Transition, absorbed_within};
 
 /// Transition that is due, with its overshoot: dimensionless, 0 at the event and positive beyond.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,10 +1,10 @@
 //! Work of the load of one contact along a path.
 
-use crate::physics::contact::Problem;
-use crate::physics::jkr::Asperity;
-use crate::physics::math::quadrature::{gauss, gauss_at_once, hermite, hermite_slope};
-use crate::physics::solve::local::CurveState;
-use crate::physics::solve::trace::PenetrationTrace;
+use crate::contact::Problem;
+use crate::jkr::Asperity;
+use crate::math::quadrature::{gauss, gauss_at_once, hermite, hermite_slope};
+use crate::solve::local::CurveState;
+use crate::solve::trace::PenetrationTrace;
 
 /// `∫F dΔ` of a contact between two states, with the penetration as a cubic in the mean penetration \[J\].
 pub(super) fn work(problem: &Problem, i: usize, from: PenetrationTrace, to: PenetrationTrace) -> f64 {

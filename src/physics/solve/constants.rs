@@ -9,7 +9,7 @@ use super::schwarz::{GROUP, MOST_SOLUTIONS, TOGETHER};
 use crate::constants::Constant;
 
 /// Constants of the solvers.
-pub(in crate::physics) const CONSTANTS: &[Constant] = &[
+pub(crate) const CONSTANTS: &[Constant] = &[
     Constant::new("residual of a local problem", &[LOCAL_TOLERANCE], "`h_rms`", "With contacts outside of it.", "local"),
     Constant::new(
         "change of a radius in one iteration",

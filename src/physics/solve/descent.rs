@@ -9,8 +9,8 @@ use super::local::{Hold, LocalProblem};
 use super::newton::{Damping, NonlinearSystem, Worst, damped_newton};
 use super::residual::{NotConverged, STRIDE};
 use super::trace::PenetrationTrace;
-use crate::physics::contact::state::{State, Status};
-use crate::physics::contact::transition::Transition;
+use crate::contact::state::{State, Status};
+use crate::contact::transition::Transition;
 use std::sync::Arc;
 
 /// Relative residuals of linear solves.

@@ -8,10 +8,10 @@
 use super::residual::NotConverged;
 use super::schwarz::LocalInverse;
 use super::trace::PenetrationTrace;
-use crate::physics::contact::problem::Problem;
-use crate::physics::contact::state::State;
-use crate::physics::half_space::{Effort, Interaction as _, Spots, Tangent};
-use crate::physics::math::gmres::{Limits, LinearOperator, Solution, gmres, gmres_and_least};
+use crate::contact::problem::Problem;
+use crate::contact::state::State;
+use crate::half_space::{Effort, Interaction as _, Spots, Tangent};
+use crate::math::gmres::{Limits, LinearOperator, Solution, gmres, gmres_and_least};
 use std::sync::Arc;
 
 /// Maximum number of products in one linear solve.

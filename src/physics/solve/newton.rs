@@ -91,7 +91,7 @@ pub(crate) fn damped_newton(
 #[cfg(test)]
 mod tests {
     use super::{Damping, NonlinearSystem, Worst, damped_newton};
-    use crate::physics::solve::residual::NotConverged;
+    use crate::solve::residual::NotConverged;
 
     /// `atan(x) = 0`, for which full steps of Newton's method diverge from |x| > 1.39.
     struct Arc {

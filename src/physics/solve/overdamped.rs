@@ -4,8 +4,8 @@ use super::descent::Failing;
 use super::global::GlobalSolver;
 use super::relaxation::{Relaxing, relax};
 use super::residual::NotConverged;
-use crate::physics::contact::state::State;
-use crate::physics::contact::transition::{ContactView, Transition};
+use crate::contact::state::State;
+use crate::contact::transition::{ContactView, Transition};
 use std::sync::Arc;
 
 impl GlobalSolver {

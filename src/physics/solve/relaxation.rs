@@ -5,10 +5,10 @@
 //! absorbed. The order follows from the flow and not from the output steps. For point interaction it is a gradient flow of the potential.
 
 use super::residual::{NotConverged, STRIDE};
-use crate::physics::Reason;
-use crate::physics::contact::problem::Problem;
-use crate::physics::contact::transition::{ContactView, Transition};
-use crate::physics::math::vector::dot;
+use crate::Reason;
+use crate::contact::problem::Problem;
+use crate::contact::transition::{ContactView, Transition};
+use crate::math::vector::dot;
 
 /// Maximum number of steps since the last transition.
 pub(super) const STEPS: usize = 1000;

@@ -1,6 +1,6 @@
 //! Residual of an equilibrium and the limit of a step towards it.
 
-use crate::physics::Reason;
+use crate::Reason;
 
 /// Largest relative change of a radius in one iteration.
 pub(crate) const STRIDE: f64 = 0.2;

@@ -4,12 +4,12 @@
 //! solved with the contacts around it, and the solution for the group itself is kept. The response of a contact is determined by its
 //! neighbours, which lose what it gains.
 
-use crate::physics::contact::problem::Problem;
-use crate::physics::contact::state::{State, Status};
-use crate::physics::half_space::{Tangent, places_in};
-use crate::physics::math::dense::Lu;
-use crate::physics::math::gmres::Preconditioner;
-use crate::physics::math::vector::in_strands;
+use crate::contact::problem::Problem;
+use crate::contact::state::{State, Status};
+use crate::half_space::{Tangent, places_in};
+use crate::math::dense::Lu;
+use crate::math::gmres::Preconditioner;
+use crate::math::vector::in_strands;
 use multiversion::multiversion;
 
 /// Number of contacts in a group when they are divided, and number of contacts that are solved together for it.

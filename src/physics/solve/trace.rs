@@ -1,6 +1,6 @@
 //! Linear predictor of the penetration of one asperity.
 
-use crate::physics::jkr::Asperity;
+use crate::jkr::Asperity;
 
 /// Penetration `D − ŵ` \[m\] at one mean penetration, with its rate along the path. For a free asperity it decides on the jump-in.
 #[derive(Debug, Clone, Copy, PartialEq)]

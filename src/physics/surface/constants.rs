@@ -9,7 +9,7 @@ use super::self_affine::{FEWEST, FEWEST_BEYOND, MOST_SCATTER, SHARE};
 use crate::constants::Constant;
 
 /// Limits of a measured surface.
-pub(in crate::physics) const CONSTANTS: &[Constant] = &[
+pub(crate) const CONSTANTS: &[Constant] = &[
     Constant::new(
         "points along a side",
         &[FEWEST_POINTS as f64, MOST_POINTS as f64],

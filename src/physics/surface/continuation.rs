@@ -5,8 +5,8 @@
 
 use super::band_limited::BandLimited;
 use super::spectrum::Moments;
-use crate::physics::PhysicsError;
-use crate::physics::memory::zeros;
+use crate::PhysicsError;
+use crate::memory::zeros;
 use ndarray::{Array2, ArrayView2};
 use rayon::prelude::*;
 

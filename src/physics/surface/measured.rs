@@ -9,7 +9,7 @@
 //! Summits closer to an edge than half a shortest wavelength are excluded, since heights there depend on the rule for the edges.
 
 pub use super::measured_summits::find_measured;
-use crate::physics::PhysicsError;
+use crate::PhysicsError;
 
 use super::continuation::{self, margin};
 use super::infill::fill;
@@ -21,7 +21,7 @@ use super::s_filter::{gaussian, overshoot};
 use super::self_affine::{SelfAffine, fit_self_affine};
 use super::spectrum::Moments;
 use crate::model::{Detrend, Filter, Missing};
-use crate::physics::memory::zeros;
+use crate::memory::zeros;
 use ndarray::{Array2, ArrayView2, s};
 
 /// Minimum and maximum number of points along a side.

@@ -3,7 +3,7 @@
 use super::band_limited::BandLimited;
 use super::continuation::{continued, margin};
 use super::summits::{Summit, Summits, apexes, check_points, find_summits};
-use crate::physics::PhysicsError;
+use crate::PhysicsError;
 use ndarray::ArrayView2;
 use std::f64::consts::TAU;
 

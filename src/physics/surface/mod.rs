@@ -9,7 +9,7 @@ mod lattice;
 mod levelling;
 pub mod measured;
 mod measured_summits;
-pub(crate) mod modes;
+pub mod modes;
 pub mod outliers;
 pub mod periodogram;
 pub(crate) mod psd_bin;

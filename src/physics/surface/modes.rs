@@ -3,8 +3,8 @@
 use super::psd_bin::Ring;
 use super::s_filter::transmission;
 use super::spectrum::Moments;
-use crate::physics::PhysicsError;
-use crate::physics::memory::{filled, zeros};
+use crate::PhysicsError;
+use crate::memory::{filled, zeros};
 use ndarray::{Array2, ArrayView2};
 use rayon::prelude::*;
 use realfft::RealFftPlanner;

@@ -2,8 +2,8 @@
 
 use super::modes::Field;
 pub use super::psd_bin::Ring;
-use crate::physics::PhysicsError;
-use crate::physics::memory::zeros;
+use crate::PhysicsError;
+use crate::memory::zeros;
 use ndarray::{Array1, Array2, ArrayView2};
 use std::f64::consts::{PI, SQRT_2, TAU};
 

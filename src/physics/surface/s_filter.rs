@@ -8,8 +8,8 @@
 //! A linear factor then retains its moments of order 0 and 1, so that planes are transmitted unchanged (moment retainment, ISO/TS 16610-28).
 
 use super::summits::maxima_of_row;
-use crate::physics::PhysicsError;
-use crate::physics::memory::zeros;
+use crate::PhysicsError;
+use crate::memory::zeros;
 use ndarray::{Array2, ArrayView2, s};
 use rayon::prelude::*;
 use std::f64::consts::{LN_2, PI};

@@ -9,7 +9,7 @@
 //! It is excluded if its mean curvature there is not positive. Both cases are counted.
 
 use super::band_limited::{BandLimited, Jet};
-use crate::physics::PhysicsError;
+use crate::PhysicsError;
 use ndarray::ArrayView2;
 use rayon::prelude::*;
 use std::ops::Range;

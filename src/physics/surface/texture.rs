@@ -1,8 +1,8 @@
 //! Texture of a surface: aspect ratio of its slopes and of its autocorrelation.
 
 use super::modes::Field;
-use crate::physics::PhysicsError;
-use crate::physics::memory::zeros;
+use crate::PhysicsError;
+use crate::memory::zeros;
 use ndarray::{Array2, ArrayView2};
 use std::f64::consts::PI;
 

@@ -2,13 +2,13 @@
 //!
 //! If flattening costs less than adhesion gains, the half-space conforms to the roughness and contact spots are no longer separate.
 
-use crate::physics::PhysicsError;
-use crate::physics::surface::continuation::laplacian;
-use crate::physics::surface::measured::LEAST_CURVATURE_SHARE;
-use crate::physics::surface::modes::Field;
-use crate::physics::surface::periodogram::windowed;
-use crate::physics::surface::spectrum::Spectrum;
-use crate::physics::surface::synthesis::mode_sums;
+use crate::PhysicsError;
+use crate::surface::continuation::laplacian;
+use crate::surface::measured::LEAST_CURVATURE_SHARE;
+use crate::surface::modes::Field;
+use crate::surface::periodogram::windowed;
+use crate::surface::spectrum::Spectrum;
+use crate::surface::synthesis::mode_sums;
 use ndarray::ArrayView2;
 use std::f64::consts::{PI, TAU};
 

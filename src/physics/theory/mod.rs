@@ -11,9 +11,9 @@ pub mod flattening;
 
 use crate::constants::Constant;
 use crate::model::{Material, Slips};
-use crate::physics::PhysicsError;
-use crate::physics::jkr::loop_loss_constant;
-use crate::physics::surface::spectrum::Moments;
+use crate::PhysicsError;
+use crate::jkr::loop_loss_constant;
+use crate::surface::spectrum::Moments;
 use std::f64::consts::PI;
 
 /// Constants of the analytical models.

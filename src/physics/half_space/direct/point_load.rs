@@ -2,9 +2,9 @@
 
 use super::at_many::Targets;
 use super::{DirectSum, in_sides};
-use crate::physics::half_space::image_polynomials::{CENTRE, Centre};
-use crate::physics::half_space::spot_field::{LANES, Place, squared_distances};
-use crate::physics::math::vector::nearest_image;
+use crate::half_space::image_polynomials::{CENTRE, Centre};
+use crate::half_space::spot_field::{LANES, Place, squared_distances};
+use crate::math::vector::nearest_image;
 use multiversion::multiversion;
 
 impl DirectSum {
@@ -161,7 +161,7 @@ mod tests {
     use super::super::DirectSum;
     use super::PointLoad;
     use crate::model::{Boundary, Interaction as Kind, Material, Slips};
-    use crate::physics::half_space::spot_field::Spot;
+    use crate::half_space::spot_field::Spot;
 
     #[test]
     fn law_the_field_of_a_load_is_that_of_a_point() {

@@ -6,8 +6,8 @@ use super::pairs::{GONE, Known, Pairs, Sources, TOGETHER, Target};
 use super::plan::Real;
 use super::plan::{Accuracy, Mesh, Plan, ROUGH_ORDERS, ROUGH_WIDTH, WIDTH};
 use super::{Effort, FastSum, MARGIN, REACHES};
-use crate::physics::half_space::ewald::ORDERS;
-use crate::physics::half_space::{Spots, places_in};
+use crate::half_space::ewald::ORDERS;
+use crate::half_space::{Spots, places_in};
 use rayon::prelude::*;
 use std::sync::Arc;
 

@@ -1,7 +1,7 @@
 //! Smooth far field on meshes: spread the sources, multiply in Fourier space, interpolate at the targets.
 
 use super::plan::{LAPLACIANS, Mesh, Real};
-use crate::physics::half_space::ewald::ORDERS;
+use crate::half_space::ewald::ORDERS;
 use multiversion::multiversion;
 use rustfft::num_complex::Complex;
 use std::sync::Arc;

@@ -4,8 +4,8 @@
 
 use super::plan::Plan;
 use crate::model::{Boundary, Interaction as Kind};
-use crate::physics::half_space::ewald::{IMAGES, ORDERS};
-use crate::physics::half_space::spot_field::SpotColumns;
+use crate::half_space::ewald::{IMAGES, ORDERS};
+use crate::half_space::spot_field::SpotColumns;
 use multiversion::multiversion;
 use std::sync::Arc;
 

@@ -2,8 +2,8 @@
 //!
 //! With a million spots in any other order, a sum waits for memory seven times as long as it computes.
 
-use crate::physics::half_space::Spots;
-use crate::physics::math::grown::Grown;
+use crate::half_space::Spots;
+use crate::math::grown::Grown;
 
 /// Asperities in the order of the Z-curve (Morton 1966) through the square.
 #[derive(Debug, Clone)]

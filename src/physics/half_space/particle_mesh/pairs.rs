@@ -3,9 +3,9 @@
 //! Beyond several radii a spot acts by its moments, four numbers per pair. Nearer spots act by their exact fields.
 
 use super::near::{Found, Group, Measure};
-use crate::physics::half_space::ewald::ORDERS;
-use crate::physics::half_space::multipole::{Moments, product};
-use crate::physics::half_space::spot_field::{AWAY, LANES, field_at};
+use crate::half_space::ewald::ORDERS;
+use crate::half_space::multipole::{Moments, product};
+use crate::half_space::spot_field::{AWAY, LANES, field_at};
 use multiversion::multiversion;
 
 /// Shape of a source for the exact field: a, √a, 1/√a and 1/R.

@@ -4,7 +4,7 @@
 
 use super::ROOM;
 use crate::model::Boundary;
-use crate::physics::half_space::ewald::ORDERS;
+use crate::half_space::ewald::ORDERS;
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use rustfft::num_complex::Complex;
 use rustfft::num_traits::Float;

@@ -5,10 +5,10 @@
 //! unknown; a fold is a zero of `dΔ/da`.
 
 use super::{CurveState, Hold, LocalProblem};
-use crate::physics::contact::problem::Problem;
-use crate::physics::half_space::Effort;
-use crate::physics::math::bracket::{End, Illinois};
-use crate::physics::solve::residual::NotConverged;
+use crate::contact::problem::Problem;
+use crate::half_space::Effort;
+use crate::math::bracket::{End, Illinois};
+use crate::solve::residual::NotConverged;
 
 /// Maximum number of points of a curve.
 const STATIONS: usize = 50;

@@ -2,7 +2,7 @@
 //!
 //! An event changes its neighbours strongly and the rest of the contact weakly, since its neighbours lose what it gains: the response
 //! decays within a few spacings. The global problem is solved at the end of each increment, and the difference is measured (see
-//! [`crate::physics::path`]). A local problem that holds all contacts has no difference.
+//! [`crate::path`]). A local problem that holds all contacts has no difference.
 
 pub(crate) mod curve;
 pub(crate) mod outside;
@@ -11,9 +11,9 @@ mod relaxing;
 use super::newton::{Damping, NonlinearSystem, Worst, damped_newton};
 use super::residual::{NotConverged, STRIDE};
 use super::trace::PenetrationTrace;
-use crate::physics::contact::problem::Problem;
-use crate::physics::half_space::{Effort, PairTable, Spots};
-use crate::physics::math::dense::Lu;
+use crate::contact::problem::Problem;
+use crate::half_space::{Effort, PairTable, Spots};
+use crate::math::dense::Lu;
 
 /// Residual of a local problem with contacts outside, in rms heights.
 pub(super) const LOCAL_TOLERANCE: f64 = 1e-7;

@@ -1,8 +1,8 @@
 //! Effect of a local problem on the contacts outside it, and of these on its load.
 
 use super::{LocalProblem, OutsideField};
-use crate::physics::contact::problem::Problem;
-use crate::physics::half_space::PointLoad;
+use crate::contact::problem::Problem;
+use crate::half_space::PointLoad;
 
 /// Member before a change.
 #[derive(Debug, Clone, Copy)]

@@ -1,15 +1,15 @@
-//! Relaxation of a local problem ([`crate::physics::solve::relaxation`]).
+//! Relaxation of a local problem ([`crate::solve::relaxation`]).
 
 use super::{Hold, LocalProblem};
-use crate::physics::contact::problem::Problem;
-use crate::physics::contact::transition::{ContactView, Kind, Transition};
-use crate::physics::half_space::Effort;
-use crate::physics::solve::newton::Damping;
-use crate::physics::solve::relaxation::{Relaxing, relax};
-use crate::physics::solve::residual::NotConverged;
+use crate::contact::problem::Problem;
+use crate::contact::transition::{ContactView, Kind, Transition};
+use crate::half_space::Effort;
+use crate::solve::newton::Damping;
+use crate::solve::relaxation::{Relaxing, relax};
+use crate::solve::residual::NotConverged;
 
 impl LocalProblem {
-    /// Relaxes at the present mean penetration ([`crate::physics::solve::relaxation`]); the transitions on the way are returned.
+    /// Relaxes at the present mean penetration ([`crate::solve::relaxation`]); the transitions on the way are returned.
     pub(crate) fn relax(
         &mut self,
         problem: &Problem,

@@ -1,0 +1,306 @@
+//! The material, and every choice that the model leaves open, by name.
+//!
+//! These types belong to no other module: a caller fills them, the physics reads them. They compute nothing.
+
+use serde::{Deserialize, Serialize};
+
+/// The elastic half-space and its adhesion.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Material {
+    /// Contact modulus E* \[Pa\]: `1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂`.
+    pub contact_modulus_pa: f64,
+    /// Work of adhesion Δγ \[J/m²\].
+    pub work_of_adhesion_j_m2: f64,
+    /// Range of attraction ε \[m\]; it enters the Tabor parameter, Wu's jump-in distance and the strength Δγ/ε inside contacts of boundary elements only.
+    pub interaction_range_m: f64,
+}
+
+impl Default for Material {
+    fn default() -> Self {
+        Self { contact_modulus_pa: 1e6, work_of_adhesion_j_m2: 0.07, interaction_range_m: 1e-9 }
+    }
+}
+
+impl Material {
+    /// `1/(πE*)` \[1/Pa\]: what a point load displaces at a distance, over load and inverse distance.
+    #[must_use]
+    pub fn compliance(&self) -> f64 {
+        1.0 / (std::f64::consts::PI * self.contact_modulus_pa)
+    }
+
+    /// `Δγ/E*` \[m\]: the length of adhesion.
+    #[must_use]
+    pub fn adhesion_length_m(&self) -> f64 {
+        self.work_of_adhesion_j_m2 / self.contact_modulus_pa
+    }
+
+    /// Pull-off force of an isolated JKR asperity over its radius, `3πΔγ/2` \[N/m\].
+    #[must_use]
+    pub fn pull_off_line_load(&self) -> f64 {
+        1.5 * std::f64::consts::PI * self.work_of_adhesion_j_m2
+    }
+
+    /// `sqrt(2πΔγ/E*)` \[m^½\]: times the root of its radius, what adhesion draws a spot up (Eq 2).
+    #[must_use]
+    pub fn pull(&self) -> f64 {
+        (2.0 * std::f64::consts::PI * self.work_of_adhesion_j_m2 / self.contact_modulus_pa).sqrt()
+    }
+}
+
+/// A choice that a spec makes by a word.
+pub trait Choice: Copy + PartialEq + Sized + 'static {
+    /// Every value with its word, in the order in which they are shown.
+    const WORDS: &'static [(&'static str, Self)];
+
+    /// Every word with its meaning, in the same order.
+    const MEANINGS: &'static [(&'static str, &'static str)];
+
+    /// The word of this value.
+    fn word(self) -> &'static str {
+        Self::WORDS.iter().find(|(_, value)| *value == self).map_or("", |(word, _)| word)
+    }
+
+    /// The value of a word, or nothing if no value has it.
+    fn from_word(word: &str) -> Option<Self> {
+        Self::WORDS.iter().find(|(known, _)| *known == word).map(|(_, value)| *value)
+    }
+}
+
+macro_rules! choice {
+    ($(#[$doc:meta])* $name:ident { $(#[doc = $meaning:literal] $variant:ident = $word:literal),+ $(,)? }) => {
+        $(#[$doc])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+        pub enum $name { $(#[doc = $meaning] #[serde(rename = $word)] $variant),+ }
+
+        impl Choice for $name {
+            const WORDS: &'static [(&'static str, Self)] = &[$(($word, Self::$variant)),+];
+            const MEANINGS: &'static [(&'static str, &'static str)] = &[$(($word, $meaning)),+];
+        }
+    };
+}
+
+choice! {
+    /// Definition of the rms height of a surface.
+    Normalization {
+        /// Each surface is scaled to h_rms exactly.
+        Sample = "sample",
+        /// The integral of the spectrum is h_rms². The rms height of one surface differs from h_rms.
+        Spectrum = "spectrum",
+    }
+}
+choice! {
+    /// The moduli of the Fourier modes.
+    Amplitudes {
+        /// Square root of the spectral density. Only the phases are random, as in the paper.
+        Fixed = "fixed",
+        /// Rayleigh-distributed amplitudes: a Gaussian surface.
+        Gaussian = "gaussian",
+    }
+}
+choice! {
+    /// Treatment of the missing points of a measured surface.
+    Missing {
+        /// Missing points are an error.
+        Refuse = "refuse",
+        /// Harmonic in-fill: the heights solve Laplace's equation.
+        Fill = "fill",
+    }
+}
+choice! {
+    /// Low-pass filter (S-filter) of a measured surface.
+    Filter {
+        /// Gaussian filter of ISO 16610-61: half of the amplitude of the cut-off wavelength remains.
+        Gaussian = "gaussian",
+        /// Sharp cut-off: wavelengths up to the cut-off are removed, all others remain unchanged. It rings at steps.
+        Sharp = "sharp",
+    }
+}
+choice! {
+    /// Form that is subtracted from the heights of a measured surface, by least squares.
+    Detrend {
+        /// The mean height.
+        Mean = "mean",
+        /// The least-squares plane.
+        Plane = "plane",
+        /// The least-squares surface of second order.
+        Quadratic = "quadratic",
+    }
+}
+choice! {
+    /// Cause of the end of a measured spectrum at short wavelengths.
+    SpectrumEnd {
+        /// The density falls below the self-affine spectrum.
+        Empty = "empty",
+        /// A Gaussian filter damps the spectrum; the end is where it transmits half of the amplitude.
+        GaussianFilter = "gaussian_filter",
+        /// White noise exceeds the self-affine spectrum.
+        WhiteNoise = "white_noise",
+    }
+}
+choice! {
+    /// Direction of the scan lines of a measured surface.
+    FastAxis {
+        /// The direction with the larger offsets between lines, else rows.
+        Auto = "auto",
+        /// Each row of the file is a scan line.
+        Rows = "rows",
+        /// Each column of the file is a scan line.
+        Columns = "columns",
+    }
+}
+choice! {
+    /// Method of a contact cycle.
+    Method {
+        /// Asperity model: interacting JKR asperities.
+        Asperities = "asperities",
+        /// Boundary elements: the rough surface on a grid, with adhesion at every point.
+        BoundaryElements = "boundary_elements",
+    }
+}
+choice! {
+    /// Attraction between the surfaces of boundary elements.
+    Attraction {
+        /// JKR limit, range 0: contact forms where the surfaces touch and opens from its edges.
+        Bonded = "bonded",
+        /// Morse law with the range ρ at every point.
+        Range = "range",
+    }
+}
+choice! {
+    /// Gap at which a point of boundary elements comes into contact.
+    Nucleation {
+        /// Zero gap, plain JKR.
+        Touch = "touch",
+        /// Wu's critical gap (Eq 3) at the median radius of the asperities.
+        Wu = "wu",
+    }
+}
+choice! {
+    /// Rule for the opening of contact of boundary elements.
+    Opening {
+        /// From the edges of contacts, and inside where the tension exceeds `Δγ/ε`, with the interaction range ε.
+        Strength = "strength",
+        /// From the edges of contacts only.
+        Edges = "edges",
+        /// Inside contacts too, where the tension exceeds the maximum tension of the law on the grid.
+        Anywhere = "anywhere",
+    }
+}
+choice! {
+    /// Elastic interaction between contact spots.
+    Interaction {
+        /// Displacement field of a JKR contact spot outside its contact (Eqs 6 and 7).
+        Spots = "spots",
+        /// Each contact spot acts as a point force at its centre. The model has an exact potential.
+        Point = "point",
+        /// No interaction: the Greenwood–Williamson model with JKR asperities.
+        None = "none",
+    }
+}
+choice! {
+    /// Surroundings of the square.
+    Boundary {
+        /// Periodic images of the square, with a self-balanced load.
+        Periodic = "periodic",
+        /// A single patch on a half-space. Δ is measured from the undeformed half-space far away.
+        Isolated = "isolated",
+    }
+}
+choice! {
+    /// Rule for contact spots that grow together.
+    Coalescence {
+        /// Equal-area merging (ICHA): touching contact spots become one spot of the same area.
+        Merge = "merge",
+        /// An asperity whose centre a larger contact spot reaches is absorbed and carries no load.
+        Cover = "cover",
+        /// No rule, as in the text of the paper.
+        None = "none",
+    }
+}
+choice! {
+    /// When a free asperity jumps into contact.
+    JumpIn {
+        /// Wu's critical gap (Eq 3).
+        Wu = "wu",
+        /// Zero penetration, the criterion of plain JKR.
+        Jkr = "jkr",
+    }
+}
+choice! {
+    /// Which steps of the table of contact spots are kept.
+    KeptContacts {
+        /// Every step.
+        All = "all",
+        /// The load reversals and, while unloading, the step of maximum tensile load. With asperities also the first steps at half of each load while loading, and at zero load while unloading.
+        Turning = "turning",
+        /// No step.
+        None = "none",
+    }
+}
+choice! {
+    /// A slip of the paper that can be put back, to see what it changes.
+    Slip {
+        /// Eq 8 without the term `r²/(2R)` inside a contact spot.
+        Eq8 = "eq8",
+        /// Eq 9 with `sqrt(πΔγ/(E*a))` in place of `sqrt(πΔγ/(2E*a))`.
+        Eq9 = "eq9",
+        /// Eq A2 with the exponent as printed.
+        A2 = "a2",
+        /// `sqrt(m4/3t)` in place of `sqrt(m4/3)·t` below Eq A3.
+        A3 = "a3",
+    }
+}
+
+choice! {
+    /// A result of a cycle whose mean can be asked for to a given precision.
+    Goal {
+        /// Dissipated energy Θ.
+        Loss = "loss",
+        /// Pull-off force F_po.
+        PullOff = "pull_off_load",
+        /// Contact area A at the load reversal.
+        Area = "area_at_max_load",
+    }
+}
+
+impl Slip {
+    /// True if the contact itself reads it. The others only enter Deng and Kesari's estimate beside it, so they make no other cycle.
+    #[must_use]
+    pub fn in_contact(self) -> bool {
+        matches!(self, Self::Eq8 | Self::Eq9)
+    }
+}
+
+/// Which slips of the paper are put back: one flag to each [`Slip`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Slips {
+    /// [`Slip::Eq8`].
+    pub eq8: bool,
+    /// [`Slip::Eq9`].
+    pub eq9: bool,
+    /// [`Slip::A2`].
+    pub a2: bool,
+    /// [`Slip::A3`].
+    pub a3: bool,
+}
+
+impl Slips {
+    /// Every equation as it is right.
+    pub const NONE: Self = Self { eq8: false, eq9: false, a2: false, a3: false };
+}
+
+impl FromIterator<Slip> for Slips {
+    fn from_iter<T: IntoIterator<Item = Slip>>(list: T) -> Self {
+        let mut slips = Self::NONE;
+        for slip in list {
+            match slip {
+                Slip::Eq8 => slips.eq8 = true,
+                Slip::Eq9 => slips.eq9 = true,
+                Slip::A2 => slips.a2 = true,
+                Slip::A3 => slips.a3 = true,
+            }
+        }
+        slips
+    }
+}
