@@ -151,13 +151,12 @@ fn val_the_paper_is_eight_cases() {
 }
 
 #[test]
-fn val_the_quickstart_is_three_small_cases() {
+fn val_the_quickstart_is_two_small_contacts_by_both_methods() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("pipelines/quickstart.toml");
     let spec = Spec::read(path).unwrap_or_else(|errors| panic!("{errors}"));
-    assert_eq!((spec.name.as_str(), spec.realizations, spec.cases.len()), ("quickstart", Realizations::Exactly(3), 3));
-    assert_eq!(spec.cases.iter().map(|case| case.params.surface.grid()).collect::<Vec<_>>(), [256, 512, 256]);
-    let loads: Vec<_> = spec.cases.iter().map(|case| case.params.cycle.max_load.clone()).collect();
-    assert_eq!(loads, [[0.002, 0.004], [0.002, 0.004], [0.0005, 0.001]]);
+    assert_eq!((spec.name.as_str(), spec.realizations, spec.cases.len()), ("quickstart", Realizations::Exactly(3), 4));
+    assert_eq!(spec.cases.iter().map(|case| case.params.surface.grid()).collect::<Vec<_>>(), [64; 4]);
+    assert_eq!(spec.cases.iter().map(|case| case.params.by_elements()).collect::<Vec<_>>(), [false, true, false, true]);
 }
 
 #[test]

@@ -71,5 +71,5 @@ fn e2e_the_table_of_the_readme_is_that_of_the_program() {
         assert!(found.contains(&row), "{line} is none of {found:?}");
         count += 1;
     }
-    assert_eq!(count, 3);
+    assert_eq!(count, 4);
 }
