@@ -8,6 +8,7 @@
 
 pub mod approximate_jkr;
 pub mod flattening;
+pub mod regime;
 
 use crate::constants::Constant;
 use crate::model::{Material, Slips};
