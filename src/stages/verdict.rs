@@ -192,7 +192,7 @@ pub(super) fn long_loops(campaign: &Campaign, verdicts: &[Verdict]) -> Option<Ou
             format!("points = {points}: {} points per shortest wavelength, about {}", per_wavelength, in_words(seconds))
         },
     );
-    let shown = format!("{} min (accuracy: a factor of 3; limit 10 min; {help})", interval(range.map(|minutes| two_digits(minutes))));
+    let shown = format!("{} min (accuracy: a factor of 3; limit 10 min; {help})", interval(range.map(two_digits)));
     let measured = LONG_LOOP.text.replace("{}", &shown);
     let cases = long.iter().map(|(of, _)| of.case_id.clone()).collect();
     Some(Outside { kind: LONG_LOOP, limit: LONG / 60.0, range, measured, cases })
