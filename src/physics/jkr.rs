@@ -17,9 +17,9 @@
 //! With the printed equation ([`Asperity::as_printed`]) a spot's branch ends there and the spot leaves contact, at a
 //! penetration that is 3 % less deep than `δ_off`. The printed Eq 4 for `δ_off` is right, so the two do not agree.
 
+use crate::PhysicsError;
 use crate::constants::Constant;
 use crate::model::{Material, Slips};
-use crate::PhysicsError;
 use multiversion::multiversion;
 use std::f64::consts::PI;
 

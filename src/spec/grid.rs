@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use toml::Spanned;
 
+use super::auto::Choices;
 use super::elements::{check_elements, without_unread};
 use super::fault::Faults;
 use super::files::named;
@@ -12,7 +13,7 @@ use super::keys::{GENERATED, KEYS, find};
 use super::number::short;
 use super::sweep::{AxisDraft, SweepDraft};
 use super::walk::{Draft, Origin, written};
-use crate::model::{Boundary, Choice, Detrend};
+use crate::model::{Boundary, Choice, Detrend, Method};
 
 use super::{Axis, Case, CaseParams, MAX_CASES, MAX_GRID, MAX_TASKS, Realizations, Spec, SurfaceParams, Sweep, Value};
 
@@ -21,17 +22,21 @@ const BASE: &str = "base";
 
 /// Multiplies the sweeps out. Nothing, with the faults added, if there are too many cases or the draft has no name.
 pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
-    let Draft { name, seed, realizations, figures, realizations_at, base, origins, sweeps, files } = draft;
+    let Draft { name, seed, realizations, figures, realizations_at, base, origins, sweeps, files, auto_methods, auto_at } = draft;
     let read: Vec<&SweepDraft> = sweeps.iter().flatten().collect();
     if too_many(&read, faults) {
         return None;
     }
     let mut base = base;
     let mut cases = Cases::default();
+    let (mut choices, mut auto_cases) = (Choices::of(auto_methods), Vec::new());
     if sweeps.is_empty() {
         complete(&mut base, &origins);
-        check(&base, &origins, &[], faults);
-        cases.add(BASE, without_unread(&base));
+        let mut params = base.clone();
+        let is_auto = choices.choose(&mut params);
+        check(&params, &origins, &[], faults);
+        let case = cases.add(BASE, without_unread(&params));
+        auto_cases.extend(is_auto.then_some(case));
     }
     for sweep in &read {
         let swept: Vec<usize> = sweep.axes.iter().map(|axis| axis.key).collect();
@@ -43,8 +48,10 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
                 origins[axis.key] = Origin::Written(value.span());
             }
             complete(&mut params, &origins);
+            let is_auto = choices.choose(&mut params);
             check(&params, &origins, &swept, faults);
-            cases.add(&sweep.name, without_unread(&params));
+            let case = cases.add(&sweep.name, without_unread(&params));
+            auto_cases.extend(is_auto.then_some(case));
         }
     }
     complete(&mut base, &origins);
@@ -52,8 +59,13 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
     let files = if faults.count() == 0 { named(files, &cases.list, faults) } else { BTreeMap::new() };
     let first = read.first().map(|sweep| &sweep.span);
     bound_tasks(&cases.list, realizations, realizations_at.as_ref().or(first), faults);
-    let sweeps = read.into_iter().map(sweep).collect();
-    Some(Spec { name: name?, seed, realizations, figures, cases: cases.list, base, sweeps, files, absolute_files: BTreeSet::new() })
+    choices.check(auto_at.as_ref(), faults);
+    let mut sweeps: Vec<Sweep> = read.into_iter().map(sweep).collect();
+    let auto_methods = choices.settle(&mut base, &mut sweeps);
+    // Of cases that are all chosen the places are of no use.
+    auto_cases.retain(|_| auto_methods.contains(&Method::Auto));
+    let (cases, absolute_files) = (cases.list, BTreeSet::new());
+    Some(Spec { name: name?, seed, realizations, figures, cases, base, sweeps, auto_methods, auto_cases, files, absolute_files })
 }
 
 /// True if the sweeps make more cases than allowed, found without making them.
@@ -120,8 +132,8 @@ struct Cases {
 }
 
 impl Cases {
-    /// Adds a case, or the sweep's name to an equal one.
-    fn add(&mut self, sweep: &str, params: CaseParams) {
+    /// Adds a case, or the sweep's name to an equal one; gives its place.
+    fn add(&mut self, sweep: &str, params: CaseParams) -> usize {
         // Every value is finite and none is a zero with a sign, so that equal cases are written alike, and only they.
         let place = *self.places.entry(format!("{params:?}")).or_insert(self.list.len());
         match self.list.get_mut(place) {
@@ -129,6 +141,7 @@ impl Cases {
             Some(case) => case.sweeps.push(sweep.to_owned()),
             None => self.list.push(Case { sweeps: vec![sweep.to_owned()], params }),
         }
+        place
     }
 }
 

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 use serde_json::{Value, json};
 
+use super::auto::METHODS;
 use super::figures::{FORMATS, Figures, LONGEST_FONT, WIDTH};
 use super::keys::{KEYS, Key, Kind, Limits, TABLES, words};
 use super::realizations::{DEFAULT, DEFAULT_BOUNDS, LEAST, PRECISION};
@@ -67,6 +68,11 @@ pub fn json_schema() -> String {
     );
     let files = json!({ "type": "string", "pattern": DIGEST });
     properties.insert("files", json!({ "type": "object", "additionalProperties": files, "description": "BLAKE3 checksums of measured files; written by the program." }));
+    let chosen = json!({ "type": "string", "enum": METHODS });
+    properties.insert(
+        "auto_methods",
+        json!({ "type": "array", "items": chosen, "description": "Methods that method = \"auto\" chose, case by case; written by the program." }),
+    );
     let schema = json!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "Spec of hysteron",

@@ -3,6 +3,7 @@
 //! The text is TOML. Every key has its row in one table (`keys.rs`): its type, its bounds, and where its value goes. The walker
 //! refuses what no row names, and collects every fault with its place, so that one reading of the answer mends the whole file.
 
+mod auto;
 mod elements;
 mod entries;
 mod fault;
@@ -30,8 +31,10 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use crate::constants::{Constant, Constants};
+use crate::model::Method;
 pub use crate::model::{CaseParams, CycleParams, ElementParams, ModelParams, SurfaceParams};
 pub use crate::text::quoted;
+pub use auto::Chooser;
 pub use elements::{FEWEST_PER_WAVELENGTH, MANY_RANGE_STEPS, MAX_ELEMENTS, MOST_MESH_NUMBER, PER_WAVELENGTH, mesh_number};
 pub use fault::{Fault, Place, SpecErrors};
 pub use figures::{FORMATS, Figures};
@@ -116,6 +119,12 @@ pub struct Spec {
     pub base: CaseParams,
     /// The sweeps as written, each value checked.
     pub sweeps: Vec<Sweep>,
+    /// Methods chosen for the points with `method = "auto"`, in their order, if they differ; `auto` where a scan decides and has not been read.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub auto_methods: Vec<Method>,
+    /// Places in [`Self::cases`] of these points, until all are chosen.
+    #[serde(skip)]
+    auto_cases: Vec<usize>,
     /// BLAKE3 of the files of measured surfaces, by the names by which they were found.
     pub files: BTreeMap<String, String>,
     /// Files that the spec names by absolute paths.
@@ -184,10 +193,18 @@ impl Spec {
     /// # Errors
     /// Every fault of the first faulty setting, or else of the text with the settings.
     pub fn parse_with(text: &str, file: &str, settings: &[String]) -> Result<Self, SpecErrors> {
+        Self::parse_chosen(text, file, settings, Vec::new())
+    }
+
+    /// Reads a spec from its text, with the choices of `method = "auto"`, if they are known.
+    fn parse_chosen(text: &str, file: &str, settings: &[String], chosen: Vec<Method>) -> Result<Self, SpecErrors> {
         let mut faults = fault::Faults::new(text, file);
         let mut draft = walk::document(text, &mut faults);
         if let Some(draft) = &mut draft {
             settings::apply(settings, draft)?;
+            if !chosen.is_empty() {
+                draft.auto_methods = chosen;
+            }
         }
         let spec = draft.and_then(|draft| grid::expand(draft, &mut faults));
         faults.finish(spec).map_err(|errors| errors.with(settings))
@@ -207,6 +224,14 @@ impl Spec {
     /// # Errors
     /// As these two.
     pub fn read_with(path: impl AsRef<Path>, settings: &[String]) -> Result<Self, SpecErrors> {
+        Self::read_choosing(path, settings, &|_| Err(("it is not read here".to_owned(), "write the method".to_owned())))
+    }
+
+    /// Reads a spec from a file as [`Self::read_with`]. The chooser reads the scan of a case with `method = "auto"`.
+    ///
+    /// # Errors
+    /// As [`Self::read_with`], and errors of the chooser.
+    pub fn read_choosing(path: impl AsRef<Path>, settings: &[String], chooser: Chooser<'_>) -> Result<Self, SpecErrors> {
         let path = path.as_ref();
         let file = path.display().to_string();
         // Windows answers "access denied" for a folder; the question is cheap and the answer is the same everywhere.
@@ -228,9 +253,14 @@ impl Spec {
         }
         match std::str::from_utf8(&bytes) {
             Ok(text) => {
-                let spec = Self::parse_with(text, &file, settings)?;
                 let folder = path.parent().unwrap_or(Path::new(""));
-                files::digested(spec, (text, &file), folder).map_err(|errors| errors.with(settings))
+                let found = |spec: Self| files::digested(spec, (text, &file), folder).map_err(|errors| errors.with(settings));
+                let spec = found(Self::parse_with(text, &file, settings)?)?;
+                if !spec.auto_methods.contains(&Method::Auto) {
+                    return Ok(spec);
+                }
+                let methods = auto::chosen(&spec, (text, &file), chooser).map_err(|errors| errors.with(settings))?;
+                found(Self::parse_chosen(text, &file, settings, methods)?)
             }
             Err(error) => Err(SpecErrors::not_utf8(&bytes, error.valid_up_to(), &file)),
         }

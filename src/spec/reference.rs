@@ -51,6 +51,11 @@ material.work_of_adhesion_j_m2 = [0.01, 0.02, 0.05]
 ";
 
 const FILES: &str = "
+## `auto_methods`
+
+The program writes this line to `campaign.toml` of a run in which `method = \"auto\"` chose different
+methods: one for each case, in the order of the sweeps. Leave it out of your own specs.
+
 ## `[files]`
 
 The program writes this section to `campaign.toml` of a run: the BLAKE3 checksum of each measured

@@ -58,7 +58,7 @@ fn set(text: &str, draft: &mut Draft, faults: &mut Faults<'_>) {
     let path = text.split(" = ").next().unwrap_or_default();
     let place = path.split_once('.').and_then(|(table, name)| find(table, name));
     for (key, span, written) in entries(root.get_ref()) {
-        if matches!(key, "sweep" | "files") || TABLES.contains(&key) && !path.contains('.') {
+        if matches!(key, "sweep" | "files" | "auto_methods") || TABLES.contains(&key) && !path.contains('.') {
             let help = "it takes name, seed, realizations, and keys of tables such as surface.hurst".to_owned();
             faults.add(&span, format!("{OPTION} cannot set `{key}`"), help);
             return;
@@ -76,6 +76,8 @@ fn set(text: &str, draft: &mut Draft, faults: &mut Faults<'_>) {
     if matches!(draft.origins[place], Origin::Written(_)) {
         draft.origins[place] = Origin::Written(NOWHERE);
     }
+    // Other values may lead to another choice.
+    draft.auto_methods.clear();
     // The hashes are of the files that the spec names.
     if path == "surface.file" {
         draft.files.clear();

@@ -13,7 +13,8 @@ use super::files::files;
 use super::keys::{KEYS, TABLES};
 use super::realizations::{DEFAULT, Realizations, realizations};
 use super::sweep::{SweepDraft, sweeps};
-use super::{CaseParams, top, value};
+use super::{CaseParams, auto, top, value};
+use crate::model::Method;
 
 /// A spec whose values are read and not yet combined.
 pub(super) struct Draft {
@@ -30,6 +31,9 @@ pub(super) struct Draft {
     pub(super) realizations_at: Option<Range<usize>>,
     /// BLAKE3 of the files that are named, and where it is written.
     pub(super) files: BTreeMap<String, (String, Range<usize>)>,
+    /// Listed choices of `method = "auto"`, and where they are written.
+    pub(super) auto_methods: Vec<Method>,
+    pub(super) auto_at: Option<Range<usize>>,
 }
 
 /// Origin of a value of the base.
@@ -52,8 +56,20 @@ pub(super) fn written(key: Option<usize>, origins: &[Origin]) -> Option<Range<us
 }
 
 /// Keys at the top of a spec.
-const TOP: [&str; 11] =
-    ["name", "seed", "realizations", "figures", "surface", "material", "model", "boundary_elements", "cycle", "sweep", "files"];
+const TOP: [&str; 12] = [
+    "name",
+    "seed",
+    "realizations",
+    "figures",
+    "surface",
+    "material",
+    "model",
+    "boundary_elements",
+    "cycle",
+    "sweep",
+    "files",
+    "auto_methods",
+];
 
 /// Reads a whole spec. Nothing, with the faults added, if it is no TOML.
 pub(super) fn document(text: &str, faults: &mut Faults<'_>) -> Option<Draft> {
@@ -80,6 +96,8 @@ pub(super) fn document(text: &str, faults: &mut Faults<'_>) -> Option<Draft> {
         origins: vec![Origin::Default; KEYS.len()],
         sweeps: Vec::new(),
         files: BTreeMap::new(),
+        auto_methods: Vec::new(),
+        auto_at: None,
     };
     let entries = entries(root.get_ref());
     if !entries.iter().any(|(key, ..)| *key == "name") {
@@ -102,6 +120,10 @@ pub(super) fn enter((key, span, written): Entry<'_, '_>, draft: &mut Draft, faul
             draft.realizations = realizations(written, faults).unwrap_or(draft.realizations);
         }
         "figures" => draft.figures = figures(written, faults).unwrap_or_default(),
+        "auto_methods" => {
+            draft.auto_at = Some(written.span());
+            draft.auto_methods = auto::methods(written, faults);
+        }
         "files" => draft.files = files(written, &span, faults),
         "sweep" => sweeps(written, &span, &mut draft.sweeps, faults),
         table if TABLES.contains(&table) => base(table, written, &span, draft, faults),

@@ -4,6 +4,7 @@ use std::fmt::{Error, Write as _};
 
 use super::keys::{GENERATED, KEYS, Key, MEASURED, TABLES};
 use super::{Case, CaseParams, Spec, Value};
+use crate::model::{Choice as _, Method};
 use crate::text::quoted;
 
 /// The text of a spec.
@@ -20,6 +21,10 @@ fn write(spec: &Spec, text: &mut String) -> Result<(), Error> {
     writeln!(text, "seed = {}", spec.seed)?;
     writeln!(text, "realizations = {}", spec.realizations)?;
     writeln!(text, "figures = {}", spec.figures)?;
+    if !spec.auto_methods.is_empty() && !spec.auto_methods.contains(&Method::Auto) {
+        let methods = spec.auto_methods.iter().map(|method| format!("\"{}\"", method.word()));
+        writeln!(text, "auto_methods = [{}]", list(methods))?;
+    }
     for table in TABLES {
         writeln!(text, "\n[{table}]")?;
         for key in KEYS.iter().filter(|key| key.table == table && is_read(key, &spec.base) && !follows(key, spec)) {

@@ -1,52 +1,60 @@
 //! Warnings that follow from a spec and its measured surfaces, before anything is computed.
 
 use super::grid_size::slow_grids;
-use super::measure::measure;
 pub use super::outside::Outside;
 use super::outside::interval;
-use super::surface::target;
-use crate::campaign::{Campaign, CaseUnit, SurfaceUnit};
-use crate::formats::recognize;
-use crate::physics::theory::flattening::{Flattening, flattening};
+use super::verdict::{Previews, Verdict, long_loops, previews, verdicts};
+use crate::campaign::Campaign;
+use crate::model::Method;
 use crate::spec::MANY_RANGE_STEPS;
 use crate::stats::{Limit, MANY_STEPS};
-use crate::store::hdf5::{SurfaceHeader, read_header};
-use std::path::Path;
+use crate::store::hdf5::SurfaceHeader;
 
-/// Elastic energy over a work of adhesion \[J/m²\].
-type Ratio = fn(&Flattening, f64) -> f64;
+/// Ratio of energies of a verdict.
+type Ratio = fn(&Verdict) -> Option<f64>;
 
 /// Warnings of the artefacts of measured surfaces.
 pub const ARTEFACTS: [&str; 4] = ["outliers", "lines", "noise", "tip"];
 
-/// Largest file of a measured surface that is read before a run \[bytes\].
-const LARGEST_FILE: u64 = 1 << 28;
+/// What is known of a campaign before anything is computed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Foreseen {
+    /// One verdict for each case.
+    pub verdicts: Vec<Verdict>,
+    /// Warnings.
+    pub warnings: Vec<Outside>,
+}
 
-/// Warnings before any surface is made: `U_el/Δγ` and `U_1/Δγ` of the target spectra, grids of boundary elements, and the artefacts of measured surfaces.
-/// Cases without adhesion have no `U_el/Δγ`.
+impl Foreseen {
+    /// The warning of a code.
+    #[must_use]
+    pub fn warning(&self, code: &str) -> Option<&Outside> {
+        self.warnings.iter().find(|of| of.kind.code == code)
+    }
+}
+
+/// Verdicts and warnings before any surface is made: `U_el/Δγ` and `U_1/Δγ` of the target spectra and of measured surfaces, grids of boundary elements, and the
+/// artefacts of measured surfaces. Cases without adhesion have no `U_el/Δγ`.
 #[must_use]
-pub fn foreseen(campaign: &Campaign) -> Vec<Outside> {
-    let ratios: [(&str, Ratio); 2] = [("sticky", Flattening::persson_tosatti), ("conformed", Flattening::conformity)];
-    let value = |unit: &CaseUnit, ratio: fn(&Flattening, f64) -> f64| {
-        // The limits are those of the asperity model.
-        if unit.case.params.by_elements() {
-            return None;
-        }
-        let (params, material) = (&unit.case.params, &unit.case.params.material);
-        let asked = target(params).filter(|_| material.work_of_adhesion_j_m2 > 0.0)?;
-        Some(ratio(&flattening(&asked, material.contact_modulus_pa), material.work_of_adhesion_j_m2))
-    };
+pub fn foreseen(campaign: &Campaign) -> Foreseen {
+    let previews = previews(campaign);
+    let verdicts = verdicts(campaign, &previews);
+    let ratios: [(&str, Ratio); 2] = [("sticky", |of| of.persson_tosatti), ("conformed", |of| of.conformity.filter(|ratio| *ratio > 0.0))];
     let of = |(code, ratio): (&str, Ratio)| {
-        Outside::of(code, campaign.cases.iter().filter_map(|unit| Some((unit.id.clone(), value(unit, ratio)?))))
+        // The limits are those of the asperity model.
+        let asperities = verdicts.iter().filter(|of| of.method == Method::Asperities);
+        Outside::of(code, asperities.filter_map(|of| Some((of.case_id.clone(), ratio(of)?))))
     };
-    ratios
+    let warnings = ratios
         .into_iter()
         .filter_map(of)
-        .chain(coarse(campaign))
+        .chain(coarse(&verdicts))
         .chain(many_steps(campaign))
         .chain(slow_grids(campaign))
-        .chain(artefacts(campaign))
-        .collect()
+        .chain(long_loops(campaign, &verdicts))
+        .chain(artefacts(campaign, &previews))
+        .collect();
+    Foreseen { verdicts, warnings }
 }
 
 /// Cases of boundary elements whose attraction acts over many steps.
@@ -69,19 +77,15 @@ fn many_steps(campaign: &Campaign) -> Option<Outside> {
 }
 
 /// Cases of boundary elements with fewer grid points per shortest wavelength than recommended.
-fn coarse(campaign: &Campaign) -> Option<Outside> {
-    let value = |unit: &CaseUnit| {
-        let wavelengths = f64::from(unit.case.params.surface.magnification);
-        (unit.id.clone(), f64::from(unit.case.params.boundary_elements.grid(wavelengths)) / wavelengths)
-    };
-    let generated = campaign.cases.iter().filter(|unit| unit.case.params.by_elements() && !unit.case.params.surface.is_measured());
-    Outside::of("coarse", generated.map(value))
+fn coarse(verdicts: &[Verdict]) -> Option<Outside> {
+    let elements = verdicts.iter().filter(|of| of.method == Method::BoundaryElements);
+    Outside::of("coarse", elements.filter_map(|of| Some((of.case_id.clone(), of.cost?.per_wavelength))))
 }
 
 /// Cases with artefacts of their measured surfaces.
-fn artefacts(campaign: &Campaign) -> Vec<Outside> {
-    let measured = campaign.surfaces.iter().enumerate().filter(|(_, surface)| surface.params.is_measured());
-    let known: Vec<(usize, SurfaceHeader)> = measured.filter_map(|(k, surface)| Some((k, header(campaign, surface)?))).collect();
+fn artefacts(campaign: &Campaign, previews: &Previews) -> Vec<Outside> {
+    let surfaces = 0..campaign.surfaces.len();
+    let known: Vec<(usize, &SurfaceHeader)> = surfaces.filter_map(|k| Some((k, &previews.get(&k)?.known()?.header))).collect();
     let of = |code: &str| {
         let column = Limit::of(code)?.of_one();
         let number =
@@ -94,15 +98,4 @@ fn artefacts(campaign: &Campaign) -> Vec<Outside> {
         Outside::of(code, values.flat_map(|(surface, value)| cases_of(surface).map(move |case| (case, value))))
     };
     ARTEFACTS.into_iter().filter_map(of).collect()
-}
-
-/// Header of a measured surface: of its file in the run, or of the scan itself. Large scans, and those that cannot be imported, have none.
-fn header(campaign: &Campaign, surface: &SurfaceUnit) -> Option<SurfaceHeader> {
-    let in_run = read_header(&campaign.surface_path(surface)).ok().filter(|header| header.key == surface.key);
-    in_run.or_else(|| {
-        let path = Path::new(&surface.params.file);
-        let is_small = std::fs::metadata(path).is_ok_and(|about| about.is_file() && about.len() <= LARGEST_FILE);
-        let is_known = is_small && matches!(recognize(path), Ok(Ok(_)));
-        is_known.then(|| measure(&surface.params, "", "").ok()).flatten().map(|found| found.header)
-    })
 }

@@ -18,8 +18,7 @@ const SLOW: Caution = Caution {
 };
 
 /// Cases of boundary elements with a number of grid points along a side that has a large prime factor.
-#[must_use]
-pub fn slow_grids(campaign: &Campaign) -> Option<Outside> {
+pub(super) fn slow_grids(campaign: &Campaign) -> Option<Outside> {
     let slow = |unit: &&CaseUnit| {
         let params = &unit.case.params;
         params.by_elements() && largest_factor(params.boundary_elements.points) > TOLERATED_FACTOR

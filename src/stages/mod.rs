@@ -6,6 +6,7 @@ mod aggregate;
 mod compare;
 mod contact_maps;
 mod correction;
+mod cost;
 mod cycle;
 mod cycle_input;
 mod datapackage;
@@ -24,6 +25,7 @@ mod live_state;
 mod measure;
 mod outside;
 mod pipeline;
+mod previews;
 mod report;
 mod runner;
 mod sampling;
@@ -31,20 +33,23 @@ mod single_cycle;
 mod step_count;
 mod surface;
 mod task;
+mod verdict;
 
 use crate::constants::Constants;
 pub use compare::{Comparison, compare};
+pub use cost::Cost;
 pub use cycle::{Units, unload_again, unload_elements_again};
 pub use error::StageError;
-pub use foreseen::{ARTEFACTS, Outside, foreseen};
-pub use grid_size::slow_grids;
+pub use foreseen::{ARTEFACTS, Foreseen, Outside, foreseen};
 pub use measure::{Imported, measure};
 pub use pipeline::{prepare, run};
 pub use sampling::sampled;
 pub use task::{Tally, Task, Watch};
+pub use verdict::{Verdict, chosen_method, in_words};
 
 /// Numerical choices and limits of cycles and of the report that are made here.
-pub const CONSTANTS: [Constants; 2] = [
+pub const CONSTANTS: [Constants; 3] = [
     Constants { subject: "Cycles", module: "stages::cycle", rows: cycle::CONSTANTS },
     Constants { subject: "Loop explorer", module: "stages::explorer", rows: explorer::CONSTANTS },
+    Constants { subject: "Estimates before a run", module: "stages::cost", rows: cost::CONSTANTS },
 ];

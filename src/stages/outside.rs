@@ -25,7 +25,7 @@ impl Outside {
         let range = [values.iter().copied().reduce(f64::min)?, values.iter().copied().reduce(f64::max)?];
         let of_target = ["sticky", "conformed"].contains(&code);
         let measured = if of_target {
-            format!("{} (target spectrum; limit ≥ {})", kind.text.replace("{}", &interval(range)), limit.bound)
+            format!("{} (target spectrum or scan; limit ≥ {})", kind.text.replace("{}", &interval(range)), limit.bound)
         } else {
             measured_text(&kind, limit, &values)
         };

@@ -14,14 +14,7 @@ use std::marker::PhantomData;
 
 /// Target spectrum of a generated surface.
 pub(super) fn spectrum(params: &SurfaceParams) -> Spectrum {
-    Spectrum {
-        length_m: params.length_m,
-        rms_height_m: params.rms_height_m,
-        hurst: params.hurst,
-        magnification: params.magnification,
-        normalization: params.normalization,
-        amplitudes: params.amplitudes,
-    }
+    Spectrum::from(params)
 }
 
 /// Target spectrum of a case; a measured surface has none.

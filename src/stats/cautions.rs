@@ -2,6 +2,7 @@
 
 use super::rows::Value;
 use super::{CaseInput, Given};
+use crate::physics::theory::regime::{BRIDGED, SEPARATE};
 
 /// A warning that a row of the table `cases` may have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,7 +31,7 @@ pub const CAUTIONS: [Caution; 26] = [
         "near full contact",
         "U_el/Δγ = {}",
         "The true contact may be near full contact, outside the range of an asperity model.",
-        "Use a larger reduced modulus or a smaller work of adhesion, or a boundary-element method.",
+        "Set `model.method` to `\"boundary_elements\"` or `\"auto\"`.",
     ),
     warning(
         "area",
@@ -267,9 +268,9 @@ impl Limit {
 
 /// All limits. The limit of the Tabor parameter applies to Wu's criterion only, and only with adhesion.
 pub const LIMITS: [Limit; 18] = [
-    Limit::at_least("sticky", "persson_tosatti_realised_mean", 2.0),
+    Limit::at_least("sticky", "persson_tosatti_realised_mean", SEPARATE),
     Limit::at_most("area", "area_at_max_load_mean", 0.3),
-    Limit::at_least("conformed", "conformity_realised_mean", 1.0),
+    Limit::at_least("conformed", "conformity_realised_mean", BRIDGED),
     Limit::at_most("covered", "covered_share_mean", 0.1),
     Limit::at_most("absorption", "absorption_share_max", 0.1),
     Limit::at_most("touching", "touching_share_mean", 0.1),

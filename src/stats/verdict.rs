@@ -4,44 +4,23 @@ use super::cautions::Limit;
 use super::methods::method_pairs;
 use super::{StatsError, significant};
 use crate::model::{Choice as _, Method};
+use crate::physics::theory::regime::Regime;
 use crate::store::Frame;
 
 /// Warnings of the range of the asperity model that a verdict stands for.
 pub(super) const IN_A_VERDICT: [&str; 6] = ["sticky", "area", "conformed", "covered", "absorption", "touching"];
 
-/// Contacts of a sweep.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Regime {
-    /// U_el/Δγ, the area and the shortest octave are within the limits of the asperity model.
-    Separate,
-    /// The shortest octave is beyond its limit.
-    Conformal,
-    /// U_el/Δγ or the area is beyond its limit.
-    NearFullContact,
-}
-
-impl Regime {
-    /// The regime of rows of the table `cases`, by the limits of the warnings of the same names.
-    fn of(cases: &Frame, rows: &[usize]) -> Result<Self, StatsError> {
-        let passed = |code: &str| -> Result<bool, StatsError> {
-            let Some(limit) = Limit::of(code) else { return Ok(false) };
-            let values = cases.f64_or_null(limit.column)?;
-            Ok(rows.iter().any(|row| limit.is_passed(values[*row])))
-        };
-        Ok(match () {
-            () if passed("sticky")? || passed("area")? => Self::NearFullContact,
-            () if passed("conformed")? => Self::Conformal,
-            () => Self::Separate,
-        })
-    }
-
-    fn word(self) -> &'static str {
-        match self {
-            Self::Separate => "separate contacts",
-            Self::Conformal => "conformal contact at the shortest wavelengths",
-            Self::NearFullContact => "near full contact",
-        }
-    }
+/// The regime of rows of the table `cases`: that of the smallest ratios of their surfaces, and near full contact beyond the limit of the area.
+fn regime(cases: &Frame, rows: &[usize]) -> Result<Regime, StatsError> {
+    let values = |column: &str| -> Result<Vec<f64>, StatsError> {
+        let values = cases.f64_or_null(column)?;
+        Ok(rows.iter().filter_map(|row| values[*row]).collect())
+    };
+    let least = |column: &str| -> Result<f64, StatsError> { Ok(values(column)?.into_iter().fold(f64::INFINITY, f64::min)) };
+    let regime = Regime::of(least("persson_tosatti_realised_mean")?, least("conformity_realised_mean")?);
+    let is_large = Limit::of("area")
+        .is_some_and(|limit| values(limit.column).is_ok_and(|areas| areas.into_iter().any(|area| limit.is_passed(Some(area)))));
+    Ok(if is_large { regime.min(Regime::NearFullContact) } else { regime })
 }
 
 /// The verdict on the rows of a sweep of the table `cases`, as one sentence; nothing without a finished row.
@@ -55,10 +34,10 @@ pub(super) fn verdict(cases: &Frame, methods: Option<&Frame>, rows: &[usize]) ->
     let of = |method: Method| rows.iter().copied().filter(|row| words[*row] == method.word() && areas[*row].is_some()).collect::<Vec<_>>();
     let (asperities, elements) = (of(Method::Asperities), of(Method::BoundaryElements));
     if asperities.is_empty() {
-        let regime = Regime::of(cases, &elements)?;
-        return Ok((!elements.is_empty()).then(|| format!("Verdict: {}, by boundary elements, which hold there.", regime.word())));
+        let regime = regime(cases, &elements)?;
+        return Ok((!elements.is_empty()).then(|| format!("Verdict: {}, by boundary elements, which hold there.", regime.name())));
     }
-    let regime = Regime::of(cases, &asperities)?;
+    let regime = regime(cases, &asperities)?;
     let share = share(cases, methods, &asperities)?.map(|share| format!("the asperity model has {share} of the area"));
     let advice = match (regime, elements.is_empty()) {
         (Regime::Separate, _) => "within the range of the asperity model",
@@ -69,7 +48,7 @@ pub(super) fn verdict(cases: &Frame, methods: Option<&Frame>, rows: &[usize]) ->
         Regime::Separate => std::iter::once(advice.to_owned()).chain(share).collect(),
         _ => share.into_iter().chain([advice.to_owned()]).collect(),
     };
-    Ok(Some(format!("Verdict: {}: {}.", regime.word(), parts.join("; "))))
+    Ok(Some(format!("Verdict: {}: {}.", regime.name(), parts.join("; "))))
 }
 
 /// The part of the area of boundary elements that the asperity model has in rows, as an interval.

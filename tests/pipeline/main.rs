@@ -51,3 +51,5 @@ mod style;
 mod text;
 #[cfg(feature = "stats")]
 mod validity;
+#[cfg(feature = "stats")]
+mod verdict;

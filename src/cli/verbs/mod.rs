@@ -14,6 +14,7 @@ mod place;
 mod show;
 mod submit;
 mod survey;
+mod verdicts;
 mod viewer;
 mod work;
 

@@ -46,7 +46,7 @@ fn read(spec: &Path, out: Option<&Path>, settings: &[String]) -> Result<Campaign
 }
 
 fn parsed(spec: &Path, settings: &[String]) -> Result<Spec, Fault> {
-    Spec::read_with(spec, settings).map_err(|errors| Fault { code: BAD_SPEC, text: errors.to_string() })
+    Spec::read_choosing(spec, settings, &stages::chosen_method).map_err(|errors| Fault { code: BAD_SPEC, text: errors.to_string() })
 }
 
 /// The output folder of a spec without --out.

@@ -4,14 +4,14 @@ use super::causes::causes;
 use super::ending::failed_cycles;
 use super::living::{Living, Units, left};
 use super::place::{folder, open, open_dir, resuming};
-use super::{Fault, failed, say, submit};
+use super::verdicts::outside_json;
+use super::{Fault, failed, say, submit, verdicts};
 use crate::campaign::{Campaign, CycleUnit, REPORT_PAGE, STATISTICS, Stage, Standing, Survey};
 use crate::cli::{FolderArguments, OutputArguments};
 use crate::engines::slurm::{Queue, Sent};
-use crate::stages::{Outside, foreseen};
-use crate::stats::Caution;
+use crate::stages::foreseen;
 use crate::store::Check;
-use crate::text::{counted, shown, visible, wrapped};
+use crate::text::{counted, shown, visible};
 use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::io::{IsTerminal, Write as _};
@@ -30,33 +30,20 @@ const LISTED: usize = 10;
 pub(super) fn plan(spec: &Path, output: &OutputArguments) -> Result<u8, Fault> {
     let campaign = open(spec, output)?;
     let units = units(&campaign, campaign.survey(Check::Sizes));
-    let outside = foreseen(&campaign);
+    let foreseen = foreseen(&campaign);
     let text = if output.json {
         let mut answer = answer(&campaign, &units);
-        answer["outside_range"] = outside.iter().map(outside_json).collect();
+        answer["outside_range"] = foreseen.warnings.iter().map(outside_json).collect();
+        answer["cases"] = foreseen.verdicts.iter().map(verdicts::json).collect();
         format!("{answer:#}\n")
     } else {
         let reasons = |stage: Stage, units: &[(String, Standing)]| causes(&campaign, stage, units);
-        let warnings: String = outside.iter().map(|of| foreseen_text(of, campaign.cases.len())).collect();
         describe(&campaign, &units, reasons)
-            + &warnings
+            + &verdicts::plan_text(&foreseen)
             + &remaining(&units, &campaign, |open| format!("`run` would compute {}.\n", counted(open, "task")))
     };
     say(&text)?;
     Ok(0)
-}
-
-/// Cases with a warning.
-fn outside_json(of: &Outside) -> Value {
-    json!({ "code": of.kind.code, "min": of.range[0], "max": of.range[1], "limit": of.limit, "cases": of.cases })
-}
-
-/// Warning as text of at most 80 columns.
-pub(super) fn foreseen_text(of: &Outside, all: usize) -> String {
-    let Caution { code, label, consequence, action, .. } = of.kind;
-    let cases = format!("{} of {}", of.cases.len(), counted(all, "case"));
-    let text = format!("warning[{code}]: {label}: {} for {cases}. {consequence} {action}", of.measured);
-    wrapped(&text, "  ")
 }
 
 pub(super) fn status(asked: &FolderArguments, watch: bool) -> Result<u8, Fault> {

@@ -2,14 +2,14 @@
 
 use super::ending::{Ended, tally_json};
 use super::place::{folder, folder_of, not_the_root, open, open_dir};
-use super::survey::foreseen_text;
+use super::verdicts::run_text;
 use super::{BAD_SPEC, FAILED_CASES, Fault, failed, say, submit, viewer};
 use crate::campaign::{Campaign, Shard, Stage, Standing};
 use crate::cli::arguments::TalkArguments;
 use crate::cli::progress::Teller;
 use crate::cli::{FolderArguments, HowArguments, interrupt};
 use crate::schema;
-use crate::stages::{self, Comparison, StageError, Task, Watch as _, slow_grids};
+use crate::stages::{self, Comparison, StageError, Task, Watch as _, foreseen};
 use crate::stats::{Shown, significant};
 use crate::store::{Check, FrameError};
 use crate::text::{shell_path, shown, visible, wrapped};
@@ -130,11 +130,10 @@ fn perform(campaign: Campaign, task: &Task, json: bool, talk: TalkArguments) -> 
     let teller = Arc::new(Teller::new(talk));
     interrupt::expect(teller.clone(), &campaign.dir).map_err(failed)?;
     let dir = campaign.dir.clone();
-    let slow = if (task.from..=task.until).contains(&Stage::Cycle) { slow_grids(&campaign) } else { None };
-    if let Some(slow) =
-        slow.filter(|_| !talk.quiet && campaign.cycle_standings(Check::Sizes).iter().any(|standing| *standing != Standing::Done))
-    {
-        teller.notice(&foreseen_text(&slow, campaign.cases.len()));
+    let has_cycles = (task.from..=task.until).contains(&Stage::Cycle);
+    let is_open = |standing: &Standing| !matches!(standing, Standing::Done | Standing::Failed(_));
+    if has_cycles && !talk.quiet && campaign.cycle_standings(Check::Sizes).iter().any(is_open) {
+        teller.notice(&run_text(&foreseen(&campaign)));
     }
     let jobs = submit::sent(&campaign).unwrap_or_default();
     let again = submit::again(&campaign, &jobs);

@@ -21,10 +21,10 @@
 use super::merged_spot::{Merged, TouchingPairs};
 use super::problem::Problem;
 use super::state::{State, Status};
-use crate::model::Coalescence;
 use crate::PhysicsError;
 use crate::half_space::spot_field::Spot;
 use crate::jkr::Asperity;
+use crate::model::Coalescence;
 
 /// Relative change of a contact radius below the accuracy of an equilibrium.
 pub(crate) const ROUNDING: f64 = 1e-8;

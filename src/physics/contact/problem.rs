@@ -3,12 +3,12 @@
 use super::neighbours::Neighbours;
 use super::numbering::Places;
 use super::numerics::{Accuracy, Numerics};
-use crate::model::{Boundary, Coalescence, Interaction as Kind, JumpIn, Material, Slips};
 use crate::PhysicsError;
 use crate::half_space::spot_field::{Spot, spot_field_as_printed};
 use crate::half_space::{Best, Spots, best};
 use crate::jkr::{Asperity, LEAST_TABOR};
 use crate::math::grown::Grown;
+use crate::model::{Boundary, Coalescence, Interaction as Kind, JumpIn, Material, Slips};
 use crate::surface::summits::Summit;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;

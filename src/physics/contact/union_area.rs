@@ -5,8 +5,8 @@
 
 use super::problem::Problem;
 use super::state::State;
-use crate::model::Boundary;
 use crate::math::vector::nearest_image;
+use crate::model::Boundary;
 use std::f64::consts::{PI, TAU};
 
 /// Area of the union of the discs of a state \[m²\].

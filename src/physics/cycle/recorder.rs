@@ -1,12 +1,12 @@
 //! Recording of a branch: steps at grid points and load reversals, and events.
 
 use super::table::{Branch, Contact, Cycle, MergedAt, Settings, Step, StepCounts, StepNumerics, event_counts};
-use crate::model::KeptContacts;
 use crate::PhysicsError;
 use crate::contact::event::Event;
 use crate::contact::problem::Problem;
 use crate::contact::state::{State, Status};
 use crate::half_space::Effort;
+use crate::model::KeptContacts;
 use crate::path::EquilibriumPath;
 use serde::{Deserialize, Serialize};
 

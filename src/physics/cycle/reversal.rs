@@ -5,10 +5,10 @@
 //! Each event is reversed at its mean penetration and returns its energy: Θ is exactly 0.
 
 use super::table::{Branch, Contact, Cycle, Step, StepCounts, StepNumerics, event_counts};
-use crate::model::KeptContacts;
 use crate::contact::event::Event;
 use crate::contact::transition::Kind;
 use crate::half_space::Effort;
+use crate::model::KeptContacts;
 
 /// Appends the unloading from the `k`-th load reversal of a loading path without adhesion.
 ///

@@ -1,11 +1,11 @@
 //! Tables of a cycle: steps, contacts and events.
 
-use crate::model::KeptContacts;
 use crate::contact::event::Event;
 use crate::contact::merged_spot::Merged;
 use crate::contact::state::State;
 use crate::contact::transition::Kind;
 use crate::half_space::Effort;
+use crate::model::KeptContacts;
 use serde::{Deserialize, Serialize};
 
 /// Settings of a cycle.

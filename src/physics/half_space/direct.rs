@@ -10,9 +10,9 @@ use super::multipole::{Moments, product};
 use super::patch_pairs::{PairTable, Sources};
 use super::spot_field::{LANES, Place, Spot, SpotColumns, sag, spot_fields};
 use super::{Effort, Interaction, Spots, Tangent};
-use crate::model::{Boundary, Interaction as Kind, Material, Slips};
 use crate::math::grown::Grown;
 use crate::math::vector::dot;
+use crate::model::{Boundary, Interaction as Kind, Material, Slips};
 use multiversion::multiversion;
 use std::sync::Arc;
 

@@ -3,8 +3,8 @@
 use super::image_polynomials::{CENTRE, Centre};
 use super::multipole::Moments;
 use super::spot_field::{AWAY, LANES, SpotColumns, field_at};
-use crate::model::Interaction as Kind;
 use crate::math::grown::Grown;
+use crate::model::Interaction as Kind;
 use multiversion::multiversion;
 
 /// All pairs of a set of asperities: distance \[m\], its inverse, and the image sums of the first two orders.

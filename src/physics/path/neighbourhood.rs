@@ -5,11 +5,11 @@
 
 use super::pending::PendingField;
 use super::predictor::Predictor;
-use crate::model::Interaction;
 use crate::contact::neighbours::nearer;
 use crate::contact::transition::{Kind, Transition};
 use crate::contact::{Problem, Status};
 use crate::half_space::Effort;
+use crate::model::Interaction;
 use crate::solve::local::LocalProblem;
 
 /// Contacts of local problem and shell, over those of the local problem.

@@ -1,7 +1,7 @@
 //! Levelling of measured heights, and checks of their range.
 
-use crate::model::Detrend;
 use crate::PhysicsError;
+use crate::model::Detrend;
 use ndarray::Array2;
 
 /// Heights attributed to rounding, relative to their range and to their mean.

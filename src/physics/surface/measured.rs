@@ -20,8 +20,8 @@ use super::psd_bin::Ring;
 use super::s_filter::{gaussian, overshoot};
 use super::self_affine::{SelfAffine, fit_self_affine};
 use super::spectrum::Moments;
-use crate::model::{Detrend, Filter, Missing};
 use crate::memory::zeros;
+use crate::model::{Detrend, Filter, Missing};
 use ndarray::{Array2, ArrayView2, s};
 
 /// Minimum and maximum number of points along a side.

@@ -8,11 +8,12 @@
 
 pub mod approximate_jkr;
 pub mod flattening;
+pub mod regime;
 
-use crate::constants::Constant;
-use crate::model::{Material, Slips};
 use crate::PhysicsError;
+use crate::constants::Constant;
 use crate::jkr::loop_loss_constant;
+use crate::model::{Material, Slips};
 use crate::surface::spectrum::Moments;
 use std::f64::consts::PI;
 

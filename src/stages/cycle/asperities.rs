@@ -33,6 +33,16 @@ pub(super) fn problem(params: &CaseParams, scale: Scale, summits: &[Summit]) -> 
     Ok(Problem::new(summits, scale.length_m, scale.rms_height_m, params.material, rules)?)
 }
 
+/// The contact problem of a case, whose number of steps is limited.
+///
+/// # Errors
+/// Asperities, a Tabor parameter or a number of steps that the asperity model refuses.
+pub(in crate::stages) fn checked(params: &CaseParams, scale: Scale, summits: &[Summit]) -> Result<Problem, StageError> {
+    let problem = problem(params, scale, summits)?;
+    step_count::bound(&problem, summits, params)?;
+    Ok(problem)
+}
+
 /// Asperities from which on a cycle has checkpoints, and their interval of the mean penetration over the rms height.
 pub(super) const MANY: usize = 20_000;
 pub(super) const REST_EVERY: f64 = 0.1;
@@ -40,8 +50,7 @@ pub(super) const REST_EVERY: f64 = 0.1;
 pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> Result<Outcome, StageError> {
     let params = &campaign.cases[unit.case].case.params;
     let summits = read_summits(&campaign.asperities_path(&campaign.surfaces[unit.surface]))?;
-    let problem = problem(params, scale(campaign, &campaign.surfaces[unit.surface])?, &summits)?;
-    step_count::bound(&problem, &summits, params)?;
+    let problem = checked(params, scale(campaign, &campaign.surfaces[unit.surface])?, &summits)?;
     let settings = settings(params, summits.len());
     let progress = Progress::of(watch, &unit.id);
     let mut checkpoints = Checkpoints::of(campaign, unit, watch);

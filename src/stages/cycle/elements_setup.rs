@@ -3,8 +3,9 @@
 use super::super::StageError;
 use super::super::extract::read_summits;
 use super::super::surface::scale;
+use super::lattice::{checked_lattice, extent};
 use crate::campaign::{Campaign, CycleUnit};
-use crate::model::{Attraction, KeptContacts, Material, Nucleation, Opening};
+use crate::model::{KeptContacts, Material, Nucleation, Opening};
 use crate::physics::PhysicsError;
 use crate::physics::boundary_elements::contact::{Attraction as Rule, Problem};
 use crate::physics::boundary_elements::cycle::Settings;
@@ -13,12 +14,11 @@ use crate::physics::boundary_elements::law::Law;
 use crate::physics::boundary_elements::minimise::Accuracy;
 use crate::physics::boundary_elements::resample::resample_from;
 use crate::physics::jkr::Asperity;
-use crate::physics::memory;
 use crate::physics::surface::modes::mirrored;
 use crate::physics::surface::summits::Summit;
 use crate::physics::theory::flattening::measured_flattening;
 use crate::spec::CaseParams;
-use crate::store::hdf5::{SurfaceHeader, read_header, read_surface};
+use crate::store::hdf5::read_surface;
 use ndarray::Array2;
 
 /// Largest error that a jump of the load may cause in the integral over a step, relative to the energy dissipated so far.
@@ -34,10 +34,6 @@ pub(super) const PEAK: f64 = 100.0;
 pub(super) const MOST_ITERATIONS: usize = 3000;
 /// Points around a contact that are bonded.
 pub(super) const MARGIN: usize = 2;
-/// Fields of numbers that the solver needs, its patches included, and those of a load reversal with its maps and checkpoint.
-const FIELDS: usize = 21;
-const FIELDS_OF_REVERSAL: usize = 8;
-
 /// Units of the solver in SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Units {
@@ -118,55 +114,6 @@ pub(super) struct Setup {
     pub(super) summits: Vec<usize>,
 }
 
-/// Grid of a case on one surface.
-#[derive(Debug, Clone, Copy)]
-pub(in crate::stages) struct Lattice {
-    /// Grid points along a side.
-    pub(in crate::stages) points: usize,
-    /// Grid points per shortest wavelength.
-    pub(in crate::stages) per_wavelength: f64,
-    /// Range of the Morse law \[m\]; nothing for the JKR limit.
-    pub(in crate::stages) range_m: Option<f64>,
-}
-
-/// Grid of a cycle; nothing for the asperity model.
-pub(in crate::stages) fn lattice(campaign: &Campaign, unit: &CycleUnit) -> Result<Option<Lattice>, StageError> {
-    let params = &campaign.cases[unit.case].case.params;
-    if !params.by_elements() {
-        return Ok(None);
-    }
-    let extent = if params.surface.is_measured() {
-        extent(&read_header(&campaign.surface_path(&campaign.surfaces[unit.surface]))?, params)
-    } else {
-        (params.surface.length_m, f64::from(params.surface.magnification))
-    };
-    Ok(Some(Lattice::of(params, extent)))
-}
-
-impl Lattice {
-    /// The grid of a case on a square of a side \[m\] with a number of shortest wavelengths.
-    fn of(params: &CaseParams, (length_m, wavelengths): (f64, f64)) -> Self {
-        let elements = &params.boundary_elements;
-        let points = elements.grid(wavelengths);
-        let range = || elements.range(params.material.adhesion_length_m(), length_m / f64::from(points));
-        Self {
-            points: points as usize,
-            per_wavelength: f64::from(points) / wavelengths,
-            range_m: (elements.attraction == Attraction::Range).then(range),
-        }
-    }
-}
-
-/// Side of the periodic square \[m\] and its number of shortest wavelengths. A surface that is not periodic is continued by mirror images.
-fn extent(header: &SurfaceHeader, params: &CaseParams) -> (f64, f64) {
-    let shortest = match &header.measured {
-        Some(measured) => measured.shortest_wavelength_m,
-        None => header.length_m / f64::from(params.surface.magnification),
-    };
-    let length_m = if header.periodic { header.length_m } else { 2.0 * header.length_m };
-    (length_m, length_m / shortest)
-}
-
 /// The problem of a cycle on the grid of its case.
 pub(super) fn setup(campaign: &Campaign, unit: &CycleUnit) -> Result<Setup, StageError> {
     let params = &campaign.cases[unit.case].case.params;
@@ -174,24 +121,10 @@ pub(super) fn setup(campaign: &Campaign, unit: &CycleUnit) -> Result<Setup, Stag
     let (header, heights) = read_surface(&campaign.surface_path(surface))?;
     let list = read_summits(&campaign.asperities_path(surface))?;
     let (length_m, wavelengths) = extent(&header, params);
-    let (material, elements) = (&params.material, &params.boundary_elements);
-    if let Some((problem, help)) = elements.refusal(length_m, wavelengths, material.adhesion_length_m()) {
-        return Err(PhysicsError::Surface { problem, help }.into());
-    }
-    let lattice = Lattice::of(params, (length_m, wavelengths));
-    let points = lattice.points;
-    enough_memory(points, params.cycle.max_load.len())?;
+    let material = &params.material;
     let rms_height_m = scale(campaign, surface)?.rms_height_m;
-    if let Some((problem, help)) =
-        lattice.range_m.and_then(|range_m| elements.refusal_of_range(range_m, rms_height_m, params.cycle.max_load.len()))
-    {
-        return Err(StageError::Range { problem, help });
-    }
-    let is_mirrored = !header.periodic;
-    if is_mirrored && points % 2 == 1 {
-        let problem = format!("a scan that is not periodic is continued by mirror images: {points} grid points are an odd number");
-        return Err(PhysicsError::Surface { problem, help: "use an even number of boundary_elements.points" }.into());
-    }
+    let lattice = checked_lattice(params, &header, rms_height_m)?;
+    let (points, is_mirrored) = (lattice.points, lattice.is_mirrored);
     // With mirror images the grid is symmetric about the edges of the surface, half a pixel outside its first and last points.
     let (spacing, pixel) = (length_m / points as f64, header.length_m / heights.nrows() as f64);
     let first_m = if is_mirrored { 0.5 * (spacing - pixel) } else { 0.0 };
@@ -261,13 +194,9 @@ fn settings(params: &CaseParams, units: &Units, ratio: f64) -> Settings {
     }
 }
 
-/// Refuses a grid for which there is not enough memory.
-fn enough_memory(points: usize, loads: usize) -> Result<(), PhysicsError> {
-    let bytes = points * points * size_of::<f64>() * (FIELDS + FIELDS_OF_REVERSAL * loads);
-    memory::check(bytes).map_err(|_| PhysicsError::Surface {
-        problem: format!("boundary elements on {points} x {points} points need {:.2} GB of memory, which are not free", bytes as f64 / 1e9),
-        help: "use fewer boundary_elements.points, fewer loads, or fewer tasks at once (--jobs 1)",
-    })
+/// Number of steps in one of `boundary_elements.approach_step` at a ratio `U_el/Δγ`.
+pub(in crate::stages) fn refinement_of_steps(ratio: f64) -> f64 {
+    WEAK.into_iter().find(|(from, ..)| ratio > *from).map_or(1.0, |(_, steps, _)| steps)
 }
 
 /// Grid points nearest to the asperities.

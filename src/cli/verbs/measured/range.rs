@@ -4,6 +4,7 @@ use crate::model::Material;
 use crate::physics::jkr::Asperity;
 use crate::physics::jkr::LEAST_TABOR;
 use crate::physics::theory::flattening::Flattening;
+use crate::physics::theory::regime::FLATTENED;
 use crate::spec::CaseParams;
 use crate::stats::{Limit, significant};
 
@@ -62,11 +63,13 @@ impl Range {
         let octave = if self.octave_m > 0.0 { format!(" and U_1/Δγ ≥ {octave}") } else { String::new() };
         format!(
             "U_el/Δγ ≥ {whole}{octave}, that is E*/Δγ ≥ {:.2e} 1/m. U_el = E* x {:.3e} m, elsewhere called e_el, flattens all roughness, U_1 = E* x {:.3e} m its shortest octave \
-             (wavelengths up to {:.3e} m). A softer or more adhesive contact is outside the range of the asperity model.",
+             (wavelengths up to {:.3e} m). A softer or more adhesive contact is outside the range of the asperity model: use method = \"boundary_elements\" or \"auto\". \
+             Below E*/Δγ = {:.2e} 1/m adhesion flattens the whole surface.",
             self.least_1_m(),
             self.whole_m,
             self.octave_m,
-            2.0 * self.shortest_m
+            2.0 * self.shortest_m,
+            FLATTENED / self.whole_m
         )
     }
 

@@ -1,10 +1,10 @@
 //! Displacement by few spots at many targets: lanes run over the targets.
 
 use super::{DirectSum, in_sides};
-use crate::model::Interaction as Kind;
 use crate::half_space::ewald::ORDERS;
 use crate::half_space::image_polynomials::ImageField;
 use crate::half_space::spot_field::{LANES, Place, Spot, SpotColumns, field, squared_distances};
+use crate::model::Interaction as Kind;
 use multiversion::multiversion;
 
 /// Distance over radius from which a spot acts by its moments: their relative error is 6e-10 there, and falls with the eighth power of the distance.
@@ -137,8 +137,8 @@ fn add_images(place: Place, images: &ImageField, targets: &Targets, sums: &mut [
 mod tests {
     use super::super::DirectSum;
     use super::{Kind, Spot};
-    use crate::model::{Boundary, Material, Slips};
     use crate::half_space::{Effort, Interaction as _, Spots};
+    use crate::model::{Boundary, Material, Slips};
 
     #[test]
     fn law_lanes_over_targets_give_the_sums_over_sources() {

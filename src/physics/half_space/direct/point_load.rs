@@ -160,8 +160,8 @@ fn leave_out(place: Place, reach: f64, targets: &Targets, sums: &mut [[f64; LANE
 mod tests {
     use super::super::DirectSum;
     use super::PointLoad;
-    use crate::model::{Boundary, Interaction as Kind, Material, Slips};
     use crate::half_space::spot_field::Spot;
+    use crate::model::{Boundary, Interaction as Kind, Material, Slips};
 
     #[test]
     fn law_the_field_of_a_load_is_that_of_a_point() {

@@ -3,9 +3,9 @@
 //! It contains the exact field less the smooth field on the mesh.
 
 use super::plan::Plan;
-use crate::model::{Boundary, Interaction as Kind};
 use crate::half_space::ewald::{IMAGES, ORDERS};
 use crate::half_space::spot_field::SpotColumns;
+use crate::model::{Boundary, Interaction as Kind};
 use multiversion::multiversion;
 use std::sync::Arc;
 

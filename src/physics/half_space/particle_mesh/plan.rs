@@ -3,8 +3,8 @@
 //! A plan holds the Ewald splitting, the smooth field by radius, and the meshes with their Fourier modes.
 
 use super::ROOM;
-use crate::model::Boundary;
 use crate::half_space::ewald::ORDERS;
+use crate::model::Boundary;
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use rustfft::num_complex::Complex;
 use rustfft::num_traits::Float;

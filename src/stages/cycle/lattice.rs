@@ -1,0 +1,108 @@
+//! Grid of boundary elements, and its memory.
+
+use super::super::StageError;
+use crate::campaign::{Campaign, CycleUnit};
+use crate::model::Attraction;
+use crate::physics::PhysicsError;
+use crate::physics::memory;
+use crate::spec::CaseParams;
+use crate::store::hdf5::{SurfaceHeader, read_header};
+
+/// Fields of numbers that the solver needs, its patches included, and those of a load reversal with its maps and checkpoint.
+const FIELDS: usize = 21;
+const FIELDS_OF_REVERSAL: usize = 8;
+
+/// Grid of a case on one surface.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::stages) struct Lattice {
+    /// Grid points along a side.
+    pub(in crate::stages) points: usize,
+    /// Grid points per shortest wavelength.
+    pub(in crate::stages) per_wavelength: f64,
+    /// Range of the Morse law \[m\]; nothing for the JKR limit.
+    pub(in crate::stages) range_m: Option<f64>,
+    /// True if the square is a surface with its mirror images.
+    pub(in crate::stages) is_mirrored: bool,
+}
+
+/// Grid of a cycle; nothing for the asperity model.
+pub(in crate::stages) fn lattice(campaign: &Campaign, unit: &CycleUnit) -> Result<Option<Lattice>, StageError> {
+    let params = &campaign.cases[unit.case].case.params;
+    if !params.by_elements() {
+        return Ok(None);
+    }
+    Ok(Some(if params.surface.is_measured() {
+        Lattice::of_measured(params, &read_header(&campaign.surface_path(&campaign.surfaces[unit.surface]))?)
+    } else {
+        Lattice::of_generated(params)
+    }))
+}
+
+impl Lattice {
+    /// The grid of a case on a square of a side \[m\] with a number of shortest wavelengths.
+    fn of(params: &CaseParams, (length_m, wavelengths): (f64, f64)) -> Self {
+        let elements = &params.boundary_elements;
+        let points = elements.grid(wavelengths);
+        let range = || elements.range(params.material.adhesion_length_m(), length_m / f64::from(points));
+        Self {
+            points: points as usize,
+            per_wavelength: f64::from(points) / wavelengths,
+            range_m: (elements.attraction == Attraction::Range).then(range),
+            is_mirrored: params.surface.is_measured() && !params.surface.periodic,
+        }
+    }
+
+    /// The grid of a case on its generated surface.
+    pub(in crate::stages) fn of_generated(params: &CaseParams) -> Self {
+        Self::of(params, (params.surface.length_m, f64::from(params.surface.magnification)))
+    }
+
+    /// The grid of a case on a measured surface.
+    pub(in crate::stages) fn of_measured(params: &CaseParams, header: &SurfaceHeader) -> Self {
+        Self::of(params, extent(header, params))
+    }
+}
+
+/// The grid of a case on a surface with this header and rms height \[m\], checked.
+pub(in crate::stages) fn checked_lattice(params: &CaseParams, header: &SurfaceHeader, rms_height_m: f64) -> Result<Lattice, StageError> {
+    let (length_m, wavelengths) = extent(header, params);
+    let (elements, loads) = (&params.boundary_elements, params.cycle.max_load.len());
+    if let Some((problem, help)) = elements.refusal(length_m, wavelengths, params.material.adhesion_length_m()) {
+        return Err(PhysicsError::Surface { problem, help }.into());
+    }
+    let lattice = Lattice::of(params, (length_m, wavelengths));
+    enough_memory(lattice.points, loads)?;
+    if let Some((problem, help)) = lattice.range_m.and_then(|range_m| elements.refusal_of_range(range_m, rms_height_m, loads)) {
+        return Err(StageError::Range { problem, help });
+    }
+    if lattice.is_mirrored && lattice.points % 2 == 1 {
+        let problem =
+            format!("a scan that is not periodic is continued by mirror images: {} grid points are an odd number", lattice.points);
+        return Err(PhysicsError::Surface { problem, help: "use an even number of boundary_elements.points" }.into());
+    }
+    Ok(lattice)
+}
+
+/// Side of the periodic square \[m\] and its number of shortest wavelengths. A surface that is not periodic is continued by mirror images.
+pub(super) fn extent(header: &SurfaceHeader, params: &CaseParams) -> (f64, f64) {
+    let shortest = match &header.measured {
+        Some(measured) => measured.shortest_wavelength_m,
+        None => header.length_m / f64::from(params.surface.magnification),
+    };
+    let length_m = if header.periodic { header.length_m } else { 2.0 * header.length_m };
+    (length_m, length_m / shortest)
+}
+
+/// Memory of boundary elements on a grid with so many points along a side and loads \[bytes\].
+pub(in crate::stages) fn elements_bytes(points: usize, loads: usize) -> usize {
+    points * points * size_of::<f64>() * (FIELDS + FIELDS_OF_REVERSAL * loads)
+}
+
+/// Refuses a grid for which there is not enough memory.
+pub(in crate::stages) fn enough_memory(points: usize, loads: usize) -> Result<(), PhysicsError> {
+    let bytes = elements_bytes(points, loads);
+    memory::check(bytes).map_err(|_| PhysicsError::Surface {
+        problem: format!("boundary elements on {points} x {points} points need {:.2} GB of memory, which are not free", bytes as f64 / 1e9),
+        help: "use fewer boundary_elements.points, fewer loads, or fewer tasks at once (--jobs 1)",
+    })
+}
