@@ -4,6 +4,7 @@ use super::{
     Amplitudes, Attraction, Boundary, Coalescence, Detrend, FastAxis, Filter, Interaction, JumpIn, KeptContacts, Material, Method, Missing,
     Normalization, Nucleation, Opening, Slip, Slips,
 };
+use crate::physics::surface::spectrum::Spectrum;
 use serde::{Deserialize, Serialize};
 
 /// Everything that a case is made of but its seed.
@@ -223,6 +224,20 @@ impl Default for ElementParams {
             approach_step: 0.03,
             halvings: 6,
             precision: 1e-4,
+        }
+    }
+}
+
+impl From<&SurfaceParams> for Spectrum {
+    /// Target spectrum of a generated surface.
+    fn from(params: &SurfaceParams) -> Self {
+        Self {
+            length_m: params.length_m,
+            rms_height_m: params.rms_height_m,
+            hurst: params.hurst,
+            magnification: params.magnification,
+            normalization: params.normalization,
+            amplitudes: params.amplitudes,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Power spectral density of a self-affine surface (Eq 10) and its moments.
 
-use crate::model::{Amplitudes, Normalization, SurfaceParams};
+use crate::model::{Amplitudes, Normalization};
 use std::f64::consts::PI;
 
 /// Parameters of a synthetic surface, except its seed.
@@ -18,20 +18,6 @@ pub struct Spectrum {
     pub normalization: Normalization,
     /// Fixed or Rayleigh-distributed moduli.
     pub amplitudes: Amplitudes,
-}
-
-impl From<&SurfaceParams> for Spectrum {
-    /// Target spectrum of a generated surface.
-    fn from(params: &SurfaceParams) -> Self {
-        Self {
-            length_m: params.length_m,
-            rms_height_m: params.rms_height_m,
-            hurst: params.hurst,
-            magnification: params.magnification,
-            normalization: params.normalization,
-            amplitudes: params.amplitudes,
-        }
-    }
 }
 
 impl Spectrum {
