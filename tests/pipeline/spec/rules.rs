@@ -77,7 +77,9 @@ fn law_every_word_is_taken() {
         let spec = Spec::parse(&text, "x.toml").unwrap_or_else(|errors| panic!("{errors}"));
         let json = serde_json::to_value(&spec.cases[0].params).unwrap();
         let found = json.pointer(&format!("/{}", key.replace('.', "/"))).unwrap();
-        assert_eq!(found.to_string(), value, "{key}");
+        // The choice between the methods: at the default parameters they are near full contact.
+        let wanted = if value == "\"auto\"" && key == "model.method" { "\"boundary_elements\"".to_owned() } else { value };
+        assert_eq!(found.to_string(), wanted, "{key}");
     }
 }
 
