@@ -198,12 +198,8 @@ fn few_warnings(cases: &Frame) -> Result<Vec<String>, StatsError> {
     };
     let mut lines: Vec<String> = std::iter::once(String::new()).chain(other.iter().take(FEW - 1).map(line)).collect();
     let left = covered.len() + other.len().saturating_sub(FEW - 1);
-    let them = if left == 0 {
-        "Consequences and actions".to_owned()
-    } else {
-        format!("{}, consequences and actions", counted(left, "more warning"))
-    };
-    lines.push(format!("{them}: report.html, \"Model validity\", or --verbose"));
+    let more = if left == 0 { String::new() } else { format!("{}, ", counted(left, "more warning")) };
+    lines.push(format!("{more}consequences and actions: report.html, or --verbose"));
     Ok(lines)
 }
 

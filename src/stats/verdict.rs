@@ -38,17 +38,18 @@ pub(super) fn verdict(cases: &Frame, methods: Option<&Frame>, rows: &[usize]) ->
         return Ok((!elements.is_empty()).then(|| format!("Verdict: {}, by boundary elements, which hold there.", regime.name())));
     }
     let regime = regime(cases, &asperities)?;
-    let share = share(cases, methods, &asperities)?.map(|share| format!("the asperity model has {share} of the area"));
-    let advice = match (regime, elements.is_empty()) {
-        (Regime::Separate, _) => "within the range of the asperity model",
-        (_, true) => "use method = \"boundary_elements\"",
-        (_, false) => "trust the rows by boundary elements",
+    let share = share(cases, methods, &asperities)?;
+    let text = match (regime, elements.is_empty()) {
+        (Regime::Separate, _) => {
+            let share = share.map_or_else(String::new, |share| format!(", which has {share} of the area"));
+            format!("within the range of the asperity model{share}")
+        }
+        (_, has_none) => {
+            let advice = if has_none { "use method = \"boundary_elements\"" } else { "trust the rows by boundary elements" };
+            share.map_or_else(|| advice.to_owned(), |share| format!("the asperity model has {share} of the area; {advice}"))
+        }
     };
-    let parts: Vec<String> = match regime {
-        Regime::Separate => std::iter::once(advice.to_owned()).chain(share).collect(),
-        _ => share.into_iter().chain([advice.to_owned()]).collect(),
-    };
-    Ok(Some(format!("Verdict: {}: {}.", regime.name(), parts.join("; "))))
+    Ok(Some(format!("Verdict: {}: {text}.", regime.name())))
 }
 
 /// The part of the area of boundary elements that the asperity model has in rows, as an interval.
