@@ -75,7 +75,10 @@ fn paths_in(code: &str) -> Vec<String> {
         let lines: Vec<&str> = declaration.lines().map(str::trim).collect();
         let Some((at, start)) = lines.iter().enumerate().rev().find_map(|(at, line)| Some((at, starts(line)?))) else { continue };
         let item: String = lines[at..].concat()[start.len()..].chars().filter(|c| !c.is_whitespace()).collect();
-        expand(&item, "", &mut paths);
+        // A line of a message that begins with "use " is no declaration.
+        if item.chars().all(|c| c.is_alphanumeric() || "_:{},*".contains(c)) {
+            expand(&item, "", &mut paths);
+        }
     }
     let is_path = |c: char| c.is_alphanumeric() || c == '_' || c == ':';
     paths.extend(code.split(|c| !is_path(c)).filter(|word| word.contains("::")).map(str::to_owned));
