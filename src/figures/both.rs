@@ -10,7 +10,7 @@ use super::panels::Panel;
 use super::plot::plot_xy;
 use super::style::{OTHER, RESULT, THEORY, curve, shade};
 use super::{FigureError, markup};
-use crate::store::{Frame, ReversalMap};
+use crate::store::{Frame, LoopMaps};
 use ndarray::ArrayView2;
 use std::fmt::Write as _;
 
@@ -32,7 +32,7 @@ pub struct Both<'a> {
     /// Contact area A/A0 of both.
     pub areas: [f64; 2],
     /// Contact by boundary elements, on the same square.
-    pub elements: &'a ReversalMap,
+    pub elements: &'a LoopMaps,
 }
 
 /// Contact spots of the asperity model and the contact of boundary elements over the heights, side by side.
@@ -63,12 +63,13 @@ pub fn both(of: &Both<'_>, caption: String) -> Result<Drawing, FigureError> {
 }
 
 /// Cells in compression and in tension, a path for each.
-fn cells(map: &ReversalMap) -> String {
+fn cells(of: &LoopMaps) -> String {
+    let map = &of.reversal;
     let points = map.pressure_pa.nrows();
     let cells = CELLS.min(points);
     let sign = |i: usize, j: usize| {
         let at = [(2 * i + 1) * points / (2 * cells), (2 * j + 1) * points / (2 * cells)];
-        let touches = f64::from(map.gap_m[at]) < map.contact_gap_m;
+        let touches = f64::from(map.gap_m[at]) < of.contact_gap_m;
         if map.pressure_pa[at] > 0.0 { 1 } else { -i8::from(touches) }
     };
     let size = SIDE / cells as f64;

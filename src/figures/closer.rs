@@ -12,6 +12,7 @@ use super::panels::Panel;
 use super::plot::plot_xy;
 use super::style::{OTHER, RESULT, THEORY, curve, entry, shade};
 use crate::stats::significant;
+use crate::store::Frame;
 use crate::text::counted;
 use ndarray::ArrayView2;
 use std::collections::BTreeMap;
@@ -34,7 +35,7 @@ pub fn closer(of: &Closer<'_>, heights_m: ArrayView2<'_, f64>) -> Result<(Vec<Pa
     let branches = branches(of, step_of(&kept, Landmark::Turning))?;
     let panel = |name: &str, plot: XyPlot| panel(name, of_cycle(name, of), plot);
     let mut panels =
-        vec![panel("loop", of_loop(of)?), panel("events", events(of, &branches)?), panel("avalanches", avalanches(of, &branches)?)];
+        vec![panel("loop", of_loop(of.steps, of.max_load)?), panel("events", events(of, &branches)?), panel("avalanches", avalanches(of, &branches)?)];
     let styles = [(Landmark::Turning, RESULT, Stroke::Solid), (Landmark::PullOff, OTHER, Stroke::Dashed)];
     let end = |(landmark, hue, stroke)| step_of(&kept, landmark).map(|step| (landmark, step, hue, stroke));
     let ends: Vec<End> = styles.into_iter().filter_map(end).collect();
@@ -77,13 +78,13 @@ fn branches(of: &Closer<'_>, turning: Option<i64>) -> Result<[OfBranch; 2], Figu
 }
 
 /// The loop itself: the load over the approach, up to the turning point and back.
-fn of_loop(of: &Closer<'_>) -> Result<XyPlot, FigureError> {
-    let (branches, max_loads) = (of.steps.text("branch")?, of.steps.f64_or_null("max_load")?);
-    let (approaches, loads) = (of.steps.f64("penetration")?, of.steps.f64("load")?);
+pub(super) fn of_loop(steps: &Frame, max_load: f64) -> Result<XyPlot, FigureError> {
+    let (branches, max_loads) = (steps.text("branch")?, steps.f64_or_null("max_load")?);
+    let (approaches, loads) = (steps.f64("penetration")?, steps.f64("load")?);
     let points = |fits: &dyn Fn(usize) -> bool| -> Vec<(f64, f64)> {
         (0..branches.len()).filter(|k| fits(*k)).map(|k| (approaches[k], loads[k])).collect()
     };
-    let unloading = points(&|k| branches[k] == "unloading" && max_loads[k] == Some(of.max_load));
+    let unloading = points(&|k| branches[k] == "unloading" && max_loads[k] == Some(max_load));
     // Loading goes on beyond a turning point that is not the last one.
     let most = unloading.iter().map(|point| point.0).fold(f64::NEG_INFINITY, f64::max);
     let loading = points(&|k| branches[k] == "loading" && approaches[k] <= most);

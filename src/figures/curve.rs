@@ -25,12 +25,14 @@ pub enum Stroke {
     Diamonds,
     /// No line: a cross at each point.
     Crosses,
+    /// No line and no points: the area between two curves, which the band of the curve is.
+    Area,
 }
 
 impl Stroke {
     pub(super) fn dashes(self) -> Option<&'static str> {
         match self {
-            Self::Solid | Self::Points | Self::Diamonds | Self::Crosses => None,
+            Self::Solid | Self::Points | Self::Diamonds | Self::Crosses | Self::Area => None,
             Self::Dashed => Some("7 4"),
             Self::Dotted => Some("1.5 3.5"),
         }
@@ -38,7 +40,7 @@ impl Stroke {
 
     /// True if its points are joined.
     pub(super) fn is_line(self) -> bool {
-        !matches!(self, Self::Points | Self::Diamonds | Self::Crosses)
+        !matches!(self, Self::Points | Self::Diamonds | Self::Crosses | Self::Area)
     }
 }
 
@@ -82,7 +84,7 @@ impl Curve {
 
     /// True if each point is drawn with a mark: a line of one point would not be seen.
     pub(super) fn is_marked(&self) -> bool {
-        self.marked || self.points.len() == 1 || !self.has_line()
+        self.stroke != Stroke::Area && (self.marked || self.points.len() == 1 || !self.has_line())
     }
 
     /// The ends of a point's error bar, or the edges of the band there.

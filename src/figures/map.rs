@@ -82,7 +82,7 @@ pub(super) fn sheet((width, height): (f64, f64), prefix: &str, heights_m: ArrayV
 }
 
 /// A number with three digits and, where it is small, a power of ten, with the markup of the figures.
-fn power(number: f64) -> String {
+pub(super) fn power(number: f64) -> String {
     let text = significant(number, 3);
     let text = text.split_once('e').map_or(text.clone(), |(digits, exponent)| format!("{digits} × 10^{{{exponent}}}"));
     text.replace('-', "−")

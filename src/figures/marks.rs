@@ -1,6 +1,7 @@
 //! Marks of single points: in a panel and in its key.
 
 use super::curve::{Curve, SPECK, Stroke};
+use super::plot::BAND_OPACITY;
 use kuva::plot::scatter::{MarkerShape, ScatterPlot};
 use kuva::render::color::Color;
 use kuva::render::plots::Plot;
@@ -15,7 +16,7 @@ impl Stroke {
     fn shape(self) -> MarkerShape {
         match self {
             Self::Solid | Self::Points => MarkerShape::Circle,
-            Self::Dashed => MarkerShape::Square,
+            Self::Dashed | Self::Area => MarkerShape::Square,
             Self::Dotted | Self::Diamonds => MarkerShape::Diamond,
             Self::Crosses => MarkerShape::Cross,
         }
@@ -26,6 +27,7 @@ impl Stroke {
             Self::Points => SPECK,
             Self::Diamonds => 1.6 * SPECK,
             Self::Crosses => CROSS,
+            Self::Area => 1.4 * MARK,
             // A square is wider than a disc of the same radius.
             Self::Dashed => 0.85 * MARK,
             Self::Solid | Self::Dotted => MARK,
@@ -55,6 +57,14 @@ pub(super) fn sample(scene: &mut Scene, (x, y): (f64, f64), stroke: Stroke, colo
         Stroke::Dotted | Stroke::Diamonds => {
             path(format!("M {x} {0} L {1} {y} L {x} {2} L {3} {y} Z", y - size, x + size, y + size, x - size), colour, false)
         }
+        Stroke::Area => Primitive::Path(Box::new(PathData {
+            d: format!("M {0} {1} h {2} v {3} h -{2} Z", x - 2.0 * size, y - size, 4.0 * size, 2.0 * size),
+            fill: Some(Color::from(colour)),
+            stroke: Color::None,
+            stroke_width: 0.0,
+            opacity: Some(BAND_OPACITY),
+            stroke_dasharray: None,
+        })),
         Stroke::Crosses => {
             let arm = 0.9 * size;
             path(format!("M {0} {1} l {2} {2} m 0 -{2} l -{2} {2}", x - arm, y - arm, 2.0 * arm), colour, true)

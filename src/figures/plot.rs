@@ -18,7 +18,7 @@ const SIZE: (f64, f64) = (480.0, 380.0);
 const LABEL: u32 = 16;
 const TICK: u32 = 14;
 /// Opacity of a band: several lie over one another.
-const BAND_OPACITY: f64 = 0.13;
+pub(super) const BAND_OPACITY: f64 = 0.13;
 
 /// Draws a panel as a complete SVG document.
 pub fn plot_xy(plot: &XyPlot) -> String {

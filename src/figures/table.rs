@@ -1,6 +1,6 @@
 //! Data of the panels as a table, for other figures.
 
-use super::curve::Curve;
+use super::curve::{Curve, Stroke};
 use super::panels::Panel;
 use crate::schema::PANELS;
 use crate::store::{Frame, FrameError};
@@ -26,7 +26,8 @@ impl<'a> Row<'a> {
 pub fn table(panels: &[(String, Panel)]) -> Result<Frame, FrameError> {
     let mut rows = Vec::new();
     for (sweep, panel) in panels {
-        for (number, curve) in panel.plot.curves.iter().enumerate() {
+        // An area between two curves is no result of its own.
+        for (number, curve) in panel.plot.curves.iter().enumerate().filter(|(_, curve)| curve.stroke != Stroke::Area) {
             rows.extend((0..curve.points.len()).map(|point| Row { sweep, panel, curve: number, point }));
         }
     }

@@ -125,7 +125,7 @@ pub(super) fn plain(text: &str) -> Markup {
 /// Panels in a grid, each with number, caption and links to its files.
 pub(super) fn grid<'a>(numbers: &Numbers<'_>, panels: impl IntoIterator<Item = &'a Panel>) -> Markup {
     let number = numbers.next();
-    let label = |name: &str| if name.chars().count() > 1 { format!(", {name}") } else { name.to_owned() };
+    let label = |name: &str| if name.chars().count() > 1 { format!(", {}", name.replace('_', " ")) } else { name.to_owned() };
     html! {
         div.panels {
             "\n"

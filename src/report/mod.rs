@@ -68,8 +68,8 @@ pub struct Report<'a> {
     pub sweeps: &'a [String],
     /// Panels, each with the name of its sweep.
     pub drawings: &'a [(String, Panel)],
-    /// A single cycle.
-    pub cycle: Option<&'a SingleCycle>,
+    /// Single cycles, one for each method.
+    pub cycles: &'a [SingleCycle],
     /// Data of the explorer as JSON.
     pub explorer: Option<&'a str>,
     /// Spec with all defaults.
@@ -99,7 +99,7 @@ pub fn page(report: &Report<'_>) -> Result<String, StatsError> {
         (scans::scans(report.scans))
         @if has_results {
             @for sweep in report.sweeps { (figures(report, sweep, &numbers)) }
-            @if let Some(cycle) = report.cycle { (single_cycle::section(&numbers, cycle)) }
+            @if !report.cycles.is_empty() { (single_cycle::section(&numbers, report.cycles)) }
             @if let Some(data) = report.explorer { (explorer(data)) }
             (theories::theories(&cases)?)
             (validity::budget(&cases)?)

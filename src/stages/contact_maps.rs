@@ -8,7 +8,7 @@ use crate::schema;
 use crate::stats::significant;
 use crate::store::hdf5::read_surface;
 use crate::store::parquet::read_table;
-use crate::store::{Frame, read_reversal_map};
+use crate::store::{Frame, read_loop_maps};
 
 /// The contact of the pair of cycles with the largest Θ by boundary elements on a periodic surface, at that load reversal; nothing without one, and where its contacts
 /// or maps are not kept.
@@ -27,7 +27,7 @@ pub(super) fn contact_maps(campaign: &Campaign, standings: &[Standing], methods:
     let (Some(asperities), Some(elements)) = (done(first[row]), done(second[row])) else { return Ok(None) };
     let surface = &campaign.surfaces[asperities.surface];
     let (header, heights) = read_surface(&campaign.surface_path(surface))?;
-    let map = read_reversal_map(&campaign.cycle_dir(elements).join("maps.h5"), loads[row])?;
+    let map = read_loop_maps(&campaign.cycle_dir(elements).join("maps.h5"), loads[row])?;
     let Some(map) = map.filter(|_| header.periodic) else { return Ok(None) };
     let table = |table: &'static schema::Table| read_table(&campaign.cycle_dir(asperities).join(format!("{}.parquet", table.name)), table);
     let (steps, contacts) = (table(&schema::STEPS)?, table(&schema::CONTACTS)?);

@@ -41,7 +41,7 @@ impl Statistics {
 struct Drawings {
     /// Panels, each with the name of its sweep.
     panels: Vec<(String, Panel)>,
-    cycle: Option<SingleCycle>,
+    cycles: Vec<SingleCycle>,
     methods: MethodFigures,
     sensitivity: Option<Drawing>,
 }
@@ -56,7 +56,7 @@ impl Drawings {
         }
         Ok(Self {
             panels: drawn,
-            cycle: look(campaign, standings, cases)?,
+            cycles: look(campaign, standings, cases)?,
             methods: MethodFigures { ratios: method_ratios(methods)?, maps: contact_maps(campaign, standings, methods)? },
             sensitivity: sensitivity(cases, realizations)?,
         })
@@ -64,8 +64,8 @@ impl Drawings {
 
     /// Every figure: stem of its file, and drawing.
     fn figures(&self) -> impl Iterator<Item = (&str, &str)> {
-        let cycle = self.cycle.iter().flat_map(|cycle| &cycle.panels);
-        let map = self.cycle.iter().filter_map(|cycle| cycle.map.as_ref());
+        let cycle = self.cycles.iter().flat_map(|cycle| &cycle.panels);
+        let map = self.cycles.iter().filter_map(|cycle| cycle.map.as_ref());
         let others = map.chain(&self.methods.maps).chain(&self.sensitivity).map(|drawing| (drawing.stem, drawing.svg.as_str()));
         let panels = self.panels.iter().map(|(_, panel)| panel).chain(cycle);
         panels.map(drawing).chain(others).chain(self.methods.ratios.as_ref().map(drawing))
@@ -73,7 +73,7 @@ impl Drawings {
 
     /// All panels with the names of their sweeps; those of the single cycle have none.
     fn all_panels(&self) -> Vec<(String, Panel)> {
-        let cycle = self.cycle.iter().flat_map(|cycle| &cycle.panels).map(|panel| (String::new(), panel.clone()));
+        let cycle = self.cycles.iter().flat_map(|cycle| &cycle.panels).map(|panel| (String::new(), panel.clone()));
         self.panels.iter().cloned().chain(cycle).collect()
     }
 }
@@ -146,7 +146,7 @@ fn page(
         scans: &scans(campaign)?,
         sweeps: &sweeps(campaign),
         drawings: &drawings.panels,
-        cycle: drawings.cycle.as_ref(),
+        cycles: &drawings.cycles,
         explorer: explorer(campaign, standings, &statistics.cases, &statistics.methods)?.as_deref(),
         spec: &campaign.labelled_toml(),
     })?)

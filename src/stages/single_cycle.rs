@@ -3,7 +3,7 @@
 use super::StageError;
 use super::surface::{scale, spectrum};
 use crate::campaign::{Campaign, CycleUnit, Standing};
-use crate::figures::{Closer, closer};
+use crate::figures::{Closer, ElementsLoop, closer, elements_loop};
 use crate::model::{Boundary, Choice, Method, Normalization};
 use crate::physics::surface::periodogram::{periodogram, windowed_periodogram};
 use crate::physics::surface::spectrum::Spectrum;
@@ -12,9 +12,9 @@ use crate::report::SingleCycle;
 use crate::schema;
 use crate::spec::{CaseParams, SurfaceParams};
 use crate::stats::{labels_with_unit, significant};
-use crate::store::Frame;
 use crate::store::hdf5::{SurfaceHeader, read_surface};
 use crate::store::parquet::read_table;
+use crate::store::{Frame, read_loop_maps};
 use std::f64::consts::TAU;
 
 /// Maximum number of points along a side. For larger surfaces this section would need more memory than the cycle.
@@ -23,23 +23,67 @@ const GREATEST: u64 = 8192;
 /// Points of a curve of a theory.
 const POINTS: usize = 120;
 
-/// The first finished cycle of the asperity-model case with the largest mean Θ, at that load reversal; `None` without a finished cycle, or if all surfaces are too large.
-pub(super) fn look(campaign: &Campaign, standings: &[Standing], cases: &Frame) -> Result<Option<SingleCycle>, StageError> {
-    let params = |unit: &CycleUnit| &campaign.surfaces[unit.surface].params;
+/// A finished cycle with a load reversal.
+struct Chosen<'a> {
+    unit: &'a CycleUnit,
+    max_load: f64,
+    /// True if a case with a larger mean Θ has no such cycle.
+    has_larger: bool,
+}
+
+/// The first finished cycle of the case by a method with the largest mean Θ, at that load reversal; `None` without one that `fits`.
+fn choose<'a>(
+    (campaign, standings): (&'a Campaign, &[Standing]),
+    cases: &Frame,
+    method: Method,
+    fits: impl Fn(&CycleUnit) -> bool,
+) -> Result<Option<Chosen<'a>>, StageError> {
     let done = || campaign.cycles.iter().zip(standings).filter(|(_, standing)| **standing == Standing::Done).map(|(unit, _)| unit);
     let (ids, loads, losses) = (cases.text("case_id")?, cases.f64("max_load")?, cases.f64_or_null("loss_mean")?);
-    // The figures are those of contact spots.
     let methods = cases.text("method")?;
     let mut rows: Vec<(usize, f64)> = losses.iter().enumerate().filter_map(|(row, loss)| loss.map(|loss| (row, loss))).collect();
-    rows.retain(|(row, _)| methods[*row] == Method::Asperities.word());
+    rows.retain(|(row, _)| methods[*row] == method.word());
     // Of equal means, the first row.
     rows.sort_by(|u, v| v.1.total_cmp(&u.1));
-    let first = |row: usize| done().find(|unit| campaign.cases[unit.case].id == ids[row] && params(unit).grid() <= GREATEST);
-    let Some((place, unit)) = rows.iter().enumerate().find_map(|(place, (row, _))| first(*row).map(|unit| (place, unit))) else {
-        return Ok(None);
-    };
-    let max_load = loads[rows[place].0];
-    let choice = choice(methods.iter().any(|method| *method != Method::Asperities.word()), place > 0);
+    let first = |row: usize| done().find(|unit| campaign.cases[unit.case].id == ids[row] && fits(unit));
+    let found = rows.iter().enumerate().find_map(|(place, (row, _))| first(*row).map(|unit| (place, *row, unit)));
+    Ok(found.map(|(place, row, unit)| Chosen { unit, max_load: loads[row], has_larger: place > 0 }))
+}
+
+/// The cycles of the report: by boundary elements, then by the asperity model.
+pub(super) fn look(campaign: &Campaign, standings: &[Standing], cases: &Frame) -> Result<Vec<SingleCycle>, StageError> {
+    let elements = of_elements(campaign, standings, cases)?;
+    Ok(elements.into_iter().chain(of_asperities(campaign, standings, cases)?).collect())
+}
+
+/// Loop and contact of the case by boundary elements with the largest mean Θ.
+fn of_elements(campaign: &Campaign, standings: &[Standing], cases: &Frame) -> Result<Option<SingleCycle>, StageError> {
+    let chosen = choose((campaign, standings), cases, Method::BoundaryElements, |_| true)?;
+    let Some(Chosen { unit, max_load, has_larger }) = chosen else { return Ok(None) };
+    let case = &campaign.cases[unit.case].case.params;
+    let parameters = parameters(case, &campaign.file_label(&case.surface.file), max_load);
+    let folder = campaign.cycle_dir(unit);
+    let steps = read_table(&folder.join(format!("{}.parquet", schema::STEPS.name)), &schema::STEPS)?;
+    let maps = read_loop_maps(&folder.join("maps.h5"), max_load)?;
+    let (panel, map) = elements_loop(&ElementsLoop { max_load, parameters: &parameters, steps: &steps, maps: maps.as_ref() })?;
+    Ok(Some(SingleCycle {
+        id: unit.id.clone(),
+        realization: campaign.surfaces[unit.surface].realization,
+        choice: choice(Some(Method::BoundaryElements), has_larger),
+        files: "The table `events` of the cycle holds all events, the table `contacts` the regions of contact, the file `maps.h5` gap and pressure.",
+        parameters,
+        panels: vec![panel],
+        map,
+    }))
+}
+
+/// The case of the asperity model with the largest mean Θ; `None` without a finished cycle, or if all surfaces are too large.
+fn of_asperities(campaign: &Campaign, standings: &[Standing], cases: &Frame) -> Result<Option<SingleCycle>, StageError> {
+    let fits = |unit: &CycleUnit| campaign.surfaces[unit.surface].params.grid() <= GREATEST;
+    let chosen = choose((campaign, standings), cases, Method::Asperities, fits)?;
+    let Some(Chosen { unit, max_load, has_larger }) = chosen else { return Ok(None) };
+    let has_elements = cases.text("method")?.iter().any(|method| *method != Method::Asperities.word());
+    let choice = choice(has_elements.then_some(Method::Asperities), has_larger);
     let case = &campaign.cases[unit.case].case.params;
     let parameters = parameters(case, &campaign.file_label(&case.surface.file), max_load);
     let surface = &campaign.surfaces[unit.surface];
@@ -79,12 +123,18 @@ pub(super) fn look(campaign: &Campaign, standings: &[Standing], cases: &Frame) -
     };
     let (panels, map) = closer(&of, heights.view())?;
     let realization = surface.realization;
-    Ok(Some(SingleCycle { id: unit.id.clone(), realization, choice, parameters, panels, map }))
+    let files = "The table `events` of the cycle holds all events, the table `contacts` the contact spots.";
+    Ok(Some(SingleCycle { id: unit.id.clone(), realization, choice, files, parameters, panels, map }))
 }
 
-/// The chosen case in words. Its figures are those of contact spots; boundary elements have maps and the explorer.
-fn choice(has_elements: bool, has_larger: bool) -> String {
-    let method = if has_elements { " by the asperity model" } else { "" };
+/// The chosen case in words, with its method where a run has boundary elements.
+fn choice(method: Option<Method>, has_larger: bool) -> String {
+    let has_larger = has_larger && method != Some(Method::BoundaryElements);
+    let method = match method {
+        Some(Method::BoundaryElements) => " by boundary elements",
+        Some(Method::Asperities) => " by the asperity model",
+        None => "",
+    };
     let size = if has_larger { format!(" on surfaces of at most {GREATEST} × {GREATEST} points") } else { String::new() };
     format!("The case{method} with the largest mean Θ/(E*A_{{0}}h_{{rms}}){size}")
 }

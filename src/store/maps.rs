@@ -68,35 +68,46 @@ pub fn write_maps(path: &Path, header: &MapsHeader<'_>, maps: &[ContactMap]) -> 
     )
 }
 
-/// Gap and pressure at a load reversal, rows along x.
+/// Maps at the ends of a loop.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ReversalMap {
-    /// Gap \[m\].
-    pub gap_m: Array2<f32>,
-    /// Pressure, compression positive \[Pa\].
-    pub pressure_pa: Array2<f32>,
+pub struct LoopMaps {
+    /// Side of the square \[m\].
+    pub length_m: f64,
     /// Gap below which a point is in contact \[m\].
     pub contact_gap_m: f64,
+    /// Map at the load reversal.
+    pub reversal: StoredMap,
+    /// Map at the maximum tensile load; nothing if it is not stored.
+    pub pull_off: Option<StoredMap>,
 }
 
-/// The map at the load reversal `F_max/(E* A0)`; nothing without one, and without the gap of contact.
+/// The maps at the load reversal `F_max/(E* A0)` and at the maximum tensile load of its unloading; nothing without the first, and without the gap of contact.
 ///
 /// # Errors
 /// If the file cannot be read.
-pub fn read_reversal_map(path: &Path, max_load: f64) -> Result<Option<ReversalMap>, StoreError> {
-    let find = || -> Result<Option<ReversalMap>, Cause> {
+pub fn read_loop_maps(path: &Path, max_load: f64) -> Result<Option<LoopMaps>, StoreError> {
+    let find = || -> Result<Option<LoopMaps>, Cause> {
         let file = open(path)?;
         // Files of the first builds lack it.
         let Ok(contact_gap_m) = file.attr("contact_gap_m").and_then(|attribute| attribute.read_scalar::<f64>()) else { return Ok(None) };
+        let (mut reversal, mut pull_off) = (None, None);
+        let mut lowest = 0.0;
         for group in file.groups()? {
-            let branch = group.attr("branch")?.read_scalar::<VarLenUnicode>()?;
-            let load = group.attr("max_load")?.read_scalar::<f64>()?;
-            if branch.as_str() == "loading" && load == max_load {
-                let [gap_m, pressure_pa] = [FIELDS[0].0, FIELDS[1].0].map(|name| group.dataset(name).and_then(|data| data.read_2d()));
-                return Ok(Some(ReversalMap { gap_m: gap_m?, pressure_pa: pressure_pa?, contact_gap_m }));
+            let number = |name: &str| group.attr(name).and_then(|attribute| attribute.read_scalar::<f64>());
+            if number("max_load")? != max_load {
+                continue;
+            }
+            let load = number("load_n")?;
+            if group.attr("branch")?.read_scalar::<VarLenUnicode>()?.as_str() == "loading" {
+                reversal = Some(group);
+            } else if load < lowest {
+                (lowest, pull_off) = (load, Some(group));
             }
         }
-        Ok(None)
+        let Some(reversal) = reversal else { return Ok(None) };
+        let length_m = file.attr("length_m")?.read_scalar()?;
+        let pull_off = pull_off.as_ref().map(stored).transpose()?;
+        Ok(Some(LoopMaps { length_m, contact_gap_m, reversal: stored(&reversal)?, pull_off }))
     };
     library(find).map_err(|cause| StoreError::new("read the contact maps from", path, cause))
 }
@@ -120,14 +131,19 @@ pub fn read_maps(path: &Path) -> Result<Vec<StoredMap>, StoreError> {
     let read = || -> Result<Vec<StoredMap>, Cause> {
         let mut maps = Vec::new();
         for group in open(path)?.groups()? {
-            let step = group.attr("step")?.read_scalar::<i64>()?;
-            let [gap_m, pressure_pa] = [FIELDS[0].0, FIELDS[1].0].map(|name| group.dataset(name).and_then(|data| data.read_2d()));
-            maps.push(StoredMap { step, gap_m: gap_m?, pressure_pa: pressure_pa? });
+            maps.push(stored(&group)?);
         }
         maps.sort_by_key(|map| map.step);
         Ok(maps)
     };
     library(read).map_err(|cause| StoreError::new("read the contact maps from", path, cause))
+}
+
+/// The map of a group.
+fn stored(group: &Group) -> Result<StoredMap, Cause> {
+    let step = group.attr("step")?.read_scalar::<i64>()?;
+    let [gap_m, pressure_pa] = [FIELDS[0].0, FIELDS[1].0].map(|name| group.dataset(name).and_then(|data| data.read_2d()));
+    Ok(StoredMap { step, gap_m: gap_m?, pressure_pa: pressure_pa? })
 }
 
 /// Name of the group of a step.

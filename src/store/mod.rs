@@ -26,5 +26,5 @@ pub(crate) use error::panic_text;
 pub use error::{FrameError, StoreError};
 pub use frame::{ColumnData, Frame};
 pub use halfway::{CHECKPOINT_VERSION, is_halfway, read_halfway, write_halfway, write_state};
-pub use maps::{ContactMap, FIELDS as MAP_FIELDS, MapsHeader, ReversalMap, StoredMap, read_maps, read_reversal_map, write_maps};
+pub use maps::{ContactMap, FIELDS as MAP_FIELDS, LoopMaps, MapsHeader, StoredMap, read_loop_maps, read_maps, write_maps};
 pub use receipt::{Check, Fault, Found, Kept, Made, RECEIPT_VERSION, Receipt, read_receipt, write_receipt};

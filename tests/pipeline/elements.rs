@@ -95,6 +95,10 @@ fn e2e_both_methods_side_by_side() {
         let here = |word: &str| (0..of.len()).any(|row| panels.text("panel").unwrap()[row] == panel && of[row].contains(word));
         assert!(here("asperities") && here("boundary_elements"), "panel {panel}");
     }
+    // Boundary elements are the first single cycle; the asperity model follows.
+    let section = page.split(">Single cycle</h2>").nth(1).unwrap();
+    let places = ["by boundary elements with the largest mean", "by the asperity model with the largest mean"].map(|text| section.find(text));
+    assert!(places[0].is_some() && places[0] < places[1], "{places:?}");
     // Done is done, and the files are those of their records.
     assert!(stdout(&bench.verb("run", &[])).contains("Nothing to do"));
     assert_eq!(code(&bench.look("verify", &["--deep"])), 0);
@@ -369,6 +373,37 @@ fn e2e_a_state_in_a_file_is_enough_to_unload_by_boundary_elements() {
     }
     let told = stages::unload_elements_again(&campaign, unit, 0.003).unwrap_err().to_string();
     assert!(told.contains("0.003") && told.contains("[0.002, 0.004]"), "{told}");
+}
+
+#[test]
+fn e2e_boundary_elements_alone_have_figures_of_their_loop_and_contact() {
+    let bench = Bench::new(&alone());
+    assert_eq!(code(&bench.verb("run", &[])), 0);
+    let page = fs::read_to_string(bench.out().join("report.html")).unwrap();
+    for stem in ["elements_loop", "elements_map"] {
+        let svg = fs::read_to_string(bench.out().join(format!("figures/{stem}.svg"))).unwrap();
+        // A cell of the map is no element of its own: 64 x 64 points fit in far fewer elements and bytes.
+        assert!(svg.len() < 200_000 && svg.matches('<').count() < 600, "{stem}: {} bytes", svg.len());
+        assert!(page.contains(&svg[svg.find("<svg").unwrap()..]), "{stem} is not on the page");
+        for format in ["png", "pdf"] {
+            assert!(bench.out().join(format!("figures/{stem}.{format}")).is_file(), "{stem}.{format}");
+        }
+    }
+    // The drawn loop is the table of steps, and its marked pull-off force that of the statistics.
+    let panels = statistics(&bench, &schema::PANELS);
+    let (names, curves, y) = (panels.text("panel").unwrap(), panels.text("name").unwrap(), panels.f64("y").unwrap());
+    let of = |curve: &str| -> Vec<f64> {
+        (0..y.len()).filter(|k| names[*k] == "elements_loop" && curves[*k] == curve).map(|k| y[k]).collect()
+    };
+    let campaign = campaign(&bench);
+    let steps = table(&campaign, &elements(&campaign)[0], &schema::STEPS);
+    let (loads, reversals) = (steps.f64("load").unwrap(), steps.f64_or_null("max_load").unwrap());
+    let unloading: Vec<f64> = (0..loads.len()).filter(|k| reversals[*k] == Some(0.004)).map(|k| loads[k]).collect();
+    assert_eq!(of("unloading"), unloading);
+    let force = statistics(&bench, &schema::REALIZATIONS).f64("pull_off_load").unwrap();
+    assert!(force.iter().any(|force| *force == -of("pull_off")[1]), "{force:?}");
+    assert!(of("area").is_empty());
+    assert_eq!(code(&bench.look("verify", &["--deep"])), 0);
 }
 
 #[test]
