@@ -34,8 +34,11 @@ pub fn closer(of: &Closer<'_>, heights_m: ArrayView2<'_, f64>) -> Result<(Vec<Pa
     let kept = of.landmarks()?;
     let branches = branches(of, step_of(&kept, Landmark::Turning))?;
     let panel = |name: &str, plot: XyPlot| panel(name, of_cycle(name, of), plot);
-    let mut panels =
-        vec![panel("loop", of_loop(of.steps, of.max_load)?), panel("events", events(of, &branches)?), panel("avalanches", avalanches(of, &branches)?)];
+    let mut panels = vec![
+        panel("loop", of_loop(of.steps, of.max_load)?),
+        panel("events", events(of, &branches)?),
+        panel("avalanches", avalanches(of, &branches)?),
+    ];
     let styles = [(Landmark::Turning, RESULT, Stroke::Solid), (Landmark::PullOff, OTHER, Stroke::Dashed)];
     let end = |(landmark, hue, stroke)| step_of(&kept, landmark).map(|step| (landmark, step, hue, stroke));
     let ends: Vec<End> = styles.into_iter().filter_map(end).collect();

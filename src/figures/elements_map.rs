@@ -38,7 +38,11 @@ impl Scale {
     /// Level of a pressure, negative in tension: levels follow the square root.
     fn level(self, pressure_pa: f64) -> i8 {
         let step = |part: f64| 1 + ((part.sqrt() * LEVELS as f64) as usize).min(LEVELS - 1) as i8;
-        if pressure_pa > 0.0 { step(pressure_pa / self.compressive_pa) } else { -step(-pressure_pa / self.tensile_pa.max(f64::MIN_POSITIVE)) }
+        if pressure_pa > 0.0 {
+            step(pressure_pa / self.compressive_pa)
+        } else {
+            -step(-pressure_pa / self.tensile_pa.max(f64::MIN_POSITIVE))
+        }
     }
 }
 

@@ -133,7 +133,7 @@ fn choice(method: Option<Method>, has_larger: bool) -> String {
     let method = match method {
         Some(Method::BoundaryElements) => " by boundary elements",
         Some(Method::Asperities) => " by the asperity model",
-        None => "",
+        Some(Method::Auto) | None => "",
     };
     let size = if has_larger { format!(" on surfaces of at most {GREATEST} × {GREATEST} points") } else { String::new() };
     format!("The case{method} with the largest mean Θ/(E*A_{{0}}h_{{rms}}){size}")

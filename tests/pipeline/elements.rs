@@ -97,7 +97,8 @@ fn e2e_both_methods_side_by_side() {
     }
     // Boundary elements are the first single cycle; the asperity model follows.
     let section = page.split(">Single cycle</h2>").nth(1).unwrap();
-    let places = ["by boundary elements with the largest mean", "by the asperity model with the largest mean"].map(|text| section.find(text));
+    let places =
+        ["by boundary elements with the largest mean", "by the asperity model with the largest mean"].map(|text| section.find(text));
     assert!(places[0].is_some() && places[0] < places[1], "{places:?}");
     // Done is done, and the files are those of their records.
     assert!(stdout(&bench.verb("run", &[])).contains("Nothing to do"));
@@ -392,9 +393,8 @@ fn e2e_boundary_elements_alone_have_figures_of_their_loop_and_contact() {
     // The drawn loop is the table of steps, and its marked pull-off force that of the statistics.
     let panels = statistics(&bench, &schema::PANELS);
     let (names, curves, y) = (panels.text("panel").unwrap(), panels.text("name").unwrap(), panels.f64("y").unwrap());
-    let of = |curve: &str| -> Vec<f64> {
-        (0..y.len()).filter(|k| names[*k] == "elements_loop" && curves[*k] == curve).map(|k| y[k]).collect()
-    };
+    let of =
+        |curve: &str| -> Vec<f64> { (0..y.len()).filter(|k| names[*k] == "elements_loop" && curves[*k] == curve).map(|k| y[k]).collect() };
     let campaign = campaign(&bench);
     let steps = table(&campaign, &elements(&campaign)[0], &schema::STEPS);
     let (loads, reversals) = (steps.f64("load").unwrap(), steps.f64_or_null("max_load").unwrap());
