@@ -41,7 +41,7 @@ pub fn elements_loop(of: &ElementsLoop<'_>) -> Result<(Panel, Option<Drawing>), 
     );
     let svg = described(&plot_xy(&plot), &caption);
     let panel = Panel { stem: NAME.to_owned(), name: NAME.to_owned(), caption, cases: Vec::new(), svg, plot };
-    Ok((panel, of.maps.map(|maps| map(of, maps)).transpose()?))
+    Ok((panel, of.maps.map(|maps| map(of.parameters, of.steps, maps)).transpose()?))
 }
 
 /// The plot of a loop with its area and its pull-off force.

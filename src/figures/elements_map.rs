@@ -1,11 +1,10 @@
 //! Contact of boundary elements with its pressure, at the load reversal and at pull-off.
 
 use super::drawing::Drawing;
-use super::elements::ElementsLoop;
 use super::map::{ABOVE, GAP, LEGEND, SIDE, power, scale_bar};
 use super::{FigureError, markup};
 use crate::stats::{labels_with_unit, significant};
-use crate::store::{LoopMaps, StoredMap};
+use crate::store::{Frame, LoopMaps, StoredMap};
 use std::fmt::Write as _;
 
 /// Cells of a map along a side, at most: the grid point in the middle of a cell stands for it.
@@ -58,8 +57,8 @@ fn colour(level: i8) -> String {
 ///
 /// # Errors
 /// If the table of steps lacks a column.
-pub(super) fn map(of: &ElementsLoop<'_>, maps: &LoopMaps) -> Result<Drawing, FigureError> {
-    let (loads, areas, penetrations) = (of.steps.f64("load")?, of.steps.f64("area")?, of.steps.f64("penetration")?);
+pub(super) fn map(parameters: &str, steps: &Frame, maps: &LoopMaps) -> Result<Drawing, FigureError> {
+    let (loads, areas, penetrations) = (steps.f64("load")?, steps.f64("area")?, steps.f64("penetration")?);
     let shown = || [("at F_{max}", Some(&maps.reversal)), ("at pull-off", maps.pull_off.as_ref())];
     let scale = Scale::of(shown().into_iter().filter_map(|(_, map)| map));
     let (width, height) = (2.0 * SIDE + 3.0 * GAP, SIDE + ABOVE + GAP + LEGEND);
@@ -91,7 +90,7 @@ pub(super) fn map(of: &ElementsLoop<'_>, maps: &LoopMaps) -> Result<Drawing, Fig
     svg += &legend(height - LEGEND + 14.0, scale);
     let caption = format!(
         "Contact by boundary elements, for {}. Colour: pressure at the grid points in contact. File maps.h5: pressure_pa, gap_m.",
-        of.parameters
+        parameters
     );
     Ok(Drawing::new("elements_map", caption, &markup::render(&svg)))
 }

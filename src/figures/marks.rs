@@ -1,11 +1,13 @@
 //! Marks of single points: in a panel and in its key.
 
 use super::curve::{Curve, SPECK, Stroke};
-use super::plot::BAND_OPACITY;
 use kuva::plot::scatter::{MarkerShape, ScatterPlot};
 use kuva::render::color::Color;
 use kuva::render::plots::Plot;
 use kuva::render::render::{PathData, Primitive, Scene};
+
+/// Opacity of a band: several lie over one another.
+pub(super) const BAND_OPACITY: f64 = 0.13;
 
 /// Radius of a mark.
 const MARK: f64 = 4.5;

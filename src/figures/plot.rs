@@ -10,15 +10,13 @@ use std::sync::Arc;
 
 use super::axis::Axis;
 use super::curve::{Curve, NOTE, NOTE_PITCH, XyPlot, text};
-use super::marks::marks;
+use super::marks::{BAND_OPACITY, marks};
 use super::{key, markup};
 
 /// Size of a panel in pixels; at one column of a journal, 88 mm, a pixel is 0.18 mm and the smallest text 6.8 points.
 const SIZE: (f64, f64) = (480.0, 380.0);
 const LABEL: u32 = 16;
 const TICK: u32 = 14;
-/// Opacity of a band: several lie over one another.
-pub(super) const BAND_OPACITY: f64 = 0.13;
 
 /// Draws a panel as a complete SVG document.
 pub fn plot_xy(plot: &XyPlot) -> String {
