@@ -26,7 +26,7 @@ pub struct ContactMap {
     pub step: i64,
     /// `loading` or `unloading`.
     pub branch: &'static str,
-    /// Load at the reversal, `F_max/(E* A0)`.
+    /// Load at the reversal, `F_max/(E* A0)`; NaN on loading, between reversals.
     pub max_load: f64,
     /// Mean penetration \[m\].
     pub approach_m: f64,

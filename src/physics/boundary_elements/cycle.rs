@@ -3,6 +3,7 @@
 use super::contact::{Attraction, Problem};
 pub use super::records::{Cycle, Event, Map, Step, Turning, Unreached};
 use super::regions::{Region, label};
+use super::stations::{LARGEST_SIDE, of_loading, of_unloading};
 use super::step::Walk;
 pub use super::step::{Halfway, Settings};
 use crate::{LoopPosition, PhysicsError};
@@ -100,7 +101,10 @@ impl Walk<'_> {
                     return Ok(Some(Unreached::Closed { approach }));
                 }
                 self.turn();
-            } else if approach > farthest {
+            } else {
+                self.keep_between();
+            }
+            if !reached && approach > farthest {
                 return Ok(Some(Unreached::Load { reached: load, approach }));
             }
             // Adhesion pulls first: the load falls before it rises.
@@ -179,6 +183,7 @@ impl Walk<'_> {
             }
             self.advance(-1.0, None)?;
             self.keep_tensest();
+            self.keep_between();
             let done = 0.5 + 0.5 * (reversal as f64 + 1.0 - (self.at.last.totals.contact as f64 / full).min(1.0)) / branches;
             progress(self.position(done, true));
             keep(&self.at);
@@ -196,6 +201,32 @@ impl Walk<'_> {
             let step = self.at.cycle.steps.len() - 1;
             let (map, found) = self.landmark(step);
             self.at.tensest = Some((load, map, found));
+        }
+    }
+
+    /// Keeps the map of the last step where it is the first to pass a [station](super::stations).
+    fn keep_between(&mut self) {
+        let (cycle, loads) = (&self.at.cycle, &self.settings.max_loads);
+        let Some(last) = cycle.steps.last().filter(|step| step.totals.contact > 0) else { return };
+        if self.problem.half_space.points() > LARGEST_SIDE.pow(2) {
+            return;
+        }
+        let is_first = match last.reversal {
+            None => {
+                let passed = |step: &Step| of_loading(step.totals.load, loads.last().copied().unwrap_or(0.0));
+                let kept = cycle.between.iter().map(|map| &cycle.steps[map.step]).filter(|step| step.reversal.is_none()).map(passed);
+                passed(last) > kept.max().unwrap_or(0)
+            }
+            Some(reversal) => {
+                let branch = cycle.steps.iter().filter(|step| step.reversal == Some(reversal));
+                let passed = of_unloading(branch, loads.get(reversal).copied().unwrap_or(0.0));
+                let before = passed.len().checked_sub(2).map_or(0, |k| passed[k]);
+                passed.last().is_some_and(|now| *now > before)
+            }
+        };
+        if is_first {
+            let map = self.map(cycle.steps.len() - 1);
+            self.at.cycle.between.push(map);
         }
     }
 

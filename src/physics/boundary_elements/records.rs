@@ -136,6 +136,8 @@ pub struct Cycle {
     pub regions: Vec<(usize, Region)>,
     /// Maps at the load reversals and at the maximum tensile load of each unloading.
     pub maps: Vec<Map>,
+    /// Maps of further steps, spread over the branches.
+    pub between: Vec<Map>,
     /// States at the load reversals.
     pub turning: Vec<Turning>,
     /// Load reversals without a result, by their place in the settings.
@@ -177,6 +179,7 @@ impl Cycle {
         self.events.retain_mut(|event| renumber(&mut event.step));
         self.regions.retain_mut(|(step, _)| renumber(step));
         self.maps.retain_mut(|map| renumber(&mut map.step));
+        self.between.retain_mut(|map| renumber(&mut map.step));
         self.least_loads.retain_mut(|(step, _)| renumber(step));
         removed
     }
