@@ -465,6 +465,32 @@ fn law_maps_hold_the_gap_and_the_load() {
     }
 }
 
+/// Of a grid of more than 256 points along a side, maps between the ends of the branches have every second point.
+#[test]
+fn law_maps_of_a_large_grid_have_fewer_points() {
+    let spec = "name = \"large\"\nseed = 7\nrealizations = 1\nmodel.method = \"boundary_elements\"\nsurface.magnification = 2\n\
+                boundary_elements = { precision = 1e-3, points = 270, halvings = 0 }\nmaterial.work_of_adhesion_j_m2 = 0.01\n\
+                cycle = { max_load = [0.001], approach_step = 1.0 }\n";
+    let bench = Bench::new(spec);
+    assert_eq!(code(&bench.verb("run", &["--until", "cycle"])), 0);
+    let campaign = campaign(&bench);
+    let file = hdf5_metno::File::open(campaign.cycle_dir(&elements(&campaign)[0]).join("maps.h5")).unwrap();
+    let length: f64 = file.attr("length_m").unwrap().read_scalar().unwrap();
+    let mut counts = [0; 2];
+    for group in file.groups().unwrap() {
+        let stride = group.attr("stride").unwrap().read_scalar::<u64>().unwrap() as usize;
+        let pressure = group.dataset("pressure_pa").unwrap().read_2d::<f32>().unwrap();
+        assert_eq!(pressure.dim(), (270 / stride, 270 / stride));
+        counts[stride - 1] += 1;
+        // A smooth field has about its mean on every second point: 1 % of the sum without signs.
+        let [mean, whole] =
+            [|p: f64| p, f64::abs].map(|of| pressure.iter().map(|p| of(f64::from(*p))).sum::<f64>() / pressure.len() as f64);
+        let load = group.attr("load_n").unwrap().read_scalar::<f64>().unwrap() / length.powi(2);
+        assert!((mean - load).abs() < 0.01 * whole, "{mean} is not {load}");
+    }
+    assert!(counts[0] == 2 && counts[1] > 5, "{counts:?}");
+}
+
 #[test]
 fn val_grids_and_warnings_of_boundary_elements() {
     // Eight points per shortest wavelength: a warning before and after the run.

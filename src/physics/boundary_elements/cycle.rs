@@ -3,7 +3,7 @@
 use super::contact::{Attraction, Problem};
 pub use super::records::{Cycle, Event, Map, Step, Turning, Unreached};
 use super::regions::{Region, label};
-use super::stations::{LARGEST_SIDE, of_loading, of_unloading};
+use super::stations::{MOST_ALONG, of_loading, of_unloading};
 use super::step::Walk;
 pub use super::step::{Halfway, Settings};
 use crate::{LoopPosition, PhysicsError};
@@ -208,9 +208,6 @@ impl Walk<'_> {
     fn keep_between(&mut self) {
         let (cycle, loads) = (&self.at.cycle, &self.settings.max_loads);
         let Some(last) = cycle.steps.last().filter(|step| step.totals.contact > 0) else { return };
-        if self.problem.half_space.points() > LARGEST_SIDE.pow(2) {
-            return;
-        }
         let is_first = match last.reversal {
             None => {
                 let passed = |step: &Step| of_loading(step.totals.load, loads.last().copied().unwrap_or(0.0));
@@ -225,21 +222,26 @@ impl Walk<'_> {
             }
         };
         if is_first {
-            let map = self.map(cycle.steps.len() - 1);
+            let half_space = &self.problem.half_space;
+            let stride = half_space.rows().max(half_space.columns()).div_ceil(MOST_ALONG);
+            let map = self.map(cycle.steps.len() - 1, stride);
             self.at.cycle.between.push(map);
         }
     }
 
     /// Map of the last step and its regions, if those of every step are not kept anyway.
     fn landmark(&self, step: usize) -> (Map, Vec<Region>) {
-        (self.map(step), if self.settings.all_regions { Vec::new() } else { self.regions() })
+        (self.map(step, 1), if self.settings.all_regions { Vec::new() } else { self.regions() })
     }
 
-    fn map(&self, step: usize) -> Map {
-        let state = &self.at.state;
-        let gap = (0..self.problem.half_space.points()).map(|k| self.problem.gap(state, k) as f32).collect();
+    /// Map of every `stride`-th point along both sides.
+    fn map(&self, step: usize, stride: usize) -> Map {
+        let (state, half_space) = (&self.at.state, &self.problem.half_space);
+        let (rows, columns) = (half_space.rows(), half_space.columns());
+        let points = || (0..rows).step_by(stride).flat_map(|i| (0..columns).step_by(stride).map(move |j| i * columns + j));
         let tension = |k| self.problem.bond(state.bonds[k], self.problem.gap(state, k)).tension;
-        Map { step, gap, pressure: (0..self.problem.half_space.points()).map(|k| -tension(k) as f32).collect() }
+        let gap = points().map(|k| self.problem.gap(state, k) as f32).collect();
+        Map { step, stride, gap, pressure: points().map(|k| -tension(k) as f32).collect() }
     }
 
     fn is_apart(&self) -> bool {

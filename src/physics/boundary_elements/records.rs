@@ -60,6 +60,8 @@ pub struct Event {
 pub struct Map {
     /// Number of the step.
     pub step: usize,
+    /// Distance of two points along a side \[dx\].
+    pub stride: usize,
     /// Gap \[dx\].
     pub gap: Vec<f32>,
     /// Pressure, compression positive \[E*\].

@@ -8,8 +8,9 @@ use super::records::Step;
 /// Stations of loading, and of the compressive and the tensile part of unloading.
 pub(super) const STATIONS: [usize; 3] = [9, 5, 5];
 
-/// Side of the largest grid whose maps between the ends of the branches are kept: each has 8 bytes for each point, in memory and in each checkpoint.
-pub(super) const LARGEST_SIDE: usize = 512;
+/// Points along a side of the maps of these steps, at most: of larger grids they have every second, third, … point. Each map has 8 bytes for each point, in memory
+/// and in each checkpoint.
+pub(super) const MOST_ALONG: usize = 256;
 
 /// Stations of loading that have been passed at a load.
 pub(super) fn of_loading(load: f64, largest: f64) -> usize {

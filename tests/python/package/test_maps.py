@@ -64,3 +64,21 @@ def test_contacts_of_boundary_elements_have_their_shape(run):
     assert ax.get_title() == "step 12, unloading: A/A₀ = 0.031"
     with pytest.raises(ValueError, match="no map is stored at step 7"):
         hysteron.plot.contacts(run, step=7)
+
+
+def test_maps_with_fewer_points(run):
+    with h5py.File(run.dir / "cycles" / "z4_r00-0a1b2c3d" / "maps.h5", "r+") as file:
+        group = file.create_group("step_000009")
+        group.attrs.update({"step": 9, "branch": "loading", "max_load": np.nan, "approach_m": 1e-7, "load_n": 1e-6, "stride": 2})
+        group["gap_m"], group["pressure_pa"] = np.zeros((N // 2, N // 2), np.float32), np.full((N // 2, N // 2), 3e6, np.float32)
+    maps = run.maps("z4_r00-0a1b2c3d")
+    assert maps.steps.tolist() == [5, 9, 12] and maps.pressure_pa.shape == (3, N // 2, N // 2)
+    # Points 0, 2, 4, 6 of the other maps: (2, 2) and (4, 2) of the region of the first one.
+    assert np.allclose(maps.x_m, 1e-6 * (2 * np.arange(N // 2) + 0.5), rtol=1e-12)
+    assert maps.in_contact().sum(axis=(1, 2)).tolist() == [2, 16, 0] and np.isnan(maps.max_loads[1])
+    whole = run.maps("z4_r00-0a1b2c3d", whole=True)
+    assert whole.steps.tolist() == [5, 12] and whole.pressure_pa.shape == (2, N, N)
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    assert hysteron.plot.contacts(run, step=9).get_title() == "step 9, loading: A/A₀ = 1.000"
+    assert hysteron.plot.contacts(run).get_title() == "step 5, loading: A/A₀ = 0.141"

@@ -320,13 +320,16 @@ class Run(Mapping[str, pa.Table]):
             heights: NDArray[np.float64] = file["height_m"][:]
             return heights
 
-    def maps(self, id: str) -> Maps:
+    def maps(self, id: str, whole: bool = False) -> Maps:
         """Stored maps of gap and pressure of the cycle `id` by boundary elements. Requires h5py.
 
         Parameters
         ----------
         id : str
             Cycle by boundary elements.
+        whole : bool
+            True: the maps of the whole grid alone, at load reversals and at pull-off. Default: all maps, on the points that they have in common. Of grids
+            with more than 256 points along a side these are every n-th point.
 
         Returns
         -------
@@ -339,15 +342,21 @@ class Run(Mapping[str, pa.Table]):
             raise KeyError(f"{self.dir} has no maps of the cycle {id}{hint}")
         with _h5py(path).File(path) as file:
             groups = sorted(file.values(), key=lambda group: int(group.attrs["step"]))
-            points, length = int(file.attrs["points"]), float(file.attrs["length_m"])
+            strides = {group.name: int(group.attrs.get("stride", 1)) for group in groups}
+            if whole:
+                groups = [group for group in groups if strides[group.name] == 1]
+            common = max((strides[group.name] for group in groups), default=1)
+            length = float(file.attrs["length_m"])
             first = float(file.attrs.get("first_m", 0.0))
-            place = np.linspace(first, first + length, points, endpoint=False, dtype=np.float64)
+            place = np.linspace(first, first + length, int(file.attrs["points"]), endpoint=False, dtype=np.float64)[::common]
 
             def attribute(name: str, dtype: Any) -> NDArray[Any]:
                 return np.array([group.attrs[name] for group in groups], dtype=dtype)
 
             def field(name: str) -> NDArray[np.float32]:
-                return np.array([group[name][:] for group in groups], dtype=np.float32).reshape(-1, points, points)
+                skips = [common // strides[group.name] for group in groups]
+                fields = [group[name][::skip, ::skip] for group, skip in zip(groups, skips, strict=True)]
+                return np.array(fields, dtype=np.float32).reshape(-1, place.size, place.size)
 
             return Maps(
                 attribute("step", np.int64),

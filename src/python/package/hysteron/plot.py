@@ -159,7 +159,8 @@ def contacts(run: Run, id: str | None = None, step: int | None = None, ax: Axes 
     ax = _axes(ax)
     cycle = _cycle(run, id)
     if (run.dir / "cycles" / cycle / "maps.h5").is_file():
-        return _regions(run.maps(cycle), step, ax)
+        whole = run.maps(cycle, whole=True)
+        return _regions(whole if step is None or step in whole.steps else run.maps(cycle), step, ax)
     return _spots(run, cycle, step, ax)
 
 
