@@ -87,7 +87,14 @@ pub(super) fn of_loop(steps: &Frame, max_load: f64) -> Result<XyPlot, FigureErro
     let points = |fits: &dyn Fn(usize) -> bool| -> Vec<(f64, f64)> {
         (0..branches.len()).filter(|k| fits(*k)).map(|k| (approaches[k], loads[k])).collect()
     };
-    let unloading = points(&|k| branches[k] == "unloading" && max_loads[k] == Some(max_load));
+    let mut unloading = points(&|k| branches[k] == "unloading" && max_loads[k] == Some(max_load));
+    // The first step of unloading by boundary elements comes after the reversal.
+    let reversal = steps.f64_or_null("reversal_load")?.iter().position(|load| *load == Some(max_load));
+    if let Some(point) =
+        reversal.map(|k| (approaches[k], loads[k])).filter(|point| unloading.first().is_some_and(|first| first.0 < point.0))
+    {
+        unloading.insert(0, point);
+    }
     // Loading goes on beyond a turning point that is not the last one.
     let most = unloading.iter().map(|point| point.0).fold(f64::NEG_INFINITY, f64::max);
     let loading = points(&|k| branches[k] == "loading" && approaches[k] <= most);

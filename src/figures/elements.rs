@@ -52,7 +52,7 @@ fn marked(mut plot: XyPlot) -> XyPlot {
     plot.key.push(entry("Θ/(E^{*}A_{0}h_{rms})", RESULT, Some(Stroke::Area), true));
     if let Some((at, load)) = lowest {
         plot.curves.push(curve(("pull_off", ""), vec![(at, 0.0), (at, load)], shade(THEORY, 0, 1), Stroke::Dotted));
-        plot.notes.push(Note { at: (at, 0.35 * load), text: "F_{po}".to_owned(), beside: false });
+        plot.notes.push(Note { at: (at, 0.08 * load), text: "F_{po}".to_owned(), beside: false });
     }
     // Last, so that the other curves keep their numbers in the table of panels.
     plot.curves.push(area);

@@ -8,7 +8,7 @@ use crate::store::{Frame, LoopMaps, StoredMap};
 use std::fmt::Write as _;
 
 /// Cells of a map along a side, at most: the grid point in the middle of a cell stands for it.
-const CELLS: usize = 160;
+const CELLS: usize = 128;
 /// Levels of compression and of tension.
 const LEVELS: usize = 6;
 /// Ends of the scales of compression and tension, those of the loop explorer.

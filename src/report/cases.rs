@@ -2,6 +2,7 @@
 
 use super::layout::prose;
 use super::numbers::Scale;
+use crate::model::{Choice as _, Method};
 use crate::stats::{Listed, Listing, StatsError, labels, listing};
 use crate::store::Frame;
 use maud::{Markup, html};
@@ -55,6 +56,11 @@ impl<'a> Cases<'a> {
 
     pub(super) fn number(&self, column: &str, row: usize) -> Result<Option<f64>, StatsError> {
         Ok(self.frame.f64_or_null(column)?.get(row).copied().flatten())
+    }
+
+    /// True if a row is of the asperity model.
+    pub(super) fn has_spots(&self) -> Result<bool, StatsError> {
+        Ok(self.frame.text("method")?.iter().any(|method| *method == Method::Asperities.word()))
     }
 
     /// The first two cells of a row.

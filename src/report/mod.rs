@@ -100,7 +100,7 @@ pub fn page(report: &Report<'_>) -> Result<String, StatsError> {
         @if has_results {
             @for sweep in report.sweeps { (figures(report, sweep, &numbers)) }
             @if !report.cycles.is_empty() { (single_cycle::section(&numbers, report.cycles)) }
-            @if let Some(data) = report.explorer { (explorer(data)) }
+            @if let Some(data) = report.explorer { (explorer(data, cases.has_spots()?)) }
             (theories::theories(&cases)?)
             (validity::budget(&cases)?)
             (validity::validity(&cases)?)
@@ -131,15 +131,19 @@ pub fn page(report: &Report<'_>) -> Result<String, StatsError> {
     Ok(document(&format!("{}: adhesive hysteresis", report.name), Some(report.key), &page))
 }
 
-const EXPLORER_NOTE: &str = "One cycle of each case. The slider moves along the loop. Rings mark the events of a step or of an avalanche. Contacts between stored \
-    steps follow from the events; `contacts = \"all\"` in the spec stores every step.";
+const EXPLORER_NOTE: &str = "One cycle of each case. The slider moves along the loop.";
+
+const SPOTS_NOTE: &str = " Rings mark the events of a step or of an avalanche. Contacts between stored steps follow from the events; `contacts = \"all\"` in the spec \
+    stores every step.";
+
+const MAPS_NOTE: &str = " The map is the stored one that is nearest on the loop.";
 
 /// The explorer of a loop, which needs a browser with scripts.
-fn explorer(data: &str) -> Markup {
+fn explorer(data: &str, has_spots: bool) -> Markup {
     html! {
         section.screen {
             (heading("Loop explorer"))
-            p { (prose(EXPLORER_NOTE)) } "\n"
+            p { (EXPLORER_NOTE) (prose(if has_spots { SPOTS_NOTE } else { MAPS_NOTE })) } "\n"
             div #explorer { noscript { p { "This part needs a browser with scripts." } } } "\n"
             script #explorer-data type="application/json" { (PreEscaped(data)) } "\n"
             script { (PreEscaped(include_str!("explorer.js"))) } "\n"

@@ -24,6 +24,9 @@ const COLUMNS: [(&str, &str); 14] = [
     ("Fuller–Tabor parameter", "fuller_tabor"),
 ];
 
+/// Column that the asperity model alone has.
+const OF_SPOTS: &str = "loss_touched";
+
 const NOTE: &str = "Dissipated energies are over E*A_{0}h_{rms}, at the simulated contact area.";
 
 const MODELS: [&str; 7] = [
@@ -39,7 +42,8 @@ const MODELS: [&str; 7] = [
 /// Dissipated energies, contact areas and adhesion parameters of analytical models.
 pub(super) fn theories(cases: &Cases<'_>) -> Result<Markup, StatsError> {
     let mut columns = Vec::new();
-    for (heading, column) in COLUMNS {
+    let has_spots = cases.has_spots()?;
+    for (heading, column) in COLUMNS.into_iter().filter(|(_, column)| has_spots || *column != OF_SPOTS) {
         columns.push((heading, column, cases.scale(column)?));
     }
     let head = html! { (name_heads()) @for (heading, _, scale) in &columns { th { (prose(heading)) (scale.head()) } } };
@@ -54,7 +58,7 @@ pub(super) fn theories(cases: &Cases<'_>) -> Result<Markup, StatsError> {
     Ok(html! {
         (heading("Comparison with analytical models"))
         p { (prose(NOTE)) } "\n"
-        ul { "\n" @for model in MODELS { li { (prose(model)) } "\n" } } "\n"
+        ul { "\n" @for model in MODELS.iter().filter(|model| has_spots || !model.starts_with("Σθ")) { li { (prose(model)) } "\n" } } "\n"
         (wide("models", &head, &rows))
     })
 }

@@ -24,8 +24,9 @@ const VALIDITY: [(&str, &str, Option<&str>, Shown); 10] = [
 
 const BUDGET_NOTE: &str = "Θ is the area of the loop. The energies of all events sum to the same value if the energy balance is exact; the \
     energy-balance error is the difference over Θ. Both are over E*A_{0}h_{rms}. The percentages are fractions of the sum over events: by \
-    branch, and by the kind of event that triggers each relaxation. Absorption and release have no potential, so their fractions may be \
-    negative.";
+    branch, and by the kind of event that triggers each relaxation.";
+
+const ABSORPTION_NOTE: &str = " Absorption and release have no potential, so their fractions may be negative.";
 
 /// The energy budget: fractions by branch and by kind of event. Kinds without dissipated energy in all cases have no column.
 pub(super) fn budget(cases: &Cases<'_>) -> Result<Markup, StatsError> {
@@ -47,7 +48,9 @@ pub(super) fn budget(cases: &Cases<'_>) -> Result<Markup, StatsError> {
         @for kind in &kinds { th { (kind_name(kind)) } }
     };
     let rows = cases.rows().iter().map(|listed| budget_row(cases, listed, &kinds)).collect::<Result<Vec<_>, _>>()?;
-    Ok(html! { (heading("Energy budget")) p { (prose(BUDGET_NOTE)) } "\n" (wide("energy", &head, &rows)) })
+    Ok(
+        html! { (heading("Energy budget")) p { (prose(BUDGET_NOTE)) @if cases.has_spots()? { (ABSORPTION_NOTE) } } "\n" (wide("energy", &head, &rows)) },
+    )
 }
 
 fn budget_row(cases: &Cases<'_>, listed: &Listed, kinds: &[&str]) -> Result<Markup, StatsError> {
@@ -84,7 +87,7 @@ fn kind_name(kind: &str) -> &str {
 }
 
 /// Columns of the asperity model.
-const OF_SPOTS: [&str; 4] = ["tabor_min_min", "low_tabor_share_mean", "touching_share_mean", "covered_share_mean"];
+const OF_SPOTS: [&str; 5] = ["tabor_min_min", "low_tabor_share_mean", "summit_count_mean", "touching_share_mean", "covered_share_mean"];
 
 const RANGE_NOTE: &str = "An asperity model is outside its range where contacts coalesce: it then underestimates the contact area \
     of a boundary-element solution by a third, even without adhesion.";
@@ -94,15 +97,17 @@ const VALIDITY_NOTE: &str = "Numbers beyond their limit are bold. U_{el} is the 
 
 /// The indicators of model validity with their limits, and the warnings.
 pub(super) fn validity(cases: &Cases<'_>) -> Result<Markup, StatsError> {
+    let has_spots = cases.has_spots()?;
+    let columns = || VALIDITY.into_iter().filter(move |(_, column, ..)| has_spots || !OF_SPOTS.contains(column));
     let head = html! {
         (name_heads())
-        @for (heading, column, _, format) in VALIDITY { th { (prose(heading)) (bound(column, format)) } }
+        @for (heading, column, _, format) in columns() { th { (prose(heading)) (bound(column, format)) } }
     };
     let methods = cases.frame.text("method")?;
     let is_of_spots = |row: usize| methods[row] == Method::Asperities.word();
     let row = |listed: &Listed| -> Result<Markup, StatsError> {
         let mut cells = Vec::new();
-        for (_, column, aside, format) in VALIDITY {
+        for (_, column, aside, format) in columns() {
             if OF_SPOTS.contains(&column) && !is_of_spots(listed.row) {
                 cells.push(html! { td { "–" } });
                 continue;
@@ -113,7 +118,6 @@ pub(super) fn validity(cases: &Cases<'_>) -> Result<Markup, StatsError> {
         Ok(html! { (cases.name(listed)) @for cell in cells { (cell) } })
     };
     let rows = cases.rows().iter().map(row).collect::<Result<Vec<_>, _>>()?;
-    let has_spots = (0..methods.len()).any(is_of_spots);
     Ok(html! {
         (heading("Model validity"))
         p { @if has_spots { (prose(RANGE_NOTE)) " " } (prose(VALIDITY_NOTE)) } "\n"

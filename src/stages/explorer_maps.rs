@@ -12,6 +12,9 @@ pub(super) const LETTERS: &str = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrst
 /// Cells along a side of the heights and of a map, at most.
 const GROUND: usize = 64;
 const CELLS: usize = 96;
+/// Maps of a cycle with so many cells, at most, and cells along a side where there are more maps.
+const MOST_LARGE: usize = 8;
+const FEWER_CELLS: usize = 64;
 
 /// A number with five digits.
 pub(super) fn rounded(number: f64) -> f64 {
@@ -40,6 +43,7 @@ pub(super) fn stored_maps(path: &Path, loops: &mut Value) -> Result<(), StageErr
         return Ok(());
     }
     let maps = read_maps(path)?;
+    let side = if maps.len() > MOST_LARGE { FEWER_CELLS } else { CELLS };
     for of in loops.as_array_mut().into_iter().flatten() {
         let steps: Vec<i64> = of["s"].as_array().into_iter().flatten().filter_map(Value::as_i64).collect();
         let mut own = Vec::new();
@@ -58,8 +62,8 @@ pub(super) fn stored_maps(path: &Path, loops: &mut Value) -> Result<(), StageErr
                 "low_pa": rounded(-low),
                 "high_pa": rounded(high),
                 "gap_m": rounded(gap),
-                "pressure": cells(map.pressure_pa.view(), CELLS, pressure),
-                "gap": cells(map.gap_m.view(), CELLS, |value| 63.0 * (f64::from(value).max(0.0) / gap).sqrt()),
+                "pressure": cells(map.pressure_pa.view(), side, pressure),
+                "gap": cells(map.gap_m.view(), side, |value| 63.0 * (f64::from(value).max(0.0) / gap).sqrt()),
             }));
         }
         of["maps"] = Value::Array(own);

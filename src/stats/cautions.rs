@@ -304,8 +304,9 @@ pub fn condition(code: &str) -> Option<&'static str> {
     }
 }
 
-/// Warnings of the range of the asperity model, which boundary elements do not have.
-const OF_ASPERITIES: [&str; 8] = ["sticky", "area", "conformed", "covered", "absorption", "touching", "texture", "few_contacts"];
+/// Warnings of the asperity model, which boundary elements do not have.
+const OF_ASPERITIES: [&str; 9] =
+    ["sticky", "area", "conformed", "covered", "absorption", "touching", "texture", "few_contacts", "few_asperities"];
 
 /// Shortest step of boundary elements, of the rms height, above which events are not located.
 pub const LONGEST_STEP: f64 = 0.05;

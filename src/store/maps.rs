@@ -26,12 +26,14 @@ pub struct ContactMap {
     pub step: i64,
     /// `loading` or `unloading`.
     pub branch: &'static str,
-    /// Load at the reversal, `F_max/(E* A0)`.
+    /// Load at the reversal, `F_max/(E* A0)`; NaN on loading, between reversals.
     pub max_load: f64,
     /// Mean penetration \[m\].
     pub approach_m: f64,
     /// Load \[N\].
     pub load_n: f64,
+    /// Distance of two points of the map, in grid points of the file.
+    pub stride: usize,
     /// Gap \[m\].
     pub gap_m: Vec<f32>,
     /// Pressure, compression positive \[Pa\].
@@ -175,8 +177,9 @@ fn write_all(path: &Path, header: &MapsHeader<'_>, maps: &[ContactMap]) -> Resul
         write_number(&group, "max_load", map.max_load)?;
         write_number(&group, "approach_m", map.approach_m)?;
         write_number(&group, "load_n", map.load_n)?;
+        write_number(&group, "stride", map.stride as u64)?;
         for (name, unit, values) in fields(map) {
-            write_field(&file, &group, header.points, (name, unit, values))?;
+            write_field(&file, &group, header.points.div_ceil(map.stride), (name, unit, values))?;
         }
     }
     file.flush()?;
@@ -199,7 +202,7 @@ fn check_all(path: &Path, header: &MapsHeader<'_>, maps: &[ContactMap]) -> Resul
     for map in maps {
         for (name, _, values) in fields(map) {
             let data = file.dataset(&format!("{}/{name}", group_name(map)))?;
-            let same = data.get_shape()? == [header.points; 2] && data.read_raw::<f32>()? == values;
+            let same = data.get_shape()? == [header.points.div_ceil(map.stride); 2] && data.read_raw::<f32>()? == values;
             if !same {
                 return Err("the content read back differs from the content written".into());
             }

@@ -7,6 +7,7 @@ use super::newton::RATE;
 use super::patch::{PARTS, PLACES};
 use super::places::SMALLEST;
 use super::reversal::{JUMP_ACCURACY, LOAD_ACCURACY, SEARCHED, SHARPER};
+use super::stations::{MOST_ALONG, STATIONS};
 use super::step::{BEND, EVENT, EXCESS, HALVED, HIDDEN, JUMP_PART, OVERLAP, STEEPEST, WELL_BELOW};
 use super::work::JUMP;
 use crate::constants::Constant;
@@ -31,6 +32,14 @@ pub(crate) const CONSTANTS: &[Constant] = &[
         "On the whole grid, at the beginning of a step.",
         "minimise",
     ),
+    Constant::new(
+        "maps between the ends of a branch",
+        &[STATIONS[0] as f64, (STATIONS[1] + STATIONS[2]) as f64],
+        "",
+        "Maximum, on loading and on each unloading.",
+        "stations",
+    ),
+    Constant::new("side of such maps", &[MOST_ALONG as f64], "points", "Maximum. Of larger grids they have every n-th point.", "stations"),
     Constant::new("places on patches", &[PLACES as f64], "", "Maximum number of places of an event that are relaxed apart.", "patch"),
     Constant::new("side of a patch", &[SMALLEST as f64, 1.0 / PARTS as f64], "points; of the grid", "Minimum, and maximum.", "patch"),
     Constant::new(

@@ -3,6 +3,7 @@
 use super::contact::{Attraction, Problem};
 pub use super::records::{Cycle, Event, Map, Step, Turning, Unreached};
 use super::regions::{Region, label};
+use super::stations::{MOST_ALONG, of_loading, of_unloading};
 use super::step::Walk;
 pub use super::step::{Halfway, Settings};
 use crate::{LoopPosition, PhysicsError};
@@ -100,7 +101,10 @@ impl Walk<'_> {
                     return Ok(Some(Unreached::Closed { approach }));
                 }
                 self.turn();
-            } else if approach > farthest {
+            } else {
+                self.keep_between();
+            }
+            if !reached && approach > farthest {
                 return Ok(Some(Unreached::Load { reached: load, approach }));
             }
             // Adhesion pulls first: the load falls before it rises.
@@ -179,6 +183,7 @@ impl Walk<'_> {
             }
             self.advance(-1.0, None)?;
             self.keep_tensest();
+            self.keep_between();
             let done = 0.5 + 0.5 * (reversal as f64 + 1.0 - (self.at.last.totals.contact as f64 / full).min(1.0)) / branches;
             progress(self.position(done, true));
             keep(&self.at);
@@ -199,16 +204,44 @@ impl Walk<'_> {
         }
     }
 
-    /// Map of the last step and its regions, if those of every step are not kept anyway.
-    fn landmark(&self, step: usize) -> (Map, Vec<Region>) {
-        (self.map(step), if self.settings.all_regions { Vec::new() } else { self.regions() })
+    /// Keeps the map of the last step where it is the first to pass a [station](super::stations).
+    fn keep_between(&mut self) {
+        let (cycle, loads) = (&self.at.cycle, &self.settings.max_loads);
+        let Some(last) = cycle.steps.last().filter(|step| step.totals.contact > 0) else { return };
+        let is_first = match last.reversal {
+            None => {
+                let passed = |step: &Step| of_loading(step.totals.load, loads.last().copied().unwrap_or(0.0));
+                let kept = cycle.between.iter().map(|map| &cycle.steps[map.step]).filter(|step| step.reversal.is_none()).map(passed);
+                passed(last) > kept.max().unwrap_or(0)
+            }
+            Some(reversal) => {
+                let branch = cycle.steps.iter().filter(|step| step.reversal == Some(reversal));
+                let passed = of_unloading(branch, loads.get(reversal).copied().unwrap_or(0.0));
+                let before = passed.len().checked_sub(2).map_or(0, |k| passed[k]);
+                passed.last().is_some_and(|now| *now > before)
+            }
+        };
+        if is_first {
+            let half_space = &self.problem.half_space;
+            let stride = half_space.rows().max(half_space.columns()).div_ceil(MOST_ALONG);
+            let map = self.map(cycle.steps.len() - 1, stride);
+            self.at.cycle.between.push(map);
+        }
     }
 
-    fn map(&self, step: usize) -> Map {
-        let state = &self.at.state;
-        let gap = (0..self.problem.half_space.points()).map(|k| self.problem.gap(state, k) as f32).collect();
+    /// Map of the last step and its regions, if those of every step are not kept anyway.
+    fn landmark(&self, step: usize) -> (Map, Vec<Region>) {
+        (self.map(step, 1), if self.settings.all_regions { Vec::new() } else { self.regions() })
+    }
+
+    /// Map of every `stride`-th point along both sides.
+    fn map(&self, step: usize, stride: usize) -> Map {
+        let (state, half_space) = (&self.at.state, &self.problem.half_space);
+        let (rows, columns) = (half_space.rows(), half_space.columns());
+        let points = || (0..rows).step_by(stride).flat_map(|i| (0..columns).step_by(stride).map(move |j| i * columns + j));
         let tension = |k| self.problem.bond(state.bonds[k], self.problem.gap(state, k)).tension;
-        Map { step, gap, pressure: (0..self.problem.half_space.points()).map(|k| -tension(k) as f32).collect() }
+        let gap = points().map(|k| self.problem.gap(state, k) as f32).collect();
+        Map { step, stride, gap, pressure: points().map(|k| -tension(k) as f32).collect() }
     }
 
     fn is_apart(&self) -> bool {

@@ -21,6 +21,7 @@ pub mod records;
 pub mod regions;
 pub mod resample;
 mod reversal;
+mod stations;
 mod step;
 mod sums;
 mod trial;

@@ -60,6 +60,8 @@ pub struct Event {
 pub struct Map {
     /// Number of the step.
     pub step: usize,
+    /// Distance of two points along a side \[dx\].
+    pub stride: usize,
     /// Gap \[dx\].
     pub gap: Vec<f32>,
     /// Pressure, compression positive \[E*\].
@@ -136,6 +138,8 @@ pub struct Cycle {
     pub regions: Vec<(usize, Region)>,
     /// Maps at the load reversals and at the maximum tensile load of each unloading.
     pub maps: Vec<Map>,
+    /// Maps of further steps, spread over the branches.
+    pub between: Vec<Map>,
     /// States at the load reversals.
     pub turning: Vec<Turning>,
     /// Load reversals without a result, by their place in the settings.
@@ -177,6 +181,7 @@ impl Cycle {
         self.events.retain_mut(|event| renumber(&mut event.step));
         self.regions.retain_mut(|(step, _)| renumber(step));
         self.maps.retain_mut(|map| renumber(&mut map.step));
+        self.between.retain_mut(|map| renumber(&mut map.step));
         self.least_loads.retain_mut(|(step, _)| renumber(step));
         removed
     }

@@ -10,7 +10,7 @@ analytical models and the power spectrum for NumPy arrays. The module `plot` dra
 from . import jkr, plot, spectrum, theory
 from ._hysteron import __version__
 from ._program import Failed, FailedCases, Interrupted, run, take
-from ._run import Description, Run, describe, load
+from ._run import Description, Maps, Run, describe, load
 
 import_surface = take
 HysteronError = Failed
@@ -23,6 +23,7 @@ __all__ = [
     "FailedCasesWarning",
     "HysteronError",
     "Interrupted",
+    "Maps",
     "Run",
     "__version__",
     "describe",

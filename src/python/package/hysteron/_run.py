@@ -80,6 +80,46 @@ def describe(table: pa.Table | pa.Schema | pa.RecordBatch) -> dict[str, Descript
     return told
 
 
+class Maps(NamedTuple):
+    """Maps of gap and pressure of a cycle by boundary elements, ordered by step."""
+
+    #: Numbers of the steps, as in the table `steps`; shape (n,).
+    steps: NDArray[np.int64]
+    #: "loading" or "unloading" of each map; shape (n,).
+    branches: NDArray[np.str_]
+    #: Load reversal F_max/(E* A0) of each map; shape (n,).
+    max_loads: NDArray[np.float64]
+    #: Mean penetrations [m]; shape (n,).
+    approaches_m: NDArray[np.float64]
+    #: Normal loads [N], positive in compression; shape (n,).
+    loads_n: NDArray[np.float64]
+    #: Coordinates of the grid points along x [m]; shape (N,).
+    x_m: NDArray[np.float64]
+    #: Coordinates of the grid points along y [m]; shape (N,).
+    y_m: NDArray[np.float64]
+    #: Pressure [Pa], compression positive; shape (n, N, N), indices map, x, y.
+    pressure_pa: NDArray[np.float32]
+    #: Gap [m]; shape (n, N, N), indices map, x, y.
+    gap_m: NDArray[np.float32]
+    #: Gap below which a point is in contact [m].
+    contact_gap_m: float
+    #: Side of the square [m].
+    length_m: float
+
+    def in_contact(self) -> NDArray[np.bool_]:
+        """True at the grid points in contact; shape (n, N, N)."""
+        touches: NDArray[np.bool_] = (self.pressure_pa > 0) | (self.gap_m < self.contact_gap_m)
+        return touches
+
+
+def _h5py(path: Path) -> Any:
+    try:
+        import h5py
+    except ImportError:
+        raise ImportError(f"cannot read {path}: h5py is not installed\nhelp: pip install h5py") from None
+    return h5py
+
+
 def load(dir: str | os.PathLike[str]) -> Run:
     """Opens the output directory of a run. Tables are read on access; tables of an unfinished run appear as they are written.
 
@@ -276,13 +316,61 @@ class Run(Mapping[str, pa.Table]):
         if not path.is_file():
             near = difflib.get_close_matches(id, self.surface_ids, n=1)
             raise KeyError(f"{self.dir} has no surface {id}" + (f"; did you mean {near[0]}?" if near else ""))
-        try:
-            import h5py
-        except ImportError:
-            raise ImportError(f"cannot read {path}: h5py is not installed\nhelp: pip install h5py") from None
-        with h5py.File(path) as file:
+        with _h5py(path).File(path) as file:
             heights: NDArray[np.float64] = file["height_m"][:]
             return heights
+
+    def maps(self, id: str, whole: bool = False) -> Maps:
+        """Stored maps of gap and pressure of the cycle `id` by boundary elements. Requires h5py.
+
+        Parameters
+        ----------
+        id : str
+            Cycle by boundary elements.
+        whole : bool
+            True: the maps of the whole grid alone, at load reversals and at pull-off. Default: all maps, on the points that they have in common. Of grids
+            with more than 256 points along a side these are every n-th point.
+
+        Returns
+        -------
+        Maps
+        """
+        path = self.dir / "cycles" / id / "maps.h5"
+        if not path.is_file():
+            near = difflib.get_close_matches(id, [found.parent.name for found in self.dir.glob("cycles/*/maps.h5")], n=1)
+            hint = f"; did you mean {near[0]}?" if near else "; only cycles by boundary elements have maps"
+            raise KeyError(f"{self.dir} has no maps of the cycle {id}{hint}")
+        with _h5py(path).File(path) as file:
+            groups = sorted(file.values(), key=lambda group: int(group.attrs["step"]))
+            strides = {group.name: int(group.attrs.get("stride", 1)) for group in groups}
+            if whole:
+                groups = [group for group in groups if strides[group.name] == 1]
+            common = max((strides[group.name] for group in groups), default=1)
+            length = float(file.attrs["length_m"])
+            first = float(file.attrs.get("first_m", 0.0))
+            place = np.linspace(first, first + length, int(file.attrs["points"]), endpoint=False, dtype=np.float64)[::common]
+
+            def attribute(name: str, dtype: Any) -> NDArray[Any]:
+                return np.array([group.attrs[name] for group in groups], dtype=dtype)
+
+            def field(name: str) -> NDArray[np.float32]:
+                skips = [common // strides[group.name] for group in groups]
+                fields = [group[name][::skip, ::skip] for group, skip in zip(groups, skips, strict=True)]
+                return np.array(fields, dtype=np.float32).reshape(-1, place.size, place.size)
+
+            return Maps(
+                attribute("step", np.int64),
+                attribute("branch", np.str_),
+                attribute("max_load", np.float64),
+                attribute("approach_m", np.float64),
+                attribute("load_n", np.float64),
+                place,
+                place.copy(),
+                field("pressure_pa"),
+                field("gap_m"),
+                float(file.attrs["contact_gap_m"]),
+                length,
+            )
 
     def status(self) -> dict[str, Any]:
         """State of the run: the output of `hysteron status DIR --json`."""

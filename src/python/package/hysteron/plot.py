@@ -19,7 +19,7 @@ from ._run import case_names
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from ._run import Run
+    from ._run import Maps, Run
 
 #: Colours of cases.
 PALETTE = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000")
@@ -135,18 +135,20 @@ def curves(run: Run, quantity: str = "area", ax: Axes | None = None) -> Axes:
 
 
 def contacts(run: Run, id: str | None = None, step: int | None = None, ax: Axes | None = None) -> Axes:
-    """Contact spots of one cycle at a stored step, blue if compressive and orange if tensile.
+    """Contact of one cycle at a stored step.
 
-    Regions of boundary elements are drawn as circles of the same area.
+    Contact spots of the asperity model are discs, blue if compressive and orange if tensile. Boundary elements have the real shapes from the stored maps,
+    coloured by the pressure: blue is compressive, orange tensile. These need h5py.
 
     Parameters
     ----------
     run : Run
         Output directory of a run.
     id : str, optional
-        Cycle. Default: as in the report, the asperity model's case with the largest mean dissipated energy.
+        Cycle. Default: the asperity model's case with the largest mean dissipated energy; of a run without asperity model, that of boundary elements.
     step : int, optional
-        Stored step, one of the column `step` of the table `contacts`. Default: the one with the most contact spots.
+        Stored step: one of the column `step` of the table `contacts`, or of `Run.maps(id).steps`. Default: the one with the most contact spots, and
+        the map with the largest load.
     ax : matplotlib.axes.Axes, optional
         Axes to draw into.
 
@@ -155,9 +157,40 @@ def contacts(run: Run, id: str | None = None, step: int | None = None, ax: Axes 
     matplotlib.axes.Axes
     """
     ax = _axes(ax)
+    cycle = _cycle(run, id)
+    if (run.dir / "cycles" / cycle / "maps.h5").is_file():
+        whole = run.maps(cycle, whole=True)
+        return _regions(whole if step is None or step in whole.steps else run.maps(cycle), step, ax)
+    return _spots(run, cycle, step, ax)
+
+
+def _regions(maps: Maps, step: int | None, ax: Axes) -> Axes:
+    """Regions of contact of boundary elements, coloured by the pressure."""
+    from matplotlib.colors import LinearSegmentedColormap, TwoSlopeNorm
+
+    if not maps.steps.size:
+        raise ValueError("the cycle has no stored maps\nhelp: give another cycle")
+    if step is not None and step not in maps.steps:
+        raise ValueError(f"no map is stored at step {step}\nhelp: use one of {maps.steps.tolist()}")
+    k = int(np.argmax(maps.loads_n)) if step is None else int(np.flatnonzero(maps.steps == step)[0])
+    touches = maps.in_contact()[k]
+    pressure = 1e-6 * np.where(touches, maps.pressure_pa[k], np.nan)
+    low, high = (float(extreme(pressure[touches], initial=0.0)) for extreme in (np.min, np.max))
+    shades = ["#be4600", "#fad0aa", "#ffffff", "#bed7ee", "#003c6e"]
+    colours = LinearSegmentedColormap.from_list("pressure", shades).with_extremes(bad="#f2f2f2")
+    norm = TwoSlopeNorm(0.0, min(low, -1e-12 * max(high, 1.0)), max(high, 1e-12 * max(-low, 1.0)))
+    side = 1e6 * maps.length_m
+    image = ax.imshow(pressure.T, origin="lower", extent=(0, side, 0, side), cmap=colours, norm=norm, interpolation="nearest")
+    ax.figure.colorbar(image, ax=ax, label="pressure [MPa]")
+    title = f"step {maps.steps[k]}, {maps.branches[k]}: A/A₀ = {touches.mean():.3f}"
+    ax.set(xlim=(0, side), ylim=(0, side), aspect="equal", xlabel="x [µm]", ylabel="y [µm]", title=title)
+    return ax
+
+
+def _spots(run: Run, cycle: str, step: int | None, ax: Axes) -> Axes:
+    """Contact spots of the asperity model."""
     from matplotlib.collections import EllipseCollection
 
-    cycle = _cycle(run, id)
     table = run.contacts(cycle)
     number, state, radius, load = _columns(table, "step", "state", "contact_radius_m", "load_n")
     touching = state == "contact"
