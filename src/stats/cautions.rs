@@ -298,7 +298,7 @@ pub fn condition(code: &str) -> Option<&'static str> {
         "incomplete" => Some("finished realizations < `planned_count`"),
         "unconverged" => Some("`unconverged_count` of `realizations` > 0"),
         "single" => Some("`done_count` = 1"),
-        "imprecise" => Some("half-width of the interval > the share that the spec wants"),
+        "imprecise" => Some("half-width of the interval > the requested share of the mean"),
         _ => None,
     }
 }
