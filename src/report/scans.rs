@@ -4,7 +4,6 @@ use super::layout::{heading, prose, wide};
 use crate::model::Choice;
 use crate::store::hdf5::{Measured, SpectrumFit, SurfaceHeader};
 use maud::{Markup, html};
-use std::f64::consts::TAU;
 
 const NOTE: &str = "Each measured surface is one realization, without a standard deviation. Area kept: fraction of the scan in the \
     central square of side L. h_{rms} and rms slope: after levelling and S-filter. S-filter: low-pass filter, Gaussian (ISO 16610-61) or \
@@ -50,7 +49,6 @@ pub(super) fn scans(surfaces: &[SurfaceHeader]) -> Markup {
 /// Outliers, offsets of scan lines and the cut-off of the tip.
 fn artefacts(of: &Measured) -> Markup {
     let Some(quality) = of.quality else { return html! { td { "–" } td { "–" } td { "–" } } };
-    let length = |length: Option<f64>| length.map_or_else(|| "–".to_owned(), |length| format!("{length:.3e}"));
     html! {
         td { (quality.outlier_count) " / " (quality.outlier_left_count) }
         td { (length(quality.line_offset_m)) " / " (length(Some(quality.line_jump_m).filter(|jump| *jump > 0.0))) }
@@ -73,13 +71,16 @@ fn row(header: &SurfaceHeader, of: &Measured) -> Markup {
         (artefacts(of))
         td { (of.texture.map_or_else(|| "–".to_owned(), |texture| format!("{:.2}", texture.aspect()))) }
         td { (of.fit.map_or_else(|| "–".to_owned(), |fit| format!("{:.2} (±{:.2} decades)", fit.hurst, fit.scatter))) }
-        td { (of.fit.map_or_else(|| "–".to_owned(), |fit| ends(&fit))) }
+        td { (of.fit.map_or_else(|| "–".to_owned(), |fit| ends(&fit, header.length_m))) }
     }
 }
 
-/// Long cut-off, roll-off and short cut-off of a spectrum \[m\].
-fn ends(fit: &SpectrumFit) -> String {
-    let roll_off = (fit.rolls_off == Some(true)).then(|| TAU / fit.roll_off_1_m);
-    let lengths = [fit.long_cut_m, roll_off, fit.short_cut.map(|(length, _)| length)];
-    lengths.map(|length| length.map_or_else(|| "–".to_owned(), |length| format!("{length:.3e}"))).join(" / ")
+/// Long cut-off, roll-off and short cut-off of the spectrum of a surface of side L \[m\].
+fn ends(fit: &SpectrumFit, length_m: f64) -> String {
+    [fit.long_cut_m, fit.roll_off_m(length_m), fit.short_cut.map(|(length, _)| length)].map(length).join(" / ")
+}
+
+/// A length \[m\], or a dash.
+fn length(length: Option<f64>) -> String {
+    length.map_or_else(|| "–".to_owned(), |length| format!("{length:.3e}"))
 }

@@ -73,8 +73,8 @@ const RESULTS: &[Column] = &[
     real("loss_jkr_curve", "1", "Dissipated energy Θ/(E* A0 h_rms) of the same theory, with contact formed at zero penetration; null likewise").or_null().from("Ciavarella 2018"),
     real("area_adhesionless_small", "1", "Adhesionless contact area A/A0 at F_max, small-load limit of boundary-element results: 2 F/(E* A0 rms_slope)").from("Hyun et al. 2004"),
     real("penetration_at_max_load", "1", "Mean penetration Δ/h_rms at load reversal"),
-    real("loss", "1", "Dissipated energy Θ/(E* A0 h_rms) of the loop; null where loss_uncertainty exceeds 0.1").or_null(),
-    real("loss_j", "J", "Dissipated energy Θ: area of the loop of normal load over mean penetration; null where loss_uncertainty exceeds 0.1").or_null(),
+    real("loss", "1", "Dissipated energy Θ/(E* A0 h_rms) of the loop; null where it is negative, since it is not resolved").or_null(),
+    real("loss_j", "J", "Dissipated energy Θ: area of the loop of normal load over mean penetration; null where it is negative, since it is not resolved").or_null(),
     real("loss_dk", "1", "Deng-Kesari estimate Θ_DK/(E* A0 h_rms) at area_at_max_load, with the moments of the continuous spectrum; null for a measured surface, and where the uncorrected Eq A2 has no integral")
         .or_null()
         .from("Eqs A1-A4"),

@@ -2,11 +2,10 @@
 
 use super::{StageError, Watch};
 use crate::campaign::{Campaign, CycleUnit, Stage, Unit};
-use crate::store::{commit, panic_text};
+use crate::store::{caught, commit};
 use crate::text::shell_path;
 use serde_json::json;
 use std::collections::{HashMap, HashSet};
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 
 /// True if an error is one case's own: the others go on. What the system says of a file (a full disk) is not.
@@ -26,7 +25,7 @@ pub(super) fn is_of_a_case(error: &StageError) -> bool {
 
 /// Runs a task and gives a panic as its error: a defect ends one task, not the run.
 pub(super) fn fenced<T>(task: impl FnOnce() -> Result<T, StageError>) -> Result<T, StageError> {
-    catch_unwind(AssertUnwindSafe(task)).unwrap_or_else(|panic| Err(StageError::Defect { what: panic_text(panic.as_ref()).to_owned() }))
+    caught(task, |panic| StageError::Defect { what: panic.to_owned() })
 }
 
 /// Refuses a task whose files cannot be put in place, before it is computed: a folder has the name of one, or a file that of their folder.

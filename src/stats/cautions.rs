@@ -170,7 +170,7 @@ pub const CAUTIONS: [Caution; 26] = [
         "unresolved",
         "energy not resolved",
         "resolution of Θ is {} of its magnitude",
-        "Θ and Θ/Θ_DK are null for these loops, and the means are of the others.",
+        "A negative Θ and its Θ/Θ_DK are null, and the means are of the other loops.",
         "Do not quote Θ; boundary elements: reduce `boundary_elements.approach_step`.",
     ),
     warning(

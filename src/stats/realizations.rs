@@ -3,7 +3,7 @@
 use super::cycle::{Branch, Cycle, fault};
 use super::events::{Events, Lost};
 use super::rows::{Rows, Value};
-use super::{CaseInput, CycleInput, Given, Limit, StatsError};
+use super::{CaseInput, CycleInput, Given, StatsError};
 use crate::physics::cycle::soundness::LoopEnergy;
 use crate::schema::{EVENT_KINDS, REALIZATIONS};
 use crate::store::Frame;
@@ -149,8 +149,8 @@ fn reduce(loading: &Branch, turning: usize, unloading: &Branch, max_load: f64, i
     let dissipated_j = if loss_j == 0.0 { 0.0 } else { on_loading + unloading.dissipated_j.iter().sum::<f64>() };
     let energy = LoopEnergy { loss_j, events_j: dissipated_j, work_j };
     let uncertainty = uncertainty(energy, input);
-    // A loop without a resolved energy may have a negative one, which is no result.
-    let is_resolved = loss_j >= 0.0 || !Limit::of("unresolved").is_some_and(|limit| limit.is_passed(uncertainty));
+    // The resolution of a negative energy is at least its magnitude: it is no result.
+    let is_resolved = loss_j >= 0.0;
     let converged = loading.converged.iter().take(turning + 1).chain(&unloading.converged);
     let (contacts, covered) = (count_at(&loading.contact_count), count_at(&loading.covered_count));
     let pull_off = pull_off_n(unloading, input);

@@ -22,7 +22,7 @@ pub mod scan;
 mod surface_header;
 
 pub use builder::FrameBuilder;
-pub(crate) use error::panic_text;
+pub(crate) use error::caught;
 pub use error::{FrameError, StoreError};
 pub use frame::{ColumnData, Frame};
 pub use halfway::{CHECKPOINT_VERSION, is_halfway, read_halfway, write_halfway, write_state};

@@ -2,6 +2,7 @@
 
 use hdf5_metno::types::{FixedUnicode, TypeDescriptor, VarLenUnicode};
 use hdf5_metno::{File, Group, H5Type, Location};
+use std::f64::consts::TAU;
 
 use crate::model::{Amplitudes, Choice, Detrend, FastAxis, Filter, Normalization, SpectrumEnd};
 use crate::physics::surface::spectrum::Moments;
@@ -111,6 +112,15 @@ pub struct SpectrumFit {
     pub long_cut_m: Option<f64>,
     /// Wavelength below which it holds no data \[m\], and its cause; nothing if it holds data down to the points.
     pub short_cut: Option<(f64, SpectrumEnd)>,
+}
+
+impl SpectrumFit {
+    /// Wavelength of the roll-off of a surface of side L \[m\]; nothing without one. In a file without a statement there is one well within the scan.
+    #[must_use]
+    pub fn roll_off_m(&self, length_m: f64) -> Option<f64> {
+        let at = TAU / self.roll_off_1_m;
+        self.rolls_off.unwrap_or(at < 0.7 * length_m).then_some(at)
+    }
 }
 
 /// Parameters of a generated surface.

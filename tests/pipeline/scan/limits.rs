@@ -62,8 +62,9 @@ fn e2e_a_crop_and_a_bad_fit_are_cautions() {
     let (found, fit) = cautions(&noise);
     assert!(fit["hurst"].as_f64().unwrap() < 0.0, "{fit}");
     assert!(found.iter().any(|text| text.starts_with("fit: H = -") && text.contains("not self-affine")), "{found:?}");
-    // Too few wavelengths for a fit: one.
-    let (found, fit) = cautions(&Array2::from_shape_fn((64, 64), |(i, j)| (0.4 * i as f64).sin() * (0.4 * j as f64).sin()));
+    // Too few wavelengths for a fit: one, of 16 points.
+    let wave = |k: usize| (std::f64::consts::PI / 8.0 * k as f64).sin();
+    let (found, fit) = cautions(&Array2::from_shape_fn((64, 64), |(i, j)| wave(i) * wave(j)));
     assert!(fit.is_null() && found.iter().any(|text| text.starts_with("fit: too few wavelengths")), "{found:?} {fit}");
 }
 

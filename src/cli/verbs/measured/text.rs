@@ -6,10 +6,9 @@ use crate::model::{Choice, Detrend, Filter, SpectrumEnd};
 use crate::physics::surface::texture::Texture;
 use crate::spec::quoted;
 use crate::stats::{Limit, significant};
-use crate::store::hdf5::{Measured, SpectrumFit, SurfaceHeader};
+use crate::store::hdf5::{Measured, SurfaceHeader};
 use crate::text::{counted, wrapped};
 use serde_json::{Value, json};
-use std::f64::consts::TAU;
 use std::path::Path;
 
 /// Statistics of an imported surface.
@@ -37,7 +36,7 @@ pub(super) fn answer(of: &Statistics<'_>, rings: &[Value]) -> Value {
     let fit = measured.and_then(|of| of.fit).map(|fit| {
         json!({
             "hurst": fit.hurst, "plateau_m4": fit.plateau_m4, "roll_off_1_m": fit.roll_off_1_m, "scatter": fit.scatter,
-            "rolls_off": fit.rolls_off, "roll_off_m": roll_off_m(&fit, header.length_m), "long_cut_m": fit.long_cut_m,
+            "rolls_off": fit.rolls_off, "roll_off_m": fit.roll_off_m(header.length_m), "long_cut_m": fit.long_cut_m,
             "short_cut_m": fit.short_cut.map(|(wavelength, _)| wavelength), "short_cut_cause": fit.short_cut.map(|(_, cause)| cause.word()),
         })
     });
@@ -177,7 +176,7 @@ const CONVENTION: &str = "integral of C(q) over d2q = h_rms^2; SurfaceTopography
 /// Fit of a self-affine spectrum, and the band of wavelengths that holds data.
 fn self_affinity(header: &SurfaceHeader) -> Vec<Line> {
     let Some(fit) = header.measured.as_ref().and_then(|of| of.fit) else { return vec![("self-affine", "no fit".to_owned())] };
-    let rolls = roll_off_m(&fit, header.length_m).map_or_else(|| "none within the scan".to_owned(), |at| format!("at {at:.3e} m"));
+    let rolls = fit.roll_off_m(header.length_m).map_or_else(|| "none within the scan".to_owned(), |at| format!("at {at:.3e} m"));
     let long = fit.long_cut_m.map_or_else(|| "none within the scan".to_owned(), |at| format!("no data above {at:.3e} m"));
     let short = fit.short_cut.map_or_else(
         || "none".to_owned(),
@@ -194,12 +193,6 @@ fn self_affinity(header: &SurfaceHeader) -> Vec<Line> {
         ("long cut", long),
         ("short cut", short),
     ]
-}
-
-/// Wavelength of the roll-off \[m\]. Of a file without a statement there is one well within the scan.
-fn roll_off_m(fit: &SpectrumFit, length_m: f64) -> Option<f64> {
-    let at = TAU / fit.roll_off_1_m;
-    fit.rolls_off.unwrap_or(at < 0.7 * length_m).then_some(at)
 }
 
 /// The written file and a spec for it.
