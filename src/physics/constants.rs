@@ -59,7 +59,7 @@ pub fn number(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::number;
+    use crate::constants::number;
 
     #[test]
     fn val_numbers_are_written_as_in_the_guide() {
