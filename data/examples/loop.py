@@ -21,6 +21,8 @@ figure = sys.argv[2] if len(sys.argv) > 2 else "loop.svg"
 cases = pl.read_parquet(run / "statistics/realizations.parquet")
 cycles = pl.read_parquet(run / "statistics/cycles.parquet").filter(method="boundary_elements")
 first = cases.filter(pl.col("cycle_id").is_in(cycles["cycle_id"].implode()), realization=0)
+if first.is_empty():
+    sys.exit(f"{run} has no finished cycle by boundary elements")
 case = first.sort(["loss", "max_load"], descending=True).row(0, named=True)
 cycle = cycles.filter(cycle_id=case["cycle_id"]).row(0, named=True)
 folder = run / "cycles" / case["cycle_id"]

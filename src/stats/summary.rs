@@ -182,7 +182,7 @@ pub fn expected_ratios(cases: &Frame) -> Result<Option<String>, StatsError> {
 /// Lines of [`Shown::Few`].
 const FEW: usize = 3;
 
-/// Warnings in one line each: those that no verdict stands for, then the others; the last line counts what is left to the report.
+/// Warnings in one line each: those that no verdict stands for, then the others; the last line names or counts what is left to the report.
 fn few_warnings(cases: &Frame) -> Result<Vec<String>, StatsError> {
     let all = warnings(cases)?;
     if all.is_empty() {
@@ -197,9 +197,14 @@ fn few_warnings(cases: &Frame) -> Result<Vec<String>, StatsError> {
         if whole.chars().count() <= LINE { whole.replace('\u{a0}', " ") } else { head }
     };
     let mut lines: Vec<String> = std::iter::once(String::new()).chain(other.iter().take(FEW - 1).map(line)).collect();
-    let left = covered.len() + other.len().saturating_sub(FEW - 1);
-    let more = if left == 0 { String::new() } else { format!("{}, ", counted(left, "more warning")) };
-    lines.push(format!("{more}consequences and actions: report.html, or --verbose"));
+    let left: Vec<&str> = other.iter().skip(FEW - 1).chain(&covered).map(|warning| warning.kind.code).collect();
+    let last = |more: String| format!("{more}consequences and actions: report.html, or --verbose");
+    let named = last(format!("Also {}; ", left.join(", ")));
+    lines.push(match left.len() {
+        0 => last(String::new()),
+        _ if named.chars().count() <= LINE => named,
+        count => last(format!("{}, ", counted(count, "more warning"))),
+    });
     Ok(lines)
 }
 

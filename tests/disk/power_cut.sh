@@ -5,7 +5,8 @@
 #   tests/disk/power_cut.sh PROGRAM SPEC DIR COUNT
 #
 # Exit code 77: it cannot be tried here (it takes root, mkfs.ext4 and loop devices), and why.
-set -euo pipefail
+set -Eeuo pipefail
+trap 'echo "line $LINENO: exit code $?" >&2' ERR
 program=$1 spec=$2 dir=$3 count=$4
 disk=$dir/disk.img live=$dir/live cut=$dir/cut
 missing() { echo "no power cut here: $1" >&2; exit 77; }

@@ -62,7 +62,7 @@ fn e2e_both_methods_side_by_side() {
     let run = bench.verb("run", &[]);
     assert_eq!(code(&run), 0, "{}", stderr(&run));
     let said = stdout(&run);
-    assert!(said.contains("\nVerdict: ") && said.contains("Open the report: "), "{said}");
+    assert!(said.contains("\nVerdict: ") && said.contains("\nTo open it: "), "{said}");
     let whole = stdout(&bench.verb("run", &["--verbose"]));
     assert!(whole.contains("Asperity model over boundary elements on the same surfaces"), "{whole}");
     assert!(said.contains("boundary_elements"), "{said}");

@@ -106,7 +106,8 @@ fn e2e_a_dissipated_energy_of_absorption_is_a_warning() {
     let frame = cases(&bench.out());
     assert!(number(&frame, "absorption_share_max").unwrap() > 0.9, "{:?}", number(&frame, "absorption_share_max"));
     assert!(frame.text("caution").unwrap()[0].contains("absorption"));
-    assert!(stdout(&run).contains("absorption"), "{}", stdout(&run));
+    let said = stdout(&bench.verb("run", &["--verbose"]));
+    assert!(said.contains("warning[absorption]"), "{said}");
 }
 
 /// A jump off after a splitting had fourteen times Θ here, and the share was 14.

@@ -77,7 +77,7 @@ impl<'a> Ended<'a> {
         let dir = shown(&self.campaign.dir);
         text += &match until {
             Stage::Report => format!(
-                "Report: {dir}/report.html\nTables: {dir}/statistics/*.parquet\nOpen the report: {} report {} --open\n",
+                "Report: {dir}/report.html\nTables: {dir}/statistics/*.parquet\nTo open it: {} report {} --open\n",
                 program(),
                 shell_path(&self.campaign.dir)
             ),
