@@ -6,7 +6,9 @@ pub mod boundary_elements;
 pub mod constants;
 pub mod contact;
 pub mod cycle;
+pub mod elements;
 mod error;
+mod event_kind;
 pub mod half_space;
 pub mod jkr;
 mod loop_position;
@@ -20,10 +22,11 @@ pub mod theory;
 
 use crate::constants::Constants;
 pub use error::{PhysicsError, Reason};
+pub use event_kind::{EventCounts, EventGroup, EventKind};
 pub use loop_position::LoopPosition;
 
 /// Tolerances and limits of the physics, by module.
-pub const CONSTANTS: [Constants; 9] = [
+pub const CONSTANTS: [Constants; 10] = [
     Constants { subject: "Valid cycles", module: "physics::cycle", rows: cycle::CONSTANTS },
     Constants { subject: "Path of the asperity model", module: "physics::path", rows: path::CONSTANTS },
     Constants { subject: "Global and local problems", module: "physics::solve", rows: solve::CONSTANTS },
@@ -31,6 +34,7 @@ pub const CONSTANTS: [Constants; 9] = [
     Constants { subject: "Contacts", module: "physics::contact", rows: contact::CONSTANTS },
     Constants { subject: "One asperity", module: "physics::jkr", rows: jkr::CONSTANTS },
     Constants { subject: "Boundary elements", module: "physics::boundary_elements", rows: boundary_elements::CONSTANTS },
+    Constants { subject: "Cycles by boundary elements", module: "physics::elements", rows: elements::CONSTANTS },
     Constants { subject: "Measured surfaces", module: "physics::surface", rows: surface::CONSTANTS },
     Constants { subject: "Analytical models", module: "physics::theory", rows: theory::CONSTANTS },
 ];

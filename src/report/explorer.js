@@ -3,13 +3,11 @@
   const source = document.getElementById("explorer-data");
   const host = document.getElementById("explorer");
   if (!source || !host) return;
-  const { cycles, kinds, letters } = JSON.parse(source.textContent);
+  const { cycles, kinds, names, letters } = JSON.parse(source.textContent);
   const SIDE = 400;
   const COLOURS = { push: "#0072b2", pull: "#d55e00", unknown: "#777777", in: "#009e73", out: "#cc79a7", other: "#e69f00" };
   const state = { cycle: 0, loop: 0, k: 0, avalanche: -1, smallest: 2, layer: "pressure", absorbed: true, timer: 0, hidden: new Set() };
 
-  const NAMES = { jump_in: "jump into contact", jump_off: "jump out of contact", cover: "absorption", uncover: "release", snap: "snap-through", merge: "merging", split: "splitting",
-    formed: "region formed", lost: "region lost", joined: "regions joined", parted: "region parted", grown: "region grown", shrunk: "region shrunk" };
 
   // Elements.
   const html = (name, attributes = {}, ...children) => {
@@ -379,8 +377,8 @@
     slider.setAttribute("aria-valuetext", `step ${of.s[state.k]}, ${branch}`);
     const own = current();
     const counts = new Map();
-    own.forEach((event) => counts.set(kinds[event[1]], (counts.get(kinds[event[1]]) || 0) + 1));
-    const said = Array.from(counts, ([kind, count]) => `${count} × ${NAMES[kind] || kind}`).join(", ");
+    own.forEach((event) => counts.set(event[1], (counts.get(event[1]) || 0) + 1));
+    const said = Array.from(counts, ([kind, count]) => `${count} × ${names[kind]}`).join(", ");
     const energy = own.reduce((sum, event) => sum + event[4], 0);
     const place = state.avalanche < 0 ? "at this step" : `avalanche ${state.avalanche}`;
     rich(readout, `Step ${of.s[state.k]}, ${branch}: F/(E*A₀) = ${number(of.f[state.k])}, Δ/h_rms = ${number(of.d[state.k])}, A/A₀ = ${number(of.a[state.k])}, ${of.n[state.k]} contact${of.n[state.k] === 1 ? "" : "s"}. ` +

@@ -4,7 +4,7 @@ use super::cases::{Cases, LOAD, name_heads};
 use super::layout::{heading, plain, prose, wide};
 use super::numbers::{Shown, scaled, shown, with_aside};
 use crate::model::{Choice as _, Method};
-use crate::schema::EVENT_KINDS;
+use crate::schema::EventKind;
 use crate::stats::{LIMITS, Limit, Listed, StatsError, Warning, warnings};
 use maud::{Markup, html};
 
@@ -31,8 +31,8 @@ const ABSORPTION_NOTE: &str = " Absorption and release have no potential, so the
 /// The energy budget: fractions by branch and by kind of event. Kinds without dissipated energy in all cases have no column.
 pub(super) fn budget(cases: &Cases<'_>) -> Result<Markup, StatsError> {
     let mut kinds = Vec::new();
-    for kind in EVENT_KINDS {
-        let all = cases.frame.f64_or_null(&format!("dissipated_{kind}_mean"))?;
+    for kind in EventKind::ALL {
+        let all = cases.frame.f64_or_null(&format!("dissipated_{}_mean", kind.word()))?;
         if all.iter().flatten().any(|mean| *mean != 0.0) {
             kinds.push(kind);
         }
@@ -45,7 +45,7 @@ pub(super) fn budget(cases: &Cases<'_>) -> Result<Markup, StatsError> {
         th { "energy-balance error: maximum (mean)" (bound("audit_gap_max", Shown::Percent)) }
         th { "loading" }
         th { "unloading" }
-        @for kind in &kinds { th { (kind_name(kind)) } }
+        @for kind in &kinds { th { (kind.name()) } }
     };
     let rows = cases.rows().iter().map(|listed| budget_row(cases, listed, &kinds)).collect::<Result<Vec<_>, _>>()?;
     Ok(
@@ -53,16 +53,17 @@ pub(super) fn budget(cases: &Cases<'_>) -> Result<Markup, StatsError> {
     )
 }
 
-fn budget_row(cases: &Cases<'_>, listed: &Listed, kinds: &[&str]) -> Result<Markup, StatsError> {
+fn budget_row(cases: &Cases<'_>, listed: &Listed, kinds: &[EventKind]) -> Result<Markup, StatsError> {
     let row = listed.row;
     let mean = |column: &str| cases.number(&format!("{column}_mean"), row);
     let (scale, loss, whole) = (cases.scale("loss")?, mean("loss")?, mean("dissipated")?);
     let gap = with_aside(cases.number("audit_gap_max", row)?, mean("audit_gap")?, Shown::Percent);
-    let share = |part: &&str| -> Result<Option<f64>, StatsError> {
+    let share = |part: &str| -> Result<Option<f64>, StatsError> {
         let part = mean(&format!("dissipated_{part}"))?;
         Ok(part.zip(whole.filter(|whole| *whole != 0.0)).map(|(part, whole)| part / whole))
     };
-    let shares = ["loading", "unloading"].iter().chain(kinds).map(share).collect::<Result<Vec<_>, _>>()?;
+    let shares =
+        ["loading", "unloading"].into_iter().chain(kinds.iter().map(|kind| kind.word())).map(share).collect::<Result<Vec<_>, _>>()?;
     Ok(html! {
         (cases.name(listed))
         td { (scaled(loss, scale)) }
@@ -70,20 +71,6 @@ fn budget_row(cases: &Cases<'_>, listed: &Listed, kinds: &[&str]) -> Result<Mark
         (cell(cases, row, "audit_gap_max", &gap))
         @for share in shares { td { (shown(share, Shown::Percent)) } }
     })
-}
-
-/// The name of a kind of event.
-fn kind_name(kind: &str) -> &str {
-    match kind {
-        "jump_in" => "jump into contact",
-        "jump_off" => "jump out of contact",
-        "cover" => "absorption",
-        "uncover" => "release",
-        "snap" => "snap-through",
-        "merge" => "merging",
-        "split" => "splitting",
-        _ => kind,
-    }
 }
 
 /// Columns of the asperity model.

@@ -2,9 +2,18 @@
 
 use super::statistics::CASE;
 use super::{ASPERITIES_ID, CYCLE_ID, Column, REALIZATION, SURFACE_ID, Table, count, index, join, real, text};
+use crate::physics::EventKind;
+use crate::physics::boundary_elements::regions::Change;
 
 /// Every kind of event of the tables `events`, in the column order of the tables over realizations.
-pub const EVENT_KINDS: [&str; 7] = ["jump_in", "jump_off", "cover", "uncover", "snap", "merge", "split"];
+pub const EVENT_KINDS: [&str; EventKind::ALL.len()] = EventKind::WORDS;
+
+/// The kind of event of a word in the tables; of a word of boundary elements the kind that corresponds to it.
+#[must_use]
+pub fn event_kind(word: &str) -> Option<EventKind> {
+    let of_region = || Change::ALL.into_iter().find(|change| change.word() == word).map(Change::kind);
+    EventKind::ALL.into_iter().find(|kind| kind.word() == word).or_else(of_region)
+}
 
 const AVALANCHE: &[Column] = &[
     REALIZATION,

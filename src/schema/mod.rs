@@ -14,7 +14,8 @@ mod render;
 mod run;
 mod statistics;
 
-pub use avalanches::{AVALANCHES, EVENT_KINDS};
+pub use crate::physics::{EventCounts, EventGroup, EventKind};
+pub use avalanches::{AVALANCHES, EVENT_KINDS, event_kind};
 pub use comparison::COMPARISON;
 pub use curves::{CURVES, PANELS};
 pub use cycles::CYCLES;

@@ -6,6 +6,7 @@ use super::number::short;
 use super::walk::{Origin, written};
 use super::{CaseParams, ElementParams, ModelParams};
 use crate::model::{Attraction, Boundary, Choice, Method, Slip};
+use crate::physics::elements::points_for;
 use crate::text::counted;
 use std::ops::Range;
 
@@ -13,8 +14,6 @@ use std::ops::Range;
 pub const MAX_ELEMENTS: u32 = 4096;
 /// Minimum number of grid points per shortest wavelength.
 pub const FEWEST_PER_WAVELENGTH: f64 = 4.0;
-/// Grid points per shortest wavelength of the automatic grid. Below, a case has a warning.
-pub const PER_WAVELENGTH: f64 = 16.0;
 /// Maximum mesh number `½ sqrt(Δγ dx/E*)/ρ` of a law with a range ρ: above, the grid traps the contact edges.
 pub const MOST_MESH_NUMBER: f64 = 0.7;
 /// Least `Δγ/(E* dx)`: below it, the tension is lost in the rounding of the pressure.
@@ -41,8 +40,7 @@ impl ElementParams {
         if self.points > 0 {
             return self.points;
         }
-        let wanted = (PER_WAVELENGTH * wavelengths).ceil();
-        if wanted >= f64::from(MAX_ELEMENTS) { MAX_ELEMENTS } else { (wanted as u32).next_power_of_two() }
+        u32::try_from(points_for(wavelengths)).map_or(MAX_ELEMENTS, |points| points.min(MAX_ELEMENTS))
     }
 
     /// Range ρ of the Morse law \[m\], with `Δγ/E*` and the grid spacing \[m\].

@@ -1,8 +1,8 @@
 //! Memory and time of a cycle, estimated before it begins.
 
-use super::cycle::{elements_bytes, refinement_of_steps};
 use crate::constants::Constant;
 use crate::model::{Attraction, Coalescence};
+use crate::physics::elements::{Numerics, memory_bytes};
 use crate::spec::CaseParams;
 
 /// Memory and time of a cycle.
@@ -64,12 +64,12 @@ pub(super) fn of_elements(params: &CaseParams, points: usize, ratio: Option<f64>
         Attraction::Bonded => 0.0,
         Attraction::Range => range_m.map_or(0.0, |range_m| elements.range_steps(range_m, rms_height_m, loads)),
     };
-    let steps = refinement_of_steps(ratio.unwrap_or_default()).powf(OF_STEPS) + of_range / STEPS;
+    let steps = Numerics::default().refinement(ratio.unwrap_or_default()).0.powf(OF_STEPS) + of_range / STEPS;
     Cost {
         points: points as u64,
         per_wavelength: 0.0,
         is_mirrored: false,
-        memory_bytes: elements_bytes(points, loads) as f64,
+        memory_bytes: memory_bytes(points, loads) as f64,
         seconds: 0.5 * (1 + loads) as f64 * steps * plain,
     }
 }

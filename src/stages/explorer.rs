@@ -6,8 +6,7 @@ use crate::campaign::{Campaign, CycleUnit, Standing};
 use crate::constants::Constant;
 use crate::model::Boundary;
 use crate::physics::boundary_elements::regions::Change;
-use crate::physics::contact::Kind;
-use crate::schema::{self, Table};
+use crate::schema::{self, EventKind, Table};
 use crate::stats::{Listing, listing, significant};
 use crate::store::hdf5::read_surface;
 use crate::store::parquet::read_table;
@@ -35,9 +34,10 @@ pub(super) const CONSTANTS: &[Constant] = &[
     ),
 ];
 
-/// Kinds of events of both methods, by their numbers in the data.
-fn kinds() -> Vec<&'static str> {
-    Kind::ALL.map(Kind::word).into_iter().chain(Change::ALL.map(Change::word)).collect()
+/// Kinds of events of both methods, by their numbers in the data: word and name.
+fn kinds() -> Vec<(&'static str, &'static str)> {
+    let of_regions = Change::ALL.map(|change| (change.word(), change.name()));
+    EventKind::ALL.map(|kind| (kind.word(), kind.name())).into_iter().chain(of_regions).collect()
 }
 
 /// The data as JSON; nothing without a finished cycle.
@@ -58,7 +58,8 @@ pub(super) fn explorer(campaign: &Campaign, standings: &[Standing], cases: &Fram
         return Ok(None);
     }
     // No text of the data ends the element that holds it.
-    Ok(Some(json!({ "cycles": all, "kinds": kinds(), "letters": LETTERS }).to_string().replace('<', "\\u003c")))
+    let (words, names): (Vec<_>, Vec<_>) = kinds().into_iter().unzip();
+    Ok(Some(json!({ "cycles": all, "kinds": words, "names": names, "letters": LETTERS }).to_string().replace('<', "\\u003c")))
 }
 
 /// Cases of the two methods with otherwise equal parameters, for each surface that both have finished.
@@ -247,7 +248,7 @@ fn events(events: &Frame, spots: &Spots, places: &BTreeMap<i64, usize>, energy_j
     let (avalanches, energies, of) = (events.i64("avalanche_id")?, events.f64_or_null("energy_lost_j")?, events.f64_or_null("max_load")?);
     let mut rows: Vec<(usize, Value)> = Vec::new();
     for row in 0..steps.len() {
-        let (Some(k), Some(kind)) = (places.get(&steps[row]), numbered.iter().position(|kind| *kind == kinds[row])) else { continue };
+        let (Some(k), Some(kind)) = (places.get(&steps[row]), numbered.iter().position(|(word, _)| *word == kinds[row])) else { continue };
         let spot = spots.place(of[row], ids[row]).map_or(-1, |spot| spot as i64);
         let energy = significant(energies[row].unwrap_or_default() / energy_j, 3).parse::<f64>().unwrap_or_default();
         rows.push((*k, json!([k, kind, spot, avalanches[row], energy])));

@@ -3,7 +3,7 @@
 use super::events::{Event, Events};
 use super::realizations::case_of;
 use super::{CaseInput, CycleInput, StatsError};
-use crate::schema::{AVALANCHES, EVENT_KINDS};
+use crate::schema::{AVALANCHES, EventCounts};
 use crate::store::Frame;
 
 /// Sums the events of each avalanche up; rows are ordered by case, realization and place along the path, whatever the order of the inputs.
@@ -24,7 +24,7 @@ pub fn avalanches(cases: &[CaseInput], cycles: &[CycleInput]) -> Result<Frame, S
         rows.extend(events.avalanches().filter_map(|of_one| Avalanche::of(case, input, of_one)));
     }
     let each = |value: fn(&Avalanche) -> f64| rows.iter().map(value);
-    let mut frame = Frame::of(&AVALANCHES)
+    let frame = Frame::of(&AVALANCHES)
         .text("case_id", rows.iter().map(|row| row.case.case_id.as_str()))
         .text("sweep", rows.iter().map(|row| row.case.sweep.as_str()))
         .i64("realization", rows.iter().map(|row| row.input.realization))
@@ -36,15 +36,12 @@ pub fn avalanches(cases: &[CaseInput], cycles: &[CycleInput]) -> Result<Frame, S
         .i64("avalanche_id", rows.iter().map(|row| row.first.avalanche_id))
         .i64("step", rows.iter().map(|row| row.first.step))
         .f64("approach_m", each(|row| row.first.approach_m))
-        .count("event_count", rows.iter().map(|row| row.counts.iter().sum()))
+        .count("event_count", rows.iter().map(|row| row.counts.sum()))
         .f64("energy_lost_j", each(|row| row.energy_lost_j))
         .f64("energy_lost", each(|row| row.energy_lost_j / row.input.energy_scale_j))
         .f64("load_drop_n", each(|row| row.first.load_before_n - row.last.load_after_n))
         .f64("area_change_m2", each(|row| row.last.area_after_m2 - row.first.area_before_m2));
-    for (kind, word) in EVENT_KINDS.iter().enumerate() {
-        frame = frame.count(&format!("{word}_count"), rows.iter().map(|row| row.counts.get(kind).copied().unwrap_or_default()));
-    }
-    Ok(frame.build()?)
+    Ok(frame.counts(rows.iter().map(|row| row.counts)).build()?)
 }
 
 /// The events of one avalanche, summed up.
@@ -53,19 +50,14 @@ struct Avalanche<'a> {
     input: &'a CycleInput,
     first: Event,
     last: Event,
-    counts: [usize; EVENT_KINDS.len()],
+    counts: EventCounts,
     energy_lost_j: f64,
 }
 
 impl<'a> Avalanche<'a> {
     fn of(case: &'a CaseInput, input: &'a CycleInput, events: &[Event]) -> Option<Self> {
         let (first, last) = (*events.first()?, *events.last()?);
-        let mut counts = [0; EVENT_KINDS.len()];
-        for event in events {
-            if let Some(count) = counts.get_mut(event.kind) {
-                *count += 1;
-            }
-        }
+        let counts = events.iter().map(|event| event.kind).collect();
         let energy_lost_j = events.iter().fold(0.0, |sum, event| sum + event.energy_lost_j);
         Some(Self { case, input, first, last, counts, energy_lost_j })
     }

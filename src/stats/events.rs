@@ -3,24 +3,12 @@
 use std::path::Path;
 
 use super::StatsError;
-use crate::schema::{EVENT_KINDS, EVENTS};
+use crate::schema::{EVENT_KINDS, EVENTS, EventGroup, EventKind, event_kind};
 use crate::store::parquet::read_table;
 use crate::store::{Frame, FrameError};
 
 /// Number of the asperity of an event of boundary elements, which has none.
 const NO_ASPERITY: i64 = -1;
-
-/// The kind of asperity event that corresponds to a kind of event of boundary elements; other words as they are.
-fn asperity_word(word: &str) -> &str {
-    match word {
-        "formed" => "jump_in",
-        "lost" => "jump_off",
-        "joined" => "merge",
-        "parted" => "split",
-        "grown" | "shrunk" => "snap",
-        other => other,
-    }
-}
 
 /// One event.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,8 +17,7 @@ pub(super) struct Event {
     pub(super) loading: bool,
     /// Nothing while loading.
     pub(super) max_load: Option<f64>,
-    /// Its place in [`EVENT_KINDS`].
-    pub(super) kind: usize,
+    pub(super) kind: EventKind,
     pub(super) asperity_id: i64,
     pub(super) approach_m: f64,
     pub(super) avalanche_id: i64,
@@ -54,15 +41,6 @@ pub(super) struct Lost {
     pub(super) kinds: [f64; EVENT_KINDS.len()],
 }
 
-/// Kinds of events that exchange the potential of contacts for that of another contact: merging, and splitting, which undoes it.
-const EXCHANGES: [&str; 2] = ["merge", "split"];
-
-impl Event {
-    fn exchanges(&self) -> bool {
-        EVENT_KINDS.get(self.kind).is_some_and(|kind| EXCHANGES.contains(kind))
-    }
-}
-
 /// Energies of the events of one avalanche \[J\], each with the kind of the event that causes it.
 ///
 /// The ledger books the energy of a relaxation on one event and 0 on the others. That event is the cause, with one exception: merging and splitting
@@ -70,11 +48,11 @@ impl Event {
 /// these has the energy, which is mainly the difference between the potentials of the merged contact and of its parts. This energy belongs to
 /// the merging or splitting before it. Without this rule the energies of merging and splitting do not cancel: on one surface of
 /// Δγ = 0.005 J/m² with ζ = 32, a jump that follows a splitting has fourteen times Θ.
-fn by_cause<'a>(avalanche: &'a [&Event]) -> impl Iterator<Item = (usize, f64)> + 'a {
+fn by_cause<'a>(avalanche: &'a [&Event]) -> impl Iterator<Item = (EventKind, f64)> + 'a {
     let mut exchange = None;
     avalanche.iter().map(move |event| {
         if event.energy_lost_j == 0.0 {
-            exchange = if event.exchanges() { Some(event.kind) } else { exchange };
+            exchange = if event.kind.group() == EventGroup::Merging { Some(event.kind) } else { exchange };
             return (event.kind, 0.0);
         }
         (exchange.take().unwrap_or(event.kind), event.energy_lost_j)
@@ -104,9 +82,8 @@ impl Events {
 
     /// The asperities that came into contact in that loop, each once, ascending.
     pub(super) fn touched(&self, turning_step: i64, max_load: f64) -> Vec<i64> {
-        let jump_in = EVENT_KINDS.iter().position(|kind| *kind == "jump_in");
-        let mut touched: Vec<i64> =
-            self.of_loop(turning_step, max_load).filter(|event| Some(event.kind) == jump_in).map(|event| event.asperity_id).collect();
+        let jumps = self.of_loop(turning_step, max_load).filter(|event| event.kind == EventKind::JumpIn);
+        let mut touched: Vec<i64> = jumps.map(|event| event.asperity_id).collect();
         touched.sort_unstable();
         touched.dedup();
         touched
@@ -127,9 +104,7 @@ impl Events {
         }
         for avalanche in events.chunk_by(|a, b| a.avalanche_id == b.avalanche_id) {
             for (kind, energy_j) in by_cause(avalanche) {
-                if let Some(of_kind) = lost.kinds.get_mut(kind) {
-                    *of_kind += energy_j;
-                }
+                lost.kinds[kind as usize] += energy_j;
             }
         }
         lost
@@ -150,12 +125,11 @@ fn rows(frame: &Frame) -> Result<Vec<Result<Event, String>>, FrameError> {
             ("unloading", Some(_)) => false,
             _ => return Err(format!("hold a branch {branch:?} with max_load {max_load:?}; loading has none, unloading has one")),
         };
-        let kind = EVENT_KINDS.iter().position(|known| *known == asperity_word(word));
         Ok(Event {
             step: steps[row],
             loading,
             max_load,
-            kind: kind.ok_or_else(|| format!("hold the kind {word:?}; there are: {}", EVENT_KINDS.join(", ")))?,
+            kind: event_kind(word).ok_or_else(|| format!("hold the kind {word:?}; there are: {}", EVENT_KINDS.join(", ")))?,
             asperity_id: asperities[row].unwrap_or(NO_ASPERITY),
             approach_m: approaches[row],
             avalanche_id: avalanches[row],

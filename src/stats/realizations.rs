@@ -5,7 +5,7 @@ use super::events::{Events, Lost};
 use super::rows::{Rows, Value};
 use super::{CaseInput, CycleInput, Given, StatsError};
 use crate::physics::cycle::soundness::LoopEnergy;
-use crate::schema::{EVENT_KINDS, REALIZATIONS};
+use crate::schema::{EVENT_KINDS, EventKind, REALIZATIONS};
 use crate::store::Frame;
 
 /// Reduces each cycle to one row per turning point, ordered by case, turning point and realization, whatever the order of the inputs.
@@ -80,16 +80,13 @@ fn parts(lost: &Lost, input: &CycleInput) -> Given {
     branches.into_iter().chain(kinds).flat_map(both).collect()
 }
 
-/// Kinds of events of coalescence; splitting undoes merging, and release undoes absorption.
-const COALESCENCE: [&str; 4] = ["cover", "uncover", "merge", "split"];
-
 /// Coalescence energy over Θ, `|E_cover + E_uncover + E_merge + E_split|/|Θ|`; null for Θ = 0.
 ///
 /// Energies that cancel along the loop, such as those of merging and of the later splitting, do not count. The energies of all events sum to Θ. So the share is
 /// between 0 and 1, up to the energy-balance error, if neither the events of coalescence nor the other ones gain energy in sum.
 fn absorption_share(lost: &Lost, results: &Given) -> Option<f64> {
     let loss = results.iter().find(|(name, _)| name == "loss_j").and_then(|(_, value)| value.number())?;
-    let kinds = EVENT_KINDS.iter().zip(lost.kinds).filter(|(kind, _)| COALESCENCE.contains(kind));
+    let kinds = EventKind::ALL.into_iter().zip(lost.kinds).filter(|(kind, _)| kind.group().is_coalescence());
     (loss != 0.0).then(|| (kinds.map(|(_, energy)| energy).sum::<f64>() / loss).abs())
 }
 

@@ -1,6 +1,6 @@
 //! Putting a table together, with every mistake found before anything is written.
 
-use crate::schema::Table;
+use crate::schema::{EventCounts, EventKind, Table};
 
 use super::error::FrameError;
 use super::frame::{ColumnData, Frame, position, wrong_kind};
@@ -43,6 +43,15 @@ impl FrameBuilder {
     pub fn count(self, name: &str, values: impl IntoIterator<Item = usize>) -> Self {
         let values = values.into_iter().map(|value| i64::try_from(value).ok());
         self.with(name, ColumnData::I64(values.collect()))
+    }
+
+    /// Gives the columns of event counts, one for each kind.
+    #[must_use]
+    pub fn counts(self, counts: impl IntoIterator<Item = EventCounts>) -> Self {
+        let counts: Vec<EventCounts> = counts.into_iter().collect();
+        EventKind::ALL
+            .into_iter()
+            .fold(self, |frame, kind| frame.count(&format!("{}_count", kind.word()), counts.iter().map(|of| of[kind])))
     }
 
     /// Gives a column of truth values: `bool`, or `Option<bool>` where values may be missing.

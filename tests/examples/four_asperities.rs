@@ -49,7 +49,7 @@ fn main() -> Result<(), PhysicsError> {
     let cycle = run()?;
     println!("{:<10} {:>8} {:>9} {:>9} {:>9} {:>7} {:>12}", "branch", "Δ [nm]", "F [µN]", "A [µm²]", "contacts", "events", "Θ [fJ]");
     for step in &cycle.steps {
-        let events: usize = step.counts.events.iter().sum();
+        let events = step.counts.events.sum();
         println!(
             "{:<10} {:>8.1} {:>9.3} {:>9.2} {:>9} {:>7} {:>12.3}",
             step.branch.word(),

@@ -5,8 +5,8 @@ use crate::support::{
     turning, unloading,
 };
 use hysteron::model::{Coalescence, Interaction, JumpIn, KeptContacts, Material};
+use hysteron::physics::EventKind;
 use hysteron::physics::PhysicsError;
-use hysteron::physics::contact::Kind;
 use hysteron::physics::contact::{Problem, Rules};
 use hysteron::physics::cycle::{Cycle, Halfway, Settings, run_from, run_to};
 use hysteron::physics::jkr::Asperity;
@@ -16,7 +16,7 @@ use std::f64::consts::PI;
 
 /// Σθ over every asperity that touched, with the given jump-in.
 fn closed_form(cycle: &Cycle, summits: &[Summit], jump_in: JumpIn) -> f64 {
-    let mut touched: Vec<usize> = cycle.events.iter().filter(|(_, e)| e.kind == Kind::JumpIn).map(|(_, e)| e.asperity).collect();
+    let mut touched: Vec<usize> = cycle.events.iter().filter(|(_, e)| e.kind == EventKind::JumpIn).map(|(_, e)| e.asperity).collect();
     touched.sort_unstable();
     touched.dedup();
     assert!(touched.len() > 20 && touched.len() < summits.len(), "some touch, some do not: {}", touched.len());
@@ -128,7 +128,7 @@ fn law_every_event_loses_energy_with_point_interaction() {
     }
     // As many leave as come: the loop ends free.
     let count = |kind| cycle.events.iter().filter(|(_, e)| e.kind == kind).count();
-    assert_eq!(count(Kind::JumpIn), count(Kind::JumpOff));
+    assert_eq!(count(EventKind::JumpIn), count(EventKind::JumpOff));
 }
 
 #[test]
@@ -212,8 +212,8 @@ fn law_without_interaction_nothing_snaps() {
     for adhesion in [0.07, 1e-6, 1e-9, 1e-12] {
         let material = Material { work_of_adhesion_j_m2: adhesion, ..PAPER };
         let cycle = run(&Problem::new(&summits, LENGTH, RMS, material, ALONE).unwrap(), &[0.0071], 0.04, KeptContacts::None);
-        let kinds: Vec<Kind> = cycle.events.iter().map(|(_, e)| e.kind).collect();
-        let other = kinds.iter().filter(|k| !matches!(k, Kind::JumpIn | Kind::JumpOff)).count();
+        let kinds: Vec<EventKind> = cycle.events.iter().map(|(_, e)| e.kind).collect();
+        let other = kinds.iter().filter(|k| !matches!(k, EventKind::JumpIn | EventKind::JumpOff)).count();
         assert_eq!((other, kinds.is_empty()), (0, false), "events that are no jump at a work of adhesion of {adhesion:e}");
     }
 }
@@ -395,12 +395,12 @@ fn law_nobody_is_covered_where_nobody_touches() {
         let last = cycle.steps.last().unwrap();
         assert_eq!((last.counts.contacts, last.counts.covered), (0, 0), "realization {realization}");
         // Whoever was covered has been uncovered, each as often.
-        let of = |kind: Kind| {
+        let of = |kind: EventKind| {
             let mut asperities: Vec<usize> = cycle.events.iter().filter(|(_, e)| e.kind == kind).map(|(_, e)| e.asperity).collect();
             asperities.sort_unstable();
             asperities
         };
-        assert_eq!(of(Kind::Cover), of(Kind::Uncover), "realization {realization}");
+        assert_eq!(of(EventKind::Cover), of(EventKind::Uncover), "realization {realization}");
     }
 }
 

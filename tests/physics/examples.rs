@@ -61,7 +61,7 @@ fn law_example_of_an_observed_path() {
 
 #[test]
 fn law_example_of_boundary_elements() {
-    let cycle = boundary_elements::run().unwrap();
+    let (cycle, _) = boundary_elements::run().unwrap();
     let points = (boundary_elements::POINTS * boundary_elements::POINTS) as f64;
     // The load at the reversal is met to 1e-5.
     close("load at the reversal", cycle.turning[0].last.totals.load / points, boundary_elements::MAX_LOAD, 1e-5);

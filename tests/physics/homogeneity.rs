@@ -218,7 +218,7 @@ fn law_a_whole_cycle_scales() {
     for rules in [ALONE, cover, Rules { interaction: Interaction::Point, ..cover }, others] {
         let base = Problem::new(&summits, LENGTH, RMS, PAPER, rules).unwrap();
         let want = run(&base, &[1e-4, 2e-4], 0.05, KeptContacts::None);
-        assert!(want.steps.iter().map(|s| s.counts.events.iter().sum::<usize>()).sum::<usize>() > 10);
+        assert!(want.steps.iter().map(|s| s.counts.events.sum()).sum::<usize>() > 10);
         for units in several().into_iter().take(4) {
             let scaled: Vec<Summit> = summits.iter().map(|s| units.summit(s)).collect();
             let problem = Problem::new(&scaled, LENGTH * units.length, RMS * units.length, units.material(PAPER), rules).unwrap();

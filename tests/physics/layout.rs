@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 /// Folders and files of `src/physics`, each with those that it may import. `model`, `constants`, `error` and `memory` are free for all.
-const PHYSICS: [(&str, &[&str]); 10] = [
+const PHYSICS: [(&str, &[&str]); 11] = [
     ("math", &[]),
     ("jkr", &[]),
     ("surface", &[]),
@@ -16,6 +16,7 @@ const PHYSICS: [(&str, &[&str]); 10] = [
     ("cycle", &["math", "jkr", "half_space", "contact", "solve", "path"]),
     ("theory", &["jkr", "surface"]),
     ("boundary_elements", &[]),
+    ("elements", &["surface", "theory", "boundary_elements", "cycle"]),
 ];
 
 type Graph = BTreeMap<Vec<String>, BTreeSet<Vec<String>>>;

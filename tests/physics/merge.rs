@@ -4,8 +4,8 @@ use crate::support::{
     ALONE, DEFAULT, Dice, LENGTH, PAPER, RMS, asperity, close, loop_of, near, paper_cycle, paper_summits, run, turning, unloading,
 };
 use hysteron::model::{Coalescence, Interaction, KeptContacts, Material};
+use hysteron::physics::EventKind;
 use hysteron::physics::PhysicsError;
-use hysteron::physics::contact::Kind;
 use hysteron::physics::contact::{Merged, Problem, Rules, State};
 use hysteron::physics::cycle::{self, Cycle, Settings};
 use hysteron::physics::jkr::Asperity;
@@ -28,8 +28,8 @@ fn pair_cycle() -> Cycle {
 #[test]
 fn law_two_spots_that_touch_become_one_of_their_area_and_load() {
     let cycle = pair_cycle();
-    let kinds: Vec<Kind> = cycle.events.iter().map(|(_, e)| e.kind).collect();
-    assert_eq!(kinds, [Kind::JumpIn, Kind::JumpIn, Kind::Merge, Kind::Split, Kind::JumpOff, Kind::JumpOff]);
+    let kinds: Vec<EventKind> = cycle.events.iter().map(|(_, e)| e.kind).collect();
+    assert_eq!(kinds, [EventKind::JumpIn, EventKind::JumpIn, EventKind::Merge, EventKind::Split, EventKind::JumpOff, EventKind::JumpOff]);
     let spheres = pair().map(|s| Asperity::new(s.radius_m(), &PAPER).unwrap());
     let (merged, event) = (cycle.merged[0], cycle.events[2].1);
     assert_eq!((cycle.merged.len(), merged.asperity, event.asperity, merged.spot.parts), (1, 2, 2, [0, 1]));
@@ -90,8 +90,8 @@ fn law_with_point_interaction_the_loop_loses_what_its_events_lose() {
         let problem = Problem::new(&summits, LENGTH, RMS, PAPER, rules).unwrap().with_patches_of(usize::MAX);
         let cycle = run(&problem, &[0.0071], 0.04, KeptContacts::None);
         let sums = loop_of(&cycle, 0);
-        let count = |kind: Kind| cycle.events.iter().filter(|(_, e)| e.kind == kind).count();
-        assert!(count(Kind::Merge) > 20 && count(Kind::Split) > 20, "{:?}", rules.interaction);
+        let count = |kind: EventKind| cycle.events.iter().filter(|(_, e)| e.kind == kind).count();
+        assert!(count(EventKind::Merge) > 20 && count(EventKind::Split) > 20, "{:?}", rules.interaction);
         // The audit's tolerance: folds are passed by 1e-6 of the rms height, work is a sum of fourth order.
         close("events", sums.events, sums.loss, most);
         assert!(cycle.steps.iter().all(|s| s.numerics.residual_m <= 1e-8 * RMS));
@@ -105,7 +105,7 @@ fn law_merging_costs_nothing_and_splitting_little() {
     for (rules, merging, splitting) in [(MERGE, 1e-6, 0.05), (MERGE_POINT, 1e-6, 0.01), (MERGE_ALONE, 1e-9, 1e-6)] {
         let problem = Problem::new(&paper_summits(16, 0), LENGTH, RMS, PAPER, rules).unwrap();
         let cycle = run(&problem, &[0.0071], 0.04, KeptContacts::None);
-        for (kind, most) in [(Kind::Merge, merging), (Kind::Split, splitting)] {
+        for (kind, most) in [(EventKind::Merge, merging), (EventKind::Split, splitting)] {
             let exchanged: f64 = cycle.events.iter().filter(|(_, e)| e.kind == kind).map(|(_, e)| e.energy_lost_j.abs()).sum();
             let share = exchanged / loop_of(&cycle, 0).loss;
             assert!(share < most, "{:?}, {kind:?}: {share:e}", rules.interaction);
@@ -122,7 +122,7 @@ fn law_area_and_load_are_continuous_at_every_merger() {
         let cycle = run(&problem, &[0.0071], 0.04, KeptContacts::None);
         let top = turning(&cycle, 0).load_n;
         let mut compared = 0;
-        for (_, event) in cycle.events.iter().filter(|(_, e)| e.kind == Kind::Merge) {
+        for (_, event) in cycle.events.iter().filter(|(_, e)| e.kind == EventKind::Merge) {
             close("area", event.after.area_m2, event.before.area_m2, most);
             near("load", event.after.load_n, event.before.load_n, most * top);
             compared += 1;
@@ -138,8 +138,8 @@ fn law_a_reversal_before_any_jump_out_of_contact_retraces() {
     for (summits, rules) in [(pair().to_vec(), MERGE_ALONE), (trio.clone(), MERGE), (trio, MERGE_POINT)] {
         let problem = Problem::new(&summits, LENGTH, RMS, PAPER, rules).unwrap();
         let cycle = run(&problem, &[1.2e-4], 0.002, KeptContacts::None);
-        let last_in = cycle.events.iter().rfind(|(_, e)| e.kind == Kind::JumpIn).unwrap().1.approach_m;
-        let merging = cycle.events.iter().find(|(_, e)| e.kind == Kind::Merge).unwrap().1.approach_m;
+        let last_in = cycle.events.iter().rfind(|(_, e)| e.kind == EventKind::JumpIn).unwrap().1.approach_m;
+        let merging = cycle.events.iter().find(|(_, e)| e.kind == EventKind::Merge).unwrap().1.approach_m;
         let loading: Vec<_> = cycle.steps[..cycle.turning[0].0].iter().filter(|s| s.approach_m > last_in).collect();
         let unloading = unloading(&cycle, 0);
         let mut compared = [0, 0];
@@ -182,7 +182,7 @@ fn law_a_released_asperity_does_not_merge_with_the_contacts_around_it() {
     let (mut released, mut merged) = (0, 0);
     for realization in 0..6 {
         let cycle = paper_cycle(&paper_summits(16, realization), MERGE, &[0.0071], 0.01);
-        for (_, event) in cycle.events.iter().filter(|(_, e)| e.kind == Kind::Uncover) {
+        for (_, event) in cycle.events.iter().filter(|(_, e)| e.kind == EventKind::Uncover) {
             let merges = |spot: &Merged| spot.parts.contains(&event.asperity) && spot.approach_m == event.approach_m;
             released += 1;
             merged += usize::from(cycle.merged.iter().any(|at| merges(&at.spot)));

@@ -3,7 +3,7 @@
 use crate::reference::{Row, table};
 use crate::support::{DEFAULT, PAPER, RMS, close, near};
 use hysteron::model::{Interaction, KeptContacts};
-use hysteron::physics::contact::Kind;
+use hysteron::physics::EventKind;
 use hysteron::physics::contact::{Problem, Rules};
 use hysteron::physics::cycle::{self, Branch, Cycle, Settings};
 
@@ -37,7 +37,7 @@ fn val_the_events_are_those_of_an_independent_solver() {
         for branch in [Branch::Loading, Branch::Unloading] {
             let want: Vec<Row<'_>> = events.rows().filter(|r| r.word("surface") == surface && r.word("branch") == branch.word()).collect();
             let got: Vec<_> = cycle.events.iter().filter(|(step, _)| cycle.steps[*step].branch == branch).map(|(_, e)| e).collect();
-            let name = |kind: Kind| kind.word();
+            let name = |kind: EventKind| kind.word();
             let sequence: Vec<_> = got.iter().map(|e| (name(e.kind), e.asperity)).collect();
             let wanted: Vec<_> = want.iter().map(|r| (r.word("kind"), r.number("asperity") as usize)).collect();
             assert_eq!(sequence, wanted, "{surface} {}", branch.word());

@@ -3,8 +3,8 @@
 use crate::jkr::work;
 use crate::support::{ALONE, DEFAULT, LENGTH, PAPER, RMS, close, loop_of, near, paper_cycle, paper_spectrum, paper_summits, turning};
 use hysteron::model::{Boundary, Choice, Interaction as Kind, JumpIn, Slip, Slips};
+use hysteron::physics::EventKind as Event;
 use hysteron::physics::PhysicsError;
-use hysteron::physics::contact::Kind as Event;
 use hysteron::physics::contact::Rules;
 use hysteron::physics::half_space::spot_field::{Spot, spot_field, spot_field_as_printed};
 use hysteron::physics::half_space::{DirectSum, Effort, Interaction, Spots, ewald::RemainderSeries};

@@ -2,6 +2,7 @@
 
 use super::contact::{Problem, State};
 use super::grid::HalfSpace;
+use crate::event_kind::EventKind;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 
@@ -60,6 +61,31 @@ impl Change {
             Self::Parted => "parted",
             Self::Grown => "grown",
             Self::Shrunk => "shrunk",
+        }
+    }
+
+    /// Name in texts.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Formed => "region formed",
+            Self::Lost => "region lost",
+            Self::Joined => "regions joined",
+            Self::Parted => "region parted",
+            Self::Grown => "region grown",
+            Self::Shrunk => "region shrunk",
+        }
+    }
+
+    /// Kind of event of the asperity model that corresponds to it.
+    #[must_use]
+    pub fn kind(self) -> EventKind {
+        match self {
+            Self::Formed => EventKind::JumpIn,
+            Self::Lost => EventKind::JumpOff,
+            Self::Joined => EventKind::Merge,
+            Self::Parted => EventKind::Split,
+            Self::Grown | Self::Shrunk => EventKind::Snap,
         }
     }
 }

@@ -1,14 +1,14 @@
 //! Events of an equilibrium path.
 
 use super::problem::Totals;
-use super::transition::Kind;
+use crate::event_kind::EventKind;
 use serde::{Deserialize, Serialize};
 
 /// An event with its load, area and energy change.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Event {
     /// Kind of event.
-    pub kind: Kind,
+    pub kind: EventKind,
     /// Asperity that changes state.
     pub asperity: usize,
     /// Mean penetration Δ \[m\] at the event.

@@ -18,4 +18,3 @@ pub use event::Event;
 pub use merged_spot::Merged;
 pub use problem::{Problem, Rules, Totals};
 pub use state::{State, Status};
-pub use transition::Kind;

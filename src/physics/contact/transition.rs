@@ -11,8 +11,8 @@
 
 use super::problem::Problem;
 use super::state::{State, Status};
+use crate::event_kind::EventKind;
 use crate::model::Coalescence;
-use serde::{Deserialize, Serialize};
 
 /// Distance from the edge of a contact, over its radius, at which it absorbs an asperity.
 ///
@@ -29,54 +29,10 @@ pub(crate) fn absorbed_within(radius: f64) -> f64 {
     radius * (1.0 + BEFORE_CENTRE)
 }
 
-/// Kind of event.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub enum Kind {
-    /// A free asperity jumps into contact.
-    JumpIn,
-    /// A spot reaches the end of its branch and leaves contact.
-    JumpOff,
-    /// A larger spot reaches an asperity's centre and absorbs it.
-    Cover,
-    /// The absorbing spot has withdrawn, and the asperity is released.
-    Uncover,
-    /// Snap-through at a limit point of the coupled state: same contacts, new equilibrium. In the code also a change of a local problem without a
-    /// change of status, such as the response to a pending displacement.
-    Snap,
-    /// Two overlapping spots merge.
-    Merge,
-    /// A merged spot splits into its parts.
-    Split,
-}
-
-impl Kind {
-    /// All kinds, in the order of the event counts.
-    pub const ALL: [Self; 7] = [Self::JumpIn, Self::JumpOff, Self::Cover, Self::Uncover, Self::Snap, Self::Merge, Self::Split];
-
-    /// True for merging and splitting.
-    pub(crate) fn is_coalescence(self) -> bool {
-        matches!(self, Self::Merge | Self::Split)
-    }
-
-    /// Name in the tables.
-    #[must_use]
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::JumpIn => "jump_in",
-            Self::JumpOff => "jump_off",
-            Self::Cover => "cover",
-            Self::Uncover => "uncover",
-            Self::Snap => "snap",
-            Self::Merge => "merge",
-            Self::Split => "split",
-        }
-    }
-}
-
 /// Change of one asperity's status.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Transition {
-    pub(crate) kind: Kind,
+    pub(crate) kind: EventKind,
     pub(crate) asperity: usize,
     /// The absorbing asperity; the other contact of a pair that is to merge.
     pub(crate) by: Option<usize>,
@@ -87,10 +43,10 @@ impl Transition {
     pub(crate) fn returns(&self, moved: &[Self], state: &State) -> bool {
         let i = self.asperity;
         moved.iter().any(|earlier| match (self.kind, earlier.kind) {
-            (Kind::JumpIn, Kind::JumpOff | Kind::Uncover) => earlier.asperity == i,
-            (Kind::Cover, Kind::Uncover) | (Kind::Split, Kind::Merge) => earlier.asperity == i,
+            (EventKind::JumpIn, EventKind::JumpOff | EventKind::Uncover) => earlier.asperity == i,
+            (EventKind::Cover, EventKind::Uncover) | (EventKind::Split, EventKind::Merge) => earlier.asperity == i,
             // A release is allowed if the absorbing spot itself has left contact.
-            (Kind::Uncover, Kind::Cover) => {
+            (EventKind::Uncover, EventKind::Cover) => {
                 earlier.asperity == i && matches!(state.status[i], Status::Covered { by, .. } if state.radius[by] > 0.0)
             }
             _ => false,
@@ -102,17 +58,26 @@ impl Transition {
     /// It absorbs the released asperity, or the formerly absorbing spot into the released one.
     pub(crate) fn undoes(&self, uncovering: &Self) -> bool {
         let i = uncovering.asperity;
-        self.kind == Kind::Cover && (self.asperity == i || (Some(self.asperity) == uncovering.by && self.by == Some(i)))
+        self.kind == EventKind::Cover && (self.asperity == i || (Some(self.asperity) == uncovering.by && self.by == Some(i)))
     }
 
     /// Status of an asperity that this change removes from contact.
     pub(crate) fn status(&self, problem: &Problem) -> Status {
         match (self.kind, self.by) {
-            (Kind::Cover, Some(by)) => {
+            (EventKind::Cover, Some(by)) => {
                 let release_m = problem.absorbing_radius(self.asperity, by);
                 Status::Covered { by, release_m }
             }
-            (Kind::JumpIn | Kind::JumpOff | Kind::Cover | Kind::Uncover | Kind::Snap | Kind::Merge | Kind::Split, _) => Status::Free,
+            (
+                EventKind::JumpIn
+                | EventKind::JumpOff
+                | EventKind::Cover
+                | EventKind::Uncover
+                | EventKind::Snap
+                | EventKind::Merge
+                | EventKind::Split,
+                _,
+            ) => Status::Free,
         }
     }
 }
@@ -161,7 +126,7 @@ impl Problem {
         for &(i, a, residual) in spots {
             let overshoot = self.asperities[i].jump_off_radius() / a;
             if residual < 0.0 && overshoot > 1.0 && found.is_none_or(|(most, _)| overshoot > most) {
-                found = Some((overshoot, Transition { kind: Kind::JumpOff, asperity: i, by: None }));
+                found = Some((overshoot, Transition { kind: EventKind::JumpOff, asperity: i, by: None }));
             }
         }
         if found.is_none() && self.covers() {
@@ -169,7 +134,7 @@ impl Problem {
                 self.neighbours.within(j, absorbed_within(a), |r, i| {
                     let smaller = spots.binary_search_by_key(&i, |spot| spot.0).is_ok_and(|k| spots[k].1 < a);
                     if smaller && found.is_none_or(|(most, _)| a / r > most) {
-                        found = Some((a / r, Transition { kind: Kind::Cover, asperity: i, by: Some(j) }));
+                        found = Some((a / r, Transition { kind: EventKind::Cover, asperity: i, by: Some(j) }));
                     }
                 });
             }

@@ -1,6 +1,6 @@
 //! Recording of a branch: steps at grid points and load reversals, and events.
 
-use super::table::{Branch, Contact, Cycle, MergedAt, Settings, Step, StepCounts, StepNumerics, event_counts};
+use super::table::{Branch, Contact, Cycle, MergedAt, Settings, Step, StepCounts, StepNumerics};
 use crate::PhysicsError;
 use crate::contact::event::Event;
 use crate::contact::problem::Problem;
@@ -189,7 +189,7 @@ fn counts(at: &EquilibriumPath, recent: &[Event]) -> StepCounts {
         covered: state.covered_count(),
         touching: overlapping_count(&at.problem(), state),
         held: at.frozen_count(),
-        events: event_counts(recent),
+        events: recent.iter().map(|event| event.kind).collect(),
     }
 }
 

@@ -4,9 +4,8 @@
 //! The loop encloses no area, and the unloading branch is the loading branch in reverse.
 //! Each event is reversed at its mean penetration and returns its energy: Θ is exactly 0.
 
-use super::table::{Branch, Contact, Cycle, Step, StepCounts, StepNumerics, event_counts};
+use super::table::{Branch, Contact, Cycle, Step, StepCounts, StepNumerics};
 use crate::contact::event::Event;
-use crate::contact::transition::Kind;
 use crate::half_space::Effort;
 use crate::model::KeptContacts;
 
@@ -49,7 +48,7 @@ fn reversed(step: &Step, max_load: Option<f64>, undone: &[Event], least_load_n: 
         branch: Branch::Unloading,
         max_load,
         least_load_n,
-        counts: StepCounts { held: 0, events: event_counts(undone), ..step.counts.clone() },
+        counts: StepCounts { held: 0, events: undone.iter().map(|event| event.kind).collect(), ..step.counts.clone() },
         dissipated_j: undone.iter().map(|event| event.energy_lost_j).sum(),
         work_j: step.work_j - work_j,
         numerics: StepNumerics { drift_m: 0.0, effort: Effort::default(), ..step.numerics.clone() },
@@ -59,15 +58,7 @@ fn reversed(step: &Step, max_load: Option<f64>, undone: &[Event], least_load_n: 
 
 /// An event in reverse; avalanches are numbered along the branch.
 fn undo(event: &Event, avalanches: u64) -> Event {
-    let kind = match event.kind {
-        Kind::JumpIn => Kind::JumpOff,
-        Kind::JumpOff => Kind::JumpIn,
-        Kind::Cover => Kind::Uncover,
-        Kind::Uncover => Kind::Cover,
-        Kind::Merge => Kind::Split,
-        Kind::Split => Kind::Merge,
-        Kind::Snap => Kind::Snap,
-    };
+    let kind = event.kind.reversed();
     let avalanche = avalanches + 1 - event.avalanche;
     Event { kind, avalanche, before: event.after, after: event.before, energy_lost_j: -event.energy_lost_j, ..*event }
 }

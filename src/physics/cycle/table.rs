@@ -3,7 +3,7 @@
 use crate::contact::event::Event;
 use crate::contact::merged_spot::Merged;
 use crate::contact::state::State;
-use crate::contact::transition::Kind;
+use crate::event_kind::EventCounts;
 use crate::half_space::Effort;
 use crate::model::KeptContacts;
 use serde::{Deserialize, Serialize};
@@ -55,13 +55,8 @@ pub struct StepCounts {
     pub touching: usize,
     /// Frozen asperities, which alternated between states.
     pub held: usize,
-    /// Events since the step before, in the order of [`Kind::ALL`].
-    pub events: [usize; Kind::ALL.len()],
-}
-
-/// Numbers of events of each kind, in the order of [`Kind::ALL`].
-pub(super) fn event_counts(events: &[Event]) -> [usize; Kind::ALL.len()] {
-    Kind::ALL.map(|kind| events.iter().filter(|event| event.kind == kind).count())
+    /// Events since the step before.
+    pub events: EventCounts,
 }
 
 /// Accuracy and effort of one step.

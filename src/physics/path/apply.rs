@@ -8,7 +8,8 @@ use super::propagation::Before;
 use super::rejection::Rejection;
 use crate::PhysicsError;
 use crate::contact::Status;
-use crate::contact::transition::{Kind, Transition};
+use crate::contact::transition::Transition;
+use crate::event_kind::EventKind;
 use crate::solve::local::Hold;
 
 /// Share of its radius by which a contact is moved over a fold.
@@ -54,7 +55,7 @@ impl EquilibriumPath {
     fn change_status(&mut self, transition: Transition, before: &mut Before) -> Result<Option<Vec<Transition>>, Rejection> {
         let Some(entered) = self.insert_or_remove(transition, before)? else { return Ok(None) };
         let problem = &*self.problem();
-        let uncovers = transition.kind == Kind::Uncover;
+        let uncovers = transition.kind == EventKind::Uncover;
         let approach = self.neighbourhood.local.approach;
         let mut applied = vec![entered];
         let (local, effort) = (&mut self.neighbourhood.local, &mut self.solver.effort);
@@ -84,7 +85,7 @@ impl EquilibriumPath {
         let i = transition.asperity;
         let asperity = &problem.asperities[i];
         match transition.kind {
-            Kind::JumpIn => {
+            EventKind::JumpIn => {
                 let local = &mut self.neighbourhood.local;
                 if let Some(at) = local.watched.iter().position(|place| place.asperity == i) {
                     let place = local.watched[at];
@@ -92,9 +93,9 @@ impl EquilibriumPath {
                     local.insert(place, asperity.radius_ahead(penetration));
                 }
             }
-            Kind::JumpOff => self.neighbourhood.local.remove(i, true),
-            Kind::Cover => self.neighbourhood.local.remove(i, false),
-            Kind::Uncover => {
+            EventKind::JumpOff => self.neighbourhood.local.remove(i, true),
+            EventKind::Cover => self.neighbourhood.local.remove(i, false),
+            EventKind::Uncover => {
                 if let Some((by, release_m)) = problem.covering(&self.predictor.state, i, transition.by) {
                     // Another contact covers it as well: nothing moves.
                     self.predictor.set(i, Status::Covered { by, release_m }, 0.0);
@@ -102,9 +103,9 @@ impl EquilibriumPath {
                 }
                 self.insert_uncovered(transition);
             }
-            Kind::Merge => return self.merge(transition, before).map(Some),
-            Kind::Split => self.split(i, before),
-            Kind::Snap => {}
+            EventKind::Merge => return self.merge(transition, before).map(Some),
+            EventKind::Split => self.split(i, before),
+            EventKind::Snap => {}
         }
         Ok(Some(transition))
     }
@@ -164,7 +165,7 @@ impl EquilibriumPath {
                 self.predictor.state.barred[i] = true;
                 self.predictor.traces[i].value = f64::NAN;
                 let totals = self.predictor.totals(approach);
-                self.log.note(Transition { kind: Kind::Uncover, asperity: i, by: Some(by) }, approach, totals);
+                self.log.note(Transition { kind: EventKind::Uncover, asperity: i, by: Some(by) }, approach, totals);
                 let gained_j = self.free_parts(i).1;
                 self.log.charge(-gained_j);
             }

@@ -2,7 +2,8 @@
 
 use crate::contact::problem::Problem;
 use crate::contact::state::{State, Status};
-use crate::contact::transition::{Kind, Transition};
+use crate::contact::transition::Transition;
+use crate::event_kind::EventKind;
 
 /// Quantity that reaches a value at an event.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,19 +23,30 @@ impl Problem {
     pub(crate) fn condition(&self, change: &Transition, state: &State) -> Option<Condition> {
         let i = change.asperity;
         match (change.kind, state.status[i], change.by) {
-            (Kind::JumpIn, Status::Free, _) => Some(Condition::Penetration { asperity: i, value_m: self.jump_in[i] }),
-            (Kind::JumpOff, Status::Contact, _) => Some(Condition::Shrinking { contact: i, value_m: self.asperities[i].jump_off_radius() }),
-            (Kind::Cover, Status::Free | Status::Contact, Some(by)) => {
+            (EventKind::JumpIn, Status::Free, _) => Some(Condition::Penetration { asperity: i, value_m: self.jump_in[i] }),
+            (EventKind::JumpOff, Status::Contact, _) => {
+                Some(Condition::Shrinking { contact: i, value_m: self.asperities[i].jump_off_radius() })
+            }
+            (EventKind::Cover, Status::Free | Status::Contact, Some(by)) => {
                 Some(Condition::Growing { contact: by, value_m: self.absorbing_radius(i, by) })
             }
             // The footprint of a part of a merged contact stays covered until it splits.
-            (Kind::Uncover, Status::Covered { by, .. }, _) if matches!(state.status[by], Status::Merged { .. }) => None,
-            (Kind::Uncover, Status::Covered { by, release_m }, _) => Some(Condition::Shrinking { contact: by, value_m: release_m }),
-            (Kind::Merge, _, Some(by)) => Some(Condition::Touching { pair: [i, by] }),
-            (Kind::Split, Status::Contact, _) => {
+            (EventKind::Uncover, Status::Covered { by, .. }, _) if matches!(state.status[by], Status::Merged { .. }) => None,
+            (EventKind::Uncover, Status::Covered { by, release_m }, _) => Some(Condition::Shrinking { contact: by, value_m: release_m }),
+            (EventKind::Merge, _, Some(by)) => Some(Condition::Touching { pair: [i, by] }),
+            (EventKind::Split, Status::Contact, _) => {
                 state.release_of_merged(self, i).map(|value_m| Condition::Shrinking { contact: i, value_m })
             }
-            (Kind::JumpIn | Kind::JumpOff | Kind::Cover | Kind::Uncover | Kind::Snap | Kind::Merge | Kind::Split, ..) => None,
+            (
+                EventKind::JumpIn
+                | EventKind::JumpOff
+                | EventKind::Cover
+                | EventKind::Uncover
+                | EventKind::Snap
+                | EventKind::Merge
+                | EventKind::Split,
+                ..,
+            ) => None,
         }
     }
 }

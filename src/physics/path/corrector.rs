@@ -6,8 +6,9 @@ use super::rejection::Rejection;
 use super::triggers::Trigger;
 use super::work::work;
 use crate::Reason;
-use crate::contact::transition::{Kind, Transition};
+use crate::contact::transition::Transition;
 use crate::contact::{Status, Totals};
+use crate::event_kind::EventKind;
 use crate::math::vector::dot;
 use crate::solve::descent::{Failing, Relaxed};
 use crate::solve::residual::NotConverged;
@@ -99,7 +100,7 @@ impl EquilibriumPath {
     /// Applies overdue transitions, each with its avalanche, if it is still due.
     fn apply_overdue(&mut self, due: Vec<(f64, Transition)>) -> Result<(), Rejection> {
         // Contacts meet in equilibrium, one pair at a time.
-        let (mut coalescing, others): (Vec<_>, Vec<_>) = due.into_iter().partition(|(_, transition)| transition.kind.is_coalescence());
+        let (mut coalescing, others): (Vec<_>, Vec<_>) = due.into_iter().partition(|(_, transition)| transition.kind.is_merging());
         coalescing.truncate(1);
         for (_, transition) in if others.is_empty() { coalescing } else { others } {
             if self.problem().is_due(&transition, &self.predictor) {
@@ -248,7 +249,7 @@ impl EquilibriumPath {
         for change in changes {
             self.predictor.traces[change.asperity].value = f64::NAN;
             self.predictor.set(change.asperity, change.status(&self.problem()), 0.0);
-            if change.kind == Kind::JumpOff {
+            if change.kind == EventKind::JumpOff {
                 self.free_parts(change.asperity);
             }
         }
@@ -261,7 +262,7 @@ impl EquilibriumPath {
     fn snap_if(&mut self, unchanged: bool, asperity: usize, before: Totals, target: f64) {
         if unchanged {
             let (after, _) = self.problem().totals(self.state());
-            self.record(&[Transition { kind: Kind::Snap, asperity, by: None }], target, before, after, 0.0);
+            self.record(&[Transition { kind: EventKind::Snap, asperity, by: None }], target, before, after, 0.0);
         }
     }
 

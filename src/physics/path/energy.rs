@@ -83,7 +83,8 @@ impl EnergyLedger {
 mod tests {
     use super::EnergyLedger;
     use crate::contact::Totals;
-    use crate::contact::transition::{Kind, Transition};
+    use crate::contact::transition::Transition;
+    use crate::event_kind::EventKind;
     use crate::path::event_log::EventLog;
 
     #[test]
@@ -100,7 +101,7 @@ mod tests {
         let mut log = EventLog::default();
         let mut ledger = EnergyLedger::new(0.0, 0, 10.0);
         log.begin_avalanche();
-        let snap = Transition { kind: Kind::Snap, asperity: 0, by: None };
+        let snap = Transition { kind: EventKind::Snap, asperity: 0, by: None };
         log.record(&[snap], 0.0, Totals::default(), Totals::default(), 1.0);
         log.work_j = 2.0;
         ledger.charge_last_event();

@@ -4,7 +4,8 @@ use super::conditions::Condition;
 use super::predictor::Predictor;
 use crate::contact::problem::Problem;
 use crate::contact::state::Status;
-use crate::contact::transition::{Kind, Transition, absorbing_radius};
+use crate::contact::transition::{Transition, absorbing_radius};
+use crate::event_kind::EventKind;
 
 /// Distance to the end of a branch, over the way that is left, within which it is looked for: near a fold the penetration varies as a
 /// square root, so linear extrapolation overestimates the distance by about two.
@@ -68,7 +69,7 @@ impl Predictor {
         if (left > 0.0 && speed > 0.0 || way == 0.0) && way <= 1.1 * left {
             due.push(PredictedEvent {
                 approach: trace.at + sign * way,
-                transition: Transition { kind: Kind::JumpIn, asperity: i, by: None },
+                transition: Transition { kind: EventKind::JumpIn, asperity: i, by: None },
             });
         }
     }
@@ -77,16 +78,16 @@ impl Predictor {
         let (trace, asperity, a) = (self.traces[j], &problem.asperities[j], self.state.radius[j]);
         let speed = sign * trace.rate;
         let left = (target - trace.at) * sign;
-        let mut offer = |way: f64, kind: Kind, i: usize, by: Option<usize>| {
+        let mut offer = |way: f64, kind: EventKind, i: usize, by: Option<usize>| {
             due.push(PredictedEvent { approach: trace.at + sign * way.max(0.0), transition: Transition { kind, asperity: i, by } });
         };
         if speed < 0.0 {
             let way = (trace.value - asperity.jump_off_penetration()) / -speed;
             if way <= REACH * left {
-                offer(way.min(left), Kind::JumpOff, j, None);
+                offer(way.min(left), EventKind::JumpOff, j, None);
             }
-            let split = Transition { kind: Kind::Split, asperity: j, by: None };
-            let uncover = |i: usize| Transition { kind: Kind::Uncover, asperity: i, by: Some(j) };
+            let split = Transition { kind: EventKind::Split, asperity: j, by: None };
+            let uncover = |i: usize| Transition { kind: EventKind::Uncover, asperity: i, by: Some(j) };
             for transition in std::iter::once(split).chain(self.covered_by(j).map(uncover)) {
                 let Some(Condition::Shrinking { value_m, .. }) = problem.condition(&transition, &self.state) else { continue };
                 let way = (trace.value - asperity.penetration(value_m)) / -speed;
@@ -102,7 +103,7 @@ impl Predictor {
                 let open = problem.can_be_covered(&self.state, i) && self.state.radius[i] < r;
                 // Two contacts that grow towards one another's centres have a fold before they reach them.
                 if open && r >= a && (reach >= r || self.state.radius[i] > TWINS * r) {
-                    offer(((asperity.penetration(r) - trace.value) / speed).min(left), Kind::Cover, i, Some(j));
+                    offer(((asperity.penetration(r) - trace.value) / speed).min(left), EventKind::Cover, i, Some(j));
                 }
             });
         }

@@ -8,7 +8,8 @@ use crate::contact::merged_spot::{Merged, TouchingPairs, pair_of};
 use crate::contact::merging::ROUNDING;
 use crate::contact::problem::{Problem, Totals};
 use crate::contact::state::{State, Status};
-use crate::contact::transition::{Kind, Transition};
+use crate::contact::transition::Transition;
+use crate::event_kind::EventKind;
 use crate::jkr::Asperity;
 use crate::solve::trace::{PenetrationTrace, STEEPEST};
 
@@ -282,6 +283,6 @@ impl Predictor {
         let radius = &self.state.radius;
         let first = (radius[i], j) < (radius[j], i);
         let (asperity, by) = if first { (i, j) } else { (j, i) };
-        Transition { kind: Kind::Merge, asperity, by: Some(by) }
+        Transition { kind: EventKind::Merge, asperity, by: Some(by) }
     }
 }

@@ -9,8 +9,9 @@ use super::avalanche::Avalanche;
 use super::equilibrium_path::EquilibriumPath;
 use super::rejection::Rejection;
 use super::work::{mean_square, work, work_along};
-use crate::contact::transition::{Kind, Transition};
+use crate::contact::transition::Transition;
 use crate::contact::{Status, Totals};
+use crate::event_kind::EventKind;
 use crate::solve::local::outside::ReferenceState;
 use crate::solve::local::{CurveState, Hold, OutsideField};
 use crate::solve::trace::PenetrationTrace;
@@ -95,7 +96,7 @@ impl EquilibriumPath {
     pub(super) fn relax_or_snap(&mut self, leader: usize) -> Result<Vec<Transition>, Rejection> {
         let mut applied = self.neighbourhood.local.relax(&self.solver.problem, None, &mut self.solver.effort)?;
         if applied.is_empty() {
-            applied.push(Transition { kind: Kind::Snap, asperity: leader, by: None });
+            applied.push(Transition { kind: EventKind::Snap, asperity: leader, by: None });
         }
         Ok(applied)
     }
@@ -170,29 +171,31 @@ impl EquilibriumPath {
         avalanche.open.push(i);
         let parts = i.checked_sub(problem.summits()).map(|k| self.predictor.state.merged[k].parts);
         match (transition.kind, parts) {
-            (Kind::Snap, _) => {}
-            (Kind::Merge, Some(parts)) => {
+            (EventKind::Snap, _) => {}
+            (EventKind::Merge, Some(parts)) => {
                 for part in parts {
                     self.enter_status(part, Status::Merged { into: i });
                 }
                 self.enter_status(i, Status::Contact);
             }
-            (Kind::Split, Some(parts)) => {
+            (EventKind::Split, Some(parts)) => {
                 self.enter_status(i, Status::Free);
                 for part in parts {
                     self.enter_status(part, Status::Contact);
                 }
                 avalanche.open.extend(parts);
             }
-            (Kind::JumpIn | Kind::Uncover, _) if self.neighbourhood.local.find(i).is_some() => self.enter_status(i, Status::Contact),
+            (EventKind::JumpIn | EventKind::Uncover, _) if self.neighbourhood.local.find(i).is_some() => {
+                self.enter_status(i, Status::Contact)
+            }
             // A merged contact that leaves, or is free when it is released.
-            (Kind::JumpOff | Kind::Uncover, Some(_)) => {
+            (EventKind::JumpOff | EventKind::Uncover, Some(_)) => {
                 self.enter_status(i, Status::Free);
                 let (parts, gained_j) = self.free_parts(i);
                 avalanche.open.extend(parts);
                 return gained_j;
             }
-            (Kind::JumpIn | Kind::JumpOff | Kind::Cover | Kind::Uncover | Kind::Merge | Kind::Split, _) => {
+            (EventKind::JumpIn | EventKind::JumpOff | EventKind::Cover | EventKind::Uncover | EventKind::Merge | EventKind::Split, _) => {
                 self.enter_status(i, transition.status(problem));
             }
         }
@@ -293,7 +296,7 @@ impl EquilibriumPath {
 
     /// Records the transitions of one relaxation; its energy is that of the first.
     pub(super) fn record(&mut self, applied: &[Transition], approach: f64, before: Totals, after: Totals, energy: f64) {
-        for transition in applied.iter().filter(|transition| !matches!(transition.kind, Kind::JumpOff | Kind::Merge)) {
+        for transition in applied.iter().filter(|transition| !matches!(transition.kind, EventKind::JumpOff | EventKind::Merge)) {
             self.chatter.count(transition.asperity);
         }
         self.log.record(applied, approach, before, after, energy);

@@ -3,7 +3,7 @@
 use super::super::done::Outcome;
 use super::super::identity::Identity;
 use super::super::{StageError, Watch};
-use super::elements_setup::{Setup, Units, setup};
+use super::elements_setup::setup;
 use super::elements_tables::{Counts, adhesionless, branch, contacts, events, steps};
 use super::{Checkpoints, Progress, effort_of, not_reached, serialized, write_tables};
 use crate::campaign::{Campaign, CycleUnit};
@@ -11,9 +11,9 @@ use crate::model::KeptContacts;
 use crate::physics::PhysicsError;
 use crate::physics::boundary_elements::adhesionless::{FreeStep, load_freely};
 use crate::physics::boundary_elements::contact::Problem;
-use crate::physics::boundary_elements::cycle::{self, Cycle, Halfway, Settings, Turning, Unreached};
+use crate::physics::boundary_elements::cycle::{self, Cycle, Halfway, Settings, Turning};
 use crate::physics::boundary_elements::regions::Labels;
-use crate::physics::cycle::soundness::LoopEnergy;
+use crate::physics::elements::{Elements, Units, remove_unsound};
 use crate::physics::theory::approximate_jkr::{CurvePoint, adhesive_curve};
 use crate::store::{ContactMap, MapsHeader, read_halfway, write_maps, write_state};
 use serde_json::{Map, Value};
@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 
 pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> Result<Outcome, StageError> {
     let params = &campaign.cases[unit.case].case.params;
-    let Setup { problem, settings, units, summits } = setup(campaign, unit)?;
+    let (Elements { problem, settings, units }, summits) = setup(campaign, unit)?;
     let dir = campaign.cycle_dir(unit);
     let progress = Progress::of(watch, &unit.id);
     let mut checkpoints = Checkpoints::of(campaign, unit, watch);
@@ -33,11 +33,14 @@ pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> R
     };
     let outcome = cycle::run(&problem, &settings, halfway, &mut keep, &|at| progress.reached(at));
     progress.end();
-    let mut cycle = outcome.map_err(|error| in_si(error, &units))?;
+    let mut cycle = outcome.map_err(|error| units.in_si(error))?;
     let loads = &params.cycle.max_load;
-    check_energy(&mut cycle, &mut counts);
+    for removed in remove_unsound(&mut cycle) {
+        counts.retain(|(step, _)| !removed.contains(step));
+        counts.iter_mut().filter(|(step, _)| *step >= removed.end).for_each(|(step, _)| *step -= removed.len());
+    }
     let unreached: Vec<(f64, PhysicsError)> =
-        cycle.unreached.iter().map(|(load, reason)| (loads[*load], in_si(reason.error(settings.max_loads[*load]), &units))).collect();
+        cycle.unreached.iter().map(|(load, reason)| (loads[*load], units.in_si(reason.error(settings.max_loads[*load])))).collect();
     if let Some((_, error)) = unreached.first().filter(|_| unreached.len() == loads.len()) {
         return Err(error.clone().into());
     }
@@ -62,25 +65,6 @@ pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> R
     let unreached: Vec<(f64, String)> = unreached.into_iter().map(|(max_load, error)| (max_load, error.to_string())).collect();
     files.extend(not_reached::record(campaign, unit, &unreached, watch)?);
     Ok(Outcome { files, effort })
-}
-
-/// Removes loops with negative dissipation or a large energy-balance error, by the limits of the asperity model: their steps are too long.
-fn check_energy(cycle: &mut Cycle, counts: &mut Counts) {
-    let energies = |step: &cycle::Step| (step.work, step.dissipated);
-    for reversal in 0..cycle.turning.len() {
-        if cycle.unreached.iter().any(|(other, _)| *other == reversal) {
-            continue;
-        }
-        let back = cycle.steps.iter().rev().filter(|step| step.reversal == Some(reversal));
-        let energy = LoopEnergy::of(cycle.steps[..=cycle.turning[reversal].step].iter().map(energies), back.map(energies));
-        let LoopEnergy { loss_j: loss, events_j: events, work_j: work } = energy;
-        if !energy.is_sound() {
-            let removed = cycle.remove_unloading(reversal, Unreached::Unresolved { loss, events, work });
-            counts.retain(|(step, _)| !removed.contains(step));
-            counts.iter_mut().filter(|(step, _)| *step >= removed.end).for_each(|(step, _)| *step -= removed.len());
-        }
-    }
-    cycle.unreached.sort_by_key(|(reversal, _)| *reversal);
 }
 
 /// Step of loading without adhesion, in steps of the cycle.
@@ -115,23 +99,6 @@ fn summit_counts(labels: &Labels, summits: &[usize]) -> Vec<u32> {
         counts[*label as usize - 1] += 1;
     }
     counts
-}
-
-/// An error of the solver with its lengths and loads as those of the tables.
-fn in_si(error: PhysicsError, units: &Units) -> PhysicsError {
-    let spacing = units.spacing_m();
-    match error {
-        PhysicsError::LoadNotReached { wanted, reached, approach_m } => {
-            PhysicsError::LoadNotReached { wanted: wanted / units.all(), reached: reached / units.all(), approach_m: approach_m * spacing }
-        }
-        PhysicsError::Closed { approach_m } => PhysicsError::Closed { approach_m: approach_m * spacing },
-        PhysicsError::Inseparable { approach_m } => PhysicsError::Inseparable { approach_m: approach_m * spacing },
-        PhysicsError::UnresolvedLoop { max_load, loss_j, events_j, work_j } => {
-            let [loss_j, events_j, work_j] = [loss_j, events_j, work_j].map(|energy| energy * units.energy_j());
-            PhysicsError::UnresolvedLoop { max_load: max_load / units.all(), loss_j, events_j, work_j }
-        }
-        other => other,
-    }
 }
 
 /// Maps of the surface in SI units, without its mirror images, in the order of the steps.
@@ -179,7 +146,7 @@ fn turning_path(dir: &Path) -> PathBuf {
 /// The files of the cycle and of its surface must be complete, and contain that load.
 pub fn unload_elements_again(campaign: &Campaign, unit: &CycleUnit, max_load: f64) -> Result<(Cycle, Units), StageError> {
     let params = &campaign.cases[unit.case].case.params;
-    let Setup { problem, settings, units, .. } = setup(campaign, unit)?;
+    let (Elements { problem, settings, units }, _) = setup(campaign, unit)?;
     let path = turning_path(&campaign.cycle_dir(unit));
     let states: Option<Vec<Turning>> = read_halfway(&path, &unit.key).and_then(|bytes| postcard::from_bytes(&bytes).ok());
     let reversal = params.cycle.max_load.iter().position(|load| *load == max_load);
@@ -190,7 +157,7 @@ pub fn unload_elements_again(campaign: &Campaign, unit: &CycleUnit, max_load: f6
     if turning.state.displacement.len() != problem.half_space.points() {
         return Err(lacking());
     }
-    let cycle = cycle::unload_from(&problem, &settings, reversal, &turning).map_err(|error| in_si(error, &units))?;
+    let cycle = cycle::unload_from(&problem, &settings, reversal, &turning).map_err(|error| units.in_si(error))?;
     Ok((cycle, units))
 }
 

@@ -4,12 +4,8 @@ use super::KEPT_FOR;
 use super::asperities::{MANY, REST_EVERY};
 use super::asperity_tables::CONVERGED;
 use super::boundary_elements::FREE_STEP;
-use super::elements_setup::{LOCATED, MARGIN, MOST_ITERATIONS, PEAK, WEAK};
 use crate::constants::Constant;
 use crate::stages::step_count;
-
-/// Effect of weak adhesion.
-const WEAKER: &str = "From this `U_el/Δγ` on, the step is divided by the second number, and the precision by the third.";
 
 /// Constants of cycles.
 pub(in crate::stages) const CONSTANTS: &[Constant] = &[
@@ -35,24 +31,6 @@ pub(in crate::stages) const CONSTANTS: &[Constant] = &[
         "Interval of the mean penetration, so that a path from a checkpoint has the same bytes.",
         "asperities",
     ),
-    Constant::new("weak adhesion, boundary elements", &[WEAK[1].0, WEAK[1].1, WEAK[1].2], "", WEAKER, "elements_setup"),
-    Constant::new("very weak adhesion, boundary elements", &[WEAK[0].0, WEAK[0].1, WEAK[0].2], "", WEAKER, "elements_setup"),
-    Constant::new(
-        "error of a jump, boundary elements",
-        &[LOCATED],
-        "of `Θ` so far",
-        "A step with a larger one is halved, up to `boundary_elements.halvings` times.",
-        "elements_setup",
-    ),
-    Constant::new("largest residual, boundary elements", &[PEAK], "of the rms residual", "Of an equilibrium.", "elements_setup"),
-    Constant::new(
-        "iterations, boundary elements",
-        &[MOST_ITERATIONS as f64],
-        "",
-        "Maximum of one minimization. Then Newton's method takes over.",
-        "elements_setup",
-    ),
-    Constant::new("reach of bonds", &[MARGIN as f64], "`dx`", "Points this close to contact are bonded.", "elements_setup"),
     Constant::new(
         "steps without adhesion",
         &[FREE_STEP],

@@ -2,10 +2,11 @@
 
 use super::super::StageError;
 use super::super::identity::Identity;
-use super::elements_setup::Units;
+use crate::physics::EventCounts;
 use crate::physics::boundary_elements::adhesionless::FreeStep;
 use crate::physics::boundary_elements::cycle::{Cycle, Step};
-use crate::physics::boundary_elements::regions::{Change, Region};
+use crate::physics::boundary_elements::regions::Region;
+use crate::physics::elements::Units;
 use crate::schema;
 use crate::store::Frame;
 use std::collections::HashMap;
@@ -32,13 +33,10 @@ pub(super) fn steps(of: Identity<'_>, cycle: &Cycle, loads: &[f64], units: &Unit
     let each = |value: fn(&Step) -> f64, unit: f64| steps.iter().map(move |step| value(step) * unit);
     let zeros = || repeat_n(0_usize, steps.len());
     let nothing = || repeat_n(None::<f64>, steps.len());
-    let mut kinds = vec![[0_usize; Change::ALL.len()]; steps.len()];
+    let mut counts = vec![EventCounts::default(); steps.len()];
     for event in &cycle.events {
-        kinds[event.step][event.kind as usize] += 1;
+        counts[event.step].extend([event.kind.kind()]);
     }
-    let of_kinds = |kinds_of: &'static [Change]| {
-        kinds.iter().map(|counts| kinds_of.iter().map(|kind| counts[*kind as usize]).sum::<usize>()).collect::<Vec<_>>()
-    };
     let reversal_load = |step: usize| cycle.reversal_at(step).and_then(|at| loads.get(at)).copied();
     let area_m2: Vec<f64> = steps.iter().map(|step| step.totals.contact as f64 * units.area_m2()).collect();
     Ok(of
@@ -54,13 +52,7 @@ pub(super) fn steps(of: Identity<'_>, cycle: &Cycle, loads: &[f64], units: &Unit
         .f64("area_union_m2", area_m2.iter().copied())
         .count("contact_count", steps.iter().map(|s| s.regions))
         .count("covered_count", zeros())
-        .count("jump_in_count", of_kinds(&[Change::Formed]))
-        .count("jump_off_count", of_kinds(&[Change::Lost]))
-        .count("cover_count", zeros())
-        .count("uncover_count", zeros())
-        .count("snap_count", of_kinds(&[Change::Grown, Change::Shrunk]))
-        .count("merge_count", of_kinds(&[Change::Joined]))
-        .count("split_count", of_kinds(&[Change::Parted]))
+        .counts(counts)
         .count("held_count", zeros())
         .count("touching_count", zeros())
         .f64("dissipated_j", each(|s| s.dissipated, energy))

@@ -4,13 +4,10 @@ use super::super::StageError;
 use crate::campaign::{Campaign, CycleUnit};
 use crate::model::Attraction;
 use crate::physics::PhysicsError;
+use crate::physics::elements::memory_bytes;
 use crate::physics::memory;
 use crate::spec::CaseParams;
 use crate::store::hdf5::{SurfaceHeader, read_header};
-
-/// Fields of numbers that the solver needs, its patches included, and those of a load reversal with its maps and checkpoint.
-const FIELDS: usize = 21;
-const FIELDS_OF_REVERSAL: usize = 8;
 
 /// Grid of a case on one surface.
 #[derive(Debug, Clone, Copy)]
@@ -93,14 +90,9 @@ pub(super) fn extent(header: &SurfaceHeader, params: &CaseParams) -> (f64, f64) 
     (length_m, length_m / shortest)
 }
 
-/// Memory of boundary elements on a grid with so many points along a side and loads \[bytes\].
-pub(in crate::stages) fn elements_bytes(points: usize, loads: usize) -> usize {
-    points * points * size_of::<f64>() * (FIELDS + FIELDS_OF_REVERSAL * loads)
-}
-
 /// Refuses a grid for which there is not enough memory.
 pub(in crate::stages) fn enough_memory(points: usize, loads: usize) -> Result<(), PhysicsError> {
-    let bytes = elements_bytes(points, loads);
+    let bytes = memory_bytes(points, loads);
     memory::check(bytes).map_err(|_| PhysicsError::Surface {
         problem: format!("boundary elements on {points} x {points} points need {:.2} GB of memory, which are not free", bytes as f64 / 1e9),
         help: "use fewer boundary_elements.points, fewer loads, or fewer tasks at once (--jobs 1)",

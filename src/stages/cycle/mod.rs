@@ -13,9 +13,7 @@ pub(super) use asperities::checked;
 pub use asperities::unload_again;
 pub use boundary_elements::unload_elements_again;
 pub(super) use constants::CONSTANTS;
-pub use elements_setup::Units;
-pub(super) use elements_setup::refinement_of_steps;
-pub(super) use lattice::{Lattice, checked_lattice, elements_bytes, enough_memory, lattice};
+pub(super) use lattice::{Lattice, checked_lattice, enough_memory, lattice};
 
 use super::done::Outcome;
 use super::failure::in_the_way;

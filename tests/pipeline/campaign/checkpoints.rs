@@ -4,7 +4,7 @@ use super::SMALL;
 use crate::bench::{Bench, code, files, stderr};
 use hysteron::campaign::{Campaign, CycleUnit};
 use hysteron::model::Slips;
-use hysteron::physics::contact::Kind;
+use hysteron::physics::EventKind;
 use hysteron::physics::contact::{Problem, Rules};
 use hysteron::physics::cycle::{Halfway, Settings, run_from};
 use hysteron::physics::surface::summits::Summit;
@@ -82,7 +82,7 @@ fn e2e_a_checkpoint_of_another_version_restarts_the_task() {
 /// The counts of a step are by position, the columns by name.
 #[test]
 fn law_kinds_of_events_have_one_order() {
-    assert_eq!(Kind::ALL.map(Kind::word), EVENT_KINDS);
+    assert_eq!(EventKind::ALL.map(EventKind::word), EVENT_KINDS);
     let spec = SMALL.replace("[0.001]", "[0.004]").replace("magnification = 6", "magnification = 16");
     let bench = Bench::new(&(spec + "[[sweep]]\nname = \"coalescence\"\nmodel.coalescence = [\"cover\", \"merge\"]\n"));
     assert_eq!(code(&bench.verb("run", &["--until", "cycle"])), 0);

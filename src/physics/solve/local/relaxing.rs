@@ -2,7 +2,8 @@
 
 use super::{Hold, LocalProblem};
 use crate::contact::problem::Problem;
-use crate::contact::transition::{ContactView, Kind, Transition};
+use crate::contact::transition::{ContactView, Transition};
+use crate::event_kind::EventKind;
 use crate::half_space::Effort;
 use crate::solve::newton::Damping;
 use crate::solve::relaxation::{Relaxing, relax};
@@ -39,7 +40,7 @@ impl Relaxing for Part<'_> {
     }
 
     fn take_out(&mut self, change: &Transition) {
-        self.patch.remove(change.asperity, change.kind == Kind::JumpOff);
+        self.patch.remove(change.asperity, change.kind == EventKind::JumpOff);
     }
 
     fn finish(&mut self) -> bool {

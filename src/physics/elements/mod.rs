@@ -1,0 +1,157 @@
+//! Boundary elements of a height map, in SI units: grid, law and settings from a surface, a material and options.
+//!
+//! [`Elements::new`] has what decides on the accuracy of a cycle; [`Elements::run`] loads and unloads. The solver itself is
+//! [`boundary_elements`](crate::boundary_elements), whose lengths are in grid spacings and stresses in E\*; [`Units`] has their values in SI units.
+
+mod options;
+mod units;
+
+pub use options::{Attraction, Numerics, Options, Weak};
+pub use units::Units;
+
+pub(crate) use options::CONSTANTS;
+
+use crate::PhysicsError;
+use crate::boundary_elements::contact::{Attraction as Rule, Problem};
+use crate::boundary_elements::cycle::{self, Cycle, Settings, Step, Unreached};
+use crate::boundary_elements::grid::HalfSpace;
+use crate::boundary_elements::law::Law;
+use crate::boundary_elements::minimise::Accuracy;
+use crate::boundary_elements::resample::resample_from;
+use crate::cycle::soundness::LoopEnergy;
+use crate::model::Material;
+use crate::surface::modes::mirrored;
+use crate::theory::flattening::measured_flattening;
+use ndarray::{Array2, ArrayView2};
+use std::ops::Range;
+
+/// Grid points per shortest wavelength, at least, if [`Options::points`] is 0.
+pub const PER_WAVELENGTH: f64 = 16.0;
+/// Most points along a side of such a grid.
+const MOST_POINTS: f64 = 65_536.0;
+/// Fields of numbers that the solver needs, its patches included, and those of a load reversal with its maps and checkpoint.
+const FIELDS: usize = 21;
+const FIELDS_OF_REVERSAL: usize = 8;
+
+/// Memory of a cycle on a grid with so many points along a side and loads \[bytes\].
+#[must_use]
+pub fn memory_bytes(points: usize, loads: usize) -> usize {
+    points * points * size_of::<f64>() * (FIELDS + FIELDS_OF_REVERSAL * loads)
+}
+
+/// Points along a side with so many shortest wavelengths: a power of two with at least 16 per wavelength.
+#[must_use]
+pub fn points_for(wavelengths: f64) -> usize {
+    ((PER_WAVELENGTH * wavelengths).ceil().clamp(1.0, MOST_POINTS) as usize).next_power_of_two()
+}
+
+/// Heights of a square surface.
+#[derive(Debug, Clone, Copy)]
+pub struct HeightMap<'a> {
+    /// Heights \[m\]: rows along x, columns along y, as many of both.
+    pub heights_m: ArrayView2<'a, f64>,
+    /// Side \[m\].
+    pub length_m: f64,
+    /// True if the surface is one period. Otherwise it is continued by its mirror images, and loads, areas and energies are those of the surface.
+    pub is_periodic: bool,
+    /// Shortest wavelength \[m\].
+    pub shortest_wavelength_m: f64,
+    /// Rms height \[m\], the unit of the steps of mean penetration.
+    pub rms_height_m: f64,
+}
+
+/// A surface that boundary elements load and unload.
+pub struct Elements {
+    /// Problem, in the units of the solver.
+    pub problem: Problem,
+    /// Settings, in these units.
+    pub settings: Settings,
+    /// The units.
+    pub units: Units,
+}
+
+impl Elements {
+    /// Grid, law and settings of a surface, with loads `F/(E* A0)` at the load reversals, ascending.
+    ///
+    /// # Errors
+    /// [`PhysicsError::Surface`] for heights or a grid that cannot be used.
+    pub fn new(map: &HeightMap<'_>, material: &Material, max_loads: &[f64], options: &Options) -> Result<Self, PhysicsError> {
+        let is_mirrored = !map.is_periodic;
+        let length_m = if is_mirrored { 2.0 * map.length_m } else { map.length_m };
+        let points = if options.points == 0 { points_for(length_m / map.shortest_wavelength_m) } else { options.points };
+        // With mirror images the grid is symmetric about the edges of the surface, half a pixel outside its first and last points.
+        let (spacing, pixel) = (length_m / points as f64, map.length_m / map.heights_m.nrows() as f64);
+        let first_m = if is_mirrored { 0.5 * (spacing - pixel) } else { 0.0 };
+        let (modulus_pa, rms_height_m) = (material.contact_modulus_pa, map.rms_height_m);
+        let units = Units { length_m, points, modulus_pa, rms_height_m, is_mirrored, first_m };
+        let flattening = measured_flattening(map.heights_m, (map.length_m, map.is_periodic), map.shortest_wavelength_m, modulus_pa)?;
+        let ratio = flattening.persson_tosatti(material.work_of_adhesion_j_m2);
+        let whole = if is_mirrored { mirrored(map.heights_m)? } else { map.heights_m.to_owned() };
+        let problem = problem(&units, material, resample_from(whole.view(), points, first_m / pixel)?, options)?;
+        Ok(Self { problem, settings: settings(&units, max_loads, options, ratio), units })
+    }
+
+    /// Loads the surface and unloads it from each load reversal. Reversals without a result are in [`Cycle::unreached`].
+    ///
+    /// # Errors
+    /// Those of [`cycle::run`], with lengths and energies in SI units and loads over E\* A0.
+    pub fn run(&self) -> Result<Cycle, PhysicsError> {
+        let outcome = cycle::run(&self.problem, &self.settings, None, &mut |_| {}, &|_| {});
+        let mut cycle = outcome.map_err(|error| self.units.in_si(error))?;
+        remove_unsound(&mut cycle);
+        Ok(cycle)
+    }
+}
+
+/// Removes loops with negative dissipation or a large energy-balance error, by the limits of the asperity model: their steps are too long. The numbers that the
+/// removed steps had, in the order of removal.
+pub fn remove_unsound(cycle: &mut Cycle) -> Vec<Range<usize>> {
+    let energies = |step: &Step| (step.work, step.dissipated);
+    let mut all = Vec::new();
+    for reversal in 0..cycle.turning.len() {
+        if cycle.unreached.iter().any(|(other, _)| *other == reversal) {
+            continue;
+        }
+        let back = cycle.steps.iter().rev().filter(|step| step.reversal == Some(reversal));
+        let energy = LoopEnergy::of(cycle.steps[..=cycle.turning[reversal].step].iter().map(energies), back.map(energies));
+        let LoopEnergy { loss_j: loss, events_j: events, work_j: work } = energy;
+        if !energy.is_sound() {
+            all.push(cycle.remove_unloading(reversal, Unreached::Unresolved { loss, events, work }));
+        }
+    }
+    cycle.unreached.sort_by_key(|(reversal, _)| *reversal);
+    all
+}
+
+/// The contact problem of heights \[m\] on the grid.
+fn problem(units: &Units, material: &Material, heights_m: Array2<f64>, options: &Options) -> Result<Problem, PhysicsError> {
+    let spacing = units.spacing_m();
+    let work = material.adhesion_length_m() / spacing;
+    let top = heights_m.iter().copied().fold(f64::MIN, f64::max);
+    let (mut heights, _) = heights_m.into_raw_vec_and_offset();
+    heights.iter_mut().for_each(|z| *z = (*z - top) / spacing);
+    let (law, attraction) = match options.attraction {
+        Attraction::Range { range_m } => (Law::morse(work, range_m / spacing), Rule::Range),
+        Attraction::Bonded { nucleation_m, strength } => {
+            (Law::crack(work), Rule::Bonded { margin: options.numerics.margin, nucleation: nucleation_m / spacing, strength })
+        }
+    };
+    let half_space = HalfSpace::new(units.points, units.points)?;
+    let half_space = if units.is_mirrored { half_space.with_images() } else { half_space };
+    Ok(Problem { half_space, law, heights, attraction })
+}
+
+/// Settings at a ratio `U_el/Δγ`.
+fn settings(units: &Units, max_loads: &[f64], options: &Options, ratio: f64) -> Settings {
+    let numerics = &options.numerics;
+    let (steps, precision) = numerics.refinement(ratio);
+    let residual = options.precision / precision;
+    Settings {
+        max_loads: max_loads.iter().map(|load| load * units.all()).collect(),
+        step: options.approach_step * units.rms_height_m / units.spacing_m() / steps,
+        located: numerics.jump_tolerance,
+        halvings: options.halvings,
+        accuracy: Accuracy { rms: residual, largest: numerics.largest_residual * residual, iterations: numerics.iterations },
+        all_regions: options.all_regions,
+    }
+}

@@ -1,0 +1,159 @@
+//! Kinds of events of a loop, for both methods: word, name and group of each in one table, which all other code reads.
+//!
+//! A further kind takes a variant with its row here, in [`EventKind`], and its columns in the tables of steps, avalanches and cases (`schema`).
+
+use serde::{Deserialize, Serialize};
+use std::ops::Index;
+
+/// Kind of event.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum EventKind {
+    /// A free asperity jumps into contact.
+    JumpIn,
+    /// A spot reaches the end of its branch and leaves contact.
+    JumpOff,
+    /// A larger spot reaches an asperity's centre and absorbs it.
+    Cover,
+    /// The absorbing spot has withdrawn, and the asperity is released.
+    Uncover,
+    /// Snap-through at a limit point of the coupled state: same contacts, new equilibrium. In the code also a change of a local problem without a
+    /// change of status, such as the response to a pending displacement.
+    Snap,
+    /// Two overlapping spots merge.
+    Merge,
+    /// A merged spot splits into its parts.
+    Split,
+}
+
+/// What the kinds of a group have in common. The second kind of a group undoes the first one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EventGroup {
+    /// Jumps into and out of contact.
+    Jump,
+    /// Absorption and release: a contact and its load vanish in a larger one.
+    Absorption,
+    /// The same contacts.
+    Snap,
+    /// Merging and splitting: contacts and their potentials are exchanged for that of another contact.
+    Merging,
+}
+
+impl EventGroup {
+    /// True for the groups of coalescence.
+    #[must_use]
+    pub fn is_coalescence(self) -> bool {
+        matches!(self, Self::Absorption | Self::Merging)
+    }
+}
+
+impl EventKind {
+    /// All kinds, in the order of the tables.
+    pub const ALL: [Self; 7] = [Self::JumpIn, Self::JumpOff, Self::Cover, Self::Uncover, Self::Snap, Self::Merge, Self::Split];
+
+    /// Words of all kinds, in that order.
+    pub const WORDS: [&'static str; Self::ALL.len()] = {
+        let (mut words, mut at) = ([""; Self::ALL.len()], 0);
+        while at < words.len() {
+            words[at] = Self::ALL[at].row().0;
+            at += 1;
+        }
+        words
+    };
+
+    /// Word, name and group.
+    const fn row(self) -> (&'static str, &'static str, EventGroup) {
+        match self {
+            Self::JumpIn => ("jump_in", "jump into contact", EventGroup::Jump),
+            Self::JumpOff => ("jump_off", "jump out of contact", EventGroup::Jump),
+            Self::Cover => ("cover", "absorption", EventGroup::Absorption),
+            Self::Uncover => ("uncover", "release", EventGroup::Absorption),
+            Self::Snap => ("snap", "snap-through", EventGroup::Snap),
+            Self::Merge => ("merge", "merging", EventGroup::Merging),
+            Self::Split => ("split", "splitting", EventGroup::Merging),
+        }
+    }
+
+    /// Word in the tables.
+    #[must_use]
+    pub const fn word(self) -> &'static str {
+        self.row().0
+    }
+
+    /// Name in texts.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        self.row().1
+    }
+
+    /// Group.
+    #[must_use]
+    pub const fn group(self) -> EventGroup {
+        self.row().2
+    }
+
+    /// The kind that undoes it.
+    #[must_use]
+    pub const fn reversed(self) -> Self {
+        match self {
+            Self::JumpIn => Self::JumpOff,
+            Self::JumpOff => Self::JumpIn,
+            Self::Cover => Self::Uncover,
+            Self::Uncover => Self::Cover,
+            Self::Snap => Self::Snap,
+            Self::Merge => Self::Split,
+            Self::Split => Self::Merge,
+        }
+    }
+
+    /// True for merging and splitting.
+    pub(crate) fn is_merging(self) -> bool {
+        self.group() == EventGroup::Merging
+    }
+}
+
+/// Numbers of events by kind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct EventCounts([usize; EventKind::ALL.len()]);
+
+impl EventCounts {
+    /// Number of all events.
+    #[must_use]
+    pub fn sum(&self) -> usize {
+        self.0.iter().sum()
+    }
+}
+
+impl Index<EventKind> for EventCounts {
+    type Output = usize;
+
+    fn index(&self, kind: EventKind) -> &usize {
+        &self.0[kind as usize]
+    }
+}
+
+impl Extend<EventKind> for EventCounts {
+    fn extend<I: IntoIterator<Item = EventKind>>(&mut self, kinds: I) {
+        kinds.into_iter().for_each(|kind| self.0[kind as usize] += 1);
+    }
+}
+
+impl FromIterator<EventKind> for EventCounts {
+    fn from_iter<I: IntoIterator<Item = EventKind>>(kinds: I) -> Self {
+        let mut counts = Self::default();
+        counts.extend(kinds);
+        counts
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::event_kind::{EventCounts, EventKind};
+
+    #[test]
+    fn law_counts_are_those_of_their_kind() {
+        assert!(EventKind::ALL.iter().enumerate().all(|(place, kind)| *kind as usize == place));
+        let counts: EventCounts = EventKind::ALL.into_iter().chain([EventKind::Snap]).collect();
+        assert!(EventKind::ALL.iter().all(|kind| counts[*kind] == if *kind == EventKind::Snap { 2 } else { 1 }));
+        assert_eq!(counts.sum(), 8);
+    }
+}
