@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
-/// Folders and files of `src/physics`, each with those that it may import. `model`, `constants`, `error` and `memory` are free for all.
+/// Folders and files of `src/physics`, each with those that it may import. `model`, `constants`, `error`, `event_kind` and `memory` are free for all.
 const PHYSICS: [(&str, &[&str]); 11] = [
     ("math", &[]),
     ("jkr", &[]),

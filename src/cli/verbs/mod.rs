@@ -20,6 +20,7 @@ mod work;
 
 pub(super) use measured::LIMITS as IMPORT;
 
+use self::work::Request;
 use super::colour::painted;
 use super::exit::{BAD_SPEC, FAILED, FAILED_CASES};
 use super::limits;
@@ -81,14 +82,15 @@ fn performed(verb: &Verb) -> Result<u8, Fault> {
         Verb::Run { campaign, dry_run: true, .. } => survey::plan(&campaign.spec, &campaign.how.output),
         Verb::Run { campaign, until, open, .. } => {
             viewer::possible(*open, *until == StageArgument::Report)?;
-            work::stages(&campaign.spec, &campaign.how, (Stage::Generate, stage(*until)), (false, *open))
+            let stages = Stage::Generate..=stage(*until);
+            work::stages(&campaign.spec, &campaign.how, Request { stages, partial: false, open: *open })
         }
-        Verb::Generate(campaign) => of_spec(campaign, (Stage::Generate, Stage::Generate), false),
-        Verb::Extract(campaign) => of_spec(campaign, (Stage::Extract, Stage::Extract), false),
-        Verb::Cycle(campaign) => of_spec(campaign, (Stage::Cycle, Stage::Cycle), false),
-        Verb::Aggregate { campaign, partial } => of_spec(campaign, (Stage::Aggregate, Stage::Aggregate), *partial),
+        Verb::Generate(campaign) => of_spec(campaign, Request::one(Stage::Generate)),
+        Verb::Extract(campaign) => of_spec(campaign, Request::one(Stage::Extract)),
+        Verb::Cycle(campaign) => of_spec(campaign, Request::one(Stage::Cycle)),
+        Verb::Aggregate { campaign, partial } => of_spec(campaign, Request { partial: *partial, ..Request::one(Stage::Aggregate) }),
         Verb::Report { spec: Some(spec), compare, campaign, open, .. } if compare.is_empty() => {
-            work::stages(spec, campaign, (Stage::Report, Stage::Report), (false, *open))
+            work::stages(spec, campaign, Request { open: *open, ..Request::one(Stage::Report) })
         }
         Verb::Report { spec, compare, force, campaign, open } => {
             let runs: Vec<PathBuf> = spec.iter().chain(compare).cloned().collect();
@@ -122,8 +124,8 @@ fn performed(verb: &Verb) -> Result<u8, Fault> {
     }
 }
 
-fn of_spec(campaign: &CampaignArguments, stages: (Stage, Stage), partial: bool) -> Result<u8, Fault> {
-    work::stages(&campaign.spec, &campaign.how, stages, (partial, false))
+fn of_spec(campaign: &CampaignArguments, request: Request) -> Result<u8, Fault> {
+    work::stages(&campaign.spec, &campaign.how, request)
 }
 
 fn stage(argument: StageArgument) -> Stage {

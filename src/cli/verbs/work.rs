@@ -15,15 +15,30 @@ use crate::store::{Check, FrameError};
 use crate::text::{shell_path, shown, visible, wrapped};
 use serde_json::json;
 use std::collections::HashSet;
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-pub(super) fn stages(
-    spec: &Path,
-    arguments: &HowArguments,
-    (from, until): (Stage, Stage),
-    (partial, view): (bool, bool),
-) -> Result<u8, Fault> {
+/// What a command asks for.
+pub(super) struct Request {
+    /// Stages, in their order.
+    pub(super) stages: RangeInclusive<Stage>,
+    /// True if tables may lack cycles.
+    pub(super) partial: bool,
+    /// True if the report is opened at the end.
+    pub(super) open: bool,
+}
+
+impl Request {
+    /// One stage, all of it.
+    pub(super) fn one(stage: Stage) -> Self {
+        Self { stages: stage..=stage, partial: false, open: false }
+    }
+}
+
+pub(super) fn stages(spec: &Path, arguments: &HowArguments, request: Request) -> Result<u8, Fault> {
+    let Request { stages, partial, open: view } = request;
+    let (from, until) = stages.into_inner();
     let campaign = open(spec, &arguments.output)?;
     let shard = arguments.shard.unwrap_or_default();
     if !shard.is_whole() && until > Stage::Cycle {

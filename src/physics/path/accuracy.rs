@@ -28,3 +28,14 @@ pub(crate) enum Precision {
     /// To that of the path: the difference is found by the next solve.
     Sufficient,
 }
+
+/// How the contact has come to the mean penetration at which it is corrected.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Arrival {
+    /// By a jump at this mean penetration: it followed its predictors up to here.
+    Jump,
+    /// By an increment, along which the difference to the predictors grew.
+    Increment,
+    /// The same; a solution too far from the predictors is rejected.
+    CheckedIncrement,
+}

@@ -1,6 +1,6 @@
 //! Global corrector: the contact solved at the end of an increment, and new predictors of everything.
 
-use super::accuracy::{Precision, out_of_reach};
+use super::accuracy::{Arrival, Precision, out_of_reach};
 use super::equilibrium_path::EquilibriumPath;
 use super::rejection::Rejection;
 use super::triggers::Trigger;
@@ -26,11 +26,9 @@ enum Since {
 }
 
 impl EquilibriumPath {
-    /// Solves the global problem at a mean penetration \[m\], from the predictors, and applies the transitions that are overdue there. If
-    /// `strict`, the solution is rejected where the predictors are too far from it.
-    ///
-    /// After a jump of the contact (`jump`) it followed its predictors up to here. Otherwise the difference grew along the increment.
-    pub(super) fn correct(&mut self, target: f64, strict: bool, jump: bool, precision: Precision) -> Result<(), Rejection> {
+    /// Solves the global problem at a mean penetration \[m\], from the predictors, and applies the transitions that are overdue there.
+    pub(super) fn correct(&mut self, target: f64, arrival: Arrival, precision: Precision) -> Result<(), Rejection> {
+        let (strict, jump) = (arrival == Arrival::CheckedIncrement, arrival == Arrival::Jump);
         self.precision = precision;
         let pending = self.pending.all().to_vec();
         self.solver.begin(precision == Precision::Sufficient);
@@ -278,6 +276,6 @@ impl EquilibriumPath {
             self.predictor.traces[i].value = f64::NAN;
         }
         self.log.work_j += self.totals.load_n * (target - self.energy.at());
-        self.correct(target, false, true, Precision::Exact)
+        self.correct(target, Arrival::Jump, Precision::Exact)
     }
 }

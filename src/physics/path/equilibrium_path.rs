@@ -1,6 +1,6 @@
 //! State of a path, and its increments.
 
-use super::accuracy::{EXACT_GRID, Precision, out_of_reach};
+use super::accuracy::{Arrival, EXACT_GRID, Precision, out_of_reach};
 use super::chatter::ChatterGuard;
 use super::checkpoint::Checkpoint;
 use super::energy::EnergyLedger;
@@ -184,12 +184,12 @@ impl EquilibriumPath {
         let (strict, precision) = (self.steps.is_strict(), self.precision_at(target, bound));
         while let Some(approach) = self.run_events(target)? {
             let there = approach == target;
-            self.correct(approach, false, true, if there { precision } else { self.precision_between() })?;
+            self.correct(approach, Arrival::Jump, if there { precision } else { self.precision_between() })?;
             if there {
                 return Ok(());
             }
         }
-        self.correct(target, strict, false, precision)
+        self.correct(target, if strict { Arrival::CheckedIncrement } else { Arrival::Increment }, precision)
     }
 
     /// Precision where the state is not written down: that of the events, where local problems hold all contacts.

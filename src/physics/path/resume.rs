@@ -1,6 +1,6 @@
 //! Checkpoints of a path, taken and resumed.
 
-use super::accuracy::Precision;
+use super::accuracy::{Arrival, Precision};
 use super::checkpoint::{Checkpoint, PathCheckpoint};
 use super::energy::EnergyLedger;
 use super::equilibrium_path::{EquilibriumPath, Frame};
@@ -27,7 +27,7 @@ impl EquilibriumPath {
         path.energy = EnergyLedger::new(approach, from.events, from.balance).open(from.events < from.log.events.len());
         (path.log, path.totals, path.chatter) = (from.log, from.totals, from.chatter);
         path.chatter.grow(path.problem().len());
-        match path.correct(approach, false, true, Precision::Exact) {
+        match path.correct(approach, Arrival::Jump, Precision::Exact) {
             Ok(()) => {
                 path.log.drift_m = drift;
                 Ok(path)
