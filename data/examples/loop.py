@@ -28,16 +28,20 @@ cycle = cycles.filter(cycle_id=case["cycle_id"]).row(0, named=True)
 folder = run / "cycles" / case["cycle_id"]
 steps = pl.read_parquet(folder / "steps.parquet")
 unloading = steps.filter(max_load=case["max_load"])
-loading = steps.filter(pl.col("branch") == "loading", pl.col("penetration") <= unloading["penetration"][0])
+turn = steps.filter(reversal_load=case["max_load"])["step"][0]
+loading = steps.filter(pl.col("branch") == "loading", pl.col("step") <= turn)
 pull_off = unloading["step"][unloading["load"].arg_min()]
 
 plt.rcParams.update({"font.size": 8, "svg.fonttype": "none", "svg.hashsalt": "hysteron"})
 fig, (left, middle, right) = plt.subplots(1, 3, figsize=(9.0, 2.9), layout="constrained", width_ratios=[1.25, 1, 1])
 
-delta = np.concatenate([loading["penetration"], unloading["penetration"]])
-force = np.concatenate([loading["load"], unloading["load"]])
+# Before the surfaces touch there is no load.
+approach = np.concatenate([loading["penetration"][:1], loading["penetration"]])
+load = np.concatenate([[0.0], loading["load"]])
+delta = np.concatenate([approach, unloading["penetration"]])
+force = np.concatenate([load, unloading["load"]])
 left.fill(delta, 1e3 * force, color="0.85", lw=0)
-left.plot(loading["penetration"], 1e3 * loading["load"], "--", color="black", lw=1.2, label="loading")
+left.plot(approach, 1e3 * load, "--", color="black", lw=1.2, label="loading")
 left.plot(unloading["penetration"], 1e3 * unloading["load"], "-", color="black", lw=1.2, label="unloading")
 lowest = unloading["load"].arg_min()
 point = (unloading["penetration"][lowest], 1e3 * unloading["load"][lowest])

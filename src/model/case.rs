@@ -207,6 +207,14 @@ impl Default for ModelParams {
     }
 }
 
+impl CycleParams {
+    /// The largest load `F/(E* A0)`.
+    #[must_use]
+    pub fn largest_load(&self) -> f64 {
+        self.max_load.iter().copied().fold(0.0, f64::max)
+    }
+}
+
 impl Default for CycleParams {
     fn default() -> Self {
         Self { max_load: vec![0.0071], approach_step: 0.01, contacts: KeptContacts::Turning }

@@ -156,7 +156,7 @@ choice! {
         Asperities = "asperities",
         /// Boundary elements: the rough surface on a grid, with adhesion at every point.
         BoundaryElements = "boundary_elements",
-        /// The asperity model for separate contacts (`U_el/Δγ` ≥ 2 and `U_1/Δγ` of the shortest octave ≥ 1), else boundary elements.
+        /// The asperity model for separate contacts (`U_el/Δγ` ≥ 2, `U_1/Δγ` of the shortest octave ≥ 1, less than 0.3 of the area in contact) if it holds there, else boundary elements.
         Auto = "auto",
     }
 }

@@ -11,10 +11,10 @@ use super::fault::Faults;
 
 use super::written::{Written, array};
 use super::{Axis, CaseParams, Spec, SpecErrors, Sweep, Value};
-use crate::model::{Choice as _, Method};
+use crate::model::{Choice as _, JumpIn, Method};
 use crate::physics::surface::spectrum::Spectrum;
 use crate::physics::theory::flattening::flattening;
-use crate::physics::theory::regime::Regime;
+use crate::physics::theory::regime::{Regime, loaded_area};
 
 /// Chooses the method of a case with a measured surface, or gives the problem and the help.
 pub type Chooser<'a> = &'a dyn Fn(&CaseParams) -> Result<Method, (String, String)>;
@@ -83,6 +83,10 @@ impl Choices {
     }
 }
 
+/// Curvature of the sharpest asperity of a surface, estimated, over its rms curvature.
+const SHARPEST: f64 = 3.0;
+/// Smallest Tabor parameter at which Wu's criterion holds.
+const LEAST_TABOR: f64 = 2.0;
 /// The key whose value is chosen.
 const KEY: &str = "model.method";
 
@@ -91,9 +95,22 @@ fn of_target(params: &CaseParams) -> Method {
     if params.surface.is_measured() {
         return Method::Auto;
     }
-    let energy = flattening(&Spectrum::from(&params.surface), params.material.contact_modulus_pa);
+    let spectrum = Spectrum::from(&params.surface);
+    let energy = flattening(&spectrum, params.material.contact_modulus_pa);
     let adhesion = params.material.work_of_adhesion_j_m2;
-    if adhesion > 0.0 { Regime::of(energy.persson_tosatti(adhesion), energy.conformity(adhesion)).method() } else { Method::Asperities }
+    let of_adhesion =
+        if adhesion > 0.0 { Regime::of(energy.persson_tosatti(adhesion), energy.conformity(adhesion)) } else { Regime::Separate };
+    let moments = spectrum.moments();
+    let method = of_adhesion.with_area(loaded_area(params.cycle.largest_load(), moments.rms_slope())).method();
+    let needs_range = adhesion > 0.0 && params.model.jump_in == JumpIn::Wu && !params.model.allow_low_tabor;
+    let is_out_of_range = || needs_range && tabor_of_the_sharpest(params, moments.rms_curvature_1_m()) < LEAST_TABOR;
+    if method == Method::Asperities && is_out_of_range() { Method::BoundaryElements } else { method }
+}
+
+/// Estimated Tabor parameter of the sharpest asperity: its curvature is some three times the rms curvature of the surface \[1/m\].
+fn tabor_of_the_sharpest(params: &CaseParams, rms_curvature: f64) -> f64 {
+    let material = &params.material;
+    (material.adhesion_length_m().powi(2) / (SHARPEST * rms_curvature * material.interaction_range_m.powi(3))).cbrt()
 }
 
 /// Reads the list `auto_methods`.

@@ -33,6 +33,7 @@ mod single_cycle;
 mod step_count;
 mod surface;
 mod task;
+mod trial;
 mod verdict;
 
 use crate::constants::Constants;

@@ -5,10 +5,11 @@ use super::cycle::{Lattice, checked, checked_lattice, enough_memory};
 use super::outside::{Outside, interval};
 use super::previews::{Known, Preview};
 use super::surface::{Scale, target};
+use super::trial::Trial;
 use crate::campaign::{Campaign, CaseUnit, CycleUnit, Standing};
 use crate::model::Method;
 use crate::physics::theory::flattening::{Flattening, flattening};
-use crate::physics::theory::regime::{Regime, effective_adhesion};
+use crate::physics::theory::regime::{Regime, effective_adhesion, loaded_area};
 use crate::spec::{CaseParams, FEWEST_PER_WAVELENGTH};
 use crate::stats::{Caution, significant};
 use crate::store::Check;
@@ -52,13 +53,15 @@ pub(super) fn verdicts(campaign: &Campaign, previews: &Previews) -> Vec<Verdict>
     for cycle in &campaign.cycles {
         surfaces[cycle.case].get_or_insert(cycle);
     }
+    let trial = Trial::default();
     let of = |(unit, cycle): (&CaseUnit, Option<&CycleUnit>)| {
         let preview = cycle.and_then(|cycle| previews.get(&cycle.surface));
         let is_open = || {
             let standing = cycle.map(|cycle| campaign.cycle_standing(cycle, Check::Sizes));
             !matches!(standing, Some(Standing::Done | Standing::Failed(_)))
         };
-        let error = error(&unit.case.params, preview).filter(|_| is_open());
+        let of_generated = || cycle.filter(|_| preview.is_none()).and_then(|cycle| trial.error(campaign, unit, cycle));
+        let error = Some(()).filter(|()| is_open()).and_then(|()| error(&unit.case.params, preview).or_else(of_generated));
         Verdict { error, ..verdict(unit, preview.and_then(Preview::known)) }
     };
     campaign.cases.iter().zip(surfaces).map(of).collect()
@@ -74,7 +77,10 @@ fn verdict(unit: &CaseUnit, known: Option<&Known>) -> Verdict {
     Verdict {
         case_id: unit.id.clone(),
         method: params.model.method,
-        regime: energies.map(|_| Regime::of(whole.unwrap_or(f64::INFINITY), octave.unwrap_or(f64::INFINITY))),
+        regime: energies.map(|(_, slope)| {
+            let of_adhesion = Regime::of(whole.unwrap_or(f64::INFINITY), octave.unwrap_or(f64::INFINITY));
+            of_adhesion.with_area(loaded_area(params.cycle.largest_load(), slope))
+        }),
         persson_tosatti: whole,
         conformity: octave,
         work_of_adhesion_j_m2: adhesion,
@@ -104,17 +110,24 @@ pub fn chosen_method(params: &CaseParams) -> Result<Method, (String, String)> {
         let (problem, help) = error.split_once("\nhelp: ").unwrap_or((error, "write \"asperities\" or \"boundary_elements\""));
         (problem.to_owned(), help.to_owned())
     };
-    let known = match Preview::of_scan(&params.surface, u64::MAX, usize::MAX) {
+    let preview = Preview::of_scan(&params.surface, u64::MAX, usize::MAX);
+    let known = match &preview {
         Preview::Known(known) => known,
-        Preview::Refused(error) => return Err(refused(&error)),
+        Preview::Refused(error) => return Err(refused(error)),
         Preview::Large => return Err(refused("it is not a file")),
     };
     if let Some(Err(error)) = &known.details {
         return Err(refused(error));
     }
     let adhesion = params.material.work_of_adhesion_j_m2;
-    let Some((energy, _)) = energies(params, Some(&known)).filter(|_| adhesion > 0.0) else { return Ok(Method::Asperities) };
-    Ok(Regime::of(energy.persson_tosatti(adhesion), energy.conformity(adhesion)).method())
+    let mut by_asperities = params.clone();
+    by_asperities.model.method = Method::Asperities;
+    let Some((energy, slope)) = energies(params, Some(known)) else { return Ok(Method::Asperities) };
+    let of_adhesion =
+        if adhesion > 0.0 { Regime::of(energy.persson_tosatti(adhesion), energy.conformity(adhesion)) } else { Regime::Separate };
+    let fails = || error(&by_asperities, Some(&preview)).is_some();
+    let method = of_adhesion.with_area(loaded_area(params.cycle.largest_load(), slope)).method();
+    Ok(if method == Method::Asperities && fails() { Method::BoundaryElements } else { method })
 }
 
 /// Grid, memory and time of a cycle.

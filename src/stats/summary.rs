@@ -4,7 +4,7 @@ use super::StatsError;
 use super::digits::{column_exponent, decimals, labels, power_of_ten, significant};
 use super::listed::{Listed, listing, listing_of, sweeps};
 use super::model_error::{COLUMNS, outdated};
-use super::verdict::{IN_A_VERDICT, verdict};
+use super::verdict::{IN_A_VERDICT, verdicts};
 use super::warnings::{Warning, warnings};
 use crate::store::Frame;
 use crate::text::counted;
@@ -102,7 +102,7 @@ pub fn summary(cases: &Frame, methods: Option<&Frame>, shown: Shown) -> Result<S
             lines.extend(case_lines(cases, listed, &columns)?);
         }
         let rows: Vec<usize> = rows.iter().map(|listed| listed.row).collect();
-        lines.extend(verdict(cases, methods, &rows)?.iter().flat_map(|text| wrapped(text)));
+        lines.extend(verdicts(cases, methods, &rows)?.iter().flat_map(|text| wrapped(text)));
     }
     let mut head = vec![HEADER];
     head.extend(compared.then_some(REFERENCE));

@@ -23,33 +23,51 @@ fn regime(cases: &Frame, rows: &[usize]) -> Result<Regime, StatsError> {
     Ok(if is_large { regime.min(Regime::NearFullContact) } else { regime })
 }
 
-/// The verdict on the rows of a sweep of the table `cases`, as one sentence; nothing without a finished row.
+/// The verdicts on the rows of a sweep of the table `cases`, one sentence for each regime; nothing without a finished row.
 ///
 /// The part of the area that the asperity model has is measured where both methods have the same surfaces, and expected otherwise.
 ///
 /// # Errors
 /// If a table lacks a column.
-pub(super) fn verdict(cases: &Frame, methods: Option<&Frame>, rows: &[usize]) -> Result<Option<String>, StatsError> {
-    let (words, areas) = (cases.text("method")?, cases.f64_or_null("area_at_max_load_mean")?);
-    let of = |method: Method| rows.iter().copied().filter(|row| words[*row] == method.word() && areas[*row].is_some()).collect::<Vec<_>>();
+pub(super) fn verdicts(cases: &Frame, methods: Option<&Frame>, rows: &[usize]) -> Result<Vec<String>, StatsError> {
+    let areas = cases.f64_or_null("area_at_max_load_mean")?;
+    let finished: Vec<usize> = rows.iter().copied().filter(|row| areas[*row].is_some()).collect();
+    let pairs = methods.map(method_pairs).transpose()?.unwrap_or_default();
+    let ids = cases.text("case_id")?;
+    let mut regimes = Vec::with_capacity(finished.len());
+    for row in &finished {
+        // Both methods of a case have one regime.
+        let paired = pairs.iter().find(|pair| pair.cases.iter().any(|id| *id == ids[*row]));
+        let both = |other: &usize| other == row || paired.is_some_and(|pair| pair.cases.iter().any(|id| *id == ids[*other]));
+        regimes.push(regime(cases, &finished.iter().copied().filter(both).collect::<Vec<_>>())?);
+    }
+    let mut sentences = Vec::new();
+    for regime in [Regime::Separate, Regime::NearFullContact, Regime::Flattened] {
+        let own: Vec<usize> = finished.iter().zip(&regimes).filter(|(_, of)| **of == regime).map(|(row, _)| *row).collect();
+        let place = if own.len() == finished.len() { String::new() } else { format!(" ({} of {} rows)", own.len(), finished.len()) };
+        if !own.is_empty() {
+            sentences.push(format!("Verdict: {}{place}{}.", regime.name(), advice(cases, methods, &own, regime)?));
+        }
+    }
+    Ok(sentences)
+}
+
+/// What a regime means for rows, as the end of a sentence.
+fn advice(cases: &Frame, methods: Option<&Frame>, rows: &[usize], regime: Regime) -> Result<String, StatsError> {
+    let words = cases.text("method")?;
+    let of = |method: Method| rows.iter().copied().filter(|row| words[*row] == method.word()).collect::<Vec<_>>();
     let (asperities, elements) = (of(Method::Asperities), of(Method::BoundaryElements));
     if asperities.is_empty() {
-        let regime = regime(cases, &elements)?;
-        return Ok((!elements.is_empty()).then(|| format!("Verdict: {}, by boundary elements, which hold there.", regime.name())));
+        return Ok(", by boundary elements, which hold there".to_owned());
     }
-    let regime = regime(cases, &asperities)?;
     let share = share(cases, methods, &asperities)?;
-    let text = match (regime, elements.is_empty()) {
-        (Regime::Separate, _) => {
-            let share = share.map_or_else(String::new, |share| format!(", which has {share} of the area"));
-            format!("within the range of the asperity model{share}")
-        }
-        (_, has_none) => {
-            let advice = if has_none { "use method = \"boundary_elements\"" } else { "trust the rows by boundary elements" };
-            share.map_or_else(|| advice.to_owned(), |share| format!("the asperity model has {share} of the area; {advice}"))
-        }
-    };
-    Ok(Some(format!("Verdict: {}: {text}.", regime.name())))
+    Ok(if regime == Regime::Separate {
+        let share = share.map_or_else(String::new, |share| format!(", which has {share} of the area"));
+        format!(": within the range of the asperity model{share}")
+    } else {
+        let advice = if elements.is_empty() { "use method = \"boundary_elements\"" } else { "trust the rows by boundary elements" };
+        share.map_or_else(|| format!(": {advice}"), |share| format!(": the asperity model has {share} of the area; {advice}"))
+    })
 }
 
 /// The part of the area of boundary elements that the asperity model has in rows, as an interval.

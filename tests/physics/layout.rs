@@ -144,8 +144,8 @@ fn law_imports_of_the_physics_go_in_one_direction() {
     for (module, targets) in imports().iter().filter(|(module, _)| module.len() > 1 && module[0] == "physics") {
         let allowed = PHYSICS.iter().find(|(name, _)| *name == module[1]).map_or(&[][..], |(_, allowed)| allowed);
         for target in targets {
-            let free =
-                *target == ["physics"] || target.get(1).is_some_and(|t| ["model", "constants", "error", "memory"].contains(&t.as_str()));
+            let free = *target == ["physics"]
+                || target.get(1).is_some_and(|t| ["model", "constants", "error", "event_kind", "memory"].contains(&t.as_str()));
             let inside = target[0] == "physics" && target.get(1).is_some_and(|t| *t == module[1] || allowed.contains(&t.as_str()));
             if !free && !inside {
                 wrong.push(format!("{} imports {}", module.join("::"), target.join("::")));

@@ -20,7 +20,6 @@ mod work;
 
 pub(super) use measured::LIMITS as IMPORT;
 
-use self::work::Request;
 use super::colour::painted;
 use super::exit::{BAD_SPEC, FAILED, FAILED_CASES};
 use super::limits;
@@ -83,14 +82,16 @@ fn performed(verb: &Verb) -> Result<u8, Fault> {
         Verb::Run { campaign, until, open, .. } => {
             viewer::possible(*open, *until == StageArgument::Report)?;
             let stages = Stage::Generate..=stage(*until);
-            work::stages(&campaign.spec, &campaign.how, Request { stages, partial: false, open: *open })
+            work::stages(&campaign.spec, &campaign.how, work::Request { stages, partial: false, open: *open })
         }
-        Verb::Generate(campaign) => of_spec(campaign, Request::one(Stage::Generate)),
-        Verb::Extract(campaign) => of_spec(campaign, Request::one(Stage::Extract)),
-        Verb::Cycle(campaign) => of_spec(campaign, Request::one(Stage::Cycle)),
-        Verb::Aggregate { campaign, partial } => of_spec(campaign, Request { partial: *partial, ..Request::one(Stage::Aggregate) }),
+        Verb::Generate(campaign) => of_spec(campaign, work::Request::one(Stage::Generate)),
+        Verb::Extract(campaign) => of_spec(campaign, work::Request::one(Stage::Extract)),
+        Verb::Cycle(campaign) => of_spec(campaign, work::Request::one(Stage::Cycle)),
+        Verb::Aggregate { campaign, partial } => {
+            of_spec(campaign, work::Request { partial: *partial, ..work::Request::one(Stage::Aggregate) })
+        }
         Verb::Report { spec: Some(spec), compare, campaign, open, .. } if compare.is_empty() => {
-            work::stages(spec, campaign, Request { open: *open, ..Request::one(Stage::Report) })
+            work::stages(spec, campaign, work::Request { open: *open, ..work::Request::one(Stage::Report) })
         }
         Verb::Report { spec, compare, force, campaign, open } => {
             let runs: Vec<PathBuf> = spec.iter().chain(compare).cloned().collect();
@@ -124,7 +125,7 @@ fn performed(verb: &Verb) -> Result<u8, Fault> {
     }
 }
 
-fn of_spec(campaign: &CampaignArguments, request: Request) -> Result<u8, Fault> {
+fn of_spec(campaign: &CampaignArguments, request: work::Request) -> Result<u8, Fault> {
     work::stages(&campaign.spec, &campaign.how, request)
 }
 

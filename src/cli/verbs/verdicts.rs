@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 const INDENT: &str = "          ";
 
 /// Codes of warnings that a run prints before its first task.
-const BEFORE_A_RUN: [&str; 3] = ["sticky", "slow_grid", "long_loop"];
+const BEFORE_A_RUN: [&str; 2] = ["slow_grid", "long_loop"];
 
 /// Verdicts, warnings and expected errors of a plan, as lines of at most 80 columns.
 pub(super) fn plan_text(of: &Foreseen) -> String {
@@ -100,7 +100,7 @@ fn costs(verdicts: &[Verdict]) -> String {
         // The time has an accuracy of a factor of 3.
         let (memory, time) = (significant(largest(|cost| cost.memory_bytes) / 1e9, 1), in_words(largest(|cost| cost.seconds)));
         let text = format!(
-            "{}: {grid} {points} points a side, {per_wavelength} per shortest wavelength; some {memory} GB, {time} a cycle at most",
+            "{}: {grid} {points} points a side, {per_wavelength} per shortest wavelength; some {memory} GB, up to about {time} a cycle",
             name(method)
         );
         Some(wrapped(&format!("{:10}{text}", "cost"), INDENT))

@@ -1,6 +1,7 @@
 //! Regime of a rough adhesive contact, from the elastic energy that flattens its roughness.
 
 use crate::model::Method;
+use std::f64::consts::SQRT_2;
 
 /// Ratio `U_el/Δγ` of all roughness from which on contact spots are separate.
 pub const SEPARATE: f64 = 2.0;
@@ -8,6 +9,17 @@ pub const SEPARATE: f64 = 2.0;
 pub const BRIDGED: f64 = 1.0;
 /// Ratio `U_el/Δγ` below which adhesion alone flattens the surface.
 pub const FLATTENED: f64 = 0.5;
+
+/// Contact area over A0 beyond which contact spots grow together.
+pub const LARGE_AREA: f64 = 0.3;
+
+/// Contact area over A0 without adhesion at a load: `A/A0 = erf(√2 F/(E* A0 h'))`.
+///
+/// With the load over `E* A0` and the rms gradient `h'`. Persson, J. Chem. Phys. 115, 3840 (2001). Adhesion enlarges it.
+#[must_use]
+pub fn loaded_area(load: f64, rms_slope: f64) -> f64 {
+    if rms_slope > 0.0 { libm::erf(SQRT_2 * load / rms_slope) } else { 1.0 }
+}
 
 /// Regime of a contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -35,6 +47,12 @@ impl Regime {
         }
     }
 
+    /// The regime at a contact area over A0: near full contact beyond [`LARGE_AREA`], whatever the adhesion.
+    #[must_use]
+    pub fn with_area(self, share: f64) -> Self {
+        if share > LARGE_AREA { self.min(Self::NearFullContact) } else { self }
+    }
+
     /// Name of the regime.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -60,7 +78,7 @@ impl Regime {
         match (self, method) {
             (Self::Separate, Method::Asperities) => "Separate contact spots, within the range of the asperity model",
             (Self::Separate, _) => "Separate contact spots; asperities are a faster alternative",
-            (Self::NearFullContact, Method::Asperities) => "Spots grow together: half of the area is missing; use boundary elements",
+            (Self::NearFullContact, Method::Asperities) => "Spots grow together: the asperity model lacks area; use boundary elements",
             (Self::NearFullContact, _) => "Spots grow together; boundary elements resolve them",
             (Self::Flattened, Method::Asperities) => "Adhesion alone closes the contact: the asperity model fails; use boundary elements",
             (Self::Flattened, _) => "Adhesion alone closes the contact: boundary elements reach full contact",
