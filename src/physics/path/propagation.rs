@@ -186,7 +186,7 @@ impl EquilibriumPath {
                 avalanche.open.extend(parts);
             }
             (EventKind::JumpIn | EventKind::Uncover, _) if self.neighbourhood.local.find(i).is_some() => {
-                self.enter_status(i, Status::Contact)
+                self.enter_status(i, Status::Contact);
             }
             // A merged contact that leaves, or is free when it is released.
             (EventKind::JumpOff | EventKind::Uncover, Some(_)) => {
