@@ -3,7 +3,7 @@
 use super::layout::{plain, prose};
 use crate::model::{Choice as _, Method};
 use crate::schema::{Parameter, parameters_by_rank};
-use crate::stats::{LIMITS, StatsError, Values, Varying, expected_ratios, significant, warnings};
+use crate::stats::{LIMITS, StatsError, Values, Varying, expected_ratios, significant, verdicts_of_sweeps, warnings};
 use crate::store::{ColumnData, Frame};
 use maud::{Markup, PreEscaped, html};
 
@@ -65,11 +65,12 @@ fn listed(texts: Vec<String>) -> String {
 }
 
 /// Verdict on model validity with the two deciding numbers.
-pub(super) fn banner(cases: &Frame) -> Result<Markup, StatsError> {
+pub(super) fn banner(cases: &Frame, methods: &Frame) -> Result<Markup, StatsError> {
+    let sentences = verdicts_of_sweeps(cases, Some(methods))?;
     let found = warnings(cases)?;
-    let (methods, done) = (cases.text("method")?, cases.i64("done_count")?);
+    let (words, done) = (cases.text("method")?, cases.i64("done_count")?);
     // Rows without a result are neither inside nor outside, and the range is that of the asperity model.
-    let judged: Vec<usize> = (0..cases.row_count()).filter(|row| done[*row] > 0 && methods[*row] == Method::Asperities.word()).collect();
+    let judged: Vec<usize> = (0..cases.row_count()).filter(|row| done[*row] > 0 && words[*row] == Method::Asperities.word()).collect();
     let all = judged.len();
     let mut outside: Vec<usize> = found.iter().filter(|of| OF_RANGE.contains(&of.kind.code)).flat_map(|of| of.rows.clone()).collect();
     outside.retain(|row| judged.contains(row));
@@ -91,6 +92,7 @@ pub(super) fn banner(cases: &Frame) -> Result<Markup, StatsError> {
     Ok(html! {
         div class={ "banner " (colour) } role="note" {
             p { b { @if done.contains(&0) { "Finished rows: " } (verdict) } " " (plain(&numbers.join("; "))) @if !numbers.is_empty() { "." } }
+            @for sentence in &sentences { p { (sentence) } }
             @if !labels.is_empty() { p { "Warnings: " (labels.join(", ")) ". " a href="#model-validity" { "Model validity" } } }
             @if let Some(ratios) = expected_ratios(cases)? { p { (plain(&ratios)) } }
         }

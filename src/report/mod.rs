@@ -118,7 +118,7 @@ pub fn page(report: &Report<'_>) -> Result<String, StatsError> {
             p { (introduction(report)) } "\n"
             (failures::failures(report.failures, report.cycle_count))
             @if has_results {
-                (header::banner(report.cases)?)
+                (header::banner(report.cases, report.methods)?)
             } @else if report.failures.is_empty() {
                 div.banner.amber role="note" { p { b { "No results: no surface finished." } " `hysteron run` computes the pending cycles." } } "\n"
             }

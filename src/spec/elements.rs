@@ -88,14 +88,18 @@ impl ElementParams {
                     "a grid of {grid} x {grid} points has {} per shortest wavelength: at least 4 are needed",
                     short_points(per_wavelength)
                 ),
-                "increase boundary_elements.points (at most 4096), or use a smaller ζ or a larger cut-off",
+                if grid < MAX_ELEMENTS {
+                    "increase boundary_elements.points (at most 4096), or use a smaller ζ or a larger cut-off"
+                } else {
+                    "use a smaller ζ or a larger cut-off"
+                },
             ));
         }
         let spacing = length_m / f64::from(grid);
         let weakness = work_length_m / spacing;
         if weakness > 0.0 && weakness < LEAST_WORK {
             return Some((
-                format!("Δγ/(E* dx) is {} on this grid, below {}: adhesion is negligible", short(weakness), short(LEAST_WORK)),
+                format!("Δγ/(E* dx) is {weakness:.1e} on this grid, below {}: adhesion is negligible", short(LEAST_WORK)),
                 "increase material.work_of_adhesion_j_m2, or use 0 with model.method = \"asperities\"",
             ));
         }

@@ -42,7 +42,7 @@ pub use planned::{Planned, planned};
 pub use realizations::{realizations, results};
 pub use rows::Value;
 pub use student::{FEW, Sample, t_quantile};
-pub use summary::{Shown, expected_ratios, summary, warning_text};
+pub use summary::{Shown, expected_ratios, summary, verdicts_of_sweeps, warning_text};
 pub use varying::{Values, Varying, varying};
 pub use walk::{COMPRESSION_STATIONS, Point, STATIONS, TENSION_STATIONS, Walk};
 pub use warnings::{Warning, measured_text, warnings, warnings_of};

@@ -114,6 +114,23 @@ pub fn summary(cases: &Frame, methods: Option<&Frame>, shown: Shown) -> Result<S
     Ok(format!("{}\n{}", head.join("\n"), lines.join("\n")))
 }
 
+/// The verdicts on all sweeps, each with the name of its sweep if there are several.
+///
+/// # Errors
+/// If a table lacks a column.
+pub fn verdicts_of_sweeps(cases: &Frame, methods: Option<&Frame>) -> Result<Vec<String>, StatsError> {
+    let (names, mut all) = (sweeps(cases)?, Vec::new());
+    for name in &names {
+        let rows: Vec<usize> = listing_of(cases, name)?.iter().map(|listed| listed.row).collect();
+        let place = if names.len() > 1 && !name.is_empty() { format!("Sweep {name}: ") } else { String::new() };
+        let sentences = verdicts(cases, methods, &rows)?;
+        all.extend(
+            sentences.iter().map(|sentence| format!("{place}{}", sentence.replacen("Verdict: ", "", usize::from(!place.is_empty())))),
+        );
+    }
+    Ok(all)
+}
+
 fn value(cases: &Frame, name: &str, row: usize) -> Result<Option<f64>, StatsError> {
     Ok(cases.f64_or_null(name)?.get(row).copied().flatten())
 }

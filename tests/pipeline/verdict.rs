@@ -88,9 +88,11 @@ fn e2e_auto_and_plan_know_loads_and_low_tabor_parameters() {
 fn e2e_a_sweep_over_regimes_has_a_verdict_for_each() {
     let text = "name = \"x\"\nrealizations = 1\n[surface]\nmagnification = 4\n[cycle]\nmax_load = [0.001]\napproach_step = 0.1\n\
                 [[sweep]]\nname = \"a\"\nmaterial.work_of_adhesion_j_m2 = [0.001, 0.07]\n";
-    let said = stdout(&Bench::new(text).verb("run", &[]));
+    let bench = Bench::new(text);
+    let said = stdout(&bench.verb("run", &[]));
+    let page = fs::read_to_string(bench.out().join("report.html")).unwrap();
     for words in ["Verdict: separate contacts (1 of 2 rows): within", "Verdict: near full contact (1 of 2 rows): "] {
-        assert!(said.contains(words), "{said}");
+        assert!(said.contains(words) && page.contains(words), "{said}");
     }
 }
 
