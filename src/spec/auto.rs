@@ -12,9 +12,10 @@ use super::fault::Faults;
 use super::written::{Written, array};
 use super::{Axis, CaseParams, Spec, SpecErrors, Sweep, Value};
 use crate::model::{Choice as _, JumpIn, Method};
+use crate::physics::jkr::{Asperity, LEAST_TABOR};
 use crate::physics::surface::spectrum::Spectrum;
 use crate::physics::theory::flattening::flattening;
-use crate::physics::theory::regime::{Regime, loaded_area};
+use crate::physics::theory::regime::Regime;
 
 /// Chooses the method of a case with a measured surface, or gives the problem and the help.
 pub type Chooser<'a> = &'a dyn Fn(&CaseParams) -> Result<Method, (String, String)>;
@@ -85,8 +86,6 @@ impl Choices {
 
 /// Curvature of the sharpest asperity of a surface, estimated, over its rms curvature.
 const SHARPEST: f64 = 3.0;
-/// Smallest Tabor parameter at which Wu's criterion holds.
-const LEAST_TABOR: f64 = 2.0;
 /// The key whose value is chosen.
 const KEY: &str = "model.method";
 
@@ -98,19 +97,13 @@ fn of_target(params: &CaseParams) -> Method {
     let spectrum = Spectrum::from(&params.surface);
     let energy = flattening(&spectrum, params.material.contact_modulus_pa);
     let adhesion = params.material.work_of_adhesion_j_m2;
-    let of_adhesion =
-        if adhesion > 0.0 { Regime::of(energy.persson_tosatti(adhesion), energy.conformity(adhesion)) } else { Regime::Separate };
     let moments = spectrum.moments();
-    let method = of_adhesion.with_area(loaded_area(params.cycle.largest_load(), moments.rms_slope())).method();
+    let method = Regime::expected(&energy, adhesion, params.cycle.largest_load(), moments.rms_slope()).method();
     let needs_range = adhesion > 0.0 && params.model.jump_in == JumpIn::Wu && !params.model.allow_low_tabor;
-    let is_out_of_range = || needs_range && tabor_of_the_sharpest(params, moments.rms_curvature_1_m()) < LEAST_TABOR;
+    let sharpest = || Asperity::new(1.0 / (SHARPEST * moments.rms_curvature_1_m()), &params.material);
+    let is_low = |asperity: Asperity| asperity.tabor(params.material.interaction_range_m) < LEAST_TABOR;
+    let is_out_of_range = || needs_range && sharpest().is_ok_and(is_low);
     if method == Method::Asperities && is_out_of_range() { Method::BoundaryElements } else { method }
-}
-
-/// Estimated Tabor parameter of the sharpest asperity: its curvature is some three times the rms curvature of the surface \[1/m\].
-fn tabor_of_the_sharpest(params: &CaseParams, rms_curvature: f64) -> f64 {
-    let material = &params.material;
-    (material.adhesion_length_m().powi(2) / (SHARPEST * rms_curvature * material.interaction_range_m.powi(3))).cbrt()
 }
 
 /// Reads the list `auto_methods`.

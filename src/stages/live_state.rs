@@ -39,7 +39,7 @@ impl Cycles {
     fn of(campaign: &Campaign) -> Self {
         let of_case = |unit: &CaseUnit| {
             let params = &unit.case.params;
-            let max_load = params.cycle.max_load.iter().copied().fold(0.0, f64::max);
+            let max_load = params.cycle.largest_load();
             (max_load, parameters(params, &campaign.file_label(&params.surface.file), max_load))
         };
         Self {

@@ -9,7 +9,7 @@ use super::trial::Trial;
 use crate::campaign::{Campaign, CaseUnit, CycleUnit, Standing};
 use crate::model::Method;
 use crate::physics::theory::flattening::{Flattening, flattening};
-use crate::physics::theory::regime::{Regime, effective_adhesion, loaded_area};
+use crate::physics::theory::regime::{Regime, effective_adhesion};
 use crate::spec::{CaseParams, FEWEST_PER_WAVELENGTH};
 use crate::stats::{Caution, significant};
 use crate::store::Check;
@@ -77,10 +77,7 @@ fn verdict(unit: &CaseUnit, known: Option<&Known>) -> Verdict {
     Verdict {
         case_id: unit.id.clone(),
         method: params.model.method,
-        regime: energies.map(|(_, slope)| {
-            let of_adhesion = Regime::of(whole.unwrap_or(f64::INFINITY), octave.unwrap_or(f64::INFINITY));
-            of_adhesion.with_area(loaded_area(params.cycle.largest_load(), slope))
-        }),
+        regime: energies.map(|(energy, slope)| Regime::expected(&energy, adhesion, params.cycle.largest_load(), slope)),
         persson_tosatti: whole,
         conformity: octave,
         work_of_adhesion_j_m2: adhesion,
@@ -119,14 +116,11 @@ pub fn chosen_method(params: &CaseParams) -> Result<Method, (String, String)> {
     if let Some(Err(error)) = &known.details {
         return Err(refused(error));
     }
-    let adhesion = params.material.work_of_adhesion_j_m2;
     let mut by_asperities = params.clone();
     by_asperities.model.method = Method::Asperities;
     let Some((energy, slope)) = energies(params, Some(known)) else { return Ok(Method::Asperities) };
-    let of_adhesion =
-        if adhesion > 0.0 { Regime::of(energy.persson_tosatti(adhesion), energy.conformity(adhesion)) } else { Regime::Separate };
     let fails = || error(&by_asperities, Some(&preview)).is_some();
-    let method = of_adhesion.with_area(loaded_area(params.cycle.largest_load(), slope)).method();
+    let method = Regime::expected(&energy, params.material.work_of_adhesion_j_m2, params.cycle.largest_load(), slope).method();
     Ok(if method == Method::Asperities && fails() { Method::BoundaryElements } else { method })
 }
 

@@ -2,7 +2,7 @@
 
 use super::rows::Value;
 use super::{CaseInput, Given};
-use crate::physics::theory::regime::{BRIDGED, SEPARATE};
+use crate::physics::theory::regime::{BRIDGED, LARGE_AREA, SEPARATE};
 
 /// A warning that a row of the table `cases` may have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -269,7 +269,7 @@ impl Limit {
 /// All limits. The limit of the Tabor parameter applies to Wu's criterion only, and only with adhesion.
 pub const LIMITS: [Limit; 18] = [
     Limit::at_least("sticky", "persson_tosatti_realised_mean", SEPARATE),
-    Limit::at_most("area", "area_at_max_load_mean", 0.3),
+    Limit::at_most("area", "area_at_max_load_mean", LARGE_AREA),
     Limit::at_least("conformed", "conformity_realised_mean", BRIDGED),
     Limit::at_most("covered", "covered_share_mean", 0.1),
     Limit::at_most("absorption", "absorption_share_max", 0.1),

@@ -102,7 +102,7 @@ pub fn summary(cases: &Frame, methods: Option<&Frame>, shown: Shown) -> Result<S
             lines.extend(case_lines(cases, listed, &columns)?);
         }
         let rows: Vec<usize> = rows.iter().map(|listed| listed.row).collect();
-        lines.extend(verdicts(cases, methods, &rows)?.iter().flat_map(|text| wrapped(text)));
+        lines.extend(verdicts(cases, methods, &rows)?.iter().flat_map(|sentence| wrapped(&format!("Verdict: {sentence}"))));
     }
     let mut head = vec![HEADER];
     head.extend(compared.then_some(REFERENCE));
@@ -122,11 +122,8 @@ pub fn verdicts_of_sweeps(cases: &Frame, methods: Option<&Frame>) -> Result<Vec<
     let (names, mut all) = (sweeps(cases)?, Vec::new());
     for name in &names {
         let rows: Vec<usize> = listing_of(cases, name)?.iter().map(|listed| listed.row).collect();
-        let place = if names.len() > 1 && !name.is_empty() { format!("Sweep {name}: ") } else { String::new() };
-        let sentences = verdicts(cases, methods, &rows)?;
-        all.extend(
-            sentences.iter().map(|sentence| format!("{place}{}", sentence.replacen("Verdict: ", "", usize::from(!place.is_empty())))),
-        );
+        let place = if names.len() > 1 && !name.is_empty() { format!("Sweep {name}") } else { "Verdict".to_owned() };
+        all.extend(verdicts(cases, methods, &rows)?.iter().map(|sentence| format!("{place}: {sentence}")));
     }
     Ok(all)
 }

@@ -1,7 +1,6 @@
 //! The verdict on a sweep at the end of a run: the regime of its contacts, and which method holds there.
 
-use super::cautions::Limit;
-use super::methods::method_pairs;
+use super::methods::{MethodPair, method_pairs};
 use super::{StatsError, significant};
 use crate::model::{Choice as _, Method};
 use crate::physics::theory::regime::Regime;
@@ -18,9 +17,7 @@ fn regime(cases: &Frame, rows: &[usize]) -> Result<Regime, StatsError> {
     };
     let least = |column: &str| -> Result<f64, StatsError> { Ok(values(column)?.into_iter().fold(f64::INFINITY, f64::min)) };
     let regime = Regime::of(least("persson_tosatti_realised_mean")?, least("conformity_realised_mean")?);
-    let is_large = Limit::of("area")
-        .is_some_and(|limit| values(limit.column).is_ok_and(|areas| areas.into_iter().any(|area| limit.is_passed(Some(area)))));
-    Ok(if is_large { regime.min(Regime::NearFullContact) } else { regime })
+    Ok(regime.with_area(values("area_at_max_load_mean")?.into_iter().fold(0.0, f64::max)))
 }
 
 /// The verdicts on the rows of a sweep of the table `cases`, one sentence for each regime; nothing without a finished row.
@@ -46,21 +43,21 @@ pub(super) fn verdicts(cases: &Frame, methods: Option<&Frame>, rows: &[usize]) -
         let own: Vec<usize> = finished.iter().zip(&regimes).filter(|(_, of)| **of == regime).map(|(row, _)| *row).collect();
         let place = if own.len() == finished.len() { String::new() } else { format!(" ({} of {} rows)", own.len(), finished.len()) };
         if !own.is_empty() {
-            sentences.push(format!("Verdict: {}{place}{}.", regime.name(), advice(cases, methods, &own, regime)?));
+            sentences.push(format!("{}{place}{}.", regime.name(), advice(cases, &pairs, &own, regime)?));
         }
     }
     Ok(sentences)
 }
 
 /// What a regime means for rows, as the end of a sentence.
-fn advice(cases: &Frame, methods: Option<&Frame>, rows: &[usize], regime: Regime) -> Result<String, StatsError> {
+fn advice(cases: &Frame, pairs: &[MethodPair], rows: &[usize], regime: Regime) -> Result<String, StatsError> {
     let words = cases.text("method")?;
     let of = |method: Method| rows.iter().copied().filter(|row| words[*row] == method.word()).collect::<Vec<_>>();
     let (asperities, elements) = (of(Method::Asperities), of(Method::BoundaryElements));
     if asperities.is_empty() {
         return Ok(", by boundary elements, which hold there".to_owned());
     }
-    let share = share(cases, methods, &asperities)?;
+    let share = share(cases, pairs, &asperities)?;
     Ok(if regime == Regime::Separate {
         let share = share.map_or_else(String::new, |share| format!(", which has {share} of the area"));
         format!(": within the range of the asperity model{share}")
@@ -71,9 +68,8 @@ fn advice(cases: &Frame, methods: Option<&Frame>, rows: &[usize], regime: Regime
 }
 
 /// The part of the area of boundary elements that the asperity model has in rows, as an interval.
-fn share(cases: &Frame, methods: Option<&Frame>, rows: &[usize]) -> Result<Option<String>, StatsError> {
+fn share(cases: &Frame, pairs: &[MethodPair], rows: &[usize]) -> Result<Option<String>, StatsError> {
     let ids = cases.text("case_id")?;
-    let pairs = methods.map(method_pairs).transpose()?.unwrap_or_default();
     let own = pairs.iter().filter(|pair| rows.iter().any(|row| ids[*row] == pair.cases[0]));
     let measured: Vec<f64> = own.filter_map(|pair| pair.quantities[0][2]).collect();
     let expected = cases.f64_or_null("area_model_ratio")?;

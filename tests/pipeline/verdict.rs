@@ -75,12 +75,12 @@ fn e2e_auto_and_plan_know_loads_and_low_tabor_parameters() {
     for (adhesion, load, chosen) in
         [("1e-3", "0.002", "asperities"), ("1e-3", "0.2", "boundary_elements"), ("1e-8", "0.002", "boundary_elements")]
     {
-        let (told, answer) = plan(&Bench::new(&text("auto", adhesion, load)));
-        assert_eq!(answer["cases"][0]["method"], chosen, "{adhesion} {load}: {told}");
+        let (said, answer) = plan(&Bench::new(&text("auto", adhesion, load)));
+        assert_eq!(answer["cases"][0]["method"], chosen, "{adhesion} {load}: {said}");
     }
     let bench = Bench::new(&text("asperities", "1e-8", "0.002"));
-    let (told, _) = plan(&bench);
-    assert!(told.contains("Wu's criterion"), "{told}");
+    let (said, _) = plan(&bench);
+    assert!(said.contains("Wu's criterion"), "{said}");
     assert_eq!(code(&bench.verb("run", &["--until", "cycle"])), 3);
 }
 
@@ -110,12 +110,12 @@ fn e2e_plan_and_run_state_the_regime_before_the_first_task() {
                 material.work_of_adhesion_j_m2 = [0.0001, 0.07, 1.0]\n[[sweep]]\nname = \"b\"\nmodel.method = \"boundary_elements\"\n\
                 surface.magnification = [4, 128]\n";
     let bench = Bench::new(text);
-    let (told, answer) = plan(&bench);
+    let (said, answer) = plan(&bench);
     for part in ["flattened, asperities (1 of 5 cases)", "separate contacts, asperities", "near full contact, boundary elements"] {
-        assert!(told.contains(part), "{part}: {told}");
+        assert!(said.contains(part), "{part}: {said}");
     }
-    assert!(told.contains("Effective work of adhesion") && told.contains("`\"auto\"`") && told.contains("warning[long_loop]"), "{told}");
-    assert!(told.lines().all(|line| line.chars().count() <= 80), "{told}");
+    assert!(said.contains("Effective work of adhesion") && said.contains("`\"auto\"`") && said.contains("warning[long_loop]"), "{said}");
+    assert!(said.lines().all(|line| line.chars().count() <= 80), "{said}");
     let cases = answer["cases"].as_array().unwrap();
     let of = |name: &str| cases.iter().map(|case| case[name].clone()).collect::<Vec<_>>();
     assert_eq!(of("grid_points"), [32, 32, 32, 64, 2048].map(Value::from));
@@ -128,11 +128,11 @@ fn e2e_plan_and_run_state_the_regime_before_the_first_task() {
     let weak =
         Bench::new("name = \"x\"\nrealizations = 1\n[surface]\nmagnification = 4\n[cycle]\nmax_load = [0.001]\napproach_step = 0.1\n");
     let run = weak.verb("run", &["--until", "cycle"]);
-    let told = stderr(&run);
+    let said = stderr(&run);
     let [regime, first] =
-        ["regime    near full contact", "generate"].map(|part| told.find(part).unwrap_or_else(|| panic!("{part}: {told}")));
+        ["regime    near full contact", "generate"].map(|part| said.find(part).unwrap_or_else(|| panic!("{part}: {said}")));
     // The line of the regime says what the warning `sticky` of a plan says.
-    assert!(regime < first && !told.contains("warning[sticky]"), "{told}");
+    assert!(regime < first && !said.contains("warning[sticky]"), "{said}");
     assert!(!stderr(&weak.verb("run", &["--until", "cycle"])).contains("regime"), "nothing is left to do");
 }
 
@@ -149,14 +149,14 @@ fn e2e_plan_knows_measured_surfaces() {
         .unwrap();
     let import: Value = serde_json::from_str(&stdout(&import)).unwrap();
     spec("1e6", "method = \"boundary_elements\"\n");
-    let (told, answer) = plan(&bench);
+    let (said, answer) = plan(&bench);
     let case = &answer["cases"][0];
     // The energy that `import` prints, times E*/Δγ; the numbers are equal but for the product.
     let wanted = import["flattening_m"].as_f64().unwrap() * 1e6 / 0.05;
-    assert!((case["persson_tosatti"].as_f64().unwrap() / wanted - 1.0).abs() < 1e-12, "{told}");
+    assert!((case["persson_tosatti"].as_f64().unwrap() / wanted - 1.0).abs() < 1e-12, "{said}");
     // 64 points and their mirror images, 8 points per cut-off: 16 wavelengths, 16 points each.
-    assert_eq!((&case["grid_points"], &case["mirrored"], &case["error"]), (&256.into(), &true.into(), &Value::Null), "{told}");
-    assert!(told.contains("grid with mirror images 256 points a side"), "{told}");
+    assert_eq!((&case["grid_points"], &case["mirrored"], &case["error"]), (&256.into(), &true.into(), &Value::Null), "{said}");
+    assert!(said.contains("grid with mirror images 256 points a side"), "{said}");
     spec("1e6", "");
     assert!(plan(&bench).0.contains("warning[sticky]"));
 }
@@ -175,15 +175,15 @@ fn e2e_plan_states_the_errors_of_the_run() {
     ];
     for (name, modulus, more) in cases {
         fs::write(bench.spec(), of_scan(name, modulus, more)).unwrap();
-        let (told, answer) = plan(&bench);
-        let error = answer["cases"][0]["error"].as_str().unwrap_or_else(|| panic!("{name} {more}: {told}"));
-        assert!(told.contains("warning: the run would fail for 1 of 1 case"), "{told}");
+        let (said, answer) = plan(&bench);
+        let error = answer["cases"][0]["error"].as_str().unwrap_or_else(|| panic!("{name} {more}: {said}"));
+        assert!(said.contains("warning: the run would fail for 1 of 1 case"), "{said}");
         let run = bench.verb("run", &[]);
         let problem = error.lines().next().unwrap();
-        let told = stdout(&run) + &stderr(&run);
+        let said = stdout(&run) + &stderr(&run);
         // In the run the line of a failed task is wrapped.
         let flat = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
-        assert!(code(&run) != 0 && flat(&told).contains(&flat(problem)), "{problem}\n{told}");
+        assert!(code(&run) != 0 && flat(&said).contains(&flat(problem)), "{problem}\n{said}");
         fs::remove_dir_all(bench.out()).unwrap();
     }
 }

@@ -63,21 +63,9 @@ impl Transition {
 
     /// Status of an asperity that this change removes from contact.
     pub(crate) fn status(&self, problem: &Problem) -> Status {
-        match (self.kind, self.by) {
-            (EventKind::Cover, Some(by)) => {
-                let release_m = problem.absorbing_radius(self.asperity, by);
-                Status::Covered { by, release_m }
-            }
-            (
-                EventKind::JumpIn
-                | EventKind::JumpOff
-                | EventKind::Cover
-                | EventKind::Uncover
-                | EventKind::Snap
-                | EventKind::Merge
-                | EventKind::Split,
-                _,
-            ) => Status::Free,
+        match self.by.filter(|_| self.kind == EventKind::Cover) {
+            Some(by) => Status::Covered { by, release_m: problem.absorbing_radius(self.asperity, by) },
+            None => Status::Free,
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Regime of a rough adhesive contact, from the elastic energy that flattens its roughness.
 
+use super::flattening::Flattening;
 use crate::model::Method;
 use std::f64::consts::SQRT_2;
 
@@ -45,6 +46,19 @@ impl Regime {
         } else {
             Self::Separate
         }
+    }
+
+    /// Regime expected of a surface before its contact is computed, at a work of adhesion \[J/m²\] and a load over `E* A0`.
+    ///
+    /// It follows from the energies of flattening, and from the area without adhesion at the rms gradient `h'`, [`loaded_area`].
+    #[must_use]
+    pub fn expected(energies: &Flattening, work_of_adhesion_j_m2: f64, load: f64, rms_slope: f64) -> Self {
+        let of_adhesion = if work_of_adhesion_j_m2 > 0.0 {
+            Self::of(energies.persson_tosatti(work_of_adhesion_j_m2), energies.conformity(work_of_adhesion_j_m2))
+        } else {
+            Self::Separate
+        };
+        of_adhesion.with_area(loaded_area(load, rms_slope))
     }
 
     /// The regime at a contact area over A0: near full contact beyond [`LARGE_AREA`], whatever the adhesion.
