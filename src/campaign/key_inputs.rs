@@ -4,6 +4,8 @@
 
 use super::{Campaign, CycleUnit, Stage, Standing, SurfaceUnit};
 use crate::keys::{canonical, key_of_text, preimage};
+use crate::physics::cycle::{Asperities, Method};
+use crate::physics::elements::Elements;
 use crate::spec::{Case, CaseParams, MEASURED, Spec, SurfaceParams};
 use serde_json::{Map, Value, json};
 
@@ -108,10 +110,15 @@ impl Campaign {
         F::object(vec![("name", F::word(&self.spec.name)), ("cases", F::list(cases.collect())), ("cycles", F::list(cycles.collect()))])
     }
 
-    /// Inputs of the report: the tables, and the spec with all defaults as it shows it.
+    /// Inputs of the report: the tables, the spec with all defaults as it shows it, and formats that this build does not write.
     fn report_inputs<F: Form>(&self, statistics_key: &str) -> F {
         let spec = blake3::hash(self.labelled_toml().as_bytes()).to_hex().to_string();
-        F::object(vec![("name", F::word(&self.spec.name)), ("spec", F::word(&spec)), ("statistics", F::word(statistics_key))])
+        let mut inputs = vec![("name", F::word(&self.spec.name)), ("spec", F::word(&spec)), ("statistics", F::word(statistics_key))];
+        let left_out = self.spec.figures.left_out();
+        if !left_out.is_empty() {
+            inputs.push(("left_out", F::word(&left_out.join(" "))));
+        }
+        F::object(inputs)
     }
 
     /// Key of the tables over realizations, with this status of the cycles.
@@ -183,14 +190,18 @@ pub(super) fn read_by_cycle(params: &CaseParams) -> CaseParams {
 /// Version of the reading of measured surfaces in their keys: order of the points, attributes. Generated surfaces have none.
 const READING_VERSION: u32 = 2;
 
-/// Version of the cycles by boundary elements in their keys, beside that of the stage.
+/// Version of the cycles by boundary elements of one load on a periodic surface, whose results later versions have not changed.
 pub(crate) const ELEMENTS_VERSION: u32 = 10;
 
-/// The same where results differ from those of [`ELEMENTS_VERSION`]: on scans that are continued by mirror images, and with several loads.
-const LATER_ELEMENTS_VERSION: u32 = 11;
+/// Present version of the asperity model.
+pub(crate) const fn asperities_version() -> u32 {
+    present(Asperities::VERSIONS)
+}
 
-/// The same of cycles of the asperity model.
-pub(crate) const ASPERITIES_VERSION: u32 = 9;
+/// The present version of a method.
+const fn present(versions: &[(u32, &str)]) -> u32 {
+    versions[versions.len() - 1].0
+}
 
 /// Inputs of a cycle in its key, besides the asperities.
 fn of_case(params: &CaseParams) -> Vec<(&'static str, Value)> {
@@ -198,12 +209,12 @@ fn of_case(params: &CaseParams) -> Vec<(&'static str, Value)> {
     let [material, mut model, mut cycle] = [plain(&params.material), plain(&params.model), plain(&params.cycle)];
     if params.by_elements() {
         let is_mirrored = params.surface.is_measured() && !params.surface.periodic;
-        let version = if is_mirrored || params.cycle.max_load.len() > 1 { LATER_ELEMENTS_VERSION } else { ELEMENTS_VERSION };
+        let version = if is_mirrored || params.cycle.max_load.len() > 1 { present(Elements::VERSIONS) } else { ELEMENTS_VERSION };
         model = json!({ "method": model["method"], "method_version": version });
         remove(&mut cycle, "approach_step");
         return vec![("material", material), ("model", model), ("boundary_elements", plain(&params.boundary_elements)), ("cycle", cycle)];
     }
-    model["method_version"] = json!(ASPERITIES_VERSION);
+    model["method_version"] = json!(asperities_version());
     vec![("material", material), ("model", model), ("cycle", cycle)]
 }
 

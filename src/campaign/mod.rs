@@ -18,7 +18,7 @@ mod standing;
 pub use audit::Audit;
 pub use changes::Reasons;
 pub use compare::{Difference, Explanation};
-pub(crate) use key_inputs::{ASPERITIES_VERSION, ELEMENTS_VERSION};
+pub(crate) use key_inputs::{ELEMENTS_VERSION, asperities_version};
 pub use leftover::Leftover;
 pub use shard::Shard;
 pub use sources::with_recorded_files;

@@ -20,6 +20,8 @@ mod markup;
 mod panels;
 mod paths;
 mod plot;
+#[cfg(feature = "raster")]
+mod raster;
 mod results;
 mod sensitivity;
 mod style;
@@ -33,7 +35,7 @@ pub use curve::{Curve, KeyEntry, Note, Stroke, XyPlot};
 pub use cycle_loop::Closer;
 pub use drawing::Drawing;
 pub use elements::{ElementsLoop, elements_loop};
-pub use formats::{pdf, png, with_font};
+pub use formats::file;
 pub use markup::described;
 pub use panels::{Panel, compared, panels};
 pub use plot::plot_xy;

@@ -1,5 +1,6 @@
 //! Errors of the physics.
 
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 /// Errors of the physics, with quantity, value and action.
@@ -33,8 +34,7 @@ pub enum PhysicsError {
     NoSummit,
     /// Asperities with a Tabor parameter below the limit of Wu's criterion.
     #[error(
-        "Wu's criterion for jump into contact (Eq 3) is invalid: {below} of {all} asperities have a Tabor parameter below 2 (minimum {smallest:.3})\n\
-         help: reduce material.interaction_range_m, set model.jump_in = \"jkr\", or set model.allow_low_tabor = true for a result with a warning"
+        "Wu's criterion for jump into contact (Eq 3) is invalid: {below} of {all} asperities have a Tabor parameter below 2 (minimum {smallest:.3})"
     )]
     LowTabor {
         /// Minimum Tabor parameter.
@@ -44,10 +44,27 @@ pub enum PhysicsError {
         /// Number of asperities.
         all: usize,
     },
+    /// A stored state with an asperity that the surface does not have.
+    #[error(
+        "cannot restore the state: it contains asperity {asperity}, but the surface has {count} asperities\nhelp: use a state of the same surface"
+    )]
+    UnknownAsperity {
+        /// The number of the asperity.
+        asperity: usize,
+        /// Number of asperities.
+        count: usize,
+    },
+    /// A branch that ends before its load reversal or its last separation.
+    #[error(transparent)]
+    Loop(#[from] LoopError),
+}
+
+/// Why a loop has no result. What was passed before on the path remains valid.
+#[derive(Debug, Clone, PartialEq, Error, Serialize, Deserialize)]
+pub enum LoopError {
     /// No equilibrium was found near the last one, not even by relaxation.
     #[error(
-        "no equilibrium at the mean penetration {approach_m:e} m after {iterations} iterations: {} (asperity {asperity})\nhelp: contacts that \
-         grow together may have none: reduce cycle.max_load; with model.coalescence = \"merge\" or \"none\", try \"cover\"",
+        "no equilibrium at the mean penetration {approach_m:e} m after {iterations} iterations: {} (asperity {asperity})",
         reason.sentence(*residual_m)
     )]
     NoEquilibrium {
@@ -62,21 +79,8 @@ pub enum PhysicsError {
         /// Iterations spent.
         iterations: u64,
     },
-    /// A stored state with an asperity that the surface does not have.
-    #[error(
-        "cannot restore the state: it contains asperity {asperity}, but the surface has {count} asperities\nhelp: use a state of the same surface"
-    )]
-    UnknownAsperity {
-        /// The number of the asperity.
-        asperity: usize,
-        /// Number of asperities.
-        count: usize,
-    },
     /// Events go on without end within one increment of the approach.
-    #[error(
-        "no stable state at the mean penetration {approach_m:e} m after {events} changes of state (asperity {asperity} last)\nhelp: reduce \
-         cycle.max_load; with model.coalescence = \"cover\" or \"merge\", try \"none\""
-    )]
+    #[error("no stable state at the mean penetration {approach_m:e} m after {events} changes of state (asperity {asperity} last)")]
     EndlessAvalanche {
         /// Mean penetration Δ \[m\].
         approach_m: f64,
@@ -86,19 +90,13 @@ pub enum PhysicsError {
         asperity: usize,
     },
     /// Full contact at a load reversal, with bonds that open at edges only.
-    #[error(
-        "full contact at the mean penetration {approach_m:e} m: there is no edge from which the surfaces can separate\n\
-         help: set boundary_elements.opening = \"strength\", or reduce cycle.max_load"
-    )]
+    #[error("full contact at the mean penetration {approach_m:e} m: there is no edge from which the surfaces can separate")]
     Closed {
         /// Mean penetration Δ \[m\].
         approach_m: f64,
     },
     /// Surfaces that stay in contact on unloading.
-    #[error(
-        "the surfaces have not separated at the mean penetration {approach_m:e} m, 20 ranges of the heights away\n\
-         help: set boundary_elements.opening = \"anywhere\", or reduce the work of adhesion"
-    )]
+    #[error("the surfaces have not separated at the mean penetration {approach_m:e} m, 20 ranges of the heights away")]
     Inseparable {
         /// Mean penetration Δ \[m\].
         approach_m: f64,
@@ -106,8 +104,7 @@ pub enum PhysicsError {
     /// The contacts have a larger area than the nominal one, or one of them spans the square.
     #[error(
         "the contact area {share:.3} A0 leaves no gap at the mean penetration {approach_m:.3e} m: the contacts have grown together, and the asperity \
-         model is invalid\nhelp: {}",
-        excess_help(*load_before_n)
+         model is invalid"
     )]
     ExcessArea {
         /// Mean penetration Δ \[m\].
@@ -118,10 +115,7 @@ pub enum PhysicsError {
         load_before_n: f64,
     },
     /// A loop with negative dissipated energy.
-    #[error(
-        "negative dissipated energy of the loop to F/(E* A0) = {max_load}: Θ = {loss_j:e} J ({fraction:.1e} of the work of loading)\n\
-         help: reduce cycle.max_load, or set model.method = \"boundary_elements\", which has the energy of weak adhesion as well"
-    )]
+    #[error("negative dissipated energy of the loop to F/(E* A0) = {max_load}: Θ = {loss_j:e} J ({fraction:.1e} of the work of loading)")]
     NegativeDissipation {
         /// F/(E* A0) at the load reversal; not a number under displacement control.
         max_load: f64,
@@ -131,10 +125,7 @@ pub enum PhysicsError {
         fraction: f64,
     },
     /// The sum of the event energies differs from the loop area.
-    #[error(
-        "energy-balance error above half of Θ in the loop to F/(E* A0) = {max_load}: Θ = {loss_j:e} J, sum over events {events_j:e} J\n\
-         help: reduce cycle.max_load, or set model.method = \"boundary_elements\", which has the energy of weak adhesion as well"
-    )]
+    #[error("energy-balance error above half of Θ in the loop to F/(E* A0) = {max_load}: Θ = {loss_j:e} J, sum over events {events_j:e} J")]
     EnergyImbalance {
         /// F/(E* A0) at the load reversal; not a number under displacement control.
         max_load: f64,
@@ -145,8 +136,7 @@ pub enum PhysicsError {
     },
     /// A loop by boundary elements whose steps do not resolve its dissipated energy.
     #[error(
-        "the steps do not resolve the loop to F/(E* A0) = {max_load}: Θ = {loss_j:e} J, sum over events {events_j:e} J, work of loading {work_j:e} J\n\
-         help: reduce boundary_elements.approach_step, or boundary_elements.precision"
+        "the steps do not resolve the loop to F/(E* A0) = {max_load}: Θ = {loss_j:e} J, sum over events {events_j:e} J, work of loading {work_j:e} J"
     )]
     UnresolvedLoop {
         /// F/(E* A0) at the load reversal.
@@ -158,17 +148,8 @@ pub enum PhysicsError {
         /// Largest magnitude of `∫F dΔ` along the loop \[J\].
         work_j: f64,
     },
-    /// No load reversal of a cycle has a result, by the reason of the first one before the cycle was continued from a checkpoint.
-    #[error("{reason}")]
-    NoReversal {
-        /// Error of the first load reversal.
-        reason: String,
-    },
     /// The maximum load is not reached.
-    #[error(
-        "load F/(E* A0) = {wanted} not reached: it is {reached} at the mean penetration {approach_m:e} m\n\
-         help: reduce cycle.max_load; near full contact the load stays tensile: set model.method = \"boundary_elements\""
-    )]
+    #[error("load F/(E* A0) = {wanted} not reached: it is {reached} at the mean penetration {approach_m:e} m")]
     LoadNotReached {
         /// The requested load.
         wanted: f64,
@@ -179,36 +160,8 @@ pub enum PhysicsError {
     },
 }
 
-impl PhysicsError {
-    /// True if a path has ended before a load, and what was passed before remains valid.
-    #[must_use]
-    pub fn ends_a_branch(&self) -> bool {
-        matches!(
-            self,
-            Self::NoEquilibrium { .. }
-                | Self::EndlessAvalanche { .. }
-                | Self::Closed { .. }
-                | Self::Inseparable { .. }
-                | Self::ExcessArea { .. }
-                | Self::NegativeDissipation { .. }
-                | Self::EnergyImbalance { .. }
-                | Self::UnresolvedLoop { .. }
-                | Self::LoadNotReached { .. }
-        )
-    }
-}
-
-/// Recommended action where the contact area exceeds the nominal one after a step at a load \[N\].
-fn excess_help(load_before_n: f64) -> &'static str {
-    if load_before_n > 0.0 {
-        "reduce cycle.max_load, or set model.method = \"boundary_elements\", which reaches full contact"
-    } else {
-        "adhesion alone closes the contact, so a smaller cycle.max_load has no effect: set model.method = \"boundary_elements\", which reaches full contact"
-    }
-}
-
 /// Why no equilibrium was found.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum Reason {
     /// A residual stays above the tolerance.

@@ -111,6 +111,66 @@ impl EventKind {
     }
 }
 
+/// Change of the region of contact whose area changes most in an event.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum RegionChange {
+    /// A new region.
+    Formed,
+    /// A region separated.
+    Lost,
+    /// Regions joined.
+    Joined,
+    /// A region parted.
+    Parted,
+    /// A region grew without a change of topology.
+    Grown,
+    /// A region shrank without a change of topology.
+    Shrunk,
+}
+
+impl RegionChange {
+    /// All kinds.
+    pub const ALL: [Self; 6] = [Self::Formed, Self::Lost, Self::Joined, Self::Parted, Self::Grown, Self::Shrunk];
+
+    /// Word in the tables.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Formed => "formed",
+            Self::Lost => "lost",
+            Self::Joined => "joined",
+            Self::Parted => "parted",
+            Self::Grown => "grown",
+            Self::Shrunk => "shrunk",
+        }
+    }
+
+    /// Name in texts.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Formed => "region formed",
+            Self::Lost => "region lost",
+            Self::Joined => "regions joined",
+            Self::Parted => "region parted",
+            Self::Grown => "region grown",
+            Self::Shrunk => "region shrunk",
+        }
+    }
+
+    /// Kind of event of the asperity model that corresponds to it.
+    #[must_use]
+    pub fn kind(self) -> EventKind {
+        match self {
+            Self::Formed => EventKind::JumpIn,
+            Self::Lost => EventKind::JumpOff,
+            Self::Joined => EventKind::Merge,
+            Self::Parted => EventKind::Split,
+            Self::Grown | Self::Shrunk => EventKind::Snap,
+        }
+    }
+}
+
 /// Numbers of events by kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct EventCounts([usize; EventKind::ALL.len()]);

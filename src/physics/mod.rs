@@ -21,8 +21,8 @@ pub mod surface;
 pub mod theory;
 
 use crate::constants::Constants;
-pub use error::{PhysicsError, Reason};
-pub use event_kind::{EventCounts, EventGroup, EventKind};
+pub use error::{LoopError, PhysicsError, Reason};
+pub use event_kind::{EventCounts, EventGroup, EventKind, RegionChange};
 pub use loop_position::LoopPosition;
 
 /// Tolerances and limits of the physics, by module.

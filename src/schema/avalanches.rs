@@ -3,7 +3,7 @@
 use super::statistics::CASE;
 use super::{ASPERITIES_ID, CYCLE_ID, Column, REALIZATION, SURFACE_ID, Table, count, index, join, real, text};
 use crate::physics::EventKind;
-use crate::physics::boundary_elements::regions::Change;
+use crate::physics::RegionChange;
 
 /// Every kind of event of the tables `events`, in the column order of the tables over realizations.
 pub const EVENT_KINDS: [&str; EventKind::ALL.len()] = EventKind::WORDS;
@@ -11,7 +11,7 @@ pub const EVENT_KINDS: [&str; EventKind::ALL.len()] = EventKind::WORDS;
 /// The kind of event of a word in the tables; of a word of boundary elements the kind that corresponds to it.
 #[must_use]
 pub fn event_kind(word: &str) -> Option<EventKind> {
-    let of_region = || Change::ALL.into_iter().find(|change| change.word() == word).map(Change::kind);
+    let of_region = || RegionChange::ALL.into_iter().find(|change| change.word() == word).map(RegionChange::kind);
     EventKind::ALL.into_iter().find(|kind| kind.word() == word).or_else(of_region)
 }
 

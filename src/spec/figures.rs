@@ -16,6 +16,9 @@ use super::written::{Written, array, wrong_type};
 /// Formats of figures.
 pub const FORMATS: [&str; 3] = ["svg", "png", "pdf"];
 
+/// Formats that this build writes: PNG and PDF need the feature `raster`.
+const WRITTEN: &[&str] = if cfg!(feature = "raster") { &FORMATS } else { &["svg"] };
+
 /// Font of a spec that states none; its letters are part of the program.
 pub(super) const DEFAULT_FONT: &str = "DejaVu Sans";
 
@@ -50,6 +53,21 @@ pub struct Figures {
 impl Default for Figures {
     fn default() -> Self {
         Self { format: FORMATS.to_vec(), width_mm: 88.0, font: DEFAULT_FONT.to_owned() }
+    }
+}
+
+impl Figures {
+    /// The formats that are chosen and that this build writes; SVG if there is none.
+    #[must_use]
+    pub fn written(&self) -> Vec<&'static str> {
+        let written: Vec<_> = self.format.iter().copied().filter(|format| WRITTEN.contains(format)).collect();
+        if written.is_empty() { vec!["svg"] } else { written }
+    }
+
+    /// The formats that are chosen and that this build does not write.
+    #[must_use]
+    pub fn left_out(&self) -> Vec<&'static str> {
+        self.format.iter().copied().filter(|format| !WRITTEN.contains(format)).collect()
     }
 }
 

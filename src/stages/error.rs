@@ -1,7 +1,7 @@
 //! Errors of the stages.
 
 use crate::campaign::{Campaign, Stage, Standing};
-use crate::physics::PhysicsError;
+use crate::physics::{LoopError, PhysicsError};
 use crate::stats::StatsError;
 use crate::store::{FrameError, StoreError};
 use crate::text::{counted, shell_path, shown};
@@ -19,7 +19,7 @@ pub enum StageError {
     #[error(transparent)]
     Frame(#[from] FrameError),
     /// The physics.
-    #[error(transparent)]
+    #[error("{_0}{}", help(_0))]
     Physics(#[from] PhysicsError),
     /// Aggregation.
     #[error(transparent)]
@@ -246,4 +246,46 @@ pub(super) fn incomplete(campaign: &Campaign, stage: Stage, inputs: &[(String, S
         all: inputs.len(),
         example: standing.why().map_or_else(|| id.clone(), |why| format!("{id}: {why}")),
     })
+}
+
+impl From<LoopError> for StageError {
+    fn from(error: LoopError) -> Self {
+        Self::Physics(error.into())
+    }
+}
+
+/// What to change in a spec, for an error that does not say it.
+fn help(error: &PhysicsError) -> String {
+    let text = match error {
+        PhysicsError::LowTabor { .. } => {
+            "reduce material.interaction_range_m, set model.jump_in = \"jkr\", or set model.allow_low_tabor = true for a result with a warning"
+        }
+        PhysicsError::Loop(error) => help_of_loop(error),
+        _ => return String::new(),
+    };
+    format!("\nhelp: {text}")
+}
+
+fn help_of_loop(error: &LoopError) -> &'static str {
+    match error {
+        LoopError::NoEquilibrium { .. } => {
+            "contacts that grow together may have none: reduce cycle.max_load; with model.coalescence = \"merge\" or \"none\", try \"cover\""
+        }
+        LoopError::EndlessAvalanche { .. } => "reduce cycle.max_load; with model.coalescence = \"cover\" or \"merge\", try \"none\"",
+        LoopError::Closed { .. } => "set boundary_elements.opening = \"strength\", or reduce cycle.max_load",
+        LoopError::Inseparable { .. } => "set boundary_elements.opening = \"anywhere\", or reduce the work of adhesion",
+        LoopError::ExcessArea { load_before_n, .. } if *load_before_n > 0.0 => {
+            "reduce cycle.max_load, or set model.method = \"boundary_elements\", which reaches full contact"
+        }
+        LoopError::ExcessArea { .. } => {
+            "adhesion alone closes the contact, so a smaller cycle.max_load has no effect: set model.method = \"boundary_elements\", which reaches full contact"
+        }
+        LoopError::NegativeDissipation { .. } | LoopError::EnergyImbalance { .. } => {
+            "reduce cycle.max_load, or set model.method = \"boundary_elements\", which has the energy of weak adhesion as well"
+        }
+        LoopError::UnresolvedLoop { .. } => "reduce boundary_elements.approach_step, or boundary_elements.precision",
+        LoopError::LoadNotReached { .. } => {
+            "reduce cycle.max_load; near full contact the load stays tensile: set model.method = \"boundary_elements\""
+        }
+    }
 }

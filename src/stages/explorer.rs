@@ -5,7 +5,7 @@ use super::explorer_maps::{LETTERS, ground, rounded, stored_maps};
 use crate::campaign::{Campaign, CycleUnit, Standing};
 use crate::constants::Constant;
 use crate::model::Boundary;
-use crate::physics::boundary_elements::regions::Change;
+use crate::physics::RegionChange;
 use crate::schema::{self, EventKind, Table};
 use crate::stats::{Listing, listing, significant};
 use crate::store::hdf5::read_surface;
@@ -36,7 +36,7 @@ pub(super) const CONSTANTS: &[Constant] = &[
 
 /// Kinds of events of both methods, by their numbers in the data: word and name.
 fn kinds() -> Vec<(&'static str, &'static str)> {
-    let of_regions = Change::ALL.map(|change| (change.word(), change.name()));
+    let of_regions = RegionChange::ALL.map(|change| (change.word(), change.name()));
     EventKind::ALL.map(|kind| (kind.word(), kind.name())).into_iter().chain(of_regions).collect()
 }
 

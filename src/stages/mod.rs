@@ -37,10 +37,9 @@ mod trial;
 mod verdict;
 
 use crate::constants::Constants;
-pub use crate::physics::elements::Units;
 pub use compare::{Comparison, compare};
 pub use cost::Cost;
-pub use cycle::{unload_again, unload_elements_again};
+pub use cycle::unload_again;
 pub use error::StageError;
 pub use foreseen::{ARTEFACTS, Foreseen, Outside, foreseen};
 pub use measure::{Imported, measure};

@@ -8,7 +8,7 @@ use super::runner::{Context, Single, run_single};
 use super::single_cycle::look;
 use super::{StageError, Tally};
 use crate::campaign::{Campaign, REPORT_PAGE, STATISTICS, Stage, Standing, Unit};
-use crate::figures::{Drawing, Panel, Tables, method_ratios, panels, pdf, png, sensitivity, table, with_font};
+use crate::figures::{Drawing, Panel, Tables, file, method_ratios, panels, sensitivity, table};
 use crate::report::{self, Failure, MethodFigures, Report, SingleCycle};
 use crate::schema;
 use crate::spec::Figures;
@@ -140,7 +140,7 @@ fn page(
         cases: &statistics.cases,
         realizations: &statistics.realizations,
         methods: &statistics.methods,
-        formats: &campaign.spec.figures.format,
+        formats: &campaign.spec.figures.written(),
         sensitivity: drawings.sensitivity.as_ref(),
         method_figures: &drawings.methods,
         scans: &scans(campaign)?,
@@ -182,16 +182,8 @@ fn scans(campaign: &Campaign) -> Result<Vec<SurfaceHeader>, StageError> {
 
 /// A figure in its formats: places below the folder of the report, and contents.
 pub(super) fn pictures(stem: &str, svg: &str, files: &Figures) -> Result<Vec<(String, Vec<u8>)>, StageError> {
-    let mut pictures = Vec::new();
-    for format in &files.format {
-        let bytes = match *format {
-            "png" => png(svg, files.width_mm)?,
-            "pdf" => pdf(svg, files.width_mm)?,
-            _ => with_font(svg, &files.font).into_bytes(),
-        };
-        pictures.push((format!("figures/{stem}.{format}"), bytes));
-    }
-    Ok(pictures)
+    let one = |format| Ok((format!("figures/{stem}.{format}"), file(format, svg, files.width_mm, &files.font)?));
+    files.written().into_iter().map(one).collect()
 }
 
 fn sweeps(campaign: &Campaign) -> Vec<String> {

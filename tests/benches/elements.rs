@@ -60,6 +60,7 @@ fn one(zeta: u32, n: usize, range: bool) {
         accuracy: Accuracy { rms: 1e-4, largest: 1e-2, iterations: 3000 },
         halvings: 6,
         all_regions: false,
+        summits: Vec::new(),
     };
     let mut done = None;
     let whole = once(|| done = Some(cycle(&problem, &settings, None, &mut |_| {}, &|_| {}).unwrap()));

@@ -6,8 +6,9 @@
 
 use hysteron::model::{Amplitudes, Material, Normalization};
 use hysteron::physics::PhysicsError;
-use hysteron::physics::boundary_elements::cycle::Cycle;
-use hysteron::physics::elements::{Elements, HeightMap, Options, Units};
+use hysteron::physics::boundary_elements::cycle::Turning;
+use hysteron::physics::cycle::{Cycle, Method};
+use hysteron::physics::elements::{Elements, HeightMap, Options};
 use hysteron::physics::surface::spectrum::Spectrum;
 use hysteron::physics::surface::synthesis::{realization_seed, synthesize};
 
@@ -19,8 +20,8 @@ pub const MAX_LOAD: f64 = 0.0071;
 /// Loads a surface with wavelengths from L to L/8 to [`MAX_LOAD`] and unloads it to separation.
 ///
 /// # Errors
-/// The errors of [`Elements::new`] and [`Elements::run`].
-pub fn run() -> Result<(Cycle, Units), PhysicsError> {
+/// The errors of [`Elements::new`] and [`Method::run`].
+pub fn run() -> Result<Cycle<Turning>, PhysicsError> {
     let (normalization, amplitudes) = (Normalization::Spectrum, Amplitudes::Fixed);
     let spectrum = Spectrum { length_m: 1e-3, rms_height_m: 5e-6, hurst: 0.8, magnification: 8, normalization, amplitudes };
     let surface = synthesize(&spectrum, &realization_seed(2021, 3), POINTS);
@@ -32,20 +33,18 @@ pub fn run() -> Result<(Cycle, Units), PhysicsError> {
         rms_height_m: spectrum.rms_height_m,
     };
     let options = Options { points: POINTS, ..Options::default() };
-    let elements = Elements::new(&map, &Material::default(), &[MAX_LOAD], &options)?;
-    Ok((elements.run()?, elements.units))
+    Elements::new(&map, &Material::default(), &[MAX_LOAD], &options)?.run()
 }
 
 fn main() -> Result<(), PhysicsError> {
-    let (cycle, units) = run()?;
-    println!("{:<10} {:>7} {:>10} {:>6} {:>8} {:>10}", "branch", "Δ [µm]", "F [mN]", "A/A₀", "regions", "transforms");
+    let cycle = run()?;
+    println!("{:<10} {:>7} {:>10} {:>8} {:>8} {:>10}", "branch", "Δ [µm]", "F [mN]", "A [mm²]", "regions", "transforms");
     for step in cycle.steps.iter().step_by(4) {
-        let branch = if step.reversal.is_some() { "unloading" } else { "loading" };
-        let (penetration_um, load_mn) = (1e6 * step.approach * units.spacing_m(), 1e3 * step.totals.load * units.load_n());
-        let area = step.totals.contact as f64 / units.all();
-        println!("{branch:<10} {penetration_um:>7.3} {load_mn:>10.3} {area:>6.3} {:>8} {:>10}", step.regions, step.transforms);
+        let (penetration_um, load_mn, area_mm2) = (1e6 * step.approach_m, 1e3 * step.load_n, 1e6 * step.area_m2);
+        let (branch, regions, transforms) = (step.branch.word(), step.counts.contacts, step.numerics.effort.transforms);
+        println!("{branch:<10} {penetration_um:>7.3} {load_mn:>10.3} {area_mm2:>8.4} {regions:>8} {transforms:>10}");
     }
-    let dissipated_j = cycle.steps.iter().map(|step| step.dissipated).sum::<f64>() * units.energy_j();
+    let dissipated_j = cycle.events.iter().map(|event| event.energy_lost_j).sum::<f64>();
     println!("{} events dissipate Θ = {dissipated_j:.4e} J", cycle.events.len());
     Ok(())
 }

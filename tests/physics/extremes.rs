@@ -7,7 +7,7 @@ use hysteron::physics::cycle::soundness::{LoopEnergy, check_energy, loop_energy}
 use hysteron::physics::cycle::{self, Branch, Cycle, Settings};
 use hysteron::physics::surface::summits::{Summit, find_summits};
 use hysteron::physics::surface::synthesis::{realization_seed, synthesize};
-use hysteron::physics::{PhysicsError, Reason};
+use hysteron::physics::{LoopError, PhysicsError, Reason};
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
 
@@ -133,18 +133,18 @@ fn reg_unsound_cycles_are_refused() {
     let summits = summits(8, 3, 0);
     let sticky = Material { contact_modulus_pa: 1e3, ..PAPER };
     let error = attempt(&Problem::new(&summits, LENGTH, RMS, sticky, DEFAULT).unwrap(), 0.002).unwrap_err();
-    assert!(matches!(error, PhysicsError::ExcessArea { share, .. } if share > 1.0), "{error}");
+    assert!(matches!(error, PhysicsError::Loop(LoopError::ExcessArea { share, .. }) if share > 1.0), "{error}");
     let problem = Problem::new(&summits, LENGTH, RMS, PAPER, DEFAULT).unwrap();
     let whole = attempt(&problem, 0.002).unwrap();
     check_energy(&whole, 0).unwrap();
     let mut gains = whole.clone();
     gains.steps.last_mut().unwrap().work_j -= 3.0 * loop_energy(&whole, 0).work_j;
-    assert!(matches!(check_energy(&gains, 0), Err(PhysicsError::NegativeDissipation { .. })));
+    assert!(matches!(check_energy(&gains, 0), Err(LoopError::NegativeDissipation { .. })));
     let mut unbalanced = whole;
     for step in &mut unbalanced.steps {
         step.dissipated_j *= 1.6;
     }
-    assert!(matches!(check_energy(&unbalanced, 0), Err(PhysicsError::EnergyImbalance { .. })));
+    assert!(matches!(check_energy(&unbalanced, 0), Err(LoopError::EnergyImbalance { .. })));
 }
 
 /// A loop that violates sign or energy balance by a thousandth of its work is kept, and its Θ is not resolved.
@@ -183,7 +183,7 @@ fn reg_imbalance_without_adhesion() {
     check_energy(&cycle, 0).unwrap();
     let work = loop_energy(&cycle, 0).work_j;
     cycle.steps[1].dissipated_j = 0.6 * work;
-    assert!(matches!(check_energy(&cycle, 0), Err(PhysicsError::EnergyImbalance { .. })));
+    assert!(matches!(check_energy(&cycle, 0), Err(LoopError::EnergyImbalance { .. })));
 }
 
 /// Weak adhesion at a high load: the energies of the events are known to 1e-6 of the work, and Θ is less than that. It is not resolved, and no error.
@@ -202,7 +202,7 @@ fn reg_weak_adhesion_at_high_load() {
 #[test]
 fn reg_no_equilibrium_has_a_reason_in_words() {
     let sentence = |reason: Reason, residual_m: f64| {
-        PhysicsError::NoEquilibrium { approach_m: 1e-7, reason, residual_m, asperity: 3, iterations: 100 }.to_string()
+        LoopError::NoEquilibrium { approach_m: 1e-7, reason, residual_m, asperity: 3, iterations: 100 }.to_string()
     };
     let known = sentence(Reason::Residual, 2e-9);
     assert!(known.contains("the largest residual stays at 2e-9 m (asperity 3)"), "{known}");

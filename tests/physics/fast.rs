@@ -312,7 +312,7 @@ fn law_whole_cycles_are_the_same_with_fast_sums() {
         assert!(transforms(&direct) == 0 && transforms(&fast) > 1000);
         // Within an avalanche two that are overdue by nearly as much may change places.
         let events = |cycle: &Cycle| {
-            let mut all: Vec<_> = cycle.events.iter().map(|(_, event)| (event.asperity, event.kind)).collect();
+            let mut all: Vec<_> = cycle.events.iter().map(|event| (event.asperity().unwrap(), event.kind)).collect();
             all.sort_unstable();
             all
         };

@@ -2,9 +2,8 @@
 
 use crate::support::{DEFAULT, LENGTH, PAPER, RMS, close, loop_of, paper_cycle, paper_summits};
 use hysteron::model::{Coalescence, KeptContacts};
-use hysteron::physics::contact::Event;
 use hysteron::physics::contact::{Problem, Rules};
-use hysteron::physics::cycle::{Cycle, Settings, run_to};
+use hysteron::physics::cycle::{Cycle, Event, Settings, Site, run_to};
 use hysteron::physics::surface::summits::Summit;
 
 /// The same loop and the same events. Asperities are numbered from the highest down and placed from the highest on, so that not even rounding differs: there
@@ -12,8 +11,8 @@ use hysteron::physics::surface::summits::Summit;
 fn same(got: &Cycle, want: &Cycle, number: impl Fn(usize) -> usize) {
     assert_eq!(got.steps, want.steps);
     assert_eq!(got.events.len(), want.events.len());
-    for ((step, p), (other, q)) in got.events.iter().zip(&want.events) {
-        assert_eq!((*step, *p), (*other, Event { asperity: number(q.asperity), ..*q }));
+    for (p, q) in got.events.iter().zip(&want.events) {
+        assert_eq!(*p, Event { site: Site::Asperity(number(q.asperity().unwrap())), ..*q });
     }
 }
 
@@ -41,15 +40,14 @@ fn law_a_way_without_an_event_is_retraced() {
     let problem = Problem::new(&summits, LENGTH, RMS, PAPER, DEFAULT).unwrap();
     let settings = Settings { max_loads: Vec::new(), approach_step: 0.01, contacts: KeptContacts::None, rest_every: None };
     let far = run_to(&problem, &settings, 0.3 * RMS).unwrap();
-    let loading: Vec<f64> =
-        far.events.iter().take_while(|(step, _)| *step <= far.turning[0].0).map(|(_, event)| event.approach_m).collect();
+    let loading: Vec<f64> = far.events.iter().take_while(|e| e.step <= far.turning[0].0).map(|event| event.approach_m).collect();
     let gap = loading.windows(2).max_by(|u, v| (u[1] - u[0]).total_cmp(&(v[1] - v[0]))).unwrap();
     // Down from the turning point to a little after the event before it: the loads of both ways at the points of the grid between.
     let turn = 0.25f64.mul_add(gap[0], 0.75 * gap[1]);
     let cycle = run_to(&problem, &settings, turn).unwrap();
     let at = cycle.turning[0].0;
     let quiet = |approach: f64| approach > gap[0] + 1e-3 * RMS && approach < turn;
-    let first = cycle.events.iter().find(|(step, _)| *step > at).map_or(f64::NEG_INFINITY, |(_, event)| event.approach_m);
+    let first = cycle.events.iter().find(|e| e.step > at).map_or(f64::NEG_INFINITY, |event| event.approach_m);
     let mut compared = 0;
     for back in cycle.steps[at + 1..].iter().filter(|step| quiet(step.approach_m) && step.approach_m > first) {
         let there = cycle.steps[..at].iter().find(|step| (step.approach_m - back.approach_m).abs() < 1e-9 * RMS).unwrap();

@@ -36,9 +36,9 @@ fn val_the_events_are_those_of_an_independent_solver() {
         let cycle = run(surface, 1e-7);
         for branch in [Branch::Loading, Branch::Unloading] {
             let want: Vec<Row<'_>> = events.rows().filter(|r| r.word("surface") == surface && r.word("branch") == branch.word()).collect();
-            let got: Vec<_> = cycle.events.iter().filter(|(step, _)| cycle.steps[*step].branch == branch).map(|(_, e)| e).collect();
+            let got: Vec<_> = cycle.events.iter().filter(|e| cycle.steps[e.step].branch == branch).collect();
             let name = |kind: EventKind| kind.word();
-            let sequence: Vec<_> = got.iter().map(|e| (name(e.kind), e.asperity)).collect();
+            let sequence: Vec<_> = got.iter().map(|e| (name(e.kind), e.asperity().unwrap())).collect();
             let wanted: Vec<_> = want.iter().map(|r| (r.word("kind"), r.number("asperity") as usize)).collect();
             assert_eq!(sequence, wanted, "{surface} {}", branch.word());
             let mut avalanche = 0.0;
@@ -97,7 +97,7 @@ fn val_propagated_events_are_those_of_an_independent_solver() {
         let cycle = run_with(surface, 1e-7, Some(3));
         for branch in [Branch::Loading, Branch::Unloading] {
             let want: Vec<Row<'_>> = events.rows().filter(|r| r.word("surface") == surface && r.word("branch") == branch.word()).collect();
-            let got: Vec<_> = cycle.events.iter().filter(|(step, _)| cycle.steps[*step].branch == branch).map(|(_, e)| e).collect();
+            let got: Vec<_> = cycle.events.iter().filter(|e| cycle.steps[e.step].branch == branch).collect();
             assert_eq!(got.len(), want.len(), "{surface} {}", branch.word());
             for (got, want) in got.iter().zip(&want) {
                 let off = (got.approach_m - want.number("delta")).abs();

@@ -77,13 +77,20 @@ impl<'a> Ended<'a> {
         let dir = shown(&self.campaign.dir);
         text += &match until {
             Stage::Report => format!(
-                "Report: {dir}/report.html\nTables: {dir}/statistics/*.parquet\nTo open it: {} report {} --open\n",
+                "Report: {dir}/report.html\nTables: {dir}/statistics/*.parquet\n{}To open it: {} report {} --open\n",
+                self.formats(),
                 program(),
                 shell_path(&self.campaign.dir)
             ),
             _ => format!("Output: {dir}\n"),
         };
         Ok(text)
+    }
+
+    /// Formats of the figures that this build does not write.
+    fn formats(&self) -> String {
+        let left_out = self.campaign.spec.figures.left_out().join(" and ").to_uppercase();
+        if left_out.is_empty() { left_out } else { format!("Figures: SVG; {left_out} need a build with `--features raster`.\n") }
     }
 
     /// Warnings of the cases, once they are known.

@@ -1,21 +1,24 @@
 //! Loading and unloading under displacement control, by [steps](super::step) from first contact to the last separation.
 
 use super::contact::{Attraction, Problem};
-pub use super::records::{Cycle, Event, Map, Step, Turning, Unreached};
+pub use super::records::{Cycle, Event, Map, Step, Turning};
 use super::regions::{Region, label};
 use super::stations::{MOST_ALONG, of_loading, of_unloading};
 use super::step::Walk;
 pub use super::step::{Halfway, Settings};
-use crate::{LoopPosition, PhysicsError};
+use crate::cycle::soundness::LoopEnergy;
+use crate::cycle::{Done, Walk as _, follow};
+use crate::{LoopError, LoopPosition, PhysicsError};
 
 /// Magnitude of the approach, in ranges of the heights, beyond which a load counts as not reached and, at negative approach, the surfaces as inseparable.
 pub(super) const FARTHEST: f64 = 20.0;
 
 /// Loads to the largest of the loads and unloads from each, from the beginning or from `halfway`. After each step `keep` is given what is needed to
-/// continue from there, and `progress` the position. Load reversals that are not reached or do not separate are listed in the cycle.
+/// continue from there, and `progress` the position.
 ///
 /// # Errors
-/// Not enough memory; and if no load reversal has a result: a load that is not reached, full contact that does not open, surfaces that do not separate.
+/// Not enough memory; and if no load reversal has a result: a load that is not reached, full contact that does not open, surfaces that do not separate,
+/// steps that do not resolve the dissipated energy.
 pub fn run(
     problem: &Problem,
     settings: &Settings,
@@ -26,28 +29,9 @@ pub fn run(
     // On a thread of the pool, so that the short parallel loops are not waited for from outside.
     rayon::scope(|_| {
         let mut walk = Walk::begin(problem, settings, halfway)?;
-        let branches = settings.max_loads.len() + 1;
-        while walk.at.branches < branches {
-            let done = walk.at.branches;
-            let ended = if done == 0 { walk.load(keep, progress)? } else { walk.unload(done - 1, keep, progress)? };
-            walk.end_branch(done, ended);
-            walk.at.branches += 1;
-        }
-        walk.at.finish(&settings.max_loads)
+        let unreached = follow(&mut walk, settings.max_loads.len(), &mut |walk| keep(&walk.at), progress)?;
+        Ok(Cycle { unreached, ..walk.at.cycle })
     })
-}
-
-/// A branch that has come to its end, or the reason why not.
-pub(super) type Ended = Option<Unreached>;
-
-impl Halfway {
-    /// The cycle, if any of its load reversals has a result.
-    fn finish(self, max_loads: &[f64]) -> Result<Cycle, PhysicsError> {
-        match self.unreached.first() {
-            Some((reversal, reason)) if self.unreached.len() == max_loads.len() => Err(reason.error(max_loads[*reversal])),
-            _ => Ok(Cycle { unreached: self.unreached, least_loads: self.least_loads, ..self.cycle }),
-        }
-    }
 }
 
 /// Unloads from a state at a load reversal: the steps, events, regions and maps that [`run`] has from there, numbered from 0.
@@ -58,61 +42,74 @@ pub fn unload_from(problem: &Problem, settings: &Settings, reversal: usize, turn
     rayon::scope(|_| {
         let mut walk = Walk::begin(problem, settings, None)?;
         walk.at.cycle = Cycle { turning: vec![turning.clone(); reversal + 1], ..Cycle::default() };
-        match walk.unload(reversal, &mut |_| {}, &|_| {})? {
-            Some(reason) => Err(reason.error(settings.max_loads.get(reversal).copied().unwrap_or_default())),
-            None => Ok(Cycle { turning: Vec::new(), least_loads: walk.at.least_loads, ..walk.at.cycle }),
-        }
+        while !walk.advance(Some(reversal), &|_| {})? {}
+        Ok(Cycle { turning: Vec::new(), ..walk.at.cycle })
     })
 }
 
-impl Walk<'_> {
-    /// Notes the load reversals of a branch that has not come to its end: all further ones of the loading.
-    fn end_branch(&mut self, done: usize, ended: Ended) {
-        let Some(reason) = ended else { return };
-        let Some(reversal) = done.checked_sub(1) else {
-            let further = self.at.cycle.turning.len()..self.settings.max_loads.len();
-            self.at.unreached.extend(further.map(|reversal| (reversal, reason)));
-            return;
-        };
-        let Halfway { cycle, unreached, least_loads, .. } = &mut self.at;
-        std::mem::swap(&mut cycle.least_loads, least_loads);
-        cycle.remove_unloading(reversal, reason);
-        std::mem::swap(&mut cycle.least_loads, least_loads);
-        unreached.append(&mut cycle.unreached);
-        self.at.tensest = None;
+impl crate::cycle::Walk for Walk<'_> {
+    fn done(&mut self) -> &mut Done {
+        &mut self.at.done
     }
 
-    /// Loads to the largest of the loads.
-    fn load(&mut self, keep: &mut dyn FnMut(&Halfway), progress: &dyn Fn(LoopPosition)) -> Result<Ended, PhysicsError> {
+    fn reversals(&self) -> usize {
+        self.at.cycle.turning.len()
+    }
+
+    fn advance(&mut self, reversal: Option<usize>, progress: &dyn Fn(LoopPosition)) -> Result<bool, PhysicsError> {
+        let is_over = match reversal {
+            None => self.load(progress)?,
+            Some(reversal) => self.unload(reversal, progress)?,
+        };
+        Ok(is_over)
+    }
+
+    /// By the limits of the asperity model: the steps of such a loop are too long.
+    fn check(&self, reversal: usize) -> Result<(), LoopError> {
+        let cycle = &self.at.cycle;
+        let energies = |step: &Step| (step.work, step.dissipated);
+        let back = cycle.steps.iter().rev().filter(|step| step.reversal == Some(reversal));
+        let energy = LoopEnergy::of(cycle.steps[..=cycle.turning[reversal].step].iter().map(energies), back.map(energies));
+        let LoopEnergy { loss_j, events_j, work_j } = energy;
+        let max_load = self.settings.max_loads[reversal];
+        if energy.is_sound() { Ok(()) } else { Err(LoopError::UnresolvedLoop { max_load, loss_j, events_j, work_j }) }
+    }
+
+    fn forget(&mut self, reversal: usize) {
+        self.at.cycle.remove_unloading(reversal);
+        self.at.tensest = None;
+    }
+}
+
+impl Walk<'_> {
+    /// Loads by one step; true at the largest of the loads.
+    fn load(&mut self, progress: &dyn Fn(LoopPosition)) -> Result<bool, PhysicsError> {
         if self.at.cycle.steps.is_empty() {
             let first = self.attempt(self.at.state.approach, self.settings.accuracy)?;
             self.accept(first);
             progress(self.position(0.0, false));
-            keep(&self.at);
+            return Ok(false);
         }
-        let farthest = self.farthest();
         let last = self.settings.max_loads.last().copied().unwrap_or(0.0);
-        while let Some(max_load) = self.settings.max_loads.get(self.at.cycle.turning.len()).copied() {
-            self.return_to_path();
-            let reached = self.advance(1.0, Some(max_load))?;
-            let (load, approach) = (self.at.last.totals.load, self.at.last.approach);
-            if reached {
-                if self.is_closed() {
-                    return Ok(Some(Unreached::Closed { approach }));
-                }
-                self.turn();
-            } else {
-                self.keep_between();
+        let Some(wanted) = self.settings.max_loads.get(self.at.cycle.turning.len()).copied() else { return Ok(true) };
+        self.return_to_path();
+        let is_reached = self.advance_step(1.0, Some(wanted))?;
+        let (reached, approach_m) = (self.at.last.totals.load, self.at.last.approach);
+        if is_reached {
+            if self.is_closed() {
+                return Err(LoopError::Closed { approach_m }.into());
             }
-            if !reached && approach > farthest {
-                return Ok(Some(Unreached::Load { reached: load, approach }));
+            self.turn();
+        } else {
+            self.keep_between();
+            if approach_m > self.farthest() {
+                return Err(LoopError::LoadNotReached { wanted, reached, approach_m }.into());
             }
-            // Adhesion pulls first: the load falls before it rises.
-            let lowest = self.at.cycle.steps.iter().map(|step| step.totals.load).fold(0.0, f64::min);
-            progress(self.position((0.5 * (load - lowest) / (last - lowest)).clamp(0.0, 0.5), false));
-            keep(&self.at);
         }
-        Ok(None)
+        // Adhesion pulls first: the load falls before it rises.
+        let lowest = self.at.cycle.steps.iter().map(|step| step.totals.load).fold(0.0, f64::min);
+        progress(self.position((0.5 * (reached - lowest) / (last - lowest)).clamp(0.0, 0.5), false));
+        Ok(false)
     }
 
     /// Position on the loop, of which a fraction is done.
@@ -162,36 +159,40 @@ impl Walk<'_> {
         self.at.cycle.turning.push(Turning { step, state, last, dissipated });
     }
 
-    /// Unloads from a reversal to the last separation.
-    fn unload(&mut self, reversal: usize, keep: &mut dyn FnMut(&Halfway), progress: &dyn Fn(LoopPosition)) -> Result<Ended, PhysicsError> {
-        let Some(turning) = self.at.cycle.turning.get(reversal) else { return Ok(None) };
-        let begins = self.at.cycle.steps.last().is_none_or(|step| step.reversal != Some(reversal));
-        let full = turning.last.totals.contact.max(1) as f64;
-        if begins {
-            self.at.state = turning.state.clone();
-            self.at.last = Step { reversal: Some(reversal), work: 0.0, ..turning.last };
-            self.at.dissipated = turning.dissipated;
-            (self.rate, self.at.level, self.at.tensest, self.at.trunk) = (None, 0, None, None);
-            self.at.labels = label(self.problem, &self.at.state);
-            let next = self.at.cycle.steps.len();
-            self.at.least_loads.extend(self.opening_load().map(|load| (next, load)));
+    /// Unloads from a reversal by one step; true at the last separation.
+    fn unload(&mut self, reversal: usize, progress: &dyn Fn(LoopPosition)) -> Result<bool, PhysicsError> {
+        let full = self.at.cycle.turning[reversal].last.totals.contact.max(1) as f64;
+        if self.at.cycle.steps.last().is_none_or(|step| step.reversal != Some(reversal)) {
+            self.begin_unloading(reversal);
         }
-        let branches = self.settings.max_loads.len() as f64;
-        while !self.is_apart() {
-            if self.at.state.approach < -self.farthest() {
-                return Ok(Some(Unreached::Inseparable { approach: self.at.state.approach }));
+        if self.is_apart() {
+            if let Some((_, map, found)) = self.at.tensest.take() {
+                self.at.cycle.keep(map, found);
             }
-            self.advance(-1.0, None)?;
-            self.keep_tensest();
-            self.keep_between();
-            let done = 0.5 + 0.5 * (reversal as f64 + 1.0 - (self.at.last.totals.contact as f64 / full).min(1.0)) / branches;
-            progress(self.position(done, true));
-            keep(&self.at);
+            return Ok(true);
         }
-        if let Some((_, map, found)) = self.at.tensest.take() {
-            self.at.cycle.keep(map, found);
+        if self.at.state.approach < -self.farthest() {
+            return Err(LoopError::Inseparable { approach_m: self.at.state.approach }.into());
         }
-        Ok(None)
+        self.advance_step(-1.0, None)?;
+        self.keep_tensest();
+        self.keep_between();
+        let branches = self.settings.max_loads.len() as f64;
+        let done = 0.5 + 0.5 * (reversal as f64 + 1.0 - (self.at.last.totals.contact as f64 / full).min(1.0)) / branches;
+        progress(self.position(done, true));
+        Ok(false)
+    }
+
+    /// Returns to the state at a reversal.
+    fn begin_unloading(&mut self, reversal: usize) {
+        let turning = &self.at.cycle.turning[reversal];
+        self.at.state = turning.state.clone();
+        self.at.last = Step { reversal: Some(reversal), work: 0.0, ..turning.last };
+        self.at.dissipated = turning.dissipated;
+        (self.rate, self.at.level, self.at.tensest, self.at.trunk) = (None, 0, None, None);
+        self.at.labels = label(self.problem, &self.at.state);
+        let next = self.at.cycle.steps.len();
+        self.at.cycle.least_loads.extend(self.opening_load().map(|load| (next, load)));
     }
 
     /// Keeps the map at the maximum tensile load so far.

@@ -34,7 +34,7 @@ pub(super) struct Pairs {
 
 impl Pairs {
     pub(super) fn new(points: usize) -> Result<Self, PhysicsError> {
-        let pair = || Ok(Pair { step: filled(points, 0.0)?, change: filled(points, 0.0)?, mean: 0.0 });
+        let pair = || Ok::<_, PhysicsError>(Pair { step: filled(points, 0.0)?, change: filled(points, 0.0)?, mean: 0.0 });
         Ok(Self { pairs: [pair()?, pair()?], products: [[0.0; PAIRS]; PAIRS], onto: [0.0; PAIRS], order: Vec::with_capacity(PAIRS) })
     }
 

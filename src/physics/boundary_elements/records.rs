@@ -1,10 +1,10 @@
 //! What a cycle consists of: steps, events, maps and states at load reversals.
 
 use super::contact::{State, Totals};
-use super::regions::{Change, Region};
-use crate::PhysicsError;
+use super::regions::Region;
+use crate::LoopError;
+use crate::event_kind::RegionChange;
 use serde::{Deserialize, Serialize};
-use std::ops::Range;
 
 /// An equilibrium on the path and the energy dissipated since the one before.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -46,7 +46,7 @@ pub struct Event {
     /// Number of the step at whose approach the event is over.
     pub step: usize,
     /// Change of the region whose area has changed most.
-    pub kind: Change,
+    pub kind: RegionChange,
     /// Load, energy and area before.
     pub before: Totals,
     /// Load, energy and area after.
@@ -81,52 +81,6 @@ pub struct Turning {
     pub dissipated: f64,
 }
 
-/// Why a load reversal of a cycle has no result.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub enum Unreached {
-    /// The load is not reached.
-    Load {
-        /// Load at the end of the search \[E* dx²\].
-        reached: f64,
-        /// Approach at the end of the search \[dx\].
-        approach: f64,
-    },
-    /// Full contact, which does not open.
-    Closed {
-        /// Approach \[dx\].
-        approach: f64,
-    },
-    /// The surfaces do not separate.
-    Inseparable {
-        /// Approach at the end of the search \[dx\].
-        approach: f64,
-    },
-    /// Steps that do not resolve the dissipated energy.
-    Unresolved {
-        /// Dissipated energy `∮F dΔ` \[E* dx³\].
-        loss: f64,
-        /// Energy dissipated in the events \[E* dx³\].
-        events: f64,
-        /// Largest magnitude of `∫F dΔ` along the loop \[E* dx³\].
-        work: f64,
-    },
-}
-
-impl Unreached {
-    /// The error of a cycle without any result, in the units of the solver.
-    #[must_use]
-    pub fn error(self, max_load: f64) -> PhysicsError {
-        match self {
-            Self::Load { reached, approach } => PhysicsError::LoadNotReached { wanted: max_load, reached, approach_m: approach },
-            Self::Closed { approach } => PhysicsError::Closed { approach_m: approach },
-            Self::Inseparable { approach } => PhysicsError::Inseparable { approach_m: approach },
-            Self::Unresolved { loss, events, work } => {
-                PhysicsError::UnresolvedLoop { max_load, loss_j: loss, events_j: events, work_j: work }
-            }
-        }
-    }
-}
-
 /// A cycle: every step, the events, regions and maps.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Cycle {
@@ -142,11 +96,10 @@ pub struct Cycle {
     pub between: Vec<Map>,
     /// States at the load reversals.
     pub turning: Vec<Turning>,
-    /// Load reversals without a result, by their place in the settings.
+    /// Load reversals without a result, by their place in the settings, with the error in the units of the solver.
     #[serde(skip)]
-    pub unreached: Vec<(usize, Unreached)>,
+    pub unreached: Vec<(usize, LoopError)>,
     /// Steps between which and the one before the load was smaller than at both, with that load \[E* dx²\]: full contact before it opens.
-    #[serde(skip)]
     pub least_loads: Vec<(usize, f64)>,
 }
 
@@ -164,26 +117,15 @@ impl Cycle {
         before.fold(self.steps[step].totals.load, f64::min)
     }
 
-    /// Removes the unloading from a load reversal, which then has no result for a reason. The numbers that its steps had.
-    pub fn remove_unloading(&mut self, reversal: usize, reason: Unreached) -> Range<usize> {
-        self.unreached.push((reversal, reason));
-        let of = |step: &Step| step.reversal == Some(reversal);
-        let Some(first) = self.steps.iter().position(of) else { return 0..0 };
-        let removed = first..first + self.steps[first..].iter().take_while(|step| of(step)).count();
-        self.steps.drain(removed.clone());
-        let renumber = |step: &mut usize| {
-            let is_kept = !removed.contains(step);
-            if *step >= removed.end {
-                *step -= removed.len();
-            }
-            is_kept
-        };
-        self.events.retain_mut(|event| renumber(&mut event.step));
-        self.regions.retain_mut(|(step, _)| renumber(step));
-        self.maps.retain_mut(|map| renumber(&mut map.step));
-        self.between.retain_mut(|map| renumber(&mut map.step));
-        self.least_loads.retain_mut(|(step, _)| renumber(step));
-        removed
+    /// Removes the unloading from a load reversal, if it is the last branch.
+    pub(super) fn remove_unloading(&mut self, reversal: usize) {
+        let Some(first) = self.steps.iter().position(|step| step.reversal == Some(reversal)) else { return };
+        self.steps.truncate(first);
+        self.events.retain(|event| event.step < first);
+        self.regions.retain(|(step, _)| *step < first);
+        self.maps.retain(|map| map.step < first);
+        self.between.retain(|map| map.step < first);
+        self.least_loads.retain(|(step, _)| *step < first);
     }
 
     pub(super) fn keep(&mut self, map: Map, found: Vec<Region>) {

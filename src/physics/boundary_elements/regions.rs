@@ -2,7 +2,7 @@
 
 use super::contact::{Problem, State};
 use super::grid::HalfSpace;
-use crate::event_kind::EventKind;
+use crate::event_kind::RegionChange;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 
@@ -19,6 +19,8 @@ pub struct Region {
     /// Centroid, row and column \[dx\]: the mean direction on a circle of the length of the square, and the mean place on a surface with mirror images. It
     /// has no meaning along a direction in which the region closes on itself across the edges.
     pub centroid: [f64; 2],
+    /// Asperities in it.
+    pub summits: u32,
 }
 
 /// Label of each point: 0 outside contact, else the number of its region plus 1.
@@ -28,66 +30,6 @@ pub struct Labels {
     pub of: Vec<u32>,
     /// Number of regions.
     pub count: usize,
-}
-
-/// Kind of an event, by what happened to the region whose area changed most.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Change {
-    /// A new region.
-    Formed,
-    /// A region separated.
-    Lost,
-    /// Regions joined.
-    Joined,
-    /// A region parted.
-    Parted,
-    /// A region grew without a change of topology.
-    Grown,
-    /// A region shrank without a change of topology.
-    Shrunk,
-}
-
-impl Change {
-    /// All kinds.
-    pub const ALL: [Self; 6] = [Self::Formed, Self::Lost, Self::Joined, Self::Parted, Self::Grown, Self::Shrunk];
-
-    /// Word in the tables.
-    #[must_use]
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Formed => "formed",
-            Self::Lost => "lost",
-            Self::Joined => "joined",
-            Self::Parted => "parted",
-            Self::Grown => "grown",
-            Self::Shrunk => "shrunk",
-        }
-    }
-
-    /// Name in texts.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Formed => "region formed",
-            Self::Lost => "region lost",
-            Self::Joined => "regions joined",
-            Self::Parted => "region parted",
-            Self::Grown => "region grown",
-            Self::Shrunk => "region shrunk",
-        }
-    }
-
-    /// Kind of event of the asperity model that corresponds to it.
-    #[must_use]
-    pub fn kind(self) -> EventKind {
-        match self {
-            Self::Formed => EventKind::JumpIn,
-            Self::Lost => EventKind::JumpOff,
-            Self::Joined => EventKind::Merge,
-            Self::Parted => EventKind::Split,
-            Self::Grown | Self::Shrunk => EventKind::Snap,
-        }
-    }
 }
 
 /// Labels the contact of a state. Of a surface with mirror images, the points of the surface itself alone.
@@ -169,14 +111,14 @@ fn join(parent: &mut [u32], a: u32, b: u32) {
     }
 }
 
-/// Area, load, edge and centroid of each region.
+/// Area, load, edge, centroid and asperities of each region; `summits` are the grid points of the asperities.
 #[must_use]
-pub fn regions(problem: &Problem, state: &State, labels: &Labels) -> Vec<Region> {
+pub fn regions(problem: &Problem, state: &State, labels: &Labels, summits: &[usize]) -> Vec<Region> {
     let columns = problem.half_space.columns();
     let rows = problem.half_space.rows();
     let is_mirrored = problem.half_space.is_mirrored();
     let beside = neighbours(&problem.half_space);
-    let mut all = vec![Region { points: 0, load: 0.0, perimeter: 0.0, centroid: [0.0; 2] }; labels.count];
+    let mut all = vec![Region { points: 0, load: 0.0, perimeter: 0.0, centroid: [0.0; 2], summits: 0 }; labels.count];
     // Sums of exp(i 2π x/n) along each direction: the centroid on a circle.
     let mut circles = vec![[0.0_f64; 4]; labels.count];
     for (k, label) in labels.of.iter().enumerate().filter(|(_, label)| **label > 0) {
@@ -207,6 +149,9 @@ pub fn regions(problem: &Problem, state: &State, labels: &Labels) -> Vec<Region>
             region.centroid[at] = (circle[2 * at + 1].atan2(circle[2 * at]) / TAU).rem_euclid(1.0) * size as f64;
         }
     }
+    for label in summits.iter().filter_map(|point| labels.of.get(*point)).filter(|label| **label > 0) {
+        all[*label as usize - 1].summits += 1;
+    }
     all
 }
 
@@ -223,7 +168,7 @@ fn neighbours(grid: &HalfSpace) -> impl Fn(usize, i64, i64) -> usize + use<> {
 
 /// Kind of the change from one labelling to the next: that of the region whose area changed most.
 #[must_use]
-pub fn change(before: &Labels, after: &Labels) -> Change {
+pub fn change(before: &Labels, after: &Labels) -> RegionChange {
     let mut overlap: std::collections::BTreeMap<(u32, u32), usize> = std::collections::BTreeMap::new();
     let (mut size_before, mut size_after) = (vec![0_i64; before.count], vec![0_i64; after.count]);
     for (a, b) in before.of.iter().zip(&after.of) {
@@ -238,7 +183,7 @@ pub fn change(before: &Labels, after: &Labels) -> Change {
         }
     }
     // (change of area, kind) of every region, the largest first found.
-    let mut most = (-1, Change::Grown);
+    let mut most = (-1, RegionChange::Grown);
     let mut consider = |size: i64, kind| {
         if size > most.0 {
             most = (size, kind);
@@ -247,19 +192,19 @@ pub fn change(before: &Labels, after: &Labels) -> Change {
     for (k, size) in size_after.iter().enumerate() {
         let from: Vec<i64> = overlap.keys().filter(|(_, b)| *b as usize == k + 1).map(|(a, _)| size_before[*a as usize - 1]).collect();
         match from[..] {
-            [] => consider(*size, Change::Formed),
-            [one] if *size >= one => consider(size - one, Change::Grown),
+            [] => consider(*size, RegionChange::Formed),
+            [one] if *size >= one => consider(size - one, RegionChange::Grown),
             [_] => {}
-            _ => consider(size - from.iter().max().copied().unwrap_or(0), Change::Joined),
+            _ => consider(size - from.iter().max().copied().unwrap_or(0), RegionChange::Joined),
         }
     }
     for (k, size) in size_before.iter().enumerate() {
         let to: Vec<i64> = overlap.keys().filter(|(a, _)| *a as usize == k + 1).map(|(_, b)| size_after[*b as usize - 1]).collect();
         match to[..] {
-            [] => consider(*size, Change::Lost),
-            [one] if one < *size => consider(size - one, Change::Shrunk),
+            [] => consider(*size, RegionChange::Lost),
+            [one] if one < *size => consider(size - one, RegionChange::Shrunk),
             [_] => {}
-            _ => consider(size - to.iter().max().copied().unwrap_or(0), Change::Parted),
+            _ => consider(size - to.iter().max().copied().unwrap_or(0), RegionChange::Parted),
         }
     }
     most.1

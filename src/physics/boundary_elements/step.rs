@@ -13,11 +13,12 @@ use super::equilibrium::Equilibrium;
 use super::minimise::{ANY, Accuracy, Loads, Outcome};
 use super::newton::Rate;
 use super::patch::Patches;
-use super::records::{Cycle, Event, Map, Step, Unreached};
+use super::records::{Cycle, Event, Map, Step};
 use super::regions::{Labels, Region, change, label, regions};
 use super::sums::largest;
 use super::work::{OnLoop, Work, least_between, work_between};
 use crate::PhysicsError;
+use crate::cycle::Done;
 use crate::memory::filled;
 use serde::{Deserialize, Serialize};
 
@@ -58,14 +59,16 @@ pub struct Settings {
     pub accuracy: Accuracy,
     /// True if the regions of every step are kept; else those of the maps.
     pub all_regions: bool,
+    /// Grid points of the asperities, which are counted in each region.
+    pub summits: Vec<usize>,
 }
 
 /// An unfinished cycle: all that is needed to continue in another process, to the same bytes.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Halfway {
     pub(super) cycle: Cycle,
-    /// Branches that are complete.
-    pub(super) branches: usize,
+    /// Branches that are done.
+    pub(super) done: Done,
     pub(super) state: State,
     pub(super) last: Step,
     /// Energy dissipated so far \[E* dx³\].
@@ -81,10 +84,6 @@ pub struct Halfway {
     pub(super) trunk: Option<Box<Trunk>>,
     /// Energy of events of such searches that the path has not dissipated yet \[E* dx³\].
     pub(super) owed: f64,
-    /// As in the [cycle](Cycle::unreached).
-    pub(super) unreached: Vec<(usize, Unreached)>,
-    /// As in the [cycle](Cycle::least_loads).
-    pub(super) least_loads: Vec<(usize, f64)>,
 }
 
 /// A state of the loading path, to which it returns from a load reversal. Smaller loads of a spec do not change the path to the larger ones.
@@ -98,20 +97,6 @@ pub(super) struct Trunk {
     steps: usize,
     events: usize,
     owed: f64,
-}
-
-impl Halfway {
-    /// Steps so far.
-    #[must_use]
-    pub fn steps(&self) -> &[Step] {
-        &self.cycle.steps
-    }
-
-    /// Regions of contact of the last step.
-    #[must_use]
-    pub fn labels(&self) -> &Labels {
-        &self.labels
-    }
 }
 
 /// An equilibrium that may become the next step.
@@ -153,7 +138,7 @@ impl<'a> Walk<'a> {
             Some(halfway) => halfway,
             None => Halfway {
                 cycle: Cycle::default(),
-                branches: 0,
+                done: Done::default(),
                 state: State { pressure: Vec::new(), ..problem.apart(start)? },
                 last: Step { approach: start, ..Step::default() },
                 dissipated: 0.0,
@@ -162,8 +147,6 @@ impl<'a> Walk<'a> {
                 labels: Labels::default(),
                 trunk: None,
                 owed: 0.0,
-                unreached: Vec::new(),
-                least_loads: Vec::new(),
             },
         };
         at.labels = label(problem, &at.state);
@@ -180,7 +163,7 @@ impl<'a> Walk<'a> {
 
     /// Regions of contact of the last state.
     pub(super) fn regions(&self) -> Vec<Region> {
-        regions(self.problem, &self.at.state, &self.at.labels)
+        regions(self.problem, &self.at.state, &self.at.labels, &self.settings.summits)
     }
 
     /// Equilibrium at an approach, from the last state extrapolated, with all contacts that form there.
@@ -338,7 +321,7 @@ impl<'a> Walk<'a> {
     }
 
     /// Advances by one step, which is halved where a jump of the load is not located, and ends at `max_load` if it would cross it. True if it ends there.
-    pub(super) fn advance(&mut self, sense: f64, max_load: Option<f64>) -> Result<bool, PhysicsError> {
+    pub(super) fn advance_step(&mut self, sense: f64, max_load: Option<f64>) -> Result<bool, PhysicsError> {
         loop {
             let halvings = self.halvings();
             self.at.level = self.at.level.min(halvings);

@@ -3,23 +3,27 @@
 //! The loop begins before the first jump-in and ends with the last separation.
 //! Its area is therefore the total dissipated energy `Θ = ∮F dΔ`.
 
+mod branches;
 mod constants;
+mod method;
+mod record;
 mod recorder;
 mod reversal;
 pub mod soundness;
-mod table;
 
 use crate::contact::problem::Problem;
 use crate::contact::state::State;
 use crate::path::{EquilibriumPath, PathCheckpoint, is_multiple};
-use crate::{LoopPosition, PhysicsError};
+use crate::{LoopError, LoopPosition, PhysicsError};
+pub(crate) use branches::{Done, Walk, follow};
 pub(super) use constants::CONSTANTS;
+pub use method::Method;
+pub use record::{Branch, Contact, Cycle, Event, Map, MergedAt, RegionShape, Settings, Site, Step, StepCounts, StepNumerics};
 use recorder::Recorder;
 use reversal::retrace;
 use serde::{Deserialize, Serialize};
 use soundness::{check_area, check_energy};
 use std::sync::Arc;
-pub use table::{Branch, Contact, Cycle, MergedAt, Settings, Step, StepCounts, StepNumerics};
 
 /// Branch in progress.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -29,14 +33,11 @@ struct Leg {
 }
 
 /// Checkpoint of a cycle, sufficient to continue in another process with identical results.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Halfway {
     cycle: Cycle,
-    /// Number of finished branches, and the branch in progress.
-    branches: usize,
+    done: Done,
     leg: Option<Leg>,
-    /// As in the [cycle](Cycle::unreached).
-    unreached: Vec<(usize, String)>,
 }
 
 /// Loads to the largest of the loads, and unloads from each.
@@ -62,74 +63,94 @@ pub fn run_from(
     keep: &mut dyn FnMut(&Halfway),
     progress: &dyn Fn(LoopPosition),
 ) -> Result<Cycle, PhysicsError> {
-    let all = settings.max_loads.len();
-    let begin = || Halfway { cycle: Cycle::default(), branches: 0, leg: None, unreached: Vec::new() };
-    let mut halfway = halfway.unwrap_or_else(begin);
-    let mut first_error = None;
-    while halfway.branches <= all {
-        match go_on(problem, settings, &mut halfway, progress) {
-            Ok(rests) => halfway.leg = rests,
-            // What was passed before remains valid.
-            Err(error) if error.ends_a_branch() => {
-                halfway.end_branch(settings, &error);
-                first_error.get_or_insert(error);
-            }
-            Err(error) => return Err(error),
-        }
-        if halfway.leg.is_some() {
-            keep(&halfway);
-        } else {
-            halfway.branches += 1;
-        }
-    }
-    let Halfway { cycle, unreached, .. } = halfway;
-    match (first_error, unreached.first()) {
-        (Some(error), _) if unreached.len() == all => Err(error),
-        (None, Some((_, reason))) if unreached.len() == all => Err(PhysicsError::NoReversal { reason: reason.clone() }),
-        _ => Ok(Cycle { unreached, ..cycle }),
-    }
+    let mut walk = AsperityWalk { problem, settings, at: halfway.unwrap_or_default() };
+    let unreached = follow(&mut walk, settings.max_loads.len(), &mut |walk| keep(&walk.at), progress)?;
+    Ok(Cycle { unreached, ..walk.at.cycle })
 }
 
-/// Continues the branch in progress to its next checkpoint, or to its end and returns `None`.
-fn go_on(
-    problem: &Problem,
-    settings: &Settings,
-    halfway: &mut Halfway,
-    progress: &dyn Fn(LoopPosition),
-) -> Result<Option<Leg>, PhysicsError> {
-    let all = settings.max_loads.len();
-    let Halfway { cycle, branches, leg, .. } = halfway;
-    let Some(k) = branches.checked_sub(1) else {
-        let leg = leg.take().unwrap_or_else(|| Leg::loading(problem, settings));
-        return load(problem, settings, leg, cycle, &|at| progress(LoopPosition { done: 0.5 * at.done, ..at }));
-    };
-    let (max_load, Some((_, state))) = (settings.max_loads[k], cycle.turning.get(k)) else { return Ok(None) };
-    let rests = if problem.is_adhesionless() {
-        retrace(cycle, k, Some(max_load), settings.contacts);
-        None
-    } else {
-        let leg = leg.take().unwrap_or_else(|| Leg::unloading(problem, settings, Some(max_load), state.clone()));
-        unload(problem, settings, leg, cycle, &|at| {
-            progress(LoopPosition { done: 0.5 + 0.5 * (k as f64 + at.done) / all as f64, ..at });
-        })?
-    };
-    if rests.is_none() {
-        check_energy(cycle, k)?;
-    }
-    Ok(rests)
+/// An unfinished cycle with its problem.
+struct AsperityWalk<'a> {
+    problem: &'a Problem,
+    settings: &'a Settings,
+    at: Halfway,
 }
 
-impl Halfway {
-    /// Notes the loads of a branch that an error has ended, and removes an unfinished unloading.
-    fn end_branch(&mut self, settings: &Settings, error: &PhysicsError) {
-        self.leg = None;
-        let Some(k) = self.branches.checked_sub(1) else {
-            let further = self.cycle.turning.len()..settings.max_loads.len();
-            self.unreached.extend(further.map(|load| (load, error.to_string())));
-            return;
+impl Walk for AsperityWalk<'_> {
+    fn done(&mut self) -> &mut Done {
+        &mut self.at.done
+    }
+
+    fn reversals(&self) -> usize {
+        self.at.cycle.turning.len()
+    }
+
+    fn advance(&mut self, reversal: Option<usize>, progress: &dyn Fn(LoopPosition)) -> Result<bool, PhysicsError> {
+        let (problem, settings, Halfway { cycle, leg, .. }) = (self.problem, self.settings, &mut self.at);
+        let Some(k) = reversal else {
+            let begun = leg.take().unwrap_or_else(|| Leg::loading(problem, settings));
+            *leg = load(problem, settings, begun, cycle, &|at| progress(LoopPosition { done: 0.5 * at.done, ..at }))?;
+            return Ok(leg.is_none());
         };
-        self.cycle.remove_unloading(settings.max_loads[k]);
-        self.unreached.push((k, error.to_string()));
+        let (max_load, all) = (settings.max_loads[k], settings.max_loads.len());
+        if problem.is_adhesionless() {
+            retrace(cycle, k, Some(max_load), settings.contacts);
+            return Ok(true);
+        }
+        let state = || cycle.turning[k].1.clone();
+        let begun = leg.take().unwrap_or_else(|| Leg::unloading(problem, settings, Some(max_load), state()));
+        *leg = unload(problem, settings, begun, cycle, &|at| {
+            progress(LoopPosition { done: 0.5 + 0.5 * (k as f64 + at.done) / all as f64, ..at });
+        })?;
+        Ok(leg.is_none())
+    }
+
+    fn check(&self, reversal: usize) -> Result<(), LoopError> {
+        check_energy(&self.at.cycle, reversal)
+    }
+
+    fn forget(&mut self, reversal: usize) {
+        self.at.cycle.remove_unloading(self.settings.max_loads[reversal]);
+    }
+}
+
+/// Versions of cycles of the asperity model.
+const VERSIONS: &[(u32, &str)] = &[
+    (7, "free asperities are followed from three length scales before jump-in"),
+    (8, "equilibria and fast sums to 1e-8 rms heights"),
+    (9, "local problems to 1e-7 rms heights with the contacts outside"),
+];
+
+/// A cycle of the asperity model.
+pub struct Asperities {
+    /// Problem.
+    pub problem: Problem,
+    /// Settings.
+    pub settings: Settings,
+}
+
+impl Method for Asperities {
+    type Checkpoint = Halfway;
+    type State = State;
+
+    const NAME: &'static str = "asperities";
+    const VERSIONS: &'static [(u32, &'static str)] = VERSIONS;
+
+    fn run_from(
+        &self,
+        halfway: Option<Halfway>,
+        keep: &mut (dyn FnMut(&Halfway) + Send),
+        progress: &(dyn Fn(LoopPosition) + Sync),
+    ) -> Result<Cycle, PhysicsError> {
+        run_from(&self.problem, &self.settings, halfway, keep, progress)
+    }
+
+    fn unload_from(&self, reversal: usize, state: State) -> Result<Cycle, PhysicsError> {
+        let max_load = self.settings.max_loads.get(reversal).copied().unwrap_or_default();
+        unload_from(&self.problem, &self.settings, max_load, state)
+    }
+
+    fn size(&self) -> (&'static str, u64) {
+        ("asperity_count", self.problem.len() as u64)
     }
 }
 
@@ -241,7 +262,7 @@ fn load(
         recorder.grid_points(settings, path, cycle)?;
         let (reached, approach_m) = (path.totals().load_n / problem.load_unit_n(), path.state().approach_m);
         if approach_m > 100.0 * problem.rms_height_m {
-            return Err(PhysicsError::LoadNotReached { wanted: *max_load, reached, approach_m });
+            return Err(LoopError::LoadNotReached { wanted: *max_load, reached, approach_m }.into());
         }
         progress(LoopPosition { done: (reached / last).clamp(0.0, 1.0), steps: cycle.steps.len(), unloading: false, load: reached });
         Ok(if settings.rests(path, from) { Next::Rest } else { Next::On })

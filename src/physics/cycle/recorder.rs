@@ -1,8 +1,9 @@
 //! Recording of a branch: steps at grid points and load reversals, and events.
 
-use super::table::{Branch, Contact, Cycle, MergedAt, Settings, Step, StepCounts, StepNumerics};
+use super::record::{Branch, Contact, Cycle, Event, MergedAt, Settings, Site, Step, StepCounts, StepNumerics};
+use super::soundness::CONVERGED;
 use crate::PhysicsError;
-use crate::contact::event::Event;
+use crate::contact::event::Event as PathEvent;
 use crate::contact::problem::Problem;
 use crate::contact::state::{State, Status};
 use crate::half_space::Effort;
@@ -128,7 +129,7 @@ impl Recorder {
         let problem = &*at.problem();
         let state = at.state();
         let passed = |approach: f64| excursion.is_none() || (approach - state.approach_m) * path.sense() <= 0.0;
-        let recent: Vec<Event> =
+        let recent: Vec<PathEvent> =
             path.log().events[self.events_before..].iter().take_while(|event| passed(event.approach_m)).copied().collect();
         let ways: Vec<f64> =
             path.log().segments[self.ways_before..].iter().take_while(|way| passed(way.approach)).map(|way| way.least).collect();
@@ -145,16 +146,22 @@ impl Recorder {
             dissipated_j: recent.iter().map(|event| event.energy_lost_j).sum(),
             work_j: at.log().work_j,
             numerics: StepNumerics {
-                residual_m: state.residual_m,
-                drift_m: path.log().drift_m,
-                stability: state.stability,
+                is_converged: state.residual_m <= CONVERGED * problem.rms_height_m,
+                residual_m: Some(state.residual_m),
+                drift_m: Some(path.log().drift_m),
+                stability: Some(state.stability),
                 effort: effort - self.effort_before,
+                ..StepNumerics::default()
             },
         });
         self.events_before += recent.len();
         self.ways_before += ways.len();
         self.effort_before = effort;
-        cycle.events.extend(recent.into_iter().map(|event| (number, Event { asperity: problem.number(event.asperity), ..event })));
+        cycle.events.extend(recent.into_iter().map(|event| {
+            let PathEvent { kind, asperity, approach_m, avalanche, before, after, energy_lost_j } = event;
+            let site = Site::Asperity(problem.number(asperity));
+            Event { step: number, kind, site, approach_m, avalanche, before, after, energy_lost_j }
+        }));
         let keep = match settings.contacts {
             KeptContacts::All => true,
             KeptContacts::Turning => turning || self.passes_landmark(settings, problem, at.totals().load_n),
@@ -182,7 +189,7 @@ impl Recorder {
 }
 
 /// Numbers of contacts, and of the events since the step before.
-fn counts(at: &EquilibriumPath, recent: &[Event]) -> StepCounts {
+fn counts(at: &EquilibriumPath, recent: &[PathEvent]) -> StepCounts {
     let state = at.state();
     StepCounts {
         contacts: state.contacts.len(),
@@ -214,25 +221,17 @@ fn spots_of(problem: &Problem, state: &State, step: usize) -> Vec<Contact> {
             let (asperity, a) = (&problem.asperities[i], state.radius[i]);
             Contact {
                 step,
-                asperity: problem.number(i),
-                covered: false,
+                asperity: Some(problem.number(i)),
                 contact_radius_m: a,
                 load_n: asperity.load(a),
                 penetration_m: Some(asperity.penetration(a)),
                 interaction_m: Some(*w),
+                ..Contact::default()
             }
         })
         .collect();
     let covered = state.status.iter().enumerate().filter(|(_, status)| matches!(status, Status::Covered { .. }));
-    spots.extend(covered.map(|(i, _)| Contact {
-        step,
-        asperity: problem.number(i),
-        covered: true,
-        contact_radius_m: 0.0,
-        load_n: 0.0,
-        penetration_m: None,
-        interaction_m: None,
-    }));
+    spots.extend(covered.map(|(i, _)| Contact { step, asperity: Some(problem.number(i)), covered: true, ..Contact::default() }));
     spots.sort_by_key(|spot| spot.asperity);
     spots
 }

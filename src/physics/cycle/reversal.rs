@@ -4,8 +4,7 @@
 //! The loop encloses no area, and the unloading branch is the loading branch in reverse.
 //! Each event is reversed at its mean penetration and returns its energy: Θ is exactly 0.
 
-use super::table::{Branch, Contact, Cycle, Step, StepCounts, StepNumerics};
-use crate::contact::event::Event;
+use super::record::{Branch, Contact, Cycle, Event, Step, StepCounts, StepNumerics};
 use crate::half_space::Effort;
 use crate::model::KeptContacts;
 
@@ -16,7 +15,7 @@ pub(crate) fn retrace(cycle: &mut Cycle, k: usize, max_load: Option<f64>, contac
     let reversal = cycle.turning[k].0;
     let others: Vec<usize> = cycle.turning[..k].iter().map(|(step, _)| *step).collect();
     let work_j = cycle.steps[reversal].work_j;
-    let avalanches = cycle.events.iter().filter(|(step, _)| *step <= reversal).map(|(_, event)| event.avalanche).max().unwrap_or(0);
+    let avalanches = cycle.events.iter().filter(|event| event.step <= reversal).map(|event| event.avalanche).max().unwrap_or(0);
     let mut pending: Vec<Event> = Vec::new();
     let mut least_load_n = f64::INFINITY;
     for at in (0..=reversal).rev() {
@@ -27,7 +26,7 @@ pub(crate) fn retrace(cycle: &mut Cycle, k: usize, max_load: Option<f64>, contac
             let number = cycle.steps.len();
             let undone: Vec<Event> = std::mem::take(&mut pending);
             cycle.steps.push(reversed(&step, max_load, &undone, least_load_n, work_j));
-            cycle.events.extend(undone.into_iter().map(|event| (number, event)));
+            cycle.events.extend(undone.into_iter().map(|event| Event { step: number, ..event }));
             if contacts == KeptContacts::All {
                 let kept: Vec<Contact> = cycle.contacts.iter().filter(|c| c.step == at).map(|c| Contact { step: number, ..*c }).collect();
                 cycle.contacts.extend(kept);
@@ -37,7 +36,7 @@ pub(crate) fn retrace(cycle: &mut Cycle, k: usize, max_load: Option<f64>, contac
                 return;
             }
         }
-        let events = cycle.events.iter().filter(|(step, _)| *step == at).map(|(_, event)| undo(event, avalanches)).collect::<Vec<_>>();
+        let events = cycle.events.iter().filter(|event| event.step == at).map(|event| undo(event, avalanches)).collect::<Vec<_>>();
         pending.extend(events.into_iter().rev());
     }
 }
@@ -51,7 +50,7 @@ fn reversed(step: &Step, max_load: Option<f64>, undone: &[Event], least_load_n: 
         counts: StepCounts { held: 0, events: undone.iter().map(|event| event.kind).collect(), ..step.counts.clone() },
         dissipated_j: undone.iter().map(|event| event.energy_lost_j).sum(),
         work_j: step.work_j - work_j,
-        numerics: StepNumerics { drift_m: 0.0, effort: Effort::default(), ..step.numerics.clone() },
+        numerics: StepNumerics { drift_m: Some(0.0), effort: Effort::default(), ..step.numerics.clone() },
         ..step.clone()
     }
 }

@@ -5,14 +5,17 @@
 //! the fields of large contacts are not reciprocal. Such a cycle ends with an error, and its tables are not written. A violation that is small
 //! compared with the work of loading leaves the curve of the loop as it is: then Θ alone is not resolved.
 
-use super::table::{Branch, Cycle, Step};
-use crate::PhysicsError;
+use super::record::{Branch, Cycle, Step};
+use crate::LoopError;
 use crate::path::EquilibriumPath;
 
 /// Numerical resolution of the dissipated energy, relative to the largest work along the loop.
 ///
 /// Θ is the difference of the works of loading and unloading, and each is integrated to about 1e-8.
 pub const RESOLUTION: f64 = 1e-7;
+
+/// Largest residual of an equilibrium of the asperity model, relative to the rms height.
+pub(super) const CONVERGED: f64 = 1e-8;
 
 /// Largest energy-balance error `|Θ − Σ events|` over Θ.
 pub const LARGEST_IMBALANCE: f64 = 0.5;
@@ -28,8 +31,8 @@ pub(super) const LARGEST_VIOLATION: f64 = 1e-3;
 /// refused state is meaningless.
 ///
 /// # Errors
-/// [`PhysicsError::ExcessArea`].
-pub(crate) fn check_area(path: &EquilibriumPath, load_before_n: f64) -> Result<(), PhysicsError> {
+/// [`LoopError::ExcessArea`].
+pub(crate) fn check_area(path: &EquilibriumPath, load_before_n: f64) -> Result<(), LoopError> {
     let side = path.problem().length_m;
     let share = path.totals().area_m2 / (side * side);
     // NaN is refused as well.
@@ -37,7 +40,7 @@ pub(crate) fn check_area(path: &EquilibriumPath, load_before_n: f64) -> Result<(
         return Ok(());
     }
     // Not −0.
-    Err(PhysicsError::ExcessArea { approach_m: path.state().approach_m + 0.0, share, load_before_n })
+    Err(LoopError::ExcessArea { approach_m: path.state().approach_m + 0.0, share, load_before_n })
 }
 
 /// Energies of one loop \[J\].
@@ -121,8 +124,8 @@ fn loading_events(cycle: &Cycle, k: usize) -> f64 {
 /// Refuses a loop with negative dissipation or a large energy-balance error, unless the violation is below [`LARGEST_VIOLATION`] of the work.
 ///
 /// # Errors
-/// [`PhysicsError::NegativeDissipation`] and [`PhysicsError::EnergyImbalance`].
-pub fn check_energy(cycle: &Cycle, k: usize) -> Result<(), PhysicsError> {
+/// [`LoopError::NegativeDissipation`] and [`LoopError::EnergyImbalance`].
+pub fn check_energy(cycle: &Cycle, k: usize) -> Result<(), LoopError> {
     let energy = loop_energy(cycle, k);
     let LoopEnergy { loss_j, events_j, work_j } = energy;
     // Without adhesion events are reversed exactly; the events of the loading path are compared with the largest work.
@@ -132,8 +135,8 @@ pub fn check_energy(cycle: &Cycle, k: usize) -> Result<(), PhysicsError> {
     }
     let max_load = cycle.steps.last().and_then(|step| step.max_load).unwrap_or(f64::NAN);
     Err(if loss_j < -LARGEST_VIOLATION * work_j {
-        PhysicsError::NegativeDissipation { max_load, loss_j, fraction: loss_j.abs() / work_j }
+        LoopError::NegativeDissipation { max_load, loss_j, fraction: loss_j.abs() / work_j }
     } else {
-        PhysicsError::EnergyImbalance { max_load, loss_j, events_j }
+        LoopError::EnergyImbalance { max_load, loss_j, events_j }
     })
 }

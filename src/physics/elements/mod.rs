@@ -3,27 +3,29 @@
 //! [`Elements::new`] has what decides on the accuracy of a cycle; [`Elements::run`] loads and unloads. The solver itself is
 //! [`boundary_elements`](crate::boundary_elements), whose lengths are in grid spacings and stresses in E\*; [`Units`] has their values in SI units.
 
+mod free;
 mod options;
+mod record;
 mod units;
 
+pub use free::FreeStep;
 pub use options::{Attraction, Numerics, Options, Weak};
 pub use units::Units;
 
 pub(crate) use options::CONSTANTS;
 
-use crate::PhysicsError;
 use crate::boundary_elements::contact::{Attraction as Rule, Problem};
-use crate::boundary_elements::cycle::{self, Cycle, Settings, Step, Unreached};
+use crate::boundary_elements::cycle::{self as grid, Halfway, Settings, Turning};
 use crate::boundary_elements::grid::HalfSpace;
 use crate::boundary_elements::law::Law;
 use crate::boundary_elements::minimise::Accuracy;
 use crate::boundary_elements::resample::resample_from;
-use crate::cycle::soundness::LoopEnergy;
-use crate::model::Material;
+use crate::cycle::{Cycle, Method};
+use crate::model::{KeptContacts, Material};
 use crate::surface::modes::mirrored;
 use crate::theory::flattening::measured_flattening;
+use crate::{LoopPosition, PhysicsError};
 use ndarray::{Array2, ArrayView2};
-use std::ops::Range;
 
 /// Grid points per shortest wavelength, at least, if [`Options::points`] is 0.
 pub const PER_WAVELENGTH: f64 = 16.0;
@@ -44,6 +46,15 @@ pub fn memory_bytes(points: usize, loads: usize) -> usize {
 pub fn points_for(wavelengths: f64) -> usize {
     ((PER_WAVELENGTH * wavelengths).ceil().clamp(1.0, MOST_POINTS) as usize).next_power_of_two()
 }
+
+/// Versions of cycles by boundary elements.
+const VERSIONS: &[(u32, &str)] = &[
+    (10, "steps are halved for jumps and for the maximum tension alone"),
+    (
+        11,
+        "loads are searched off the path and do not change one another; area of the scan without its mirror images. One load on a periodic surface: as 10",
+    ),
+];
 
 /// Heights of a square surface.
 #[derive(Debug, Clone, Copy)]
@@ -68,6 +79,10 @@ pub struct Elements {
     pub settings: Settings,
     /// The units.
     pub units: Units,
+    /// Loads `F/(E* A0)` at the load reversals.
+    max_loads: Vec<f64>,
+    contacts: KeptContacts,
+    numerics: Numerics,
 }
 
 impl Elements {
@@ -88,39 +103,64 @@ impl Elements {
         let ratio = flattening.persson_tosatti(material.work_of_adhesion_j_m2);
         let whole = if is_mirrored { mirrored(map.heights_m)? } else { map.heights_m.to_owned() };
         let problem = problem(&units, material, resample_from(whole.view(), points, first_m / pixel)?, options)?;
-        Ok(Self { problem, settings: settings(&units, max_loads, options, ratio), units })
+        let (contacts, numerics) = (options.contacts, options.numerics.clone());
+        Ok(Self {
+            problem,
+            settings: settings(&units, max_loads, options, ratio),
+            units,
+            max_loads: max_loads.to_vec(),
+            contacts,
+            numerics,
+        })
     }
 
-    /// Loads the surface and unloads it from each load reversal. Reversals without a result are in [`Cycle::unreached`].
-    ///
-    /// # Errors
-    /// Those of [`cycle::run`], with lengths and energies in SI units and loads over E\* A0.
-    pub fn run(&self) -> Result<Cycle, PhysicsError> {
-        let outcome = cycle::run(&self.problem, &self.settings, None, &mut |_| {}, &|_| {});
-        let mut cycle = outcome.map_err(|error| self.units.in_si(error))?;
-        remove_unsound(&mut cycle);
-        Ok(cycle)
+    /// Counts asperities at these places along x and y \[m\] in the regions of contact.
+    #[must_use]
+    pub fn with_summits(mut self, places_m: impl IntoIterator<Item = [f64; 2]>) -> Self {
+        let Units { points, is_mirrored, .. } = self.units;
+        let own = self.units.own_points();
+        let at = |place: f64| {
+            let nearest = ((place - self.units.first_m) / self.units.spacing_m()).round() as usize;
+            if is_mirrored { nearest.min(own - 1) } else { nearest % points }
+        };
+        self.settings.summits = places_m.into_iter().map(|[x, y]| at(x) * points + at(y)).collect();
+        self
+    }
+
+    fn record(&self, cycle: grid::Cycle) -> Cycle<Turning> {
+        let mut record = record::in_si(cycle, &self.max_loads, &self.units);
+        if self.contacts == KeptContacts::None {
+            record.contacts.clear();
+        }
+        record
     }
 }
 
-/// Removes loops with negative dissipation or a large energy-balance error, by the limits of the asperity model: their steps are too long. The numbers that the
-/// removed steps had, in the order of removal.
-pub fn remove_unsound(cycle: &mut Cycle) -> Vec<Range<usize>> {
-    let energies = |step: &Step| (step.work, step.dissipated);
-    let mut all = Vec::new();
-    for reversal in 0..cycle.turning.len() {
-        if cycle.unreached.iter().any(|(other, _)| *other == reversal) {
-            continue;
-        }
-        let back = cycle.steps.iter().rev().filter(|step| step.reversal == Some(reversal));
-        let energy = LoopEnergy::of(cycle.steps[..=cycle.turning[reversal].step].iter().map(energies), back.map(energies));
-        let LoopEnergy { loss_j: loss, events_j: events, work_j: work } = energy;
-        if !energy.is_sound() {
-            all.push(cycle.remove_unloading(reversal, Unreached::Unresolved { loss, events, work }));
-        }
+impl Method for Elements {
+    type Checkpoint = Halfway;
+    type State = Turning;
+
+    const NAME: &'static str = "boundary_elements";
+    const VERSIONS: &'static [(u32, &'static str)] = VERSIONS;
+
+    fn run_from(
+        &self,
+        halfway: Option<Halfway>,
+        keep: &mut (dyn FnMut(&Halfway) + Send),
+        progress: &(dyn Fn(LoopPosition) + Sync),
+    ) -> Result<Cycle<Turning>, PhysicsError> {
+        let outcome = grid::run(&self.problem, &self.settings, halfway, keep, progress);
+        Ok(self.record(outcome.map_err(|error| self.units.end(error))?))
     }
-    cycle.unreached.sort_by_key(|(reversal, _)| *reversal);
-    all
+
+    fn unload_from(&self, reversal: usize, state: Turning) -> Result<Cycle<Turning>, PhysicsError> {
+        let cycle = grid::unload_from(&self.problem, &self.settings, reversal, &state).map_err(|error| self.units.end(error))?;
+        Ok(self.record(cycle))
+    }
+
+    fn size(&self) -> (&'static str, u64) {
+        ("point_count", self.problem.half_space.points() as u64)
+    }
 }
 
 /// The contact problem of heights \[m\] on the grid.
@@ -152,6 +192,7 @@ fn settings(units: &Units, max_loads: &[f64], options: &Options, ratio: f64) -> 
         located: numerics.jump_tolerance,
         halvings: options.halvings,
         accuracy: Accuracy { rms: residual, largest: numerics.largest_residual * residual, iterations: numerics.iterations },
-        all_regions: options.all_regions,
+        all_regions: options.contacts == KeptContacts::All,
+        summits: Vec::new(),
     }
 }

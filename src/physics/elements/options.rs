@@ -1,6 +1,7 @@
 //! Options of boundary elements, and the numerical choices behind them.
 
 use crate::constants::Constant;
+use crate::model::KeptContacts;
 
 /// How the surfaces attract each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,8 +35,8 @@ pub struct Options {
     pub halvings: u32,
     /// Rms residual of an equilibrium, relative to the maximum tension.
     pub precision: f64,
-    /// True if the regions of all steps are kept, not only those at load reversals and at pull-off.
-    pub all_regions: bool,
+    /// Steps of which the regions of contact are kept.
+    pub contacts: KeptContacts,
     /// Numerical choices.
     pub numerics: Numerics,
 }
@@ -48,7 +49,7 @@ impl Default for Options {
             approach_step: 0.03,
             halvings: 6,
             precision: 1e-4,
-            all_regions: false,
+            contacts: KeptContacts::Turning,
             numerics: Numerics::default(),
         }
     }
@@ -78,6 +79,8 @@ pub struct Numerics {
     pub iterations: usize,
     /// Points around a contact that are bonded.
     pub margin: usize,
+    /// Step of loading without adhesion, in steps of the cycle.
+    pub free_step: f64,
     /// Weak adhesion, the weakest first.
     pub weak: [Weak; 2],
 }
@@ -88,6 +91,7 @@ const NUMERICS: Numerics = Numerics {
     largest_residual: 100.0,
     iterations: 3000,
     margin: 2,
+    free_step: 2.0,
     weak: [Weak { ratio: 150.0, steps: 30.0, precision: 10.0 }, Weak { ratio: 15.0, steps: 6.0, precision: 6.0 }],
 };
 
@@ -136,6 +140,13 @@ pub(crate) const CONSTANTS: &[Constant] = &[
         &[NUMERICS.iterations as f64],
         "",
         "Maximum of one minimization. Then Newton's method takes over.",
+        "options",
+    ),
+    Constant::new(
+        "steps without adhesion",
+        &[NUMERICS.free_step],
+        "of the steps",
+        "Steps of the table `adhesionless`, in those of the cycle.",
         "options",
     ),
     Constant::new("reach of bonds", &[NUMERICS.margin as f64], "`dx`", "Points this close to contact are bonded.", "options"),

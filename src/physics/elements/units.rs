@@ -1,6 +1,6 @@
 //! Units of the solver in SI units.
 
-use crate::PhysicsError;
+use crate::{LoopError, PhysicsError};
 
 /// Units of the solver in SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -75,20 +75,27 @@ impl Units {
 
     /// An error of the solver with its lengths, loads and energies as those of the surface: in SI units, loads over E\* A0.
     #[must_use]
-    pub fn in_si(&self, error: PhysicsError) -> PhysicsError {
+    pub(super) fn error(&self, error: LoopError) -> LoopError {
         let spacing = self.spacing_m();
         match error {
-            PhysicsError::LoadNotReached { wanted, reached, approach_m } => PhysicsError::LoadNotReached {
-                wanted: wanted / self.all(),
-                reached: reached / self.all(),
-                approach_m: approach_m * spacing,
-            },
-            PhysicsError::Closed { approach_m } => PhysicsError::Closed { approach_m: approach_m * spacing },
-            PhysicsError::Inseparable { approach_m } => PhysicsError::Inseparable { approach_m: approach_m * spacing },
-            PhysicsError::UnresolvedLoop { max_load, loss_j, events_j, work_j } => {
-                let [loss_j, events_j, work_j] = [loss_j, events_j, work_j].map(|energy| energy * self.energy_j());
-                PhysicsError::UnresolvedLoop { max_load: max_load / self.all(), loss_j, events_j, work_j }
+            LoopError::LoadNotReached { wanted, reached, approach_m } => {
+                LoopError::LoadNotReached { wanted: wanted / self.all(), reached: reached / self.all(), approach_m: approach_m * spacing }
             }
+            LoopError::Closed { approach_m } => LoopError::Closed { approach_m: approach_m * spacing },
+            LoopError::Inseparable { approach_m } => LoopError::Inseparable { approach_m: approach_m * spacing },
+            LoopError::UnresolvedLoop { max_load, loss_j, events_j, work_j } => {
+                let [loss_j, events_j, work_j] = [loss_j, events_j, work_j].map(|energy| energy * self.energy_j());
+                LoopError::UnresolvedLoop { max_load: max_load / self.all(), loss_j, events_j, work_j }
+            }
+            other => other,
+        }
+    }
+
+    /// As [`error`](Self::error), of an error that ends a cycle.
+    #[must_use]
+    pub(super) fn end(&self, error: PhysicsError) -> PhysicsError {
+        match error {
+            PhysicsError::Loop(error) => self.error(error).into(),
             other => other,
         }
     }

@@ -16,7 +16,7 @@ use crate::contact::{Event, Problem, State, Totals};
 use crate::half_space::Effort;
 use crate::solve::global::{BLOCK, GlobalSolver};
 use crate::solve::residual::NotConverged;
-use crate::{PhysicsError, Reason};
+use crate::{LoopError, PhysicsError, Reason};
 use std::sync::Arc;
 
 /// A contact along one branch; see [`super`].
@@ -226,12 +226,13 @@ impl EquilibriumPath {
             Rejection::Failed(error) => return error,
             Rejection::NotConverged(reason) => reason,
         };
-        PhysicsError::NoEquilibrium {
+        LoopError::NoEquilibrium {
             approach_m: self.state().approach_m,
             reason: reason.reason,
             residual_m: reason.residual_m,
             asperity: self.problem().number(reason.asperity),
             iterations: self.solver.effort.iterations,
         }
+        .into()
     }
 }

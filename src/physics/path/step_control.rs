@@ -3,7 +3,7 @@
 //! An increment ends on a multiple of `h = h_0/2^k`. A rejected one is halved; an accepted one may be followed by one of twice the length
 //! where that ends on a multiple of itself. So the increments do not depend on where a path began.
 
-use crate::PhysicsError;
+use crate::{LoopError, PhysicsError};
 
 /// Maximum number of halvings before the global problem is relaxed instead.
 pub(super) const MOST_HALVINGS: u32 = 14;
@@ -98,7 +98,7 @@ impl StepControl {
     pub(super) fn count_trial(&mut self, n: usize, approach_m: f64, asperity: usize) -> Result<(), PhysicsError> {
         self.trials += 1;
         let most = MOST_TRIALS * (n + FEW);
-        if self.trials <= most { Ok(()) } else { Err(PhysicsError::EndlessAvalanche { approach_m, events: most, asperity }) }
+        if self.trials <= most { Ok(()) } else { Err(LoopError::EndlessAvalanche { approach_m, events: most, asperity }.into()) }
     }
 }
 

@@ -1,23 +1,19 @@
 //! A cycle of the asperity model.
 
-use super::super::done::Outcome;
 use super::super::extract::read_summits;
 use super::super::identity::Identity;
 use super::super::surface::{Scale, scale};
-use super::super::{StageError, Watch, step_count};
-use super::asperity_tables::{contacts, events, merged, steps, turning, word};
-use super::{Checkpoints, Progress, effort_of, not_reached, write_tables};
+use super::super::{StageError, step_count};
+use super::{Computed, CycleTask};
 use crate::campaign::{Campaign, CycleUnit};
-use crate::physics::contact::Merged;
 use crate::physics::contact::rows::Kept;
-use crate::physics::contact::{Problem, Rules, State, Status};
-use crate::physics::cycle::{self, Cycle, Halfway, Settings};
-use crate::physics::half_space::Effort;
+use crate::physics::contact::{Merged, Problem, Rules, State, Status};
+use crate::physics::cycle::{Asperities, Cycle, Method, Settings};
 use crate::physics::surface::summits::Summit;
 use crate::schema;
 use crate::spec::CaseParams;
-use crate::store::parquet;
-use serde_json::{Map, Value};
+use crate::store::{Frame, parquet};
+use std::collections::HashMap;
 use std::path::Path;
 
 /// The contact problem of a case on the asperities of a table.
@@ -47,54 +43,33 @@ pub(in crate::stages) fn checked(params: &CaseParams, scale: Scale, summits: &[S
 pub(super) const MANY: usize = 20_000;
 pub(super) const REST_EVERY: f64 = 0.1;
 
-pub(super) fn run(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> Result<Outcome, StageError> {
-    let params = &campaign.cases[unit.case].case.params;
-    let summits = read_summits(&campaign.asperities_path(&campaign.surfaces[unit.surface]))?;
-    let problem = checked(params, scale(campaign, &campaign.surfaces[unit.surface])?, &summits)?;
-    let settings = settings(params, summits.len());
-    let progress = Progress::of(watch, &unit.id);
-    let mut checkpoints = Checkpoints::of(campaign, unit, watch);
-    let halfway: Option<Halfway> = checkpoints.read();
-    let mut keep = |halfway: &Halfway| checkpoints.keep(halfway);
-    let outcome = cycle::run_from(&problem, &settings, halfway, &mut keep, &|at| progress.reached(at));
-    progress.end();
-    let cycle = outcome?;
-    let of = Identity::of(campaign, unit);
-    let tables = [
-        contacts(of, &cycle, &summits)?,
-        turning(of, &cycle, &problem, &settings.max_loads)?,
-        merged(of, &cycle)?,
-        events(of, &cycle)?,
-        steps(of, &cycle, &settings.max_loads, &problem)?,
-    ];
-    let mut files = write_tables(campaign, unit, &tables)?;
-    let unreached: Vec<(f64, String)> = cycle.unreached.iter().map(|(load, error)| (settings.max_loads[*load], error.clone())).collect();
-    files.extend(not_reached::record(campaign, unit, &unreached, watch)?);
-    Ok(Outcome { files, effort: effort(&cycle, &problem) })
-}
-
-/// Effort of a cycle, for its receipt.
-fn effort(cycle: &Cycle, problem: &Problem) -> Map<String, Value> {
-    let all = cycle.steps.iter().fold(Effort::default(), |mut sum, step| {
-        sum += step.numerics.effort;
-        sum
-    });
-    effort_of(&[
-        ("asperity_count", problem.len() as u64),
-        ("step_count", cycle.steps.len() as u64),
-        ("event_count", cycle.events.len() as u64),
-        ("iteration_count", all.iterations),
-        ("pair_evaluation_count", all.pairs),
-        ("product_count", all.products),
-        ("transform_count", all.transforms),
-    ])
+pub(super) fn run(task: &CycleTask<'_>) -> Result<Computed, StageError> {
+    let (campaign, unit, params) = (task.campaign, task.unit, task.params());
+    let surface = &campaign.surfaces[unit.surface];
+    let summits = read_summits(&campaign.asperities_path(surface))?;
+    let problem = checked(params, scale(campaign, surface)?, &summits)?;
+    let method = Asperities { problem, settings: settings(params, summits.len()) };
+    let cycle = task.follow(&method)?;
+    let (of, problem) = (Identity::of(campaign, unit), &method.problem);
+    let tables = vec![turning(of, &cycle, problem, &params.cycle.max_load)?, merged(of, &cycle)?];
+    let (load_unit_n, area_m2, rms_height_m) = (problem.load_unit_n(), problem.length_m * problem.length_m, problem.rms_height_m);
+    Ok(Computed {
+        method: Asperities::NAME,
+        size: method.size(),
+        cycle: with_centres(cycle.without_states(), &summits),
+        tables,
+        files: Vec::new(),
+        load_unit_n,
+        area_m2,
+        rms_height_m,
+    })
 }
 
 /// Unloads again from a load reversal of a finished cycle.
 ///
 /// # Errors
 /// The tables of the cycle and of its surface must be there and whole, and hold that load.
-pub fn unload_again(campaign: &Campaign, unit: &CycleUnit, max_load: f64) -> Result<Cycle, StageError> {
+pub(super) fn unload_again(campaign: &Campaign, unit: &CycleUnit, max_load: f64) -> Result<Cycle<()>, StageError> {
     let params = &campaign.cases[unit.case].case.params;
     let summits = read_summits(&campaign.asperities_path(&campaign.surfaces[unit.surface]))?;
     let problem = problem(params, scale(campaign, &campaign.surfaces[unit.surface])?, &summits)?;
@@ -119,7 +94,8 @@ pub fn unload_again(campaign: &Campaign, unit: &CycleUnit, max_load: f64) -> Res
     };
     let merged = merged_rows(&campaign.cycle_dir(unit).join("merged.parquet"), counts[rows[0]] as usize)?;
     let state = State::restored(&problem, approach, &merged, &rows.iter().map(kept).collect::<Vec<_>>())?;
-    Ok(cycle::unload_from(&problem, &settings(params, summits.len()), max_load, state)?)
+    let method = Asperities { problem, settings: Settings { max_loads: vec![max_load], ..settings(params, summits.len()) } };
+    Ok(with_centres(method.unload_from(0, state)?.without_states(), &summits))
 }
 
 /// The first spots that have merged on loading.
@@ -151,4 +127,74 @@ fn settings(params: &CaseParams, asperities: usize) -> Settings {
         contacts: params.cycle.contacts,
         rest_every: (asperities >= MANY).then_some(REST_EVERY),
     }
+}
+
+fn turning(of: Identity<'_>, cycle: &Cycle, problem: &Problem, loads: &[f64]) -> Result<Frame, StageError> {
+    let states = loads.iter().zip(&cycle.turning);
+    let rows: Vec<(f64, f64, Kept, usize)> = states
+        .flat_map(|(load, (_, state))| state.kept(problem).into_iter().map(|kept| (*load, state.approach_m, kept, state.merged.len())))
+        .collect();
+    let covered = |status: Status| match status {
+        Status::Covered { by, release_m } => Some((by, release_m)),
+        _ => None,
+    };
+    Ok(of
+        .begin(&schema::TURNING, rows.len())
+        .f64("max_load", rows.iter().map(|row| row.0))
+        .f64("approach_m", rows.iter().map(|row| row.1))
+        .i64("asperity_id", rows.iter().map(|row| row.2.asperity as i64))
+        .text("state", rows.iter().map(|row| word(row.2.status)))
+        .f64("contact_radius_m", rows.iter().map(|row| row.2.radius_m))
+        .i64("covered_by", rows.iter().map(|row| covered(row.2.status).map(|(by, _)| by as i64)))
+        .f64("release_m", rows.iter().map(|row| covered(row.2.status).map(|(_, release_m)| release_m)))
+        .bool("barred", rows.iter().map(|row| row.2.barred))
+        .i64("merged_into", rows.iter().map(|row| if let Status::Merged { into } = row.2.status { Some(into as i64) } else { None }))
+        .i64("merged_count", rows.iter().map(|row| row.3 as i64))
+        .build()?)
+}
+
+/// State of an asperity in the tables.
+fn word(status: Status) -> &'static str {
+    match status {
+        Status::Contact => "contact",
+        Status::Covered { .. } => "covered",
+        Status::Merged { .. } => "merged",
+        Status::Free => "free",
+    }
+}
+
+fn merged(of: Identity<'_>, cycle: &Cycle) -> Result<Frame, StageError> {
+    let spots = &cycle.merged;
+    let step = |k: usize| &cycle.steps[k];
+    let each = |value: fn(&Merged) -> f64| spots.iter().map(move |s| value(&s.spot));
+    Ok(of
+        .begin(&schema::MERGED, spots.len())
+        .i64("step", spots.iter().map(|s| s.step as i64))
+        .text("branch", spots.iter().map(|s| step(s.step).branch.word()))
+        .f64("max_load", spots.iter().map(|s| step(s.step).max_load))
+        .i64("asperity_id", spots.iter().map(|s| s.asperity as i64))
+        .f64("approach_m", each(|s| s.approach_m))
+        .i64("first_id", spots.iter().map(|s| s.spot.parts[0] as i64))
+        .i64("second_id", spots.iter().map(|s| s.spot.parts[1] as i64))
+        .f64("first_radius_m", each(|s| s.radii_m[0]))
+        .f64("second_radius_m", each(|s| s.radii_m[1]))
+        .f64("release_m", each(|s| s.release_m))
+        .f64("x_m", each(|s| s.place_m[0]))
+        .f64("y_m", each(|s| s.place_m[1]))
+        .f64("height_m", each(|s| s.height_m))
+        .f64("radius_m", each(|s| s.radius_m))
+        .f64("offset_j", each(|s| s.offset_j))
+        .build()?)
+}
+
+/// Adds the centre of each stored contact spot. Numbers of merged spots go on during each unloading from that of its load reversal.
+fn with_centres(mut cycle: Cycle<()>, summits: &[Summit]) -> Cycle<()> {
+    let branch = |step: usize| cycle.steps[step].max_load.map(f64::to_bits);
+    let merged: HashMap<_, _> = cycle.merged.iter().map(|m| ((branch(m.step), m.asperity), m.spot.place_m)).collect();
+    let of_asperity = |i: usize| summits.get(i).map(|summit| [summit.x_m, summit.y_m]);
+    let of_merged = |step: usize, i: usize| merged.get(&(branch(step), i)).or_else(|| merged.get(&(None, i))).copied();
+    let centre = |step: usize, i: usize| of_asperity(i).or_else(|| of_merged(step, i));
+    let centres: Vec<_> = cycle.contacts.iter().map(|spot| spot.asperity.and_then(|i| centre(spot.step, i))).collect();
+    cycle.contacts.iter_mut().zip(centres).for_each(|(spot, centre)| spot.centroid_m = centre);
+    cycle
 }

@@ -2,20 +2,11 @@
 
 use super::KEPT_FOR;
 use super::asperities::{MANY, REST_EVERY};
-use super::asperity_tables::CONVERGED;
-use super::boundary_elements::FREE_STEP;
 use crate::constants::Constant;
 use crate::stages::step_count;
 
 /// Constants of cycles.
 pub(in crate::stages) const CONSTANTS: &[Constant] = &[
-    Constant::new(
-        "residual of a converged step",
-        &[CONVERGED],
-        "`h_rms`",
-        "Asperity model. A larger `residual_m` makes a step `unconverged`.",
-        "asperity_tables",
-    ),
     Constant::new(
         "asperities of a cycle with checkpoints",
         &[MANY as f64],
@@ -30,13 +21,6 @@ pub(in crate::stages) const CONSTANTS: &[Constant] = &[
         "`h_rms`",
         "Interval of the mean penetration, so that a path from a checkpoint has the same bytes.",
         "asperities",
-    ),
-    Constant::new(
-        "steps without adhesion",
-        &[FREE_STEP],
-        "of the steps",
-        "Steps of the table `adhesionless`, in those of the cycle.",
-        "boundary_elements",
     ),
     Constant::new(
         "steps of a cycle",

@@ -5,16 +5,16 @@ use super::super::extract::read_summits;
 use super::super::surface::scale;
 use super::lattice::{checked_lattice, extent};
 use crate::campaign::{Campaign, CycleUnit};
-use crate::model::{KeptContacts, Material, Nucleation, Opening};
+use crate::model::{Material, Nucleation, Opening};
 use crate::physics::PhysicsError;
-use crate::physics::elements::{Attraction, Elements, HeightMap, Options, Units};
+use crate::physics::elements::{Attraction, Elements, HeightMap, Options};
 use crate::physics::jkr::Asperity;
 use crate::physics::surface::summits::Summit;
 use crate::spec::CaseParams;
 use crate::store::hdf5::read_surface;
 
-/// The problem of a cycle on the grid of its case, and the grid points of the asperities.
-pub(super) fn setup(campaign: &Campaign, unit: &CycleUnit) -> Result<(Elements, Vec<usize>), StageError> {
+/// The surface of a cycle on the grid of its case.
+pub(super) fn setup(campaign: &Campaign, unit: &CycleUnit) -> Result<Elements, StageError> {
     let params = &campaign.cases[unit.case].case.params;
     let surface = &campaign.surfaces[unit.surface];
     let (header, heights) = read_surface(&campaign.surface_path(surface))?;
@@ -33,14 +33,13 @@ pub(super) fn setup(campaign: &Campaign, unit: &CycleUnit) -> Result<(Elements, 
         approach_step: elements.approach_step,
         halvings: elements.halvings,
         precision: elements.precision,
-        all_regions: params.cycle.contacts == KeptContacts::All,
+        contacts: params.cycle.contacts,
         ..Options::default()
     };
     let (length_m, is_periodic) = (header.length_m, header.periodic);
     let map = HeightMap { heights_m: heights.view(), length_m, is_periodic, shortest_wavelength_m, rms_height_m };
-    let problem = Elements::new(&map, &params.material, &params.cycle.max_load, &options)?;
-    let summits = summit_points(&list, &problem.units);
-    Ok((problem, summits))
+    let method = Elements::new(&map, &params.material, &params.cycle.max_load, &options)?;
+    Ok(method.with_summits(list.iter().map(|summit| [summit.x_m, summit.y_m])))
 }
 
 /// The JKR limit of a case on a surface with these asperities.
@@ -64,14 +63,4 @@ fn wu_gap(material: &Material, list: &[Summit]) -> Result<f64, PhysicsError> {
     radii.sort_by(f64::total_cmp);
     let Some(median) = radii.get(radii.len() / 2) else { return Err(PhysicsError::NoSummit) };
     Ok((-Asperity::new(*median, material)?.wu_jump_in_penetration(material.interaction_range_m)).max(0.0))
-}
-
-/// Grid points nearest to the asperities.
-fn summit_points(list: &[Summit], units: &Units) -> Vec<usize> {
-    let (n, own) = (units.points, units.own_points());
-    let at = |place: f64| {
-        let nearest = ((place - units.first_m) / units.spacing_m()).round() as usize;
-        if units.is_mirrored { nearest.min(own - 1) } else { nearest % n }
-    };
-    list.iter().map(|summit| at(summit.x_m) * n + at(summit.y_m)).collect()
 }

@@ -1,26 +1,28 @@
 //! cycle: load and unload one case on one surface, and write every step.
 
 mod asperities;
-mod asperity_tables;
 mod boundary_elements;
 mod constants;
 mod elements_setup;
-mod elements_tables;
 mod lattice;
 mod not_reached;
+mod tables;
 
 pub(super) use asperities::checked;
-pub use asperities::unload_again;
-pub use boundary_elements::unload_elements_again;
 pub(super) use constants::CONSTANTS;
 pub(super) use lattice::{Lattice, checked_lattice, enough_memory, lattice};
 
+use self::tables::Tables;
 use super::done::Outcome;
 use super::failure::in_the_way;
+use super::identity::Identity;
 use super::runner::{Context, Tasks};
 use super::{StageError, Watch};
 use crate::campaign::{Campaign, CycleUnit, Stage, Standing, SurfaceUnit, Unit};
 use crate::physics::LoopPosition;
+use crate::physics::cycle::{Cycle, Method};
+use crate::physics::half_space::Effort;
+use crate::spec::CaseParams;
 use crate::store::commit::Written;
 use crate::store::{Frame, parquet, read_halfway, write_halfway};
 use serde::Serialize;
@@ -87,7 +89,10 @@ impl Tasks for Cycles<'_> {
     }
 
     fn compute(&self, of: &CycleUnit) -> Result<Outcome, StageError> {
-        in_the_way(self.context.campaign, &of.cycle()).and_then(|()| compute(self.context.campaign, of, self.context.watch))
+        in_the_way(self.context.campaign, &of.cycle()).and_then(|()| {
+            let Context { campaign, watch, .. } = self.context;
+            compute(CycleTask { campaign, unit: of, watch })
+        })
     }
 
     fn cycles<'a>(&'a self, of: &'a CycleUnit) -> Vec<&'a CycleUnit> {
@@ -101,12 +106,69 @@ impl Tasks for Cycles<'_> {
     }
 }
 
+/// A cycle that is computed.
+#[derive(Clone, Copy)]
+struct CycleTask<'a> {
+    campaign: &'a Campaign,
+    unit: &'a CycleUnit,
+    watch: &'a dyn Watch,
+}
+
+/// What a method has computed: a cycle, what it writes beside the tables of every method, and the units of the dimensionless columns.
+struct Computed {
+    method: &'static str,
+    /// Name and number of the unknowns.
+    size: (&'static str, u64),
+    cycle: Cycle<()>,
+    tables: Vec<Frame>,
+    files: Vec<Written>,
+    load_unit_n: f64,
+    area_m2: f64,
+    rms_height_m: f64,
+}
+
+impl<'a> CycleTask<'a> {
+    fn params(self) -> &'a CaseParams {
+        &self.campaign.cases[self.unit.case].case.params
+    }
+
+    /// Follows the cycle from its last checkpoint, if there is one.
+    fn follow<M: Method>(self, method: &M) -> Result<Cycle<M::State>, StageError> {
+        let progress = Progress::of(self.watch, &self.unit.id);
+        let mut checkpoints = Checkpoints::of(self.campaign, self.unit, self.watch);
+        let checkpoint = checkpoints.read();
+        let outcome = method.run_from(checkpoint, &mut |at| checkpoints.keep(at), &|at| progress.reached(at));
+        progress.end();
+        Ok(outcome?)
+    }
+}
+
 /// Computes a cycle and writes its tables.
-fn compute(campaign: &Campaign, unit: &CycleUnit, watch: &dyn Watch) -> Result<Outcome, StageError> {
+fn compute(task: CycleTask<'_>) -> Result<Outcome, StageError> {
+    let CycleTask { campaign, unit, watch } = task;
     let path = campaign.cycle_dir(unit);
     std::fs::create_dir_all(&path).map_err(|source| StageError::Folder { path, source })?;
+    let by_elements = task.params().by_elements();
+    let mut computed = if by_elements { boundary_elements::run(&task)? } else { asperities::run(&task)? };
+    let max_loads = &task.params().cycle.max_load;
+    let of_all = Tables { of: Identity::of(campaign, unit), computed: &computed, max_loads };
+    let mut files = write_tables(campaign, unit, &[of_all.contacts()?, of_all.events()?, of_all.steps()?])?;
+    files.extend(write_tables(campaign, unit, &computed.tables)?);
+    files.append(&mut computed.files);
+    let unreached = std::mem::take(&mut computed.cycle.unreached);
+    let unreached: Vec<_> = unreached.into_iter().map(|(at, error)| (max_loads[at], StageError::from(error).to_string())).collect();
+    files.extend(not_reached::record(campaign, unit, &unreached, watch)?);
+    Ok(Outcome { files, effort: effort(&computed) })
+}
+
+/// Unloads again from a load reversal of a finished cycle.
+///
+/// # Errors
+/// The files of the cycle and of its surface must be complete, and contain that load.
+pub fn unload_again(campaign: &Campaign, unit: &CycleUnit, max_load: f64) -> Result<Cycle<()>, StageError> {
     let by_elements = campaign.cases[unit.case].case.params.by_elements();
-    if by_elements { boundary_elements::run(campaign, unit, watch) } else { asperities::run(campaign, unit, watch) }
+    let again = if by_elements { boundary_elements::unload_again } else { asperities::unload_again };
+    again(campaign, unit, max_load)
 }
 
 /// Writes the tables of a cycle.
@@ -116,9 +178,23 @@ fn write_tables(campaign: &Campaign, unit: &CycleUnit, tables: &[Frame]) -> Resu
     tables.iter().map(write).collect()
 }
 
-/// Counts of the effort of a cycle, for its provenance record.
-fn effort_of(counts: &[(&str, u64)]) -> Map<String, Value> {
-    counts.iter().map(|(name, count)| ((*name).to_owned(), (*count).into())).collect()
+/// Effort of a cycle, for its provenance record.
+fn effort(computed: &Computed) -> Map<String, Value> {
+    let Computed { cycle, size: (name, size), .. } = computed;
+    let all = cycle.steps.iter().fold(Effort::default(), |mut sum, step| {
+        sum += step.numerics.effort;
+        sum
+    });
+    let counts = [
+        (*name, *size),
+        ("step_count", cycle.steps.len() as u64),
+        ("event_count", cycle.events.len() as u64),
+        ("iteration_count", all.iterations),
+        ("pair_evaluation_count", all.pairs),
+        ("product_count", all.products),
+        ("transform_count", all.transforms),
+    ];
+    counts.into_iter().map(|(name, count)| (name.to_owned(), count.into())).collect()
 }
 
 /// Progress of a cycle, of which the watch is given the increments.

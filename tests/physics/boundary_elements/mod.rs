@@ -45,7 +45,7 @@ fn settle(problem: &Problem, state: &mut State, mut find: impl FnMut(&mut State)
 
 /// Settings of a path with its steps halved as by default.
 fn settings(max_loads: Vec<f64>, step: f64) -> Settings {
-    Settings { max_loads, step, located: 0.03, halvings: 6, accuracy: accuracy(1e-4), all_regions: false }
+    Settings { max_loads, step, located: 0.03, halvings: 6, accuracy: accuracy(1e-4), all_regions: false, summits: Vec::new() }
 }
 
 fn cycle(problem: &Problem, max_load: f64, step: f64, located: f64) -> Cycle {

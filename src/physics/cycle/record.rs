@@ -1,9 +1,10 @@
-//! Tables of a cycle: steps, contacts and events.
+//! What a cycle consists of, for every method and in SI units: steps, contacts, events, maps and load reversals.
 
-use crate::contact::event::Event;
+use crate::LoopError;
 use crate::contact::merged_spot::Merged;
+use crate::contact::problem::Totals;
 use crate::contact::state::State;
-use crate::event_kind::EventCounts;
+use crate::event_kind::{EventCounts, EventKind, RegionChange};
 use crate::half_space::Effort;
 use crate::model::KeptContacts;
 use serde::{Deserialize, Serialize};
@@ -59,15 +60,21 @@ pub struct StepCounts {
     pub events: EventCounts,
 }
 
-/// Accuracy and effort of one step.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// Accuracy and effort of one step. A quantity that a method does not have is missing.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct StepNumerics {
+    /// True for an equilibrium to the accuracy of the method.
+    pub is_converged: bool,
     /// Largest residual \[m\].
-    pub residual_m: f64,
+    pub residual_m: Option<f64>,
     /// Largest residual of the global problem before a global solve, since the step before \[m\].
-    pub drift_m: f64,
+    pub drift_m: Option<f64>,
     /// Smallest eigenvalue of the tangent, as in [`State::stability`].
-    pub stability: f64,
+    pub stability: Option<f64>,
+    /// Root mean square of the residual, relative to the maximum tension.
+    pub relative_residual: Option<f64>,
+    /// Stiffness `dF/dΔ` between events \[N/m\].
+    pub stiffness_n_m: Option<f64>,
     /// Computational effort since the step before.
     pub effort: Effort,
 }
@@ -101,23 +108,100 @@ pub struct Step {
     pub numerics: StepNumerics,
 }
 
-/// Contact spot or absorbed asperity at a stored step.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+/// Contact spot or absorbed asperity at a stored step. A quantity that a method does not have is missing.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Contact {
     /// Number of the step.
     pub step: usize,
     /// The asperity.
-    pub asperity: usize,
+    pub asperity: Option<usize>,
     /// True if it is absorbed by a larger spot.
     pub covered: bool,
-    /// Contact radius \[m\]; 0 if absorbed.
+    /// Contact radius, or that of a disc of the same area \[m\]; 0 if absorbed.
     pub contact_radius_m: f64,
     /// Load \[N\]; 0 if absorbed.
     pub load_n: f64,
-    /// Local penetration \[m\]; `None` if absorbed.
+    /// Local penetration \[m\].
     pub penetration_m: Option<f64>,
-    /// Displacement ŵ by the other spots \[m\]; `None` if absorbed.
+    /// Displacement ŵ by the other spots \[m\].
     pub interaction_m: Option<f64>,
+    /// Centre or centroid along x and y \[m\].
+    pub centroid_m: Option<[f64; 2]>,
+    /// Area, length of the edge and number of asperities of a region.
+    pub region: Option<RegionShape>,
+}
+
+/// Shape of a connected region of contact.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct RegionShape {
+    /// Area \[m²\].
+    pub area_m2: f64,
+    /// Length of the edge \[m\].
+    pub perimeter_m: f64,
+    /// Number of asperities in it.
+    pub summits: u32,
+}
+
+/// A sudden change of the contact, with its load, area and energy.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Event {
+    /// Number of the step at or before which it happens.
+    pub step: usize,
+    /// Kind, by which it is counted.
+    pub kind: EventKind,
+    /// Asperity that changes state, or change of a region.
+    pub site: Site,
+    /// Mean penetration Δ \[m\].
+    pub approach_m: f64,
+    /// Number of its avalanche, counted along the branch.
+    pub avalanche: u64,
+    /// Load and area before.
+    pub before: Totals,
+    /// Load and area after.
+    pub after: Totals,
+    /// Dissipated energy: decrease of the potential \[J\].
+    pub energy_lost_j: f64,
+}
+
+/// Where an event happens.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Site {
+    /// An asperity, by its number.
+    Asperity(usize),
+    /// A region, by what happens to it.
+    Region(RegionChange),
+}
+
+impl Event {
+    /// Word of the kind in the tables.
+    #[must_use]
+    pub fn word(&self) -> &'static str {
+        match self.site {
+            Site::Asperity(_) => self.kind.word(),
+            Site::Region(change) => change.word(),
+        }
+    }
+
+    /// The asperity, if it happens at one.
+    #[must_use]
+    pub fn asperity(&self) -> Option<usize> {
+        if let Site::Asperity(number) = self.site { Some(number) } else { None }
+    }
+}
+
+/// Gap and pressure at a step, at every `stride`-th grid point along both sides.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Map {
+    /// Number of the step.
+    pub step: usize,
+    /// Distance of two points along a side, in grid points.
+    pub stride: usize,
+    /// True for a further map along a branch, not at a load reversal or at the maximum tensile load.
+    pub is_further: bool,
+    /// Gap \[m\].
+    pub gap_m: Vec<f32>,
+    /// Pressure, compression positive \[Pa\].
+    pub pressure_pa: Vec<f32>,
 }
 
 /// Merged spot, its number, and the step at which it was created.
@@ -133,22 +217,48 @@ pub struct MergedAt {
     pub spot: Merged,
 }
 
-/// Results of a cycle: steps, stored spots, and events with the number of their step.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Cycle {
+/// Results of a cycle, with the states of its method at the load reversals.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Cycle<S = State> {
     /// Steps; the number of a step is its index.
     pub steps: Vec<Step>,
     /// Spots at the stored steps.
     pub contacts: Vec<Contact>,
-    /// Number of the step, and event.
-    pub events: Vec<(usize, Event)>,
+    /// Events.
+    pub events: Vec<Event>,
     /// Merged spots, by branch in the order of their numbers.
     pub merged: Vec<MergedAt>,
-    /// Step and state of each load reversal.
-    pub turning: Vec<(usize, State)>,
+    /// Maps, of a method that has them.
+    pub maps: Vec<Map>,
+    /// Step and state of each load reversal, sufficient to unload from there.
+    pub turning: Vec<(usize, S)>,
     /// Load reversals without a result, by their place in the settings, with the error.
     #[serde(skip)]
-    pub unreached: Vec<(usize, String)>,
+    pub unreached: Vec<(usize, LoopError)>,
+}
+
+impl<S> Default for Cycle<S> {
+    fn default() -> Self {
+        Self {
+            steps: Vec::new(),
+            contacts: Vec::new(),
+            events: Vec::new(),
+            merged: Vec::new(),
+            maps: Vec::new(),
+            turning: Vec::new(),
+            unreached: Vec::new(),
+        }
+    }
+}
+
+impl<S> Cycle<S> {
+    /// The cycle without the states, which the method alone reads.
+    #[must_use]
+    pub fn without_states(self) -> Cycle<()> {
+        let Self { steps, contacts, events, merged, maps, turning, unreached } = self;
+        let turning = turning.into_iter().map(|(step, _)| (step, ())).collect();
+        Cycle { steps, contacts, events, merged, maps, turning, unreached }
+    }
 }
 
 impl Cycle {
@@ -159,10 +269,9 @@ impl Cycle {
         Self {
             steps: self.steps[loading..].to_vec(),
             contacts: self.contacts.into_iter().filter_map(|c| Some(Contact { step: rest(c.step)?, ..c })).collect(),
-            events: self.events.into_iter().filter_map(|(step, event)| Some((rest(step)?, event))).collect(),
+            events: self.events.into_iter().filter_map(|e| Some(Event { step: rest(e.step)?, ..e })).collect(),
             merged: self.merged.into_iter().filter_map(|m| Some(MergedAt { step: rest(m.step)?, ..m })).collect(),
-            turning: Vec::new(),
-            unreached: Vec::new(),
+            ..Self::default()
         }
     }
 
@@ -172,7 +281,7 @@ impl Cycle {
         let Some(first) = self.steps.iter().position(of) else { return };
         self.steps.truncate(first);
         self.contacts.retain(|contact| contact.step < first);
-        self.events.retain(|(step, _)| *step < first);
+        self.events.retain(|event| event.step < first);
         self.merged.retain(|merged| merged.step < first);
     }
 }
