@@ -44,6 +44,11 @@ fn setups() -> Vec<(&'static str, Setup, Pinned)> {
     ]
 }
 
+/// The pinned results as a text, which a [version](crate::versions) of the method has.
+pub fn pinned() -> String {
+    setups().into_iter().map(|(what, _, pinned)| format!("{what} {pinned:?}\n")).collect()
+}
+
 #[test]
 fn reg_whole_cycles() {
     for (what, (zeta, realization, rules, adhesion, patch), (events, area, pull_off, loss)) in setups() {

@@ -38,6 +38,7 @@ mod texture;
 mod theory;
 mod union;
 mod validity;
+mod versions;
 
 /// Values made without the program.
 mod reference {

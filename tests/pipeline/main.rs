@@ -26,6 +26,8 @@ mod labels;
 #[cfg(feature = "stats")]
 mod losses;
 #[cfg(feature = "stats")]
+mod manifest;
+#[cfg(feature = "stats")]
 mod panels;
 mod profiles;
 #[cfg(feature = "stats")]

@@ -73,6 +73,11 @@ fn results(problem: &Problem, cycle: &Cycle) -> [f64; 5] {
     [cycle.events.len() as f64, turn.totals.contact as f64 / points, turn.approach / side, tension / points, area / points / side]
 }
 
+/// The pinned results as a text, which a [version](crate::versions) of the method has.
+pub fn pinned() -> String {
+    format!("{PINNED:?}")
+}
+
 /// Two load reversals; results of the first and of both loops.
 #[test]
 fn reg_whole_cycles_by_boundary_elements() {

@@ -1,7 +1,7 @@
 //! Adhesive boundary elements: operators, exact solutions, energy balance and the independence of the path from grid, step and threads.
 
 mod front;
-mod golden;
+pub mod golden;
 mod johnson;
 mod operator;
 mod peer;
