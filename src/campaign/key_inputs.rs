@@ -4,7 +4,8 @@
 
 use super::{Campaign, CycleUnit, Stage, Standing, SurfaceUnit};
 use crate::keys::{canonical, key_of_text, preimage};
-use crate::physics::cycle::{Asperities, Method};
+use crate::physics::asperities::Asperities;
+use crate::physics::cycle::Method;
 use crate::physics::elements::Elements;
 use crate::spec::{Case, CaseParams, MEASURED, Spec, SurfaceParams};
 use serde_json::{Map, Value, json};

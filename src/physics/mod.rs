@@ -1,7 +1,80 @@
-//! Physics: surfaces, JKR asperities, elastic interaction, equilibrium and path of a cycle.
+//! Adhesive contact of rough surfaces: loading, unloading, and the energy that is dissipated in between.
 //!
-//! This module opens no files and is independent of the stages. All quantities are in SI units; compression and penetration are positive.
+//! Three calls of a library user: a surface ([`surface`]), a method on it ([`asperities::Asperities`] or [`elements::Elements`]), and its
+//! [`run`](cycle::Method::run), which returns a [`cycle::Cycle`]. All quantities are in SI units; compression and penetration are positive. The crate opens no
+//! files. Every method implements [`cycle::Method`].
+//!
+//! # A loop of the asperity model
+//! ```
+//! use hysteron_physics::asperities::{Asperities, Options};
+//! use hysteron_physics::cycle::Method;
+//! use hysteron_physics::model::{Amplitudes, Material, Normalization};
+//! use hysteron_physics::surface::{HeightMap, spectrum::Spectrum};
+//! use hysteron_physics::surface::synthesis::{realization_seed, synthesize};
+//!
+//! let (normalization, amplitudes) = (Normalization::Spectrum, Amplitudes::Fixed);
+//! let spectrum = Spectrum { length_m: 1e-3, rms_height_m: 5e-6, hurst: 0.8, magnification: 6, normalization, amplitudes };
+//! let surface = synthesize(&spectrum, &realization_seed(1, 0), 48);
+//! let map = HeightMap {
+//!     heights_m: surface.heights_m.view(),
+//!     length_m: 1e-3,
+//!     is_periodic: true,
+//!     shortest_wavelength_m: 1e-3 / 6.0,
+//!     rms_height_m: 5e-6,
+//! };
+//! let material = Material { contact_modulus_pa: 1e6, work_of_adhesion_j_m2: 0.01, interaction_range_m: 1e-9 };
+//! let options = Options { approach_step: 0.05, ..Options::default() };
+//! let cycle = Asperities::new(&map, &material, &[0.002], &options)?.run()?;
+//! let pull_off_n = cycle.steps.iter().map(|step| -step.least_load_n).fold(0.0, f64::max);
+//! let dissipated_j: f64 = cycle.events.iter().map(|event| event.energy_lost_j).sum();
+//! assert!(pull_off_n > 0.0 && dissipated_j > 0.0);
+//! # Ok::<(), hysteron_physics::PhysicsError>(())
+//! ```
+//!
+//! # A loop by boundary elements
+//! A measured height map that is not periodic is continued by its mirror images; loads, areas and energies are those of the map.
+//! ```
+//! use hysteron_physics::cycle::Method;
+//! use hysteron_physics::elements::{Elements, Options};
+//! use hysteron_physics::model::Material;
+//! use hysteron_physics::surface::HeightMap;
+//! use ndarray::Array2;
+//!
+//! let heights_m = Array2::from_shape_fn((16, 16), |(i, j)| 2e-7 * ((0.4 * i as f64).sin() + (0.5 * j as f64 + 1.0).sin()));
+//! let (length_m, shortest_wavelength_m, rms_height_m) = (1.6e-5, 1.2e-5, 2e-7);
+//! let map = HeightMap { heights_m: heights_m.view(), length_m, is_periodic: false, shortest_wavelength_m, rms_height_m };
+//! let material = Material { contact_modulus_pa: 1e6, work_of_adhesion_j_m2: 0.002, interaction_range_m: 1e-9 };
+//! let cycle = Elements::new(&map, &material, &[0.01], &Options { points: 32, approach_step: 0.1, ..Options::default() })?.run()?;
+//! let largest_m2 = cycle.steps.iter().map(|step| step.area_m2).fold(0.0, f64::max);
+//! assert!(largest_m2 > 0.0 && largest_m2 < length_m * length_m && !cycle.maps.is_empty());
+//! # Ok::<(), hysteron_physics::PhysicsError>(())
+//! ```
+//!
+//! # Events, progress and checkpoints
+//! ```
+//! # use hysteron_physics::elements::{Elements, Options};
+//! # use hysteron_physics::model::Material;
+//! # use hysteron_physics::surface::HeightMap;
+//! # use ndarray::Array2;
+//! use hysteron_physics::EventKind;
+//! use hysteron_physics::cycle::Method;
+//!
+//! # let heights_m = Array2::from_shape_fn((16, 16), |(i, j)| 2e-7 * ((0.4 * i as f64).sin() + (0.5 * j as f64 + 1.0).sin()));
+//! # let (length_m, shortest_wavelength_m, rms_height_m) = (1.6e-5, 1.2e-5, 2e-7);
+//! # let map = HeightMap { heights_m: heights_m.view(), length_m, is_periodic: false, shortest_wavelength_m, rms_height_m };
+//! # let material = Material { contact_modulus_pa: 1e6, work_of_adhesion_j_m2: 0.002, interaction_range_m: 1e-9 };
+//! let method = Elements::new(&map, &material, &[0.01], &Options { points: 32, approach_step: 0.1, ..Options::default() })?;
+//! let mut checkpoints = 0;
+//! let cycle = method.run_from(None, &mut |_| checkpoints += 1, &|at| assert!(at.done <= 1.0))?;
+//! let jumps = cycle.events.iter().filter(|event| event.kind == EventKind::JumpIn).count();
+//! assert!(jumps > 0 && checkpoints > 0);
+//! for event in &cycle.events {
+//!     println!("{} at Δ = {:e} m: {:e} J", event.word(), event.approach_m, event.energy_lost_j);
+//! }
+//! # Ok::<(), hysteron_physics::PhysicsError>(())
+//! ```
 
+pub mod asperities;
 pub mod boundary_elements;
 pub mod constants;
 pub mod contact;

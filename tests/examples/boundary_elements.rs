@@ -8,7 +8,8 @@ use hysteron::model::{Amplitudes, Material, Normalization};
 use hysteron::physics::PhysicsError;
 use hysteron::physics::boundary_elements::cycle::Turning;
 use hysteron::physics::cycle::{Cycle, Method};
-use hysteron::physics::elements::{Elements, HeightMap, Options};
+use hysteron::physics::elements::{Elements, Options};
+use hysteron::physics::surface::HeightMap;
 use hysteron::physics::surface::spectrum::Spectrum;
 use hysteron::physics::surface::synthesis::{realization_seed, synthesize};
 

@@ -1,7 +1,8 @@
 //! Versions of the methods: pinned results change with a new version, and with it the keys of all cycles.
 
 use crate::{boundary_elements, golden};
-use hysteron::physics::cycle::{Asperities, Method};
+use hysteron::physics::asperities::Asperities;
+use hysteron::physics::cycle::Method;
 use hysteron::physics::elements::Elements;
 
 /// Method, version and BLAKE3 of the pinned results that it has. A new version gets a new row; no row changes.

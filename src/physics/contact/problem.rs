@@ -31,6 +31,20 @@ pub struct Rules {
     pub slips: Slips,
 }
 
+/// The program's defaults.
+impl Default for Rules {
+    fn default() -> Self {
+        Self {
+            interaction: Kind::Spots,
+            boundary: Boundary::Periodic,
+            coalescence: Coalescence::Merge,
+            jump_in: JumpIn::Wu,
+            allow_low_tabor: false,
+            slips: Slips::NONE,
+        }
+    }
+}
+
 /// Asperities over a half-space: the data that are constant along the path, except for merged spots.
 ///
 /// Module `contact::merging` adds and describes the merged spots.

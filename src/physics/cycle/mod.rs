@@ -113,47 +113,6 @@ impl Walk for AsperityWalk<'_> {
     }
 }
 
-/// Versions of cycles of the asperity model.
-const VERSIONS: &[(u32, &str)] = &[
-    (7, "free asperities are followed from three length scales before jump-in"),
-    (8, "equilibria and fast sums to 1e-8 rms heights"),
-    (9, "local problems to 1e-7 rms heights with the contacts outside"),
-];
-
-/// A cycle of the asperity model.
-pub struct Asperities {
-    /// Problem.
-    pub problem: Problem,
-    /// Settings.
-    pub settings: Settings,
-}
-
-impl Method for Asperities {
-    type Checkpoint = Halfway;
-    type State = State;
-
-    const NAME: &'static str = "asperities";
-    const VERSIONS: &'static [(u32, &'static str)] = VERSIONS;
-
-    fn run_from(
-        &self,
-        halfway: Option<Halfway>,
-        keep: &mut (dyn FnMut(&Halfway) + Send),
-        progress: &(dyn Fn(LoopPosition) + Sync),
-    ) -> Result<Cycle, PhysicsError> {
-        run_from(&self.problem, &self.settings, halfway, keep, progress)
-    }
-
-    fn unload_from(&self, reversal: usize, state: State) -> Result<Cycle, PhysicsError> {
-        let max_load = self.settings.max_loads.get(reversal).copied().unwrap_or_default();
-        unload_from(&self.problem, &self.settings, max_load, state)
-    }
-
-    fn size(&self) -> (&'static str, u64) {
-        ("asperity_count", self.problem.len() as u64)
-    }
-}
-
 /// Unloads from a stored state at a load reversal, where `max_load` is its `F/(E* A0)`.
 ///
 /// The steps are identical to those of [`run`] from there.

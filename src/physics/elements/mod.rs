@@ -22,10 +22,11 @@ use crate::boundary_elements::minimise::Accuracy;
 use crate::boundary_elements::resample::resample_from;
 use crate::cycle::{Cycle, Method};
 use crate::model::{KeptContacts, Material};
+use crate::surface::HeightMap;
 use crate::surface::modes::mirrored;
 use crate::theory::flattening::measured_flattening;
 use crate::{LoopPosition, PhysicsError};
-use ndarray::{Array2, ArrayView2};
+use ndarray::Array2;
 
 /// Grid points per shortest wavelength, at least, if [`Options::points`] is 0.
 pub const PER_WAVELENGTH: f64 = 16.0;
@@ -55,21 +56,6 @@ const VERSIONS: &[(u32, &str)] = &[
         "loads are searched off the path and do not change one another; area of the scan without its mirror images. One load on a periodic surface: as 10",
     ),
 ];
-
-/// Heights of a square surface.
-#[derive(Debug, Clone, Copy)]
-pub struct HeightMap<'a> {
-    /// Heights \[m\]: rows along x, columns along y, as many of both.
-    pub heights_m: ArrayView2<'a, f64>,
-    /// Side \[m\].
-    pub length_m: f64,
-    /// True if the surface is one period. Otherwise it is continued by its mirror images, and loads, areas and energies are those of the surface.
-    pub is_periodic: bool,
-    /// Shortest wavelength \[m\].
-    pub shortest_wavelength_m: f64,
-    /// Rms height \[m\], the unit of the steps of mean penetration.
-    pub rms_height_m: f64,
-}
 
 /// A surface that boundary elements load and unload.
 pub struct Elements {

@@ -4,6 +4,7 @@ pub mod artefacts;
 pub mod band_limited;
 mod constants;
 pub(crate) mod continuation;
+mod height_map;
 mod infill;
 mod lattice;
 mod levelling;
@@ -25,3 +26,4 @@ pub mod texture;
 pub mod tip;
 
 pub(super) use constants::CONSTANTS;
+pub use height_map::HeightMap;

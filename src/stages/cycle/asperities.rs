@@ -6,9 +6,10 @@ use super::super::surface::{Scale, scale};
 use super::super::{StageError, step_count};
 use super::{Computed, CycleTask};
 use crate::campaign::{Campaign, CycleUnit};
+use crate::physics::asperities::{Asperities, Options};
 use crate::physics::contact::rows::Kept;
 use crate::physics::contact::{Merged, Problem, Rules, State, Status};
-use crate::physics::cycle::{Asperities, Cycle, Method, Settings};
+use crate::physics::cycle::{Cycle, Method};
 use crate::physics::surface::summits::Summit;
 use crate::schema;
 use crate::spec::CaseParams;
@@ -16,8 +17,8 @@ use crate::store::{Frame, parquet};
 use std::collections::HashMap;
 use std::path::Path;
 
-/// The contact problem of a case on the asperities of a table.
-pub(super) fn problem(params: &CaseParams, scale: Scale, summits: &[Summit]) -> Result<Problem, StageError> {
+/// The asperity model of a case on the asperities of a table.
+fn method(params: &CaseParams, scale: Scale, summits: &[Summit], max_loads: &[f64]) -> Result<Asperities, StageError> {
     let rules = Rules {
         interaction: params.model.interaction,
         boundary: params.model.boundary,
@@ -26,29 +27,25 @@ pub(super) fn problem(params: &CaseParams, scale: Scale, summits: &[Summit]) -> 
         allow_low_tabor: params.model.allow_low_tabor,
         slips: params.model.slips(),
     };
-    Ok(Problem::new(summits, scale.length_m, scale.rms_height_m, params.material, rules)?)
+    let options = Options { rules, approach_step: params.cycle.approach_step, contacts: params.cycle.contacts };
+    Ok(Asperities::of_summits(summits, (scale.length_m, scale.rms_height_m), &params.material, max_loads, &options)?)
 }
 
-/// The contact problem of a case, whose number of steps is limited.
+/// The asperity model of a case, whose number of steps is limited.
 ///
 /// # Errors
 /// Asperities, a Tabor parameter or a number of steps that the asperity model refuses.
-pub(in crate::stages) fn checked(params: &CaseParams, scale: Scale, summits: &[Summit]) -> Result<Problem, StageError> {
-    let problem = problem(params, scale, summits)?;
-    step_count::bound(&problem, summits, params)?;
-    Ok(problem)
+pub(in crate::stages) fn checked(params: &CaseParams, scale: Scale, summits: &[Summit]) -> Result<Asperities, StageError> {
+    let method = method(params, scale, summits, &params.cycle.max_load)?;
+    step_count::bound(&method.problem, summits, params)?;
+    Ok(method)
 }
-
-/// Asperities from which on a cycle has checkpoints, and their interval of the mean penetration over the rms height.
-pub(super) const MANY: usize = 20_000;
-pub(super) const REST_EVERY: f64 = 0.1;
 
 pub(super) fn run(task: &CycleTask<'_>) -> Result<Computed, StageError> {
     let (campaign, unit, params) = (task.campaign, task.unit, task.params());
     let surface = &campaign.surfaces[unit.surface];
     let summits = read_summits(&campaign.asperities_path(surface))?;
-    let problem = checked(params, scale(campaign, surface)?, &summits)?;
-    let method = Asperities { problem, settings: settings(params, summits.len()) };
+    let method = checked(params, scale(campaign, surface)?, &summits)?;
     let cycle = task.follow(&method)?;
     let (of, problem) = (Identity::of(campaign, unit), &method.problem);
     let tables = vec![turning(of, &cycle, problem, &params.cycle.max_load)?, merged(of, &cycle)?];
@@ -72,7 +69,7 @@ pub(super) fn run(task: &CycleTask<'_>) -> Result<Computed, StageError> {
 pub(super) fn unload_again(campaign: &Campaign, unit: &CycleUnit, max_load: f64) -> Result<Cycle<()>, StageError> {
     let params = &campaign.cases[unit.case].case.params;
     let summits = read_summits(&campaign.asperities_path(&campaign.surfaces[unit.surface]))?;
-    let problem = problem(params, scale(campaign, &campaign.surfaces[unit.surface])?, &summits)?;
+    let method = method(params, scale(campaign, &campaign.surfaces[unit.surface])?, &summits, &[max_load])?;
     let path = campaign.cycle_dir(unit).join("turning.parquet");
     let frame = parquet::read_table(&path, &schema::TURNING)?;
     let (loads, approaches) = (frame.f64("max_load")?, frame.f64("approach_m")?);
@@ -93,8 +90,7 @@ pub(super) fn unload_again(campaign: &Campaign, unit: &CycleUnit, max_load: f64)
         return Err(StageError::NoTurning { max_load, path, kept: format!("the loads {kept:?}") });
     };
     let merged = merged_rows(&campaign.cycle_dir(unit).join("merged.parquet"), counts[rows[0]] as usize)?;
-    let state = State::restored(&problem, approach, &merged, &rows.iter().map(kept).collect::<Vec<_>>())?;
-    let method = Asperities { problem, settings: Settings { max_loads: vec![max_load], ..settings(params, summits.len()) } };
+    let state = State::restored(&method.problem, approach, &merged, &rows.iter().map(kept).collect::<Vec<_>>())?;
     Ok(with_centres(method.unload_from(0, state)?.without_states(), &summits))
 }
 
@@ -118,15 +114,6 @@ fn merged_rows(path: &Path, count: usize) -> Result<Vec<Merged>, StageError> {
         approach_m: approach[k],
     };
     Ok((0..count.min(frame.row_count())).map(row).collect())
-}
-
-fn settings(params: &CaseParams, asperities: usize) -> Settings {
-    Settings {
-        max_loads: params.cycle.max_load.clone(),
-        approach_step: params.cycle.approach_step,
-        contacts: params.cycle.contacts,
-        rest_every: (asperities >= MANY).then_some(REST_EVERY),
-    }
 }
 
 fn turning(of: Identity<'_>, cycle: &Cycle, problem: &Problem, loads: &[f64]) -> Result<Frame, StageError> {
