@@ -58,7 +58,7 @@ pub struct Foreign {
 enum Way {
     /// The Python package SurfaceTopography reads it.
     Python,
-    /// The same, with a unit that it may not write as NetCDF.
+    /// Python text, with a unit that cannot be written as NetCDF.
     PythonText,
     /// Gwyddion reads it.
     Gwyddion,
@@ -229,7 +229,7 @@ pub fn detect(first_bytes: &[u8]) -> Option<Found> {
     }
 }
 
-/// A zip archive by the name of its first part, which stands behind thirty bytes.
+/// A zip archive, recognised by the name of its first part, at byte 30.
 fn archive(first_bytes: &[u8]) -> Found {
     let name = first_bytes.get(30..).unwrap_or_default();
     let length = usize::from(first_bytes.get(26).copied().unwrap_or_default());

@@ -36,7 +36,7 @@ pub fn digest_of_file(path: &std::path::Path) -> std::io::Result<String> {
     Ok(hasher.finalize().to_hex().to_string())
 }
 
-/// The first digits of a key, as they stand in ids.
+/// First digits of a key, as used in ids.
 #[must_use]
 pub fn short(key: &str) -> &str {
     key.get(..8).unwrap_or(key)

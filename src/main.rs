@@ -1,4 +1,4 @@
-//! The program: what is asked for, done, and said.
+//! Entry point of the program.
 
 use clap::Parser;
 use hysteron::cli::{Arguments, perform};

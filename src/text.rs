@@ -21,7 +21,7 @@ pub fn in_words(seconds: f64) -> String {
     humantime::format_duration(rounded).to_string()
 }
 
-/// Lines of at most so many columns: the first begins with `first`, later ones with `indent`.
+/// Lines of at most `columns` columns: the first begins with `first`, later ones with `indent`.
 fn filled<'a>(first: &str, indent: &str, words: impl Iterator<Item = &'a str>, columns: usize) -> String {
     let mut lines: Vec<String> = Vec::new();
     for word in words {

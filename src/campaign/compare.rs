@@ -1,4 +1,5 @@
-//! Why a unit is to be computed: what its key is made of, field by field, beside the nearest unit that is done.
+//! Reason for computing a task: its key inputs, field by field, compared with those of the most similar
+//! finished task.
 
 use super::leftover::is_id;
 use super::{Campaign, REPORT_PAGE, STATISTICS, Stage, Standing, Unit};
@@ -17,9 +18,9 @@ pub struct Explanation {
     pub id: String,
     /// Status: a word of [`Standing`], or `orphan` if the spec does not name the task.
     pub state: &'static str,
-    /// Why, where there is more to say.
+    /// Reason, if the status has one.
     pub why: Option<String>,
-    /// The nearest unit: one that is done, or for an orphan one that the spec names.
+    /// Most similar task: a finished one, or for an unreferenced task one of the spec.
     pub nearest: Option<String>,
     /// Differences.
     pub differences: Vec<Difference>,
@@ -45,7 +46,7 @@ type Fields = BTreeMap<(usize, String), Value>;
 const OTHER_REALIZATION: usize = 100;
 
 impl Campaign {
-    /// Explains the units of an id; none if neither the spec nor the folder knows it.
+    /// Explains the tasks with an id; empty if neither the spec nor the folder has it.
     #[must_use]
     pub fn explain(&self, id: &str) -> Vec<Explanation> {
         let mut found = Vec::new();
@@ -106,7 +107,7 @@ impl Campaign {
         }
     }
 
-    /// A unit that is done and that the spec does not name, beside the nearest that it names.
+    /// A finished task that the spec does not reference, compared with the most similar task of the spec.
     fn orphan(&self, stage: Stage, id: &str) -> Option<Explanation> {
         let Found::Whole(receipt) = read_receipt(&self.receipt_path(&Unit { stage, id, key: "" })) else { return None };
         let here = fields(&receipt.preimages);
@@ -155,7 +156,8 @@ fn apart(here: Option<&Value>, there: Option<&Value>) -> (Option<Value>, Option<
     (only(&mine, &its), only(&its, &mine))
 }
 
-/// The fields of the preimages of a unit, by the stage that reads them first. Keys of other units stand for what those are made of.
+/// Fields of the key inputs of a task, by the stage that reads them first. The key of another task stands for
+/// the inputs of that task.
 pub(super) fn fields(preimages: &Map<String, Value>) -> Fields {
     let mut all = Fields::new();
     for (place, stage) in Stage::ALL.into_iter().enumerate() {

@@ -31,7 +31,7 @@ pub(super) struct HashedCase {
 impl Hashed {
     pub(super) fn all(spec: &Spec, counts: &[u32]) -> Self {
         let mut kinds: HashMap<Canonical, usize> = HashMap::new();
-        // Of each kind, its seed and its greatest number of realizations.
+        // For each kind, its seed and its largest number of realizations.
         let mut most: Vec<(u64, u32)> = Vec::new();
         let of_case: Vec<usize> = spec
             .cases

@@ -74,7 +74,7 @@ impl Canonical {
     }
 }
 
-/// Inputs of a surface, from those that its realizations share.
+/// Inputs of a surface, from the inputs shared by all realizations.
 pub(super) fn generate<F: Form>(surface: &F, seed: u64, realization: u32) -> F {
     F::object(vec![("surface", surface.clone()), ("seed", F::of(&seed.into())), ("realization", F::of(&realization.into()))])
 }
@@ -89,7 +89,7 @@ pub(super) fn case_members<F: Form>(params: &CaseParams) -> Vec<(&'static str, F
     of_case(params).into_iter().map(|(name, value)| (name, F::of(&value))).collect()
 }
 
-/// Inputs of a cycle, from those that the cycles of its case share.
+/// Inputs of a cycle, from the inputs shared by all cycles of the case.
 pub(super) fn cycle<F: Form>(members: &[(&'static str, F)], asperities_key: &str) -> F {
     F::object([members, &[("asperities", F::word(asperities_key))]].concat())
 }
@@ -244,7 +244,8 @@ pub(super) fn seed_of(spec: &Spec, params: &SurfaceParams) -> u64 {
     if params.is_measured() { 0 } else { spec.seed }
 }
 
-/// Version of the import of measured surfaces and of their asperities in their keys, beside those of the stages.
+/// Version of the import of measured surfaces and of the search for their asperities. It is part of their
+/// keys, in addition to the versions of the stages.
 const MEASURED_VERSION: u32 = 2;
 
 /// Inputs of a surface in its key: parameters of a generated one, contents of the file and preprocessing of a measured one.
@@ -269,7 +270,7 @@ pub(super) fn of_surface(spec: &Spec, params: &SurfaceParams) -> Value {
     reads
 }
 
-/// Corrections of a measured surface in its key, of those that are made.
+/// Corrections of a measured surface in its key; only corrections that are applied.
 fn corrections(params: &SurfaceParams) -> Vec<(&'static str, Value)> {
     let SurfaceParams { outliers, align_rows, fast_axis, tip_radius_m, .. } = params;
     let made = [

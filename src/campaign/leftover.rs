@@ -142,8 +142,8 @@ fn is_picture(path: &Path) -> bool {
     path.extension().and_then(|e| e.to_str()).is_some_and(|e| matches!(e, "svg" | "png" | "pdf")) && stem.is_some_and(drawn)
 }
 
-/// True if a name is that of a surface or a cycle, as `H0.80_z128_r03-1a2b3c4d` or `scan_r00-1a2b3c4d`: nothing else may be taken for one, since it may be
-/// somebody's own.
+/// True if a name is that of a surface or a cycle, as `H0.80_z128_r03-1a2b3c4d` or `scan_r00-1a2b3c4d`. No
+/// other name passes: it may belong to a file of the user.
 pub(super) fn is_id(name: &str) -> bool {
     let digits = |text: &str| text.len() >= 2 && text.bytes().all(|b| b.is_ascii_digit());
     let key = |text: &str| matches!(text.len(), 8 | 16) && text.bytes().all(|b| matches!(b, b'0'..=b'9' | b'a'..=b'f'));

@@ -1,4 +1,4 @@
-//! The grid of units that a spec asks for, and what of it is done.
+//! Tasks of a spec, and their status.
 //!
 //! The status of tasks is derived from receipts and files and never stored: see [`Standing`].
 
@@ -49,7 +49,7 @@ impl Stage {
     /// All stages.
     pub const ALL: [Self; 5] = [Self::Generate, Self::Extract, Self::Cycle, Self::Aggregate, Self::Report];
 
-    /// The verb of the command line.
+    /// Name of the command.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
@@ -124,7 +124,8 @@ pub struct Campaign {
     pub counts: Vec<u32>,
     /// Surfaces, each once however many cases share it.
     pub surfaces: Vec<SurfaceUnit>,
-    /// Cycles, by case and realisation. Cases that differ only in what stands beside a cycle share it: their units have one key and one id.
+    /// Cycles, by case and realization. Cases with the same input of the cycle share it: their tasks have one
+    /// key and one id.
     pub cycles: Vec<CycleUnit>,
     /// Labels of the files of measured surfaces, by their names in the spec.
     labels: BTreeMap<String, String>,
@@ -169,7 +170,7 @@ pub const STATISTICS: &str = "statistics";
 pub const REPORT_PAGE: &str = "report";
 
 impl Campaign {
-    /// All units of a spec; of one that asks for a precision, those that it begins with.
+    /// All tasks of a spec. With a target precision: the tasks of the initial realizations.
     #[must_use]
     pub fn new(spec: Spec, dir: PathBuf) -> Self {
         // A measured surface is one surface.
@@ -178,7 +179,7 @@ impl Campaign {
         Self::with_counts(spec, dir, counts)
     }
 
-    /// The units of a spec with so many realizations of each case.
+    /// Tasks of a spec with the given number of realizations of each case.
     #[must_use]
     pub fn with_counts(spec: Spec, dir: PathBuf, counts: Vec<u32>) -> Self {
         let labels = sources::labels(&spec);

@@ -121,7 +121,8 @@ impl Campaign {
         })
     }
 
-    /// `campaign.toml`, if it is a spec that somebody wrote: no receipt names it, and it is not this spec in its resolved form.
+    /// `campaign.toml`, if it is a spec of the user: no provenance record names it, and it is not this spec
+    /// in its resolved form.
     fn foreign_spec(&self) -> Option<PathBuf> {
         let path = self.dir.join("campaign.toml");
         let is_named = !matches!(read_receipt(&self.spec_receipt_path()), Found::Nothing);

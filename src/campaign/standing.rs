@@ -48,7 +48,7 @@ impl Standing {
         }
     }
 
-    /// Why it stands so, where there is more to say.
+    /// Reason of a status, if it has one.
     #[must_use]
     pub fn why(&self) -> Option<&str> {
         match self {
@@ -99,7 +99,8 @@ impl Campaign {
         }
     }
 
-    /// True if anything of a stage can be there. Where its folders are not, none of its units need be asked for, which of 10⁵ units takes most of the time of a plan.
+    /// True if files of a stage may exist. Without the folders of the stage, no task of it is checked: for
+    /// 10⁵ tasks the checks take most of the time of a plan.
     fn begun(&self, stage: Stage) -> bool {
         self.receipts_dir(stage).exists() || (stage == Stage::Cycle && self.dir.join("cycles").exists())
     }
@@ -193,7 +194,7 @@ impl Campaign {
         self.distinct_standings(check).1
     }
 
-    /// The different cycles by their places, with how each stands; and how all of them stand.
+    /// Status of each distinct cycle, with its place, and status of all cycles.
     fn distinct_standings(&self, check: Check) -> (Vec<(usize, Standing)>, Vec<Standing>) {
         let begun = self.begun(Stage::Cycle);
         let standing = |place: usize| if begun { self.cycle_standing(&self.cycles[place], check) } else { Standing::Planned };
@@ -203,7 +204,7 @@ impl Campaign {
         (found, all)
     }
 
-    /// Marks the surfaces that failed, which their cycles tell.
+    /// Marks surfaces and tables of asperities as failed where a cycle records the failure.
     fn mark_failed(&self, cycles: &[(usize, Standing)], surfaces: &mut [Standing], asperities: &mut [Standing]) {
         for (place, standing) in cycles.iter().filter(|(_, standing)| matches!(standing, Standing::Failed(_))) {
             let cycle = &self.cycles[*place];

@@ -52,7 +52,7 @@ pub(super) fn expect(teller: Arc<Teller>, dir: &Path) -> std::io::Result<()> {
     std::thread::Builder::new().name("signals".to_owned()).spawn(wait).map(drop)
 }
 
-/// What becomes of running cycles with and without a checkpoint.
+/// Outcome of running cycles with and without a checkpoint.
 fn running([with, without]: [usize; 2]) -> String {
     let tasks =
         |count: usize, [one, many]: [&str; 2]| format!("{} {}", counted(count, "running task"), if count == 1 { one } else { many });

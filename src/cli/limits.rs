@@ -28,9 +28,10 @@ pub(super) fn threads(jobs: Option<u16>) -> usize {
     jobs.map(usize::from).or_else(|| of_environment("RAYON_NUM_THREADS")).unwrap_or_else(cores)
 }
 
-/// Gives Polars as many threads as `--jobs` asks for, and never a number that it cannot start.
+/// Sets the number of Polars threads to `--jobs`, limited to a number that can be started.
 ///
-/// It reads that from the environment alone, which a process cannot change safely for itself: so the program is started again in the same process.
+/// Polars reads the number from the environment only. A process cannot change its own environment safely, so
+/// the program is started again in the same process.
 #[cfg(unix)]
 pub(super) fn bound_polars(jobs: Option<u16>) {
     use std::os::unix::process::CommandExt as _;

@@ -26,7 +26,7 @@ pub const CONSTANTS: Constants = Constants {
     ],
 };
 
-/// Shards at most, unless more are asked for: a scheduler takes about a second for each.
+/// Default maximum number of shards: a scheduler takes about a second for each.
 const MOST_SHARDS: usize = 1000;
 
 /// Default number of shards of a campaign: one for each surface.

@@ -16,15 +16,16 @@ pub struct Order {
     pub program: PathBuf,
     /// Shards of the campaign.
     pub shards: usize,
-    /// For each stage of the shards those that are to be sent; a stage that none needs is not there.
+    /// Shards to be submitted, for each stage; a stage without such shards is absent.
     pub waiting: Vec<(Stage, Vec<usize>)>,
     /// Indices of an array go up to this, without it.
     pub most: usize,
     /// Threads of a task.
     pub cpus: u16,
-    /// Further options for `sbatch`, as they stand after `#SBATCH`.
+    /// Further options for `sbatch`, as written after `#SBATCH`.
     pub options: Vec<String>,
-    /// Jobs of this campaign that are in the queue: what is sent waits until they have ended, however.
+    /// Jobs of this campaign in the queue: submitted jobs wait until these have ended, with or without
+    /// success.
     pub queued: Vec<u64>,
 }
 

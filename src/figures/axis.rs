@@ -28,7 +28,7 @@ enum Scale {
 }
 
 impl Axis {
-    /// An axis that holds all values, with round ticks; it includes zero if told to.
+    /// An axis that includes all values, with round ticks; `from_zero` includes zero.
     pub fn holding(label: &str, values: impl IntoIterator<Item = f64>, from_zero: bool) -> Self {
         let (least, high) = extent(values);
         let low = if from_zero { least.min(0.0) } else { least };
@@ -158,7 +158,7 @@ fn exponent_of(greatest: f64) -> i32 {
     }
 }
 
-/// The least of 1, 2, 2.5, 5 times a power of ten that is not below a length.
+/// Smallest of 1, 2, 2.5, 5 times a power of ten that is not below a length.
 fn round_step(length: f64) -> f64 {
     let power = 10f64.powf(length.log10().floor());
     [1.0, 2.0, 2.5, 5.0, 10.0].into_iter().map(|factor| factor * power).find(|step| *step >= length * (1.0 - 1e-9)).unwrap_or(power)

@@ -63,7 +63,7 @@ fn cases(sweep: &Sweep) -> String {
     if parts.is_empty() { String::new() } else { format!(", for {}", parts.join("; ")) }
 }
 
-/// The caption of a panel of the closer look at one cycle, by its name.
+/// Caption of a panel of a single cycle, by the name of the panel.
 pub(super) fn of_cycle(name: &str, of: &Closer<'_>) -> String {
     let text = match name {
         "loop" => {

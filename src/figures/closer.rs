@@ -26,7 +26,8 @@ const MOST_RANKS: usize = 300;
 /// Bars of the histogram of curvatures.
 const BARS: usize = 40;
 
-/// The panels of a closer look, and the maps of its spots; what needs spots that were not kept is left out.
+/// Panels of a single cycle, and the maps of its contact spots. Panels of contact spots that were not kept
+/// are omitted.
 ///
 /// # Errors
 /// If a table lacks a column.
@@ -72,7 +73,7 @@ type OfBranch = (&'static str, [u8; 3], Vec<usize>);
 /// Events of the loop, by branch.
 fn branches(of: &Closer<'_>, turning: Option<i64>) -> Result<[OfBranch; 2], FigureError> {
     let (branches, max_loads, steps) = (of.events.text("branch")?, of.events.f64_or_null("max_load")?, of.events.i64("step")?);
-    // Loading goes on beyond a turning point that is not the last one.
+    // Loading continues beyond a load reversal that is not the last one.
     let turning = turning.unwrap_or(i64::MAX);
     let all = || 0..of.events.row_count();
     let loading = all().filter(|k| branches[*k] == "loading" && steps[*k] <= turning).collect();
@@ -80,7 +81,7 @@ fn branches(of: &Closer<'_>, turning: Option<i64>) -> Result<[OfBranch; 2], Figu
     Ok([("loading", OTHER, loading), ("unloading", RESULT, unloading)])
 }
 
-/// The loop itself: the load over the approach, up to the turning point and back.
+/// Hysteresis loop: load over penetration, up to the load reversal and back.
 pub(super) fn of_loop(steps: &Frame, max_load: f64) -> Result<XyPlot, FigureError> {
     let (branches, max_loads) = (steps.text("branch")?, steps.f64_or_null("max_load")?);
     let (approaches, loads) = (steps.f64("penetration")?, steps.f64("load")?);
@@ -95,7 +96,7 @@ pub(super) fn of_loop(steps: &Frame, max_load: f64) -> Result<XyPlot, FigureErro
     {
         unloading.insert(0, point);
     }
-    // Loading goes on beyond a turning point that is not the last one.
+    // Loading continues beyond a load reversal that is not the last one.
     let most = unloading.iter().map(|point| point.0).fold(f64::NEG_INFINITY, f64::max);
     let loading = points(&|k| branches[k] == "loading" && approaches[k] <= most);
     let all = || loading.iter().chain(&unloading);
@@ -159,7 +160,7 @@ fn avalanches(of: &Closer<'_>, branches: &[OfBranch; 2]) -> Result<XyPlot, Figur
     Ok(plot(counted(total, "avalanche"), x, y, curves, &[("loading", OTHER, Stroke::Dashed), ("unloading", RESULT, Stroke::Solid)]))
 }
 
-/// The cumulative distribution of a value of each spot at the turning point and at the pull-off.
+/// Cumulative distribution of a value of each contact spot at the load reversal and at the pull-off.
 fn distribution(of: &Closer<'_>, ends: &[End], label: &str, value: impl Fn(usize) -> Option<f64>) -> Result<XyPlot, FigureError> {
     let (steps, states) = (of.contacts.i64("step")?, of.contacts.text("state")?);
     let (mut curves, mut key) = (Vec::new(), Vec::new());

@@ -7,7 +7,7 @@ use super::axis::Axis;
 pub(super) const NOTE: u32 = 13;
 /// Radius of a point without a line.
 pub(super) const SPECK: f64 = 1.8;
-/// Least distance of two notes beside the plot, in pixels.
+/// Minimum distance of two notes at the right of the plot, in pixels.
 pub(super) const NOTE_PITCH: f64 = 17.0;
 
 /// Stroke of a curve.
@@ -129,14 +129,14 @@ pub struct Note {
     pub at: (f64, f64),
     /// The text, with markup.
     pub text: String,
-    /// True if it stands in the right margin, at the height of the end, or else just below the end and to its right.
+    /// True: in the right margin, at the height of the end. False: just below the end and to its right.
     pub beside: bool,
 }
 
 /// Everything that one panel shows.
 #[derive(Debug, Clone)]
 pub struct XyPlot {
-    /// Prefix of all identifiers inside the picture, so that many can stand in one page.
+    /// Prefix of all identifiers inside the figure, so that they are unique on a page.
     pub stem: String,
     /// The panel's letter, in bold at its upper left corner; a space for none.
     pub letter: char,
@@ -152,7 +152,7 @@ pub struct XyPlot {
     pub key: Vec<KeyEntry>,
     /// Texts at the ends of curves.
     pub notes: Vec<Note>,
-    /// Minimum width of the texts beside the plot, in pixels: panels that stand side by side have one size.
+    /// Minimum width of the texts at the right of the plot, in pixels: adjacent panels have the same size.
     pub margin: f64,
 }
 

@@ -6,7 +6,7 @@ use crate::store::Frame;
 /// One cycle with theories.
 #[derive(Debug, Clone, Copy)]
 pub struct Closer<'a> {
-    /// The turning point that is looked at, `F/(E* A0)`.
+    /// Load reversal of the loop, `F/(E* A0)`.
     pub max_load: f64,
     /// The parameters of the case, for the captions.
     pub parameters: &'a str,
@@ -26,7 +26,7 @@ pub struct Closer<'a> {
     pub length_m: f64,
     /// True if the square has periodic images.
     pub periodic: bool,
-    /// Pull-off load of a JKR asperity over its radius, `(3/2)πΔγ` \[N/m\].
+    /// Pull-off force of a JKR asperity over its radius, `(3/2)πΔγ` \[N/m\].
     pub pull_off_n_m: f64,
     /// Spectrum that the surface has: wavenumber q/qL and `C qL²/h_rms²`.
     pub found: &'a [(f64, f64)],

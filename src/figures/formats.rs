@@ -17,7 +17,7 @@ pub fn file(format: &str, svg: &str, width_mm: f64, font: &str) -> Result<Vec<u8
     }
 }
 
-/// The SVG with another font family before those that it has.
+/// The SVG with a further font family before the existing ones.
 fn with_font(svg: &str, font: &str) -> String {
     svg.replacen("font-family=\"", &format!("font-family=\"{font}, "), 1).replacen(&format!("{font}, {font}, "), &format!("{font}, "), 1)
 }

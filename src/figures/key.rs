@@ -1,4 +1,4 @@
-//! The key of a panel, in the corner where it covers least.
+//! The key of a panel, in the corner with the smallest overlap.
 
 use kuva::render::layout::ComputedLayout;
 use kuva::render::render::{Primitive, Scene, TextAnchor};

@@ -7,7 +7,7 @@ const SMALL: f64 = 0.72;
 pub fn render(svg: &str) -> String {
     let mut out = String::with_capacity(svg.len() + 512);
     for (index, piece) in svg.split('<').enumerate() {
-        // Only what stands between two tags is text; what stands before `>` is a tag.
+        // Text is between two tags; the part before `>` is a tag.
         let (tag, text) = piece.split_once('>').unwrap_or((piece, ""));
         if index > 0 {
             out.push('<');
@@ -35,7 +35,7 @@ fn font_size(tag: &str) -> f64 {
 
 fn push_text(out: &mut String, text: &str, size: f64) {
     let mut rest = text;
-    // How far below the base line the text stands: SVG never shifts back by itself.
+    // Shift of the text below the base line; SVG does not reset it.
     let mut shifted = 0.0;
     while let Some((before, mark, inside, after)) = next_mark(rest) {
         shifted = push_plain(out, before, shifted);
@@ -47,7 +47,7 @@ fn push_text(out: &mut String, text: &str, size: f64) {
     push_plain(out, rest, shifted);
 }
 
-/// Appends text on the base line, and tells how far the base line is shifted afterwards.
+/// Appends text on the base line, and returns the shift of the base line afterwards.
 fn push_plain(out: &mut String, text: &str, shifted: f64) -> f64 {
     if text.is_empty() {
         return shifted;

@@ -29,13 +29,16 @@ pub struct Panel {
     pub plot: XyPlot,
 }
 
-/// Draws the panels of one sweep: `<sweep>_A` area over load, `<sweep>_B` pull-off load,
-/// `<sweep>_C` penetration over load, `<sweep>_D` energy lost, with the prediction of Deng and Kesari, `<sweep>_E` how much of it is lost on each branch.
+/// Draws the panels of one sweep: `<sweep>_A` area over load, `<sweep>_B` pull-off force, `<sweep>_C`
+/// penetration over load, `<sweep>_D` dissipated energy, with the prediction of Deng and Kesari, `<sweep>_E`
+/// its fraction on each branch.
 ///
-/// B, D and E stand over the parameter that varies; over the area at the end of loading if only the turning point varies. If several
-/// parameters vary, the first one is the axis, the caption names the others, and only cases that differ in nothing else are joined. A case without
-/// finished realizations has no curve and no point. Error bars and bands are one standard deviation; those of quantities that cannot be negative end at 0. Results of
-/// fewer than five surfaces have crosses at the single surfaces instead of bars.
+/// The horizontal axis of B, D and E is the parameter that varies; if only the load reversal varies, it is
+/// the area at the end of loading. If several parameters vary, the first one is the axis, and the caption
+/// names the others. Lines join only cases that differ in nothing else. A case without finished realizations
+/// has no curve and no point. Error bars and bands are one standard deviation; for quantities that cannot be
+/// negative, they end at 0. Results of fewer than five surfaces have crosses at the single surfaces instead
+/// of bars.
 ///
 /// A sweep without a finished realization has no panels.
 ///
@@ -68,7 +71,7 @@ pub fn compared(tables: &Tables<'_>, labels: &[String], stem: &str) -> Result<Ve
 fn drawn(tables: &Tables<'_>, found: &Sweep, stem: &str) -> Result<Vec<Panel>, FigureError> {
     let surfaces = surfaces(tables.cases, found)?;
     let plots = plots(tables, found)?;
-    // Panels that stand side by side have one size.
+    // Adjacent panels have the same size.
     let margin = plots.iter().map(|(_, plot)| width_beside(plot)).fold(0.0, f64::max);
     // Where only the load varies, labels are numbers.
     let named = |member: &Member| match (member.label.as_str(), found.differing.is_empty()) {

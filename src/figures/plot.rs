@@ -1,4 +1,4 @@
-//! Line plots in one style. The only place that knows the plotting library: it is young, and may be replaced here alone.
+//! Line plots in one style. The plotting library is used only here, so that it can be replaced.
 
 use kuva::backend::svg::SvgBackend;
 use kuva::plot::band::BandPlot;
@@ -95,7 +95,7 @@ fn layout(plot: &XyPlot) -> Layout {
         .with_force_margins(left, 18.0 + if beside > 0.0 { beside + 6.0 } else { 0.0 })
 }
 
-/// Width of the texts beside the plot, in pixels.
+/// Width of the texts at the right of the plot, in pixels.
 pub(super) fn width_beside(plot: &XyPlot) -> f64 {
     plot.notes.iter().filter(|note| note.beside).map(|note| markup::width(&note.text, NOTE)).fold(0.0, f64::max)
 }
@@ -164,7 +164,8 @@ fn add_notes(scene: &mut Scene, frame: &ComputedLayout, plot: &XyPlot) {
     }
 }
 
-/// Heights as near as may be to the wanted ones, in the same order, no two closer than a line of text, and inside the limits.
+/// Heights as near as possible to the preferred ones, in the same order, at least one line of text apart, and
+/// inside the limits.
 fn apart(wanted: &[f64], limits: (f64, f64)) -> Vec<f64> {
     let mut heights: Vec<f64> = Vec::with_capacity(wanted.len());
     for want in wanted {

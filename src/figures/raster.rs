@@ -9,7 +9,7 @@ use svg2pdf::{ConversionOptions, PageOptions};
 /// Dots of a PNG for each pixel of the picture: about 420 dpi where a panel is one column of a journal wide.
 const DOTS: f32 = 3.0;
 
-/// Pixels of the picture to the inch on paper, where a panel without notes beside it has this width \[mm\].
+/// Pixels per inch on paper, if a panel without notes at its right has this width \[mm\].
 fn pixels_per_inch(width_mm: f64) -> f32 {
     (480.0 / (width_mm / 25.4)) as f32
 }
@@ -31,7 +31,7 @@ fn tree(svg: &str) -> Result<Tree, FigureError> {
 /// A picture as a PNG file.
 ///
 /// # Errors
-/// If the text is no SVG, or asks for a picture that memory does not hold.
+/// If the text is no SVG, or the figure is too large for memory.
 pub fn png(svg: &str, width_mm: f64) -> Result<Vec<u8>, FigureError> {
     let tree = tree(svg)?;
     let size = tree.size();
@@ -62,7 +62,8 @@ fn encode(colours: &[u8], (width, height): (u32, u32), pixels_per_inch: f32) -> 
 /// If the text is no SVG.
 pub fn pdf(svg: &str, width_mm: f64) -> Result<Vec<u8>, FigureError> {
     let page = PageOptions { dpi: pixels_per_inch(width_mm) };
-    // The library writes several fonts in an order that differs from run to run: one face is enough for a letter beside a picture.
+    // The library writes several fonts in an order that differs between runs. One font is enough for the
+    // letter of a panel.
     let svg = svg.replace(" font-weight=\"bold\"", "");
     let file = svg2pdf::to_pdf(&tree(&svg)?, ConversionOptions::default(), page).map_err(|error| FigureError::Format(error.to_string()))?;
     Ok(in_order(&file))

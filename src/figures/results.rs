@@ -51,7 +51,7 @@ pub(super) fn results(
     let mut series: Vec<&str> = sweep.members.iter().map(|member| member.series.as_str()).collect();
     series.sort_unstable();
     series.dedup();
-    // If only the turning point varies, it is what is joined, and no other line.
+    // If only the load reversal varies, the only line joins its results.
     if sweep.differing.is_empty() {
         series.truncate(1);
     }

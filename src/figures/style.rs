@@ -21,7 +21,7 @@ pub(super) const OTHER: [u8; 3] = PALETTE[1];
 pub(super) const THEORY: [u8; 3] = [0x00, 0x00, 0x00];
 /// Lines that join results of several cases, and samples of a stroke.
 pub(super) const NEUTRAL: [u8; 3] = [0x59, 0x59, 0x59];
-/// As many names as fit beside a panel.
+/// Maximum number of names that fit at the right of a panel.
 pub(super) const MOST_NOTES: usize = 14;
 
 /// A hue, the lighter the earlier of several.

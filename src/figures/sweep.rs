@@ -39,7 +39,7 @@ pub(super) struct Sweep {
     pub(super) members: Vec<Member>,
     /// Varying parameters, the horizontal axis first; nothing if only the load reversal varies.
     pub(super) differing: Vec<Varying>,
-    /// True if there are several turning points.
+    /// True if there are several load reversals.
     pub(super) many_loads: bool,
     pub(super) axis: Axis,
 }

@@ -55,13 +55,13 @@ pub struct SurfaceParams {
     pub dataset: String,
     /// True if it continues periodically.
     pub periodic: bool,
-    /// Distance of its points \[m\], where the file does not tell it; else 0.
+    /// Distance of its points \[m\], if the file does not state it; else 0.
     pub pixel_m: f64,
     /// Size of the scan along x \[m\], where the file does not state it; else 0.
     pub size_m: f64,
     /// Size of the scan along y \[m\]; 0 for square pixels.
     pub size_y_m: f64,
-    /// Unit of its heights, where the file does not tell it.
+    /// Unit of its heights, if the file does not state it.
     pub unit: String,
     /// Lines of a text that are not read.
     pub skip_lines: u32,
@@ -113,14 +113,14 @@ pub struct ModelParams {
     pub coalescence: Coalescence,
     /// When a free asperity jumps into contact.
     pub jump_in: JumpIn,
-    /// Slips of the paper that are put back, sorted, each once.
+    /// Uncorrected equations of the paper, sorted, each once.
     pub as_printed: Vec<Slip>,
     /// Go on where an asperity's Tabor parameter is below 2 and JKR no longer holds.
     pub allow_low_tabor: bool,
 }
 
 impl ModelParams {
-    /// The slips that are put back, as the physics takes them.
+    /// Uncorrected equations, in the form that the physics uses.
     #[must_use]
     pub fn slips(&self) -> Slips {
         self.as_printed.iter().copied().collect()
@@ -131,7 +131,7 @@ impl ModelParams {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CycleParams {
-    /// Turning points `F/(E* A0)` of the one loading path, ascending, each once.
+    /// Load reversals `F/(E* A0)` of the one loading path, ascending, each once.
     pub max_load: Vec<f64>,
     /// Step of the approach, as a part of the rms height.
     pub approach_step: f64,

@@ -25,14 +25,14 @@ pub enum EventKind {
     Split,
 }
 
-/// What the kinds of a group have in common. The second kind of a group undoes the first one.
+/// Common property of the kinds of a group. The second kind of a group is the inverse of the first one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EventGroup {
     /// Jumps into and out of contact.
     Jump,
     /// Absorption and release: a contact and its load vanish in a larger one.
     Absorption,
-    /// The same contacts.
+    /// Snap-through: the contacts remain the same.
     Snap,
     /// Merging and splitting: contacts and their potentials are exchanged for that of another contact.
     Merging,

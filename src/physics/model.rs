@@ -255,7 +255,7 @@ choice! {
 }
 
 choice! {
-    /// A result of a cycle whose mean can be asked for to a given precision.
+    /// A result of a cycle whose mean can have a target precision.
     Goal {
         /// Dissipated energy Θ.
         Loss = "loss",
@@ -267,14 +267,15 @@ choice! {
 }
 
 impl Slip {
-    /// True if the contact itself reads it. The others only enter Deng and Kesari's estimate beside it, so they make no other cycle.
+    /// True if the contact model itself uses the equation. The others only enter the estimate of Deng and
+    /// Kesari, so they do not change the cycle.
     #[must_use]
     pub fn in_contact(self) -> bool {
         matches!(self, Self::Eq8 | Self::Eq9)
     }
 }
 
-/// Which slips of the paper are put back: one flag to each [`Slip`].
+/// Uncorrected equations of the paper: one flag for each [`Slip`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Slips {
     /// [`Slip::Eq8`].

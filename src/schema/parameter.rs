@@ -12,7 +12,7 @@ pub enum ParameterValue {
     Word(String),
 }
 
-/// Parameters of a case, with those that follow from its files.
+/// Parameters of a case, and the parameters derived from its files.
 #[derive(Debug, Clone)]
 pub struct CaseFacts<'a> {
     /// Parameters of the spec.

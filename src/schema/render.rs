@@ -69,7 +69,7 @@ fn table_json(table: &Table) -> TableJson {
 /// The names in [`metadata_json`] that are the schema's own.
 pub const OWN_KEYS: [&str; 5] = ["table", "version", "file", "description", "columns"];
 
-/// The schema of a table as one line of JSON with further keys beside it: what each data file carries with it.
+/// Schema of a table as one line of JSON with further keys: the metadata of each data file.
 ///
 /// The order of everything in it is fixed by the types, not by the JSON library, whose maps sort or do not sort
 /// depending on what else is built with it.

@@ -16,7 +16,7 @@ pub const MAX_ELEMENTS: u32 = 4096;
 pub const FEWEST_PER_WAVELENGTH: f64 = 4.0;
 /// Maximum mesh number `½ sqrt(Δγ dx/E*)/ρ` of a law with a range ρ: above, the grid traps the contact edges.
 pub const MOST_MESH_NUMBER: f64 = 0.7;
-/// Least `Δγ/(E* dx)`: below it, the tension is lost in the rounding of the pressure.
+/// Minimum `Δγ/(E* dx)`: below it, the tension is lost in the rounding of the pressure.
 pub const LEAST_WORK: f64 = 1e-10;
 /// Steps of a cycle over the gaps at which a law with a range acts: above, a case is refused.
 pub const MOST_RANGE_STEPS: f64 = 20_000.0;
@@ -34,7 +34,7 @@ pub fn mesh_number(work_length_m: f64, spacing_m: f64, range_m: f64) -> f64 {
 }
 
 impl ElementParams {
-    /// Grid points along the side of a square that is so many shortest wavelengths long.
+    /// Grid points along the side of a square, whose side is given in shortest wavelengths.
     #[must_use]
     pub fn grid(&self, wavelengths: f64) -> u32 {
         if self.points > 0 {
@@ -49,7 +49,8 @@ impl ElementParams {
         if self.range_m > 0.0 { self.range_m } else { RANGE * (work_length_m * spacing_m).sqrt() }
     }
 
-    /// Steps of a cycle with so many loads over the gaps at which a law of the range ρ \[m\] acts, without halvings; 0 without a range.
+    /// Number of steps over the gaps at which a law of the range ρ \[m\] acts, in a cycle with `loads` loads
+    /// and without halvings; 0 without a range.
     #[must_use]
     pub fn range_steps(&self, range_m: f64, rms_height_m: f64, loads: usize) -> f64 {
         match self.attraction {
@@ -144,7 +145,8 @@ pub(super) fn without_unread(case: &CaseParams) -> CaseParams {
     case
 }
 
-/// Checks what boundary elements ask of the other values of their case. The grid of a measured surface is checked when its file has been read.
+/// Checks the requirements of boundary elements on the other values of their case. The grid of a measured
+/// surface is checked when its file has been read.
 pub(super) fn check_elements(case: &CaseParams, origins: &[Origin], faults: &mut Faults<'_>) {
     let (surface, material, elements) = (&case.surface, &case.material, &case.boundary_elements);
     if material.work_of_adhesion_j_m2 == 0.0

@@ -84,7 +84,7 @@ fn of_symbol(unknown: &str) -> Option<(&'static str, &'static str, &'static str)
     })
 }
 
-/// A key as it can stand in a sentence: a quoted key may hold anything.
+/// A key in a form for messages; a quoted key may hold any characters.
 pub(super) fn shown(key: &str) -> String {
     let plain: String = key.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).take(41).collect();
     if plain.chars().count() > 40 { plain.chars().take(39).chain(['…']).collect() } else { plain }

@@ -28,7 +28,7 @@ pub(super) const LONGEST_FONT: usize = 64;
 /// Keys of the table.
 const TAKES: [&str; 3] = ["format", "width_mm", "font"];
 
-/// Bounds of the width of a panel without labels beside it.
+/// Bounds of the width of a panel without labels at its right.
 pub(super) const WIDTH: Limits = Limits {
     low: 20.0,
     above: false,

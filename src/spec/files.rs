@@ -1,4 +1,4 @@
-//! The files of measured surfaces: what a spec knows of their contents.
+//! Files of measured surfaces: checksums and formats.
 //!
 //! Tasks are keyed by the content of a file, not by its name. A resolved spec (`campaign.toml`) has the checksums in its table `[files]`, so that the status of a finished
 //! run is known without the files. Its relative names start at its own folder; those of other specs start at the working directory or at the folder of the spec.

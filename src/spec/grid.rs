@@ -87,7 +87,7 @@ fn too_many(sweeps: &[&SweepDraft], faults: &mut Faults<'_>) -> bool {
     first_beyond.is_some()
 }
 
-/// Refuses more tasks than allowed: what is looked at of each must fit into memory.
+/// Refuses a number of tasks above the maximum: the data of all tasks must fit into memory.
 fn bound_tasks(cases: &[Case], realizations: Realizations, at: Option<&Range<usize>>, faults: &mut Faults<'_>) {
     let most = realizations.most();
     let count = |surface: &SurfaceParams| if surface.is_measured() { 1 } else { u64::from(most) };
@@ -153,11 +153,12 @@ fn complete(case: &mut CaseParams, origins: &[Origin]) {
     }
 }
 
-/// Checks what a measured surface asks of the other values of its case; `swept` are the keys of its sweep.
+/// Checks the requirements of a measured surface on the other values of its case; `swept` are the keys of its
+/// sweep.
 fn check_measured(case: &CaseParams, origins: &[Origin], swept: &[usize], faults: &mut Faults<'_>) {
     let of_sweep = |name: &str| find("surface", name).is_some_and(|key| swept.contains(&key));
     for name in GENERATED {
-        // Where one of the two stands in the base and the other in a sweep, both kinds of surface are meant.
+        // If one of the two is in the base and the other in a sweep, the spec has both kinds of surface.
         if of_sweep(name) == of_sweep("file")
             && let Some(span) = written(find("surface", name), origins)
         {
@@ -235,7 +236,7 @@ fn blamed(keys: [&str; 2], origins: &[Origin]) -> Option<Range<usize>> {
     later
 }
 
-/// A sweep as it is told.
+/// A sweep as written in the spec.
 fn sweep(draft: &SweepDraft) -> Sweep {
     let axis =
         |axis: &AxisDraft| Axis { key: KEYS[axis.key].path, values: axis.values.iter().map(|value| value.get_ref().clone()).collect() };

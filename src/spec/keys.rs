@@ -33,7 +33,8 @@ pub(super) type Words = &'static [(&'static str, &'static str)];
 pub(super) enum Kind {
     /// A real number.
     Number(Limits),
-    /// A whole number from `low` to `high`. Below, the first sentence whose number is not exceeded tells why.
+    /// A whole number from `low` to `high`. For a smaller number, the reason is the first sentence of `why`
+    /// whose number is not exceeded.
     Count { low: u32, high: u32, why: &'static [(i128, &'static str)], note: &'static str },
     /// True or false.
     Flag,
@@ -43,9 +44,9 @@ pub(super) enum Kind {
     Numbers(Limits, usize),
     /// An array of words.
     Words(Words),
-    /// A text of so many bytes at most, and what it is.
+    /// A text: maximum number of bytes, and its meaning.
     Text(usize, &'static str),
-    /// A unit of length, or no text where a file says it.
+    /// A unit of length, or an empty text if the file states it.
     Length(&'static str),
 }
 
@@ -65,7 +66,7 @@ impl Kind {
 
 /// Bounds of a real number.
 pub(super) struct Limits {
-    /// The least value, or what it must exceed.
+    /// Smallest value, or exclusive lower bound.
     pub(super) low: f64,
     /// `low` itself is not allowed.
     pub(super) above: bool,

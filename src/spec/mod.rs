@@ -1,4 +1,4 @@
-//! From the text of a spec to the cases that it asks for, checked.
+//! Reading of a spec: from its text to the checked cases.
 //!
 //! The text is TOML. Every key has its row in one table (`keys.rs`): its type, its bounds, and where its value goes. The walker
 //! refuses what no row names, and collects every fault with its place, so that one reading of the answer mends the whole file.
@@ -114,7 +114,7 @@ pub struct Spec {
     pub realizations: Realizations,
     /// Files of the figures.
     pub figures: Figures,
-    /// The cases: every different one once, in the order in which the sweeps first ask for it.
+    /// The cases: each different one once, in the order of their first occurrence in the sweeps.
     pub cases: Vec<Case>,
     /// Parameters that the sweeps override; a case of its own only without a sweep.
     pub base: CaseParams,
@@ -181,7 +181,7 @@ pub enum Value {
 }
 
 impl Spec {
-    /// Reads a spec from its text; `file` is what the faults are said to stand in.
+    /// Reads a spec from its text; `file` is the name of the file in error messages.
     ///
     /// # Errors
     /// Every fault of the text, each with its place.
@@ -240,7 +240,7 @@ impl Spec {
             return Err(SpecErrors::unreadable(&file, "it is a directory, not a TOML file"));
         }
         let mut bytes = Vec::new();
-        // One byte more than allowed tells a full file from one that is too long, also where a pipe has no length.
+        // One byte above the maximum shows that a file is too long, also where a pipe has no length.
         let read = std::fs::File::open(path).and_then(|opened| opened.take(MAX_BYTES + 1).read_to_end(&mut bytes));
         match read {
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
@@ -267,7 +267,8 @@ impl Spec {
         }
     }
 
-    /// The spec with other names of the files of measured surfaces; those that `names` lacks keep theirs.
+    /// The spec with other names of the files of measured surfaces; files that are not in `names` keep their
+    /// names.
     #[must_use]
     pub fn with_file_names(&self, names: &BTreeMap<String, String>) -> Self {
         let mut spec = self.clone();

@@ -46,7 +46,7 @@ fn allowed(limits: &Limits) -> String {
     }
 }
 
-/// Least relative difference of two loads: boundary elements reach each to 1e-5.
+/// Minimum relative difference of two loads: boundary elements reach each to 1e-5.
 const APART: f64 = 1e-4;
 
 /// The array of numbers of a key: ascending, each once.

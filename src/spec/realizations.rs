@@ -21,11 +21,12 @@ use crate::model::{Choice, Goal};
 pub enum Realizations {
     /// Fixed number.
     Exactly(u32),
-    /// As many as a precision asks for, case by case.
+    /// Number that a target precision requires, case by case.
     Until(Until),
 }
 
-/// Realizations are added until the 95 % interval of a mean is narrow enough at every turning point of the case.
+/// Realizations are added until the 95 % confidence interval of a mean is narrow enough at every load
+/// reversal of the case.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Until {
     /// Half the interval over the mean.
@@ -57,7 +58,7 @@ impl Realizations {
         }
     }
 
-    /// The precision that is asked for, if one is.
+    /// Target precision, if the spec has one.
     #[must_use]
     pub fn until(self) -> Option<Until> {
         match self {

@@ -30,8 +30,9 @@ pub struct Comparison {
 /// other campaigns in `out`, and files that no comparison wrote, are replaced only if `force` is true.
 ///
 /// # Errors
-/// If a folder is given twice, lacks its tables over realizations or has damaged ones; if cases cannot be told apart; if no case is in all campaigns; if
-/// `out` is a run, or holds another comparison; a file that cannot be written.
+/// If a folder is given twice, lacks its tables over realizations or has damaged ones; if cases cannot be
+/// distinguished; if no case is in all campaigns; if `out` is a run, or holds another comparison; if a file
+/// cannot be written.
 pub fn compare(folders: &[PathBuf], out: &Path, force: bool) -> Result<Comparison, StageError> {
     let clock = Clock::start();
     let same = |a: &PathBuf, b: &PathBuf| a == b || a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b));

@@ -74,7 +74,8 @@ pub(super) fn of_elements(params: &CaseParams, points: usize, ratio: Option<f64>
     }
 }
 
-/// Memory and time of a cycle of the asperity model on a surface of so many points and shortest wavelengths along a side.
+/// Memory and time of a cycle of the asperity model; `points` and `wavelengths` are the grid points and the
+/// shortest wavelengths along a side.
 pub(super) fn of_asperities(params: &CaseParams, points: f64, wavelengths: f64) -> Cost {
     let load = params.cycle.largest_load() / 0.0071;
     let of_zeta = |[factor, exponent]: [f64; 2]| factor * (wavelengths / 64.0).powf(exponent) * load;

@@ -95,10 +95,10 @@ pub enum StageError {
         /// Recommended action.
         help: String,
     },
-    /// A turning point that was not kept.
+    /// A load reversal that was not kept.
     #[error("no load reversal at F/(E* A0) = {max_load} in {}\nhelp: use one of {kept}", shown(path))]
     NoTurning {
-        /// The load asked for.
+        /// The requested load.
         max_load: f64,
         /// The table.
         path: PathBuf,
@@ -254,7 +254,7 @@ impl From<LoopError> for StageError {
     }
 }
 
-/// What to change in a spec, for an error that does not say it.
+/// Change of a spec that avoids an error, for errors without a help of their own.
 fn help(error: &PhysicsError) -> String {
     let text = match error {
         PhysicsError::LowTabor { .. } => {

@@ -12,7 +12,8 @@ pub(super) const LETTERS: &str = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrst
 /// Cells along a side of the heights and of a map, at most.
 const GROUND: usize = 64;
 const CELLS: usize = 96;
-/// Maps of a cycle with so many cells, at most, and cells along a side where there are more maps.
+/// Maximum number of maps of a cycle with `CELLS` cells along a side, and the cells along a side of more
+/// maps.
 const MOST_LARGE: usize = 8;
 const FEWER_CELLS: usize = 64;
 
@@ -21,7 +22,7 @@ pub(super) fn rounded(number: f64) -> f64 {
     significant(number, 5).parse().unwrap_or(number)
 }
 
-/// Cells of a map: the middle of each cell stands for it.
+/// Cells of a map, each with the value at its middle.
 fn cells<T: Copy>(of: ArrayView2<'_, T>, most: usize, level: impl Fn(T) -> f64) -> String {
     let (rows, columns) = of.dim();
     let count = most.min(rows).min(columns);

@@ -47,7 +47,7 @@ fn extract(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Outcome, StageErro
     let moments = header.moments();
     let mut keys = vec![
         ("key", unit.asperities_key.clone()),
-        // Nayak's density of the realised moments beside the one that was found.
+        // Nayak's density of the realised moments, for comparison with the density found.
         ("nayak_density_1_m2", moments.summit_density_1_m2().to_string()),
         ("summit_density_1_m2", (list.len() as f64 / area).to_string()),
         ("rejected_count", found.rejected.to_string()),

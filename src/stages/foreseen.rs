@@ -16,7 +16,7 @@ type Ratio = fn(&Verdict) -> Option<f64>;
 /// Warnings of the artefacts of measured surfaces.
 pub const ARTEFACTS: [&str; 4] = ["outliers", "lines", "noise", "tip"];
 
-/// What is known of a campaign before anything is computed.
+/// Properties of a campaign before any computation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Foreseen {
     /// One verdict for each case.

@@ -19,7 +19,7 @@ impl<'a> Identity<'a> {
         Self { cycle_id: &unit.id, case_id: &case.cycle_case_id, realization: surface.realization }
     }
 
-    /// Begins a table of so many rows with these columns.
+    /// Begins a table with these columns and `rows` rows.
     pub(super) fn begin(&self, table: &'static Table, rows: usize) -> FrameBuilder {
         Frame::of(table)
             .text("cycle_id", repeat_n(self.cycle_id, rows))

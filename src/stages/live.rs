@@ -32,7 +32,7 @@ pub(super) struct Live<'a> {
     writer: Option<JoinHandle<()>>,
 }
 
-/// What the threads share.
+/// State shared by the threads.
 struct Shared {
     dir: PathBuf,
     state: Mutex<State>,

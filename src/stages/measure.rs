@@ -33,11 +33,13 @@ pub struct Imported {
     pub notes: Vec<String>,
 }
 
-/// A measured surface as the spec's parameters ask for it, with what its file in a run says of it. `digest` is the BLAKE3 of its file. A surface of this program, which
-/// `import` may have written, is taken as it is.
+/// A measured surface with the preprocessing of the spec, and the header of its file in a run. `digest` is
+/// the BLAKE3 of its file. A surface written by this program, for example by `import`, is used without
+/// changes.
 ///
 /// # Errors
-/// A file that cannot be read or does not say what is needed; what [`crate::physics::surface::measured::prepare`] refuses.
+/// A file that cannot be read or lacks required data; a surface that
+/// [`crate::physics::surface::measured::prepare`] refuses.
 pub fn measure(params: &SurfaceParams, digest: &str, key: &str) -> Result<Imported, StageError> {
     let path = Path::new(&params.file);
     let scan = match source(path, params)? {
@@ -112,7 +114,7 @@ fn own(
     agree(path, Some(header.periodic), params.periodic)?;
     let points = heights_m.nrows();
     let spacing = header.length_m / points as f64;
-    // A generated surface has no waves below those that it was made of.
+    // A generated surface has no waves below its shortest wavelength.
     let shortest = header.generated.map_or(0.0, |of| of.points_per_shortest_wavelength * spacing);
     let of_rings = if header.periodic { periodogram } else { windowed_periodogram };
     let rings = of_rings(heights_m.view(), header.length_m)?;

@@ -78,7 +78,7 @@ fn evaluate(context: Context<'_>, tallies: &mut Tallies) -> Result<(), StageErro
 /// Makes the folders and writes the resolved spec.
 ///
 /// # Errors
-/// A folder or file that cannot be written; a file of somebody else in the place of one of the run.
+/// A folder or file that cannot be written; a file of the user with the name of a file of the run.
 pub fn prepare(campaign: &Campaign) -> Result<(), StageError> {
     if let Some(path) = campaign.foreign_file() {
         return Err(StageError::Foreign { path });

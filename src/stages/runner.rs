@@ -31,7 +31,7 @@ pub(super) trait Tasks: Sync {
     /// Identity of a task.
     fn unit<'a>(&self, of: &'a Self::Of) -> Unit<'a>;
 
-    /// Key inputs of a task and of those that it depends on.
+    /// Key inputs of a task and of the tasks that it depends on.
     fn key_inputs(&self, of: &Self::Of) -> Map<String, Value>;
 
     /// Status of a task.
@@ -96,7 +96,8 @@ fn require<T: Tasks>(tasks: &T, open: &[&T::Of], campaign: &Campaign) -> Result<
     incomplete(campaign, T::STAGE, &inputs).map_or(Ok(()), Err)
 }
 
-/// Computes tasks in parallel, in their order, and writes the provenance record of each; `planned` counts those that are done already too.
+/// Computes tasks in parallel, in their order, and writes the provenance record of each; `planned` includes
+/// finished tasks.
 fn compute<T: Tasks>(tasks: &T, open: &[&T::Of], (context, planned): (Context<'_>, usize)) -> Result<Tally, StageError> {
     let Context { campaign, watch, .. } = context;
     let before = planned - open.len();

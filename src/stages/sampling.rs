@@ -1,7 +1,8 @@
-//! Realizations until a mean is known well enough: how many a campaign has, told from the cycles that are done.
+//! Number of realizations for a target precision of a mean, from the finished cycles.
 //!
-//! Nothing of it is stored. The number of realizations of a case follows from the results of the first ones, step by step, so whoever looks at
-//! the same results finds the same number: a run that was killed, another one with more threads, and `status`.
+//! Nothing is stored. The number of realizations of a case follows from the results of the first ones, step
+//! by step. The same results give the same number: in a run that was killed, in a run with more threads, and
+//! in `status`.
 
 use super::StageError;
 use super::cycle_input::cycle_input;
@@ -43,7 +44,8 @@ fn enough(outcomes: &[Outcome], until: &Until) -> u32 {
     (expected.min(2.0 * f64::from(now)).ceil() as u32).clamp(now + 1, until.max)
 }
 
-/// The campaign with as many realizations of each case as its precision asks for, as far as that is known: up to the first that are not done.
+/// The campaign with the number of realizations of each case that its precision requires, as far as known: up
+/// to the first unfinished ones.
 ///
 /// # Errors
 /// If the tables of a finished cycle cannot be read.
@@ -74,7 +76,7 @@ fn count(campaign: &Campaign, case: usize, standings: &[Standing], until: &Until
     Ok(known.map_or(campaign.counts[case], |known| enough(&known, until)))
 }
 
-/// The chosen statistic of a finished cycle, at each turning point.
+/// The chosen statistic of a finished cycle, at each load reversal.
 fn outcome(campaign: &Campaign, unit: &CycleUnit, until: &Until) -> Result<Vec<f64>, StageError> {
     let results = stats::results(&cycle_input(campaign, unit)?)?;
     let value = |(name, value): &(String, Value)| match value {

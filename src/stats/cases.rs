@@ -1,4 +1,4 @@
-//! Means and spreads over the realizations of each case and turning point.
+//! Means and standard deviations over the realizations of each case and load reversal.
 
 use polars::prelude::{IntoColumn, NamedFrom, Series};
 use std::collections::BTreeSet;
@@ -91,7 +91,7 @@ fn averaged() -> Vec<&'static str> {
     names
 }
 
-/// The realizations of one case and turning point, in their order.
+/// The realizations of one case and load reversal, in their order.
 #[derive(Debug, Clone, Default)]
 struct Group {
     case_id: String,

@@ -1,4 +1,4 @@
-//! Campaigns side by side: which of their cases are the same but for what tells the campaigns apart, and by how much results differ.
+//! Comparison of campaigns: matching cases, and the differences of their results.
 
 use super::StatsError;
 use super::student::{Sample, t_quantile};
@@ -21,7 +21,8 @@ pub struct Side {
     pub curves: Frame,
 }
 
-/// Cases of several campaigns that differ in nothing but what tells these apart: the row of each in its table `cases`.
+/// Matching cases of several campaigns, which differ only in the parameters that distinguish the campaigns:
+/// the row of each in its table `cases`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Group {
     /// By campaign.
@@ -31,7 +32,7 @@ pub struct Group {
 /// Cases that campaigns have in common.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Matched {
-    /// The parameters that tell them apart, by the columns of the table `cases`.
+    /// Parameters that distinguish the campaigns, by the columns of the table `cases`.
     pub differing: Vec<&'static str>,
     /// Cases that all of them have.
     pub groups: Vec<Group>,
@@ -54,11 +55,12 @@ pub(super) fn names() -> impl Iterator<Item = &'static str> {
     parameters_by_rank().into_iter().map(|parameter| parameter.column.name)
 }
 
-/// Finds the cases that all campaigns have. What tells these apart are the parameters that have other values in one of them than in the first; all others, and
-/// the load, must be the same.
+/// Finds the cases that all campaigns have. Campaigns are distinguished by the parameters whose values in one
+/// of them differ from those in the first. All other parameters, and the load, must be the same.
 ///
 /// # Errors
-/// If a table lacks a column; if two cases of one campaign are the same but for what tells the campaigns apart.
+/// If a table lacks a column; if two cases of one campaign differ only in parameters that distinguish the
+/// campaigns.
 pub fn matched(sides: &[Side]) -> Result<Matched, StatsError> {
     let values = |side: &Side, parameter: &str| -> Result<Vec<String>, StatsError> {
         let mut all: Vec<String> = (0..side.cases.row_count()).map(|row| written(&side.cases, parameter, row)).collect::<Result<_, _>>()?;

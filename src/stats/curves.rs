@@ -9,15 +9,19 @@ use super::{CaseInput, CycleInput, Given, StatsError};
 use crate::schema::CURVES;
 use crate::store::Frame;
 
-/// Averages the branches of each case at common stations; rows are ordered by case, branch, turning point and station, whatever the order of the inputs.
+/// Averages the branches of each case at common stations. Rows are ordered by case, branch, load reversal and
+/// station, independently of the order of the inputs.
 ///
-/// Each branch is read as [`Walk::at`] says: at the first crossing of a load on the way from the turning point, with the path between two steps linear.
-/// From the turning point to zero load the loads are common, every realization's the same. Below zero the stations are equal fractions of
-/// each realization's own greatest tension on that branch, and `load` is the mean of their loads: the averaged unloading path ends at
-/// the mean pull-off, and no realization drops out on the way. What follows the pull-off is left out. Without any tension there are no stations below zero.
+/// Each branch is read by [`Walk::at`]: at the first crossing of a load on the way from the load reversal,
+/// with the path between two steps linear. From the load reversal to zero load, all realizations have the
+/// same loads. Below zero the stations are equal fractions of the maximum tension of each realization on that
+/// branch, and `load` is the mean of their loads. The averaged unloading path therefore ends at the mean
+/// pull-off, and no realization is missing before it. The path after the pull-off is omitted. Without tension
+/// there are no stations below zero.
 ///
-/// One loading branch serves every turning point: it ends at the greatest. `grid_index` follows the path on both branches: loading
-/// begins at the lowest tension of loading, unloading at the turning point. Stations that no realization reaches have no row.
+/// One loading branch serves every load reversal: it ends at the largest one. `grid_index` follows the path
+/// on both branches: loading begins at the lowest tension of loading, unloading at the load reversal.
+/// Stations that no realization reaches have no row.
 ///
 /// # Errors
 /// If a table of steps cannot be read, or if a cycle names an unknown case.

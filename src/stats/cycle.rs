@@ -32,7 +32,7 @@ pub(super) struct Branch {
     pub(super) reversal_load: Vec<Option<f64>>,
 }
 
-/// A cycle: one loading branch, and an unloading branch from each turning point.
+/// A cycle: one loading branch, and an unloading branch from each load reversal.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Cycle {
     pub(super) loading: Branch,
@@ -76,7 +76,7 @@ pub(super) fn fault(path: &Path, problem: String) -> StatsError {
 }
 
 impl Branch {
-    /// The branch as a walk away from its turning point; a loading branch, cut off at its turning row, is walked backwards.
+    /// Points of the branch, in the order of the path.
     pub(super) fn points(&self) -> impl DoubleEndedIterator<Item = Point> {
         let rest = self.area.iter().zip(&self.penetration);
         self.load.iter().zip(rest).map(|(load, (area, penetration))| Point { load: *load, area: *area, penetration: *penetration })
@@ -88,7 +88,7 @@ impl Branch {
         Walk(self.points().rev().skip(skipped).collect())
     }
 
-    /// The branch walked from the turning point that precedes it.
+    /// The branch walked from the load reversal that precedes it.
     pub(super) fn onwards_from(&self, turning_point: Option<Point>) -> Walk {
         Walk(turning_point.into_iter().chain(self.points()).collect())
     }

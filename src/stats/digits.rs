@@ -1,15 +1,15 @@
-//! Numbers in labels: as many digits as tell them apart, and no more.
+//! Numbers in labels: the smallest number of digits that distinguishes them.
 
-/// Significant digits of a label, unless more are needed to tell two values apart.
+/// Significant digits of a label, unless more are needed to distinguish two values.
 const DIGITS: usize = 4;
 
-/// Digits that tell any two different doubles apart.
+/// Digits that distinguish any two different doubles.
 const ALL_DIGITS: usize = 17;
 
 /// SI prefixes with their powers of ten.
 const PREFIXES: [(i32, &str); 8] = [(-12, "p"), (-9, "n"), (-6, "µ"), (-3, "m"), (0, ""), (3, "k"), (6, "M"), (9, "G")];
 
-/// A number with at most so many significant digits and no zeros at its end: `0.055`, `5e-10`.
+/// A number with at most `digits` significant digits and no zeros at its end: `0.055`, `5e-10`.
 #[must_use]
 pub fn significant(value: f64, digits: usize) -> String {
     let rounded: f64 = format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value);
@@ -46,7 +46,7 @@ pub fn column_exponent(values: impl IntoIterator<Item = f64>) -> i32 {
     exponent
 }
 
-/// Decimals of a number with so many significant digits; none for a number of more digits before its point.
+/// Decimals of a number with `digits` significant digits; none for a number of more digits before its point.
 #[must_use]
 pub fn decimals(value: f64, digits: usize) -> usize {
     let text = format!("{:.*e}", digits.saturating_sub(1), value.abs());

@@ -73,9 +73,10 @@ impl Events {
         self.0.chunk_by(|a, b| a.avalanche_id == b.avalanche_id)
     }
 
-    /// The events of the loop of a turning point, whose step is given.
+    /// Events of the loop of a load reversal, whose step is given.
     fn of_loop(&self, turning_step: i64, max_load: f64) -> impl Iterator<Item = &Event> {
-        // A turning point is a number of the spec, copied; the tolerance only forgives a rounding on the way through a file.
+        // A load reversal is a copied number of the spec; the tolerance only allows for its rounding in a
+        // file.
         let back = move |event: &Event| event.max_load.is_some_and(|load| (load - max_load).abs() <= 1e-9 * max_load.abs());
         self.0.iter().filter(move |event| if event.loading { event.step <= turning_step } else { back(event) })
     }
@@ -91,7 +92,8 @@ impl Events {
 
     /// Energies dissipated up to a load reversal, whose step is given, and while unloading from it.
     ///
-    /// One loading path serves every turning point: what happened beyond this one's step is no part of its loop.
+    /// One loading path serves every load reversal: events beyond the step of this one are not part of its
+    /// loop.
     pub(super) fn lost(&self, turning_step: i64, max_load: f64) -> Lost {
         let mut lost = Lost::default();
         let events: Vec<&Event> = self.of_loop(turning_step, max_load).collect();

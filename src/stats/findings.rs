@@ -87,7 +87,7 @@ pub struct Judged {
 /// One reading.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reading {
-    /// Parameters that tell it from the others.
+    /// Parameters that distinguish it from the others.
     pub name: String,
     /// Identities of its cases, in the order of the table.
     pub case_ids: Vec<String>,
@@ -237,7 +237,7 @@ impl Judge<'_> {
         Ok(Some(Judged { verdict: Verdict::within(residual, RESIDUALS), numbers: vec![residual], text: percent(residual) }))
     }
 
-    /// Finding 3: least and largest `Θ/Θ_DK` of all cases.
+    /// Finding 3: smallest and largest `Θ/Θ_DK` of all cases.
     fn estimate(&self) -> Result<Option<Judged>, StatsError> {
         let ratios = self.cases.f64_or_null("loss_ratio_dk_mean")?;
         let ratios: Vec<f64> = self.rows.iter().filter_map(|case| ratios[case.row]).collect();
@@ -299,7 +299,7 @@ impl Judge<'_> {
     }
 }
 
-/// The least and the largest value.
+/// Smallest and largest value.
 fn extremes(values: &[f64]) -> (f64, f64) {
     values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(*value), high.max(*value)))
 }

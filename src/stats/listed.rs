@@ -53,8 +53,9 @@ pub fn listing_of(cases: &Frame, sweep: &str) -> Result<Vec<Listed>, StatsError>
     list.listed(cases, label)
 }
 
-/// All rows: the reference case first, the others in the order of the table. With a reference case, the label of another case has the parameters that differ from it; otherwise those that vary in
-/// the campaign.
+/// All rows: the reference case first, the others in the order of the table. With a reference case, the label
+/// of another case has the parameters that differ from it; otherwise the parameters that vary in the
+/// campaign.
 ///
 /// # Errors
 /// If the table lacks a column.

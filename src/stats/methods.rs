@@ -148,7 +148,8 @@ pub fn methods_summary(cases: &Frame, methods: &Frame) -> Result<String, StatsEr
     Ok(text)
 }
 
-/// Names of pairs of cases: the parameters that vary among their cases, without those that differ between the methods.
+/// Names of pairs of cases: the parameters that vary among their cases, without parameters that differ
+/// between the methods.
 ///
 /// # Errors
 /// If the table `cases` lacks a column.

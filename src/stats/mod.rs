@@ -61,9 +61,10 @@ pub struct CaseInput {
     pub sweep: String,
     /// Parameters of the case: the columns that the tables `realizations` and `cases` have in common.
     pub parameters: Given,
-    /// Its turning points, as `F/(E* A0)`.
+    /// Its load reversals, as `F/(E* A0)`.
     pub max_loads: Vec<f64>,
-    /// A column of the table `realizations` whose mean is to be known to such a share of itself.
+    /// A column of the table `realizations` for whose mean a precision is required, and the relative
+    /// precision.
     pub precision: Option<(String, f64)>,
     /// Number of realizations in the spec.
     pub planned_count: usize,
@@ -101,10 +102,11 @@ pub struct CycleInput {
     pub loss_pinning_per_area_j: Option<f64>,
     /// Energy that each asperity dissipates in isolation \[J\], by its number.
     pub asperity_loss_j: Vec<f64>,
-    /// Further columns that depend on the turning point, by its load.
+    /// Further columns that depend on the load reversal, by its load.
     pub at_max_load: Vec<(f64, Given)>,
-    /// Every column of the table `realizations` that neither the steps nor the case can tell: numbers of summits, moments, Tabor numbers.
-    /// One that is absent is null, and refused where the table allows no null.
+    /// Every column of the table `realizations` that follows neither from the steps nor from the case:
+    /// numbers of asperities, moments, Tabor parameters. An absent one is null, and an error where the table
+    /// allows no null.
     pub surface: Given,
 }
 
@@ -148,7 +150,7 @@ pub enum StatsError {
         label: String,
         /// The case.
         case_id: String,
-        /// The parameters that tell the campaigns apart.
+        /// Parameters that distinguish the campaigns.
         differing: String,
     },
     /// A cycle names a case that was not given.

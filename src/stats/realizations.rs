@@ -1,4 +1,4 @@
-//! One row per case, realization and turning point.
+//! One row per case, realization and load reversal.
 
 use super::cycle::{Branch, Cycle, fault};
 use super::events::{Events, Lost};
@@ -8,12 +8,14 @@ use crate::physics::cycle::soundness::LoopEnergy;
 use crate::schema::{EVENT_KINDS, EventKind, REALIZATIONS};
 use crate::store::Frame;
 
-/// Reduces each cycle to one row per turning point, ordered by case, turning point and realization, whatever the order of the inputs.
+/// Reduces each cycle to one row per load reversal. Rows are ordered by case, load reversal and realization,
+/// independently of the order of the inputs.
 ///
-/// The loss is `Θ = ∮F dΔ`: the work at the turning step, and the work of the whole unloading branch, which is negative where load falls with Δ.
-/// The dissipated energy of its events is given in parts: up to the load reversal, which is only a part of the loading path if loading went on, and on the
-/// way back; and by the kind of event.
-/// The pull-off load is minus the least load of the unloading branch; it is zero if that is no tension.
+/// The dissipated energy is `Θ = ∮F dΔ`: the work up to the load reversal, and the work of the unloading
+/// branch, which is negative where load falls with Δ. The dissipated energy of its events is given in parts:
+/// up to the load reversal, which is only a part of the loading path if loading continued, and while
+/// unloading; and by the kind of event. The pull-off force is minus the smallest load of the unloading
+/// branch; it is zero without tension.
 ///
 /// # Errors
 /// If a table of steps cannot be read or holds no such branch, if a cycle names an unknown case, or if a required column was not given.
@@ -111,7 +113,7 @@ fn uncertainty(energy: LoopEnergy, input: &CycleInput) -> Option<f64> {
 
 /// Pull-off force \[N\]. With adhesion one of 0 is lost in the load.
 fn pull_off_n(unloading: &Branch, input: &CycleInput) -> Option<f64> {
-    // `0 − 0` keeps a minus sign that no reader of the table wants.
+    // `+ 0.0` removes the minus sign of a negative zero.
     let tension = -unloading.least_load_n.iter().copied().fold(0.0, f64::min) + 0.0;
     let is_adhesive = input.loss_dalvi_per_area_j > 0.0;
     (tension > 0.0 || !is_adhesive).then_some(tension)

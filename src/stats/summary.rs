@@ -196,7 +196,8 @@ pub fn expected_ratios(cases: &Frame) -> Result<Option<String>, StatsError> {
 /// Lines of [`Shown::Few`].
 const FEW: usize = 3;
 
-/// Warnings in one line each: those that no verdict stands for, then the others; the last line names or counts what is left to the report.
+/// Warnings in one line each: first warnings that are not part of a verdict, then the others. The last line
+/// names or counts warnings that are only in the report.
 fn few_warnings(cases: &Frame) -> Result<Vec<String>, StatsError> {
     let all = warnings(cases)?;
     if all.is_empty() {
@@ -320,7 +321,7 @@ fn line(cells: [String; 7]) -> String {
     for (at, (cell, width)) in cells.iter().zip(WIDTHS).enumerate() {
         let cell = cut(cell, width - 1);
         let gap = " ".repeat(width - cell.chars().count());
-        // Words stand at the left of their column, numbers at the right.
+        // Words are left-aligned, numbers right-aligned.
         let parts = if at == 0 { [cell, gap] } else { [gap, cell] };
         text.extend(parts);
     }

@@ -23,7 +23,7 @@ pub struct Varying {
     pub symbol: &'static str,
     /// Its name on an axis.
     pub label: &'static str,
-    /// Its values, in the order of the rows that were asked for.
+    /// Its values, in the order of the requested rows.
     pub values: Values,
     /// The values as labels.
     texts: Vec<String>,
@@ -68,7 +68,8 @@ impl Varying {
         self.absent.get(row).copied().unwrap_or_default()
     }
 
-    /// The value of a row with the symbol before it: `ζ = 64`, `interaction = none`; a word that names its parameter stands alone.
+    /// The value of a row with the symbol before it: `ζ = 64`, `interaction = none`. A word that names its
+    /// parameter has no symbol.
     pub fn named(&self, row: usize) -> String {
         match self.values {
             Values::Words(_) if self.text(row) != "none" => self.text(row).to_owned(),

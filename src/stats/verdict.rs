@@ -6,7 +6,7 @@ use crate::model::{Choice as _, Method};
 use crate::physics::theory::regime::Regime;
 use crate::store::Frame;
 
-/// Warnings of the range of the asperity model that a verdict stands for.
+/// Warnings of the range of the asperity model that are part of a verdict.
 pub(super) const IN_A_VERDICT: [&str; 6] = ["sticky", "area", "conformed", "covered", "absorption", "touching"];
 
 /// The regime of rows of the table `cases`: that of the smallest ratios of their surfaces, and near full contact beyond the limit of the area.
@@ -49,7 +49,7 @@ pub(super) fn verdicts(cases: &Frame, methods: Option<&Frame>, rows: &[usize]) -
     Ok(sentences)
 }
 
-/// What a regime means for rows, as the end of a sentence.
+/// Consequence of a regime for rows, as the end of a sentence.
 fn advice(cases: &Frame, pairs: &[MethodPair], rows: &[usize], regime: Regime) -> Result<String, StatsError> {
     let words = cases.text("method")?;
     let of = |method: Method| rows.iter().copied().filter(|row| words[*row] == method.word()).collect::<Vec<_>>();

@@ -1,11 +1,12 @@
-//! One branch of a cycle, walked away from its turning point, and read off at given loads.
+//! One branch of a cycle, walked away from its load reversal, and interpolated at given loads.
 //!
-//! The path is displacement controlled and its load jumps, so on a branch the load is not single valued. One rule makes it so: start at
-//! the turning point, walk away from it, and take the **first** crossing of the wanted load. While unloading this is the order
-//! of time; the loading branch is walked backwards, so that its crossing is the last in time and that of the greatest penetration.
-//! Between two steps everything is linear in the load, across a jump too: then the chord of the jump is read.
+//! The path is displacement controlled and its load jumps, so the load of a branch is not single valued. The
+//! branch is therefore walked away from its load reversal, and the **first** crossing of a load is used.
+//! While unloading this is the order of time. The loading branch is walked backwards: its crossing is the
+//! last in time and has the largest penetration. Between two steps all quantities are linear in the load,
+//! also across a jump.
 
-/// Stations of a branch: their number from the turning point down to zero load, both included.
+/// Stations of a branch: their number from the load reversal down to zero load, both included.
 pub const COMPRESSION_STATIONS: usize = 151;
 /// Stations below zero load, the last one at the branch's lowest load.
 pub const TENSION_STATIONS: usize = 50;
@@ -23,7 +24,7 @@ pub struct Point {
     pub penetration: f64,
 }
 
-/// A branch as points in the order of a walk away from the turning point, which is its first point.
+/// A branch as points in the order of a walk away from the load reversal, which is its first point.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Walk(pub Vec<Point>);
 
@@ -60,7 +61,8 @@ impl Walk {
         let steps = (COMPRESSION_STATIONS - 1) as f64;
         (0..STATIONS)
             .map(|index| match tension_fraction(index) {
-                // The share is rounded first, so that it is exactly one at the turning point and never more.
+                // The fraction is rounded first, so that it is exactly one at the load reversal and never
+                // more.
                 None => self.at(max_load * ((steps - index as f64) / steps)),
                 Some(fraction) => self.at(tension * fraction),
             })

@@ -1,8 +1,9 @@
 //! The one way in which a file comes into being.
 //!
-//! It is written under another name in its own directory, flushed to the disk, opened again and checked, and only then
-//! given its name. Whenever the program ends, even by a power cut, the name stands for a whole file or for what was
-//! there before. What was written is known by its size and hash, for the receipt of its unit.
+//! A file is written under another name in its own directory, flushed to the disk, opened again and checked,
+//! and only then given its name. If the program ends at any time, even by a power cut, the name refers to the
+//! complete file or to the previous content. The provenance record of the task has the size and hash of the
+//! written content.
 
 use std::ffi::OsStr;
 use std::fs::{File, Permissions};
@@ -21,10 +22,10 @@ pub const TEMPORARY_SUFFIX: &str = ".tmp";
 /// Bytes that are compared at once.
 const COMPARED: usize = 1 << 16;
 
-/// Held by all that write, and by one that lets nobody begin.
+/// Read lock: each writer. Write lock: no writer can begin.
 static WRITING: RwLock<()> = RwLock::new(());
 
-/// Waits until no file is being written, and lets none begin while what is returned is held.
+/// Waits until no file is being written, and blocks new writers until the returned guard is dropped.
 pub fn quiet() -> RwLockWriteGuard<'static, ()> {
     WRITING.write().unwrap_or_else(PoisonError::into_inner)
 }
@@ -144,7 +145,8 @@ fn commit_inner(
     #[cfg(unix)]
     builder.permissions(<Permissions as std::os::unix::fs::PermissionsExt>::from_mode(0o666));
     let (held, temporary) = builder.tempfile_in(directory)?.into_parts();
-    // Whoever clears up after killed runs sees by this lock that the file is in use. Some file systems have none: then age must tell.
+    // This lock shows that the file is in use when the files of killed runs are removed. On file systems
+    // without locks, the age of the file decides.
     let _ = held.try_lock();
     write(&temporary)?;
     File::open(&temporary)?.sync_all()?;

@@ -121,7 +121,7 @@ pub(super) fn check_storage(data: &Dataset, path: &str) -> Result<(), Cause> {
     Ok(())
 }
 
-/// True if any link of the file leads to another file, or there are too many groups to tell.
+/// True if any link of the file leads to another file, or there are too many groups for a complete check.
 fn links_outside(file: &File) -> Result<bool, Cause> {
     let mut known = vec![file.loc_info()?.token];
     let mut open = vec![Group::clone(file)];
@@ -151,7 +151,7 @@ fn outside(path: &str, why: &'static str) -> Cause {
     Outside { path: path.to_owned(), why }.into()
 }
 
-/// The height field of SurfaceTopography, and the mask beside it.
+/// The height field of SurfaceTopography, and its mask.
 pub(super) const HEIGHTS: [&str; 2] = ["heights", "mask"];
 
 /// Members or attributes of the root by which TopoStats marks its files, whose `image` has lines along x and heights in nanometres.

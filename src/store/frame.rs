@@ -163,7 +163,7 @@ impl Frame {
     }
 }
 
-/// The error of a column that holds one kind where another was wanted.
+/// Error of a column that holds another kind than the expected one.
 pub(super) fn wrong_kind(table: &'static Table, name: &str, is: Kind, wanted: Kind) -> FrameError {
     FrameError::new(table.name, format!("holds {} in the column {name:?}, not {}", is.word(), wanted.word()))
 }

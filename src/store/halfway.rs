@@ -1,5 +1,5 @@
-//! A unit on its way, as bytes that only the program reads: with the key of the unit and a hash, so that neither another unit's nor torn ones are taken
-//! for it.
+//! Checkpoint of an unfinished task, as bytes that only the program reads. The key of the task and a hash
+//! exclude checkpoints of other tasks and incomplete ones.
 
 use super::commit::{Written, commit_parts};
 use super::error::StoreError;

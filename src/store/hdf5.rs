@@ -23,7 +23,7 @@ pub fn alone<T>(act: impl FnOnce() -> T) -> T {
 
 /// Name of the height field in a surface file.
 pub const HEIGHT: &str = "height_m";
-/// Help for heights that are not those that were written.
+/// Help for heights that differ from the heights written.
 const DAMAGED: &str = "restore the file, or run `hysteron verify DIR --deep` and `hysteron run DIR` for the output folder it is in; \
                        after a change on purpose, delete the attribute `height_blake3` of its group `header`";
 /// Rows that are written and compared at once.
@@ -126,7 +126,7 @@ pub fn write_tamaas(path: &Path, heights: ArrayView2<'_, f64>, size_m: [f64; 2])
         |temporary| {
             library(|| {
                 let file = options().create(temporary)?;
-                // Tamaas wants a string of variable length here, and nothing but fields in the root.
+                // Tamaas requires a string of variable length here, and only fields in the root.
                 let kind: VarLenUnicode = "model_type.basic_2d".parse()?;
                 file.new_attr::<VarLenUnicode>().create("model_type")?.write_scalar(&kind)?;
                 file.new_attr::<f64>().shape(2).create("system_size")?.write(&size_m)?;
@@ -179,7 +179,7 @@ pub(super) fn options_of(version: LibraryVersion) -> FileBuilder {
 }
 
 pub(super) fn open(path: &Path) -> Result<File, Cause> {
-    // HDF5 says "unable to open file" of whatever is wrong; the operating system knows better.
+    // HDF5 reports "unable to open file" for all causes; the operating system gives the cause.
     let about = fs::metadata(path)?;
     if about.is_dir() {
         return Err("it is a directory".into());
@@ -202,17 +202,18 @@ fn write_all(path: &Path, header: &SurfaceHeader, heights: ArrayView2<'_, f64>) 
     let (file, kind) = axes::start(path, &options())?;
     surface_header::write(&file, header)?;
     surface_header::write_sum(&file, &sum_of(heights))?;
-    // Contiguous: some readers do not know the index of chunks of this format.
+    // Contiguous: some readers do not support the index of chunks of this format.
     let data = file.new_dataset::<f64>().shape((rows, rows)).create(HEIGHT)?;
     surface_header::write_text(&data, "unit", "m")?;
     axes::write(&file, &kind, &data, header.length_m)?;
     for first in (0..rows).step_by(BAND) {
         let band = first..rows.min(first + BAND);
-        // HDF5 wants a contiguous band; where the field is not, this copy is one extra band.
+        // HDF5 requires a contiguous band; if the field is not contiguous, this copy needs the memory of one
+        // band.
         let values = heights.slice(s![band.clone(), ..]);
         data.write_slice(values.as_standard_layout().view(), s![band, ..])?;
     }
-    // While the dataset is open: closing it writes what is left of it too, and tells nobody if that fails.
+    // Flushed while the dataset is open: closing it also writes the rest, but does not report a failure.
     file.flush()?;
     drop(data);
     file.close()?;
@@ -238,7 +239,7 @@ fn heights_of(path: &Path, file: &File) -> Result<Dataset, Cause> {
     if rows == columns { Ok(data) } else { Err(format!("its field has {rows} by {columns} heights, and must be square").into()) }
 }
 
-/// Rows and columns of a dataset that the file can really hold, before memory is asked for.
+/// Rows and columns of a dataset, checked against the size of the file before memory is allocated.
 fn check_extent(path: &Path, data: &Dataset, name: &str, packed: u64) -> Result<(usize, usize), Cause> {
     let [rows, columns] = data.get_shape()?[..] else {
         return Err(format!("its dataset {name:?} is not two-dimensional").into());
@@ -247,7 +248,8 @@ fn check_extent(path: &Path, data: &Dataset, name: &str, packed: u64) -> Result<
     Ok((rows, columns))
 }
 
-/// Checks that a file of this size can hold so many rows and columns of a dataset, packed by at most this factor.
+/// Checks that a file of this size can hold these rows and columns of a dataset, packed by at most this
+/// factor.
 pub(super) fn check_bytes(path: &Path, data: &Dataset, [rows, columns]: [usize; 2], packed: u64) -> Result<(), Cause> {
     let most = fs::metadata(path)?.len().saturating_mul(packed);
     let width = data.dtype()?.size() as u64;

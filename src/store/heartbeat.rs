@@ -137,7 +137,8 @@ pub fn remove(path: &Path) {
     }
 }
 
-/// The processes that compute in an output folder at present, and those that have ended without removing their heartbeats.
+/// Processes that compute in an output folder, and processes that have ended without removing their
+/// heartbeats.
 #[must_use]
 pub fn processes(dir: &Path) -> [Vec<Heartbeat>; 2] {
     let mut found = all(&dir.join(FOLDER));
@@ -146,7 +147,7 @@ pub fn processes(dir: &Path) -> [Vec<Heartbeat>; 2] {
     [of(true), of(false)]
 }
 
-/// Removes the heartbeats of processes that have ended without removing them, and those that a power cut left without content.
+/// Removes the heartbeats of ended processes, and heartbeats that a power cut left without content.
 fn remove_ended(folder: &Path) {
     for path in own(folder) {
         let ended = read(&path).map_or_else(|| lives(&path, None) == Some(false), |(_, lives)| !lives);
@@ -182,7 +183,8 @@ fn read(path: &Path) -> Option<(Heartbeat, bool)> {
     Some((beat, lives))
 }
 
-/// Whether the process of a heartbeat lives, by the lock on its file, or by the file's age; nothing for a file that cannot be opened.
+/// True if the process of a heartbeat lives, by the lock on its file, or by the age of the file; nothing for
+/// a file that cannot be opened.
 fn lives(path: &Path, host: Option<&str>) -> Option<bool> {
     let file = File::open(path).ok()?;
     let age = file.metadata().and_then(|of| of.modified()).ok().and_then(|at| at.elapsed().ok()).unwrap_or_default();

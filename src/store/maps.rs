@@ -159,7 +159,7 @@ fn fields(map: &ContactMap) -> [(&'static str, &'static str, &[f32]); 2] {
 }
 
 fn write_all(path: &Path, header: &MapsHeader<'_>, maps: &[ContactMap]) -> Result<(), Cause> {
-    // Chunks of format 1.8: some readers do not know the index of chunks of later formats.
+    // Chunks of format 1.8: some readers do not support the index of chunks of later formats.
     let file = options_of(LibraryVersion::V18).create(path)?;
     write_number(&file, "schema_version", MAPS_VERSION)?;
     write_text(&file, "key", header.key)?;

@@ -1,7 +1,8 @@
 //! Receipt of a finished task: its key and key inputs, its files with their hashes, and its provenance.
 //!
-//! A receipt is written after the unit's files, each of which was put in place whole. So a unit with a receipt is done, and one without is not, whatever files are
-//! there. It is the one place where a clock, a host and a program's version are told.
+//! A provenance record is written after the files of the task, each of which was put in place as a complete
+//! file. A task with a provenance record is finished, and one without is not, whatever files are there. Only
+//! the provenance record has times, the host and the version of the program.
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};

@@ -24,7 +24,7 @@ const LONGEST_WORD: usize = 256;
 pub struct SurfaceHeader {
     /// Side of the square \[m\].
     pub length_m: f64,
-    /// Number of the surface among those that share its spectrum; 0 for a measured one.
+    /// Number of the surface among the surfaces with the same spectrum; 0 for a measured one.
     pub realization: u64,
     /// True if the surface continues periodically.
     pub periodic: bool,
@@ -81,7 +81,7 @@ pub struct Measured {
     pub fit: Option<SpectrumFit>,
     /// Texture; nothing in a file of an earlier version.
     pub texture: Option<Texture>,
-    /// Artefacts that were corrected, and those that remain; nothing in files of versions that did not look for any.
+    /// Corrected and remaining artefacts; nothing in files of versions without the search for artefacts.
     pub quality: Option<Quality>,
 }
 
@@ -126,7 +126,7 @@ impl SpectrumFit {
 /// Parameters of a generated surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Generated {
-    /// Rms height that was asked for \[m\].
+    /// Target rms height \[m\].
     pub target_rms_height_m: f64,
     /// Hurst exponent (Eq 10).
     pub hurst: f64,
@@ -335,7 +335,7 @@ pub(super) fn write_word(file: &File, name: &str, value: &str) -> Result<(), Cau
 /// Writes a word as a string of fixed length.
 fn write_copy(file: &File, name: &str, value: &str) -> Result<(), Cause> {
     let word: FixedUnicode<LONGEST_WORD> = value.parse()?;
-    // HDF5 knows no string of length 0; an empty word is one zero byte.
+    // HDF5 has no string of length 0; an empty word is one zero byte.
     let stored = TypeDescriptor::FixedUnicode(value.len().max(1));
     Ok(file.group(COPIES)?.new_attr_builder().empty_as(&stored).create(name)?.write_scalar(&word)?)
 }

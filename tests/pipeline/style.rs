@@ -11,7 +11,7 @@ use hysteron::stats::CAUTIONS;
 use crate::bench::{Bench, SPEC, code, stdout};
 
 /// Words and phrases outside plain technical English, with the replacement.
-const BANNED: [(&str, &str); 40] = [
+const BANNED: [(&str, &str); 50] = [
     ("nobody", "no task, none"),
     ("anew", "again"),
     ("greatest", "maximum, largest"),
@@ -52,11 +52,26 @@ const BANNED: [(&str, &str); 40] = [
     ("those that", "a noun"),
     ("of those", "a noun"),
     ("[1e-3]", "10⁻³"),
+    ("stand", "are"),
+    ("stands", "is; \"stands for\" is allowed"),
+    ("tell", "state, report, distinguish"),
+    ("asks", "requires, requests"),
+    ("somebody", "a user, a program"),
+    ("anybody", "a user, a program"),
+    ("whoever", "a user, a program"),
+    ("remembers", "stores, records"),
+    ("forgets", "removes, discards"),
+    ("believes", "no personification"),
 ];
 
+/// Beginnings that a doc comment must not have: it begins with the name of the item.
+const BEGINNINGS: [&str; 6] = ["what", "whether", "where", "how", "so", "the same"];
+
 /// Exceptions: a phrase in which a banned word is right.
-const RIGHT: [&str; 5] = [
+const RIGHT: [&str; 7] = [
     "at least",
+    "stand for",
+    "stands for",
     // The mathematical term.
     "least squares",
     "least squares:",
@@ -109,7 +124,7 @@ fn wrong_plural(line: &str) -> Option<String> {
 fn faults(texts: &[Text], width: Option<usize>) -> Vec<String> {
     let mut faults = Vec::new();
     for Text { place, content } in texts {
-        for (number, line) in content.lines().enumerate() {
+        for (number, line) in content.lines().enumerate().filter(|(_, line)| !line.is_empty()) {
             let mut add = |what: String| faults.push(format!("{place}:{}: {what}: {}", number + 1, line.trim()));
             if let Some((phrase, instead)) = banned(line) {
                 add(format!("{phrase:?}, write {instead}"));
@@ -146,6 +161,62 @@ fn prose(markdown: &str) -> String {
     lines.join("\n")
 }
 
+/// A paragraph of a comment.
+struct Comment {
+    /// Number of its first line, from 1.
+    line: usize,
+    /// True for the beginning of a doc comment.
+    is_beginning: bool,
+    /// The paragraph in one line, without code.
+    text: String,
+}
+
+/// Paragraphs of the comments of a source file that begin a line, without code in backticks and fenced code.
+fn comments(source: &str) -> Vec<Comment> {
+    let mut all: Vec<Comment> = Vec::new();
+    let (mut previous, mut fenced, mut continues) = ("", false, false);
+    for (at, content) in source.lines().map(str::trim_start).enumerate() {
+        let marker = ["///", "//!", "//"].into_iter().find(|marker| content.starts_with(*marker)).unwrap_or("");
+        let is_first = marker != previous;
+        previous = marker;
+        (fenced, continues) = (fenced && !is_first, continues && !is_first);
+        let text = content.strip_prefix(marker).unwrap_or_default().trim();
+        let is_fence = text.starts_with("```");
+        fenced ^= is_fence;
+        if marker.is_empty() || text.is_empty() || fenced || is_fence {
+            continues = false;
+            continue;
+        }
+        match all.last_mut().filter(|_| continues && !text.starts_with(['-', '|', '#'])) {
+            Some(comment) => comment.text.extend([" ", text]),
+            None => all.push(Comment { line: at + 1, is_beginning: is_first && marker != "//", text: text.to_owned() }),
+        }
+        continues = !text.starts_with('#');
+    }
+    for comment in &mut all {
+        comment.text = prose(&comment.text);
+    }
+    all
+}
+
+/// The forbidden beginning of a doc comment, if it has one.
+fn wrong_beginning(comment: &Comment) -> Option<&'static str> {
+    let text = plain(&comment.text);
+    BEGINNINGS.into_iter().find(|words| comment.is_beginning && text.starts_with(&format!(" {words} ")))
+}
+
+/// All source files below a folder, without folders of build results.
+fn sources(folder: &Path) -> Vec<PathBuf> {
+    let mut paths: Vec<PathBuf> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    paths.sort();
+    let inside = |path: PathBuf| match path.is_dir() {
+        true if path.ends_with("target") => Vec::new(),
+        true => sources(&path),
+        false => vec![path],
+    };
+    paths.into_iter().flat_map(inside).filter(|path| path.extension().is_some_and(|e| e == "rs")).collect()
+}
+
 /// HTML without figures, preformatted text, code and tags.
 fn visible(html: &str) -> String {
     let mut text = html.to_owned();
@@ -162,13 +233,14 @@ fn visible(html: &str) -> String {
     text.split('<').map(|piece| piece.split_once('>').map_or(piece, |(_, text)| text)).collect::<Vec<_>>().join(" ")
 }
 
-fn markdown(path: &Path) -> Text {
+/// A file of the repository, as it is.
+fn file(path: &Path) -> Text {
     Text { place: path.strip_prefix(root()).unwrap().display().to_string(), content: fs::read_to_string(path).unwrap() }
 }
 
 /// Checks Markdown files: width on all lines but those with a link or a table, language on prose.
 fn check_markdown(paths: &[PathBuf]) {
-    let texts: Vec<Text> = paths.iter().map(|path| markdown(path)).collect();
+    let texts: Vec<Text> = paths.iter().map(|path| file(path)).collect();
     let spoken: Vec<Text> = texts.iter().map(|text| Text { place: text.place.clone(), content: prose(&text.content) }).collect();
     check(&spoken, None);
     let long = |line: &&str| !line.contains("](") && !line.starts_with("<") && !line.starts_with('|');
@@ -197,6 +269,28 @@ fn law_style_of_the_guide() {
     pages.sort();
     assert!(pages.len() > 10);
     check_markdown(&pages);
+}
+
+#[test]
+fn law_style_of_comments() {
+    let (mut texts, mut beginnings, mut count) = (Vec::new(), Vec::new(), 0);
+    for path in sources(&root().join("src")) {
+        let Text { place, content } = file(&path);
+        // Each paragraph in the line of its beginning, for the numbers of lines in the message.
+        let mut lines = vec![String::new(); content.lines().count()];
+        for comment in comments(&content) {
+            if let Some(words) = wrong_beginning(&comment) {
+                beginnings.push(format!("{place}:{}: begins with {words:?}: {}", comment.line, comment.text));
+            }
+            count += 1;
+            lines[comment.line - 1] = comment.text;
+        }
+        texts.push(Text { place, content: lines.join("\n") });
+    }
+    assert!(count > 4000, "{count} paragraphs");
+    let mut found = faults(&texts, None);
+    found.extend(beginnings);
+    assert!(found.is_empty(), "{} faults of style in comments\n{}", found.len(), found.join("\n"));
 }
 
 #[test]
@@ -250,7 +344,7 @@ fn law_style_of_spec_errors_and_example_specs() {
     }
     assert!(texts.len() > 80);
     for entry in fs::read_dir(root().join("pipelines")).unwrap() {
-        texts.push(markdown(&entry.unwrap().path()));
+        texts.push(file(&entry.unwrap().path()));
     }
     check(&texts, None);
 }
@@ -307,4 +401,28 @@ fn law_faults_of_style_are_found() {
     }
     assert_eq!(faults(&[Text { place: String::new(), content: "x".repeat(81) }], Some(80)).len(), 1);
     assert_eq!(visible("<p>a<svg><text>b</text></svg> c <code>d</code></p>").split_whitespace().collect::<Vec<_>>(), ["a", "c"]);
+}
+
+/// Paragraphs of comments are joined, with the number of their first line; code is omitted.
+#[test]
+fn law_comments_are_read() {
+    let source = "//! Heights of those\n//! that remain.\n\n/// What it is.\n///\n/// What `is told`:\n/// - one\n/// - two\n\
+                  fn f() {\n    // Where it stands.\n    let told = 1; // told\n}\n\
+                  /// Code\n/// ```\n/// told\n/// ```\n/// # Errors\n/// Never.\n";
+    let all = comments(source);
+    let read: Vec<(usize, bool, &str)> = all.iter().map(|comment| (comment.line, comment.is_beginning, comment.text.as_str())).collect();
+    let expected = [
+        (1, true, "Heights of those that remain."),
+        (4, true, "What it is."),
+        (6, false, "What X:"),
+        (7, false, "- one"),
+        (8, false, "- two"),
+        (10, false, "Where it stands."),
+        (13, true, "Code"),
+        (17, false, "# Errors"),
+        (18, false, "Never."),
+    ];
+    assert_eq!(read, expected);
+    let wrong = |comment: &Comment| wrong_beginning(comment).is_some() || banned(&comment.text).is_some();
+    assert_eq!(all.iter().filter(|comment| wrong(comment)).map(|comment| comment.line).collect::<Vec<_>>(), [1, 4, 10]);
 }

@@ -38,7 +38,7 @@ impl<'a> Ended<'a> {
         Self { campaign, tallies, time, size_bytes: size(&campaign.dir), failed_count, failures, unreached: unreached(campaign, shard) }
     }
 
-    /// True if results that the spec asks for have failed or are not reached.
+    /// True if requested results have failed or are not reached.
     pub(super) fn lacks_results(&self) -> bool {
         self.failed_count > 0 || !self.unreached.is_empty()
     }

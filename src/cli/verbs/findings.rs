@@ -65,7 +65,7 @@ fn line(cells: impl Iterator<Item = String>) -> String {
     format!("  {}\n", cells.trim_end())
 }
 
-/// The table of verdicts and numbers, 80 columns wide, and what stands in it.
+/// Table of verdicts and numbers, 80 columns wide, with the meaning of its numbers.
 fn table(readings: &[(String, Reading)]) -> String {
     let mut text = line((1..=FINDINGS.len()).map(|number| number.to_string()));
     for (run, reading) in readings {

@@ -13,7 +13,7 @@ const LISTED: usize = 10;
 /// Age of a heartbeat from which it is stated \[s\].
 const OLD_S: f64 = 30.0;
 
-/// Processes that compute in the folder of a campaign, and those that were killed.
+/// Processes that compute in the folder of a campaign, and killed processes.
 pub(super) struct Living {
     pub(super) alive: Vec<Heartbeat>,
     killed: Vec<Heartbeat>,
@@ -25,7 +25,7 @@ impl Living {
         Self { alive, killed }
     }
 
-    /// Marks the tasks that a process computes, those that it will compute, and those whose process was killed.
+    /// Marks tasks in computation, tasks assigned to a live process, and tasks of killed processes.
     pub(super) fn mark(&self, campaign: &Campaign, units: &mut Units) {
         let running: HashSet<&str> = self.alive.iter().flat_map(|beat| &beat.tasks).map(|task| task.id.as_str()).collect();
         let surfaces = campaign.surfaces.iter().enumerate().map(|(place, unit)| (unit.id.as_str(), place));

@@ -62,7 +62,7 @@ pub(super) fn slurm(spec: &Path, output: &OutputArguments, shards: Option<u32>, 
     let survey = campaign.survey(Check::Sizes);
     let open = |stage: Stage| {
         let mut open = open_shards(&campaign, &survey, stage, shards);
-        // What is in the queue is on its way.
+        // Shards in the queue are not submitted again.
         open.retain(|shard| !queue.shards.contains(&(stage.word().to_owned(), shards, *shard)));
         (stage, open)
     };

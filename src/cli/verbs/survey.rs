@@ -205,7 +205,7 @@ fn units(campaign: &Campaign, survey: Survey) -> Units {
     ]
 }
 
-/// What makes the tables or the report stale.
+/// Reason why the tables or the report are stale.
 fn stale(campaign: &Campaign, stage: Stage) -> Option<String> {
     (stage > Stage::Cycle).then(|| campaign.staleness(stage, &campaign.cycle_standings(Check::Sizes)))?
 }

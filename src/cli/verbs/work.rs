@@ -19,7 +19,7 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// What a command asks for.
+/// Request of a command.
 pub(super) struct Request {
     /// Stages, in their order.
     pub(super) stages: RangeInclusive<Stage>,

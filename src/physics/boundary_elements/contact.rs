@@ -87,8 +87,9 @@ impl Problem {
         self.law.bond(bonding, gap)
     }
 
-    /// The same surface and half-space without attraction. The wall is the spring of the law of the band-limited crack, whatever the law was: the
-    /// exponential repulsion of Morse's law overflows in iterations without a limit of their length.
+    /// Surface and half-space of this problem without attraction. The wall is the spring of the law of the
+    /// band-limited crack for every law: the exponential repulsion of Morse's law overflows in iterations
+    /// without a limit of their length.
     #[must_use]
     pub fn without_adhesion(self) -> Self {
         Self { attraction: Attraction::None, law: Law::crack(self.law.work()), ..self }
@@ -187,8 +188,9 @@ impl Problem {
         changed
     }
 
-    /// Bonds the free points within the margin of touching points and opens the sealed ones within the margin of an open point, in the rows around those
-    /// that are `stale`, which they are not afterwards. The points whose bond has changed, with the bond before.
+    /// Bonds the free points within the margin of touching points and opens the sealed ones within the margin
+    /// of an open point, in the rows around `stale` rows, which are then up to date. Returns the points whose
+    /// bond has changed, with the bond before.
     pub(super) fn spread_bonds(&self, bonds: &mut [Bonding], touching: &[u8], stale: &mut [bool]) -> Vec<(usize, Bonding)> {
         let Attraction::Bonded { margin, .. } = self.attraction else { return Vec::new() };
         if !stale.contains(&true) {

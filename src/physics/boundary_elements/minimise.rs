@@ -67,7 +67,7 @@ pub struct Outcome {
     pub residual: f64,
     /// True if the accuracy was reached.
     pub converged: bool,
-    /// True if an event took the load out of the loads that were asked for; the state is of no use then.
+    /// True if an event moved the load out of the requested range; the state is then invalid.
     pub(super) left: bool,
 }
 

@@ -18,7 +18,7 @@ use crate::PhysicsError;
 use crate::memory::filled;
 use rayon::prelude::*;
 
-/// Least side of the grid, in sides of a patch.
+/// Minimum side of the grid, in sides of a patch.
 pub(super) const PARTS: usize = 4;
 /// Most places that are followed.
 pub(super) const PLACES: usize = 8;
@@ -121,7 +121,8 @@ impl Patches {
         jobs
     }
 
-    /// After the jobs have been relaxed: the places that go on, on larger patches. The others are given to the grid, those that have moved are `done`.
+    /// Jobs that continue on larger patches, after all jobs have been relaxed. The other jobs are returned to
+    /// the grid; moved regions among them are added to `done`.
     fn settle(&mut self, on: &mut Underway<'_>, jobs: Vec<Job>, done: &mut Vec<Region>, rebonded: &mut Vec<(usize, Bonding)>) -> Vec<Job> {
         let mut regions: Vec<Region> = jobs.iter().map(Job::region).collect();
         let mut going = Vec::new();

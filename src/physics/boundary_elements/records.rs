@@ -1,4 +1,4 @@
-//! What a cycle consists of: steps, events, maps and states at load reversals.
+//! Records of a cycle: steps, events, maps and states at load reversals.
 
 use super::contact::{State, Totals};
 use super::regions::Region;

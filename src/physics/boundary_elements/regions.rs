@@ -155,8 +155,8 @@ pub fn regions(problem: &Problem, state: &State, labels: &Labels, summits: &[usi
     all
 }
 
-/// Point beside a point, so many rows and columns on: across the edges of a periodic grid, and the mirror image of itself beyond the edges of a surface
-/// with mirror images.
+/// Neighbour of a point, at an offset in rows and columns: across the edges of a periodic grid, and the
+/// mirror image of itself beyond the edges of a surface with mirror images.
 fn neighbours(grid: &HalfSpace) -> impl Fn(usize, i64, i64) -> usize + use<> {
     let (size, [own_rows, own_columns], is_mirrored) = ([grid.rows(), grid.columns()], grid.own(), grid.is_mirrored());
     let on = move |at: usize, by: i64, size: usize, own: usize| {

@@ -22,7 +22,7 @@ use crate::cycle::Done;
 use crate::memory::filled;
 use serde::{Deserialize, Serialize};
 
-/// Least imbalance of an event, relative to the energy dissipated so far.
+/// Minimum imbalance of an event, relative to the energy dissipated so far.
 pub(super) const EVENT: f64 = 1e-5;
 /// Error of the integral of the load, relative to the part of it that comes from the slopes of the load.
 pub(super) const BEND: f64 = 0.05;
@@ -306,7 +306,8 @@ impl<'a> Walk<'a> {
         self.rate = None;
     }
 
-    /// Forgets the steps of a search that has not found the load: the reversal is then the `beyond` the jump of the load.
+    /// Discards the steps of a search that has not found the load: the reversal is then the attempt `beyond` the jump of
+    /// the load.
     fn reverse_beyond(&mut self, mut beyond: Attempt, max_load: f64) {
         let Some(trunk) = self.at.trunk.clone() else { return };
         let (steps, events, owed) = (trunk.steps, trunk.events, trunk.owed);

@@ -30,7 +30,7 @@ pub struct Work {
 /// Number of parts of a step in which the minimum of the load is searched.
 const PARTS: usize = 32;
 
-/// Least load between two points, by the cubic through loads and slopes at both.
+/// Minimum load between two points, by the cubic through loads and slopes at both.
 #[must_use]
 pub fn least_between(start: OnLoop, end: OnLoop) -> f64 {
     let length = end.approach - start.approach;

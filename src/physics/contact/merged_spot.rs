@@ -31,7 +31,7 @@ impl Merged {
         self.radii_m[0].hypot(self.radii_m[1])
     }
 
-    /// The same at another size of both parts.
+    /// This contact at another size of both parts.
     pub(crate) fn scaled(&self, share: f64) -> Self {
         Self { radii_m: self.radii_m.map(|a| share * a), ..*self }
     }

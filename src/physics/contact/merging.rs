@@ -76,7 +76,8 @@ impl Problem {
         self.field.at_one(&sources, number)
     }
 
-    /// Contacts whose fields sum to the difference of those of two contacts and of the one that they merge into, each with its sign.
+    /// Two contacts with a positive sign, and the merged contact with a negative one: their fields sum to the
+    /// difference field.
     fn difference(&self, number: usize, merged: &Merged) -> [(f64, Spot); 3] {
         let part = |k: usize| (1.0, self.spot(merged.parts[k], merged.radii_m[k]));
         [part(0), part(1), (-1.0, self.spot(number, merged.contact_radius_m()))]

@@ -181,7 +181,7 @@ impl Neighbours {
         }
     }
 
-    /// The `count` asperities nearest to `place` among those that are `wanted`, or fewer, in no order.
+    /// The `count` nearest `wanted` asperities to `place`, or fewer, unordered.
     ///
     /// `all` is the number of `wanted` asperities.
     pub(crate) fn nearest(&self, place: &[f64; 2], count: usize, all: usize, wanted: impl Fn(usize) -> bool) -> Vec<(f64, usize)> {

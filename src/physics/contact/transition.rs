@@ -1,4 +1,4 @@
-//! Transitions of asperities: their kinds, the resulting status, and those that are met during a relaxation.
+//! Transitions of asperities: their kinds, the resulting status, and transitions during a relaxation.
 //!
 //! An asperity jumps into contact when its penetration reaches its jump-in penetration, and out of contact at the end of its branch.
 //! It is absorbed when a larger spot reaches its centre, to [`BEFORE_CENTRE`], and released when that spot has withdrawn from it.

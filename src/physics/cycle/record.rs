@@ -1,4 +1,4 @@
-//! What a cycle consists of, for every method and in SI units: steps, contacts, events, maps and load reversals.
+//! Records of a cycle, for every method and in SI units: steps, contacts, events, maps and load reversals.
 
 use crate::LoopError;
 use crate::contact::merged_spot::Merged;
@@ -163,7 +163,7 @@ pub struct Event {
     pub energy_lost_j: f64,
 }
 
-/// Where an event happens.
+/// Place of an event.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Site {
     /// An asperity, by its number.

@@ -36,13 +36,13 @@ const MOST_POINTS: f64 = 65_536.0;
 const FIELDS: usize = 21;
 const FIELDS_OF_REVERSAL: usize = 8;
 
-/// Memory of a cycle on a grid with so many points along a side and loads \[bytes\].
+/// Memory of a cycle \[bytes\] on a grid of `points` points along a side, with `loads` loads.
 #[must_use]
 pub fn memory_bytes(points: usize, loads: usize) -> usize {
     points * points * size_of::<f64>() * (FIELDS + FIELDS_OF_REVERSAL * loads)
 }
 
-/// Points along a side with so many shortest wavelengths: a power of two with at least 16 per wavelength.
+/// Points along a side of `wavelengths` shortest wavelengths: a power of two with at least 16 per wavelength.
 #[must_use]
 pub fn points_for(wavelengths: f64) -> usize {
     ((PER_WAVELENGTH * wavelengths).ceil().clamp(1.0, MOST_POINTS) as usize).next_power_of_two()

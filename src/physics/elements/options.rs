@@ -3,7 +3,7 @@
 use crate::constants::Constant;
 use crate::model::KeptContacts;
 
-/// How the surfaces attract each other.
+/// Attraction between the surfaces.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Attraction {
     /// The JKR limit, a range of attraction of 0.

@@ -56,7 +56,7 @@ impl DirectSum {
         }
     }
 
-    /// The same with six digits of the image sums, without a table.
+    /// This sum with six digits of the image sums, without a table.
     pub(super) fn to_six_digits(&self) -> Self {
         Self { table: Arc::default(), rough: true, ..self.clone() }
     }

@@ -1,5 +1,5 @@
-//! Where a function changes its sign between two points, by the Illinois rule (Dowell & Jarratt, BIT 11:168, 1971): the straight line between the ends,
-//! with the value at an end that stays halved.
+//! Change of sign of a function between two points, by the Illinois rule (Dowell & Jarratt, BIT 11:168,
+//! 1971): the straight line between the ends. The value at an end is halved if that end is kept twice.
 
 /// The values at both ends.
 #[derive(Debug, Clone, Copy)]
@@ -22,12 +22,13 @@ impl Illinois {
         Self { low, high, last: None }
     }
 
-    /// Where to look next, as a share of the way from the low end, no nearer to an end than `margin`.
+    /// Next point of evaluation, as a fraction of the interval from the low end, no nearer to an end than
+    /// `margin`.
     pub(crate) fn share(&self, margin: f64) -> f64 {
         (self.low / (self.low - self.high)).clamp(margin, 1.0 - margin)
     }
 
-    /// The point that was looked at is the low or the high end from now on; the function has this value there.
+    /// Replaces the low or the high end by the evaluated point; the function has this value there.
     pub(crate) fn narrow(&mut self, end: End, value: f64) {
         let (mine, other) = match end {
             End::Low => (&mut self.low, &mut self.high),

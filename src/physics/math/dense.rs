@@ -31,7 +31,7 @@ impl Lu {
     /// Solves `A·x = b`, in place of b.
     pub(crate) fn solve(&self, b: &mut [f64]) {
         let n = self.size;
-        // All exchanges first: the factors stand in the order in which the rows ended.
+        // All exchanges first: the factors are in the final order of the rows.
         for (k, &pivot) in self.pivots.iter().enumerate() {
             b.swap(k, pivot);
         }

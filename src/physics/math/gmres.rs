@@ -6,7 +6,7 @@
 use super::dense::Lu;
 use super::vector::dot;
 
-/// Steps of the inverse iteration for the least eigenvalue: it stands apart where it matters.
+/// Steps of the inverse iteration for the smallest eigenvalue, which is well separated near a fold.
 const INVERSE_ITERATIONS: usize = 30;
 
 /// A square matrix, by its product with a vector.
@@ -44,7 +44,8 @@ pub(crate) fn gmres(matrix: &impl LinearOperator, inverse: Option<&dyn Precondit
     solve(matrix, inverse, rhs, limits, None)
 }
 
-/// Solves, and finds the least eigenvalue of the matrix in the Krylov space, each column over its diagonal element: 1 without coupling, 0 at a fold.
+/// Solves, and finds the smallest eigenvalue of the matrix in the Krylov space, with each column divided by
+/// its diagonal element: 1 without coupling, 0 at a fold.
 pub(crate) fn gmres_and_least(
     matrix: &impl LinearOperator,
     inverse: Option<&dyn Preconditioner>,
@@ -65,7 +66,8 @@ struct Projection {
 }
 
 impl Projection {
-    /// The eigenvalue θ of least magnitude of `VᵀAW y = θ VᵀDW y`, by inverse iteration. At a fold it is real, and passes through zero.
+    /// The eigenvalue θ of smallest magnitude of `VᵀAW y = θ VᵀDW y`, by inverse iteration. At a fold it is
+    /// real, and passes through zero.
     fn least_eigenvalue(&self) -> f64 {
         let n = self.matrix.len();
         if n == 0 {
@@ -164,7 +166,7 @@ fn orthogonalise(w: &mut [f64], basis: &[Vec<f64>]) -> Vec<f64> {
     column
 }
 
-/// Solves, with the projection of the matrix if that is wanted.
+/// Solves, with the projection of the matrix if requested.
 fn solve(
     matrix: &impl LinearOperator,
     inverse: Option<&dyn Preconditioner>,
@@ -286,7 +288,7 @@ mod tests {
 
     #[test]
     fn law_the_least_eigenvalue_vanishes_where_the_matrix_is_singular() {
-        // D^-1 A has the least eigenvalue 1 - λ for A = D - λ d dᵀ/(dᵀ D^-1 d), with d the right side.
+        // D^-1 A has the smallest eigenvalue 1 - λ for A = D - λ d dᵀ/(dᵀ D^-1 d), with d the right side.
         let n = 12;
         let d: Vec<f64> = (0..n).map(|i| 1.0 + i as f64 / n as f64).collect();
         let sum: f64 = d.iter().sum();

@@ -15,7 +15,8 @@ use std::sync::Arc;
 /// Relative change of a radius that an equilibrium does not resolve.
 const EDGE: f64 = 1e-8;
 
-/// Maximum number of local solves that propagate an event: at least so many, or the number of contacts over this.
+/// Maximum number of local solves that propagate an event: this number, or the number of contacts over it if
+/// that is larger.
 pub(super) const MOST_SOLVES: usize = 16;
 
 /// Number of transitions from which the global problem is solved after an avalanche: it moves contacts far away by more than its load as a point does.
@@ -83,8 +84,8 @@ impl EquilibriumPath {
         Ok(propagated.then_some(avalanche.open))
     }
 
-    /// At the end of an avalanche: sets the radii of release of absorbed asperities, blocks those that have left, and forgets merged contacts that
-    /// are gone.
+    /// At the end of an avalanche: sets the radii of release of absorbed asperities, blocks asperities that
+    /// have left contact, and removes merged contacts that no longer exist.
     fn close_avalanche(&mut self, moved: &[Transition]) {
         let (status, summits) = (&self.predictor.state.status, self.solver.problem.summits());
         for i in moved.iter().map(|transition| transition.asperity).filter(|i| *i >= summits && status[*i] == Status::Free) {

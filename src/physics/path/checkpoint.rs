@@ -49,7 +49,8 @@ pub(crate) struct PathCheckpoint {
     pub(super) halvings: u32,
     pub(super) chatter: ChatterGuard,
     pub(super) effort: Effort,
-    /// Pairs that overlap and do not merge before they have been apart; at the beginning of a path, those that overlap there.
+    /// Pairs that overlap and do not merge before they have been apart; at the beginning of a path, the pairs
+    /// that overlap there.
     pub(super) parted: Option<TouchingPairs>,
     /// Heights with the difference fields of merged contacts \[m\]; at the beginning of a path, nothing: they follow from the state.
     pub(crate) heights: Option<Vec<f64>>,

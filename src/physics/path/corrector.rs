@@ -189,8 +189,8 @@ impl EquilibriumPath {
         (relaxed, grown)
     }
 
-    /// Replaces the predictors of the free asperities that may jump into contact. All of them are evaluated on a grid of mean penetrations;
-    /// in between, only those that can have come near.
+    /// Replaces the predictors of the free asperities that may jump into contact. All of them are evaluated
+    /// on a grid of mean penetrations. Between grid points, only asperities near their jump-in are evaluated.
     fn predict_jump_ins(&mut self, rates: &[f64]) {
         let problem = &*self.problem();
         let (target, scale) = (self.state().approach_m, self.frame.scale);
@@ -212,8 +212,8 @@ impl EquilibriumPath {
         }
     }
 
-    /// Transitions that are due anywhere, the most overdue first, each with its lateness \[m\]. At the mean penetration of a jump those that wait for the
-    /// path to continue still do.
+    /// Transitions that are due anywhere, the most overdue first, each with its lateness \[m\]. At the mean
+    /// penetration of a jump, postponed transitions remain postponed.
     fn overdue(&mut self, jump: bool) -> Vec<(f64, Transition)> {
         let problem = &*self.problem();
         let postponed = std::mem::take(&mut self.postponed);

@@ -24,12 +24,13 @@ pub(super) struct EnergyLedger {
 }
 
 impl EnergyLedger {
-    /// At a global solve at a mean penetration \[m\], with so many events and the balance `Π − work` \[J\].
+    /// Ledger at a global solve at a mean penetration \[m\], with the number of events and the balance
+    /// `Π − work` \[J\].
     pub(super) fn new(at: f64, events: usize, balance: f64) -> Self {
         Self { events, at, balance, open: false, expected_n: 0.0, expected_at: at }
     }
 
-    /// The same with the last event charged at the next global solve.
+    /// If `open`, the last event is charged at the next global solve.
     pub(super) fn open(self, open: bool) -> Self {
         Self { open, ..self }
     }

@@ -160,8 +160,8 @@ impl EquilibriumPath {
         gained_j
     }
 
-    /// Pairs of a contact of radius `a` \[m\], which has just come into being, with those that it overlaps but for one that it replaces: they
-    /// do not merge before they have been apart.
+    /// Blocks pairs of a new contact of radius `a` \[m\] with the contacts that it overlaps, except for
+    /// `replaced`: they do not merge before they have been apart.
     pub(super) fn part_pairs(&mut self, part: usize, a: f64, replaced: Option<usize>) {
         let problem = &*self.problem();
         let mut parted = Vec::new();

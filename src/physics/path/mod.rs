@@ -55,9 +55,10 @@
 //! | [`event_log::EventLog`] | events, work, and segments of the load |
 //! | [`checkpoint::Checkpoint`] | a path at a global solve, to go back to |
 //!
-//! An event kind is added as a line of [`crate::contact::transition`] (name, status after it, what it undoes) and one of `conditions`: what reaches
-//! which value. How late it is, whether it is due and where it lies on the solution curve follow from the condition. The compiler then asks for what it
-//! changes in the local problem (`apply`), the status after it (`propagation`) and its inverse (`cycle::reversal`). It does not ask for:
+//! An event kind is added as a line of [`crate::contact::transition`] (name, status after it, inverse) and
+//! one of `conditions`: the quantity and its limit. Its lateness, its due state and its place on the solution
+//! curve follow from the condition. The compiler then requires the change of the local problem (`apply`), the
+//! status after it (`propagation`) and its inverse (`cycle::reversal`). It does not require:
 //!
 //! - the asperities for which the event is looked for: `triggers`, `expectation`, and `overtaken` during a relaxation;
 //! - pairs of kinds that undo each other: `Transition::returns`;

@@ -16,8 +16,8 @@ use crate::solve::local::LocalProblem;
 /// Contacts of local problem and shell, over those of the local problem.
 pub(super) const SHELL: usize = 5;
 
-/// Free asperities next to an event are followed from so many length scales before their jump-in: an event moves them by some jump-off
-/// penetrations.
+/// Distance before jump-in, in length scales, from which free asperities next to an event are followed: an
+/// event moves them by several jump-off penetrations.
 pub(super) const SPAN: f64 = 3.0;
 
 /// Local problem of an event with its shell.
@@ -91,7 +91,7 @@ impl Neighbourhood {
         self.to_apply.extend(self.local.members.iter().map(|member| pending.of(member.asperity)));
     }
 
-    /// Remembers where the members were known, before an event is located.
+    /// Stores the known radii and the mean penetration of the members, before an event is located.
     pub(super) fn set_origin(&mut self) {
         self.origin.clone_from(&self.local.radius);
         self.reference = self.local.approach;

@@ -1,4 +1,5 @@
-//! What follows a change of a local problem: status of its members, energy of the event, and propagation to the rest of the contact.
+//! Effects of a change of a local problem: status of its members, energy of the event, and propagation to the
+//! rest of the contact.
 //!
 //! A local problem changes the field around it. Free asperities of its shell take the change at once. Contacts have it as a pending
 //! displacement until they are members of a local problem, or until the global solve; a sequence of local solves continues while a pending
@@ -116,7 +117,7 @@ impl EquilibriumPath {
         energy
     }
 
-    /// Remembers the local problem before it changes.
+    /// Records the local problem before it changes.
     pub(super) fn begin(&mut self) -> Before {
         let problem = &*self.problem();
         let local = &self.neighbourhood.local;

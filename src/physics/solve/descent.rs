@@ -1,8 +1,10 @@
 //! Newton's method on all contacts, with nonlinear elimination.
 //!
-//! Where a full step does not reduce the largest residual, the reason is one contact: it is at the edge of another one, or near the end of its branch. The
-//! contacts around it are then solved alone, with the displacement by all others held, and the method continues from there (Lanzkron, Rose & Wilkes,
-//! SIAM J. Sci. Comput. 17:538, 1996). Shorter steps of all contacts cost more and lead nowhere if there is no equilibrium.
+//! If a full step does not reduce the largest residual, the reason is one contact: it is at the edge of
+//! another one, or near the end of its branch. The contacts around it are then solved alone, with the
+//! displacement by all others held, and the method continues from there (Lanzkron, Rose & Wilkes, SIAM J.
+//! Sci. Comput. 17:538, 1996). Shorter steps of all contacts cost more, and do not converge if there is no
+//! equilibrium.
 
 use super::global::GlobalSolver;
 use super::local::{Hold, LocalProblem};
@@ -20,7 +22,7 @@ pub(super) const LEAST: f64 = 1e-4;
 /// The largest of them where the precision is only sufficient.
 pub(super) const ROUGH: f64 = 3e-2;
 
-/// What follows where the contacts around one have no equilibrium nearby.
+/// Action if the contacts around one have no equilibrium nearby.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Failing {
     /// The solution ends at once: the increment is to be shortened.

@@ -136,8 +136,9 @@ impl GlobalSolver {
         self.count(step)
     }
 
-    /// `da_i/dΔ` at the equilibrium that was evaluated last; `exact`, or of sufficient precision. The stability is entered into the state: its sign is
-    /// right at either precision, since the least eigenvalue is in the Krylov space where it is small.
+    /// `da_i/dΔ` at the equilibrium that was evaluated last; `exact`, or of sufficient precision. The
+    /// stability is entered into the state. Its sign is right at either precision, since the smallest
+    /// eigenvalue is in the Krylov space where it is small.
     pub(crate) fn rates(&mut self, state: &mut State, exact: bool) -> Vec<f64> {
         let ones = vec![1.0; state.contacts.len()];
         let Self { problem, tangents, inverse, diagonal, .. } = self;

@@ -30,9 +30,10 @@ pub(crate) struct Damping {
 }
 
 impl Damping {
-    /// Where a failure only shortens the increment.
+    /// For solves whose failure only shortens the increment.
     pub(crate) const NORMAL: Self = Self { least_share: 0.2, rounds: 24 };
-    /// Where it ends in a relaxation: contacts at the edge of another are followed in short steps.
+    /// For solves whose failure leads to a relaxation: contacts at the edge of another are followed in short
+    /// steps.
     pub(crate) const PATIENT: Self = Self { least_share: 1e-4, rounds: 60 };
 }
 
@@ -98,7 +99,7 @@ mod tests {
         x: f64,
         start: f64,
         step: f64,
-        /// Where a repair goes.
+        /// Solution after a repair.
         repaired: Option<f64>,
     }
 
@@ -112,7 +113,7 @@ mod tests {
         }
 
         fn repair(&mut self, worst: &Worst) -> Option<Result<Worst, NotConverged>> {
-            // A place that is not a number stands for no equilibrium nearby.
+            // NaN means that there is no equilibrium nearby.
             self.x = self.repaired?;
             Some(if self.x.is_nan() { Err(worst.contact) } else { Ok(self.evaluate()) })
         }

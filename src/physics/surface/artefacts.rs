@@ -1,4 +1,4 @@
-//! Artefacts of a measurement: their correction, and those that remain.
+//! Artefacts of a measurement: their correction, and the remaining ones.
 
 use super::outliers::{deviations, find_outliers, replace_outliers};
 use super::psd_bin::Ring;
@@ -19,7 +19,7 @@ pub struct Corrections {
     pub periodic: bool,
 }
 
-/// Artefacts of a scan that were corrected, and those that remain.
+/// Corrected and remaining artefacts of a scan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Artefacts {
     /// Outliers that were replaced.

@@ -39,7 +39,7 @@ pub fn find_measured(
     Ok((found, edge))
 }
 
-/// Summits of a field that is not periodic, and the number of those that are too close to its edges.
+/// Asperities of a field that is not periodic, and the number of asperities too close to its edges.
 fn find_inside(heights_m: ArrayView2<'_, f64>, length_m: f64, points: f64) -> Result<(Summits, usize), PhysicsError> {
     check_points(points)?;
     let n = heights_m.nrows();

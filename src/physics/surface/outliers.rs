@@ -2,7 +2,7 @@
 //!
 //! A point is a candidate if it differs from the median of its neighbours, the 24 other points of a square of 5 x 5, by more than six robust standard
 //! deviations: 1.4826 times the median absolute deviation of all points from the median of their neighbours.
-//! The candidate is an outlier if it stands alone in two respects, which steps, corners, ridges and apices do not:
+//! The candidate is an outlier if it is isolated in two respects; steps, corners, ridges and apices are not:
 //! - At half of its height at most three more points are connected to it (the group).
 //! - It differs from the points around the group more than three times as much as these differ from the next ring of points.
 

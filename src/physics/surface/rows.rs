@@ -79,8 +79,9 @@ fn difference(from: ArrayView1<'_, f64>, to: ArrayView1<'_, f64>) -> Option<f64>
 
 /// Rms offset of the rows against each other, 0 if there is none.
 ///
-/// Offsets of scan lines are the same along a whole line and independent of those of other lines. So the following must hold for the medians of the
-/// differences of adjacent rows, taken in eight parts along the rows:
+/// Offsets of scan lines are the same along a whole line and independent of the offsets of other lines. Three
+/// conditions must therefore hold for the medians of the differences of adjacent rows, taken in eight parts
+/// along the rows:
 /// - At least half of the variance of their third differences is common to all parts.
 /// - These vary from row to row as independent offsets do, and not smoothly as a surface does.
 /// - They do not repeat periodically.

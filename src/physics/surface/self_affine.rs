@@ -40,7 +40,8 @@ const OF_SHAPE: f64 = 8.0;
 pub(super) const FEWEST: usize = 5;
 /// Fewest rings of the power law beyond a roll-off.
 pub(super) const FEWEST_BEYOND: usize = 4;
-/// Least fraction of the mean square height of all rings that the band holds: leakage and rounding hold less.
+/// Minimum fraction of the mean square height of all rings that the band holds: leakage and rounding hold
+/// less.
 pub(super) const SHARE: f64 = 0.1;
 /// Decrease of ln C by a filter that hardly changes the exponent.
 const SMALL_DAMPING: f64 = 0.35;
@@ -103,7 +104,7 @@ struct Found {
 }
 
 impl Found {
-    /// The line of least cost with this white noise; `known` is the line of an earlier pass.
+    /// The line of minimum cost with this white noise; `known` is the line of an earlier pass.
     fn of(rings: &[Ring], sampling: &Sampling, noise_m4: f64, known: Option<&Line>) -> Option<Self> {
         let points = sampling.points(rings, noise_m4, known);
         let data: Vec<Point> = points.iter().filter(|point| point.is_data).copied().collect();
@@ -121,7 +122,7 @@ impl Found {
         Some(Self { points, line, noise_m4, is_self_affine, cost: cost + of_noise })
     }
 
-    /// Self-affine spectra first, then the least cost.
+    /// Self-affine spectra first, then the minimum cost.
     fn order(&self, other: &Self) -> Ordering {
         other.is_self_affine.cmp(&self.is_self_affine).then(self.cost.total_cmp(&other.cost))
     }
@@ -137,7 +138,7 @@ struct Search<'a> {
 type Candidate = (f64, [usize; 2], Line);
 
 impl Search<'_> {
-    /// Lines of least cost with exponents in two ranges. A roll-off is at a ring, or between two.
+    /// Lines of minimum cost with exponents in two ranges. A roll-off is at a ring, or between two.
     fn least(&self, ranges: [&RangeInclusive<f64>; 2]) -> [Option<Candidate>; 2] {
         let mut found = [None; 2];
         self.straight(ranges, &mut found);

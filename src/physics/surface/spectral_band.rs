@@ -21,7 +21,7 @@ pub(crate) const OUTSIDE: f64 = 4.0;
 const OF_MODEL: f64 = 0.1;
 /// Lowest mode number of a tapered ring that levelling and the main lobe of the tapers do not dominate.
 const LOWEST_TAPERED: f64 = 2.5;
-/// Least density over white noise of a ring with data.
+/// Minimum density over white noise of a ring with data.
 pub(crate) const OVER_NOISE: f64 = 2.0;
 /// Rings at the shortest wavelengths that define the white noise.
 const TOP: usize = 3;

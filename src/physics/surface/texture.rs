@@ -31,7 +31,7 @@ const STEP: f64 = 0.5;
 const MOST_POINTS: usize = 2048;
 /// Sides over decay lengths from which Str is determined: fewer are too small a sample, and Str of an isotropic surface is below ½ by chance.
 const DECAY_LENGTHS: f64 = 20.0;
-/// Least mean square slope along an axis, relative to the other: rounding.
+/// Minimum mean square slope along an axis, relative to the other: rounding.
 const ROUNDING: f64 = 1e-12;
 
 impl Texture {

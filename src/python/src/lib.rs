@@ -1,7 +1,8 @@
 //! `hysteron._hysteron`: the physics of hysteron over columns of numbers.
 //!
-//! Every function takes one-dimensional, contiguous arrays of `f64`, of one element or all of the same length, and gives such arrays. What is
-//! broadcast, what keywords there are and what a user is told stands in the Python modules beside this crate; they alone call it.
+//! Every function takes one-dimensional, contiguous arrays of `f64`, of one element or all of the same
+//! length, and returns such arrays. The Python modules of this package are the only callers. They have the
+//! broadcasting, the keywords and the documentation.
 
 mod columns;
 mod jkr;

@@ -1,4 +1,4 @@
-//! Theories beside a run: the functions of `hysteron::physics::theory`, by name.
+//! Analytical models: the functions of `hysteron::physics::theory`, by name.
 
 use crate::columns::{Column, Values, each, positive, within};
 use hysteron::model::{Material, Slips};

@@ -1,4 +1,4 @@
-//! A cycle by boundary elements: what it writes beside the tables of every method.
+//! A cycle by boundary elements, and the files that only this method writes.
 
 use super::super::StageError;
 use super::super::identity::Identity;

@@ -114,7 +114,7 @@ struct CycleTask<'a> {
     watch: &'a dyn Watch,
 }
 
-/// What a method has computed: a cycle, what it writes beside the tables of every method, and the units of the dimensionless columns.
+/// Result of a method: a cycle, further files of this method, and the units of the dimensionless columns.
 struct Computed {
     method: &'static str,
     /// Name and number of the unknowns.

@@ -15,7 +15,8 @@ use super::frame::Frame;
 
 /// The file-level key under which a table carries its own schema, since Polars, pandas and DuckDB drop that of columns.
 pub const METADATA_KEY: &str = "hysteron";
-/// Writes a table in place of `path`. `keys` go into its file-level metadata beside the schema, `key` for one.
+/// Writes a table in place of `path`. `keys` are added to its file-level metadata in addition to the schema,
+/// for example `key`.
 ///
 /// # Errors
 /// If the file cannot be written whole; what was at `path` is then still there.

@@ -17,12 +17,13 @@ use super::super::error::{Cause, fenced};
 use super::super::frame::{ColumnData, Frame};
 use super::{METADATA_KEY, data_type};
 
-/// More rows than any table of this program has; what claims more is damaged, and is refused before memory is asked for.
+/// More rows than any table of this program has. A file with more is damaged, and is refused before memory is
+/// allocated.
 const MOST_ROWS: i64 = 1 << 31;
 /// More bytes than any table of this program has when unpacked.
 const MOST_BYTES: i64 = 1 << 36;
 
-/// One of the keys beside the schema in the file-level metadata.
+/// A key of the file-level metadata other than the schema.
 pub(super) fn metadata(path: &Path, name: &str) -> Result<Option<String>, Cause> {
     let file = File::open(path)?;
     fenced(|| {

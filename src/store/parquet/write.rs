@@ -50,7 +50,7 @@ fn own_json(table: &Table, keys: &[(&str, String)]) -> Result<String, Cause> {
 
 fn writer_properties(table: &Table, own: String) -> Result<WriterProperties, Cause> {
     let mut properties = WriterProperties::builder()
-        // The same words whatever version wrote the file: versions are recorded beside the data, not in it.
+        // The same text in files of all versions: the provenance record has the version, not the data.
         .set_created_by("hysteron".to_owned())
         .set_compression(Compression::ZSTD(ZstdLevel::try_new(3)?))
         .set_max_row_group_row_count(Some(ROW_GROUP))

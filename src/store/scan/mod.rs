@@ -1,8 +1,8 @@
 //! Measured surfaces, in the files that instruments and other programs write.
 //!
-//! A reader takes a file for what its first bytes say, believes none of its numbers before comparing them with the
-//! length of the file, and gives heights, or a sentence that says why there are none. What a file does not say, of its
-//! size or its unit for instance, is not guessed.
+//! The first bytes of a file determine its format. Its numbers are compared with the length of the file
+//! before they are used. A reader returns heights, or a sentence with the reason of the failure. Properties
+//! that the file does not state, such as its size or its unit, are not guessed.
 
 pub(super) mod attributes;
 pub mod export;
@@ -63,7 +63,7 @@ impl Scan {
         Self { heights, size_m: None, unit: None, factor: 1.0, periodic: None, spacing: None, first, notes: Vec::new() }
     }
 
-    /// The same scan with x and y exchanged.
+    /// Scan with x and y exchanged.
     ///
     /// # Errors
     /// If the memory of this machine does not suffice.

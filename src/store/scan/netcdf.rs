@@ -1,7 +1,7 @@
 //! Classic NetCDF, in the layout of the Python package SurfaceTopography.
 //!
-//! Heights stand in a variable `heights` over the dimensions x and y, or in the only two-dimensional variable. Points are missing
-//! where a variable `mask` is not 0. The meaning of all attributes is that of [`Field`].
+//! Heights are in a variable `heights` over the dimensions x and y, or in the only two-dimensional variable.
+//! Points are missing where a variable `mask` is not 0. The meaning of all attributes is that of [`Field`].
 
 use std::io::{Seek, SeekFrom};
 
@@ -12,9 +12,9 @@ use super::netcdf_header::{Header, Variable, padding};
 use super::numbers::{Order, points, room, shaped, stream};
 use super::{Cause, FirstIndex, Scan, Source};
 
-/// The variable with the heights, unless another one is asked for.
+/// Default variable with the heights.
 const HEIGHTS: &str = "heights";
-/// The variable that says which points are missing.
+/// Variable that marks missing points.
 const MASK: &str = "mask";
 /// Points of an axis whose coordinates are read.
 const MOST_COORDINATES: u64 = 1 << 20;

@@ -203,7 +203,8 @@ impl Bytes<'_> {
         }
         let attributes = self.attributes()?;
         let kind = self.kind()?;
-        // The size of a variable, which cannot be right for a large one, so that nobody goes by it.
+        // Size of the variable. It is not used: for a large variable, the field is too small for the right
+        // value.
         self.count()?;
         Ok(Variable { name, dimensions: places, attributes, kind, begin: self.wide(self.places)? })
     }

@@ -100,7 +100,7 @@ pub(super) fn points(rows: u64, columns: u64) -> Result<u64, Cause> {
     }
 }
 
-/// Room for so many heights, or a sentence instead of an end of the program.
+/// Memory for `count` heights, or an error instead of an abort of the program.
 pub(in crate::store) fn room(count: u64) -> Result<Vec<f64>, Cause> {
     let mut values = Vec::new();
     usize::try_from(count)
@@ -110,7 +110,7 @@ pub(in crate::store) fn room(count: u64) -> Result<Vec<f64>, Cause> {
         .ok_or_else(|| format!("its {count} heights do not fit into the memory of this machine").into())
 }
 
-/// Gives so many numbers to `each`, in the order in which they come.
+/// Passes `count` numbers to `each`, in the order of the file.
 pub(super) fn stream(from: &mut impl Read, kind: Number, order: Order, count: u64, mut each: impl FnMut(f64)) -> Result<(), Cause> {
     let width = kind.width();
     let mut buffer = [0; AT_ONCE];
@@ -145,7 +145,7 @@ pub(super) fn field(
                     *height = turn(value);
                 }
                 place += step;
-                // Below the last row stands the top of the next column.
+                // The row below the last one is the top of the next column.
                 if place >= count as usize {
                     place = place - count as usize + 1;
                 }

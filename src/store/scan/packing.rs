@@ -60,7 +60,7 @@ impl Packing {
         };
         let [low, high] = self.valid;
         let compared = if self.unpacked { value } else { stored };
-        // Infinite numbers of a file are missing points too, but only the caller knows of them.
+        // Infinite numbers remain here; the caller treats them as missing points.
         let invalid = compared < low || compared > high;
         if stored.is_nan() || invalid || self.missing.contains(&stored) { f64::NAN } else { value }
     }

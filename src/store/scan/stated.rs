@@ -117,7 +117,7 @@ impl Name {
             return Some(Self { pixel: true, along: Along::Both, metres: Some(1e-9) });
         }
         let mut words: Vec<&str> = name.split('_').collect();
-        // "x" and "y" are no units; "a", "in" and "m" are, and stand last.
+        // "x" and "y" are not units; "a", "in" and "m" are units if they are the last word.
         let unit = words.last().and_then(|word| metres(word)).filter(|_| words.len() > 1);
         if unit.is_some() {
             words.pop();
@@ -200,7 +200,7 @@ fn entry(level: &Attributes, name: &str, value: &Value, counts: [f64; 2]) -> Opt
     fits.then(|| Entry { name: name.to_owned(), of, values })
 }
 
-/// Unit of a size in an attribute beside it \[m\], such as `length_unit`.
+/// Unit of a size \[m\] in a further attribute such as `length_unit`.
 fn unit_beside(level: &Attributes, name: &str) -> Option<f64> {
     let own = ["unit", "units"].map(|word| format!("{}_{word}", plain(name)));
     let known = |other: &str| own.iter().any(|name| name == other) || SIZE_UNITS.contains(&other);

@@ -93,7 +93,7 @@ impl Matrix {
         self.row(line)
     }
 
-    /// Takes in a line as the names of columns, or as the units of those named before.
+    /// Reads a line as the names of columns, or as the units of the columns named before.
     fn name(&mut self, line: &str) {
         let Some(found) = columns(line) else { return };
         if are_units(&found) && found.len() == self.named.len() {
@@ -184,7 +184,7 @@ impl Matrix {
         }
     }
 
-    /// Heights in lines of so many points, whatever the lines of the file.
+    /// Heights in lines of `width` points, independently of the lines of the file.
     fn lines_of(mut self, width: u64) -> Result<Scan, Cause> {
         let count = self.values.len() as u64;
         if width == 0 || !count.is_multiple_of(width) {

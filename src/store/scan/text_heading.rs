@@ -114,7 +114,7 @@ impl Heading {
             }
             "channel" | "kanal" => put(&mut self.channel, word()),
             _ if small.starts_with("height conversion factor") => {
-                // The unit stands behind an arrow, as in "height conversion factor (-> m)".
+                // The unit follows an arrow, as in "height conversion factor (-> m)".
                 let unit = key.split_once("->").map_or("", |(_, unit)| unit);
                 put(&mut self.conversion, Quantity::of(&format!("{value} {unit}")))
             }
@@ -190,7 +190,7 @@ impl Heading {
         Ok((factor, unit))
     }
 
-    /// Units and size for a matrix of so many lines and values in a line.
+    /// Units and size of a matrix with the given numbers of lines and of values in a line.
     pub(super) fn meaning(&self, [lines, values]: [u64; 2]) -> Result<Meaning, Cause> {
         for (said, found, what) in [(self.lines, lines, "lines"), (self.values_in_line, values, "values in a line")] {
             if let Some(said) = said.filter(|said| *said != found) {
@@ -250,7 +250,7 @@ fn is_size(small: &str) -> bool {
     both.contains(&small) || along(small).is_some_and(|(_, of)| of != Of::Count)
 }
 
-/// True if a text begins with a number in which a comma stands before three digits.
+/// True if a text begins with a number with a comma before three digits.
 fn has_ambiguous_comma(text: &str) -> bool {
     let rest = text.trim_start_matches(|sign: char| sign.is_ascii_digit() || matches!(sign, '+' | '-'));
     let Some(rest) = rest.strip_prefix(',').filter(|_| rest.len() < text.len()) else { return false };

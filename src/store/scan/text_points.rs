@@ -130,7 +130,7 @@ impl Axis {
         ))
     }
 
-    /// The place of a coordinate, which is one of those that the axis was made of.
+    /// Place of a coordinate, which is one of the coordinates of the axis.
     fn place(&self, value: f64) -> Result<usize, Cause> {
         let place = ((value - self.first) / self.spacing).round();
         if (0.0..self.count as f64).contains(&place) {

@@ -159,7 +159,7 @@ fn description(archive: &mut Archive, names: &Names) -> Result<String, Cause> {
     Ok(text.strip_prefix('\u{feff}').map(ToOwned::to_owned).unwrap_or(text))
 }
 
-/// A part of the archive that has so many bytes.
+/// A part of the archive, which must have a size of `bytes`.
 fn part<'a>(
     (archive, names): (&'a mut Archive, &Names),
     name: &str,

@@ -56,7 +56,7 @@ impl Source<'_> {
 impl DirectSum {
     /// Displacement \[m\] by spots at each of `targets`, without that of a spot at its own centre; by number, 0 elsewhere.
     ///
-    /// The displacement by each spot is multiplied by the number beside it.
+    /// The displacement by each spot is multiplied by its factor in `spots`.
     pub(crate) fn at_many(&self, spots: &[(f64, Spot)], mut targets: impl Iterator<Item = usize>) -> Vec<f64> {
         let mut found = vec![0.0; self.positions.len()];
         if self.kind == Kind::None {

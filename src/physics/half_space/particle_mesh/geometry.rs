@@ -284,7 +284,7 @@ impl<T: Real, const W: usize, const O: usize> Meshes<T, W, O> {
     }
 }
 
-/// Weights of places: those in `known` for places that have a position there, and those that `find` gives for the others.
+/// Weights of places: from `known` for places that have a position there, from `find` for the others.
 fn completed<A: Copy>(
     known: &[A],
     places: impl Iterator<Item = (Option<usize>, [f64; 2])> + Clone,
