@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 /// Folders and files of `src/physics`, each with those that it may import. `model`, `constants`, `error`, `event_kind` and `memory` are free for all.
-const PHYSICS: [(&str, &[&str]); 11] = [
+const PHYSICS: [(&str, &[&str]); 12] = [
     ("math", &[]),
     ("jkr", &[]),
     ("surface", &[]),
@@ -16,6 +16,7 @@ const PHYSICS: [(&str, &[&str]); 11] = [
     ("cycle", &["math", "jkr", "half_space", "contact", "solve", "path"]),
     ("theory", &["jkr", "surface"]),
     ("boundary_elements", &[]),
+    ("asperities", &["surface", "contact", "cycle"]),
     ("elements", &["surface", "theory", "boundary_elements", "cycle"]),
 ];
 

@@ -1,6 +1,6 @@
 //! The loop over the elements of arrays.
 
-use hysteron::physics::PhysicsError;
+use hysteron_physics::PhysicsError;
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

@@ -1,10 +1,10 @@
-//! Analytical models: the functions of `hysteron::physics::theory`, by name.
+//! Analytical models: the functions of `hysteron_physics::theory`, by name.
 
 use crate::columns::{Column, Values, each, positive, within};
-use hysteron::model::{Material, Slips};
-use hysteron::physics::PhysicsError;
-use hysteron::physics::surface::spectrum::Moments;
-use hysteron::physics::theory;
+use hysteron_physics::model::{Material, Slips};
+use hysteron_physics::PhysicsError;
+use hysteron_physics::surface::spectrum::Moments;
+use hysteron_physics::theory;
 use pyo3::prelude::*;
 
 /// The material of one element, for `action`.
