@@ -5,7 +5,7 @@ use super::numbering::Places;
 use super::numerics::{Accuracy, Numerics};
 use crate::PhysicsError;
 use crate::half_space::spot_field::{Spot, spot_field_as_printed};
-use crate::half_space::{Best, Spots, best};
+use crate::half_space::{FieldSum, Spots, choose};
 use crate::jkr::{Asperity, LEAST_TABOR};
 use crate::math::grown::Grown;
 use crate::model::{Boundary, Coalescence, Interaction as Kind, JumpIn, Material, Slips};
@@ -49,7 +49,7 @@ pub struct Problem {
     pub(crate) potential_offset: Grown<f64>,
     pub(crate) material: Material,
     pub(crate) rules: Rules,
-    pub(crate) field: Best,
+    pub(crate) field: FieldSum,
     pub(crate) neighbours: Neighbours,
     pub(crate) numerics: Numerics,
     /// Side of the square L \[m\].
@@ -122,7 +122,7 @@ impl Problem {
             })
             .collect();
         let positions: Vec<[f64; 2]> = summits.iter().map(|s| places.inward([s.x_m, s.y_m])).collect();
-        let field = best(positions.clone(), length_m, &material, rules.interaction, rules.boundary, rules.slips);
+        let field = choose(positions.clone(), length_m, &material, rules.interaction, rules.boundary, rules.slips);
         Ok(Self {
             heights: summits.iter().map(|s| s.height_m - highest).collect(),
             potential_offset: vec![0.0; jump_in.len()].into(),

@@ -1,6 +1,6 @@
 //! Global corrector: the contact solved at the end of an increment, and new predictors of everything.
 
-use super::accuracy::{Arrival, Precision, out_of_reach};
+use super::accuracy::{Arrival, out_of_reach};
 use super::equilibrium_path::EquilibriumPath;
 use super::rejection::Rejection;
 use super::triggers::Trigger;
@@ -11,6 +11,7 @@ use crate::contact::{Status, Totals};
 use crate::event_kind::EventKind;
 use crate::math::vector::dot;
 use crate::solve::descent::{Failing, Relaxed};
+use crate::solve::precision::Precision;
 use crate::solve::residual::NotConverged;
 use crate::solve::trace::PenetrationTrace;
 
@@ -31,7 +32,7 @@ impl EquilibriumPath {
         let (strict, jump) = (arrival == Arrival::CheckedIncrement, arrival == Arrival::Jump);
         self.precision = precision;
         let pending = self.pending.all().to_vec();
-        self.solver.begin(precision == Precision::Sufficient);
+        self.solver.begin(precision);
         let mut rounds = 0;
         loop {
             self.predictor.go_to(&self.problem(), target);
@@ -110,7 +111,7 @@ impl EquilibriumPath {
 
     /// Rates of the contacts at the equilibrium that was evaluated last; where they are not numbers, the reason is `first`.
     fn finite_rates(&mut self, first: NotConverged) -> Result<Vec<f64>, NotConverged> {
-        let rates = self.solver.rates(&mut self.predictor.state, self.precision == Precision::Exact);
+        let rates = self.solver.rates(&mut self.predictor.state, self.precision);
         if rates.iter().all(|rate| rate.is_finite()) { Ok(rates) } else { Err(first) }
     }
 

@@ -9,7 +9,7 @@ use super::expectation::PredictedEvent;
 use super::rejection::Rejection;
 use crate::event_kind::EventKind;
 use crate::math::bracket::{End, Illinois};
-use crate::solve::local::curve::CurveEnd;
+use crate::solve::local::curve::{CurveEnd, CurveSearch};
 use crate::solve::local::{Hold, LocalProblem};
 
 /// Overlap at merging, relative to the distance of the contacts: at most so much.
@@ -125,7 +125,7 @@ impl EquilibriumPath {
         if there {
             return Some(Located::Point);
         }
-        match local.trace_curve(problem, at, bound, (target, sense), effort) {
+        match local.trace_curve(problem, CurveSearch { member: at, bound, target, path_sense: sense }, effort) {
             Ok(CurveEnd::Fold) => Some(Located::Fold(at)),
             Ok(CurveEnd::Bound) if (local.approach - target) * sense <= 0.0 => Some(Located::Point),
             _ => None,

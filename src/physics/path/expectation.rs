@@ -9,7 +9,7 @@ use crate::event_kind::EventKind;
 
 /// Distance to the end of a branch, over the way that is left, within which it is looked for: near a fold the penetration varies as a
 /// square root, so linear extrapolation overestimates the distance by about two.
-const REACH: f64 = 2.2;
+const BRANCH_END_DISTANCE: f64 = 2.2;
 
 /// Radius over distance at which two contacts are near a common fold, since the field of each is steep there.
 const TWINS: f64 = 0.95;
@@ -83,7 +83,7 @@ impl Predictor {
         };
         if speed < 0.0 {
             let way = (trace.value - asperity.jump_off_penetration()) / -speed;
-            if way <= REACH * left {
+            if way <= BRANCH_END_DISTANCE * left {
                 offer(way.min(left), EventKind::JumpOff, j, None);
             }
             let split = Transition { kind: EventKind::Split, asperity: j, by: None };

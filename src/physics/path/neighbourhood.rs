@@ -11,7 +11,7 @@ use crate::contact::{Problem, Status};
 use crate::event_kind::EventKind;
 use crate::half_space::Effort;
 use crate::model::Interaction;
-use crate::solve::local::LocalProblem;
+use crate::solve::local::{Extent, LocalProblem};
 
 /// Contacts of local problem and shell, over those of the local problem.
 pub(super) const SHELL: usize = 5;
@@ -85,8 +85,8 @@ impl Neighbourhood {
         });
         let members: Vec<_> = members.into_iter().map(|i| (i, traces[i], predictor.radius(problem, i, approach))).collect();
         let watched: Vec<_> = watched.into_iter().map(|i| (i, traces[i])).collect();
-        let is_part = members.len() < predictor.state.contacts.len();
-        self.local.gather(problem, &members, &watched, approach, is_part, effort);
+        let extent = Extent::of(members.len(), predictor.state.contacts.len());
+        self.local.gather(problem, &members, &watched, approach, extent, effort);
         self.to_apply.clear();
         self.to_apply.extend(self.local.members.iter().map(|member| pending.of(member.asperity)));
     }

@@ -1,6 +1,6 @@
 //! Checkpoints of a path, taken and resumed.
 
-use super::accuracy::{Arrival, Precision};
+use super::accuracy::Arrival;
 use super::checkpoint::{Checkpoint, PathCheckpoint};
 use super::energy::EnergyLedger;
 use super::equilibrium_path::{EquilibriumPath, Frame};
@@ -9,6 +9,7 @@ use super::predictor::Predictor;
 use super::step_control::StepControl;
 use crate::PhysicsError;
 use crate::contact::Problem;
+use crate::solve::precision::Precision;
 use std::sync::Arc;
 
 impl EquilibriumPath {

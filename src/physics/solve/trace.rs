@@ -14,7 +14,7 @@ pub(crate) struct PenetrationTrace {
 }
 
 /// Largest rate that is extrapolated. Without a fold nearby it is below 1.2; at a fold it is infinite, over a short way.
-pub(crate) const STEEPEST: f64 = 4.0;
+pub(crate) const MAX_RATE: f64 = 4.0;
 
 /// Lower bound of |dδ/da|, against division by zero at the end of the branch.
 const LEAST_SLOPE: f64 = 1e-6;
@@ -39,7 +39,7 @@ impl PenetrationTrace {
 
     /// Predicted penetration at a mean penetration \[m\].
     pub(crate) fn ahead(&self, approach: f64) -> f64 {
-        self.value + self.rate.clamp(-STEEPEST, STEEPEST) * (approach - self.at)
+        self.value + self.rate.clamp(-MAX_RATE, MAX_RATE) * (approach - self.at)
     }
 
     /// Predicted contact radius \[m\].
