@@ -98,8 +98,7 @@ impl Problem {
     /// There must be a summit. Radii and material must be positive.
     /// With Wu's rule all Tabor parameters must be at least 2 unless allowed.
     pub fn new(summits: &[Summit], length_m: f64, rms_height_m: f64, material: Material, rules: Rules) -> Result<Self, PhysicsError> {
-        let periodic = rules.boundary == Boundary::Periodic;
-        let places = Places::new(summits, length_m, periodic)?;
+        let places = Places::new(summits, length_m, rules.boundary)?;
         let highest = summits[places.numbers[0]].height_m;
         let summits: Vec<Summit> = places.numbers.iter().map(|i| summits[*i]).collect();
         let of = |s: &Summit| Asperity::as_printed(s.radius_m(), &material, rules.slips);
@@ -128,7 +127,7 @@ impl Problem {
             potential_offset: vec![0.0; jump_in.len()].into(),
             jump_in: jump_in.into(),
             field: if rules.coalescence == Coalescence::Merge { field } else { field.with_table() },
-            neighbours: Neighbours::new(positions, length_m, periodic),
+            neighbours: Neighbours::new(positions, length_m, rules.boundary),
             numerics: Numerics::default(),
             places: Arc::new(places),
             asperities: asperities.into(),
