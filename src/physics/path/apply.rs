@@ -165,7 +165,7 @@ impl EquilibriumPath {
             None => {
                 self.predictor.set(i, Status::Free, 0.0);
                 self.predictor.state.barred[i] = true;
-                self.predictor.traces[i].value = f64::NAN;
+                self.predictor.traces[i].forget();
                 let totals = self.predictor.totals(approach);
                 self.log.note(Transition { kind: EventKind::Uncover, asperity: i, by: Some(by) }, approach, totals);
                 let gained_j = self.free_parts(i).1;

@@ -29,11 +29,6 @@ impl EnergyLedger {
         Self { events, at, balance, open: false, expected_n: 0.0, expected_at: at }
     }
 
-    /// The same with the last event charged at the next global solve.
-    pub(super) fn open(self, open: bool) -> Self {
-        Self { open, ..self }
-    }
-
     /// Mean penetration of the last global solve \[m\].
     pub(super) fn at(&self) -> f64 {
         self.at

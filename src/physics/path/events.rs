@@ -27,6 +27,13 @@ pub(super) enum Located {
     Fold(usize),
 }
 
+/// Change of the radius of a contact towards an event.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum RadiusChange {
+    Growing,
+    Shrinking,
+}
+
 /// Outcome of a predicted event.
 enum Outcome {
     /// It does not occur before the target, or not before another one.
@@ -111,18 +118,21 @@ impl EquilibriumPath {
         match self.problem().condition(&event.transition, &self.predictor.state)? {
             Condition::Penetration { asperity, value_m } => self.locate_penetration(asperity, value_m, event.approach, target),
             Condition::Touching { pair: [i, by] } => self.locate_merging(i, by, target),
-            Condition::Shrinking { contact, value_m } => self.locate_radius(contact, value_m, false, target),
-            Condition::Growing { contact, value_m } => self.locate_radius(contact, value_m, true, target),
+            Condition::Shrinking { contact, value_m } => self.locate_radius(contact, value_m, RadiusChange::Shrinking, target),
+            Condition::Growing { contact, value_m } => self.locate_radius(contact, value_m, RadiusChange::Growing, target),
         }
     }
 
-    /// Locates where the radius of a contact reaches `bound` \[m\], growing or shrinking, or a fold before that.
-    fn locate_radius(&mut self, spot: usize, bound: f64, grows: bool, target: f64) -> Option<Located> {
+    /// Locates where the radius of a contact reaches `bound` \[m\], or a fold before that.
+    fn locate_radius(&mut self, spot: usize, bound: f64, change: RadiusChange, target: f64) -> Option<Located> {
         let (problem, sense) = (&*self.problem(), self.frame.sense);
         let (local, effort) = (&mut self.neighbourhood.local, &mut self.solver.effort);
         let at = local.find(spot)?;
-        let there = if grows { local.radius[at] >= bound } else { local.radius[at] <= bound };
-        if there {
+        let is_there = match change {
+            RadiusChange::Growing => local.radius[at] >= bound,
+            RadiusChange::Shrinking => local.radius[at] <= bound,
+        };
+        if is_there {
             return Some(Located::Point);
         }
         match local.trace_curve(problem, CurveSearch { member: at, bound, target, path_sense: sense }, effort) {

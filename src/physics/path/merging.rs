@@ -163,7 +163,7 @@ impl EquilibriumPath {
                     gained_j += displacement * problem.asperities[i].load(self.predictor.state.radius[i]);
                     self.pending.add_near(i, -displacement, limit);
                 }
-            } else if !self.predictor.traces[i].value.is_nan() {
+            } else if self.predictor.traces[i].is_known() {
                 self.predictor.displace(&problem, i, -displacement);
             }
         }

@@ -106,7 +106,7 @@ impl Surroundings<'_> {
         let alone = problem.rules.interaction == Interaction::None;
         let most = if alone { 1 } else { problem.numerics.spots_in_patch };
         let span = SPAN * self.scale;
-        let near_jump_in = |i: &usize| state.status[*i] == Status::Free && traces[*i].value > problem.jump_in[*i] - span;
+        let near_jump_in = |i: &usize| state.status[*i] == Status::Free && traces[*i].exceeds(problem.jump_in[*i] - span);
         if state.contacts.len() <= most {
             let watched = (0..problem.len()).filter(near_jump_in).collect();
             return Selection { members: state.contacts.clone(), watched, shell: Vec::new(), reach: 0.0 };
@@ -128,7 +128,7 @@ impl Surroundings<'_> {
             problem.neighbours.around(
                 place,
                 reach,
-                |i| state.status[i] == Status::Free && traces[i].value > problem.jump_in[i] - self.displaced,
+                |i| state.status[i] == Status::Free && traces[i].exceeds(problem.jump_in[i] - self.displaced),
                 |r, i| {
                     if r <= inner && near_jump_in(&i) { &mut watched } else { &mut shell }.push(i);
                 },

@@ -11,7 +11,7 @@ use crate::contact::state::{State, Status};
 use crate::contact::transition::Transition;
 use crate::event_kind::EventKind;
 use crate::jkr::Asperity;
-use crate::solve::trace::{MAX_RATE, PenetrationTrace};
+use crate::solve::trace::PenetrationTrace;
 
 /// Radius of a neighbour at the end of an increment, over its present one, up to which its merging is looked for.
 const NEIGHBOUR_GROWTH: f64 = 1.2;
@@ -116,8 +116,7 @@ impl Predictor {
 
     /// `da/dΔ` of a contact at its predictor.
     pub(crate) fn radius_rate(&self, problem: &Problem, i: usize) -> f64 {
-        let trace = self.traces[i];
-        PenetrationTrace { rate: trace.rate.clamp(-MAX_RATE, MAX_RATE), ..trace }.speed(&problem.asperities[i], self.state.radius[i])
+        self.traces[i].bounded_speed(&problem.asperities[i], self.state.radius[i])
     }
 
     /// `dF/dΔ` of a contact \[N/m\], at most that of a flat punch of three times its size: it is infinite at the end of the branch, over a
@@ -152,7 +151,7 @@ impl Predictor {
     pub(crate) fn go_to(&mut self, problem: &Problem, approach: f64) {
         self.state.approach_m = approach;
         for (i, a) in self.radii(problem, approach) {
-            if !self.traces[i].value.is_nan() {
+            if self.traces[i].is_known() {
                 self.state.radius[i] = a;
             }
         }
@@ -184,7 +183,7 @@ impl Predictor {
     /// Replaces the predictors of contacts: asperity, radius \[m\], trace.
     pub(crate) fn replace_all(&mut self, problem: &Problem, traces: &[(usize, f64, PenetrationTrace)]) {
         for (i, a, trace) in traces {
-            if !self.traces[*i].value.is_nan() {
+            if self.traces[*i].is_known() {
                 self.count(problem, *i, -1.0, trace.at);
             }
             self.state.radius[*i] = *a;
@@ -214,8 +213,8 @@ impl Predictor {
 
     /// Changes the displacement of a free asperity \[m\].
     pub(crate) fn displace(&mut self, problem: &Problem, i: usize, change: f64) {
-        self.traces[i].value -= change;
-        self.state.barred[i] &= self.traces[i].value >= problem.jump_in[i];
+        self.traces[i].displace(change);
+        self.state.barred[i] &= self.traces[i].has_reached(problem.jump_in[i]);
     }
 
     /// Adds a merged contact; it gets the next number.

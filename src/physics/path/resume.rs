@@ -25,7 +25,10 @@ impl EquilibriumPath {
         let steps = StepControl::new(from.sense, longest, from.halvings);
         let mut path = Self::new(problem, predictor, Frame { sense: from.sense, scale }, steps);
         path.solver.effort = from.effort;
-        path.energy = EnergyLedger::new(approach, from.events, from.balance).open(from.events < from.log.events.len());
+        path.energy = EnergyLedger::new(approach, from.events, from.balance);
+        if from.events < from.log.events.len() {
+            path.energy.charge_last_event();
+        }
         (path.log, path.totals, path.chatter) = (from.log, from.totals, from.chatter);
         path.chatter.grow(path.problem().len());
         match path.correct(approach, Arrival::Jump, Precision::Exact) {

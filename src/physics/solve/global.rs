@@ -174,7 +174,7 @@ impl GlobalSolver {
         field.approach(&self.spots, rates, wanted, found, &mut self.tangents.free, &mut self.effort);
         let at = state.approach_m;
         let pairs = displacement.iter().zip(&slopes).zip(wanted);
-        pairs.map(|((w, slope), &i)| PenetrationTrace { at, value: at + problem.heights[i] - w, rate: 1.0 - slope }).collect()
+        pairs.map(|((w, slope), &i)| PenetrationTrace::new(at, at + problem.heights[i] - w, 1.0 - slope)).collect()
     }
 
     /// Displacement at one asperity by contacts of these radii \[m\].

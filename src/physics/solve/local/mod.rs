@@ -364,7 +364,7 @@ impl LocalProblem {
             let place = &self.watched[k];
             let value = self.approach + problem.heights[place.asperity] - self.outside(place) - field;
             let by_members: f64 = slopes.iter().zip(rates).map(|(s, v)| s * v).sum();
-            traces.push(PenetrationTrace { at: self.approach, value, rate: 1.0 - place.drift - by_members });
+            traces.push(PenetrationTrace::new(self.approach, value, 1.0 - place.drift - by_members));
         });
         traces
     }
