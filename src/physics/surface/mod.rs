@@ -4,6 +4,7 @@ pub mod artefacts;
 pub mod band_limited;
 mod constants;
 pub(crate) mod continuation;
+pub mod edges;
 mod infill;
 mod lattice;
 mod levelling;
