@@ -2,7 +2,7 @@
 
 use crate::contact::state::State;
 use crate::contact::{Problem, Rules};
-use crate::cycle::{self, Cycle, Halfway, Method, Settings};
+use crate::cycle::{self, Checkpoint, Cycle, Method, Settings};
 use crate::model::{KeptContacts, Material};
 use crate::surface::HeightMap;
 use crate::surface::measured::find_measured;
@@ -80,7 +80,7 @@ impl Asperities {
 }
 
 impl Method for Asperities {
-    type Checkpoint = Halfway;
+    type Checkpoint = Checkpoint;
     type State = State;
 
     const NAME: &'static str = "asperities";
@@ -88,11 +88,11 @@ impl Method for Asperities {
 
     fn run_from(
         &self,
-        halfway: Option<Halfway>,
-        keep: &mut (dyn FnMut(&Halfway) + Send),
+        checkpoint: Option<Checkpoint>,
+        keep: &mut (dyn FnMut(&Checkpoint) + Send),
         progress: &(dyn Fn(LoopPosition) + Sync),
     ) -> Result<Cycle, PhysicsError> {
-        cycle::run_from(&self.problem, &self.settings, halfway, keep, progress)
+        cycle::run_from(&self.problem, &self.settings, checkpoint, keep, progress)
     }
 
     fn unload_from(&self, reversal: usize, state: State) -> Result<Cycle, PhysicsError> {

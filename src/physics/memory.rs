@@ -12,9 +12,9 @@ pub(crate) fn filled<T: Clone>(count: usize, value: T) -> Result<Vec<T>, Physics
 }
 
 /// Array of zeros.
-pub(crate) fn zeros((rows, columns): (usize, usize)) -> Result<Array2<f64>, PhysicsError> {
-    let values = filled(rows.saturating_mul(columns), 0.0)?;
-    Array2::from_shape_vec((rows, columns), values).map_err(|_| short(usize::MAX))
+pub(crate) fn zeros(shape: (usize, usize)) -> Result<Array2<f64>, PhysicsError> {
+    let values = filled(shape.0.saturating_mul(shape.1), 0.0)?;
+    Array2::from_shape_vec(shape, values).map_err(|_| short(usize::MAX))
 }
 
 /// Checks that `bytes` bytes can be allocated now.

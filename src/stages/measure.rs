@@ -5,8 +5,9 @@ use super::correction::{corrected, refused};
 use crate::formats::recognize;
 use crate::lengths::{LENGTHS, metres};
 use crate::model::{Detrend, Filter};
+use crate::physics::surface::edges::Edges;
 use crate::physics::surface::measured::{Prepared, Treatment};
-use crate::physics::surface::periodogram::{periodogram, windowed_periodogram};
+use crate::physics::surface::periodogram::{Estimate, periodogram, windowed_periodogram};
 use crate::physics::surface::self_affine::{SelfAffine, fit_self_affine};
 use crate::physics::surface::texture::Texture;
 use crate::spec::SurfaceParams;
@@ -83,7 +84,7 @@ pub fn measure(params: &SurfaceParams, digest: &str, key: &str) -> Result<Import
         noise_m: prepared.noise_m,
         overshoot_m: prepared.overshoot_m,
         fit: prepared.fit.as_ref().map(stored),
-        texture: Texture::of(prepared.heights_m.view(), params.periodic)?,
+        texture: Texture::of(prepared.heights_m.view(), Edges::of(params.periodic))?,
         quality: Some(quality),
     };
     let moments = &prepared.moments;
@@ -119,8 +120,8 @@ fn own(
     let of_rings = if header.periodic { periodogram } else { windowed_periodogram };
     let rings = of_rings(heights_m.view(), header.length_m)?;
     // A surface of this program that is not periodic has been imported, and its header holds the fit.
-    let fit = if header.periodic { fit_self_affine(&rings, header.length_m, false) } else { None };
-    let texture = Texture::of(heights_m.view(), header.periodic)?;
+    let fit = if header.periodic { fit_self_affine(&rings, header.length_m, Estimate::Periodogram) } else { None };
+    let texture = Texture::of(heights_m.view(), Edges::of(header.periodic))?;
     let measured = header.measured.clone().unwrap_or_else(|| Measured {
         source: path.file_name().map(|name| name.to_string_lossy().chars().take(60).collect()).unwrap_or_default(),
         source_blake3: digest.to_owned(),

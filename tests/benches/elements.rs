@@ -56,7 +56,7 @@ fn one(zeta: u32, n: usize, range: bool) {
     let settings = Settings {
         max_loads: vec![LOAD * points],
         step: 0.03 * rms,
-        located: 0.03,
+        jump_tolerance: 0.03,
         accuracy: Accuracy { rms: 1e-4, largest: 1e-2, iterations: 3000 },
         halvings: 6,
         all_regions: false,

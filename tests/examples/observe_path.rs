@@ -6,7 +6,7 @@
 
 use hysteron::model::{Amplitudes, Boundary, Coalescence, Interaction, JumpIn, KeptContacts, Material, Normalization, Slips};
 use hysteron::physics::contact::{Problem, Rules};
-use hysteron::physics::cycle::{Cycle, Halfway, Settings, run_from};
+use hysteron::physics::cycle::{Checkpoint, Cycle, Settings, run_from};
 use hysteron::physics::half_space::Effort;
 use hysteron::physics::surface::spectrum::Spectrum;
 use hysteron::physics::surface::summits::find_summits;
@@ -46,7 +46,7 @@ pub fn run() -> Result<Observed, PhysicsError> {
 
     let (progress, mut kept) = (RefCell::new(Vec::new()), Vec::new());
     let report = |at: LoopPosition| progress.borrow_mut().push(at.done);
-    let first = run_from(&problem, &settings, None, &mut |halfway: &Halfway| kept.push(halfway.clone()), &report)?;
+    let first = run_from(&problem, &settings, None, &mut |checkpoint: &Checkpoint| kept.push(checkpoint.clone()), &report)?;
     let middle = kept.get(kept.len() / 2).cloned();
     let mut later = 0;
     let resumed = run_from(&problem, &settings, middle, &mut |_| later += 1, &|_| {})?;

@@ -2,6 +2,7 @@
 
 use hysteron::model::{Amplitudes, FastAxis, Normalization};
 use hysteron::physics::surface::artefacts::{Corrections, correct, noise_exponent, outlier_effect};
+use hysteron::physics::surface::edges::Edges;
 use hysteron::physics::surface::outliers::{find_outliers, replace_outliers};
 use hysteron::physics::surface::periodogram::{periodogram, windowed_periodogram};
 use hysteron::physics::surface::rows::{align, line_jump};
@@ -83,7 +84,7 @@ fn clean() -> Vec<(String, Array2<f64>)> {
 #[test]
 fn law_clean_surfaces_have_no_outliers_and_no_offsets() {
     for (name, heights) in clean() {
-        assert_eq!(find_outliers(heights.view(), false), [], "{name}");
+        assert_eq!(find_outliers(heights.view(), Edges::Open), [], "{name}");
         assert_eq!([line_jump(heights.view()), line_jump(heights.t())], [0.0; 2], "{name}");
     }
 }
@@ -113,11 +114,11 @@ fn law_outliers_are_found_alone_and_in_groups() {
             for height in [8.0, -8.0, 1e4] {
                 let mut spoilt = clean.clone();
                 places(shape).iter().for_each(|place| spoilt[*place] += height);
-                assert_eq!(find_outliers(spoilt.view(), false), places(shape), "H = {hurst}, {shape:?}, {height}");
+                assert_eq!(find_outliers(spoilt.view(), Edges::Open), places(shape), "H = {hurst}, {shape:?}, {height}");
                 // The scale of the heights and an offset do not count.
                 let scaled = spoilt.mapv(|h| 1e-9 * h + 1e-3);
-                assert_eq!(find_outliers(scaled.view(), false), places(shape));
-                replace_outliers(&mut spoilt, &places(shape), false);
+                assert_eq!(find_outliers(scaled.view(), Edges::Open), places(shape));
+                replace_outliers(&mut spoilt, &places(shape), Edges::Open);
                 // The in-fill of a point is the mean of its neighbours, and 8 points resolve the shortest wavelength.
                 assert!(rms(&(&spoilt - &clean)) < 0.02, "H = {hurst}: {}", rms(&(&spoilt - &clean)));
             }
@@ -133,8 +134,8 @@ fn law_outliers_beside_missing_points_are_found_and_those_remain_missing() {
         spoilt.slice_mut(s![20..24, 20..26]).fill(f64::NAN);
         let found = [(19, 22), (22, 26), (23, 19)];
         found.iter().for_each(|place| spoilt[*place] += 9.0);
-        assert_eq!(find_outliers(spoilt.view(), false), found);
-        replace_outliers(&mut spoilt, &found, false);
+        assert_eq!(find_outliers(spoilt.view(), Edges::Open), found);
+        replace_outliers(&mut spoilt, &found, Edges::Open);
         assert_eq!(spoilt.iter().filter(|h| h.is_nan()).count(), 24);
         // Beside a hole only three neighbours or fewer are known.
         found.iter().for_each(|place| assert!((spoilt[*place] - clean[*place]).abs() < 0.3));
@@ -143,13 +144,13 @@ fn law_outliers_beside_missing_points_are_found_and_those_remain_missing() {
 
 #[test]
 fn lim_a_scan_without_variation_or_of_few_points_has_no_outliers() {
-    assert_eq!(find_outliers(Array2::zeros((32, 32)).view(), false), []);
-    assert_eq!(find_outliers(Array2::from_elem((32, 32), f64::NAN).view(), true), []);
-    assert_eq!(find_outliers(rough(0.8, (64, 64), 8, 1).slice(s![..4, ..]), false), []);
+    assert_eq!(find_outliers(Array2::zeros((32, 32)).view(), Edges::Open), []);
+    assert_eq!(find_outliers(Array2::from_elem((32, 32), f64::NAN).view(), Edges::Periodic), []);
+    assert_eq!(find_outliers(rough(0.8, (64, 64), 8, 1).slice(s![..4, ..]), Edges::Open), []);
     // A spike on a plane.
     let mut plane = Array2::from_shape_fn((32, 40), |(i, j)| 0.1 * i as f64 - 0.02 * j as f64);
     plane[(7, 9)] += 50.0;
-    assert_eq!(find_outliers(plane.view(), false), [(7, 9)]);
+    assert_eq!(find_outliers(plane.view(), Edges::Open), [(7, 9)]);
 }
 
 /// A surface with an offset of this rms value to each row.
@@ -327,9 +328,9 @@ fn law_periodic_surfaces_have_no_outliers_at_their_edges() {
                 amplitudes: Amplitudes::Fixed,
             };
             let mut heights = synthesize(&spectrum, &realization_seed(seed, 0), 8 * magnification as usize).heights_m;
-            assert_eq!(find_outliers(heights.view(), true), []);
+            assert_eq!(find_outliers(heights.view(), Edges::Periodic), []);
             heights[(0, 0)] += 9.0;
-            assert_eq!(find_outliers(heights.view(), true), [(0, 0)]);
+            assert_eq!(find_outliers(heights.view(), Edges::Periodic), [(0, 0)]);
         }
     }
 }

@@ -8,7 +8,7 @@ use hysteron::model::{Coalescence, Interaction, JumpIn, KeptContacts, Material};
 use hysteron::physics::EventKind;
 use hysteron::physics::PhysicsError;
 use hysteron::physics::contact::{Problem, Rules};
-use hysteron::physics::cycle::{Cycle, Halfway, Settings, run_from, run_to};
+use hysteron::physics::cycle::{Checkpoint, Cycle, Settings, run_from, run_to};
 use hysteron::physics::jkr::Asperity;
 use hysteron::physics::surface::summits::Summit;
 use hysteron::physics::theory::deng_kesari_loss;
@@ -344,13 +344,13 @@ fn law_a_cycle_goes_on_from_where_it_rested_as_if_nothing_had_been() {
         let contacts = KeptContacts::Turning;
         let settings = Settings { max_loads: vec![0.002, 0.004], approach_step: 0.04, contacts, rest_every: Some(0.2) };
         let mut kept: Vec<Vec<u8>> = Vec::new();
-        let mut keep = |halfway: &Halfway| kept.push(postcard::to_stdvec(halfway).unwrap());
+        let mut keep = |checkpoint: &Checkpoint| kept.push(postcard::to_stdvec(checkpoint).unwrap());
         let whole = run_from(&problem, &settings, None, &mut keep, &|_| {}).unwrap();
         assert!(kept.len() > 20, "{}", kept.len());
         for (number, bytes) in kept.iter().enumerate() {
-            let halfway: Halfway = postcard::from_bytes(bytes).unwrap();
+            let checkpoint: Checkpoint = postcard::from_bytes(bytes).unwrap();
             let mut later = 0;
-            let again = run_from(&problem, &settings, Some(halfway), &mut |_| later += 1, &|_| {}).unwrap();
+            let again = run_from(&problem, &settings, Some(checkpoint), &mut |_| later += 1, &|_| {}).unwrap();
             assert_eq!(later, kept.len() - number - 1);
             assert!(again == whole, "{coalescence:?}, from rest {number}");
         }

@@ -5,7 +5,7 @@ use hysteron::model::{Boundary, Interaction as Kind, KeptContacts, Slips};
 use hysteron::physics::contact::{Problem, Rules};
 use hysteron::physics::cycle::Cycle;
 use hysteron::physics::half_space::spot_field::Spot;
-use hysteron::physics::half_space::{DirectSum, Effort, FastSum, Interaction, Spots, Tangent, best};
+use hysteron::physics::half_space::{DirectSum, Effort, FastSum, Interaction, Spots, Tangent, choose};
 use hysteron::physics::jkr::Asperity;
 
 /// Asperities at random, of which the first are in contact with spots of very different radii, overlapping; `huge` \[m\] is the radius of one.
@@ -250,11 +250,11 @@ fn copies(positions: &[[f64; 2]], n: usize) -> Vec<[f64; 2]> {
 }
 
 #[test]
-fn reg_the_best_sum_is_the_same_field_for_few_and_many() {
+fn reg_the_chosen_sum_is_the_same_field_for_few_and_many() {
     let (positions, spots) = contact(11, 900, 800, 3e-5);
     let targets: Vec<usize> = (0..900).collect();
     for (kind, boundary) in [(Kind::Spots, Boundary::Periodic), (Kind::Point, Boundary::Isolated), (Kind::None, Boundary::Periodic)] {
-        let field = best(positions.clone(), LENGTH, &PAPER, kind, boundary, Slips::default()).with_table();
+        let field = choose(positions.clone(), LENGTH, &PAPER, kind, boundary, Slips::default()).with_table();
         let direct = DirectSum::new(positions.clone(), LENGTH, &PAPER, kind, boundary, Slips::default());
         for spots in [&spots, &contact(11, 900, 20, 3e-5).1] {
             let want = displacements(&direct, spots, &targets);

@@ -3,7 +3,7 @@
 use hysteron::model::{Amplitudes, Detrend, Filter, Missing, Normalization};
 use hysteron::physics::PhysicsError;
 use hysteron::physics::surface::measured::{Prepared, Treatment, find_measured, prepare};
-use hysteron::physics::surface::periodogram::{periodogram, windowed_periodogram};
+use hysteron::physics::surface::periodogram::{Estimate, periodogram, windowed_periodogram};
 use hysteron::physics::surface::self_affine::fit_self_affine;
 use hysteron::physics::surface::spectrum::Spectrum;
 use hysteron::physics::surface::summits::find_summits;
@@ -279,7 +279,7 @@ fn val_the_fit_finds_the_spectrum_that_a_surface_was_made_from() {
         let surface = generated(64, hurst, realization);
         let rings = periodogram(surface.heights_m.view(), surface.length_m).unwrap();
         // With fixed amplitudes the rings are Eq 10 but for how wavenumbers lie in them: the widest, of few modes, are some per cent off.
-        let fit = fit_self_affine(&rings, surface.length_m, false).unwrap();
+        let fit = fit_self_affine(&rings, surface.length_m, Estimate::Periodogram).unwrap();
         assert!((fit.hurst - hurst).abs() < 0.03, "{fit:?}");
         assert!(!fit.rolls_off && fit.scatter < 0.05, "{fit:?}");
         // A roll-off at eight times the longest waves' wavenumber.
@@ -292,7 +292,7 @@ fn val_the_fit_finds_the_spectrum_that_a_surface_was_made_from() {
                 ..*ring
             })
             .collect();
-        let fit = fit_self_affine(&rolled, surface.length_m, false).unwrap();
+        let fit = fit_self_affine(&rolled, surface.length_m, Estimate::Periodogram).unwrap();
         assert!(fit.rolls_off && (fit.hurst - hurst).abs() < 0.05, "{fit:?}");
         assert!((fit.roll_off_1_m / from).ln().abs() < 0.2, "{fit:?}");
         assert!((fit.plateau_m4 / plateau).ln().abs() < 0.1, "{fit:?}");

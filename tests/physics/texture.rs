@@ -1,5 +1,6 @@
 //! Texture of surfaces of known aspect ratios.
 
+use hysteron::physics::surface::edges::Edges;
 use hysteron::physics::surface::texture::Texture;
 use ndarray::{Array2, s};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -34,8 +35,8 @@ fn angle_between(a: f64, b: f64) -> f64 {
 fn val_both_ratios_are_those_of_a_stretched_surface() {
     for (aspect, direction) in [(1.0, 0.0), (2.0, 0.0), (3.0, FRAC_PI_2), (3.0, 0.6), (4.0, 2.3)] {
         let heights = stretched(256, aspect, direction, 4.0);
-        for periodic in [true, false] {
-            let found = Texture::of(heights.view(), periodic).unwrap().unwrap();
+        for edges in [Edges::Periodic, Edges::Open] {
+            let found = Texture::of(heights.view(), edges).unwrap().unwrap();
             // 400 waves: 7 % of a mean square, and of an isotropic field the larger over the smaller.
             assert!((found.slope_ratio / aspect).ln().abs() < 0.15, "{aspect} {direction}: {found:?}");
             assert!((found.aspect_ratio_str * aspect).ln().abs() < 0.35, "{aspect} {direction}: {found:?}");
@@ -51,7 +52,7 @@ fn lim_ridges_have_no_end() {
     // A grating along an oblique direction: the mirror images of a scan would have no mixed product of slopes.
     let grating = Array2::from_shape_fn((128, 128), |(i, j)| (TAU * (3.0 * i as f64 + 3.0 * j as f64) / 128.0).cos());
     for heights in [grating.view(), grating.slice(s![..100, ..100])] {
-        let found = Texture::of(heights, false).unwrap().unwrap();
+        let found = Texture::of(heights, Edges::Open).unwrap().unwrap();
         assert!(found.slope_ratio > 100.0 && found.aspect_ratio_str < 0.2 && found.aspect() > 100.0, "{found:?}");
         assert!(angle_between(found.direction_rad, 0.75 * PI) < 1e-3, "{found:?}");
     }
@@ -64,14 +65,14 @@ fn law_long_waves_alone_decide_nothing() {
         let (x, y) = (TAU * i as f64 / 128.0, TAU * j as f64 / 128.0);
         x.cos() + 0.1 * ((9.0 * x + 2.0).cos() + (9.0 * y + 1.0).cos()) + 0.3 * (y + 1.0).cos()
     });
-    let found = Texture::of(heights.view(), true).unwrap().unwrap();
+    let found = Texture::of(heights.view(), Edges::Periodic).unwrap().unwrap();
     assert!(found.aspect_ratio_str < 0.5 && found.aspect() < 2.0, "{found:?}");
 }
 
 #[test]
 fn law_units_do_not_matter() {
     let heights = stretched(96, 2.0, 0.4, 3.0);
-    let [one, other] = [1.0, 1e-9].map(|unit| Texture::of(heights.mapv(|h| unit * h).view(), false).unwrap().unwrap());
+    let [one, other] = [1.0, 1e-9].map(|unit| Texture::of(heights.mapv(|h| unit * h).view(), Edges::Open).unwrap().unwrap());
     // Rounding of the product with the unit.
     for (a, b) in [(one.slope_ratio, other.slope_ratio), (one.aspect_ratio_str, other.aspect_ratio_str)] {
         assert!((a / b - 1.0).abs() < 1e-9, "{a} {b}");

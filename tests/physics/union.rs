@@ -1,6 +1,7 @@
 //! The area of the union of the discs.
 
 use crate::support::{Dice, close, near, random};
+use hysteron::model::Boundary::{self, Isolated, Periodic};
 use hysteron::physics::contact::union_area::{Disc, plain_area, union_area};
 use proptest::prelude::*;
 use proptest::sample::select;
@@ -9,17 +10,17 @@ use std::f64::consts::PI;
 const SIDE: f64 = 1e-3;
 
 /// Nearest-image difference of coordinates.
-fn difference(p: f64, q: f64, periodic: bool) -> f64 {
+fn difference(p: f64, q: f64, boundary: Boundary) -> f64 {
     let d = p - q;
-    if periodic { d - SIDE * (d / SIDE).round() } else { d }
+    if boundary == Periodic { d - SIDE * (d / SIDE).round() } else { d }
 }
 
 /// The union's area, with the overlaps found one by one.
-fn area(discs: &[Disc], periodic: bool) -> f64 {
-    union_area(discs, SIDE, periodic, |k| {
+fn area(discs: &[Disc], boundary: Boundary) -> f64 {
+    union_area(discs, SIDE, boundary, |k| {
         (0..discs.len())
             .filter(|j| {
-                let [dx, dy] = [0, 1].map(|c| difference(discs[*j].centre[c], discs[k].centre[c], periodic));
+                let [dx, dy] = [0, 1].map(|c| difference(discs[*j].centre[c], discs[k].centre[c], boundary));
                 *j != k && dx.hypot(dy) < discs[k].radius + discs[*j].radius
             })
             .collect()
@@ -51,18 +52,18 @@ fn val_two_discs() {
         let pair = [disc(0.5, 0.5, r), disc(0.5 + 0.6 * d, 0.5 + 0.8 * d, s)];
         let common = if d < r + s { lens(r * SIDE, s * SIDE, d * SIDE) } else { 0.0 };
         let want = plain_area(&pair) - common;
-        close("plane", area(&pair, false), want, 1e-12);
-        close("torus", area(&pair, true), want, 1e-12);
+        close("plane", area(&pair, Isolated), want, 1e-12);
+        close("torus", area(&pair, Periodic), want, 1e-12);
         close("plain sum", plain_area(&pair), PI * (r * r + s * s) * SIDE * SIDE, 1e-14);
     }
 }
 
 #[test]
 fn lim_apart_inside_and_twice() {
-    close("apart", area(&[disc(0.2, 0.2, 0.1), disc(0.7, 0.7, 0.2)], true), PI * 0.05 * SIDE * SIDE, 1e-12);
-    close("inside", area(&[disc(0.5, 0.5, 0.2), disc(0.55, 0.5, 0.1)], true), PI * 0.04 * SIDE * SIDE, 1e-12);
-    close("twice", area(&[disc(0.5, 0.5, 0.2), disc(0.5, 0.5, 0.2)], true), PI * 0.04 * SIDE * SIDE, 1e-12);
-    assert_eq!(area(&[], true).to_bits(), 0);
+    close("apart", area(&[disc(0.2, 0.2, 0.1), disc(0.7, 0.7, 0.2)], Periodic), PI * 0.05 * SIDE * SIDE, 1e-12);
+    close("inside", area(&[disc(0.5, 0.5, 0.2), disc(0.55, 0.5, 0.1)], Periodic), PI * 0.04 * SIDE * SIDE, 1e-12);
+    close("twice", area(&[disc(0.5, 0.5, 0.2), disc(0.5, 0.5, 0.2)], Periodic), PI * 0.04 * SIDE * SIDE, 1e-12);
+    assert_eq!(area(&[], Periodic).to_bits(), 0);
 }
 
 proptest! {
@@ -74,7 +75,7 @@ proptest! {
         (dx, dy) in prop_oneof![select(vec![(0.5, 0.0), (0.0, 0.5), (0.5, 0.5), (0.55, 0.47), (0.45, 0.5)]), (0.0..1.0, 0.0..1.0)],
     ) {
         let discs = [disc(0.45, 0.5, 0.11), disc(0.55, 0.53, 0.08), disc(0.48, 0.62, 0.09)];
-        close("shifted", area(&moved(&discs, dx, dy), true), area(&discs, false), 1e-11);
+        close("shifted", area(&moved(&discs, dx, dy), Periodic), area(&discs, Isolated), 1e-11);
     }
 }
 
@@ -92,7 +93,7 @@ fn law_random_discs_against_counted_pixels() {
             for j in 0..n {
                 let p = [(f64::from(i) + dice.roll()) * cell * SIDE, (f64::from(j) + dice.roll()) * cell * SIDE];
                 let inside = |d: &Disc| {
-                    let [dx, dy] = [0, 1].map(|c| difference(p[c], d.centre[c], true));
+                    let [dx, dy] = [0, 1].map(|c| difference(p[c], d.centre[c], Periodic));
                     dx.hypot(dy) < d.radius
                 };
                 hits += u32::from(discs.iter().any(inside));
@@ -101,12 +102,12 @@ fn law_random_discs_against_counted_pixels() {
         let crossed: f64 = discs.iter().map(|d| 8.0 * PI * d.radius / SIDE * f64::from(n)).sum();
         let error = 0.5 * crossed.sqrt() * cell * cell;
         let found = f64::from(hits) * cell * cell;
-        near("share", area(&discs, true) / (SIDE * SIDE), found, 4.0 * error);
+        near("share", area(&discs, Periodic) / (SIDE * SIDE), found, 4.0 * error);
         // Every disc within the plain sum, and an order does not matter.
         let mut reversed = discs.clone();
         reversed.reverse();
-        close("order", area(&reversed, true), area(&discs, true), 1e-11);
-        assert!(area(&discs, true) < plain_area(&discs));
+        close("order", area(&reversed, Periodic), area(&discs, Periodic), 1e-11);
+        assert!(area(&discs, Periodic) < plain_area(&discs));
     }
 }
 
@@ -121,11 +122,11 @@ fn lim_full_coverage_is_the_square() {
                     disc(((f64::from(k / n) + offset) / f64::from(n)).fract(), ((f64::from(k % n) + offset) / f64::from(n)).fract(), radius)
                 })
                 .collect();
-            close("covered", area(&discs, true), SIDE * SIDE, 1e-12);
+            close("covered", area(&discs, Periodic), SIDE * SIDE, 1e-12);
             // One disc less opens the square again, by a hole that is bounded by its neighbours.
-            let open = area(&discs[1..], true);
+            let open = area(&discs[1..], Periodic);
             assert!(open < SIDE * SIDE * (1.0 - 1e-6), "{n} {offset}: {open:e}");
         }
     }
-    close("one that meets itself", area(&[disc(0.3, 0.4, 0.5)], true), SIDE * SIDE, 0.0);
+    close("one that meets itself", area(&[disc(0.3, 0.4, 0.5)], Periodic), SIDE * SIDE, 0.0);
 }

@@ -6,10 +6,7 @@ use hysteron::physics::cycle::Method;
 use hysteron::physics::elements::Elements;
 
 /// Method, version and BLAKE3 of the pinned results that it has. A new version gets a new row; no row changes.
-const PINNED: [(&str, u32, &str); 2] = [
-    (Asperities::NAME, 9, ""),
-    (Elements::NAME, 11, ""),
-];
+const PINNED: [(&str, u32, &str); 2] = [(Asperities::NAME, 9, ""), (Elements::NAME, 11, "")];
 
 #[test]
 fn reg_pinned_results_belong_to_a_version() {

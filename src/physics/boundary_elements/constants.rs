@@ -2,13 +2,13 @@
 
 use super::cycle::FARTHEST;
 use super::law::{DEEPEST, NEGLIGIBLE, SPRING, WIDTH};
-use super::minimise::{EVERYWHERE, NEAR};
+use super::minimise::{BOND_UPDATE_RESIDUAL, EVERYWHERE};
 use super::newton::RATE;
 use super::patch::{PARTS, PLACES};
 use super::places::SMALLEST;
 use super::reversal::{JUMP_ACCURACY, LOAD_ACCURACY, SEARCHED, SHARPER};
 use super::stations::{MOST_ALONG, STATIONS};
-use super::step::{BEND, EVENT, EXCESS, HALVED, HIDDEN, JUMP_PART, OVERLAP, STEEPEST, WELL_BELOW};
+use super::step::{BEND, EVENT, EXCESS, HALVED, HIDDEN, JUMP_PART, MAX_RATE, OVERLAP, WELL_BELOW};
 use super::work::JUMP;
 use crate::constants::Constant;
 
@@ -20,7 +20,7 @@ pub(crate) const CONSTANTS: &[Constant] = &[
     Constant::new("gap without attraction", &[NEGLIGIBLE], "`ρ`", "Beyond it Morse's law is not evaluated.", "law"),
     Constant::new(
         "residual at which bonds change",
-        &[NEAR],
+        &[BOND_UPDATE_RESIDUAL],
         "maximum tension",
         "Largest residual of a state in which contact may form or open.",
         "minimise",
@@ -80,7 +80,7 @@ pub(crate) const CONSTANTS: &[Constant] = &[
         "A step of unloading that may have passed a larger tension is halved.",
         "step",
     ),
-    Constant::new("rate of extrapolation `du/dΔ`", &[STEEPEST], "", "Larger rates are scaled to it.", "step"),
+    Constant::new("rate of extrapolation `du/dΔ`", &[MAX_RATE], "", "Larger rates are scaled to it.", "step"),
     Constant::new(
         "extrapolated overlap",
         &[OVERLAP],

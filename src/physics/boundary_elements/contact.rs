@@ -45,6 +45,15 @@ pub enum Attraction {
     None,
 }
 
+/// Changes of bonds away from the edges of contacts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Nucleation {
+    /// Contacts also form at free points that touch, and open inside where the strength is exceeded.
+    Allowed,
+    /// Bonds change at the edges of contacts only.
+    Suppressed,
+}
+
 /// A state of the contact. Fields have one value per point, row by row.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct State {
@@ -163,13 +172,15 @@ impl Problem {
         state.bonds.iter().all(|bonding| *bonding == Bonding::Free)
     }
 
-    /// Bonds the free points within the margin of a contact and opens the sealed ones within the margin of an open point; with `nucleate` free points
-    /// that touch are a contact too, and sealed points whose tension exceeds the strength open. None of this raises the energy. The points whose bond has
-    /// changed.
-    pub fn update_bonds(&self, state: &mut State, nucleate: bool) -> Vec<usize> {
-        let Attraction::Bonded { nucleation, strength, .. } = self.attraction else { return Vec::new() };
+    /// Bonds the free points within the margin of a contact and opens the sealed ones within the margin of an open point.
+    ///
+    /// With [`Nucleation::Allowed`] free points that touch are a contact too, and sealed points whose tension exceeds the strength open. None of this raises
+    /// the energy. Returns the points whose bond has changed.
+    pub fn update_bonds(&self, state: &mut State, nucleation: Nucleation) -> Vec<usize> {
+        let Attraction::Bonded { nucleation: nucleation_gap, strength, .. } = self.attraction else { return Vec::new() };
+        let nucleate = nucleation == Nucleation::Allowed;
         let touching = self.map(state, |bonding, gap| match bonding {
-            Bonding::Free => u8::from(nucleate && gap <= nucleation),
+            Bonding::Free => u8::from(nucleate && gap <= nucleation_gap),
             _ => u8::from(self.touches(bonding, gap)),
         });
         let mut torn = Vec::new();

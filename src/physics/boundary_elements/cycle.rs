@@ -4,16 +4,16 @@ use super::contact::{Attraction, Problem};
 pub use super::records::{Cycle, Event, Map, Step, Turning};
 use super::regions::{Region, label};
 use super::stations::{MOST_ALONG, of_loading, of_unloading};
-use super::step::Walk;
-pub use super::step::{Halfway, Settings};
+use super::step::CycleRun;
+pub use super::step::{Checkpoint, Settings};
 use crate::cycle::soundness::LoopEnergy;
-use crate::cycle::{Done, Walk as _, follow};
+use crate::cycle::{BranchRun, Done, run_branches};
 use crate::{LoopError, LoopPosition, PhysicsError};
 
 /// Magnitude of the approach, in ranges of the heights, beyond which a load counts as not reached and, at negative approach, the surfaces as inseparable.
 pub(super) const FARTHEST: f64 = 20.0;
 
-/// Loads to the largest of the loads and unloads from each, from the beginning or from `halfway`. After each step `keep` is given what is needed to
+/// Loads to the largest of the loads and unloads from each, from the beginning or from a checkpoint. After each step `keep` is given what is needed to
 /// continue from there, and `progress` the position.
 ///
 /// # Errors
@@ -22,15 +22,15 @@ pub(super) const FARTHEST: f64 = 20.0;
 pub fn run(
     problem: &Problem,
     settings: &Settings,
-    halfway: Option<Halfway>,
-    keep: &mut (dyn FnMut(&Halfway) + Send),
+    checkpoint: Option<Checkpoint>,
+    keep: &mut (dyn FnMut(&Checkpoint) + Send),
     progress: &(dyn Fn(LoopPosition) + Sync),
 ) -> Result<Cycle, PhysicsError> {
     // On a thread of the pool, so that the short parallel loops are not waited for from outside.
     rayon::scope(|_| {
-        let mut walk = Walk::begin(problem, settings, halfway)?;
-        let unreached = follow(&mut walk, settings.max_loads.len(), &mut |walk| keep(&walk.at), progress)?;
-        Ok(Cycle { unreached, ..walk.at.cycle })
+        let mut run = CycleRun::new(problem, settings, checkpoint)?;
+        let unreached = run_branches(&mut run, settings.max_loads.len(), &mut |run| keep(&run.at), progress)?;
+        Ok(Cycle { unreached, ..run.at.cycle })
     })
 }
 
@@ -40,14 +40,14 @@ pub fn run(
 /// Not enough memory; surfaces that do not separate.
 pub fn unload_from(problem: &Problem, settings: &Settings, reversal: usize, turning: &Turning) -> Result<Cycle, PhysicsError> {
     rayon::scope(|_| {
-        let mut walk = Walk::begin(problem, settings, None)?;
-        walk.at.cycle = Cycle { turning: vec![turning.clone(); reversal + 1], ..Cycle::default() };
-        while !walk.advance(Some(reversal), &|_| {})? {}
-        Ok(Cycle { turning: Vec::new(), ..walk.at.cycle })
+        let mut run = CycleRun::new(problem, settings, None)?;
+        run.at.cycle = Cycle { turning: vec![turning.clone(); reversal + 1], ..Cycle::default() };
+        while !run.advance(Some(reversal), &|_| {})? {}
+        Ok(Cycle { turning: Vec::new(), ..run.at.cycle })
     })
 }
 
-impl crate::cycle::Walk for Walk<'_> {
+impl BranchRun for CycleRun<'_> {
     fn done(&mut self) -> &mut Done {
         &mut self.at.done
     }
@@ -77,17 +77,17 @@ impl crate::cycle::Walk for Walk<'_> {
 
     fn forget(&mut self, reversal: usize) {
         self.at.cycle.remove_unloading(reversal);
-        self.at.tensest = None;
+        self.at.max_tension = None;
     }
 }
 
-impl Walk<'_> {
+impl CycleRun<'_> {
     /// Loads by one step; true at the largest of the loads.
     fn load(&mut self, progress: &dyn Fn(LoopPosition)) -> Result<bool, PhysicsError> {
         if self.at.cycle.steps.is_empty() {
             let first = self.attempt(self.at.state.approach, self.settings.accuracy)?;
             self.accept(first);
-            progress(self.position(0.0, false));
+            progress(self.position(0.0));
             return Ok(false);
         }
         let last = self.settings.max_loads.last().copied().unwrap_or(0.0);
@@ -108,14 +108,14 @@ impl Walk<'_> {
         }
         // Adhesion pulls first: the load falls before it rises.
         let lowest = self.at.cycle.steps.iter().map(|step| step.totals.load).fold(0.0, f64::min);
-        progress(self.position((0.5 * (reached - lowest) / (last - lowest)).clamp(0.0, 0.5), false));
+        progress(self.position((0.5 * (reached - lowest) / (last - lowest)).clamp(0.0, 0.5)));
         Ok(false)
     }
 
     /// Position on the loop, of which a fraction is done.
-    fn position(&self, done: f64, unloading: bool) -> LoopPosition {
+    fn position(&self, done: f64) -> LoopPosition {
         let load = self.at.last.totals.load / self.problem.half_space.points() as f64;
-        LoopPosition { done, steps: self.at.cycle.steps.len(), unloading, load }
+        LoopPosition { done, steps: self.at.cycle.steps.len(), unloading: self.at.last.reversal.is_some(), load }
     }
 
     /// Magnitude of the approach beyond which the search for a load or for the last separation ends \[dx\]: attraction of a range begins and ends at the
@@ -166,7 +166,7 @@ impl Walk<'_> {
             self.begin_unloading(reversal);
         }
         if self.is_apart() {
-            if let Some((_, map, found)) = self.at.tensest.take() {
+            if let Some((_, map, found)) = self.at.max_tension.take() {
                 self.at.cycle.keep(map, found);
             }
             return Ok(true);
@@ -175,11 +175,11 @@ impl Walk<'_> {
             return Err(LoopError::Inseparable { approach_m: self.at.state.approach }.into());
         }
         self.advance_step(-1.0, None)?;
-        self.keep_tensest();
+        self.keep_max_tension();
         self.keep_between();
         let branches = self.settings.max_loads.len() as f64;
         let done = 0.5 + 0.5 * (reversal as f64 + 1.0 - (self.at.last.totals.contact as f64 / full).min(1.0)) / branches;
-        progress(self.position(done, true));
+        progress(self.position(done));
         Ok(false)
     }
 
@@ -189,19 +189,19 @@ impl Walk<'_> {
         self.at.state = turning.state.clone();
         self.at.last = Step { reversal: Some(reversal), work: 0.0, ..turning.last };
         self.at.dissipated = turning.dissipated;
-        (self.rate, self.at.level, self.at.tensest, self.at.trunk) = (None, 0, None, None);
+        (self.rate, self.at.level, self.at.max_tension, self.at.trunk) = (None, 0, None, None);
         self.at.labels = label(self.problem, &self.at.state);
         let next = self.at.cycle.steps.len();
         self.at.cycle.least_loads.extend(self.opening_load().map(|load| (next, load)));
     }
 
     /// Keeps the map at the maximum tensile load so far.
-    fn keep_tensest(&mut self) {
+    fn keep_max_tension(&mut self) {
         let load = self.at.last.totals.load;
-        if self.at.tensest.as_ref().is_none_or(|(least, ..)| load < *least) {
+        if self.at.max_tension.as_ref().is_none_or(|(least, ..)| load < *least) {
             let step = self.at.cycle.steps.len() - 1;
             let (map, found) = self.landmark(step);
-            self.at.tensest = Some((load, map, found));
+            self.at.max_tension = Some((load, map, found));
         }
     }
 

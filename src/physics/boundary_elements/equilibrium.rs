@@ -1,7 +1,7 @@
 //! Equilibrium on a grid: L-BFGS with events followed on patches, and Newton's method where that does not end.
 
 use super::contact::{Problem, State};
-use super::minimise::{ANY, Accuracy, Follow, Loads, Minimiser, Outcome};
+use super::minimise::{ANY, Accuracy, Loads, LocalRelaxation, Minimiser, Outcome};
 use super::newton::Rate;
 use super::patch::Patches;
 use crate::PhysicsError;
@@ -39,7 +39,7 @@ impl Equilibrium {
         accuracy: Accuracy,
         loads: &Loads,
     ) -> Result<Outcome, PhysicsError> {
-        let events: Option<&mut dyn Follow> = if self.patches.are_none() { None } else { Some(&mut self.patches) };
+        let events: Option<&mut dyn LocalRelaxation> = if self.patches.are_none() { None } else { Some(&mut self.patches) };
         let first = self.minimiser.minimise_with(problem, state, accuracy, loads, events);
         if first.converged || first.left {
             return Ok(first);

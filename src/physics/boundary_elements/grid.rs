@@ -304,7 +304,7 @@ impl HalfSpace {
         let chunks = by_block.par_chunks_mut(self.height() * BLOCK).zip(plans.stiffness.par_chunks(self.padded.0 * BLOCK)).enumerate();
         chunks.with_min_len(grain(self.rows * BLOCK)).for_each_init(
             || self.column_space::<T>(),
-            |space, (block, (waves, stiffness))| self.block(operator, by_group, block, (tiles_mut(waves), stiffness), space),
+            |space, (block, (waves, stiffness))| self.block(operator, by_group, block, tiles_mut(waves), stiffness, space),
         );
         let by_block = tiles(by_block);
         let parts = rows.chunks(BLOCK).enumerate().with_min_len(grain(self.columns * BLOCK)).map_init(
@@ -345,7 +345,7 @@ impl HalfSpace {
     fn column_space<T: Real>(&self) -> ColumnSpace<T> {
         let plans = T::plans(self);
         let scratch = plans.forward_column.get_inplace_scratch_len().max(plans.inverse_column.get_inplace_scratch_len());
-        (vec![Complex::zero(); self.stride() * BLOCK], vec![Complex::zero(); scratch])
+        ColumnSpace { columns: vec![Complex::zero(); self.stride() * BLOCK], scratch: vec![Complex::zero(); scratch] }
     }
 
     /// From one column of a block to the next. With a power of two, all columns would have the same places in the cache.
@@ -359,9 +359,11 @@ impl HalfSpace {
         operator: Operator,
         by_group: &[Tile<T>],
         block: usize,
-        (waves, stiffness): (&mut [Tile<T>], &[T]),
-        (columns, scratch): &mut ColumnSpace<T>,
+        waves: &mut [Tile<T>],
+        stiffness: &[T],
+        space: &mut ColumnSpace<T>,
     ) {
+        let ColumnSpace { columns, scratch } = space;
         let (rows, stride, plans) = (self.padded.0, self.stride(), T::plans(self));
         for (group, tile) in by_group.iter().skip(block).step_by(self.blocks()).enumerate() {
             for (column, values) in columns.chunks_mut(stride).zip(transposed(tile)) {
@@ -408,7 +410,10 @@ fn multiply<T: Real>(waves: &mut [Complex<T>], stiffness: &[T], factor: impl Fn(
 }
 
 /// Columns of one block and the scratch of their transforms.
-type ColumnSpace<T> = (Vec<Complex<T>>, Vec<Complex<T>>);
+struct ColumnSpace<T> {
+    columns: Vec<Complex<T>>,
+    scratch: Vec<Complex<T>>,
+}
 
 /// Subtracts the mean.
 pub(super) fn remove_mean<T: Real>(field: &mut [T]) {

@@ -10,27 +10,27 @@
 //! The state, its energy and its residual are in double precision at the beginning and at the end. Directions, and displacement and pressure since the
 //! beginning, are in single precision. The pressure is replaced by that of the displacement before a state counts as an equilibrium.
 
-use super::contact::{Problem, State};
+use super::contact::{Nucleation, Problem, State};
 use super::grid::{Operator, Waves};
+use super::increment::{SinglePrecisionIncrement, level};
 use super::law::Bonding;
 use super::pairs::{Gradient, Pairs};
 use super::passes::{Found, PAIRS, Points, Right, Stride, advance, descending};
 use super::preconditioner::Preconditioner;
 use super::sums::grain;
-use super::trial::{Descent, Residual, Taken, There, Trial};
-use super::way::{Way, level};
+use super::trial::{AcceptedStep, Descent, Residual, Trial, TrialEvaluation};
 use crate::PhysicsError;
 use crate::memory::filled;
 use rayon::prelude::*;
 
 /// Change of the displacement between two updates of the bonds, relative to the reach of the law.
-const LOOK: f64 = 0.02;
+const BOND_UPDATE_CHANGE: f64 = 0.02;
 /// Largest residual at which bonds are updated, relative to [`Problem::stress`]. Far from equilibrium, edges of contact lie where no equilibrium has
 /// them.
-pub(super) const NEAR: f64 = 0.4;
+pub(super) const BOND_UPDATE_RESIDUAL: f64 = 0.4;
 /// Iterations on the whole grid before an event counts as one: the first follow the approach everywhere.
 pub(super) const EVERYWHERE: usize = 8;
-/// Residual, relative to that at the beginning of the way, at which the pressure is computed from the displacement: single precision has seven digits.
+/// Residual, relative to that at the last rebase, at which the pressure is computed from the displacement: single precision has seven digits.
 const RENEWED: f64 = 1e-3;
 /// Shortenings of a step that would raise the energy.
 const SHORTENINGS: u32 = 30;
@@ -82,36 +82,76 @@ pub struct Minimiser {
     pub(super) slopes: Vec<f32>,
     pub(super) direction: Vec<f32>,
     pub(super) response: Vec<f32>,
-    way: Way,
+    increment: SinglePrecisionIncrement,
     pub(super) pairs: Pairs,
     /// Preconditioner.
     pub preconditioner: Preconditioner,
 }
 
-/// A state on the way of a minimisation.
-pub(super) struct Underway<'a> {
+/// State during a minimisation.
+pub(super) struct WorkingState<'a> {
     pub(super) problem: &'a Problem,
-    /// Bonds of the state, and approach, displacement and pressure at the beginning of the way.
+    /// Present bonds; approach, displacement and pressure at the last rebase.
     pub(super) state: &'a mut State,
     /// Displacement and pressure since then.
-    pub(super) moved: &'a [f32],
-    pub(super) pressed: &'a [f32],
-    /// Displacement by local relaxation, the response to which is not yet known.
-    pub(super) change: &'a mut [f32],
+    pub(super) displacement_change: &'a [f32],
+    pub(super) pressure_change: &'a [f32],
+    /// Displacement by local relaxation, without its elastic response.
+    pub(super) relaxed: &'a mut [f32],
 }
 
-impl Underway<'_> {
+impl WorkingState<'_> {
     /// Displacement of a point.
     pub(super) fn displacement(&self, point: usize) -> f64 {
-        self.state.displacement[point] + f64::from(self.moved[point]) + f64::from(self.change[point])
+        self.state.displacement[point] + f64::from(self.displacement_change[point]) + f64::from(self.relaxed[point])
+    }
+}
+
+/// Source of the elastic response to the direction.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum ElasticResponse {
+    /// The response that is kept.
+    Kept,
+    /// The operator applied to the transformed direction; the response is kept.
+    Transformed,
+}
+
+/// Change of the displacement: `length` times the direction less its `mean`.
+#[derive(Debug, Clone, Copy, Default)]
+struct Shift {
+    length: f64,
+    mean: f64,
+}
+
+/// Fields that a step reads and changes.
+struct Fields<'a> {
+    increment: &'a mut SinglePrecisionIncrement,
+    direction: &'a [f32],
+    gradient: &'a mut [f32],
+    slopes: &'a mut [f32],
+    bonds: &'a [Bonding],
+}
+
+impl<'a> Fields<'a> {
+    /// Rows of the fields, each with its flag of stale bonds.
+    fn rows(self, columns: usize) -> impl IndexedParallelIterator<Item = (Points<'a>, &'a mut bool)> {
+        let SinglePrecisionIncrement { gap, residual, displacement, pressure, touching, stale, .. } = self.increment;
+        let before = gap.par_chunks(columns).zip(residual.par_chunks(columns)).zip(self.direction.par_chunks(columns));
+        let after = displacement.par_chunks_mut(columns).zip(pressure.par_chunks_mut(columns)).zip(touching.par_chunks_mut(columns));
+        let law = self.gradient.par_chunks_mut(columns).zip(self.slopes.par_chunks_mut(columns)).zip(self.bonds.par_chunks(columns));
+        before.zip(after).zip(law).zip(stale).map(
+            |(((((gap, residual), direction), ((displacement, pressure), touching)), ((gradient, slopes), bonds)), stale)| {
+                (Points { gap, residual, displacement, pressure, bonds, direction, gradient, slopes, touching }, stale)
+            },
+        )
     }
 }
 
 /// Local relaxation after events.
-pub(super) trait Follow {
+pub(super) trait LocalRelaxation {
     /// Brings the places around the points whose bonds have changed to equilibrium, given from the largest residual to the smallest. `centre` is the mean
     /// of pressure and tension of the grid. The points whose bond has changed since, with the bond before.
-    fn follow(&mut self, on: Underway<'_>, changed: &[usize], centre: f64, accuracy: Accuracy) -> Vec<(usize, Bonding)>;
+    fn relax(&mut self, on: WorkingState<'_>, changed: &[usize], centre: f64, accuracy: Accuracy) -> Vec<(usize, Bonding)>;
 }
 
 impl Minimiser {
@@ -132,7 +172,7 @@ impl Minimiser {
             slopes: field()?,
             direction: field()?,
             response: field()?,
-            way: Way::new(problem)?,
+            increment: SinglePrecisionIncrement::new(problem)?,
             pairs: Pairs::new(points)?,
             preconditioner: Preconditioner { split: true },
         })
@@ -149,69 +189,69 @@ impl Minimiser {
         self.minimise_with(problem, state, accuracy, &ANY, None)
     }
 
-    /// As [`Self::minimise`], with events followed by `events` first. Ends where an event takes the load out of `loads`.
+    /// As [`Self::minimise`], with events relaxed by `local` first. Ends where an event takes the load out of `loads`.
     pub(super) fn minimise_with(
         &mut self,
         problem: &Problem,
         state: &mut State,
         accuracy: Accuracy,
         loads: &Loads,
-        mut events: Option<&mut dyn Follow>,
+        mut local: Option<&mut dyn LocalRelaxation>,
     ) -> Outcome {
         let stress = problem.stress();
         let mut outcome = Outcome::default();
         self.pairs.clear();
-        let mut here = self.begin(problem, state);
-        let (mut moved, mut exact, mut first) = (0.0, true, here.rms);
+        let mut here = self.start_from(problem, state);
+        let (mut change, mut exact, mut first) = (0.0, true, here.rms);
         loop {
             (outcome.residual, outcome.converged) = (here.rms / stress, accuracy.includes(here, stress));
             if !exact && (outcome.converged || here.rms < RENEWED * first) {
                 // Checked once more with the pressure without rounding and with bonds renewed, or continued from there.
-                self.arrive(state);
-                exact = problem.update_bonds(state, false).is_empty();
-                here = self.begin(problem, state);
-                (moved, first) = (0.0, here.rms);
-                self.pairs.face(&self.gradient);
+                self.commit(state);
+                exact = problem.update_bonds(state, Nucleation::Suppressed).is_empty();
+                here = self.start_from(problem, state);
+                (change, first) = (0.0, here.rms);
+                self.pairs.project_gradient(&self.gradient);
                 continue;
             }
             if outcome.converged || outcome.iterations >= accuracy.iterations {
-                self.arrive(state);
+                self.commit(state);
                 return outcome;
             }
             outcome.iterations += 1;
             let descent = self.search(problem);
-            let Some((step, there)) = self.descend(problem, state, descent, true) else {
-                self.arrive(state);
+            let Some((step, residual)) = self.descend(problem, state, descent, ElasticResponse::Transformed) else {
+                self.commit(state);
                 if exact {
                     return outcome;
                 }
                 // The energy falls by less than its rounding.
-                here = self.begin(problem, state);
+                here = self.start_from(problem, state);
                 (exact, first) = (true, here.rms);
                 self.pairs.clear();
                 continue;
             };
-            (here, exact) = (there, false);
-            moved += step.largest;
-            if moved > LOOK * problem.reach() && here.largest <= NEAR * stress {
-                moved = 0.0;
+            (here, exact) = (residual, false);
+            change += step.largest;
+            if change > BOND_UPDATE_CHANGE * problem.reach() && here.largest <= BOND_UPDATE_RESIDUAL * stress {
+                change = 0.0;
                 let late = outcome.iterations >= EVERYWHERE;
                 outcome.left = late && !loads.contains(&self.load());
                 if outcome.left {
                     return outcome;
                 }
-                let changed = problem.spread_bonds(&mut state.bonds, &self.way.touching, &mut self.way.stale);
+                let changed = problem.spread_bonds(&mut state.bonds, &self.increment.touching, &mut self.increment.stale);
                 if !changed.is_empty() {
-                    self.way.rebond(problem, &state.bonds, &changed);
-                    if late && let Some(events) = events.as_mut() {
-                        here = self.follow(problem, state, (&changed, accuracy), *events);
+                    self.increment.rebond(problem, &state.bonds, &changed);
+                    if late && let Some(local) = local.as_mut() {
+                        here = self.relax_locally(problem, state, &changed, accuracy, *local);
                         self.pairs.clear();
                         continue;
                     }
-                    here = self.here(problem, state);
+                    here = self.present_residual(problem, state);
                 }
             }
-            self.pairs.remember(&mut self.direction, descent.mean, step.length, &self.gradient, &self.previous);
+            self.pairs.push_pair(&mut self.direction, descent.mean, step.length, &self.gradient, &self.previous);
         }
     }
 
@@ -220,27 +260,29 @@ impl Minimiser {
         -self.centre * self.slopes.len() as f64
     }
 
-    /// Follows events locally, and moves the state as they do.
-    fn follow(
+    /// Relaxes the places of changed bonds, moves the state by that and returns its residual.
+    fn relax_locally(
         &mut self,
         problem: &Problem,
         state: &mut State,
-        (changed, accuracy): (&[(usize, Bonding)], Accuracy),
-        events: &mut dyn Follow,
+        changed: &[(usize, Bonding)],
+        accuracy: Accuracy,
+        local: &mut dyn LocalRelaxation,
     ) -> Residual {
         let changed = self.sorted(changed);
-        let Self { way, direction, single, .. } = self;
+        let Self { increment, direction, single, .. } = self;
         direction.fill(0.0);
-        let on = Underway { problem, state, moved: &way.moved, pressed: &way.pressed, change: direction };
-        let changed = events.follow(on, &changed, self.centre, accuracy);
-        way.rebond(problem, &state.bonds, &changed);
+        let (displacement_change, pressure_change) = (&increment.displacement, &increment.pressure);
+        let on = WorkingState { problem, state, displacement_change, pressure_change, relaxed: direction };
+        let changed = local.relax(on, &changed, self.centre, accuracy);
+        increment.rebond(problem, &state.bonds, &changed);
         let columns = problem.half_space.columns();
         let sums = problem.half_space.forward(single, direction.par_chunks(columns), |from, row| {
             row.copy_from_slice(from);
             from.iter().map(|moved| f64::from(*moved)).sum::<f64>()
         });
         let mean = self.mean(problem, sums.iter().sum());
-        self.evaluate(problem, state, (1.0, mean), true).residual
+        self.evaluate(problem, state, Shift { length: 1.0, mean }, ElasticResponse::Transformed).residual
     }
 
     /// Points whose bond has changed, from the largest residual to the smallest.
@@ -251,30 +293,30 @@ impl Minimiser {
         points
     }
 
-    /// Pressure without the rounding of its increments, and gradient of a state. A patch keeps the pressure and the mean of the whole grid.
-    pub(super) fn begin(&mut self, problem: &Problem, state: &mut State) -> Residual {
+    /// Starts from a state: its pressure without the rounding of increments, and its gradient. A patch keeps the pressure and the mean of the whole grid.
+    pub(super) fn start_from(&mut self, problem: &Problem, state: &mut State) -> Residual {
         if !problem.half_space.is_patch() {
             problem.refresh(state, &mut self.double);
             self.centre = level(problem, state);
         }
-        self.way.depart(problem, state, self.centre);
-        self.here(problem, state)
+        self.increment.rebase(problem, state, self.centre);
+        self.present_residual(problem, state)
     }
 
-    /// Evaluates the law at a state that stays.
-    pub(super) fn look(&mut self, problem: &Problem, state: &State) {
+    /// Evaluates gradient and slopes of the law at a state, without changing it.
+    pub(super) fn evaluate_at(&mut self, problem: &Problem, state: &State) {
         self.centre = 0.0;
-        self.way.depart(problem, state, 0.0);
-        self.here(problem, state);
+        self.increment.rebase(problem, state, 0.0);
+        self.present_residual(problem, state);
     }
 
-    /// Adds the way to the state.
-    pub(super) fn arrive(&self, state: &mut State) {
-        self.way.arrive(state);
+    /// Adds the changes since [`Self::start_from`] to the state.
+    pub(super) fn commit(&self, state: &mut State) {
+        self.increment.commit(state);
     }
 
-    /// Adds the pressure of a displacement that the state has moved by.
-    pub(super) fn press(&mut self, problem: &Problem, state: &mut State, moved: &[f64]) {
+    /// Adds the elastic pressure of a displacement `moved` to the state.
+    pub(super) fn add_pressure(&mut self, problem: &Problem, state: &mut State, moved: &[f64]) {
         let mut added = vec![0.0; moved.len()];
         problem.half_space.apply(Operator::Stiffness, moved, &mut added, &mut self.double);
         state.pressure.iter_mut().zip(&added).for_each(|(pressure, added)| *pressure += added);
@@ -285,43 +327,36 @@ impl Minimiser {
         if problem.half_space.is_patch() { 0.0 } else { sum / self.slopes.len() as f64 }
     }
 
-    /// Rows of the fields of a step.
-    fn rows<'a>(
-        (way, direction): (&'a mut Way, &'a [f32]),
-        (gradient, slopes): (&'a mut [f32], &'a mut [f32]),
-        (bonds, columns): (&'a [Bonding], usize),
-    ) -> impl IndexedParallelIterator<Item = (Points<'a>, &'a mut bool)> {
-        let Way { gap, residual, moved, pressed, touching, stale, .. } = way;
-        let before = gap.par_chunks(columns).zip(residual.par_chunks(columns)).zip(direction.par_chunks(columns));
-        let after = moved.par_chunks_mut(columns).zip(pressed.par_chunks_mut(columns)).zip(touching.par_chunks_mut(columns));
-        let law = gradient.par_chunks_mut(columns).zip(slopes.par_chunks_mut(columns)).zip(bonds.par_chunks(columns));
-        before.zip(after).zip(law).zip(stale).map(
-            |(((((gap, residual), direction), ((moved, pressed), touching)), ((gradient, slopes), bonds)), stale)| {
-                (Points { gap, residual, moved, pressed, bonds, direction, gradient, slopes, touching }, stale)
-            },
-        )
-    }
-
-    /// Moves the state by `length` along the direction less its mean, and computes the gradient and the slopes of the law there. The elastic response is
-    /// that kept, or with `transform` comes from the wave of the direction.
-    fn evaluate(&mut self, problem: &Problem, state: &State, (length, mean): (f64, f64), transform: bool) -> There {
+    /// Moves the state along the direction, and computes the gradient and the slopes of the law there.
+    fn evaluate(&mut self, problem: &Problem, state: &State, shift: Shift, response: ElasticResponse) -> TrialEvaluation {
         let columns = problem.half_space.columns();
-        let stride = Stride { length: length as f32, mean: mean as f32, centre: (self.centre - self.way.centre) as f32 };
-        let pieces = self.way.pieces;
-        let rows = Self::rows((&mut self.way, &self.direction), (&mut self.gradient.values, &mut self.slopes), (&state.bonds, columns));
+        let stride = Stride { length: shift.length as f32, mean: shift.mean as f32, centre: (self.centre - self.increment.centre) as f32 };
+        let pieces = self.increment.pieces;
+        let fields = Fields {
+            increment: &mut self.increment,
+            direction: &self.direction,
+            gradient: &mut self.gradient.values,
+            slopes: &mut self.slopes,
+            bonds: &state.bonds,
+        };
+        let rows = fields.rows(columns);
         let take = |(mut points, stale): (Points<'_>, &mut bool), response: &[f32]| {
             let found = advance(&mut points, response, stride, &problem.law, &pieces);
             *stale |= found.changed;
             found
         };
-        let parts: Vec<Found> = if transform {
-            let rows = rows.zip(self.response.par_chunks_mut(columns));
-            problem.half_space.backward(Operator::Stiffness, &mut self.single, rows, |(row, kept), response| {
-                kept.copy_from_slice(response);
-                take(row, response)
-            })
-        } else {
-            rows.zip(self.response.par_chunks(columns)).with_min_len(grain(columns)).map(|(row, response)| take(row, response)).collect()
+        let parts: Vec<Found> = match response {
+            ElasticResponse::Transformed => {
+                let rows = rows.zip(self.response.par_chunks_mut(columns));
+                problem.half_space.backward(Operator::Stiffness, &mut self.single, rows, |(row, kept), response| {
+                    kept.copy_from_slice(response);
+                    take(row, response)
+                })
+            }
+            ElasticResponse::Kept => {
+                let rows = rows.zip(self.response.par_chunks(columns)).with_min_len(grain(columns));
+                rows.map(|(row, response)| take(row, response)).collect()
+            }
         };
         let mut all = Found::default();
         parts.iter().for_each(|part| all.add(part));
@@ -330,17 +365,17 @@ impl Minimiser {
         self.gradient.mean = lowered;
         self.centre += lowered;
         let rms = (square / points - lowered * lowered).max(0.0).sqrt();
-        There {
+        TrialEvaluation {
             residual: Residual { rms, largest: all.largest + lowered.abs() },
-            slope: all.slope - points * mean * lowered,
+            slope: all.slope - points * shift.mean * lowered,
             curvature: all.curvature,
             beyond: all.beyond,
         }
     }
 
-    /// Residual of the state.
-    fn here(&mut self, problem: &Problem, state: &State) -> Residual {
-        self.evaluate(problem, state, (0.0, 0.0), false).residual
+    /// Residual of the present state.
+    fn present_residual(&mut self, problem: &Problem, state: &State) -> Residual {
+        self.evaluate(problem, state, Shift::default(), ElasticResponse::Kept).residual
     }
 
     /// A direction of descent, by the pairs if they give one, and its wave.
@@ -380,29 +415,35 @@ impl Minimiser {
     }
 
     /// Moves the state along the direction by at most the reach of the law and so far that the energy falls: the step and the residual after it. Without
-    /// such a step the state stays. The elastic response is known, or with `transform` the wave of the direction.
-    pub(super) fn descend(&mut self, problem: &Problem, state: &State, descent: Descent, transform: bool) -> Option<(Taken, Residual)> {
+    /// such a step the state stays.
+    pub(super) fn descend(
+        &mut self,
+        problem: &Problem,
+        state: &State,
+        descent: Descent,
+        response: ElasticResponse,
+    ) -> Option<(AcceptedStep, Residual)> {
         let mut trial = Trial::new(descent);
         let length = (problem.reach() / descent.largest).min(1.0);
         std::mem::swap(&mut self.gradient, &mut self.previous);
-        let there = self.evaluate(problem, state, (length, descent.mean), transform);
+        let there = self.evaluate(problem, state, Shift { length, mean: descent.mean }, response);
         if trial.suffices(length, &there) {
-            return Some((Taken { length, largest: length * descent.largest }, there.residual));
+            return Some((AcceptedStep { length, largest: length * descent.largest }, there.residual));
         }
         self.shorten(problem, state, trial)
     }
 
     /// As [`Self::descend`], with a known response and after a first trial.
-    fn shorten(&mut self, problem: &Problem, state: &State, mut trial: Trial) -> Option<(Taken, Residual)> {
+    fn shorten(&mut self, problem: &Problem, state: &State, mut trial: Trial) -> Option<(AcceptedStep, Residual)> {
         let Descent { mean, largest, .. } = trial.descent;
         for _ in 0..SHORTENINGS {
             let shorter = trial.shorter();
-            let there = self.evaluate(problem, state, (shorter - trial.length, mean), false);
+            let there = self.evaluate(problem, state, Shift { length: shorter - trial.length, mean }, ElasticResponse::Kept);
             if trial.suffices(shorter, &there) {
-                return Some((Taken { length: shorter, largest: shorter * largest }, there.residual));
+                return Some((AcceptedStep { length: shorter, largest: shorter * largest }, there.residual));
             }
         }
-        self.evaluate(problem, state, (-trial.length, mean), false);
+        self.evaluate(problem, state, Shift { length: -trial.length, mean }, ElasticResponse::Kept);
         None
     }
 }

@@ -8,6 +8,7 @@ pub mod contact;
 pub mod cycle;
 pub mod equilibrium;
 pub mod grid;
+mod increment;
 pub mod law;
 pub mod minimise;
 mod morse;
@@ -25,7 +26,6 @@ mod stations;
 mod step;
 mod sums;
 mod trial;
-mod way;
 pub mod work;
 
 pub(super) use constants::CONSTANTS;

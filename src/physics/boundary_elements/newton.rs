@@ -4,10 +4,10 @@
 //! The model of the energy is `g·p + ½ p·(K + V'')p`. Its minimum is approached by conjugate gradients with the split preconditioner, until a direction has
 //! a negative curvature or the step would exceed the reach of the law; such a step ends at that reach.
 
-use super::contact::{Problem, State};
+use super::contact::{Nucleation, Problem, State};
 use super::grid::Operator;
 use super::grid::remove_mean;
-use super::minimise::{Accuracy, Minimiser, Outcome};
+use super::minimise::{Accuracy, ElasticResponse, Minimiser, Outcome};
 use super::passes::{PAIRS, Right};
 use super::sums::{PANEL, add, dot, grain, largest, panel_sums, total};
 use super::trial::Descent;
@@ -24,7 +24,7 @@ const FORCING: f64 = 0.05;
 /// Relative residual of the rate of an equilibrium.
 pub(super) const RATE: f64 = 0.01;
 
-/// Fields of the inner iteration, lent by the minimiser, which does not need them meanwhile.
+/// Scratch buffers of the conjugate gradients: fields of the minimiser, which does not use them meanwhile.
 struct Inner {
     residual: Vec<f32>,
     search: Vec<f32>,
@@ -35,6 +35,15 @@ struct Inner {
 struct Solution {
     step: Vec<f32>,
     response: Vec<f32>,
+}
+
+/// Limits at which conjugate gradients end.
+#[derive(Debug, Clone, Copy)]
+struct Limits {
+    /// Largest magnitude of the step.
+    step: f64,
+    /// Norm of the residual.
+    residual: f64,
 }
 
 /// Change of an equilibrium with the approach.
@@ -57,8 +66,8 @@ impl Minimiser {
         let stress = problem.stress();
         let mut outcome = Outcome::default();
         loop {
-            problem.update_bonds(state, false);
-            let here = self.begin(problem, state);
+            problem.update_bonds(state, Nucleation::Suppressed);
+            let here = self.start_from(problem, state);
             (outcome.residual, outcome.converged) = (here.rms / stress, accuracy.includes(here, stress));
             if outcome.converged || outcome.iterations >= accuracy.iterations {
                 return Ok(outcome);
@@ -67,9 +76,9 @@ impl Minimiser {
             std::mem::swap(&mut self.direction, &mut found.step);
             std::mem::swap(&mut self.response, &mut found.response);
             let descent = Descent { mean: 0.0, slope: dot(&self.direction, &self.gradient.values), largest: largest(&self.direction) };
-            let taken = self.descend(problem, state, descent, false);
-            self.arrive(state);
-            if taken.is_none() {
+            let accepted = self.descend(problem, state, descent, ElasticResponse::Kept);
+            self.commit(state);
+            if accepted.is_none() {
                 return Ok(outcome);
             }
         }
@@ -82,13 +91,13 @@ impl Minimiser {
     /// Not enough memory.
     pub(super) fn rate(&mut self, problem: &Problem, state: &State) -> Result<Rate, PhysicsError> {
         let mut found = Solution { step: filled(problem.half_space.points(), 0.0)?, response: Vec::new() };
-        self.look(problem, state);
-        let mut inner = self.lend();
+        self.evaluate_at(problem, state);
+        let mut inner = self.take_scratch();
         inner.residual.copy_from_slice(&self.slopes);
         remove_mean(&mut inner.residual);
-        let goal = RATE * dot(&inner.residual, &inner.residual).sqrt();
-        self.solve(problem, (&mut inner, &mut found), (f64::INFINITY, goal));
-        self.take_back(inner);
+        let residual = RATE * dot(&inner.residual, &inner.residual).sqrt();
+        self.solve(problem, &mut inner, &mut found, Limits { step: f64::INFINITY, residual });
+        self.return_scratch(inner);
         let [stiffness] = total(
             (self.slopes.par_chunks(PANEL), found.step.par_chunks(PANEL))
                 .into_par_iter()
@@ -97,14 +106,14 @@ impl Minimiser {
         Ok(Rate { stiffness, displacement: found.step })
     }
 
-    /// Fields for conjugate gradients; the pairs are lost.
-    fn lend(&mut self) -> Inner {
-        let search = self.pairs.lend();
+    /// Moves the buffers for conjugate gradients out. Removes the pairs.
+    fn take_scratch(&mut self) -> Inner {
+        let search = self.pairs.take_scratch();
         Inner { residual: take(&mut self.previous.values), search, stiff: take(&mut self.response) }
     }
 
-    fn take_back(&mut self, Inner { residual, search, stiff }: Inner) {
-        self.pairs.take_back(search);
+    fn return_scratch(&mut self, Inner { residual, search, stiff }: Inner) {
+        self.pairs.return_scratch(search);
         (self.previous.values, self.response) = (residual, stiff);
     }
 
@@ -112,19 +121,19 @@ impl Minimiser {
     fn conjugate_gradients(&mut self, problem: &Problem, found: &mut Solution) -> usize {
         found.step.fill(0.0);
         found.response.fill(0.0);
-        let mut inner = self.lend();
+        let mut inner = self.take_scratch();
         let mean = self.gradient.mean as f32;
         let fields = (&mut inner.residual, &self.gradient.values).into_par_iter().with_min_len(grain(1));
         fields.for_each(|(to, from)| *to = mean - from);
-        let goal = FORCING * dot(&inner.residual, &inner.residual).sqrt();
-        let iterations = self.solve(problem, (&mut inner, found), (problem.reach(), goal));
-        self.take_back(inner);
+        let residual = FORCING * dot(&inner.residual, &inner.residual).sqrt();
+        let iterations = self.solve(problem, &mut inner, found, Limits { step: problem.reach(), residual });
+        self.return_scratch(inner);
         iterations
     }
 
-    /// Solves `(K + V'') step = residual` from a step of 0, up to a length of the step and a norm of the residual: the iterations.
-    fn solve(&mut self, problem: &Problem, (inner, found): (&mut Inner, &mut Solution), (reach, goal): (f64, f64)) -> usize {
-        if dot(&inner.residual, &inner.residual).sqrt() <= goal {
+    /// Solves `(K + V'') step = residual` from a step of 0 to one of the limits: the iterations.
+    fn solve(&mut self, problem: &Problem, inner: &mut Inner, found: &mut Solution, limits: Limits) -> usize {
+        if dot(&inner.residual, &inner.residual).sqrt() <= limits.residual {
             return 0;
         }
         self.precondition_from(problem, &inner.residual);
@@ -137,9 +146,9 @@ impl Minimiser {
                     .into_par_iter()
                     .map(|(stiff, slopes, search)| panel_sums([stiff, slopes, search], |[k, slope, p]| [p * (k + slope * p)])),
             );
-            let room = (reach - largest(&found.step)).max(0.0) / largest(&inner.search).max(f64::MIN_POSITIVE);
+            let room = (limits.step - largest(&found.step)).max(0.0) / largest(&inner.search).max(f64::MIN_POSITIVE);
             let length = product / curvature;
-            if curvature <= 0.0 && reach.is_infinite() {
+            if curvature <= 0.0 && limits.step.is_infinite() {
                 return iteration;
             }
             if curvature <= 0.0 || length > room {
@@ -151,7 +160,7 @@ impl Minimiser {
             add(&mut found.step, length, &inner.search);
             add(&mut found.response, length, &inner.stiff);
             self.lower(inner, length as f32);
-            if dot(&inner.residual, &inner.residual).sqrt() <= goal {
+            if dot(&inner.residual, &inner.residual).sqrt() <= limits.residual {
                 return iteration;
             }
             self.precondition_from(problem, &inner.residual);

@@ -26,7 +26,7 @@ pub(super) struct Pairs {
     pairs: [Pair; PAIRS],
     /// `products[i][j] = s_i·y_j`.
     products: [[f64; PAIRS]; PAIRS],
-    /// `g·s_i` of the gradient of the last call of [`Self::remember`] or [`Self::face`].
+    /// `g·s_i` of the gradient of the last call of [`Self::push_pair`] or [`Self::project_gradient`].
     onto: [f64; PAIRS],
     /// Places of the pairs, from the oldest to the newest.
     order: Vec<usize>,
@@ -42,19 +42,19 @@ impl Pairs {
         self.order.clear();
     }
 
-    /// A field for other use until it is taken back; the pairs are lost.
-    pub(super) fn lend(&mut self) -> Vec<f32> {
+    /// Moves a field out as a scratch buffer, until [`Self::return_scratch`]. Removes the pairs.
+    pub(super) fn take_scratch(&mut self) -> Vec<f32> {
         self.clear();
         std::mem::take(&mut self.pairs[0].step)
     }
 
-    pub(super) fn take_back(&mut self, field: Vec<f32>) {
+    pub(super) fn return_scratch(&mut self, field: Vec<f32>) {
         self.pairs[0].step = field;
     }
 
     /// Keeps `direction`, a step of length `length` along which the gradient changed from `before`, in place of the oldest pair, unless the curvature
     /// along it is not positive. What `direction` holds then has no meaning.
-    pub(super) fn remember(&mut self, direction: &mut Vec<f32>, mean: f64, length: f64, gradient: &Gradient, before: &Gradient) {
+    pub(super) fn push_pair(&mut self, direction: &mut Vec<f32>, mean: f64, length: f64, gradient: &Gradient, before: &Gradient) {
         let place =
             if self.order.len() < PAIRS { (0..PAIRS).find(|place| !self.order.contains(place)).unwrap_or(0) } else { self.order.remove(0) };
         std::mem::swap(&mut self.pairs[place].step, direction);
@@ -84,7 +84,7 @@ impl Pairs {
     }
 
     /// Products of the steps with a gradient that no step has led to.
-    pub(super) fn face(&mut self, gradient: &Gradient) {
+    pub(super) fn project_gradient(&mut self, gradient: &Gradient) {
         let [a, b] = self.steps().map(|step| step.par_chunks(PANEL));
         self.onto = total((gradient.values.par_chunks(PANEL), a, b).into_par_iter().map(|(g, a, b)| products(g, [a, b])));
         self.centre(gradient);

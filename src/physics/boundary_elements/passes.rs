@@ -123,8 +123,8 @@ pub(super) struct Points<'a> {
     pub(super) gap: &'a [f32],
     pub(super) residual: &'a [f32],
     /// Displacement and pressure since then.
-    pub(super) moved: &'a mut [f32],
-    pub(super) pressed: &'a mut [f32],
+    pub(super) displacement: &'a mut [f32],
+    pub(super) pressure: &'a mut [f32],
     pub(super) bonds: &'a [Bonding],
     pub(super) direction: &'a [f32],
     pub(super) gradient: &'a mut [f32],
@@ -140,8 +140,8 @@ impl Points<'_> {
         Points {
             gap: &self.gap[range.clone()],
             residual: &self.residual[range.clone()],
-            moved: &mut self.moved[range.clone()],
-            pressed: &mut self.pressed[range.clone()],
+            displacement: &mut self.displacement[range.clone()],
+            pressure: &mut self.pressure[range.clone()],
             bonds: &self.bonds[range.clone()],
             direction: &self.direction[range.clone()],
             gradient: &mut self.gradient[range.clone()],
@@ -229,7 +229,7 @@ fn glide(points: &mut Points<'_>, response: &[f32], stride: Stride, pieces: &Pie
     let n = beyond.len();
     let (gap, residual, bonds) = (&points.gap[..n], &points.residual[..n], &points.bonds[..n]);
     let (direction, response) = (&points.direction[..n], &response[..n]);
-    let (moved, pressed, touching) = (&mut points.moved[..n], &mut points.pressed[..n], &mut points.touching[..n]);
+    let (displacement, pressure, touching) = (&mut points.displacement[..n], &mut points.pressure[..n], &mut points.touching[..n]);
     let (gradient, slopes) = (&mut points.gradient[..n], &mut points.slopes[..n]);
     let (was, curved) = (&mut block.before[..n], &mut block.curved[..n]);
     let Pieces { stiffness, spring, contact, curved: [[f0, l0], [f1, l1], [f2, l2]], .. } = *pieces;
@@ -245,16 +245,16 @@ fn glide(points: &mut Points<'_>, response: &[f32], stride: Stride, pieces: &Pie
                 sealed
             }
         };
-        let before = gap[k] + moved[k];
-        moved[k] += stride.length * (direction[k] - stride.mean);
-        pressed[k] += stride.length * response[k];
-        let after = gap[k] + moved[k];
+        let before = gap[k] + displacement[k];
+        displacement[k] += stride.length * (direction[k] - stride.mean);
+        pressure[k] += stride.length * response[k];
+        let after = gap[k] + displacement[k];
         let spring = of(spring);
         let stretched = |gap: f32| if gap < spring { gap } else { 0.0 };
         let (m0, m1) = (stretched(before), stretched(after));
-        let pulled = if gap[k] < spring && after < spring { moved[k] } else { m1 - stretched(gap[k]) };
+        let pulled = if gap[k] < spring && after < spring { displacement[k] } else { m1 - stretched(gap[k]) };
         slopes[k] = if after < spring { stiffness } else { 0.0 };
-        gradient[k] = residual[k] + pressed[k] - stride.centre + stiffness * pulled;
+        gradient[k] = residual[k] + pressure[k] - stride.centre + stiffness * pulled;
         let jump = m1 - m0;
         beyond[k] = 0.5 * stiffness * (jump * jump + 2.0 * m0 * (jump - (after - before)));
         let touches = u8::from(after < of(contact));
@@ -273,12 +273,12 @@ fn glide(points: &mut Points<'_>, response: &[f32], stride: Stride, pieces: &Pie
 #[inline(always)]
 fn bend(points: &mut Points<'_>, stride: Stride, law: Smooth, beyond: &mut [f32], block: &mut Block) -> bool {
     let n = beyond.len();
-    let (gap, moved, bonds, direction) = (&points.gap[..n], &points.moved[..n], &points.bonds[..n], &points.direction[..n]);
+    let (gap, displacement, bonds, direction) = (&points.gap[..n], &points.displacement[..n], &points.bonds[..n], &points.direction[..n]);
     let (gradient, slopes) = (&mut points.gradient[..n], &mut points.slopes[..n]);
     let (before, curved) = (&block.before[..n], &mut block.curved[..n]);
     let mut any_curved = 0;
     for k in 0..n {
-        let effect = law.change(gap[k], before[k], moved[k], stride.length * (direction[k] - stride.mean));
+        let effect = law.change(gap[k], before[k], displacement[k], stride.length * (direction[k] - stride.mean));
         let bonded = bonds[k] as u8 == Bonding::Bonded as u8;
         let holds = bonded & effect.holds;
         let (straight, slope, flat) = (gradient[k], slopes[k], beyond[k]);
@@ -295,9 +295,9 @@ fn bend(points: &mut Points<'_>, stride: Stride, law: Smooth, beyond: &mut [f32]
 
 /// Replaces the spring by the law at a point: the change of its energy beyond first order.
 fn curve(points: &mut Points<'_>, k: usize, before: f32, centre: f32, law: &Law) -> f32 {
-    let gaps = [points.gap[k], before, points.gap[k] + points.moved[k]].map(f64::from);
+    let gaps = [points.gap[k], before, points.gap[k] + points.displacement[k]].map(f64::from);
     let [begin, before, after]: [Bond; 3] = gaps.map(|gap| law.bond(points.bonds[k], gap));
-    points.gradient[k] = points.residual[k] + points.pressed[k] - centre + (after.tension - begin.tension) as f32;
+    points.gradient[k] = points.residual[k] + points.pressure[k] - centre + (after.tension - begin.tension) as f32;
     points.slopes[k] = after.slope as f32;
     (after.energy - before.energy - before.tension * (gaps[2] - gaps[1])) as f32
 }

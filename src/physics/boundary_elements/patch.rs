@@ -12,7 +12,7 @@
 
 use super::contact::{Attraction, Bonding, Problem, State};
 use super::grid::HalfSpace;
-use super::minimise::{Accuracy, Follow, Minimiser, Underway};
+use super::minimise::{Accuracy, LocalRelaxation, Minimiser, WorkingState};
 use super::places::{Place, Region, SMALLEST, places};
 use crate::PhysicsError;
 use crate::memory::filled;
@@ -88,7 +88,7 @@ impl Patches {
     }
 
     /// A job with the state of the grid in a region; `None` if all patches of this side are in use.
-    fn take(&mut self, on: &Underway<'_>, region: Region) -> Option<Job> {
+    fn take(&mut self, on: &WorkingState<'_>, region: Region) -> Option<Job> {
         let mut patch = self.0.get_mut(number(region.side))?.pop()?;
         patch.cut(on, region.middle);
         Some(Job { middle: region.middle, patch, moved: false })
@@ -97,7 +97,7 @@ impl Patches {
     /// Jobs at the next places that do not overlap, as far as there are patches; others are put off until these are done.
     fn begin(
         &mut self,
-        on: &Underway<'_>,
+        on: &WorkingState<'_>,
         places: &mut impl Iterator<Item = Region>,
         put_off: &mut Vec<Region>,
         done: &[Region],
@@ -123,7 +123,13 @@ impl Patches {
 
     /// Jobs that continue on larger patches, after all jobs have been relaxed. The other jobs are returned to
     /// the grid; moved regions among them are added to `done`.
-    fn settle(&mut self, on: &mut Underway<'_>, jobs: Vec<Job>, done: &mut Vec<Region>, rebonded: &mut Vec<(usize, Bonding)>) -> Vec<Job> {
+    fn settle(
+        &mut self,
+        on: &mut WorkingState<'_>,
+        jobs: Vec<Job>,
+        done: &mut Vec<Region>,
+        rebonded: &mut Vec<(usize, Bonding)>,
+    ) -> Vec<Job> {
         let mut regions: Vec<Region> = jobs.iter().map(Job::region).collect();
         let mut going = Vec::new();
         for (k, job) in jobs.into_iter().enumerate() {
@@ -155,9 +161,9 @@ impl Job {
     }
 }
 
-impl Follow for Patches {
+impl LocalRelaxation for Patches {
     /// Places are taken in the order of their largest residuals, and relaxed side by side; one that overlaps an earlier one is left to the whole grid.
-    fn follow(&mut self, mut on: Underway<'_>, changed: &[usize], centre: f64, accuracy: Accuracy) -> Vec<(usize, Bonding)> {
+    fn relax(&mut self, mut on: WorkingState<'_>, changed: &[usize], centre: f64, accuracy: Accuracy) -> Vec<(usize, Bonding)> {
         let problem = on.problem;
         let accuracy = Accuracy { rms: f64::INFINITY, largest: FINISH * accuracy.largest, iterations: ITERATIONS };
         let largest = SMALLEST << (self.0.len() - 1);
@@ -211,12 +217,12 @@ impl Patch {
     }
 
     /// Takes heights and state from the whole grid.
-    fn cut(&mut self, on: &Underway<'_>, place: Place) {
+    fn cut(&mut self, on: &WorkingState<'_>, place: Place) {
         for (k, from) in self.points(&on.problem.half_space, place).enumerate() {
             self.problem.heights[k] = on.problem.heights[from];
             self.start[k] = on.displacement(from);
             self.state.displacement[k] = self.start[k];
-            self.state.pressure[k] = on.state.pressure[from] + f64::from(on.pressed[from]);
+            self.state.pressure[k] = on.state.pressure[from] + f64::from(on.pressure_change[from]);
             self.state.bonds[k] = on.state.bonds[from];
         }
         self.state.approach = on.state.approach;
@@ -233,10 +239,10 @@ impl Patch {
             self.state.displacement[to] += moved[to];
             self.state.bonds[to] = smaller.state.bonds[k];
         }
-        self.minimiser.press(&self.problem, &mut self.state, &moved);
+        self.minimiser.add_pressure(&self.problem, &mut self.state, &moved);
     }
 
-    fn has_changed_at_border(&self, on: &Underway<'_>, place: Place) -> bool {
+    fn has_changed_at_border(&self, on: &WorkingState<'_>, place: Place) -> bool {
         let side = self.side();
         let inside = side / BORDER..side - side / BORDER;
         self.points(&on.problem.half_space, place).enumerate().any(|(k, at)| {
@@ -246,10 +252,10 @@ impl Patch {
     }
 
     /// Gives displacement and bonds to the whole grid. The points whose bond has changed, with the bond before.
-    fn paste(&self, on: &mut Underway<'_>, place: Place) -> Vec<(usize, Bonding)> {
+    fn paste(&self, on: &mut WorkingState<'_>, place: Place) -> Vec<(usize, Bonding)> {
         let mut changed = Vec::new();
         for (k, to) in self.points(&on.problem.half_space, place).enumerate() {
-            on.change[to] += (self.state.displacement[k] - self.start[k]) as f32;
+            on.relaxed[to] += (self.state.displacement[k] - self.start[k]) as f32;
             let before = std::mem::replace(&mut on.state.bonds[to], self.state.bonds[k]);
             if before != self.state.bonds[k] {
                 changed.push((to, before));

@@ -5,7 +5,7 @@ use super::grid::HalfSpace;
 /// Side of the smallest patch.
 pub(super) const SMALLEST: usize = 32;
 /// Distance from its first point up to which points belong to a place.
-const NEAR: usize = 12;
+const PLACE_RADIUS: usize = 12;
 /// Side of a patch at first: this many times the extent of the changed bonds, and points.
 const ROOM: (usize, usize) = (2, 8);
 
@@ -31,8 +31,9 @@ pub(super) fn places(grid: &HalfSpace, changed: &[usize], largest: usize) -> imp
     let mut rest = changed.to_vec();
     std::iter::from_fn(move || {
         let first = *rest.first()?;
-        let (near, others) =
-            std::mem::take(&mut rest).into_iter().partition(|point| distance(grid, place(grid, *point), place(grid, first)) <= NEAR);
+        let (near, others) = std::mem::take(&mut rest)
+            .into_iter()
+            .partition(|point| distance(grid, place(grid, *point), place(grid, first)) <= PLACE_RADIUS);
         rest = others;
         let (middle, extent) = surroundings(grid, first, near);
         let side = (ROOM.0 * extent + ROOM.1).next_power_of_two().clamp(SMALLEST, largest);
@@ -53,14 +54,14 @@ fn place(grid: &HalfSpace, point: usize) -> Place {
 /// Middle and extent of points that are near the first.
 fn surroundings(grid: &HalfSpace, first: usize, near: Vec<usize>) -> (Place, usize) {
     let (size, first) = ([grid.rows(), grid.columns()], place(grid, first));
-    let (mut low, mut high) = ([NEAR; 2], [NEAR; 2]);
+    let (mut low, mut high) = ([PLACE_RADIUS; 2], [PLACE_RADIUS; 2]);
     for at in near.into_iter().map(|point| place(grid, point)) {
         for k in 0..2 {
-            let offset = (at[k] + size[k] + NEAR - first[k]) % size[k];
+            let offset = (at[k] + size[k] + PLACE_RADIUS - first[k]) % size[k];
             (low[k], high[k]) = (low[k].min(offset), high[k].max(offset));
         }
     }
-    let middle = [0, 1].map(|k| (first[k] + (low[k] + high[k]) / 2 + size[k] - NEAR) % size[k]);
+    let middle = [0, 1].map(|k| (first[k] + (low[k] + high[k]) / 2 + size[k] - PLACE_RADIUS) % size[k]);
     (middle, (0..2).map(|k| high[k] - low[k] + 1).max().unwrap_or(1))
 }
 

@@ -2,7 +2,7 @@
 
 use super::minimise::Accuracy;
 use super::records::Step;
-use super::step::{Attempt, Walk};
+use super::step::{Attempt, CycleRun};
 use crate::PhysicsError;
 
 /// Relative accuracy of the load at a reversal.
@@ -11,13 +11,13 @@ pub(super) const LOAD_ACCURACY: f64 = 1e-5;
 pub(super) const JUMP_ACCURACY: f64 = 1e-3;
 /// Tolerance of the equilibria near that load, relative to that elsewhere, and the relative distance at which it begins.
 pub(super) const SHARPER: f64 = 0.02;
-const NEAR: f64 = 0.02;
+const SHARPER_WITHIN: f64 = 0.02;
 /// Bracket of the approach at which the load jumps, in steps.
 const CLOSED: f64 = 1e-5;
 /// Most equilibria of a search.
 pub(super) const SEARCHED: u32 = 40;
 
-impl Walk<'_> {
+impl CycleRun<'_> {
     /// True if the load at a reversal after a jump is near that of the spec.
     pub(super) fn exceeds_by_a_jump(load: f64, max_load: f64) -> bool {
         (load / max_load - 1.0).abs() < JUMP_ACCURACY
@@ -37,7 +37,7 @@ impl Walk<'_> {
             let secant = ((max_load - low.1) / (high.1 - low.1)).clamp(0.02, 0.98);
             let part = if searched.is_multiple_of(3) { 0.5 } else { secant };
             let approach = if closed { high.0 } else { low.0 + part * (high.0 - low.0) };
-            let near = closed || off(low.1).min(off(high.1)) < NEAR;
+            let near = closed || off(low.1).min(off(high.1)) < SHARPER_WITHIN;
             let mut attempt = self.attempt(approach, if near { sharper } else { self.settings.accuracy })?;
             let load = attempt.step.totals.load;
             let reached = off(load) < LOAD_ACCURACY;

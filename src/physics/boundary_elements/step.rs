@@ -5,10 +5,11 @@
 //! uncertainty, and an apparent gain is subtracted from the next event. A gain must not shorten the step: repeating what comes out too small makes the sum too
 //! large.
 //!
-//! A step is halved where a jump of the load makes its integral uncertain by more than [`Settings::located`], or where the load may have passed through the
-//! maximum tension before it jumped or, with attraction of a range, smoothly. The next steps are as short, until the uncertainty is well below the limit.
+//! A step is halved where a jump of the load makes its integral uncertain by more than [`Settings::jump_tolerance`]. It is also halved where the load may
+//! have passed through the maximum tension, before a jump or, with attraction of a range, smoothly. The next steps are as short, until the uncertainty is
+//! well below the limit.
 
-use super::contact::{Attraction, Problem, State};
+use super::contact::{Attraction, Nucleation, Problem, State};
 use super::equilibrium::Equilibrium;
 use super::minimise::{ANY, Accuracy, Loads, Outcome};
 use super::newton::Rate;
@@ -35,7 +36,7 @@ pub(super) const HIDDEN: f64 = 0.02;
 /// Error of a jump, relative to the limit, from which on a step is halved before it has reached equilibrium.
 pub(super) const EXCESS: f64 = 2.0;
 /// Largest `|du/dΔ|` by which displacements are extrapolated. Near a limit point, where it diverges, the extrapolated state would be far from equilibrium.
-pub(super) const STEEPEST: f64 = 10.0;
+pub(super) const MAX_RATE: f64 = 10.0;
 /// Deepest extrapolated overlap beyond that of the last state with attraction of a range, in ranges: the repulsion rises exponentially, and iterations move by
 /// one range.
 pub(super) const OVERLAP: f64 = 0.5;
@@ -52,7 +53,7 @@ pub struct Settings {
     /// Step of the approach \[dx\].
     pub step: f64,
     /// Largest error that a jump of the load may cause in the integral over a step, relative to the energy dissipated so far: longer steps are halved.
-    pub located: f64,
+    pub jump_tolerance: f64,
     /// Most halvings of such a step.
     pub halvings: u32,
     /// Accuracy of an equilibrium.
@@ -65,7 +66,7 @@ pub struct Settings {
 
 /// An unfinished cycle: all that is needed to continue in another process, to the same bytes.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Halfway {
+pub struct Checkpoint {
     pub(super) cycle: Cycle,
     /// Branches that are done.
     pub(super) done: Done,
@@ -76,7 +77,7 @@ pub struct Halfway {
     /// Halvings of the next step.
     pub(super) level: u32,
     /// Map and regions at the maximum tensile load of the branch so far.
-    pub(super) tensest: Option<(f64, Map, Vec<Region>)>,
+    pub(super) max_tension: Option<(f64, Map, Vec<Region>)>,
     /// Regions of contact of the state; computed again on resuming.
     #[serde(skip)]
     pub(super) labels: Labels,
@@ -114,11 +115,11 @@ fn on_loop(step: &Step) -> OnLoop {
 }
 
 /// An unfinished cycle with its problem and work space.
-pub(super) struct Walk<'a> {
+pub(super) struct CycleRun<'a> {
     pub(super) problem: &'a Problem,
     pub(super) settings: &'a Settings,
     equilibrium: Equilibrium,
-    pub(super) at: Halfway,
+    pub(super) at: Checkpoint,
     /// Rate of the state, once it has been needed.
     pub(super) rate: Option<Rate>,
     /// Iterations since the last step, and points of transforms at its end.
@@ -126,24 +127,24 @@ pub(super) struct Walk<'a> {
     counted: u64,
 }
 
-impl<'a> Walk<'a> {
-    /// A cycle from the beginning or from `halfway`.
-    pub(super) fn begin(problem: &'a Problem, settings: &'a Settings, halfway: Option<Halfway>) -> Result<Self, PhysicsError> {
+impl<'a> CycleRun<'a> {
+    /// A cycle from the beginning or from a checkpoint.
+    pub(super) fn new(problem: &'a Problem, settings: &'a Settings, checkpoint: Option<Checkpoint>) -> Result<Self, PhysicsError> {
         let start = match problem.attraction {
             Attraction::Bonded { nucleation, .. } => -nucleation,
             Attraction::Range => -problem.law.end_gap(),
             Attraction::None => 0.0,
         };
-        let mut at = match halfway {
-            Some(halfway) => halfway,
-            None => Halfway {
+        let mut at = match checkpoint {
+            Some(checkpoint) => checkpoint,
+            None => Checkpoint {
                 cycle: Cycle::default(),
                 done: Done::default(),
                 state: State { pressure: Vec::new(), ..problem.apart(start)? },
                 last: Step { approach: start, ..Step::default() },
                 dissipated: 0.0,
                 level: 0,
-                tensest: None,
+                max_tension: None,
                 labels: Labels::default(),
                 trunk: None,
                 owed: 0.0,
@@ -185,7 +186,7 @@ impl<'a> Walk<'a> {
                 rate
             }
         };
-        let length = (approach - state.approach) * (STEEPEST / largest(&rate.displacement)).min(1.0);
+        let length = (approach - state.approach) * (MAX_RATE / largest(&rate.displacement)).min(1.0);
         for (to, rate) in state.displacement.iter_mut().zip(&rate.displacement) {
             *to += length * f64::from(*rate);
         }
@@ -211,7 +212,7 @@ impl<'a> Walk<'a> {
         loop {
             let outcome = self.equilibrium.find_within(self.problem, state, accuracy, loads)?;
             self.iterations += outcome.iterations as u64;
-            if outcome.left || self.problem.update_bonds(state, true).is_empty() {
+            if outcome.left || self.problem.update_bonds(state, Nucleation::Allowed).is_empty() {
                 return Ok(outcome);
             }
         }
@@ -292,7 +293,7 @@ impl<'a> Walk<'a> {
         if self.settings.max_loads.last().is_none_or(|last| *last <= max_load) {
             return;
         }
-        let Halfway { cycle, state, last, dissipated, level, owed, .. } = &self.at;
+        let Checkpoint { cycle, state, last, dissipated, level, owed, .. } = &self.at;
         let (steps, events) = (cycle.steps.len(), cycle.events.len());
         let trunk = Trunk { state: state.clone(), last: *last, dissipated: *dissipated, level: *level, steps, events, owed: *owed };
         self.at.trunk = Some(Box::new(trunk));
@@ -327,15 +328,15 @@ impl<'a> Walk<'a> {
             let halvings = self.halvings();
             self.at.level = self.at.level.min(halvings);
             let length = sense * self.settings.step / f64::from(1_u32 << self.at.level);
-            let limit = self.settings.located * self.at.dissipated;
+            let limit = self.settings.jump_tolerance * self.at.dissipated;
             let mut state = self.predict(self.at.state.approach + length)?;
-            let outcome = self.relax(&mut state, self.settings.accuracy, &self.located_loads(length, limit))?;
+            let outcome = self.relax(&mut state, self.settings.accuracy, &self.loads_within_tolerance(length, limit))?;
             if outcome.left {
                 self.at.level += 1;
                 continue;
             }
             let attempt = self.conclude(state, outcome)?;
-            let hides = self.hides_tension(&attempt) || self.passes_tension(&attempt);
+            let hides = self.may_hide_pull_off(&attempt) || self.may_pass_pull_off(&attempt);
             if (attempt.across > limit || hides) && self.at.level < halvings {
                 self.at.level += 1;
                 continue;
@@ -366,34 +367,34 @@ impl<'a> Walk<'a> {
     /// Loads after a step of a length that need not be halved. Beyond them, the error of a jump exceeds the limit so far that the rest of the event does not
     /// matter, and the load has changed by more than its slope can do in this step; or it has jumped up from a maximum tension. All loads as long as nothing
     /// has been dissipated.
-    fn located_loads(&self, length: f64, limit: f64) -> Loads {
+    fn loads_within_tolerance(&self, length: f64, limit: f64) -> Loads {
         if self.at.level == self.halvings() || limit == 0.0 {
             return ANY;
         }
         let from = self.at.last.totals.load;
         let expected = self.extrapolated_load(length);
         let room = (2.0 * EXCESS * limit / length.abs()).max((expected - from).abs());
-        let most = if self.is_tensest(expected) { from } else { f64::INFINITY };
+        let most = if self.exceeds_max_tension(expected) { from } else { f64::INFINITY };
         expected - room..(expected + room).min(most)
     }
 
     /// True if the load of an unloading step has jumped up after it may have passed a tension larger than that of all steps so far.
-    fn hides_tension(&self, attempt: &Attempt) -> bool {
+    fn may_hide_pull_off(&self, attempt: &Attempt) -> bool {
         let (from, to) = (&self.at.last, &attempt.step);
         let before_jump = self.extrapolated_load(to.approach - from.approach);
-        attempt.across > 0.0 && to.totals.load > from.totals.load && self.is_tensest(before_jump)
+        attempt.across > 0.0 && to.totals.load > from.totals.load && self.exceeds_max_tension(before_jump)
     }
 
     /// True if an unloading step may have passed a larger tension than that of all steps so far: by the cubic through loads and slopes at both ends
     /// (Hermite), or before an event by the slope at its beginning.
     ///
     /// This is for attraction of a range, under which the load is smooth up to an event. With bonds the slope diverges at a limit point.
-    fn passes_tension(&self, attempt: &Attempt) -> bool {
+    fn may_pass_pull_off(&self, attempt: &Attempt) -> bool {
         let (from, to) = (&self.at.last, &attempt.step);
         if self.problem.attraction != Attraction::Range || from.reversal.is_none() {
             return false;
         }
-        let known = self.at.tensest.as_ref().map_or(0.0, |(known, ..)| *known).min(from.totals.load).min(to.totals.load);
+        let known = self.at.max_tension.as_ref().map_or(0.0, |(known, ..)| *known).min(from.totals.load).min(to.totals.load);
         // An event after the maximum tension may look like a gain of energy, since the integral misses that.
         let has_event = to.imbalance.abs() > self.resolution(to.uncertainty);
         let least = if has_event { self.extrapolated_load(to.approach - from.approach) } else { least_between(on_loop(from), on_loop(to)) };
@@ -406,7 +407,7 @@ impl<'a> Walk<'a> {
     }
 
     /// True if a load is a tension that exceeds that of all steps so far by more than [`HIDDEN`].
-    fn is_tensest(&self, load: f64) -> bool {
-        self.at.tensest.as_ref().is_some_and(|(known, ..)| *known < 0.0 && load < (1.0 + HIDDEN) * known)
+    fn exceeds_max_tension(&self, load: f64) -> bool {
+        self.at.max_tension.as_ref().is_some_and(|(known, ..)| *known < 0.0 && load < (1.0 + HIDDEN) * known)
     }
 }

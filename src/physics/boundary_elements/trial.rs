@@ -18,7 +18,7 @@ pub(super) struct Descent {
 
 /// A state after a step: its residual, slope and elastic curvature of the energy along the direction, and the change of the energy of the law in the step
 /// beyond first order.
-pub(super) struct There {
+pub(super) struct TrialEvaluation {
     pub(super) residual: Residual,
     pub(super) slope: f64,
     pub(super) curvature: f64,
@@ -40,7 +40,7 @@ impl Trial {
 
     /// Goes on to a trial of another length: true if the energy falls enough (Armijo). Its change is of first order, elastic, and that of the law beyond
     /// first order, from one trial to the next.
-    pub(super) fn suffices(&mut self, length: f64, there: &There) -> bool {
+    pub(super) fn suffices(&mut self, length: f64, there: &TrialEvaluation) -> bool {
         let by = length - self.length;
         self.energy += by * (self.slope + 0.5 * by * there.curvature) + there.beyond;
         (self.length, self.slope) = (length, there.slope);
@@ -56,7 +56,7 @@ impl Trial {
 
 /// A step that was taken: its length along the direction and the largest change of the displacement.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Taken {
+pub(super) struct AcceptedStep {
     pub(super) length: f64,
     pub(super) largest: f64,
 }

@@ -2,6 +2,7 @@
 
 use crate::math::grown::Grown;
 use crate::math::vector::nearest_image;
+use crate::model::Boundary;
 use std::cmp::Ordering;
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -16,7 +17,7 @@ pub(crate) fn nearer(u: &(f64, usize), v: &(f64, usize)) -> Ordering {
 pub(crate) struct Neighbours {
     positions: Grown<[f64; 2]>,
     length: f64,
-    periodic: bool,
+    boundary: Boundary,
     /// Number of cells on a side, and the side of a cell \[m\].
     cells: usize,
     side: f64,
@@ -36,13 +37,13 @@ struct Table {
 }
 
 impl Neighbours {
-    pub(crate) fn new(positions: Vec<[f64; 2]>, length: f64, periodic: bool) -> Self {
+    pub(crate) fn new(positions: Vec<[f64; 2]>, length: f64, boundary: Boundary) -> Self {
         let reach = (2.0 * length / (positions.len() as f64).sqrt()).min(0.5 * length);
         let cells = ((length / reach) as usize).max(1);
         let mut found = Self {
             positions: positions.into(),
             length,
-            periodic,
+            boundary,
             cells,
             side: length / cells as f64,
             surface: Arc::default(),
@@ -102,7 +103,7 @@ impl Neighbours {
     pub(crate) fn apart(&self, p: &[f64; 2], q: &[f64; 2]) -> [f64; 2] {
         [0, 1].map(|k| {
             let d = p[k] - q[k];
-            if self.periodic { nearest_image(d, self.length) } else { d }
+            if self.boundary == Boundary::Periodic { nearest_image(d, self.length) } else { d }
         })
     }
 
@@ -114,7 +115,7 @@ impl Neighbours {
             return (0..self.cells).collect();
         }
         let all = (0..=(high - low) as usize).map(|k| low + k as f64);
-        if self.periodic {
+        if self.boundary == Boundary::Periodic {
             all.map(|line| line.rem_euclid(cells) as usize).collect()
         } else {
             all.filter(|line| (0.0..cells).contains(line)).map(|line| line as usize).collect()
@@ -206,6 +207,7 @@ impl Neighbours {
 #[cfg(test)]
 mod tests {
     use super::{Neighbours, nearer};
+    use crate::model::Boundary;
 
     /// Points of a fixed sequence in the unit square.
     fn places(count: usize) -> Vec<[f64; 2]> {
@@ -215,27 +217,28 @@ mod tests {
     #[test]
     fn law_the_nearest_are_those_of_a_search_through_all() {
         let all = places(200);
-        for periodic in [true, false] {
-            let neighbours = Neighbours::new(all.clone(), 1.0, periodic);
+        for boundary in [Boundary::Periodic, Boundary::Isolated] {
+            let neighbours = Neighbours::new(all.clone(), 1.0, boundary);
             for place in [[0.01, 0.99], [0.5, 0.5], [0.3, 0.02]] {
                 let mut expected: Vec<(f64, usize)> = all.iter().enumerate().map(|(i, p)| (neighbours.distance(p, &place), i)).collect();
                 expected.sort_by(|u, v| u.0.total_cmp(&v.0));
                 let mut found = neighbours.nearest(&place, 12, all.len(), |_| true);
                 found.sort_unstable_by(nearer);
-                assert_eq!(found, expected[..12], "{place:?}, periodic {periodic}");
+                assert_eq!(found, expected[..12], "{place:?}, {boundary:?}");
                 let mut around = Vec::new();
                 neighbours.around(&place, 0.2, |_| true, |r, i| around.push((r, i)));
                 around.sort_by(|u, v| u.0.total_cmp(&v.0));
                 let within: Vec<(f64, usize)> = expected.iter().copied().filter(|(r, _)| *r <= 0.2).collect();
-                assert_eq!(around, within, "{place:?}, periodic {periodic}");
+                assert_eq!(around, within, "{place:?}, {boundary:?}");
             }
         }
     }
 
     #[test]
     fn law_distances_are_to_the_nearest_image() {
-        let periodic = Neighbours::new(places(4), 1.0, true);
+        let periodic = Neighbours::new(places(4), 1.0, Boundary::Periodic);
         assert!((periodic.distance(&[0.05, 0.5], &[0.95, 0.5]) - 0.1).abs() < 1e-15);
-        assert!((Neighbours::new(places(4), 1.0, false).distance(&[0.05, 0.5], &[0.95, 0.5]) - 0.9).abs() < 1e-15);
+        let isolated = Neighbours::new(places(4), 1.0, Boundary::Isolated);
+        assert!((isolated.distance(&[0.05, 0.5], &[0.95, 0.5]) - 0.9).abs() < 1e-15);
     }
 }

@@ -1,6 +1,7 @@
 //! Internal numbering and positions, which make results independent of the caller's order and origin.
 
 use crate::PhysicsError;
+use crate::model::Boundary;
 use crate::surface::summits::Summit;
 
 /// Position quantum relative to the side.
@@ -16,20 +17,23 @@ pub(crate) struct Places {
     /// Internal origin in the caller's coordinates \[m\].
     origin: [f64; 2],
     length: f64,
-    periodic: bool,
+    boundary: Boundary,
 }
 
 impl Places {
     /// Numbering of summits on a square of side `length` \[m\].
     ///
     /// The origin is the highest summit, or, without periodic images, the minimum of each coordinate.
-    pub(crate) fn new(summits: &[Summit], length: f64, periodic: bool) -> Result<Self, PhysicsError> {
+    pub(crate) fn new(summits: &[Summit], length: f64, boundary: Boundary) -> Result<Self, PhysicsError> {
         let mut numbers: Vec<usize> = (0..summits.len()).collect();
         let height = |i: &usize| summits[*i].height_m;
         let highest = numbers.iter().copied().max_by(|i, j| height(i).total_cmp(&height(j))).ok_or(PhysicsError::NoSummit)?;
         let least = |of: fn(&Summit) -> f64| summits.iter().map(of).fold(f64::INFINITY, f64::min);
-        let origin = if periodic { [summits[highest].x_m, summits[highest].y_m] } else { [least(|s| s.x_m), least(|s| s.y_m)] };
-        let mut places = Self { numbers: Vec::new(), origin, length, periodic };
+        let origin = match boundary {
+            Boundary::Periodic => [summits[highest].x_m, summits[highest].y_m],
+            Boundary::Isolated => [least(|s| s.x_m), least(|s| s.y_m)],
+        };
+        let mut places = Self { numbers: Vec::new(), origin, length, boundary };
         let inside: Vec<[f64; 2]> = summits.iter().map(|s| places.inward([s.x_m, s.y_m])).collect();
         numbers.sort_by(|i, j| {
             let place = |k: usize| inside[*i][k].total_cmp(&inside[*j][k]);
@@ -39,12 +43,16 @@ impl Places {
         Ok(places)
     }
 
+    fn is_periodic(&self) -> bool {
+        self.boundary == Boundary::Periodic
+    }
+
     /// Internal position \[m\] of a position of the caller.
     pub(crate) fn inward(&self, place: [f64; 2]) -> [f64; 2] {
         [0, 1].map(|k| {
             let share = (place[k] - self.origin[k]) / self.length;
-            let grains = ((if self.periodic { share - share.floor() } else { share }) / POSITION_QUANTUM).round();
-            let grains = if self.periodic && grains * POSITION_QUANTUM >= 1.0 { 0.0 } else { grains };
+            let grains = ((if self.is_periodic() { share - share.floor() } else { share }) / POSITION_QUANTUM).round();
+            let grains = if self.is_periodic() && grains * POSITION_QUANTUM >= 1.0 { 0.0 } else { grains };
             grains * POSITION_QUANTUM * self.length
         })
     }
@@ -53,7 +61,7 @@ impl Places {
     pub(crate) fn outward(&self, place: [f64; 2]) -> [f64; 2] {
         [0, 1].map(|k| {
             let there = place[k] + self.origin[k];
-            if self.periodic && there >= self.length { there - self.length } else { there }
+            if self.is_periodic() && there >= self.length { there - self.length } else { there }
         })
     }
 

@@ -29,9 +29,14 @@ impl Default for Numerics {
 pub(crate) struct Accuracy(pub(crate) f64);
 
 impl Accuracy {
-    /// Longest increment; an eighth of it where local problems hold all contacts: nothing is neglected then, and the work is to be as exact as the events.
-    pub(crate) const fn longest_increment(self, whole: bool) -> f64 {
-        if whole { 5.0 * self.0 / 8.0 } else { 5.0 * self.0 }
+    /// Longest increment.
+    pub(crate) const fn longest_increment(self) -> f64 {
+        5.0 * self.0
+    }
+
+    /// Longest increment where local problems hold all contacts: nothing is neglected then, and the work is to be as exact as the events.
+    pub(crate) const fn longest_increment_of_whole(self) -> f64 {
+        5.0 * self.0 / 8.0
     }
 
     /// Maximum root-mean-square predictor residual at the end of an increment.

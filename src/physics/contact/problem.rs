@@ -5,7 +5,7 @@ use super::numbering::Places;
 use super::numerics::{Accuracy, Numerics};
 use crate::PhysicsError;
 use crate::half_space::spot_field::{Spot, spot_field_as_printed};
-use crate::half_space::{Best, Spots, best};
+use crate::half_space::{FieldSum, Spots, choose};
 use crate::jkr::{Asperity, LEAST_TABOR};
 use crate::math::grown::Grown;
 use crate::model::{Boundary, Coalescence, Interaction as Kind, JumpIn, Material, Slips};
@@ -63,7 +63,7 @@ pub struct Problem {
     pub(crate) potential_offset: Grown<f64>,
     pub(crate) material: Material,
     pub(crate) rules: Rules,
-    pub(crate) field: Best,
+    pub(crate) field: FieldSum,
     pub(crate) neighbours: Neighbours,
     pub(crate) numerics: Numerics,
     /// Side of the square L \[m\].
@@ -112,8 +112,7 @@ impl Problem {
     /// There must be a summit. Radii and material must be positive.
     /// With Wu's rule all Tabor parameters must be at least 2 unless allowed.
     pub fn new(summits: &[Summit], length_m: f64, rms_height_m: f64, material: Material, rules: Rules) -> Result<Self, PhysicsError> {
-        let periodic = rules.boundary == Boundary::Periodic;
-        let places = Places::new(summits, length_m, periodic)?;
+        let places = Places::new(summits, length_m, rules.boundary)?;
         let highest = summits[places.numbers[0]].height_m;
         let summits: Vec<Summit> = places.numbers.iter().map(|i| summits[*i]).collect();
         let of = |s: &Summit| Asperity::as_printed(s.radius_m(), &material, rules.slips);
@@ -136,13 +135,13 @@ impl Problem {
             })
             .collect();
         let positions: Vec<[f64; 2]> = summits.iter().map(|s| places.inward([s.x_m, s.y_m])).collect();
-        let field = best(positions.clone(), length_m, &material, rules.interaction, rules.boundary, rules.slips);
+        let field = choose(positions.clone(), length_m, &material, rules.interaction, rules.boundary, rules.slips);
         Ok(Self {
             heights: summits.iter().map(|s| s.height_m - highest).collect(),
             potential_offset: vec![0.0; jump_in.len()].into(),
             jump_in: jump_in.into(),
             field: if rules.coalescence == Coalescence::Merge { field } else { field.with_table() },
-            neighbours: Neighbours::new(positions, length_m, periodic),
+            neighbours: Neighbours::new(positions, length_m, rules.boundary),
             numerics: Numerics::default(),
             places: Arc::new(places),
             asperities: asperities.into(),

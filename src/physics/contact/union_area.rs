@@ -13,7 +13,6 @@ use std::f64::consts::{PI, TAU};
 #[must_use]
 pub fn area(problem: &Problem, state: &State) -> f64 {
     let discs: Vec<Disc> = state.contacts.iter().map(|&i| Disc { centre: *problem.place(i), radius: state.radius[i] }).collect();
-    let periodic = problem.rules.boundary == Boundary::Periodic;
     let largest = discs.iter().map(|d| d.radius).fold(0.0, f64::max);
     let overlapping = |k: usize| {
         let mut list = Vec::new();
@@ -28,7 +27,7 @@ pub fn area(problem: &Problem, state: &State) -> f64 {
     };
     // The sum of the disc areas is an upper bound, also for a disc that overlaps its own periodic image. Of tiny discs rounding may leave less than nothing.
     let sum: f64 = discs.iter().map(|disc| PI * disc.radius * disc.radius).sum();
-    union_area(&discs, problem.length_m, periodic, overlapping).min(sum).max(0.0)
+    union_area(&discs, problem.length_m, problem.rules.boundary, overlapping).min(sum).max(0.0)
 }
 
 /// A disc in the plane.
@@ -40,39 +39,41 @@ pub struct Disc {
     pub radius: f64,
 }
 
-/// Area of the union of discs \[m²\], periodic with side `length` or in the open plane.
+/// Area of the union of discs \[m²\], on the periodic square of side `length` or in the open plane.
 ///
 /// `overlapping(k)` returns the discs that overlap disc k.
 /// A disc must not overlap its own periodic image (radius below half the side); otherwise the result is the upper bound L².
 #[must_use]
-pub fn union_area(discs: &[Disc], length: f64, periodic: bool, overlapping: impl Fn(usize) -> Vec<usize>) -> f64 {
+pub fn union_area(discs: &[Disc], length: f64, boundary: Boundary, overlapping: impl Fn(usize) -> Vec<usize>) -> f64 {
+    let is_periodic = boundary == Boundary::Periodic;
     let mut area = 0.0;
     let mut line: Vec<(f64, f64)> = Vec::new();
     for (k, disc) in discs.iter().enumerate() {
-        if periodic && disc.radius >= 0.5 * length {
+        if is_periodic && disc.radius >= 0.5 * length {
             return length * length;
         }
         let mut hidden = Vec::new();
         let mut swallowed = false;
         for other in overlapping(k) {
-            match hidden_arc(disc, &discs[other], length, periodic) {
+            match hidden_arc(disc, &discs[other], length, boundary) {
                 // Of two identical discs the first is counted.
                 Arc::Whole => swallowed |= discs[other] != *disc || other < k,
                 Arc::Part(from, to) => push_interval(&mut hidden, from, to, TAU),
                 Arc::Nothing => {}
             }
         }
-        if periodic {
+        if is_periodic {
             crossing(disc, length, &mut line);
         }
         if swallowed {
             continue;
         }
         for (from, to) in complement(&mut hidden, TAU) {
-            area += arc_moment(disc, from, to, length, periodic);
+            area += arc_moment(disc, from, to, length, boundary);
         }
     }
-    let crossed: f64 = if periodic { length - complement(&mut line, length).iter().map(|(from, to)| to - from).sum::<f64>() } else { 0.0 };
+    let crossed: f64 =
+        if is_periodic { length - complement(&mut line, length).iter().map(|(from, to)| to - from).sum::<f64>() } else { 0.0 };
     area + length * crossed
 }
 
@@ -83,10 +84,10 @@ enum Arc {
 }
 
 /// The arc of `disc` that lies inside `other`, as an interval of angles.
-fn hidden_arc(disc: &Disc, other: &Disc, length: f64, periodic: bool) -> Arc {
+fn hidden_arc(disc: &Disc, other: &Disc, length: f64, boundary: Boundary) -> Arc {
     let [dx, dy] = [0, 1].map(|k| {
         let d = other.centre[k] - disc.centre[k];
-        if periodic { nearest_image(d, length) } else { d }
+        if boundary == Boundary::Periodic { nearest_image(d, length) } else { d }
     });
     let distance = dx.hypot(dy);
     if distance + disc.radius <= other.radius {
@@ -142,13 +143,13 @@ fn complement(list: &mut [(f64, f64)], period: f64) -> Vec<(f64, f64)> {
 }
 
 /// `∫ x dy` along an arc, with x in `[0, L)`: the arc is cut where it crosses `x = 0` or `x = L`.
-fn arc_moment(disc: &Disc, from: f64, to: f64, length: f64, periodic: bool) -> f64 {
+fn arc_moment(disc: &Disc, from: f64, to: f64, length: f64, boundary: Boundary) -> f64 {
     let radius = disc.radius;
     let piece = |x: f64, a: f64, b: f64| {
         x * radius * (b.sin() - a.sin()) + 0.5 * radius * radius * (b - a + 0.5 * ((2.0 * b).sin() - (2.0 * a).sin()))
     };
     let x = disc.centre[0];
-    if !periodic {
+    if boundary == Boundary::Isolated {
         return piece(x, from, to);
     }
     // Angles at which the circle crosses the line; x is shifted by the period on one side.

@@ -11,7 +11,7 @@ pub(crate) struct Done {
 }
 
 /// An unfinished cycle of a method.
-pub(crate) trait Walk {
+pub(crate) trait BranchRun {
     /// Branches that are done.
     fn done(&mut self) -> &mut Done;
 
@@ -40,26 +40,26 @@ pub(crate) trait Walk {
 ///
 /// # Errors
 /// The first error of a loop if no load reversal has a result, and any other error.
-pub(crate) fn follow<W: Walk>(
-    walk: &mut W,
+pub(crate) fn run_branches<R: BranchRun>(
+    run: &mut R,
     loads: usize,
-    keep: &mut dyn FnMut(&W),
+    keep: &mut dyn FnMut(&R),
     progress: &dyn Fn(LoopPosition),
 ) -> Result<Vec<(usize, LoopError)>, PhysicsError> {
-    while walk.done().branches <= loads {
-        let reversal = walk.done().branches.checked_sub(1);
-        match advance(walk, reversal, progress) {
+    while run.done().branches <= loads {
+        let reversal = run.done().branches.checked_sub(1);
+        match advance(run, reversal, progress) {
             Ok(false) => {
-                keep(walk);
+                keep(run);
                 continue;
             }
             Ok(true) => {}
-            Err(PhysicsError::Loop(error)) => end_branch(walk, reversal, loads, &error),
+            Err(PhysicsError::Loop(error)) => end_branch(run, reversal, loads, &error),
             Err(error) => return Err(error),
         }
-        walk.done().branches += 1;
+        run.done().branches += 1;
     }
-    let mut unreached = std::mem::take(&mut walk.done().unreached);
+    let mut unreached = std::mem::take(&mut run.done().unreached);
     match unreached.first() {
         Some((_, error)) if unreached.len() == loads => Err(error.clone().into()),
         _ => {
@@ -70,25 +70,25 @@ pub(crate) fn follow<W: Walk>(
 }
 
 /// Continues a branch. A load reversal that was not reached has no unloading.
-fn advance<W: Walk>(walk: &mut W, reversal: Option<usize>, progress: &dyn Fn(LoopPosition)) -> Result<bool, PhysicsError> {
-    if reversal.is_some_and(|k| k >= walk.reversals()) {
+fn advance<R: BranchRun>(run: &mut R, reversal: Option<usize>, progress: &dyn Fn(LoopPosition)) -> Result<bool, PhysicsError> {
+    if reversal.is_some_and(|k| k >= run.reversals()) {
         return Ok(true);
     }
-    let is_over = walk.advance(reversal, progress)?;
+    let is_over = run.advance(reversal, progress)?;
     if let Some(k) = reversal.filter(|_| is_over) {
-        walk.check(k)?;
+        run.check(k)?;
     }
     Ok(is_over)
 }
 
 /// Notes the load reversals of a branch that an error has ended: all further ones of the loading.
-fn end_branch<W: Walk>(walk: &mut W, reversal: Option<usize>, loads: usize, error: &LoopError) {
+fn end_branch<R: BranchRun>(run: &mut R, reversal: Option<usize>, loads: usize, error: &LoopError) {
     let lost = match reversal {
         Some(k) => {
-            walk.forget(k);
+            run.forget(k);
             k..k + 1
         }
-        None => walk.reversals()..loads,
+        None => run.reversals()..loads,
     };
-    walk.done().unreached.extend(lost.map(|k| (k, error.clone())));
+    run.done().unreached.extend(lost.map(|k| (k, error.clone())));
 }

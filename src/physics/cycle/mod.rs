@@ -15,11 +15,11 @@ use crate::contact::problem::Problem;
 use crate::contact::state::State;
 use crate::path::{EquilibriumPath, PathCheckpoint, is_multiple};
 use crate::{LoopError, LoopPosition, PhysicsError};
-pub(crate) use branches::{Done, Walk, follow};
+pub(crate) use branches::{BranchRun, Done, run_branches};
 pub(super) use constants::CONSTANTS;
 pub use method::Method;
 pub use record::{Branch, Contact, Cycle, Event, Map, MergedAt, RegionShape, Settings, Site, Step, StepCounts, StepNumerics};
-use recorder::Recorder;
+use recorder::{Recorder, StepReason};
 use reversal::retrace;
 use serde::{Deserialize, Serialize};
 use soundness::{check_area, check_energy};
@@ -34,7 +34,7 @@ struct Leg {
 
 /// Checkpoint of a cycle, sufficient to continue in another process with identical results.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
-pub struct Halfway {
+pub struct Checkpoint {
     cycle: Cycle,
     done: Done,
     leg: Option<Leg>,
@@ -50,7 +50,7 @@ pub fn run(problem: &Problem, settings: &Settings, progress: &dyn Fn(LoopPositio
     run_from(problem, settings, None, &mut |_| {}, progress)
 }
 
-/// Continues [`run`] from the checkpoint `halfway`.
+/// Continues [`run`] from a checkpoint.
 ///
 /// `keep` receives every new checkpoint.
 ///
@@ -59,23 +59,23 @@ pub fn run(problem: &Problem, settings: &Settings, progress: &dyn Fn(LoopPositio
 pub fn run_from(
     problem: &Problem,
     settings: &Settings,
-    halfway: Option<Halfway>,
-    keep: &mut dyn FnMut(&Halfway),
+    checkpoint: Option<Checkpoint>,
+    keep: &mut dyn FnMut(&Checkpoint),
     progress: &dyn Fn(LoopPosition),
 ) -> Result<Cycle, PhysicsError> {
-    let mut walk = AsperityWalk { problem, settings, at: halfway.unwrap_or_default() };
-    let unreached = follow(&mut walk, settings.max_loads.len(), &mut |walk| keep(&walk.at), progress)?;
-    Ok(Cycle { unreached, ..walk.at.cycle })
+    let mut run = AsperityRun { problem, settings, at: checkpoint.unwrap_or_default() };
+    let unreached = run_branches(&mut run, settings.max_loads.len(), &mut |run| keep(&run.at), progress)?;
+    Ok(Cycle { unreached, ..run.at.cycle })
 }
 
 /// An unfinished cycle with its problem.
-struct AsperityWalk<'a> {
+struct AsperityRun<'a> {
     problem: &'a Problem,
     settings: &'a Settings,
-    at: Halfway,
+    at: Checkpoint,
 }
 
-impl Walk for AsperityWalk<'_> {
+impl BranchRun for AsperityRun<'_> {
     fn done(&mut self) -> &mut Done {
         &mut self.at.done
     }
@@ -85,7 +85,7 @@ impl Walk for AsperityWalk<'_> {
     }
 
     fn advance(&mut self, reversal: Option<usize>, progress: &dyn Fn(LoopPosition)) -> Result<bool, PhysicsError> {
-        let (problem, settings, Halfway { cycle, leg, .. }) = (self.problem, self.settings, &mut self.at);
+        let (problem, settings, Checkpoint { cycle, leg, .. }) = (self.problem, self.settings, &mut self.at);
         let Some(k) = reversal else {
             let begun = leg.take().unwrap_or_else(|| Leg::loading(problem, settings));
             *leg = load(problem, settings, begun, cycle, &|at| progress(LoopPosition { done: 0.5 * at.done, ..at }))?;
@@ -248,7 +248,7 @@ fn unload(
         if path.state().contacts.is_empty() {
             if recorder.lacks_events(path) {
                 // The last spot has left contact between two grid points.
-                recorder.record(settings, path, None, cycle, false);
+                recorder.record(settings, path, None, cycle, StepReason::GridPoint);
             }
             return Ok(Next::End);
         }

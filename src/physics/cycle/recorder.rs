@@ -11,6 +11,15 @@ use crate::model::KeptContacts;
 use crate::path::EquilibriumPath;
 use serde::{Deserialize, Serialize};
 
+/// Reason for which a step is recorded.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum StepReason {
+    /// A point of the grid of mean penetrations, or the beginning or end of a branch.
+    GridPoint,
+    /// A load reversal.
+    Reversal,
+}
+
 /// Records the steps of one branch.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct Recorder {
@@ -67,7 +76,7 @@ impl Recorder {
         cycle: &mut Cycle,
     ) -> Result<(), PhysicsError> {
         if !std::mem::replace(&mut self.begun, true) {
-            self.record(settings, path, None, cycle, false);
+            self.record(settings, path, None, cycle, StepReason::GridPoint);
         }
         let spacing = settings.grid(&path.problem());
         loop {
@@ -77,11 +86,11 @@ impl Recorder {
             }
             self.number += 1.0;
             if path.is_exact() && (next - path.state().approach_m).abs() <= 1e-9 * spacing {
-                self.record(settings, path, None, cycle, false);
+                self.record(settings, path, None, cycle, StepReason::GridPoint);
             } else {
                 let excursion = path.excursion(next)?;
                 path.add_effort(excursion.effort());
-                self.record(settings, path, Some(&excursion), cycle, false);
+                self.record(settings, path, Some(&excursion), cycle, StepReason::GridPoint);
             }
         }
     }
@@ -110,7 +119,7 @@ impl Recorder {
     ) -> Result<(), PhysicsError> {
         let state = excursion.map_or_else(|| path.state().clone(), |at| at.state().clone());
         self.grid_points_until(state.approach_m, settings, path, cycle)?;
-        self.record(settings, path, excursion, cycle, true);
+        self.record(settings, path, excursion, cycle, StepReason::Reversal);
         cycle.turning.push((cycle.steps.len() - 1, state));
         Ok(())
     }
@@ -122,7 +131,7 @@ impl Recorder {
         path: &mut EquilibriumPath,
         excursion: Option<&EquilibriumPath>,
         cycle: &mut Cycle,
-        turning: bool,
+        reason: StepReason,
     ) {
         let number = cycle.steps.len();
         let at = excursion.unwrap_or(path);
@@ -164,7 +173,7 @@ impl Recorder {
         }));
         let keep = match settings.contacts {
             KeptContacts::All => true,
-            KeptContacts::Turning => turning || self.passes_landmark(settings, problem, at.totals().load_n),
+            KeptContacts::Turning => reason == StepReason::Reversal || self.passes_landmark(settings, problem, at.totals().load_n),
             KeptContacts::None => false,
         };
         if keep {

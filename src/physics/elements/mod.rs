@@ -15,7 +15,7 @@ pub use units::Units;
 pub(crate) use options::CONSTANTS;
 
 use crate::boundary_elements::contact::{Attraction as Rule, Problem};
-use crate::boundary_elements::cycle::{self as grid, Halfway, Settings, Turning};
+use crate::boundary_elements::cycle::{self as grid, Checkpoint, Settings, Turning};
 use crate::boundary_elements::grid::HalfSpace;
 use crate::boundary_elements::law::Law;
 use crate::boundary_elements::minimise::Accuracy;
@@ -123,7 +123,7 @@ impl Elements {
 }
 
 impl Method for Elements {
-    type Checkpoint = Halfway;
+    type Checkpoint = Checkpoint;
     type State = Turning;
 
     const NAME: &'static str = "boundary_elements";
@@ -131,11 +131,11 @@ impl Method for Elements {
 
     fn run_from(
         &self,
-        halfway: Option<Halfway>,
-        keep: &mut (dyn FnMut(&Halfway) + Send),
+        checkpoint: Option<Checkpoint>,
+        keep: &mut (dyn FnMut(&Checkpoint) + Send),
         progress: &(dyn Fn(LoopPosition) + Sync),
     ) -> Result<Cycle<Turning>, PhysicsError> {
-        let outcome = grid::run(&self.problem, &self.settings, halfway, keep, progress);
+        let outcome = grid::run(&self.problem, &self.settings, checkpoint, keep, progress);
         Ok(self.record(outcome.map_err(|error| self.units.end(error))?))
     }
 
@@ -175,7 +175,7 @@ fn settings(units: &Units, max_loads: &[f64], options: &Options, ratio: f64) -> 
     Settings {
         max_loads: max_loads.iter().map(|load| load * units.all()).collect(),
         step: options.approach_step * units.rms_height_m / units.spacing_m() / steps,
-        located: numerics.jump_tolerance,
+        jump_tolerance: numerics.jump_tolerance,
         halvings: options.halvings,
         accuracy: Accuracy { rms: residual, largest: numerics.largest_residual * residual, iterations: numerics.iterations },
         all_regions: options.contacts == KeptContacts::All,

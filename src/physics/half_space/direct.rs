@@ -23,7 +23,7 @@ pub(super) const TABLE_LIMIT: usize = 1000;
 #[derive(Debug, Clone)]
 pub struct DirectSum {
     kind: Kind,
-    periodic: bool,
+    boundary: Boundary,
     positions: Grown<[f64; 2]>,
     length: f64,
     pull: f64,
@@ -42,10 +42,9 @@ impl DirectSum {
     /// Of `slips` only Eq 8 is used.
     #[must_use]
     pub fn new(positions: Vec<[f64; 2]>, length_m: f64, material: &Material, kind: Kind, boundary: Boundary, slips: Slips) -> Self {
-        let periodic = boundary == Boundary::Periodic;
         Self {
             kind,
-            periodic,
+            boundary,
             positions: positions.into(),
             length: length_m,
             pull: material.pull(),
@@ -65,7 +64,7 @@ impl DirectSum {
     #[must_use]
     pub fn with_table(self) -> Self {
         let (n, positions) = (self.positions.len(), &self.positions);
-        if !self.periodic || self.kind == Kind::None || n > TABLE_LIMIT {
+        if !self.is_periodic() || self.kind == Kind::None || n > TABLE_LIMIT {
             return self;
         }
         let mut table = vec![[0.0; ORDERS]; n * n];
@@ -95,13 +94,17 @@ impl DirectSum {
     }
 
     /// Multipole moments of the spots, for the fields of their images.
+    fn is_periodic(&self) -> bool {
+        self.boundary == Boundary::Periodic
+    }
+
     fn moments(&self, spots: &SpotColumns) -> Moments {
         Moments::of(self.kind, spots, self.pull, self.compliance, self.length)
     }
 
     /// A target or source at a position \[m\].
     fn place(&self, [x, y]: [f64; 2]) -> Place {
-        let inverse_length = if self.periodic { 1.0 / self.length } else { 0.0 };
+        let inverse_length = if self.is_periodic() { 1.0 / self.length } else { 0.0 };
         Place { x, y, length: self.length, inverse_length, pull: self.pull, sag: self.sag }
     }
 
@@ -136,7 +139,7 @@ impl DirectSum {
     ///
     /// The image sums have six digits.
     pub(crate) fn among(&self, spots: &Spots, table: &mut PairTable, fields: &mut Vec<f64>, slopes: &mut Vec<f64>, effort: &mut Effort) {
-        table.find(&spots.index, &self.positions, self.length, self.periodic);
+        table.find(&spots.index, &self.positions, self.length, self.boundary);
         let moments = self.moments(&spots.columns);
         let Self { kind, compliance, pull, sag, .. } = *self;
         table.fields(Sources { kind, columns: &spots.columns, moments: &moments, compliance, pull, sag }, fields, slopes);
@@ -171,7 +174,7 @@ impl DirectSum {
                 sum
             }
         };
-        if self.periodic {
+        if self.is_periodic() {
             let n = self.positions.len();
             sum += if self.rough {
                 rough_image_fields::<SLOPES>(place, columns, moments, slopes)

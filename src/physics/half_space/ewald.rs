@@ -11,7 +11,7 @@ use std::f64::consts::PI;
 use std::sync::LazyLock;
 
 /// Argument beyond which terms are below rounding: `erfc(6.2)` is 2e-18.
-const REACH: f64 = 6.2;
+const NEGLIGIBLE_ARGUMENT: f64 = 6.2;
 
 /// `G(x, y)` for `0 < x² + y²`, `|x|, |y| ≤ ½`, by Ewald's method with splitting parameter `alpha`.
 #[must_use]
@@ -30,7 +30,7 @@ pub fn remainder(x: f64, y: f64, alpha: f64) -> f64 {
 }
 
 fn near_images(x: f64, y: f64, alpha: f64) -> f64 {
-    let cells = (REACH / alpha + 0.5).ceil() as i32;
+    let cells = (NEGLIGIBLE_ARGUMENT / alpha + 0.5).ceil() as i32;
     let mut sum = 0.0;
     for i in -cells..=cells {
         for j in -cells..=cells {
@@ -44,7 +44,7 @@ fn near_images(x: f64, y: f64, alpha: f64) -> f64 {
 }
 
 fn far_waves(x: f64, y: f64, alpha: f64) -> f64 {
-    let waves = (REACH * alpha / PI).ceil() as i32;
+    let waves = (NEGLIGIBLE_ARGUMENT * alpha / PI).ceil() as i32;
     let mut sum = 0.0;
     for i in -waves..=waves {
         for j in -waves..=waves {
@@ -78,7 +78,7 @@ const GAMMA: [f64; ORDERS + 1] = {
 #[must_use]
 pub fn image_sums(x: f64, y: f64, alpha: f64) -> [f64; ORDERS] {
     let mut sums = [0.0; ORDERS];
-    let cells = (REACH / alpha + 0.5).ceil() as i32;
+    let cells = (NEGLIGIBLE_ARGUMENT / alpha + 0.5).ceil() as i32;
     for i in -cells..=cells {
         for j in -cells..=cells {
             if (i, j) != (0, 0) {
@@ -108,7 +108,7 @@ pub fn image_sums(x: f64, y: f64, alpha: f64) -> [f64; ORDERS] {
         }
         *sum -= alpha.powi(2 * m as i32 + 1) * (-v).exp() * series / GAMMA[m + 1];
     }
-    let waves = (REACH * alpha / PI).ceil() as i32;
+    let waves = (NEGLIGIBLE_ARGUMENT * alpha / PI).ceil() as i32;
     for i in -waves..=waves {
         for j in -waves..=waves {
             let (qx, qy) = (2.0 * PI * f64::from(i), 2.0 * PI * f64::from(j));

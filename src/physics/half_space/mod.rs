@@ -11,7 +11,7 @@ mod patch_pairs;
 pub mod spot_field;
 
 use crate::math::vector::dot;
-pub use choose::{Best, best};
+pub use choose::{FieldSum, SumPrecision, choose};
 pub(super) use constants::CONSTANTS;
 pub use direct::DirectSum;
 pub(crate) use direct::PointLoad;

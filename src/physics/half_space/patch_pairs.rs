@@ -4,7 +4,7 @@ use super::image_polynomials::{CENTRE, Centre};
 use super::multipole::Moments;
 use super::spot_field::{AWAY, LANES, SpotColumns, field_at};
 use crate::math::grown::Grown;
-use crate::model::Interaction as Kind;
+use crate::model::{Boundary, Interaction as Kind};
 use multiversion::multiversion;
 
 /// All pairs of a set of asperities: distance \[m\], its inverse, and the image sums of the first two orders.
@@ -27,12 +27,12 @@ impl PairTable {
     /// Computes the pairs of the asperities `index` if the set has changed.
     ///
     /// `positions` are in m, and the image sums have six digits.
-    pub(crate) fn find(&mut self, index: &[usize], positions: &Grown<[f64; 2]>, length: f64, periodic: bool) {
+    pub(crate) fn find(&mut self, index: &[usize], positions: &Grown<[f64; 2]>, length: f64, boundary: Boundary) {
         if self.index != index {
             self.index.clear();
             self.index.extend_from_slice(index);
             self.passes.clear();
-            find(self, positions, length, periodic);
+            find(self, positions, length, boundary);
         }
     }
 
@@ -55,7 +55,8 @@ pub(crate) struct Sources<'a> {
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-fn find(table: &mut PairTable, positions: &Grown<[f64; 2]>, length: f64, periodic: bool) {
+fn find(table: &mut PairTable, positions: &Grown<[f64; 2]>, length: f64, boundary: Boundary) {
+    let periodic = boundary == Boundary::Periodic;
     let centre: &Centre = &CENTRE;
     for &target in &table.index {
         let [x, y] = positions[target];

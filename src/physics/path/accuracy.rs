@@ -20,15 +20,6 @@ pub(super) fn out_of_reach(way: f64, scale: f64) -> f64 {
     STEEPEST_RISE * way.abs() + scale
 }
 
-/// Precision of a global solve.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Precision {
-    /// To the tolerance of an equilibrium: the state may be written down.
-    Exact,
-    /// To that of the path: the difference is found by the next solve.
-    Sufficient,
-}
-
 /// Arrival of the contact at the mean penetration at which it is corrected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Arrival {

@@ -93,8 +93,10 @@ impl EquilibriumPath {
                     local.insert(place, asperity.radius_ahead(penetration));
                 }
             }
-            EventKind::JumpOff => self.neighbourhood.local.remove(i, true),
-            EventKind::Cover => self.neighbourhood.local.remove(i, false),
+            EventKind::JumpOff => self.neighbourhood.local.release(i),
+            EventKind::Cover => {
+                self.neighbourhood.local.remove(i);
+            }
             EventKind::Uncover => {
                 if let Some((by, release_m)) = problem.covering(&self.predictor.state, i, transition.by) {
                     // Another contact covers it as well: nothing moves.
@@ -120,7 +122,7 @@ impl EquilibriumPath {
         let local = &mut self.neighbourhood.local;
         // The displacement by the outside changes here as it does at the covering contact.
         let drift = transition.by.and_then(|by| local.find(by)).map_or(0.0, |k| local.members[k].drift);
-        let place = local.place(problem, i, (displacement, drift), &mut self.solver.effort);
+        let place = local.place(problem, i, displacement, drift, &mut self.solver.effort);
         // The displacement by contacts as they are predicted contains what is pending for it.
         self.pending.set_applied(i);
         match problem.asperities[i].radius_at_penetration(approach + problem.heights[i] - displacement) {
@@ -163,7 +165,7 @@ impl EquilibriumPath {
             None => {
                 self.predictor.set(i, Status::Free, 0.0);
                 self.predictor.state.barred[i] = true;
-                self.predictor.traces[i].value = f64::NAN;
+                self.predictor.traces[i].forget();
                 let totals = self.predictor.totals(approach);
                 self.log.note(Transition { kind: EventKind::Uncover, asperity: i, by: Some(by) }, approach, totals);
                 let gained_j = self.free_parts(i).1;

@@ -109,7 +109,7 @@ impl EquilibriumPath {
                     }
                 }
                 Status::Contact | Status::Merged { .. } => {}
-                Status::Free => self.predictor.state.barred[i] |= self.predictor.traces[i].value >= problem.jump_in[i],
+                Status::Free => self.predictor.state.barred[i] |= self.predictor.traces[i].has_reached(problem.jump_in[i]),
             }
         }
     }

@@ -65,7 +65,8 @@ impl PathCheckpoint {
         let off = off.max(LEAST_SCALE * problem.rms_height_m);
         // A power of two of the grid, so that round output steps end increments.
         let unit = EXACT_GRID * problem.rms_height_m;
-        let share = problem.numerics.accuracy.longest_increment(problem.solves_whole());
+        let accuracy = problem.numerics.accuracy;
+        let share = if problem.solves_whole() { accuracy.longest_increment_of_whole() } else { accuracy.longest_increment() };
         let longest = unit * (share * off / unit).log2().floor().exp2();
         Self {
             state,

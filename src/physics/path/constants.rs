@@ -29,7 +29,7 @@ pub(crate) const CONSTANTS: &[Constant] = &[
     ),
     Constant::new(
         "longest path increment",
-        &[ACCURACY.longest_increment(false), ACCURACY.longest_increment(true)],
+        &[ACCURACY.longest_increment(), ACCURACY.longest_increment_of_whole()],
         "`d`",
         "Rounded down to the grid of exact solves, or to a power of two of it. The second value holds where local problems have all contacts.",
         "step_control",

@@ -1,6 +1,6 @@
 //! Global corrector: the contact solved at the end of an increment, and new predictors of everything.
 
-use super::accuracy::{Arrival, Precision, out_of_reach};
+use super::accuracy::{Arrival, out_of_reach};
 use super::equilibrium_path::EquilibriumPath;
 use super::rejection::Rejection;
 use super::triggers::Trigger;
@@ -11,6 +11,7 @@ use crate::contact::{Status, Totals};
 use crate::event_kind::EventKind;
 use crate::math::vector::dot;
 use crate::solve::descent::{Failing, Relaxed};
+use crate::solve::precision::Precision;
 use crate::solve::residual::NotConverged;
 use crate::solve::trace::PenetrationTrace;
 
@@ -28,33 +29,33 @@ enum Since {
 impl EquilibriumPath {
     /// Solves the global problem at a mean penetration \[m\], from the predictors, and applies the transitions that are overdue there.
     pub(super) fn correct(&mut self, target: f64, arrival: Arrival, precision: Precision) -> Result<(), Rejection> {
-        let (strict, jump) = (arrival == Arrival::CheckedIncrement, arrival == Arrival::Jump);
+        let (is_checked, has_jumped) = (arrival == Arrival::CheckedIncrement, arrival == Arrival::Jump);
         self.precision = precision;
         let pending = self.pending.all().to_vec();
-        self.solver.begin(precision == Precision::Sufficient);
+        self.solver.begin(precision);
         let mut rounds = 0;
         loop {
             self.predictor.go_to(&self.problem(), target);
             let first = self.solver.evaluate(&mut self.predictor.state);
-            if strict && rounds == 0 && (first.residual_m.is_nan() || self.is_astray(&pending)) {
+            if is_checked && rounds == 0 && (first.residual_m.is_nan() || self.is_astray(&pending)) {
                 return Err(first.into());
             }
             if !first.residual_m.is_nan() {
                 self.log.drift_m = self.log.drift_m.max(first.residual_m);
             }
-            let rates = if strict { self.solve_globally(first, Failing::EndsAtOnce)?.0 } else { self.solve_or_relax(first, target)? };
-            let since = match (jump || rounds > 0, self.pending.is_smooth()) {
+            let rates = if is_checked { self.solve_globally(first, Failing::EndsAtOnce)?.0 } else { self.solve_or_relax(first, target)? };
+            let since = match (has_jumped || rounds > 0, self.pending.is_smooth()) {
                 (true, _) => Since::Jump,
                 (false, true) => Since::Growth,
                 (false, false) => Since::Events,
             };
             self.restart_predictors(&rates, since, &pending);
-            let due = self.overdue(jump);
+            let due = self.overdue(arrival);
             let Some(&(lateness, worst)) = due.first() else {
                 self.predictor.forget_parted(&self.solver.problem);
                 return Ok(());
             };
-            if strict && rounds == 0 && lateness > self.accuracy().lateness() * self.frame.scale {
+            if is_checked && rounds == 0 && lateness > self.accuracy().lateness() * self.frame.scale {
                 return Err(NotConverged::residual(lateness, worst.asperity).into());
             }
             rounds += 1;
@@ -71,7 +72,9 @@ impl EquilibriumPath {
             Ok((rates, relaxed)) => {
                 if let Some(leader) = relaxed.leader {
                     self.enter_relaxed(&relaxed.transitions, before, target);
-                    self.snap_if(relaxed.transitions.is_empty(), leader, before, target);
+                    if relaxed.transitions.is_empty() {
+                        self.record_snap(leader, before, target);
+                    }
                 }
                 Ok(rates)
             }
@@ -110,7 +113,7 @@ impl EquilibriumPath {
 
     /// Rates of the contacts at the equilibrium that was evaluated last; where they are not numbers, the reason is `first`.
     fn finite_rates(&mut self, first: NotConverged) -> Result<Vec<f64>, NotConverged> {
-        let rates = self.solver.rates(&mut self.predictor.state, self.precision == Precision::Exact);
+        let rates = self.solver.rates(&mut self.predictor.state, self.precision);
         if rates.iter().all(|rate| rate.is_finite()) { Ok(rates) } else { Err(first) }
     }
 
@@ -127,13 +130,13 @@ impl EquilibriumPath {
     fn restart_predictors(&mut self, rates: &[f64], since: Since, pending: &[f64]) {
         let problem = &*self.problem();
         let target = self.state().approach_m;
-        let jump = since != Since::Growth;
-        if jump {
+        let has_jumped = since != Since::Growth;
+        if has_jumped {
             self.log.pass(target, self.predictor.totals(target).load_n);
         }
         self.expect_load(target, 0.0);
         let expected = self.energy.take_expected();
-        let (relaxed, grown) = self.replace_traces(rates, jump, pending, -expected);
+        let (relaxed, grown) = self.replace_traces(rates, since, pending, -expected);
         self.pending.clear();
         if since == Since::Events {
             // The part that pending displacements do not explain has grown with the square of the way.
@@ -151,7 +154,7 @@ impl EquilibriumPath {
         }
         self.energy.close(&mut self.log, target, potential);
         let load = self.predictor.totals(target).load_n;
-        if jump {
+        if has_jumped {
             self.log.restart(target, load);
         } else {
             self.log.pass(target, load);
@@ -165,8 +168,9 @@ impl EquilibriumPath {
 
     /// Replaces the predictors of all contacts, and counts their work. The energy of their response to pending displacements \[J\] is
     /// returned, and the change of their load beyond the prediction \[N\], added to `grown`.
-    fn replace_traces(&mut self, rates: &[f64], jump: bool, pending: &[f64], mut grown: f64) -> (f64, f64) {
+    fn replace_traces(&mut self, rates: &[f64], since: Since, pending: &[f64], mut grown: f64) -> (f64, f64) {
         let problem = &*self.problem();
+        let has_jumped = since != Since::Growth;
         let target = self.state().approach_m;
         let mut relaxed = 0.0;
         for (k, rate) in rates.iter().enumerate() {
@@ -174,11 +178,11 @@ impl EquilibriumPath {
             let (asperity, a) = (&problem.asperities[i], self.state().radius[i]);
             let trace = PenetrationTrace::of(asperity, target, a, *rate);
             let from = self.predictor.traces[i];
-            if !from.value.is_nan() {
-                let to = if jump { PenetrationTrace { at: target, value: from.ahead(target), ..from } } else { trace };
+            if from.is_known() {
+                let to = if has_jumped { from.moved_to(target) } else { trace };
                 self.log.work_j += work(problem, i, from, to);
-                if jump {
-                    let more = asperity.load(a) - asperity.load(asperity.radius_ahead(to.value));
+                if has_jumped {
+                    let more = asperity.load(a) - asperity.load(from.radius_ahead(asperity, target));
                     // A contact that has merged since has nothing pending.
                     relaxed += 0.5 * pending.get(i).copied().unwrap_or(0.0) * more;
                     grown += more;
@@ -197,7 +201,7 @@ impl EquilibriumPath {
         let all = self.solver.begins_block(target);
         let near = |i: &usize| {
             let trace = &self.predictor.traces[*i];
-            all || trace.value.is_nan() || trace.value > problem.jump_in[*i] - out_of_reach(target - trace.at, scale)
+            all || !trace.is_known() || trace.exceeds(problem.jump_in[*i] - out_of_reach(target - trace.at, scale))
         };
         let wanted: Vec<usize> = (0..problem.summits()).filter(|i| self.state().status[*i] == Status::Free).filter(near).collect();
         let found = self.solver.penetrations(&self.predictor.state, rates, &wanted);
@@ -205,8 +209,8 @@ impl EquilibriumPath {
         self.predictor.candidates.clear();
         for (i, trace) in wanted.into_iter().zip(found) {
             self.predictor.traces[i] = trace;
-            self.predictor.state.barred[i] &= trace.value >= problem.jump_in[i];
-            if trace.value > problem.jump_in[i] - span {
+            self.predictor.state.barred[i] &= trace.has_reached(problem.jump_in[i]);
+            if trace.exceeds(problem.jump_in[i] - span) {
                 self.predictor.candidates.push(i);
             }
         }
@@ -214,14 +218,14 @@ impl EquilibriumPath {
 
     /// Transitions that are due anywhere, the most overdue first, each with its lateness \[m\]. At the mean
     /// penetration of a jump, postponed transitions remain postponed.
-    fn overdue(&mut self, jump: bool) -> Vec<(f64, Transition)> {
+    fn overdue(&mut self, arrival: Arrival) -> Vec<(f64, Transition)> {
         let problem = &*self.problem();
         let postponed = std::mem::take(&mut self.postponed);
         let contacts = self.state().contacts.clone();
         let candidates = self.predictor.candidates.clone();
         let mut due = self.due_transitions(&contacts, &candidates);
         due.extend(self.due_coalescence(&contacts));
-        if jump {
+        if arrival == Arrival::Jump {
             due.retain(|trigger| !postponed.contains(&trigger.transition.asperity));
             self.postponed.extend_from_slice(&postponed);
         }
@@ -245,7 +249,7 @@ impl EquilibriumPath {
     /// Enters the transitions of a relaxation; the last event is charged with the loss of the potential at the next global solve.
     fn enter_relaxed(&mut self, changes: &[Transition], before: Totals, target: f64) {
         for change in changes {
-            self.predictor.traces[change.asperity].value = f64::NAN;
+            self.predictor.traces[change.asperity].forget();
             self.predictor.set(change.asperity, change.status(&self.problem()), 0.0);
             if change.kind == EventKind::JumpOff {
                 self.free_parts(change.asperity);
@@ -256,12 +260,10 @@ impl EquilibriumPath {
         self.energy.charge_last_event();
     }
 
-    /// A relaxation without transitions (`unchanged`) is a snap of a contact.
-    fn snap_if(&mut self, unchanged: bool, asperity: usize, before: Totals, target: f64) {
-        if unchanged {
-            let (after, _) = self.problem().totals(self.state());
-            self.record(&[Transition { kind: EventKind::Snap, asperity, by: None }], target, before, after, 0.0);
-        }
+    /// Records a relaxation without transitions as a snap of a contact.
+    fn record_snap(&mut self, asperity: usize, before: Totals, target: f64) {
+        let (after, _) = self.problem().totals(self.state());
+        self.record(&[Transition { kind: EventKind::Snap, asperity, by: None }], target, before, after, 0.0);
     }
 
     /// Relaxes the contact at `target` \[m\], as the last resort.
@@ -271,9 +273,11 @@ impl EquilibriumPath {
         let asperity = self.state().contacts.first().copied().unwrap_or(0);
         self.predictor.go_to(&self.problem(), target);
         self.relax_contact(target)?;
-        self.snap_if(self.log.events.len() == events, asperity, self.totals, target);
+        if self.log.events.len() == events {
+            self.record_snap(asperity, self.totals, target);
+        }
         for i in self.state().contacts.clone() {
-            self.predictor.traces[i].value = f64::NAN;
+            self.predictor.traces[i].forget();
         }
         self.log.work_j += self.totals.load_n * (target - self.energy.at());
         self.correct(target, Arrival::Jump, Precision::Exact)

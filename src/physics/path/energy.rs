@@ -30,11 +30,6 @@ impl EnergyLedger {
         Self { events, at, balance, open: false, expected_n: 0.0, expected_at: at }
     }
 
-    /// If `open`, the last event is charged at the next global solve.
-    pub(super) fn open(self, open: bool) -> Self {
-        Self { open, ..self }
-    }
-
     /// Mean penetration of the last global solve \[m\].
     pub(super) fn at(&self) -> f64 {
         self.at

@@ -1,6 +1,6 @@
 //! State of a path, and its increments.
 
-use super::accuracy::{Arrival, EXACT_GRID, Precision, out_of_reach};
+use super::accuracy::{Arrival, EXACT_GRID, out_of_reach};
 use super::chatter::ChatterGuard;
 use super::checkpoint::Checkpoint;
 use super::energy::EnergyLedger;
@@ -15,6 +15,7 @@ use crate::contact::transition::Transition;
 use crate::contact::{Event, Problem, State, Totals};
 use crate::half_space::Effort;
 use crate::solve::global::{BLOCK, GlobalSolver};
+use crate::solve::precision::Precision;
 use crate::solve::residual::NotConverged;
 use crate::{LoopError, PhysicsError, Reason};
 use std::sync::Arc;

@@ -9,7 +9,7 @@ use super::expectation::PredictedEvent;
 use super::rejection::Rejection;
 use crate::event_kind::EventKind;
 use crate::math::bracket::{End, Illinois};
-use crate::solve::local::curve::CurveEnd;
+use crate::solve::local::curve::{CurveEnd, CurveSearch};
 use crate::solve::local::{Hold, LocalProblem};
 
 /// Overlap at merging, relative to the distance of the contacts: at most so much.
@@ -25,6 +25,13 @@ pub(super) enum Located {
     Point,
     /// A fold, met by following this member.
     Fold(usize),
+}
+
+/// Change of the radius of a contact towards an event.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum RadiusChange {
+    Growing,
+    Shrinking,
 }
 
 /// Outcome of a predicted event.
@@ -111,21 +118,24 @@ impl EquilibriumPath {
         match self.problem().condition(&event.transition, &self.predictor.state)? {
             Condition::Penetration { asperity, value_m } => self.locate_penetration(asperity, value_m, event.approach, target),
             Condition::Touching { pair: [i, by] } => self.locate_merging(i, by, target),
-            Condition::Shrinking { contact, value_m } => self.locate_radius(contact, value_m, false, target),
-            Condition::Growing { contact, value_m } => self.locate_radius(contact, value_m, true, target),
+            Condition::Shrinking { contact, value_m } => self.locate_radius(contact, value_m, RadiusChange::Shrinking, target),
+            Condition::Growing { contact, value_m } => self.locate_radius(contact, value_m, RadiusChange::Growing, target),
         }
     }
 
-    /// Locates where the radius of a contact reaches `bound` \[m\], growing or shrinking, or a fold before that.
-    fn locate_radius(&mut self, spot: usize, bound: f64, grows: bool, target: f64) -> Option<Located> {
+    /// Locates where the radius of a contact reaches `bound` \[m\], or a fold before that.
+    fn locate_radius(&mut self, spot: usize, bound: f64, change: RadiusChange, target: f64) -> Option<Located> {
         let (problem, sense) = (&*self.problem(), self.frame.sense);
         let (local, effort) = (&mut self.neighbourhood.local, &mut self.solver.effort);
         let at = local.find(spot)?;
-        let there = if grows { local.radius[at] >= bound } else { local.radius[at] <= bound };
-        if there {
+        let is_there = match change {
+            RadiusChange::Growing => local.radius[at] >= bound,
+            RadiusChange::Shrinking => local.radius[at] <= bound,
+        };
+        if is_there {
             return Some(Located::Point);
         }
-        match local.trace_curve(problem, at, bound, (target, sense), effort) {
+        match local.trace_curve(problem, CurveSearch { member: at, bound, target, path_sense: sense }, effort) {
             Ok(CurveEnd::Fold) => Some(Located::Fold(at)),
             Ok(CurveEnd::Bound) if (local.approach - target) * sense <= 0.0 => Some(Located::Point),
             _ => None,

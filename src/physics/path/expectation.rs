@@ -9,7 +9,7 @@ use crate::event_kind::EventKind;
 
 /// Distance to the end of a branch, over the way that is left, within which it is looked for: near a fold the penetration varies as a
 /// square root, so linear extrapolation overestimates the distance by about two.
-const REACH: f64 = 2.2;
+const BRANCH_END_DISTANCE: f64 = 2.2;
 
 /// Radius over distance at which two contacts are near a common fold, since the field of each is steep there.
 const TWINS: f64 = 0.95;
@@ -58,10 +58,8 @@ impl Predictor {
 
     fn expect_jump_in(&self, problem: &Problem, i: usize, target: f64, sign: f64, due: &mut Vec<PredictedEvent>) {
         let trace = self.traces[i];
-        if self.state.barred[i] || trace.value.is_nan() {
-            return;
-        }
-        let left = problem.jump_in[i] - trace.value;
+        let Some(penetration) = trace.penetration().filter(|_| !self.state.barred[i]) else { return };
+        let left = problem.jump_in[i] - penetration;
         let speed = sign * trace.rate;
         let way = if left <= 0.0 { 0.0 } else { left / speed };
         let left = (target - trace.at) * sign;
@@ -76,34 +74,35 @@ impl Predictor {
 
     fn expect_of_spot(&self, problem: &Problem, j: usize, target: f64, sign: f64, due: &mut Vec<PredictedEvent>) {
         let (trace, asperity, a) = (self.traces[j], &problem.asperities[j], self.state.radius[j]);
+        let penetration = trace.penetration_or_nan();
         let speed = sign * trace.rate;
         let left = (target - trace.at) * sign;
         let mut offer = |way: f64, kind: EventKind, i: usize, by: Option<usize>| {
             due.push(PredictedEvent { approach: trace.at + sign * way.max(0.0), transition: Transition { kind, asperity: i, by } });
         };
         if speed < 0.0 {
-            let way = (trace.value - asperity.jump_off_penetration()) / -speed;
-            if way <= REACH * left {
+            let way = (penetration - asperity.jump_off_penetration()) / -speed;
+            if way <= BRANCH_END_DISTANCE * left {
                 offer(way.min(left), EventKind::JumpOff, j, None);
             }
             let split = Transition { kind: EventKind::Split, asperity: j, by: None };
             let uncover = |i: usize| Transition { kind: EventKind::Uncover, asperity: i, by: Some(j) };
             for transition in std::iter::once(split).chain(self.covered_by(j).map(uncover)) {
                 let Some(Condition::Shrinking { value_m, .. }) = problem.condition(&transition, &self.state) else { continue };
-                let way = (trace.value - asperity.penetration(value_m)) / -speed;
+                let way = (penetration - asperity.penetration(value_m)) / -speed;
                 if a <= value_m || way <= 1.1 * left {
                     offer(if a <= value_m { 0.0 } else { way }, transition.kind, transition.asperity, transition.by);
                 }
             }
         } else if speed > 0.0 && problem.covers() {
-            let most = trace.value + 1.1 * speed * left;
+            let most = penetration + 1.1 * speed * left;
             let Some(reach) = asperity.radius_at_penetration(most) else { return };
             problem.neighbours.within(j, reach / TWINS, |r, i| {
                 let r = absorbing_radius(r);
                 let open = problem.can_be_covered(&self.state, i) && self.state.radius[i] < r;
                 // Two contacts that grow towards one another's centres have a fold before they reach them.
                 if open && r >= a && (reach >= r || self.state.radius[i] > TWINS * r) {
-                    offer(((asperity.penetration(r) - trace.value) / speed).min(left), EventKind::Cover, i, Some(j));
+                    offer(((asperity.penetration(r) - penetration) / speed).min(left), EventKind::Cover, i, Some(j));
                 }
             });
         }

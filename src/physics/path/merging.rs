@@ -10,6 +10,15 @@ use crate::contact::transition::Transition;
 use crate::event_kind::EventKind;
 use std::sync::Arc;
 
+/// Effect of the end of a field on the members of the local problem.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Members {
+    /// Their displacements contain it already.
+    Settled,
+    /// It is pending, as for all other contacts.
+    Pending,
+}
+
 impl EquilibriumPath {
     /// Replaces two contacts of the local problem by one of the same area and load, which is in equilibrium there; the transition names it. Nothing else
     /// changes: the local problem is the one `before` any response.
@@ -42,9 +51,11 @@ impl EquilibriumPath {
         grown.lower(&difference, 1.0);
         let problem = &*self.problem();
         let (local, effort) = (&mut self.neighbourhood.local, &mut self.solver.effort);
-        pair.into_iter().for_each(|part| local.remove(part, false));
+        for part in pair {
+            local.remove(part);
+        }
         local.evaluate(problem, effort);
-        let place = local.place(problem, number, (outside[2], drift), effort);
+        let place = local.place(problem, number, outside[2], drift, effort);
         local.insert(place, radius);
         self.predictor.extend(merged);
         self.pending.grow(problem.len());
@@ -73,13 +84,13 @@ impl EquilibriumPath {
         drop(problem);
         Arc::make_mut(&mut self.solver.problem).lower(&difference, -1.0);
         let excess: Vec<f64> = now.iter().flatten().zip(&difference).map(|(begins, ends)| ends - begins).collect();
-        let gained = exchanged - merged.offset_j + self.end_field(&excess, true);
+        let gained = exchanged - merged.offset_j + self.end_field(&excess, Members::Settled);
         let problem = &*self.problem();
         let (local, effort) = (&mut self.neighbourhood.local, &mut self.solver.effort);
-        local.remove(number, false);
+        local.remove(number);
         local.evaluate(problem, effort);
         for (part, (displacement, radius)) in merged.parts.into_iter().zip(outside.into_iter().zip(present.radii_m)) {
-            let place = local.place(problem, part, (displacement, drift), effort);
+            let place = local.place(problem, part, displacement, drift, effort);
             local.insert(place, radius);
             self.pending.set_applied(part);
         }
@@ -139,21 +150,20 @@ impl EquilibriumPath {
         let difference = problem.difference_field(number, merged, self.state());
         drop(problem);
         Arc::make_mut(&mut self.solver.problem).lower(&difference, -1.0);
-        self.end_field(&difference, false)
+        self.end_field(&difference, Members::Pending)
     }
 
-    /// Ends a field, by asperity: contacts, but for the members of the local problem if these have it, have that as a pending displacement. The energy
-    /// that their loads gain is returned \[J\].
-    fn end_field(&mut self, field: &[f64], members_have_it: bool) -> f64 {
+    /// Ends a field, by asperity: contacts have that as a pending displacement. The energy that their loads gain is returned \[J\].
+    fn end_field(&mut self, field: &[f64], members: Members) -> f64 {
         let (problem, limit) = (self.problem(), self.pending_limit());
         let mut gained_j = 0.0;
         for (i, displacement) in field.iter().copied().enumerate().filter(|(_, displacement)| *displacement != 0.0) {
             if self.predictor.state.status[i] == Status::Contact {
-                if !(members_have_it && self.neighbourhood.local.find(i).is_some()) {
+                if members == Members::Pending || self.neighbourhood.local.find(i).is_none() {
                     gained_j += displacement * problem.asperities[i].load(self.predictor.state.radius[i]);
                     self.pending.add_near(i, -displacement, limit);
                 }
-            } else if !self.predictor.traces[i].value.is_nan() {
+            } else if self.predictor.traces[i].is_known() {
                 self.predictor.displace(&problem, i, -displacement);
             }
         }

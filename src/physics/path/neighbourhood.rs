@@ -11,7 +11,7 @@ use crate::contact::{Problem, Status};
 use crate::event_kind::EventKind;
 use crate::half_space::Effort;
 use crate::model::Interaction;
-use crate::solve::local::LocalProblem;
+use crate::solve::local::{Extent, LocalProblem};
 
 /// Contacts of local problem and shell, over those of the local problem.
 pub(super) const SHELL: usize = 5;
@@ -85,8 +85,8 @@ impl Neighbourhood {
         });
         let members: Vec<_> = members.into_iter().map(|i| (i, traces[i], predictor.radius(problem, i, approach))).collect();
         let watched: Vec<_> = watched.into_iter().map(|i| (i, traces[i])).collect();
-        let is_part = members.len() < predictor.state.contacts.len();
-        self.local.gather(problem, &members, &watched, approach, is_part, effort);
+        let extent = Extent::of(members.len(), predictor.state.contacts.len());
+        self.local.gather(problem, &members, &watched, approach, extent, effort);
         self.to_apply.clear();
         self.to_apply.extend(self.local.members.iter().map(|member| pending.of(member.asperity)));
     }
@@ -106,7 +106,7 @@ impl Surroundings<'_> {
         let alone = problem.rules.interaction == Interaction::None;
         let most = if alone { 1 } else { problem.numerics.spots_in_patch };
         let span = SPAN * self.scale;
-        let near_jump_in = |i: &usize| state.status[*i] == Status::Free && traces[*i].value > problem.jump_in[*i] - span;
+        let near_jump_in = |i: &usize| state.status[*i] == Status::Free && traces[*i].exceeds(problem.jump_in[*i] - span);
         if state.contacts.len() <= most {
             let watched = (0..problem.len()).filter(near_jump_in).collect();
             return Selection { members: state.contacts.clone(), watched, shell: Vec::new(), reach: 0.0 };
@@ -128,7 +128,7 @@ impl Surroundings<'_> {
             problem.neighbours.around(
                 place,
                 reach,
-                |i| state.status[i] == Status::Free && traces[i].value > problem.jump_in[i] - self.displaced,
+                |i| state.status[i] == Status::Free && traces[i].exceeds(problem.jump_in[i] - self.displaced),
                 |r, i| {
                     if r <= inner && near_jump_in(&i) { &mut watched } else { &mut shell }.push(i);
                 },

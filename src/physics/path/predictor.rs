@@ -11,13 +11,13 @@ use crate::contact::state::{State, Status};
 use crate::contact::transition::Transition;
 use crate::event_kind::EventKind;
 use crate::jkr::Asperity;
-use crate::solve::trace::{PenetrationTrace, STEEPEST};
+use crate::solve::trace::PenetrationTrace;
 
 /// Radius of a neighbour at the end of an increment, over its present one, up to which its merging is looked for.
-const GROWTH: f64 = 1.2;
+const NEIGHBOUR_GROWTH: f64 = 1.2;
 
 /// Number of contacts whose radii are computed at once.
-const TOGETHER: usize = 8;
+const LANES: usize = 8;
 
 /// Contact as it is known between two global solves.
 #[derive(Debug, Clone)]
@@ -116,8 +116,7 @@ impl Predictor {
 
     /// `da/dΔ` of a contact at its predictor.
     pub(crate) fn radius_rate(&self, problem: &Problem, i: usize) -> f64 {
-        let trace = self.traces[i];
-        PenetrationTrace { rate: trace.rate.clamp(-STEEPEST, STEEPEST), ..trace }.speed(&problem.asperities[i], self.state.radius[i])
+        self.traces[i].bounded_speed(&problem.asperities[i], self.state.radius[i])
     }
 
     /// `dF/dΔ` of a contact \[N/m\], at most that of a flat punch of three times its size: it is infinite at the end of the branch, over a
@@ -138,9 +137,9 @@ impl Predictor {
     /// Predicted contact radii at a mean penetration \[m\].
     pub(crate) fn radii(&self, problem: &Problem, approach: f64) -> Vec<(usize, f64)> {
         let mut radii = Vec::with_capacity(self.state.contacts.len());
-        for contacts in self.state.contacts.chunks(TOGETHER) {
+        for contacts in self.state.contacts.chunks(LANES) {
             // Lanes beyond the last contact repeat it.
-            let lanes: [usize; TOGETHER] = std::array::from_fn(|lane| contacts[lane.min(contacts.len() - 1)]);
+            let lanes: [usize; LANES] = std::array::from_fn(|lane| contacts[lane.min(contacts.len() - 1)]);
             let ahead = Asperity::radii_ahead(lanes.map(|i| &problem.asperities[i]), lanes.map(|i| self.traces[i].ahead(approach)));
             let known = |i: usize| (self.traces[i].at == approach).then_some(self.state.radius[i]);
             radii.extend(contacts.iter().zip(ahead).map(|(&i, ahead)| (i, known(i).unwrap_or(ahead))));
@@ -152,7 +151,7 @@ impl Predictor {
     pub(crate) fn go_to(&mut self, problem: &Problem, approach: f64) {
         self.state.approach_m = approach;
         for (i, a) in self.radii(problem, approach) {
-            if !self.traces[i].value.is_nan() {
+            if self.traces[i].is_known() {
                 self.state.radius[i] = a;
             }
         }
@@ -184,7 +183,7 @@ impl Predictor {
     /// Replaces the predictors of contacts: asperity, radius \[m\], trace.
     pub(crate) fn replace_all(&mut self, problem: &Problem, traces: &[(usize, f64, PenetrationTrace)]) {
         for (i, a, trace) in traces {
-            if !self.traces[*i].value.is_nan() {
+            if self.traces[*i].is_known() {
                 self.count(problem, *i, -1.0, trace.at);
             }
             self.state.radius[*i] = *a;
@@ -214,8 +213,8 @@ impl Predictor {
 
     /// Changes the displacement of a free asperity \[m\].
     pub(crate) fn displace(&mut self, problem: &Problem, i: usize, change: f64) {
-        self.traces[i].value -= change;
-        self.state.barred[i] &= self.traces[i].value >= problem.jump_in[i];
+        self.traces[i].displace(change);
+        self.state.barred[i] &= self.traces[i].has_reached(problem.jump_in[i]);
     }
 
     /// Adds a merged contact; it gets the next number.
@@ -259,13 +258,13 @@ impl Predictor {
     pub(crate) fn near(&self, problem: &Problem, j: usize, reach: f64, mut visit: impl FnMut(usize, f64)) {
         let radius = &self.state.radius;
         let mut offer = |i: usize, r: f64| {
-            if i != j && r <= reach + GROWTH * radius[i] {
+            if i != j && r <= reach + NEIGHBOUR_GROWTH * radius[i] {
                 visit(i, r);
             }
         };
         // Small contacts are found by their place. Few are large.
         let listed = problem.neighbours.listed_m();
-        let small = ((listed - reach) / GROWTH).max(0.0);
+        let small = ((listed - reach) / NEIGHBOUR_GROWTH).max(0.0);
         if small > 0.0 {
             problem.neighbours.within(j, listed, |r, i| {
                 if radius[i] > 0.0 && radius[i] <= small {

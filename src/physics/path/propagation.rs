@@ -160,7 +160,7 @@ impl EquilibriumPath {
         for (place, trace) in self.neighbourhood.local.watched.iter().zip(traces) {
             let i = place.asperity;
             self.predictor.traces[i] = trace;
-            self.predictor.state.barred[i] &= trace.value >= problem.jump_in[i];
+            self.predictor.state.barred[i] &= trace.has_reached(problem.jump_in[i]);
             avalanche.open.push(i);
         }
     }
@@ -205,12 +205,12 @@ impl EquilibriumPath {
 
     /// Enters a status into the predictor.
     fn enter_status(&mut self, i: usize, now: Status) {
-        if self.predictor.state.status[i] == Status::Contact && now != Status::Contact && !self.predictor.traces[i].value.is_nan() {
+        if self.predictor.state.status[i] == Status::Contact && now != Status::Contact && self.predictor.traces[i].is_known() {
             let approach = self.neighbourhood.local.approach;
             self.predictor.count(&self.solver.problem, i, -1.0, approach);
         }
         self.pending.set_applied(i);
-        self.predictor.traces[i].value = f64::NAN;
+        self.predictor.traces[i].forget();
         self.predictor.set(i, now, 0.0);
     }
 
@@ -226,7 +226,7 @@ impl EquilibriumPath {
             } else {
                 self.predictor.displace(problem, j, change);
                 // Farther from its jump-in nothing is due, nor is it in this increment.
-                if self.predictor.traces[j].value > problem.jump_in[j] - scale {
+                if self.predictor.traces[j].exceeds(problem.jump_in[j] - scale) {
                     avalanche.open.push(j);
                 }
             }
@@ -286,7 +286,7 @@ impl EquilibriumPath {
             let (asperity, from) = (&problem.asperities[i], self.predictor.traces[i]);
             let trace = match rates {
                 Some(rates) => PenetrationTrace::of(asperity, local.approach, *a, rates[k]),
-                None => PenetrationTrace { at: local.approach, value: asperity.penetration(*a), ..from },
+                None => PenetrationTrace::new(local.approach, asperity.penetration(*a), from.rate),
             };
             let along_curve = from.at == self.neighbourhood.reference && curve.len() > 1;
             self.log.work_j += if along_curve { work_along(problem, i, k, curve) } else { work(problem, i, from, trace) };

@@ -1,6 +1,6 @@
 //! Checkpoints of a path, taken and resumed.
 
-use super::accuracy::{Arrival, Precision};
+use super::accuracy::Arrival;
 use super::checkpoint::{Checkpoint, PathCheckpoint};
 use super::energy::EnergyLedger;
 use super::equilibrium_path::{EquilibriumPath, Frame};
@@ -9,6 +9,7 @@ use super::predictor::Predictor;
 use super::step_control::StepControl;
 use crate::PhysicsError;
 use crate::contact::Problem;
+use crate::solve::precision::Precision;
 use std::sync::Arc;
 
 impl EquilibriumPath {
@@ -24,7 +25,10 @@ impl EquilibriumPath {
         let steps = StepControl::new(from.sense, longest, from.halvings);
         let mut path = Self::new(problem, predictor, Frame { sense: from.sense, scale }, steps);
         path.solver.effort = from.effort;
-        path.energy = EnergyLedger::new(approach, from.events, from.balance).open(from.events < from.log.events.len());
+        path.energy = EnergyLedger::new(approach, from.events, from.balance);
+        if from.events < from.log.events.len() {
+            path.energy.charge_last_event();
+        }
         (path.log, path.totals, path.chatter) = (from.log, from.totals, from.chatter);
         path.chatter.grow(path.problem().len());
         match path.correct(approach, Arrival::Jump, Precision::Exact) {

@@ -77,27 +77,26 @@ impl Problem {
             (EventKind::Uncover, ..) => false,
             (EventKind::JumpOff | EventKind::Cover | EventKind::Snap | EventKind::Merge | EventKind::Split, ..) => true,
         };
-        possible && self.overshoot(change, predictor) >= 0.0
+        possible && self.overshoot(change, predictor).is_some_and(|overshoot| overshoot >= 0.0)
     }
 
     /// A transition with its overshoot, if it is due.
     fn trigger(&self, transition: Transition, predictor: &Predictor) -> Option<Trigger> {
-        let overshoot = self.overshoot(&transition, predictor);
+        let overshoot = self.overshoot(&transition, predictor)?;
         (overshoot >= 0.0).then_some(Trigger { transition, overshoot })
     }
 
-    /// Overshoot of a state beyond a transition; negative before it.
-    fn overshoot(&self, change: &Transition, predictor: &Predictor) -> f64 {
+    /// Overshoot of a state beyond a transition; negative before it, none if it is not possible or the penetration is unknown.
+    fn overshoot(&self, change: &Transition, predictor: &Predictor) -> Option<f64> {
         let state = &predictor.state;
-        match self.condition(change, state) {
-            Some(Condition::Penetration { asperity, value_m }) => {
-                (predictor.traces[asperity].value - value_m) / self.asperities[asperity].jump_off_penetration().abs()
+        Some(match self.condition(change, state)? {
+            Condition::Penetration { asperity, value_m } => {
+                (predictor.traces[asperity].penetration()? - value_m) / self.asperities[asperity].jump_off_penetration().abs()
             }
-            Some(Condition::Shrinking { contact, value_m }) => 1.0 - state.radius[contact] / value_m,
-            Some(Condition::Growing { contact, value_m }) => state.radius[contact] / value_m - 1.0,
-            Some(Condition::Touching { pair }) => self.meeting(pair, pair.map(|i| state.radius[i])),
-            None => f64::NAN,
-        }
+            Condition::Shrinking { contact, value_m } => 1.0 - state.radius[contact] / value_m,
+            Condition::Growing { contact, value_m } => state.radius[contact] / value_m - 1.0,
+            Condition::Touching { pair } => self.meeting(pair, pair.map(|i| state.radius[i])),
+        })
     }
 
     /// Lateness of a transition, as a penetration \[m\].

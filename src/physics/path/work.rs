@@ -13,8 +13,9 @@ pub(super) fn work(problem: &Problem, i: usize, from: PenetrationTrace, to: Pene
     if span == 0.0 {
         return 0.0;
     }
+    let [start, end] = [from, to].map(|trace| trace.penetration_or_nan());
     gauss_at_once(|points| {
-        let penetrations = points.map(|p| hermite(p, from.value, to.value, from.rate * span, to.rate * span));
+        let penetrations = points.map(|p| hermite(p, start, end, from.rate * span, to.rate * span));
         Asperity::radii_ahead([asperity; 4], penetrations).map(|a| asperity.load(a) * span)
     })
 }

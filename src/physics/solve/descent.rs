@@ -7,7 +7,7 @@
 //! equilibrium.
 
 use super::global::GlobalSolver;
-use super::local::{Hold, LocalProblem};
+use super::local::{Extent, Hold, LocalProblem};
 use super::newton::{Damping, NonlinearSystem, Worst, damped_newton};
 use super::residual::{NotConverged, STRIDE};
 use super::trace::PenetrationTrace;
@@ -15,12 +15,12 @@ use crate::contact::state::{State, Status};
 use crate::contact::transition::Transition;
 use std::sync::Arc;
 
-/// Relative residuals of linear solves.
-pub(super) const MOST: f64 = 3e-3;
-pub(super) const LEAST: f64 = 1e-4;
+/// Largest and smallest relative residual of linear solves.
+pub(super) const MAX_LINEAR_RESIDUAL: f64 = 3e-3;
+pub(super) const MIN_LINEAR_RESIDUAL: f64 = 1e-4;
 
-/// The largest of them where the precision is only sufficient.
-pub(super) const ROUGH: f64 = 3e-2;
+/// The largest one where the precision is only sufficient.
+pub(super) const MAX_LINEAR_RESIDUAL_SUFFICIENT: f64 = 3e-2;
 
 /// Action if the contacts around one have no equilibrium nearby.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -87,9 +87,9 @@ impl NonlinearSystem for Descent<'_> {
     fn begin_step(&mut self, round: usize, worst: &Worst) {
         // The first step reduces the residual to its square at best; the next ones are to be the last.
         let wanted = match (self.exact, round) {
-            (true, 0) => MOST,
-            (true, _) => (0.1 * self.tolerance / worst.largest_m).clamp(LEAST, MOST),
-            (false, _) => (0.3 * self.tolerance / worst.largest_m).clamp(MOST, ROUGH),
+            (true, 0) => MAX_LINEAR_RESIDUAL,
+            (true, _) => (0.1 * self.tolerance / worst.largest_m).clamp(MIN_LINEAR_RESIDUAL, MAX_LINEAR_RESIDUAL),
+            (false, _) => (0.3 * self.tolerance / worst.largest_m).clamp(MAX_LINEAR_RESIDUAL, MAX_LINEAR_RESIDUAL_SUFFICIENT),
         };
         self.step = self.solver.newton_step(self.state, wanted);
         limit(&mut self.step, self.state, STRIDE);
@@ -140,7 +140,7 @@ impl Descent<'_> {
         let resting = |&i: &usize| (i, PenetrationTrace::of(&problem.asperities[i], approach, state.radius[i], 0.0), state.radius[i]);
         let contacts: Vec<_> = members.iter().map(resting).collect();
         let mut local = LocalProblem::default();
-        local.gather(problem, &contacts, &[], approach, members.len() < all, &mut self.solver.effort);
+        local.gather(problem, &contacts, &[], approach, Extent::of(members.len(), all), &mut self.solver.effort);
         for (k, i) in members.iter().enumerate() {
             let Ok(at) = state.contacts.binary_search(i) else { continue };
             local.members[k].outside -= self.solver.residual[at];

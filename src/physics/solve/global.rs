@@ -5,6 +5,7 @@
 //! - [`GlobalSolver::newton`]: Newton's method with GMRES ([`super::descent`]);
 //! - [`GlobalSolver::relax`]: overdamped relaxation ([`super::overdamped`]), where Newton's method fails at a fold or after a jump.
 
+use super::precision::Precision;
 use super::residual::NotConverged;
 use super::schwarz::LocalInverse;
 use super::trace::PenetrationTrace;
@@ -38,8 +39,8 @@ pub(crate) struct GlobalSolver {
     pub(crate) problem: Arc<Problem>,
     pub(crate) effort: Effort,
     spots: Spots,
-    /// True if the precision is only sufficient: sums are less accurate then.
-    roughly: bool,
+    /// Precision of the present solution.
+    precision: Precision,
     /// Tangents of the present precision, and of the other one for the positions that they have found.
     tangents: Tangents,
     others: Tangents,
@@ -57,7 +58,7 @@ impl GlobalSolver {
             problem,
             effort: Effort::default(),
             spots: Spots::default(),
-            roughly: false,
+            precision: Precision::Exact,
             tangents: Tangents::default(),
             others: Tangents::default(),
             swept_at: None,
@@ -70,14 +71,14 @@ impl GlobalSolver {
     /// Goes on with another number of merged contacts.
     pub(crate) fn replace_problem(&mut self, problem: Arc<Problem>) {
         let inverse = std::mem::take(&mut self.inverse);
-        *self = Self { effort: self.effort, swept_at: self.swept_at, roughly: self.roughly, inverse, ..Self::new(problem) };
+        *self = Self { effort: self.effort, swept_at: self.swept_at, precision: self.precision, inverse, ..Self::new(problem) };
     }
 
     /// Begins a solution.
-    pub(crate) fn begin(&mut self, roughly: bool) {
+    pub(crate) fn begin(&mut self, precision: Precision) {
         self.inverse.begin();
-        if self.roughly != roughly {
-            self.roughly = roughly;
+        if self.precision != precision {
+            self.precision = precision;
             std::mem::swap(&mut self.tangents, &mut self.others);
         }
     }
@@ -86,7 +87,7 @@ impl GlobalSolver {
     pub(crate) fn evaluate(&mut self, state: &mut State) -> NotConverged {
         let problem = &*Arc::clone(&self.problem);
         problem.spots(state, &mut self.spots);
-        let field = problem.field.for_spots(&self.spots, self.roughly);
+        let field = problem.field.for_spots(&self.spots, self.precision.of_sums());
         field.linearise(&self.spots, &mut state.displacement, &mut self.tangents.contacts, &mut self.effort);
         self.compare(state)
     }
@@ -136,15 +137,19 @@ impl GlobalSolver {
         self.count(step)
     }
 
-    /// `da_i/dΔ` at the equilibrium that was evaluated last; `exact`, or of sufficient precision. The
+    /// `da_i/dΔ` at the equilibrium that was evaluated last; at a precision. The
     /// stability is entered into the state. Its sign is right at either precision, since the smallest
     /// eigenvalue is in the Krylov space where it is small.
-    pub(crate) fn rates(&mut self, state: &mut State, exact: bool) -> Vec<f64> {
+    pub(crate) fn rates(&mut self, state: &mut State, precision: Precision) -> Vec<f64> {
         let ones = vec![1.0; state.contacts.len()];
         let Self { problem, tangents, inverse, diagonal, .. } = self;
         let jacobian = Jacobian { tangent: &tangents.contacts, diagonal };
         let inverse = inverse.of(problem, state, &tangents.contacts, diagonal);
-        let limits = Limits { tolerance: if exact { RATES } else { ROUGH_RATES }, products: PRODUCTS };
+        let tolerance = match precision {
+            Precision::Exact => RATES,
+            Precision::Sufficient => ROUGH_RATES,
+        };
+        let limits = Limits { tolerance, products: PRODUCTS };
         let (rates, least) = gmres_and_least(&jacobian, inverse, &ones, limits);
         state.stability = least;
         self.count(rates)
@@ -166,11 +171,11 @@ impl GlobalSolver {
         problem.spots(state, &mut self.spots);
         let (mut displacement, mut slopes) = (Vec::new(), Vec::new());
         let found = [&mut displacement, &mut slopes];
-        let field = problem.field.for_targets(&self.spots, wanted, self.roughly);
+        let field = problem.field.for_targets(&self.spots, wanted, self.precision.of_sums());
         field.approach(&self.spots, rates, wanted, found, &mut self.tangents.free, &mut self.effort);
         let at = state.approach_m;
         let pairs = displacement.iter().zip(&slopes).zip(wanted);
-        pairs.map(|((w, slope), &i)| PenetrationTrace { at, value: at + problem.heights[i] - w, rate: 1.0 - slope }).collect()
+        pairs.map(|((w, slope), &i)| PenetrationTrace::new(at, at + problem.heights[i] - w, 1.0 - slope)).collect()
     }
 
     /// Displacement at one asperity by contacts of these radii \[m\].

@@ -6,6 +6,7 @@ pub(crate) mod global;
 pub(crate) mod local;
 pub(crate) mod newton;
 mod overdamped;
+pub(crate) mod precision;
 pub(crate) mod relaxation;
 pub(crate) mod residual;
 mod schwarz;

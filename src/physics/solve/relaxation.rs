@@ -19,7 +19,7 @@ const LONGER: f64 = 1e3;
 
 /// Longest pseudo-time step, and the growth of the steps.
 const LONGEST: f64 = 1e9;
-const GROWTH: f64 = 3.0;
+const TIME_STEP_RATIO: f64 = 3.0;
 
 /// Maximum number of attempts at a step, each a quarter as long as the last.
 const ATTEMPTS: usize = 24;
@@ -97,7 +97,7 @@ pub(crate) fn relax(
         let stride = stride(&step);
         let share = if stride > STRIDE { STRIDE / stride } else { 1.0 };
         contact.advance(&step, share);
-        time = (time * GROWTH).min(LONGEST);
+        time = (time * TIME_STEP_RATIO).min(LONGEST);
     }
     Err(last)
 }

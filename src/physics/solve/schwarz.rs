@@ -14,13 +14,13 @@ use multiversion::multiversion;
 
 /// Number of contacts in a group when they are divided, and number of contacts that are solved together for it.
 pub(super) const GROUP: usize = 24;
-pub(super) const TOGETHER: usize = 44;
+pub(super) const SOLVED_TOGETHER: usize = 44;
 
 /// Factor by which the number of contacts may change before they are divided again.
-const GROWTH: f64 = 1.3;
+const MAX_COUNT_RATIO: f64 = 1.3;
 
 /// Distance over radius beyond which a contact acts by its load alone.
-const ALOOF: f64 = 2.0;
+const POINT_LOAD_DISTANCE: f64 = 2.0;
 
 /// Solutions that the rows of a group serve, if no contact next to it comes or goes.
 pub(super) const MOST_SOLUTIONS: usize = 8;
@@ -97,7 +97,7 @@ impl LocalInverse {
     /// Enters the contacts that have come and gone into the groups.
     fn follow(&mut self, problem: &Problem, state: &State) {
         let growth = state.contacts.len() as f64 / self.divided.max(1) as f64;
-        if self.groups.is_empty() || !(1.0 / GROWTH..GROWTH).contains(&growth) {
+        if self.groups.is_empty() || !(1.0 / MAX_COUNT_RATIO..MAX_COUNT_RATIO).contains(&growth) {
             self.divide(problem, state);
             return;
         }
@@ -235,7 +235,7 @@ impl Group {
         }
         let count = self.members.len() as f64;
         self.centre = [0, 1].map(|along| self.members.iter().map(|i| problem.place(*i)[along]).sum::<f64>() / count);
-        let near = problem.neighbours.nearest(&self.centre, TOGETHER, state.contacts.len(), |i| state.status[i] == Status::Contact);
+        let near = problem.neighbours.nearest(&self.centre, SOLVED_TOGETHER, state.contacts.len(), |i| state.status[i] == Status::Contact);
         self.near.clear();
         self.near.extend(near.iter().map(|(_, i)| *i).chain(self.members.iter().copied()));
         self.near.sort_unstable();
@@ -282,7 +282,7 @@ impl Jacobian<'_> {
             let images = tangent.own(*at as usize);
             let slope = problem.material.compliance() * asperity.load_slope(a);
             fields_of_load(&columns, k, [slope, images], &mut distances, line);
-            for (by, r) in line.iter_mut().zip(&distances).filter(|(_, r)| **r <= ALOOF * a) {
+            for (by, r) in line.iter_mut().zip(&distances).filter(|(_, r)| **r <= POINT_LOAD_DISTANCE * a) {
                 *by = problem.spot_field(asperity, *r, a).1 + images;
             }
             line[k] = diagonal[*at as usize] + images;

@@ -1,5 +1,6 @@
 //! Artefacts of a measurement: their correction, and the remaining ones.
 
+use super::edges::Edges;
 use super::outliers::{deviations, find_outliers, replace_outliers};
 use super::psd_bin::Ring;
 use super::rows::{Aligned, align, line_jump};
@@ -41,14 +42,15 @@ pub struct Artefacts {
 /// Corrects heights \[m\], and counts what remains. Heights that are not finite are missing and remain missing.
 pub fn correct(heights_m: &mut Array2<f64>, corrections: &Corrections) -> Artefacts {
     let aligned = corrections.align.map(|axis| align(heights_m, axis));
-    let mut found = find_outliers(heights_m.view(), corrections.periodic);
+    let edges = Edges::of(corrections.periodic);
+    let mut found = find_outliers(heights_m.view(), edges);
     let mut outlier_count = 0;
     if corrections.outliers && !found.is_empty() {
-        replace_outliers(heights_m, &found, corrections.periodic);
+        replace_outliers(heights_m, &found, edges);
         outlier_count = found.len();
-        found = find_outliers(heights_m.view(), corrections.periodic);
+        found = find_outliers(heights_m.view(), edges);
     }
-    let left = deviations(heights_m.view(), &found, corrections.periodic);
+    let left = deviations(heights_m.view(), &found, edges);
     let squares: f64 = left.iter().map(|height| height * height).sum();
     let [rows, columns] = [line_jump(heights_m.view()), line_jump(heights_m.t())];
     Artefacts {

@@ -1,11 +1,12 @@
 //! Harmonic in-fill of missing points.
 
+use super::edges::Edges;
 use ndarray::Array2;
 
 /// Fills missing points harmonically: the discrete Laplacian vanishes there.
 ///
 /// At the edges of the field the slope vanishes, or the field is periodic.
-pub(super) fn fill(heights: &mut Array2<f64>, periodic: bool) {
+pub(super) fn fill(heights: &mut Array2<f64>, edges: Edges) {
     let (rows, columns) = heights.dim();
     let holes: Vec<(usize, usize)> = heights.indexed_iter().filter(|(_, h)| !h.is_finite()).map(|(place, _)| place).collect();
     if holes.is_empty() {
@@ -13,7 +14,10 @@ pub(super) fn fill(heights: &mut Array2<f64>, periodic: bool) {
     }
     let step = |at: usize, by: isize, n: usize| -> usize {
         let to = at as isize + by;
-        if periodic { to.rem_euclid(n as isize) as usize } else { to.clamp(0, n as isize - 1) as usize }
+        match edges {
+            Edges::Periodic => to.rem_euclid(n as isize) as usize,
+            Edges::Open => to.clamp(0, n as isize - 1) as usize,
+        }
     };
     let around =
         |(i, j): (usize, usize)| [(step(i, -1, rows), j), (step(i, 1, rows), j), (i, step(j, -1, columns)), (i, step(j, 1, columns))];

@@ -12,11 +12,12 @@ pub use super::measured_summits::find_measured;
 use crate::PhysicsError;
 
 use super::continuation::{self, margin};
+use super::edges::Edges;
 use super::infill::fill;
 use super::levelling::{ROUNDING, check_size, level};
 use super::modes::Field;
 use super::periodogram::{continues, tapered_periodogram, windowed_periodogram};
-use super::psd_bin::Ring;
+use super::psd_bin::{Estimate, Ring};
 use super::s_filter::{gaussian, overshoot};
 use super::self_affine::{SelfAffine, fit_self_affine};
 use super::spectrum::Moments;
@@ -94,7 +95,8 @@ pub struct Prepared {
 /// Too few or too many points; spacings that are not positive or too unequal; constant heights; too little memory.
 /// Too many missing points, or any if they are refused. The message states the allowed values.
 pub fn prepare(heights_m: Array2<f64>, spacing_m: [f64; 2], treatment: &Treatment) -> Result<Prepared, PhysicsError> {
-    let Square { mut heights, fine, coarsening } = square(heights_m, spacing_m, treatment.periodic)?;
+    let edges = Edges::of(treatment.periodic);
+    let Square { mut heights, fine, coarsening } = square(heights_m, spacing_m, edges)?;
     let side = heights.nrows();
     let missing_count = heights.iter().filter(|h| !h.is_finite()).count();
     let share = missing_count as f64 / heights.len() as f64;
@@ -108,18 +110,18 @@ pub fn prepare(heights_m: Array2<f64>, spacing_m: [f64; 2], treatment: &Treatmen
     if share > MAX_MISSING_FRACTION {
         return Err(domain("the number of missing points", missing_count as f64, "up to half of all"));
     }
-    fill(&mut heights, treatment.periodic);
+    fill(&mut heights, edges);
     let length_m = side as f64 * fine;
     // Levelling breaks the continuation of a periodic field.
     let continued = !treatment.periodic && continues(heights.view());
-    let untapered = if continued { Some(Field::of(heights.view(), length_m, true)?.rings()) } else { None };
+    let untapered = if continued { Some(Field::of(heights.view(), length_m, Edges::Periodic)?.rings()) } else { None };
     let trend_m = level(&mut heights, treatment.detrend)?;
     let points = treatment.points_per_shortest_wavelength * coarsening;
     let Filtered { heights_m, moments, rings } = filtered(&heights, length_m, points, treatment)?;
     let fit = if treatment.periodic || continued {
-        fit_self_affine(untapered.as_ref().unwrap_or(&rings), length_m, false)
+        fit_self_affine(untapered.as_ref().unwrap_or(&rings), length_m, Estimate::Periodogram)
     } else {
-        fit_self_affine(&tapered_periodogram(heights.view(), length_m)?, length_m, true)
+        fit_self_affine(&tapered_periodogram(heights.view(), length_m)?, length_m, Estimate::Tapered)
     };
     let rms_m = (heights.iter().map(|h| h * h).sum::<f64>() / heights.len() as f64).sqrt();
     if moments.rms_height_m() <= ROUNDING * rms_m {
@@ -152,7 +154,7 @@ struct Filtered {
 fn filtered(heights: &Array2<f64>, length_m: f64, points: f64, treatment: &Treatment) -> Result<Filtered, PhysicsError> {
     let side = heights.nrows();
     if treatment.periodic {
-        let mut field = Field::of(heights.view(), length_m, true)?;
+        let mut field = Field::of(heights.view(), length_m, Edges::Periodic)?;
         let rings = field.rings();
         match treatment.filter {
             Filter::Gaussian => field.smooth(points),
@@ -169,7 +171,7 @@ fn filtered(heights: &Array2<f64>, length_m: f64, points: f64, treatment: &Treat
     let mut heights_m = match treatment.filter {
         Filter::Gaussian => gaussian(heights.view(), points)?,
         Filter::Sharp => {
-            let mut field = Field::of(heights.view(), length_m, false)?;
+            let mut field = Field::of(heights.view(), length_m, Edges::Open)?;
             field.cut(points);
             field.heights(side)?
         }
@@ -203,7 +205,7 @@ struct Square {
     coarsening: f64,
 }
 
-fn square(heights_m: Array2<f64>, spacing_m: [f64; 2], periodic: bool) -> Result<Square, PhysicsError> {
+fn square(heights_m: Array2<f64>, spacing_m: [f64; 2], edges: Edges) -> Result<Square, PhysicsError> {
     if !(spacing_m.iter().all(|d| *d > 0.0 && d.is_finite())) {
         let wrong = spacing_m.into_iter().find(|d| !(*d > 0.0 && d.is_finite())).unwrap_or(f64::NAN);
         return Err(domain("the pixel size [m]", wrong, "a positive number"));
@@ -216,7 +218,7 @@ fn square(heights_m: Array2<f64>, spacing_m: [f64; 2], periodic: bool) -> Result
     }
     let oblong = ratio > 1.0 + SPACING_TOLERANCE;
     let coarsening = if oblong { ratio } else { 1.0 };
-    if oblong && periodic {
+    if oblong && edges == Edges::Periodic {
         return Err(domain("the ratio of the pixel sizes along both axes", ratio, "1 for a periodic surface, or periodic = false"));
     }
     let largest = heights_m.len() as f64 * coarsening;
@@ -240,7 +242,7 @@ fn square(heights_m: Array2<f64>, spacing_m: [f64; 2], periodic: bool) -> Result
             "up to 8192: use a part of the scan, or every second point",
         ));
     }
-    if periodic && rows != columns {
+    if edges == Edges::Periodic && rows != columns {
         let allowed = "the number of columns for a periodic surface, or periodic = false";
         return Err(domain("the number of rows", rows as f64, allowed));
     }

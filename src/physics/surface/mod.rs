@@ -4,6 +4,7 @@ pub mod artefacts;
 pub mod band_limited;
 mod constants;
 pub(crate) mod continuation;
+pub mod edges;
 mod height_map;
 mod infill;
 mod lattice;

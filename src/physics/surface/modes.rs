@@ -1,5 +1,6 @@
 //! Fourier modes of a height field, its moments and its power spectral density.
 
+use super::edges::Edges;
 use super::psd_bin::Ring;
 use super::s_filter::transmission;
 use super::spectrum::Moments;
@@ -31,8 +32,11 @@ pub(crate) struct Field {
 
 impl Field {
     /// Modes of a square field of side L \[m\] if it is periodic, else of its mirror extension of side 2 L.
-    pub(crate) fn of(heights_m: ArrayView2<'_, f64>, length_m: f64, periodic: bool) -> Result<Self, PhysicsError> {
-        if periodic { Self::periodic(heights_m, length_m) } else { Self::periodic(mirrored(heights_m)?.view(), 2.0 * length_m) }
+    pub(crate) fn of(heights_m: ArrayView2<'_, f64>, length_m: f64, edges: Edges) -> Result<Self, PhysicsError> {
+        match edges {
+            Edges::Periodic => Self::periodic(heights_m, length_m),
+            Edges::Open => Self::periodic(mirrored(heights_m)?.view(), 2.0 * length_m),
+        }
     }
 
     fn periodic(heights_m: ArrayView2<'_, f64>, length_m: f64) -> Result<Self, PhysicsError> {

@@ -6,6 +6,7 @@
 //! - At half of its height at most three more points are connected to it (the group).
 //! - It differs from the points around the group more than three times as much as these differ from the next ring of points.
 
+use super::edges::Edges;
 use ndarray::{Array2, ArrayView2};
 use rayon::prelude::*;
 
@@ -29,14 +30,17 @@ const SWEEPS: usize = 60;
 /// Row and column of a point.
 type Place = (usize, usize);
 
+/// Rows down and columns to the right.
+type Step = (isize, isize);
+
 /// Outliers of a scan in the order of its points. Heights that are not finite are missing.
 #[must_use]
-pub fn find_outliers(heights: ArrayView2<'_, f64>, periodic: bool) -> Vec<Place> {
+pub fn find_outliers(heights: ArrayView2<'_, f64>, edges: Edges) -> Vec<Place> {
     let (rows, columns) = heights.dim();
     if rows < 5 || columns < 5 {
         return Vec::new();
     }
-    let scan = Scan { heights, periodic };
+    let scan = Scan { heights, edges };
     let limit = OUTLIER_LIMIT * scan.deviation();
     let of_row = |row: usize| (0..columns).map(move |column| (row, column)).filter(|place| scan.is_outlier(*place, limit));
     (0..rows).into_par_iter().flat_map_iter(of_row).collect()
@@ -44,24 +48,24 @@ pub fn find_outliers(heights: ArrayView2<'_, f64>, periodic: bool) -> Vec<Place>
 
 /// Heights of points above the median of their neighbours; 0 where too few are known.
 #[must_use]
-pub fn deviations(heights: ArrayView2<'_, f64>, places: &[Place], periodic: bool) -> Vec<f64> {
-    let scan = Scan { heights, periodic };
+pub fn deviations(heights: ArrayView2<'_, f64>, places: &[Place], edges: Edges) -> Vec<f64> {
+    let scan = Scan { heights, edges };
     places.iter().map(|place| scan.median(*place).map_or(0.0, |median| heights[*place] - median)).collect()
 }
 
 /// Replaces outliers by the harmonic in-fill: each height is the mean of its four neighbours.
 ///
 /// Missing points have no part in the means, and remain missing. Where all four are missing the height is the median of the neighbours.
-pub fn replace_outliers(heights: &mut Array2<f64>, outliers: &[Place], periodic: bool) {
+pub fn replace_outliers(heights: &mut Array2<f64>, outliers: &[Place], edges: Edges) {
     outliers.iter().for_each(|place| heights[*place] = f64::NAN);
     let medians: Vec<f64> = {
-        let scan = Scan { heights: heights.view(), periodic };
+        let scan = Scan { heights: heights.view(), edges };
         outliers.iter().map(|place| scan.median(*place).unwrap_or(f64::NAN)).collect()
     };
     outliers.iter().zip(medians).for_each(|(place, median)| heights[*place] = median);
     for _ in 0..SWEEPS {
         for place in outliers {
-            let scan = Scan { heights: heights.view(), periodic };
+            let scan = Scan { heights: heights.view(), edges };
             let around = [(-1, 0), (1, 0), (0, -1), (0, 1)].into_iter().filter_map(|step| scan.height_at(*place, step));
             let (sum, count) = around.fold((0.0, 0.0), |(sum, count), height| (sum + height, count + 1.0));
             if count > 0.0 {
@@ -75,22 +79,22 @@ pub fn replace_outliers(heights: &mut Array2<f64>, outliers: &[Place], periodic:
 #[derive(Clone, Copy)]
 struct Scan<'a> {
     heights: ArrayView2<'a, f64>,
-    periodic: bool,
+    edges: Edges,
 }
 
 impl Scan<'_> {
     /// The point at a distance from another; nothing beyond an edge.
-    fn place(&self, (row, column): Place, (down, right): (isize, isize)) -> Option<Place> {
-        let to = |at: usize, by: isize, count: usize| {
-            let moved = at.checked_add_signed(by).filter(|moved| *moved < count);
-            if self.periodic { Some((at as isize + by).rem_euclid(count as isize) as usize) } else { moved }
+    fn place(&self, from: Place, step: Step) -> Option<Place> {
+        let to = |at: usize, by: isize, count: usize| match self.edges {
+            Edges::Periodic => Some((at as isize + by).rem_euclid(count as isize) as usize),
+            Edges::Open => at.checked_add_signed(by).filter(|moved| *moved < count),
         };
         let (rows, columns) = self.heights.dim();
-        Some((to(row, down, rows)?, to(column, right, columns)?))
+        Some((to(from.0, step.0, rows)?, to(from.1, step.1, columns)?))
     }
 
     /// The height there; nothing if it is missing.
-    fn height_at(&self, place: Place, step: (isize, isize)) -> Option<f64> {
+    fn height_at(&self, place: Place, step: Step) -> Option<f64> {
         self.place(place, step).map(|place| self.heights[place]).filter(|height| height.is_finite())
     }
 

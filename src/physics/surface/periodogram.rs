@@ -1,7 +1,8 @@
 //! Power spectral density of a surface, averaged over directions.
 
+use super::edges::Edges;
 use super::modes::Field;
-pub use super::psd_bin::Ring;
+pub use super::psd_bin::{Estimate, Ring};
 use crate::PhysicsError;
 use crate::memory::zeros;
 use ndarray::{Array1, Array2, ArrayView2};
@@ -20,7 +21,7 @@ use std::f64::consts::{PI, SQRT_2, TAU};
 /// Too little memory.
 pub fn periodogram(heights_m: ArrayView2<'_, f64>, length_m: f64) -> Result<Vec<Ring>, PhysicsError> {
     let (n, across) = heights_m.dim();
-    if n == 0 || n != across { Ok(Vec::new()) } else { Ok(Field::of(heights_m, length_m, true)?.rings()) }
+    if n == 0 || n != across { Ok(Vec::new()) } else { Ok(Field::of(heights_m, length_m, Edges::Periodic)?.rings()) }
 }
 
 /// Power spectral density of a non-periodic surface under a Hann window.

@@ -10,3 +10,12 @@ pub struct Ring {
     /// Number of modes.
     pub mode_count: u64,
 }
+
+/// Estimate of a spectrum.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Estimate {
+    /// Periodogram, of a periodic surface or under a window.
+    Periodogram,
+    /// Mean of the periodograms under sine tapers.
+    Tapered,
+}

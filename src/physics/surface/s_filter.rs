@@ -7,6 +7,7 @@
 //! Near an edge the kernel is truncated.
 //! A linear factor then retains its moments of order 0 and 1, so that planes are transmitted unchanged (moment retainment, ISO/TS 16610-28).
 
+use super::edges::Edges;
 use super::summits::maxima_of_row;
 use crate::PhysicsError;
 use crate::memory::zeros;
@@ -15,7 +16,7 @@ use rayon::prelude::*;
 use std::f64::consts::{LN_2, PI};
 
 /// Range of the kernel in cut-off wavelengths: the weight there is 1e-17 of that at the centre.
-const REACH: f64 = 1.9;
+const KERNEL_RANGE: f64 = 1.9;
 
 /// Ratio of the standard deviation to the median absolute value of normally distributed numbers.
 const NORMAL: f64 = 1.4826;
@@ -57,7 +58,7 @@ struct Kernel {
 
 impl Kernel {
     fn new(n: usize, points: f64) -> Self {
-        let reach = (REACH * points).ceil() as usize;
+        let reach = (KERNEL_RANGE * points).ceil() as usize;
         let inner = normalised((0..=2 * reach).map(|k| weight((k as f64 - reach as f64) / points)).collect());
         let of_point = |i: usize| {
             if i >= reach && i + reach < n {
@@ -123,7 +124,8 @@ pub(super) fn overshoot(raw: ArrayView2<'_, f64>, filtered: ArrayView2<'_, f64>,
             return f64::NEG_INFINITY;
         }
         let height = filtered[[row, column]];
-        height - highest_near(raw, [row, column], (reach, margin == 0), height)
+        let edges = Edges::of(margin == 0);
+        height - highest_near(raw, [row, column], reach, edges, height)
     };
     let most = |row: usize| maxima_of_row(filtered, row).into_iter().map(above).fold(f64::NEG_INFINITY, f64::max);
     let most = (0..n).into_par_iter().map(most).reduce(|| f64::NEG_INFINITY, f64::max);
@@ -131,9 +133,9 @@ pub(super) fn overshoot(raw: ArrayView2<'_, f64>, filtered: ArrayView2<'_, f64>,
 }
 
 /// Highest of the heights around a point, or the first one above `enough`.
-fn highest_near(raw: ArrayView2<'_, f64>, [row, column]: [usize; 2], (reach, periodic): (usize, bool), enough: f64) -> f64 {
+fn highest_near(raw: ArrayView2<'_, f64>, [row, column]: [usize; 2], reach: usize, edges: Edges, enough: f64) -> f64 {
     let n = raw.nrows();
-    if !periodic {
+    if edges == Edges::Open {
         let span = |k: usize| k.saturating_sub(reach)..(k + reach + 1).min(n);
         let near = raw.slice(s![span(row), span(column)]);
         return near.iter().copied().fold(f64::NEG_INFINITY, f64::max);

@@ -5,10 +5,10 @@
 //! residuals of the rings inside, over their variances, and of a constant cost for each ring outside.
 //! Shapes of the spectrum: a power law, with a sharp or a smooth roll-off, with or without damping by a Gaussian filter.
 
-use super::psd_bin::Ring;
+use super::psd_bin::{Estimate, Ring};
 pub use super::spectral_band::ShortCut;
 use super::spectral_band::{Band, OUTSIDE, OVER_NOISE, Sampling, top_density, white_noise_beyond};
-use super::spectral_line::{Line, Point, Shape, Sums};
+use super::spectral_line::{Damping, Form, Line, Point, Shape, Sums};
 use std::cmp::Ordering;
 use std::f64::consts::{LN_2, LN_10};
 use std::ops::RangeInclusive;
@@ -66,11 +66,10 @@ const PASSES: usize = 2;
 
 /// Fits a self-affine spectrum to the rings of a surface of side L \[m\].
 ///
-/// `tapered` states that the rings are those of [`super::periodogram::tapered_periodogram`]. Fewer than five rings with data give `None`,
-/// and so does a spectrum of few waves, from which any power law deviates by more than half a decade.
+/// Fewer than five rings with data give `None`, and so does a spectrum of few waves, from which any power law deviates by more than half a decade.
 #[must_use]
-pub fn fit_self_affine(rings: &[Ring], length_m: f64, tapered: bool) -> Option<SelfAffine> {
-    let sampling = Sampling { length_m, tapered };
+pub fn fit_self_affine(rings: &[Ring], length_m: f64, estimate: Estimate) -> Option<SelfAffine> {
+    let sampling = Sampling { length_m, estimate };
     let found = NOISE.iter().filter_map(|part| Found::of(rings, &sampling, part * top_density(rings), None));
     let mut found = found.min_by(Found::order)?;
     for _ in 0..PASSES {
@@ -114,9 +113,9 @@ impl Found {
         let search = Search { data: &data, power: data.iter().map(Point::power).sum::<f64>() + of_noise.sum::<f64>() };
         let [self_affine, any] = search.least([&HURST, &ANY]);
         let any = any?;
-        let self_affine = self_affine.filter(|found| found.0 <= any.0 + MISFIT);
+        let self_affine = self_affine.filter(|found| found.cost <= any.cost + MISFIT);
         let is_self_affine = self_affine.is_some();
-        let (cost, band, line) = self_affine.unwrap_or(any);
+        let Candidate { cost, band, line } = self_affine.unwrap_or(any);
         let of_noise = if noise_m4 > 0.0 { OF_SHAPE + sampling.noise_squares(rings, noise_m4, &line) } else { 0.0 };
         let line = search.without_partial_rings(band, line);
         Some(Self { points, line, noise_m4, is_self_affine, cost: cost + of_noise })
@@ -134,8 +133,14 @@ struct Search<'a> {
     power: f64,
 }
 
-/// A line with its cost and its band: first ring, and the ring after the last.
-type Candidate = (f64, [usize; 2], Line);
+/// A line through a band of rings.
+#[derive(Debug, Clone, Copy)]
+struct Candidate {
+    cost: f64,
+    /// First ring, and the ring after the last.
+    band: [usize; 2],
+    line: Line,
+}
 
 impl Search<'_> {
     /// Lines of minimum cost with exponents in two ranges. A roll-off is at a ring, or between two.
@@ -152,9 +157,7 @@ impl Search<'_> {
                 }
             }
         }
-        let between = |(found, range): (Option<Candidate>, &RangeInclusive<f64>)| found.map(|found| self.between_rings(found, range));
-        let [one, other] = found;
-        [between((one, ranges[0])), between((other, ranges[1]))]
+        std::array::from_fn(|k| found[k].map(|found| self.between_rings(found, ranges[k])))
     }
 
     /// Lines without a roll-off.
@@ -173,38 +176,40 @@ impl Search<'_> {
         if sums.power(band) < SHARE * self.power {
             return;
         }
-        for damped in [false, true] {
-            let Some((hurst, squares)) = sums.solved(band, damped) else { continue };
-            let cost = self.cost(squares, band, sums.shape, damped);
+        for damping in [Damping::None, Damping::Gaussian] {
+            let Some((hurst, squares)) = sums.solved(band, damping) else { continue };
+            let corner = if sums.shape == Shape::Straight { self.data[band[0]].x } else { sums.corner };
+            let form = Form { shape: sums.shape, corner, damping };
+            let cost = self.cost(squares, band, form);
             for (best, range) in found.iter_mut().zip(ranges) {
-                if range.contains(&hurst) && best.as_ref().is_none_or(|best| cost < best.0) {
-                    let corner = if sums.shape == Shape::Straight { self.data[band[0]].x } else { sums.corner };
-                    if let Some(line) = self.line(band, (sums.shape, corner), damped, range) {
-                        *best = Some((line.0, band, line.1));
-                    }
+                if range.contains(&hurst)
+                    && best.as_ref().is_none_or(|best| cost < best.cost)
+                    && let Some(line) = self.line(band, form, range)
+                {
+                    *best = Some(line);
                 }
             }
         }
     }
 
-    fn cost(&self, squares: f64, band: [usize; 2], shape: Shape, damped: bool) -> f64 {
-        let of_shape = match shape {
+    fn cost(&self, squares: f64, band: [usize; 2], form: Form) -> f64 {
+        let of_shape = match form.shape {
             Shape::Straight => 0.0,
             Shape::Sharp | Shape::Smooth => OF_SHAPE,
             Shape::Filtered => 2.0 * OF_SHAPE,
         };
         let outside = self.data.len() - (band[1] - band[0]);
-        squares + OUTSIDE * outside as f64 + of_shape + if damped { OF_SHAPE } else { 0.0 }
+        squares + OUTSIDE * outside as f64 + of_shape + if form.damping == Damping::Gaussian { OF_SHAPE } else { 0.0 }
     }
 
-    /// A line through a band with its cost; nothing if its exponent or its damping is not admitted.
-    fn line(&self, band: [usize; 2], (shape, corner): (Shape, f64), damped: bool, hurst: &RangeInclusive<f64>) -> Option<(f64, Line)> {
+    /// A line through a band; nothing if its exponent or its damping is not admitted.
+    fn line(&self, band: [usize; 2], form: Form, hurst: &RangeInclusive<f64>) -> Option<Candidate> {
         let inside = &self.data[band[0]..band[1]];
-        let line = Line::of(inside, shape, corner, damped).filter(|line| hurst.contains(&line.hurst()))?;
-        if damped && !is_damped(&line, inside, self.data.get(band[1])) {
+        let line = Line::of(inside, form).filter(|line| hurst.contains(&line.hurst()))?;
+        if form.damping == Damping::Gaussian && !is_damped(&line, inside, self.data.get(band[1])) {
             return None;
         }
-        Some((self.cost(line.squares, band, shape, damped), line))
+        Some(Candidate { cost: self.cost(line.squares, band, form), band, line })
     }
 
     /// The line without a first or last ring that the end of the spectrum divides: the next ring is empty.
@@ -216,19 +221,19 @@ impl Search<'_> {
             return line;
         }
         let corner = if line.shape == Shape::Straight { self.data[from].x } else { line.corner };
-        Line::of(&self.data[from..to], line.shape, corner, line.damping > 0.0).unwrap_or(line)
+        Line::of(&self.data[from..to], line.form(corner)).unwrap_or(line)
     }
 
     /// A line whose roll-off may be between two rings.
-    fn between_rings(&self, (cost, band, line): Candidate, hurst: &RangeInclusive<f64>) -> Candidate {
+    fn between_rings(&self, found: Candidate, hurst: &RangeInclusive<f64>) -> Candidate {
+        let Candidate { band, line, .. } = found;
         if line.shape == Shape::Straight {
-            return (cost, band, line);
+            return found;
         }
         let width = self.data[band[0] + 1].x - self.data[band[0]].x;
         let corners = (-8..=8).map(|k| line.corner + 0.125 * f64::from(k) * width);
-        let lines = corners.filter_map(|corner| self.line(band, (line.shape, corner), line.damping > 0.0, hurst));
-        let (cost, line) = lines.fold((cost, line), |least, other| if other.0 < least.0 { other } else { least });
-        (cost, band, line)
+        let lines = corners.filter_map(|corner| self.line(band, line.form(corner), hurst));
+        lines.fold(found, |least, other| if other.cost < least.cost { other } else { least })
     }
 }
 

@@ -1,6 +1,6 @@
 //! Rings of a measured spectrum: variances, white noise, and the band that holds data.
 
-use super::psd_bin::Ring;
+use super::psd_bin::{Estimate, Ring};
 use super::spectral_line::{Line, Point, Shape};
 use crate::model::SpectrumEnd;
 use std::f64::consts::{LN_2, PI, TAU};
@@ -34,10 +34,14 @@ const NEXT: usize = 3;
 /// Rings next to the band of which white noise dominates one.
 const NEXT_OF_NOISE: usize = 2;
 /// Lower edge of a ring over its mean wavenumber.
-const NEAR: f64 = 0.95;
+const LOWER_RING_EDGE: f64 = 0.95;
 
-fn relative_variance(ring: &Ring, tapered: bool) -> f64 {
-    OF_MODES * if tapered { TAPERED } else { 1.0 } / ring.mode_count as f64
+fn relative_variance(ring: &Ring, estimate: Estimate) -> f64 {
+    let of_estimate = match estimate {
+        Estimate::Periodogram => 1.0,
+        Estimate::Tapered => TAPERED,
+    };
+    OF_MODES * of_estimate / ring.mode_count as f64
 }
 
 /// Density at a mode number under the tapers over that without, of a power law.
@@ -62,21 +66,22 @@ impl Point {
 pub(crate) struct Sampling {
     /// Side of the square \[m\].
     pub(crate) length_m: f64,
-    /// True for rings under sine tapers.
-    pub(crate) tapered: bool,
+    /// Estimate of the rings.
+    pub(crate) estimate: Estimate,
 }
 
 impl Sampling {
     /// All rings, less white noise \[m⁴\] and less the power that the tapers move from longer wavelengths of a spectrum.
     pub(crate) fn points(&self, rings: &[Ring], noise_m4: f64, line: Option<&Line>) -> Vec<Point> {
         let lowest = TAU / self.length_m;
-        let from = if self.tapered { LOWEST_TAPERED * lowest } else { 0.0 };
+        let is_tapered = self.estimate == Estimate::Tapered;
+        let from = if is_tapered { LOWEST_TAPERED * lowest } else { 0.0 };
         let point = |ring: &Ring| {
             let of_surface = (ring.density_m4 - noise_m4).max(1e-3 * noise_m4).max(f64::MIN_POSITIVE);
-            let relative = relative_variance(ring, self.tapered) * (ring.density_m4 / of_surface).powi(2);
+            let relative = relative_variance(ring, self.estimate) * (ring.density_m4 / of_surface).powi(2);
             let x = ring.wavenumber_1_m.ln();
             let mut y = of_surface.ln();
-            if self.tapered {
+            if is_tapered {
                 let exponent = line.map_or(USUAL_EXPONENT, |line| line.exponent(x));
                 y += 0.5 * relative - widened(exponent, ring.wavenumber_1_m / lowest).ln();
             }
@@ -91,7 +96,7 @@ impl Sampling {
         let of_noise = rings.iter().filter(|ring| ring.density_m4 <= OVER_NOISE * noise_m4);
         let square = |ring: &Ring| {
             let expected = noise_m4 + if ring.wavenumber_1_m.ln() > line.band[1] { line.at(ring.wavenumber_1_m.ln()).exp() } else { 0.0 };
-            (ring.density_m4 / expected).ln().powi(2) / (relative_variance(ring, self.tapered) + OF_MODEL * OF_MODEL)
+            (ring.density_m4 / expected).ln().powi(2) / (relative_variance(ring, self.estimate) + OF_MODEL * OF_MODEL)
         };
         of_noise.map(square).map(|square| square.min(OUTSIDE)).sum()
     }
@@ -156,7 +161,7 @@ impl Band<'_> {
         let filled: f64 = below().map(|point| point.modes * self.filled(point)).sum();
         let empty = (self.modes_below(first) - filled).max(0.0);
         // Rings of long wavelengths have few modes: the next shorter wavelength is known better than the area.
-        Some((empty * self.cell()).sqrt().max(NEAR * first.exp() * f64::from(u8::from(filled < 1.0))))
+        Some((empty * self.cell()).sqrt().max(LOWER_RING_EDGE * first.exp() * f64::from(u8::from(filled < 1.0))))
     }
 
     /// Area of a mode over π \[1/m²\].

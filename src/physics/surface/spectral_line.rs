@@ -30,6 +30,36 @@ pub(crate) enum Shape {
     Filtered,
 }
 
+/// Damping at short wavelengths.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Damping {
+    /// None.
+    None,
+    /// That of a Gaussian filter.
+    Gaussian,
+}
+
+impl Damping {
+    /// Number of coefficients of a line with this damping.
+    fn coefficients(self) -> usize {
+        match self {
+            Self::None => 2,
+            Self::Gaussian => 3,
+        }
+    }
+}
+
+/// Form of a line, whose coefficients are fitted.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Form {
+    /// Transition to the power law.
+    pub(crate) shape: Shape,
+    /// `ln q` of the corner; of the first ring without a roll-off.
+    pub(crate) corner: f64,
+    /// Damping.
+    pub(crate) damping: Damping,
+}
+
 impl Shape {
     /// True for a plateau at long wavelengths.
     pub(crate) fn rolls_off(self) -> bool {
@@ -60,12 +90,14 @@ pub(crate) struct Line {
 
 impl Line {
     /// Weighted least-squares fit; nothing if it is singular or if damping is not positive.
-    pub(crate) fn of(points: &[Point], shape: Shape, corner: f64, damped: bool) -> Option<Self> {
+    pub(crate) fn of(points: &[Point], form: Form) -> Option<Self> {
+        let Form { shape, corner, damping } = form;
+        let is_damped = damping == Damping::Gaussian;
         let (first, last) = (points.first()?, points.last()?);
         // Squares of wavenumbers relative to the last keep the equations well scaled.
         let unit = last.x;
-        let basis = |x: f64| [1.0, -decay(shape, x - corner), if damped { -(2.0 * (x - unit)).exp() } else { 0.0 }];
-        let count = if damped { 3 } else { 2 };
+        let basis = |x: f64| [1.0, -decay(shape, x - corner), if is_damped { -(2.0 * (x - unit)).exp() } else { 0.0 }];
+        let count = damping.coefficients();
         let mut matrix = [[0.0; 4]; 3];
         for point in points {
             let row = basis(point.x);
@@ -77,7 +109,7 @@ impl Line {
             }
         }
         let [level, power, damping] = solved(matrix, count)?;
-        if damped && damping <= 0.0 {
+        if is_damped && damping <= 0.0 {
             return None;
         }
         let damping = damping * (-2.0 * unit).exp();
@@ -86,6 +118,11 @@ impl Line {
         line.squares = points.iter().map(|point| (point.y - line.at(point.x)).powi(2) / point.variance).sum();
         line.scatter = (line.squares / weight).sqrt();
         Some(line)
+    }
+
+    /// Its form, with a corner at another `ln q`.
+    pub(crate) fn form(&self, corner: f64) -> Form {
+        Form { shape: self.shape, corner, damping: if self.damping > 0.0 { Damping::Gaussian } else { Damping::None } }
     }
 
     /// Hurst exponent.
@@ -155,12 +192,12 @@ impl Sums {
     }
 
     /// Hurst exponent and sum of the squared deviations of the line through a band; nothing if it is singular or if damping is not positive.
-    pub(crate) fn solved(&self, band: [usize; 2], damped: bool) -> Option<(f64, f64)> {
+    pub(crate) fn solved(&self, band: [usize; 2], damping: Damping) -> Option<(f64, f64)> {
         let sums = self.over(band);
-        let count = if damped { 3 } else { 2 };
+        let count = damping.coefficients();
         let matrix = std::array::from_fn(|a| std::array::from_fn(|b| if b < 3 { sums[PRODUCTS[a][b]] } else { sums[6 + a] }));
         let solution = solved(matrix, count)?;
-        if damped && solution[2] <= 0.0 {
+        if damping == Damping::Gaussian && solution[2] <= 0.0 {
             return None;
         }
         let explained: f64 = (0..count).map(|k| solution[k] * sums[6 + k]).sum();

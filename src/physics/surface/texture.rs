@@ -1,5 +1,6 @@
 //! Texture of a surface: aspect ratio of its slopes and of its autocorrelation.
 
+use super::edges::Edges;
 use super::modes::Field;
 use crate::PhysicsError;
 use crate::memory::zeros;
@@ -39,14 +40,14 @@ impl Texture {
     ///
     /// # Errors
     /// Too little memory.
-    pub fn of(heights_m: ArrayView2<'_, f64>, periodic: bool) -> Result<Option<Self>, PhysicsError> {
+    pub fn of(heights_m: ArrayView2<'_, f64>, edges: Edges) -> Result<Option<Self>, PhysicsError> {
         if heights_m.nrows() < 5 || heights_m.nrows() != heights_m.ncols() {
             return Ok(None);
         }
-        let (slope_ratio, direction_rad) = slopes(heights_m, periodic);
+        let (slope_ratio, direction_rad) = slopes(heights_m, edges);
         let coarse = averaged(heights_m)?;
         let side = coarse.nrows();
-        let correlation = autocorrelation(coarse, periodic)?;
+        let correlation = autocorrelation(coarse, edges)?;
         let decays = (0..DIRECTIONS).map(|k| decay(&correlation, side, PI * k as f64 / DIRECTIONS as f64));
         let (shortest, longest) = decays.fold((f64::INFINITY, 0.0_f64), |(least, most), decay| (least.min(decay), most.max(decay)));
         Ok(Some(Self { slope_ratio, direction_rad, aspect_ratio_str: shortest / longest, decay_length: shortest / side as f64 }))
@@ -62,9 +63,12 @@ impl Texture {
 /// Ratio of the rms slopes along the principal axes, and the direction of the smaller \[rad\].
 ///
 /// Slopes are differences of the fourth order inside the field: mirror images of a field would cancel the mixed product.
-fn slopes(heights_m: ArrayView2<'_, f64>, periodic: bool) -> (f64, f64) {
+fn slopes(heights_m: ArrayView2<'_, f64>, edges: Edges) -> (f64, f64) {
     let n = heights_m.nrows();
-    let inside = if periodic { 0..n } else { 2..n - 2 };
+    let inside = match edges {
+        Edges::Periodic => 0..n,
+        Edges::Open => 2..n - 2,
+    };
     let difference = |of: &dyn Fn(usize) -> f64| (8.0 * (of(1) - of(n - 1)) - (of(2) - of(n - 2))) / 12.0;
     let mut tensor = [0.0; 3];
     for i in inside.clone() {
@@ -101,19 +105,23 @@ fn averaged(heights_m: ArrayView2<'_, f64>) -> Result<Array2<f64>, PhysicsError>
 /// Autocorrelation over all lags, over that at zero lag. The negative lags follow after the others, as in a periodic field.
 ///
 /// Of a field that is not periodic the mean is over the points that overlap.
-fn autocorrelation(heights: Array2<f64>, periodic: bool) -> Result<Array2<f64>, PhysicsError> {
+fn autocorrelation(heights: Array2<f64>, edges: Edges) -> Result<Array2<f64>, PhysicsError> {
     let n = heights.nrows();
-    let field = if periodic {
-        heights
-    } else {
-        let mut padded = zeros((2 * n, 2 * n))?;
-        padded.slice_mut(ndarray::s![..n, ..n]).assign(&heights);
-        padded
+    let field = match edges {
+        Edges::Periodic => heights,
+        Edges::Open => {
+            let mut padded = zeros((2 * n, 2 * n))?;
+            padded.slice_mut(ndarray::s![..n, ..n]).assign(&heights);
+            padded
+        }
     };
-    let mut correlation = Field::of(field.view(), 1.0, true)?.autocorrelation()?;
+    let mut correlation = Field::of(field.view(), 1.0, Edges::Periodic)?.autocorrelation()?;
     let around = field.nrows();
     let variance = correlation[[0, 0]];
-    let overlap = |k: usize| if periodic { 1.0 } else { n.saturating_sub(k.min(around - k)).max(1) as f64 / n as f64 };
+    let overlap = |k: usize| match edges {
+        Edges::Periodic => 1.0,
+        Edges::Open => n.saturating_sub(k.min(around - k)).max(1) as f64 / n as f64,
+    };
     correlation.indexed_iter_mut().for_each(|((i, j), value)| *value /= variance * overlap(i) * overlap(j));
     Ok(correlation)
 }

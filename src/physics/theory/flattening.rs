@@ -4,6 +4,7 @@
 
 use crate::PhysicsError;
 use crate::surface::continuation::laplacian;
+use crate::surface::edges::Edges;
 use crate::surface::measured::LEAST_CURVATURE_SHARE;
 use crate::surface::modes::Field;
 use crate::surface::periodogram::windowed;
@@ -93,9 +94,9 @@ pub fn shortest_wavelength(heights_m: ArrayView2<'_, f64>, (length_m, periodic):
     // Under the window the leakage of long wavelengths is not multiplied by q⁴.
     let points = (cut_off_m * n / length_m).max(FEWEST_POINTS);
     let (field, exponent) = if periodic {
-        (Field::of(heights_m, length_m, true)?, 4)
+        (Field::of(heights_m, length_m, Edges::Periodic)?, 4)
     } else {
-        (Field::of(windowed(laplacian(heights_m, points)?.view())?.view(), length_m, true)?, 0)
+        (Field::of(windowed(laplacian(heights_m, points)?.view())?.view(), length_m, Edges::Periodic)?, 0)
     };
     let mut shortest = cut_off_m;
     while 2.0 * shortest < length_m {
@@ -128,9 +129,9 @@ pub fn measured_flattening(
 ) -> Result<Flattening, PhysicsError> {
     let edge = TAU / shortest_wavelength_m;
     let sums = |field: &Field| field.weighted(|q| [q, if 2.0 * q >= edge { q } else { 0.0 }]);
-    let [whole, mut octave] = sums(&Field::of(heights_m, length_m, periodic)?);
+    let [whole, mut octave] = sums(&Field::of(heights_m, length_m, Edges::of(periodic))?);
     if !periodic {
-        octave = whole.min(sums(&Field::of(windowed(heights_m)?.view(), length_m, true)?)[1]);
+        octave = whole.min(sums(&Field::of(windowed(heights_m)?.view(), length_m, Edges::Periodic)?)[1]);
     }
     Ok(Flattening { whole_j_m2: 0.25 * contact_modulus_pa * whole, octave_j_m2: 0.25 * contact_modulus_pa * octave })
 }

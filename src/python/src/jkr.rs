@@ -1,9 +1,9 @@
 //! One JKR asperity: the functions of `hysteron_physics::jkr`, by name.
 
 use crate::columns::{Column, Values, each, within};
-use hysteron_physics::model::{Material, Slips};
 use hysteron_physics::PhysicsError;
 use hysteron_physics::jkr::{self, Asperity};
+use hysteron_physics::model::{Material, Slips};
 use pyo3::prelude::*;
 
 /// The asperity of one element.

@@ -1,8 +1,8 @@
 //! Spectrum of a self-affine surface, its moments, and the energy that flattens it: `surface::spectrum` and `theory::flattening` by name.
 
 use crate::columns::{Column, Values, allowed, each, each_many, each_slow, positive};
-use hysteron_physics::model::{Amplitudes, Normalization};
 use hysteron_physics::PhysicsError;
+use hysteron_physics::model::{Amplitudes, Normalization};
 use hysteron_physics::surface::spectrum::{Moments, Spectrum};
 use hysteron_physics::theory::flattening::{Flattening, flattening as energies};
 use pyo3::prelude::*;

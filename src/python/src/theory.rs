@@ -1,8 +1,8 @@
 //! Analytical models: the functions of `hysteron_physics::theory`, by name.
 
 use crate::columns::{Column, Values, each, positive, within};
-use hysteron_physics::model::{Material, Slips};
 use hysteron_physics::PhysicsError;
+use hysteron_physics::model::{Material, Slips};
 use hysteron_physics::surface::spectrum::Moments;
 use hysteron_physics::theory;
 use pyo3::prelude::*;

@@ -10,7 +10,7 @@ mod rough;
 mod sphere;
 mod trapping;
 
-use hysteron::physics::boundary_elements::contact::{Attraction, Problem, State, Totals};
+use hysteron::physics::boundary_elements::contact::{Attraction, Nucleation, Problem, State, Totals};
 use hysteron::physics::boundary_elements::cycle::{Cycle, Settings, run};
 use hysteron::physics::boundary_elements::grid::HalfSpace;
 use hysteron::physics::boundary_elements::law::Law;
@@ -35,7 +35,7 @@ fn problem(rows: usize, columns: usize, heights: impl Fn(usize, usize) -> f64, l
 fn settle(problem: &Problem, state: &mut State, mut find: impl FnMut(&mut State) -> Outcome) -> Totals {
     loop {
         assert!(find(state).converged);
-        if problem.update_bonds(state, true).is_empty() {
+        if problem.update_bonds(state, Nucleation::Allowed).is_empty() {
             break;
         }
     }
@@ -45,11 +45,11 @@ fn settle(problem: &Problem, state: &mut State, mut find: impl FnMut(&mut State)
 
 /// Settings of a path with its steps halved as by default.
 fn settings(max_loads: Vec<f64>, step: f64) -> Settings {
-    Settings { max_loads, step, located: 0.03, halvings: 6, accuracy: accuracy(1e-4), all_regions: false, summits: Vec::new() }
+    Settings { max_loads, step, jump_tolerance: 0.03, halvings: 6, accuracy: accuracy(1e-4), all_regions: false, summits: Vec::new() }
 }
 
-fn cycle(problem: &Problem, max_load: f64, step: f64, located: f64) -> Cycle {
-    let settings = Settings { located, ..settings(vec![max_load], step) };
+fn cycle(problem: &Problem, max_load: f64, step: f64, jump_tolerance: f64) -> Cycle {
+    let settings = Settings { jump_tolerance, ..settings(vec![max_load], step) };
     run(problem, &settings, None, &mut |_| {}, &|_| {}).unwrap()
 }
 

@@ -122,9 +122,9 @@ fn law_same_bytes_with_threads_and_after_interruptions() {
 fn same_bytes(n: usize, height: f64) {
     let problem = problem(n, n, |r, c| height * wavy(n, r, c), Law::crack(0.02 * height), BONDED);
     let loads = vec![0.008 * (n * n) as f64, 0.016 * (n * n) as f64];
-    let settings = Settings { located: 0.02, all_regions: true, ..settings(loads, 0.06 * height) };
+    let settings = Settings { jump_tolerance: 0.02, all_regions: true, ..settings(loads, 0.06 * height) };
     let mut kept = Vec::new();
-    let whole = run(&problem, &settings, None, &mut |halfway| kept.push(halfway.clone()), &|_| {}).unwrap();
+    let whole = run(&problem, &settings, None, &mut |checkpoint| kept.push(checkpoint.clone()), &|_| {}).unwrap();
     let pool = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     for threads in [1, 2] {
         let again = pool(threads).install(|| run(&problem, &settings, None, &mut |_| {}, &|_| {}).unwrap());
@@ -132,8 +132,8 @@ fn same_bytes(n: usize, height: f64) {
     }
     for k in [1, kept.len() / 2, kept.len() - 2] {
         let bytes = postcard::to_stdvec(&kept[k]).unwrap();
-        let halfway = postcard::from_bytes(&bytes).unwrap();
-        let resumed = run(&problem, &settings, Some(halfway), &mut |_| {}, &|_| {}).unwrap();
+        let checkpoint = postcard::from_bytes(&bytes).unwrap();
+        let resumed = run(&problem, &settings, Some(checkpoint), &mut |_| {}, &|_| {}).unwrap();
         assert!(resumed == whole, "resumed after step {k} of {}", kept.len());
     }
     let unloaded = unload_from(&problem, &settings, 0, &whole.turning[0]).unwrap();

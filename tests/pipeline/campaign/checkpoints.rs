@@ -6,7 +6,7 @@ use hysteron::campaign::{Campaign, CycleUnit};
 use hysteron::model::Slips;
 use hysteron::physics::EventKind;
 use hysteron::physics::contact::{Problem, Rules};
-use hysteron::physics::cycle::{Halfway, Settings, run_from};
+use hysteron::physics::cycle::{Checkpoint, Settings, run_from};
 use hysteron::physics::surface::summits::Summit;
 use hysteron::schema::{ASPERITIES, EVENT_KINDS, EVENTS, STEPS};
 use hysteron::spec::Spec;
@@ -46,7 +46,7 @@ fn checkpoint(campaign: &Campaign, unit: &CycleUnit) -> Vec<u8> {
     let (max_loads, approach_step) = (params.cycle.max_load.clone(), params.cycle.approach_step);
     let settings = Settings { max_loads, approach_step, contacts: params.cycle.contacts, rest_every: Some(0.1) };
     let mut kept = Vec::new();
-    let mut keep = |halfway: &Halfway| kept.push(postcard::to_stdvec(halfway).unwrap());
+    let mut keep = |checkpoint: &Checkpoint| kept.push(postcard::to_stdvec(checkpoint).unwrap());
     run_from(&problem, &settings, None, &mut keep, &|_| {}).unwrap();
     kept.swap_remove(kept.len() / 2)
 }

@@ -90,7 +90,7 @@ impl DirectSum {
         let source = |((times, spot), moments): (&'a (f64, Spot), &[f64; ORDERS])| {
             let moments = moments.map(|moment| times * moment);
             let near = (self.kind == Kind::Spots).then_some((*times, spot));
-            Source { place: self.place([spot.x, spot.y]), near, moments, images: self.periodic.then(|| ImageField::of(&moments)) }
+            Source { place: self.place([spot.x, spot.y]), near, moments, images: self.is_periodic().then(|| ImageField::of(&moments)) }
         };
         spots.iter().zip(&moments.value).map(source).collect()
     }

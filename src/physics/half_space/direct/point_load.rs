@@ -15,7 +15,7 @@ impl DirectSum {
         let columns = self.columns(targets);
         let (place, moment) = (self.place(*place), self.moment(load));
         let mut sums = vec![[0.0; LANES]; columns.x.len()];
-        if self.periodic {
+        if self.is_periodic() {
             image_fields(place, moment, &columns, &mut sums);
             leave_out(place, BEYOND.sqrt() * reach, &columns, &mut sums);
         }
@@ -29,12 +29,13 @@ impl DirectSum {
     /// The image sums have six digits.
     pub(crate) fn of_loads(&self, loads: &[PointLoad], centre: &[f64; 2], targets: &[usize]) -> Vec<f64> {
         let mut images = vec![[0.0; LANES]; targets.len().div_ceil(LANES)];
-        if self.periodic {
+        if self.is_periodic() {
             let whole: f64 = loads.iter().map(|load| load.load_n).sum();
             image_fields(self.place(*centre), self.moment(whole), &self.columns(targets), &mut images);
         }
         let mut near = vec![[0.0; SHORT_LANES]; targets.len().div_ceil(SHORT_LANES)];
-        load_fields(&self.short_loads(loads, centre), &self.short_columns(targets, centre), self.periodic, &mut near);
+        let side = if self.is_periodic() { 1.0 } else { 0.0 };
+        load_fields(&self.short_loads(loads, centre), &self.short_columns(targets, centre), side, &mut near);
         let near = near.as_flattened().iter().copied().map(f64::from);
         images.as_flattened()[..targets.len()].iter().zip(near).map(|(images, near)| images + near).collect()
     }
@@ -43,7 +44,7 @@ impl DirectSum {
     fn vector_from(&self, place: &[f64; 2], centre: &[f64; 2]) -> [f32; 2] {
         [0, 1].map(|k| {
             let share = (place[k] - centre[k]) / self.length;
-            (if self.periodic { nearest_image(share, 1.0) } else { share }) as f32
+            (if self.is_periodic() { nearest_image(share, 1.0) } else { share }) as f32
         })
     }
 
@@ -99,11 +100,10 @@ struct ShortLoad {
     reach: f32,
 }
 
-/// Fields of loads at targets, each beyond the reach of the load. Places from a centre have seven digits, displacements five or more: next to a load, its
+/// Fields of loads at targets, each beyond the reach of the load, with periodic images at a distance of `side`, or none at 0. Places from a centre have seven digits, displacements five or more: next to a load, its
 /// field as a point has two.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-fn load_fields(loads: &[ShortLoad], targets: &[[[f32; SHORT_LANES]; 2]], periodic: bool, sums: &mut [[f32; SHORT_LANES]]) {
-    let side = if periodic { 1.0 } else { 0.0 };
+fn load_fields(loads: &[ShortLoad], targets: &[[[f32; SHORT_LANES]; 2]], side: f32, sums: &mut [[f32; SHORT_LANES]]) {
     for ([x, y], sums) in targets.iter().zip(sums) {
         let mut sum = [0.0; SHORT_LANES];
         for load in loads {

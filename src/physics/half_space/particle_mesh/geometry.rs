@@ -1,8 +1,8 @@
 //! Geometry of the fast sum: the part that does not depend on the contact radii.
 
-use super::mesh::{Level, Loads, Reader, Work, read, splines, transform};
+use super::mesh::{Level, Loads, PlacedSources, Reader, Work, read, splines, transform};
 use super::near::{Group, Rest};
-use super::pairs::{GONE, Known, Pairs, Sources, TOGETHER, Target};
+use super::pairs::{GONE, Known, Pairs, Sources, TARGETS_PER_CHUNK, Target};
 use super::plan::Real;
 use super::plan::{Accuracy, Mesh, Plan, ROUGH_ORDERS, ROUGH_WIDTH, WIDTH};
 use super::{Effort, FastSum, MARGIN, REACHES};
@@ -36,7 +36,7 @@ pub(super) struct Geometry {
     /// Finest cutoff, and the numbers of spots and targets for which it was chosen.
     finest: usize,
     chosen_for: [usize; 2],
-    /// Near pairs in chunks of [`TOGETHER`] targets, and those of the previous geometry.
+    /// Near pairs in chunks of [`TARGETS_PER_CHUNK`] targets, and those of the previous geometry.
     pairs: Vec<Pairs>,
     old: Vec<Pairs>,
     fine: Meshes<f64, WIDTH, ORDERS>,
@@ -91,18 +91,18 @@ impl FastSum {
         let before = kept.as_ref().map(|kept| kept.targets.as_slice());
         let numbers = kept.as_ref().map_or(&[][..], |kept| &kept.numbers);
         let known = Known { pairs: &geometry.old, numbers, changed: &others };
-        geometry.pairs.resize_with(targets.len().div_ceil(TOGETHER), Pairs::default);
+        geometry.pairs.resize_with(targets.len().div_ceil(TARGETS_PER_CHUNK), Pairs::default);
         let find = |((chunk, pairs), targets): ((usize, &mut Pairs), &[usize])| {
             let target = |(k, target): (usize, &usize)| Target {
                 place: self.order.positions[*target],
-                before: before.and_then(|before| before[chunk * TOGETHER + k]),
+                before: before.and_then(|before| before[chunk * TARGETS_PER_CHUNK + k]),
             };
             pairs.find(targets.iter().enumerate().map(target), known, &all, self.measure, &aloof);
         };
         if targets.len() < MANY {
-            geometry.pairs.iter_mut().enumerate().zip(targets.chunks(TOGETHER)).for_each(find);
+            geometry.pairs.iter_mut().enumerate().zip(targets.chunks(TARGETS_PER_CHUNK)).for_each(find);
         } else {
-            geometry.pairs.par_iter_mut().enumerate().zip(targets.par_chunks(TOGETHER)).with_min_len(AT_LEAST).for_each(find);
+            geometry.pairs.par_iter_mut().enumerate().zip(targets.par_chunks(TARGETS_PER_CHUNK)).with_min_len(AT_LEAST).for_each(find);
         }
         self.place_meshes(&levels, targets, kept.as_ref(), geometry);
     }
@@ -217,9 +217,9 @@ where
     P: IntoIterator<Item: Send> + IntoParallelIterator<Item = <P as IntoIterator>::Item, Iter: IndexedParallelIterator>,
 {
     if values.len() < MANY {
-        pairs.into_iter().zip(values.chunks_mut(TOGETHER)).for_each(|(pairs, values)| each(pairs, values));
+        pairs.into_iter().zip(values.chunks_mut(TARGETS_PER_CHUNK)).for_each(|(pairs, values)| each(pairs, values));
     } else {
-        let chunks = pairs.into_par_iter().zip(values.par_chunks_mut(TOGETHER)).with_min_len(AT_LEAST);
+        let chunks = pairs.into_par_iter().zip(values.par_chunks_mut(TARGETS_PER_CHUNK)).with_min_len(AT_LEAST);
         chunks.for_each(|(pairs, values)| each(pairs, values));
     }
 }
@@ -254,9 +254,9 @@ impl<T: Real, const W: usize, const O: usize> Meshes<T, W, O> {
             let mesh = mesh(plan);
             let mut before = vec![None; sources.len()];
             let mut weights = &[][..];
-            if let (Some(kept), Some((_, (spots, known)))) = (kept, old.levels.iter().find(|(old, _)| Arc::ptr_eq(old, mesh))) {
-                weights = known;
-                for (k, spot) in spots.iter().enumerate() {
+            if let (Some(kept), Some(known)) = (kept, old.levels.iter().find(|old| Arc::ptr_eq(&old.mesh, mesh))) {
+                weights = &known.sources.weights;
+                for (k, spot) in known.sources.numbers.iter().enumerate() {
                     // The number of a source that is gone is beyond the end.
                     if let Some(before) = before.get_mut(kept.numbers[*spot] as usize) {
                         *before = Some(k);
@@ -265,10 +265,10 @@ impl<T: Real, const W: usize, const O: usize> Meshes<T, W, O> {
             }
             let places = members.iter().map(|j| (before[*j], sources[*j]));
             let weights = completed(weights, places, |places| splines(places, mesh.size));
-            self.levels.push((mesh.clone(), (members.clone(), weights)));
+            self.levels.push(Level { mesh: mesh.clone(), sources: PlacedSources { numbers: members.clone(), weights } });
         }
-        if let Some((mesh, _)) = self.levels.first() {
-            let same = old.levels.first().is_some_and(|(old, _)| Arc::ptr_eq(old, mesh));
+        if let Some(Level { mesh, .. }) = self.levels.first() {
+            let same = old.levels.first().is_some_and(|old| Arc::ptr_eq(&old.mesh, mesh));
             let kept = kept.filter(|_| same);
             let places = targets.iter().enumerate().map(|(k, place)| (kept.and_then(|kept| kept.targets[k]), *place));
             self.readers = completed(&old.readers, places, |places| splines(places, mesh.size).iter().map(Reader::new).collect());
@@ -277,7 +277,7 @@ impl<T: Real, const W: usize, const O: usize> Meshes<T, W, O> {
 
     /// Adds the fields at the targets to `values`.
     fn add(&self, loads: Loads<'_>, work: &mut Work<T>, values: &mut [f64]) {
-        if let Some((mesh, _)) = self.levels.first() {
+        if let Some(Level { mesh, .. }) = self.levels.first() {
             transform(&self.levels, loads, work);
             read(&self.readers, mesh.size, work, values);
         }

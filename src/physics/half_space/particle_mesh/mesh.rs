@@ -102,10 +102,20 @@ pub(super) struct Work<T> {
 }
 
 /// A mesh with its sources.
-pub(super) type Level<T, const W: usize, const O: usize> = (Arc<Mesh<T>>, Placed<T, W, O>);
+#[derive(Debug, Clone)]
+pub(super) struct Level<T, const W: usize, const O: usize> {
+    pub(super) mesh: Arc<Mesh<T>>,
+    pub(super) sources: PlacedSources<T, W, O>,
+}
 
-/// Numbers of sources, and their spline weights.
-pub(super) type Placed<T, const W: usize, const O: usize> = (Vec<usize>, Vec<Splines<T, W, O>>);
+/// Sources on a mesh.
+#[derive(Debug, Clone)]
+pub(super) struct PlacedSources<T, const W: usize, const O: usize> {
+    /// Numbers of the sources.
+    pub(super) numbers: Vec<usize>,
+    /// Their spline weights.
+    pub(super) weights: Vec<Splines<T, W, O>>,
+}
 
 /// Moments of all sources, and an optional factor for each.
 #[derive(Clone, Copy)]
@@ -118,10 +128,10 @@ pub(super) struct Loads<'a> {
 ///
 /// `levels` holds the sources of each mesh, the finest first.
 pub(super) fn transform<T: Real, const W: usize, const O: usize>(levels: &[Level<T, W, O>], loads: Loads<'_>, work: &mut Work<T>) {
-    let Some((finest, _)) = levels.first() else { return };
+    let Some(Level { mesh: finest, .. }) = levels.first() else { return };
     let n = finest.size;
     let half = n / 2 + 1;
-    for (level, (mesh, sources)) in levels.iter().enumerate() {
+    for (level, Level { mesh, sources }) in levels.iter().enumerate() {
         forward(mesh, sources, loads, work);
         if level == 0 {
             std::mem::swap(&mut work.total, &mut work.turned);
@@ -171,7 +181,7 @@ pub(super) fn transform<T: Real, const W: usize, const O: usize>(levels: &[Level
 /// Fourier modes of the sources of one mesh, by ky then kx, into `work.turned`.
 fn forward<T: Real, const W: usize, const O: usize>(
     mesh: &Mesh<T>,
-    (spots, sources): &Placed<T, W, O>,
+    sources: &PlacedSources<T, W, O>,
     loads: Loads<'_>,
     work: &mut Work<T>,
 ) {
@@ -180,7 +190,7 @@ fn forward<T: Real, const W: usize, const O: usize>(
     let stride = n + W - 1;
     work.points.clear();
     work.points.resize(stride * stride, T::default());
-    spread(spots, sources, loads, n, &mut work.points);
+    spread(&sources.numbers, &sources.weights, loads, n, &mut work.points);
     // Wrap the points beyond the period to the other side.
     for i in 0..stride {
         let row = &mut work.points[i * stride..(i + 1) * stride];

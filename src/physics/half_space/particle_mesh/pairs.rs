@@ -20,7 +20,7 @@ pub(super) struct Sources {
 }
 
 /// Number of targets in one parallel chunk.
-pub(super) const TOGETHER: usize = 64;
+pub(super) const TARGETS_PER_CHUNK: usize = 64;
 
 /// Marks a source that is no longer valid.
 pub(super) const GONE: u32 = u32::MAX;
@@ -97,7 +97,7 @@ impl Pairs {
 
     /// Copies the entries of a target whose sources are still valid.
     fn take(&mut self, known: Known<'_>, target: usize) {
-        let (old, k) = (&known.pairs[target / TOGETHER], target % TOGETHER);
+        let (old, k) = (&known.pairs[target / TARGETS_PER_CHUNK], target % TARGETS_PER_CHUNK);
         let exact = old.exact[k]..old.exact[k + 1];
         let (from, to) = (old.starts[k], old.starts[k + 1]);
         let middle = from + exact.len();

@@ -49,7 +49,7 @@ pub(super) const ROUGH_WIDTH: usize = 8;
 ///
 /// Linear systems are solved no more accurately than this.
 pub(super) const ROUGH_ORDERS: usize = 2;
-const ROUGH: f64 = 1e-4;
+const DERIVATIVE_TOLERANCE: f64 = 1e-4;
 
 /// `[(2m − 1)!!]²`: `∇^2m (1/r)` is this factor times `1/r^(2m+1)` in the plane.
 pub(super) const LAPLACIANS: [f64; ORDERS] = [1.0, 1.0, 9.0, 225.0];
@@ -101,7 +101,7 @@ impl Accuracy {
         let girth = (10.0 * tolerance).powf(0.125).min(0.2);
         // The field of one spot there is at most a fourth of the largest displacement.
         let aloof = (0.03 / (4.0 * tolerance)).powf(0.125).max(3.0);
-        Self { edge, waves: [waves(WIDTH, tolerance).max(edge), waves(ROUGH_WIDTH, ROUGH.max(tolerance))], girth, aloof }
+        Self { edge, waves: [waves(WIDTH, tolerance).max(edge), waves(ROUGH_WIDTH, DERIVATIVE_TOLERANCE.max(tolerance))], girth, aloof }
     }
 }
 

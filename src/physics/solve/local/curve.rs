@@ -13,6 +13,19 @@ use crate::solve::residual::NotConverged;
 /// Maximum number of points of a curve.
 const STATIONS: usize = 50;
 
+/// Search along the curve.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct CurveSearch {
+    /// Member whose radius is followed, by its position.
+    pub(crate) member: usize,
+    /// Radius at which the search ends \[m\].
+    pub(crate) bound: f64,
+    /// Mean penetration at which the search ends \[m\].
+    pub(crate) target: f64,
+    /// Sense of the path: 1 loading, −1 unloading.
+    pub(crate) path_sense: f64,
+}
+
 /// End of a search along the curve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum CurveEnd {
@@ -44,17 +57,11 @@ impl LocalProblem {
         self.solve(problem, Hold::Radius(at), effort)
     }
 
-    /// Follows member `at` to the radius `bound` \[m\], until Δ reverses or has passed `target` \[m\] in the sense `sign` of the path.
-    pub(crate) fn trace_curve(
-        &mut self,
-        problem: &Problem,
-        at: usize,
-        bound: f64,
-        (target, sign): (f64, f64),
-        effort: &mut Effort,
-    ) -> Result<CurveEnd, NotConverged> {
+    /// Follows a member to a radius, until Δ reverses or has passed the target.
+    pub(crate) fn trace_curve(&mut self, problem: &Problem, search: CurveSearch, effort: &mut Effort) -> Result<CurveEnd, NotConverged> {
+        let CurveSearch { member: at, bound, target, path_sense } = search;
         let sense = (bound - self.radius[at]).signum();
-        let ahead = sense * sign;
+        let ahead = sense * path_sense;
         self.way.clear();
         let mut before = self.point(problem, at);
         self.way.push(before.clone());
@@ -74,7 +81,7 @@ impl LocalProblem {
                     if point.slope * ahead <= 0.0 {
                         break point;
                     }
-                    if (point.approach - target) * sign > 0.0 {
+                    if (point.approach - target) * path_sense > 0.0 {
                         return Ok(CurveEnd::Beyond);
                     }
                     self.way.push(point.clone());
@@ -93,7 +100,7 @@ impl LocalProblem {
             }
         };
         self.bracket(problem, at, before, beyond, effort)?;
-        Ok(if (self.approach - target) * sign > 0.0 { CurveEnd::Beyond } else { CurveEnd::Fold })
+        Ok(if (self.approach - target) * path_sense > 0.0 { CurveEnd::Beyond } else { CurveEnd::Fold })
     }
 
     /// The fold between two states of the curve, by the Illinois rule on `dΔ/da`.

@@ -12,7 +12,7 @@ use super::newton::{Damping, NonlinearSystem, Worst, damped_newton};
 use super::residual::{NotConverged, STRIDE};
 use super::trace::PenetrationTrace;
 use crate::contact::problem::Problem;
-use crate::half_space::{Effort, PairTable, Spots};
+use crate::half_space::{Effort, PairTable, Spots, SumPrecision};
 use crate::math::dense::Lu;
 
 /// Residual of a local problem with contacts outside, in rms heights.
@@ -55,6 +55,31 @@ pub(crate) enum Hold {
     Penetration(usize, f64),
 }
 
+/// Part of the contact that a local problem holds.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) enum Extent {
+    /// All contacts.
+    #[default]
+    Whole,
+    /// Some of them: there are contacts outside, whose response is known to first order.
+    Part,
+}
+
+impl Extent {
+    /// Extent of a local problem with a number of members, of all contacts.
+    pub(crate) fn of(members: usize, contacts: usize) -> Self {
+        if members < contacts { Self::Part } else { Self::Whole }
+    }
+
+    /// Precision of the sums: with contacts outside, image sums of six digits are sufficient.
+    fn sums(self) -> SumPrecision {
+        match self {
+            Self::Whole => SumPrecision::Full,
+            Self::Part => SumPrecision::Rough,
+        }
+    }
+}
+
 /// Contacts around an event, ascending, and the free asperities among them.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct LocalProblem {
@@ -65,8 +90,7 @@ pub(crate) struct LocalProblem {
     /// Contact radii of the members \[m\].
     pub(crate) radius: Vec<f64>,
     pub(crate) watched: Vec<OutsideField>,
-    /// True if there are contacts outside: image sums of reduced accuracy are sufficient then.
-    local: bool,
+    extent: Extent,
     /// States on the way to an event, if a radius was followed.
     pub(crate) way: Vec<CurveState>,
     /// Displacements at the members by one another \[m\], and their derivatives to the radii.
@@ -100,10 +124,10 @@ impl LocalProblem {
         contacts: &[(usize, PenetrationTrace, f64)],
         free: &[(usize, PenetrationTrace)],
         approach: f64,
-        local: bool,
+        extent: Extent,
         effort: &mut Effort,
     ) {
-        (self.approach, self.reference, self.local) = (approach, approach, local);
+        (self.approach, self.reference, self.extent) = (approach, approach, extent);
         self.members.clear();
         self.way.clear();
         self.radius.clear();
@@ -125,7 +149,7 @@ impl LocalProblem {
         }
         self.watched.clear();
         let places: Vec<usize> = free.iter().map(|(i, _)| *i).collect();
-        problem.field.rows(&self.work.spots, &places, self.local, effort, |k, field, slopes| {
+        problem.field.rows(&self.work.spots, &places, self.extent.sums(), effort, |k, field, slopes| {
             let (i, trace) = free[k];
             let by_members: f64 = slopes.iter().zip(&speeds).map(|(s, v)| s * v).sum();
             let displaced = approach + problem.heights[i] - trace.ahead(approach);
@@ -136,7 +160,10 @@ impl LocalProblem {
 
     /// Residual below which it is in equilibrium \[m\]. With contacts outside, whose response is known to first order, the tolerance is larger.
     pub(crate) fn tolerance_m(&self, problem: &Problem) -> f64 {
-        if self.local { LOCAL_TOLERANCE * problem.rms_height_m } else { problem.tolerance_m() }
+        match self.extent {
+            Extent::Whole => problem.tolerance_m(),
+            Extent::Part => LOCAL_TOLERANCE * problem.rms_height_m,
+        }
     }
 
     /// Position of a member.
@@ -153,25 +180,21 @@ impl LocalProblem {
         }
     }
 
-    /// Removes a member; a free one is watched.
-    pub(crate) fn remove(&mut self, asperity: usize, free: bool) {
-        if let Some(at) = self.find(asperity) {
-            let place = self.members.remove(at);
-            self.radius.remove(at);
-            if free {
-                self.watched.push(place);
-            }
-        }
+    /// Removes a member.
+    pub(crate) fn remove(&mut self, asperity: usize) -> Option<OutsideField> {
+        let at = self.find(asperity)?;
+        self.radius.remove(at);
+        Some(self.members.remove(at))
     }
 
-    /// An asperity with a known displacement at the present mean penetration \[m\], and the rate of its part by the outside.
-    pub(crate) fn place(
-        &mut self,
-        problem: &Problem,
-        asperity: usize,
-        (displacement, drift): (f64, f64),
-        effort: &mut Effort,
-    ) -> OutsideField {
+    /// Moves a member that has left contact to the watched asperities.
+    pub(crate) fn release(&mut self, asperity: usize) {
+        let place = self.remove(asperity);
+        self.watched.extend(place);
+    }
+
+    /// An asperity with a known displacement at the present mean penetration \[m\]; `drift` is the rate of its part by the outside.
+    pub(crate) fn place(&mut self, problem: &Problem, asperity: usize, displacement: f64, drift: f64, effort: &mut Effort) -> OutsideField {
         let field = self.field_at(problem, asperity, effort);
         let outside = displacement - field - drift * (self.approach - self.reference);
         OutsideField { asperity, outside, drift }
@@ -180,7 +203,7 @@ impl LocalProblem {
     /// Displacement at an asperity by the members \[m\]; the derivatives to their radii are left in `row`.
     fn field_at(&mut self, problem: &Problem, asperity: usize, effort: &mut Effort) -> f64 {
         let mut field = 0.0;
-        problem.field.rows(&self.work.spots, &[asperity], self.local, effort, |_, sum, slopes| {
+        problem.field.rows(&self.work.spots, &[asperity], self.extent.sums(), effort, |_, sum, slopes| {
             field = sum;
             self.work.row.clear();
             self.work.row.extend_from_slice(slopes);
@@ -224,13 +247,14 @@ impl LocalProblem {
         self.work.rates = None;
         self.field.clear();
         self.slopes.clear();
-        if self.local {
-            problem.field.among(&self.work.spots, &mut self.work.pairs, &mut self.field, &mut self.slopes, effort);
-        } else {
-            problem.field.rows(&self.work.spots, &self.work.spots.index, false, effort, |_, sum, slopes| {
-                self.field.push(sum);
-                self.slopes.extend_from_slice(slopes);
-            });
+        match self.extent {
+            Extent::Part => problem.field.among(&self.work.spots, &mut self.work.pairs, &mut self.field, &mut self.slopes, effort),
+            Extent::Whole => {
+                problem.field.rows(&self.work.spots, &self.work.spots.index, SumPrecision::Full, effort, |_, sum, slopes| {
+                    self.field.push(sum);
+                    self.slopes.extend_from_slice(slopes);
+                });
+            }
         }
     }
 
@@ -336,11 +360,11 @@ impl LocalProblem {
     pub(crate) fn watch(&self, problem: &Problem, rates: &[f64], effort: &mut Effort) -> Vec<PenetrationTrace> {
         let places: Vec<usize> = self.watched.iter().map(|place| place.asperity).collect();
         let mut traces = Vec::with_capacity(places.len());
-        problem.field.rows(&self.work.spots, &places, self.local, effort, |k, field, slopes| {
+        problem.field.rows(&self.work.spots, &places, self.extent.sums(), effort, |k, field, slopes| {
             let place = &self.watched[k];
             let value = self.approach + problem.heights[place.asperity] - self.outside(place) - field;
             let by_members: f64 = slopes.iter().zip(rates).map(|(s, v)| s * v).sum();
-            traces.push(PenetrationTrace { at: self.approach, value, rate: 1.0 - place.drift - by_members });
+            traces.push(PenetrationTrace::new(self.approach, value, 1.0 - place.drift - by_members));
         });
         traces
     }

@@ -31,7 +31,7 @@ struct Source {
 }
 
 /// Distance over radius beyond which a contact acts by its load alone: the rest is 2 % there, and less beyond.
-const ALOOF: f64 = 2.0;
+const POINT_LOAD_DISTANCE: f64 = 2.0;
 
 impl Source {
     fn before(problem: &Problem, state: &ReferenceState) -> Self {
@@ -49,7 +49,7 @@ impl Source {
 
     /// Distance beyond which it acts by its load alone \[m\].
     fn reach(&self) -> f64 {
-        ALOOF * self.now.unwrap_or(0.0).max(self.before.map_or(0.0, |before| before.radius))
+        POINT_LOAD_DISTANCE * self.now.unwrap_or(0.0).max(self.before.map_or(0.0, |before| before.radius))
     }
 
     /// Displacement at a distance r beyond the expected one \[m\], without images.

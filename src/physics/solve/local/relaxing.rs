@@ -40,7 +40,11 @@ impl Relaxing for Part<'_> {
     }
 
     fn take_out(&mut self, change: &Transition) {
-        self.patch.remove(change.asperity, change.kind == EventKind::JumpOff);
+        if change.kind == EventKind::JumpOff {
+            self.patch.release(change.asperity);
+        } else {
+            self.patch.remove(change.asperity);
+        }
     }
 
     fn finish(&mut self) -> bool {

@@ -1,4 +1,4 @@
-//! The way of a minimisation from one state in double precision to the next.
+//! Changes of a state during a minimisation, in single precision.
 
 use super::contact::{Problem, State};
 use super::law::{Bonding, Pieces};
@@ -7,12 +7,13 @@ use crate::PhysicsError;
 use crate::memory::filled;
 use rayon::prelude::*;
 
-/// The way from a state in double precision: gap and residual there, displacement and pressure since, in single precision.
-pub(super) struct Way {
+/// Displacement and pressure since a state in double precision, and gap and residual at that state, in single precision.
+pub(super) struct SinglePrecisionIncrement {
     pub(super) gap: Vec<f32>,
     pub(super) residual: Vec<f32>,
-    pub(super) moved: Vec<f32>,
-    pub(super) pressed: Vec<f32>,
+    /// Displacement and pressure since that state.
+    pub(super) displacement: Vec<f32>,
+    pub(super) pressure: Vec<f32>,
     /// 1 at points in contact.
     pub(super) touching: Vec<u8>,
     /// Rows with points that have come into contact or left it since bonds were updated.
@@ -22,15 +23,15 @@ pub(super) struct Way {
     pub(super) pieces: Pieces,
 }
 
-impl Way {
+impl SinglePrecisionIncrement {
     pub(super) fn new(problem: &Problem) -> Result<Self, PhysicsError> {
         let points = problem.half_space.points();
         let field = || filled(points, 0.0_f32);
         Ok(Self {
             gap: field()?,
             residual: field()?,
-            moved: field()?,
-            pressed: field()?,
+            displacement: field()?,
+            pressure: field()?,
             touching: filled(points, 0)?,
             stale: filled(problem.half_space.rows(), true)?,
             centre: 0.0,
@@ -38,16 +39,16 @@ impl Way {
         })
     }
 
-    /// From here on.
-    pub(super) fn depart(&mut self, problem: &Problem, state: &State, centre: f64) {
+    /// Sets the state that the changes refer to, with no change so far.
+    pub(super) fn rebase(&mut self, problem: &Problem, state: &State, centre: f64) {
         self.centre = centre;
         self.stale.fill(true);
         let approach = state.approach;
         let fields = (
             self.gap.par_chunks_mut(PANEL),
             self.residual.par_chunks_mut(PANEL),
-            self.moved.par_chunks_mut(PANEL),
-            self.pressed.par_chunks_mut(PANEL),
+            self.displacement.par_chunks_mut(PANEL),
+            self.pressure.par_chunks_mut(PANEL),
             state.displacement.par_chunks(PANEL),
             state.pressure.par_chunks(PANEL),
             problem.heights.par_chunks(PANEL),
@@ -72,9 +73,10 @@ impl Way {
         }
     }
 
-    /// Adds the way to the state.
-    pub(super) fn arrive(&self, state: &mut State) {
-        let fields = (&mut state.displacement, &mut state.pressure, &self.moved, &self.pressed).into_par_iter().with_min_len(grain(1));
+    /// Adds the changes to the state.
+    pub(super) fn commit(&self, state: &mut State) {
+        let fields =
+            (&mut state.displacement, &mut state.pressure, &self.displacement, &self.pressure).into_par_iter().with_min_len(grain(1));
         fields.for_each(|(u, p, moved, pressed)| {
             *u += f64::from(*moved);
             *p += f64::from(*pressed);
