@@ -15,9 +15,9 @@ const PHYSICS: [(&str, &[&str]); 12] = [
     ("path", &["math", "jkr", "half_space", "contact", "solve"]),
     ("cycle", &["math", "jkr", "half_space", "contact", "solve", "path"]),
     ("theory", &["jkr", "surface"]),
-    ("boundary_elements", &[]),
+    ("boundary_elements", &["cycle"]),
     ("asperities", &["surface", "contact", "cycle"]),
-    ("elements", &["surface", "theory", "boundary_elements", "cycle"]),
+    ("elements", &["surface", "theory", "half_space", "contact", "boundary_elements", "cycle"]),
 ];
 
 type Graph = BTreeMap<Vec<String>, BTreeSet<Vec<String>>>;

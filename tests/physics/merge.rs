@@ -223,7 +223,7 @@ fn reg_merged_spots_that_fill_the_square_are_refused_with_a_sentence() {
     let settings = Settings { max_loads: vec![0.1], approach_step: 0.04, contacts: KeptContacts::None, rest_every: None };
     let error = cycle::run(&problem, &settings, &|_| {}).unwrap_err();
     assert!(matches!(error, hysteron::physics::PhysicsError::Loop(LoopError::ExcessArea { .. })), "{error}");
-    assert!(error.to_string().contains("leaves no gap") && error.to_string().contains("\nhelp: "), "{error}");
+    assert!(error.to_string().contains("leaves no gap"), "{error}");
 }
 
 #[test]

@@ -12,7 +12,6 @@ pub(super) use asperities::checked;
 pub(super) use constants::CONSTANTS;
 pub(super) use lattice::{Lattice, checked_lattice, enough_memory, lattice};
 
-use self::tables::Tables;
 use super::done::Outcome;
 use super::failure::in_the_way;
 use super::identity::Identity;
@@ -151,7 +150,7 @@ fn compute(task: CycleTask<'_>) -> Result<Outcome, StageError> {
     let by_elements = task.params().by_elements();
     let mut computed = if by_elements { boundary_elements::run(&task)? } else { asperities::run(&task)? };
     let max_loads = &task.params().cycle.max_load;
-    let of_all = Tables { of: Identity::of(campaign, unit), computed: &computed, max_loads };
+    let of_all = tables::Tables { of: Identity::of(campaign, unit), computed: &computed, max_loads };
     let mut files = write_tables(campaign, unit, &[of_all.contacts()?, of_all.events()?, of_all.steps()?])?;
     files.extend(write_tables(campaign, unit, &computed.tables)?);
     files.append(&mut computed.files);
