@@ -50,7 +50,9 @@ impl<'a> Live<'a> {
         }
         let page = campaign.dir.join(PAGE);
         let mut state = State::of(campaign, task);
-        if state.has_page && page.symlink_metadata().is_ok() && !is_marked(&page) {
+        // A power cut may leave an empty page.
+        let is_foreign = page.symlink_metadata().is_ok_and(|found| found.len() > 0) && !is_marked(&page);
+        if state.has_page && is_foreign {
             state.has_page = false;
             inner.notice(&format!("{} was not written by a run and is kept; this run has no page of progress", shown(&page)));
         }

@@ -12,8 +12,8 @@ const GENERATED: &str = "name = \"generated\"\nseed = 7\nrealizations = 1\n[surf
     approach_step = 0.05\n[[sweep]]\nname = \"both\"\nmodel.method = [\"asperities\", \"boundary_elements\"]\n";
 
 /// A scan that is not periodic, in nanometres.
-const SCAN: &str = "name = \"scan\"\n[surface]\nfile = \"scan.txt\"\npixel_m = 1e-6\nunit = \"nm\"\nshortest_wavelength_m = 8e-6\n\
-    [material]\nwork_of_adhesion_j_m2 = 0.005\n[cycle]\nmax_load = [0.002]\napproach_step = 0.05\n[[sweep]]\nname = \"both\"\n\
+const SCAN: &str = "name = \"scan\"\n[surface]\nfile = \"scan.txt\"\npixel_m = 1e-6\nunit = \"nm\"\npoints_per_shortest_wavelength = 8\n\
+    [model]\nboundary = \"isolated\"\n[material]\nwork_of_adhesion_j_m2 = 0.0005\n[cycle]\nmax_load = [0.002]\napproach_step = 0.05\n[[sweep]]\nname = \"both\"\n\
     model.method = [\"asperities\", \"boundary_elements\"]\n";
 
 /// Heights of the scan: five waves.

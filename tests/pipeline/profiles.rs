@@ -21,7 +21,11 @@ fn locked() -> BTreeSet<String> {
 fn at(profile: &str, level: i64) -> BTreeSet<String> {
     let manifest = read("Cargo.toml");
     let packages = manifest["profile"][profile]["package"].as_table().unwrap();
-    packages.iter().filter(|(_, options)| options["opt-level"].as_integer() == Some(level)).map(|(name, _)| name.clone()).collect()
+    packages
+        .iter()
+        .filter(|(_, options)| options.get("opt-level").and_then(Value::as_integer) == Some(level))
+        .map(|(name, _)| name.clone())
+        .collect()
 }
 
 #[test]

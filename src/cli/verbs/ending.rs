@@ -89,7 +89,7 @@ impl<'a> Ended<'a> {
 
     /// Formats of the figures that this build does not write.
     fn formats(&self) -> String {
-        let left_out = self.campaign.spec.figures.left_out().join(" and ").to_uppercase();
+        let left_out = self.campaign.spec.figures.left_out().iter().map(|format| format.to_uppercase()).collect::<Vec<_>>().join(" and ");
         if left_out.is_empty() { left_out } else { format!("Figures: SVG; {left_out} need a build with `--features raster`.\n") }
     }
 

@@ -132,7 +132,7 @@ fn e2e_times_are_the_same_on_every_page() {
     let readme = std::fs::read_to_string(root.join("README.md")).unwrap();
     let row = readme.lines().find(|line| line.starts_with("| time of a cycle |")).unwrap();
     assert!(performance.lines().any(|line| line == row), "{row}");
-    let quickstart = "30 s";
+    let quickstart = "20 s";
     for (page, sentence) in [("README.md", "2 cores, the run {}."), ("tutorial.md", "The run takes about {} on 2 cores.")] {
         assert!(text(page).contains(&sentence.replace("{}", quickstart)), "{page}");
     }
