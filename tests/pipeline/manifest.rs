@@ -20,7 +20,7 @@ const SCAN: &str = "name = \"scan\"\n[surface]\nfile = \"scan.txt\"\npixel_m = 1
 fn heights() -> String {
     let waves = [(1.0, 0.3, 0.4, 60.0), (0.2, 1.1, 1.9, 50.0), (2.1, 1.0, 3.0, 25.0), (1.0, -2.9, 5.1, 18.0), (3.2, 2.0, 0.2, 12.0)];
     let at = |x: f64, y: f64| waves.iter().map(|(kx, ky, phase, height)| height * (TAU * (kx * x + ky * y) + phase).cos()).sum::<f64>();
-    let row = |i: usize| (0..32).map(|j| format!("{:.6}", at(i as f64 / 32.0, j as f64 / 32.0))).collect::<Vec<_>>().join("\t");
+    let row = |i: usize| (0..32_usize).map(|j| format!("{:.6}", at(i as f64 / 32.0, j as f64 / 32.0))).collect::<Vec<_>>().join("\t");
     (0..32).map(|i| row(i) + "\n").collect()
 }
 
