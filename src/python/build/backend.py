@@ -45,7 +45,7 @@ def _program() -> Path | None:
     named = os.environ.get("HYSTERON_PROGRAM")
     if named is not None:
         return Path(named).resolve() if named != "none" else None
-    build = ["cargo", "build", "--locked", "--release", "--features", "raster", "--bin", "hysteron", "--message-format=json-render-diagnostics"]
+    build = ["cargo", "build", "--locked", "--release", "--features", "raster,sse", "--bin", "hysteron", "--message-format=json-render-diagnostics"]
     # No debug information: the wheel is a third as large.
     environment = {**os.environ, "CARGO_PROFILE_RELEASE_DEBUG": "false", "CARGO_PROFILE_RELEASE_STRIP": "symbols"}
     output = subprocess.run(build, cwd=ROOT, env=environment, check=True, stdout=subprocess.PIPE, encoding="utf-8").stdout
