@@ -42,7 +42,7 @@ pub struct Both<'a> {
 pub fn both(of: &Both<'_>, caption: String) -> Result<Drawing, FigureError> {
     let (width, height) = (2.0 * SIDE + 3.0 * GAP, SIDE + ABOVE + GAP + LEGEND);
     let (spots, _) = circles(of.contacts, of.length_m, of.periodic, of.step)?;
-    let mut svg = sheet((width, height), "both", of.heights_m);
+    let mut svg = sheet(width, height, "both", of.heights_m);
     let contact = cells(of.elements);
     let maps = [("Asperity model", &spots), ("Boundary elements", &contact)];
     for (k, ((name, drawn), area)) in maps.into_iter().zip(of.areas).enumerate() {

@@ -33,7 +33,7 @@ pub(super) fn add(scene: &mut Scene, frame: &ComputedLayout, plot: &XyPlot) {
             });
         }
         if entry.marked || !stroke.is_line() {
-            marks::sample(scene, (left + SAMPLE / 2.0, y), stroke, &entry.colour);
+            marks::sample(scene, left + SAMPLE / 2.0, y, stroke, &entry.colour);
         }
         text(scene, (left + SAMPLE + 8.0, y + 4.5), &entry.text, TextAnchor::Start);
     }

@@ -38,7 +38,7 @@ pub(super) fn map(of: &Closer<'_>, landmarks: &[Kept], heights_m: ArrayView2<'_,
     let (loads, penetrations) = (of.steps.f64("load")?, of.steps.f64("penetration")?);
     let rows = landmarks.len().div_ceil(2) as f64;
     let (width, height) = (2.0 * SIDE + 3.0 * GAP, rows * (SIDE + ABOVE) + GAP + LEGEND);
-    let mut svg = sheet((width, height), "map", heights_m);
+    let mut svg = sheet(width, height, "map", heights_m);
     let bar = scale_bar(of.length_m);
     for (k, (landmark, step)) in landmarks.iter().enumerate() {
         let (left, top) = (GAP + (k % 2) as f64 * (SIDE + GAP), ABOVE + (k / 2) as f64 * (SIDE + ABOVE));
@@ -71,7 +71,7 @@ pub(super) fn map(of: &Closer<'_>, landmarks: &[Kept], heights_m: ArrayView2<'_,
 }
 
 /// Beginning of an SVG of maps: the heights and the edge of a map are its definitions `<prefix>-heights` and `<prefix>-edge`.
-pub(super) fn sheet((width, height): (f64, f64), prefix: &str, heights_m: ArrayView2<'_, f64>) -> String {
+pub(super) fn sheet(width: f64, height: f64, prefix: &str, heights_m: ArrayView2<'_, f64>) -> String {
     format!(
         "<svg viewBox=\"0 0 {width} {height}\" xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" width=\"{width}\" \
          height=\"{height}\" font-family=\"DejaVu Sans, Verdana, Liberation Sans, Arial, sans-serif\" fill=\"black\">\

@@ -49,7 +49,7 @@ pub(super) fn marks(curve: &Curve, points: &[(f64, f64)]) -> Vec<Plot> {
 }
 
 /// One mark of a stroke in the key.
-pub(super) fn sample(scene: &mut Scene, (x, y): (f64, f64), stroke: Stroke, colour: &str) {
+pub(super) fn sample(scene: &mut Scene, x: f64, y: f64, stroke: Stroke, colour: &str) {
     let size = stroke.size();
     let primitive = match stroke {
         Stroke::Solid | Stroke::Points => {

@@ -41,10 +41,10 @@ pub fn png(svg: &str, width_mm: f64) -> Result<Vec<u8>, FigureError> {
     dots.fill(Color::WHITE);
     resvg::render(&tree, Transform::from_scale(DOTS, DOTS), &mut dots.as_mut());
     let colours: Vec<u8> = dots.pixels().iter().flat_map(|dot| [dot.red(), dot.green(), dot.blue()]).collect();
-    encode(&colours, (width, height), pixels_per_inch(width_mm)).map_err(|error| FigureError::Format(error.to_string()))
+    encode(&colours, width, height, pixels_per_inch(width_mm)).map_err(|error| FigureError::Format(error.to_string()))
 }
 
-fn encode(colours: &[u8], (width, height): (u32, u32), pixels_per_inch: f32) -> Result<Vec<u8>, png::EncodingError> {
+fn encode(colours: &[u8], width: u32, height: u32, pixels_per_inch: f32) -> Result<Vec<u8>, png::EncodingError> {
     let mut file = Vec::new();
     let mut encoder = png::Encoder::new(&mut file, width, height);
     encoder.set_color(png::ColorType::Rgb);

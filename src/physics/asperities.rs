@@ -58,7 +58,7 @@ impl Asperities {
         } else {
             find_measured(map.heights_m, map.length_m, (false, points))?.0.list
         };
-        Self::of_summits(&summits, (map.length_m, map.rms_height_m), material, max_loads, options)
+        Self::of_summits(&summits, map.length_m, map.rms_height_m, material, max_loads, options)
     }
 
     /// Given asperities on a square of a side \[m\], with the rms height \[m\] of the surface.
@@ -67,7 +67,8 @@ impl Asperities {
     /// No asperities; Tabor parameters below 2 with Wu's criterion.
     pub fn of_summits(
         summits: &[Summit],
-        (length_m, rms_height_m): (f64, f64),
+        length_m: f64,
+        rms_height_m: f64,
         material: &Material,
         max_loads: &[f64],
         options: &Options,

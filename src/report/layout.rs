@@ -11,7 +11,7 @@ const SCRIPT: &str = include_str!("page.js");
 const KEY: &str = "hysteron-key";
 
 /// A page with the style of the report alone; it is reloaded every `reload` seconds.
-pub(super) fn styled((title, reload): (&str, Option<u32>), body: &Markup) -> String {
+pub(super) fn styled(title: &str, reload: Option<u32>, body: &Markup) -> String {
     let meta = html! { meta name="hysteron-page" content="progress"; @if let Some(seconds) = reload { meta http-equiv="refresh" content=(seconds); } };
     page(title, &meta, &html! { main { (body) } })
 }

@@ -107,7 +107,7 @@ pub fn live_page(run: &LiveRun) -> String {
         }
         script { (PreEscaped(format!("const SILENT_MS = {SILENT_SECONDS}e3;\n{}", include_str!("live.js")))) } "\n"
     };
-    styled((&format!("{}: state of the run", run.name), Some(RELOAD_SECONDS)), &body)
+    styled(&format!("{}: state of the run", run.name), Some(RELOAD_SECONDS), &body)
 }
 
 /// A table of the running tasks.

@@ -125,7 +125,7 @@ pub(super) fn methods(value: &Written<'_>, faults: &mut Faults<'_>) -> Vec<Metho
 }
 
 /// The choices of a spec whose scans decide, read by `chooser`.
-pub(super) fn chosen(spec: &Spec, (text, file): (&str, &str), chooser: Chooser<'_>) -> Result<Vec<Method>, SpecErrors> {
+pub(super) fn chosen(spec: &Spec, text: &str, file: &str, chooser: Chooser<'_>) -> Result<Vec<Method>, SpecErrors> {
     let mut faults = Faults::new(text, file);
     let mut methods = Vec::with_capacity(spec.auto_methods.len());
     let mut known: Vec<(usize, Method)> = Vec::new();

@@ -49,7 +49,7 @@ pub(super) fn named(files: BTreeMap<String, (String, Range<usize>)>, cases: &[Ca
 }
 
 /// The spec with the hashes of all files that it names, and of no others. Files that are only in the spec's `folder` are named with it.
-pub(super) fn digested(mut spec: Spec, (text, file): (&str, &str), folder: &Path) -> Result<Spec, SpecErrors> {
+pub(super) fn digested(mut spec: Spec, text: &str, file: &str, folder: &Path) -> Result<Spec, SpecErrors> {
     let known = std::mem::take(&mut spec.files);
     let mut faults = Faults::new(text, file);
     let mut seen = HashSet::new();

@@ -255,12 +255,12 @@ impl Spec {
         match std::str::from_utf8(&bytes) {
             Ok(text) => {
                 let folder = path.parent().unwrap_or(Path::new(""));
-                let found = |spec: Self| files::digested(spec, (text, &file), folder).map_err(|errors| errors.with(settings));
+                let found = |spec: Self| files::digested(spec, text, &file, folder).map_err(|errors| errors.with(settings));
                 let spec = found(Self::parse_with(text, &file, settings)?)?;
                 if !spec.auto_methods.contains(&Method::Auto) {
                     return Ok(spec);
                 }
-                let methods = auto::chosen(&spec, (text, &file), chooser).map_err(|errors| errors.with(settings))?;
+                let methods = auto::chosen(&spec, text, &file, chooser).map_err(|errors| errors.with(settings))?;
                 found(Self::parse_chosen(text, &file, settings, methods)?)
             }
             Err(error) => Err(SpecErrors::not_utf8(&bytes, error.valid_up_to(), &file)),

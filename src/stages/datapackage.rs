@@ -18,11 +18,11 @@ pub(super) fn files(campaign: &Campaign, done: &[bool]) -> Described {
     // A table that is in no folder of a run is no part of one.
     for table in TABLES.iter().filter(|table| table.file.contains('/')) {
         let Some(parts) = ids.of_table(table) else {
-            resources.push(resource(table, (table.name.to_owned(), table.file.to_owned()), schema(table)));
+            resources.push(resource(table, table.name.to_owned(), table.file.to_owned(), schema(table)));
             continue;
         };
         let place = format!("schemas/{}.json", table.name);
-        let part = |id: &&str| resource(table, (part_name(table.name, id), table.file.replace("<id>", id)), json!(place));
+        let part = |id: &&str| resource(table, part_name(table.name, id), table.file.replace("<id>", id), json!(place));
         resources.extend(parts.iter().map(part));
         if !parts.is_empty() {
             files.push((place.clone(), format!("{:#}\n", schema(table))));
@@ -103,7 +103,7 @@ fn hdf5(kind: &str, id: &str, path: String, description: &str) -> Value {
     })
 }
 
-fn resource(table: &Table, (name, path): (String, String), schema: Value) -> Value {
+fn resource(table: &Table, name: String, path: String, schema: Value) -> Value {
     json!({
         "name": name,
         "path": path,

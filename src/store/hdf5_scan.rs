@@ -92,7 +92,7 @@ fn field(path: &Path, file: &File, (name, data): (&str, &Dataset)) -> Result<Fie
             (Some(Some(scale)), Some(points)) => axis(scale, *points),
             _ => Axis::default(),
         }),
-        None => beside((file, place), extent),
+        None => beside(file, place, extent),
     };
     Ok(Field {
         values: values(data, extent)?,
@@ -208,7 +208,7 @@ fn value(of: &Container) -> Option<Value> {
 }
 
 /// Axes of a field without dimension scales: the datasets `x` and `y` of its group, if the numbers of their points fit.
-fn beside((file, place): (&File, &str), extent: [usize; 2]) -> [Axis; 2] {
+fn beside(file: &File, place: &str, extent: [usize; 2]) -> [Axis; 2] {
     let beside = |names: [&str; 2]| names.map(|name| dataset(file, &format!("{place}{name}")).ok().flatten());
     let found = [["x", "y"], ["X", "Y"], ["x_m", "y_m"]].into_iter().map(beside).find(|found| found.iter().all(Option::is_some));
     let Some([Some(x), Some(y)]) = found else { return [Axis::default(), Axis::default()] };

@@ -179,14 +179,14 @@ fn write_all(path: &Path, header: &MapsHeader<'_>, maps: &[ContactMap]) -> Resul
         write_number(&group, "load_n", map.load_n)?;
         write_number(&group, "stride", map.stride as u64)?;
         for (name, unit, values) in fields(map) {
-            write_field(&file, &group, header.points.div_ceil(map.stride), (name, unit, values))?;
+            write_field(&file, &group, header.points.div_ceil(map.stride), name, unit, values)?;
         }
     }
     file.flush()?;
     Ok(file.close()?)
 }
 
-fn write_field(file: &File, group: &Group, points: usize, (name, unit, values): (&str, &str, &[f32])) -> Result<(), Cause> {
+fn write_field(file: &File, group: &Group, points: usize, name: &str, unit: &str, values: &[f32]) -> Result<(), Cause> {
     let field = ArrayView2::from_shape((points, points), values)?;
     let chunk = CHUNK.min(points);
     let data =

@@ -17,7 +17,7 @@ use std::time::SystemTime;
 /// Mark of an exported Snakefile.
 const SNAKEFILE_MARK: &str = "`hysteron export snakemake` wrote this file.";
 
-pub(super) fn snakemake(spec: &Path, output: &OutputArguments, (shards, force): (Option<u32>, bool)) -> Result<u8, Fault> {
+pub(super) fn snakemake(spec: &Path, output: &OutputArguments, shards: Option<u32>, force: bool) -> Result<u8, Fault> {
     let mut campaign = open(spec, output)?;
     campaign.dir = told(&campaign.dir)?;
     stages::prepare(&campaign).map_err(failed)?;
@@ -39,7 +39,7 @@ pub(super) fn snakemake(spec: &Path, output: &OutputArguments, (shards, force): 
     Ok(0)
 }
 
-pub(super) fn ro_crate(asked: &FolderArguments, (license, publisher): (Option<&str>, Option<&str>), force: bool) -> Result<u8, Fault> {
+pub(super) fn ro_crate(asked: &FolderArguments, license: Option<&str>, publisher: Option<&str>, force: bool) -> Result<u8, Fault> {
     let license = license.map(description::licence).transpose().map_err(|text| Fault { code: BAD_SPEC, text: format!("error: {text}") })?;
     let dir = folder(asked)?;
     let campaign = open_dir("describe", &dir)?;

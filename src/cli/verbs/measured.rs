@@ -55,7 +55,7 @@ pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
     let Imported { prepared, header, height_factor_m, notes } = measure(&params, &digest, "").map_err(failed)?;
     let out = asked.out.clone().unwrap_or_else(|| named_after(&asked.file));
     if !asked.dry_run {
-        may_be_written(("the surface", &out), &asked.file, asked.force)?;
+        may_be_written("the surface", &out, &asked.file, asked.force)?;
     }
     let points = header.measured.as_ref().map_or(0.0, |of| of.shortest_wavelength_m) * prepared.heights_m.nrows() as f64 / header.length_m;
     let (summits, edge) = find_measured(prepared.heights_m.view(), header.length_m, (header.periodic, points)).map_err(failed)?;
@@ -140,7 +140,7 @@ pub(super) enum Layout {
 }
 
 pub(super) fn export(asked: &ExportArguments, layout: &Layout) -> Result<u8, Fault> {
-    may_be_written(("the surface", &asked.out), &asked.surface, asked.force)?;
+    may_be_written("the surface", &asked.out, &asked.surface, asked.force)?;
     undamaged_surface(&asked.surface)?;
     let (header, heights) = read_surface(&asked.surface).map_err(failed)?;
     let size = [header.length_m; 2];

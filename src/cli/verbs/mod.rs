@@ -111,10 +111,10 @@ fn performed(verb: &Verb) -> Result<u8, Fault> {
         }
         Verb::Export { what: ExportVerb::Csv(asked) } => csv::export(asked),
         Verb::Export { what: ExportVerb::Snakemake { spec, output, shards, force } } => {
-            export::snakemake(spec, output, (shards.shards, *force))
+            export::snakemake(spec, output, shards.shards, *force)
         }
         Verb::Export { what: ExportVerb::RoCrate { folder, license, publisher, force } } => {
-            export::ro_crate(folder, (license.as_deref(), publisher.as_deref()), *force)
+            export::ro_crate(folder, license.as_deref(), publisher.as_deref(), *force)
         }
         Verb::Export { what: ExportVerb::Netcdf(asked) } => measured::export(asked, &measured::Layout::NetCdf),
         Verb::Export { what: ExportVerb::Tamaas(asked) } => measured::export(asked, &measured::Layout::Tamaas),

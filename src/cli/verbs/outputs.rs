@@ -8,7 +8,7 @@ use crate::text::{shell_path, shown};
 use std::path::{Path, PathBuf};
 
 /// Refuses to write over the source, over anything that is not a file, into a run, and over an existing file without `force`.
-pub(super) fn may_be_written((what, out): (&str, &Path), source: &Path, force: bool) -> Result<(), Fault> {
+pub(super) fn may_be_written(what: &str, out: &Path, source: &Path, force: bool) -> Result<(), Fault> {
     let refused = |why: &str, help: &str| failed(format!("cannot write {what} to {}: {why}\nhelp: {help}", shown(out)));
     let same = |a: &Path, b: &Path| matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b);
     if same(source, out) {

@@ -28,7 +28,7 @@ fn method(params: &CaseParams, scale: Scale, summits: &[Summit], max_loads: &[f6
         slips: params.model.slips(),
     };
     let options = Options { rules, approach_step: params.cycle.approach_step, contacts: params.cycle.contacts };
-    Ok(Asperities::of_summits(summits, (scale.length_m, scale.rms_height_m), &params.material, max_loads, &options)?)
+    Ok(Asperities::of_summits(summits, scale.length_m, scale.rms_height_m, &params.material, max_loads, &options)?)
 }
 
 /// The asperity model of a case, whose number of steps is limited.
