@@ -184,7 +184,6 @@ impl Watch for Teller {
     }
 
     fn page(&self, path: &Path) {
-        self.temporary(path);
         if !self.talk.quiet {
             self.notice(&format!("progress page: {}", shown(path)));
         }

@@ -56,6 +56,10 @@ impl<'a> Live<'a> {
             state.has_page = false;
             inner.notice(&format!("{} was not written by a run and is kept; this run has no page of progress", shown(&page)));
         }
+        // Before it is written, so that an interrupt removes it at any time.
+        if state.has_page {
+            inner.temporary(&page);
+        }
         let shared = Arc::new(Shared {
             dir: campaign.dir.clone(),
             state: Mutex::new(state),
