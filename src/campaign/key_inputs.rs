@@ -117,7 +117,7 @@ impl Campaign {
         let mut inputs = vec![("name", F::word(&self.spec.name)), ("spec", F::word(&spec)), ("statistics", F::word(statistics_key))];
         let left_out = self.spec.figures.left_out();
         if !left_out.is_empty() {
-            inputs.push(("left_out", F::word(&left_out.join(" "))));
+            inputs.push(("figure_formats_left_out", F::word(&left_out.join(" "))));
         }
         F::object(inputs)
     }

@@ -136,7 +136,7 @@ fn unnamed(folder: &Path, extension: Option<&str>, known: &HashSet<&str>, found:
 fn is_picture(path: &Path) -> bool {
     let stem = path.file_stem().and_then(|stem| stem.to_str()).and_then(|stem| stem.rsplit_once('_'));
     let drawn = |(sweep, panel): (&str, &str)| {
-        matches!(sweep, "closer" | "elements")
+        matches!((sweep, panel), ("closer" | "elements", _) | ("contact", "maps") | ("method", "ratios"))
             || (!sweep.is_empty() && panel.len() == 1 && panel.bytes().all(|letter| letter.is_ascii_uppercase()))
     };
     path.extension().and_then(|e| e.to_str()).is_some_and(|e| matches!(e, "svg" | "png" | "pdf")) && stem.is_some_and(drawn)

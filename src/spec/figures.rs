@@ -57,11 +57,11 @@ impl Default for Figures {
 }
 
 impl Figures {
-    /// The formats that are chosen and that this build writes; SVG if there is none.
+    /// The formats that are chosen and that this build writes; SVG if it writes none of them.
     #[must_use]
     pub fn written(&self) -> Vec<&'static str> {
         let written: Vec<_> = self.format.iter().copied().filter(|format| WRITTEN.contains(format)).collect();
-        if written.is_empty() { vec!["svg"] } else { written }
+        if written.is_empty() && !self.format.is_empty() { vec!["svg"] } else { written }
     }
 
     /// The formats that are chosen and that this build does not write.

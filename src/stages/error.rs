@@ -272,7 +272,9 @@ fn help_of_loop(error: &LoopError) -> &'static str {
             "contacts that grow together may have none: reduce cycle.max_load; with model.coalescence = \"merge\" or \"none\", try \"cover\""
         }
         LoopError::EndlessAvalanche { .. } => "reduce cycle.max_load; with model.coalescence = \"cover\" or \"merge\", try \"none\"",
-        LoopError::Closed { .. } => "set boundary_elements.opening = \"strength\", or reduce cycle.max_load",
+        LoopError::Closed { .. } => {
+            "set boundary_elements.opening = \"strength\"; a smaller cycle.max_load helps only if adhesion alone does not close the contact"
+        }
         LoopError::Inseparable { .. } => "set boundary_elements.opening = \"anywhere\", or reduce the work of adhesion",
         LoopError::ExcessArea { load_before_n, .. } if *load_before_n > 0.0 => {
             "reduce cycle.max_load, or set model.method = \"boundary_elements\", which reaches full contact"

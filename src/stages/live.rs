@@ -44,10 +44,7 @@ struct Shared {
 
 impl<'a> Live<'a> {
     pub(super) fn of(campaign: &Campaign, task: &Task, inner: &'a dyn Watch) -> Self {
-        let pulse = Pulse::begin(&campaign.dir);
-        if let Some(pulse) = &pulse {
-            inner.temporary(pulse.path());
-        }
+        let pulse = Pulse::begin(&campaign.dir, |path| inner.temporary(path));
         let page = campaign.dir.join(PAGE);
         let mut state = State::of(campaign, task);
         // A power cut may leave an empty page.

@@ -9,7 +9,7 @@ use std::ffi::OsStr;
 use std::fs::{File, Permissions};
 use std::io::{self, Read as _, Write as _};
 use std::path::{Path, PathBuf};
-use std::sync::{PoisonError, RwLock, RwLockWriteGuard};
+use std::sync::{PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
 
 use super::error::{Cause, StoreError};
 use crate::text::shown;
@@ -28,6 +28,11 @@ static WRITING: RwLock<()> = RwLock::new(());
 /// Waits until no file is being written, and blocks new writers until the returned guard is dropped.
 pub fn quiet() -> RwLockWriteGuard<'static, ()> {
     WRITING.write().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Blocks [`quiet`] until the returned guard is dropped.
+pub(super) fn writing() -> RwLockReadGuard<'static, ()> {
+    WRITING.read().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// A file that has been put in place.
@@ -126,7 +131,7 @@ fn commit_inner(
     write: impl FnOnce(&Path) -> Result<(), Cause>,
     check: impl FnOnce(&Path) -> Result<(), Cause>,
 ) -> Result<Written, Cause> {
-    let _writing = WRITING.read().unwrap_or_else(PoisonError::into_inner);
+    let _writing = writing();
     let directory = match path.parent() {
         Some(parent) if parent.as_os_str().is_empty() => Path::new("."),
         Some(parent) => parent,

@@ -3,6 +3,7 @@
 //! The process holds a lock (`flock`) on its file, which the system releases when the process ends in any way. Where a file system has no such locks or does not share
 //! them between machines, the age of the file decides. No process waits for a heartbeat, and nothing is refused because of one.
 
+use super::commit::writing;
 use serde::{Deserialize, Serialize};
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{Seek as _, SeekFrom, Write as _};
@@ -83,13 +84,15 @@ pub struct Pulse {
 }
 
 impl Pulse {
-    /// Begins in an output folder; nothing where no file can be written there.
-    #[must_use]
-    pub fn begin(dir: &Path) -> Option<Self> {
+    /// Begins in an output folder; nothing where no file can be written there. `announce` receives the path before the file is there; an interrupt waits
+    /// for both.
+    pub fn begin(dir: &Path, announce: impl FnOnce(&Path)) -> Option<Self> {
+        let _writing = writing();
         let folder = dir.join(FOLDER);
         remove_ended(&folder);
         let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_nanos();
         let path = folder.join(format!("hysteron-{}-{now:x}.json", std::process::id()));
+        announce(&path);
         // Another process may just remove the folder.
         let create = |_| {
             std::fs::create_dir_all(&folder).ok()?;
@@ -105,12 +108,6 @@ impl Pulse {
             }
         }
         Some(Self { file, path, length: 0 })
-    }
-
-    /// Path of the file.
-    #[must_use]
-    pub fn path(&self) -> &Path {
-        &self.path
     }
 
     /// Writes a state. In one piece and in place, since the lock is on the file; a shorter state is filled with spaces. A full disk ends the run elsewhere.

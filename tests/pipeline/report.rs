@@ -334,7 +334,7 @@ fn e2e_the_spec_chooses_the_files_of_the_figures() {
     let ended = bench.verb("run", &[]);
     assert_eq!(code(&ended), 0, "{}", stderr(&ended));
     let said = stdout(&ended);
-    assert_eq!(said.contains("\nFigures: SVG; PNG need"), !cfg!(feature = "raster"), "{said}");
+    assert_eq!(said.contains("\nFigures: SVG; PNG needs"), !cfg!(feature = "raster"), "{said}");
     let written = files(&bench.out());
     assert!(
         written.contains_key(Path::new("figures/zeta_A.png")) == cfg!(feature = "raster")

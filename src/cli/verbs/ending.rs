@@ -89,8 +89,10 @@ impl<'a> Ended<'a> {
 
     /// Formats of the figures that this build does not write.
     fn formats(&self) -> String {
-        let left_out = self.campaign.spec.figures.left_out().iter().map(|format| format.to_uppercase()).collect::<Vec<_>>().join(" and ");
-        if left_out.is_empty() { left_out } else { format!("Figures: SVG; {left_out} need a build with `--features raster`.\n") }
+        let left_out: Vec<String> = self.campaign.spec.figures.left_out().iter().map(|format| format.to_uppercase()).collect();
+        let needs = if left_out.len() == 1 { "needs" } else { "need" };
+        let text = || format!("Figures: SVG; {} {needs} a build with `--features raster`.\n", left_out.join(" and "));
+        if left_out.is_empty() { String::new() } else { text() }
     }
 
     /// Warnings of the cases, once they are known.
@@ -166,6 +168,7 @@ pub(super) fn tally_json(ended: &Ended<'_>) -> String {
         "stages": stages,
         "failures": failures,
         "not_reached": unreached,
+        "figure_formats_left_out": ended.campaign.spec.figures.left_out(),
         "elapsed_s": ended.time.as_secs_f64(),
         "size_bytes": ended.size_bytes,
     });

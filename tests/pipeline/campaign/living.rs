@@ -80,7 +80,7 @@ fn law_a_heartbeat_lives_as_long_as_its_process() {
     };
     let living = || processes(folder.path())[0].clone();
     assert!(living().is_empty());
-    let mut pulse = Pulse::begin(folder.path()).unwrap();
+    let mut pulse = Pulse::begin(folder.path(), |_| {}).unwrap();
     // A longer and a shorter state in one place.
     for tasks in [1, 20, 2] {
         pulse.beat(&state(&own, tasks));
@@ -104,7 +104,7 @@ fn law_a_heartbeat_lives_as_long_as_its_process() {
     assert_eq!(processes(folder.path())[1].len(), 2, "one of this machine, and the old one");
     // A new process removes those of ended processes, and a torn one that no process holds.
     drop(pulse);
-    drop(Pulse::begin(folder.path()).unwrap());
+    drop(Pulse::begin(folder.path(), |_| {}).unwrap());
     let mut left: Vec<String> =
         fs::read_dir(folder.path().join("running")).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
     left.sort();
