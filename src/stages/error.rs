@@ -273,7 +273,7 @@ fn help_of_loop(error: &LoopError) -> &'static str {
         }
         LoopError::EndlessAvalanche { .. } => "reduce cycle.max_load; with model.coalescence = \"cover\" or \"merge\", try \"none\"",
         LoopError::Closed { .. } => {
-            "set boundary_elements.opening = \"strength\"; a smaller cycle.max_load helps only if adhesion alone does not close the contact"
+            "set boundary_elements.opening = \"strength\", or reduce cycle.max_load if adhesion alone does not close the contact"
         }
         LoopError::Inseparable { .. } => "set boundary_elements.opening = \"anywhere\", or reduce the work of adhesion",
         LoopError::ExcessArea { load_before_n, .. } if *load_before_n > 0.0 => {
