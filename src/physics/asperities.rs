@@ -9,7 +9,7 @@ use crate::surface::measured::find_measured;
 use crate::surface::summits::{Summit, find_summits};
 use crate::{LoopPosition, PhysicsError};
 
-/// Asperities from which on a cycle has checkpoints, and their interval of the mean penetration over the rms height.
+/// Number of asperities from which on a cycle has checkpoints.
 pub const CHECKPOINTS_FROM: usize = 20_000;
 /// Interval of the mean penetration between these checkpoints, over the rms height.
 pub const CHECKPOINT_INTERVAL: f64 = 0.1;

@@ -86,6 +86,7 @@ pub struct Pulse {
 impl Pulse {
     /// Begins in an output folder; nothing where no file can be written there. `announce` receives the path before the file is there; an interrupt waits
     /// for both.
+    #[must_use]
     pub fn begin(dir: &Path, announce: impl FnOnce(&Path)) -> Option<Self> {
         let _writing = writing();
         let folder = dir.join(FOLDER);

@@ -367,8 +367,8 @@ fn e2e_a_state_in_a_file_is_enough_to_unload_by_boundary_elements() {
             assert_eq!(got.map(f64::to_bits), [approach[k], load[k], area[k], work[k]].map(f64::to_bits), "step {k}");
         }
     }
-    let told = stages::unload_again(&campaign, unit, 0.003).unwrap_err().to_string();
-    assert!(told.contains("0.003") && told.contains("[0.002, 0.004]"), "{told}");
+    let error = stages::unload_again(&campaign, unit, 0.003).unwrap_err().to_string();
+    assert!(error.contains("0.003") && error.contains("[0.002, 0.004]"), "{error}");
 }
 
 #[test]

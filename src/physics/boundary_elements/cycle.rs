@@ -57,11 +57,10 @@ impl BranchRun for CycleRun<'_> {
     }
 
     fn advance(&mut self, reversal: Option<usize>, progress: &dyn Fn(LoopPosition)) -> Result<bool, PhysicsError> {
-        let is_over = match reversal {
-            None => self.load(progress)?,
-            Some(reversal) => self.unload(reversal, progress)?,
-        };
-        Ok(is_over)
+        match reversal {
+            None => self.load(progress),
+            Some(reversal) => self.unload(reversal, progress),
+        }
     }
 
     /// By the limits of the asperity model: the steps of such a loop are too long.
