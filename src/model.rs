@@ -3,4 +3,6 @@
 mod case;
 
 pub use crate::physics::model::*;
-pub use case::{CaseParams, CycleParams, ElementParams, ModelParams, SurfaceParams};
+pub use case::{
+    AsperityOptions, Attraction, CaseParams, ElementOptions, GeneratedSurface, LoadingPath, MeasuredSurface, MethodOptions, SurfaceSource,
+};

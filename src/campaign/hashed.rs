@@ -2,7 +2,8 @@
 
 use super::Stage;
 use super::key_inputs::{Canonical, Form, case_members, cycle, extract, generate, of_surface, of_whole_case, read_by_cycle, seed_of};
-use crate::spec::{Case, CaseParams, Spec, SurfaceParams};
+use crate::model::SurfaceSource;
+use crate::spec::{Case, CaseParams, Spec};
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::path::Path;
@@ -82,11 +83,12 @@ fn case_key(spec: &Spec, params: &CaseParams) -> String {
 }
 
 /// The readable part of ids: of a measured surface the name of its file, without its folder and its ending.
-fn readable(params: &SurfaceParams) -> String {
-    if !params.is_measured() {
-        return format!("H{:.2}_z{}", params.hurst, params.magnification);
-    }
-    let stem = Path::new(&params.file).file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+fn readable(params: &SurfaceSource) -> String {
+    let file = match params {
+        SurfaceSource::Generated(surface) => return format!("H{:.2}_z{}", surface.hurst, surface.magnification),
+        SurfaceSource::Measured(surface) => &surface.file,
+    };
+    let stem = Path::new(file).file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     let plain = |c: char| if c.is_ascii_alphanumeric() || c == '-' { c } else { '_' };
     let name: String = stem.chars().map(plain).take(32).collect();
     if name.is_empty() { "surface".to_owned() } else { name }

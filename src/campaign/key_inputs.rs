@@ -4,10 +4,11 @@
 
 use super::{Campaign, CycleUnit, Stage, Standing, SurfaceUnit};
 use crate::keys::{canonical, key_of_text, preimage};
+use crate::model::{MeasuredSurface, MethodOptions, SurfaceSource};
 use crate::physics::asperities::Asperities;
 use crate::physics::cycle::Method;
 use crate::physics::elements::Elements;
-use crate::spec::{Case, CaseParams, MEASURED, Spec, SurfaceParams};
+use crate::spec::{Case, CaseParams, Spec};
 use serde_json::{Map, Value, json};
 
 /// Form of key inputs.
@@ -97,7 +98,7 @@ pub(super) fn cycle<F: Form>(members: &[(&'static str, F)], asperities_key: &str
 impl Campaign {
     /// Inputs of the tables over realizations: the cases with their labels, the cycles with their status and error messages, and the name of the run.
     fn statistics_inputs<F: Form>(&self, cycles: &[Standing]) -> F {
-        let label = |case: &Case| case.params.surface.is_measured().then(|| self.file_label(&case.params.surface.file));
+        let label = |case: &Case| self.label_of(&case.params.surface);
         let cases = self.cases.iter().map(|unit| match label(&unit.case) {
             Some(label) => F::of(&json!([unit.id, unit.case.sweeps, label])),
             None => F::of(&json!([unit.id, unit.case.sweeps])),
@@ -184,7 +185,7 @@ fn state(standing: &Standing) -> &'static str {
 /// The parameters of a case without the errata that only analytical estimates read.
 pub(super) fn read_by_cycle(params: &CaseParams) -> CaseParams {
     let mut params = params.clone();
-    params.model.as_printed.retain(|slip| slip.in_contact());
+    params.as_printed.retain(|slip| slip.in_contact());
     params
 }
 
@@ -206,24 +207,29 @@ const fn present(versions: &[(u32, &str)]) -> u32 {
 
 /// Inputs of a cycle in its key, besides the asperities.
 fn of_case(params: &CaseParams) -> Vec<(&'static str, Value)> {
-    let params = read_by_cycle(params);
-    let [material, mut model, mut cycle] = [plain(&params.material), plain(&params.model), plain(&params.cycle)];
-    if params.by_elements() {
-        let is_mirrored = params.surface.is_measured() && !params.surface.periodic;
-        let version = if is_mirrored || params.cycle.max_load.len() > 1 { present(Elements::VERSIONS) } else { ELEMENTS_VERSION };
-        model = json!({ "method": model["method"], "method_version": version });
-        remove(&mut cycle, "approach_step");
-        return vec![("material", material), ("model", model), ("boundary_elements", plain(&params.boundary_elements)), ("cycle", cycle)];
+    let mut tables = plain(&read_by_cycle(params));
+    let mut take = |name: &'static str| (name, tables[name].take());
+    let [material, mut model, elements, mut cycle] = ["material", "model", "boundary_elements", "cycle"].map(&mut take);
+    match &params.method {
+        MethodOptions::Asperities(_) => {
+            model.1["method_version"] = json!(asperities_version());
+            vec![material, model, cycle]
+        }
+        MethodOptions::Elements(_) => {
+            let is_first = params.surface.is_periodic() && params.cycle.max_load.len() == 1;
+            let version = if is_first { ELEMENTS_VERSION } else { present(Elements::VERSIONS) };
+            model.1 = json!({ "method": model.1["method"], "method_version": version });
+            remove(&mut cycle.1, "approach_step");
+            vec![material, model, elements, cycle]
+        }
     }
-    model["method_version"] = json!(asperities_version());
-    vec![("material", material), ("model", model), ("cycle", cycle)]
 }
 
 /// Parameters of a case in its identity. Those of the asperity model are the same as before there was another method.
 pub(super) fn of_whole_case(spec: &Spec, params: &CaseParams) -> Value {
     let mut reads = plain(params);
     reads["surface"] = of_surface(spec, &params.surface);
-    if !params.by_elements() {
+    if params.asperities().is_some() {
         remove(&mut reads, "boundary_elements");
         remove(&mut reads["model"], "method");
     }
@@ -240,8 +246,8 @@ fn remove(value: &mut Value, name: &str) {
 const MEASURED_HEADER_VERSION: u32 = 2;
 
 /// Seed in the key of a surface; a measured one has none.
-pub(super) fn seed_of(spec: &Spec, params: &SurfaceParams) -> u64 {
-    if params.is_measured() { 0 } else { spec.seed }
+pub(super) fn seed_of(spec: &Spec, params: &SurfaceSource) -> u64 {
+    params.generated().map_or(0, |_| spec.seed)
 }
 
 /// Version of the import of measured surfaces and of the search for their asperities. It is part of their
@@ -249,30 +255,27 @@ pub(super) fn seed_of(spec: &Spec, params: &SurfaceParams) -> u64 {
 const MEASURED_VERSION: u32 = 2;
 
 /// Inputs of a surface in its key: parameters of a generated one, contents of the file and preprocessing of a measured one.
-pub(super) fn of_surface(spec: &Spec, params: &SurfaceParams) -> Value {
-    let SurfaceParams { file, dataset, periodic, pixel_m, size_m, size_y_m, unit, .. } = params;
-    let SurfaceParams { skip_lines, width, transpose, missing, detrend, filter, points_per_shortest_wavelength, .. } = params;
-    if params.is_measured() {
-        let mut reads = json!({
-            "reading_version": READING_VERSION, "blake3": spec.files.get(file), "dataset": dataset, "periodic": periodic,
-            "pixel_m": pixel_m, "size_m": size_m, "size_y_m": size_y_m, "unit": unit, "skip_lines": skip_lines, "width": width,
-            "transpose": transpose, "missing": missing, "detrend": detrend, "filter": filter,
-            "points_per_shortest_wavelength": points_per_shortest_wavelength, "method_version": MEASURED_VERSION,
-            "header_version": MEASURED_HEADER_VERSION,
-        });
-        corrections(params).into_iter().for_each(|(name, value)| reads[name] = value);
-        return reads;
-    }
-    let mut reads = plain(params);
-    if let Some(members) = reads.as_object_mut() {
-        members.retain(|name, _| !MEASURED.contains(&name.as_str()));
-    }
+pub(super) fn of_surface(spec: &Spec, params: &SurfaceSource) -> Value {
+    let surface = match params {
+        SurfaceSource::Generated(surface) => return plain(surface),
+        SurfaceSource::Measured(surface) => surface,
+    };
+    let MeasuredSurface { file, dataset, periodic, pixel_m, size_m, size_y_m, unit, skip_lines, width, .. } = &**surface;
+    let MeasuredSurface { transpose, missing, detrend, filter, points_per_shortest_wavelength, .. } = &**surface;
+    let mut reads = json!({
+        "reading_version": READING_VERSION, "blake3": spec.files.get(file), "dataset": dataset, "periodic": periodic,
+        "pixel_m": pixel_m, "size_m": size_m, "size_y_m": size_y_m, "unit": unit, "skip_lines": skip_lines, "width": width,
+        "transpose": transpose, "missing": missing, "detrend": detrend, "filter": filter,
+        "points_per_shortest_wavelength": points_per_shortest_wavelength, "method_version": MEASURED_VERSION,
+        "header_version": MEASURED_HEADER_VERSION,
+    });
+    corrections(surface).into_iter().for_each(|(name, value)| reads[name] = value);
     reads
 }
 
 /// Corrections of a measured surface in its key; only corrections that are applied.
-fn corrections(params: &SurfaceParams) -> Vec<(&'static str, Value)> {
-    let SurfaceParams { outliers, align_rows, fast_axis, tip_radius_m, .. } = params;
+fn corrections(params: &MeasuredSurface) -> Vec<(&'static str, Value)> {
+    let MeasuredSurface { outliers, align_rows, fast_axis, tip_radius_m, .. } = params;
     let made = [
         (*outliers, "outliers", json!(outliers)),
         (*align_rows, "align_rows", json!(align_rows)),

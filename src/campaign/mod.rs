@@ -25,7 +25,8 @@ pub use sources::with_recorded_files;
 pub use standing::{Standing, Survey};
 
 use crate::keys::short;
-use crate::spec::{Case, Spec, SurfaceParams};
+use crate::model::SurfaceSource;
+use crate::spec::{Case, Spec};
 use hashed::Hashed;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::PathBuf;
@@ -82,7 +83,7 @@ pub struct SurfaceUnit {
     /// Key of the asperity table.
     pub asperities_key: String,
     /// Parameters of the surface.
-    pub params: SurfaceParams,
+    pub params: SurfaceSource,
     /// Number of the realisation.
     pub realization: u32,
 }
@@ -174,7 +175,7 @@ impl Campaign {
     #[must_use]
     pub fn new(spec: Spec, dir: PathBuf) -> Self {
         // A measured surface is one surface.
-        let count = |case: &Case| if case.params.surface.is_measured() { 1 } else { spec.realizations.least() };
+        let count = |case: &Case| case.params.surface.measured().map_or(spec.realizations.least(), |_| 1);
         let counts = spec.cases.iter().map(count).collect();
         Self::with_counts(spec, dir, counts)
     }

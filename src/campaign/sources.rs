@@ -3,6 +3,7 @@
 //! Relative names in `campaign.toml` start at its folder, so that a project can be moved. Its provenance record has the absolute paths, so that the run alone can be moved.
 
 use super::Campaign;
+use crate::model::SurfaceSource;
 use crate::paths::{relative, whole};
 use crate::spec::Spec;
 use crate::store::{Found, read_receipt};
@@ -35,15 +36,21 @@ pub(super) fn labels(spec: &Spec) -> BTreeMap<String, String> {
 }
 
 impl Campaign {
-    /// Label of the file of a measured surface in tables.
+    /// Label of the file of a measured surface in tables; a generated surface has none.
     #[must_use]
-    pub fn file_label(&self, file: &str) -> String {
+    pub fn label_of(&self, surface: &SurfaceSource) -> Option<String> {
+        surface.measured().map(|surface| self.file_label(&surface.file))
+    }
+
+    /// Label of a file of a measured surface in tables.
+    fn file_label(&self, file: &str) -> String {
         let name = || Path::new(file).file_name().unwrap_or_default().to_string_lossy().into_owned();
         self.labels.get(file).cloned().unwrap_or_else(name)
     }
 
     /// A message with the label of a file in place of its path: the part that begins like an absolute path and ends with the name of the file.
-    pub(super) fn with_label(&self, message: &str, file: &str) -> String {
+    pub(super) fn with_label(&self, message: &str, surface: &SurfaceSource) -> String {
+        let Some(file) = surface.measured().map(|surface| surface.file.as_str()) else { return message.to_owned() };
         let Some(name) = Path::new(file).file_name().map(|name| visible(&name.to_string_lossy())) else { return message.to_owned() };
         let label = self.file_label(file);
         let plain = message.replace(&shown(&whole(Path::new(file))), &label);

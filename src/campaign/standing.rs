@@ -140,7 +140,7 @@ impl Campaign {
         let Standing::Failed(why) = standing else { return None };
         let (problem, help) = why.split_once("\nhelp: ").unwrap_or((why, ""));
         let inside = |text: &str| text.replace(&format!("{}{}", self.dir.display(), std::path::MAIN_SEPARATOR), "");
-        Some([problem, help].map(|text| self.with_label(&inside(text), &self.surfaces[unit.surface].params.file)))
+        Some([problem, help].map(|text| self.with_label(&inside(text), &self.surfaces[unit.surface].params)))
     }
 
     /// Loads `F_max/(E* A0)` of a finished cycle that have no result, with their errors.

@@ -1,40 +1,39 @@
-//! Parameters of a case: surface, material, model, boundary elements and loading path.
+//! Parameters of a case: surface, material, method and loading path.
 
 use super::{
-    Amplitudes, Attraction, Boundary, Coalescence, Detrend, FastAxis, Filter, Interaction, JumpIn, KeptContacts, Material, Method, Missing,
-    Normalization, Nucleation, Opening, Slip, Slips,
+    Amplitudes, AttractionKind, Boundary, Coalescence, Detrend, FastAxis, Filter, Interaction, JumpIn, KeptContacts, Material, Method,
+    Missing, Normalization, Nucleation, Opening, Slip, Slips,
 };
 use crate::physics::surface::spectrum::Spectrum;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
-/// Everything that a case is made of but its seed.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+/// Everything that a case is made of but its seed. It serializes as the tables of a spec.
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct CaseParams {
     /// The rough surface.
-    pub surface: SurfaceParams,
+    pub surface: SurfaceSource,
     /// The half-space and its adhesion.
     pub material: Material,
-    /// The choices that the model leaves open.
-    pub model: ModelParams,
-    /// Boundary elements; the defaults for the asperity model.
-    pub boundary_elements: ElementParams,
+    /// The method and its options.
+    pub method: MethodOptions,
+    /// Uncorrected equations of the paper, sorted, each once. Boundary elements have those of analytical estimates alone.
+    pub as_printed: Vec<Slip>,
     /// The loading and unloading path.
-    pub cycle: CycleParams,
+    pub cycle: LoadingPath,
 }
 
-impl CaseParams {
-    /// True if boundary elements compute the case.
-    #[must_use]
-    pub fn by_elements(&self) -> bool {
-        self.model.method == Method::BoundaryElements
-    }
+/// Origin of a surface.
+#[derive(Debug, Clone, PartialEq)]
+pub enum SurfaceSource {
+    /// A self-affine surface of a spectrum.
+    Generated(GeneratedSurface),
+    /// A measured surface.
+    Measured(Box<MeasuredSurface>),
 }
 
-/// A self-affine surface on a square, or a measured one.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct SurfaceParams {
+/// A self-affine surface on a square.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct GeneratedSurface {
     /// Side L of the square \[m\].
     pub length_m: f64,
     /// Root mean square height \[m\].
@@ -49,7 +48,12 @@ pub struct SurfaceParams {
     pub normalization: Normalization,
     /// The moduli of the Fourier modes.
     pub amplitudes: Amplitudes,
-    /// The file of a measured surface; empty for a generated one. Of the parameters above a measured one reads the points per shortest wavelength alone.
+}
+
+/// A measured surface and its treatment.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeasuredSurface {
+    /// Its file.
     pub file: String,
     /// Which of the file's fields it is; empty for the only one.
     pub dataset: String,
@@ -73,8 +77,10 @@ pub struct SurfaceParams {
     pub missing: Missing,
     /// Shape that is removed from its heights by least squares; the mean alone if it is periodic.
     pub detrend: Detrend,
-    /// Low-pass filter of a measured surface.
+    /// Low-pass filter.
     pub filter: Filter,
+    /// Cut-off wavelength of the filter in pixels.
+    pub points_per_shortest_wavelength: u32,
     /// True if outliers are replaced.
     pub outliers: bool,
     /// True if the offsets of scan lines are removed.
@@ -85,26 +91,18 @@ pub struct SurfaceParams {
     pub tip_radius_m: f64,
 }
 
-impl SurfaceParams {
-    /// True if it is a measured surface.
-    #[must_use]
-    pub fn is_measured(&self) -> bool {
-        !self.file.is_empty()
-    }
-
-    /// Grid points along one side: ζ times the points per shortest wavelength. A validated spec limits it.
-    #[must_use]
-    pub fn grid(&self) -> u64 {
-        u64::from(self.magnification) * u64::from(self.points_per_shortest_wavelength)
-    }
+/// A method with its options.
+#[derive(Debug, Clone, PartialEq)]
+pub enum MethodOptions {
+    /// Interacting asperities.
+    Asperities(AsperityOptions),
+    /// Boundary elements.
+    Elements(ElementOptions),
 }
 
-/// The choices that the model leaves open.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ModelParams {
-    /// Method of the cycle.
-    pub method: Method,
+/// Options of the asperity model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AsperityOptions {
     /// Elastic interaction between contacts.
     pub interaction: Interaction,
     /// Boundary condition of the square.
@@ -113,47 +111,20 @@ pub struct ModelParams {
     pub coalescence: Coalescence,
     /// When a free asperity jumps into contact.
     pub jump_in: JumpIn,
-    /// Uncorrected equations of the paper, sorted, each once.
-    pub as_printed: Vec<Slip>,
     /// Go on where an asperity's Tabor parameter is below 2 and JKR no longer holds.
     pub allow_low_tabor: bool,
-}
-
-impl ModelParams {
-    /// Uncorrected equations, in the form that the physics uses.
-    #[must_use]
-    pub fn slips(&self) -> Slips {
-        self.as_printed.iter().copied().collect()
-    }
-}
-
-/// The loading and unloading path.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct CycleParams {
-    /// Load reversals `F/(E* A0)` of the one loading path, ascending, each once.
-    pub max_load: Vec<f64>,
-    /// Step of the approach, as a part of the rms height.
+    /// Step of the mean penetration between outputs, as a part of the rms height.
     pub approach_step: f64,
-    /// Which steps of the table of contact spots are kept.
-    pub contacts: KeptContacts,
 }
 
-/// Parameters of boundary elements.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ElementParams {
-    /// Grid points along a side; 0 for the automatic grid.
-    pub points: u32,
+/// Options of boundary elements.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ElementOptions {
+    /// Grid points along a side; nothing for the automatic grid.
+    pub points: Option<u32>,
     /// Attraction between the surfaces.
     pub attraction: Attraction,
-    /// Range ρ of the Morse law \[m\]; 0 for one that follows the grid.
-    pub range_m: f64,
-    /// Gap at which a point comes into contact.
-    pub nucleation: Nucleation,
-    /// Rule for the opening of contact.
-    pub opening: Opening,
-    /// Step of the approach, as a part of the rms height.
+    /// Step of the mean penetration, as a part of the rms height.
     pub approach_step: f64,
     /// Most halvings of a step in which an event leaves its energy uncertain.
     pub halvings: u32,
@@ -161,8 +132,161 @@ pub struct ElementParams {
     pub precision: f64,
 }
 
+/// Attraction between the surfaces of boundary elements.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Attraction {
+    /// The JKR limit: contact is bonded and opens like a crack.
+    Bonded {
+        /// Gap at which a point comes into contact.
+        nucleation: Nucleation,
+        /// Rule for the opening of contact.
+        opening: Opening,
+    },
+    /// Morse's law of a finite range.
+    Range {
+        /// Range ρ \[m\]; nothing for one that follows the grid.
+        range_m: Option<f64>,
+    },
+}
+
+/// The loading and unloading path.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LoadingPath {
+    /// Load reversals `F/(E* A0)` of the one loading path, ascending, each once.
+    pub max_load: Vec<f64>,
+    /// Which steps of the table of contact spots are kept.
+    pub contacts: KeptContacts,
+}
+
+impl CaseParams {
+    /// Options of the asperity model, if it computes the case.
+    #[must_use]
+    pub fn asperities(&self) -> Option<&AsperityOptions> {
+        if let MethodOptions::Asperities(options) = &self.method { Some(options) } else { None }
+    }
+
+    /// Options of boundary elements, if they compute the case.
+    #[must_use]
+    pub fn elements(&self) -> Option<&ElementOptions> {
+        if let MethodOptions::Elements(options) = &self.method { Some(options) } else { None }
+    }
+
+    /// Boundary condition of the square.
+    #[must_use]
+    pub fn boundary(&self) -> Boundary {
+        self.asperities().map_or(Boundary::Periodic, |options| options.boundary)
+    }
+
+    /// Uncorrected equations, in the form that the physics uses.
+    #[must_use]
+    pub fn slips(&self) -> Slips {
+        self.as_printed.iter().copied().collect()
+    }
+}
+
+impl SurfaceSource {
+    /// The generated surface, if it is one.
+    #[must_use]
+    pub fn generated(&self) -> Option<&GeneratedSurface> {
+        if let Self::Generated(surface) = self { Some(surface) } else { None }
+    }
+
+    /// The measured surface, if it is one.
+    #[must_use]
+    pub fn measured(&self) -> Option<&MeasuredSurface> {
+        if let Self::Measured(surface) = self { Some(surface) } else { None }
+    }
+
+    /// True if it continues periodically.
+    #[must_use]
+    pub fn is_periodic(&self) -> bool {
+        self.measured().is_none_or(|surface| surface.periodic)
+    }
+
+    /// Grid points per shortest wavelength; of a measured surface per cut-off wavelength of its filter.
+    #[must_use]
+    pub fn points_per_shortest_wavelength(&self) -> u32 {
+        match self {
+            Self::Generated(surface) => surface.points_per_shortest_wavelength,
+            Self::Measured(surface) => surface.points_per_shortest_wavelength,
+        }
+    }
+}
+
+impl GeneratedSurface {
+    /// Grid points along one side: ζ times the points per shortest wavelength. A validated spec limits it.
+    #[must_use]
+    pub fn grid(&self) -> u64 {
+        u64::from(self.magnification) * u64::from(self.points_per_shortest_wavelength)
+    }
+
+    /// Target spectrum.
+    #[must_use]
+    pub fn spectrum(&self) -> Spectrum {
+        Spectrum {
+            length_m: self.length_m,
+            rms_height_m: self.rms_height_m,
+            hurst: self.hurst,
+            magnification: self.magnification,
+            normalization: self.normalization,
+            amplitudes: self.amplitudes,
+        }
+    }
+}
+
+impl Attraction {
+    /// Key word of the attraction.
+    #[must_use]
+    pub fn kind(self) -> AttractionKind {
+        match self {
+            Self::Bonded { .. } => AttractionKind::Bonded,
+            Self::Range { .. } => AttractionKind::Range,
+        }
+    }
+
+    /// Where contact forms and opens in the JKR limit; nothing with a range.
+    #[must_use]
+    pub fn bonded(self) -> Option<(Nucleation, Opening)> {
+        if let Self::Bonded { nucleation, opening } = self { Some((nucleation, opening)) } else { None }
+    }
+}
+
+impl MethodOptions {
+    /// Key word of the method.
+    #[must_use]
+    pub fn kind(&self) -> Method {
+        match self {
+            Self::Asperities(_) => Method::Asperities,
+            Self::Elements(_) => Method::BoundaryElements,
+        }
+    }
+
+    /// Step of the mean penetration, as a part of the rms height.
+    #[must_use]
+    pub fn approach_step(&self) -> f64 {
+        match self {
+            Self::Asperities(options) => options.approach_step,
+            Self::Elements(options) => options.approach_step,
+        }
+    }
+}
+
+impl LoadingPath {
+    /// The largest load `F/(E* A0)`.
+    #[must_use]
+    pub fn largest_load(&self) -> f64 {
+        self.max_load.iter().copied().fold(0.0, f64::max)
+    }
+}
+
 // The defaults are the paper's: its surface, its material, one of its loads.
-impl Default for SurfaceParams {
+impl Default for SurfaceSource {
+    fn default() -> Self {
+        Self::Generated(GeneratedSurface::default())
+    }
+}
+
+impl Default for GeneratedSurface {
     fn default() -> Self {
         Self {
             length_m: 1e-3,
@@ -172,6 +296,13 @@ impl Default for SurfaceParams {
             points_per_shortest_wavelength: 8,
             normalization: Normalization::Sample,
             amplitudes: Amplitudes::Fixed,
+        }
+    }
+}
+
+impl Default for MeasuredSurface {
+    fn default() -> Self {
+        Self {
             file: String::new(),
             dataset: String::new(),
             periodic: false,
@@ -185,6 +316,7 @@ impl Default for SurfaceParams {
             missing: Missing::Refuse,
             detrend: Detrend::Plane,
             filter: Filter::Gaussian,
+            points_per_shortest_wavelength: 8,
             outliers: false,
             align_rows: false,
             fast_axis: FastAxis::Auto,
@@ -193,59 +325,39 @@ impl Default for SurfaceParams {
     }
 }
 
-impl Default for ModelParams {
+impl Default for MethodOptions {
+    fn default() -> Self {
+        Self::Asperities(AsperityOptions::default())
+    }
+}
+
+impl Default for AsperityOptions {
     fn default() -> Self {
         Self {
-            method: Method::Asperities,
             interaction: Interaction::Spots,
             boundary: Boundary::Periodic,
             coalescence: Coalescence::Merge,
             jump_in: JumpIn::Wu,
-            as_printed: Vec::new(),
             allow_low_tabor: false,
+            approach_step: 0.01,
         }
     }
 }
 
-impl CycleParams {
-    /// The largest load `F/(E* A0)`.
-    #[must_use]
-    pub fn largest_load(&self) -> f64 {
-        self.max_load.iter().copied().fold(0.0, f64::max)
-    }
-}
-
-impl Default for CycleParams {
+impl Default for ElementOptions {
     fn default() -> Self {
-        Self { max_load: vec![0.0071], approach_step: 0.01, contacts: KeptContacts::Turning }
+        Self { points: None, attraction: Attraction::default(), approach_step: 0.03, halvings: 6, precision: 1e-4 }
     }
 }
 
-impl Default for ElementParams {
+impl Default for Attraction {
     fn default() -> Self {
-        Self {
-            points: 0,
-            attraction: Attraction::Bonded,
-            range_m: 0.0,
-            nucleation: Nucleation::Touch,
-            opening: Opening::Strength,
-            approach_step: 0.03,
-            halvings: 6,
-            precision: 1e-4,
-        }
+        Self::Bonded { nucleation: Nucleation::Touch, opening: Opening::Strength }
     }
 }
 
-impl From<&SurfaceParams> for Spectrum {
-    /// Target spectrum of a generated surface.
-    fn from(params: &SurfaceParams) -> Self {
-        Self {
-            length_m: params.length_m,
-            rms_height_m: params.rms_height_m,
-            hurst: params.hurst,
-            magnification: params.magnification,
-            normalization: params.normalization,
-            amplitudes: params.amplitudes,
-        }
+impl Default for LoadingPath {
+    fn default() -> Self {
+        Self { max_load: vec![0.0071], contacts: KeptContacts::Turning }
     }
 }

@@ -162,7 +162,7 @@ choice! {
 }
 choice! {
     /// Attraction between the surfaces of boundary elements.
-    Attraction {
+    AttractionKind {
         /// JKR limit, range 0: contact forms where the surfaces touch and opens from its edges.
         Bonded = "bonded",
         /// Morse law with the range ρ at every point.

@@ -1,7 +1,7 @@
 //! A parameter of a case: column, symbol, axis label and value.
 
 use super::Column;
-use crate::model::{Attraction, CaseParams, Choice, ElementParams, ModelParams, SurfaceParams};
+use crate::model::CaseParams;
 
 /// Value of a parameter.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,37 +27,6 @@ pub struct CaseFacts<'a> {
     pub element_points: Option<f64>,
     /// Range ρ of the Morse law \[m\].
     pub attraction_range_m: Option<f64>,
-}
-
-impl CaseFacts<'_> {
-    pub(super) fn measured(&self) -> Option<&SurfaceParams> {
-        Some(&self.params.surface).filter(|surface| surface.is_measured())
-    }
-
-    pub(super) fn generated(&self) -> Option<&SurfaceParams> {
-        Some(&self.params.surface).filter(|surface| !surface.is_measured())
-    }
-
-    pub(super) fn asperities(&self) -> Option<&ModelParams> {
-        Some(&self.params.model).filter(|_| !self.params.by_elements())
-    }
-
-    pub(super) fn elements(&self) -> Option<&ElementParams> {
-        Some(&self.params.boundary_elements).filter(|_| self.params.by_elements())
-    }
-
-    pub(super) fn bonded(&self) -> Option<&ElementParams> {
-        self.elements().filter(|elements| elements.attraction == Attraction::Bonded)
-    }
-
-    /// Uncorrected equations in use, joined by `+`.
-    pub(super) fn errata(&self) -> String {
-        self.params.model.as_printed.iter().map(|slip| slip.word()).collect::<Vec<_>>().join("+")
-    }
-
-    pub(super) fn approach_step(&self) -> f64 {
-        self.elements().map_or(self.params.cycle.approach_step, |elements| elements.approach_step)
-    }
 }
 
 /// One parameter of a case.

@@ -45,7 +45,7 @@ const LIST: [Parameter; COUNT] = [
         text("surface_dataset", "Dataset in that file; null for the only one, and for a generated surface").or_null(),
         ["dataset", "dataset"],
         1,
-        |case| case.measured().map(|surface| &surface.dataset).filter(|name| !name.is_empty()).cloned().map(Word),
+        |case| case.params.surface.measured().map(|surface| &surface.dataset).filter(|name| !name.is_empty()).cloned().map(Word),
     ),
     parameter(
         text(
@@ -55,19 +55,19 @@ const LIST: [Parameter; COUNT] = [
         .or_null(),
         ["detrend", "levelling"],
         2,
-        |case| case.measured().map(|surface| word(surface.detrend)),
+        |case| case.params.surface.measured().map(|surface| word(surface.detrend)),
     ),
     parameter(
         text("filter", "Low-pass filter (S-filter) of a measured surface: \"gaussian\" or \"sharp\"; null for a generated surface").or_null(),
         ["S-filter", "S-filter"],
         2,
-        |case| case.measured().map(|surface| word(surface.filter)),
+        |case| case.params.surface.measured().map(|surface| word(surface.filter)),
     ),
     parameter(
         text("outliers", "Outliers of a measured surface: \"replaced\" or \"kept\"; null for a generated surface").or_null(),
         ["outliers", "outliers"],
         27,
-        |case| case.measured().map(|surface| Word(if surface.outliers { "replaced" } else { "kept" }.to_owned())),
+        |case| case.params.surface.measured().map(|surface| Word(if surface.outliers { "replaced" } else { "kept" }.to_owned())),
     ),
     parameter(
         text(
@@ -77,19 +77,19 @@ const LIST: [Parameter; COUNT] = [
         .or_null(),
         ["align_rows", "alignment of scan lines"],
         28,
-        |case| case.measured().map(|surface| if surface.align_rows { word(surface.fast_axis) } else { Word("none".to_owned()) }),
+        |case| case.params.surface.measured().map(|surface| if surface.align_rows { word(surface.fast_axis) } else { Word("none".to_owned()) }),
     ),
     parameter(
         real("tip_radius_m", "m", "Radius R_tip of the tip that measured the surface; null for a generated surface and without one").or_null(),
         ["R_tip", "R_{tip} [m]"],
         29,
-        |case| case.measured().map(|surface| surface.tip_radius_m).filter(|radius| *radius > 0.0).map(Number),
+        |case| case.params.surface.measured().map(|surface| surface.tip_radius_m).filter(|radius| *radius > 0.0).map(Number),
     ),
     parameter(
         real("hurst", "1", "Hurst exponent H; null for a measured surface").or_null().from("Eq 10"),
         ["H", "Hurst exponent H"],
         4,
-        |case| case.generated().map(|surface| Number(surface.hurst)),
+        |case| case.params.surface.generated().map(|surface| Number(surface.hurst)),
     ),
     parameter(
         real(
@@ -101,7 +101,7 @@ const LIST: [Parameter; COUNT] = [
         .from("Eq 10"),
         ["ζ", "magnification ζ"],
         3,
-        |case| case.generated().map(|surface| Number(surface.magnification.into())),
+        |case| case.params.surface.generated().map(|surface| Number(surface.magnification.into())),
     ),
     parameter(
         real("length_m", "m", "Side L of the square; null for a measured surface whose import failed").or_null().from("Eq 10"),
@@ -129,7 +129,7 @@ const LIST: [Parameter; COUNT] = [
         .or_null(),
         ["n", "points per shortest wavelength"],
         7,
-        |case| Some(Number(case.params.surface.points_per_shortest_wavelength.into())),
+        |case| Some(Number(case.params.surface.points_per_shortest_wavelength().into())),
     ),
     parameter(
         text(
@@ -139,13 +139,13 @@ const LIST: [Parameter; COUNT] = [
         .or_null(),
         ["normalization", "normalization"],
         23,
-        |case| case.generated().map(|surface| word(surface.normalization)),
+        |case| case.params.surface.generated().map(|surface| word(surface.normalization)),
     ),
     parameter(
         text("amplitudes", "Fourier amplitudes: \"fixed\" or \"gaussian\"; null for a measured surface").or_null(),
         ["amplitudes", "amplitudes"],
         24,
-        |case| case.generated().map(|surface| word(surface.amplitudes)),
+        |case| case.params.surface.generated().map(|surface| word(surface.amplitudes)),
     ),
     parameter(
         real("contact_modulus_pa", "Pa", "Reduced modulus E*, 1/E* = sum of (1 - ν²)/E over both bodies").from("Eq 1"),
@@ -174,14 +174,14 @@ const LIST: [Parameter; COUNT] = [
         .from("Eqs 6-8"),
         ["interaction", "interaction"],
         19,
-        |case| case.asperities().map(|model| word(model.interaction)),
+        |case| case.params.asperities().map(|model| word(model.interaction)),
     )
     .of_method(),
     parameter(
         text("boundary", "Boundary condition of the square: \"periodic\" or \"isolated\""),
         ["boundary", "boundary"],
         20,
-        |case| Some(word(case.params.model.boundary)),
+        |case| Some(word(case.params.boundary())),
     )
     .of_method(),
     parameter(
@@ -193,7 +193,7 @@ const LIST: [Parameter; COUNT] = [
         .from("Eq 8"),
         ["coalescence", "coalescence"],
         21,
-        |case| case.asperities().map(|model| word(model.coalescence)),
+        |case| case.params.asperities().map(|model| word(model.coalescence)),
     )
     .of_method(),
     parameter(
@@ -205,14 +205,14 @@ const LIST: [Parameter; COUNT] = [
         .from("Eq 3"),
         ["jump_in", "jump-in criterion"],
         22,
-        |case| case.asperities().map(|model| word(model.jump_in)),
+        |case| case.params.asperities().map(|model| word(model.jump_in)),
     )
     .of_method(),
     parameter(
         text("as_printed", "Uncorrected equations of the paper that are in use, joined by +; empty if none"),
         ["as_printed", "uncorrected equations"],
         25,
-        |case| Some(Word(case.errata())),
+        |case| Some(Word(case.params.as_printed.iter().map(|slip| slip.word()).collect::<Vec<_>>().join("+"))),
     ),
     parameter(
         real(
@@ -222,14 +222,14 @@ const LIST: [Parameter; COUNT] = [
         ),
         ["step", "output step/h_{rms}"],
         11,
-        |case| Some(Number(case.approach_step())),
+        |case| Some(Number(case.params.method.approach_step())),
     )
     .of_method(),
     parameter(
         text("method", "Method: \"asperities\" or \"boundary_elements\""),
         ["method", "method"],
         12,
-        |case| Some(word(case.params.model.method)),
+        |case| Some(word(case.params.method.kind())),
     ),
     parameter(
         real("element_points", "1", "Grid points of boundary elements along a side; null for asperities").or_null(),
@@ -246,7 +246,7 @@ const LIST: [Parameter; COUNT] = [
         .or_null(),
         ["attraction", "attraction"],
         14,
-        |case| case.elements().map(|elements| word(elements.attraction)),
+        |case| case.params.elements().map(|elements| word(elements.attraction.kind())),
     )
     .of_method(),
     parameter(
@@ -264,7 +264,7 @@ const LIST: [Parameter; COUNT] = [
         .or_null(),
         ["nucleation", "nucleation"],
         16,
-        |case| case.bonded().map(|elements| word(elements.nucleation)),
+        |case| case.params.elements()?.attraction.bonded().map(|bonded| word(bonded.0)),
     )
     .of_method(),
     parameter(
@@ -275,14 +275,14 @@ const LIST: [Parameter; COUNT] = [
         .or_null(),
         ["opening", "opening"],
         17,
-        |case| case.bonded().map(|elements| word(elements.opening)),
+        |case| case.params.elements()?.attraction.bonded().map(|bonded| word(bonded.1)),
     )
     .of_method(),
     parameter(
         real("halvings", "1", "Most halvings of a step of boundary elements that has an event; null for asperities").or_null(),
         ["halvings", "halvings of a step"],
         26,
-        |case| case.elements().map(|elements| Number(f64::from(elements.halvings))),
+        |case| case.params.elements().map(|elements| Number(f64::from(elements.halvings))),
     )
     .of_method(),
     parameter(
@@ -294,7 +294,7 @@ const LIST: [Parameter; COUNT] = [
         .or_null(),
         ["precision", "precision"],
         18,
-        |case| case.elements().map(|elements| Number(elements.precision)),
+        |case| case.params.elements().map(|elements| Number(elements.precision)),
     )
     .of_method(),
 ];

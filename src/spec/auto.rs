@@ -9,11 +9,11 @@ use toml::de::DeValue;
 
 use super::fault::Faults;
 
+use super::values::Values;
 use super::written::{Written, array};
-use super::{Axis, CaseParams, Spec, SpecErrors, Sweep, Value};
-use crate::model::{Choice as _, JumpIn, Method};
+use super::{Axis, Spec, SpecErrors, Sweep, Value};
+use crate::model::{AsperityOptions, CaseParams, Choice as _, GeneratedSurface, JumpIn, Method};
 use crate::physics::jkr::{Asperity, LEAST_TABOR};
-use crate::physics::surface::spectrum::Spectrum;
 use crate::physics::theory::flattening::flattening;
 use crate::physics::theory::regime::Regime;
 
@@ -39,13 +39,13 @@ impl Choices {
     }
 
     /// Sets the method of a point; true if it was `auto`, which stays until a scan is read.
-    pub(super) fn choose(&mut self, params: &mut CaseParams) -> bool {
-        if params.model.method != Method::Auto {
+    pub(super) fn choose(&mut self, values: &mut Values) -> bool {
+        if values.method != Method::Auto {
             return false;
         }
-        let method = self.given.get(self.made.len()).copied().unwrap_or_else(|| of_target(params));
+        let method = self.given.get(self.made.len()).copied().unwrap_or_else(|| of_target(&values.case()));
         self.made.push(method);
-        params.model.method = method;
+        values.method = method;
         true
     }
 
@@ -59,7 +59,7 @@ impl Choices {
     }
 
     /// The record of the choices: replaces `auto` in the base and in the sweeps if there is one choice for all, and else lists them.
-    pub(super) fn settle(self, base: &mut CaseParams, sweeps: &mut [Sweep]) -> Vec<Method> {
+    pub(super) fn settle(self, base: &mut Values, sweeps: &mut [Sweep]) -> Vec<Method> {
         let Some(first) = self.made.first().copied() else { return Vec::new() };
         let twice = |axis: &Axis| axis.key == KEY && axis.values.len() > 1;
         let is_one = first != Method::Auto && self.made.iter().all(|method| *method == first);
@@ -77,8 +77,8 @@ impl Choices {
             .filter(|axis| axis.key == KEY)
             .flat_map(|axis| &mut axis.values)
             .for_each(replaced);
-        if base.model.method == Method::Auto {
-            base.model.method = first;
+        if base.method == Method::Auto {
+            base.method = first;
         }
         Vec::new()
     }
@@ -91,15 +91,13 @@ const KEY: &str = "model.method";
 
 /// The method of a generated surface by its target spectrum; `auto` for a measured one.
 fn of_target(params: &CaseParams) -> Method {
-    if params.surface.is_measured() {
-        return Method::Auto;
-    }
-    let spectrum = Spectrum::from(&params.surface);
+    let Some(spectrum) = params.surface.generated().map(GeneratedSurface::spectrum) else { return Method::Auto };
     let energy = flattening(&spectrum, params.material.contact_modulus_pa);
     let adhesion = params.material.work_of_adhesion_j_m2;
     let moments = spectrum.moments();
     let method = Regime::expected(&energy, adhesion, params.cycle.largest_load(), moments.rms_slope()).method();
-    let needs_range = adhesion > 0.0 && params.model.jump_in == JumpIn::Wu && !params.model.allow_low_tabor;
+    let by_wu = |options: &AsperityOptions| options.jump_in == JumpIn::Wu && !options.allow_low_tabor;
+    let needs_range = adhesion > 0.0 && params.asperities().is_some_and(by_wu);
     let sharpest = || Asperity::new(1.0 / (SHARPEST * moments.rms_curvature_1_m()), &params.material);
     let is_low = |asperity: Asperity| asperity.tabor(params.material.interaction_range_m) < LEAST_TABOR;
     let is_out_of_range = || needs_range && sharpest().is_ok_and(is_low);
@@ -143,7 +141,7 @@ pub(super) fn chosen(spec: &Spec, text: &str, file: &str, chooser: Chooser<'_>) 
             }
             Err((problem, help)) => {
                 let at = text.find("\"auto\"").map_or(0..0, |at| at..at + 6);
-                let file = &unit.params.surface.file;
+                let file = unit.params.surface.measured().map_or("", |surface| &surface.file);
                 faults.add(&at, format!("`model.method` = \"auto\" cannot be chosen from the scan \"{file}\": {problem}"), help);
                 known.push((case, Method::Auto));
                 methods.push(Method::Auto);

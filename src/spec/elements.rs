@@ -3,9 +3,9 @@
 use super::fault::Faults;
 use super::keys::find;
 use super::number::short;
+use super::values::Values;
 use super::walk::{Origin, written};
-use super::{CaseParams, ElementParams, ModelParams};
-use crate::model::{Attraction, Boundary, Choice, Method, Slip};
+use crate::model::{Attraction, Boundary, CaseParams, Choice, ElementOptions, GeneratedSurface};
 use crate::physics::elements::points_for;
 use crate::text::counted;
 use std::ops::Range;
@@ -33,30 +33,28 @@ pub fn mesh_number(work_length_m: f64, spacing_m: f64, range_m: f64) -> f64 {
     0.5 * (work_length_m * spacing_m).sqrt() / range_m
 }
 
-impl ElementParams {
+impl ElementOptions {
     /// Grid points along the side of a square, whose side is given in shortest wavelengths.
     #[must_use]
     pub fn grid(&self, wavelengths: f64) -> u32 {
-        if self.points > 0 {
-            return self.points;
-        }
-        u32::try_from(points_for(wavelengths)).map_or(MAX_ELEMENTS, |points| points.min(MAX_ELEMENTS))
+        let automatic = || u32::try_from(points_for(wavelengths)).map_or(MAX_ELEMENTS, |points| points.min(MAX_ELEMENTS));
+        self.points.unwrap_or_else(automatic)
     }
 
-    /// Range ρ of the Morse law \[m\], with `Δγ/E*` and the grid spacing \[m\].
+    /// Range ρ of the Morse law \[m\], with `Δγ/E*` and the grid spacing \[m\]; nothing for the JKR limit.
     #[must_use]
-    pub fn range(&self, work_length_m: f64, spacing_m: f64) -> f64 {
-        if self.range_m > 0.0 { self.range_m } else { RANGE * (work_length_m * spacing_m).sqrt() }
+    pub fn range(&self, work_length_m: f64, spacing_m: f64) -> Option<f64> {
+        match self.attraction {
+            Attraction::Bonded { .. } => None,
+            Attraction::Range { range_m } => Some(range_m.unwrap_or_else(|| RANGE * (work_length_m * spacing_m).sqrt())),
+        }
     }
 
     /// Number of steps over the gaps at which a law of the range ρ \[m\] acts, in a cycle with `loads` loads
-    /// and without halvings; 0 without a range.
+    /// and without halvings.
     #[must_use]
     pub fn range_steps(&self, range_m: f64, rms_height_m: f64, loads: usize) -> f64 {
-        match self.attraction {
-            Attraction::Bonded => 0.0,
-            Attraction::Range => (loads + 1) as f64 * 2.0 * END * range_m / (self.approach_step * rms_height_m),
-        }
+        (loads + 1) as f64 * 2.0 * END * range_m / (self.approach_step * rms_height_m)
     }
 
     /// Why a range cannot be used on a surface, and what to do: it acts over many times the rms height, which the steps are a part of.
@@ -104,12 +102,14 @@ impl ElementParams {
                 "increase material.work_of_adhesion_j_m2, or use 0 with model.method = \"asperities\"",
             ));
         }
-        let mesh = mesh_number(work_length_m, spacing, self.range(work_length_m, spacing));
-        if self.attraction == Attraction::Range && mesh > MOST_MESH_NUMBER {
+        let range = self.range(work_length_m, spacing)?;
+        let mesh = mesh_number(work_length_m, spacing, range);
+        if mesh > MOST_MESH_NUMBER {
             return Some((
                 format!(
-                    "the mesh number sqrt(Δγ dx/E*)/(2ρ) is {mesh:.2}, above {MOST_MESH_NUMBER}: the grid traps contact edges (ρ = {} m, dx = {} m)",
-                    short(self.range_m),
+                    "the mesh number sqrt(Δγ dx/E*)/(2ρ) is {mesh:.2}, above {MOST_MESH_NUMBER}: the grid traps contact edges \
+                     (ρ = {} m, dx = {} m)",
+                    short(range),
                     short(spacing)
                 ),
                 "increase boundary_elements.range_m or boundary_elements.points, or use attraction = \"bonded\"",
@@ -124,32 +124,10 @@ fn short_points(points: f64) -> String {
     if points.fract() == 0.0 { counted(points as usize, "point") } else { format!("{points:.2} points") }
 }
 
-/// A case without the values that its method does not read, so that cases which differ in nothing else are one case.
-pub(super) fn without_unread(case: &CaseParams) -> CaseParams {
-    let (mut case, default) = (case.clone(), CaseParams::default());
-    if !case.by_elements() {
-        case.boundary_elements = default.boundary_elements;
-        return case;
-    }
-    let mut printed = std::mem::take(&mut case.model.as_printed);
-    printed.retain(|slip: &Slip| !slip.in_contact());
-    case.model = ModelParams { method: Method::BoundaryElements, as_printed: printed, ..default.model };
-    case.cycle.approach_step = default.cycle.approach_step;
-    match case.boundary_elements.attraction {
-        Attraction::Bonded => case.boundary_elements.range_m = default.boundary_elements.range_m,
-        Attraction::Range => {
-            case.boundary_elements.nucleation = default.boundary_elements.nucleation;
-            case.boundary_elements.opening = default.boundary_elements.opening;
-        }
-    }
-    case
-}
-
 /// Checks the requirements of boundary elements on the other values of their case. The grid of a measured
 /// surface is checked when its file has been read.
-pub(super) fn check_elements(case: &CaseParams, origins: &[Origin], faults: &mut Faults<'_>) {
-    let (surface, material, elements) = (&case.surface, &case.material, &case.boundary_elements);
-    if material.work_of_adhesion_j_m2 == 0.0
+pub(super) fn check_elements(case: &CaseParams, elements: &ElementOptions, values: &Values, origins: &[Origin], faults: &mut Faults<'_>) {
+    if case.material.work_of_adhesion_j_m2 == 0.0
         && let Some(span) = latest(&["material.work_of_adhesion_j_m2", "model.method"], origins)
     {
         let message =
@@ -157,40 +135,45 @@ pub(super) fn check_elements(case: &CaseParams, origins: &[Origin], faults: &mut
         faults.add(&span, message.to_owned(), "use a positive work of adhesion, or method = \"asperities\"".to_owned());
         return;
     }
-    let continues = !surface.is_measured() || surface.periodic;
-    if case.model.boundary == Boundary::Isolated
-        && continues
+    let boundary = values.asperities.boundary;
+    if boundary == Boundary::Isolated
+        && case.surface.is_periodic()
         && let Some(span) = latest(&["model.boundary", "model.method"], origins)
     {
-        let word = case.model.boundary.word();
-        let message = format!("`model.boundary` is \"{word}\", and boundary elements are periodic");
+        let message = format!("`model.boundary` is \"{}\", and boundary elements are periodic", boundary.word());
         faults.add(&span, message, "write boundary = \"periodic\", or method = \"asperities\"".to_owned());
     }
-    if surface.is_measured() {
-        return;
+    if let Some(surface) = case.surface.generated() {
+        check_range(case, (elements, surface), origins, faults);
+        check_grid(case, (elements, surface), origins, faults);
     }
-    check_range(case, origins, faults);
-    let work_length = material.adhesion_length_m();
-    if let Some((message, help)) = elements.refusal(surface.length_m, f64::from(surface.magnification), work_length) {
-        let keys = [
-            "boundary_elements.points",
-            "boundary_elements.range_m",
-            "boundary_elements.attraction",
-            "material.work_of_adhesion_j_m2",
-            "surface.magnification",
-            "model.method",
-        ];
-        if let Some(span) = latest(&keys, origins) {
-            faults.add(&span, message, help.to_owned());
-        }
+}
+
+/// Boundary elements on a generated surface.
+type OnGenerated<'a> = (&'a ElementOptions, &'a GeneratedSurface);
+
+/// Refuses a grid that cannot be used on a generated surface.
+fn check_grid(case: &CaseParams, (elements, surface): OnGenerated<'_>, origins: &[Origin], faults: &mut Faults<'_>) {
+    let wavelengths = f64::from(surface.magnification);
+    let keys = [
+        "boundary_elements.points",
+        "boundary_elements.range_m",
+        "boundary_elements.attraction",
+        "material.work_of_adhesion_j_m2",
+        "surface.magnification",
+        "model.method",
+    ];
+    if let Some((message, help)) = elements.refusal(surface.length_m, wavelengths, case.material.adhesion_length_m())
+        && let Some(span) = latest(&keys, origins)
+    {
+        faults.add(&span, message, help.to_owned());
     }
 }
 
 /// Refuses a range that takes too many steps on a generated surface.
-fn check_range(case: &CaseParams, origins: &[Origin], faults: &mut Faults<'_>) {
-    let (surface, elements) = (&case.surface, &case.boundary_elements);
+fn check_range(case: &CaseParams, (elements, surface): OnGenerated<'_>, origins: &[Origin], faults: &mut Faults<'_>) {
     let spacing = surface.length_m / f64::from(elements.grid(f64::from(surface.magnification)));
-    let range = elements.range(case.material.adhesion_length_m(), spacing);
+    let Some(range) = elements.range(case.material.adhesion_length_m(), spacing) else { return };
     let keys = ["boundary_elements.range_m", "boundary_elements.attraction", "boundary_elements.approach_step", "surface.rms_height_m"];
     if let Some((message, help)) = elements.refusal_of_range(range, surface.rms_height_m, case.cycle.max_load.len())
         && let Some(span) = latest(&keys, origins)

@@ -15,6 +15,7 @@ use super::written::{Written, wrong_type};
 use super::{Case, Spec, SpecErrors, Value};
 use crate::formats::{Found, Refusal, recognize};
 use crate::keys::digest_of_file;
+use crate::model::{MeasuredSurface, SurfaceSource};
 use crate::paths::whole;
 
 /// Reads the table `[files]`.
@@ -40,12 +41,17 @@ pub(super) fn files(written: &Written<'_>, span: &Range<usize>, faults: &mut Fau
 
 /// Refuses the hash of a file that no case names, and gives the others.
 pub(super) fn named(files: BTreeMap<String, (String, Range<usize>)>, cases: &[Case], faults: &mut Faults<'_>) -> BTreeMap<String, String> {
-    let wanted: HashSet<&str> = cases.iter().map(|case| case.params.surface.file.as_str()).collect();
+    let wanted: HashSet<&str> = measured(cases).map(|surface| surface.file.as_str()).collect();
     for (name, (_, span)) in files.iter().filter(|(name, _)| !wanted.contains(name.as_str())) {
         let message = format!("[files] has a checksum of \"{}\", which is not used by any case", shown(name));
         faults.add(span, message, "remove the line, or name the file as surface.file exactly as it is written here".to_owned());
     }
     files.into_iter().map(|(name, (digest, _))| (name, digest)).collect()
+}
+
+/// The measured surfaces of some cases.
+fn measured(cases: &[Case]) -> impl Iterator<Item = &MeasuredSurface> {
+    cases.iter().filter_map(|case| case.params.surface.measured())
 }
 
 /// The spec with the hashes of all files that it names, and of no others. Files that are only in the spec's `folder` are named with it.
@@ -54,10 +60,9 @@ pub(super) fn digested(mut spec: Spec, text: &str, file: &str, folder: &Path) ->
     let mut faults = Faults::new(text, file);
     let mut seen = HashSet::new();
     let mut moved: BTreeMap<String, String> = BTreeMap::new();
-    for case in &spec.cases {
-        let surface = &case.params.surface;
+    for surface in measured(&spec.cases) {
         let name = &surface.file;
-        if name.is_empty() || !seen.insert((name, &surface.dataset)) {
+        if !seen.insert((name, &surface.dataset)) {
             continue;
         }
         let checked = match known.get(name) {
@@ -90,7 +95,11 @@ pub(super) fn digested(mut spec: Spec, text: &str, file: &str, folder: &Path) ->
 
 /// Gives files other names in all places of a spec.
 pub(super) fn rename(spec: &mut Spec, moved: &BTreeMap<String, String>) {
-    let own = spec.cases.iter_mut().map(|case| &mut case.params.surface.file).chain([&mut spec.base.surface.file]);
+    let own = spec.cases.iter_mut().filter_map(|case| match &mut case.params.surface {
+        SurfaceSource::Measured(surface) => Some(&mut surface.file),
+        SurfaceSource::Generated(_) => None,
+    });
+    let own = own.chain([&mut spec.base.measured.file]);
     let axes = spec.sweeps.iter_mut().flat_map(|sweep| &mut sweep.axes).filter(|axis| axis.key == "surface.file");
     let swept = axes.flat_map(|axis| &mut axis.values).filter_map(|value| if let Value::Text(name) = value { Some(name) } else { None });
     for name in own.chain(swept) {

@@ -6,16 +6,17 @@ use std::ops::Range;
 use toml::Spanned;
 
 use super::auto::Choices;
-use super::elements::{check_elements, without_unread};
+use super::elements::check_elements;
 use super::fault::Faults;
 use super::files::named;
 use super::keys::{GENERATED, KEYS, find};
 use super::number::short;
 use super::sweep::{AxisDraft, SweepDraft};
+use super::values::Values;
 use super::walk::{Draft, Origin, written};
-use crate::model::{Boundary, Choice, Detrend, Method};
+use crate::model::{Boundary, CaseParams, Choice, Detrend, GeneratedSurface, MeasuredSurface, Method, SurfaceSource};
 
-use super::{Axis, Case, CaseParams, MAX_CASES, MAX_GRID, MAX_TASKS, Realizations, Spec, SurfaceParams, Sweep, Value};
+use super::{Axis, Case, MAX_CASES, MAX_GRID, MAX_TASKS, Realizations, Spec, Sweep, Value};
 
 /// The sweep that a case without sweeps belongs to.
 const BASE: &str = "base";
@@ -30,28 +31,25 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
     let mut base = base;
     let mut cases = Cases::default();
     let (mut choices, mut auto_cases) = (Choices::of(auto_methods), Vec::new());
+    let mut add = |mut values: Values, origins: &[Origin], swept: &[usize], sweep: &str, faults: &mut Faults<'_>| {
+        complete(&mut values, origins);
+        let is_auto = choices.choose(&mut values);
+        let params = values.case();
+        check(&params, &values, (origins, swept), faults);
+        auto_cases.extend(Some(cases.add(sweep, params)).filter(|_| is_auto));
+    };
     if sweeps.is_empty() {
-        complete(&mut base, &origins);
-        let mut params = base.clone();
-        let is_auto = choices.choose(&mut params);
-        check(&params, &origins, &[], faults);
-        let case = cases.add(BASE, without_unread(&params));
-        auto_cases.extend(is_auto.then_some(case));
+        add(base.clone(), &origins, &[], BASE, faults);
     }
     for sweep in &read {
         let swept: Vec<usize> = sweep.axes.iter().map(|axis| axis.key).collect();
         for point in points(&sweep.axes) {
-            let mut params = base.clone();
-            let mut origins = origins.clone();
+            let (mut values, mut origins) = (base.clone(), origins.clone());
             for (axis, value) in sweep.axes.iter().zip(point) {
-                (KEYS[axis.key].set)(&mut params, value.get_ref());
+                (KEYS[axis.key].set)(&mut values, value.get_ref());
                 origins[axis.key] = Origin::Written(value.span());
             }
-            complete(&mut params, &origins);
-            let is_auto = choices.choose(&mut params);
-            check(&params, &origins, &swept, faults);
-            let case = cases.add(&sweep.name, without_unread(&params));
-            auto_cases.extend(is_auto.then_some(case));
+            add(values, &origins, &swept, &sweep.name, faults);
         }
     }
     complete(&mut base, &origins);
@@ -90,11 +88,11 @@ fn too_many(sweeps: &[&SweepDraft], faults: &mut Faults<'_>) -> bool {
 /// Refuses a number of tasks above the maximum: the data of all tasks must fit into memory.
 fn bound_tasks(cases: &[Case], realizations: Realizations, at: Option<&Range<usize>>, faults: &mut Faults<'_>) {
     let most = realizations.most();
-    let count = |surface: &SurfaceParams| if surface.is_measured() { 1 } else { u64::from(most) };
     let mut surfaces: HashSet<String> = HashSet::new();
     let mut tasks = 0;
     for Case { params: CaseParams { surface, .. }, .. } in cases {
-        tasks += count(surface) * if surfaces.insert(format!("{surface:?}")) { 3 } else { 1 };
+        let count = surface.measured().map_or(u64::from(most), |_| 1);
+        tasks += count * if surfaces.insert(format!("{surface:?}")) { 3 } else { 1 };
     }
     if tasks > MAX_TASKS {
         let message = format!(
@@ -145,17 +143,20 @@ impl Cases {
     }
 }
 
-/// Sets the default that depends on another value: of a periodic surface the mean alone is removed, since a plane breaks its periodicity.
-fn complete(case: &mut CaseParams, origins: &[Origin]) {
+/// Sets the default that depends on another value: of a periodic surface the mean alone is removed, since a plane breaks its
+/// periodicity.
+fn complete(values: &mut Values, origins: &[Origin]) {
     let unwritten = |key: usize| matches!(origins[key], Origin::Default);
-    if case.surface.periodic && find("surface", "detrend").is_some_and(unwritten) {
-        case.surface.detrend = Detrend::Mean;
+    if values.measured.periodic && find("surface", "detrend").is_some_and(unwritten) {
+        values.measured.detrend = Detrend::Mean;
     }
 }
 
-/// Checks the requirements of a measured surface on the other values of its case; `swept` are the keys of its
-/// sweep.
-fn check_measured(case: &CaseParams, origins: &[Origin], swept: &[usize], faults: &mut Faults<'_>) {
+/// Origins of the values of a case, and the keys of its sweep.
+type Written<'a> = (&'a [Origin], &'a [usize]);
+
+/// Checks the requirements of a measured surface on the other values of its case.
+fn check_measured(case: &CaseParams, surface: &MeasuredSurface, (origins, swept): Written<'_>, faults: &mut Faults<'_>) {
     let of_sweep = |name: &str| find("surface", name).is_some_and(|key| swept.contains(&key));
     for name in GENERATED {
         // If one of the two is in the base and the other in a sweep, the spec has both kinds of surface.
@@ -166,34 +167,39 @@ fn check_measured(case: &CaseParams, origins: &[Origin], swept: &[usize], faults
             faults.add(&span, message, "remove one of the two keys".to_owned());
         }
     }
-    if case.surface.periodic
-        && case.surface.detrend != Detrend::Mean
+    if surface.periodic
+        && surface.detrend != Detrend::Mean
         && let Some(span) = written(find("surface", "detrend"), origins)
     {
-        let word = case.surface.detrend.word();
+        let word = surface.detrend.word();
         let message = format!("`surface.detrend` is \"{word}\", and `surface.periodic` is true: the removed shape is not periodic");
-        faults.add(&span, message, "write detrend = \"mean\" (the default of a periodic surface), or periodic = false".to_owned());
+        let help = "write detrend = \"mean\" (the default of a periodic surface), or periodic = false".to_owned();
+        faults.add(&span, message, help);
     }
-    if !case.surface.periodic && case.model.boundary == Boundary::Periodic && !case.by_elements() {
+    if !surface.periodic && case.asperities().is_some_and(|options| options.boundary == Boundary::Periodic) {
         let boundary = written(find("model", "boundary"), origins);
-        let span = boundary.or_else(|| written(find("surface", "periodic"), origins)).or_else(|| written(find("surface", "file"), origins));
-        if let Some(span) = span {
+        let of_surface = |name: &str| written(find("surface", name), origins);
+        if let Some(span) = boundary.or_else(|| of_surface("periodic")).or_else(|| of_surface("file")) {
             let message = "a non-periodic measured surface requires model.boundary = \"isolated\"".to_owned();
-            faults.add(&span, message, "write model.boundary = \"isolated\", or surface.periodic = true for a periodic scan".to_owned());
+            let help = "write model.boundary = \"isolated\", or surface.periodic = true for a periodic scan".to_owned();
+            faults.add(&span, message, help);
         }
     }
 }
 
 /// Checks what depends on two values of a case.
-fn check(case: &CaseParams, origins: &[Origin], swept: &[usize], faults: &mut Faults<'_>) {
-    let surface = &case.surface;
-    if case.by_elements() {
-        check_elements(case, origins, faults);
+fn check(case: &CaseParams, values: &Values, written: Written<'_>, faults: &mut Faults<'_>) {
+    if let Some(options) = case.elements() {
+        check_elements(case, options, values, written.0, faults);
     }
-    if surface.is_measured() {
-        check_measured(case, origins, swept, faults);
-        return;
+    match &case.surface {
+        SurfaceSource::Generated(surface) => check_generated(surface, written.0, faults),
+        SurfaceSource::Measured(surface) => check_measured(case, surface, written, faults),
     }
+}
+
+/// Checks the requirements of a generated surface.
+fn check_generated(surface: &GeneratedSurface, origins: &[Origin], faults: &mut Faults<'_>) {
     if surface.rms_height_m >= surface.length_m
         && let Some(span) = blamed(["rms_height_m", "length_m"], origins)
     {

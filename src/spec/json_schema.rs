@@ -11,7 +11,7 @@ use super::keys::{KEYS, Key, Kind, Limits, TABLES, words};
 use super::realizations::{DEFAULT, DEFAULT_BOUNDS, LEAST, PRECISION};
 use super::reference::described;
 use super::top::DEFAULT_SEED;
-use super::{CaseParams, MAX_REALIZATIONS};
+use super::{MAX_REALIZATIONS, Values};
 use crate::lengths::LENGTH_PATTERN;
 use crate::model::{Choice, Goal};
 
@@ -128,7 +128,7 @@ fn definition(key: &Key) -> Value {
         _ => String::new(),
     };
     schema["description"] = format!("{symbol}{}{unit}{choices}", key.meaning).into();
-    let default = json!((key.get)(&CaseParams::default()));
+    let default = json!((key.get)(&Values::default()));
     if default != "" {
         schema["default"] = default;
     }

@@ -20,6 +20,7 @@ mod settings;
 mod sweep;
 mod top;
 mod value;
+mod values;
 mod walk;
 mod write;
 mod written;
@@ -28,11 +29,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::io::Read as _;
 use std::path::Path;
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 use crate::constants::{Constant, Constants};
+pub use crate::model::CaseParams;
 use crate::model::Method;
-pub use crate::model::{CaseParams, CycleParams, ElementParams, ModelParams, SurfaceParams};
 pub use crate::physics::elements::PER_WAVELENGTH;
 pub use crate::text::quoted;
 pub use auto::Chooser;
@@ -43,6 +44,7 @@ pub use json_schema::{SCHEMA_FILE, json_schema};
 pub use keys::{GENERATED, MEASURED};
 pub use realizations::{Realizations, Until};
 pub use reference::reference;
+pub use values::Values;
 
 /// Limits of specs.
 pub const CONSTANTS: Constants = Constants {
@@ -117,7 +119,7 @@ pub struct Spec {
     /// The cases: each different one once, in the order of their first occurrence in the sweeps.
     pub cases: Vec<Case>,
     /// Parameters that the sweeps override; a case of its own only without a sweep.
-    pub base: CaseParams,
+    pub base: Values,
     /// The sweeps as written, each value checked.
     pub sweeps: Vec<Sweep>,
     /// Methods chosen for the points with `method = "auto"`, in their order, if they differ; `auto` where a scan decides and has not been read.
@@ -134,7 +136,7 @@ pub struct Spec {
 }
 
 /// One point of the campaign.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Case {
     /// Names of all sweeps in which this case occurs, in their order; `base` alone when the spec has no sweep.
     pub sweeps: Vec<String>,

@@ -6,7 +6,7 @@ use super::number::short;
 use super::realizations::{DEFAULT, DEFAULT_BOUNDS, LEAST, PRECISION};
 use super::top::DEFAULT_SEED;
 use super::write::value;
-use super::{CaseParams, MAX_CASES, MAX_REALIZATIONS, Value};
+use super::{MAX_CASES, MAX_REALIZATIONS, Value, Values};
 use crate::lengths::LENGTHS;
 use crate::model::{Choice, Goal};
 use crate::text::paragraph;
@@ -171,7 +171,7 @@ fn range(limits: &Limits) -> String {
 
 /// The default as TOML; nothing for an empty text.
 fn default(key: &Key) -> String {
-    match (key.get)(&CaseParams::default()) {
+    match (key.get)(&Values::default()) {
         Value::Text(text) if text.is_empty() => String::new(),
         Value::Number(number) => format!("`{}`", short(number)),
         known => format!("`{}`", value(&known)),

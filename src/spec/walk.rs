@@ -13,7 +13,8 @@ use super::files::files;
 use super::keys::{KEYS, TABLES};
 use super::realizations::{DEFAULT, Realizations, realizations};
 use super::sweep::{SweepDraft, sweeps};
-use super::{CaseParams, auto, top, value};
+use super::values::Values;
+use super::{auto, top, value};
 use crate::model::Method;
 
 /// A spec whose values are read and not yet combined.
@@ -22,7 +23,7 @@ pub(super) struct Draft {
     pub(super) seed: u64,
     pub(super) realizations: Realizations,
     pub(super) figures: Figures,
-    pub(super) base: CaseParams,
+    pub(super) base: Values,
     /// Origin of the base's value of each key, in the order of [`KEYS`].
     pub(super) origins: Vec<Origin>,
     /// The sweeps; nothing for one that has a fault, of which the cases are unknown.
@@ -92,7 +93,7 @@ pub(super) fn document(text: &str, faults: &mut Faults<'_>) -> Option<Draft> {
         realizations: Realizations::Exactly(DEFAULT),
         figures: Figures::default(),
         realizations_at: None,
-        base: CaseParams::default(),
+        base: Values::default(),
         origins: vec![Origin::Default; KEYS.len()],
         sweeps: Vec::new(),
         files: BTreeMap::new(),

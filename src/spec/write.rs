@@ -3,7 +3,8 @@
 use std::fmt::{Error, Write as _};
 
 use super::keys::{GENERATED, KEYS, Key, MEASURED, TABLES};
-use super::{Case, CaseParams, Spec, Value};
+use super::values::Values;
+use super::{Case, Spec, Value};
 use crate::model::{Choice as _, Method};
 use crate::text::quoted;
 
@@ -50,15 +51,15 @@ fn write(spec: &Spec, text: &mut String) -> Result<(), Error> {
 }
 
 /// True if the base's kind of surface reads a key, or it says something other than its default.
-fn is_read(key: &Key, base: &CaseParams) -> bool {
-    let others: &[&str] = if base.surface.is_measured() { &GENERATED } else { &MEASURED };
-    key.table != "surface" || !others.contains(&key.name) || (key.get)(base) != (key.get)(&CaseParams::default())
+fn is_read(key: &Key, base: &Values) -> bool {
+    let others: &[&str] = if base.measured.file.is_empty() { &MEASURED } else { &GENERATED };
+    key.table != "surface" || !others.contains(&key.name) || (key.get)(base) != (key.get)(&Values::default())
 }
 
 /// True if a value was left to its default, which differs between the cases of a sweep that does not set it: written out, it would hold for all of them.
 fn follows(key: &Key, spec: &Spec) -> bool {
     let set = |name: &str| spec.sweeps.iter().any(|sweep| sweep.name == name && sweep.axes.iter().any(|axis| axis.key == key.path));
-    let differs = |case: &Case| (key.get)(&case.params) != (key.get)(&spec.base);
+    let differs = |case: &Case| (key.get)(&Values::from(&case.params)) != (key.get)(&spec.base);
     key.path == "surface.detrend" && spec.cases.iter().any(|case| differs(case) && !case.sweeps.iter().all(|name| set(name)))
 }
 

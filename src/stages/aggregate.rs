@@ -96,15 +96,15 @@ fn inputs(campaign: &Campaign, standings: &[Standing]) -> Result<(Vec<CaseInput>
     Ok((cases, cycles))
 }
 
-/// Ids of cases of the same surface and material, one by asperities and one by boundary elements.
+/// Ids of cases of the same surface and material by different methods, in the order of the methods.
 fn side_by_side(campaign: &Campaign) -> Vec<[String; 2]> {
     let same = |a: &CaseParams, b: &CaseParams| a.surface == b.surface && a.material == b.material;
-    let (elements, asperities): (Vec<&CaseUnit>, Vec<&CaseUnit>) = campaign.cases.iter().partition(|unit| unit.case.params.by_elements());
     let pairs = |one: &CaseUnit| {
-        let others = elements.iter().filter(|other| same(&one.case.params, &other.case.params));
+        let is_later = |other: &&CaseUnit| other.case.params.method.kind() > one.case.params.method.kind();
+        let others = campaign.cases.iter().filter(is_later).filter(|other| same(&one.case.params, &other.case.params));
         others.map(|other| [one.id.clone(), other.id.clone()]).collect::<Vec<_>>()
     };
-    asperities.into_iter().flat_map(pairs).collect()
+    campaign.cases.iter().flat_map(pairs).collect()
 }
 
 /// Every cycle of every case with its status.
@@ -131,13 +131,13 @@ fn case_input(campaign: &Campaign, number: usize, unit: &CaseUnit, standings: &[
     let params = &unit.case.params;
     let surface = &params.surface;
     // The import of a measured surface may have failed.
-    let is_there = |cycle: &&CycleUnit| !surface.is_measured() || campaign.surface_path(&campaign.surfaces[cycle.surface]).is_file();
+    let is_there = |cycle: &&CycleUnit| surface.measured().is_none() || campaign.surface_path(&campaign.surfaces[cycle.surface]).is_file();
     let of_case = campaign.cycles.iter().find(|cycle| cycle.case == number).filter(is_there);
     let scale = of_case.map(|cycle| scale(campaign, &campaign.surfaces[cycle.surface])).transpose()?;
     let lattice = of_case.map(|cycle| lattice(campaign, cycle)).transpose()?.flatten();
     let facts = CaseFacts {
         params,
-        surface_file: surface.is_measured().then(|| campaign.file_label(&surface.file)),
+        surface_file: campaign.label_of(surface),
         length_m: scale.map(|scale| scale.length_m),
         rms_height_m: scale.map(|scale| scale.rms_height_m),
         element_points: lattice.map(|lattice| lattice.points as f64),

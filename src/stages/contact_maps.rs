@@ -44,7 +44,7 @@ pub(super) fn contact_maps(campaign: &Campaign, standings: &[Standing], methods:
     let content = Both {
         heights_m: heights.view(),
         length_m: header.length_m,
-        periodic: params.model.boundary == Boundary::Periodic,
+        periodic: params.boundary() == Boundary::Periodic,
         contacts: &contacts,
         step,
         areas: areas.map(|areas| areas[row]),

@@ -1,10 +1,10 @@
 //! Artefacts of a measured surface: their correction, the tip that measured it, and what its file says of them.
 
 use super::StageError;
+use crate::model::MeasuredSurface;
 use crate::physics::surface::artefacts::{Artefacts, Corrections, correct, noise_exponent, outlier_effect};
 use crate::physics::surface::measured::{Prepared, Treatment, prepare};
 use crate::physics::surface::tip::{curvature_ratio, reliability_cutoff};
-use crate::spec::SurfaceParams;
 use crate::store::hdf5::Quality;
 use crate::store::scan::FirstIndex;
 use ndarray::{Array2, ArrayView2};
@@ -15,7 +15,7 @@ const LARGEST_CUTOFF: f64 = 0.5;
 
 /// The surface after corrections and preprocessing of heights \[m\], and its artefacts.
 pub(super) fn corrected(
-    params: &SurfaceParams,
+    params: &MeasuredSurface,
     heights_m: Array2<f64>,
     (spacing_m, first): ([f64; 2], FirstIndex),
     treatment: &Treatment,
@@ -40,12 +40,12 @@ pub(super) fn corrected(
 }
 
 /// Corrections of a surface by its parameters.
-fn corrections(params: &SurfaceParams) -> Corrections {
+fn corrections(params: &MeasuredSurface) -> Corrections {
     Corrections { outliers: params.outliers, align: params.align_rows.then_some(params.fast_axis), periodic: params.periodic }
 }
 
 /// Curvature of the sharpest summits over that of the sharpest valleys; nothing where the tip is known, or the surface is not rounded nearly everywhere.
-fn rounded(params: &SurfaceParams, heights_m: ArrayView2<'_, f64>, spacing_m: [f64; 2]) -> Option<f64> {
+fn rounded(params: &MeasuredSurface, heights_m: ArrayView2<'_, f64>, spacing_m: [f64; 2]) -> Option<f64> {
     // A quarter of the shortest wavelength resolves its curvature.
     let step = (params.points_per_shortest_wavelength / 4).max(1) as usize;
     if params.tip_radius_m > 0.0 { None } else { curvature_ratio(heights_m, spacing_m, step) }
@@ -53,7 +53,7 @@ fn rounded(params: &SurfaceParams, heights_m: ArrayView2<'_, f64>, spacing_m: [f
 
 /// The surface with an S-filter cut-off that is at least the reliability cut-off of its tip \[m\], and that cut-off.
 fn with_tip(
-    params: &SurfaceParams,
+    params: &MeasuredSurface,
     heights_m: Array2<f64>,
     spacing_m: [f64; 2],
     treatment: &Treatment,
@@ -84,7 +84,7 @@ fn with_tip(
 }
 
 /// Artefacts as the file of a surface states them.
-fn quality(params: &SurfaceParams, artefacts: &Artefacts) -> Quality {
+fn quality(params: &MeasuredSurface, artefacts: &Artefacts) -> Quality {
     Quality {
         outlier_count: artefacts.outlier_count as u64,
         outlier_left_count: artefacts.outlier_left_count as u64,

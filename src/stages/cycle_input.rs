@@ -188,7 +188,7 @@ fn jkr_curve(campaign: &Campaign, unit: &CycleUnit) -> Result<Vec<CurvePoint>, S
 
 /// Deng and Kesari's loss of an area \[J\]; nothing where the printed Eq A2 defines none.
 fn deng_kesari(moments: &Moments, params: &CaseParams, area_m2: f64) -> Result<Option<f64>, StageError> {
-    let slips = params.model.slips();
+    let slips = params.slips();
     let defined = curvature_decay(moments.nayak_parameter(), slips).is_some();
     Ok(if defined { Some(deng_kesari_loss_as_printed(moments, &params.material, area_m2, slips)?) } else { None })
 }

@@ -3,7 +3,7 @@
 //! Each file is a resource of its own: readers of a resource of several Parquet files read the first one. Files of one kind share
 //! a schema in `schemas/`, which their resources name.
 
-use crate::campaign::{Campaign, CycleUnit};
+use crate::campaign::Campaign;
 use crate::schema::{Column, Kind, TABLES, Table};
 use serde_json::{Value, json};
 
@@ -22,14 +22,24 @@ pub(super) fn files(campaign: &Campaign, done: &[bool]) -> Described {
             continue;
         };
         let place = format!("schemas/{}.json", table.name);
-        let part = |id: &&str| resource(table, part_name(table.name, id), table.file.replace("<id>", id), json!(place));
-        resources.extend(parts.iter().map(part));
-        if !parts.is_empty() {
+        let part = |id: &&str| {
+            let file = table.file.replace("<id>", id);
+            // Some tables are of one method only.
+            let is_there = campaign.dir.join(&file).is_file();
+            is_there.then(|| resource(table, part_name(table.name, id), file, json!(place)))
+        };
+        let before = resources.len();
+        resources.extend(parts.iter().filter_map(part));
+        if resources.len() > before {
             files.push((place.clone(), format!("{:#}\n", schema(table))));
         }
     }
     resources.extend(ids.surfaces.iter().map(|id| hdf5("surfaces", id, format!("surfaces/{id}.h5"), SURFACE)));
-    resources.extend(ids.elements.iter().map(|id| hdf5("maps", id, format!("cycles/{id}/maps.h5"), MAPS)));
+    let maps = |id: &&str| {
+        let file = format!("cycles/{id}/maps.h5");
+        campaign.dir.join(&file).is_file().then(|| hdf5("maps", id, file, MAPS))
+    };
+    resources.extend(ids.cycles.iter().filter_map(maps));
     let package = json!({
         "generator": "hysteron",
         "$schema": "https://datapackage.org/profiles/2.0/datapackage.json",
@@ -51,36 +61,21 @@ const MAPS: &str = "Maps of boundary elements: a group for each load reversal, m
 /// Ids of the surfaces and of the finished cycles.
 struct Ids<'a> {
     surfaces: Vec<&'a str>,
-    /// Cycles of the asperity model.
-    asperities: Vec<&'a str>,
-    /// Cycles of boundary elements.
-    elements: Vec<&'a str>,
     cycles: Vec<&'a str>,
 }
 
 impl<'a> Ids<'a> {
     fn of(campaign: &'a Campaign, done: &[bool]) -> Self {
-        let of_method = |by_elements: bool| {
-            let is = |unit: &CycleUnit| campaign.cases[unit.case].case.params.by_elements() == by_elements;
-            let finished = campaign.cycles.iter().zip(done).filter(|(unit, done)| **done && is(unit));
-            let mut ids: Vec<&str> = finished.map(|(unit, _)| unit.id.as_str()).collect();
-            ids.sort_unstable();
-            ids.dedup();
-            ids
-        };
-        let (asperities, elements) = (of_method(false), of_method(true));
-        let mut cycles = [asperities.as_slice(), elements.as_slice()].concat();
+        let finished = campaign.cycles.iter().zip(done).filter(|(_, done)| **done);
+        let mut cycles: Vec<&str> = finished.map(|(unit, _)| unit.id.as_str()).collect();
         cycles.sort_unstable();
-        let surfaces = campaign.surfaces.iter().map(|unit| unit.id.as_str()).collect();
-        Self { surfaces, asperities, elements, cycles }
+        cycles.dedup();
+        Self { surfaces: campaign.surfaces.iter().map(|unit| unit.id.as_str()).collect(), cycles }
     }
 
     /// Ids of the files of a table; nothing for a table of statistics, which is one file.
     fn of_table(&self, table: &Table) -> Option<&[&'a str]> {
         match table.file.split('/').next() {
-            // Tables of one method only.
-            Some("cycles") if matches!(table.name, "turning" | "merged") => Some(&self.asperities),
-            Some("cycles") if table.name == "adhesionless" => Some(&self.elements),
             Some("cycles") => Some(&self.cycles),
             Some("asperities") => Some(&self.surfaces),
             _ => None,

@@ -93,7 +93,8 @@ impl<'a> Pairs<'a> {
 
 /// One finished cycle of each case: where both methods have finished a surface, on that one.
 fn pick<'a>(campaign: &'a Campaign, standings: &[Standing], pairs: &Pairs<'_>) -> Vec<&'a CycleUnit> {
-    let finished = |unit: &CycleUnit| campaign.surfaces[unit.surface].params.grid() <= MOST_POINTS;
+    let finished =
+        |unit: &CycleUnit| campaign.surfaces[unit.surface].params.generated().is_none_or(|surface| surface.grid() <= MOST_POINTS);
     let done: Vec<&CycleUnit> =
         campaign.cycles.iter().zip(standings).filter(|(_, of)| **of == Standing::Done).map(|(unit, _)| unit).collect();
     let mut picked: Vec<&CycleUnit> = Vec::new();
@@ -116,6 +117,9 @@ fn name(campaign: &Campaign, unit: &CycleUnit, cases: &Frame, list: &Listing) ->
     Ok(format!("{label}, realization {}", campaign.surfaces[unit.surface].realization))
 }
 
+/// File of the maps of a cycle.
+const MAPS: &str = "maps.h5";
+
 /// Tables of a cycle.
 struct Tables {
     steps: Frame,
@@ -128,21 +132,23 @@ fn cycle(campaign: &Campaign, unit: &CycleUnit) -> Result<Value, StageError> {
     let (surface, params) = (&campaign.surfaces[unit.surface], &campaign.cases[unit.case].case.params);
     let folder = campaign.cycle_dir(unit);
     let table = |table: &'static Table| read_table(&folder.join(format!("{}.parquet", table.name)), table);
-    let merged = if params.by_elements() { None } else { Some(table(&schema::MERGED)?) };
+    // Files that one of the methods alone writes say what there is to be shown.
+    let is_there = |file: &str| folder.join(file).is_file();
+    let merged = is_there("merged.parquet").then(|| table(&schema::MERGED)).transpose()?;
     let tables = Tables { steps: table(&schema::STEPS)?, events: table(&schema::EVENTS)?, contacts: table(&schema::CONTACTS)?, merged };
     let (header, heights) = read_surface(&campaign.surface_path(surface))?;
     let mut of = json!({ "id": unit.id, "length_m": header.length_m });
     let energy = params.material.contact_modulus_pa * header.length_m.powi(2) * header.rms_height_m;
     let mut spots = Spots::default();
-    if params.by_elements() {
+    if is_there(MAPS) {
         of["loops"] = loops(&tables, &spots, energy, header.length_m)?;
-        stored_maps(&folder.join("maps.h5"), &mut of["loops"])?;
+        stored_maps(&folder.join(MAPS), &mut of["loops"])?;
         return Ok(of);
     }
     spots.find(&tables, &read_table(&campaign.asperities_path(surface), &schema::ASPERITIES)?, header.length_m)?;
     of["loops"] = loops(&tables, &spots, energy, header.length_m)?;
     of["ground"] = json!(ground(heights.view()));
-    of["periodic"] = json!(params.model.boundary == Boundary::Periodic);
+    of["periodic"] = json!(params.boundary() == Boundary::Periodic);
     of["ids"] = json!(spots.ids.keys().map(|key| key.1).collect::<Vec<_>>());
     of["x"] = json!(spots.at.iter().map(|at| at.0).collect::<Vec<_>>());
     of["y"] = json!(spots.at.iter().map(|at| at.1).collect::<Vec<_>>());

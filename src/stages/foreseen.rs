@@ -1,13 +1,11 @@
 //! Warnings that follow from a spec and its measured surfaces, before anything is computed.
 
-use super::grid_size::slow_grids;
+use super::cycle::announced;
 pub use super::outside::Outside;
-use super::outside::interval;
-use super::verdict::{Previews, Verdict, long_loops, previews, verdicts};
+use super::verdict::{Previews, Verdict, previews, verdicts};
 use crate::campaign::Campaign;
 use crate::model::Method;
-use crate::spec::MANY_RANGE_STEPS;
-use crate::stats::{Limit, MANY_STEPS};
+use crate::stats::Limit;
 use crate::store::hdf5::SurfaceHeader;
 
 /// Ratio of energies of a verdict.
@@ -45,41 +43,9 @@ pub fn foreseen(campaign: &Campaign) -> Foreseen {
         let asperities = verdicts.iter().filter(|of| of.method == Method::Asperities);
         Outside::of(code, asperities.filter_map(|of| Some((of.case_id.clone(), ratio(of)?))))
     };
-    let warnings = ratios
-        .into_iter()
-        .filter_map(of)
-        .chain(coarse(&verdicts))
-        .chain(many_steps(campaign))
-        .chain(slow_grids(campaign))
-        .chain(long_loops(campaign, &verdicts))
-        .chain(artefacts(campaign, &previews))
-        .collect();
+    let costs: Vec<_> = verdicts.iter().map(|of| (of.cost, of.persson_tosatti)).collect();
+    let warnings = ratios.into_iter().filter_map(of).chain(announced(campaign, &costs)).chain(artefacts(campaign, &previews)).collect();
     Foreseen { verdicts, warnings }
-}
-
-/// Cases of boundary elements whose attraction acts over many steps.
-fn many_steps(campaign: &Campaign) -> Option<Outside> {
-    let (mut cases, mut values) = (Vec::new(), Vec::new());
-    for unit in campaign.cases.iter().filter(|unit| unit.case.params.by_elements() && !unit.case.params.surface.is_measured()) {
-        let params = &unit.case.params;
-        let (surface, elements) = (&params.surface, &params.boundary_elements);
-        let spacing = surface.length_m / f64::from(elements.grid(f64::from(surface.magnification)));
-        let range = elements.range(params.material.adhesion_length_m(), spacing);
-        let steps = elements.range_steps(range, surface.rms_height_m, params.cycle.max_load.len());
-        if steps > MANY_RANGE_STEPS {
-            cases.push(unit.id.clone());
-            values.push(steps.round());
-        }
-    }
-    let range = [values.iter().copied().reduce(f64::min)?, values.iter().copied().reduce(f64::max)?];
-    let measured = format!("{} (limit ≤ {MANY_RANGE_STEPS})", MANY_STEPS.text.replace("{}", &interval(range)));
-    Some(Outside { kind: MANY_STEPS, limit: MANY_RANGE_STEPS, range, measured, cases })
-}
-
-/// Cases of boundary elements with fewer grid points per shortest wavelength than recommended.
-fn coarse(verdicts: &[Verdict]) -> Option<Outside> {
-    let elements = verdicts.iter().filter(|of| of.method == Method::BoundaryElements);
-    Outside::of("coarse", elements.filter_map(|of| Some((of.case_id.clone(), of.cost?.per_wavelength))))
 }
 
 /// Cases with artefacts of their measured surfaces.

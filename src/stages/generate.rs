@@ -3,15 +3,15 @@
 use super::StageError;
 use super::done::Outcome;
 use super::measure::{Imported, measure};
-use super::surface::{SurfaceStage, spectrum};
+use super::surface::SurfaceStage;
 use crate::campaign::{Campaign, Stage, SurfaceUnit, Unit};
 use crate::formats::recognize;
 use crate::keys::digest_of_file;
+use crate::model::{MeasuredSurface, SurfaceSource};
 use crate::paths::whole;
 use crate::physics::PhysicsError;
 use crate::physics::memory;
 use crate::physics::surface::synthesis::{realization_seed, synthesis_bytes, synthesize};
-use crate::spec::SurfaceParams;
 use crate::store::hdf5::{Generated, SurfaceHeader, write_surface};
 use std::path::Path;
 
@@ -35,36 +35,36 @@ impl SurfaceStage for Generate {
 }
 
 /// Imports a measured surface.
-fn import(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Outcome, StageError> {
+fn import(campaign: &Campaign, unit: &SurfaceUnit, surface: &MeasuredSurface) -> Result<Outcome, StageError> {
     // Messages name the file by a path that holds in any folder.
-    let path = &whole(Path::new(&unit.params.file));
+    let path = &whole(Path::new(&surface.file));
     let refuse = |why: String| StageError::Changed { path: path.clone(), why };
     let lost = |error: std::io::Error| match error.kind() {
-        std::io::ErrorKind::NotFound => StageError::Lost { path: path.clone(), places: campaign.places_of(&unit.params.file) },
+        std::io::ErrorKind::NotFound => StageError::Lost { path: path.clone(), places: campaign.places_of(&surface.file) },
         _ => refuse(error.to_string()),
     };
     // A file in an unknown format may be too large to be hashed for nothing.
     recognize(path).map_err(lost)?.map_err(|refusal| StageError::Measured { path: path.clone(), why: refusal.to_string() })?;
     let digest = digest_of_file(path).map_err(|error| refuse(error.to_string()))?;
-    if campaign.spec.files.get(&unit.params.file) != Some(&digest) {
+    if campaign.spec.files.get(&surface.file) != Some(&digest) {
         return Err(refuse(
             "the file differs from its checksum in [files] of the spec\nhelp: remove this line to recompute with the present file"
                 .to_owned(),
         ));
     }
-    let params = SurfaceParams { file: path.to_str().unwrap_or(&unit.params.file).to_owned(), ..unit.params.clone() };
+    let params = MeasuredSurface { file: path.to_str().unwrap_or(&surface.file).to_owned(), ..surface.clone() };
     let Imported { prepared, header, .. } = measure(&params, &digest, &unit.key)?;
     Ok(Outcome::of(vec![write_surface(&campaign.surface_path(unit), &header, prepared.heights_m.view())?]))
 }
 
 /// Synthesizes a surface, or imports a measured one.
 fn generate(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Outcome, StageError> {
-    let params = &unit.params;
-    if params.is_measured() {
-        return import(campaign, unit);
-    }
+    let params = match &unit.params {
+        SurfaceSource::Measured(surface) => return import(campaign, unit, surface),
+        SurfaceSource::Generated(surface) => surface,
+    };
     let seed = realization_seed(campaign.spec.seed, u64::from(unit.realization));
-    let (spectrum, grid) = (spectrum(params), params.grid() as usize);
+    let (spectrum, grid) = (params.spectrum(), params.grid() as usize);
     memory::check(synthesis_bytes(&spectrum, grid))?;
     let surface = synthesize(&spectrum, &seed, grid);
     // One that no file may hold is the failure of this surface.

@@ -40,7 +40,7 @@ impl Cycles {
         let of_case = |unit: &CaseUnit| {
             let params = &unit.case.params;
             let max_load = params.cycle.largest_load();
-            (max_load, parameters(params, &campaign.file_label(&params.surface.file), max_load))
+            (max_load, parameters(params, campaign.label_of(&params.surface).as_deref(), max_load))
         };
         Self {
             of_cases: campaign.cases.iter().map(of_case).collect(),

@@ -4,13 +4,13 @@ use super::StageError;
 use super::correction::{corrected, refused};
 use crate::formats::recognize;
 use crate::lengths::{LENGTHS, metres};
+use crate::model::MeasuredSurface;
 use crate::model::{Detrend, Filter};
 use crate::physics::surface::edges::Edges;
 use crate::physics::surface::measured::{Prepared, Treatment};
 use crate::physics::surface::periodogram::{Estimate, periodogram, windowed_periodogram};
 use crate::physics::surface::self_affine::{SelfAffine, fit_self_affine};
 use crate::physics::surface::texture::Texture;
-use crate::spec::SurfaceParams;
 use crate::store::hdf5::{Measured, SpectrumFit, SurfaceHeader, is_own_surface, read_surface};
 use crate::store::hdf5_scan::read_scan;
 use crate::store::scan::{Asked, FirstIndex, Found, Scan, read};
@@ -41,7 +41,7 @@ pub struct Imported {
 /// # Errors
 /// A file that cannot be read or lacks required data; a surface that
 /// [`crate::physics::surface::measured::prepare`] refuses.
-pub fn measure(params: &SurfaceParams, digest: &str, key: &str) -> Result<Imported, StageError> {
+pub fn measure(params: &MeasuredSurface, digest: &str, key: &str) -> Result<Imported, StageError> {
     let path = Path::new(&params.file);
     let scan = match source(path, params)? {
         Source::Own(header, heights) => {
@@ -105,7 +105,7 @@ pub fn measure(params: &SurfaceParams, digest: &str, key: &str) -> Result<Import
 
 /// A surface of this program, which has been treated already.
 fn own(
-    params: &SurfaceParams,
+    params: &MeasuredSurface,
     header: SurfaceHeader,
     heights_m: Array2<f64>,
     digest: &str,
@@ -155,7 +155,7 @@ fn own(
 }
 
 /// Refuses corrections of a surface of this program, which is used as it is.
-fn uncorrected(params: &SurfaceParams) -> Result<(), StageError> {
+fn uncorrected(params: &MeasuredSurface) -> Result<(), StageError> {
     let asked = [(params.outliers, "outliers"), (params.align_rows, "align_rows"), (params.tip_radius_m > 0.0, "tip_radius_m")];
     let Some((_, name)) = asked.into_iter().find(|(is_set, _)| *is_set) else { return Ok(()) };
     let why = format!(
@@ -209,7 +209,7 @@ fn stored(fit: &SelfAffine) -> SpectrumFit {
 const PIXEL_SIZES: RangeInclusive<f64> = 1e-12..=0.1;
 
 /// Pixel size along x and y that the user states, if any: `pixel_m`, or `size_m` over the numbers of points.
-fn stated(params: &SurfaceParams, scan: &Scan) -> Option<[f64; 2]> {
+fn stated(params: &MeasuredSurface, scan: &Scan) -> Option<[f64; 2]> {
     let (x, y) = scan.heights.dim();
     let along_x = params.size_m / x as f64;
     match (params.size_m > 0.0, params.size_y_m > 0.0) {
@@ -221,7 +221,7 @@ fn stated(params: &SurfaceParams, scan: &Scan) -> Option<[f64; 2]> {
 }
 
 /// Checks that unit and pixel size are known, and names everything that is missing at once.
-fn complete(params: &SurfaceParams, scan: &Scan) -> Result<(), StageError> {
+fn complete(params: &MeasuredSurface, scan: &Scan) -> Result<(), StageError> {
     let no_unit = scan.unit.is_none() && params.unit.is_empty();
     let no_size = scan.size_m.is_none() && scan.spacing.is_none() && stated(params, scan).is_none();
     let (x, y) = scan.heights.dim();
@@ -247,7 +247,7 @@ fn complete(params: &SurfaceParams, scan: &Scan) -> Result<(), StageError> {
 }
 
 /// Sentences on how a file was read: which index is x, and notes of the reader.
-fn notes(params: &SurfaceParams, scan: &Scan) -> Vec<String> {
+fn notes(params: &MeasuredSurface, scan: &Scan) -> Vec<String> {
     let order = match (scan.first, params.transpose) {
         (FirstIndex::X, false) => "the first index of the file runs along x, the second along y",
         (FirstIndex::Y, false) => "a line of the file runs along x; its first index is y",
@@ -258,7 +258,7 @@ fn notes(params: &SurfaceParams, scan: &Scan) -> Vec<String> {
 }
 
 /// Spacings of the points of a scan along x and y \[m\].
-fn spacing(params: &SurfaceParams, scan: &Scan) -> Result<[f64; 2], StageError> {
+fn spacing(params: &MeasuredSurface, scan: &Scan) -> Result<[f64; 2], StageError> {
     let path = Path::new(&params.file);
     let (x, y) = scan.heights.dim();
     let (key, option) = if params.size_m > 0.0 { ("size_m", "--size") } else { ("pixel_m", "--pixel-m") };
@@ -288,7 +288,7 @@ fn spacing(params: &SurfaceParams, scan: &Scan) -> Result<[f64; 2], StageError> 
 }
 
 /// Factor from the heights of a scan to metres.
-fn unit(params: &SurfaceParams, scan: &Scan) -> Result<f64, StageError> {
+fn unit(params: &MeasuredSurface, scan: &Scan) -> Result<f64, StageError> {
     let path = Path::new(&params.file);
     let given = &params.unit;
     match &scan.unit {
@@ -315,7 +315,7 @@ enum Source {
 }
 
 /// The height field of a file, in whatever format it is.
-fn source(path: &Path, params: &SurfaceParams) -> Result<Source, StageError> {
+fn source(path: &Path, params: &MeasuredSurface) -> Result<Source, StageError> {
     let field = (!params.dataset.is_empty()).then_some(params.dataset.as_str());
     let asked = Asked { field, skip_lines: u64::from(params.skip_lines), width: (params.width > 0).then_some(u64::from(params.width)) };
     let found = recognize(path).map_err(|error| refused(path, &error.to_string()))?;

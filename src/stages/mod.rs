@@ -18,7 +18,6 @@ mod extract;
 mod failure;
 mod foreseen;
 mod generate;
-mod grid_size;
 mod identity;
 mod live;
 mod live_state;
@@ -30,10 +29,8 @@ mod report;
 mod runner;
 mod sampling;
 mod single_cycle;
-mod step_count;
 mod surface;
 mod task;
-mod trial;
 mod verdict;
 
 use crate::constants::Constants;
@@ -43,14 +40,15 @@ pub use cycle::unload_again;
 pub use error::StageError;
 pub use foreseen::{ARTEFACTS, Foreseen, Outside, foreseen};
 pub use measure::{Imported, measure};
+pub use outside::in_words;
 pub use pipeline::{prepare, run};
 pub use sampling::sampled;
 pub use task::{Tally, Task, Watch};
-pub use verdict::{Verdict, chosen_method, in_words};
+pub use verdict::{Verdict, chosen_method};
 
 /// Numerical choices and limits of cycles and of the report that are made here.
 pub const CONSTANTS: [Constants; 3] = [
     Constants { subject: "Cycles", module: "stages::cycle", rows: cycle::CONSTANTS },
     Constants { subject: "Loop explorer", module: "stages::explorer", rows: explorer::CONSTANTS },
-    Constants { subject: "Estimates before a run", module: "stages::cost", rows: cost::CONSTANTS },
+    Constants { subject: "Estimates before a run", module: "stages::cost", rows: cycle::ESTIMATES },
 ];

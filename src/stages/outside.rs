@@ -38,3 +38,14 @@ pub(super) fn interval(range: [f64; 2]) -> String {
     let [low, high] = range.map(|value| significant(value, 3));
     if low == high { low } else { format!("{low} to {high}") }
 }
+
+/// A time as text.
+#[must_use]
+pub fn in_words(seconds: f64) -> String {
+    match seconds {
+        _ if seconds < 1.0 => "1 s".to_owned(),
+        _ if seconds < 100.0 => format!("{} s", significant(seconds, 1)),
+        _ if seconds < 6000.0 => format!("{} min", significant(seconds / 60.0, 2)),
+        _ => format!("{} h", significant(seconds / 3600.0, 2)),
+    }
+}

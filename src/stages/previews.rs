@@ -4,10 +4,10 @@ use super::StageError;
 use super::measure::measure;
 use crate::campaign::{Campaign, SurfaceUnit};
 use crate::formats::recognize;
+use crate::model::MeasuredSurface;
 use crate::physics::surface::measured::find_measured;
 use crate::physics::surface::summits::Summit;
 use crate::physics::theory::flattening::{Flattening, measured_flattening, shortest_wavelength};
-use crate::spec::SurfaceParams;
 use crate::store::hdf5::{SurfaceHeader, read_header, read_surface};
 use ndarray::Array2;
 use std::path::Path;
@@ -47,19 +47,19 @@ pub(super) struct Details {
 
 impl Preview {
     /// Of a surface of a campaign: from its file in the run, or else from the scan.
-    pub(super) fn of(campaign: &Campaign, surface: &SurfaceUnit) -> Self {
+    pub(super) fn of(campaign: &Campaign, surface: &SurfaceUnit, params: &MeasuredSurface) -> Self {
         let path = campaign.surface_path(surface);
         match read_header(&path) {
             Ok(header) if header.key == surface.key => match read_surface(&path) {
                 Ok((header, heights)) => Self::read(header, &heights, MOST_POINTS),
                 Err(error) => Self::Refused(error.to_string()),
             },
-            _ => Self::of_scan(&surface.params, LARGEST_FILE, MOST_POINTS),
+            _ => Self::of_scan(params, LARGEST_FILE, MOST_POINTS),
         }
     }
 
     /// Of a scan, unless its file has more bytes; without details if it has more points along a side.
-    pub(super) fn of_scan(params: &SurfaceParams, most_bytes: u64, most_points: usize) -> Self {
+    pub(super) fn of_scan(params: &MeasuredSurface, most_bytes: u64, most_points: usize) -> Self {
         let path = Path::new(&params.file);
         if std::fs::metadata(path).is_ok_and(|about| about.len() > most_bytes || !about.is_file()) {
             return Self::Large;

@@ -128,7 +128,7 @@ fn page(
     statistics: &Statistics,
     drawings: &Drawings,
 ) -> Result<String, StageError> {
-    let elements = campaign.cases.iter().filter(|unit| unit.case.params.by_elements()).count();
+    let elements = campaign.cases.iter().filter(|unit| unit.case.params.elements().is_some()).count();
     Ok(report::page(&Report {
         name: &campaign.spec.name,
         key,
@@ -175,7 +175,7 @@ fn failures(campaign: &Campaign, standings: &[Standing]) -> Vec<Failure> {
 
 /// Files of the measured surfaces. A failed import is reported elsewhere.
 fn scans(campaign: &Campaign) -> Result<Vec<SurfaceHeader>, StageError> {
-    let measured = campaign.surfaces.iter().filter(|unit| unit.params.is_measured());
+    let measured = campaign.surfaces.iter().filter(|unit| unit.params.measured().is_some());
     let paths = measured.map(|unit| campaign.surface_path(unit)).filter(|path| path.is_file());
     Ok(paths.map(|path| read_header(&path)).collect::<Result<_, _>>()?)
 }

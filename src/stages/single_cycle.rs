@@ -1,16 +1,16 @@
 //! Figures of a single cycle for the report.
 
 use super::StageError;
-use super::surface::{scale, spectrum};
+use super::surface::{scale, target};
 use crate::campaign::{Campaign, CycleUnit, Standing};
 use crate::figures::{Closer, ElementsLoop, closer, elements_loop};
-use crate::model::{Boundary, Choice, Method, Normalization};
+use crate::model::{Boundary, Choice, GeneratedSurface, Method, MethodOptions, Normalization, SurfaceSource};
 use crate::physics::surface::periodogram::{periodogram, windowed_periodogram};
 use crate::physics::surface::spectrum::Spectrum;
 use crate::physics::theory::curvature_density;
 use crate::report::SingleCycle;
 use crate::schema;
-use crate::spec::{CaseParams, SurfaceParams};
+use crate::spec::CaseParams;
 use crate::stats::{labels_with_unit, significant};
 use crate::store::hdf5::{SurfaceHeader, read_surface};
 use crate::store::parquet::read_table;
@@ -61,7 +61,7 @@ fn of_elements(campaign: &Campaign, standings: &[Standing], cases: &Frame) -> Re
     let chosen = choose((campaign, standings), cases, Method::BoundaryElements, |_| true)?;
     let Some(Chosen { unit, max_load, has_larger }) = chosen else { return Ok(None) };
     let case = &campaign.cases[unit.case].case.params;
-    let parameters = parameters(case, &campaign.file_label(&case.surface.file), max_load);
+    let parameters = parameters(case, campaign.label_of(&case.surface).as_deref(), max_load);
     let folder = campaign.cycle_dir(unit);
     let steps = read_table(&folder.join(format!("{}.parquet", schema::STEPS.name)), &schema::STEPS)?;
     let maps = read_loop_maps(&folder.join("maps.h5"), max_load)?;
@@ -79,13 +79,14 @@ fn of_elements(campaign: &Campaign, standings: &[Standing], cases: &Frame) -> Re
 
 /// The case of the asperity model with the largest mean Θ; `None` without a finished cycle, or if all surfaces are too large.
 fn of_asperities(campaign: &Campaign, standings: &[Standing], cases: &Frame) -> Result<Option<SingleCycle>, StageError> {
-    let fits = |unit: &CycleUnit| campaign.surfaces[unit.surface].params.grid() <= GREATEST;
+    let grid = |surface: &GeneratedSurface| surface.grid() <= GREATEST;
+    let fits = |unit: &CycleUnit| campaign.surfaces[unit.surface].params.generated().is_none_or(grid);
     let chosen = choose((campaign, standings), cases, Method::Asperities, fits)?;
     let Some(Chosen { unit, max_load, has_larger }) = chosen else { return Ok(None) };
     let has_elements = cases.text("method")?.iter().any(|method| *method != Method::Asperities.word());
     let choice = choice(has_elements.then_some(Method::Asperities), has_larger);
     let case = &campaign.cases[unit.case].case.params;
-    let parameters = parameters(case, &campaign.file_label(&case.surface.file), max_load);
+    let parameters = parameters(case, campaign.label_of(&case.surface).as_deref(), max_load);
     let surface = &campaign.surfaces[unit.surface];
     let (header, heights) = read_surface(&campaign.surface_path(surface))?;
     let asperities = read_table(&campaign.asperities_path(surface), &schema::ASPERITIES)?;
@@ -94,7 +95,7 @@ fn of_asperities(campaign: &Campaign, standings: &[Standing], cases: &Frame) -> 
     let (realised, scale) = (header.moments(), scale(campaign, surface)?);
     let (lowest, variance) = (TAU / header.length_m, header.rms_height_m.powi(2));
     let spectrum_of = if header.periodic { periodogram } else { windowed_periodogram };
-    let highest = highest_whole_ring(&header, &surface.params);
+    let highest = highest_whole_ring(&header);
     let found: Vec<(f64, f64)> = spectrum_of(heights.view(), header.length_m)?
         .iter()
         .filter(|ring| ring.wavenumber_1_m < highest * lowest)
@@ -102,6 +103,7 @@ fn of_asperities(campaign: &Campaign, standings: &[Standing], cases: &Frame) -> 
         .collect();
     let nayak: Vec<(f64, f64)> = (0..=POINTS).map(|k| 8.0 * k as f64 / POINTS as f64).map(|t| (t, curvature_density(-t))).collect();
     let area = header.length_m * header.length_m;
+    let target = target(case);
     let of = Closer {
         max_load,
         parameters: &parameters,
@@ -112,11 +114,11 @@ fn of_asperities(campaign: &Campaign, standings: &[Standing], cases: &Frame) -> 
         energy_j: case.material.contact_modulus_pa * area * scale.rms_height_m,
         rms_height_m: scale.rms_height_m,
         length_m: header.length_m,
-        periodic: case.model.boundary == Boundary::Periodic,
+        periodic: case.boundary() == Boundary::Periodic,
         pull_off_n_m: case.material.pull_off_line_load(),
         found: &found,
-        asked: &asked(&case.surface),
-        asked_factor: asked_factor(&case.surface, variance),
+        asked: &target.as_ref().map(asked).unwrap_or_default(),
+        asked_factor: target.as_ref().map(|target| variance / eq10_variance(target)),
         curvature_1_m: realised.curvature_unit_1_m(),
         nayak: &nayak,
         densities_1_m2: [asperities.row_count() as f64 / area, realised.summit_density_1_m2()],
@@ -140,65 +142,53 @@ fn choice(method: Option<Method>, has_larger: bool) -> String {
 }
 
 /// The parameters of a case as text: `ζ = 64, H = 0.8, …`.
-pub(super) fn parameters(case: &CaseParams, file: &str, max_load: f64) -> String {
-    let (surface, material, model) = (&case.surface, &case.material, &case.model);
+pub(super) fn parameters(case: &CaseParams, file: Option<&str>, max_load: f64) -> String {
+    let material = &case.material;
     let with_unit = |symbol: &str, column: &str, value: f64| {
         labels_with_unit(column, &[value]).into_iter().map(|text| format!("{symbol} = {text}")).collect::<String>()
     };
-    let mut parts = if surface.is_measured() {
-        vec![file.to_owned()]
-    } else {
-        vec![
+    let mut parts = match &case.surface {
+        SurfaceSource::Measured(_) => vec![file.unwrap_or_default().to_owned()],
+        SurfaceSource::Generated(surface) => vec![
             format!("ζ = {}", surface.magnification),
             format!("H = {}", significant(surface.hurst, 4)),
             with_unit("h_rms", "rms_height_m", surface.rms_height_m),
             with_unit("L", "length_m", surface.length_m),
-        ]
+        ],
     };
     parts.push(with_unit("E*", "contact_modulus_pa", material.contact_modulus_pa));
     parts.push(with_unit("Δγ", "work_of_adhesion_j_m2", material.work_of_adhesion_j_m2));
-    let choices =
-        [("interaction", model.interaction.word()), ("boundary", model.boundary.word()), ("coalescence", model.coalescence.word())];
-    let method = [("method", model.method.word())];
-    let choices = if case.by_elements() { &method[..] } else { &choices[..] };
+    let choices = match &case.method {
+        MethodOptions::Asperities(model) => {
+            vec![("interaction", model.interaction.word()), ("boundary", model.boundary.word()), ("coalescence", model.coalescence.word())]
+        }
+        method => vec![("method", method.kind().word())],
+    };
     parts.extend(choices.iter().map(|(key, word)| format!("{key} = \"{word}\"")));
     parts.push(format!("F_max/(E*A₀) = {}", significant(max_load, 4)));
     parts.join(", ")
 }
 
 /// The wavenumber q/qL up to which rings of the spectrum have all their modes below the cut-off: the mean of a ring that it divides has modes without amplitude.
-fn highest_whole_ring(header: &SurfaceHeader, params: &SurfaceParams) -> f64 {
+fn highest_whole_ring(header: &SurfaceHeader) -> f64 {
     match &header.measured {
         Some(measured) if measured.shortest_wavelength_m > 0.0 => header.length_m / measured.shortest_wavelength_m,
         Some(_) => f64::INFINITY,
         // Ring j has the modes from 2^((j - 1/2)/4) to 2^((j + 1/2)/4), four rings to a doubling.
-        None => (((4.0 * f64::from(params.magnification).log2() - 0.5).floor() + 0.5) / 4.0).exp2(),
+        None => (((4.0 * header.generated.as_ref().map_or(1.0, |of| of.magnification).log2() - 0.5).floor() + 0.5) / 4.0).exp2(),
     }
 }
 
-/// The target spectrum of a generated surface at the realised rms height: `C qL²/h_rms²` over q/qL, from the longest to the shortest waves, such that the sum over
-/// the lattice of modes is 1, as it is for the surface.
-fn asked(params: &SurfaceParams) -> Vec<(f64, f64)> {
-    if params.is_measured() {
-        return Vec::new();
-    }
-    let unit = eq10_unit(params) / eq10_variance(params);
-    let at = |k: usize| f64::from(params.magnification).powf(k as f64 / POINTS as f64);
-    (0..=POINTS).map(at).map(|q| (q, unit * q.powf(-2.0 * (params.hurst + 1.0)))).collect()
+/// A target spectrum at the realised rms height: `C qL²/h_rms²` over q/qL, from the longest to the shortest waves, such that the
+/// sum over the lattice of modes is 1, as it is for the surface.
+fn asked(target: &Spectrum) -> Vec<(f64, f64)> {
+    // `C qL²` of Eq 10 at qL [m²].
+    let unit = target.prefactor() * target.lowest_wavenumber().powi(2) / eq10_variance(target);
+    let at = |k: usize| f64::from(target.magnification).powf(k as f64 / POINTS as f64);
+    (0..=POINTS).map(at).map(|q| (q, unit * q.powf(-2.0 * (target.hurst + 1.0)))).collect()
 }
 
-/// Realised density over that of Eq 10 at the target rms height. The sum of Eq 10 over the lattice of modes exceeds its integral, which defines the rms height.
-fn asked_factor(params: &SurfaceParams, variance_m2: f64) -> Option<f64> {
-    (!params.is_measured()).then(|| variance_m2 / eq10_variance(params))
-}
-
-/// `C qL²` of Eq 10 at qL \[m²\].
-fn eq10_unit(params: &SurfaceParams) -> f64 {
-    let of = spectrum(params);
-    of.prefactor() * of.lowest_wavenumber().powi(2)
-}
-
-/// The sum of Eq 10 over the lattice of modes \[m²\].
-fn eq10_variance(params: &SurfaceParams) -> f64 {
-    Spectrum { normalization: Normalization::Spectrum, ..spectrum(params) }.lattice_moments().m0_m2
+/// The sum of Eq 10 over the lattice of modes \[m²\]. It exceeds the integral, which defines the rms height.
+fn eq10_variance(target: &Spectrum) -> f64 {
+    Spectrum { normalization: Normalization::Spectrum, ..*target }.lattice_moments().m0_m2
 }

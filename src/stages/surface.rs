@@ -5,21 +5,17 @@ use super::failure::in_the_way;
 use super::runner::{Context, Tasks};
 use super::{StageError, failure};
 use crate::campaign::{Campaign, CycleUnit, Stage, Standing, SurfaceUnit, Unit};
+use crate::model::{GeneratedSurface, SurfaceSource};
 use crate::physics::surface::spectrum::Spectrum;
-use crate::spec::{CaseParams, SurfaceParams};
+use crate::spec::CaseParams;
 use crate::store::hdf5::{SurfaceHeader, read_header};
 use serde_json::{Map, Value};
 use std::collections::HashMap;
 use std::marker::PhantomData;
 
-/// Target spectrum of a generated surface.
-pub(super) fn spectrum(params: &SurfaceParams) -> Spectrum {
-    Spectrum::from(params)
-}
-
 /// Target spectrum of a case; a measured surface has none.
 pub(super) fn target(params: &CaseParams) -> Option<Spectrum> {
-    (!params.surface.is_measured()).then(|| spectrum(&params.surface))
+    params.surface.generated().map(GeneratedSurface::spectrum)
 }
 
 /// Units of the lengths and heights of a surface.
@@ -33,11 +29,11 @@ pub(super) struct Scale {
 
 /// Scale of a surface; that of a measured one is read from its file.
 pub(super) fn scale(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Scale, StageError> {
-    if unit.params.is_measured() {
-        let SurfaceHeader { length_m, rms_height_m, .. } = read_header(&campaign.surface_path(unit))?;
+    if let SurfaceSource::Generated(GeneratedSurface { length_m, rms_height_m, .. }) = unit.params {
         return Ok(Scale { length_m, rms_height_m });
     }
-    Ok(Scale { length_m: unit.params.length_m, rms_height_m: unit.params.rms_height_m })
+    let SurfaceHeader { length_m, rms_height_m, .. } = read_header(&campaign.surface_path(unit))?;
+    Ok(Scale { length_m, rms_height_m })
 }
 
 /// A stage with one task for each surface.

@@ -3,7 +3,7 @@
 
 use crate::paper::{MATERIAL, spectrum};
 use crate::watch::{heading, line, once, plain};
-use hysteron::model::{ElementParams, Normalization};
+use hysteron::model::{Attraction as Rule, ElementOptions, Normalization};
 use hysteron::physics::boundary_elements::contact::{Attraction, Problem};
 use hysteron::physics::boundary_elements::cycle::{Settings, run as cycle};
 use hysteron::physics::boundary_elements::grid::{HalfSpace, Operator};
@@ -37,7 +37,8 @@ fn one(zeta: u32, n: usize, range: bool) {
     let work = work_length / spacing;
     let bonded = Attraction::Bonded { margin: 2, nucleation: 0.0, strength: f64::INFINITY };
     let (law, attraction) = if range {
-        (Law::morse(work, ElementParams::default().range(work_length, spacing) / spacing), Attraction::Range)
+        let automatic = ElementOptions { attraction: Rule::Range { range_m: None }, ..ElementOptions::default() };
+        (Law::morse(work, automatic.range(work_length, spacing).unwrap() / spacing), Attraction::Range)
     } else {
         (Law::crack(work), bonded)
     };

@@ -41,7 +41,7 @@ pub fn campaign(bench: &Bench) -> Campaign {
 
 /// The cycles of boundary elements.
 pub fn elements(campaign: &Campaign) -> Vec<CycleUnit> {
-    campaign.distinct_cycles().into_iter().filter(|unit| campaign.cases[unit.case].case.params.by_elements()).collect()
+    campaign.distinct_cycles().into_iter().filter(|unit| campaign.cases[unit.case].case.params.elements().is_some()).collect()
 }
 
 pub fn table(campaign: &Campaign, unit: &CycleUnit, table: &'static Table) -> Frame {

@@ -206,7 +206,7 @@ fn law_auto_is_the_chosen_method_with_its_keys() {
         assert!(auto.to_toml().contains(&format!("method = \"{method}\"")) && !auto.to_toml().contains("auto"), "{}", auto.to_toml());
     }
     let auto = parsed(&generated("auto", "[0.0001, 0.07]"));
-    let methods = |spec: &Spec| spec.cases.iter().map(|case| case.params.model.method).collect::<Vec<_>>();
+    let methods = |spec: &Spec| spec.cases.iter().map(|case| case.params.method.kind()).collect::<Vec<_>>();
     assert_eq!(methods(&auto), [Method::Asperities, Method::BoundaryElements]);
     let text = auto.to_toml();
     assert!(text.contains("auto_methods = [\"asperities\", \"boundary_elements\"]"), "{text}");

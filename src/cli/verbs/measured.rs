@@ -11,11 +11,11 @@ use crate::constants::{Constant, Constants};
 use crate::formats::recognize;
 use crate::keys::digest_of_file;
 use crate::lengths::sizes;
+use crate::model::MeasuredSurface;
 use crate::model::{Choice, Detrend, FastAxis, Filter, Missing};
 use crate::physics::surface::measured::find_measured;
 use crate::physics::surface::summits::Summit;
 use crate::physics::theory::flattening::{measured_flattening, shortest_wavelength};
-use crate::spec::SurfaceParams;
 use crate::stages::{Imported, measure};
 use crate::store::hdf5::{read_surface, write_surface, write_tamaas};
 use crate::store::scan::export::write_netcdf3;
@@ -83,10 +83,10 @@ pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
     Ok(0)
 }
 
-fn params(asked: &ImportArguments) -> Result<SurfaceParams, Fault> {
+fn params(asked: &ImportArguments) -> Result<MeasuredSurface, Fault> {
     let default = if asked.periodic { Detrend::Mean } else { Detrend::Plane };
     let [size_m, size_y_m] = size_m(asked)?;
-    Ok(SurfaceParams {
+    Ok(MeasuredSurface {
         file: asked.file.to_string_lossy().into_owned(),
         dataset: asked.dataset.clone().unwrap_or_default(),
         periodic: asked.periodic,
@@ -105,7 +105,6 @@ fn params(asked: &ImportArguments) -> Result<SurfaceParams, Fault> {
         fast_axis: asked.fast_axis.as_deref().and_then(FastAxis::from_word).unwrap_or(FastAxis::Auto),
         tip_radius_m: asked.tip_radius.unwrap_or_default(),
         points_per_shortest_wavelength: u32::from(asked.points),
-        ..SurfaceParams::default()
     })
 }
 

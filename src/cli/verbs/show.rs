@@ -5,8 +5,9 @@ use super::place::{folder, open_dir};
 use super::{Fault, failed, say};
 use crate::campaign::{Campaign, CaseUnit, CycleUnit, REPORT_PAGE, STATISTICS, Stage, Standing, SurfaceUnit, Unit};
 use crate::cli::FolderArguments;
+use crate::model::SurfaceSource;
 use crate::schema::{self, Table};
-use crate::spec::{CaseParams, GENERATED, MEASURED, SurfaceParams};
+use crate::spec::{CaseParams, GENERATED, MEASURED};
 use crate::stats::{significant, warnings_of};
 use crate::store::{Check, ColumnData, Found, Frame, Kept, parquet, read_receipt};
 use crate::text::{shell_path, shown, visible, wrapped};
@@ -120,7 +121,8 @@ fn of_cycle(campaign: &Campaign, unit: &CycleUnit) -> Result<Shown, Fault> {
 fn of_surface(campaign: &Campaign, unit: &SurfaceUnit) -> Shown {
     let word = |unit: &Unit<'_>| state(&campaign.standing(unit, Check::Sizes));
     let mut parameters = Map::new();
-    flatten("surface", &json!(unit.params), &mut parameters);
+    let of_surface = CaseParams { surface: unit.params.clone(), ..CaseParams::default() };
+    flatten("surface", &json!(of_surface)["surface"], &mut parameters);
     keep_own(&unit.params, &mut parameters);
     parameters.insert("realization".to_owned(), unit.realization.into());
     Shown {
@@ -157,8 +159,8 @@ fn parameters(params: &CaseParams) -> Map<String, Value> {
 }
 
 /// Removes the keys of a measured surface from those of a generated one, and the other way round.
-fn keep_own(surface: &SurfaceParams, all: &mut Map<String, Value>) {
-    let others: &[&str] = if surface.is_measured() { &GENERATED } else { &MEASURED };
+fn keep_own(surface: &SurfaceSource, all: &mut Map<String, Value>) {
+    let others: &[&str] = surface.generated().map_or(&GENERATED, |_| &MEASURED);
     all.retain(|key, _| !others.iter().any(|name| key.strip_prefix("surface.") == Some(*name)));
 }
 

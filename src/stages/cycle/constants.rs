@@ -1,9 +1,10 @@
 //! Numerical choices of a cycle that depend on its case, and its checkpoints.
 
 use super::KEPT_FOR;
+use super::asperities::{MOST_STEPS, OF_ASPERITIES};
+use super::elements::{LONG, OF_POINTS};
 use crate::constants::Constant;
 use crate::physics::asperities::{CHECKPOINT_INTERVAL, CHECKPOINTS_FROM};
-use crate::stages::step_count;
 
 /// Constants of cycles.
 pub(in crate::stages) const CONSTANTS: &[Constant] = &[
@@ -24,9 +25,28 @@ pub(in crate::stages) const CONSTANTS: &[Constant] = &[
     ),
     Constant::new(
         "steps of a cycle",
-        &[step_count::MOST as f64],
+        &[MOST_STEPS as f64],
         "",
         "Maximum, asperity model. A cycle that needs more fails before it begins.",
         "",
     ),
+];
+
+/// Constants of the estimates before a run.
+pub(in crate::stages) const ESTIMATES: &[Constant] = &[
+    Constant::new(
+        "time of a loop on N x N points, `a`, `b`",
+        &OF_POINTS,
+        "s",
+        "Boundary elements: `a N² + b N³`; accuracy: a factor of 3.",
+        "",
+    ),
+    Constant::new(
+        "time of a cycle of asperities, factor, exponent",
+        &OF_ASPERITIES,
+        "s",
+        "With merging, at ζ/64 and `F_max/(E* A0)` = 0.0071.",
+        "",
+    ),
+    Constant::new("long loop", &[LONG], "s", "A longer loop by boundary elements is announced before it starts.", ""),
 ];

@@ -1,16 +1,17 @@
 //! cycle: load and unload one case on one surface, and write every step.
 
 mod asperities;
-mod boundary_elements;
 mod constants;
-mod elements_setup;
-mod lattice;
+mod elements;
+mod method;
 mod not_reached;
 mod tables;
 
-pub(super) use asperities::checked;
-pub(super) use constants::CONSTANTS;
-pub(super) use lattice::{Lattice, checked_lattice, enough_memory, lattice};
+pub(super) use asperities::Trial;
+pub(super) use constants::{CONSTANTS, ESTIMATES};
+pub(super) use elements::announced;
+pub use method::unload_again;
+pub(super) use method::{cost, lattice, refusal};
 
 use super::done::Outcome;
 use super::failure::in_the_way;
@@ -18,6 +19,7 @@ use super::identity::Identity;
 use super::runner::{Context, Tasks};
 use super::{StageError, Watch};
 use crate::campaign::{Campaign, CycleUnit, Stage, Standing, SurfaceUnit, Unit};
+use crate::model::Method as Kind;
 use crate::physics::LoopPosition;
 use crate::physics::cycle::{Cycle, Method};
 use crate::physics::half_space::Effort;
@@ -84,7 +86,8 @@ impl Tasks for Cycles<'_> {
     }
 
     fn duration_rank(&self, of: &CycleUnit) -> (bool, u32) {
-        (self.context.campaign.cases[of.case].case.params.by_elements(), self.surface(of).params.magnification)
+        let (method, surface) = (&self.context.campaign.cases[of.case].case.params.method, &self.surface(of).params);
+        (method.kind() > Kind::Asperities, surface.generated().map_or(0, |surface| surface.magnification))
     }
 
     fn compute(&self, of: &CycleUnit) -> Result<Outcome, StageError> {
@@ -147,8 +150,7 @@ fn compute(task: CycleTask<'_>) -> Result<Outcome, StageError> {
     let CycleTask { campaign, unit, watch } = task;
     let path = campaign.cycle_dir(unit);
     std::fs::create_dir_all(&path).map_err(|source| StageError::Folder { path, source })?;
-    let by_elements = task.params().by_elements();
-    let mut computed = if by_elements { boundary_elements::run(&task)? } else { asperities::run(&task)? };
+    let mut computed = method::run(&task)?;
     let max_loads = &task.params().cycle.max_load;
     let of_all = tables::Tables { of: Identity::of(campaign, unit), computed: &computed, max_loads };
     let mut files = write_tables(campaign, unit, &[of_all.contacts()?, of_all.events()?, of_all.steps()?])?;
@@ -158,16 +160,6 @@ fn compute(task: CycleTask<'_>) -> Result<Outcome, StageError> {
     let unreached: Vec<_> = unreached.into_iter().map(|(at, error)| (max_loads[at], StageError::from(error).to_string())).collect();
     files.extend(not_reached::record(campaign, unit, &unreached, watch)?);
     Ok(Outcome { files, effort: effort(&computed) })
-}
-
-/// Unloads again from a load reversal of a finished cycle.
-///
-/// # Errors
-/// The files of the cycle and of its surface must be complete, and contain that load.
-pub fn unload_again(campaign: &Campaign, unit: &CycleUnit, max_load: f64) -> Result<Cycle<()>, StageError> {
-    let by_elements = campaign.cases[unit.case].case.params.by_elements();
-    let again = if by_elements { boundary_elements::unload_again } else { asperities::unload_again };
-    again(campaign, unit, max_load)
 }
 
 /// Writes the tables of a cycle.

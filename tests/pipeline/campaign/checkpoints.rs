@@ -33,7 +33,7 @@ fn checkpoint(campaign: &Campaign, unit: &CycleUnit) -> Vec<u8> {
         refined: true,
     };
     let summits: Vec<Summit> = (0..frame.row_count()).map(summit).collect();
-    let model = &params.model;
+    let (model, surface) = (params.asperities().unwrap(), params.surface.generated().unwrap());
     let rules = Rules {
         interaction: model.interaction,
         boundary: model.boundary,
@@ -42,8 +42,8 @@ fn checkpoint(campaign: &Campaign, unit: &CycleUnit) -> Vec<u8> {
         allow_low_tabor: model.allow_low_tabor,
         slips: Slips::NONE,
     };
-    let problem = Problem::new(&summits, params.surface.length_m, params.surface.rms_height_m, params.material, rules).unwrap();
-    let (max_loads, approach_step) = (params.cycle.max_load.clone(), params.cycle.approach_step);
+    let problem = Problem::new(&summits, surface.length_m, surface.rms_height_m, params.material, rules).unwrap();
+    let (max_loads, approach_step) = (params.cycle.max_load.clone(), model.approach_step);
     let settings = Settings { max_loads, approach_step, contacts: params.cycle.contacts, rest_every: Some(0.1) };
     let mut kept = Vec::new();
     let mut keep = |checkpoint: &Checkpoint| kept.push(postcard::to_stdvec(checkpoint).unwrap());

@@ -2,6 +2,7 @@
 
 use hysteron::campaign::{Campaign, Standing};
 use hysteron::keys::canonical;
+use hysteron::model::{MeasuredSurface, SurfaceSource};
 use hysteron::spec::Spec;
 use std::collections::{BTreeSet, HashMap};
 use std::path::PathBuf;
@@ -200,7 +201,8 @@ fn law_what_failed_is_another_table_than_what_was_not_tried() {
     assert_eq!(keys.len(), 4, "the table cycles holds the error message");
     assert_eq!(one.failure_in_tables(&one.cycles[0], &why).as_deref(), Some("a \"quoted\" reason"));
     // A table holds no path of the machine.
-    one.surfaces[0].params.file = "/data/here/a scan.npy".to_owned();
+    let scan = MeasuredSurface { file: "/data/here/a scan.npy".to_owned(), ..MeasuredSurface::default() };
+    one.surfaces[0].params = SurfaceSource::Measured(Box::new(scan));
     let unread = Standing::Failed("cannot import the surface /data/here/a scan.npy: it is empty".to_owned());
     assert_eq!(one.failure_in_tables(&one.cycles[0], &unread).as_deref(), Some("cannot import the surface a scan.npy: it is empty"));
 }

@@ -3,6 +3,7 @@
 use super::SMALL;
 use crate::bench::{Bench, SPEC, code, files, paths, stderr, stdout};
 use hysteron::campaign::{Campaign, Stage};
+use hysteron::model::SurfaceSource;
 use hysteron::spec::Spec;
 use hysteron::stages::{Task, Watch, run};
 use std::fs;
@@ -132,7 +133,8 @@ fn e2e_heights_that_are_no_numbers_fail_their_surface_alone() {
     let text = format!("{}[[sweep]]\nname = \"s\"\nsurface.hurst = [0.7, 0.8]\n", SMALL.replace("realizations = 2", "realizations = 1"));
     let mut spec = Spec::parse(&text, "x.toml").unwrap();
     // What a spec refuses: the spectrum of so small an exponent has no finite moments.
-    spec.cases[0].params.surface.hurst = 1e-300;
+    let SurfaceSource::Generated(surface) = &mut spec.cases[0].params.surface else { panic!("a generated surface") };
+    surface.hurst = 1e-300;
     let watch = Heard::default();
     let (_, tallies) = run(Campaign::new(spec, folder.path().join("out")), &Task::new(Stage::Generate, Stage::Cycle), &watch).unwrap();
     let heard = watch.0.lock().unwrap().join("\n");

@@ -110,5 +110,5 @@ fn e2e_a_sweep_over_files_is_found_too() {
     fs::remove_file(at("specs/a.txt")).unwrap();
     let spec = Spec::read(bench.out().join("campaign.toml")).unwrap();
     let names = ["specs/a.txt", "b.txt"].map(|name| bench.folder.path().canonicalize().unwrap().join(name).display().to_string());
-    assert_eq!(spec.cases.iter().map(|case| case.params.surface.file.clone()).collect::<Vec<_>>(), names);
+    assert_eq!(spec.cases.iter().map(|case| case.params.surface.measured().unwrap().file.clone()).collect::<Vec<_>>(), names);
 }

@@ -21,7 +21,7 @@ fn law_a_setting_is_the_same_as_the_written_value() {
     assert!(adaptive.realizations.until().is_some() && adaptive.name == "other");
     // A sweep overrides the base, whoever wrote it.
     let swept = with(SPEC, &["surface.hurst=0.7", "cycle.max_load=[0.001]"]).unwrap();
-    assert!(swept.cases.iter().all(|case| case.params.surface.hurst == 0.7 && case.params.cycle.max_load == [0.001]));
+    assert!(swept.cases.iter().all(|case| case.params.surface.generated().unwrap().hurst == 0.7 && case.params.cycle.max_load == [0.001]));
 }
 
 #[test]
@@ -53,7 +53,7 @@ fn e2e_the_resolved_spec_holds_the_settings() {
     let run = bench.verb("run", &["--until", "generate", "--set", "realizations=1", "--set", "surface.hurst=0.7"]);
     assert_eq!(code(&run), 0, "{}", stderr(&run));
     let resolved = Spec::read(bench.out().join("campaign.toml")).unwrap();
-    assert_eq!((resolved.realizations.most(), resolved.base.surface.hurst), (1, 0.7));
+    assert_eq!((resolved.realizations.most(), resolved.base.generated.hurst), (1, 0.7));
     // The run goes on without the options, from its own spec.
     let again = bench.look("plan", &["--json"]);
     let plan: serde_json::Value = serde_json::from_slice(&again.stdout).unwrap();

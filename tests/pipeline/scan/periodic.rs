@@ -86,7 +86,7 @@ fn law_the_default_of_detrend_follows_periodic() {
         let spec = parsed(text);
         // What is written out reads back as the same spec.
         assert_eq!(parsed(&spec.to_toml()), spec, "{}", spec.to_toml());
-        spec.cases.iter().map(|case| case.params.surface.detrend).collect::<Vec<_>>()
+        spec.cases.iter().map(|case| case.params.surface.measured().unwrap().detrend).collect::<Vec<_>>()
     };
     use Detrend::{Mean, Plane, Quadratic};
     assert_eq!(shapes(&text("", "")), [Plane]);

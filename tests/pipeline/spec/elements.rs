@@ -1,7 +1,8 @@
 //! Boundary elements in a spec: what they refuse, and which values make cases of their own.
 
 use super::refused;
-use hysteron::spec::{ElementParams, Spec, mesh_number};
+use hysteron::model::{Attraction, ElementOptions};
+use hysteron::spec::{Spec, mesh_number};
 
 /// A case of boundary elements of ζ = 8, with further lines.
 fn spec(lines: &str) -> String {
@@ -47,18 +48,18 @@ fn val_too_large_a_magnification_for_the_largest_grid() {
 
 #[test]
 fn val_the_automatic_grid_is_a_power_of_two_with_sixteen_points() {
-    let elements = ElementParams::default();
+    let elements = ElementOptions::default();
     for (wavelengths, grid) in [(2.0, 32), (4.0, 64), (8.0, 128), (9.0, 256), (128.0, 2048), (256.0, 4096), (500.0, 4096), (1e9, 4096)] {
         assert_eq!(elements.grid(wavelengths), grid, "{wavelengths}");
     }
-    assert_eq!(ElementParams { points: 96, ..elements }.grid(8.0), 96);
+    assert_eq!(ElementOptions { points: Some(96), ..elements }.grid(8.0), 96);
 }
 
 #[test]
 fn law_the_automatic_range_has_the_same_mesh_number_on_every_grid() {
-    let elements = ElementParams::default();
+    let elements = ElementOptions { attraction: Attraction::Range { range_m: None }, ..ElementOptions::default() };
     for (work_length, spacing) in [(7e-8, 7.8e-6), (1e-10, 1e-9), (1.0, 1e-3)] {
-        let mesh = mesh_number(work_length, spacing, elements.range(work_length, spacing));
+        let mesh = mesh_number(work_length, spacing, elements.range(work_length, spacing).unwrap());
         assert!((mesh - 0.625).abs() < 1e-12, "{mesh}");
     }
 }

@@ -1,8 +1,8 @@
 //! Bounds and words.
 
 use hysteron::model::{
-    Amplitudes, Attraction, Boundary, Choice, Coalescence, Interaction, JumpIn, KeptContacts, Method, Normalization, Nucleation, Opening,
-    Slip,
+    Amplitudes, AttractionKind, Boundary, Choice, Coalescence, Interaction, JumpIn, KeptContacts, Method, Normalization, Nucleation,
+    Opening, Slip,
 };
 use hysteron::spec::Spec;
 
@@ -61,7 +61,7 @@ fn all_words() -> Vec<(&'static str, &'static str)> {
         words::<JumpIn>("model.jump_in"),
         words::<Slip>("model.as_printed"),
         words::<KeptContacts>("cycle.contacts"),
-        words::<Attraction>("boundary_elements.attraction"),
+        words::<AttractionKind>("boundary_elements.attraction"),
         words::<Nucleation>("boundary_elements.nucleation"),
         words::<Opening>("boundary_elements.opening"),
     ]
@@ -88,7 +88,7 @@ fn law_slips_are_sorted_and_stand_once() {
     let can: Vec<&str> = Slip::WORDS.iter().map(|(word, _)| *word).collect();
     let quoted: Vec<String> = can.iter().rev().chain(&can).map(|word| format!("\"{word}\"")).collect();
     let text = format!("name = \"x\"\nmodel.as_printed = [{}]\n", quoted.join(", "));
-    let slips = Spec::parse(&text, "x.toml").unwrap().cases.remove(0).params.model.as_printed;
+    let slips = Spec::parse(&text, "x.toml").unwrap().cases.remove(0).params.as_printed;
     assert_eq!(slips.iter().map(|slip| slip.word()).collect::<Vec<_>>(), can);
     assert!(slips.is_sorted());
 }

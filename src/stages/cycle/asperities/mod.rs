@@ -1,11 +1,21 @@
 //! A cycle of the asperity model.
 
+mod cost;
+mod step_count;
+mod trial;
+
+pub(super) use cost::{OF_ASPERITIES, cost};
+pub(super) use step_count::MOST as MOST_STEPS;
+pub(in crate::stages) use trial::Trial;
+
+use super::super::StageError;
 use super::super::extract::read_summits;
 use super::super::identity::Identity;
+use super::super::previews::Known;
 use super::super::surface::{Scale, scale};
-use super::super::{StageError, step_count};
 use super::{Computed, CycleTask};
 use crate::campaign::{Campaign, CycleUnit};
+use crate::model::AsperityOptions;
 use crate::physics::asperities::{Asperities, Options};
 use crate::physics::contact::rows::Kept;
 use crate::physics::contact::{Merged, Problem, Rules, State, Status};
@@ -17,17 +27,31 @@ use crate::store::{Frame, parquet};
 use std::collections::HashMap;
 use std::path::Path;
 
+/// A case of the asperity model.
+#[derive(Clone, Copy)]
+struct Of<'a> {
+    params: &'a CaseParams,
+    options: &'a AsperityOptions,
+}
+
+/// The error by which cycles on a measured surface fail; nothing for one whose asperities are not known.
+pub(super) fn refusal(params: &CaseParams, options: &AsperityOptions, known: &Known) -> Option<StageError> {
+    let scale = Scale { length_m: known.header.length_m, rms_height_m: known.header.rms_height_m };
+    checked(Of { params, options }, scale, &known.found()?.summits).err()
+}
+
 /// The asperity model of a case on the asperities of a table.
-fn method(params: &CaseParams, scale: Scale, summits: &[Summit], max_loads: &[f64]) -> Result<Asperities, StageError> {
+fn method(of: Of<'_>, scale: Scale, summits: &[Summit], max_loads: &[f64]) -> Result<Asperities, StageError> {
+    let Of { params, options } = of;
     let rules = Rules {
-        interaction: params.model.interaction,
-        boundary: params.model.boundary,
-        coalescence: params.model.coalescence,
-        jump_in: params.model.jump_in,
-        allow_low_tabor: params.model.allow_low_tabor,
-        slips: params.model.slips(),
+        interaction: options.interaction,
+        boundary: options.boundary,
+        coalescence: options.coalescence,
+        jump_in: options.jump_in,
+        allow_low_tabor: options.allow_low_tabor,
+        slips: params.slips(),
     };
-    let options = Options { rules, approach_step: params.cycle.approach_step, contacts: params.cycle.contacts };
+    let options = Options { rules, approach_step: options.approach_step, contacts: params.cycle.contacts };
     Ok(Asperities::of_summits(summits, scale.length_m, scale.rms_height_m, &params.material, max_loads, &options)?)
 }
 
@@ -35,17 +59,17 @@ fn method(params: &CaseParams, scale: Scale, summits: &[Summit], max_loads: &[f6
 ///
 /// # Errors
 /// Asperities, a Tabor parameter or a number of steps that the asperity model refuses.
-pub(in crate::stages) fn checked(params: &CaseParams, scale: Scale, summits: &[Summit]) -> Result<Asperities, StageError> {
-    let method = method(params, scale, summits, &params.cycle.max_load)?;
-    step_count::bound(&method.problem, summits, params)?;
+fn checked(of: Of<'_>, scale: Scale, summits: &[Summit]) -> Result<Asperities, StageError> {
+    let method = method(of, scale, summits, &of.params.cycle.max_load)?;
+    step_count::bound(&method.problem, summits, of)?;
     Ok(method)
 }
 
-pub(super) fn run(task: &CycleTask<'_>) -> Result<Computed, StageError> {
+pub(super) fn run(task: &CycleTask<'_>, options: &AsperityOptions) -> Result<Computed, StageError> {
     let (campaign, unit, params) = (task.campaign, task.unit, task.params());
     let surface = &campaign.surfaces[unit.surface];
     let summits = read_summits(&campaign.asperities_path(surface))?;
-    let method = checked(params, scale(campaign, surface)?, &summits)?;
+    let method = checked(Of { params, options }, scale(campaign, surface)?, &summits)?;
     let cycle = task.follow(&method)?;
     let (of, problem) = (Identity::of(campaign, unit), &method.problem);
     let tables = vec![turning(of, &cycle, problem, &params.cycle.max_load)?, merged(of, &cycle)?];
@@ -66,10 +90,15 @@ pub(super) fn run(task: &CycleTask<'_>) -> Result<Computed, StageError> {
 ///
 /// # Errors
 /// The tables of the cycle and of its surface must be there and whole, and hold that load.
-pub(super) fn unload_again(campaign: &Campaign, unit: &CycleUnit, max_load: f64) -> Result<Cycle<()>, StageError> {
+pub(super) fn unload_again(
+    campaign: &Campaign,
+    unit: &CycleUnit,
+    options: &AsperityOptions,
+    max_load: f64,
+) -> Result<Cycle<()>, StageError> {
     let params = &campaign.cases[unit.case].case.params;
     let summits = read_summits(&campaign.asperities_path(&campaign.surfaces[unit.surface]))?;
-    let method = method(params, scale(campaign, &campaign.surfaces[unit.surface])?, &summits, &[max_load])?;
+    let method = method(Of { params, options }, scale(campaign, &campaign.surfaces[unit.surface])?, &summits, &[max_load])?;
     let path = campaign.cycle_dir(unit).join("turning.parquet");
     let frame = parquet::read_table(&path, &schema::TURNING)?;
     let (loads, approaches) = (frame.f64("max_load")?, frame.f64("approach_m")?);

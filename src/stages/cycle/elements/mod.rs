@@ -1,20 +1,83 @@
 //! A cycle by boundary elements, and the files that only this method writes.
 
+mod announced;
+mod cost;
+mod lattice;
+mod setup;
+mod slow_grid;
+
+pub(in crate::stages) use announced::announced;
+pub(super) use cost::{LONG, OF_POINTS};
+pub(in crate::stages) use lattice::Lattice;
+
 use super::super::StageError;
+use super::super::cost::Cost;
 use super::super::identity::Identity;
-use super::elements_setup::setup;
+use super::super::previews::Known;
 use super::{Computed, CycleTask, serialized};
 use crate::campaign::{Campaign, CycleUnit};
+use crate::model::{ElementOptions, SurfaceSource};
 use crate::physics::boundary_elements::cycle::Turning;
 use crate::physics::cycle::{Cycle, Map, Method};
 use crate::physics::elements::{Elements, FreeStep};
 use crate::schema;
+use crate::spec::CaseParams;
+use crate::store::hdf5::SurfaceHeader;
 use crate::store::{ContactMap, Frame, MapsHeader, read_halfway, write_maps, write_state};
+use lattice::{checked_lattice, enough_memory};
+use setup::setup;
 use std::path::{Path, PathBuf};
 
-pub(super) fn run(task: &CycleTask<'_>) -> Result<Computed, StageError> {
+/// A case of boundary elements.
+#[derive(Clone, Copy)]
+pub(super) struct Of<'a> {
+    pub(super) params: &'a CaseParams,
+    pub(super) options: &'a ElementOptions,
+}
+
+impl Of<'_> {
+    /// Grid of a case on a generated surface, or on one whose file has this header; nothing for a measured one without.
+    pub(super) fn lattice(self, header: Option<&SurfaceHeader>) -> Option<Lattice> {
+        match (header, &self.params.surface) {
+            (Some(header), SurfaceSource::Measured(_)) => Some(Lattice::of_header(self, header)),
+            (_, SurfaceSource::Generated(surface)) => Some(Lattice::of_generated(self, surface)),
+            (None, SurfaceSource::Measured(_)) => None,
+        }
+    }
+
+    /// Steps over the gaps at which an attraction with a range acts; nothing in the JKR limit.
+    fn range_steps(self, lattice: &Lattice, rms_height_m: f64) -> Option<f64> {
+        Some(self.options.range_steps(lattice.range_m?, rms_height_m, self.params.cycle.max_load.len()))
+    }
+
+    /// Memory and time of a cycle at a ratio `U_el/Δγ`, on a generated surface or on a measured one that is known.
+    pub(super) fn cost(self, known: Option<&Known>, ratio: Option<f64>) -> Option<Cost> {
+        let lattice = self.lattice(known.map(|known| &known.header))?;
+        let of_generated = self.params.surface.generated().map(|surface| surface.rms_height_m);
+        let rms_height_m = of_generated.or_else(|| known.map(|known| known.header.rms_height_m))?;
+        let range_steps = self.range_steps(&lattice, rms_height_m).unwrap_or_default();
+        let cost = cost::cost(&lattice, self.params.cycle.max_load.len(), ratio, range_steps);
+        let shortest = known.and_then(Known::found).map_or(1.0, |found| found.shortest);
+        Some(Cost { per_wavelength: shortest * cost.per_wavelength, ..cost })
+    }
+
+    /// The error by which cycles fail, as far as it is known before them.
+    pub(super) fn refusal(self, known: Option<&Known>) -> Option<StageError> {
+        match (known, &self.params.surface) {
+            (Some(known), _) => checked_lattice(self, &known.header, known.header.rms_height_m).err(),
+            (None, SurfaceSource::Generated(surface)) => {
+                let lattice = Lattice::of_generated(self, surface);
+                enough_memory(lattice.points, self.params.cycle.max_load.len()).err().map(StageError::from)
+            }
+            (None, SurfaceSource::Measured(_)) => None,
+        }
+    }
+}
+
+/// Computes a cycle.
+pub(super) fn run(task: &CycleTask<'_>, options: &ElementOptions) -> Result<Computed, StageError> {
     let (campaign, unit) = (task.campaign, task.unit);
-    let method = setup(campaign, unit)?;
+    let method = setup(campaign, unit, Of { params: task.params(), options })?;
     let cycle = task.follow(&method)?;
     let (size, units, dir) = (method.size(), method.units, campaign.cycle_dir(unit));
     let contact_gap_m = method.problem.law.contact_gap() * units.spacing_m();
@@ -87,9 +150,14 @@ fn turning_path(dir: &Path) -> PathBuf {
 ///
 /// # Errors
 /// The files of the cycle and of its surface must be complete, and contain that load.
-pub(super) fn unload_again(campaign: &Campaign, unit: &CycleUnit, max_load: f64) -> Result<Cycle<()>, StageError> {
+pub(super) fn unload_again(
+    campaign: &Campaign,
+    unit: &CycleUnit,
+    options: &ElementOptions,
+    max_load: f64,
+) -> Result<Cycle<()>, StageError> {
     let params = &campaign.cases[unit.case].case.params;
-    let method = setup(campaign, unit)?;
+    let method = setup(campaign, unit, Of { params, options })?;
     let path = turning_path(&campaign.cycle_dir(unit));
     let states: Option<Vec<Turning>> = read_halfway(&path, &unit.key).and_then(|bytes| postcard::from_bytes(&bytes).ok());
     let reversal = params.cycle.max_load.iter().position(|load| *load == max_load);

@@ -1,6 +1,6 @@
 //! Grids of boundary elements whose Fourier transforms are slow.
 
-use super::outside::Outside;
+use super::super::super::outside::Outside;
 use crate::campaign::{Campaign, CaseUnit};
 use crate::stats::Caution;
 
@@ -19,12 +19,9 @@ const SLOW: Caution = Caution {
 
 /// Cases of boundary elements with a number of grid points along a side that has a large prime factor.
 pub(super) fn slow_grids(campaign: &Campaign) -> Option<Outside> {
-    let slow = |unit: &&CaseUnit| {
-        let params = &unit.case.params;
-        params.by_elements() && largest_factor(params.boundary_elements.points) > TOLERATED_FACTOR
-    };
-    let cases: Vec<&CaseUnit> = campaign.cases.iter().filter(slow).collect();
-    let mut points: Vec<u32> = cases.iter().map(|unit| unit.case.params.boundary_elements.points).collect();
+    let points = |unit: &CaseUnit| unit.case.params.elements()?.points.filter(|points| largest_factor(*points) > TOLERATED_FACTOR);
+    let slow = campaign.cases.iter().filter_map(|unit| Some((unit.id.clone(), points(unit)?)));
+    let (cases, mut points): (Vec<String>, Vec<u32>) = slow.unzip();
     points.sort_unstable();
     points.dedup();
     let named: Vec<String> = points
@@ -37,7 +34,6 @@ pub(super) fn slow_grids(campaign: &Campaign) -> Option<Outside> {
     let range = [factors().reduce(f64::min)?, factors().reduce(f64::max)?];
     let shown = factors().map(|factor| factor.to_string()).collect::<Vec<_>>().join(", ");
     let measured = format!("{} ({}; limit {TOLERATED_FACTOR})", SLOW.text.replace("{}", &shown), named.join("; "));
-    let cases = cases.into_iter().map(|unit| unit.id.clone()).collect();
     Some(Outside { kind: SLOW, limit: f64::from(TOLERATED_FACTOR), range, measured, cases })
 }
 

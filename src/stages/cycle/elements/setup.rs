@@ -1,33 +1,33 @@
 //! Grid, law and settings of boundary elements from the parameters of a case.
 
-use super::super::StageError;
-use super::super::extract::read_summits;
-use super::super::surface::scale;
+use super::super::super::StageError;
+use super::super::super::extract::read_summits;
+use super::super::super::surface::scale;
+use super::Of;
 use super::lattice::{checked_lattice, extent};
 use crate::campaign::{Campaign, CycleUnit};
-use crate::model::{Material, Nucleation, Opening};
+use crate::model::{Attraction as Rule, Material, Nucleation, Opening};
 use crate::physics::PhysicsError;
 use crate::physics::elements::{Attraction, Elements, Options};
 use crate::physics::jkr::Asperity;
 use crate::physics::surface::HeightMap;
 use crate::physics::surface::summits::Summit;
-use crate::spec::CaseParams;
 use crate::store::hdf5::read_surface;
 
 /// The surface of a cycle on the grid of its case.
-pub(super) fn setup(campaign: &Campaign, unit: &CycleUnit) -> Result<Elements, StageError> {
-    let params = &campaign.cases[unit.case].case.params;
+pub(super) fn setup(campaign: &Campaign, unit: &CycleUnit, of: Of<'_>) -> Result<Elements, StageError> {
+    let params = of.params;
     let surface = &campaign.surfaces[unit.surface];
     let (header, heights) = read_surface(&campaign.surface_path(surface))?;
     let list = read_summits(&campaign.asperities_path(surface))?;
     let (length_m, wavelengths) = extent(&header, params);
     let rms_height_m = scale(campaign, surface)?.rms_height_m;
-    let lattice = checked_lattice(params, &header, rms_height_m)?;
-    let attraction = match lattice.range_m {
-        Some(range_m) => Attraction::Range { range_m },
-        None => bonded(params, &list)?,
+    let lattice = checked_lattice(of, &header, rms_height_m)?;
+    let attraction = match of.options.attraction {
+        Rule::Bonded { nucleation, opening } => bonded(&params.material, &list, (nucleation, opening))?,
+        Rule::Range { .. } => Attraction::Range { range_m: lattice.range_m.unwrap_or_default() },
     };
-    let (elements, shortest_wavelength_m) = (&params.boundary_elements, length_m / wavelengths);
+    let (elements, shortest_wavelength_m) = (of.options, length_m / wavelengths);
     let options = Options {
         points: lattice.points,
         attraction,
@@ -44,13 +44,12 @@ pub(super) fn setup(campaign: &Campaign, unit: &CycleUnit) -> Result<Elements, S
 }
 
 /// The JKR limit of a case on a surface with these asperities.
-fn bonded(params: &CaseParams, list: &[Summit]) -> Result<Attraction, StageError> {
-    let material = &params.material;
-    let nucleation_m = match params.boundary_elements.nucleation {
+fn bonded(material: &Material, list: &[Summit], (nucleation, opening): (Nucleation, Opening)) -> Result<Attraction, StageError> {
+    let nucleation_m = match nucleation {
         Nucleation::Touch => 0.0,
         Nucleation::Wu => wu_gap(material, list)?,
     };
-    let strength = match params.boundary_elements.opening {
+    let strength = match opening {
         Opening::Strength => material.adhesion_length_m() / material.interaction_range_m,
         Opening::Edges => f64::INFINITY,
         Opening::Anywhere => 0.0,

@@ -1,13 +1,13 @@
 //! Grid of boundary elements, and its memory.
 
-use super::super::StageError;
-use crate::campaign::{Campaign, CycleUnit};
-use crate::model::Attraction;
+use super::super::super::StageError;
+use super::Of;
+use crate::model::GeneratedSurface;
 use crate::physics::PhysicsError;
 use crate::physics::elements::memory_bytes;
 use crate::physics::memory;
 use crate::spec::CaseParams;
-use crate::store::hdf5::{SurfaceHeader, read_header};
+use crate::store::hdf5::SurfaceHeader;
 
 /// Grid of a case on one surface.
 #[derive(Debug, Clone, Copy)]
@@ -22,54 +22,41 @@ pub(in crate::stages) struct Lattice {
     pub(in crate::stages) is_mirrored: bool,
 }
 
-/// Grid of a cycle; nothing for the asperity model.
-pub(in crate::stages) fn lattice(campaign: &Campaign, unit: &CycleUnit) -> Result<Option<Lattice>, StageError> {
-    let params = &campaign.cases[unit.case].case.params;
-    if !params.by_elements() {
-        return Ok(None);
-    }
-    Ok(Some(if params.surface.is_measured() {
-        Lattice::of_measured(params, &read_header(&campaign.surface_path(&campaign.surfaces[unit.surface]))?)
-    } else {
-        Lattice::of_generated(params)
-    }))
-}
-
 impl Lattice {
     /// The grid of a case on a square of a side \[m\] with a number of shortest wavelengths.
-    fn of(params: &CaseParams, (length_m, wavelengths): (f64, f64)) -> Self {
-        let elements = &params.boundary_elements;
-        let points = elements.grid(wavelengths);
-        let range = || elements.range(params.material.adhesion_length_m(), length_m / f64::from(points));
+    fn of(of: Of<'_>, (length_m, wavelengths): (f64, f64)) -> Self {
+        let points = of.options.grid(wavelengths);
+        let spacing_m = length_m / f64::from(points);
         Self {
             points: points as usize,
             per_wavelength: f64::from(points) / wavelengths,
-            range_m: (elements.attraction == Attraction::Range).then(range),
-            is_mirrored: params.surface.is_measured() && !params.surface.periodic,
+            range_m: of.options.range(of.params.material.adhesion_length_m(), spacing_m),
+            is_mirrored: !of.params.surface.is_periodic(),
         }
     }
 
     /// The grid of a case on its generated surface.
-    pub(in crate::stages) fn of_generated(params: &CaseParams) -> Self {
-        Self::of(params, (params.surface.length_m, f64::from(params.surface.magnification)))
+    pub(super) fn of_generated(of: Of<'_>, surface: &GeneratedSurface) -> Self {
+        Self::of(of, (surface.length_m, f64::from(surface.magnification)))
     }
 
-    /// The grid of a case on a measured surface.
-    pub(in crate::stages) fn of_measured(params: &CaseParams, header: &SurfaceHeader) -> Self {
-        Self::of(params, extent(header, params))
+    /// The grid of a case on a surface with this header.
+    pub(super) fn of_header(of: Of<'_>, header: &SurfaceHeader) -> Self {
+        Self::of(of, extent(header, of.params))
     }
 }
 
 /// The grid of a case on a surface with this header and rms height \[m\], checked.
-pub(in crate::stages) fn checked_lattice(params: &CaseParams, header: &SurfaceHeader, rms_height_m: f64) -> Result<Lattice, StageError> {
-    let (length_m, wavelengths) = extent(header, params);
-    let (elements, loads) = (&params.boundary_elements, params.cycle.max_load.len());
-    if let Some((problem, help)) = elements.refusal(length_m, wavelengths, params.material.adhesion_length_m()) {
+pub(super) fn checked_lattice(of: Of<'_>, header: &SurfaceHeader, rms_height_m: f64) -> Result<Lattice, StageError> {
+    let (length_m, wavelengths) = extent(header, of.params);
+    let (elements, loads) = (of.options, of.params.cycle.max_load.len());
+    if let Some((problem, help)) = elements.refusal(length_m, wavelengths, of.params.material.adhesion_length_m()) {
         return Err(PhysicsError::Surface { problem, help }.into());
     }
-    let lattice = Lattice::of(params, (length_m, wavelengths));
+    let lattice = Lattice::of(of, (length_m, wavelengths));
     enough_memory(lattice.points, loads)?;
-    if let Some((problem, help)) = lattice.range_m.and_then(|range_m| elements.refusal_of_range(range_m, rms_height_m, loads)) {
+    let refused = lattice.range_m.and_then(|range_m| elements.refusal_of_range(range_m, rms_height_m, loads));
+    if let Some((problem, help)) = refused {
         return Err(StageError::Range { problem, help });
     }
     if lattice.is_mirrored && lattice.points % 2 == 1 {
@@ -82,16 +69,15 @@ pub(in crate::stages) fn checked_lattice(params: &CaseParams, header: &SurfaceHe
 
 /// Side of the periodic square \[m\] and its number of shortest wavelengths. A surface that is not periodic is continued by mirror images.
 pub(super) fn extent(header: &SurfaceHeader, params: &CaseParams) -> (f64, f64) {
-    let shortest = match &header.measured {
-        Some(measured) => measured.shortest_wavelength_m,
-        None => header.length_m / f64::from(params.surface.magnification),
-    };
+    let of_measured = header.measured.as_ref().map_or(header.length_m, |measured| measured.shortest_wavelength_m);
+    let of_generated = |surface: &GeneratedSurface| header.length_m / f64::from(surface.magnification);
+    let shortest = params.surface.generated().map_or(of_measured, of_generated);
     let length_m = if header.periodic { header.length_m } else { 2.0 * header.length_m };
     (length_m, length_m / shortest)
 }
 
 /// Refuses a grid for which there is not enough memory.
-pub(in crate::stages) fn enough_memory(points: usize, loads: usize) -> Result<(), PhysicsError> {
+pub(super) fn enough_memory(points: usize, loads: usize) -> Result<(), PhysicsError> {
     let bytes = memory_bytes(points, loads);
     memory::check(bytes).map_err(|_| PhysicsError::Surface {
         problem: format!("boundary elements on {points} x {points} points need {:.2} GB of memory, which are not free", bytes as f64 / 1e9),

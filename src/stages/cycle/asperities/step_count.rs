@@ -1,12 +1,12 @@
 //! Number of steps of a cycle, estimated before it begins.
 
-use super::StageError;
+use super::Of;
 use crate::physics::contact::Problem;
 use crate::physics::surface::summits::Summit;
-use crate::spec::CaseParams;
+use crate::stages::StageError;
 
 /// Steps of all branches of a cycle at most: they take about 2 GB of memory.
-pub(super) const MOST: u64 = 2_000_000;
+pub(in super::super) const MOST: u64 = 2_000_000;
 
 /// Penetration beyond which no load is looked for, in rms heights.
 const DEEPEST: f64 = 100.0;
@@ -18,8 +18,8 @@ const HALVINGS: u32 = 20;
 ///
 /// The penetrations at its loads are those of Hertz contacts without interaction and adhesion, which carry more load at the same penetration than the contact
 /// does. So the number of steps is estimated from below.
-pub(super) fn bound(problem: &Problem, summits: &[Summit], params: &CaseParams) -> Result<(), StageError> {
-    let approach_step = params.cycle.approach_step;
+pub(super) fn bound(problem: &Problem, summits: &[Summit], of: Of<'_>) -> Result<(), StageError> {
+    let (params, approach_step) = (of.params, of.options.approach_step);
     let loads = &params.cycle.max_load;
     let branches = loads.len() as f64 + 1.0;
     if branches * DEEPEST / approach_step <= MOST as f64 {

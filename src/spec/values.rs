@@ -1,0 +1,133 @@
+//! A value for each key of a spec, and the case that follows from them.
+
+use super::Value;
+use super::keys::{KEYS, TABLES};
+use crate::model::{
+    AsperityOptions, Attraction, AttractionKind, CaseParams, ElementOptions, GeneratedSurface, LoadingPath, Material, MeasuredSurface,
+    Method, MethodOptions, Nucleation, Opening, Slip, SurfaceSource,
+};
+use serde::{Serialize, Serializer};
+use std::collections::BTreeMap;
+
+/// A value for each key: those of both kinds of surface, of all methods and of all attractions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Values {
+    /// Keys of a generated surface.
+    pub generated: GeneratedSurface,
+    /// Keys of a measured surface, which has a file.
+    pub measured: MeasuredSurface,
+    /// `[material]`.
+    pub material: Material,
+    /// `model.method`.
+    pub method: Method,
+    /// `model.as_printed`.
+    pub as_printed: Vec<Slip>,
+    /// Keys of the asperity model.
+    pub asperities: AsperityOptions,
+    /// Keys of boundary elements but those of the attraction.
+    pub elements: ElementOptions,
+    /// `boundary_elements.attraction`.
+    pub attraction: AttractionKind,
+    /// `boundary_elements.range_m`.
+    pub range_m: Option<f64>,
+    /// `boundary_elements.nucleation`.
+    pub nucleation: Nucleation,
+    /// `boundary_elements.opening`.
+    pub opening: Opening,
+    /// `[cycle]` but the step of the asperity model.
+    pub cycle: LoadingPath,
+}
+
+impl Default for Values {
+    fn default() -> Self {
+        Self {
+            generated: GeneratedSurface::default(),
+            measured: MeasuredSurface::default(),
+            material: Material::default(),
+            method: Method::Asperities,
+            as_printed: Vec::new(),
+            asperities: AsperityOptions::default(),
+            elements: ElementOptions::default(),
+            attraction: AttractionKind::Bonded,
+            range_m: None,
+            nucleation: Nucleation::Touch,
+            opening: Opening::Strength,
+            cycle: LoadingPath::default(),
+        }
+    }
+}
+
+impl Values {
+    /// The case of these values: what its surface, its method and its attraction do not read is left out, so that
+    /// cases which differ in nothing else are one case. `method = "auto"` has the options of the asperity model.
+    #[must_use]
+    pub fn case(&self) -> CaseParams {
+        let surface = if self.measured.file.is_empty() {
+            SurfaceSource::Generated(self.generated.clone())
+        } else {
+            let points_per_shortest_wavelength = self.generated.points_per_shortest_wavelength;
+            SurfaceSource::Measured(Box::new(MeasuredSurface { points_per_shortest_wavelength, ..self.measured.clone() }))
+        };
+        let (mut as_printed, is_by_elements) = (self.as_printed.clone(), self.method == Method::BoundaryElements);
+        let method = if is_by_elements {
+            as_printed.retain(|slip| !slip.in_contact());
+            MethodOptions::Elements(ElementOptions { attraction: self.attraction(), ..self.elements.clone() })
+        } else {
+            MethodOptions::Asperities(self.asperities.clone())
+        };
+        CaseParams { surface, material: self.material, method, as_printed, cycle: self.cycle.clone() }
+    }
+
+    fn attraction(&self) -> Attraction {
+        match self.attraction {
+            AttractionKind::Bonded => Attraction::Bonded { nucleation: self.nucleation, opening: self.opening },
+            AttractionKind::Range => Attraction::Range { range_m: self.range_m },
+        }
+    }
+}
+
+impl From<&CaseParams> for Values {
+    /// The values of a case, with the defaults of all keys that it does not read.
+    fn from(case: &CaseParams) -> Self {
+        let mut values = Self {
+            material: case.material,
+            method: case.method.kind(),
+            as_printed: case.as_printed.clone(),
+            cycle: case.cycle.clone(),
+            ..Self::default()
+        };
+        match &case.surface {
+            SurfaceSource::Generated(surface) => values.generated = surface.clone(),
+            SurfaceSource::Measured(surface) => {
+                values.measured = MeasuredSurface::clone(surface);
+                values.generated.points_per_shortest_wavelength = surface.points_per_shortest_wavelength;
+            }
+        }
+        match &case.method {
+            MethodOptions::Asperities(options) => values.asperities = options.clone(),
+            MethodOptions::Elements(options) => values.elements = options.clone(),
+        }
+        values.attraction = values.elements.attraction.kind();
+        match values.elements.attraction {
+            Attraction::Bonded { nucleation, opening } => (values.nucleation, values.opening) = (nucleation, opening),
+            Attraction::Range { range_m } => values.range_m = range_m,
+        }
+        values
+    }
+}
+
+impl Serialize for Values {
+    /// The tables of a spec with every key.
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let keys = |table: &'static str| KEYS.iter().filter(move |key| key.table == table);
+        let values = |table| keys(table).map(|key| (key.name, (key.get)(self))).collect::<BTreeMap<&str, Value>>();
+        serializer.collect_map(TABLES.iter().map(|table| (*table, values(table))))
+    }
+}
+
+impl Serialize for CaseParams {
+    /// As [`Values`], with the defaults of the keys that the case does not read.
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        Values::from(self).serialize(serializer)
+    }
+}

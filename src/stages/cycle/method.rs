@@ -1,0 +1,57 @@
+//! What the pipeline asks of the method of a case: the only place of the stages that tells the methods apart.
+
+use super::super::StageError;
+use super::super::cost::Cost;
+use super::super::previews::Known;
+use super::elements::{Lattice, Of};
+use super::{Computed, CycleTask, asperities, elements};
+use crate::campaign::{Campaign, CycleUnit};
+use crate::model::MethodOptions;
+use crate::physics::cycle::Cycle;
+use crate::spec::CaseParams;
+use crate::store::hdf5::read_header;
+
+/// Computes a cycle.
+pub(super) fn run(task: &CycleTask<'_>) -> Result<Computed, StageError> {
+    match &task.params().method {
+        MethodOptions::Asperities(options) => asperities::run(task, options),
+        MethodOptions::Elements(options) => elements::run(task, options),
+    }
+}
+
+/// Unloads again from a load reversal of a finished cycle.
+///
+/// # Errors
+/// The files of the cycle and of its surface must be complete, and contain that load.
+pub fn unload_again(campaign: &Campaign, unit: &CycleUnit, max_load: f64) -> Result<Cycle<()>, StageError> {
+    match &campaign.cases[unit.case].case.params.method {
+        MethodOptions::Asperities(options) => asperities::unload_again(campaign, unit, options, max_load),
+        MethodOptions::Elements(options) => elements::unload_again(campaign, unit, options, max_load),
+    }
+}
+
+/// Grid of a cycle; nothing for a method without one.
+pub(in crate::stages) fn lattice(campaign: &Campaign, unit: &CycleUnit) -> Result<Option<Lattice>, StageError> {
+    let params = &campaign.cases[unit.case].case.params;
+    let MethodOptions::Elements(options) = &params.method else { return Ok(None) };
+    let of_surface = || read_header(&campaign.surface_path(&campaign.surfaces[unit.surface]));
+    let header = params.surface.measured().map(|_| of_surface()).transpose()?;
+    Ok(Of { params, options }.lattice(header.as_ref()))
+}
+
+/// Grid, memory and time of a cycle at a ratio `U_el/Δγ`; nothing for a measured surface that is not known.
+pub(in crate::stages) fn cost(params: &CaseParams, known: Option<&Known>, ratio: Option<f64>) -> Option<Cost> {
+    match &params.method {
+        MethodOptions::Asperities(options) => asperities::cost(params, options, known),
+        MethodOptions::Elements(options) => Of { params, options }.cost(known, ratio),
+    }
+}
+
+/// The error by which the cycles of a case fail on a generated surface, or on a measured one that is known, as far as it is
+/// known before them.
+pub(in crate::stages) fn refusal(params: &CaseParams, known: Option<&Known>) -> Option<StageError> {
+    match &params.method {
+        MethodOptions::Asperities(options) => asperities::refusal(params, options, known?),
+        MethodOptions::Elements(options) => Of { params, options }.refusal(known),
+    }
+}
