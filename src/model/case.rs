@@ -244,7 +244,7 @@ impl Attraction {
         }
     }
 
-    /// Where contact forms and opens in the JKR limit; nothing with a range.
+    /// Rules for formation and opening of contact in the JKR limit; nothing with a range.
     #[must_use]
     pub fn bonded(self) -> Option<(Nucleation, Opening)> {
         if let Self::Bonded { nucleation, opening } = self { Some((nucleation, opening)) } else { None }

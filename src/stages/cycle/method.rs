@@ -1,4 +1,4 @@
-//! What the pipeline asks of the method of a case: the only place of the stages that tells the methods apart.
+//! Calls of the pipeline to the method of a case. The tables, the tasks and their checkpoints are the same for all methods.
 
 use super::super::StageError;
 use super::super::cost::Cost;
