@@ -4,11 +4,11 @@
 use crate::paper::{MATERIAL, spectrum};
 use crate::watch::{heading, line, once, plain};
 use hysteron::model::{ElementParams, Normalization};
-use hysteron::physics::boundary_elements::contact::{Attraction, Problem};
-use hysteron::physics::boundary_elements::cycle::{Settings, run as cycle};
-use hysteron::physics::boundary_elements::grid::{HalfSpace, Operator};
-use hysteron::physics::boundary_elements::law::Law;
-use hysteron::physics::boundary_elements::minimise::Accuracy;
+use hysteron::physics::elements::equilibrium::minimise::Accuracy;
+use hysteron::physics::elements::grid::half_space::{HalfSpace, Operator};
+use hysteron::physics::elements::law::Law;
+use hysteron::physics::elements::path::cycle::{Settings, run as cycle};
+use hysteron::physics::elements::problem::{Attraction, Problem};
 use hysteron::physics::surface::spectrum::Spectrum;
 use hysteron::physics::surface::synthesis::{realization_seed, synthesize};
 

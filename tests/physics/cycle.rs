@@ -7,8 +7,9 @@ use crate::support::{
 use hysteron::model::{Coalescence, Interaction, JumpIn, KeptContacts, Material};
 use hysteron::physics::EventKind;
 use hysteron::physics::PhysicsError;
-use hysteron::physics::contact::{Problem, Rules};
-use hysteron::physics::cycle::{Checkpoint, Cycle, Settings, run_from, run_to};
+use hysteron::physics::asperities::contact::{Problem, Rules};
+use hysteron::physics::asperities::{Asperities, Checkpoint, Cycle, Settings};
+use hysteron::physics::cycle::Method;
 use hysteron::physics::jkr::Asperity;
 use hysteron::physics::surface::summits::Summit;
 use hysteron::physics::theory::deng_kesari_loss;
@@ -327,7 +328,7 @@ fn reg_three_spots_of_which_each_covers_the_next_come_to_rest() {
         let rules = Rules { jump_in: JumpIn::Jkr, allow_low_tabor: true, ..DEFAULT };
         let problem = Problem::new(&summits, LENGTH, RMS, PAPER, rules).unwrap();
         let settings = Settings { max_loads: Vec::new(), approach_step: 0.05, contacts: KeptContacts::None, rest_every: None };
-        let cycle = run_to(&problem, &settings, 0.5 * RMS).unwrap();
+        let cycle = Asperities { problem, settings }.run_to(0.5 * RMS).unwrap();
         assert!(cycle.steps.iter().all(|step| step.numerics.residual_m.unwrap() <= 1e-10 * RMS));
         // Nothing silent: whoever is held as it is stands in the data, and all have left in the end.
         assert!(cycle.steps.iter().any(|step| step.counts.held > 0));
@@ -345,12 +346,13 @@ fn law_a_cycle_goes_on_from_where_it_rested_as_if_nothing_had_been() {
         let settings = Settings { max_loads: vec![0.002, 0.004], approach_step: 0.04, contacts, rest_every: Some(0.2) };
         let mut kept: Vec<Vec<u8>> = Vec::new();
         let mut keep = |checkpoint: &Checkpoint| kept.push(postcard::to_stdvec(checkpoint).unwrap());
-        let whole = run_from(&problem, &settings, None, &mut keep, &|_| {}).unwrap();
+        let method = Asperities { problem, settings };
+        let whole = method.run_from(None, &mut keep, &|_| {}).unwrap();
         assert!(kept.len() > 20, "{}", kept.len());
         for (number, bytes) in kept.iter().enumerate() {
             let checkpoint: Checkpoint = postcard::from_bytes(bytes).unwrap();
             let mut later = 0;
-            let again = run_from(&problem, &settings, Some(checkpoint), &mut |_| later += 1, &|_| {}).unwrap();
+            let again = method.run_from(Some(checkpoint), &mut |_| later += 1, &|_| {}).unwrap();
             assert_eq!(later, kept.len() - number - 1);
             assert!(again == whole, "{coalescence:?}, from rest {number}");
         }

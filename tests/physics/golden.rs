@@ -5,9 +5,8 @@
 
 use crate::support::{DEFAULT, LENGTH, PAPER, RMS, close, loop_of, paper_summits, run};
 use hysteron::model::{Boundary, Coalescence, Interaction, JumpIn, KeptContacts, Material};
-use hysteron::physics::contact::{Problem, Rules};
-use hysteron::physics::cycle::{Step, StepNumerics};
-use hysteron::physics::half_space::Effort;
+use hysteron::physics::asperities::contact::{Problem, Rules};
+use hysteron::physics::cycle::{Effort, Step, StepNumerics};
 
 /// Magnification, realization, rules, work of adhesion \[J/m²\], contacts in a local problem.
 type Setup = (u32, u64, Rules, f64, usize);

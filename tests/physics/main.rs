@@ -92,8 +92,9 @@ mod reference {
 /// What several files use.
 mod support {
     use hysteron::model::{Amplitudes, Boundary, Coalescence, Interaction, JumpIn, KeptContacts, Material, Normalization, Slips};
-    use hysteron::physics::contact::{Problem, Rules};
-    use hysteron::physics::cycle::{self, Branch, Cycle, Settings, Step};
+    use hysteron::physics::asperities::contact::{Problem, Rules};
+    use hysteron::physics::asperities::{Asperities, Cycle, Settings};
+    use hysteron::physics::cycle::{Branch, Method, Step};
     use hysteron::physics::surface::spectrum::Spectrum;
     use hysteron::physics::surface::summits::{Summit, find_summits};
     use hysteron::physics::surface::synthesis::{Surface, realization_seed, synthesize};
@@ -187,7 +188,8 @@ mod support {
 
     /// A whole cycle.
     pub fn run(problem: &Problem, max_loads: &[f64], approach_step: f64, contacts: KeptContacts) -> Cycle {
-        cycle::run(problem, &Settings { max_loads: max_loads.to_vec(), approach_step, contacts, rest_every: None }, &|_| {}).unwrap()
+        let settings = Settings { max_loads: max_loads.to_vec(), approach_step, contacts, rest_every: None };
+        Asperities { problem: problem.clone(), settings }.run().unwrap()
     }
 
     /// What a loop of one turning point comes to.

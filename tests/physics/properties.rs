@@ -2,8 +2,9 @@
 
 use crate::support::{ALONE, DEFAULT, LENGTH, Loop, PAPER, asperity, close, loop_of, near, random};
 use hysteron::model::{Coalescence, Interaction, KeptContacts, Material};
-use hysteron::physics::contact::{Problem, Rules};
-use hysteron::physics::cycle::{Cycle, Event, Settings, Site, run_to};
+use hysteron::physics::asperities::contact::{Problem, Rules};
+use hysteron::physics::asperities::{Asperities, Cycle, Settings};
+use hysteron::physics::cycle::{Event, Site};
 use hysteron::physics::jkr::Asperity;
 use hysteron::physics::surface::summits::Summit;
 use hysteron::physics::{LoopError, PhysicsError};
@@ -45,7 +46,7 @@ fn crowded() -> impl Strategy<Value = Vec<Summit>> {
 /// Loads to the approach of 1.2 units, at which all asperities are in contact or absorbed, and unloads.
 fn attempt(problem: &Problem) -> Result<Cycle, PhysicsError> {
     let settings = Settings { max_loads: Vec::new(), approach_step: 0.2, contacts: KeptContacts::None, rest_every: None };
-    run_to(problem, &settings, 1.2 * problem.rms_height_m)
+    Asperities { problem: problem.clone(), settings }.run_to(1.2 * problem.rms_height_m)
 }
 
 /// The same, where there is an equilibrium.

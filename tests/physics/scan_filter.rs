@@ -2,7 +2,7 @@
 
 use crate::support::{ALONE, Dice, close, loop_of, near, run};
 use hysteron::model::{Amplitudes, Boundary, Detrend, Filter, KeptContacts, Material, Missing, Normalization};
-use hysteron::physics::contact::{Problem, Rules};
+use hysteron::physics::asperities::contact::{Problem, Rules};
 use hysteron::physics::jkr::Asperity;
 use hysteron::physics::surface::measured::{Prepared, Treatment, find_measured, prepare};
 use hysteron::physics::surface::spectrum::Spectrum;

@@ -2,8 +2,8 @@
 
 use super::Elements;
 use crate::PhysicsError;
-use crate::boundary_elements::adhesionless::{FreeStep as GridStep, load_freely};
 use crate::cycle::Cycle;
+use crate::elements::path::adhesionless::{FreeStep as GridStep, load_freely};
 use crate::theory::approximate_jkr::{CurvePoint, adhesive_curve};
 
 /// A step of loading without adhesion.

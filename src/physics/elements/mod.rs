@@ -1,10 +1,17 @@
 //! Boundary elements of a height map, in SI units: grid, law and settings from a surface, a material and options.
 //!
-//! [`Elements::new`] has what decides on the accuracy of a cycle; [`Elements::run`] loads and unloads. The solver itself is
-//! [`boundary_elements`](crate::boundary_elements), whose lengths are in grid spacings and stresses in E\*; [`Units`] has their values in SI units.
+//! [`Elements::new`] has what decides on the accuracy of a cycle; [`Elements::run`] loads and unloads. The solver itself is in the modules of this folder.
+//! Its lengths are in grid spacings `dx`, stresses in E\*, energies in `E* dx³`; [`Units`] has their values in SI units.
 
+mod constants;
+pub mod equilibrium;
+pub mod events;
 mod free;
+pub mod grid;
+pub mod law;
 mod options;
+pub mod path;
+pub mod problem;
 mod record;
 mod units;
 
@@ -12,21 +19,22 @@ pub use free::FreeStep;
 pub use options::{Attraction, Numerics, Options, Weak};
 pub use units::Units;
 
+pub(crate) use constants::CONSTANTS as GRID_CONSTANTS;
 pub(crate) use options::CONSTANTS;
 
-use crate::boundary_elements::contact::{Attraction as Rule, Problem};
-use crate::boundary_elements::cycle::{self as grid, Checkpoint, Settings, Turning};
-use crate::boundary_elements::grid::HalfSpace;
-use crate::boundary_elements::law::Law;
-use crate::boundary_elements::minimise::Accuracy;
-use crate::boundary_elements::resample::resample_from;
 use crate::cycle::{Cycle, Method};
 use crate::model::{KeptContacts, Material};
 use crate::surface::HeightMap;
 use crate::surface::modes::mirrored;
 use crate::theory::flattening::measured_flattening;
 use crate::{LoopPosition, PhysicsError};
+use equilibrium::minimise::Accuracy;
+use grid::half_space::HalfSpace;
+use grid::resample::resample_from;
+use law::Law;
 use ndarray::Array2;
+use path::cycle::{self as solver, Checkpoint, Settings, Turning};
+use problem::{Attraction as Rule, Problem};
 
 /// Grid points per shortest wavelength, at least, if [`Options::points`] is 0.
 pub const PER_WAVELENGTH: f64 = 16.0;
@@ -113,7 +121,7 @@ impl Elements {
         self
     }
 
-    fn record(&self, cycle: grid::Cycle) -> Cycle<Turning> {
+    fn record(&self, cycle: solver::Cycle) -> Cycle<Turning> {
         let mut record = record::in_si(cycle, &self.max_loads, &self.units);
         if self.contacts == KeptContacts::None {
             record.contacts.clear();
@@ -135,12 +143,12 @@ impl Method for Elements {
         keep: &mut (dyn FnMut(&Checkpoint) + Send),
         progress: &(dyn Fn(LoopPosition) + Sync),
     ) -> Result<Cycle<Turning>, PhysicsError> {
-        let outcome = grid::run(&self.problem, &self.settings, checkpoint, keep, progress);
+        let outcome = solver::run(&self.problem, &self.settings, checkpoint, keep, progress);
         Ok(self.record(outcome.map_err(|error| self.units.end(error))?))
     }
 
     fn unload_from(&self, reversal: usize, state: Turning) -> Result<Cycle<Turning>, PhysicsError> {
-        let cycle = grid::unload_from(&self.problem, &self.settings, reversal, &state).map_err(|error| self.units.end(error))?;
+        let cycle = solver::unload_from(&self.problem, &self.settings, reversal, &state).map_err(|error| self.units.end(error))?;
         Ok(self.record(cycle))
     }
 

@@ -6,10 +6,10 @@ use super::super::surface::{Scale, scale};
 use super::super::{StageError, step_count};
 use super::{Computed, CycleTask};
 use crate::campaign::{Campaign, CycleUnit};
+use crate::physics::asperities::contact::rows::Kept;
+use crate::physics::asperities::contact::{Problem, Rules, State, Status};
 use crate::physics::asperities::{Asperities, Options};
-use crate::physics::contact::rows::Kept;
-use crate::physics::contact::{Merged, Problem, Rules, State, Status};
-use crate::physics::cycle::{Cycle, Method};
+use crate::physics::cycle::{Cycle, Merged, Method};
 use crate::physics::surface::summits::Summit;
 use crate::schema;
 use crate::spec::CaseParams;
@@ -116,7 +116,7 @@ fn merged_rows(path: &Path, count: usize) -> Result<Vec<Merged>, StageError> {
     Ok((0..count.min(frame.row_count())).map(row).collect())
 }
 
-fn turning(of: Identity<'_>, cycle: &Cycle, problem: &Problem, loads: &[f64]) -> Result<Frame, StageError> {
+fn turning(of: Identity<'_>, cycle: &Cycle<State>, problem: &Problem, loads: &[f64]) -> Result<Frame, StageError> {
     let states = loads.iter().zip(&cycle.turning);
     let rows: Vec<(f64, f64, Kept, usize)> = states
         .flat_map(|(load, (_, state))| state.kept(problem).into_iter().map(|kept| (*load, state.approach_m, kept, state.merged.len())))
@@ -150,7 +150,7 @@ fn word(status: Status) -> &'static str {
     }
 }
 
-fn merged(of: Identity<'_>, cycle: &Cycle) -> Result<Frame, StageError> {
+fn merged(of: Identity<'_>, cycle: &Cycle<State>) -> Result<Frame, StageError> {
     let spots = &cycle.merged;
     let step = |k: usize| &cycle.steps[k];
     let each = |value: fn(&Merged) -> f64| spots.iter().map(move |s| value(&s.spot));

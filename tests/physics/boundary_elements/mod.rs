@@ -10,11 +10,11 @@ mod rough;
 mod sphere;
 mod trapping;
 
-use hysteron::physics::boundary_elements::contact::{Attraction, Nucleation, Problem, State, Totals};
-use hysteron::physics::boundary_elements::cycle::{Cycle, Settings, run};
-use hysteron::physics::boundary_elements::grid::HalfSpace;
-use hysteron::physics::boundary_elements::law::Law;
-use hysteron::physics::boundary_elements::minimise::{Accuracy, Outcome};
+use hysteron::physics::elements::equilibrium::minimise::{Accuracy, Outcome};
+use hysteron::physics::elements::grid::half_space::HalfSpace;
+use hysteron::physics::elements::law::Law;
+use hysteron::physics::elements::path::cycle::{Cycle, Settings, run};
+use hysteron::physics::elements::problem::{Attraction, Nucleation, Problem, State, Totals};
 
 /// The JKR limit: bonds within two points of contact, formed by touch.
 const BONDED: Attraction = Attraction::Bonded { margin: 2, nucleation: 0.0, strength: f64::INFINITY };
