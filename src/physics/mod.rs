@@ -94,15 +94,14 @@ pub use event_kind::{EventCounts, EventGroup, EventKind, RegionChange};
 pub use loop_position::LoopPosition;
 
 /// Tolerances and limits of the physics, by module.
-pub const CONSTANTS: [Constants; 10] = [
+pub const CONSTANTS: [Constants; 9] = [
     Constants { subject: "Valid cycles", module: "physics::cycle", rows: cycle::CONSTANTS },
-    Constants { subject: "Path of the asperity model", module: "physics::asperities::path", rows: asperities::path::CONSTANTS },
-    Constants { subject: "Global and local problems", module: "physics::asperities::solve", rows: asperities::solve::CONSTANTS },
+    Constants { subject: "Path of the asperity model", module: "physics::asperities", rows: asperities::PATH },
+    Constants { subject: "Global and local problems", module: "physics::asperities", rows: asperities::SOLVERS },
     Constants { subject: "Sums over contacts", module: "physics::asperities::field", rows: asperities::field::CONSTANTS },
     Constants { subject: "Contacts", module: "physics::asperities::contact", rows: asperities::contact::CONSTANTS },
     Constants { subject: "One asperity", module: "physics::jkr", rows: jkr::CONSTANTS },
-    Constants { subject: "Boundary elements", module: "physics::elements", rows: elements::GRID_CONSTANTS },
-    Constants { subject: "Cycles by boundary elements", module: "physics::elements", rows: elements::CONSTANTS },
+    Constants { subject: "Boundary elements", module: "physics::elements", rows: elements::CONSTANTS },
     Constants { subject: "Measured surfaces", module: "physics::surface", rows: surface::CONSTANTS },
     Constants { subject: "Analytical models", module: "physics::theory", rows: theory::CONSTANTS },
 ];

@@ -4,6 +4,7 @@
 use crate::paper::{MATERIAL, spectrum};
 use crate::watch::{heading, line, once, plain};
 use hysteron::model::{ElementParams, Normalization};
+use hysteron::physics::elements::Numerics;
 use hysteron::physics::elements::equilibrium::minimise::Accuracy;
 use hysteron::physics::elements::grid::half_space::{HalfSpace, Operator};
 use hysteron::physics::elements::law::Law;
@@ -46,6 +47,7 @@ fn one(zeta: u32, n: usize, range: bool) {
         law,
         heights: surface.heights_m.iter().map(|height| (height - top) / spacing).collect(),
         attraction,
+        numerics: Numerics::DEFAULT,
     };
     let (points, rms) = ((n * n) as f64, spectrum.rms_height_m / spacing);
     let mut waves = problem.half_space.waves::<f64>().unwrap();

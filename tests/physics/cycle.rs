@@ -1,13 +1,14 @@
 //! Whole cycles: where the loss has a closed form, where energy must balance, and what must not depend on the step.
 
 use crate::support::{
-    ALONE, DEFAULT, LENGTH, Loop, PAPER, RMS, asperity, close, loop_of, near, paper_cycle, paper_spectrum, paper_summits, run, surface,
-    turning, unloading,
+    ALONE, DEFAULT, LENGTH, Loop, PAPER, RMS, asperity, close, local_contacts, loop_of, near, paper_cycle, paper_spectrum, paper_summits,
+    run, surface, turning, unloading,
 };
 use hysteron::model::{Coalescence, Interaction, JumpIn, KeptContacts, Material};
 use hysteron::physics::EventKind;
 use hysteron::physics::PhysicsError;
 use hysteron::physics::asperities::contact::{Problem, Rules};
+use hysteron::physics::asperities::numerics::{Numerics, Steps};
 use hysteron::physics::asperities::{Asperities, Checkpoint, Cycle, Settings};
 use hysteron::physics::cycle::Method;
 use hysteron::physics::jkr::Asperity;
@@ -85,7 +86,7 @@ fn law_point_interaction_loses_what_its_events_lose() {
         // With patches, what the rest of the contact does is known to first order when an event is charged
         // (found: at most 3.3e-4).
         for (patch, bound) in [(usize::MAX, 1e-6), (24, 1e-3)] {
-            let problem = Problem::new(&summits, LENGTH, RMS, PAPER, rules).unwrap().with_patches_of(patch);
+            let problem = Problem::new(&summits, LENGTH, RMS, PAPER, rules).unwrap().with_numerics(local_contacts(patch));
             let cycle = run(&problem, &[0.004, 0.0071], 0.04, KeptContacts::None);
             for k in 0..2 {
                 let Loop { loss, events, .. } = loop_of(&cycle, k);
@@ -103,7 +104,9 @@ fn lim_results_converge_with_the_tolerance_of_the_path() {
     for interaction in [Interaction::Point, Interaction::Spots] {
         let rules = Rules { interaction, coalescence: Coalescence::Cover, ..DEFAULT };
         let of = |tolerance: f64| {
-            let problem = Problem::new(&paper_summits(16, 0), LENGTH, RMS, PAPER, rules).unwrap().with_tolerance(tolerance);
+            let problem = Problem::new(&paper_summits(16, 0), LENGTH, RMS, PAPER, rules)
+                .unwrap()
+                .with_numerics(Numerics { steps: Steps { accuracy: tolerance, ..Steps::DEFAULT }, ..Numerics::DEFAULT });
             loop_of(&run(&problem, &[0.0071], 0.04, KeptContacts::None), 0)
         };
         let finest = of(1.25e-3);

@@ -8,26 +8,32 @@ use std::path::Path;
 /// holds.
 ///
 /// `model`, `constants`, `error`, `event_kind`, `loop_position` and `memory` are free for all.
-const PHYSICS: [(&str, &[&str]); 19] = [
+const PHYSICS: [(&str, &[&str]); 22] = [
     ("math", &[]),
     ("jkr", &[]),
     ("surface", &[]),
     ("theory", &["jkr", "surface"]),
     ("cycle", &[]),
     ("asperities", &["math", "jkr", "surface", "cycle"]),
+    ("asperities::numerics", &[]),
+    ("asperities::constants", &["asperities::numerics"]),
     ("asperities::field", &["math", "cycle"]),
-    ("asperities::contact", &["math", "jkr", "surface", "cycle", "asperities::field"]),
-    ("asperities::solve", &["math", "jkr", "cycle", "asperities::field", "asperities::contact"]),
-    ("asperities::path", &["math", "jkr", "cycle", "asperities::field", "asperities::contact", "asperities::solve"]),
+    ("asperities::contact", &["math", "jkr", "surface", "cycle", "asperities::numerics", "asperities::field"]),
+    ("asperities::solve", &["math", "jkr", "cycle", "asperities::numerics", "asperities::field", "asperities::contact"]),
+    (
+        "asperities::path",
+        &["math", "jkr", "cycle", "asperities::numerics", "asperities::field", "asperities::contact", "asperities::solve"],
+    ),
     ("elements", &["surface", "theory", "cycle"]),
+    ("elements::numerics", &[]),
     ("elements::grid", &[]),
     ("elements::law", &[]),
-    ("elements::problem", &["elements::grid", "elements::law"]),
-    ("elements::equilibrium", &["elements::grid", "elements::law", "elements::problem"]),
+    ("elements::problem", &["elements::numerics", "elements::grid", "elements::law"]),
+    ("elements::equilibrium", &["elements::numerics", "elements::grid", "elements::law", "elements::problem"]),
     ("elements::events", &["elements::grid", "elements::problem"]),
     ("elements::path", &["cycle", "elements::grid", "elements::problem", "elements::equilibrium", "elements::events"]),
     ("elements::units", &[]),
-    ("elements::options", &[]),
+    ("elements::options", &["elements::numerics"]),
 ];
 
 /// Modules of `src/physics` that every other one may import.

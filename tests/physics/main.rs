@@ -93,6 +93,7 @@ mod reference {
 mod support {
     use hysteron::model::{Amplitudes, Boundary, Coalescence, Interaction, JumpIn, KeptContacts, Material, Normalization, Slips};
     use hysteron::physics::asperities::contact::{Problem, Rules};
+    use hysteron::physics::asperities::numerics::{Events, Numerics};
     use hysteron::physics::asperities::{Asperities, Cycle, Settings};
     use hysteron::physics::cycle::{Branch, Method, Step};
     use hysteron::physics::surface::spectrum::Spectrum;
@@ -149,6 +150,11 @@ mod support {
             z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
             ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
         }
+    }
+
+    /// Numerics with local problems of so many contacts.
+    pub fn local_contacts(local_contacts: usize) -> Numerics {
+        Numerics { events: Events { local_contacts, ..Events::DEFAULT }, ..Numerics::DEFAULT }
     }
 
     /// The paper's surface at another magnification.

@@ -1,7 +1,8 @@
 //! Touching spots become one of the same area and load, and part again.
 
 use crate::support::{
-    ALONE, DEFAULT, Dice, LENGTH, PAPER, RMS, asperity, close, loop_of, near, paper_cycle, paper_summits, run, turning, unloading,
+    ALONE, DEFAULT, Dice, LENGTH, PAPER, RMS, asperity, close, local_contacts, loop_of, near, paper_cycle, paper_summits, run, turning,
+    unloading,
 };
 use hysteron::model::{Coalescence, Interaction, KeptContacts, Material};
 use hysteron::physics::EventKind;
@@ -88,7 +89,7 @@ fn law_with_point_interaction_the_loop_loses_what_its_events_lose() {
     // Merged spots are other spheres at other heights, and yet the sum over merging and parting closes the account of the whole loop.
     for (rules, most) in [(MERGE_ALONE, 1e-6), (MERGE_POINT, 1e-6)] {
         let summits = paper_summits(16, 1);
-        let problem = Problem::new(&summits, LENGTH, RMS, PAPER, rules).unwrap().with_patches_of(usize::MAX);
+        let problem = Problem::new(&summits, LENGTH, RMS, PAPER, rules).unwrap().with_numerics(local_contacts(usize::MAX));
         let cycle = run(&problem, &[0.0071], 0.04, KeptContacts::None);
         let sums = loop_of(&cycle, 0);
         let count = |kind: EventKind| cycle.events.iter().filter(|e| e.kind == kind).count();

@@ -1,7 +1,7 @@
 //! The path against an independent solver: dense, with sixty digits, by arclength and relaxation (`tests/reference/path.py`).
 
 use crate::reference::{Row, table};
-use crate::support::{DEFAULT, PAPER, RMS, close, near};
+use crate::support::{DEFAULT, PAPER, RMS, close, local_contacts, near};
 use hysteron::model::{Interaction, KeptContacts};
 use hysteron::physics::EventKind;
 use hysteron::physics::asperities::contact::{Problem, Rules};
@@ -21,7 +21,7 @@ fn run_with(surface: &str, spacing: f64, local: Option<usize>) -> Cycle {
     let summits: Vec<_> =
         rows.iter().map(|r| crate::support::asperity(r.number("x"), r.number("y"), r.number("z"), r.number("R"))).collect();
     let problem = Problem::new(&summits, rows[0].number("L"), RMS, PAPER, Rules { interaction, ..DEFAULT }).unwrap();
-    let problem = if let Some(contacts) = local { problem.with_patches_of(contacts) } else { problem };
+    let problem = if let Some(contacts) = local { problem.with_numerics(local_contacts(contacts)) } else { problem };
     let settings = Settings { max_loads: Vec::new(), approach_step: spacing / RMS, contacts: KeptContacts::None, rest_every: None };
     Asperities { problem, settings }.run_to(rows[0].number("delta_turn")).unwrap()
 }

@@ -3,9 +3,11 @@
 //! [`Asperities::new`] finds the asperities; [`Asperities::run`](crate::cycle::Method::run) loads and unloads them. Asperities are JKR contacts that interact
 //! through the elastic displacement [`field`] of the half-space. The algorithm is at the head of [`path`].
 
+mod constants;
 pub mod contact;
 mod cycle;
 pub mod field;
+pub mod numerics;
 pub mod path;
 mod recorder;
 mod retrace;
@@ -18,15 +20,12 @@ use crate::surface::HeightMap;
 use crate::surface::measured::find_measured;
 use crate::surface::summits::{Summit, find_summits};
 use crate::{LoopPosition, PhysicsError};
+pub(crate) use constants::{PATH, SOLVERS};
 use contact::{Problem, Rules, State};
 pub use cycle::Checkpoint;
 use cycle::{AsperityRun, unload_through};
+pub use numerics::Numerics;
 pub use settings::{Cycle, Settings};
-
-/// Number of asperities from which on a cycle has checkpoints.
-pub const CHECKPOINTS_FROM: usize = 20_000;
-/// Interval of the mean penetration between these checkpoints, over the rms height.
-pub const CHECKPOINT_INTERVAL: f64 = 0.1;
 
 /// Versions of cycles of the asperity model.
 const VERSIONS: &[(u32, &str)] = &[
@@ -44,11 +43,13 @@ pub struct Options {
     pub approach_step: f64,
     /// Steps of which the contact spots are kept.
     pub contacts: KeptContacts,
+    /// Numerical choices.
+    pub numerics: Numerics,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { rules: Rules::default(), approach_step: 0.01, contacts: KeptContacts::Turning }
+        Self { rules: Rules::default(), approach_step: 0.01, contacts: KeptContacts::Turning, numerics: Numerics::DEFAULT }
     }
 }
 
@@ -87,9 +88,9 @@ impl Asperities {
         max_loads: &[f64],
         options: &Options,
     ) -> Result<Self, PhysicsError> {
-        let problem = Problem::new(summits, length_m, rms_height_m, *material, options.rules)?;
-        let rest_every = (summits.len() >= CHECKPOINTS_FROM).then_some(CHECKPOINT_INTERVAL);
-        let Options { approach_step, contacts, .. } = *options;
+        let Options { approach_step, contacts, numerics, .. } = *options;
+        let problem = Problem::new(summits, length_m, rms_height_m, *material, options.rules)?.with_numerics(numerics);
+        let rest_every = (summits.len() >= numerics.steps.checkpoints_from).then_some(numerics.steps.checkpoint_interval);
         Ok(Self { problem, settings: Settings { max_loads: max_loads.to_vec(), approach_step, contacts, rest_every } })
     }
 }

@@ -3,7 +3,7 @@
 use super::contact::event::Event as PathEvent;
 use super::contact::problem::Problem;
 use super::contact::state::{State, Status};
-use super::path::{CONVERGED, EquilibriumPath};
+use super::path::EquilibriumPath;
 use super::settings::{Cycle, Settings};
 use crate::PhysicsError;
 use crate::cycle::{Branch, Contact, Effort, Event, MergedAt, Site, Step, StepCounts, StepNumerics};
@@ -154,7 +154,7 @@ impl Recorder {
             dissipated_j: recent.iter().map(|event| event.energy_lost_j).sum(),
             work_j: at.log().work_j,
             numerics: StepNumerics {
-                is_converged: state.residual_m <= CONVERGED * problem.rms_height_m,
+                is_converged: state.residual_m <= problem.numerics.solver.converged_residual * problem.rms_height_m,
                 residual_m: Some(state.residual_m),
                 drift_m: Some(path.log().drift_m),
                 stability: Some(state.stability),

@@ -9,6 +9,7 @@ pub mod events;
 mod free;
 pub mod grid;
 pub mod law;
+pub mod numerics;
 mod options;
 pub mod path;
 pub mod problem;
@@ -16,11 +17,11 @@ mod record;
 mod units;
 
 pub use free::FreeStep;
-pub use options::{Attraction, Numerics, Options, Weak};
+pub use numerics::Numerics;
+pub use options::{Attraction, Options};
 pub use units::Units;
 
-pub(crate) use constants::CONSTANTS as GRID_CONSTANTS;
-pub(crate) use options::CONSTANTS;
+pub(crate) use constants::CONSTANTS;
 
 use crate::cycle::{Cycle, Method};
 use crate::model::{KeptContacts, Material};
@@ -38,8 +39,8 @@ use problem::{Attraction as Rule, Problem};
 
 /// Grid points per shortest wavelength, at least, if [`Options::points`] is 0.
 pub const PER_WAVELENGTH: f64 = 16.0;
-/// Most points along a side of such a grid.
-const MOST_POINTS: f64 = 65_536.0;
+/// Maximum number of points along a side of such a grid.
+const MAX_POINTS: f64 = 65_536.0;
 /// Fields of numbers that the solver needs, its patches included, and those of a load reversal with its maps and checkpoint.
 const FIELDS: usize = 21;
 const FIELDS_OF_REVERSAL: usize = 8;
@@ -53,7 +54,7 @@ pub fn memory_bytes(points: usize, loads: usize) -> usize {
 /// Points along a side of `wavelengths` shortest wavelengths: a power of two with at least 16 per wavelength.
 #[must_use]
 pub fn points_for(wavelengths: f64) -> usize {
-    ((PER_WAVELENGTH * wavelengths).ceil().clamp(1.0, MOST_POINTS) as usize).next_power_of_two()
+    ((PER_WAVELENGTH * wavelengths).ceil().clamp(1.0, MAX_POINTS) as usize).next_power_of_two()
 }
 
 /// Versions of cycles by boundary elements.
@@ -76,7 +77,6 @@ pub struct Elements {
     /// Loads `F/(E* A0)` at the load reversals.
     max_loads: Vec<f64>,
     contacts: KeptContacts,
-    numerics: Numerics,
 }
 
 impl Elements {
@@ -97,14 +97,12 @@ impl Elements {
         let ratio = flattening.persson_tosatti(material.work_of_adhesion_j_m2);
         let whole = if is_mirrored { mirrored(map.heights_m)? } else { map.heights_m.to_owned() };
         let problem = problem(&units, material, resample_from(whole.view(), points, first_m / pixel)?, options)?;
-        let (contacts, numerics) = (options.contacts, options.numerics.clone());
         Ok(Self {
             problem,
             settings: settings(&units, max_loads, options, ratio),
             units,
             max_loads: max_loads.to_vec(),
-            contacts,
-            numerics,
+            contacts: options.contacts,
         })
     }
 
@@ -166,13 +164,14 @@ fn problem(units: &Units, material: &Material, heights_m: Array2<f64>, options: 
     heights.iter_mut().for_each(|z| *z = (*z - top) / spacing);
     let (law, attraction) = match options.attraction {
         Attraction::Range { range_m } => (Law::morse(work, range_m / spacing), Rule::Range),
-        Attraction::Bonded { nucleation_m, strength } => {
-            (Law::crack(work), Rule::Bonded { margin: options.numerics.margin, nucleation: nucleation_m / spacing, strength })
-        }
+        Attraction::Bonded { nucleation_m, strength } => (
+            Law::crack(work),
+            Rule::Bonded { margin: options.numerics.equilibrium.bond_margin, nucleation: nucleation_m / spacing, strength },
+        ),
     };
     let half_space = HalfSpace::new(units.points, units.points)?;
     let half_space = if units.is_mirrored { half_space.with_images() } else { half_space };
-    Ok(Problem { half_space, law, heights, attraction })
+    Ok(Problem { half_space, law, heights, attraction, numerics: options.numerics })
 }
 
 /// Settings at a ratio `U_el/Δγ`.
@@ -183,9 +182,13 @@ fn settings(units: &Units, max_loads: &[f64], options: &Options, ratio: f64) -> 
     Settings {
         max_loads: max_loads.iter().map(|load| load * units.all()).collect(),
         step: options.approach_step * units.rms_height_m / units.spacing_m() / steps,
-        jump_tolerance: numerics.jump_tolerance,
+        jump_tolerance: numerics.steps.jump_tolerance,
         halvings: options.halvings,
-        accuracy: Accuracy { rms: residual, largest: numerics.largest_residual * residual, iterations: numerics.iterations },
+        accuracy: Accuracy {
+            rms: residual,
+            largest: numerics.equilibrium.largest_residual * residual,
+            iterations: numerics.equilibrium.iterations,
+        },
         all_regions: options.contacts == KeptContacts::All,
         summits: Vec::new(),
     }

@@ -8,6 +8,7 @@ use super::grid::half_space::{HalfSpace, Operator, Waves};
 use super::grid::sums::{grain, sums};
 pub use super::law::Bonding;
 use super::law::{Bond, Law};
+use super::numerics::Numerics;
 use crate::PhysicsError;
 use crate::memory::filled;
 use rayon::prelude::*;
@@ -23,6 +24,8 @@ pub struct Problem {
     pub heights: Vec<f64>,
     /// Rule of attraction.
     pub attraction: Attraction,
+    /// Numerical choices.
+    pub numerics: Numerics,
 }
 
 /// Points that attract.

@@ -27,7 +27,7 @@ fn method(params: &CaseParams, scale: Scale, summits: &[Summit], max_loads: &[f6
         allow_low_tabor: params.model.allow_low_tabor,
         slips: params.model.slips(),
     };
-    let options = Options { rules, approach_step: params.cycle.approach_step, contacts: params.cycle.contacts };
+    let options = Options { rules, approach_step: params.cycle.approach_step, contacts: params.cycle.contacts, ..Options::default() };
     Ok(Asperities::of_summits(summits, scale.length_m, scale.rms_height_m, &params.material, max_loads, &options)?)
 }
 

@@ -1,20 +1,12 @@
 //! Constants of contacts and of the rules for contacts that meet.
 
 use super::merging::MAX_TENSILE_LOAD;
-use super::numerics::SPOTS_IN_PATCH;
 use super::problem::DEEPEST_JUMP_IN;
 use super::transition::BEFORE_CENTRE;
 use crate::constants::Constant;
 
 /// Constants of contacts.
 pub(crate) const CONSTANTS: &[Constant] = &[
-    Constant::new(
-        "contacts in a local problem",
-        &[SPOTS_IN_PATCH as f64],
-        "",
-        "Those closest to the event. All others act by their field and its rate.",
-        "numerics",
-    ),
     Constant::new(
         "distance of absorption",
         &[BEFORE_CENTRE],

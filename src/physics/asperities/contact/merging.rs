@@ -27,9 +27,6 @@ use crate::cycle::Merged;
 use crate::jkr::Asperity;
 use crate::model::Coalescence;
 
-/// Relative change of a contact radius below the accuracy of an equilibrium.
-pub(crate) const ROUNDING: f64 = 1e-8;
-
 /// Maximum tensile load of a merged contact, relative to `sqrt(8πE*Δγa³)`.
 ///
 /// The branch ends at 5/6.
@@ -174,7 +171,7 @@ impl Problem {
             radius_m: 4.0 / 3.0 * self.material.contact_modulus_pa * radius.powi(3) / (load + root),
             height_m: 0.0,
             offset_j: 0.0,
-            release_m: (1.0 - ROUNDING) * radius,
+            release_m: (1.0 - self.numerics.events.radius_resolution) * radius,
             approach_m,
         }
     }

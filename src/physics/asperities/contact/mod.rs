@@ -6,7 +6,6 @@ pub(crate) mod merged_spot;
 pub(crate) mod merging;
 pub(crate) mod neighbours;
 mod numbering;
-pub(crate) mod numerics;
 pub(crate) mod problem;
 pub mod rows;
 pub(crate) mod state;

@@ -2,10 +2,10 @@
 
 use super::neighbours::Neighbours;
 use super::numbering::Places;
-use super::numerics::{Accuracy, Numerics};
 use crate::PhysicsError;
 use crate::asperities::field::spot_field::{Spot, spot_field_as_printed};
 use crate::asperities::field::{FieldSum, Spots, choose};
+use crate::asperities::numerics::{Events, Numerics};
 use crate::jkr::{Asperity, LEAST_TABOR};
 use crate::math::grown::Grown;
 use crate::model::{Boundary, Coalescence, Interaction as Kind, JumpIn, Material, Slips};
@@ -78,18 +78,11 @@ pub struct Problem {
 pub(super) const DEEPEST_JUMP_IN: f64 = 0.95;
 
 impl Problem {
-    /// Sets the number of spots in local problems.
-    ///
-    /// With `usize::MAX` every event is solved globally.
+    /// Sets the numerical choices.
     #[must_use]
-    pub fn with_patches_of(self, spots: usize) -> Self {
-        Self { numerics: Numerics { spots_in_patch: spots.max(1), ..self.numerics }, ..self }
-    }
-
-    /// Sets the tolerance of the path between exact global solves, in units of its scale; 0.01 by default.
-    #[must_use]
-    pub fn with_tolerance(self, tolerance: f64) -> Self {
-        Self { numerics: Numerics { accuracy: Accuracy(tolerance), ..self.numerics }, ..self }
+    pub fn with_numerics(self, numerics: Numerics) -> Self {
+        let events = Events { local_contacts: numerics.events.local_contacts.max(1), ..numerics.events };
+        Self { numerics: Numerics { events, ..numerics }, ..self }
     }
 
     /// Sets the number of spots from which fast sums are used.
@@ -159,7 +152,7 @@ impl Problem {
 
     /// True if local problems contain all asperities of the surface.
     pub(crate) fn solves_whole(&self) -> bool {
-        self.numerics.spots_in_patch >= self.summits()
+        self.numerics.events.local_contacts >= self.summits()
     }
 
     /// Residual below which a state is an equilibrium \[m\]: `1e-8 h_rms`, the error of fast sums, or `1e-10 h_rms` with fewer than 300 asperities or

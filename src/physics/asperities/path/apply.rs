@@ -1,6 +1,5 @@
 //! Application of one transition in a local problem.
 
-use super::accuracy::EVENT_TOLERANCE;
 use super::avalanche::Avalanche;
 use super::equilibrium_path::EquilibriumPath;
 use super::events::Located;
@@ -11,12 +10,6 @@ use crate::asperities::contact::Status;
 use crate::asperities::contact::transition::Transition;
 use crate::asperities::solve::local::Hold;
 use crate::event_kind::EventKind;
-
-/// Share of its radius by which a contact is moved over a fold.
-pub(super) const STEP_OVER_FOLD: f64 = 1e-3;
-
-/// An asperity whose uncovering would be undone at once is tried again when the covering contact has shrunk to this share of its radius.
-pub(super) const RETRY: f64 = 0.97;
 
 impl EquilibriumPath {
     /// Applies a transition in the local problem that is at it, relaxes the local problem, and records both; nothing if the transition would be undone
@@ -44,10 +37,10 @@ impl EquilibriumPath {
         let problem = &*self.problem();
         let local = &mut self.neighbourhood.local;
         let sense = if local.radius[at] > self.neighbourhood.origin[at] { 1.0 } else { -1.0 };
-        let gap = self.frame.sense * EVENT_TOLERANCE * problem.rms_height_m;
+        let gap = self.frame.sense * problem.numerics.events.position_tolerance * problem.rms_height_m;
         let potential = gap * local.potential_slope(problem);
         self.log.work_j += gap * local.totals(problem).0;
-        local.step_over_fold(problem, at, sense * STEP_OVER_FOLD, gap);
+        local.step_over_fold(problem, at, sense * problem.numerics.events.fold_step, gap);
         potential
     }
 
@@ -153,13 +146,13 @@ impl EquilibriumPath {
     /// that covers it; without one it is free, and blocked until its penetration falls below the jump-in.
     pub(super) fn keep_covered(&mut self, i: usize, approach: f64) {
         let Status::Covered { by, release_m } = self.predictor.state.status[i] else { return };
-        let radius = &self.predictor.state.radius;
+        let (radius, retried) = (&self.predictor.state.radius, self.solver.problem.numerics.events.retried_release);
         match self.predictor.state.carrier(by) {
             Some(carrier) if carrier == by => {
-                self.predictor.state.status[i] = Status::Covered { by, release_m: RETRY * radius[by].min(release_m) };
+                self.predictor.state.status[i] = Status::Covered { by, release_m: retried * radius[by].min(release_m) };
             }
             Some(carrier) => {
-                let release_m = RETRY * radius[carrier];
+                let release_m = retried * radius[carrier];
                 self.predictor.set(i, Status::Covered { by: carrier, release_m }, 0.0);
             }
             None => {

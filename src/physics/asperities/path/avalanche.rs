@@ -12,16 +12,6 @@ use crate::asperities::contact::{State, Status};
 use crate::event_kind::EventKind;
 use std::sync::Arc;
 
-/// Relative change of a radius that an equilibrium does not resolve.
-const EDGE: f64 = 1e-8;
-
-/// Maximum number of local solves that propagate an event: this number, or the number of contacts over it if
-/// that is larger.
-pub(super) const MOST_SOLVES: usize = 16;
-
-/// Number of transitions from which the global problem is solved after an avalanche: it moves contacts far away by more than its load as a point does.
-pub(super) const LARGE: usize = 13;
-
 /// Transitions of an avalanche, and the asperities that it has touched.
 #[derive(Debug, Default)]
 pub(super) struct Avalanche {
@@ -69,7 +59,8 @@ impl EquilibriumPath {
             self.gather(&transition, Some(approach));
             if transition.kind == EventKind::Snap || self.has_pending() {
                 solves += 1;
-                propagated = solves <= MOST_SOLVES.max(self.state().contacts.len() / MOST_SOLVES);
+                let few = self.numerics().events.avalanche_solves;
+                propagated = solves <= few.max(self.state().contacts.len() / few);
                 if !propagated {
                     break;
                 }
@@ -80,7 +71,7 @@ impl EquilibriumPath {
             }
         }
         self.close_avalanche(&avalanche.moved);
-        propagated &= avalanche.moved.len() < LARGE;
+        propagated &= avalanche.moved.len() < self.numerics().events.large_avalanche;
         Ok(propagated.then_some(avalanche.open))
     }
 
@@ -99,7 +90,7 @@ impl EquilibriumPath {
             }
             match self.predictor.state.status[i] {
                 Status::Covered { by, release_m } => {
-                    let edge = (1.0 - EDGE) * release_m;
+                    let edge = (1.0 - problem.numerics.events.radius_resolution) * release_m;
                     if self.predictor.state.radius[by] < edge {
                         // The covering contact has shrunk by absorbing it, or has left since.
                         self.keep_covered(i, self.neighbourhood.local.approach);
@@ -117,7 +108,8 @@ impl EquilibriumPath {
     /// Merging and splitting that are due, but for those of asperities that change to and fro.
     pub(super) fn due_coalescence(&mut self, touched: &[usize]) -> Vec<Trigger> {
         let mut due = self.problem().coalescing(&self.predictor, touched);
-        due.retain(|trigger| self.chatter.admit(&trigger.transition));
+        let most = self.numerics().events.changes_per_asperity;
+        due.retain(|trigger| self.chatter.admit(&trigger.transition, most));
         due
     }
 
@@ -126,12 +118,13 @@ impl EquilibriumPath {
     /// absorbs the next.
     pub(super) fn due_transitions(&mut self, touched: &[usize], free: &[usize]) -> Vec<Trigger> {
         let mut due = self.problem().triggers(&self.predictor, touched, free);
+        let most = self.numerics().events.changes_per_asperity;
         let state = &self.predictor.state;
         let chatter = &mut self.chatter;
         let (mut carried, mut postponed) = (Vec::new(), Vec::new());
         due.retain(|trigger| {
             let i = trigger.transition.asperity;
-            let mut allowed = chatter.allows(&trigger.transition);
+            let mut allowed = chatter.allows(&trigger.transition, most);
             if let Status::Covered { by, .. } = state.status[i]
                 && state.radius[by] == 0.0
                 && !allowed

@@ -4,9 +4,6 @@ use crate::asperities::contact::transition::Transition;
 use crate::event_kind::EventKind;
 use serde::{Deserialize, Serialize};
 
-/// Changes other than jumps out of contact that an asperity may have within one longest increment.
-pub(super) const MOST_CHANGES: u8 = 3;
-
 /// Changes of each asperity within the present longest increment, and asperities that are frozen by it.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(crate) struct ChatterGuard {
@@ -27,9 +24,9 @@ impl ChatterGuard {
         parts.iter().for_each(|part| self.count(*part));
     }
 
-    /// True if a transition may be applied.
-    pub(super) fn allows(&self, transition: &Transition) -> bool {
-        let may_change = |i: usize| self.changes[i] < MOST_CHANGES;
+    /// True if a transition may be applied, where an asperity may change `most` times other than out of contact.
+    pub(super) fn allows(&self, transition: &Transition, most: u8) -> bool {
+        let may_change = |i: usize| self.changes[i] < most;
         match (transition.kind, transition.by) {
             (EventKind::JumpOff, _) => true,
             (EventKind::Merge, Some(by)) => may_change(transition.asperity) && may_change(by),
@@ -38,8 +35,8 @@ impl ChatterGuard {
     }
 
     /// True if a transition may be applied; otherwise its asperity is frozen.
-    pub(super) fn admit(&mut self, transition: &Transition) -> bool {
-        let allowed = self.allows(transition);
+    pub(super) fn admit(&mut self, transition: &Transition, most: u8) -> bool {
+        let allowed = self.allows(transition, most);
         if !allowed {
             self.freeze(transition.asperity);
         }
@@ -76,7 +73,10 @@ impl ChatterGuard {
 
 #[cfg(test)]
 mod tests {
-    use super::{ChatterGuard, EventKind, MOST_CHANGES, Transition};
+    use super::{ChatterGuard, EventKind, Transition};
+    use crate::asperities::numerics::Events;
+
+    const MOST: u8 = Events::DEFAULT.changes_per_asperity;
 
     #[test]
     fn law_a_merged_contact_goes_on_with_the_changes_of_its_parts() {
@@ -84,14 +84,14 @@ mod tests {
         guard.grow(2);
         let merge = Transition { kind: EventKind::Merge, asperity: 0, by: Some(1) };
         // Each merging of the same pair makes a new contact; its splitting is counted with it.
-        for number in 2..2 + usize::from(MOST_CHANGES) {
-            assert!(guard.allows(&merge));
+        for number in 2..2 + usize::from(MOST) {
+            assert!(guard.allows(&merge, MOST));
             guard.join([0, 1]);
             let split = Transition { kind: EventKind::Split, asperity: number, by: None };
-            assert!(guard.allows(&split));
+            assert!(guard.allows(&split, MOST));
             guard.count(number);
         }
-        assert!(!guard.allows(&merge));
+        assert!(!guard.allows(&merge, MOST));
     }
 
     #[test]
@@ -99,17 +99,17 @@ mod tests {
         let mut guard = ChatterGuard::default();
         guard.grow(2);
         let change = |asperity| Transition { kind: EventKind::Cover, asperity, by: Some(2) };
-        for _ in 0..MOST_CHANGES {
-            assert!(guard.allows(&change(1)));
+        for _ in 0..MOST {
+            assert!(guard.allows(&change(1), MOST));
             guard.count(1);
         }
-        assert!(!guard.allows(&change(1)) && guard.allows(&change(0)));
-        assert!(guard.allows(&Transition { kind: EventKind::JumpOff, ..change(1) }));
+        assert!(!guard.allows(&change(1), MOST) && guard.allows(&change(0), MOST));
+        assert!(guard.allows(&Transition { kind: EventKind::JumpOff, ..change(1) }, MOST));
         guard.freeze(1);
         guard.freeze(1);
         assert_eq!(guard.frozen_count(), 1);
         guard.restart();
-        assert!(guard.allows(&change(1)));
+        assert!(guard.allows(&change(1), MOST));
         guard.clear_frozen();
         assert_eq!(guard.frozen_count(), 0);
     }

@@ -1,6 +1,5 @@
 //! Checkpoints of a path: in memory, to repeat an increment, and as a record that another process resumes.
 
-use super::accuracy::{EXACT_GRID, LEAST_SCALE};
 use super::chatter::ChatterGuard;
 use super::event_log::EventLog;
 use super::predictor::Predictor;
@@ -59,14 +58,13 @@ pub(crate) struct PathCheckpoint {
 impl PathCheckpoint {
     /// The beginning of a path.
     pub(crate) fn begin(problem: &Problem, state: State, sense: f64) -> Self {
-        let summits = problem.asperities.base();
+        let (summits, steps) = (problem.asperities.base(), &problem.numerics.steps);
         let off = summits.iter().map(|a| a.jump_off_penetration().abs()).sum::<f64>() / summits.len() as f64;
         // Where adhesion is weak, the roughness sets the scale.
-        let off = off.max(LEAST_SCALE * problem.rms_height_m);
+        let off = off.max(steps.min_scale * problem.rms_height_m);
         // A power of two of the grid, so that round output steps end increments.
-        let unit = EXACT_GRID * problem.rms_height_m;
-        let accuracy = problem.numerics.accuracy;
-        let share = if problem.solves_whole() { accuracy.longest_increment_of_whole() } else { accuracy.longest_increment() };
+        let unit = steps.exact_grid * problem.rms_height_m;
+        let share = if problem.solves_whole() { steps.longest_increment_of_whole() } else { steps.longest_increment() };
         let longest = unit * (share * off / unit).log2().floor().exp2();
         Self {
             state,

@@ -1,6 +1,6 @@
 //! Global corrector: the contact solved at the end of an increment, and new predictors of everything.
 
-use super::accuracy::{Arrival, out_of_reach};
+use super::accuracy::Arrival;
 use super::equilibrium_path::EquilibriumPath;
 use super::rejection::Rejection;
 use super::triggers::Trigger;
@@ -198,15 +198,15 @@ impl EquilibriumPath {
     /// on a grid of mean penetrations. Between grid points, only asperities near their jump-in are evaluated.
     fn predict_jump_ins(&mut self, rates: &[f64]) {
         let problem = &*self.problem();
-        let (target, scale) = (self.state().approach_m, self.frame.scale);
+        let target = self.state().approach_m;
         let all = self.solver.begins_block(target);
         let near = |i: &usize| {
             let trace = &self.predictor.traces[*i];
-            all || !trace.is_known() || trace.exceeds(problem.jump_in[*i] - out_of_reach(target - trace.at, scale))
+            all || !trace.is_known() || trace.exceeds(problem.jump_in[*i] - self.out_of_reach(target - trace.at))
         };
         let wanted: Vec<usize> = (0..problem.summits()).filter(|i| self.state().status[*i] == Status::Free).filter(near).collect();
         let found = self.solver.penetrations(&self.predictor.state, rates, &wanted);
-        let span = out_of_reach(self.steps.longest(), scale);
+        let span = self.out_of_reach(self.steps.longest());
         self.predictor.candidates.clear();
         for (i, trace) in wanted.into_iter().zip(found) {
             self.predictor.traces[i] = trace;

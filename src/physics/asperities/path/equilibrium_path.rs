@@ -1,6 +1,6 @@
 //! State of a path, and its increments.
 
-use super::accuracy::{Arrival, EXACT_GRID, out_of_reach};
+use super::accuracy::Arrival;
 use super::chatter::ChatterGuard;
 use super::checkpoint::Checkpoint;
 use super::energy::EnergyLedger;
@@ -10,10 +10,10 @@ use super::pending::PendingField;
 use super::predictor::Predictor;
 use super::rejection::Rejection;
 use super::step_control::{StepControl, is_multiple};
-use crate::asperities::contact::numerics::Accuracy;
 use crate::asperities::contact::transition::Transition;
 use crate::asperities::contact::{Event, Problem, State};
-use crate::asperities::solve::global::{BLOCK, GlobalSolver};
+use crate::asperities::numerics::{Numerics, Steps};
+use crate::asperities::solve::global::GlobalSolver;
 use crate::asperities::solve::precision::Precision;
 use crate::asperities::solve::residual::NotConverged;
 use crate::cycle::{Effort, Totals};
@@ -125,9 +125,14 @@ impl EquilibriumPath {
         self.chatter.clear_frozen();
     }
 
+    /// Numerical choices.
+    pub(super) fn numerics(&self) -> &Numerics {
+        &self.solver.problem.numerics
+    }
+
     /// Accuracy between exact global solves.
-    pub(super) fn accuracy(&self) -> Accuracy {
-        self.problem().numerics.accuracy
+    pub(super) fn accuracy(&self) -> &Steps {
+        &self.numerics().steps
     }
 
     /// Maximum pending displacement of a contact \[m\].
@@ -135,15 +140,22 @@ impl EquilibriumPath {
         self.accuracy().pending() * self.frame.scale
     }
 
+    /// Distance of a free asperity from its jump-in beyond which it stays farther than the scale from it while the mean penetration changes by `way`; both
+    /// \[m\].
+    pub(super) fn out_of_reach(&self, way: f64) -> f64 {
+        self.numerics().events.penetration_rate * way.abs() + self.frame.scale
+    }
+
     /// Gathers the neighbourhood of a transition at a mean penetration \[m\] or where its contacts were known last.
     pub(super) fn gather(&mut self, transition: &Transition, approach: Option<f64>) {
+        let interval = self.numerics().solver.free_interval * self.solver.problem.rms_height_m;
         let within = Surroundings {
             problem: &self.solver.problem,
             predictor: &self.predictor,
             pending: &self.pending,
             sense: self.frame.sense,
             scale: self.frame.scale,
-            displaced: out_of_reach(BLOCK * self.solver.problem.rms_height_m + self.steps.longest(), self.frame.scale),
+            displaced: self.out_of_reach(interval + self.steps.longest()),
         };
         self.neighbourhood.gather(&within, transition, approach, &mut self.solver.effort);
     }
@@ -200,7 +212,7 @@ impl EquilibriumPath {
 
     /// Precision at the end of an increment: exact on a grid, where most states are written down, and at a bound.
     fn precision_at(&self, target: f64, bound: Option<f64>) -> Precision {
-        let exact = bound == Some(target) || is_multiple(target, EXACT_GRID * self.problem().rms_height_m);
+        let exact = bound == Some(target) || is_multiple(target, self.accuracy().exact_grid * self.problem().rms_height_m);
         if exact { Precision::Exact } else { self.precision_between() }
     }
 
@@ -218,7 +230,9 @@ impl EquilibriumPath {
     /// Counts the trial of a transition, and ends an increment whose trials go on without end.
     pub(super) fn count_trial(&mut self, approach_m: f64, asperity: usize) -> Result<(), PhysicsError> {
         let problem = &*self.problem();
-        self.steps.count_trial(problem.len(), approach_m, problem.number(asperity))
+        let limits = &problem.numerics.events;
+        let most = limits.trials_per_asperity * (problem.len() + limits.trials_offset);
+        self.steps.count_trial(most, approach_m, problem.number(asperity))
     }
 
     /// The error of an increment that was rejected for good.

@@ -1,7 +1,6 @@
 //! Events of an increment, in their order: predicted, located on the solution curve of their local problem, applied, and followed by their
 //! avalanche.
 
-use super::accuracy::EVENT_TOLERANCE;
 use super::avalanche::Avalanche;
 use super::conditions::Condition;
 use super::equilibrium_path::EquilibriumPath;
@@ -11,12 +10,6 @@ use crate::asperities::solve::local::curve::{CurveEnd, CurveSearch};
 use crate::asperities::solve::local::{Hold, LocalProblem};
 use crate::event_kind::EventKind;
 use crate::math::bracket::{End, Illinois};
-
-/// Overlap at merging, relative to the distance of the contacts: at most so much.
-pub(super) const TOUCH: f64 = 1e-6;
-
-/// Maximum number of local solves that locate a merging.
-pub(super) const MOST_TRIALS: usize = 40;
 
 /// Position of an event on the solution curve: the local problem is there.
 #[derive(Debug, Clone, Copy)]
@@ -88,7 +81,7 @@ impl EquilibriumPath {
     /// Locates and applies an event with its avalanche.
     fn run_event(&mut self, event: PredictedEvent, target: f64, queue: &mut Vec<PredictedEvent>) -> Result<Outcome, Rejection> {
         let transition = event.transition;
-        if !self.chatter.admit(&transition) {
+        if !self.chatter.admit(&transition, self.solver.problem.numerics.events.changes_per_asperity) {
             return Ok(Outcome::Absent);
         }
         self.gather(&transition, None);
@@ -100,7 +93,7 @@ impl EquilibriumPath {
         } else {
             let Some(located) = self.locate(&event, target) else { return Ok(Outcome::Absent) };
             let approach = self.neighbourhood.local.approach;
-            let tolerance = EVENT_TOLERANCE * self.problem().rms_height_m;
+            let tolerance = self.numerics().events.position_tolerance * self.problem().rms_height_m;
             if queue.iter().any(|other| (approach - other.approach) * self.frame.sense > tolerance) {
                 queue.push(PredictedEvent { approach, ..event });
                 return Ok(Outcome::Absent);
@@ -155,7 +148,7 @@ impl EquilibriumPath {
             local.solve(problem, Hold::Penetration(watched, bound), effort).ok()?;
         }
         let way = (local.approach - start) * sense;
-        let inside = way >= -EVENT_TOLERANCE * problem.rms_height_m && (local.approach - target) * sense <= 0.0;
+        let inside = way >= -problem.numerics.events.position_tolerance * problem.rms_height_m && (local.approach - target) * sense <= 0.0;
         inside.then_some(Located::Point)
     }
 
@@ -178,8 +171,9 @@ impl EquilibriumPath {
         let end = go_to(local, high).filter(|end| *end >= 0.0)?;
         let mut ends = Illinois::new(first, end);
         let mut now = end;
-        for _ in 0..MOST_TRIALS {
-            if (0.0..=TOUCH).contains(&now) || (high - low).abs() <= EVENT_TOLERANCE * problem.rms_height_m {
+        let (limits, touch) = (&problem.numerics.events, problem.numerics.events.merging_overlap);
+        for _ in 0..limits.merging_trials {
+            if (0.0..=touch).contains(&now) || (high - low).abs() <= limits.position_tolerance * problem.rms_height_m {
                 break;
             }
             // The aim lies slightly beyond touching.
@@ -187,10 +181,10 @@ impl EquilibriumPath {
             let trial = go_to(local, middle)?;
             if trial < 0.0 {
                 low = middle;
-                ends.narrow(End::Low, trial - 0.5 * TOUCH);
+                ends.narrow(End::Low, trial - 0.5 * touch);
             } else {
                 (high, now) = (middle, trial);
-                ends.narrow(End::High, trial - 0.5 * TOUCH);
+                ends.narrow(End::High, trial - 0.5 * touch);
             }
         }
         if local.approach != high {

@@ -1,6 +1,5 @@
 //! Excursions: a second path through the last increment, to a state between its ends.
 
-use super::accuracy::LOAD_TOLERANCE;
 use super::equilibrium_path::EquilibriumPath;
 use super::step_control::StepControl;
 use crate::PhysicsError;
@@ -17,7 +16,7 @@ struct Crossing {
 impl EquilibriumPath {
     /// A path from before the last increment to `target` within it.
     pub(crate) fn excursion(&self, target: f64) -> Result<Self, PhysicsError> {
-        let steps = StepControl::new(self.frame.sense, self.steps.longest(), 0);
+        let steps = StepControl::new(self.numerics().steps, self.frame.sense, self.steps.longest(), 0);
         let mut other = Self::new(self.problem(), self.predictor.clone(), self.frame, steps);
         match self.checkpoint.as_deref() {
             Some(checkpoint) => other.restore(checkpoint),
@@ -49,6 +48,7 @@ impl EquilibriumPath {
             return self.excursion(self.state().approach_m).map(Some);
         }
         let Some(Crossing { ends: [mut low, mut high], excess: [under, over] }) = self.crossing(load) else { return Ok(None) };
+        let tolerance = self.numerics().steps.load_tolerance;
         let mut ends = Illinois::new(under, over);
         for _ in 0..100 {
             let middle = low + ends.share(0.01) * (high - low);
@@ -56,8 +56,8 @@ impl EquilibriumPath {
             self.solver.effort += trial.effort();
             let off = trial.totals.load_n - load;
             // A load that jumps over the value reverses where it jumps.
-            let closed = (high - low).abs() <= LOAD_TOLERANCE * self.problem().rms_height_m;
-            if off.abs() <= LOAD_TOLERANCE * load.abs() || (closed && off >= 0.0) {
+            let closed = (high - low).abs() <= tolerance * self.problem().rms_height_m;
+            if off.abs() <= tolerance * load.abs() || (closed && off >= 0.0) {
                 return Ok(Some(trial));
             }
             if closed {
@@ -72,14 +72,14 @@ impl EquilibriumPath {
             }
         }
         let found = self.reaching(high, load)?;
-        Ok((found.totals.load_n >= load - LOAD_TOLERANCE * load.abs()).then_some(found))
+        Ok((found.totals.load_n >= load - tolerance * load.abs()).then_some(found))
     }
 
     /// The state of the last increment at a mean penetration or soon after it with a load of at least `load` \[N\]: an excursion may meet a
     /// jump a little later than the increment did. Without one, the state with the largest load.
     fn reaching(&mut self, mut at: f64, load: f64) -> Result<Self, PhysicsError> {
         let (end, sense) = (self.state().approach_m, self.frame.sense);
-        let mut further = LOAD_TOLERANCE * self.problem().rms_height_m;
+        let mut further = self.numerics().steps.load_tolerance * self.problem().rms_height_m;
         let mut best = self.excursion(at)?;
         self.solver.effort += best.effort();
         while best.totals.load_n < load && at != end {

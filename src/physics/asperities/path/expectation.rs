@@ -7,13 +7,6 @@ use crate::asperities::contact::state::Status;
 use crate::asperities::contact::transition::{Transition, absorbing_radius};
 use crate::event_kind::EventKind;
 
-/// Distance to the end of a branch, over the way that is left, within which it is looked for: near a fold the penetration varies as a
-/// square root, so linear extrapolation overestimates the distance by about two.
-const BRANCH_END_DISTANCE: f64 = 2.2;
-
-/// Radius over distance at which two contacts are near a common fold, since the field of each is steep there.
-const TWINS: f64 = 0.95;
-
 /// Transition that is expected, with its mean penetration \[m\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct PredictedEvent {
@@ -82,7 +75,7 @@ impl Predictor {
         };
         if speed < 0.0 {
             let way = (penetration - asperity.jump_off_penetration()) / -speed;
-            if way <= BRANCH_END_DISTANCE * left {
+            if way <= problem.numerics.events.branch_end_distance * left {
                 offer(way.min(left), EventKind::JumpOff, j, None);
             }
             let split = Transition { kind: EventKind::Split, asperity: j, by: None };
@@ -97,11 +90,12 @@ impl Predictor {
         } else if speed > 0.0 && problem.covers() {
             let most = penetration + 1.1 * speed * left;
             let Some(reach) = asperity.radius_at_penetration(most) else { return };
-            problem.neighbours.within(j, reach / TWINS, |r, i| {
+            let twins = problem.numerics.events.common_fold_distance;
+            problem.neighbours.within(j, reach / twins, |r, i| {
                 let r = absorbing_radius(r);
                 let open = problem.can_be_covered(&self.state, i) && self.state.radius[i] < r;
                 // Two contacts that grow towards one another's centres have a fold before they reach them.
-                if open && r >= a && (reach >= r || self.state.radius[i] > TWINS * r) {
+                if open && r >= a && (reach >= r || self.state.radius[i] > twins * r) {
                     offer(((asperity.penetration(r) - penetration) / speed).min(left), EventKind::Cover, i, Some(j));
                 }
             });

@@ -5,7 +5,6 @@ use super::propagation::Before;
 use crate::PhysicsError;
 use crate::asperities::contact::Status;
 use crate::asperities::contact::merged_spot::pair_of;
-use crate::asperities::contact::merging::ROUNDING;
 use crate::asperities::contact::transition::Transition;
 use crate::cycle::Merged;
 use crate::event_kind::EventKind;
@@ -77,7 +76,7 @@ impl EquilibriumPath {
         let present = merged.scaled(radius / merged.contact_radius_m());
         let difference = problem.difference_field(number, &merged, self.state());
         // Beyond the radius at which it merged the fields of its parts differ by something else from its own.
-        let has_shrunk = radius < (1.0 - 10.0 * ROUNDING) * merged.contact_radius_m();
+        let has_shrunk = radius < (1.0 - 10.0 * problem.numerics.events.radius_resolution) * merged.contact_radius_m();
         let now = has_shrunk.then(|| problem.difference_field(number, &present, self.state()));
         let outside = self.solver.displacements(&contacts, &[merged.parts[0], merged.parts[1], number]);
         let displaced = self.displaced(number, &present, outside);

@@ -71,7 +71,6 @@ mod avalanche;
 mod chatter;
 mod checkpoint;
 mod conditions;
-mod constants;
 mod corrector;
 mod energy;
 mod equilibrium_path;
@@ -90,9 +89,6 @@ mod step_control;
 mod triggers;
 mod work;
 
-pub(crate) use accuracy::CONVERGED;
-pub use accuracy::EVENT_TOLERANCE;
 pub(crate) use checkpoint::PathCheckpoint;
-pub(crate) use constants::CONSTANTS;
 pub(crate) use equilibrium_path::EquilibriumPath;
 pub(crate) use step_control::is_multiple;

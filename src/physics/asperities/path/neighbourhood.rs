@@ -13,13 +13,6 @@ use crate::cycle::Effort;
 use crate::event_kind::EventKind;
 use crate::model::Interaction;
 
-/// Contacts of local problem and shell, over those of the local problem.
-pub(super) const SHELL: usize = 5;
-
-/// Distance before jump-in, in length scales, from which free asperities next to an event are followed: an
-/// event moves them by several jump-off penetrations.
-pub(super) const SPAN: f64 = 3.0;
-
 /// Local problem of an event with its shell.
 #[derive(Debug, Default)]
 pub(super) struct Neighbourhood {
@@ -104,14 +97,15 @@ impl Surroundings<'_> {
         let problem = self.problem;
         let (state, traces) = (&self.predictor.state, &self.predictor.traces);
         let alone = problem.rules.interaction == Interaction::None;
-        let most = if alone { 1 } else { problem.numerics.spots_in_patch };
-        let span = SPAN * self.scale;
+        let limits = &problem.numerics.events;
+        let most = if alone { 1 } else { limits.local_contacts };
+        let span = limits.jump_in_distance * self.scale;
         let near_jump_in = |i: &usize| state.status[*i] == Status::Free && traces[*i].exceeds(problem.jump_in[*i] - span);
         if state.contacts.len() <= most {
             let watched = (0..problem.len()).filter(near_jump_in).collect();
             return Selection { members: state.contacts.clone(), watched, shell: Vec::new(), reach: 0.0 };
         }
-        let count = most.saturating_mul(SHELL);
+        let count = most.saturating_mul(limits.shell_ratio);
         let mut near = problem.neighbours.nearest(place, count, state.contacts.len(), |i| state.status[i] == Status::Contact);
         let reach = near.iter().fold(0.0f64, |reach, (r, _)| reach.max(*r));
         let inner = near.select_nth_unstable_by(most - 1, nearer).1.0;

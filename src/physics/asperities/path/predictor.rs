@@ -5,7 +5,6 @@
 //! there.
 
 use crate::asperities::contact::merged_spot::{TouchingPairs, pair_of};
-use crate::asperities::contact::merging::ROUNDING;
 use crate::asperities::contact::problem::Problem;
 use crate::asperities::contact::state::{State, Status};
 use crate::asperities::contact::transition::Transition;
@@ -13,9 +12,6 @@ use crate::asperities::solve::trace::PenetrationTrace;
 use crate::cycle::{Merged, Totals};
 use crate::event_kind::EventKind;
 use crate::jkr::Asperity;
-
-/// Radius of a neighbour at the end of an increment, over its present one, up to which its merging is looked for.
-const NEIGHBOUR_GROWTH: f64 = 1.2;
 
 /// Number of contacts whose radii are computed at once.
 const LANES: usize = 8;
@@ -236,7 +232,7 @@ impl Predictor {
     pub(crate) fn keep_merged(&mut self, problem: &Problem, number: usize) {
         let (radius, merged) = (self.state.radius[number], &mut self.state.merged[number - problem.summits()]);
         if radius > 0.0 {
-            merged.release_m = merged.release_m.min((1.0 - ROUNDING) * radius);
+            merged.release_m = merged.release_m.min((1.0 - problem.numerics.events.radius_resolution) * radius);
         }
     }
 
@@ -257,15 +253,15 @@ impl Predictor {
 
     /// Calls `visit(i, distance)` for the contacts that would touch asperity `j` if it had the radius `reach` \[m\] and they grew by a fifth.
     pub(crate) fn near(&self, problem: &Problem, j: usize, reach: f64, mut visit: impl FnMut(usize, f64)) {
-        let radius = &self.state.radius;
+        let (radius, growth) = (&self.state.radius, problem.numerics.events.neighbour_growth);
         let mut offer = |i: usize, r: f64| {
-            if i != j && r <= reach + NEIGHBOUR_GROWTH * radius[i] {
+            if i != j && r <= reach + growth * radius[i] {
                 visit(i, r);
             }
         };
         // Small contacts are found by their place. Few are large.
         let listed = problem.neighbours.listed_m();
-        let small = ((listed - reach) / NEIGHBOUR_GROWTH).max(0.0);
+        let small = ((listed - reach) / growth).max(0.0);
         if small > 0.0 {
             problem.neighbours.within(j, listed, |r, i| {
                 if radius[i] > 0.0 && radius[i] <= small {

@@ -18,9 +18,6 @@ use crate::asperities::solve::trace::PenetrationTrace;
 use crate::cycle::Totals;
 use crate::event_kind::EventKind;
 
-/// Pending displacement that a member may have when its local problem is solved, over the limit.
-pub(super) const NEGLIGIBLE: f64 = 0.1;
-
 /// A local problem before it changes.
 pub(super) struct Before {
     pub(super) totals: Totals,
@@ -44,7 +41,7 @@ struct Pending {
 impl EquilibriumPath {
     /// True if members have pending displacements that matter.
     pub(super) fn has_pending(&self) -> bool {
-        let limit = NEGLIGIBLE * self.pending_limit();
+        let limit = self.numerics().events.negligible_pending * self.pending_limit();
         self.neighbourhood.to_apply.iter().any(|displacement| displacement.abs() > limit)
     }
 

@@ -3,25 +3,16 @@
 //! An increment ends on a multiple of `h = h_0/2^k`. A rejected one is halved; an accepted one may be followed by one of twice the length
 //! where that ends on a multiple of itself. So the increments do not depend on where a path began.
 
+use crate::asperities::numerics::Steps;
 use crate::{LoopError, PhysicsError};
-
-/// Maximum number of halvings before the global problem is relaxed instead.
-pub(super) const MOST_HALVINGS: u32 = 14;
-
-/// Number of halvings from which on the predictor residual is accepted.
-pub(super) const ACCEPTS_RESIDUAL: u32 = 6;
-
-/// Maximum number of trials of transitions within one attempt, per asperity: [`super::chatter::ChatterGuard`] allows each asperity a few changes.
-pub(super) const MOST_TRIALS: usize = 100;
-
-/// Number that is added to that of the asperities, for few of them.
-pub(super) const FEW: usize = 100;
 
 /// Lengths of the increments.
 #[derive(Debug, Clone)]
 pub(super) struct StepControl {
     /// Sense of the path: 1 loading, −1 unloading.
     sense: f64,
+    /// Numbers of halvings.
+    limits: Steps,
     /// Longest increment `h_0` \[m\].
     longest: f64,
     /// Number of halvings k.
@@ -31,8 +22,8 @@ pub(super) struct StepControl {
 }
 
 impl StepControl {
-    pub(super) fn new(sense: f64, longest: f64, halvings: u32) -> Self {
-        Self { sense, longest, halvings, trials: 0 }
+    pub(super) fn new(limits: Steps, sense: f64, longest: f64, halvings: u32) -> Self {
+        Self { sense, limits, longest, halvings, trials: 0 }
     }
 
     /// Longest increment \[m\].
@@ -47,7 +38,7 @@ impl StepControl {
 
     /// True if the predictor residual must be small for the increment to be accepted.
     pub(super) fn is_strict(&self) -> bool {
-        self.halvings < ACCEPTS_RESIDUAL
+        self.halvings < self.limits.strict_halvings
     }
 
     fn size(&self, halvings: u32) -> f64 {
@@ -75,15 +66,16 @@ impl StepControl {
 
     /// Halves the increment from `here` \[m\] after a rejection; false if the global problem is to be relaxed instead.
     pub(super) fn halve(&mut self, here: f64) -> bool {
-        if self.halvings >= MOST_HALVINGS {
-            self.halvings = MOST_HALVINGS / 2;
+        let most = self.limits.max_halvings;
+        if self.halvings >= most {
+            self.halvings = most / 2;
             return false;
         }
         // Half an increment may end where the full one did.
         let end = |control: &Self, halvings: u32| next_multiple(here, control.size(halvings), control.sense);
         let ended = end(self, self.halvings);
         self.halvings += 1;
-        while end(self, self.halvings) == ended && self.halvings < MOST_HALVINGS {
+        while end(self, self.halvings) == ended && self.halvings < most {
             self.halvings += 1;
         }
         true
@@ -94,10 +86,9 @@ impl StepControl {
         self.trials = 0;
     }
 
-    /// Counts a trial on a path of `n` asperities; `asperity` is the caller's number of the one that is to change.
-    pub(super) fn count_trial(&mut self, n: usize, approach_m: f64, asperity: usize) -> Result<(), PhysicsError> {
+    /// Counts a trial, of `most`; `asperity` is the caller's number of the one that is to change.
+    pub(super) fn count_trial(&mut self, most: usize, approach_m: f64, asperity: usize) -> Result<(), PhysicsError> {
         self.trials += 1;
-        let most = MOST_TRIALS * (n + FEW);
         if self.trials <= most { Ok(()) } else { Err(LoopError::EndlessAvalanche { approach_m, events: most, asperity }.into()) }
     }
 }
@@ -117,11 +108,11 @@ fn next_multiple(here: f64, size: f64, sense: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{MOST_HALVINGS, StepControl};
+    use super::{StepControl, Steps};
 
     #[test]
     fn law_increments_end_on_multiples_and_grow_back() {
-        let mut control = StepControl::new(-1.0, 1.0, 0);
+        let mut control = StepControl::new(Steps::DEFAULT, -1.0, 1.0, 0);
         assert_eq!(control.target(0.3, None), 0.0);
         assert_eq!(control.target(0.3, Some(0.1)), 0.1);
         assert!(control.halve(0.3));
@@ -139,12 +130,12 @@ mod tests {
 
     #[test]
     fn law_a_rejected_increment_has_an_end() {
-        let mut control = StepControl::new(1.0, 1.0, 0);
+        let mut control = StepControl::new(Steps::DEFAULT, 1.0, 1.0, 0);
         let mut rejections = 0;
         while control.halve(0.0) {
             rejections += 1;
-            assert!(rejections <= MOST_HALVINGS);
+            assert!(rejections <= Steps::DEFAULT.max_halvings);
         }
-        assert_eq!(control.halvings(), MOST_HALVINGS / 2);
+        assert_eq!(control.halvings(), Steps::DEFAULT.max_halvings / 2);
     }
 }

@@ -9,18 +9,11 @@
 use super::global::GlobalSolver;
 use super::local::{Extent, Hold, LocalProblem};
 use super::newton::{Damping, NonlinearSystem, Worst, damped_newton};
-use super::residual::{NotConverged, STRIDE};
+use super::residual::NotConverged;
 use super::trace::PenetrationTrace;
 use crate::asperities::contact::state::{State, Status};
 use crate::asperities::contact::transition::Transition;
 use std::sync::Arc;
-
-/// Largest and smallest relative residual of linear solves.
-pub(super) const MAX_LINEAR_RESIDUAL: f64 = 3e-3;
-pub(super) const MIN_LINEAR_RESIDUAL: f64 = 1e-4;
-
-/// The largest one where the precision is only sufficient.
-pub(super) const MAX_LINEAR_RESIDUAL_SUFFICIENT: f64 = 3e-2;
 
 /// Action if the contacts around one have no equilibrium nearby.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -85,14 +78,15 @@ impl NonlinearSystem for Descent<'_> {
     }
 
     fn begin_step(&mut self, round: usize, worst: &Worst) {
+        let limits = self.solver.problem.numerics.solver;
         // The first step reduces the residual to its square at best; the next ones are to be the last.
         let wanted = match (self.exact, round) {
-            (true, 0) => MAX_LINEAR_RESIDUAL,
-            (true, _) => (0.1 * self.tolerance / worst.largest_m).clamp(MIN_LINEAR_RESIDUAL, MAX_LINEAR_RESIDUAL),
-            (false, _) => (0.3 * self.tolerance / worst.largest_m).clamp(MAX_LINEAR_RESIDUAL, MAX_LINEAR_RESIDUAL_SUFFICIENT),
+            (true, 0) => limits.linear_residual,
+            (true, _) => (0.1 * self.tolerance / worst.largest_m).clamp(limits.linear_residual_min, limits.linear_residual),
+            (false, _) => (0.3 * self.tolerance / worst.largest_m).clamp(limits.linear_residual, limits.linear_residual_intermediate),
         };
         self.step = self.solver.newton_step(self.state, wanted);
-        limit(&mut self.step, self.state, STRIDE);
+        limit(&mut self.step, self.state, limits.radius_change);
         self.start = self.state.contacts.iter().map(|&i| self.state.radius[i]).collect();
     }
 
@@ -133,7 +127,7 @@ impl Descent<'_> {
     fn around(&mut self, centre: usize) -> LocalProblem {
         let problem = &*Arc::clone(&self.solver.problem);
         let (state, approach) = (&*self.state, self.state.approach_m);
-        let (all, count) = (state.contacts.len(), problem.numerics.spots_in_patch);
+        let (all, count) = (state.contacts.len(), problem.numerics.events.local_contacts);
         let near = problem.neighbours.nearest(problem.place(centre), count, all, |i| state.status[i] == Status::Contact);
         let mut members: Vec<usize> = near.iter().map(|(_, i)| *i).collect();
         members.sort_unstable();

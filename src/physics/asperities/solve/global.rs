@@ -16,16 +16,6 @@ use crate::cycle::Effort;
 use crate::math::gmres::{Limits, LinearOperator, Solution, gmres, gmres_and_least};
 use std::sync::Arc;
 
-/// Maximum number of products in one linear solve.
-pub(super) const PRODUCTS: usize = 120;
-
-/// Relative residual of the rates, at exact and at sufficient precision: predictions depend on them.
-pub(super) const RATES: f64 = 1e-4;
-pub(super) const ROUGH_RATES: f64 = 3e-4;
-
-/// Way between two evaluations of all free asperities, in rms heights.
-pub(crate) const BLOCK: f64 = 0.2;
-
 /// Tangents of one precision.
 #[derive(Debug, Default)]
 struct Tangents {
@@ -125,7 +115,7 @@ impl GlobalSolver {
         let Self { problem, tangents, inverse, diagonal, residual, .. } = self;
         let jacobian = Jacobian { tangent: &tangents.contacts, diagonal };
         let inverse = inverse.of(problem, state, &tangents.contacts, diagonal);
-        let found = gmres(&jacobian, inverse, residual, Limits { tolerance: wanted, products: PRODUCTS });
+        let found = gmres(&jacobian, inverse, residual, Limits { tolerance: wanted, products: problem.numerics.solver.products });
         self.count(found)
     }
 
@@ -133,7 +123,7 @@ impl GlobalSolver {
     pub(super) fn relaxation_step(&mut self, time: f64) -> Vec<f64> {
         let Self { tangents, diagonal, residual, .. } = &*self;
         let damped: Vec<f64> = diagonal.iter().map(|d| d + 1.0 / time).collect();
-        let limits = Limits { tolerance: 1e-3, products: PRODUCTS };
+        let limits = Limits { tolerance: 1e-3, products: self.problem.numerics.solver.products };
         let step = gmres(&Jacobian { tangent: &tangents.contacts, diagonal: &damped }, None, residual, limits);
         self.count(step)
     }
@@ -146,19 +136,20 @@ impl GlobalSolver {
         let Self { problem, tangents, inverse, diagonal, .. } = self;
         let jacobian = Jacobian { tangent: &tangents.contacts, diagonal };
         let inverse = inverse.of(problem, state, &tangents.contacts, diagonal);
+        let accuracy = &problem.numerics.solver;
         let tolerance = match precision {
-            Precision::Exact => RATES,
-            Precision::Sufficient => ROUGH_RATES,
+            Precision::Exact => accuracy.rates_residual,
+            Precision::Sufficient => accuracy.rates_residual_intermediate,
         };
-        let limits = Limits { tolerance, products: PRODUCTS };
+        let limits = Limits { tolerance, products: accuracy.products };
         let (rates, least) = gmres_and_least(&jacobian, inverse, &ones, limits);
         state.stability = least;
         self.count(rates)
     }
 
-    /// True if all free asperities are to be evaluated at a mean penetration \[m\]: the first in each block of [`BLOCK`].
+    /// True if all free asperities are to be evaluated at a mean penetration \[m\]: the first in each interval of the numerics.
     pub(crate) fn begins_block(&mut self, approach: f64) -> bool {
-        let block = |approach: f64| (approach / (BLOCK * self.problem.rms_height_m)).floor();
+        let block = |approach: f64| (approach / (self.problem.numerics.solver.free_interval * self.problem.rms_height_m)).floor();
         let begins = self.swept_at.is_none_or(|at| block(approach) != block(at));
         if begins {
             self.swept_at = Some(approach);

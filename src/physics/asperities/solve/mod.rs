@@ -1,6 +1,5 @@
 //! Equilibria of a contact at one approach: global, local, and by relaxation.
 
-mod constants;
 pub(crate) mod descent;
 pub(crate) mod global;
 pub(crate) mod local;
@@ -11,5 +10,3 @@ pub(crate) mod relaxation;
 pub(crate) mod residual;
 mod schwarz;
 pub(crate) mod trace;
-
-pub(crate) use constants::CONSTANTS;

@@ -1,6 +1,6 @@
 //! Damped Newton method for the contact radii.
 //!
-//! No step changes a radius by more than [`STRIDE`](super::residual::STRIDE). A step that does not reduce the largest residual is halved.
+//! No step changes a radius by more than a fraction. A step that does not reduce the largest residual is halved.
 //! Near the edge of another contact, where the slope of the field is infinite, only short steps reduce it.
 
 use super::residual::NotConverged;

@@ -4,25 +4,11 @@
 //! Implicit Euler steps grow as the residual falls. A contact whose branch has ended leaves, and a contact that a larger one has reached is
 //! absorbed. The order follows from the flow and not from the output steps. For point interaction it is a gradient flow of the potential.
 
-use super::residual::{NotConverged, STRIDE};
+use super::residual::NotConverged;
 use crate::Reason;
 use crate::asperities::contact::problem::Problem;
 use crate::asperities::contact::transition::{ContactView, Transition};
 use crate::math::vector::dot;
-
-/// Maximum number of steps since the last transition.
-pub(super) const STEPS: usize = 1000;
-
-/// Pseudo-time after which Newton's method may finish, and the factor by which it is extended if that fails.
-const NEARLY: f64 = 100.0;
-const LONGER: f64 = 1e3;
-
-/// Longest pseudo-time step, and the growth of the steps.
-const LONGEST: f64 = 1e9;
-const TIME_STEP_RATIO: f64 = 3.0;
-
-/// Maximum number of attempts at a step, each a quarter as long as the last.
-const ATTEMPTS: usize = 24;
 
 /// A contact, or a local problem, at one mean penetration.
 pub(crate) trait Relaxing {
@@ -51,10 +37,11 @@ pub(crate) fn relax(
     uncovered: Option<&Transition>,
 ) -> Result<Vec<Transition>, NotConverged> {
     let mut changes: Vec<Transition> = Vec::new();
-    let (mut time, mut finish) = (1.0, NEARLY);
+    let (limits, most) = (&problem.numerics.solver.relaxation, problem.numerics.solver.radius_change);
+    let (mut time, mut finish) = (1.0, limits.finish);
     let mut last = NotConverged::because(Reason::NotANumber, 0);
     let mut round = 0;
-    while round < STEPS {
+    while round < limits.steps {
         round += 1;
         last = contact.evaluate();
         if last.residual_m <= contact.tolerance_m() {
@@ -70,7 +57,7 @@ pub(crate) fn relax(
             if uncovered.is_some_and(|earlier| change.undoes(earlier)) {
                 return Ok(changes);
             }
-            (round, time, finish) = (0, 1.0, NEARLY);
+            (round, time, finish) = (0, 1.0, limits.finish);
             continue;
         }
         if time > finish {
@@ -80,24 +67,24 @@ pub(crate) fn relax(
                 continue;
             }
             contact.evaluate();
-            finish *= LONGER;
+            finish *= limits.finish_growth;
         }
         let residual: Vec<f64> = spots.iter().map(|spot| spot.2).collect();
         let stride = |step: &[f64]| step.iter().zip(&spots).map(|(s, spot)| s.abs() / spot.1).fold(0.0, f64::max);
         let mut step = Vec::new();
-        for _ in 0..ATTEMPTS {
+        for _ in 0..limits.attempts {
             let stable;
             (step, stable) = contact.step(time);
             // With too long a step a saddle attracts: the step must follow the flow.
-            if stable && stride(&step) <= STRIDE && dot(&step, &residual) > 0.0 {
+            if stable && stride(&step) <= most && dot(&step, &residual) > 0.0 {
                 break;
             }
             time *= 0.25;
         }
         let stride = stride(&step);
-        let share = if stride > STRIDE { STRIDE / stride } else { 1.0 };
+        let share = if stride > most { most / stride } else { 1.0 };
         contact.advance(&step, share);
-        time = (time * TIME_STEP_RATIO).min(LONGEST);
+        time = (time * limits.step_growth).min(limits.longest_step);
     }
     Err(last)
 }

@@ -1,9 +1,6 @@
-//! Residual of an equilibrium and the limit of a step towards it.
+//! Residual of an equilibrium.
 
 use crate::Reason;
-
-/// Largest relative change of a radius in one iteration.
-pub(crate) const STRIDE: f64 = 0.2;
 
 /// State without equilibrium: largest residual with its asperity, or another reason.
 #[derive(Debug, Clone, Copy, PartialEq)]

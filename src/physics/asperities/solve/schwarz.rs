@@ -12,19 +12,6 @@ use crate::math::gmres::Preconditioner;
 use crate::math::vector::in_strands;
 use multiversion::multiversion;
 
-/// Number of contacts in a group when they are divided, and number of contacts that are solved together for it.
-pub(super) const GROUP: usize = 24;
-pub(super) const SOLVED_TOGETHER: usize = 44;
-
-/// Factor by which the number of contacts may change before they are divided again.
-const MAX_COUNT_RATIO: f64 = 1.3;
-
-/// Distance over radius beyond which a contact acts by its load alone.
-const POINT_LOAD_DISTANCE: f64 = 2.0;
-
-/// Solutions that the rows of a group serve, if no contact next to it comes or goes.
-pub(super) const MOST_SOLUTIONS: usize = 8;
-
 /// An approximate inverse that serves several solutions: it only makes them short.
 #[derive(Debug, Default)]
 pub(super) struct LocalInverse {
@@ -83,8 +70,9 @@ impl LocalInverse {
             self.follow(problem, state);
         }
         let jacobian = Jacobian { problem, state, tangent, diagonal };
+        let renewed = problem.numerics.solver.groups.solutions;
         for group in &mut self.groups {
-            if group.solution.is_none_or(|solution| self.solutions >= solution + MOST_SOLUTIONS) {
+            if group.solution.is_none_or(|solution| self.solutions >= solution + renewed) {
                 group.compute(&jacobian, &mut self.lu);
                 group.solution = Some(self.solutions);
             } else if !same {
@@ -97,7 +85,8 @@ impl LocalInverse {
     /// Enters the contacts that have come and gone into the groups.
     fn follow(&mut self, problem: &Problem, state: &State) {
         let growth = state.contacts.len() as f64 / self.divided.max(1) as f64;
-        if self.groups.is_empty() || !(1.0 / MAX_COUNT_RATIO..MAX_COUNT_RATIO).contains(&growth) {
+        let ratio = problem.numerics.solver.groups.count_ratio;
+        if self.groups.is_empty() || !(1.0 / ratio..ratio).contains(&growth) {
             self.divide(problem, state);
             return;
         }
@@ -130,7 +119,7 @@ impl LocalInverse {
         self.index.clone_from(&state.contacts);
         self.divided = state.contacts.len();
         let mut places: Vec<[f64; 2]> = state.contacts.iter().map(|i| *problem.place(*i)).collect();
-        self.partition = Partition::of(&mut places);
+        self.partition = Partition::of(&mut places, problem.numerics.solver.groups.contacts);
         self.groups = vec![Group::default(); self.partition.groups];
         for &i in &state.contacts {
             self.groups[self.partition.group(problem.place(i))].members.push(i);
@@ -177,17 +166,18 @@ enum Node {
 }
 
 impl Partition {
-    fn of(places: &mut [[f64; 2]]) -> Self {
+    /// Division of places into groups of at most `size`.
+    fn of(places: &mut [[f64; 2]], size: usize) -> Self {
         let mut found = Self::default();
-        found.add(places);
+        found.add(places, size);
         found
     }
 
     /// Adds the node of some places; its number is returned.
-    fn add(&mut self, places: &mut [[f64; 2]]) -> usize {
+    fn add(&mut self, places: &mut [[f64; 2]], size: usize) -> usize {
         let number = self.nodes.len();
         self.nodes.push(Node::Group(self.groups));
-        if places.len() <= GROUP {
+        if places.len() <= size {
             self.groups += 1;
             return number;
         }
@@ -200,7 +190,7 @@ impl Partition {
         let (low, at, high) = places.select_nth_unstable_by(middle, |u, v| u[along].total_cmp(&v[along]));
         // The middle one belongs to the upper half, which its own node need not know.
         let value = at[along];
-        let nodes = [self.add(low), self.add(high)];
+        let nodes = [self.add(low, size), self.add(high, size)];
         self.nodes[number] = Node::Halves { along, value, nodes };
         number
     }
@@ -235,7 +225,9 @@ impl Group {
         }
         let count = self.members.len() as f64;
         self.centre = [0, 1].map(|along| self.members.iter().map(|i| problem.place(*i)[along]).sum::<f64>() / count);
-        let near = problem.neighbours.nearest(&self.centre, SOLVED_TOGETHER, state.contacts.len(), |i| state.status[i] == Status::Contact);
+        let near = problem.neighbours.nearest(&self.centre, problem.numerics.solver.groups.solved_together, state.contacts.len(), |i| {
+            state.status[i] == Status::Contact
+        });
         self.near.clear();
         self.near.extend(near.iter().map(|(_, i)| *i).chain(self.members.iter().copied()));
         self.near.sort_unstable();
@@ -282,7 +274,7 @@ impl Jacobian<'_> {
             let images = tangent.own(*at as usize);
             let slope = problem.material.compliance() * asperity.load_slope(a);
             fields_of_load(&columns, k, [slope, images], &mut distances, line);
-            for (by, r) in line.iter_mut().zip(&distances).filter(|(_, r)| **r <= POINT_LOAD_DISTANCE * a) {
+            for (by, r) in line.iter_mut().zip(&distances).filter(|(_, r)| **r <= problem.numerics.solver.groups.point_load_distance * a) {
                 *by = problem.spot_field(asperity, *r, a).1 + images;
             }
             line[k] = diagonal[*at as usize] + images;

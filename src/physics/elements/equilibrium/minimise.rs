@@ -23,18 +23,6 @@ use crate::elements::problem::{Nucleation, Problem, State};
 use crate::memory::filled;
 use rayon::prelude::*;
 
-/// Change of the displacement between two updates of the bonds, relative to the reach of the law.
-const BOND_UPDATE_CHANGE: f64 = 0.02;
-/// Largest residual at which bonds are updated, relative to [`Problem::stress`]. Far from equilibrium, edges of contact lie where no equilibrium has
-/// them.
-pub(crate) const BOND_UPDATE_RESIDUAL: f64 = 0.4;
-/// Iterations on the whole grid before an event counts as one: the first follow the approach everywhere.
-pub(crate) const EVERYWHERE: usize = 8;
-/// Residual, relative to that at the last rebase, at which the pressure is computed from the displacement: single precision has seven digits.
-const RENEWED: f64 = 1e-3;
-/// Shortenings of a step that would raise the energy.
-const SHORTENINGS: u32 = 30;
-
 /// Loads of the states that are looked for \[E* dx²\].
 pub(crate) type Loads = std::ops::Range<f64>;
 /// All loads.
@@ -198,14 +186,14 @@ impl Minimiser {
         loads: &Loads,
         mut local: Option<&mut dyn LocalRelaxation>,
     ) -> Outcome {
-        let stress = problem.stress();
+        let (stress, limits) = (problem.stress(), &problem.numerics.equilibrium);
         let mut outcome = Outcome::default();
         self.pairs.clear();
         let mut here = self.start_from(problem, state);
         let (mut change, mut exact, mut first) = (0.0, true, here.rms);
         loop {
             (outcome.residual, outcome.converged) = (here.rms / stress, accuracy.includes(here, stress));
-            if !exact && (outcome.converged || here.rms < RENEWED * first) {
+            if !exact && (outcome.converged || here.rms < limits.renewed_residual * first) {
                 // Checked once more with the pressure without rounding and with bonds renewed, or continued from there.
                 self.commit(state);
                 exact = problem.update_bonds(state, Nucleation::Suppressed).is_empty();
@@ -233,9 +221,9 @@ impl Minimiser {
             };
             (here, exact) = (residual, false);
             change += step.largest;
-            if change > BOND_UPDATE_CHANGE * problem.reach() && here.largest <= BOND_UPDATE_RESIDUAL * stress {
+            if change > limits.bond_update_change * problem.reach() && here.largest <= limits.bond_update_residual * stress {
                 change = 0.0;
-                let late = outcome.iterations >= EVERYWHERE;
+                let late = outcome.iterations >= limits.whole_iterations;
                 outcome.left = late && !loads.contains(&self.load());
                 if outcome.left {
                     return outcome;
@@ -436,7 +424,7 @@ impl Minimiser {
     /// As [`Self::descend`], with a known response and after a first trial.
     fn shorten(&mut self, problem: &Problem, state: &State, mut trial: Trial) -> Option<(AcceptedStep, Residual)> {
         let Descent { mean, largest, .. } = trial.descent;
-        for _ in 0..SHORTENINGS {
+        for _ in 0..problem.numerics.equilibrium.shortenings {
             let shorter = trial.shorter();
             let there = self.evaluate(problem, state, Shift { length: shorter - trial.length, mean }, ElasticResponse::Kept);
             if trial.suffices(shorter, &there) {

@@ -16,14 +16,6 @@ use crate::memory::filled;
 use rayon::prelude::*;
 use std::mem::take;
 
-/// Most iterations of conjugate gradients in a step of Newton's method.
-const INNER: usize = 80;
-/// Relative residual at which conjugate gradients end.
-const FORCING: f64 = 0.05;
-
-/// Relative residual of the rate of an equilibrium.
-pub(crate) const RATE: f64 = 0.01;
-
 /// Scratch buffers of the conjugate gradients: fields of the minimiser, which does not use them meanwhile.
 struct Inner {
     residual: Vec<f32>,
@@ -95,7 +87,7 @@ impl Minimiser {
         let mut inner = self.take_scratch();
         inner.residual.copy_from_slice(&self.slopes);
         remove_mean(&mut inner.residual);
-        let residual = RATE * dot(&inner.residual, &inner.residual).sqrt();
+        let residual = problem.numerics.equilibrium.rate_residual * dot(&inner.residual, &inner.residual).sqrt();
         self.solve(problem, &mut inner, &mut found, Limits { step: f64::INFINITY, residual });
         self.return_scratch(inner);
         let [stiffness] = total(
@@ -125,7 +117,7 @@ impl Minimiser {
         let mean = self.gradient.mean as f32;
         let fields = (&mut inner.residual, &self.gradient.values).into_par_iter().with_min_len(grain(1));
         fields.for_each(|(to, from)| *to = mean - from);
-        let residual = FORCING * dot(&inner.residual, &inner.residual).sqrt();
+        let residual = problem.numerics.equilibrium.inner_residual * dot(&inner.residual, &inner.residual).sqrt();
         let iterations = self.solve(problem, &mut inner, found, Limits { step: problem.reach(), residual });
         self.return_scratch(inner);
         iterations
@@ -139,7 +131,8 @@ impl Minimiser {
         self.precondition_from(problem, &inner.residual);
         inner.search.copy_from_slice(&self.direction);
         let mut product = dot(&inner.residual, &self.direction);
-        for iteration in 1..=INNER {
+        let most = problem.numerics.equilibrium.inner_iterations;
+        for iteration in 1..=most {
             problem.half_space.apply(Operator::Stiffness, &inner.search, &mut inner.stiff, &mut self.single);
             let [curvature] = total(
                 (inner.stiff.par_chunks(PANEL), self.slopes.par_chunks(PANEL), inner.search.par_chunks(PANEL))
@@ -170,7 +163,7 @@ impl Minimiser {
             let fields = (&mut inner.search, &self.direction).into_par_iter().with_min_len(grain(1));
             fields.for_each(|(to, from)| *to = from + ratio * *to);
         }
-        INNER
+        most
     }
 
     /// `residual ← residual − length (K + V'') search`, without its mean.

@@ -11,28 +11,12 @@
 //! shift times the mean of pressure and tension. The second order follows with the whole grid.
 
 use super::minimise::{Accuracy, LocalRelaxation, Minimiser, WorkingState};
-use super::places::{Place, Region, SMALLEST, places};
+use super::places::{Place, Region, SMALLEST_SIDE, places};
 use crate::PhysicsError;
 use crate::elements::grid::half_space::HalfSpace;
 use crate::elements::problem::{Attraction, Bonding, Problem, State};
 use crate::memory::filled;
 use rayon::prelude::*;
-
-/// Minimum side of the grid, in sides of a patch.
-pub(crate) const PARTS: usize = 4;
-/// Most places that are followed.
-pub(crate) const PLACES: usize = 8;
-/// The border of a patch has the width of its side over this.
-const BORDER: usize = 8;
-/// Largest residual of a relaxed patch, relative to that of an equilibrium.
-const FINISH: f64 = 3.0;
-/// Most iterations on a patch.
-const ITERATIONS: usize = 600;
-
-/// The patches of one side have at most as many points as the grid over this.
-const SHARE: usize = 16;
-/// Side up to which there is a patch for each place on every grid.
-const ALWAYS: usize = 128;
 
 /// Patches that are not in use, by increasing side.
 pub struct Patches(Vec<Vec<Patch>>);
@@ -60,13 +44,15 @@ impl Patches {
     /// Not enough memory.
     pub fn new(problem: &Problem) -> Result<Self, PhysicsError> {
         let grid = &problem.half_space;
-        let largest = grid.rows().min(grid.columns()) / PARTS;
-        if largest < SMALLEST || grid.is_patch() || !matches!(problem.attraction, Attraction::Bonded { .. }) {
+        let limits = &problem.numerics.patches;
+        let largest = grid.rows().min(grid.columns()) / limits.sides_of_grid;
+        if largest < SMALLEST_SIDE || grid.is_patch() || !matches!(problem.attraction, Attraction::Bonded { .. }) {
             return Ok(Self::none());
         }
         let kernel = grid.kernel()?;
-        let sides = std::iter::successors(Some(SMALLEST), |side| Some(2 * side)).take_while(|side| *side <= largest);
-        let count = |side: usize| (grid.points().max(SHARE * PLACES * ALWAYS * ALWAYS) / (SHARE * side * side)).clamp(1, PLACES);
+        let sides = std::iter::successors(Some(SMALLEST_SIDE), |side| Some(2 * side)).take_while(|side| *side <= largest);
+        let points = grid.points().max(limits.points_of_grid * limits.places * limits.always_side.pow(2));
+        let count = |side: usize| (points / (limits.points_of_grid * side * side)).clamp(1, limits.places);
         let of_side = |side: usize| (0..count(side)).map(|_| Patch::new(problem, side, &kernel)).collect::<Result<_, _>>();
         sides.map(of_side).collect::<Result<_, _>>().map(Self)
     }
@@ -104,7 +90,7 @@ impl Patches {
     ) -> Vec<Job> {
         let mut jobs: Vec<Job> = Vec::new();
         let mut earlier = std::mem::take(put_off).into_iter();
-        while jobs.len() + done.len() < PLACES
+        while jobs.len() + done.len() < on.problem.numerics.patches.places
             && let Some(next) = earlier.next().or_else(|| places.next())
         {
             let grid = &on.problem.half_space;
@@ -165,9 +151,10 @@ impl LocalRelaxation for Patches {
     /// Places are taken in the order of their largest residuals, and relaxed side by side; one that overlaps an earlier one is left to the whole grid.
     fn relax(&mut self, mut on: WorkingState<'_>, changed: &[usize], centre: f64, accuracy: Accuracy) -> Vec<(usize, Bonding)> {
         let problem = on.problem;
-        let accuracy = Accuracy { rms: f64::INFINITY, largest: FINISH * accuracy.largest, iterations: ITERATIONS };
-        let largest = SMALLEST << (self.0.len() - 1);
-        let mut places = places(&problem.half_space, changed, largest);
+        let limits = problem.numerics.patches;
+        let accuracy = Accuracy { rms: f64::INFINITY, largest: limits.residual * accuracy.largest, iterations: limits.iterations };
+        let largest = SMALLEST_SIDE << (self.0.len() - 1);
+        let mut places = places(&problem.half_space, changed, limits, largest);
         let (mut put_off, mut done, mut rebonded) = (Vec::new(), Vec::new(), Vec::new());
         loop {
             let mut jobs = self.begin(&on, &mut places, &mut put_off, &done);
@@ -189,7 +176,7 @@ impl LocalRelaxation for Patches {
 
 /// Number of a side.
 fn number(side: usize) -> usize {
-    (side / SMALLEST).ilog2() as usize
+    (side / SMALLEST_SIDE).ilog2() as usize
 }
 
 impl Patch {
@@ -200,6 +187,7 @@ impl Patch {
             law: whole.law.clone(),
             heights: field()?,
             attraction: whole.attraction,
+            numerics: whole.numerics,
         };
         let state = State { approach: 0.0, displacement: field()?, pressure: field()?, bonds: filled(side * side, Bonding::Free)? };
         Ok(Self { minimiser: Minimiser::new(&problem)?, problem, state, start: field()? })
@@ -244,7 +232,8 @@ impl Patch {
 
     fn has_changed_at_border(&self, on: &WorkingState<'_>, place: Place) -> bool {
         let side = self.side();
-        let inside = side / BORDER..side - side / BORDER;
+        let border = side / self.problem.numerics.patches.borders_of_side;
+        let inside = border..side - border;
         self.points(&on.problem.half_space, place).enumerate().any(|(k, at)| {
             let at_border = !inside.contains(&(k / side)) || !inside.contains(&(k % side));
             at_border && self.state.bonds[k] != on.state.bonds[at]

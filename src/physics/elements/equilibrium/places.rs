@@ -1,13 +1,10 @@
 //! Places of events on a grid: squares around points whose bonds have changed.
 
 use crate::elements::grid::half_space::HalfSpace;
+use crate::elements::numerics::PatchLimits;
 
 /// Side of the smallest patch.
-pub(crate) const SMALLEST: usize = 32;
-/// Distance from its first point up to which points belong to a place.
-const PLACE_RADIUS: usize = 12;
-/// Side of a patch at first: this many times the extent of the changed bonds, and points.
-const ROOM: (usize, usize) = (2, 8);
+pub(crate) const SMALLEST_SIDE: usize = 32;
 
 /// A place on the grid, in rows and columns.
 pub(crate) type Place = [usize; 2];
@@ -27,16 +24,16 @@ impl Region {
 }
 
 /// Places around points whose bonds have changed, each with the side of its first patch.
-pub(crate) fn places(grid: &HalfSpace, changed: &[usize], largest: usize) -> impl Iterator<Item = Region> {
+pub(crate) fn places(grid: &HalfSpace, changed: &[usize], limits: PatchLimits, largest: usize) -> impl Iterator<Item = Region> {
+    let radius = limits.place_radius;
     let mut rest = changed.to_vec();
     std::iter::from_fn(move || {
         let first = *rest.first()?;
-        let (near, others) = std::mem::take(&mut rest)
-            .into_iter()
-            .partition(|point| distance(grid, place(grid, *point), place(grid, first)) <= PLACE_RADIUS);
+        let (near, others) =
+            std::mem::take(&mut rest).into_iter().partition(|point| distance(grid, place(grid, *point), place(grid, first)) <= radius);
         rest = others;
-        let (middle, extent) = surroundings(grid, first, near);
-        let side = (ROOM.0 * extent + ROOM.1).next_power_of_two().clamp(SMALLEST, largest);
+        let (middle, extent) = surroundings(grid, first, near, radius);
+        let side = (limits.side_ratio * extent + limits.side_offset).next_power_of_two().clamp(SMALLEST_SIDE, largest);
         Some(Region { middle, side })
     })
 }
@@ -52,22 +49,22 @@ fn place(grid: &HalfSpace, point: usize) -> Place {
 }
 
 /// Middle and extent of points that are near the first.
-fn surroundings(grid: &HalfSpace, first: usize, near: Vec<usize>) -> (Place, usize) {
+fn surroundings(grid: &HalfSpace, first: usize, near: Vec<usize>, radius: usize) -> (Place, usize) {
     let (size, first) = ([grid.rows(), grid.columns()], place(grid, first));
-    let (mut low, mut high) = ([PLACE_RADIUS; 2], [PLACE_RADIUS; 2]);
+    let (mut low, mut high) = ([radius; 2], [radius; 2]);
     for at in near.into_iter().map(|point| place(grid, point)) {
         for k in 0..2 {
-            let offset = (at[k] + size[k] + PLACE_RADIUS - first[k]) % size[k];
+            let offset = (at[k] + size[k] + radius - first[k]) % size[k];
             (low[k], high[k]) = (low[k].min(offset), high[k].max(offset));
         }
     }
-    let middle = [0, 1].map(|k| (first[k] + (low[k] + high[k]) / 2 + size[k] - PLACE_RADIUS) % size[k]);
+    let middle = [0, 1].map(|k| (first[k] + (low[k] + high[k]) / 2 + size[k] - radius) % size[k]);
     (middle, (0..2).map(|k| high[k] - low[k] + 1).max().unwrap_or(1))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Region, SMALLEST, places};
+    use super::{PatchLimits, Region, SMALLEST_SIDE, places};
     use crate::PhysicsError;
     use crate::elements::grid::half_space::HalfSpace;
 
@@ -77,10 +74,10 @@ mod tests {
         let point = |row: usize, column: usize| row * 128 + column;
         // The first four points are within 12 of the first, across the corner of the periodic square. Their extent of 12 points, twice and 8, is 32.
         let changed = [point(0, 0), point(127, 2), point(3, 124), point(120, 127), point(64, 64)];
-        let found: Vec<Region> = places(&grid, &changed, 64).collect();
+        let found: Vec<Region> = places(&grid, &changed, PatchLimits::DEFAULT, 64).collect();
         assert_eq!(
             found.iter().map(|region| (region.middle, region.side)).collect::<Vec<_>>(),
-            [([125, 127], SMALLEST), ([64, 64], SMALLEST)]
+            [([125, 127], SMALLEST_SIDE), ([64, 64], SMALLEST_SIDE)]
         );
         assert!(!found[0].overlaps(&found[1], &grid));
         // Squares of 32 and 96 points whose middles are 63 apart share points, those of 32 and 64 do not.

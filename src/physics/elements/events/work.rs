@@ -2,7 +2,7 @@
 
 /// Jump of the load in a step, relative to its curvature over the step, from which on the load counts as discontinuous. For a load with a limit point
 /// (`F² ∝ Δ`) the cubic is worse than the trapezoid from here on.
-pub(crate) const JUMP: f64 = 1.0 / 3.0;
+pub(crate) const DISCONTINUITY: f64 = 1.0 / 3.0;
 
 /// A point of a loop: approach `Δ`, load `F` and stiffness `dF/dΔ`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,7 +28,7 @@ pub struct Work {
 }
 
 /// Number of parts of a step in which the minimum of the load is searched.
-const PARTS: usize = 32;
+const SEARCHED_PARTS: usize = 32;
 
 /// Minimum load between two points, by the cubic through loads and slopes at both.
 #[must_use]
@@ -37,10 +37,10 @@ pub fn least_between(start: OnLoop, end: OnLoop) -> f64 {
     let (s0, s1) = (start.stiffness * length, end.stiffness * length);
     let rise = end.load - start.load;
     let load = |part: usize| {
-        let t = part as f64 / PARTS as f64;
+        let t = part as f64 / SEARCHED_PARTS as f64;
         start.load + t * (s0 + t * (3.0 * rise - 2.0 * s0 - s1 + t * (s0 + s1 - 2.0 * rise)))
     };
-    (0..=PARTS).map(load).fold(f64::INFINITY, f64::min)
+    (0..=SEARCHED_PARTS).map(load).fold(f64::INFINITY, f64::min)
 }
 
 /// The work between two points. The load jumps in between, in events or at a limit point, where it differs from the cubic by more than that from a straight
@@ -53,7 +53,7 @@ pub fn work_between(start: OnLoop, end: OnLoop) -> Work {
     let length = end.approach - start.approach;
     let bend = start.stiffness - end.stiffness;
     let jump = end.load - start.load - 0.5 * (start.stiffness + end.stiffness) * length;
-    let jumps = jump.abs() > JUMP * (bend * length).abs();
+    let jumps = jump.abs() > DISCONTINUITY * (bend * length).abs();
     let steep = (bend * length).abs() > (end.load - start.load).abs();
     Work {
         straight: 0.5 * (start.load + end.load) * length,

@@ -19,7 +19,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// Stiffness that the spectral preconditioner adds, in E*/dx.
-const SHIFT: f64 = 0.15;
+const ADDED_STIFFNESS: f64 = 0.15;
 /// Columns of wavevectors in a block, and rows in a group.
 const BLOCK: usize = 8;
 
@@ -371,7 +371,7 @@ impl HalfSpace {
             }
         }
         let points = self.transformed() as f64;
-        let (unit, shift) = (T::nearest(points.powi(-2)), T::nearest(SHIFT / points));
+        let (unit, shift) = (T::nearest(points.powi(-2)), T::nearest(ADDED_STIFFNESS / points));
         let inverse = |stiff: T| if stiff > T::zero() { unit / stiff } else { T::zero() };
         for (column, stiffness) in columns.chunks_mut(stride).zip(stiffness.chunks(rows)) {
             let column = &mut column[..rows];

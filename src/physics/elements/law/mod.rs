@@ -25,18 +25,18 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// Width of the Gaussian kernel, in grid spacings.
-pub(super) const WIDTH: f64 = 0.6;
+pub(super) const KERNEL_WIDTH: f64 = 0.6;
 /// Stiffness of the spring at small and negative gaps, in E*/dx.
-pub(super) const SPRING: f64 = 4.0;
+pub(super) const WALL_STIFFNESS: f64 = 4.0;
 /// Spacing of the table, in ℓ.
-const SPACING: f64 = 1.0 / PER_UNIT;
-const PER_UNIT: f64 = 100.0;
+const TABLE_SPACING: f64 = 1.0 / NODES_PER_UNIT;
+const NODES_PER_UNIT: f64 = 100.0;
 /// Overlap in ranges beyond which the repulsion of Morse's law is linear.
-pub(super) const DEEPEST: f64 = 6.0;
+pub(super) const MAX_OVERLAP: f64 = 6.0;
 /// Gap in ranges beyond which Morse's law is not evaluated: its tension is 1e-12 of the maximum.
-pub(super) const NEGLIGIBLE: f64 = 30.0;
+pub(super) const NEGLIGIBLE_GAP: f64 = 30.0;
 /// Tension at which the table ends, in E*ℓ/dx.
-const END: f64 = 1e-7;
+const END_TENSION: f64 = 1e-7;
 
 /// A law in the pieces that a pass over many points distinguishes, for a free, a bonded and a sealed point \[dx\].
 #[derive(Debug, Clone, Copy)]
@@ -94,7 +94,7 @@ pub struct Crack {
     onset: f64,
     /// Gap of the maximum tension, in ℓ.
     peak: f64,
-    /// Tension, its slope and the energy at the nodes `onset + k SPACING`, dimensionless.
+    /// Tension, its slope and the energy at the nodes `onset + k TABLE_SPACING`, dimensionless.
     nodes: Vec<[f64; 3]>,
 }
 
@@ -109,17 +109,17 @@ pub struct Morse {
 /// `y = t²` they are `∫₀^∞ 2t² W dt`, `∫₀^∞ 2 W dt` and `∫₀^∞ 2 W' dt`, where `W = W(x − t²)`.
 fn edge(x: f64) -> [f64; 3] {
     // The integrand is even and entire in t, so that the trapezoid rule converges exponentially.
-    let end = (x.max(0.0) + 9.0 * WIDTH).sqrt();
+    let end = (x.max(0.0) + 9.0 * KERNEL_WIDTH).sqrt();
     let count = 400;
     let step = end / f64::from(count);
     let mut sum = [0.0; 3];
     for k in 0..=count {
         let t = f64::from(k) * step;
-        let off = (x - t * t) / WIDTH;
-        let weight = if k == 0 || k == count { 1.0 } else { 2.0 } * step * (-0.5 * off * off).exp() / (WIDTH * (2.0 * PI).sqrt());
+        let off = (x - t * t) / KERNEL_WIDTH;
+        let weight = if k == 0 || k == count { 1.0 } else { 2.0 } * step * (-0.5 * off * off).exp() / (KERNEL_WIDTH * (2.0 * PI).sqrt());
         sum[0] += weight * t * t;
         sum[1] += weight;
-        sum[2] -= weight * off / WIDTH;
+        sum[2] -= weight * off / KERNEL_WIDTH;
     }
     sum
 }
@@ -139,14 +139,14 @@ impl Crack {
         let mut law = Self::scaled(factor);
         // A fixed point: the energy is nearly linear in the factor.
         for _ in 0..40 {
-            let energy = -law.nodes[0][2] + 0.5 * SPRING * law.onset * law.onset;
+            let energy = -law.nodes[0][2] + 0.5 * WALL_STIFFNESS * law.onset * law.onset;
             if (energy - 1.0_f64).abs() < 1e-13 {
                 break;
             }
             factor /= energy;
             law = Self::scaled(factor);
         }
-        let depth = -(law.nodes[0][2] - 0.5 * SPRING * law.onset * law.onset);
+        let depth = -(law.nodes[0][2] - 0.5 * WALL_STIFFNESS * law.onset * law.onset);
         debug_assert!((depth - 1.0).abs() < 1e-12, "work of adhesion of the law");
         law.unit = work.sqrt();
         law.inverse_unit = 1.0 / law.unit;
@@ -158,9 +158,9 @@ impl Crack {
         // The spring ends where the tension of the front falls below it.
         let excess = |x: f64| {
             let [gap, tension, _] = front(x);
-            factor * tension - SPRING * gap
+            factor * tension - WALL_STIFFNESS * gap
         };
-        let (mut low, mut high) = (-4.0 * WIDTH, 4.0 * WIDTH);
+        let (mut low, mut high) = (-4.0 * KERNEL_WIDTH, 4.0 * KERNEL_WIDTH);
         for _ in 0..80 {
             let middle = 0.5 * (low + high);
             if excess(middle) > 0.0 { low = middle } else { high = middle }
@@ -170,7 +170,7 @@ impl Crack {
         let mut nodes = Vec::new();
         let mut x = start;
         loop {
-            let gap = onset + SPACING * nodes.len() as f64;
+            let gap = onset + TABLE_SPACING * nodes.len() as f64;
             // Newton for the place with this gap.
             for _ in 0..50 {
                 let ahead = edge(x);
@@ -182,7 +182,7 @@ impl Crack {
             }
             let [_, tension, slope] = front(x);
             nodes.push([factor * tension, factor * slope, 0.0]);
-            if factor * tension < END {
+            if factor * tension < END_TENSION {
                 break;
             }
         }
@@ -191,10 +191,10 @@ impl Crack {
         }
         for k in (0..nodes.len() - 1).rev() {
             let ([s0, d0, _], [s1, d1, v1]) = (nodes[k], nodes[k + 1]);
-            nodes[k][2] = v1 - SPACING * (0.5 * (s0 + s1) + SPACING * (d0 - d1) / 12.0);
+            nodes[k][2] = v1 - TABLE_SPACING * (0.5 * (s0 + s1) + TABLE_SPACING * (d0 - d1) / 12.0);
         }
         let most = (0..nodes.len()).max_by(|a, b| nodes[*a][0].total_cmp(&nodes[*b][0])).unwrap_or(0);
-        Self { unit: 0.0, inverse_unit: 0.0, onset, peak: onset + SPACING * most as f64, nodes }
+        Self { unit: 0.0, inverse_unit: 0.0, onset, peak: onset + TABLE_SPACING * most as f64, nodes }
     }
 
     #[inline(always)]
@@ -202,32 +202,36 @@ impl Crack {
         let unit = self.unit;
         let g = gap * self.inverse_unit;
         if g < self.onset {
-            return Bond { energy: unit * unit * (0.5 * SPRING * g * g - 1.0), tension: SPRING * gap, slope: SPRING };
+            return Bond {
+                energy: unit * unit * (0.5 * WALL_STIFFNESS * g * g - 1.0),
+                tension: WALL_STIFFNESS * gap,
+                slope: WALL_STIFFNESS,
+            };
         }
-        let place = (g - self.onset) * PER_UNIT;
+        let place = (g - self.onset) * NODES_PER_UNIT;
         let k = place as usize;
         if k >= self.nodes.len() - 1 {
             return Bond::default();
         }
         let t = place - k as f64;
         let ([s0, d0, v0], [s1, d1, _]) = (self.nodes[k], self.nodes[k + 1]);
-        let (d0, d1) = (d0 * SPACING, d1 * SPACING);
+        let (d0, d1) = (d0 * TABLE_SPACING, d1 * TABLE_SPACING);
         // Hermite's cubic s0 + d0 t + b t² + c t³ and its integral.
         let (b, c) = (3.0 * (s1 - s0) - 2.0 * d0 - d1, 2.0 * (s0 - s1) + d0 + d1);
         Bond {
-            energy: unit * unit * (v0 + SPACING * t * (s0 + t * (0.5 * d0 + t * (b / 3.0 + t * 0.25 * c)))),
+            energy: unit * unit * (v0 + TABLE_SPACING * t * (s0 + t * (0.5 * d0 + t * (b / 3.0 + t * 0.25 * c)))),
             tension: unit * (s0 + t * (d0 + t * (b + t * c))),
-            slope: (d0 + t * (2.0 * b + t * 3.0 * c)) * PER_UNIT,
+            slope: (d0 + t * (2.0 * b + t * 3.0 * c)) * NODES_PER_UNIT,
         }
     }
 }
 
 impl Morse {
-    /// Below [`DEEPEST`] ranges of overlap the pressure continues along its tangent. No equilibrium is there, but an iteration may be, and the exponential
+    /// Below [`MAX_OVERLAP`] ranges of overlap the pressure continues along its tangent. No equilibrium is there, but an iteration may be, and the exponential
     /// would overflow.
     #[inline(always)]
     fn at(&self, gap: f64) -> Bond {
-        let inside = gap.max(-DEEPEST * self.range);
+        let inside = gap.max(-MAX_OVERLAP * self.range);
         let beyond = gap - inside;
         let e = (-inside / self.range).exp();
         let unit = self.work / self.range;
@@ -276,7 +280,11 @@ impl Law {
     #[inline(always)]
     pub fn sealed(&self, gap: f64) -> Bond {
         match self {
-            Self::Crack(law) => Bond { energy: 0.5 * SPRING * gap * gap - law.unit * law.unit, tension: SPRING * gap, slope: SPRING },
+            Self::Crack(law) => Bond {
+                energy: 0.5 * WALL_STIFFNESS * gap * gap - law.unit * law.unit,
+                tension: WALL_STIFFNESS * gap,
+                slope: WALL_STIFFNESS,
+            },
             Self::Morse(law) => {
                 let slope = 2.0 * law.work / (law.range * law.range);
                 if gap <= 0.0 { law.at(gap) } else { Bond { energy: 0.5 * slope * gap * gap - law.work, tension: slope * gap, slope } }
@@ -290,7 +298,7 @@ impl Law {
         let contact = [f32::MIN_POSITIVE, self.contact_gap() as f32, always];
         match self {
             Self::Crack(_) => Pieces {
-                stiffness: SPRING as f32,
+                stiffness: WALL_STIFFNESS as f32,
                 spring: [0.0, self.spring_gap() as f32, always],
                 curved: [[always, never], [self.spring_gap() as f32, self.end_gap() as f32], [always, never]],
                 contact,
@@ -299,7 +307,7 @@ impl Law {
             Self::Morse(law) => Pieces {
                 stiffness: 0.0,
                 spring: [never; 3],
-                curved: [[never, 0.0], [never, (NEGLIGIBLE * law.range) as f32], [never, always]],
+                curved: [[never, 0.0], [never, (NEGLIGIBLE_GAP * law.range) as f32], [never, always]],
                 contact,
                 smooth: Some(Smooth { work: law.work as f32, inverse_range: (1.0 / law.range) as f32 }),
             },
@@ -323,7 +331,7 @@ impl Law {
             return Bond::default();
         }
         match self {
-            Self::Crack(_) => Bond { energy: 0.5 * SPRING * gap * gap, tension: SPRING * gap, slope: SPRING },
+            Self::Crack(_) => Bond { energy: 0.5 * WALL_STIFFNESS * gap * gap, tension: WALL_STIFFNESS * gap, slope: WALL_STIFFNESS },
             Self::Morse(law) => {
                 let bond = law.at(gap);
                 Bond { energy: bond.energy + law.work, ..bond }
@@ -359,7 +367,7 @@ impl Law {
     #[must_use]
     pub fn end_gap(&self) -> f64 {
         match self {
-            Self::Crack(law) => (law.onset + SPACING * (law.nodes.len() - 1) as f64) * law.unit,
+            Self::Crack(law) => (law.onset + TABLE_SPACING * (law.nodes.len() - 1) as f64) * law.unit,
             Self::Morse(law) => 15.0 * law.range,
         }
     }

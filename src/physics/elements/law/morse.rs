@@ -1,11 +1,11 @@
 //! Morse's law in single precision, without branches, so that the compiler can evaluate it at many points at once.
 
 /// Overlap in ranges up to which the law is evaluated here.
-const DEEPEST: f32 = 5.0;
+const MAX_OVERLAP: f32 = 5.0;
 /// Changes of the gap in ranges for which the series of [`excess`] is exact to single precision.
-const LONGEST: f32 = 1.0;
+const MAX_CHANGE: f32 = 1.0;
 /// Gap in ranges from which on the exponential is constant, and negligible.
-const FARTHEST: f32 = 80.0;
+const MAX_GAP: f32 = 80.0;
 /// Coefficients `1/n!` of [`excess`], from the last to the first.
 const SERIES: [f32; 10] = [
     1.0 / 39_916_800.0,
@@ -53,13 +53,13 @@ impl Smooth {
         // From `first` on, without a difference of large values where the change is small.
         let since = e0 * (excess(moved) - moved);
         let [near, far] = [since * (1.0 - 2.0 * e0 - since), e2 * (1.0 - e2) - e0 * (1.0 - e0)];
-        let tension = if moved.abs() <= LONGEST { near } else { far };
+        let tension = if moved.abs() <= MAX_CHANGE { near } else { far };
         let stress = 2.0 * self.work * self.inverse_range;
         Effect {
             tension: stress * tension,
             slope: stress * self.inverse_range * e2 * (2.0 * e2 - 1.0),
             beyond: self.work * e1 * (2.0 * (e1 - 1.0) * curved + e1 * shrinks * shrinks),
-            holds: first.min(before).min(first + moved) > -DEEPEST && step.abs() <= LONGEST,
+            holds: first.min(before).min(first + moved) > -MAX_OVERLAP && step.abs() <= MAX_CHANGE,
         }
     }
 }
@@ -69,7 +69,7 @@ impl Smooth {
 fn decay(x: f32) -> f32 {
     // Adding and subtracting 1.5 · 2²³ rounds to an integer, which is then in the lowest bits.
     const ROUND: f32 = 12_582_912.0;
-    let x = -x.clamp(-FARTHEST, FARTHEST);
+    let x = -x.clamp(-MAX_GAP, MAX_GAP);
     let shifted = x * std::f32::consts::LOG2_E + ROUND;
     let n = shifted - ROUND;
     let r = (x - n * 0.693_359_4) + n * 2.121_944_4e-4;

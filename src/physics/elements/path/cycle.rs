@@ -1,7 +1,7 @@
 //! Loading and unloading under displacement control, by [steps](super::step) from first contact to the last separation.
 
 pub use super::records::{Cycle, Event, Map, Step, Turning};
-use super::stations::{MOST_ALONG, of_loading, of_unloading};
+use super::stations::{MAX_MAP_SIDE, of_loading, of_unloading};
 use super::step::CycleRun;
 pub use super::step::{Checkpoint, Settings};
 use crate::cycle::soundness::LoopEnergy;
@@ -9,9 +9,6 @@ use crate::cycle::{BranchRun, Done, run_branches};
 use crate::elements::events::regions::{Region, label};
 use crate::elements::problem::{Attraction, Problem};
 use crate::{LoopError, LoopPosition, PhysicsError};
-
-/// Magnitude of the approach, in ranges of the heights, beyond which a load counts as not reached and, at negative approach, the surfaces as inseparable.
-pub(crate) const FARTHEST: f64 = 20.0;
 
 /// Loads to the largest of the loads and unloads from each, from the beginning or from a checkpoint. After each step `keep` is given what is needed to
 /// continue from there, and `progress` the position.
@@ -121,7 +118,7 @@ impl CycleRun<'_> {
     /// end of its law.
     fn farthest(&self) -> f64 {
         let acts = if self.problem.attraction == Attraction::Range { self.problem.law.end_gap() } else { 0.0 };
-        FARTHEST * self.problem.range() + 2.0 * acts
+        self.problem.numerics.steps.farthest * self.problem.range() + 2.0 * acts
     }
 
     /// True in full contact.
@@ -223,7 +220,7 @@ impl CycleRun<'_> {
         };
         if is_first {
             let half_space = &self.problem.half_space;
-            let stride = half_space.rows().max(half_space.columns()).div_ceil(MOST_ALONG);
+            let stride = half_space.rows().max(half_space.columns()).div_ceil(MAX_MAP_SIDE);
             let map = self.map(cycle.steps.len() - 1, stride);
             self.at.cycle.between.push(map);
         }

@@ -6,21 +6,21 @@
 use super::records::Step;
 
 /// Stations of loading, and of the compressive and the tensile part of unloading.
-pub(crate) const STATIONS: [usize; 3] = [9, 5, 5];
+pub(crate) const MAP_STATIONS: [usize; 3] = [9, 5, 5];
 
-/// Points along a side of the maps of these steps, at most: of larger grids they have every second, third, … point. Each map has 8 bytes for each point, in memory
+/// Maximum number of points along a side of the maps of these steps: of larger grids they have every second, third, … point. Each map has 8 bytes for each point, in memory
 /// and in each checkpoint.
-pub(crate) const MOST_ALONG: usize = 256;
+pub(crate) const MAX_MAP_SIDE: usize = 256;
 
 /// Stations of loading that have been passed at a load.
 pub(crate) fn of_loading(load: f64, largest: f64) -> usize {
-    let count = STATIONS[0];
+    let count = MAP_STATIONS[0];
     (1..=count).filter(|k| load >= *k as f64 / (count + 1) as f64 * largest).count()
 }
 
 /// Stations of unloading that have been passed after each step of a branch.
 pub(crate) fn of_unloading<'a>(steps: impl Iterator<Item = &'a Step>, max_load: f64) -> Vec<usize> {
-    let [_, compressive, tensile] = STATIONS;
+    let [_, compressive, tensile] = MAP_STATIONS;
     let mut at_zero = None;
     let mut passed = 0;
     let of_step = |step: &Step| {

@@ -23,28 +23,6 @@ use crate::elements::problem::{Attraction, Nucleation, Problem, State};
 use crate::memory::filled;
 use serde::{Deserialize, Serialize};
 
-/// Minimum imbalance of an event, relative to the energy dissipated so far.
-pub(crate) const EVENT: f64 = 1e-5;
-/// Error of the integral of the load, relative to the part of it that comes from the slopes of the load.
-pub(crate) const BEND: f64 = 0.05;
-/// Part of the error that a jump of the load may cause in its integral that counts as its uncertainty.
-pub(crate) const JUMP_PART: f64 = 0.3;
-/// Error, relative to the limit, below which the next step may be twice as long.
-pub(crate) const WELL_BELOW: f64 = 1.0 / 6.0;
-/// Relative increase of the maximum tension that a jump of the load may hide.
-pub(crate) const HIDDEN: f64 = 0.02;
-/// Error of a jump, relative to the limit, from which on a step is halved before it has reached equilibrium.
-pub(crate) const EXCESS: f64 = 2.0;
-/// Largest `|du/dΔ|` by which displacements are extrapolated. Near a limit point, where it diverges, the extrapolated state would be far from equilibrium.
-pub(crate) const MAX_RATE: f64 = 10.0;
-/// Deepest extrapolated overlap beyond that of the last state with attraction of a range, in ranges: the repulsion rises exponentially, and iterations move by
-/// one range.
-pub(crate) const OVERLAP: f64 = 0.5;
-
-/// Steps of a cycle after which none is halved with attraction of a range. With very weak adhesion no event gives a measure of what a jump of the load may
-/// cost, and every step would be halved as often as allowed.
-pub(crate) const HALVED: usize = 20_000;
-
 /// Settings of a path.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
@@ -186,7 +164,7 @@ impl<'a> CycleRun<'a> {
                 rate
             }
         };
-        let length = (approach - state.approach) * (MAX_RATE / largest(&rate.displacement)).min(1.0);
+        let length = (approach - state.approach) * (self.problem.numerics.steps.max_rate / largest(&rate.displacement)).min(1.0);
         for (to, rate) in state.displacement.iter_mut().zip(&rate.displacement) {
             *to += length * f64::from(*rate);
         }
@@ -200,7 +178,7 @@ impl<'a> CycleRun<'a> {
 
     /// Raises the points that extrapolation has moved deeply into the wall.
     fn limit_overlap(&self, state: &mut State) {
-        let deepest = OVERLAP * self.problem.reach();
+        let deepest = self.problem.numerics.steps.extrapolated_overlap * self.problem.reach();
         for k in 0..state.displacement.len() {
             let least = self.problem.gap(&self.at.state, k).min(0.0) - deepest;
             state.displacement[k] += (least - self.problem.gap(state, k)).max(0.0);
@@ -223,7 +201,7 @@ impl<'a> CycleRun<'a> {
         let totals = self.problem.totals(&state);
         self.problem.settle_bonds(&mut state);
         let rate = self.equilibrium.rate(self.problem, &state)?;
-        let from = &self.at.last;
+        let (from, limits) = (&self.at.last, &self.problem.numerics.steps);
         let reached = Step { approach: state.approach, totals, stiffness: rate.stiffness, ..Step::default() };
         let Work { straight, bend, across } = work_between(on_loop(from), on_loop(&reached));
         let work = straight + bend;
@@ -231,7 +209,7 @@ impl<'a> CycleRun<'a> {
         let step = Step {
             reversal: from.reversal,
             imbalance,
-            uncertainty: BEND * bend.abs() + JUMP_PART * across,
+            uncertainty: limits.bend_uncertainty * bend.abs() + limits.jump_uncertainty * across,
             pending: from.pending + imbalance,
             work: from.work + work,
             residual: outcome.residual,
@@ -243,7 +221,7 @@ impl<'a> CycleRun<'a> {
 
     /// Imbalance up to which a step has no event, with the uncertainty of its integral \[E* dx³\].
     fn resolution(&self, uncertainty: f64) -> f64 {
-        uncertainty.max(EVENT * self.at.dissipated)
+        uncertainty.max(self.problem.numerics.steps.event_fraction * self.at.dissipated)
     }
 
     pub(crate) fn accept(&mut self, Attempt { state, mut step, rate, .. }: Attempt) {
@@ -318,7 +296,7 @@ impl<'a> CycleRun<'a> {
         self.at.cycle.events.truncate(events);
         self.at.cycle.regions.retain(|(step, _)| *step < steps);
         self.at.owed = owed;
-        beyond.step.converged &= Self::exceeds_by_a_jump(beyond.step.totals.load, max_load);
+        beyond.step.converged &= self.exceeds_by_a_jump(beyond.step.totals.load, max_load);
         self.accept(beyond);
     }
 
@@ -350,7 +328,7 @@ impl<'a> CycleRun<'a> {
                 }
                 return Ok(true);
             }
-            if attempt.across <= WELL_BELOW * limit {
+            if attempt.across <= self.problem.numerics.steps.lengthening_error * limit {
                 self.at.level = self.at.level.saturating_sub(1);
             }
             self.accept(attempt);
@@ -360,7 +338,7 @@ impl<'a> CycleRun<'a> {
 
     /// Most halvings of the next step.
     fn halvings(&self) -> u32 {
-        let is_spent = self.problem.attraction == Attraction::Range && self.at.cycle.steps.len() > HALVED;
+        let is_spent = self.problem.attraction == Attraction::Range && self.at.cycle.steps.len() > self.problem.numerics.steps.halved_steps;
         if is_spent { 0 } else { self.settings.halvings }
     }
 
@@ -373,7 +351,7 @@ impl<'a> CycleRun<'a> {
         }
         let from = self.at.last.totals.load;
         let expected = self.extrapolated_load(length);
-        let room = (2.0 * EXCESS * limit / length.abs()).max((expected - from).abs());
+        let room = (2.0 * self.problem.numerics.steps.early_end_error * limit / length.abs()).max((expected - from).abs());
         let most = if self.exceeds_max_tension(expected) { from } else { f64::INFINITY };
         expected - room..(expected + room).min(most)
     }
@@ -398,7 +376,7 @@ impl<'a> CycleRun<'a> {
         // An event after the maximum tension may look like a gain of energy, since the integral misses that.
         let has_event = to.imbalance.abs() > self.resolution(to.uncertainty);
         let least = if has_event { self.extrapolated_load(to.approach - from.approach) } else { least_between(on_loop(from), on_loop(to)) };
-        known < 0.0 && least < (1.0 + HIDDEN) * known
+        known < 0.0 && least < (1.0 + self.problem.numerics.steps.hidden_tension) * known
     }
 
     /// Load after a step of a length without an event, by the stiffness at its beginning \[E* dx²\].
@@ -406,8 +384,11 @@ impl<'a> CycleRun<'a> {
         self.at.last.totals.load + self.at.last.stiffness * length
     }
 
-    /// True if a load is a tension that exceeds that of all steps so far by more than [`HIDDEN`].
+    /// True if a load is a tension that exceeds that of all steps so far by more than a fraction.
     fn exceeds_max_tension(&self, load: f64) -> bool {
-        self.at.max_tension.as_ref().is_some_and(|(known, ..)| *known < 0.0 && load < (1.0 + HIDDEN) * known)
+        self.at
+            .max_tension
+            .as_ref()
+            .is_some_and(|(known, ..)| *known < 0.0 && load < (1.0 + self.problem.numerics.steps.hidden_tension) * known)
     }
 }

@@ -10,9 +10,6 @@ use crate::asperities::solve::residual::NotConverged;
 use crate::cycle::Effort;
 use crate::math::bracket::{End, Illinois};
 
-/// Maximum number of points of a curve.
-const STATIONS: usize = 50;
-
 /// Search along the curve.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct CurveSearch {
@@ -93,7 +90,7 @@ impl LocalProblem {
                 }
                 Err(unsettled) => {
                     stride *= 0.25;
-                    if stride < 1e-6 * before.at || self.way.len() > STATIONS {
+                    if stride < 1e-6 * before.at || self.way.len() > problem.numerics.solver.curve_points {
                         return Err(unsettled);
                     }
                 }

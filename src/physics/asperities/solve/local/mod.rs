@@ -9,15 +9,12 @@ pub(crate) mod outside;
 mod relaxing;
 
 use super::newton::{Damping, NonlinearSystem, Worst, damped_newton};
-use super::residual::{NotConverged, STRIDE};
+use super::residual::NotConverged;
 use super::trace::PenetrationTrace;
 use crate::asperities::contact::problem::Problem;
 use crate::asperities::field::{PairTable, Spots, SumPrecision};
 use crate::cycle::Effort;
 use crate::math::dense::Lu;
-
-/// Residual of a local problem with contacts outside, in rms heights.
-pub(super) const LOCAL_TOLERANCE: f64 = 1e-7;
 
 /// Bounded rate of the displacement by the outside: next to a global fold the estimate diverges.
 fn bounded(drift: f64) -> f64 {
@@ -163,7 +160,7 @@ impl LocalProblem {
     pub(crate) fn tolerance_m(&self, problem: &Problem) -> f64 {
         match self.extent {
             Extent::Whole => problem.tolerance_m(),
-            Extent::Part => LOCAL_TOLERANCE * problem.rms_height_m,
+            Extent::Part => problem.numerics.solver.local_residual * problem.rms_height_m,
         }
     }
 
@@ -440,9 +437,10 @@ impl NonlinearSystem for Descent<'_> {
     fn begin_step(&mut self, _round: usize, _worst: &Worst) {
         self.step = self.local.newton_step(self.problem, self.hold, self.effort);
         let stride = self.step.0.iter().zip(&self.local.radius).map(|(s, a)| (s / a).abs()).fold(0.0, f64::max);
-        if stride > STRIDE {
-            self.step.0.iter_mut().for_each(|s| *s *= STRIDE / stride);
-            self.step.1 *= STRIDE / stride;
+        let most = self.problem.numerics.solver.radius_change;
+        if stride > most {
+            self.step.0.iter_mut().for_each(|s| *s *= most / stride);
+            self.step.1 *= most / stride;
         }
         self.start = (self.local.radius.clone(), self.local.approach);
     }

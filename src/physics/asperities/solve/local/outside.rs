@@ -30,9 +30,6 @@ struct Source {
     load: f64,
 }
 
-/// Distance over radius beyond which a contact acts by its load alone: the rest is 2 % there, and less beyond.
-const POINT_LOAD_DISTANCE: f64 = 2.0;
-
 impl Source {
     fn before(problem: &Problem, state: &ReferenceState) -> Self {
         Self { asperity: state.asperity, now: None, before: Some(*state), load: -state.load(problem) }
@@ -48,8 +45,8 @@ impl Source {
     }
 
     /// Distance beyond which it acts by its load alone \[m\].
-    fn reach(&self) -> f64 {
-        POINT_LOAD_DISTANCE * self.now.unwrap_or(0.0).max(self.before.map_or(0.0, |before| before.radius))
+    fn reach(&self, problem: &Problem) -> f64 {
+        problem.numerics.solver.groups.point_load_distance * self.now.unwrap_or(0.0).max(self.before.map_or(0.0, |before| before.radius))
     }
 
     /// Displacement at a distance r beyond the expected one \[m\], without images.
@@ -90,11 +87,12 @@ impl LocalProblem {
             });
             sources[at].set_now(problem, a);
         }
-        let as_point = |source: &Source| PointLoad { place: *problem.place(source.asperity), load_n: source.load, reach_m: source.reach() };
+        let as_point =
+            |source: &Source| PointLoad { place: *problem.place(source.asperity), load_n: source.load, reach_m: source.reach(problem) };
         let loads: Vec<PointLoad> = sources.iter().map(as_point).collect();
         let mut changes = problem.field.of_loads(&loads, centre, asperities);
         for source in &sources {
-            problem.neighbours.within(source.asperity, source.reach(), |r, i| {
+            problem.neighbours.within(source.asperity, source.reach(problem), |r, i| {
                 if let Ok(at) = asperities.binary_search(&i) {
                     changes[at] += source.field(problem, r);
                 }
