@@ -96,6 +96,9 @@ mod support {
     use hysteron::physics::asperities::numerics::{Events, Numerics};
     use hysteron::physics::asperities::{Asperities, Cycle, Settings};
     use hysteron::physics::cycle::{Branch, Method, Step};
+    use hysteron::physics::surface::SquareMap;
+    use hysteron::physics::surface::edges::Edges;
+    use hysteron::physics::surface::measured::Prepared;
     use hysteron::physics::surface::spectrum::Spectrum;
     use hysteron::physics::surface::summits::{Summit, find_summits};
     use hysteron::physics::surface::synthesis::{Surface, realization_seed, synthesize};
@@ -184,6 +187,11 @@ mod support {
     pub fn asperity(x_m: f64, y_m: f64, height_m: f64, radius_m: f64) -> Summit {
         let k = 1.0 / radius_m;
         Summit { x_m, y_m, height_m, curvature_1_m: k, curvature_min_1_m: k, curvature_max_1_m: k, grid_row: 0, grid_col: 0, refined: true }
+    }
+
+    /// A prepared surface with its edges.
+    pub fn square(prepared: &Prepared, edges: Edges) -> SquareMap<'_> {
+        SquareMap { heights_m: prepared.heights_m.view(), length_m: prepared.length_m, edges }
     }
 
     /// A whole cycle of the paper's material to the given loads.

@@ -71,7 +71,7 @@ impl Asperities {
         let summits = if map.is_periodic {
             find_summits(map.heights_m, map.length_m, points)?.list
         } else {
-            find_measured(map.heights_m, map.length_m, (false, points))?.0.list
+            find_measured(map.square(), points)?.0.list
         };
         Self::of_summits(&summits, map.length_m, map.rms_height_m, material, max_loads, options)
     }

@@ -93,7 +93,7 @@ impl Elements {
         let first_m = if is_mirrored { 0.5 * (spacing - pixel) } else { 0.0 };
         let (modulus_pa, rms_height_m) = (material.contact_modulus_pa, map.rms_height_m);
         let units = Units { length_m, points, modulus_pa, rms_height_m, is_mirrored, first_m };
-        let flattening = measured_flattening(map.heights_m, (map.length_m, map.is_periodic), map.shortest_wavelength_m, modulus_pa)?;
+        let flattening = measured_flattening(map.square(), map.shortest_wavelength_m, modulus_pa)?;
         let ratio = flattening.persson_tosatti(material.work_of_adhesion_j_m2);
         let whole = if is_mirrored { mirrored(map.heights_m)? } else { map.heights_m.to_owned() };
         let problem = problem(&units, material, resample_from(whole.view(), points, first_m / pixel)?, options)?;
