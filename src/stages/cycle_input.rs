@@ -47,9 +47,9 @@ fn flattenings(campaign: &Campaign, unit: &CycleUnit, header: Option<&SurfaceHea
         Some(realised_flattening(&asked, &seed, modulus))
     } else if let Some((header, measured)) = measured {
         let (_, heights) = read_surface(&campaign.surface_path(surface))?;
-        let shape = (header.length_m, header.periodic);
-        let shortest_m = shortest_wavelength(heights.view(), shape, measured.shortest_wavelength_m)?;
-        Some(measured_flattening(heights.view(), shape, shortest_m, modulus)?)
+        let square = header.square(heights.view());
+        let shortest_m = shortest_wavelength(square, measured.shortest_wavelength_m)?;
+        Some(measured_flattening(square, shortest_m, modulus)?)
     } else {
         None
     };
@@ -112,7 +112,7 @@ fn per_wavelength(campaign: &Campaign, surface: &SurfaceUnit, header: &SurfaceHe
     let Some(measured) = &header.measured else { return Ok(per_cut_off) };
     let (_, heights) = read_surface(&campaign.surface_path(surface))?;
     let cut_off = measured.shortest_wavelength_m;
-    let shortest = shortest_wavelength(heights.view(), (header.length_m, header.periodic), cut_off)?;
+    let shortest = shortest_wavelength(header.square(heights.view()), cut_off)?;
     Ok(if shortest > cut_off { per_cut_off * shortest / cut_off } else { per_cut_off })
 }
 

@@ -37,7 +37,7 @@ fn extract(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Outcome, StageErro
     let (found, edge) = match &header.measured {
         Some(measured) => {
             let points = measured.shortest_wavelength_m * heights.nrows() as f64 / header.length_m;
-            find_measured(heights.view(), header.length_m, (header.periodic, points))?
+            find_measured(header.square(heights.view()), points)?
         }
         None => (find_summits(heights.view(), header.length_m, f64::from(unit.params.points_per_shortest_wavelength()))?, 0),
     };

@@ -92,10 +92,10 @@ impl Known {
 
 fn details(header: &SurfaceHeader, heights: &Array2<f64>) -> Result<Details, StageError> {
     let cut_off_m = header.measured.as_ref().map_or(0.0, |of| of.shortest_wavelength_m);
-    let (shape, points) = ((header.length_m, header.periodic), cut_off_m * heights.nrows() as f64 / header.length_m);
-    let (found, _) = find_measured(heights.view(), header.length_m, (header.periodic, points))?;
-    let shortest_m = shortest_wavelength(heights.view(), shape, cut_off_m)?;
-    let unit = measured_flattening(heights.view(), shape, shortest_m, 1.0)?;
+    let (square, points) = (header.square(heights.view()), cut_off_m * heights.nrows() as f64 / header.length_m);
+    let (found, _) = find_measured(square, points)?;
+    let shortest_m = shortest_wavelength(square, cut_off_m)?;
+    let unit = measured_flattening(square, shortest_m, 1.0)?;
     let shortest = if shortest_m > cut_off_m { shortest_m / cut_off_m } else { 1.0 };
     Ok(Details { unit, shortest, summits: found.list })
 }

@@ -2,9 +2,12 @@
 
 use hdf5_metno::types::{FixedUnicode, TypeDescriptor, VarLenUnicode};
 use hdf5_metno::{File, Group, H5Type, Location};
+use ndarray::ArrayView2;
 use std::f64::consts::TAU;
 
 use crate::model::{Amplitudes, Choice, Detrend, FastAxis, Filter, Normalization, SpectrumEnd};
+use crate::physics::surface::SquareMap;
+use crate::physics::surface::edges::Edges;
 use crate::physics::surface::spectrum::Moments;
 use crate::physics::surface::texture::Texture;
 
@@ -45,6 +48,12 @@ pub struct SurfaceHeader {
 }
 
 impl SurfaceHeader {
+    /// The surface with these heights \[m\].
+    #[must_use]
+    pub fn square<'a>(&self, heights_m: ArrayView2<'a, f64>) -> SquareMap<'a> {
+        SquareMap { heights_m, length_m: self.length_m, edges: Edges::of(self.periodic) }
+    }
+
     /// Spectral moments of the realized surface.
     #[must_use]
     pub fn moments(&self) -> Moments {

@@ -5,9 +5,10 @@
 use crate::paper::{MATERIAL, spectrum};
 use crate::watch::{cpu, once};
 use hysteron::model::{Boundary, Coalescence, Interaction as Kind, JumpIn, KeptContacts, Slips};
-use hysteron::physics::contact::{Problem, Rules};
-use hysteron::physics::cycle::{Branch, Cycle, Settings, run as cycle};
-use hysteron::physics::half_space::{DirectSum, Effort, Interaction};
+use hysteron::physics::asperities::contact::{Problem, Rules};
+use hysteron::physics::asperities::field::{DirectSum, Interaction};
+use hysteron::physics::asperities::{Asperities, Cycle, Settings};
+use hysteron::physics::cycle::{Branch, Effort, Method};
 use hysteron::physics::surface::summits::find_summits;
 use hysteron::physics::surface::synthesis::{realization_seed, synthesize};
 
@@ -67,10 +68,11 @@ impl Sum {
         let summits = find_summits(surface.heights_m.view(), spectrum.length_m, 8.0).unwrap().list;
         let problem = Problem::new(&summits, spectrum.length_m, spectrum.rms_height_m, MATERIAL, rules).unwrap();
         let settings = Settings { max_loads: vec![0.0071], approach_step: 0.01, contacts: KeptContacts::None, rest_every: None };
+        let method = Asperities { problem, settings };
         let mut done = None;
-        let seconds = cpu(|| done = Some(cycle(&problem, &settings, &|_| {})));
+        let seconds = cpu(|| done = Some(method.run()));
         match done {
-            Some(Ok(done)) => self.count(&done, seconds, &problem),
+            Some(Ok(done)) => self.count(&done, seconds, &method.problem),
             Some(Err(error)) => println!("{zeta:>4} {coalescence:?}, surface {realization}: {error}"),
             None => {}
         }

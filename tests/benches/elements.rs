@@ -4,11 +4,12 @@
 use crate::paper::{MATERIAL, spectrum};
 use crate::watch::{heading, line, once, plain};
 use hysteron::model::{Attraction as Rule, ElementOptions, Normalization};
-use hysteron::physics::boundary_elements::contact::{Attraction, Problem};
-use hysteron::physics::boundary_elements::cycle::{Settings, run as cycle};
-use hysteron::physics::boundary_elements::grid::{HalfSpace, Operator};
-use hysteron::physics::boundary_elements::law::Law;
-use hysteron::physics::boundary_elements::minimise::Accuracy;
+use hysteron::physics::elements::Numerics;
+use hysteron::physics::elements::equilibrium::minimise::Accuracy;
+use hysteron::physics::elements::grid::half_space::{HalfSpace, Operator};
+use hysteron::physics::elements::law::Law;
+use hysteron::physics::elements::path::cycle::{Settings, run as cycle};
+use hysteron::physics::elements::problem::{Attraction, Problem};
 use hysteron::physics::surface::spectrum::Spectrum;
 use hysteron::physics::surface::synthesis::{realization_seed, synthesize};
 
@@ -47,6 +48,7 @@ fn one(zeta: u32, n: usize, range: bool) {
         law,
         heights: surface.heights_m.iter().map(|height| (height - top) / spacing).collect(),
         attraction,
+        numerics: Numerics::DEFAULT,
     };
     let (points, rms) = ((n * n) as f64, spectrum.rms_height_m / spacing);
     let mut waves = problem.half_space.waves::<f64>().unwrap();

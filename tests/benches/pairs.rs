@@ -4,7 +4,8 @@ use crate::paper::MATERIAL;
 use crate::sums::contact;
 use crate::watch::{heading, line, plain, race};
 use hysteron::model::{Boundary, Interaction as Kind, Slips};
-use hysteron::physics::half_space::{DirectSum, Effort, Interaction};
+use hysteron::physics::asperities::field::{DirectSum, Interaction};
+use hysteron::physics::cycle::Effort;
 use std::f64::consts::PI;
 
 pub fn run() {

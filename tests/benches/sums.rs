@@ -3,8 +3,9 @@
 use crate::paper::MATERIAL;
 use crate::watch::{heading, line, once, plain};
 use hysteron::model::{Boundary, Interaction as Kind, Slips};
-use hysteron::physics::half_space::spot_field::Spot;
-use hysteron::physics::half_space::{DirectSum, Effort, FastSum, Interaction, Spots, Tangent};
+use hysteron::physics::asperities::field::spot_field::Spot;
+use hysteron::physics::asperities::field::{DirectSum, FastSum, Interaction, Spots, Tangent};
+use hysteron::physics::cycle::Effort;
 use hysteron::physics::jkr::Asperity;
 
 /// Spots at random places.

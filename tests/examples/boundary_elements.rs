@@ -6,8 +6,8 @@
 
 use hysteron::model::{Amplitudes, Material, Normalization};
 use hysteron::physics::PhysicsError;
-use hysteron::physics::boundary_elements::cycle::Turning;
 use hysteron::physics::cycle::{Cycle, Method};
+use hysteron::physics::elements::path::cycle::Turning;
 use hysteron::physics::elements::{Elements, Options};
 use hysteron::physics::surface::HeightMap;
 use hysteron::physics::surface::spectrum::Spectrum;

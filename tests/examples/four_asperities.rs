@@ -6,8 +6,9 @@
 
 use hysteron::model::{Boundary, Coalescence, Interaction, JumpIn, KeptContacts, Material, Slips};
 use hysteron::physics::PhysicsError;
-use hysteron::physics::contact::{Problem, Rules};
-use hysteron::physics::cycle::{Cycle, Settings, run as cycle};
+use hysteron::physics::asperities::contact::{Problem, Rules};
+use hysteron::physics::asperities::{Asperities, Cycle, Settings};
+use hysteron::physics::cycle::Method;
 use hysteron::physics::surface::summits::Summit;
 
 /// A soft gel: E* = 1 MPa, Δγ = 0.07 J/m², range of attraction 1 nm.
@@ -42,7 +43,7 @@ pub fn run() -> Result<Cycle, PhysicsError> {
     let problem = Problem::new(&summits, SIDE_M, UNIT_M, MATERIAL, rules)?;
     let max_loads = vec![3e-5 / problem.load_unit_n()];
     let settings = Settings { max_loads, approach_step: 2.0, contacts: KeptContacts::None, rest_every: None };
-    cycle(&problem, &settings, &|_| {})
+    Asperities { problem, settings }.run()
 }
 
 fn main() -> Result<(), PhysicsError> {

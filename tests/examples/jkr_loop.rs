@@ -6,8 +6,9 @@
 
 use hysteron::model::{Boundary, Coalescence, Interaction, JumpIn, KeptContacts, Material, Slips};
 use hysteron::physics::PhysicsError;
-use hysteron::physics::contact::{Problem, Rules};
-use hysteron::physics::cycle::{Settings, run as cycle};
+use hysteron::physics::asperities::contact::{Problem, Rules};
+use hysteron::physics::asperities::{Asperities, Settings};
+use hysteron::physics::cycle::Method;
 use hysteron::physics::jkr::Asperity;
 use hysteron::physics::surface::summits::Summit;
 
@@ -50,7 +51,7 @@ pub fn run() -> Result<Vec<Row>, PhysicsError> {
     let problem = Problem::new(&[summit], SIDE_M, UNIT_M, MATERIAL, rules)?;
     let max_loads = vec![2e-5 / problem.load_unit_n()];
     let settings = Settings { max_loads, approach_step: 0.25, contacts: KeptContacts::None, rest_every: None };
-    let cycle = cycle(&problem, &settings, &|_| {})?;
+    let cycle = Asperities { problem, settings }.run()?;
 
     let jkr = Asperity::new(RADIUS_M, &MATERIAL)?;
     let (turn, last) = (&cycle.steps[cycle.turning[0].0], &cycle.steps[cycle.steps.len() - 1]);

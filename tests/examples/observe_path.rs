@@ -5,14 +5,14 @@
 #![allow(clippy::print_stdout)]
 
 use hysteron::model::{Amplitudes, Boundary, Coalescence, Interaction, JumpIn, KeptContacts, Material, Normalization, Slips};
-use hysteron::physics::contact::{Problem, Rules};
-use hysteron::physics::cycle::{Checkpoint, Cycle, Settings, run_from};
-use hysteron::physics::half_space::Effort;
+use hysteron::physics::asperities::contact::{Problem, Rules};
+use hysteron::physics::asperities::{Asperities, Checkpoint, Cycle, Settings};
+use hysteron::physics::cycle::{Effort, Method};
 use hysteron::physics::surface::spectrum::Spectrum;
 use hysteron::physics::surface::summits::find_summits;
 use hysteron::physics::surface::synthesis::{realization_seed, synthesize};
 use hysteron::physics::{LoopPosition, PhysicsError};
-use std::cell::RefCell;
+use std::sync::{Mutex, PoisonError};
 
 /// Grid points per shortest wavelength.
 const POINTS: u32 = 8;
@@ -44,17 +44,18 @@ pub fn run() -> Result<Observed, PhysicsError> {
     let problem = Problem::new(&summits, spectrum.length_m, spectrum.rms_height_m, material, rules)?;
     let settings = Settings { max_loads: vec![0.004], approach_step: 0.04, contacts: KeptContacts::None, rest_every: Some(0.2) };
 
-    let (progress, mut kept) = (RefCell::new(Vec::new()), Vec::new());
-    let report = |at: LoopPosition| progress.borrow_mut().push(at.done);
-    let first = run_from(&problem, &settings, None, &mut |checkpoint: &Checkpoint| kept.push(checkpoint.clone()), &report)?;
+    let (progress, mut kept) = (Mutex::new(Vec::new()), Vec::new());
+    let report = |at: LoopPosition| progress.lock().unwrap_or_else(PoisonError::into_inner).push(at.done);
+    let method = Asperities { problem, settings };
+    let first = method.run_from(None, &mut |checkpoint: &Checkpoint| kept.push(checkpoint.clone()), &report)?;
     let middle = kept.get(kept.len() / 2).cloned();
     let mut later = 0;
-    let resumed = run_from(&problem, &settings, middle, &mut |_| later += 1, &|_| {})?;
+    let resumed = method.run_from(middle, &mut |_| later += 1, &|_| {})?;
     let effort = first.steps.iter().fold(Effort::default(), |mut sum, step| {
         sum += step.numerics.effort;
         sum
     });
-    Ok(Observed { cycles: [first, resumed], progress: progress.into_inner(), checkpoints: [kept.len(), later], effort })
+    Ok(Observed { cycles: [first, resumed], progress: progress.into_inner().unwrap_or_default(), checkpoints: [kept.len(), later], effort })
 }
 
 fn main() -> Result<(), PhysicsError> {

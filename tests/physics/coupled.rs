@@ -3,9 +3,10 @@
 use crate::reference::table;
 use crate::support::{ALONE, LENGTH, PAPER, asperity, close, near, run, turning, unloading};
 use hysteron::model::{Boundary, Interaction, KeptContacts};
-use hysteron::physics::contact::{Problem, Rules};
-use hysteron::physics::cycle::{Branch, Contact, Cycle, Step};
-use hysteron::physics::half_space::ewald::remainder;
+use hysteron::physics::asperities::Cycle;
+use hysteron::physics::asperities::contact::{Problem, Rules};
+use hysteron::physics::asperities::field::ewald::remainder;
+use hysteron::physics::cycle::{Branch, Contact, Step};
 use hysteron::physics::jkr::Asperity;
 use hysteron::physics::surface::summits::Summit;
 use std::f64::consts::PI;

@@ -1,14 +1,16 @@
 //! Whole cycles: where the loss has a closed form, where energy must balance, and what must not depend on the step.
 
 use crate::support::{
-    ALONE, DEFAULT, LENGTH, Loop, PAPER, RMS, asperity, close, loop_of, near, paper_cycle, paper_spectrum, paper_summits, run, surface,
-    turning, unloading,
+    ALONE, DEFAULT, LENGTH, Loop, PAPER, RMS, asperity, close, local_contacts, loop_of, near, paper_cycle, paper_spectrum, paper_summits,
+    run, surface, turning, unloading,
 };
 use hysteron::model::{Coalescence, Interaction, JumpIn, KeptContacts, Material};
 use hysteron::physics::EventKind;
 use hysteron::physics::PhysicsError;
-use hysteron::physics::contact::{Problem, Rules};
-use hysteron::physics::cycle::{Checkpoint, Cycle, Settings, run_from, run_to};
+use hysteron::physics::asperities::contact::{Problem, Rules};
+use hysteron::physics::asperities::numerics::{Numerics, Steps};
+use hysteron::physics::asperities::{Asperities, Checkpoint, Cycle, Settings};
+use hysteron::physics::cycle::Method;
 use hysteron::physics::jkr::Asperity;
 use hysteron::physics::surface::summits::Summit;
 use hysteron::physics::theory::deng_kesari_loss;
@@ -84,7 +86,7 @@ fn law_point_interaction_loses_what_its_events_lose() {
         // With patches, what the rest of the contact does is known to first order when an event is charged
         // (found: at most 3.3e-4).
         for (patch, bound) in [(usize::MAX, 1e-6), (24, 1e-3)] {
-            let problem = Problem::new(&summits, LENGTH, RMS, PAPER, rules).unwrap().with_patches_of(patch);
+            let problem = Problem::new(&summits, LENGTH, RMS, PAPER, rules).unwrap().with_numerics(local_contacts(patch));
             let cycle = run(&problem, &[0.004, 0.0071], 0.04, KeptContacts::None);
             for k in 0..2 {
                 let Loop { loss, events, .. } = loop_of(&cycle, k);
@@ -102,7 +104,9 @@ fn lim_results_converge_with_the_tolerance_of_the_path() {
     for interaction in [Interaction::Point, Interaction::Spots] {
         let rules = Rules { interaction, coalescence: Coalescence::Cover, ..DEFAULT };
         let of = |tolerance: f64| {
-            let problem = Problem::new(&paper_summits(16, 0), LENGTH, RMS, PAPER, rules).unwrap().with_tolerance(tolerance);
+            let problem = Problem::new(&paper_summits(16, 0), LENGTH, RMS, PAPER, rules)
+                .unwrap()
+                .with_numerics(Numerics { steps: Steps { accuracy: tolerance, ..Steps::DEFAULT }, ..Numerics::DEFAULT });
             loop_of(&run(&problem, &[0.0071], 0.04, KeptContacts::None), 0)
         };
         let finest = of(1.25e-3);
@@ -327,7 +331,7 @@ fn reg_three_spots_of_which_each_covers_the_next_come_to_rest() {
         let rules = Rules { jump_in: JumpIn::Jkr, allow_low_tabor: true, ..DEFAULT };
         let problem = Problem::new(&summits, LENGTH, RMS, PAPER, rules).unwrap();
         let settings = Settings { max_loads: Vec::new(), approach_step: 0.05, contacts: KeptContacts::None, rest_every: None };
-        let cycle = run_to(&problem, &settings, 0.5 * RMS).unwrap();
+        let cycle = Asperities { problem, settings }.run_to(0.5 * RMS).unwrap();
         assert!(cycle.steps.iter().all(|step| step.numerics.residual_m.unwrap() <= 1e-10 * RMS));
         // Nothing silent: whoever is held as it is stands in the data, and all have left in the end.
         assert!(cycle.steps.iter().any(|step| step.counts.held > 0));
@@ -345,12 +349,13 @@ fn law_a_cycle_goes_on_from_where_it_rested_as_if_nothing_had_been() {
         let settings = Settings { max_loads: vec![0.002, 0.004], approach_step: 0.04, contacts, rest_every: Some(0.2) };
         let mut kept: Vec<Vec<u8>> = Vec::new();
         let mut keep = |checkpoint: &Checkpoint| kept.push(postcard::to_stdvec(checkpoint).unwrap());
-        let whole = run_from(&problem, &settings, None, &mut keep, &|_| {}).unwrap();
+        let method = Asperities { problem, settings };
+        let whole = method.run_from(None, &mut keep, &|_| {}).unwrap();
         assert!(kept.len() > 20, "{}", kept.len());
         for (number, bytes) in kept.iter().enumerate() {
             let checkpoint: Checkpoint = postcard::from_bytes(bytes).unwrap();
             let mut later = 0;
-            let again = run_from(&problem, &settings, Some(checkpoint), &mut |_| later += 1, &|_| {}).unwrap();
+            let again = method.run_from(Some(checkpoint), &mut |_| later += 1, &|_| {}).unwrap();
             assert_eq!(later, kept.len() - number - 1);
             assert!(again == whole, "{coalescence:?}, from rest {number}");
         }

@@ -2,9 +2,10 @@
 
 use crate::support::{DEFAULT, LENGTH, PAPER, RMS, asperity, close, loop_of, near, paper_spectrum, run, unloading};
 use hysteron::model::{Coalescence, Interaction, JumpIn, KeptContacts, Material};
-use hysteron::physics::contact::{Problem, Rules};
+use hysteron::physics::asperities::contact::{Problem, Rules};
+use hysteron::physics::asperities::{Asperities, Cycle, Settings};
 use hysteron::physics::cycle::soundness::{LoopEnergy, check_energy, loop_energy};
-use hysteron::physics::cycle::{self, Branch, Cycle, Settings};
+use hysteron::physics::cycle::{Branch, Method};
 use hysteron::physics::surface::summits::{Summit, find_summits};
 use hysteron::physics::surface::synthesis::{realization_seed, synthesize};
 use hysteron::physics::{LoopError, PhysicsError, Reason};
@@ -19,7 +20,7 @@ fn summits(zeta: u32, seed: u64, realization: u64) -> Vec<Summit> {
 
 fn attempt(problem: &Problem, load: f64) -> Result<Cycle, PhysicsError> {
     let settings = Settings { max_loads: vec![load], approach_step: 0.05, contacts: KeptContacts::None, rest_every: None };
-    cycle::run(problem, &settings, &|_| {})
+    Asperities { problem: problem.clone(), settings }.run()
 }
 
 /// Wu's jump-in penetration is below the jump-off penetration at Tabor parameters from 0.2 to 1. Version 0.1.0 did not end for the first two of these, and in the

@@ -2,10 +2,11 @@
 
 use crate::support::{DEFAULT, Dice, LENGTH, PAPER, RMS, close, loop_of, near, paper_summits, run};
 use hysteron::model::{Boundary, Interaction as Kind, KeptContacts, Slips};
-use hysteron::physics::contact::{Problem, Rules};
-use hysteron::physics::cycle::Cycle;
-use hysteron::physics::half_space::spot_field::Spot;
-use hysteron::physics::half_space::{DirectSum, Effort, FastSum, Interaction, Spots, Tangent, choose};
+use hysteron::physics::asperities::Cycle;
+use hysteron::physics::asperities::contact::{Problem, Rules};
+use hysteron::physics::asperities::field::spot_field::Spot;
+use hysteron::physics::asperities::field::{DirectSum, FastSum, Interaction, Spots, Tangent, choose};
+use hysteron::physics::cycle::Effort;
 use hysteron::physics::jkr::Asperity;
 
 /// Asperities at random, of which the first are in contact with spots of very different radii, overlapping; `huge` \[m\] is the radius of one.

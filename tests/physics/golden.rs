@@ -3,11 +3,10 @@
 //! With `HYSTERON_DIGESTS=1` and `--nocapture` the tests print the results, the effort and the BLAKE3 digest of every cycle instead, to compare two builds on one
 //! machine byte by byte.
 
-use crate::support::{DEFAULT, LENGTH, PAPER, RMS, close, loop_of, paper_summits, run};
+use crate::support::{DEFAULT, LENGTH, PAPER, RMS, close, local_contacts, loop_of, paper_summits, run};
 use hysteron::model::{Boundary, Coalescence, Interaction, JumpIn, KeptContacts, Material};
-use hysteron::physics::contact::{Problem, Rules};
-use hysteron::physics::cycle::{Step, StepNumerics};
-use hysteron::physics::half_space::Effort;
+use hysteron::physics::asperities::contact::{Problem, Rules};
+use hysteron::physics::cycle::{Effort, Step, StepNumerics};
 
 /// Magnification, realization, rules, work of adhesion \[J/m²\], contacts in a local problem.
 type Setup = (u32, u64, Rules, f64, usize);
@@ -53,7 +52,8 @@ pub fn pinned() -> String {
 fn reg_whole_cycles() {
     for (what, (zeta, realization, rules, adhesion, patch), (events, area, pull_off, loss)) in setups() {
         let material = Material { work_of_adhesion_j_m2: adhesion, ..PAPER };
-        let problem = Problem::new(&paper_summits(zeta, realization), LENGTH, RMS, material, rules).unwrap().with_patches_of(patch);
+        let problem =
+            Problem::new(&paper_summits(zeta, realization), LENGTH, RMS, material, rules).unwrap().with_numerics(local_contacts(patch));
         let cycle = run(&problem, &[0.0071], 0.04, KeptContacts::Turning);
         let (load_unit, found) = (problem.load_unit_n(), loop_of(&cycle, 0));
         let (found_area, found_pull_off, found_loss) =
@@ -86,7 +86,8 @@ fn reg_effort_of_whole_cycles() {
     for (at, iterations, products, pairs) in [(0, 2596, 7013, 1678), (1, 9110, 11883, 11297), (5, 2949, 5584, 560)] {
         let (what, (zeta, realization, rules, adhesion, patch), _) = setups().swap_remove(at);
         let material = Material { work_of_adhesion_j_m2: adhesion, ..PAPER };
-        let problem = Problem::new(&paper_summits(zeta, realization), LENGTH, RMS, material, rules).unwrap().with_patches_of(patch);
+        let problem =
+            Problem::new(&paper_summits(zeta, realization), LENGTH, RMS, material, rules).unwrap().with_numerics(local_contacts(patch));
         let cycle = run(&problem, &[0.0071], 0.04, KeptContacts::Turning);
         let sum = |of: fn(&Effort) -> u64| cycle.steps.iter().map(|step| of(&step.numerics.effort)).sum::<u64>() as f64;
         if std::env::var_os("HYSTERON_DIGESTS").is_some() {

@@ -2,8 +2,8 @@
 
 use crate::support::{ALONE, DEFAULT, Dice, LENGTH, PAPER, RMS, asperity, close, near, paper_spectrum, run};
 use hysteron::model::{Amplitudes, Boundary, Coalescence, Interaction, KeptContacts, Material, Normalization, Slips};
-use hysteron::physics::contact::{Problem, Rules};
-use hysteron::physics::half_space::spot_field::spot_field_as_printed;
+use hysteron::physics::asperities::contact::{Problem, Rules};
+use hysteron::physics::asperities::field::spot_field::spot_field_as_printed;
 use hysteron::physics::jkr::Asperity;
 use hysteron::physics::surface::spectrum::{Moments, Spectrum};
 use hysteron::physics::surface::summits::{Summit, find_summits};

@@ -2,8 +2,9 @@
 
 use crate::support::{DEFAULT, LENGTH, PAPER, RMS, close, loop_of, paper_cycle, paper_summits};
 use hysteron::model::{Coalescence, KeptContacts};
-use hysteron::physics::contact::{Problem, Rules};
-use hysteron::physics::cycle::{Cycle, Event, Settings, Site, run_to};
+use hysteron::physics::asperities::contact::{Problem, Rules};
+use hysteron::physics::asperities::{Asperities, Cycle, Settings};
+use hysteron::physics::cycle::{Event, Site};
 use hysteron::physics::surface::summits::Summit;
 
 /// The same loop and the same events. Asperities are numbered from the highest down and placed from the highest on, so that not even rounding differs: there
@@ -39,12 +40,13 @@ fn law_a_way_without_an_event_is_retraced() {
     let summits = paper_summits(16, 0);
     let problem = Problem::new(&summits, LENGTH, RMS, PAPER, DEFAULT).unwrap();
     let settings = Settings { max_loads: Vec::new(), approach_step: 0.01, contacts: KeptContacts::None, rest_every: None };
-    let far = run_to(&problem, &settings, 0.3 * RMS).unwrap();
+    let method = Asperities { problem, settings };
+    let far = method.run_to(0.3 * RMS).unwrap();
     let loading: Vec<f64> = far.events.iter().take_while(|e| e.step <= far.turning[0].0).map(|event| event.approach_m).collect();
     let gap = loading.windows(2).max_by(|u, v| (u[1] - u[0]).total_cmp(&(v[1] - v[0]))).unwrap();
     // Down from the turning point to a little after the event before it: the loads of both ways at the points of the grid between.
     let turn = 0.25f64.mul_add(gap[0], 0.75 * gap[1]);
-    let cycle = run_to(&problem, &settings, turn).unwrap();
+    let cycle = method.run_to(turn).unwrap();
     let at = cycle.turning[0].0;
     let quiet = |approach: f64| approach > gap[0] + 1e-3 * RMS && approach < turn;
     let first = cycle.events.iter().find(|e| e.step > at).map_or(f64::NEG_INFINITY, |event| event.approach_m);

@@ -2,8 +2,9 @@
 
 use crate::support::{ALONE, DEFAULT, LENGTH, PAPER, RMS, asperity, close, loop_of, near, paper_cycle, paper_summits, run, turning};
 use hysteron::model::{Boundary, Coalescence, Interaction, KeptContacts};
-use hysteron::physics::contact::{Problem, Rules};
-use hysteron::physics::cycle::{Branch, Contact, Cycle, Step};
+use hysteron::physics::asperities::Cycle;
+use hysteron::physics::asperities::contact::{Problem, Rules};
+use hysteron::physics::cycle::{Branch, Contact, Step};
 use hysteron::physics::jkr::Asperity;
 use hysteron::physics::surface::summits::Summit;
 use std::f64::consts::PI;

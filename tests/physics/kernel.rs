@@ -2,7 +2,7 @@
 
 use crate::reference::table;
 use crate::support::{Dice, close, near, random};
-use hysteron::physics::half_space::ewald::{ORDERS, RemainderSeries, image_sums, kernel, remainder};
+use hysteron::physics::asperities::field::ewald::{ORDERS, RemainderSeries, image_sums, kernel, remainder};
 use proptest::prelude::*;
 use std::f64::consts::PI;
 

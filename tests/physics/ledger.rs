@@ -59,8 +59,8 @@ fn law_every_public_equation_has_a_test() {
         ("spectrum", "src/physics/surface/spectrum.rs"),
         ("theory", "src/physics/theory/mod.rs"),
         ("flattening", "src/physics/theory/flattening.rs"),
-        ("spot_field", "src/physics/half_space/spot_field.rs"),
-        ("ewald", "src/physics/half_space/ewald.rs"),
+        ("spot_field", "src/physics/asperities/field/spot_field.rs"),
+        ("ewald", "src/physics/asperities/field/ewald.rs"),
     ];
     let tests: Vec<String> = fs::read_dir(root.join("tests/physics"))
         .unwrap()

@@ -92,8 +92,13 @@ mod reference {
 /// What several files use.
 mod support {
     use hysteron::model::{Amplitudes, Boundary, Coalescence, Interaction, JumpIn, KeptContacts, Material, Normalization, Slips};
-    use hysteron::physics::contact::{Problem, Rules};
-    use hysteron::physics::cycle::{self, Branch, Cycle, Settings, Step};
+    use hysteron::physics::asperities::contact::{Problem, Rules};
+    use hysteron::physics::asperities::numerics::{Events, Numerics};
+    use hysteron::physics::asperities::{Asperities, Cycle, Settings};
+    use hysteron::physics::cycle::{Branch, Method, Step};
+    use hysteron::physics::surface::SquareMap;
+    use hysteron::physics::surface::edges::Edges;
+    use hysteron::physics::surface::measured::Prepared;
     use hysteron::physics::surface::spectrum::Spectrum;
     use hysteron::physics::surface::summits::{Summit, find_summits};
     use hysteron::physics::surface::synthesis::{Surface, realization_seed, synthesize};
@@ -150,6 +155,11 @@ mod support {
         }
     }
 
+    /// Numerics with local problems of so many contacts.
+    pub fn local_contacts(local_contacts: usize) -> Numerics {
+        Numerics { events: Events { local_contacts, ..Events::DEFAULT }, ..Numerics::DEFAULT }
+    }
+
     /// The paper's surface at another magnification.
     pub fn paper_spectrum(hurst: f64, magnification: u32) -> Spectrum {
         Spectrum {
@@ -179,6 +189,11 @@ mod support {
         Summit { x_m, y_m, height_m, curvature_1_m: k, curvature_min_1_m: k, curvature_max_1_m: k, grid_row: 0, grid_col: 0, refined: true }
     }
 
+    /// A prepared surface with its edges.
+    pub fn square(prepared: &Prepared, edges: Edges) -> SquareMap<'_> {
+        SquareMap { heights_m: prepared.heights_m.view(), length_m: prepared.length_m, edges }
+    }
+
     /// A whole cycle of the paper's material to the given loads.
     pub fn paper_cycle(summits: &[Summit], rules: Rules, max_loads: &[f64], approach_step: f64) -> Cycle {
         let problem = Problem::new(summits, LENGTH, RMS, PAPER, rules).unwrap();
@@ -187,7 +202,8 @@ mod support {
 
     /// A whole cycle.
     pub fn run(problem: &Problem, max_loads: &[f64], approach_step: f64, contacts: KeptContacts) -> Cycle {
-        cycle::run(problem, &Settings { max_loads: max_loads.to_vec(), approach_step, contacts, rest_every: None }, &|_| {}).unwrap()
+        let settings = Settings { max_loads: max_loads.to_vec(), approach_step, contacts, rest_every: None };
+        Asperities { problem: problem.clone(), settings }.run().unwrap()
     }
 
     /// What a loop of one turning point comes to.

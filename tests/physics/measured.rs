@@ -1,7 +1,9 @@
 //! Measured surfaces: what is done to them, and what is told of them.
 
+use crate::support::square;
 use hysteron::model::{Amplitudes, Detrend, Filter, Missing, Normalization};
 use hysteron::physics::PhysicsError;
+use hysteron::physics::surface::edges::Edges;
 use hysteron::physics::surface::measured::{Prepared, Treatment, find_measured, prepare};
 use hysteron::physics::surface::periodogram::{Estimate, periodogram, windowed_periodogram};
 use hysteron::physics::surface::self_affine::fit_self_affine;
@@ -54,7 +56,7 @@ fn law_a_band_limited_periodic_surface_is_left_as_it_is() {
         assert!((a / b - 1.0).abs() < 1e-10, "{a} {b}");
     }
     assert!(prepared.noise_m < 1e-6 * theirs.rms_height_m());
-    let (found, edge) = find_measured(prepared.heights_m.view(), prepared.length_m, (true, 8.0)).unwrap();
+    let (found, edge) = find_measured(square(&prepared, Edges::Periodic), 8.0).unwrap();
     let plain = find_summits(surface.heights_m.view(), surface.length_m, 8.0).unwrap();
     assert_eq!((found.list.len(), edge), (plain.list.len(), 0));
 }
@@ -89,7 +91,7 @@ fn law_mirror_images_continue_a_surface_without_a_jump() {
         assert!((found / expected - 1.0).abs() < allowed, "{found} {expected}");
     }
     // Summits where both cosines are 1 or both are −1. The point reflection at the edges makes no maxima there.
-    let (found, edge) = find_measured(prepared.heights_m.view(), prepared.length_m, (false, 8.0)).unwrap();
+    let (found, edge) = find_measured(square(&prepared, Edges::Open), 8.0).unwrap();
     let mut inside: Vec<[f64; 2]> = Vec::new();
     for i in 1..3 {
         for j in 1..4 {

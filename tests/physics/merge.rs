@@ -1,13 +1,15 @@
 //! Touching spots become one of the same area and load, and part again.
 
 use crate::support::{
-    ALONE, DEFAULT, Dice, LENGTH, PAPER, RMS, asperity, close, loop_of, near, paper_cycle, paper_summits, run, turning, unloading,
+    ALONE, DEFAULT, Dice, LENGTH, PAPER, RMS, asperity, close, local_contacts, loop_of, near, paper_cycle, paper_summits, run, turning,
+    unloading,
 };
 use hysteron::model::{Coalescence, Interaction, KeptContacts, Material};
 use hysteron::physics::EventKind;
 use hysteron::physics::LoopError;
-use hysteron::physics::contact::{Merged, Problem, Rules, State};
-use hysteron::physics::cycle::{self, Cycle, Settings};
+use hysteron::physics::asperities::contact::{Problem, Rules, State};
+use hysteron::physics::asperities::{Asperities, Cycle, Settings};
+use hysteron::physics::cycle::{Merged, Method};
 use hysteron::physics::jkr::Asperity;
 use hysteron::physics::surface::summits::Summit;
 
@@ -87,7 +89,7 @@ fn law_with_point_interaction_the_loop_loses_what_its_events_lose() {
     // Merged spots are other spheres at other heights, and yet the sum over merging and parting closes the account of the whole loop.
     for (rules, most) in [(MERGE_ALONE, 1e-6), (MERGE_POINT, 1e-6)] {
         let summits = paper_summits(16, 1);
-        let problem = Problem::new(&summits, LENGTH, RMS, PAPER, rules).unwrap().with_patches_of(usize::MAX);
+        let problem = Problem::new(&summits, LENGTH, RMS, PAPER, rules).unwrap().with_numerics(local_contacts(usize::MAX));
         let cycle = run(&problem, &[0.0071], 0.04, KeptContacts::None);
         let sums = loop_of(&cycle, 0);
         let count = |kind: EventKind| cycle.events.iter().filter(|e| e.kind == kind).count();
@@ -197,19 +199,19 @@ fn law_a_turning_point_with_merged_spots_is_enough_to_unload_from() {
     let summits = paper_summits(16, 0);
     let problem = Problem::new(&summits, LENGTH, RMS, PAPER, MERGE).unwrap();
     let settings = Settings { max_loads: vec![0.004, 0.0071], approach_step: 0.04, contacts: KeptContacts::None, rest_every: None };
-    let cycle = cycle::run(&problem, &settings, &|_| {}).unwrap();
-    for (k, max_load) in settings.max_loads.iter().enumerate() {
-        let state = &cycle.turning[k].1;
+    let method = Asperities { problem, settings };
+    let (cycle, problem) = (method.run().unwrap(), &method.problem);
+    for (k, (_, state)) in cycle.turning.iter().enumerate() {
         assert!(state.merged.len() > 10);
-        let again = State::restored(&problem, state.approach_m, &state.merged(&problem), &state.kept(&problem)).unwrap();
-        let other = cycle::unload_from(&problem, &settings, *max_load, again).unwrap();
-        let want = unloading(&cycle, k);
+        let again = State::restored(problem, state.approach_m, &state.merged(problem), &state.kept(problem)).unwrap();
+        let other = method.unload_from(k, again).unwrap();
+        let (want, max_load) = (unloading(&cycle, k), method.settings.max_loads[k]);
         assert_eq!(other.steps.len(), want.len());
         for (got, want) in other.steps.iter().zip(want) {
             assert_eq!(got, want, "the same bytes");
         }
         let numbers = |cycle: &Cycle| -> Vec<_> {
-            cycle.merged.iter().filter(|m| cycle.steps[m.step].max_load == Some(*max_load)).map(|m| (m.asperity, m.spot)).collect()
+            cycle.merged.iter().filter(|m| cycle.steps[m.step].max_load == Some(max_load)).map(|m| (m.asperity, m.spot)).collect()
         };
         assert_eq!(numbers(&other), numbers(&cycle));
     }
@@ -221,7 +223,7 @@ fn reg_merged_spots_that_fill_the_square_are_refused_with_a_sentence() {
     let summits = paper_summits(16, 0);
     let problem = Problem::new(&summits, LENGTH, RMS, PAPER, MERGE).unwrap();
     let settings = Settings { max_loads: vec![0.1], approach_step: 0.04, contacts: KeptContacts::None, rest_every: None };
-    let error = cycle::run(&problem, &settings, &|_| {}).unwrap_err();
+    let error = Asperities { problem, settings }.run().unwrap_err();
     assert!(matches!(error, hysteron::physics::PhysicsError::Loop(LoopError::ExcessArea { .. })), "{error}");
     assert!(error.to_string().contains("leaves no gap"), "{error}");
 }
@@ -232,7 +234,7 @@ fn reg_a_load_beyond_full_contact_leaves_the_loads_before_it() {
     let problem = Problem::new(&summits, LENGTH, RMS, PAPER, MERGE).unwrap();
     let to = |max_loads: &[f64]| {
         let settings = Settings { max_loads: max_loads.to_vec(), approach_step: 0.04, contacts: KeptContacts::None, rest_every: None };
-        cycle::run(&problem, &settings, &|_| {}).unwrap()
+        Asperities { problem: problem.clone(), settings }.run().unwrap()
     };
     let (both, alone) = (to(&[0.002, 0.1]), to(&[0.002]));
     assert_eq!(both.unreached.len(), 1);

@@ -2,7 +2,7 @@
 
 use crate::reference::table;
 use crate::support::{LENGTH, close, near};
-use hysteron::physics::half_space::spot_field::{Spot, SpotColumns, dimensionless_field, spot_field};
+use hysteron::physics::asperities::field::spot_field::{Spot, SpotColumns, dimensionless_field, spot_field};
 use hysteron::physics::jkr::Asperity;
 use std::f64::consts::{FRAC_PI_2, PI};
 

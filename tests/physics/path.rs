@@ -1,11 +1,12 @@
 //! The path against an independent solver: dense, with sixty digits, by arclength and relaxation (`tests/reference/path.py`).
 
 use crate::reference::{Row, table};
-use crate::support::{DEFAULT, PAPER, RMS, close, near};
+use crate::support::{DEFAULT, PAPER, RMS, close, local_contacts, near};
 use hysteron::model::{Interaction, KeptContacts};
 use hysteron::physics::EventKind;
-use hysteron::physics::contact::{Problem, Rules};
-use hysteron::physics::cycle::{self, Branch, Cycle, Settings};
+use hysteron::physics::asperities::contact::{Problem, Rules};
+use hysteron::physics::asperities::{Asperities, Cycle, Settings};
+use hysteron::physics::cycle::{Branch, Step};
 
 /// The cycle of a surface of the reference, with steps of `spacing` \[m\].
 fn run(surface: &str, spacing: f64) -> Cycle {
@@ -20,9 +21,9 @@ fn run_with(surface: &str, spacing: f64, local: Option<usize>) -> Cycle {
     let summits: Vec<_> =
         rows.iter().map(|r| crate::support::asperity(r.number("x"), r.number("y"), r.number("z"), r.number("R"))).collect();
     let problem = Problem::new(&summits, rows[0].number("L"), RMS, PAPER, Rules { interaction, ..DEFAULT }).unwrap();
-    let problem = if let Some(contacts) = local { problem.with_patches_of(contacts) } else { problem };
+    let problem = if let Some(contacts) = local { problem.with_numerics(local_contacts(contacts)) } else { problem };
     let settings = Settings { max_loads: Vec::new(), approach_step: spacing / RMS, contacts: KeptContacts::None, rest_every: None };
-    cycle::run_to(&problem, &settings, rows[0].number("delta_turn")).unwrap()
+    Asperities { problem, settings }.run_to(rows[0].number("delta_turn")).unwrap()
 }
 
 /// But one: in an avalanche of p3 two spots end together, and which is first depends on how they are damped.
@@ -73,7 +74,7 @@ fn val_the_curves_are_those_of_an_independent_solver() {
         for row in curves.rows().filter(|r| r.word("surface") == surface && r.number("delta") != 0.0).skip(1).step_by(4) {
             let delta = row.number("delta");
             let cycle = run(surface, delta.abs());
-            let at = |s: &&cycle::Step| s.branch.word() == row.word("branch") && (s.approach_m - delta).abs() < 1e-9 * delta.abs();
+            let at = |s: &&Step| s.branch.word() == row.word("branch") && (s.approach_m - delta).abs() < 1e-9 * delta.abs();
             let Some(step) = cycle.steps.iter().find(at) else {
                 // The turning approach itself is met from its load.
                 continue;

@@ -2,8 +2,9 @@
 
 use crate::support::{ALONE, LENGTH, PAPER, asperity, near};
 use hysteron::model::{Interaction, KeptContacts};
-use hysteron::physics::contact::{Problem, Rules};
-use hysteron::physics::cycle::{self, Contact, Settings};
+use hysteron::physics::asperities::contact::{Problem, Rules};
+use hysteron::physics::asperities::{Asperities, Settings};
+use hysteron::physics::cycle::Contact;
 use hysteron::physics::surface::summits::Summit;
 
 /// Unit of height: its 1e-10 is the tolerance of an equilibrium, 1e-17 m.
@@ -13,7 +14,7 @@ const UNIT: f64 = 1e-7;
 fn contacts(summits: &[Summit], rules: Rules, approach: f64) -> Vec<Contact> {
     let problem = Problem::new(summits, LENGTH, UNIT, PAPER, rules).unwrap();
     let settings = Settings { max_loads: Vec::new(), approach_step: 1.0, contacts: KeptContacts::Turning, rest_every: None };
-    let cycle = cycle::run_to(&problem, &settings, approach).unwrap();
+    let cycle = Asperities { problem, settings }.run_to(approach).unwrap();
     let turning = cycle.turning[0].0;
     let found: Vec<Contact> = cycle.contacts.into_iter().filter(|contact| contact.step == turning).collect();
     assert_eq!(found.len(), summits.len(), "all in contact");

@@ -5,9 +5,10 @@ use crate::support::{ALONE, DEFAULT, LENGTH, PAPER, RMS, close, loop_of, near, p
 use hysteron::model::{Boundary, Choice, Interaction as Kind, JumpIn, Slip, Slips};
 use hysteron::physics::EventKind as Event;
 use hysteron::physics::PhysicsError;
-use hysteron::physics::contact::Rules;
-use hysteron::physics::half_space::spot_field::{Spot, spot_field, spot_field_as_printed};
-use hysteron::physics::half_space::{DirectSum, Effort, Interaction, Spots, ewald::RemainderSeries};
+use hysteron::physics::asperities::contact::Rules;
+use hysteron::physics::asperities::field::spot_field::{Spot, spot_field, spot_field_as_printed};
+use hysteron::physics::asperities::field::{DirectSum, Interaction, Spots, ewald::RemainderSeries};
+use hysteron::physics::cycle::Effort;
 use hysteron::physics::jkr::Asperity;
 use hysteron::physics::surface::spectrum::Moments;
 use hysteron::physics::theory::{

@@ -1,9 +1,10 @@
 //! Invariants of the solver on random small surfaces, and of one asperity over its whole domain.
 
-use crate::support::{ALONE, DEFAULT, LENGTH, Loop, PAPER, asperity, close, loop_of, near, random};
+use crate::support::{ALONE, DEFAULT, LENGTH, Loop, PAPER, asperity, close, local_contacts, loop_of, near, random};
 use hysteron::model::{Coalescence, Interaction, KeptContacts, Material};
-use hysteron::physics::contact::{Problem, Rules};
-use hysteron::physics::cycle::{Cycle, Event, Settings, Site, run_to};
+use hysteron::physics::asperities::contact::{Problem, Rules};
+use hysteron::physics::asperities::{Asperities, Cycle, Settings};
+use hysteron::physics::cycle::{Event, Site};
 use hysteron::physics::jkr::Asperity;
 use hysteron::physics::surface::summits::Summit;
 use hysteron::physics::{LoopError, PhysicsError};
@@ -45,7 +46,7 @@ fn crowded() -> impl Strategy<Value = Vec<Summit>> {
 /// Loads to the approach of 1.2 units, at which all asperities are in contact or absorbed, and unloads.
 fn attempt(problem: &Problem) -> Result<Cycle, PhysicsError> {
     let settings = Settings { max_loads: Vec::new(), approach_step: 0.2, contacts: KeptContacts::None, rest_every: None };
-    run_to(problem, &settings, 1.2 * problem.rms_height_m)
+    Asperities { problem: problem.clone(), settings }.run_to(1.2 * problem.rms_height_m)
 }
 
 /// The same, where there is an equilibrium.
@@ -113,7 +114,7 @@ proptest! {
 
     #[test]
     fn law_the_size_of_the_local_problem_hardly_matters(summits in separate(), size in 4..=7usize) {
-        let [local, global] = [size, usize::MAX].map(|size| loop_of(&cycle(&problem(&summits, DEFAULT).with_patches_of(size)), 0));
+        let [local, global] = [size, usize::MAX].map(|size| loop_of(&cycle(&problem(&summits, DEFAULT).with_numerics(local_contacts(size))), 0));
         // Events are solved with all other contacts held to first order, grid points with all of them. Found in 2400 cases: at most 1.0e-3 of the energy and
         // 2.2e-12 of the area; with local problems of 3, at most 3.0e-3.
         close("Θ", local.loss, global.loss, 2e-3);

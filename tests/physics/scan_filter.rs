@@ -1,9 +1,11 @@
 //! The S-filter of measured surfaces and the derivatives of those that are not periodic.
 
-use crate::support::{ALONE, Dice, close, loop_of, near, run};
+use crate::support::{ALONE, Dice, close, loop_of, near, run, square};
 use hysteron::model::{Amplitudes, Boundary, Detrend, Filter, KeptContacts, Material, Missing, Normalization};
-use hysteron::physics::contact::{Problem, Rules};
+use hysteron::physics::asperities::contact::{Problem, Rules};
 use hysteron::physics::jkr::Asperity;
+use hysteron::physics::surface::SquareMap;
+use hysteron::physics::surface::edges::Edges;
 use hysteron::physics::surface::measured::{Prepared, Treatment, find_measured, prepare};
 use hysteron::physics::surface::spectrum::Spectrum;
 use hysteron::physics::surface::summits::{Summit, find_summits};
@@ -19,8 +21,8 @@ fn treatment(filter: Filter, points: f64, periodic: bool) -> Treatment {
 /// A scan with points of 1 m distance after import, and its asperities.
 fn taken(heights: &Array2<f64>, treatment: &Treatment) -> (Prepared, Vec<Summit>) {
     let prepared = prepare(heights.clone(), [1.0, 1.0], treatment).unwrap();
-    let at = (treatment.periodic, treatment.points_per_shortest_wavelength);
-    let list = find_measured(prepared.heights_m.view(), prepared.length_m, at).unwrap().0.list;
+    let square = square(&prepared, Edges::of(treatment.periodic));
+    let list = find_measured(square, treatment.points_per_shortest_wavelength).unwrap().0.list;
     (prepared, list)
 }
 
@@ -119,7 +121,7 @@ fn val_the_cycle_of_a_dome_is_that_of_jkr() {
         let spacing = length / n as f64;
         let heights = bump(n, n as f64 / 6.0, radius / spacing).mapv(|h| spacing * h);
         let prepared = prepare(heights, [spacing; 2], &treatment(Filter::Gaussian, points, false)).unwrap();
-        let (found, _) = find_measured(prepared.heights_m.view(), prepared.length_m, (false, points)).unwrap();
+        let (found, _) = find_measured(square(&prepared, Edges::Open), points).unwrap();
         let rules = Rules { boundary: Boundary::Isolated, ..ALONE };
         let problem = Problem::new(&found.list, prepared.length_m, prepared.moments.rms_height_m(), material, rules).unwrap();
         let asperity = Asperity::new(radius, &material).unwrap();
@@ -245,7 +247,7 @@ fn val_asperities_of_a_part_are_those_of_the_whole() {
     let known = find_summits(whole.view(), 256.0, 8.0).unwrap().list;
     let n = 128;
     let part = whole.slice(s![..n, ..n]).to_owned();
-    let (found, edge) = find_measured(part.view(), f64::from(n), (false, 8.0)).unwrap();
+    let (found, edge) = find_measured(SquareMap { heights_m: part.view(), length_m: f64::from(n), edges: Edges::Open }, 8.0).unwrap();
     assert!(edge > 0);
     let rms = (known.iter().map(|top| top.curvature_1_m.powi(2)).sum::<f64>() / known.len() as f64).sqrt();
     let mut matched = 0;

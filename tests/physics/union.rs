@@ -2,7 +2,7 @@
 
 use crate::support::{Dice, close, near, random};
 use hysteron::model::Boundary::{self, Isolated, Periodic};
-use hysteron::physics::contact::union_area::{Disc, plain_area, union_area};
+use hysteron::physics::asperities::contact::union_area::{Disc, plain_area, union_area};
 use proptest::prelude::*;
 use proptest::sample::select;
 use std::f64::consts::PI;

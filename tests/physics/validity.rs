@@ -3,6 +3,8 @@
 use crate::reference::table;
 use crate::support::{LENGTH, PAPER, RMS, close, near, paper_spectrum, surface};
 use hysteron::model::{Amplitudes, Normalization};
+use hysteron::physics::surface::SquareMap;
+use hysteron::physics::surface::edges::Edges;
 use hysteron::physics::surface::spectrum::Spectrum;
 use hysteron::physics::surface::synthesis::{mode_sums, realization_seed, synthesize};
 use hysteron::physics::theory::flattening::{Flattening, flattening, measured_flattening, realised_flattening, shortest_wavelength};
@@ -41,8 +43,9 @@ fn law_energies_of_heights_are_those_of_the_modes_that_made_them() {
     let seed = realization_seed(5, 1);
     let heights = synthesize(&spectrum, &seed, 256).heights_m;
     let wanted = realised_flattening(&spectrum, &seed, MODULUS);
+    let square = SquareMap { heights_m: heights.view(), length_m: LENGTH, edges: Edges::Periodic };
     // Eight points to the shortest wave. A little below the edge, so that no rounding puts the first modes of the octave out of it.
-    let found = measured_flattening(heights.view(), (LENGTH, true), LENGTH / 32.0 * (1.0 + 1e-12), MODULUS).unwrap();
+    let found = measured_flattening(square, LENGTH / 32.0 * (1.0 + 1e-12), MODULUS).unwrap();
     close("whole", found.whole_j_m2, wanted.whole_j_m2, 1e-10);
     close("octave", found.octave_j_m2, wanted.octave_j_m2, 1e-10);
 }
@@ -160,7 +163,10 @@ fn val_the_shortest_wavelength_is_that_of_the_octave_with_curvature() {
             (5.0 * x).cos() + of_15 * (15.0 * x).cos()
         })
     };
-    let shortest = |of_15: f64| shortest_wavelength(waves(of_15).view(), (1.0, true), 1.0 / 16.0).unwrap();
+    let shortest = |of_15: f64| {
+        let heights = waves(of_15);
+        shortest_wavelength(SquareMap { heights_m: heights.view(), length_m: 1.0, edges: Edges::Periodic }, 1.0 / 16.0).unwrap()
+    };
     // Shares of the wave with 15 periods in the mean square Laplacian: 0, 81 a²/(1 + 81 a²) = 0.99 and 0.05; the limit is 0.1.
     assert_eq!(shortest(0.0), 1.0 / 8.0);
     assert_eq!(shortest(1.0), 1.0 / 16.0);

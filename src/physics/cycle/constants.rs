@@ -1,6 +1,6 @@
 //! Limits of a valid cycle.
 
-use super::soundness::{CONVERGED, LARGEST_IMBALANCE, LARGEST_VIOLATION, RESOLUTION};
+use super::soundness::{LARGEST_IMBALANCE, LARGEST_VIOLATION, RESOLUTION};
 use crate::constants::Constant;
 
 /// Limits of both methods.
@@ -10,13 +10,6 @@ pub(crate) const CONSTANTS: &[Constant] = &[
         &[RESOLUTION],
         "`W`",
         "`W` is the largest magnitude of `∫F dΔ` along the loop. Column `loss_uncertainty`.",
-        "soundness",
-    ),
-    Constant::new(
-        "residual of a converged step",
-        &[CONVERGED],
-        "`h_rms`",
-        "Asperity model. A larger `residual_m` makes a step `unconverged`.",
         "soundness",
     ),
     Constant::new(

@@ -1,29 +1,9 @@
 //! Records of a cycle, for every method and in SI units: steps, contacts, events, maps and load reversals.
 
+use super::effort::Effort;
 use crate::LoopError;
-use crate::contact::merged_spot::Merged;
-use crate::contact::problem::Totals;
-use crate::contact::state::State;
 use crate::event_kind::{EventCounts, EventKind, RegionChange};
-use crate::half_space::Effort;
-use crate::model::KeptContacts;
 use serde::{Deserialize, Serialize};
-
-/// Settings of a cycle.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Settings {
-    /// Loads `F/(E* A0)` at the load reversals, ascending.
-    pub max_loads: Vec<f64>,
-    /// Step of mean penetration over the rms height.
-    pub approach_step: f64,
-    /// Selection of the steps at which spots are stored.
-    pub contacts: KeptContacts,
-    /// Interval of mean penetration, in rms heights, between checkpoints.
-    ///
-    /// `None` for a run without checkpoints.
-    /// At a checkpoint the path restarts from the stored state, so that another process can continue it.
-    pub rest_every: Option<f64>,
-}
 
 /// Sense of the path: loading or unloading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -69,7 +49,7 @@ pub struct StepNumerics {
     pub residual_m: Option<f64>,
     /// Largest residual of the global problem before a global solve, since the step before \[m\].
     pub drift_m: Option<f64>,
-    /// Smallest eigenvalue of the tangent, as in [`State::stability`].
+    /// Smallest eigenvalue of the tangent: 0 at a limit point.
     pub stability: Option<f64>,
     /// Root mean square of the residual, relative to the maximum tension.
     pub relative_residual: Option<f64>,
@@ -77,6 +57,15 @@ pub struct StepNumerics {
     pub stiffness_n_m: Option<f64>,
     /// Computational effort since the step before.
     pub effort: Effort,
+}
+
+/// Load and area of a state.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Totals {
+    /// Load F \[N\].
+    pub load_n: f64,
+    /// Area Σπa² \[m²\].
+    pub area_m2: f64,
 }
 
 /// Contact quantities at one step.
@@ -204,6 +193,40 @@ pub struct Map {
     pub pressure_pa: Vec<f32>,
 }
 
+/// A merged spot, which replaces two contact spots.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Merged {
+    /// Parts: asperities of the surface, or merged spots themselves.
+    pub parts: [usize; 2],
+    /// Contact radii of the parts at merging \[m\].
+    pub radii_m: [f64; 2],
+    /// Centre \[m\].
+    pub place_m: [f64; 2],
+    /// Radius of curvature R \[m\].
+    pub radius_m: f64,
+    /// Height relative to the highest asperity \[m\], without the difference fields of other merged contacts.
+    pub height_m: f64,
+    /// Constant of its potential \[J\].
+    pub offset_j: f64,
+    /// Contact radius at which the spot splits \[m\].
+    pub release_m: f64,
+    /// Mean penetration at merging \[m\].
+    pub approach_m: f64,
+}
+
+impl Merged {
+    /// Contact radius of the spot at merging \[m\].
+    #[must_use]
+    pub fn contact_radius_m(&self) -> f64 {
+        self.radii_m[0].hypot(self.radii_m[1])
+    }
+
+    /// This contact at another size of both parts.
+    pub(crate) fn scaled(&self, share: f64) -> Self {
+        Self { radii_m: self.radii_m.map(|a| share * a), ..*self }
+    }
+}
+
 /// Merged spot, its number, and the step at which it was created.
 ///
 /// Numbers follow those of the asperities of the surface. An unloading branch continues the numbers of its load reversal.
@@ -219,7 +242,7 @@ pub struct MergedAt {
 
 /// Results of a cycle, with the states of its method at the load reversals.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Cycle<S = State> {
+pub struct Cycle<S> {
     /// Steps; the number of a step is its index.
     pub steps: Vec<Step>,
     /// Spots at the stored steps.
@@ -261,7 +284,7 @@ impl<S> Cycle<S> {
     }
 }
 
-impl Cycle {
+impl<S> Cycle<S> {
     /// The unloading branch of a cycle with one load reversal, numbered from its first step.
     pub(crate) fn unloading_alone(self) -> Self {
         let loading = self.steps.iter().take_while(|step| step.branch == Branch::Loading).count();
@@ -276,7 +299,7 @@ impl Cycle {
     }
 
     /// Removes the steps from the first one of the unloading from a load on, which is the last branch.
-    pub(super) fn remove_unloading(&mut self, max_load: f64) {
+    pub(crate) fn remove_unloading(&mut self, max_load: f64) {
         let of = |step: &Step| step.max_load == Some(max_load);
         let Some(first) = self.steps.iter().position(of) else { return };
         self.steps.truncate(first);

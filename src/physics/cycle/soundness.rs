@@ -7,15 +7,11 @@
 
 use super::record::{Branch, Cycle, Step};
 use crate::LoopError;
-use crate::path::EquilibriumPath;
 
 /// Numerical resolution of the dissipated energy, relative to the largest work along the loop.
 ///
 /// Θ is the difference of the works of loading and unloading, and each is integrated to about 1e-8.
 pub const RESOLUTION: f64 = 1e-7;
-
-/// Largest residual of an equilibrium of the asperity model, relative to the rms height.
-pub(super) const CONVERGED: f64 = 1e-8;
 
 /// Largest energy-balance error `|Θ − Σ events|` over Θ.
 pub const LARGEST_IMBALANCE: f64 = 0.5;
@@ -24,24 +20,6 @@ pub const LARGEST_IMBALANCE: f64 = 0.5;
 ///
 /// Violations at weak adhesion are 1e-5 to 1e-4, those of a contact near full contact 0.01 to 1.
 pub(super) const LARGEST_VIOLATION: f64 = 1e-3;
-
-/// Refuses a state whose contact area Σπa² exceeds the nominal area A0, or whose largest contact spans the square.
-///
-/// The area of the union of the contacts is smaller than that sum. `load_before_n` is the load \[N\] of the increment before, for the error: that of the
-/// refused state is meaningless.
-///
-/// # Errors
-/// [`LoopError::ExcessArea`].
-pub(crate) fn check_area(path: &EquilibriumPath, load_before_n: f64) -> Result<(), LoopError> {
-    let side = path.problem().length_m;
-    let share = path.totals().area_m2 / (side * side);
-    // NaN is refused as well.
-    if share <= 1.0 && path.state().largest_radius() < 0.5 * side {
-        return Ok(());
-    }
-    // Not −0.
-    Err(LoopError::ExcessArea { approach_m: path.state().approach_m + 0.0, share, load_before_n })
-}
 
 /// Energies of one loop \[J\].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -108,7 +86,7 @@ impl LoopEnergy {
 ///
 /// Its unloading must be the last branch of the cycle so far.
 #[must_use]
-pub fn loop_energy(cycle: &Cycle, k: usize) -> LoopEnergy {
+pub fn loop_energy<S>(cycle: &Cycle<S>, k: usize) -> LoopEnergy {
     let last = cycle.steps.last();
     let is_on_branch = |step: &&Step| step.branch == Branch::Unloading && Some(step.max_load) == last.map(|last| last.max_load);
     let back = cycle.steps.iter().rev().take_while(is_on_branch);
@@ -117,7 +95,7 @@ pub fn loop_energy(cycle: &Cycle, k: usize) -> LoopEnergy {
 }
 
 /// Dissipated energy of the events of the loading path to the `k`-th load reversal \[J\].
-fn loading_events(cycle: &Cycle, k: usize) -> f64 {
+fn loading_events<S>(cycle: &Cycle<S>, k: usize) -> f64 {
     cycle.steps[..=cycle.turning[k].0].iter().map(|step| step.dissipated_j).sum()
 }
 
@@ -125,7 +103,7 @@ fn loading_events(cycle: &Cycle, k: usize) -> f64 {
 ///
 /// # Errors
 /// [`LoopError::NegativeDissipation`] and [`LoopError::EnergyImbalance`].
-pub fn check_energy(cycle: &Cycle, k: usize) -> Result<(), LoopError> {
+pub fn check_energy<S>(cycle: &Cycle<S>, k: usize) -> Result<(), LoopError> {
     let energy = loop_energy(cycle, k);
     let LoopEnergy { loss_j, events_j, work_j } = energy;
     // Without adhesion events are reversed exactly; the events of the loading path are compared with the largest work.

@@ -2,8 +2,8 @@
 
 use super::Elements;
 use crate::PhysicsError;
-use crate::boundary_elements::adhesionless::{FreeStep as GridStep, load_freely};
 use crate::cycle::Cycle;
+use crate::elements::path::adhesionless::{FreeStep as GridStep, load_freely};
 use crate::theory::approximate_jkr::{CurvePoint, adhesive_curve};
 
 /// A step of loading without adhesion.
@@ -28,7 +28,7 @@ impl Elements {
     /// # Errors
     /// Not enough memory.
     pub fn load_without_adhesion<S>(self, cycle: &Cycle<S>) -> Result<Vec<FreeStep>, PhysicsError> {
-        let Self { problem, settings, units, numerics, .. } = self;
+        let Self { problem, settings, units, .. } = self;
         let work_length = problem.law.work();
         let wanted = settings.max_loads.iter().copied().fold(0.0, f64::max);
         let range = -problem.heights.iter().copied().fold(0.0, f64::min);
@@ -39,7 +39,7 @@ impl Elements {
             steps.last().is_some_and(|step| step.approach > farthest) || is_reached()
         };
         let free = problem.without_adhesion();
-        let steps = load_freely(&free, numerics.free_step * settings.step, settings.accuracy, &mut is_enough)?;
+        let steps = load_freely(&free, free.numerics.steps.free_step * settings.step, settings.accuracy, &mut is_enough)?;
         let in_si = |step: &GridStep| FreeStep {
             approach_m: step.approach * units.spacing_m(),
             load_n: step.totals.load * units.load_n(),

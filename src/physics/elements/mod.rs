@@ -1,37 +1,46 @@
 //! Boundary elements of a height map, in SI units: grid, law and settings from a surface, a material and options.
 //!
-//! [`Elements::new`] has what decides on the accuracy of a cycle; [`Elements::run`] loads and unloads. The solver itself is
-//! [`boundary_elements`](crate::boundary_elements), whose lengths are in grid spacings and stresses in E\*; [`Units`] has their values in SI units.
+//! [`Elements::new`] has what decides on the accuracy of a cycle; [`Elements::run`] loads and unloads. The solver itself is in the modules of this folder.
+//! Its lengths are in grid spacings `dx`, stresses in E\*, energies in `E* dx³`; [`Units`] has their values in SI units.
 
+mod constants;
+pub mod equilibrium;
+pub mod events;
 mod free;
+pub mod grid;
+pub mod law;
+pub mod numerics;
 mod options;
+pub mod path;
+pub mod problem;
 mod record;
 mod units;
 
 pub use free::FreeStep;
-pub use options::{Attraction, Numerics, Options, Weak};
+pub use numerics::Numerics;
+pub use options::{Attraction, Options};
 pub use units::Units;
 
-pub(crate) use options::CONSTANTS;
+pub(crate) use constants::CONSTANTS;
 
-use crate::boundary_elements::contact::{Attraction as Rule, Problem};
-use crate::boundary_elements::cycle::{self as grid, Checkpoint, Settings, Turning};
-use crate::boundary_elements::grid::HalfSpace;
-use crate::boundary_elements::law::Law;
-use crate::boundary_elements::minimise::Accuracy;
-use crate::boundary_elements::resample::resample_from;
 use crate::cycle::{Cycle, Method};
 use crate::model::{KeptContacts, Material};
 use crate::surface::HeightMap;
 use crate::surface::modes::mirrored;
 use crate::theory::flattening::measured_flattening;
 use crate::{LoopPosition, PhysicsError};
+use equilibrium::minimise::Accuracy;
+use grid::half_space::HalfSpace;
+use grid::resample::resample_from;
+use law::Law;
 use ndarray::Array2;
+use path::cycle::{self as solver, Checkpoint, Settings, Turning};
+use problem::{Attraction as Rule, Problem};
 
 /// Grid points per shortest wavelength, at least, if [`Options::points`] is 0.
 pub const PER_WAVELENGTH: f64 = 16.0;
-/// Most points along a side of such a grid.
-const MOST_POINTS: f64 = 65_536.0;
+/// Maximum number of points along a side of such a grid.
+const MAX_POINTS: f64 = 65_536.0;
 /// Fields of numbers that the solver needs, its patches included, and those of a load reversal with its maps and checkpoint.
 const FIELDS: usize = 21;
 const FIELDS_OF_REVERSAL: usize = 8;
@@ -45,7 +54,7 @@ pub fn memory_bytes(points: usize, loads: usize) -> usize {
 /// Points along a side of `wavelengths` shortest wavelengths: a power of two with at least 16 per wavelength.
 #[must_use]
 pub fn points_for(wavelengths: f64) -> usize {
-    ((PER_WAVELENGTH * wavelengths).ceil().clamp(1.0, MOST_POINTS) as usize).next_power_of_two()
+    ((PER_WAVELENGTH * wavelengths).ceil().clamp(1.0, MAX_POINTS) as usize).next_power_of_two()
 }
 
 /// Versions of cycles by boundary elements.
@@ -68,7 +77,6 @@ pub struct Elements {
     /// Loads `F/(E* A0)` at the load reversals.
     max_loads: Vec<f64>,
     contacts: KeptContacts,
-    numerics: Numerics,
 }
 
 impl Elements {
@@ -85,18 +93,16 @@ impl Elements {
         let first_m = if is_mirrored { 0.5 * (spacing - pixel) } else { 0.0 };
         let (modulus_pa, rms_height_m) = (material.contact_modulus_pa, map.rms_height_m);
         let units = Units { length_m, points, modulus_pa, rms_height_m, is_mirrored, first_m };
-        let flattening = measured_flattening(map.heights_m, (map.length_m, map.is_periodic), map.shortest_wavelength_m, modulus_pa)?;
+        let flattening = measured_flattening(map.square(), map.shortest_wavelength_m, modulus_pa)?;
         let ratio = flattening.persson_tosatti(material.work_of_adhesion_j_m2);
         let whole = if is_mirrored { mirrored(map.heights_m)? } else { map.heights_m.to_owned() };
         let problem = problem(&units, material, resample_from(whole.view(), points, first_m / pixel)?, options)?;
-        let (contacts, numerics) = (options.contacts, options.numerics.clone());
         Ok(Self {
             problem,
             settings: settings(&units, max_loads, options, ratio),
             units,
             max_loads: max_loads.to_vec(),
-            contacts,
-            numerics,
+            contacts: options.contacts,
         })
     }
 
@@ -113,7 +119,7 @@ impl Elements {
         self
     }
 
-    fn record(&self, cycle: grid::Cycle) -> Cycle<Turning> {
+    fn record(&self, cycle: solver::Cycle) -> Cycle<Turning> {
         let mut record = record::in_si(cycle, &self.max_loads, &self.units);
         if self.contacts == KeptContacts::None {
             record.contacts.clear();
@@ -135,12 +141,12 @@ impl Method for Elements {
         keep: &mut (dyn FnMut(&Checkpoint) + Send),
         progress: &(dyn Fn(LoopPosition) + Sync),
     ) -> Result<Cycle<Turning>, PhysicsError> {
-        let outcome = grid::run(&self.problem, &self.settings, checkpoint, keep, progress);
+        let outcome = solver::run(&self.problem, &self.settings, checkpoint, keep, progress);
         Ok(self.record(outcome.map_err(|error| self.units.end(error))?))
     }
 
     fn unload_from(&self, reversal: usize, state: Turning) -> Result<Cycle<Turning>, PhysicsError> {
-        let cycle = grid::unload_from(&self.problem, &self.settings, reversal, &state).map_err(|error| self.units.end(error))?;
+        let cycle = solver::unload_from(&self.problem, &self.settings, reversal, &state).map_err(|error| self.units.end(error))?;
         Ok(self.record(cycle))
     }
 
@@ -158,13 +164,14 @@ fn problem(units: &Units, material: &Material, heights_m: Array2<f64>, options: 
     heights.iter_mut().for_each(|z| *z = (*z - top) / spacing);
     let (law, attraction) = match options.attraction {
         Attraction::Range { range_m } => (Law::morse(work, range_m / spacing), Rule::Range),
-        Attraction::Bonded { nucleation_m, strength } => {
-            (Law::crack(work), Rule::Bonded { margin: options.numerics.margin, nucleation: nucleation_m / spacing, strength })
-        }
+        Attraction::Bonded { nucleation_m, strength } => (
+            Law::crack(work),
+            Rule::Bonded { margin: options.numerics.equilibrium.bond_margin, nucleation: nucleation_m / spacing, strength },
+        ),
     };
     let half_space = HalfSpace::new(units.points, units.points)?;
     let half_space = if units.is_mirrored { half_space.with_images() } else { half_space };
-    Ok(Problem { half_space, law, heights, attraction })
+    Ok(Problem { half_space, law, heights, attraction, numerics: options.numerics })
 }
 
 /// Settings at a ratio `U_el/Δγ`.
@@ -175,9 +182,13 @@ fn settings(units: &Units, max_loads: &[f64], options: &Options, ratio: f64) -> 
     Settings {
         max_loads: max_loads.iter().map(|load| load * units.all()).collect(),
         step: options.approach_step * units.rms_height_m / units.spacing_m() / steps,
-        jump_tolerance: numerics.jump_tolerance,
+        jump_tolerance: numerics.steps.jump_tolerance,
         halvings: options.halvings,
-        accuracy: Accuracy { rms: residual, largest: numerics.largest_residual * residual, iterations: numerics.iterations },
+        accuracy: Accuracy {
+            rms: residual,
+            largest: numerics.equilibrium.largest_residual * residual,
+            iterations: numerics.equilibrium.iterations,
+        },
         all_regions: options.contacts == KeptContacts::All,
         summits: Vec::new(),
     }

@@ -1,18 +1,15 @@
 //! A cycle of the solver in SI units: the only place, with [`Units`], that has its units.
 
 use super::Units;
-use crate::boundary_elements::contact::Totals as GridTotals;
-use crate::boundary_elements::cycle as grid;
-use crate::boundary_elements::cycle::Turning;
-use crate::boundary_elements::regions::Region;
-use crate::contact::Totals;
-use crate::cycle::{Branch, Contact, Cycle, Event, Map, RegionShape, Site, Step, StepCounts, StepNumerics};
+use super::events::regions::Region;
+use super::path::records::{self, Turning};
+use super::problem::Totals as GridTotals;
+use crate::cycle::{Branch, Contact, Cycle, Effort, Event, Map, RegionShape, Site, Step, StepCounts, StepNumerics, Totals};
 use crate::event_kind::EventCounts;
-use crate::half_space::Effort;
 use std::f64::consts::PI;
 
 /// The cycle in SI units, with loads `F/(E* A0)` at its load reversals.
-pub(super) fn in_si(cycle: grid::Cycle, max_loads: &[f64], units: &Units) -> Cycle<Turning> {
+pub(super) fn in_si(cycle: records::Cycle, max_loads: &[f64], units: &Units) -> Cycle<Turning> {
     let mut counts = vec![EventCounts::default(); cycle.steps.len()];
     for event in &cycle.events {
         counts[event.step].extend([event.kind.kind()]);
@@ -35,7 +32,7 @@ fn totals(of: GridTotals, units: &Units) -> Totals {
     Totals { load_n: of.load * units.load_n(), area_m2: of.contact as f64 * units.area_m2() }
 }
 
-fn step(cycle: &grid::Cycle, at: usize, events: EventCounts, max_loads: &[f64], units: &Units) -> Step {
+fn step(cycle: &records::Cycle, at: usize, events: EventCounts, max_loads: &[f64], units: &Units) -> Step {
     let of = &cycle.steps[at];
     let Totals { load_n, area_m2 } = totals(of.totals, units);
     Step {
@@ -60,7 +57,7 @@ fn step(cycle: &grid::Cycle, at: usize, events: EventCounts, max_loads: &[f64], 
     }
 }
 
-fn event(cycle: &grid::Cycle, number: usize, of: &grid::Event, units: &Units) -> Event {
+fn event(cycle: &records::Cycle, number: usize, of: &records::Event, units: &Units) -> Event {
     Event {
         step: of.step,
         kind: of.kind.kind(),
@@ -87,7 +84,7 @@ fn contact(step: usize, of: &Region, units: &Units) -> Contact {
 }
 
 /// A map of the surface itself, without its mirror images.
-fn map(of: &grid::Map, is_further: bool, units: &Units) -> Map {
+fn map(of: &records::Map, is_further: bool, units: &Units) -> Map {
     let of_the_surface = |field: &[f32], unit: f64| -> Vec<f32> {
         let [all, own] = [units.points, units.own_points()].map(|points| points.div_ceil(of.stride));
         field.chunks(all).take(own).flat_map(|row| &row[..own]).map(|value| (f64::from(*value) * unit) as f32).collect()

@@ -2,6 +2,8 @@
 
 use super::band_limited::BandLimited;
 use super::continuation::{continued, margin};
+use super::edges::Edges;
+use super::height_map::SquareMap;
 use super::summits::{Summit, Summits, apexes, check_points, find_summits};
 use crate::PhysicsError;
 use ndarray::ArrayView2;
@@ -17,18 +19,17 @@ pub(super) const RIDGE: f64 = 1e-3;
 
 /// Summits of a prepared surface, and the number excluded at the edges of a non-periodic one.
 ///
-/// The last argument is whether the surface is periodic, and the number of points per shortest wavelength.
+/// `points` is the number of grid points per shortest wavelength.
 /// Maxima of a plateau or along a ridge that are due to rounding are rejected: one of their principal curvatures is zero or far below the other.
 ///
 /// # Errors
 /// As [`find_summits`].
-pub fn find_measured(
-    heights_m: ArrayView2<'_, f64>,
-    length_m: f64,
-    (periodic, points): (bool, f64),
-) -> Result<(Summits, usize), PhysicsError> {
-    let (mut found, edge) =
-        if periodic { (find_summits(heights_m, length_m, points)?, 0) } else { find_inside(heights_m, length_m, points)? };
+pub fn find_measured(map: SquareMap<'_>, points: f64) -> Result<(Summits, usize), PhysicsError> {
+    let SquareMap { heights_m, length_m, edges } = map;
+    let (mut found, edge) = match edges {
+        Edges::Periodic => (find_summits(heights_m, length_m, points)?, 0),
+        Edges::Open => find_inside(heights_m, length_m, points)?,
+    };
     let (low, high) = heights_m.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), h| (low.min(*h), high.max(*h)));
     let wavenumber = TAU * heights_m.nrows() as f64 / (points * length_m);
     let flat = ROUNDING_OF_RIPPLES * (high - low) * wavenumber * wavenumber;

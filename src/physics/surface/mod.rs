@@ -27,4 +27,4 @@ pub mod texture;
 pub mod tip;
 
 pub(super) use constants::CONSTANTS;
-pub use height_map::HeightMap;
+pub use height_map::{HeightMap, SquareMap};

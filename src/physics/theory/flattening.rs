@@ -3,6 +3,7 @@
 //! If flattening costs less than adhesion gains, the half-space conforms to the roughness and contact spots are no longer separate.
 
 use crate::PhysicsError;
+use crate::surface::SquareMap;
 use crate::surface::continuation::laplacian;
 use crate::surface::edges::Edges;
 use crate::surface::measured::LEAST_CURVATURE_SHARE;
@@ -10,7 +11,6 @@ use crate::surface::modes::Field;
 use crate::surface::periodogram::windowed;
 use crate::surface::spectrum::Spectrum;
 use crate::surface::synthesis::mode_sums;
-use ndarray::ArrayView2;
 use std::f64::consts::{PI, TAU};
 
 /// Elastic energy per nominal area of flattening the roughness of a surface completely.
@@ -78,7 +78,7 @@ pub fn realised_flattening(spectrum: &Spectrum, seed: &[u8; 32], contact_modulus
     Flattening { whole_j_m2: unit * whole, octave_j_m2: unit * octave }
 }
 
-/// Shortest wavelength of heights \[m\] on a square of side L \[m\] after a low-pass filter with a cut-off \[m\].
+/// Shortest wavelength of heights on a square after a low-pass filter with a cut-off \[m\].
 ///
 /// It is the cut-off if the octave above it, with everything below, holds [`LEAST_CURVATURE_SHARE`] of the mean square Laplacian.
 /// A field without such short waves has one that is longer by a power of two.
@@ -86,17 +86,17 @@ pub fn realised_flattening(spectrum: &Spectrum, seed: &[u8; 32], contact_modulus
 ///
 /// # Errors
 /// Too little memory.
-pub fn shortest_wavelength(heights_m: ArrayView2<'_, f64>, (length_m, periodic): (f64, bool), cut_off_m: f64) -> Result<f64, PhysicsError> {
+pub fn shortest_wavelength(map: SquareMap<'_>, cut_off_m: f64) -> Result<f64, PhysicsError> {
+    let SquareMap { heights_m, length_m, edges } = map;
     if !(cut_off_m > 0.0 && cut_off_m.is_finite()) {
         return Ok(cut_off_m);
     }
     let n = heights_m.nrows() as f64;
     // Under the window the leakage of long wavelengths is not multiplied by q⁴.
     let points = (cut_off_m * n / length_m).max(FEWEST_POINTS);
-    let (field, exponent) = if periodic {
-        (Field::of(heights_m, length_m, Edges::Periodic)?, 4)
-    } else {
-        (Field::of(windowed(laplacian(heights_m, points)?.view())?.view(), length_m, Edges::Periodic)?, 0)
+    let (field, exponent) = match edges {
+        Edges::Periodic => (Field::of(heights_m, length_m, Edges::Periodic)?, 4),
+        Edges::Open => (Field::of(windowed(laplacian(heights_m, points)?.view())?.view(), length_m, Edges::Periodic)?, 0),
     };
     let mut shortest = cut_off_m;
     while 2.0 * shortest < length_m {
@@ -113,7 +113,7 @@ pub fn shortest_wavelength(heights_m: ArrayView2<'_, f64>, (length_m, periodic):
 /// Points per cut-off wavelength for which derivatives are defined.
 const FEWEST_POINTS: f64 = 2.5;
 
-/// Flattening energies of heights \[m\] on a square of side L \[m\], with E* \[Pa\].
+/// Flattening energies of heights on a square, with the shortest wavelength \[m\] and E* \[Pa\].
 ///
 /// The shortest octave has all wavelengths of less than two shortest ones.
 /// A field that is not periodic is extended by its mirror images for all of its roughness.
@@ -121,16 +121,12 @@ const FEWEST_POINTS: f64 = 2.5;
 ///
 /// # Errors
 /// Too little memory.
-pub fn measured_flattening(
-    heights_m: ArrayView2<'_, f64>,
-    (length_m, periodic): (f64, bool),
-    shortest_wavelength_m: f64,
-    contact_modulus_pa: f64,
-) -> Result<Flattening, PhysicsError> {
+pub fn measured_flattening(map: SquareMap<'_>, shortest_wavelength_m: f64, contact_modulus_pa: f64) -> Result<Flattening, PhysicsError> {
+    let SquareMap { heights_m, length_m, edges } = map;
     let edge = TAU / shortest_wavelength_m;
     let sums = |field: &Field| field.weighted(|q| [q, if 2.0 * q >= edge { q } else { 0.0 }]);
-    let [whole, mut octave] = sums(&Field::of(heights_m, length_m, Edges::of(periodic))?);
-    if !periodic {
+    let [whole, mut octave] = sums(&Field::of(heights_m, length_m, edges)?);
+    if edges == Edges::Open {
         octave = whole.min(sums(&Field::of(windowed(heights_m)?.view(), length_m, Edges::Periodic)?)[1]);
     }
     Ok(Flattening { whole_j_m2: 0.25 * contact_modulus_pa * whole, octave_j_m2: 0.25 * contact_modulus_pa * octave })

@@ -4,13 +4,13 @@ use super::KEPT_FOR;
 use super::asperities::{MOST_STEPS, OF_ASPERITIES};
 use super::elements::{LONG, OF_POINTS};
 use crate::constants::Constant;
-use crate::physics::asperities::{CHECKPOINT_INTERVAL, CHECKPOINTS_FROM};
+use crate::physics::asperities::numerics::Steps;
 
 /// Constants of cycles.
 pub(in crate::stages) const CONSTANTS: &[Constant] = &[
     Constant::new(
         "asperities of a cycle with checkpoints",
-        &[CHECKPOINTS_FROM as f64],
+        &[Steps::DEFAULT.checkpoints_from as f64],
         "",
         "Minimum number, asperity model. Boundary elements always have checkpoints.",
         "asperities",
@@ -18,7 +18,7 @@ pub(in crate::stages) const CONSTANTS: &[Constant] = &[
     Constant::new("time between checkpoints", &[KEPT_FOR.as_secs() as f64], "s", "Minimum.", ""),
     Constant::new(
         "restarts of a path with checkpoints",
-        &[CHECKPOINT_INTERVAL],
+        &[Steps::DEFAULT.checkpoint_interval],
         "`h_rms`",
         "Interval of the mean penetration, so that a path from a checkpoint has the same bytes.",
         "asperities",

@@ -5,9 +5,9 @@
 //! `K0 = sqrt(2E*Δγ)` equilibrium has `b (½ q + κ) = ½ ε sqrt(q E*/Δγ)`.
 
 use super::{BONDED, accuracy, problem, settle};
-use hysteron::physics::boundary_elements::contact::{Problem, State};
-use hysteron::physics::boundary_elements::law::Law;
-use hysteron::physics::boundary_elements::minimise::Minimiser;
+use hysteron::physics::elements::equilibrium::minimise::Minimiser;
+use hysteron::physics::elements::law::Law;
+use hysteron::physics::elements::problem::{Problem, State};
 use std::f64::consts::{PI, TAU};
 
 const COLUMNS: usize = 512;

@@ -5,9 +5,9 @@
 
 use super::{BONDED, problem, settings, sums};
 use crate::support::close;
-use hysteron::physics::boundary_elements::contact::{Attraction, Problem};
-use hysteron::physics::boundary_elements::cycle::{Cycle, run};
-use hysteron::physics::boundary_elements::law::Law;
+use hysteron::physics::elements::law::Law;
+use hysteron::physics::elements::path::cycle::{Cycle, run};
+use hysteron::physics::elements::problem::{Attraction, Problem};
 use std::f64::consts::TAU;
 
 /// Five waves with fixed phases, heights and places in sides of the square.

@@ -4,8 +4,8 @@
 //! lengths in wavelengths λ, heights in h of the profile `2h sin²`, and loads in `πE*h/λ`.
 
 use super::{BONDED, cycle, problem, sums};
-use hysteron::physics::boundary_elements::contact::Attraction;
-use hysteron::physics::boundary_elements::law::Law;
+use hysteron::physics::elements::law::Law;
+use hysteron::physics::elements::problem::Attraction;
 use std::f64::consts::{PI, TAU};
 
 /// Height of the sinusoid over its wavelength.

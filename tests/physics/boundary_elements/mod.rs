@@ -10,11 +10,12 @@ mod rough;
 mod sphere;
 mod trapping;
 
-use hysteron::physics::boundary_elements::contact::{Attraction, Nucleation, Problem, State, Totals};
-use hysteron::physics::boundary_elements::cycle::{Cycle, Settings, run};
-use hysteron::physics::boundary_elements::grid::HalfSpace;
-use hysteron::physics::boundary_elements::law::Law;
-use hysteron::physics::boundary_elements::minimise::{Accuracy, Outcome};
+use hysteron::physics::elements::Numerics;
+use hysteron::physics::elements::equilibrium::minimise::{Accuracy, Outcome};
+use hysteron::physics::elements::grid::half_space::HalfSpace;
+use hysteron::physics::elements::law::Law;
+use hysteron::physics::elements::path::cycle::{Cycle, Settings, run};
+use hysteron::physics::elements::problem::{Attraction, Nucleation, Problem, State, Totals};
 
 /// The JKR limit: bonds within two points of contact, formed by touch.
 const BONDED: Attraction = Attraction::Bonded { margin: 2, nucleation: 0.0, strength: f64::INFINITY };
@@ -28,7 +29,7 @@ fn problem(rows: usize, columns: usize, heights: impl Fn(usize, usize) -> f64, l
     let mut heights: Vec<f64> = (0..rows * columns).map(|k| heights(k / columns, k % columns)).collect();
     let top = heights.iter().copied().fold(f64::MIN, f64::max);
     heights.iter_mut().for_each(|z| *z -= top);
-    Problem { half_space: HalfSpace::new(rows, columns).unwrap(), law, heights, attraction }
+    Problem { half_space: HalfSpace::new(rows, columns).unwrap(), law, heights, attraction, numerics: Numerics::DEFAULT }
 }
 
 /// The equilibrium that `find` leads to, with all contacts that form there.

@@ -1,10 +1,10 @@
 //! The elastic operator, the law and the gradient of the energy.
 
 use super::{BONDED, problem};
-use hysteron::physics::boundary_elements::contact::Bonding;
-use hysteron::physics::boundary_elements::grid::{HalfSpace, Operator};
-use hysteron::physics::boundary_elements::law::Law;
-use hysteron::physics::boundary_elements::work::{OnLoop, Work, least_between, work_between};
+use hysteron::physics::elements::events::work::{OnLoop, Work, least_between, work_between};
+use hysteron::physics::elements::grid::half_space::{HalfSpace, Operator};
+use hysteron::physics::elements::law::Law;
+use hysteron::physics::elements::problem::Bonding;
 use std::f64::consts::{PI, TAU};
 
 /// A plane wave `u = cos q·x` needs the pressure `|q|/2 u`, in both directions and obliquely, on square and oblong grids. Rounding only.

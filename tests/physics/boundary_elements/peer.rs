@@ -2,9 +2,9 @@
 
 use super::{accuracy, problem};
 use crate::reference::table;
-use hysteron::physics::boundary_elements::contact::Attraction;
-use hysteron::physics::boundary_elements::law::Law;
-use hysteron::physics::boundary_elements::minimise::Minimiser;
+use hysteron::physics::elements::equilibrium::minimise::Minimiser;
+use hysteron::physics::elements::law::Law;
+use hysteron::physics::elements::problem::Attraction;
 use std::f64::consts::TAU;
 
 /// The heights of tests/reference/adhesion.py.

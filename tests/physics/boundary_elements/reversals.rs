@@ -1,9 +1,9 @@
 //! Several load reversals of one path: they do not change one another, full contact is one of them, and a load that has no result leaves the others.
 
 use super::{BONDED, problem, settings};
-use hysteron::physics::boundary_elements::contact::{Attraction, Problem};
-use hysteron::physics::boundary_elements::cycle::{Cycle, Step, run};
-use hysteron::physics::boundary_elements::law::Law;
+use hysteron::physics::elements::law::Law;
+use hysteron::physics::elements::path::cycle::{Cycle, Step, run};
+use hysteron::physics::elements::problem::{Attraction, Problem};
 use hysteron::physics::{LoopError, PhysicsError};
 use std::f64::consts::TAU;
 

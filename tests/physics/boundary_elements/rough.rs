@@ -1,12 +1,12 @@
 //! A rough surface: energy balance, threads, shifts.
 
 use super::{BONDED, cycle, problem, settings, settle, sums};
-use hysteron::physics::boundary_elements::contact::Totals;
-use hysteron::physics::boundary_elements::cycle::{Settings, run, unload_from};
-use hysteron::physics::boundary_elements::equilibrium::Equilibrium;
-use hysteron::physics::boundary_elements::law::Law;
-use hysteron::physics::boundary_elements::minimise::Minimiser;
-use hysteron::physics::boundary_elements::patch::Patches;
+use hysteron::physics::elements::equilibrium::Equilibrium;
+use hysteron::physics::elements::equilibrium::minimise::Minimiser;
+use hysteron::physics::elements::equilibrium::patch::Patches;
+use hysteron::physics::elements::law::Law;
+use hysteron::physics::elements::path::cycle::{Settings, run, unload_from};
+use hysteron::physics::elements::problem::Totals;
 use std::f64::consts::TAU;
 
 /// Five waves with fixed phases, in spacings.

@@ -1,8 +1,8 @@
 //! One sphere in a periodic square against JKR, and without adhesion against Hertz.
 
 use super::{BONDED, cycle, problem, sums};
-use hysteron::physics::boundary_elements::contact::Attraction;
-use hysteron::physics::boundary_elements::law::Law;
+use hysteron::physics::elements::law::Law;
+use hysteron::physics::elements::problem::Attraction;
 use std::f64::consts::PI;
 
 /// Mean displacement under the images of a periodic square with a self-balanced load, `Δ = δ − 3.900265 F/(πE*L)`.

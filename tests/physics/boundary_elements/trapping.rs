@@ -1,9 +1,9 @@
 //! Lattice trapping: a straight front that moves on and back loses no energy.
 
 use super::{BONDED, problem, settle};
-use hysteron::physics::boundary_elements::contact::{Problem, State};
-use hysteron::physics::boundary_elements::law::Law;
-use hysteron::physics::boundary_elements::minimise::{Accuracy, Minimiser};
+use hysteron::physics::elements::equilibrium::minimise::{Accuracy, Minimiser};
+use hysteron::physics::elements::law::Law;
+use hysteron::physics::elements::problem::{Problem, State};
 use std::f64::consts::{PI, TAU};
 
 const ALPHA: f64 = 0.3;

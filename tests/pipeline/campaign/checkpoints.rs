@@ -5,8 +5,9 @@ use crate::bench::{Bench, code, files, stderr};
 use hysteron::campaign::{Campaign, CycleUnit};
 use hysteron::model::Slips;
 use hysteron::physics::EventKind;
-use hysteron::physics::contact::{Problem, Rules};
-use hysteron::physics::cycle::{Checkpoint, Settings, run_from};
+use hysteron::physics::asperities::contact::{Problem, Rules};
+use hysteron::physics::asperities::{Asperities, Checkpoint, Settings};
+use hysteron::physics::cycle::Method;
 use hysteron::physics::surface::summits::Summit;
 use hysteron::schema::{ASPERITIES, EVENT_KINDS, EVENTS, STEPS};
 use hysteron::spec::Spec;
@@ -47,7 +48,7 @@ fn checkpoint(campaign: &Campaign, unit: &CycleUnit) -> Vec<u8> {
     let settings = Settings { max_loads, approach_step, contacts: params.cycle.contacts, rest_every: Some(0.1) };
     let mut kept = Vec::new();
     let mut keep = |checkpoint: &Checkpoint| kept.push(postcard::to_stdvec(checkpoint).unwrap());
-    run_from(&problem, &settings, None, &mut keep, &|_| {}).unwrap();
+    Asperities { problem, settings }.run_from(None, &mut keep, &|_| {}).unwrap();
     kept.swap_remove(kept.len() / 2)
 }
 

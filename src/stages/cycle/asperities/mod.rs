@@ -16,10 +16,10 @@ use super::super::surface::{Scale, scale};
 use super::{Computed, CycleTask};
 use crate::campaign::{Campaign, CycleUnit};
 use crate::model::AsperityOptions;
+use crate::physics::asperities::contact::rows::Kept;
+use crate::physics::asperities::contact::{Problem, Rules, State, Status};
 use crate::physics::asperities::{Asperities, Options};
-use crate::physics::contact::rows::Kept;
-use crate::physics::contact::{Merged, Problem, Rules, State, Status};
-use crate::physics::cycle::{Cycle, Method};
+use crate::physics::cycle::{Cycle, Merged, Method};
 use crate::physics::surface::summits::Summit;
 use crate::schema;
 use crate::spec::CaseParams;
@@ -51,7 +51,7 @@ fn method(of: Of<'_>, scale: Scale, summits: &[Summit], max_loads: &[f64]) -> Re
         allow_low_tabor: options.allow_low_tabor,
         slips: params.slips(),
     };
-    let options = Options { rules, approach_step: options.approach_step, contacts: params.cycle.contacts };
+    let options = Options { rules, approach_step: options.approach_step, contacts: params.cycle.contacts, ..Options::default() };
     Ok(Asperities::of_summits(summits, scale.length_m, scale.rms_height_m, &params.material, max_loads, &options)?)
 }
 
@@ -145,7 +145,7 @@ fn merged_rows(path: &Path, count: usize) -> Result<Vec<Merged>, StageError> {
     Ok((0..count.min(frame.row_count())).map(row).collect())
 }
 
-fn turning(of: Identity<'_>, cycle: &Cycle, problem: &Problem, loads: &[f64]) -> Result<Frame, StageError> {
+fn turning(of: Identity<'_>, cycle: &Cycle<State>, problem: &Problem, loads: &[f64]) -> Result<Frame, StageError> {
     let states = loads.iter().zip(&cycle.turning);
     let rows: Vec<(f64, f64, Kept, usize)> = states
         .flat_map(|(load, (_, state))| state.kept(problem).into_iter().map(|kept| (*load, state.approach_m, kept, state.merged.len())))
@@ -179,7 +179,7 @@ fn word(status: Status) -> &'static str {
     }
 }
 
-fn merged(of: Identity<'_>, cycle: &Cycle) -> Result<Frame, StageError> {
+fn merged(of: Identity<'_>, cycle: &Cycle<State>) -> Result<Frame, StageError> {
     let spots = &cycle.merged;
     let step = |k: usize| &cycle.steps[k];
     let each = |value: fn(&Merged) -> f64| spots.iter().map(move |s| value(&s.spot));

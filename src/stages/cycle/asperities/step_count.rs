@@ -1,7 +1,7 @@
 //! Number of steps of a cycle, estimated before it begins.
 
 use super::Of;
-use crate::physics::contact::Problem;
+use crate::physics::asperities::contact::Problem;
 use crate::physics::surface::summits::Summit;
 use crate::stages::StageError;
 

@@ -1,0 +1,31 @@
+//! Constants of contacts and of the rules for contacts that meet.
+
+use super::merging::MAX_TENSILE_LOAD;
+use super::problem::DEEPEST_JUMP_IN;
+use super::transition::BEFORE_CENTRE;
+use crate::constants::Constant;
+
+/// Constants of contacts.
+pub(crate) const CONSTANTS: &[Constant] = &[
+    Constant::new(
+        "distance of absorption",
+        &[BEFORE_CENTRE],
+        "of the radius",
+        "A contact absorbs an asperity at this distance from its edge, where the slope of its field is still finite.",
+        "transition",
+    ),
+    Constant::new(
+        "tensile force of a merged contact",
+        &[MAX_TENSILE_LOAD],
+        "`sqrt(8πE*Δγa³)`",
+        "A pair with a larger tensile force does not merge. The branch of the merged contact ends at 5/6.",
+        "merging",
+    ),
+    Constant::new(
+        "largest magnitude of Wu's `δ_in`",
+        &[DEEPEST_JUMP_IN],
+        "`δ_off`",
+        "Wu's criterion is not used beyond this penetration.",
+        "problem",
+    ),
+];

@@ -1,0 +1,183 @@
+//! Choice of summation method: direct for few contact spots, fast for many.
+//!
+//! Both give the same field, so the choice may change along a path.
+
+use super::spot_field::Spot;
+use super::{DirectSum, FastSum, Interaction, PairTable, PointLoad, Spots, Tangent};
+use crate::cycle::Effort;
+use crate::model::{Boundary, Interaction as Kind, Material, Slips};
+
+/// Numbers of contact spots above which the fast sum is faster: with periodic images, with a table of their sums, and without images.
+///
+/// Measured for the linearisations of one solution and the products that follow them.
+/// Without images a pair costs less and the mesh more.
+pub(super) const FAST_FROM_PERIODIC: usize = 70;
+pub(super) const FAST_FROM_TABLE: usize = 100;
+pub(super) const FAST_FROM_ISOLATED: usize = 400;
+
+/// Number of asperities from which the fast sum is set up.
+pub(super) const MIN_ASPERITIES: usize = 300;
+
+/// Errors of the fast sum relative to the largest displacement.
+///
+/// `TOLERANCE` is for equilibria, `ROUGH_TOLERANCE` for intermediate solutions.
+pub(super) const TOLERANCE: f64 = 1e-8;
+pub(super) const ROUGH_TOLERANCE: f64 = 1e-6;
+
+/// Precision of equilibria where all sums are direct.
+pub(super) const DIRECT_TOLERANCE: f64 = 1e-10;
+
+/// Displacement field of asperities at `positions` \[m\] on the square of side `length_m`.
+///
+/// The number of spots in contact selects the faster summation method.
+#[must_use]
+pub fn choose(positions: Vec<[f64; 2]>, length_m: f64, material: &Material, kind: Kind, boundary: Boundary, slips: Slips) -> FieldSum {
+    let many = positions.len() >= MIN_ASPERITIES && matches!(kind, Kind::Spots | Kind::Point);
+    let to = |tolerance| FastSum::new(positions.clone(), length_m, material, kind, boundary, slips, tolerance);
+    let fast = many.then(|| PerPrecision { full: to(TOLERANCE), rough: to(ROUGH_TOLERANCE) });
+    let many = if boundary == Boundary::Periodic { FAST_FROM_PERIODIC } else { FAST_FROM_ISOLATED };
+    let full = DirectSum::new(positions, length_m, material, kind, boundary, slips);
+    let rough = full.to_six_digits();
+    FieldSum { direct: PerPrecision { full, rough }, fast, many }
+}
+
+/// Precision of a sum over contacts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SumPrecision {
+    /// That of an equilibrium: a direct sum is exact.
+    Full,
+    /// Six digits, for intermediate solutions.
+    Rough,
+}
+
+/// A method of summation in both precisions.
+#[derive(Debug, Clone)]
+struct PerPrecision<T> {
+    full: T,
+    rough: T,
+}
+
+impl<T> PerPrecision<T> {
+    fn of(&self, precision: SumPrecision) -> &T {
+        match precision {
+            SumPrecision::Full => &self.full,
+            SumPrecision::Rough => &self.rough,
+        }
+    }
+}
+
+/// The direct sum, and the fast sum if there are enough asperities.
+#[derive(Debug, Clone)]
+pub struct FieldSum {
+    direct: PerPrecision<DirectSum>,
+    fast: Option<PerPrecision<FastSum>>,
+    /// Number of contact spots from which the fast sum is used.
+    many: usize,
+}
+
+impl FieldSum {
+    /// Precision to which equilibria can be solved: displacements in units of the largest one, or of the rms height, which is as large.
+    pub(crate) fn precision(&self) -> f64 {
+        if self.fast.is_some() { TOLERANCE } else { DIRECT_TOLERANCE }
+    }
+
+    /// Sum for targets that are the spots themselves.
+    ///
+    /// [`SumPrecision::Rough`] allows an error of 1e-6 if the fast sum is used; the direct sum is exact.
+    pub(crate) fn for_spots(&self, spots: &Spots, precision: SumPrecision) -> &dyn Interaction {
+        match &self.fast {
+            Some(fast) if spots.columns.len() >= self.many => fast.of(precision),
+            _ => &self.direct.full,
+        }
+    }
+
+    /// Sum for other targets; with few targets the direct sum is cheaper than a mesh.
+    pub(crate) fn for_targets(&self, spots: &Spots, targets: &[usize], precision: SumPrecision) -> &dyn Interaction {
+        if targets.len() < self.many / 2 { self.direct.of(precision) } else { self.for_spots(spots, precision) }
+    }
+
+    /// Displacements and derivatives among the spots by direct sums, see [`DirectSum::among`].
+    pub(crate) fn among(&self, spots: &Spots, table: &mut PairTable, fields: &mut Vec<f64>, slopes: &mut Vec<f64>, effort: &mut Effort) {
+        self.direct.full.among(spots, table, fields, slopes, effort);
+    }
+
+    /// Tabulates the image sums of all pairs if there are few enough asperities.
+    ///
+    /// Adding an asperity discards the table.
+    #[must_use]
+    pub fn with_table(self) -> Self {
+        let PerPrecision { full, rough } = self.direct;
+        let full = full.with_table();
+        let many = if full.has_table() { FAST_FROM_TABLE } else { self.many };
+        Self { direct: PerPrecision { full, rough }, many, ..self }
+    }
+
+    /// Sets the number of spots from which the fast sum is used.
+    pub(crate) fn fast_from(self, many: usize) -> Self {
+        Self { many, ..self }
+    }
+
+    /// Adds an asperity at `place` \[m\]; it gets the next number.
+    pub(crate) fn add(&mut self, place: [f64; 2]) {
+        self.direct.full.add(place);
+        self.direct.rough.add(place);
+        if let Some(fast) = &mut self.fast {
+            fast.full.add(place);
+            fast.rough.add(place);
+        }
+    }
+
+    /// Displacements by few spots at many targets, see [`DirectSum::at_many`].
+    pub(crate) fn at_many(&self, spots: &[(f64, Spot)], targets: impl Iterator<Item = usize>) -> Vec<f64> {
+        self.direct.full.at_many(spots, targets)
+    }
+
+    /// Displacement at a target by spots that are added or subtracted, see [`DirectSum::at_one`].
+    pub(crate) fn at_one(&self, spots: &[(f64, Spot)], target: usize) -> f64 {
+        self.direct.full.at_one(spots, target)
+    }
+
+    /// Displacements and derivatives at targets by direct sums, see [`DirectSum::rows`]. Rough sums have six digits of the image sums.
+    pub(crate) fn rows(
+        &self,
+        spots: &Spots,
+        targets: &[usize],
+        precision: SumPrecision,
+        effort: &mut Effort,
+        visit: impl FnMut(usize, f64, &[f64]),
+    ) {
+        self.direct.of(precision).rows(spots, targets, effort, visit);
+    }
+
+    /// Displacements far from a load, see [`DirectSum::far_from_load`].
+    pub(crate) fn far_from_load(&self, load: f64, place: &[f64; 2], reach: f64, targets: &[usize]) -> Vec<f64> {
+        self.direct.rough.far_from_load(load, place, reach, targets)
+    }
+
+    /// Displacements by loads next to one another, see [`DirectSum::of_loads`].
+    pub(crate) fn of_loads(&self, loads: &[PointLoad], centre: &[f64; 2], targets: &[usize]) -> Vec<f64> {
+        self.direct.rough.of_loads(loads, centre, targets)
+    }
+}
+
+impl Interaction for FieldSum {
+    fn displacements(&self, spots: &Spots, targets: &[usize], displacements: &mut Vec<f64>, effort: &mut Effort) {
+        self.for_targets(spots, targets, SumPrecision::Full).displacements(spots, targets, displacements, effort);
+    }
+
+    fn linearise(&self, spots: &Spots, displacements: &mut Vec<f64>, tangent: &mut Tangent, effort: &mut Effort) {
+        self.for_spots(spots, SumPrecision::Full).linearise(spots, displacements, tangent, effort);
+    }
+
+    fn approach(
+        &self,
+        spots: &Spots,
+        rates: &[f64],
+        targets: &[usize],
+        found: [&mut Vec<f64>; 2],
+        kept: &mut Tangent,
+        effort: &mut Effort,
+    ) {
+        self.for_targets(spots, targets, SumPrecision::Full).approach(spots, rates, targets, found, kept, effort);
+    }
+}

@@ -1,0 +1,245 @@
+//! Recording of a branch: steps at grid points and load reversals, and events.
+
+use super::contact::event::Event as PathEvent;
+use super::contact::problem::Problem;
+use super::contact::state::{State, Status};
+use super::path::EquilibriumPath;
+use super::settings::{Cycle, Settings};
+use crate::PhysicsError;
+use crate::cycle::{Branch, Contact, Effort, Event, MergedAt, Site, Step, StepCounts, StepNumerics};
+use crate::model::KeptContacts;
+use serde::{Deserialize, Serialize};
+
+/// Reason for which a step is recorded.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum StepReason {
+    /// A point of the grid of mean penetrations, or the beginning or end of a branch.
+    GridPoint,
+    /// A load reversal.
+    Reversal,
+}
+
+/// Records the steps of one branch.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(crate) struct Recorder {
+    branch: Branch,
+    max_load: Option<f64>,
+    /// Number of the last grid point in the sense of the path; true after the first record.
+    number: f64,
+    begun: bool,
+    events_before: usize,
+    ways_before: usize,
+    merged_before: usize,
+    effort_before: Effort,
+    /// Load of the last record \[N\]; most negative load of all records, with its spots.
+    load_before: Option<f64>,
+    pulled: Option<(f64, Vec<Contact>)>,
+}
+
+impl Recorder {
+    /// Recorder of a branch that begins at grid point `number`, or between it and the next.
+    ///
+    /// `merged_before` is the number of merged spots at the beginning.
+    pub(crate) fn new(branch: Branch, max_load: Option<f64>, number: f64, merged_before: usize) -> Self {
+        let effort_before = Effort::default();
+        Self {
+            branch,
+            max_load,
+            number,
+            begun: false,
+            events_before: 0,
+            ways_before: 0,
+            merged_before,
+            effort_before,
+            load_before: None,
+            pulled: None,
+        }
+    }
+
+    /// True if events have happened since the last record.
+    pub(crate) fn lacks_events(&self, path: &EquilibriumPath) -> bool {
+        self.events_before < path.log().events.len()
+    }
+
+    /// Records the beginning, and the grid points passed in the last increment.
+    pub(crate) fn grid_points(&mut self, settings: &Settings, path: &mut EquilibriumPath, cycle: &mut Cycle) -> Result<(), PhysicsError> {
+        let end = path.state().approach_m;
+        self.grid_points_until(end, settings, path, cycle)
+    }
+
+    fn grid_points_until(
+        &mut self,
+        end: f64,
+        settings: &Settings,
+        path: &mut EquilibriumPath,
+        cycle: &mut Cycle,
+    ) -> Result<(), PhysicsError> {
+        if !std::mem::replace(&mut self.begun, true) {
+            self.record(settings, path, None, cycle, StepReason::GridPoint);
+        }
+        let spacing = settings.grid(&path.problem());
+        loop {
+            let next = (self.number + 1.0) * path.sense() * spacing;
+            if (next - end) * path.sense() > 1e-9 * spacing {
+                return Ok(());
+            }
+            self.number += 1.0;
+            if path.is_exact() && (next - path.state().approach_m).abs() <= 1e-9 * spacing {
+                self.record(settings, path, None, cycle, StepReason::GridPoint);
+            } else {
+                let excursion = path.excursion(next)?;
+                path.add_effort(excursion.effort());
+                self.record(settings, path, Some(&excursion), cycle, StepReason::GridPoint);
+            }
+        }
+    }
+
+    /// True if the load has passed half of a maximum load since the last record, or zero during unloading.
+    fn passes_landmark(&self, settings: &Settings, problem: &Problem, load: f64) -> bool {
+        let Some(before) = self.load_before else { return false };
+        match self.branch {
+            Branch::Loading => settings.max_loads.iter().any(|most| (before..load).contains(&(0.5 * most * problem.load_unit_n()))),
+            Branch::Unloading => before > 0.0 && load <= 0.0,
+        }
+    }
+
+    /// Ends the branch and keeps the spots at its maximum tensile load.
+    pub(crate) fn end(self, cycle: &mut Cycle) {
+        cycle.contacts.extend(self.pulled.map(|pulled| pulled.1).unwrap_or_default());
+    }
+
+    /// Records a load reversal, at the path or at an excursion from it, and the grid points before it.
+    pub(crate) fn turn(
+        &mut self,
+        settings: &Settings,
+        path: &mut EquilibriumPath,
+        excursion: Option<&EquilibriumPath>,
+        cycle: &mut Cycle,
+    ) -> Result<(), PhysicsError> {
+        let state = excursion.map_or_else(|| path.state().clone(), |at| at.state().clone());
+        self.grid_points_until(state.approach_m, settings, path, cycle)?;
+        self.record(settings, path, excursion, cycle, StepReason::Reversal);
+        cycle.turning.push((cycle.steps.len() - 1, state));
+        Ok(())
+    }
+
+    /// Records the state of the path, or that of an excursion from it.
+    pub(crate) fn record(
+        &mut self,
+        settings: &Settings,
+        path: &mut EquilibriumPath,
+        excursion: Option<&EquilibriumPath>,
+        cycle: &mut Cycle,
+        reason: StepReason,
+    ) {
+        let number = cycle.steps.len();
+        let at = excursion.unwrap_or(path);
+        let problem = &*at.problem();
+        let state = at.state();
+        let passed = |approach: f64| excursion.is_none() || (approach - state.approach_m) * path.sense() <= 0.0;
+        let recent: Vec<PathEvent> =
+            path.log().events[self.events_before..].iter().take_while(|event| passed(event.approach_m)).copied().collect();
+        let ways: Vec<f64> =
+            path.log().segments[self.ways_before..].iter().take_while(|way| passed(way.approach)).map(|way| way.least).collect();
+        let effort = path.effort();
+        cycle.steps.push(Step {
+            branch: self.branch,
+            max_load: self.max_load,
+            approach_m: state.approach_m,
+            load_n: at.totals().load_n,
+            least_load_n: ways.iter().copied().fold(at.totals().load_n, f64::min),
+            area_m2: at.totals().area_m2,
+            area_union_m2: super::contact::union_area::area(problem, state),
+            counts: counts(at, &recent),
+            dissipated_j: recent.iter().map(|event| event.energy_lost_j).sum(),
+            work_j: at.log().work_j,
+            numerics: StepNumerics {
+                is_converged: state.residual_m <= problem.numerics.solver.converged_residual * problem.rms_height_m,
+                residual_m: Some(state.residual_m),
+                drift_m: Some(path.log().drift_m),
+                stability: Some(state.stability),
+                effort: effort - self.effort_before,
+                ..StepNumerics::default()
+            },
+        });
+        self.events_before += recent.len();
+        self.ways_before += ways.len();
+        self.effort_before = effort;
+        cycle.events.extend(recent.into_iter().map(|event| {
+            let PathEvent { kind, asperity, approach_m, avalanche, before, after, energy_lost_j } = event;
+            let site = Site::Asperity(problem.number(asperity));
+            Event { step: number, kind, site, approach_m, avalanche, before, after, energy_lost_j }
+        }));
+        let keep = match settings.contacts {
+            KeptContacts::All => true,
+            KeptContacts::Turning => reason == StepReason::Reversal || self.passes_landmark(settings, problem, at.totals().load_n),
+            KeptContacts::None => false,
+        };
+        if keep {
+            cycle.contacts.extend(spots_of(problem, state, number));
+        }
+        let load = at.totals().load_n;
+        let pulls = load < self.pulled.as_ref().map_or(0.0, |pulled| pulled.0);
+        if settings.contacts == KeptContacts::Turning && self.branch == Branch::Unloading && pulls {
+            // The spots of a kept step are stored already.
+            self.pulled = Some((load, if keep { Vec::new() } else { spots_of(problem, state, number) }));
+        }
+        self.load_before = Some(load);
+        let merged = state.merged.iter().enumerate().skip(self.merged_before);
+        cycle.merged.extend(merged.map(|(k, spot)| MergedAt {
+            step: number,
+            asperity: problem.summits() + k,
+            spot: problem.outward(spot),
+        }));
+        self.merged_before = state.merged.len();
+        path.begin_record();
+    }
+}
+
+/// Numbers of contacts, and of the events since the step before.
+fn counts(at: &EquilibriumPath, recent: &[PathEvent]) -> StepCounts {
+    let state = at.state();
+    StepCounts {
+        contacts: state.contacts.len(),
+        covered: state.covered_count(),
+        touching: overlapping_count(&at.problem(), state),
+        held: at.frozen_count(),
+        events: recent.iter().map(|event| event.kind).collect(),
+    }
+}
+
+/// Number of spots that overlap another one.
+fn overlapping_count(problem: &Problem, state: &State) -> usize {
+    let largest = state.largest_radius();
+    let touches = |i: usize| {
+        let a = state.radius[i];
+        let mut found = false;
+        problem.neighbours.within(i, a + largest, |r, j| found |= state.radius[j] > 0.0 && r < a + state.radius[j]);
+        found
+    };
+    state.contacts.iter().filter(|i| touches(**i)).count()
+}
+
+fn spots_of(problem: &Problem, state: &State, step: usize) -> Vec<Contact> {
+    let mut spots: Vec<Contact> = state
+        .contacts
+        .iter()
+        .zip(&state.displacement)
+        .map(|(&i, w)| {
+            let (asperity, a) = (&problem.asperities[i], state.radius[i]);
+            Contact {
+                step,
+                asperity: Some(problem.number(i)),
+                contact_radius_m: a,
+                load_n: asperity.load(a),
+                penetration_m: Some(asperity.penetration(a)),
+                interaction_m: Some(*w),
+                ..Contact::default()
+            }
+        })
+        .collect();
+    let covered = state.status.iter().enumerate().filter(|(_, status)| matches!(status, Status::Covered { .. }));
+    spots.extend(covered.map(|(i, _)| Contact { step, asperity: Some(problem.number(i)), covered: true, ..Contact::default() }));
+    spots.sort_by_key(|spot| spot.asperity);
+    spots
+}

@@ -1,0 +1,5 @@
+//! Regular grid: response of the half-space by Fourier transforms, deterministic sums, resampling.
+
+pub mod half_space;
+pub mod resample;
+pub(crate) mod sums;
