@@ -60,16 +60,16 @@ impl EventKind {
         words
     };
 
-    /// Word, name and group.
-    const fn row(self) -> (&'static str, &'static str, EventGroup) {
+    /// Word, name, group and inverse.
+    const fn row(self) -> (&'static str, &'static str, EventGroup, Self) {
         match self {
-            Self::JumpIn => ("jump_in", "jump into contact", EventGroup::Jump),
-            Self::JumpOff => ("jump_off", "jump out of contact", EventGroup::Jump),
-            Self::Cover => ("cover", "absorption", EventGroup::Absorption),
-            Self::Uncover => ("uncover", "release", EventGroup::Absorption),
-            Self::Snap => ("snap", "snap-through", EventGroup::Snap),
-            Self::Merge => ("merge", "merging", EventGroup::Merging),
-            Self::Split => ("split", "splitting", EventGroup::Merging),
+            Self::JumpIn => ("jump_in", "jump into contact", EventGroup::Jump, Self::JumpOff),
+            Self::JumpOff => ("jump_off", "jump out of contact", EventGroup::Jump, Self::JumpIn),
+            Self::Cover => ("cover", "absorption", EventGroup::Absorption, Self::Uncover),
+            Self::Uncover => ("uncover", "release", EventGroup::Absorption, Self::Cover),
+            Self::Snap => ("snap", "snap-through", EventGroup::Snap, Self::Snap),
+            Self::Merge => ("merge", "merging", EventGroup::Merging, Self::Split),
+            Self::Split => ("split", "splitting", EventGroup::Merging, Self::Merge),
         }
     }
 
@@ -94,20 +94,50 @@ impl EventKind {
     /// The kind that undoes it.
     #[must_use]
     pub const fn reversed(self) -> Self {
-        match self {
-            Self::JumpIn => Self::JumpOff,
-            Self::JumpOff => Self::JumpIn,
-            Self::Cover => Self::Uncover,
-            Self::Uncover => Self::Cover,
-            Self::Snap => Self::Snap,
-            Self::Merge => Self::Split,
-            Self::Split => Self::Merge,
-        }
+        self.row().3
+    }
+
+    /// True for a jump of a free asperity into contact.
+    #[must_use]
+    pub fn begins_contact(self) -> bool {
+        self == Self::JumpIn
     }
 
     /// True for merging and splitting.
     pub(crate) fn is_merging(self) -> bool {
         self.group() == EventGroup::Merging
+    }
+}
+
+/// Status of a contact spot after an event and the relaxation with it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum SpotStatus {
+    /// Out of contact. The parts of a merged contact are out of contact with it.
+    Free,
+    /// In contact. The parts of a merged contact have no load of their own.
+    Contact,
+    /// Absorbed by a larger contact.
+    Covered,
+    /// Part of a merged contact.
+    Merged,
+    /// A merged contact in whose place its two parts are in contact.
+    Split,
+}
+
+impl SpotStatus {
+    /// All of them.
+    pub const ALL: [Self; 5] = [Self::Free, Self::Contact, Self::Covered, Self::Merged, Self::Split];
+
+    /// Word in the tables.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Free => "free",
+            Self::Contact => "contact",
+            Self::Covered => "covered",
+            Self::Merged => "merged",
+            Self::Split => "split",
+        }
     }
 }
 

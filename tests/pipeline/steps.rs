@@ -15,7 +15,7 @@ pub const FORCE_N: f64 = 1.0;
 /// E* A0 h_rms of every synthetic case \[J\].
 pub const ENERGY_J: f64 = 5e-6;
 
-/// One event: step, branch, max_load, kind, avalanche, then [load before, load after, area before, area after, energy lost].
+/// One event: step, branch, max_load, kind ("KIND by CAUSE" if another one causes it), avalanche, then [load before, load after, area before, area after, energy lost].
 pub type Event = (i64, &'static str, Option<f64>, &'static str, i64, [f64; 5]);
 
 /// Cases and their cycles, and the folder of their tables.
@@ -38,11 +38,12 @@ fn named(table: &'static Table, rows: usize) -> FrameBuilder {
 /// Writes the table of events that belongs to a table of steps.
 pub fn write_events(steps: &Path, events: &[Event]) {
     let reals = |at: usize| events.iter().map(move |event| event.5[at]);
+    let words = |event: &Event| event.3.split_once(" by ").unwrap_or((event.3, event.3));
     let frame = named(&EVENTS, events.len())
         .i64("step", events.iter().map(|event| event.0))
         .text("branch", events.iter().map(|event| event.1))
         .f64("max_load", events.iter().map(|event| event.2))
-        .text("kind", events.iter().map(|event| event.3))
+        .text("kind", events.iter().map(|event| words(event).0))
         .i64("asperity_id", vec![7; events.len()])
         .f64("approach_m", events.iter().map(|event| 1e-8 * event.0 as f64))
         .i64("avalanche_id", events.iter().map(|event| event.4))
@@ -52,6 +53,8 @@ pub fn write_events(steps: &Path, events: &[Event]) {
         .f64("area_after_m2", reals(3))
         .f64("energy_lost_j", reals(4))
         .text("method", vec!["asperities"; events.len()])
+        .text("status", vec!["contact"; events.len()])
+        .text("cause", events.iter().map(|event| words(event).1))
         .build()
         .unwrap();
     write_table(&events_path(steps), &frame, &[]).unwrap();

@@ -1,7 +1,7 @@
 //! Events of an equilibrium path.
 
 use super::problem::Totals;
-use crate::event_kind::EventKind;
+use crate::event_kind::{EventKind, SpotStatus};
 use serde::{Deserialize, Serialize};
 
 /// An event with its load, area and energy change.
@@ -11,6 +11,10 @@ pub struct Event {
     pub kind: EventKind,
     /// Asperity that changes state.
     pub asperity: usize,
+    /// Its status after the relaxation.
+    pub status: SpotStatus,
+    /// Kind of the event that causes the relaxation in which it happens.
+    pub cause: EventKind,
     /// Mean penetration Δ \[m\] at the event.
     pub approach_m: f64,
     /// Number of its avalanche, counted along the branch.

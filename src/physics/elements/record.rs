@@ -65,6 +65,8 @@ fn event(cycle: &grid::Cycle, number: usize, of: &grid::Event, units: &Units) ->
         step: of.step,
         kind: of.kind.kind(),
         site: Site::Region(of.kind),
+        status: None,
+        cause: of.kind.kind(),
         approach_m: cycle.steps[of.step].approach * units.spacing_m(),
         avalanche: number as u64,
         before: totals(of.before, units),

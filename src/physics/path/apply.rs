@@ -9,7 +9,7 @@ use super::rejection::Rejection;
 use crate::PhysicsError;
 use crate::contact::Status;
 use crate::contact::transition::Transition;
-use crate::event_kind::EventKind;
+use crate::event_kind::{EventKind, SpotStatus};
 use crate::solve::local::Hold;
 
 /// Share of its radius by which a contact is moved over a fold.
@@ -167,7 +167,7 @@ impl EquilibriumPath {
                 self.predictor.state.barred[i] = true;
                 self.predictor.traces[i].forget();
                 let totals = self.predictor.totals(approach);
-                self.log.note(Transition { kind: EventKind::Uncover, asperity: i, by: Some(by) }, approach, totals);
+                self.log.note((Transition::uncover(i, by), SpotStatus::Free), approach, totals);
                 let gained_j = self.free_parts(i).1;
                 self.log.charge(-gained_j);
             }

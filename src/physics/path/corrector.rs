@@ -8,7 +8,6 @@ use super::work::work;
 use crate::Reason;
 use crate::contact::transition::Transition;
 use crate::contact::{Status, Totals};
-use crate::event_kind::EventKind;
 use crate::math::vector::dot;
 use crate::solve::descent::{Failing, Relaxed};
 use crate::solve::precision::Precision;
@@ -251,7 +250,7 @@ impl EquilibriumPath {
         for change in changes {
             self.predictor.traces[change.asperity].forget();
             self.predictor.set(change.asperity, change.status(&self.problem()), 0.0);
-            if change.kind == EventKind::JumpOff {
+            if change.ends_contact() {
                 self.free_parts(change.asperity);
             }
         }
@@ -263,7 +262,7 @@ impl EquilibriumPath {
     /// Records a relaxation without transitions as a snap of a contact.
     fn record_snap(&mut self, asperity: usize, before: Totals, target: f64) {
         let (after, _) = self.problem().totals(self.state());
-        self.record(&[Transition { kind: EventKind::Snap, asperity, by: None }], target, before, after, 0.0);
+        self.record(&[Transition::snap(asperity)], target, before, after, 0.0);
     }
 
     /// Relaxes the contact at `target` \[m\], as the last resort.

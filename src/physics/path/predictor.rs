@@ -9,7 +9,6 @@ use crate::contact::merging::ROUNDING;
 use crate::contact::problem::{Problem, Totals};
 use crate::contact::state::{State, Status};
 use crate::contact::transition::Transition;
-use crate::event_kind::EventKind;
 use crate::jkr::Asperity;
 use crate::solve::trace::PenetrationTrace;
 
@@ -282,6 +281,6 @@ impl Predictor {
         let radius = &self.state.radius;
         let first = (radius[i], j) < (radius[j], i);
         let (asperity, by) = if first { (i, j) } else { (j, i) };
-        Transition { kind: EventKind::Merge, asperity, by: Some(by) }
+        Transition::merge(asperity, by)
     }
 }

@@ -3,7 +3,6 @@
 use super::{Hold, LocalProblem};
 use crate::contact::problem::Problem;
 use crate::contact::transition::{ContactView, Transition};
-use crate::event_kind::EventKind;
 use crate::half_space::Effort;
 use crate::solve::newton::Damping;
 use crate::solve::relaxation::{Relaxing, relax};
@@ -40,7 +39,7 @@ impl Relaxing for Part<'_> {
     }
 
     fn take_out(&mut self, change: &Transition) {
-        if change.kind == EventKind::JumpOff {
+        if change.ends_contact() {
             self.patch.release(change.asperity);
         } else {
             self.patch.remove(change.asperity);
