@@ -23,11 +23,7 @@ const AVALANCHE: &[Column] = &[
 ];
 
 const ENERGY: &[Column] = &[
-    real(
-        "energy_lost_j",
-        "J",
-        "Dissipated energy, summed over the events; may be negative with absorption, which has no potential",
-    ),
+    real("energy_lost_j", "J", "Dissipated energy, summed over the events; may be negative with absorption, which has no potential"),
     real("energy_lost", "1", "Dissipated energy over E* A0 h_rms; sign as energy_lost_j"),
     real("load_drop_n", "N", "Normal load before the first event minus normal load after the last; negative for an increase"),
     real("area_change_m2", "m^2", "Contact area after the last event minus contact area before the first; negative for a decrease"),

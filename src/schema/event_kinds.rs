@@ -6,11 +6,6 @@ use crate::physics::{EventKind, RegionChange};
 /// Every kind of event of the tables `events`, in the column order of the tables over realizations.
 pub const EVENT_KINDS: [&str; EventKind::ALL.len()] = EventKind::WORDS;
 
-/// Colour of the events of a kind in the loop explorer, by its word there.
-const INTO_CONTACT: &str = "in";
-const OUT_OF_CONTACT: &str = "out";
-const OTHER: &str = "other";
-
 /// The kind of event of a word in the tables; of a word of boundary elements the kind that corresponds to it.
 #[must_use]
 pub fn event_kind(word: &str) -> Option<EventKind> {
@@ -23,31 +18,31 @@ pub fn event_kind(word: &str) -> Option<EventKind> {
 macro_rules! event_kinds {
     ($columns:ident) => {
         $columns! {
-            "jump_in", "", INTO_CONTACT,
+            "jump_in", "", "in",
                 "Asperities that jumped into contact, or regions formed, since the previous step",
                 "Asperities that jumped into contact",
                 "of jumps into contact, including the relaxation that follows";
-            "jump_off", " (out of contact)", OUT_OF_CONTACT,
+            "jump_off", " (out of contact)", "out",
                 "Asperities that jumped out of contact, or regions lost, since the previous step",
                 "Asperities that jumped out of contact",
                 "of jumps out of contact, including the relaxation that follows";
-            "cover", " (absorption)", OTHER,
+            "cover", " (absorption)", "other",
                 "Asperities absorbed since the previous step",
                 "Asperities absorbed by a larger contact",
                 "of absorption, including the relaxation that follows; may be negative, since absorption has no potential";
-            "uncover", " (release)", INTO_CONTACT,
+            "uncover", " (release)", "in",
                 "Asperities released from absorption since the previous step",
                 "Asperities released from absorption",
                 "of release from absorption, including the relaxation that follows; may be negative, since absorption has no potential";
-            "snap", " (snap-through: same contacts, new equilibrium)", OTHER,
+            "snap", " (snap-through: same contacts, new equilibrium)", "other",
                 "Snap-through events since the previous step: transitions to another equilibrium with the same contacts; regions grown or shrunk of boundary elements",
                 "Snap-through events: transitions to another equilibrium with the same contacts",
                 "of snap-through events: transitions to another equilibrium with the same contacts";
-            "merge", "", OTHER,
+            "merge", "", "other",
                 "Pairs of contacts merged, or regions joined, since the previous step",
                 "Pairs of contacts merged",
                 "of merging contacts, including the relaxation that follows";
-            "split", "", OTHER,
+            "split", "", "other",
                 "Merged contacts split, or regions parted, since the previous step",
                 "Merged contacts split",
                 "of splitting contacts, including the relaxation that follows";
@@ -57,8 +52,8 @@ macro_rules! event_kinds {
 pub(super) use event_kinds;
 
 macro_rules! counts {
-    ($($word:literal, $remark:literal, $colour:ident, $step:literal, $avalanche:literal, $realization:literal;)+) => {
-        /// Colours of the kinds in the loop explorer.
+    ($($word:literal, $remark:literal, $colour:literal, $step:literal, $avalanche:literal, $realization:literal;)+) => {
+        /// Words of the colours of the kinds in the loop explorer.
         pub const EVENT_COLOURS: [&str; EventKind::ALL.len()] = [$($colour),+];
         pub(super) const OF_STEPS: [Column; EventKind::ALL.len()] = [$(count(concat!($word, "_count"), $step)),+];
         pub(super) const OF_AVALANCHES: [Column; EventKind::ALL.len()] = [$(count(concat!($word, "_count"), $avalanche)),+];

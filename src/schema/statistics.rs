@@ -140,7 +140,7 @@ const RESULTS: &[Column] = &[
 
 /// Parts of `dissipated` by branch and by kind of event, over E* A0 h_rms and in joule. Each of the two groups sums to `dissipated`.
 macro_rules! parts {
-    ($($kind:literal, $_remark:literal, $_colour:ident, $_step:literal, $_avalanche:literal, $of_kind:literal;)+) => {
+    ($($kind:literal, $_remark:literal, $_colour:literal, $_step:literal, $_avalanche:literal, $of_kind:literal;)+) => {
         parts! { "loading", "of events during loading"; "unloading", "of events during unloading"; $($kind, $of_kind;)+ }
     };
     ($($part:literal, $what:literal;)+) => {

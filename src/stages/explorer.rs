@@ -254,7 +254,8 @@ fn events(events: &Frame, spots: &Spots, places: &BTreeMap<i64, usize>, energy_j
         let (Some(k), Some(kind)) = (places.get(&steps[row]), numbered.iter().position(|(word, _)| *word == kinds[row])) else { continue };
         let spot = spots.place(of[row], ids[row]).map_or(-1, |spot| spot as i64);
         let energy = significant(energies[row].unwrap_or_default() / energy_j, 3).parse::<f64>().unwrap_or_default();
-        let status = SpotStatus::ALL.iter().position(|status| Some(status.word()) == statuses[row].as_deref()).map_or(-1, |status| status as i64);
+        let status =
+            SpotStatus::ALL.iter().position(|status| Some(status.word()) == statuses[row].as_deref()).map_or(-1, |status| status as i64);
         rows.push((*k, json!([k, kind, spot, avalanches[row], energy, status])));
     }
     rows.sort_by_key(|(k, _)| *k);

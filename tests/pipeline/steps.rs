@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use hysteron::schema::{EVENTS, STEPS, Table};
+use hysteron::schema::{EVENTS, EventCounts, STEPS, Table};
 use hysteron::stats::{CaseInput, CycleInput, Given, Value};
 use hysteron::store::parquet::write_table;
 use hysteron::store::{Frame, FrameBuilder};
@@ -87,13 +87,7 @@ pub fn write_counts(path: &Path, steps: &[Step], [contacts, covered, touching]: 
         .f64("area_union_m2", reals(|step| step.3 * 0.9e-6))
         .count("contact_count", vec![contacts; steps.len()])
         .count("covered_count", vec![covered; steps.len()])
-        .count("jump_in_count", zeros())
-        .count("jump_off_count", zeros())
-        .count("cover_count", zeros())
-        .count("uncover_count", zeros())
-        .count("snap_count", zeros())
-        .count("merge_count", zeros())
-        .count("split_count", zeros())
+        .counts(vec![EventCounts::default(); steps.len()])
         .count("held_count", (0..steps.len()).map(|row| usize::from(row == 1)))
         .count("touching_count", vec![touching; steps.len()])
         .f64("dissipated_j", reals(|step| if step.0 == "loading" { 1e-10 } else { 2e-10 }))

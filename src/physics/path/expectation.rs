@@ -64,10 +64,7 @@ impl Predictor {
         let left = (target - trace.at) * sign;
         // A curved way may end a little earlier than a straight one.
         if (left > 0.0 && speed > 0.0 || way == 0.0) && way <= 1.1 * left {
-            due.push(PredictedEvent {
-                approach: trace.at + sign * way,
-                transition: Transition::jump_in(i),
-            });
+            due.push(PredictedEvent { approach: trace.at + sign * way, transition: Transition::jump_in(i) });
         }
     }
 
