@@ -13,8 +13,8 @@ pub fn event_kind(word: &str) -> Option<EventKind> {
     EventKind::ALL.into_iter().find(|kind| kind.word() == word).or_else(of_region)
 }
 
-/// Calls a macro with a row of each kind, in the order of [`EventKind::ALL`]: word, remark in the table of events, colour, and descriptions of its
-/// columns in the tables of steps, of avalanches, and over realizations.
+/// Calls a macro with a row of each kind, in the order of [`EventKind::ALL`]: word, remark in the table of events,
+/// colour, and descriptions of its columns in the tables of steps, of avalanches, and over realizations.
 macro_rules! event_kinds {
     ($columns:ident) => {
         $columns! {

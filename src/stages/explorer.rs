@@ -243,7 +243,7 @@ fn loops(tables: &Tables, spots: &Spots, energy_j: f64, length_m: f64) -> Result
     Ok(Value::Array(all))
 }
 
-/// Events of a loop: place of the step, kind, spot or -1, avalanche, dissipated energy over `E* A0 h_rms`, status or -1.
+/// Events of a loop: place of the step, kind, spot or -1, avalanche, dissipated energy over `E* A0 h_rms`, status or null.
 fn events(events: &Frame, spots: &Spots, places: &BTreeMap<i64, usize>, energy_j: f64) -> Result<Value, FrameError> {
     let numbered = kinds();
     let (steps, kinds, ids) = (events.i64("step")?, events.text("kind")?, events.i64_or_null("asperity_id")?);
@@ -254,8 +254,7 @@ fn events(events: &Frame, spots: &Spots, places: &BTreeMap<i64, usize>, energy_j
         let (Some(k), Some(kind)) = (places.get(&steps[row]), numbered.iter().position(|(word, _)| *word == kinds[row])) else { continue };
         let spot = spots.place(of[row], ids[row]).map_or(-1, |spot| spot as i64);
         let energy = significant(energies[row].unwrap_or_default() / energy_j, 3).parse::<f64>().unwrap_or_default();
-        let status =
-            SpotStatus::ALL.iter().position(|status| Some(status.word()) == statuses[row].as_deref()).map_or(-1, |status| status as i64);
+        let status = SpotStatus::ALL.iter().position(|status| Some(status.word()) == statuses[row].as_deref());
         rows.push((*k, json!([k, kind, spot, avalanches[row], energy, status])));
     }
     rows.sort_by_key(|(k, _)| *k);

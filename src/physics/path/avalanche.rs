@@ -55,11 +55,11 @@ impl EquilibriumPath {
             let due = self.due_transitions(&avalanche.open, &avalanche.open);
             // Contacts merge and split in equilibrium: where others have yet to respond, they have grown too far.
             let mut coalescing = Vec::new();
-            let next =
-                most_overdue(&due, &avalanche.moved, self.state()).or_else(|| self.worst_pending().map(Transition::snap)).or_else(|| {
-                    coalescing = self.due_coalescence(&avalanche.open);
-                    most_overdue(&coalescing, &avalanche.moved, self.state())
-                });
+            let due_now = most_overdue(&due, &avalanche.moved, self.state());
+            let next = due_now.or_else(|| self.worst_pending().map(Transition::snap)).or_else(|| {
+                coalescing = self.due_coalescence(&avalanche.open);
+                most_overdue(&coalescing, &avalanche.moved, self.state())
+            });
             let Some(transition) = next else {
                 self.postponed.extend(due.iter().chain(&coalescing).map(|trigger| trigger.transition.asperity));
                 break;

@@ -68,15 +68,17 @@ impl EventLog {
         self.charged = charged;
     }
 
-    /// Kind of the event that causes a relaxation whose first event has this `kind`: itself, unless merging or splitting comes before it.
+    /// Cause of a relaxation whose first event has this `kind`: itself, or merging or splitting before it.
     ///
-    /// Merging and splitting exchange contacts at equal energy. They are recorded before the contact is in equilibrium again, with the energy 0 if
-    /// nothing moves at once. What follows on the way to that equilibrium is caused by them. The first relaxation that has an energy ends it: this is
-    /// mainly the difference between the potentials of the merged contact and of its parts. Without this rule the energies of merging and splitting
-    /// do not cancel: on one surface of Δγ = 0.005 J/m² with ζ = 32, a jump that follows a splitting has fourteen times Θ.
+    /// Merging and splitting exchange contacts at equal energy. They are recorded before the contact is in equilibrium
+    /// again, with the energy 0 if nothing moves at once. They cause what follows on the way to that equilibrium, up to
+    /// the first relaxation with an energy. This is mainly the difference between the potentials of the merged contact
+    /// and of its parts. Without this rule the energies of merging and splitting do not cancel: on one surface of
+    /// Δγ = 0.005 J/m² with ζ = 32, a jump that follows a splitting has fourteen times Θ.
     fn cause(&self, kind: EventKind) -> EventKind {
-        let last = self.events.get(self.charged).filter(|event| event.avalanche == self.avalanches && event.energy_lost_j == 0.0);
-        last.into_iter().flat_map(|event| [event.kind, event.cause]).find(|kind| kind.is_merging()).unwrap_or(kind)
+        let is_before = |event: &&Event| event.avalanche == self.avalanches && event.energy_lost_j == 0.0;
+        let before = self.events.get(self.charged).filter(is_before).map(|event| [event.kind, event.cause]);
+        before.into_iter().flatten().find(|kind| kind.is_merging()).unwrap_or(kind)
     }
 
     /// Ends a segment without a jump of the load, which is known at its ends only.
@@ -114,7 +116,8 @@ mod tests {
         let mut log = EventLog::default();
         log.begin_avalanche();
         for (first, energy) in relaxations {
-            log.record(&[(*first, SpotStatus::Contact), (Transition::jump_off(9), SpotStatus::Free)], 0.0, [Totals::default(); 2], *energy);
+            let moved = [*first, Transition::jump_off(9)].map(|change| (change, SpotStatus::Free));
+            log.record(&moved, 0.0, [Totals::default(); 2], *energy);
         }
         log.events.iter().step_by(2).map(|event| event.cause).collect()
     }
@@ -130,19 +133,19 @@ mod tests {
     }
 
     #[test]
-    fn law_a_cause_ends_with_its_avalanche() {
+    fn law_a_cause_ends_with_its_avalanche_and_with_an_energy() {
+        let [split, uncover, jump] = [Transition::split(5), Transition::uncover(2, 3), Transition::jump_off(1)];
         let mut log = EventLog::default();
-        for change in [Transition::split(5), Transition::jump_off(1)] {
+        let record = |log: &mut EventLog, change| log.record(&[(change, SpotStatus::Free)], 0.0, [Totals::default(); 2], 0.0);
+        for change in [split, jump, split] {
             log.begin_avalanche();
-            log.record(&[(change, SpotStatus::Free)], 0.0, [Totals::default(); 2], 0.0);
+            record(&mut log, change);
         }
-        // A later charge of the splitting is its own; a transition without a change of load takes none.
-        log.begin_avalanche();
-        log.record(&[(Transition::split(6), SpotStatus::Split)], 0.0, [Totals::default(); 2], 0.0);
-        log.note((Transition::uncover(2, 3), SpotStatus::Free), 0.0, Totals::default());
+        // A transition without a change of load does not take a later charge, which is that of the splitting.
+        log.note((uncover, SpotStatus::Free), 0.0, Totals::default());
         log.charge(1.0);
-        log.record(&[(Transition::jump_off(1), SpotStatus::Free)], 0.0, [Totals::default(); 2], 1.0);
-        assert!(log.events.iter().all(|event| event.cause == event.kind || event.kind == Transition::uncover(2, 3).kind));
-        assert_eq!(log.events[3].cause, Transition::split(6).kind);
+        record(&mut log, jump);
+        let causes: Vec<EventKind> = log.events.iter().map(|event| event.cause).collect();
+        assert_eq!(causes, [split, jump, split, split, jump].map(|change| change.kind));
     }
 }
