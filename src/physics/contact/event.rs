@@ -1,6 +1,7 @@
 //! Events of an equilibrium path.
 
 use super::problem::Totals;
+use super::state::Status;
 use crate::event_kind::{EventKind, SpotStatus};
 use serde::{Deserialize, Serialize};
 
@@ -25,4 +26,15 @@ pub struct Event {
     pub after: Totals,
     /// Decrease of the potential \[J\].
     pub energy_lost_j: f64,
+}
+
+impl From<Status> for SpotStatus {
+    fn from(status: Status) -> Self {
+        match status {
+            Status::Free => Self::Free,
+            Status::Contact => Self::Contact,
+            Status::Covered { .. } => Self::Covered,
+            Status::Merged { .. } => Self::Merged,
+        }
+    }
 }

@@ -102,13 +102,7 @@ impl Transition {
 
     /// Status of its asperity in the state after it.
     pub(crate) fn status_after(&self, state: &State) -> SpotStatus {
-        match state.status[self.asperity] {
-            _ if self.kind == EventKind::Split => SpotStatus::Split,
-            Status::Free => SpotStatus::Free,
-            Status::Contact => SpotStatus::Contact,
-            Status::Covered { .. } => SpotStatus::Covered,
-            Status::Merged { .. } => SpotStatus::Merged,
-        }
+        if self.kind == EventKind::Split { SpotStatus::Split } else { state.status[self.asperity].into() }
     }
 
     /// True if this would undo one of the changes `moved` of the same avalanche.

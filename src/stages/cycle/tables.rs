@@ -88,7 +88,7 @@ impl<'a> Tables<'a> {
             .text("branch", spots.iter().map(|s| self.step(s.step).branch.word()))
             .f64("max_load", spots.iter().map(|s| self.step(s.step).max_load))
             .i64("asperity_id", spots.iter().map(|s| s.asperity.map(|asperity| asperity as i64)))
-            .text("state", spots.iter().map(|s| if s.covered { "covered" } else { "contact" }))
+            .text("state", spots.iter().map(|s| if s.covered { SpotStatus::Covered } else { SpotStatus::Contact }.word()))
             .f64("contact_radius_m", spots.iter().map(|s| s.contact_radius_m))
             .f64("load_n", spots.iter().map(|s| s.load_n))
             .f64("penetration_m", each(|s| s.penetration_m))
