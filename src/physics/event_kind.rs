@@ -1,7 +1,7 @@
 //! Kinds of events of a loop, for both methods: word, name and group of each in one table, which all other code reads.
 //!
-//! A further kind takes a variant with its row here, in [`EventKind`]. In the physics the compiler names what else
-//! it needs: its condition (`path::conditions`), its application (`path::apply`) and the status that it enters
+//! A further kind takes a variant with its row here, in [`EventKind`]. In the physics the compiler names the other
+//! places: its condition (`path::conditions`), its application (`path::apply`) and the status that it enters
 //! (`path::propagation`). Outside it takes one row in `schema::event_kinds`, with its columns and its colour: tables,
 //! statistics, report and explorer follow from it.
 

@@ -71,8 +71,8 @@ impl EventLog {
     /// Cause of a relaxation whose first event has this `kind`: itself, or merging or splitting before it.
     ///
     /// Merging and splitting exchange contacts at equal energy. They are recorded before the contact is in equilibrium
-    /// again, with the energy 0 if nothing moves at once. They cause what follows on the way to that equilibrium, up to
-    /// the first relaxation with an energy. This is mainly the difference between the potentials of the merged contact
+    /// again, with the energy 0 if nothing moves at once. They cause the relaxations on the way to that equilibrium, up
+    /// to the first with an energy. This is mainly the difference between the potentials of the merged contact
     /// and of its parts. Without this rule the energies of merging and splitting do not cancel: on one surface of
     /// Δγ = 0.005 J/m² with ζ = 32, a jump that follows a splitting has fourteen times Θ.
     fn cause(&self, kind: EventKind) -> EventKind {
